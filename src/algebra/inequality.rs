@@ -1,0 +1,121 @@
+//! The algebraic variational inequality.
+
+use super::SparseMatrix;
+use crate::real::Real;
+
+/// What an unknown may be. Absent bounds are absent: there is no large number that means none.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Bound<T> {
+    /// Any value.
+    Free,
+    /// This value (a Dirichlet datum).
+    Fixed(T),
+    /// At least this value.
+    Lower(T),
+    /// At most this value.
+    Upper(T),
+    /// Between the two, lower first.
+    Both(T, T),
+}
+
+impl<T: Real> Bound<T> {
+    /// The bound from below, if there is one.
+    pub fn lower(&self) -> Option<T> {
+        match *self {
+            Bound::Lower(l) | Bound::Both(l, _) => Some(l),
+            _ => None,
+        }
+    }
+    /// The bound from above, if there is one.
+    pub fn upper(&self) -> Option<T> {
+        match *self {
+            Bound::Upper(u) | Bound::Both(_, u) => Some(u),
+            _ => None,
+        }
+    }
+    /// Whether an inequality, not an equation, binds the unknown.
+    pub fn is_inequality(&self) -> bool {
+        matches!(self, Bound::Lower(_) | Bound::Upper(_) | Bound::Both(..))
+    }
+}
+
+/// Which bound an unknown rests on.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum Contact {
+    /// None: inactive.
+    #[default]
+    Open,
+    /// The lower bound is active.
+    Lower,
+    /// The upper bound is active.
+    Upper,
+}
+
+/// Where an unknown lives: the vertices whose barycentre is its node, and the cell that owns it
+/// where cells do not share it.
+///
+/// One vertex: a vertex value. `D` vertices: the mean over a facet.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Place {
+    cell: u32,
+    vertices: [u32; 3],
+}
+
+impl Place {
+    const NONE: u32 = u32::MAX;
+
+    /// A place at one to three vertices, owned by a cell or shared.
+    pub fn new(cell: Option<u32>, vertices: &[u32]) -> Self {
+        let mut v = [Self::NONE; 3];
+        v[..vertices.len()].copy_from_slice(vertices);
+        Self { cell: cell.unwrap_or(Self::NONE), vertices: v }
+    }
+    /// The cell that owns the unknown, `None` if cells share it.
+    pub fn cell(&self) -> Option<u32> {
+        (self.cell != Self::NONE).then_some(self.cell)
+    }
+    /// The vertices whose barycentre is the unknown's node.
+    pub fn vertices(&self) -> &[u32] {
+        let n = self.vertices.iter().position(|&v| v == Self::NONE).unwrap_or(3);
+        &self.vertices[..n]
+    }
+}
+
+/// Find `u` within the bounds with `(A u - b) . (v - u) >= 0` for all `v` within the bounds.
+///
+/// If `A` is symmetric positive definite this is the minimum of `u.A u / 2 - b.u` over the bounds.
+/// This is the one value every solver and exporter takes; it knows neither dimension nor scheme.
+#[derive(Clone, Debug)]
+pub struct Inequality<T> {
+    /// The matrix on all unknowns, Dirichlet ones included.
+    pub matrix: SparseMatrix<T>,
+    /// Whether the form is symmetric, as its scheme declares.
+    pub symmetric: bool,
+    /// The load.
+    pub load: Vec<T>,
+    /// What each unknown may be.
+    pub bounds: Vec<Bound<T>>,
+    /// Where each unknown lives.
+    pub places: Vec<Place>,
+}
+
+impl<T: Real> Inequality<T> {
+    /// Number of unknowns, Dirichlet ones included.
+    pub fn size(&self) -> usize {
+        self.load.len()
+    }
+    /// `u.A u / 2 - b.u`, in `f64`.
+    pub fn objective(&self, u: &[T]) -> f64 {
+        (0..self.size())
+            .map(|i| {
+                let (columns, values) = self.matrix.row(i);
+                let au: f64 = columns
+                    .iter()
+                    .zip(values)
+                    .map(|(&j, a)| a.to_f64() * u[j as usize].to_f64())
+                    .sum();
+                u[i].to_f64() * (0.5 * au - self.load[i].to_f64())
+            })
+            .sum()
+    }
+}

@@ -1,0 +1,61 @@
+//! Compressed sparse rows.
+
+use rayon::prelude::*;
+
+use crate::real::Real;
+
+/// A square sparse matrix by rows: columns ascending in each row, no column twice.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SparseMatrix<T> {
+    /// Start of each row in `columns` and `values`, and the number of stored entries at the end.
+    pub row_starts: Vec<u32>,
+    /// Column of each entry.
+    pub columns: Vec<u32>,
+    /// Value of each entry.
+    pub values: Vec<T>,
+}
+
+impl<T: Real> SparseMatrix<T> {
+    /// Number of rows.
+    pub fn size(&self) -> usize {
+        self.row_starts.len().saturating_sub(1)
+    }
+    /// Number of stored entries.
+    pub fn nonzeros(&self) -> usize {
+        self.columns.len()
+    }
+    /// Columns and values of a row.
+    #[inline]
+    pub fn row(&self, i: usize) -> (&[u32], &[T]) {
+        let range = self.row_starts[i] as usize..self.row_starts[i + 1] as usize;
+        (&self.columns[range.clone()], &self.values[range])
+    }
+    /// The entry at (i, j), zero where none is stored.
+    pub fn get(&self, i: usize, j: usize) -> T {
+        let (columns, values) = self.row(i);
+        columns.binary_search(&(j as u32)).map_or_else(|_| T::lit(0.0), |k| values[k])
+    }
+    /// The diagonal.
+    pub fn diagonal(&self) -> Vec<T> {
+        (0..self.size()).map(|i| self.get(i, i)).collect()
+    }
+    /// Row `i` times a vector.
+    #[inline]
+    pub fn row_dot(&self, i: usize, x: &[T]) -> T {
+        let (columns, values) = self.row(i);
+        columns.iter().zip(values).fold(T::lit(0.0), |s, (&j, &a)| s + a * x[j as usize])
+    }
+    /// `y = A x`, by rows in parallel; the same bits for any number of threads.
+    pub fn apply(&self, x: &[T], y: &mut [T]) {
+        y.par_iter_mut().with_min_len(4096).enumerate().for_each(|(i, y)| *y = self.row_dot(i, x));
+    }
+    /// `b - A x`.
+    pub fn residual(&self, b: &[T], x: &[T]) -> Vec<T> {
+        let mut r = vec![T::lit(0.0); b.len()];
+        r.par_iter_mut()
+            .with_min_len(4096)
+            .enumerate()
+            .for_each(|(i, r)| *r = b[i] - self.row_dot(i, x));
+        r
+    }
+}

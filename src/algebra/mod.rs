@@ -1,0 +1,9 @@
+//! Numbers only: sparse matrices, and the inequality that every solver and exporter takes.
+//!
+//! Nothing here knows a mesh, a dimension or a scheme.
+
+mod inequality;
+mod matrix;
+
+pub use inequality::{Bound, Contact, Inequality, Place};
+pub use matrix::SparseMatrix;

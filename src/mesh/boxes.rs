@@ -1,0 +1,1 @@
+//! Kuhn triangulations of boxes.

@@ -1,0 +1,153 @@
+//! What can be wrong with a mesh.
+
+/// Why a list of vertices and cells is not a mesh, and where.
+///
+/// Cells and vertices are counted from zero in the order given.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum MeshError {
+    /// Nothing to mesh.
+    #[error("the mesh has no cells of dimension {dimension}")]
+    NoCells {
+        /// Dimension asked for.
+        dimension: usize,
+    },
+    /// More cells or vertices than 32-bit numbering holds.
+    #[error("the mesh has {count} {what}, at most {limit} can be numbered")]
+    TooLarge {
+        /// "cells" or "vertices".
+        what: &'static str,
+        /// How many there are.
+        count: usize,
+        /// How many there may be.
+        limit: usize,
+    },
+    /// The list of cell vertices does not divide by the vertices of a cell.
+    #[error("{entries} cell vertices do not make cells of {per_cell}")]
+    IncompleteCell {
+        /// Length of the list.
+        entries: usize,
+        /// Vertices of a cell.
+        per_cell: usize,
+    },
+    /// A cell names a vertex that does not exist.
+    #[error("cell {cell} names vertex {vertex}, but there are only {vertices}")]
+    VertexOutOfRange {
+        /// The cell.
+        cell: usize,
+        /// The vertex it names.
+        vertex: u32,
+        /// How many there are.
+        vertices: usize,
+    },
+    /// A coordinate is not finite.
+    #[error("coordinate {axis} of vertex {vertex} is {value}: coordinates must be finite")]
+    NotFinite {
+        /// The vertex.
+        vertex: usize,
+        /// The coordinate.
+        axis: usize,
+        /// Its value.
+        value: f64,
+    },
+    /// A cell has no volume.
+    #[error(
+        "cell {cell} is degenerate: volume {volume:e} against diameter {diameter:e} (vertices {vertices:?})"
+    )]
+    DegenerateCell {
+        /// The cell.
+        cell: usize,
+        /// Its vertices.
+        vertices: Vec<u32>,
+        /// Its volume.
+        volume: f64,
+        /// Its diameter.
+        diameter: f64,
+    },
+    /// Two cells have the same vertices.
+    #[error("cells {first} and {second} have the same vertices {vertices:?}")]
+    RepeatedCell {
+        /// The first of the two.
+        first: usize,
+        /// The second.
+        second: usize,
+        /// Their vertices.
+        vertices: Vec<u32>,
+    },
+    /// A facet belongs to three cells.
+    #[error("facet {vertices:?} belongs to cells {cells:?}: a facet lies between two cells at most")]
+    FacetOfThreeCells {
+        /// Vertices of the facet.
+        vertices: Vec<u32>,
+        /// The first three of its cells.
+        cells: [usize; 3],
+    },
+    /// A facet of the boundary is in no part.
+    #[error(
+        "boundary facet {vertices:?} of cell {cell}, at {at}, is in no boundary part: put it in one of dirichlet, neumann, contact"
+    )]
+    UntaggedFacet {
+        /// Vertices of the facet.
+        vertices: Vec<u32>,
+        /// Its cell.
+        cell: usize,
+        /// Its barycentre.
+        at: String,
+    },
+    /// A facet is in two parts.
+    #[error("facet {vertices:?} is in two boundary parts, {first} and {second}")]
+    FacetInTwoParts {
+        /// Vertices of the facet.
+        vertices: Vec<u32>,
+        /// The first part.
+        first: &'static str,
+        /// The second part.
+        second: &'static str,
+        /// Position of the second mention in the list of tagged facets.
+        tag: usize,
+    },
+    /// A tagged facet is not a facet of the boundary.
+    #[error("facet {vertices:?} is in part {part} but {why}")]
+    NotABoundaryFacet {
+        /// Vertices of the facet.
+        vertices: Vec<u32>,
+        /// The part.
+        part: &'static str,
+        /// "lies between two cells" or "belongs to no cell".
+        why: &'static str,
+        /// Position in the list of tagged facets.
+        tag: usize,
+    },
+    /// A connected component that nothing holds.
+    #[error(
+        "the component of {cells} cells around cell {cell} has neither a dirichlet nor a contact facet: the problem is singular there"
+    )]
+    UnsupportedComponent {
+        /// A cell of the component.
+        cell: usize,
+        /// How many cells it has.
+        cells: usize,
+    },
+}
+
+impl MeshError {
+    /// The cells the error names, so that a reader of files can say where they stand.
+    pub fn cells(&self) -> Vec<usize> {
+        match self {
+            Self::VertexOutOfRange { cell, .. }
+            | Self::DegenerateCell { cell, .. }
+            | Self::UntaggedFacet { cell, .. }
+            | Self::UnsupportedComponent { cell, .. } => vec![*cell],
+            Self::RepeatedCell { first, second, .. } => vec![*first, *second],
+            Self::FacetOfThreeCells { cells, .. } => cells.to_vec(),
+            _ => Vec::new(),
+        }
+    }
+    /// The position in the list of tagged facets, if the error is about one.
+    pub fn tagged_facet(&self) -> Option<usize> {
+        match self {
+            Self::FacetInTwoParts { tag, .. } | Self::NotABoundaryFacet { tag, .. } => Some(*tag),
+            _ => None,
+        }
+    }
+}

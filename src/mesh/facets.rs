@@ -1,0 +1,7 @@
+//! Facets.
+/// stub
+pub struct Facets;
+/// stub
+pub struct Neighbour;
+/// stub
+pub struct Neighbours;

@@ -1,0 +1,3 @@
+//! Geometry.
+/// stub
+pub struct CellGeometry;

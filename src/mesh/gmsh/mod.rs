@@ -1,0 +1,5 @@
+//! Gmsh files.
+/// stub
+#[derive(Debug, thiserror::Error)]
+#[error("stub")]
+pub struct GmshError;

@@ -1,0 +1,5 @@
+//! Refinement.
+/// stub
+pub struct Refinement;
+/// stub
+pub struct Hierarchy;

@@ -1,0 +1,167 @@
+//! The data of a variational inequality, written once, independent of mesh, scheme and scalar.
+//!
+//! ```text
+//! -div(alpha grad u) + c u = f + lambda      in the domain
+//! u = u_D                                    on the Dirichlet part
+//! alpha du/dn = q                            on the Neumann part
+//! obstacle:   psi_lower <= u <= psi_upper    in the domain
+//! Signorini:  u >= g, alpha du/dn >= 0, (u - g) alpha du/dn = 0   on the contact part
+//! ```
+//!
+//! `n` is the outward unit normal. An absent datum is `None`, and no loop runs for it.
+
+use crate::real::Point;
+
+/// A scalar function of space.
+pub type Field<const D: usize> = Box<dyn Fn(&Point<f64, D>) -> f64 + Send + Sync>;
+/// A vector function of space.
+pub type VectorField<const D: usize> = Box<dyn Fn(&Point<f64, D>) -> Point<f64, D> + Send + Sync>;
+/// A flux through the boundary: a function of the point and the outward unit normal.
+pub type BoundaryFlux<const D: usize> =
+    Box<dyn Fn(&Point<f64, D>, &Point<f64, D>) -> f64 + Send + Sync>;
+
+/// A datum: a number, integrated exactly and without a quadrature loop, or a function.
+pub enum Datum<const D: usize> {
+    /// The same number everywhere.
+    Constant(f64),
+    /// A function of space, integrated by quadrature.
+    Function(Field<D>),
+}
+
+impl<const D: usize> Datum<D> {
+    /// The value at a point.
+    pub fn at(&self, x: &Point<f64, D>) -> f64 {
+        match self {
+            Datum::Constant(c) => *c,
+            Datum::Function(f) => f(x),
+        }
+    }
+}
+
+impl<const D: usize> From<f64> for Datum<D> {
+    fn from(c: f64) -> Self {
+        Datum::Constant(c)
+    }
+}
+
+/// The exact solution, for error norms; also the source of Dirichlet and Neumann data where a
+/// scene gives none.
+pub struct Exact<const D: usize> {
+    /// The solution.
+    pub value: Field<D>,
+    /// Its gradient.
+    pub gradient: VectorField<D>,
+}
+
+/// A variational inequality: data and, where known, its solution.
+#[derive(Default)]
+pub struct Problem<const D: usize> {
+    /// The load `f` per unit volume.
+    pub source: Option<Datum<D>>,
+    /// Dirichlet data `u_D`; zero where absent.
+    pub dirichlet: Option<Field<D>>,
+    /// Neumann data `q = alpha du/dn`; zero where absent.
+    pub neumann: Option<BoundaryFlux<D>>,
+    /// The diffusion coefficient, evaluated once per cell, at its barycentre; one where absent.
+    pub coefficient: Option<Field<D>>,
+    /// The reaction coefficient `c >= 0`.
+    pub reaction: Option<Datum<D>>,
+    /// Obstacle from below.
+    pub lower: Option<Field<D>>,
+    /// Obstacle from above.
+    pub upper: Option<Field<D>>,
+    /// Signorini gap `g` on the contact part.
+    pub gap: Option<Field<D>>,
+    /// The exact solution.
+    pub exact: Option<Exact<D>>,
+}
+
+impl<const D: usize> Problem<D> {
+    /// `-Laplace u = 0`, zero data, no constraint.
+    pub fn new() -> Self {
+        Self::default()
+    }
+    /// Sets a constant load.
+    pub fn constant_source(mut self, f: f64) -> Self {
+        self.source = Some(Datum::Constant(f));
+        self
+    }
+    /// Sets a load that varies.
+    pub fn source(mut self, f: impl Fn(&Point<f64, D>) -> f64 + Send + Sync + 'static) -> Self {
+        self.source = Some(Datum::Function(Box::new(f)));
+        self
+    }
+    /// Sets Dirichlet data.
+    pub fn dirichlet(mut self, u: impl Fn(&Point<f64, D>) -> f64 + Send + Sync + 'static) -> Self {
+        self.dirichlet = Some(Box::new(u));
+        self
+    }
+    /// Sets Neumann data, a function of the point and the outward normal.
+    pub fn neumann(
+        mut self,
+        q: impl Fn(&Point<f64, D>, &Point<f64, D>) -> f64 + Send + Sync + 'static,
+    ) -> Self {
+        self.neumann = Some(Box::new(q));
+        self
+    }
+    /// Sets the diffusion coefficient.
+    pub fn coefficient(
+        mut self,
+        alpha: impl Fn(&Point<f64, D>) -> f64 + Send + Sync + 'static,
+    ) -> Self {
+        self.coefficient = Some(Box::new(alpha));
+        self
+    }
+    /// Sets the reaction coefficient.
+    pub fn reaction(mut self, c: impl Into<Datum<D>>) -> Self {
+        self.reaction = Some(c.into());
+        self
+    }
+    /// Sets an obstacle from below.
+    pub fn obstacle_below(
+        mut self,
+        psi: impl Fn(&Point<f64, D>) -> f64 + Send + Sync + 'static,
+    ) -> Self {
+        self.lower = Some(Box::new(psi));
+        self
+    }
+    /// Sets an obstacle from above.
+    pub fn obstacle_above(
+        mut self,
+        psi: impl Fn(&Point<f64, D>) -> f64 + Send + Sync + 'static,
+    ) -> Self {
+        self.upper = Some(Box::new(psi));
+        self
+    }
+    /// Sets the Signorini condition `u >= g` on the contact part.
+    pub fn signorini(mut self, gap: impl Fn(&Point<f64, D>) -> f64 + Send + Sync + 'static) -> Self {
+        self.gap = Some(Box::new(gap));
+        self
+    }
+    /// Sets the exact solution and its gradient, and makes it the Dirichlet datum and, times the
+    /// coefficient, the Neumann datum, unless those are set.
+    pub fn exact(
+        mut self,
+        value: impl Fn(&Point<f64, D>) -> f64 + Send + Sync + 'static,
+        gradient: impl Fn(&Point<f64, D>) -> Point<f64, D> + Send + Sync + 'static,
+    ) -> Self {
+        self.exact = Some(Exact { value: Box::new(value), gradient: Box::new(gradient) });
+        self
+    }
+    /// The Dirichlet value at a point.
+    pub fn dirichlet_at(&self, x: &Point<f64, D>) -> f64 {
+        match (&self.dirichlet, &self.exact) {
+            (Some(u), _) => u(x),
+            (None, Some(exact)) => (exact.value)(x),
+            (None, None) => 0.0,
+        }
+    }
+    /// Whether Dirichlet data are other than zero by default.
+    pub fn has_dirichlet_data(&self) -> bool {
+        self.dirichlet.is_some() || self.exact.is_some()
+    }
+    /// Whether Neumann data are other than zero by default.
+    pub fn has_neumann_data(&self) -> bool {
+        self.neumann.is_some() || self.exact.is_some()
+    }
+}

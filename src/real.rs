@@ -1,0 +1,54 @@
+//! The scalar of assembly and solve, and points of space.
+
+/// A real scalar this crate can assemble and solve in: `f64`, or `f32`.
+///
+/// Data of a scene are always evaluated in `f64` and rounded once, by [`Real::lit`].
+#[diagnostic::on_unimplemented(
+    message = "`{Self}` is not a scalar this crate can solve in",
+    note = "use `f64` or `f32`"
+)]
+pub trait Real: nalgebra::RealField + faer::traits::RealField + Copy {
+    /// The name users type and reports state.
+    const NAME: &'static str;
+    /// Distance from one to the next larger number, as `f64`.
+    const EPSILON: f64;
+    /// The nearest scalar to a constant or datum.
+    fn lit(x: f64) -> Self;
+    /// The same number in `f64`, exactly.
+    fn to_f64(self) -> f64;
+}
+
+impl Real for f64 {
+    const NAME: &'static str = "f64";
+    const EPSILON: f64 = f64::EPSILON;
+    #[inline(always)]
+    fn lit(x: f64) -> Self {
+        x
+    }
+    #[inline(always)]
+    fn to_f64(self) -> f64 {
+        self
+    }
+}
+
+impl Real for f32 {
+    const NAME: &'static str = "f32";
+    const EPSILON: f64 = f32::EPSILON as f64;
+    #[inline(always)]
+    fn lit(x: f64) -> Self {
+        x as f32
+    }
+    #[inline(always)]
+    fn to_f64(self) -> f64 {
+        f64::from(self)
+    }
+}
+
+/// A point or vector of `D`-dimensional space.
+pub type Point<T, const D: usize> = nalgebra::SVector<T, D>;
+
+/// The point in `f64`, in which all data are evaluated.
+#[inline(always)]
+pub fn point_f64<T: Real, const D: usize>(x: &Point<T, D>) -> Point<f64, D> {
+    Point::from_fn(|k, _| x[k].to_f64())
+}

@@ -1,0 +1,72 @@
+//! Solvers of the algebraic inequality, and the certificate of what they return.
+
+use crate::algebra::{Contact, Inequality};
+use crate::real::Real;
+
+/// How a solve ended. Only [`Outcome::Converged`] is a success; every other outcome comes with the
+/// best iterate.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[non_exhaustive]
+pub enum Outcome {
+    /// The complementarity conditions hold to the tolerance.
+    Converged,
+    /// The iteration limit was reached while the active set still moved.
+    IterationLimit,
+    /// The active set returned to an earlier one and could not be resolved.
+    Cycling,
+    /// Steps no longer change the iterate, yet the conditions do not hold.
+    Stalled,
+    /// The matrix is not positive definite on the free unknowns (penalty too small).
+    NotCoercive,
+    /// The matrix is singular on the free unknowns.
+    Singular,
+    /// A number that is not finite appeared.
+    NotFinite,
+}
+
+impl Outcome {
+    /// The name in reports, in kebab-case.
+    pub fn name(self) -> &'static str {
+        match self {
+            Outcome::Converged => "converged",
+            Outcome::IterationLimit => "iteration-limit",
+            Outcome::Cycling => "cycling",
+            Outcome::Stalled => "stalled",
+            Outcome::NotCoercive => "not-coercive",
+            Outcome::Singular => "singular",
+            Outcome::NotFinite => "not-finite",
+        }
+    }
+}
+
+/// What a solver starts from: an active set, best of a coarser level or a simpler scheme.
+#[derive(Clone, Debug)]
+pub enum Start {
+    /// Nothing known.
+    Cold,
+    /// A guess of the contact state of every unknown.
+    Contact(Vec<Contact>),
+}
+
+/// What a solver returns.
+#[derive(Clone, Debug)]
+pub struct Solution<T> {
+    /// The unknowns: the solution, or the best iterate.
+    pub values: Vec<T>,
+    /// Which bound each unknown rests on.
+    pub contact: Vec<Contact>,
+    /// How it ended.
+    pub outcome: Outcome,
+    /// Outer iterations: active sets tried.
+    pub outer: usize,
+    /// Inner iterations of linear solvers, zero for direct ones.
+    pub linear: usize,
+}
+
+/// A solver of the algebraic inequality.
+pub trait InequalitySolver<T: Real>: Sync {
+    /// The name users type and reports state.
+    fn name(&self) -> &'static str;
+    /// Solves; never fails silently: see [`Outcome`].
+    fn solve(&self, inequality: &Inequality<T>, start: &Start) -> Solution<T>;
+}

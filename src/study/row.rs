@@ -1,0 +1,126 @@
+//! One row of a report: plain numbers, one for every scene, scheme and level.
+
+use serde::Serialize;
+
+/// Errors against the exact solution, or observed orders of them.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct Errors {
+    /// L2 norm.
+    pub l2: Option<f64>,
+    /// Broken H1 seminorm.
+    pub h1: Option<f64>,
+    /// The scheme's own norm, penalty included.
+    pub energy: Option<f64>,
+    /// Maximum over nodes.
+    pub max: Option<f64>,
+}
+
+/// Orders that theory promises.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct ExpectedOrders {
+    /// In L2.
+    pub l2: Option<f64>,
+    /// In the broken H1 seminorm.
+    pub h1: Option<f64>,
+}
+
+/// Penalty factors in force.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct PenaltyParameters {
+    /// Interior penalty factor.
+    pub sigma: Option<f64>,
+    /// WOPSIP factor.
+    pub eta: Option<f64>,
+    /// The rule that turns the factor into a weight.
+    pub rule: Option<String>,
+}
+
+/// Iteration counts.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+pub struct Iterations {
+    /// Active sets tried on this level.
+    pub outer: usize,
+    /// Inner iterations on this level, zero for direct solvers.
+    pub linear: usize,
+    /// How many coarser levels the start came from.
+    pub levels: usize,
+}
+
+/// Relative, dimensionless violations of the complementarity conditions.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Certificate {
+    /// Largest violation of a bound.
+    pub feasibility: f64,
+    /// Largest violation of the multiplier's sign.
+    pub multiplier: f64,
+    /// Largest minimum of gap and multiplier.
+    pub complementarity: f64,
+    /// Norm of the residual off the contact set over the norm of the load.
+    pub residual: f64,
+    /// Guaranteed relative bound on the energy-norm distance to the discrete solution.
+    pub algebraic_bound: Option<f64>,
+}
+
+/// Wall times in seconds.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct Seconds {
+    /// Making the mesh.
+    pub mesh: f64,
+    /// Assembly of matrix, load and bounds.
+    pub assemble: f64,
+    /// Solve, with whatever the start from coarser levels cost.
+    pub solve: f64,
+    /// The sum.
+    pub total: f64,
+}
+
+/// One row of a report. Keys are binding for scripts; a number that does not apply is null.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Row {
+    /// Name of the scene.
+    pub scene: String,
+    /// Dimension of space.
+    pub dimension: usize,
+    /// Name of the scheme.
+    pub scheme: String,
+    /// Where the inequality is imposed: `vertices` or `facet-means`.
+    pub constraint: String,
+    /// Subdivisions of the shortest side, or number of refinements of a mesh file.
+    pub level: usize,
+    /// Penalty factors in force.
+    pub parameters: PenaltyParameters,
+    /// Name of the solver of the inequality.
+    pub solver: String,
+    /// Linear solver inside it.
+    pub linear: String,
+    /// Number of cells.
+    pub cells: usize,
+    /// Number of unknowns before Dirichlet values are eliminated.
+    pub unknowns: usize,
+    /// Entries stored in the matrix of all unknowns.
+    pub nonzeros: usize,
+    /// Largest cell diameter.
+    pub mesh_size: f64,
+    /// `converged`, or the typed reason.
+    pub status: String,
+    /// Errors against the exact solution.
+    pub error: Errors,
+    /// Observed order against the previous level of the same scene and scheme.
+    pub order: Errors,
+    /// What theory promises.
+    pub expected_order: ExpectedOrders,
+    /// `a(u,u)/2 - l(u)`; null for non-symmetric schemes.
+    pub objective: Option<f64>,
+    /// Constrained unknowns in contact, Dirichlet ones not counted.
+    pub active: usize,
+    /// Iteration counts.
+    pub iterations: Iterations,
+    /// The certificate.
+    pub certificate: Certificate,
+    /// Wall times.
+    pub seconds: Seconds,
+    /// Largest resident set of the process so far, where the system tells.
+    pub peak_memory_bytes: Option<u64>,
+    /// Warnings by type, as text: a penalty below its proven bound, say.
+    pub warnings: Vec<String>,
+}
