@@ -10,6 +10,7 @@ mod broken;
 pub(crate) mod count;
 mod data;
 mod dofs;
+mod fields;
 mod gather;
 mod load;
 mod local;
@@ -110,7 +111,7 @@ impl<'a, T: Real, const D: usize, S: Scheme<T, D>> Discretisation<'a, T, D, S> {
         self.mesh
     }
     /// Where the scheme imposes bounds: `vertices` or `facet-means`.
-    pub fn constraint_name(&self) -> &'static str {
+    pub fn constraint_name() -> &'static str {
         match <S::Element as ReferenceElement<T, D>>::node(0) {
             Node::Vertex(_) => "vertices",
             Node::FacetMean(_) => "facet-means",
@@ -257,8 +258,11 @@ impl<'a, T: Real, const D: usize, S: Scheme<T, D>> Discretisation<'a, T, D, S> {
     }
 }
 
-/// A penalty that lies below the bound which proves coercivity.
-#[derive(Clone, Copy, Debug, PartialEq)]
+/// A warning: penalties below the bound that proves coercivity.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[error(
+    "the penalty of {facets} facets lies below the bound that proves coercivity; worst at facet {local} of cell {cell}: {weight:.3e} where {needed:.3e} is enough"
+)]
 pub struct PenaltyShortfall {
     /// How many facets lie below.
     pub facets: usize,
