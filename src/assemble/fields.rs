@@ -42,7 +42,8 @@ impl<T: Real, const D: usize, S: Scheme<T, D>> Discretisation<'_, T, D, S> {
         }
         Fields {
             u: self.vertex_values(u),
-            obstacle: obstacle.map(|psi| self.mesh.cells().iter().map(|v| psi(&corner(v))).collect()),
+            obstacle: obstacle
+                .map(|psi| self.mesh.cells().iter().map(|v| psi(&corner(v))).collect()),
             multiplier,
             contact,
         }
