@@ -68,7 +68,10 @@ impl Place {
     pub fn new(cell: Option<u32>, vertices: &[u32]) -> Self {
         let mut v = [Self::NONE; 3];
         v[..vertices.len()].copy_from_slice(vertices);
-        Self { cell: cell.unwrap_or(Self::NONE), vertices: v }
+        Self {
+            cell: cell.unwrap_or(Self::NONE),
+            vertices: v,
+        }
     }
     /// The cell that owns the unknown, `None` if cells share it.
     pub fn cell(&self) -> Option<u32> {
@@ -76,7 +79,11 @@ impl Place {
     }
     /// The vertices whose barycentre is the unknown's node.
     pub fn vertices(&self) -> &[u32] {
-        let n = self.vertices.iter().position(|&v| v == Self::NONE).unwrap_or(3);
+        let n = self
+            .vertices
+            .iter()
+            .position(|&v| v == Self::NONE)
+            .unwrap_or(3);
         &self.vertices[..n]
     }
 }

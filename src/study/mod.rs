@@ -2,6 +2,4 @@
 
 mod row;
 
-pub use row::{
-    Certificate, Errors, ExpectedOrders, Iterations, PenaltyParameters, Row, Seconds,
-};
+pub use row::{Certificate, Errors, ExpectedOrders, Iterations, PenaltyParameters, Row, Seconds};
