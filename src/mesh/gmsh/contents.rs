@@ -38,10 +38,21 @@ impl Nodes {
         self.positions.reserve(nodes);
     }
     /// Appends a node, whose coordinates must be finite.
-    pub(super) fn push(&mut self, source: &Source, position: usize, node: u64, point: [f64; 3]) -> Result<(), GmshError> {
+    pub(super) fn push(
+        &mut self,
+        source: &Source,
+        position: usize,
+        node: u64,
+        point: [f64; 3],
+    ) -> Result<(), GmshError> {
         if let Some(axis) = point.iter().position(|x| !x.is_finite()) {
             let place = source.place_of(position);
-            return Err(GmshError::NotFinite { place, node, axis: ['x', 'y', 'z'][axis], value: point[axis] });
+            return Err(GmshError::NotFinite {
+                place,
+                node,
+                axis: ['x', 'y', 'z'][axis],
+                value: point[axis],
+            });
         }
         self.tags.push(node);
         self.points.push(point);
@@ -70,8 +81,18 @@ impl Simplices {
         self.corners.reserve(elements * corners_each);
     }
     /// Appends an element whose corners are in the list already.
-    pub(super) fn push(&mut self, position: usize, element: u64, order: u8, membership: Membership) {
-        if self.memberships.last().is_none_or(|&(_, last)| last != membership) {
+    pub(super) fn push(
+        &mut self,
+        position: usize,
+        element: u64,
+        order: u8,
+        membership: Membership,
+    ) {
+        if self
+            .memberships
+            .last()
+            .is_none_or(|&(_, last)| last != membership)
+        {
             self.memberships.push((self.tags.len(), membership));
         }
         if order > 1 {
@@ -82,8 +103,16 @@ impl Simplices {
     }
     /// Runs of consecutive elements with the same groups.
     pub(super) fn runs(&self) -> impl Iterator<Item = (std::ops::Range<usize>, Membership)> + '_ {
-        let ends = self.memberships.iter().skip(1).map(|&(start, _)| start).chain([self.tags.len()]);
-        self.memberships.iter().zip(ends).map(|(&(start, membership), end)| (start..end, membership))
+        let ends = self
+            .memberships
+            .iter()
+            .skip(1)
+            .map(|&(start, _)| start)
+            .chain([self.tags.len()]);
+        self.memberships
+            .iter()
+            .zip(ends)
+            .map(|(&(start, membership), end)| (start..end, membership))
     }
 }
 
@@ -112,31 +141,50 @@ impl Contents {
     }
     /// The largest dimension of an element that is not a point.
     pub(super) fn dimension(&self) -> Result<usize, GmshError> {
-        (1..=3).rev().find(|&d| !self.simplices[d].tags.is_empty()).ok_or(GmshError::NoCells)
+        (1..=3)
+            .rev()
+            .find(|&d| !self.simplices[d].tags.is_empty())
+            .ok_or(GmshError::NoCells)
     }
     pub(super) fn place_of(&self, position: usize) -> Place {
-        if self.binary { Place::Byte(position) } else { Place::Line(position) }
+        if self.binary {
+            Place::Byte(position)
+        } else {
+            Place::Line(position)
+        }
     }
     /// An element by its position in the list of its dimension.
     pub(super) fn element(&self, dimension: usize, index: usize) -> Option<ElementPlace> {
         let simplices = &self.simplices[dimension];
         let place = self.place_of(*simplices.positions.get(index)?);
-        Some(ElementPlace { element: *simplices.tags.get(index)?, place })
+        Some(ElementPlace {
+            element: *simplices.tags.get(index)?,
+            place,
+        })
     }
 }
 
 /// The kind of an element type, whose elements need not be simplices.
 pub(super) fn known_kind(source: &Source, element_type: i64) -> Result<Kind, GmshError> {
-    Kind::from_type(element_type)
-        .ok_or_else(|| GmshError::UnknownElementType { place: source.place(), element_type })
+    Kind::from_type(element_type).ok_or_else(|| GmshError::UnknownElementType {
+        place: source.place(),
+        element_type,
+    })
 }
 
 /// The dimension of a simplex; an error that names the element for anything else.
-pub(super) fn simplex_dimension(source: &Source, shape: Shape, element_type: i64, element: u64) -> Result<usize, GmshError> {
-    shape.simplex_dimension().ok_or_else(|| GmshError::NotSimplicial {
-        place: source.place(),
-        element,
-        element_type,
-        name: shape.name(),
-    })
+pub(super) fn simplex_dimension(
+    source: &Source,
+    shape: Shape,
+    element_type: i64,
+    element: u64,
+) -> Result<usize, GmshError> {
+    shape
+        .simplex_dimension()
+        .ok_or_else(|| GmshError::NotSimplicial {
+            place: source.place(),
+            element,
+            element_type,
+            name: shape.name(),
+        })
 }

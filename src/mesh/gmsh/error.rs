@@ -79,7 +79,9 @@ pub enum GmshError {
         place: Place,
     },
     /// A word where a number is expected.
-    #[error("{place}, section {section}: expected {expected}, found `{word}`; correct the line or save the mesh again")]
+    #[error(
+        "{place}, section {section}: expected {expected}, found `{word}`; correct the line or save the mesh again"
+    )]
     NotANumber {
         /// Where the word stands.
         place: Place,
@@ -91,7 +93,9 @@ pub enum GmshError {
         word: String,
     },
     /// Something else than the format asks for at this place.
-    #[error("{place}, section {section}: expected {expected}, found {found}; correct the line or save the mesh again")]
+    #[error(
+        "{place}, section {section}: expected {expected}, found {found}; correct the line or save the mesh again"
+    )]
     Unexpected {
         /// Where it stands.
         place: Place,
@@ -143,7 +147,9 @@ pub enum GmshError {
         node: u64,
     },
     /// A coordinate is not finite.
-    #[error("{place}: coordinate {axis} of node {node} is {value}; coordinates must be finite, correct the geometry and mesh again")]
+    #[error(
+        "{place}: coordinate {axis} of node {node} is {value}; coordinates must be finite, correct the geometry and mesh again"
+    )]
     NotFinite {
         /// Where the node stands.
         place: Place,
@@ -274,7 +280,11 @@ fn in_file(elements: &[ElementPlace], nodes: &[u64]) -> String {
         let tags: Vec<String> = nodes.iter().map(ToString::to_string).collect();
         parts.push(format!("nodes {}", tags.join(", ")));
     }
-    if parts.is_empty() { String::new() } else { format!("; in the file: {}", parts.join(", ")) }
+    if parts.is_empty() {
+        String::new()
+    } else {
+        format!("; in the file: {}", parts.join(", "))
+    }
 }
 
 /// What a caller should know about a mesh that was read all the same.

@@ -57,7 +57,11 @@ impl Kind {
         // Orders six to ten came late and have numbers of their own.
         let order = |first: i64, order: i64| (element_type - first + order) as u8;
         Some(match element_type {
-            15 => Kind { shape: Shape::Point, order: 1, nodes: 1 },
+            15 => Kind {
+                shape: Shape::Point,
+                order: 1,
+                nodes: 1,
+            },
             1 => line(1),
             8 => line(2),
             26..=28 => line(order(26, 3)),
@@ -89,31 +93,55 @@ impl Kind {
 }
 
 fn line(order: u8) -> Kind {
-    Kind { shape: Shape::Line, order, nodes: usize::from(order) + 1 }
+    Kind {
+        shape: Shape::Line,
+        order,
+        nodes: usize::from(order) + 1,
+    }
 }
 
 fn triangle(order: u8) -> Kind {
     let k = usize::from(order);
-    Kind { shape: Shape::Triangle, order, nodes: (k + 1) * (k + 2) / 2 }
+    Kind {
+        shape: Shape::Triangle,
+        order,
+        nodes: (k + 1) * (k + 2) / 2,
+    }
 }
 
 /// Without nodes inside the triangle.
 fn triangle_edges(order: u8) -> Kind {
-    Kind { shape: Shape::Triangle, order, nodes: 3 * usize::from(order) }
+    Kind {
+        shape: Shape::Triangle,
+        order,
+        nodes: 3 * usize::from(order),
+    }
 }
 
 fn tetrahedron(order: u8) -> Kind {
     let k = usize::from(order);
-    Kind { shape: Shape::Tetrahedron, order, nodes: (k + 1) * (k + 2) * (k + 3) / 6 }
+    Kind {
+        shape: Shape::Tetrahedron,
+        order,
+        nodes: (k + 1) * (k + 2) * (k + 3) / 6,
+    }
 }
 
 /// Without nodes inside the tetrahedron and its faces.
 fn tetrahedron_edges(order: u8) -> Kind {
-    Kind { shape: Shape::Tetrahedron, order, nodes: 6 * usize::from(order) - 2 }
+    Kind {
+        shape: Shape::Tetrahedron,
+        order,
+        nodes: 6 * usize::from(order) - 2,
+    }
 }
 
 fn other(shape: Shape) -> Kind {
-    Kind { shape, order: 1, nodes: 0 }
+    Kind {
+        shape,
+        order: 1,
+        nodes: 0,
+    }
 }
 
 #[cfg(test)]
@@ -123,12 +151,41 @@ mod tests {
     #[test]
     fn nodes_of_the_types_in_the_manual() {
         let table = [
-            (1, 2), (2, 3), (4, 4), (8, 3), (9, 6), (11, 10), (15, 1), (20, 9), (21, 10), (22, 12),
-            (23, 15), (24, 15), (25, 21), (26, 4), (27, 5), (28, 6), (29, 20), (30, 35), (31, 56),
-            (32, 22), (33, 28), (46, 66), (56, 30), (66, 11), (75, 286), (79, 34), (83, 58), (137, 16),
+            (1, 2),
+            (2, 3),
+            (4, 4),
+            (8, 3),
+            (9, 6),
+            (11, 10),
+            (15, 1),
+            (20, 9),
+            (21, 10),
+            (22, 12),
+            (23, 15),
+            (24, 15),
+            (25, 21),
+            (26, 4),
+            (27, 5),
+            (28, 6),
+            (29, 20),
+            (30, 35),
+            (31, 56),
+            (32, 22),
+            (33, 28),
+            (46, 66),
+            (56, 30),
+            (66, 11),
+            (75, 286),
+            (79, 34),
+            (83, 58),
+            (137, 16),
         ];
         for (element_type, nodes) in table {
-            assert_eq!(Kind::from_type(element_type).map(|k| k.nodes), Some(nodes), "type {element_type}");
+            assert_eq!(
+                Kind::from_type(element_type).map(|k| k.nodes),
+                Some(nodes),
+                "type {element_type}"
+            );
         }
         for element_type in [-1, 0, 34, 35, 67, 84, 140, 1 << 40] {
             assert_eq!(Kind::from_type(element_type), None, "type {element_type}");

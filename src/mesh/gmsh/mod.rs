@@ -51,6 +51,7 @@
 //! ```
 
 mod assemble;
+mod binary;
 mod contents;
 mod error;
 mod kinds;
@@ -58,6 +59,7 @@ mod node_index;
 mod place;
 mod sections;
 mod source;
+mod text;
 mod version_four;
 mod version_two;
 
@@ -83,7 +85,10 @@ pub struct GmshMesh<T, const D: usize> {
 /// # Errors
 /// Every [`GmshError`].
 pub fn read<T: Real, const D: usize>(path: &Path) -> Result<GmshMesh<T, D>, GmshError> {
-    let bytes = std::fs::read(path).map_err(|source| GmshError::Unreadable { path: path.into(), source })?;
+    let bytes = std::fs::read(path).map_err(|source| GmshError::Unreadable {
+        path: path.into(),
+        source,
+    })?;
     parse(&bytes)
 }
 

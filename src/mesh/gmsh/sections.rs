@@ -2,7 +2,8 @@
 
 use super::contents::{Contents, Group};
 use super::error::GmshError;
-use super::source::{Source, excerpt};
+use super::source::Source;
+use super::text::excerpt;
 use super::{version_four, version_two};
 
 /// The revisions of the format that are read.
@@ -35,7 +36,9 @@ pub(super) fn read_contents(bytes: &[u8], wanted: Wanted) -> Result<Contents, Gm
                 version_four::read_entities(&mut source, &mut contents)?;
             }
             (b"$PartitionedEntities", Version::Four) => {
-                return Err(GmshError::Partitioned { place: source.place() });
+                return Err(GmshError::Partitioned {
+                    place: source.place(),
+                });
             }
             (b"$Nodes", _) => {
                 has_nodes = true;
@@ -94,9 +97,22 @@ fn read_header(source: &mut Source) -> Result<Version, GmshError> {
                 source.section = "$Comments".into();
                 source.skip_section()?;
             }
-            b"$NOD" => return Err(GmshError::UnsupportedVersion { place, version: "1".into() }),
-            b"" => return Err(GmshError::NotGmsh { found: "the end of the file".into() }),
-            word => return Err(GmshError::NotGmsh { found: format!("`{}`", excerpt(word)) }),
+            b"$NOD" => {
+                return Err(GmshError::UnsupportedVersion {
+                    place,
+                    version: "1".into(),
+                });
+            }
+            b"" => {
+                return Err(GmshError::NotGmsh {
+                    found: "the end of the file".into(),
+                });
+            }
+            word => {
+                return Err(GmshError::NotGmsh {
+                    found: format!("`{}`", excerpt(word)),
+                });
+            }
         }
     }
     source.section = "$MeshFormat".into();
@@ -107,13 +123,19 @@ fn read_header(source: &mut Source) -> Result<Version, GmshError> {
         b"2.2" => Version::Two,
         b"" => return Err(source.truncated()),
         word => {
-            let looks_like_a_version = std::str::from_utf8(word).is_ok_and(|text| text.parse::<f64>().is_ok());
+            let looks_like_a_version =
+                std::str::from_utf8(word).is_ok_and(|text| text.parse::<f64>().is_ok());
             let version = excerpt(word);
             return Err(if looks_like_a_version {
                 GmshError::UnsupportedVersion { place, version }
             } else {
                 let section = source.section.clone();
-                GmshError::NotANumber { place, section, expected: "the version of the format", word: version }
+                GmshError::NotANumber {
+                    place,
+                    section,
+                    expected: "the version of the format",
+                    word: version,
+                }
             });
         }
     };
@@ -129,7 +151,9 @@ fn read_header(source: &mut Source) -> Result<Version, GmshError> {
             source.rest_of_line();
             source.encoding = source.byte_order()?;
         }
-        other => return Err(source.unexpected("file type 0 (text) or 1 (binary)", other.to_string())),
+        other => {
+            return Err(source.unexpected("file type 0 (text) or 1 (binary)", other.to_string()));
+        }
     }
     source.end_section("lines", 1)?;
     Ok(version)
@@ -150,19 +174,31 @@ fn read_names(source: &mut Source, contents: &mut Contents) -> Result<(), GmshEr
             }
             [digit @ b'0'..=b'3'] => usize::from(digit - b'0'),
             word => {
-                return Err(source.unexpected("the dimension of a physical group, 0 to 3", format!("`{}`", excerpt(word))));
+                return Err(source.unexpected(
+                    "the dimension of a physical group, 0 to 3",
+                    format!("`{}`", excerpt(word)),
+                ));
             }
         };
         let tag = source.text_integer("the tag of a physical group")?;
         let line = source.rest_of_line().trim_ascii();
-        let name = line.strip_prefix(b"\"").and_then(|rest| rest.strip_suffix(b"\""));
+        let name = line
+            .strip_prefix(b"\"")
+            .and_then(|rest| rest.strip_suffix(b"\""));
         let Some(name) = name else {
             let (section, expected) = (source.section.clone(), "a name in double quotes".into());
             let found = format!("`{}`", excerpt(line));
-            return Err(GmshError::Unexpected { place, section, expected, found });
+            return Err(GmshError::Unexpected {
+                place,
+                section,
+                expected,
+                found,
+            });
         };
         let name = String::from_utf8_lossy(name).into_owned();
-        contents.groups.insert((dimension, tag), Group { name, place });
+        contents
+            .groups
+            .insert((dimension, tag), Group { name, place });
     }
     source.end_section("physical names", announced)
 }

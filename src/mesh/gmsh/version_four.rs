@@ -42,7 +42,12 @@ pub(super) fn read_entities(source: &mut Source, contents: &mut Contents) -> Res
             contents.entities.insert((dimension, entity), tags);
         }
     }
-    source.end_section("entities", announced.iter().fold(0, |sum: u64, &count| sum.saturating_add(count)))
+    source.end_section(
+        "entities",
+        announced
+            .iter()
+            .fold(0, |sum: u64, &count| sum.saturating_add(count)),
+    )
 }
 
 /// The four numbers at the beginning of `$Nodes` and `$Elements`: of blocks, and of records in all.
@@ -68,7 +73,11 @@ pub(super) fn read_nodes(source: &mut Source, contents: &mut Contents) -> Result
         let parametric = match source.integer("0 or 1 for parametric coordinates")? {
             0 => 0,
             1 => dimension as u64,
-            other => return Err(source.unexpected("0 or 1 for parametric coordinates", other.to_string())),
+            other => {
+                return Err(
+                    source.unexpected("0 or 1 for parametric coordinates", other.to_string())
+                );
+            }
         };
         let count = source.count("the number of nodes of a block")?;
         source.end_record()?;
@@ -86,7 +95,11 @@ pub(super) fn read_nodes(source: &mut Source, contents: &mut Contents) -> Result
         for (node, found) in tags.into_iter().zip(0..) {
             source.begin_record("nodes of a block", count, found)?;
             let position = source.position();
-            let point = [source.real("coordinate x")?, source.real("coordinate y")?, source.real("coordinate z")?];
+            let point = [
+                source.real("coordinate x")?,
+                source.real("coordinate y")?,
+                source.real("coordinate z")?,
+            ];
             source.skip(parametric, 8, "a parametric coordinate")?;
             source.end_record()?;
             contents.nodes.push(source, position, node, point)?;

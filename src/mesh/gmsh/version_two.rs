@@ -23,7 +23,11 @@ pub(super) fn read_nodes(source: &mut Source, contents: &mut Contents) -> Result
         source.begin_record("nodes", announced, found)?;
         let position = source.position();
         let node = source.unsigned("the tag of a node")?;
-        let point = [source.real("coordinate x")?, source.real("coordinate y")?, source.real("coordinate z")?];
+        let point = [
+            source.real("coordinate x")?,
+            source.real("coordinate y")?,
+            source.real("coordinate z")?,
+        ];
         source.end_record()?;
         contents.nodes.push(source, position, node, point)?;
     }
@@ -46,7 +50,17 @@ pub(super) fn read_elements(source: &mut Source, contents: &mut Contents) -> Res
         let element_type = source.integer("the type of an element")?;
         let kind = known_kind(source, element_type)?;
         let tags = source.unsigned("the number of tags of an element")?;
-        read_element(source, contents, &Front { position, element, element_type, kind, tags })?;
+        read_element(
+            source,
+            contents,
+            &Front {
+                position,
+                element,
+                element_type,
+                kind,
+                tags,
+            },
+        )?;
         found += 1;
     }
     source.end_section("elements", announced)
@@ -63,14 +77,32 @@ fn read_same_type(
     let kind = known_kind(source, element_type)?;
     let following = source.unsigned("the number of elements of one type")?;
     if following > announced - found {
-        return Err(source.miscounted("elements", announced, format!("{} or more", found + following)));
+        return Err(source.miscounted(
+            "elements",
+            announced,
+            format!("{} or more", found + following),
+        ));
     }
     let tags = source.unsigned("the number of tags of an element")?;
-    source.check_room("elements of one type", following, 4 + 4 * (tags as usize + kind.nodes))?;
+    source.check_room(
+        "elements of one type",
+        following,
+        4 + 4 * (tags as usize + kind.nodes),
+    )?;
     for _ in 0..following {
         let position = source.position();
         let element = source.unsigned("the tag of an element")?;
-        read_element(source, contents, &Front { position, element, element_type, kind, tags })?;
+        read_element(
+            source,
+            contents,
+            &Front {
+                position,
+                element,
+                element_type,
+                kind,
+                tags,
+            },
+        )?;
     }
     Ok(following)
 }
@@ -85,19 +117,39 @@ struct Front {
 }
 
 /// The tags and nodes of an element.
-fn read_element(source: &mut Source, contents: &mut Contents, front: &Front) -> Result<(), GmshError> {
+fn read_element(
+    source: &mut Source,
+    contents: &mut Contents,
+    front: &Front,
+) -> Result<(), GmshError> {
     // The first tag is the physical group, zero for none; the others tell the entity and the
     // partitions.
-    let group = if front.tags > 0 { source.integer("the tag of a physical group")?.abs() } else { 0 };
+    let group = if front.tags > 0 {
+        source.integer("the tag of a physical group")?.abs()
+    } else {
+        0
+    };
     source.skip(front.tags.saturating_sub(1), 4, "a tag of an element")?;
-    let Front { kind, element_type, element, .. } = *front;
+    let Front {
+        kind,
+        element_type,
+        element,
+        ..
+    } = *front;
     let dimension = simplex_dimension(source, kind.shape, element_type, element)?;
     let simplices = &mut contents.simplices[dimension];
     for _ in 0..=dimension {
-        simplices.corners.push(source.unsigned("the tag of a node")?);
+        simplices
+            .corners
+            .push(source.unsigned("the tag of a node")?);
     }
     source.skip((kind.nodes - dimension - 1) as u64, 4, "the tag of a node")?;
     source.end_record()?;
-    simplices.push(front.position, element, kind.order, Membership::Group(group));
+    simplices.push(
+        front.position,
+        element,
+        kind.order,
+        Membership::Group(group),
+    );
     Ok(())
 }
