@@ -129,12 +129,12 @@ fn partitioned() {
         matches!(
             error,
             GmshError::Partitioned {
-                place: Place::Line(29)
+                place: Place::Line(28)
             }
         ),
         "{error}"
     );
-    says(&error, &["line 29", "unpartitioned"]);
+    says(&error, &["line 28", "unpartitioned"]);
 }
 
 #[test]

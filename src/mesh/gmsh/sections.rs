@@ -2,6 +2,7 @@
 
 use super::contents::{Contents, Group};
 use super::error::GmshError;
+use super::place::Place;
 use super::source::Source;
 use super::text::excerpt;
 use super::{version_four, version_two};
@@ -28,7 +29,7 @@ pub(super) fn read_contents(bytes: &[u8], wanted: Wanted) -> Result<Contents, Gm
     let mut contents = Contents::new();
     contents.binary = source.is_binary();
     let (mut has_nodes, mut has_elements) = (false, false);
-    while let Some(name) = open_section(&mut source)? {
+    while let Some((name, place)) = open_section(&mut source)? {
         let wants_all = wanted == Wanted::Everything;
         match (name, version) {
             (b"$PhysicalNames", _) => read_names(&mut source, &mut contents)?,
@@ -36,9 +37,7 @@ pub(super) fn read_contents(bytes: &[u8], wanted: Wanted) -> Result<Contents, Gm
                 version_four::read_entities(&mut source, &mut contents)?;
             }
             (b"$PartitionedEntities", Version::Four) => {
-                return Err(GmshError::Partitioned {
-                    place: source.place(),
-                });
+                return Err(GmshError::Partitioned { place });
             }
             (b"$Nodes", _) => {
                 has_nodes = true;
@@ -66,8 +65,9 @@ pub(super) fn read_contents(bytes: &[u8], wanted: Wanted) -> Result<Contents, Gm
     Ok(contents)
 }
 
-/// Reads the name of the next section and goes to the line after it; nothing at the end of the file.
-fn open_section<'a>(source: &mut Source<'a>) -> Result<Option<&'a [u8]>, GmshError> {
+/// Reads the name of the next section, and where it stands, and goes to the line after it; nothing
+/// at the end of the file.
+fn open_section<'a>(source: &mut Source<'a>) -> Result<Option<(&'a [u8], Place)>, GmshError> {
     source.skip_blank_lines();
     if source.remaining() == 0 {
         return Ok(None);
@@ -76,13 +76,14 @@ fn open_section<'a>(source: &mut Source<'a>) -> Result<Option<&'a [u8]>, GmshErr
         source.section = format!("after {}", source.section);
     }
     let name = source.word();
+    let place = source.place();
     if name.len() < 2 || name[0] != b'$' || name.starts_with(b"$End") {
         return Err(source.unexpected("the beginning of a section", format!("`{}`", excerpt(name))));
     }
     source.section = String::from_utf8_lossy(name).into_owned();
     source.end_line()?;
     source.rest_of_line();
-    Ok(Some(name))
+    Ok(Some((name, place)))
 }
 
 /// Reads `$MeshFormat`, which settles how everything else is written.
