@@ -162,6 +162,10 @@ impl<const D: usize> Problem<D> {
             (None, None) => 0.0,
         }
     }
+    /// Whether any inequality binds.
+    pub fn is_constrained(&self) -> bool {
+        self.lower.is_some() || self.upper.is_some() || self.gap.is_some()
+    }
     /// Whether Dirichlet data are other than zero by default.
     pub fn has_dirichlet_data(&self) -> bool {
         self.dirichlet.is_some() || self.exact.is_some()

@@ -20,6 +20,20 @@ impl<T: Real> SparseMatrix<T> {
     pub fn size(&self) -> usize {
         self.row_starts.len().saturating_sub(1)
     }
+    /// Whether the rows are what the type promises: starts that do not fall, columns ascending
+    /// and inside the matrix, a value for every entry.
+    pub fn is_well_formed(&self) -> bool {
+        let n = self.size();
+        self.row_starts.first() == Some(&0)
+            && self.row_starts.windows(2).all(|w| w[0] <= w[1])
+            && self.row_starts[n] as usize == self.columns.len()
+            && self.columns.len() == self.values.len()
+            && (0..n).all(|i| {
+                let columns = self.row(i).0;
+                columns.windows(2).all(|w| w[0] < w[1])
+                    && columns.last().is_none_or(|&j| (j as usize) < n)
+            })
+    }
     /// Number of stored entries.
     pub fn nonzeros(&self) -> usize {
         self.columns.len()
@@ -56,6 +70,25 @@ impl<T: Real> SparseMatrix<T> {
             .with_min_len(4096)
             .enumerate()
             .for_each(|(i, y)| *y = self.row_dot(i, x));
+    }
+    /// Row `i` times a vector, every product and the sum in `f64`.
+    #[inline]
+    pub fn row_dot_f64(&self, i: usize, x: &[T]) -> f64 {
+        let (columns, values) = self.row(i);
+        columns
+            .iter()
+            .zip(values)
+            .fold(0.0, |s, (&j, &a)| s + a.to_f64() * x[j as usize].to_f64())
+    }
+    /// `r = b - A x`, accumulated and kept in `f64` whatever the scalar.
+    ///
+    /// For `f32` the products are exact, so that the residual is that of the rounded unknowns and
+    /// not of the summation.
+    pub fn residual_f64(&self, b: &[T], x: &[T], r: &mut [f64]) {
+        r.par_iter_mut()
+            .with_min_len(4096)
+            .enumerate()
+            .for_each(|(i, r)| *r = b[i].to_f64() - self.row_dot_f64(i, x));
     }
     /// `b - A x`.
     pub fn residual(&self, b: &[T], x: &[T]) -> Vec<T> {

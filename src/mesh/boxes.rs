@@ -27,6 +27,16 @@ fn paths<const D: usize>() -> Vec<[usize; D]> {
         .collect()
 }
 
+impl<const D: usize> BoxDomain<D> {
+    /// Subdivisions along each axis when the shortest side has `level` of them and all small boxes
+    /// are as close to cubes as whole numbers allow.
+    pub fn counts(&self, level: usize) -> [usize; D] {
+        let side = |k: usize| self.upper[k] - self.lower[k];
+        let shortest = (0..D).map(side).fold(f64::INFINITY, f64::min);
+        std::array::from_fn(|k| (side(k) / shortest * level as f64).round() as usize)
+    }
+}
+
 impl<T: Real, const D: usize> Mesh<T, D> {
     /// A box cut into `counts[k]` small boxes along axis `k`, each cut into `D!` simplices around
     /// its diagonal from the lowest to the highest corner (Kuhn).

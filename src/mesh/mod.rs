@@ -23,6 +23,7 @@ pub use facets::{Facets, Neighbour, Neighbours};
 pub use geometry::CellGeometry;
 pub use refine::{Hierarchy, Refinement};
 pub use validate::TaggedFacet;
+pub(crate) use validate::describe_point;
 
 use crate::real::{Point, Real, point_f64};
 
