@@ -1,0 +1,74 @@
+//! Observed orders of convergence.
+
+use super::row::{Errors, Row};
+
+/// The exponent `p` for which the errors of two meshes behave like `h^p`.
+///
+/// Nothing where no exponent exists: an error or mesh size that is not positive and finite, or two
+/// meshes of the same size.
+///
+/// ```
+/// use unilateral::study::observed_order;
+/// assert_eq!(observed_order(4e-2, 1e-2, 0.5, 0.25), Some(2.0));
+/// assert_eq!(observed_order(4e-2, 0.0, 0.5, 0.25), None);
+/// ```
+pub fn observed_order(
+    coarse_error: f64,
+    fine_error: f64,
+    coarse_h: f64,
+    fine_h: f64,
+) -> Option<f64> {
+    let positive = |x: f64| x.is_finite() && x > 0.0;
+    if ![coarse_error, fine_error, coarse_h, fine_h].into_iter().all(positive) {
+        return None;
+    }
+    // Logarithms are subtracted, not quotients taken: a quotient of tiny numbers may overflow.
+    let order = (coarse_error.ln() - fine_error.ln()) / (coarse_h.ln() - fine_h.ln());
+    order.is_finite().then_some(order)
+}
+
+/// Fills in the order of every row against the previous level: the row with the next smaller level
+/// of the same scene, scheme and constraint.
+///
+/// Where either of the two did not converge, or has no error, the order is none. It is never taken
+/// against a level further back, since a reader could not tell.
+pub fn fill_orders(rows: &mut [Row]) {
+    let orders: Vec<Errors> = rows
+        .iter()
+        .map(|row| previous(rows, row).map_or_else(Errors::default, |coarse| order(coarse, row)))
+        .collect();
+    for (row, order) in rows.iter_mut().zip(orders) {
+        row.order = order;
+    }
+}
+
+/// The row one level coarser.
+fn previous<'a>(rows: &'a [Row], row: &Row) -> Option<&'a Row> {
+    rows.iter()
+        .filter(|r| r.scene == row.scene && r.scheme == row.scheme && r.constraint == row.constraint)
+        .filter(|r| r.level < row.level)
+        .max_by_key(|r| r.level)
+}
+
+/// The orders of two rows.
+fn order(coarse: &Row, fine: &Row) -> Errors {
+    if !coarse.converged() || !fine.converged() {
+        return Errors::default();
+    }
+    let of = |c: Option<f64>, f: Option<f64>| {
+        observed_order(c?, f?, coarse.mesh_size, fine.mesh_size)
+    };
+    Errors {
+        l2: of(coarse.error.l2, fine.error.l2),
+        h1: of(coarse.error.h1, fine.error.h1),
+        energy: of(coarse.error.energy, fine.error.energy),
+        max: of(coarse.error.max, fine.error.max),
+    }
+}
+
+impl Row {
+    /// Whether the run of this row converged.
+    pub fn converged(&self) -> bool {
+        self.status == "converged"
+    }
+}

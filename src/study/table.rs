@@ -1,0 +1,190 @@
+//! Reports as text for a terminal: one table for each scene.
+
+use super::report::Report;
+use super::row::Row;
+use std::fmt;
+
+/// What a table shows in place of a number that does not apply.
+const NONE: &str = "-";
+
+impl fmt::Display for Report {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write_tables(f, &self.rows)
+    }
+}
+
+/// Writes one table for each scene, in the order in which scenes first occur, with a blank line
+/// between schemes.
+pub fn write_tables(f: &mut impl fmt::Write, rows: &[Row]) -> fmt::Result {
+    for (i, scene) in distinct(rows.iter().map(|r| r.scene.as_str())).into_iter().enumerate() {
+        if i > 0 {
+            writeln!(f)?;
+        }
+        let rows: Vec<&Row> = rows.iter().filter(|r| r.scene == scene).collect();
+        write_scene(f, scene, &rows)?;
+    }
+    Ok(())
+}
+
+/// The table of one scene.
+fn write_scene(f: &mut impl fmt::Write, scene: &str, rows: &[&Row]) -> fmt::Result {
+    writeln!(f, "{scene}{}", heading(rows))?;
+    let columns = columns(rows);
+    let widths: Vec<usize> = columns
+        .iter()
+        .map(|c| rows.iter().map(|r| (c.cell)(r).len()).chain([c.name.len()]).max().unwrap_or(0))
+        .collect();
+    write_line(f, &columns, &widths, |c| c.name.to_owned())?;
+    let series = distinct(rows.iter().map(|r| (r.scheme.as_str(), r.constraint.as_str())));
+    for (i, key) in series.into_iter().enumerate() {
+        if i > 0 {
+            writeln!(f)?;
+        }
+        for row in rows.iter().filter(|r| (r.scheme.as_str(), r.constraint.as_str()) == key) {
+            write_line(f, &columns, &widths, |c| (c.cell)(row))?;
+            if !row.converged() {
+                writeln!(f, "  ^ did not converge: {}", row.status)?;
+            }
+        }
+    }
+    for warning in distinct(
+        rows.iter().flat_map(|r| r.warnings.iter().map(|w| (r.scheme.as_str(), w.as_str()))),
+    ) {
+        writeln!(f, "  warning, {}: {}", warning.0, warning.1)?;
+    }
+    Ok(())
+}
+
+/// What the heading says after the name of the scene: solvers, and the orders that theory promises.
+fn heading(rows: &[&Row]) -> String {
+    let solvers = distinct(rows.iter().map(|r| format!("{}/{}", r.solver, r.linear)));
+    let mut text = format!("   solver {}", solvers.join(", "));
+    let mut promises: Vec<(String, Vec<&str>)> = Vec::new();
+    for row in rows {
+        let expected = row.expected_order;
+        let both = [("L2", expected.l2), ("H1", expected.h1)];
+        let known: Vec<String> =
+            both.iter().filter_map(|(name, p)| p.map(|p| format!("{name} {p}"))).collect();
+        if known.is_empty() {
+            continue;
+        }
+        let known = known.join(" ");
+        match promises.iter_mut().find(|(k, _)| *k == known) {
+            Some((_, schemes)) if schemes.contains(&row.scheme.as_str()) => {}
+            Some((_, schemes)) => schemes.push(&row.scheme),
+            None => promises.push((known, vec![&row.scheme])),
+        }
+    }
+    // Schemes need naming only where some are promised something else, or nothing.
+    let all = promises.len() == 1
+        && rows.iter().all(|r| promises[0].1.contains(&r.scheme.as_str()));
+    let promises: Vec<String> = promises
+        .into_iter()
+        .map(|(known, schemes)| {
+            if all { known } else { format!("{known} ({})", schemes.join(" ")) }
+        })
+        .collect();
+    if !promises.is_empty() {
+        text += &format!("   expected order {}", promises.join(", "));
+    }
+    text
+}
+
+/// One column of a table.
+struct Column {
+    /// Its head.
+    name: &'static str,
+    /// Text stands left, numbers right.
+    left: bool,
+    /// What it shows of a row.
+    cell: fn(&Row) -> String,
+}
+
+/// The columns that have something to tell about these rows.
+fn columns(rows: &[&Row]) -> Vec<Column> {
+    let text = |name, cell| Column { name, left: true, cell };
+    let number = |name, cell| Column { name, left: false, cell };
+    let varies = rows.iter().any(|r| r.constraint != rows[0].constraint);
+    let any = |get: fn(&Row) -> Option<f64>| rows.iter().any(|r| get(r).is_some());
+    let mut columns = vec![text("scheme", |r| r.scheme.clone())];
+    if varies {
+        columns.push(text("bound at", |r| {
+            r.constraint.strip_suffix("-means").map_or(r.constraint.clone(), |s| format!("{s}s"))
+        }));
+    }
+    columns.push(number("n", |r| r.level.to_string()));
+    columns.push(number("h", |r| scientific(Some(r.mesh_size))));
+    columns.push(number("unknowns", |r| r.unknowns.to_string()));
+    columns.push(number("outer", |r| r.iterations.outer.to_string()));
+    if any(|r| r.error.l2) {
+        columns.push(number("L2", |r| scientific(r.error.l2)));
+        columns.push(number("order", |r| fixed(r.order.l2)));
+    }
+    if any(|r| r.error.h1) {
+        columns.push(number("H1", |r| scientific(r.error.h1)));
+        columns.push(number("order", |r| fixed(r.order.h1)));
+    }
+    columns.push(number("active", |r| r.active.to_string()));
+    columns.push(number("certif.", |r| {
+        let c = &r.certificate;
+        // The largest, where NaN counts as larger than anything: it must not hide.
+        let all = [c.feasibility, c.multiplier, c.complementarity, c.residual];
+        let worse = |a: f64, b: f64| if a.is_nan() || a > b { a } else { b };
+        scientific(Some(all.into_iter().fold(0.0, worse)))
+    }));
+    columns.push(number("assem.", |r| seconds(r.seconds.assemble)));
+    columns.push(number("solve", |r| seconds(r.seconds.solve)));
+    columns
+}
+
+/// One line of a table, without blanks at its end.
+fn write_line(
+    f: &mut impl fmt::Write,
+    columns: &[Column],
+    widths: &[usize],
+    cell: impl Fn(&Column) -> String,
+) -> fmt::Result {
+    let mut line = String::new();
+    for (column, &width) in columns.iter().zip(widths) {
+        let cell = cell(column);
+        line += &if column.left { format!("{cell:<width$} ") } else { format!("{cell:>width$} ") };
+    }
+    writeln!(f, "{}", line.trim_end())
+}
+
+/// Three digits and the power of ten: `1.37e-2`.
+fn scientific(x: Option<f64>) -> String {
+    match x {
+        Some(0.0) => "0".to_owned(),
+        Some(x) if x.is_finite() => format!("{x:.2e}"),
+        Some(x) => x.to_string(),
+        None => NONE.to_owned(),
+    }
+}
+
+/// Two digits after the point: `1.98`.
+fn fixed(x: Option<f64>) -> String {
+    x.map_or_else(|| NONE.to_owned(), |x| format!("{x:.2}"))
+}
+
+/// Seconds with a fixed point at a tenth of a millisecond, fewer digits as they grow.
+fn seconds(x: f64) -> String {
+    let digits = match x {
+        x if x < 10.0 => 4,
+        x if x < 100.0 => 3,
+        x if x < 1000.0 => 2,
+        _ => 1,
+    };
+    format!("{x:.digits$}")
+}
+
+/// Each item once, in order of first occurrence.
+pub(super) fn distinct<T: PartialEq>(items: impl Iterator<Item = T>) -> Vec<T> {
+    let mut once = Vec::new();
+    for item in items {
+        if !once.contains(&item) {
+            once.push(item);
+        }
+    }
+    once
+}
