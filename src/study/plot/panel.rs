@@ -53,13 +53,13 @@ impl<'a> Frame<'a> {
     /// upper edge, where failures are looked for, lower by `stack` marks; one with an error beyond
     /// the axis stands at the edge it is beyond.
     fn place(&self, point: &Point, stack: usize) -> Place {
-        const EDGE: f64 = 9.0;
+        const EDGE: f64 = 10.0;
         let x = self.x.position(point.x.log10()) * SIZE.0;
         let y = match point.y.map(|y| (1.0 - self.y.position(y.log10())) * SIZE.1) {
             Some(y) if y < 0.0 => EDGE,
             Some(y) if y > SIZE.1 => SIZE.1 - EDGE,
             Some(y) => y,
-            None => EDGE + 13.0 * stack as f64,
+            None => EDGE + 17.0 * stack as f64,
         };
         (x, y)
     }
@@ -69,7 +69,7 @@ impl<'a> Frame<'a> {
         let mut taken: Vec<f64> = Vec::new();
         let mut place = |point: &Point| {
             let x = self.place(point, 0).0;
-            let stack = taken.iter().filter(|t| (*t - x).abs() < 12.0).count();
+            let stack = taken.iter().filter(|t| (*t - x).abs() < 16.0).count();
             if point.y.is_none() {
                 taken.push(x);
             }
@@ -108,7 +108,7 @@ pub(super) fn draw_panel<DB: DrawingBackend>(pen: &Pen<DB>, panel: &Panel, at: P
     }
     draw_curves(pen, &frame, origin)?;
     if !panel.has_errors() {
-        pen.text("no errors: none are known", middle, LABEL, INK, Align::Centre)?;
+        pen.text("no exact solution: no errors", middle, LABEL, INK, Align::Centre)?;
     }
     let (right, bottom) = (origin.0 + SIZE.0, origin.1 + SIZE.1);
     pen.outline(&[origin, (right, origin.1), (right, bottom), (origin.0, bottom)], 1.0, INK)
@@ -185,10 +185,13 @@ fn draw_curves<DB: DrawingBackend>(pen: &Pen<DB>, frame: &Frame, origin: Place) 
                 if point.converged != converged {
                     continue;
                 }
-                if !converged {
+                if converged {
+                    draw_mark(pen, curve.key, at, 1.0)?;
+                } else {
+                    // The cross says that it failed, the small mark on it which scheme did.
                     draw_failed(pen, at)?;
+                    draw_mark(pen, curve.key, at, 0.7)?;
                 }
-                draw_mark(pen, curve.key, at)?;
             }
         }
     }
