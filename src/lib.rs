@@ -3,10 +3,15 @@
 #![deny(missing_docs)]
 
 pub mod algebra;
+pub mod assemble;
+pub mod element;
 pub mod error;
+pub mod facet;
 pub mod mesh;
 pub mod problem;
+pub mod quadrature;
 pub mod real;
 pub mod scenes;
+pub mod scheme;
 pub mod solve;
 pub mod study;

@@ -134,7 +134,10 @@ impl<const D: usize> Problem<D> {
         self
     }
     /// Sets the Signorini condition `u >= g` on the contact part.
-    pub fn signorini(mut self, gap: impl Fn(&Point<f64, D>) -> f64 + Send + Sync + 'static) -> Self {
+    pub fn signorini(
+        mut self,
+        gap: impl Fn(&Point<f64, D>) -> f64 + Send + Sync + 'static,
+    ) -> Self {
         self.gap = Some(Box::new(gap));
         self
     }
@@ -145,7 +148,10 @@ impl<const D: usize> Problem<D> {
         value: impl Fn(&Point<f64, D>) -> f64 + Send + Sync + 'static,
         gradient: impl Fn(&Point<f64, D>) -> Point<f64, D> + Send + Sync + 'static,
     ) -> Self {
-        self.exact = Some(Exact { value: Box::new(value), gradient: Box::new(gradient) });
+        self.exact = Some(Exact {
+            value: Box::new(value),
+            gradient: Box::new(gradient),
+        });
         self
     }
     /// The Dirichlet value at a point.
@@ -155,6 +161,10 @@ impl<const D: usize> Problem<D> {
             (None, Some(exact)) => (exact.value)(x),
             (None, None) => 0.0,
         }
+    }
+    /// Whether any inequality binds.
+    pub fn is_constrained(&self) -> bool {
+        self.lower.is_some() || self.upper.is_some() || self.gap.is_some()
     }
     /// Whether Dirichlet data are other than zero by default.
     pub fn has_dirichlet_data(&self) -> bool {

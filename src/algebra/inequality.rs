@@ -33,6 +33,44 @@ impl<T: Real> Bound<T> {
             _ => None,
         }
     }
+    /// The only value left: a Dirichlet datum, or two bounds that coincide.
+    pub fn only_value(&self) -> Option<T> {
+        match *self {
+            Bound::Fixed(v) => Some(v),
+            Bound::Both(l, u) if l == u => Some(l),
+            _ => None,
+        }
+    }
+    /// The admissible value nearest to `x`.
+    pub fn nearest(&self, x: T) -> T {
+        match *self {
+            Bound::Free => x,
+            Bound::Fixed(v) => v,
+            Bound::Lower(l) => {
+                if x < l {
+                    l
+                } else {
+                    x
+                }
+            }
+            Bound::Upper(u) => {
+                if x > u {
+                    u
+                } else {
+                    x
+                }
+            }
+            Bound::Both(l, u) => {
+                if x < l {
+                    l
+                } else if x > u {
+                    u
+                } else {
+                    x
+                }
+            }
+        }
+    }
     /// Whether an inequality, not an equation, binds the unknown.
     pub fn is_inequality(&self) -> bool {
         matches!(self, Bound::Lower(_) | Bound::Upper(_) | Bound::Both(..))
@@ -68,7 +106,10 @@ impl Place {
     pub fn new(cell: Option<u32>, vertices: &[u32]) -> Self {
         let mut v = [Self::NONE; 3];
         v[..vertices.len()].copy_from_slice(vertices);
-        Self { cell: cell.unwrap_or(Self::NONE), vertices: v }
+        Self {
+            cell: cell.unwrap_or(Self::NONE),
+            vertices: v,
+        }
     }
     /// The cell that owns the unknown, `None` if cells share it.
     pub fn cell(&self) -> Option<u32> {
@@ -76,7 +117,11 @@ impl Place {
     }
     /// The vertices whose barycentre is the unknown's node.
     pub fn vertices(&self) -> &[u32] {
-        let n = self.vertices.iter().position(|&v| v == Self::NONE).unwrap_or(3);
+        let n = self
+            .vertices
+            .iter()
+            .position(|&v| v == Self::NONE)
+            .unwrap_or(3);
         &self.vertices[..n]
     }
 }
@@ -103,6 +148,33 @@ impl<T: Real> Inequality<T> {
     /// Number of unknowns, Dirichlet ones included.
     pub fn size(&self) -> usize {
         self.load.len()
+    }
+    /// Whether matrix, load and bounds belong together: equal sizes, a matrix as its type
+    /// promises it. Places are not looked at; no solver needs them.
+    pub fn is_well_formed(&self) -> bool {
+        self.matrix.size() == self.size()
+            && self.bounds.len() == self.size()
+            && self.matrix.is_well_formed()
+    }
+    /// Whether every number is finite. A bound at infinity is not: leave it out instead.
+    pub fn is_finite(&self) -> bool {
+        let finite = |x: T| x.to_f64().is_finite();
+        self.matrix
+            .values
+            .iter()
+            .chain(&self.load)
+            .all(|&x| finite(x))
+            && self.bounds.iter().all(|bound| match *bound {
+                Bound::Free => true,
+                Bound::Fixed(x) | Bound::Lower(x) | Bound::Upper(x) => finite(x),
+                Bound::Both(l, u) => finite(l) && finite(u),
+            })
+    }
+    /// Whether some value is admissible for every unknown.
+    pub fn is_feasible(&self) -> bool {
+        self.bounds
+            .iter()
+            .all(|bound| !matches!(*bound, Bound::Both(l, u) if l > u))
     }
     /// `u.A u / 2 - b.u`, in `f64`.
     pub fn objective(&self, u: &[T]) -> f64 {

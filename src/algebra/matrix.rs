@@ -20,6 +20,20 @@ impl<T: Real> SparseMatrix<T> {
     pub fn size(&self) -> usize {
         self.row_starts.len().saturating_sub(1)
     }
+    /// Whether the rows are what the type promises: starts that do not fall, columns ascending
+    /// and inside the matrix, a value for every entry.
+    pub fn is_well_formed(&self) -> bool {
+        let n = self.size();
+        self.row_starts.first() == Some(&0)
+            && self.row_starts.windows(2).all(|w| w[0] <= w[1])
+            && self.row_starts[n] as usize == self.columns.len()
+            && self.columns.len() == self.values.len()
+            && (0..n).all(|i| {
+                let columns = self.row(i).0;
+                columns.windows(2).all(|w| w[0] < w[1])
+                    && columns.last().is_none_or(|&j| (j as usize) < n)
+            })
+    }
     /// Number of stored entries.
     pub fn nonzeros(&self) -> usize {
         self.columns.len()
@@ -33,7 +47,9 @@ impl<T: Real> SparseMatrix<T> {
     /// The entry at (i, j), zero where none is stored.
     pub fn get(&self, i: usize, j: usize) -> T {
         let (columns, values) = self.row(i);
-        columns.binary_search(&(j as u32)).map_or_else(|_| T::lit(0.0), |k| values[k])
+        columns
+            .binary_search(&(j as u32))
+            .map_or_else(|_| T::lit(0.0), |k| values[k])
     }
     /// The diagonal.
     pub fn diagonal(&self) -> Vec<T> {
@@ -43,11 +59,36 @@ impl<T: Real> SparseMatrix<T> {
     #[inline]
     pub fn row_dot(&self, i: usize, x: &[T]) -> T {
         let (columns, values) = self.row(i);
-        columns.iter().zip(values).fold(T::lit(0.0), |s, (&j, &a)| s + a * x[j as usize])
+        columns
+            .iter()
+            .zip(values)
+            .fold(T::lit(0.0), |s, (&j, &a)| s + a * x[j as usize])
     }
     /// `y = A x`, by rows in parallel; the same bits for any number of threads.
     pub fn apply(&self, x: &[T], y: &mut [T]) {
-        y.par_iter_mut().with_min_len(4096).enumerate().for_each(|(i, y)| *y = self.row_dot(i, x));
+        y.par_iter_mut()
+            .with_min_len(4096)
+            .enumerate()
+            .for_each(|(i, y)| *y = self.row_dot(i, x));
+    }
+    /// Row `i` times a vector, every product and the sum in `f64`.
+    #[inline]
+    pub fn row_dot_f64(&self, i: usize, x: &[T]) -> f64 {
+        let (columns, values) = self.row(i);
+        columns
+            .iter()
+            .zip(values)
+            .fold(0.0, |s, (&j, &a)| s + a.to_f64() * x[j as usize].to_f64())
+    }
+    /// `r = b - A x`, accumulated and kept in `f64` whatever the scalar.
+    ///
+    /// For `f32` the products are exact, so that the residual is that of the rounded unknowns and
+    /// not of the summation.
+    pub fn residual_f64(&self, b: &[T], x: &[T], r: &mut [f64]) {
+        r.par_iter_mut()
+            .with_min_len(4096)
+            .enumerate()
+            .for_each(|(i, r)| *r = b[i].to_f64() - self.row_dot_f64(i, x));
     }
     /// `b - A x`.
     pub fn residual(&self, b: &[T], x: &[T]) -> Vec<T> {

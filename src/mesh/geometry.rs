@@ -1,3 +1,196 @@
-//! Geometry.
-/// stub
-pub struct CellGeometry;
+//! The affine geometry of one cell.
+
+use super::Mesh;
+use crate::real::{Point, Real};
+
+/// Volume and gradients of the barycentric coordinates of a cell: all that a form on simplices
+/// needs, in every dimension.
+#[derive(Clone, Copy, Debug)]
+pub struct CellGeometry<T, const D: usize> {
+    /// The cell's `D`-dimensional measure.
+    pub volume: T,
+    gradients: [Point<T, D>; 4],
+}
+
+impl<T: Real, const D: usize> CellGeometry<T, D> {
+    /// The geometry of the simplex with these `D + 1` corners.
+    ///
+    /// A simplex without volume gives gradients of zero; meshes refuse such cells.
+    #[inline(always)]
+    pub fn new(corner: impl Fn(usize) -> Point<T, D>) -> Self {
+        const { assert!(D >= 1 && D <= 3, "simplices of dimension 1, 2 and 3 only") }
+        let origin = corner(0);
+        let edge = |k: usize| corner(k + 1) - origin;
+        let mut gradients = [Point::zeros(); 4];
+        let zero = T::lit(0.0);
+        let determinant;
+        match D {
+            1 => {
+                determinant = edge(0)[0];
+                gradients[1][0] = T::lit(1.0);
+            }
+            2 => {
+                let (a, b) = (edge(0), edge(1));
+                determinant = a[0] * b[1] - a[1] * b[0];
+                (gradients[1][0], gradients[1][1]) = (b[1], -b[0]);
+                (gradients[2][0], gradients[2][1]) = (-a[1], a[0]);
+            }
+            _ => {
+                let (a, b, c) = (edge(0), edge(1), edge(2));
+                gradients[1] = cross(&b, &c);
+                gradients[2] = cross(&c, &a);
+                gradients[3] = cross(&a, &b);
+                determinant = a.dot(&gradients[1]);
+            }
+        }
+        let inverse = if determinant == zero {
+            zero
+        } else {
+            T::lit(1.0) / determinant
+        };
+        for k in 1..=D {
+            gradients[k] *= inverse;
+            gradients[0] = gradients[0] - gradients[k];
+        }
+        let magnitude = if determinant < zero {
+            -determinant
+        } else {
+            determinant
+        };
+        Self {
+            volume: magnitude / T::lit(FACTORIAL[D]),
+            gradients,
+        }
+    }
+
+    /// The gradient of barycentric coordinate `i`.
+    #[inline(always)]
+    pub fn gradient(&self, i: usize) -> &Point<T, D> {
+        &self.gradients[i]
+    }
+    /// The height over facet `i`: `1 / |gradient i|`.
+    #[inline(always)]
+    pub fn height(&self, i: usize) -> T {
+        T::lit(1.0) / self.gradients[i].norm()
+    }
+    /// The outward unit normal of facet `i`.
+    #[inline(always)]
+    pub fn normal(&self, i: usize) -> Point<T, D> {
+        self.gradients[i] * -self.height(i)
+    }
+    /// The `(D - 1)`-dimensional measure of facet `i`; one in one dimension.
+    #[inline(always)]
+    pub fn facet_measure(&self, i: usize) -> T {
+        if D == 1 {
+            T::lit(1.0)
+        } else {
+            T::lit(D as f64) * self.volume * self.gradients[i].norm()
+        }
+    }
+    /// The measure of the whole boundary of the cell.
+    #[inline(always)]
+    pub fn surface(&self) -> T {
+        (0..=D).fold(T::lit(0.0), |s, i| s + self.facet_measure(i))
+    }
+}
+
+const FACTORIAL: [f64; 4] = [1.0, 1.0, 2.0, 6.0];
+
+/// The vector product; meaningful for `D = 3` only.
+#[inline(always)]
+fn cross<T: Real, const D: usize>(a: &Point<T, D>, b: &Point<T, D>) -> Point<T, D> {
+    let at = |v: &Point<T, D>, k: usize| v[k % D.max(1)];
+    Point::from_fn(|k, _| at(a, k + 1) * at(b, k + 2) - at(a, k + 2) * at(b, k + 1))
+}
+
+impl<T: Real, const D: usize> Mesh<T, D> {
+    /// The geometry of a cell.
+    #[inline(always)]
+    pub fn geometry(&self, c: usize) -> CellGeometry<T, D> {
+        let cell = self.cell(c);
+        CellGeometry::new(|k| self.vertices[cell[k] as usize])
+    }
+    /// The point of a cell with these barycentric coordinates.
+    #[inline(always)]
+    pub fn point(&self, c: usize, barycentric: &[T]) -> Point<T, D> {
+        self.cell(c)
+            .iter()
+            .zip(barycentric)
+            .fold(Point::zeros(), |x, (&v, &b)| {
+                x + self.vertices[v as usize] * b
+            })
+    }
+    /// The barycentre of a facet.
+    pub fn facet_barycentre(&self, c: usize, local: usize) -> Point<T, D> {
+        let sum = self
+            .facet_vertices(c, local)
+            .fold(Point::zeros(), |s: Point<T, D>, v| {
+                s + self.vertices[v as usize]
+            });
+        sum / T::lit(D as f64)
+    }
+    /// The largest distance of two vertices of a facet: the length of an edge in two dimensions,
+    /// the diameter of a triangle in three; zero in one.
+    #[inline(always)]
+    pub fn facet_diameter(&self, c: usize, local: usize) -> T {
+        let cell = self.cell(c);
+        let mut largest = T::lit(0.0);
+        for i in 0..=D {
+            for j in 0..i {
+                if i != local && j != local {
+                    let edge = self.vertices[cell[i] as usize] - self.vertices[cell[j] as usize];
+                    let square = edge.norm_squared();
+                    largest = if square > largest { square } else { largest };
+                }
+            }
+        }
+        nalgebra::ComplexField::sqrt(largest)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use approx::assert_relative_eq;
+
+    fn check<const D: usize>(corners: &[Point<f64, D>], volume: f64) {
+        let geometry = CellGeometry::new(|k| corners[k]);
+        assert_relative_eq!(geometry.volume, volume, max_relative = 1e-14);
+        let mut closed = Point::<f64, D>::zeros();
+        for i in 0..=D {
+            // duality with the corners, and normals that point away from the opposite vertex
+            for j in 0..=D {
+                let base = corners[(i + 1) % (D + 1)];
+                let value = geometry.gradient(i).dot(&(corners[j] - base));
+                assert_relative_eq!(value, f64::from(i == j), epsilon = 1e-14);
+            }
+            let away = corners[i] - corners[(i + 1) % (D + 1)];
+            assert!(geometry.normal(i).dot(&away) < 0.0);
+            closed += geometry.normal(i) * geometry.facet_measure(i);
+        }
+        // the normals of a closed surface, weighted by measure, vanish
+        assert_relative_eq!(closed.norm(), 0.0, epsilon = 1e-14);
+    }
+
+    #[test]
+    fn simplices_of_known_volume() {
+        check(&[Point::from([3.0]), Point::from([1.0])], 2.0);
+        check(
+            &[
+                Point::from([0.0, 0.0]),
+                Point::from([2.0, 0.5]),
+                Point::from([0.5, 1.0]),
+            ],
+            0.875,
+        );
+        check(
+            &[
+                Point::from([0.0, 0.0, 0.0]),
+                Point::from([0.0, 2.0, 0.0]),
+                Point::from([1.0, 0.0, 0.0]),
+                Point::from([0.3, 0.2, 3.0]),
+            ],
+            1.0,
+        );
+    }
+}

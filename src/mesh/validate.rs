@@ -1,7 +1,8 @@
 //! From lists to a mesh: every check that lets later code do without.
 
-use super::{BoundaryPart, Mesh, MeshError};
-use crate::real::{Point, Real};
+use super::facets::CELL_LIMIT;
+use super::{BoundaryFacet, BoundaryPart, CellGeometry, Mesh, MeshError, Neighbour, Neighbours};
+use crate::real::{Point, Real, point_f64};
 
 /// A facet and the boundary part it is said to belong to: its `D` vertices in any order.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -21,13 +22,237 @@ impl<T: Real, const D: usize> Mesh<T, D> {
     ///
     /// # Errors
     /// Every [`MeshError`] but [`MeshError::UnsupportedComponent`], which depends on the problem:
-    /// see [`Mesh::check_supported`].
+    /// see [`Mesh::check_supported`]. Vertices in errors are numbered as given.
     pub fn new(
         vertices: Vec<Point<f64, D>>,
-        cells: Vec<u32>,
+        mut cells: Vec<u32>,
         boundary: &[TaggedFacet<D>],
     ) -> Result<Self, MeshError> {
-        let _ = (vertices, cells, boundary);
-        todo!("validation")
+        check_lists(&vertices, &cells)?;
+        for cell in cells.chunks_exact_mut(D + 1) {
+            cell.sort_unstable();
+        }
+        let rounded: Vec<Point<T, D>> = vertices
+            .iter()
+            .map(|x| Point::from_fn(|k, _| T::lit(x[k])))
+            .collect();
+        check_volumes::<T, D>(&rounded, &cells)?;
+        let neighbours = Neighbours::match_facets::<D>(&cells, vertices.len())?;
+        let boundary = match_boundary(&vertices, &cells, &neighbours, boundary)?;
+        let (vertices, cells) = drop_unused(rounded, cells);
+        Ok(Self {
+            vertices,
+            cells,
+            boundary,
+        })
     }
+
+    /// Checks that every component of the mesh that hangs together through facets has a Dirichlet
+    /// or a contact facet, without which a problem without reaction is singular.
+    ///
+    /// # Errors
+    /// [`MeshError::UnsupportedComponent`].
+    pub fn check_supported(&self) -> Result<(), MeshError> {
+        let neighbours = Neighbours::of(self);
+        let mut seen = vec![false; self.n_cells()];
+        let mut front = Vec::new();
+        for first in 0..self.n_cells() {
+            if seen[first] {
+                continue;
+            }
+            seen[first] = true;
+            front.push(first);
+            let (mut supported, mut cells) = (false, 0);
+            while let Some(c) = front.pop() {
+                cells += 1;
+                for local in 0..=D {
+                    match neighbours.across(c, local) {
+                        Neighbour::Boundary(part) => supported |= part != BoundaryPart::Neumann,
+                        Neighbour::Cell { cell, .. } => {
+                            if !std::mem::replace(&mut seen[cell as usize], true) {
+                                front.push(cell as usize);
+                            }
+                        }
+                    }
+                }
+            }
+            if !supported {
+                return Err(MeshError::UnsupportedComponent { cell: first, cells });
+            }
+        }
+        Ok(())
+    }
+}
+
+fn check_lists<const D: usize>(vertices: &[Point<f64, D>], cells: &[u32]) -> Result<(), MeshError> {
+    let per_cell = D + 1;
+    if cells.is_empty() {
+        return Err(MeshError::NoCells { dimension: D });
+    }
+    if !cells.len().is_multiple_of(per_cell) {
+        return Err(MeshError::IncompleteCell {
+            entries: cells.len(),
+            per_cell,
+        });
+    }
+    check_size(cells.len() / per_cell, vertices.len())?;
+    for (vertex, x) in vertices.iter().enumerate() {
+        if let Some(axis) = (0..D).find(|&k| !x[k].is_finite()) {
+            return Err(MeshError::NotFinite {
+                vertex,
+                axis,
+                value: x[axis],
+            });
+        }
+    }
+    if let Some(k) = cells.iter().position(|&v| v as usize >= vertices.len()) {
+        let (cell, vertex) = (k / per_cell, cells[k]);
+        return Err(MeshError::VertexOutOfRange {
+            cell,
+            vertex,
+            vertices: vertices.len(),
+        });
+    }
+    Ok(())
+}
+
+/// Refuses meshes that 32-bit numbers cannot address.
+pub(super) fn check_size(cells: usize, vertices: usize) -> Result<(), MeshError> {
+    for (what, count, limit) in [
+        ("cells", cells, CELL_LIMIT),
+        ("vertices", vertices, u32::MAX as usize - 1),
+    ] {
+        if count > limit {
+            return Err(MeshError::TooLarge { what, count, limit });
+        }
+    }
+    Ok(())
+}
+
+/// A cell whose volume is rounding compared with its diameter cannot carry gradients.
+fn check_volumes<T: Real, const D: usize>(
+    vertices: &[Point<T, D>],
+    cells: &[u32],
+) -> Result<(), MeshError> {
+    for (c, cell) in cells.chunks_exact(D + 1).enumerate() {
+        let corner = |k: usize| point_f64(&vertices[cell[k] as usize]);
+        let volume = CellGeometry::new(corner).volume;
+        let mut diameter = 0.0_f64;
+        for i in 0..=D {
+            for j in 0..i {
+                diameter = diameter.max((corner(i) - corner(j)).norm());
+            }
+        }
+        let scaled = volume / diameter.powi(D as i32);
+        if !(scaled > 8.0 * T::EPSILON) {
+            return Err(MeshError::DegenerateCell {
+                cell: c,
+                vertices: cell.to_vec(),
+                volume,
+                diameter,
+            });
+        }
+    }
+    Ok(())
+}
+
+/// Gives every facet of the boundary its part.
+fn match_boundary<const D: usize>(
+    vertices: &[Point<f64, D>],
+    cells: &[u32],
+    neighbours: &Neighbours,
+    tagged: &[TaggedFacet<D>],
+) -> Result<Vec<BoundaryFacet>, MeshError> {
+    let facet = |c: usize, local: usize| -> [u32; D] {
+        let cell = &cells[c * (D + 1)..(c + 1) * (D + 1)];
+        std::array::from_fn(|k| cell[k + usize::from(k >= local)])
+    };
+    let sides = || (0..cells.len()).map(|k| (k / (D + 1), k % (D + 1)));
+    let mut open: Vec<([u32; D], usize, usize)> = sides()
+        .filter(|&(c, local)| neighbours.is_open(c, local))
+        .map(|(c, local)| (facet(c, local), c, local))
+        .collect();
+    open.sort_unstable();
+    let mut parts: Vec<Option<BoundaryPart>> = vec![None; open.len()];
+    for (tag, t) in tagged.iter().enumerate() {
+        let mut key = t.vertices;
+        key.sort_unstable();
+        let Ok(k) = open.binary_search_by(|o| o.0.cmp(&key)) else {
+            let inside = sides().any(|(c, local)| facet(c, local) == key);
+            let why = if inside {
+                "lies between two cells"
+            } else {
+                "belongs to no cell"
+            };
+            let (vertices, part) = (key.to_vec(), t.part.name());
+            return Err(MeshError::NotABoundaryFacet {
+                vertices,
+                part,
+                why,
+                tag,
+            });
+        };
+        match parts[k] {
+            Some(first) if first != t.part => {
+                return Err(MeshError::FacetInTwoParts {
+                    vertices: key.to_vec(),
+                    first: first.name(),
+                    second: t.part.name(),
+                    tag,
+                });
+            }
+            _ => parts[k] = Some(t.part),
+        }
+    }
+    let mut boundary = Vec::with_capacity(open.len());
+    for (&(key, cell, local), part) in open.iter().zip(parts) {
+        let Some(part) = part else {
+            let sum = key
+                .iter()
+                .fold(Point::<f64, D>::zeros(), |s, &v| s + vertices[v as usize]);
+            let at = describe_point(&(sum / D as f64));
+            return Err(MeshError::UntaggedFacet {
+                vertices: key.to_vec(),
+                cell,
+                at,
+            });
+        };
+        boundary.push(BoundaryFacet {
+            cell: cell as u32,
+            local: local as u8,
+            part,
+        });
+    }
+    boundary.sort_unstable_by_key(|f| (f.cell, f.local));
+    Ok(boundary)
+}
+
+/// The coordinates of a point in parentheses, for messages.
+pub(crate) fn describe_point<const D: usize>(x: &Point<f64, D>) -> String {
+    let coordinates: Vec<String> = x.iter().map(|c| format!("{c:.6}")).collect();
+    format!("({})", coordinates.join(", "))
+}
+
+fn drop_unused<T: Real, const D: usize>(
+    mut vertices: Vec<Point<T, D>>,
+    mut cells: Vec<u32>,
+) -> (Vec<Point<T, D>>, Vec<u32>) {
+    let mut number = vec![0_u32; vertices.len()];
+    for &v in &cells {
+        number[v as usize] = 1;
+    }
+    let mut used = 0;
+    for v in 0..vertices.len() {
+        if number[v] == 1 {
+            vertices[used as usize] = vertices[v];
+            number[v] = used;
+            used += 1;
+        }
+    }
+    vertices.truncate(used as usize);
+    // renumbering keeps the order, so the vertices of a cell stay ascending
+    for v in &mut cells {
+        *v = number[*v as usize];
+    }
+    (vertices, cells)
 }

@@ -1,5 +1,18 @@
 //! Solvers of the algebraic inequality, and the certificate of what they return.
 
+mod active_set;
+mod certificate;
+mod condensed;
+mod cycles;
+mod iterate;
+mod linear;
+mod restrict;
+mod small;
+
+pub use active_set::ActiveSet;
+pub use certificate::{Certificate, active, certify};
+pub use linear::{FactorError, Factors, is_positive_definite};
+
 use crate::algebra::{Contact, Inequality};
 use crate::real::Real;
 
@@ -22,6 +35,12 @@ pub enum Outcome {
     Singular,
     /// A number that is not finite appeared.
     NotFinite,
+    /// Two bounds of one unknown leave no value between them.
+    Infeasible,
+    /// Sizes of matrix, load and bounds do not match, or the matrix is not what its type promises.
+    Malformed,
+    /// The factors do not fit into memory.
+    OutOfMemory,
 }
 
 impl Outcome {
@@ -35,7 +54,16 @@ impl Outcome {
             Outcome::NotCoercive => "not-coercive",
             Outcome::Singular => "singular",
             Outcome::NotFinite => "not-finite",
+            Outcome::Infeasible => "infeasible",
+            Outcome::Malformed => "malformed",
+            Outcome::OutOfMemory => "out-of-memory",
         }
+    }
+}
+
+impl std::fmt::Display for Outcome {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(self.name())
     }
 }
 
@@ -44,7 +72,8 @@ impl Outcome {
 pub enum Start {
     /// Nothing known.
     Cold,
-    /// A guess of the contact state of every unknown.
+    /// A guess of the contact state of every unknown. States that a bound does not have, and
+    /// unknowns beyond the end, count as open.
     Contact(Vec<Contact>),
 }
 

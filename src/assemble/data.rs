@@ -1,0 +1,101 @@
+//! Data of the problem as the assembler meets them: evaluated in `f64`, checked, rounded once.
+
+use super::local::Local;
+use super::tables::CellTable;
+use super::{Discretisation, count};
+use crate::element::ReferenceElement;
+use crate::error::Error;
+use crate::mesh::{Mesh, describe_point};
+use crate::problem::{Datum, Problem};
+use crate::real::{Point, Real, point_f64};
+use crate::scheme::Scheme;
+
+/// A datum that must be finite.
+pub(super) fn finite<const D: usize>(
+    value: f64,
+    datum: &'static str,
+    at: &Point<f64, D>,
+    cell: usize,
+) -> Result<f64, Error> {
+    if value.is_finite() {
+        Ok(value)
+    } else {
+        Err(Error::DataNotFinite {
+            datum,
+            value,
+            at: describe_point(at),
+            cell: cell as u32,
+        })
+    }
+}
+
+/// The diffusion coefficient at the barycentre of every cell, if there is one.
+pub(super) fn coefficients<T: Real, const D: usize>(
+    problem: &Problem<D>,
+    mesh: &Mesh<T, D>,
+) -> Result<Option<Vec<T>>, Error> {
+    let Some(alpha) = &problem.coefficient else {
+        return Ok(None);
+    };
+    let at = |cell: usize| {
+        count::coefficient(1);
+        let value = alpha(&point_f64(&mesh.barycentre(cell)));
+        if value > 0.0 && value.is_finite() {
+            Ok(T::lit(value))
+        } else {
+            Err(Error::CoefficientNotPositive {
+                value,
+                cell: cell as u32,
+            })
+        }
+    };
+    (0..mesh.n_cells())
+        .map(at)
+        .collect::<Result<Vec<_>, _>>()
+        .map(Some)
+}
+
+/// The reaction term, with the rule that integrates it.
+pub(super) struct ReactionTerm<'a, T, const D: usize> {
+    datum: &'a Datum<D>,
+    table: CellTable<T>,
+}
+
+impl<'a, T: Real, const D: usize> ReactionTerm<'a, T, D> {
+    /// Nothing if the problem has no reaction.
+    pub fn new<S: Scheme<T, D>>(space: &Discretisation<'a, T, D, S>) -> Option<Self> {
+        let datum = space.problem.reaction.as_ref()?;
+        let products = 2 * <S::Element as ReferenceElement<T, D>>::DEGREE;
+        let degree = match datum {
+            Datum::Constant(_) => products,
+            Datum::Function(_) => products.max(space.quadrature.cell),
+        };
+        Some(Self {
+            datum,
+            table: CellTable::new::<S::Element, D>(degree),
+        })
+    }
+    /// Adds `(c phi_j, phi_i)` over a cell.
+    pub fn add<E: ReferenceElement<T, D>>(
+        &self,
+        mesh: &Mesh<T, D>,
+        cell: usize,
+        volume: T,
+        out: &mut Local<T>,
+    ) {
+        let table = &self.table;
+        for ((point, basis), &weight) in table.points.iter().zip(&table.basis).zip(&table.weights) {
+            count::reaction(1);
+            let c = match self.datum {
+                Datum::Constant(c) => *c,
+                Datum::Function(c) => c(&point_f64(&mesh.point(cell, &point[..=D]))),
+            };
+            let scale = T::lit(c) * volume * weight;
+            for i in 0..E::N {
+                for j in 0..E::N {
+                    out[i][j] += scale * basis.values[i] * basis.values[j];
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,74 @@
+//! The solution, obstacle, multiplier and contact set on cells, for pictures.
+
+use super::Discretisation;
+use crate::algebra::{Contact, Inequality};
+use crate::mesh::BoundaryPart;
+use crate::real::{Real, point_f64};
+use crate::scheme::Scheme;
+use crate::solve::Solution;
+use crate::study::Fields;
+
+impl<T: Real, const D: usize, S: Scheme<T, D>> Discretisation<'_, T, D, S> {
+    /// Fields of a solution.
+    ///
+    /// The multiplier of an unknown is a force; over the measure that belongs to the unknown it is
+    /// a density, of volume for obstacles and of the contact boundary for Signorini. A cell shows
+    /// the mean over its unknowns that have such a measure.
+    pub fn fields(&self, inequality: &Inequality<T>, solution: &Solution<T>) -> Fields {
+        let u = &solution.values;
+        let corner = |&v: &u32| point_f64(&self.mesh.vertices()[v as usize]);
+        let obstacle = self.problem.lower.as_ref().or(self.problem.upper.as_ref());
+        let measures = self.constrained_measures();
+        let n_cells = self.mesh.n_cells();
+        let mut multiplier = Vec::with_capacity(n_cells);
+        let mut contact = Vec::with_capacity(n_cells);
+        for cell in 0..n_cells {
+            let (mut force, mut with_measure, mut constrained, mut touching) = (0.0, 0, 0, 0);
+            for i in 0..Self::N {
+                let k = self.dofs.of(cell, i);
+                if measures[k] > 0.0 && inequality.bounds[k].is_inequality() {
+                    let reaction = inequality.matrix.row_dot(k, u) - inequality.load[k];
+                    let in_contact = solution.contact[k] != Contact::Open;
+                    if in_contact {
+                        force += reaction.to_f64() / measures[k];
+                    }
+                    with_measure += 1;
+                    constrained += 1;
+                    touching += usize::from(in_contact);
+                }
+            }
+            multiplier.push(force / f64::from(with_measure.max(1)));
+            contact.push(touching as f64 / f64::from(constrained.max(1)));
+        }
+        Fields {
+            u: self.vertex_values(u),
+            obstacle: obstacle
+                .map(|psi| self.mesh.cells().iter().map(|v| psi(&corner(v))).collect()),
+            multiplier,
+            contact,
+        }
+    }
+
+    /// The measure of domain or contact boundary that belongs to each unknown.
+    fn constrained_measures(&self) -> Vec<f64> {
+        let mut measures = vec![0.0; self.unknowns()];
+        if self.problem.lower.is_some() || self.problem.upper.is_some() {
+            for cell in 0..self.mesh.n_cells() {
+                let share = self.mesh.geometry(cell).volume.to_f64() / Self::N as f64;
+                for i in 0..Self::N {
+                    measures[self.dofs.of(cell, i)] += share;
+                }
+            }
+        } else if self.problem.gap.is_some() {
+            for facet in self.facets_of(BoundaryPart::Contact) {
+                let (cell, local) = (facet.cell as usize, facet.local as usize);
+                let measure = self.mesh.geometry(cell).facet_measure(local).to_f64();
+                let share = measure / self.nodes_on(local).count() as f64;
+                for i in self.nodes_on(local) {
+                    measures[self.dofs.of(cell, i)] += share;
+                }
+            }
+        }
+        measures
+    }
+}

@@ -1,0 +1,291 @@
+//! Rows of spaces that share unknowns: local matrices first, then every row gathers its own entries.
+//!
+//! A patch is a cell, or an interior or Dirichlet facet with its cells. Each patch fills a small
+//! dense matrix in parallel; then each row adds up what its patches hold, in the order of patches,
+//! so the sum does not depend on how the work was split.
+
+use rayon::prelude::*;
+
+use super::local::{CellSide, FacetGeometry, add_stiffness, traces, zero_local};
+use super::tables::{CellTable, FacetTable};
+use super::{Discretisation, count, data};
+use crate::algebra::SparseMatrix;
+use crate::element::{MAX_BASIS, ReferenceElement};
+use crate::facet::{FacetForm, Trace};
+use crate::mesh::{BoundaryPart, Facets};
+use crate::real::Real;
+use crate::scheme::{DirichletBy, Scheme};
+
+/// Patches of one piece of work, and rows of one.
+const CHUNK: usize = 2048;
+
+/// The patches of a discretisation and the unknowns of each.
+struct Patches<'s, 'a, T: Real, const D: usize, S: Scheme<T, D>> {
+    space: &'s Discretisation<'a, T, D, S>,
+    facets: Option<Facets>,
+    coupled: usize,
+}
+
+impl<'s, 'a, T: Real, const D: usize, S: Scheme<T, D>> Patches<'s, 'a, T, D, S> {
+    const N: usize = Discretisation::<T, D, S>::N;
+
+    fn new(space: &'s Discretisation<'a, T, D, S>) -> Self {
+        let facets = space
+            .neighbours
+            .as_ref()
+            .filter(|_| Discretisation::<T, D, S>::COUPLES)
+            .map(|neighbours| Facets::of(space.mesh, neighbours));
+        let coupled = facets.as_ref().map_or(0, |f| match S::DIRICHLET {
+            DirichletBy::FacetForm => f.part(BoundaryPart::Dirichlet).end,
+            DirichletBy::Pinning => f.interior().end,
+        });
+        Self {
+            space,
+            facets,
+            coupled,
+        }
+    }
+    fn n_cells(&self) -> usize {
+        self.space.mesh.n_cells()
+    }
+    /// Number of patches.
+    fn len(&self) -> usize {
+        self.n_cells() + self.coupled
+    }
+    /// Number of unknowns of a patch; those of a facet's two cells count twice where shared.
+    #[inline(always)]
+    fn size(&self, patch: usize) -> usize {
+        if patch < self.n_cells() {
+            Self::N
+        } else {
+            2 * Self::N
+        }
+    }
+    /// Where a patch's local matrix starts.
+    #[inline(always)]
+    fn start(&self, patch: usize) -> usize {
+        let cells = patch.min(self.n_cells());
+        Self::N * Self::N * (cells + 4 * (patch - cells))
+    }
+    /// Unknown `k` of a patch.
+    #[inline(always)]
+    fn unknown(&self, patch: usize, k: usize) -> u32 {
+        let cell = match &self.facets {
+            Some(facets) if patch >= self.n_cells() => {
+                let facet = patch - self.n_cells();
+                if k < Self::N {
+                    facets.here(facet).0
+                } else {
+                    facets.there(facet).0
+                }
+            }
+            _ => patch,
+        };
+        self.space.dofs.of(cell, k % Self::N) as u32
+    }
+    /// For each unknown, the places (patch, position in it) at which it occurs, in order.
+    fn incidence(&self) -> (Vec<u32>, Vec<(u32, u32)>) {
+        let size = self.space.unknowns();
+        let mut starts = vec![0_u32; size + 1];
+        for patch in 0..self.len() {
+            for k in 0..self.size(patch) {
+                starts[self.unknown(patch, k) as usize + 1] += 1;
+            }
+        }
+        for i in 0..size {
+            starts[i + 1] += starts[i];
+        }
+        let mut fill = starts.clone();
+        let mut places = vec![(0_u32, 0_u32); starts[size] as usize];
+        for patch in 0..self.len() {
+            for k in 0..self.size(patch) {
+                let at = &mut fill[self.unknown(patch, k) as usize];
+                places[*at as usize] = (patch as u32, k as u32);
+                *at += 1;
+            }
+        }
+        (starts, places)
+    }
+}
+
+/// The pattern, with values zero.
+pub(super) fn pattern<T: Real, const D: usize, S: Scheme<T, D>>(
+    space: &Discretisation<'_, T, D, S>,
+) -> SparseMatrix<T> {
+    let patches = Patches::new(space);
+    let (starts, places) = patches.incidence();
+    let size = space.unknowns();
+    let rows_of = |chunk: usize| {
+        let mut columns: Vec<u32> = Vec::new();
+        let mut lengths = Vec::with_capacity(CHUNK);
+        let mut row = Vec::new();
+        for i in chunk * CHUNK..((chunk + 1) * CHUNK).min(size) {
+            row.clear();
+            for &(patch, _) in &places[starts[i] as usize..starts[i + 1] as usize] {
+                let patch = patch as usize;
+                row.extend((0..patches.size(patch)).map(|k| patches.unknown(patch, k)));
+            }
+            row.sort_unstable();
+            row.dedup();
+            columns.extend_from_slice(&row);
+            lengths.push(row.len() as u32);
+        }
+        (columns, lengths)
+    };
+    let pieces: Vec<_> = (0..size.div_ceil(CHUNK))
+        .into_par_iter()
+        .map(rows_of)
+        .collect();
+    let mut row_starts = Vec::with_capacity(size + 1);
+    row_starts.push(0);
+    let mut columns = Vec::with_capacity(pieces.iter().map(|p| p.0.len()).sum());
+    let mut end = 0;
+    for (piece, lengths) in pieces {
+        columns.extend_from_slice(&piece);
+        row_starts.extend(lengths.into_iter().map(|length| {
+            end += length;
+            end
+        }));
+    }
+    let values = vec![T::lit(0.0); columns.len()];
+    SparseMatrix {
+        row_starts,
+        columns,
+        values,
+    }
+}
+
+/// The values, on a known pattern.
+pub(super) fn fill<T: Real, const D: usize, S: Scheme<T, D>>(
+    space: &Discretisation<'_, T, D, S>,
+    matrix: &mut SparseMatrix<T>,
+) {
+    let patches = Patches::new(space);
+    let locals = local_matrices(&patches);
+    let (starts, places) = patches.incidence();
+    let SparseMatrix {
+        row_starts,
+        columns,
+        values,
+    } = matrix;
+    let size = row_starts.len() - 1;
+    let mut pieces = Vec::with_capacity(size / CHUNK + 1);
+    let mut rest = &mut values[..];
+    for first in (0..size).step_by(CHUNK) {
+        let rows = first..(first + CHUNK).min(size);
+        let length = (row_starts[rows.end] - row_starts[rows.start]) as usize;
+        let (piece, tail) = rest.split_at_mut(length);
+        pieces.push((rows, piece));
+        rest = tail;
+    }
+    pieces.into_par_iter().for_each(|(rows, piece)| {
+        piece.fill(T::lit(0.0));
+        let offset = row_starts[rows.start] as usize;
+        for i in rows {
+            let range = row_starts[i] as usize..row_starts[i + 1] as usize;
+            let row_columns = &columns[range.clone()];
+            let row = &mut piece[range.start - offset..range.end - offset];
+            for &(patch, k) in &places[starts[i] as usize..starts[i + 1] as usize] {
+                let patch = patch as usize;
+                let n = patches.size(patch);
+                let start = patches.start(patch) + k as usize * n;
+                for (j, &entry) in locals[start..start + n].iter().enumerate() {
+                    let column = patches.unknown(patch, j);
+                    if let Some(at) = row_columns.iter().position(|&c| c == column) {
+                        row[at] += entry;
+                    }
+                }
+            }
+        }
+    });
+}
+
+fn local_matrices<T: Real, const D: usize, S: Scheme<T, D>>(
+    patches: &Patches<'_, '_, T, D, S>,
+) -> Vec<T> {
+    let n = Discretisation::<T, D, S>::N;
+    let space = patches.space;
+    let degree = <S::Element as ReferenceElement<T, D>>::DEGREE;
+    let stiffness = CellTable::new::<S::Element, D>(2 * (degree - 1));
+    let reaction = data::ReactionTerm::new(space);
+    let mut locals = vec![T::lit(0.0); patches.start(patches.len())];
+    let (cells, facets) = locals.split_at_mut(patches.start(patches.n_cells()));
+    cells
+        .par_chunks_mut(n * n)
+        .with_min_len(CHUNK)
+        .enumerate()
+        .for_each(|(cell, out)| {
+            let geometry = space.mesh.geometry(cell);
+            let mut local = zero_local();
+            add_stiffness::<T, D, S::Element>(&geometry, space.alpha(cell), &stiffness, &mut local);
+            if let Some(reaction) = &reaction {
+                reaction.add::<S::Element>(space.mesh, cell, geometry.volume, &mut local);
+            }
+            for (row, values) in out.chunks_exact_mut(n).zip(&local) {
+                row.copy_from_slice(&values[..n]);
+            }
+        });
+    if let Some(all) = &patches.facets {
+        let table =
+            FacetTable::new::<S::Element, D>(<S::Facet as FacetForm<T, D>>::sampling(degree));
+        facets
+            .par_chunks_mut(4 * n * n)
+            .with_min_len(CHUNK)
+            .enumerate()
+            .for_each(|(facet, out)| facet_matrix(space, all, &table, facet, out));
+    }
+    locals
+}
+
+/// The form on one facet, for the unknowns of here and then there; on the boundary those of there
+/// stay zero.
+fn facet_matrix<T: Real, const D: usize, S: Scheme<T, D>>(
+    space: &Discretisation<'_, T, D, S>,
+    facets: &Facets,
+    table: &FacetTable<T>,
+    facet: usize,
+    out: &mut [T],
+) {
+    count::facets(1);
+    let n = Discretisation::<T, D, S>::N;
+    let interior = facets.interior().contains(&facet);
+    let ((here, i), (there, j)) = (facets.here(facet), facets.there(facet));
+    let (g_here, g_there) = (space.mesh.geometry(here), space.mesh.geometry(there));
+    let alpha = |cell| space.alpha(cell);
+    let side_here = CellSide {
+        cell: here,
+        local: i,
+        geometry: &g_here,
+        coefficient: alpha(here),
+    };
+    let side_there = CellSide {
+        cell: there,
+        local: j,
+        geometry: &g_there,
+        coefficient: alpha(there),
+    };
+    let view = FacetGeometry::new(space.mesh, &side_here, interior.then_some(&side_there));
+    let penalty = space.form.penalty(&view.view);
+    for ((b_here, b_there), &weight) in table.on(i).iter().zip(table.on(j)).zip(&table.weights) {
+        let mut all = [Trace {
+            jump: T::lit(0.0),
+            flux: T::lit(0.0),
+        }; 2 * MAX_BASIS];
+        let one = T::lit(1.0);
+        all[..n].copy_from_slice(
+            &traces::<T, D, S::Element, S::Facet>(&view, &g_here, one, b_here)[..n],
+        );
+        if interior {
+            all[n..2 * n].copy_from_slice(
+                &traces::<T, D, S::Element, S::Facet>(&view, &g_there, -one, b_there)[..n],
+            );
+        }
+        let size = if interior { 2 * n } else { n };
+        for v in 0..size {
+            for u in 0..size {
+                out[v * 2 * n + u] +=
+                    weight * view.view.measure * space.form.integrand(all[v], all[u], penalty);
+            }
+        }
+    }
+}

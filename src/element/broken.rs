@@ -1,0 +1,33 @@
+//! The discontinuous version of any element.
+
+use super::{Layout, Node, ReferenceElement};
+use crate::real::Real;
+
+/// An element whose unknowns all belong to the cell: the same basis, another layout.
+///
+/// `Broken<P1>` and `Broken<CrouzeixRaviart>` span the same space, in the bases of vertex values and
+/// of facet means; which one a scheme uses decides where it can impose bounds.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Broken<E>(pub E);
+
+impl<T: Real, const D: usize, E: ReferenceElement<T, D>> ReferenceElement<T, D> for Broken<E> {
+    const N: usize = E::N;
+    const DEGREE: usize = E::DEGREE;
+    const LAYOUT: Layout = Layout {
+        vertex: 0,
+        facet: 0,
+        cell: E::N,
+    };
+
+    #[inline(always)]
+    fn values(lambda: &[T], out: &mut [T]) {
+        E::values(lambda, out);
+    }
+    #[inline(always)]
+    fn derivatives(lambda: &[T], out: &mut [[T; 4]]) {
+        E::derivatives(lambda, out);
+    }
+    fn node(i: usize) -> Node {
+        E::node(i)
+    }
+}

@@ -1,0 +1,40 @@
+//! The Crouzeix-Raviart element.
+
+use super::{Layout, Node, ReferenceElement};
+use crate::real::Real;
+
+/// Piecewise linears with continuous means over facets.
+///
+/// Basis `phi_i = 1 - D lambda_i`: its mean is one over the facet opposite vertex `i` and zero over
+/// the others. In one dimension this is P1 with the two unknowns exchanged.
+///
+/// Source: M. Crouzeix, P.-A. Raviart, RAIRO 7 (1973), 33-75.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct CrouzeixRaviart;
+
+impl<T: Real, const D: usize> ReferenceElement<T, D> for CrouzeixRaviart {
+    const N: usize = D + 1;
+    const DEGREE: usize = 1;
+    const LAYOUT: Layout = Layout {
+        vertex: 0,
+        facet: 1,
+        cell: 0,
+    };
+
+    #[inline(always)]
+    fn values(lambda: &[T], out: &mut [T]) {
+        for (value, &l) in out[..=D].iter_mut().zip(lambda) {
+            *value = T::lit(1.0) - T::lit(D as f64) * l;
+        }
+    }
+    #[inline(always)]
+    fn derivatives(_: &[T], out: &mut [[T; 4]]) {
+        for (i, row) in out[..=D].iter_mut().enumerate() {
+            *row = [T::lit(0.0); 4];
+            row[i] = T::lit(-(D as f64));
+        }
+    }
+    fn node(i: usize) -> Node {
+        Node::FacetMean(i)
+    }
+}

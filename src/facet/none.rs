@@ -1,0 +1,20 @@
+//! No facet terms.
+
+use super::{FacetForm, FacetView, Trace};
+use crate::real::Real;
+
+/// The form of schemes that have no terms on facets.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct NoFacets;
+
+impl<T: Real, const D: usize> FacetForm<T, D> for NoFacets {
+    const COUPLES: bool = false;
+    const USES_FLUX: bool = false;
+    fn penalty(&self, _: &FacetView<T>) -> T {
+        T::lit(0.0)
+    }
+    #[inline(always)]
+    fn integrand(&self, _: Trace<T>, _: Trace<T>, _: T) -> T {
+        T::lit(0.0)
+    }
+}

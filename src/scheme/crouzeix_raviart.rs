@@ -1,0 +1,31 @@
+//! Non-conforming linear elements.
+
+use super::{DirichletBy, Scheme, Setting, linear_energy_order};
+use crate::element::CrouzeixRaviart;
+use crate::facet::NoFacets;
+use crate::mesh::Mesh;
+use crate::real::Real;
+use crate::study::ExpectedOrders;
+
+/// Piecewise linears with continuous facet means, bounds on those means, Dirichlet means pinned.
+///
+/// Orders: L.-H. Wang, J. Comput. Math. 21 (2003), 481-490 for obstacles; D. Y. Hua, L. H. Wang,
+/// J. Comput. Math. 17 (1999), 15-24 for Signorini.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct CrouzeixRaviartScheme;
+
+impl<T: Real, const D: usize> Scheme<T, D> for CrouzeixRaviartScheme {
+    type Element = CrouzeixRaviart;
+    type Facet = NoFacets;
+    const DIRICHLET: DirichletBy = DirichletBy::Pinning;
+
+    fn name(&self) -> &str {
+        "cr"
+    }
+    fn facet(&self, _: &Mesh<T, D>) -> NoFacets {
+        NoFacets
+    }
+    fn expected_orders(&self, setting: &Setting) -> ExpectedOrders {
+        linear_energy_order(setting)
+    }
+}

@@ -1,0 +1,218 @@
+//! The primal-dual active set method.
+
+use super::certificate::certify_with_noise;
+use super::condensed::{Noise, resolve};
+use super::cycles::History;
+use super::iterate::Iterate;
+use super::linear::{FactorError, is_positive_definite};
+use super::{InequalitySolver, Outcome, Solution, Start};
+use crate::algebra::Inequality;
+use crate::real::Real;
+
+/// The primal-dual active set method, which is a semismooth Newton method (Hintermueller, Ito,
+/// Kunisch, SIAM J. Optim. 13 (2002) 865-888).
+///
+/// Every outer step fixes the unknowns in contact at their bounds and the Dirichlet ones at their
+/// values, solves for the rest, and lets go where a multiplier has the wrong sign, takes hold
+/// where a bound is violated. For M-matrices it ends in the solution after finitely many steps.
+/// For other matrices it may cycle: a state that returns is recognised, and the problem condensed
+/// on all unknowns that have moved since is solved exactly ([`Outcome::Cycling`] if that is not
+/// possible within the limits below).
+///
+/// What differs by rounding only does not change state, or ties would cycle for ever. A bound is
+/// violated beyond rounding by `band` units of the scalar's epsilon times the largest
+/// displacement: an unknown left out of contact by mistake harms the solution by its violation and
+/// no more, so a global scale is safe. A multiplier has the wrong sign beyond rounding by `band`
+/// units of the forces whose sum it is, where forces between unknowns at rest on given values are
+/// exact to `f64`: multipliers shrink like the volume of a patch and there are many of them, so
+/// that a global scale would hide all of them on fine meshes. Each time the condensed solution is
+/// disputed the band widens eightfold, forces then on the global scale too.
+///
+/// A cold start takes the solution without inequalities. If that does not exist because nothing
+/// but the bounds holds the body (the matrix is singular, not indefinite), it starts from
+/// contact everywhere.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ActiveSet {
+    /// Largest number of linear systems with a new active set.
+    pub max_outer: usize,
+    /// Units of rounding within which nothing changes state.
+    pub band: f64,
+    /// Corrections of each linear solution by its residual in `f64`.
+    pub refinements: usize,
+    /// Largest number of condensed problems.
+    pub max_condensations: usize,
+    /// Largest number of unknowns of a condensed problem; its matrix is dense.
+    pub max_condensed: usize,
+    /// Whether to make sure first that the matrix is positive definite on all unknowns that are
+    /// not Dirichlet values, its symmetric part if it is not symmetric. Error size does not detect
+    /// loss of coercivity. Free of cost for a cold start with a symmetric matrix.
+    pub check_definite: bool,
+}
+
+impl Default for ActiveSet {
+    fn default() -> Self {
+        Self {
+            max_outer: 200,
+            band: 16.0,
+            refinements: 1,
+            max_condensations: 5,
+            max_condensed: 500,
+            check_definite: false,
+        }
+    }
+}
+
+impl<T: Real> InequalitySolver<T> for ActiveSet {
+    fn name(&self) -> &'static str {
+        "active-set"
+    }
+
+    fn solve(&self, inequality: &Inequality<T>, start: &Start) -> Solution<T> {
+        let mut iterate = Iterate::new(inequality, start);
+        let outcome = self
+            .run(&mut iterate, start)
+            .unwrap_or_else(|outcome| outcome);
+        iterate.into_solution(outcome)
+    }
+}
+
+impl ActiveSet {
+    /// Runs until the active set rests; the error is the reason why it does not.
+    fn run<T: Real>(
+        &self,
+        iterate: &mut Iterate<'_, T>,
+        start: &Start,
+    ) -> Result<Outcome, Outcome> {
+        let inequality = iterate.inequality;
+        check_input(inequality)?;
+        let cold = matches!(start, Start::Cold);
+        let cold_checks = cold && inequality.symmetric;
+        if self.check_definite && !cold_checks {
+            check_definite(inequality)?;
+        }
+        let mut cycle = vec![false; inequality.size()];
+        let mut history = History::new(inequality.size());
+        history.record(&iterate.state, &mut cycle);
+        let mut condensations = 0;
+        let mut band = self.band;
+        loop {
+            if iterate.outer >= self.max_outer {
+                return Err(Outcome::IterationLimit);
+            }
+            match iterate.solve_linear(self.refinements) {
+                Ok(()) => {}
+                Err(FactorError::Singular) if cold && iterate.outer == 1 => {
+                    if self.check_definite {
+                        return Err(Outcome::NotCoercive);
+                    }
+                    if !iterate.close(&mut history) {
+                        return Err(Outcome::Singular);
+                    }
+                    history.record(&iterate.state, &mut cycle);
+                    continue;
+                }
+                Err(error) => return Err(error.into()),
+            }
+            if !iterate.assess() {
+                return Err(Outcome::NotFinite);
+            }
+            if !iterate.change_state(band, band - self.band, &mut history) {
+                return self.confirm(iterate, band);
+            }
+            if !history.record(&iterate.state, &mut cycle) {
+                continue;
+            }
+            if condensations == self.max_condensations {
+                return Err(Outcome::Cycling);
+            }
+            condensations += 1;
+            self.condense(iterate, &cycle, band, &mut history)?;
+            history.clear();
+            history.record(&iterate.state, &mut cycle);
+            band *= 8.0;
+        }
+    }
+
+    /// Sets the states of the unknowns marked in `cycle` to those that solve the problem condensed
+    /// on them.
+    fn condense<T: Real>(
+        &self,
+        iterate: &mut Iterate<'_, T>,
+        cycle: &[bool],
+        band: f64,
+        history: &mut History,
+    ) -> Result<(), Outcome> {
+        let members: Vec<u32> = (0..cycle.len())
+            .filter(|&i| cycle[i])
+            .map(|i| i as u32)
+            .collect();
+        if members.len() > self.max_condensed {
+            return Err(Outcome::Cycling);
+        }
+        iterate.outer += 1;
+        iterate.rest_on_bounds();
+        let noise = Noise {
+            gap: iterate.gap_noise(band),
+            force: &|i| iterate.force_noise(i, band, band - self.band),
+        };
+        let states = resolve(
+            iterate.inequality,
+            &iterate.values,
+            &iterate.state,
+            &members,
+            &noise,
+        )?
+        .ok_or(Outcome::Cycling)?;
+        for (&i, &contact) in members.iter().zip(&states) {
+            iterate.set_state(i as usize, contact, history);
+        }
+        Ok(())
+    }
+
+    /// The active set rests: whether the complementarity conditions hold indeed, by the
+    /// certificate, which knows nothing of it.
+    fn confirm<T: Real>(&self, iterate: &Iterate<'_, T>, band: f64) -> Result<Outcome, Outcome> {
+        let (certificate, unit) = certify_with_noise(iterate.inequality, &iterate.values);
+        let rounding = 8.0 * band * T::EPSILON;
+        if certificate.feasibility <= rounding && certificate.largest() <= rounding * unit.max(1.0)
+        {
+            Ok(Outcome::Converged)
+        } else {
+            Err(Outcome::Stalled)
+        }
+    }
+}
+
+fn check_input<T: Real>(inequality: &Inequality<T>) -> Result<(), Outcome> {
+    if !inequality.is_well_formed() {
+        Err(Outcome::Malformed)
+    } else if !inequality.is_finite() {
+        Err(Outcome::NotFinite)
+    } else if !inequality.is_feasible() {
+        Err(Outcome::Infeasible)
+    } else {
+        Ok(())
+    }
+}
+
+fn check_definite<T: Real>(inequality: &Inequality<T>) -> Result<(), Outcome> {
+    let not_given: Vec<u32> = (0..inequality.size())
+        .filter(|&i| inequality.bounds[i].only_value().is_none())
+        .map(|i| i as u32)
+        .collect();
+    if is_positive_definite(&inequality.matrix, inequality.symmetric, &not_given)? {
+        Ok(())
+    } else {
+        Err(Outcome::NotCoercive)
+    }
+}
+
+impl From<FactorError> for Outcome {
+    fn from(error: FactorError) -> Self {
+        match error {
+            FactorError::NotPositive => Outcome::NotCoercive,
+            FactorError::Singular => Outcome::Singular,
+            FactorError::OutOfMemory => Outcome::OutOfMemory,
+        }
+    }
+}

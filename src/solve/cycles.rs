@@ -1,0 +1,76 @@
+//! Noticing that an active set has been seen before.
+
+use crate::algebra::Contact;
+
+/// The contact states seen, as fingerprints, and when each unknown last moved.
+///
+/// A fingerprint has 128 bits: for two different states among a few hundred to share one has a
+/// probability below 1e-33, so equality of fingerprints is taken for equality.
+#[derive(Debug)]
+pub(super) struct History {
+    seen: Vec<(u128, u32)>,
+    last_move: Vec<u32>,
+    step: u32,
+}
+
+impl History {
+    /// No state seen yet.
+    pub fn new(unknowns: usize) -> Self {
+        Self {
+            seen: Vec::new(),
+            last_move: vec![0; unknowns],
+            step: 0,
+        }
+    }
+
+    /// Notes that unknown `i` moves into the state to be recorded next.
+    pub fn moved(&mut self, i: usize) {
+        self.last_move[i] = self.step + 1;
+    }
+
+    /// Records a state. If it has been seen, marks in `cycle` every unknown that has moved since,
+    /// and returns true.
+    pub fn record(&mut self, state: &[Contact], cycle: &mut [bool]) -> bool {
+        self.step += 1;
+        let fingerprint = fingerprint(state);
+        let Some(&(_, first)) = self.seen.iter().find(|(seen, _)| *seen == fingerprint) else {
+            self.seen.push((fingerprint, self.step));
+            return false;
+        };
+        for (mark, &last) in cycle.iter_mut().zip(&self.last_move) {
+            *mark |= last > first;
+        }
+        true
+    }
+
+    /// Forgets all states.
+    pub fn clear(&mut self) {
+        self.seen.clear();
+    }
+}
+
+/// The sum over all unknowns on a bound of a pseudo-random number of unknown and bound.
+fn fingerprint(state: &[Contact]) -> u128 {
+    state
+        .iter()
+        .enumerate()
+        .fold(0, |sum: u128, (i, &contact)| {
+            let side = match contact {
+                Contact::Open => return sum,
+                Contact::Lower => 0,
+                Contact::Upper => 1,
+            };
+            let key = 2 * i as u64 + side;
+            let number = u128::from(scramble(key)) << 64 | u128::from(scramble(!key));
+            sum.wrapping_add(number)
+        })
+}
+
+/// The output function of SplitMix64 (Steele, Lea, Flood 2014): a bijection of 64 bits without
+/// visible structure.
+fn scramble(key: u64) -> u64 {
+    let z = key.wrapping_add(0x9e37_79b9_7f4a_7c15);
+    let z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+    let z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+    z ^ (z >> 31)
+}

@@ -1,0 +1,262 @@
+//! An iterate of the active set method: unknowns, contact states, and how they change.
+
+use super::certificate::positive_diagonal;
+use super::cycles::History;
+use super::linear::{FactorError, Factors};
+use super::{Outcome, Solution, Start};
+use crate::algebra::{Bound, Contact, Inequality};
+use crate::real::Real;
+
+/// The current unknowns and states, and the best unknowns so far.
+pub(super) struct Iterate<'a, T> {
+    pub inequality: &'a Inequality<T>,
+    pub values: Vec<T>,
+    pub state: Vec<Contact>,
+    /// Linear systems with a new active set so far.
+    pub outer: usize,
+    /// `b - A u`.
+    deficit: Vec<f64>,
+    /// Largest displacement.
+    scale: f64,
+    best: Best<T>,
+    free: Vec<u32>,
+    correction: Vec<T>,
+}
+
+/// The iterate whose projected Jacobi step is smallest.
+struct Best<T> {
+    measure: f64,
+    values: Vec<T>,
+    state: Vec<Contact>,
+}
+
+impl<'a, T: Real> Iterate<'a, T> {
+    /// The admissible values nearest to zero, in the states of the start that the bounds have.
+    pub fn new(inequality: &'a Inequality<T>, start: &Start) -> Self {
+        let bounds = &inequality.bounds;
+        let values: Vec<T> = bounds
+            .iter()
+            .map(|bound| bound.nearest(T::lit(0.0)))
+            .collect();
+        let guess = match start {
+            Start::Cold => &[],
+            Start::Contact(guess) => guess.as_slice(),
+        };
+        let state: Vec<Contact> = bounds
+            .iter()
+            .enumerate()
+            .map(|(i, bound)| rest(bound, guess.get(i).copied().unwrap_or_default()))
+            .collect();
+        Self {
+            inequality,
+            outer: 0,
+            deficit: vec![0.0; inequality.size()],
+            scale: 1.0,
+            best: Best {
+                measure: f64::INFINITY,
+                values: values.clone(),
+                state: state.clone(),
+            },
+            values,
+            state,
+            free: Vec::new(),
+            correction: Vec::new(),
+        }
+    }
+
+    /// The current iterate if it converged, else the best one.
+    pub fn into_solution(self, outcome: Outcome) -> Solution<T> {
+        let (values, contact) = if outcome == Outcome::Converged {
+            (self.values, self.state)
+        } else {
+            (self.best.values, self.best.state)
+        };
+        Solution {
+            values,
+            contact,
+            outcome,
+            outer: self.outer,
+            linear: 0,
+        }
+    }
+
+    /// Puts every unknown whose value is known on it, exactly.
+    pub fn rest_on_bounds(&mut self) {
+        for ((value, bound), state) in self
+            .values
+            .iter_mut()
+            .zip(&self.inequality.bounds)
+            .zip(&self.state)
+        {
+            if let Some(known) = known_value(bound, *state) {
+                *value = known;
+            }
+        }
+    }
+
+    /// Solves for the unknowns without contact.
+    ///
+    /// Always for a correction of the unknowns as they are: the same code starts from the last
+    /// iterate and refines.
+    pub fn solve_linear(&mut self, refinements: usize) -> Result<(), FactorError> {
+        self.outer += 1;
+        self.rest_on_bounds();
+        let Inequality {
+            matrix,
+            load,
+            bounds,
+            symmetric,
+            ..
+        } = self.inequality;
+        self.free.clear();
+        let states = bounds.iter().zip(&self.state).enumerate();
+        let free = states.filter(|(_, (bound, state))| known_value(bound, **state).is_none());
+        self.free.extend(free.map(|(i, _)| i as u32));
+        let factors = Factors::new(matrix, *symmetric, &self.free)?;
+        for _ in 0..=refinements {
+            matrix.residual_f64(load, &self.values, &mut self.deficit);
+            self.correction.clear();
+            self.correction
+                .extend(self.free.iter().map(|&i| T::lit(self.deficit[i as usize])));
+            factors.solve_in_place(&mut self.correction, 1);
+            for (&i, &correction) in self.free.iter().zip(&self.correction) {
+                self.values[i as usize] += correction;
+            }
+        }
+        matrix.residual_f64(load, &self.values, &mut self.deficit);
+        Ok(())
+    }
+
+    /// Finds the scale and keeps the iterate if it is the best; false if it is not finite.
+    ///
+    /// The measure is the projected Jacobi step `u - P(u - r / d)` in the energy norm of the
+    /// diagonal: zero at the solution only, and, unlike relative measures, not flattered by
+    /// iterates that are far too large.
+    pub fn assess(&mut self) -> bool {
+        let mut scale = 0.0_f64;
+        let mut measure = 0.0;
+        for (i, bound) in self.inequality.bounds.iter().enumerate() {
+            let (x, value) = (self.values[i], self.values[i].to_f64());
+            let d = positive_diagonal(self.inequality, i);
+            let target = bound.nearest(T::lit(value + self.deficit[i] / d)).to_f64();
+            scale = scale.max(value.abs()).max(bound.nearest(x).to_f64().abs());
+            measure += d * (value - target).powi(2);
+        }
+        if !measure.is_finite() {
+            return false;
+        }
+        self.scale = if scale > 0.0 { scale } else { 1.0 };
+        if measure < self.best.measure {
+            self.best.measure = measure;
+            self.best.values.copy_from_slice(&self.values);
+            self.best.state.copy_from_slice(&self.state);
+        }
+        true
+    }
+
+    /// Lets go and takes hold; true if any unknown changed its state.
+    pub fn change_state(&mut self, band: f64, spread: f64, history: &mut History) -> bool {
+        let noise = self.gap_noise(band);
+        let mut changed = false;
+        // States are written after all are decided: the noise of a force looks at its neighbours'.
+        let next: Vec<(u32, Contact)> = (0..self.state.len())
+            .filter_map(|i| {
+                let bound = &self.inequality.bounds[i];
+                let x = self.values[i].to_f64();
+                // Positive where the bound would have to pull.
+                let pull = match self.state[i] {
+                    _ if bound.only_value().is_some() => return None,
+                    Contact::Open if bound.lower().is_some_and(|l| l.to_f64() - x > noise) => {
+                        return Some((i as u32, Contact::Lower));
+                    }
+                    Contact::Open if bound.upper().is_some_and(|u| x - u.to_f64() > noise) => {
+                        return Some((i as u32, Contact::Upper));
+                    }
+                    Contact::Open => return None,
+                    Contact::Lower => self.deficit[i],
+                    Contact::Upper => -self.deficit[i],
+                };
+                (pull > 0.0 && pull > self.force_noise(i, band, spread))
+                    .then_some((i as u32, Contact::Open))
+            })
+            .collect();
+        for (i, contact) in next {
+            self.set_state(i as usize, contact, history);
+            changed = true;
+        }
+        changed
+    }
+
+    /// Changes one state.
+    pub fn set_state(&mut self, i: usize, contact: Contact, history: &mut History) {
+        if self.state[i] != contact {
+            self.state[i] = contact;
+            history.moved(i);
+        }
+    }
+
+    /// Puts every unknown on a bound, the lower one if it has two; false if none was off it.
+    pub fn close(&mut self, history: &mut History) -> bool {
+        let mut changed = false;
+        for (i, bound) in self.inequality.bounds.iter().enumerate() {
+            let contact = match (bound.lower(), bound.upper()) {
+                (Some(_), _) => Contact::Lower,
+                (None, Some(_)) => Contact::Upper,
+                (None, None) => Contact::Open,
+            };
+            changed |= contact != self.state[i];
+            self.set_state(i, contact, history);
+        }
+        changed
+    }
+
+    /// Violations of a bound up to this are put down to rounding.
+    pub fn gap_noise(&self, band: f64) -> f64 {
+        band * T::EPSILON * self.scale
+    }
+
+    /// Multipliers of the wrong sign up to this are put down to rounding: `band` units of the
+    /// forces of free neighbours in the scalar, of all others in `f64`, and `spread` units of the
+    /// largest force the diagonal could exert.
+    pub fn force_noise(&self, i: usize, band: f64, spread: f64) -> f64 {
+        let Inequality {
+            matrix,
+            load,
+            bounds,
+            ..
+        } = self.inequality;
+        let (columns, entries) = matrix.row(i);
+        let mut free = 0.0;
+        let mut known = load[i].to_f64().abs();
+        for (&j, &a) in columns.iter().zip(entries) {
+            let j = j as usize;
+            let force = (a.to_f64() * self.values[j].to_f64()).abs();
+            match known_value(&bounds[j], self.state[j]) {
+                Some(_) => known += force,
+                None => free += force,
+            }
+        }
+        let global = positive_diagonal(self.inequality, i) * self.scale;
+        band * (T::EPSILON * free + f64::EPSILON * known) + spread * T::EPSILON * global
+    }
+}
+
+/// The state an unknown can have under its bound: open where the bound named does not exist; on
+/// the lower of two bounds that coincide.
+fn rest<T: Real>(bound: &Bound<T>, contact: Contact) -> Contact {
+    match contact {
+        _ if bound.is_inequality() && bound.only_value().is_some() => Contact::Lower,
+        Contact::Lower if bound.lower().is_some() => Contact::Lower,
+        Contact::Upper if bound.upper().is_some() => Contact::Upper,
+        _ => Contact::Open,
+    }
+}
+
+/// The value an unknown has without solving for it.
+fn known_value<T: Real>(bound: &Bound<T>, state: Contact) -> Option<T> {
+    bound.only_value().or(match state {
+        Contact::Open => None,
+        Contact::Lower => bound.lower(),
+        Contact::Upper => bound.upper(),
+    })
+}

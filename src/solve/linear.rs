@@ -1,0 +1,314 @@
+//! Direct solvers of linear systems: the only file that names the factorisations of faer.
+
+use faer::dyn_stack::{MemBuffer, MemStack};
+use faer::linalg::cholesky::llt::factor::{LltError, LltRegularization};
+use faer::sparse::linalg::LuError;
+use faer::sparse::linalg::cholesky::{
+    CholeskySymbolicParams, LltRef, SymbolicCholesky, SymbolicCholeskyRaw, SymmetricOrdering,
+    factorize_symbolic_cholesky, supernodal::SupernodalLltRef,
+};
+use faer::sparse::linalg::lu::{
+    LuRef, LuSymbolicParams, NumericLu, SymbolicLu, factorize_symbolic_lu,
+};
+use faer::sparse::{FaerError, SparseColMatRef};
+use faer::{Conj, MatMut, Par, Side};
+
+use super::restrict::Restricted;
+use crate::algebra::SparseMatrix;
+use crate::real::Real;
+
+/// One thread, always: sums in the same order give the same bits on every machine.
+const PAR: Par = Par::Seq;
+
+/// A pivot below this many units of rounding of the diagonal entry it came from has lost every
+/// digit to cancellation: the matrix is singular as far as this scalar can tell.
+const LOST_PIVOT: f64 = 16.0;
+
+/// Why a matrix could not be factored.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
+pub enum FactorError {
+    /// A direction of negative curvature: the symmetric matrix is indefinite.
+    #[error("the matrix is not positive definite")]
+    NotPositive,
+    /// Singular to working precision. A symmetric matrix that is positive semidefinite up to
+    /// rounding (a body that nothing holds) is singular, not indefinite.
+    #[error("the matrix is singular to working precision")]
+    Singular,
+    /// The factors do not fit into memory or into the index type.
+    #[error("the factors do not fit into memory")]
+    OutOfMemory,
+}
+
+impl From<FaerError> for FactorError {
+    fn from(_: FaerError) -> Self {
+        // Index overflow and memory are all that faer's own errors tell apart.
+        FactorError::OutOfMemory
+    }
+}
+
+/// The factors of a matrix restricted to some of its rows and columns.
+///
+/// Symmetric: sparse Cholesky, approximate minimum degree ordering, supernodal where that pays.
+/// Otherwise: sparse LU with partial pivoting of the transpose, which is what rows are to a
+/// factorisation by columns; a matrix dominant by rows is then eliminated without exchanges.
+#[derive(Debug)]
+pub struct Factors<T> {
+    size: usize,
+    kind: Kind<T>,
+}
+
+#[derive(Debug)]
+enum Kind<T> {
+    Empty,
+    Cholesky {
+        symbolic: SymbolicCholesky<u32>,
+        values: Vec<T>,
+    },
+    Lu {
+        symbolic: SymbolicLu<u32>,
+        numeric: NumericLu<u32, T>,
+    },
+}
+
+impl<T: Real> Factors<T> {
+    /// Factors the rows and columns `free` (ascending) of a matrix.
+    ///
+    /// Of a symmetric matrix only the entries on and left of the diagonal are read.
+    ///
+    /// # Errors
+    /// See [`FactorError`]. Numbers that are not finite end as one of them too.
+    pub fn new(
+        matrix: &SparseMatrix<T>,
+        symmetric: bool,
+        free: &[u32],
+    ) -> Result<Self, FactorError> {
+        let size = free.len();
+        if size == 0 {
+            return Ok(Self {
+                size,
+                kind: Kind::Empty,
+            });
+        }
+        if symmetric {
+            let mut restricted = Restricted::left_of_diagonal(matrix, free);
+            Self::cholesky(&restricted).map_err(|error| match error {
+                FactorError::NotPositive => why_not_positive(&mut restricted),
+                other => other,
+            })
+        } else {
+            Self::lu(&Restricted::new(matrix, free))
+        }
+    }
+
+    /// Number of unknowns of the factored matrix.
+    pub fn size(&self) -> usize {
+        self.size
+    }
+
+    /// Solves for `right_sides` right-hand sides at once, stored one after the other.
+    ///
+    /// # Panics
+    /// If `x` does not hold that many vectors of [`Factors::size`] numbers.
+    pub fn solve_in_place(&self, x: &mut [T], right_sides: usize) {
+        if x.is_empty() {
+            return;
+        }
+        let x = MatMut::from_column_major_slice_mut(x, self.size, right_sides);
+        match &self.kind {
+            Kind::Empty => {}
+            Kind::Cholesky { symbolic, values } => {
+                let scratch = symbolic.solve_in_place_scratch::<T>(right_sides, PAR);
+                LltRef::<'_, u32, T>::new(symbolic, values).solve_in_place_with_conj(
+                    Conj::No,
+                    x,
+                    PAR,
+                    MemStack::new(&mut MemBuffer::new(scratch)),
+                );
+            }
+            Kind::Lu { symbolic, numeric } => {
+                let scratch = symbolic.solve_transpose_in_place_scratch::<T>(right_sides, PAR);
+                LuRef::<'_, u32, T>::new_unchecked(symbolic, numeric)
+                    .solve_transpose_in_place_with_conj(
+                        Conj::No,
+                        x,
+                        PAR,
+                        MemStack::new(&mut MemBuffer::new(scratch)),
+                    );
+            }
+        }
+    }
+
+    fn cholesky(restricted: &Restricted<T>) -> Result<Self, FactorError> {
+        // Row i on and left of the diagonal is column i on and above it.
+        let a = columns(restricted);
+        let symbolic = factorize_symbolic_cholesky(
+            a.symbolic(),
+            Side::Upper,
+            SymmetricOrdering::Amd,
+            CholeskySymbolicParams::default(),
+        )?;
+        let mut values = Vec::new();
+        values
+            .try_reserve_exact(symbolic.len_val())
+            .map_err(|_| FactorError::OutOfMemory)?;
+        values.resize(symbolic.len_val(), T::lit(0.0));
+        let scratch = symbolic.factorize_numeric_llt_scratch::<T>(PAR, Default::default());
+        let mut memory = MemBuffer::try_new(scratch).map_err(|_| FactorError::OutOfMemory)?;
+        symbolic
+            .factorize_numeric_llt(
+                &mut values,
+                a,
+                Side::Upper,
+                LltRegularization::default(),
+                PAR,
+                MemStack::new(&mut memory),
+                Default::default(),
+            )
+            .map_err(|LltError::NonPositivePivot { .. }| FactorError::NotPositive)?;
+        if pivots_hold(&symbolic, &values, &restricted.diagonal()) {
+            Ok(Self {
+                size: restricted.size(),
+                kind: Kind::Cholesky { symbolic, values },
+            })
+        } else {
+            Err(FactorError::Singular)
+        }
+    }
+
+    fn lu(restricted: &Restricted<T>) -> Result<Self, FactorError> {
+        let a = columns(restricted);
+        let symbolic = factorize_symbolic_lu(a.symbolic(), LuSymbolicParams::default())?;
+        let mut numeric = NumericLu::new();
+        let scratch = symbolic.factorize_numeric_lu_scratch::<T>(PAR, Default::default());
+        let mut memory = MemBuffer::try_new(scratch).map_err(|_| FactorError::OutOfMemory)?;
+        let parameters = Default::default();
+        symbolic
+            .factorize_numeric_lu(&mut numeric, a, PAR, MemStack::new(&mut memory), parameters)
+            .map_err(|error| match error {
+                LuError::SymbolicSingular { .. } => FactorError::Singular,
+                LuError::Generic(error) => error.into(),
+            })?;
+        let factors = Self {
+            size: restricted.size(),
+            kind: Kind::Lu { symbolic, numeric },
+        };
+        if factors.condition_holds(restricted) {
+            Ok(factors)
+        } else {
+            Err(FactorError::Singular)
+        }
+    }
+
+    /// Whether the matrix, its rows scaled to norm one, is regular to working precision.
+    ///
+    /// Partial pivoting divides by whatever pivot is left, so success alone proves nothing. A
+    /// right-hand side without structure is dominated by the least singular direction; the size
+    /// of its solution bounds the condition number from below, and so raises no false alarm.
+    fn condition_holds(&self, restricted: &Restricted<T>) -> bool {
+        let mut sign = 1_u64;
+        let mut x: Vec<T> = (0..self.size)
+            .map(|i| {
+                sign = sign
+                    .wrapping_mul(6_364_136_223_846_793_005)
+                    .wrapping_add(1_442_695);
+                let norm: f64 = restricted.row(i).1.iter().map(|a| a.to_f64().abs()).sum();
+                T::lit(if sign >> 63 == 0 { norm } else { -norm })
+            })
+            .collect();
+        self.solve_in_place(&mut x, 1);
+        // Written so that a number that is not finite fails.
+        x.iter()
+            .all(|x| x.to_f64().abs() * LOST_PIVOT * T::EPSILON < 1.0)
+    }
+}
+
+/// Whether a matrix is positive definite on the unknowns `free` (ascending): its symmetric part
+/// has a Cholesky factor. This is the coercivity of the bilinear form, which the size of an error
+/// does not reveal.
+///
+/// # Errors
+/// [`FactorError::OutOfMemory`] if the question could not be answered.
+pub fn is_positive_definite<T: Real>(
+    matrix: &SparseMatrix<T>,
+    symmetric: bool,
+    free: &[u32],
+) -> Result<bool, FactorError> {
+    let factors = if symmetric {
+        Factors::new(matrix, true, free)
+    } else {
+        let part = Restricted::new(matrix, free).symmetric_part();
+        if part.size() == 0 {
+            return Ok(true);
+        } else {
+            Factors::cholesky(&part)
+        }
+    };
+    match factors {
+        Ok(_) => Ok(true),
+        Err(FactorError::OutOfMemory) => Err(FactorError::OutOfMemory),
+        Err(_) => Ok(false),
+    }
+}
+
+/// The rows of a restricted matrix as the columns of its transpose.
+fn columns<T>(restricted: &Restricted<T>) -> SparseColMatRef<'_, u32, T> {
+    let n = restricted.size();
+    let pattern = faer::sparse::SymbolicSparseColMatRef::new_checked(
+        n,
+        n,
+        &restricted.row_starts,
+        None,
+        &restricted.columns,
+    );
+    SparseColMatRef::new(pattern, &restricted.values)
+}
+
+/// Tells a singular matrix from an indefinite one after a pivot has failed: the former becomes
+/// definite if its diagonal grows by the root of the rounding unit, which is far above rounding
+/// and far below any curvature that a too small penalty leaves behind.
+fn why_not_positive<T: Real>(restricted: &mut Restricted<T>) -> FactorError {
+    for i in 0..restricted.size() {
+        let (columns, values) = restricted.row_mut(i);
+        match (columns.last(), values.last_mut()) {
+            (Some(&j), Some(a)) if j as usize == i && a.to_f64() > 0.0 => {
+                *a *= T::lit(1.0 + T::EPSILON.sqrt());
+            }
+            // Nothing on the diagonal: curvature is negative somewhere, or the row is empty,
+            // which the diagonal alone cannot tell; either way no growth will help.
+            _ => return FactorError::NotPositive,
+        }
+    }
+    match Factors::cholesky(restricted) {
+        Ok(_) => FactorError::Singular,
+        Err(error) => error,
+    }
+}
+
+/// Whether every pivot kept digits of the diagonal entry it came from.
+fn pivots_hold<T: Real>(symbolic: &SymbolicCholesky<u32>, values: &[T], diagonal: &[T]) -> bool {
+    let original = symbolic.perm().map(|permutation| permutation.arrays().0);
+    let holds = |j: usize, root: T| {
+        let a = diagonal[original.map_or(j, |original| original[j] as usize)].to_f64();
+        let root = root.to_f64();
+        // Written so that a number that is not finite fails.
+        root.is_finite() && root * root > LOST_PIVOT * T::EPSILON * a
+    };
+    match symbolic.raw() {
+        SymbolicCholeskyRaw::Simplicial(simplicial) => {
+            let starts = &simplicial.col_ptr()[..simplicial.ncols()];
+            starts
+                .iter()
+                .enumerate()
+                .all(|(j, &start)| holds(j, values[start as usize]))
+        }
+        SymbolicCholeskyRaw::Supernodal(supernodal) => {
+            let factor = SupernodalLltRef::<'_, u32, T>::new(supernodal, values);
+            (0..supernodal.n_supernodes()).all(|s| {
+                let supernode = factor.supernode(s);
+                let block = supernode.val();
+                (0..block.ncols()).all(|k| holds(supernode.start() + k, block[(k, k)]))
+            })
+        }
+    }
+}

@@ -1,0 +1,231 @@
+//! The one dynamic layer: schemes of different types in one list.
+
+use std::time::Instant;
+
+use super::{Certificate, Errors, ExpectedOrders, PenaltyParameters};
+use crate::algebra::{Bound, Contact, Inequality, Place};
+use crate::assemble::{DataQuadrature, Discretisation};
+use crate::element::ReferenceElement;
+use crate::error::Error;
+use crate::facet::FacetForm;
+use crate::mesh::Mesh;
+use crate::problem::Problem;
+use crate::real::Real;
+use crate::scheme::{Scheme, Setting};
+use crate::solve::{InequalitySolver, Outcome, Solution, Start, certify, is_positive_definite};
+
+/// What a scheme is asked to solve.
+pub struct Task<'a, T: Real, const D: usize> {
+    /// The data.
+    pub problem: &'a Problem<D>,
+    /// The mesh.
+    pub mesh: &'a Mesh<T, D>,
+    /// Contact of every vertex to start from; none for a cold start.
+    pub start: Option<&'a [Contact]>,
+    /// The solver.
+    pub solver: &'a dyn InequalitySolver<T>,
+    /// Quadrature of data.
+    pub quadrature: DataQuadrature,
+    /// Whether the exact solution holds on this mesh, so that errors mean something.
+    pub with_errors: bool,
+    /// Times are the smallest of this many runs.
+    pub repeat: usize,
+    /// Whether fields for pictures are wanted.
+    pub with_fields: bool,
+}
+
+/// Fields on the cells of the mesh, for pictures.
+#[derive(Clone, Debug, Default)]
+pub struct Fields {
+    /// The solution at the vertices of each cell.
+    pub u: Vec<f64>,
+    /// The obstacle at the vertices of each cell.
+    pub obstacle: Option<Vec<f64>>,
+    /// Density of the multiplier in each cell: force per volume for an obstacle, per measure of
+    /// the contact boundary for Signorini.
+    pub multiplier: Vec<f64>,
+    /// Share of each cell's constrained unknowns in contact.
+    pub contact: Vec<f64>,
+}
+
+/// What a scheme found.
+pub struct Solved {
+    /// Penalty factors in force.
+    pub parameters: PenaltyParameters,
+    /// Number of unknowns, Dirichlet ones included.
+    pub unknowns: usize,
+    /// Stored entries of the matrix.
+    pub nonzeros: usize,
+    /// How the solve ended.
+    pub outcome: Outcome,
+    /// Errors against the exact solution.
+    pub error: Errors,
+    /// The objective, for symmetric schemes.
+    pub objective: Option<f64>,
+    /// Constrained unknowns in contact.
+    pub active: usize,
+    /// Outer iterations.
+    pub outer: usize,
+    /// Inner iterations.
+    pub linear: usize,
+    /// The certificate.
+    pub certificate: Certificate,
+    /// Seconds of assembly.
+    pub assemble_seconds: f64,
+    /// Seconds of the solve on this mesh.
+    pub solve_seconds: f64,
+    /// Fields for pictures.
+    pub fields: Option<Fields>,
+    /// Warnings.
+    pub warnings: Vec<String>,
+}
+
+/// Object-safe face of every scheme: one virtual call per solve, none per cell.
+pub trait AnyScheme<T: Real, const D: usize>: Send + Sync {
+    /// The scheme's name.
+    fn name(&self) -> &str;
+    /// Where it imposes bounds.
+    fn constraint(&self) -> &'static str;
+    /// Orders theory proves.
+    fn expected_orders(&self, setting: &Setting) -> ExpectedOrders;
+    /// Whether its unknowns are those of conforming P1, so that it starts from a coarser level and
+    /// not from P1 on the same one.
+    fn is_conforming_linear(&self) -> bool;
+    /// Assembles and solves.
+    ///
+    /// # Errors
+    /// Those of assembly: bad data. Numerical outcomes are in [`Solved::outcome`].
+    fn solve(&self, task: &Task<'_, T, D>) -> Result<Solved, Error>;
+    /// The algebraic inequality alone, for other solvers and exporters.
+    ///
+    /// # Errors
+    /// Those of assembly.
+    fn inequality(
+        &self,
+        problem: &Problem<D>,
+        mesh: &Mesh<T, D>,
+        quadrature: DataQuadrature,
+    ) -> Result<Inequality<T>, Error>;
+}
+
+#[diagnostic::do_not_recommend]
+impl<T: Real, const D: usize, S: Scheme<T, D>> AnyScheme<T, D> for S {
+    fn name(&self) -> &str {
+        Scheme::name(self)
+    }
+    fn constraint(&self) -> &'static str {
+        Discretisation::<T, D, S>::constraint_name()
+    }
+    fn expected_orders(&self, setting: &Setting) -> ExpectedOrders {
+        Scheme::expected_orders(self, setting)
+    }
+    fn is_conforming_linear(&self) -> bool {
+        let layout = S::Element::LAYOUT;
+        layout.vertex == 1 && layout.facet + layout.cell == 0 && !S::Facet::COUPLES
+    }
+    fn solve(&self, task: &Task<'_, T, D>) -> Result<Solved, Error> {
+        solve(self, task)
+    }
+    fn inequality(
+        &self,
+        problem: &Problem<D>,
+        mesh: &Mesh<T, D>,
+        quadrature: DataQuadrature,
+    ) -> Result<Inequality<T>, Error> {
+        Discretisation::new(self, problem, mesh, quadrature)?.inequality()
+    }
+}
+
+fn solve<T: Real, const D: usize, S: Scheme<T, D>>(
+    scheme: &S,
+    task: &Task<'_, T, D>,
+) -> Result<Solved, Error> {
+    let clock = Instant::now();
+    let space = Discretisation::new(scheme, task.problem, task.mesh, task.quadrature)?;
+    let inequality = space.inequality()?;
+    let mut assemble_seconds = clock.elapsed().as_secs_f64();
+    for _ in 1..task.repeat {
+        let clock = Instant::now();
+        let again = Discretisation::new(scheme, task.problem, task.mesh, task.quadrature)?;
+        drop(again.inequality()?);
+        assemble_seconds = assemble_seconds.min(clock.elapsed().as_secs_f64());
+    }
+    let shortfall = space.penalty_shortfall();
+    let mut warnings = Vec::new();
+    if let Some(s) = shortfall {
+        warnings.push(s.to_string());
+    }
+    let (solution, solve_seconds) = run(task, &inequality, shortfall.is_some());
+    let u = &solution.values;
+    let usable = solution.outcome != Outcome::NotCoercive && u.iter().all(|v| v.to_f64().is_finite());
+    let error =
+        if task.with_errors && usable { space.errors(u)? } else { Errors::default() };
+    let fields = (task.with_fields && usable).then(|| space.fields(&inequality, &solution));
+    Ok(Solved {
+        parameters: space.form().parameters(),
+        unknowns: inequality.size(),
+        nonzeros: inequality.matrix.nonzeros(),
+        outcome: solution.outcome,
+        error,
+        objective: (inequality.symmetric && usable).then(|| inequality.objective(u)),
+        active: crate::solve::active(&inequality, &solution.contact),
+        outer: solution.outer,
+        linear: solution.linear,
+        certificate: certify(&inequality, u),
+        assemble_seconds,
+        solve_seconds,
+        fields,
+        warnings,
+    })
+}
+
+/// Solves as often as asked and keeps the smallest time. A penalty below its proven bound may still
+/// do, but the size of an error does not tell: the matrix is tested for definiteness first.
+fn run<T: Real, const D: usize>(
+    task: &Task<'_, T, D>,
+    inequality: &Inequality<T>,
+    in_doubt: bool,
+) -> (Solution<T>, f64) {
+    let clock = Instant::now();
+    let free: Vec<u32> = (0..inequality.size() as u32)
+        .filter(|&i| !matches!(inequality.bounds[i as usize], Bound::Fixed(_)))
+        .collect();
+    if in_doubt && inequality.symmetric && !is_positive_definite(&inequality.matrix, &free) {
+        let values = vec![T::lit(0.0); inequality.size()];
+        let contact = vec![Contact::Open; inequality.size()];
+        let solution =
+            Solution { values, contact, outcome: Outcome::NotCoercive, outer: 0, linear: 0 };
+        return (solution, clock.elapsed().as_secs_f64());
+    }
+    let start = match task.start {
+        Some(vertices) => Start::Contact(transfer(vertices, &inequality.places)),
+        None => Start::Cold,
+    };
+    let mut seconds = f64::INFINITY;
+    let mut last = None;
+    for _ in 0..task.repeat.max(1) {
+        let clock = Instant::now();
+        last = Some(task.solver.solve(inequality, &start));
+        seconds = seconds.min(clock.elapsed().as_secs_f64());
+    }
+    match last {
+        Some(solution) => (solution, seconds),
+        None => unreachable!("at least one run"),
+    }
+}
+
+/// Contact of vertices carried to unknowns: an unknown starts in contact if more than half of the
+/// vertices around its node are.
+fn transfer(vertices: &[Contact], places: &[Place]) -> Vec<Contact> {
+    let state = |place: &Place| {
+        let around = place.vertices();
+        [Contact::Lower, Contact::Upper]
+            .into_iter()
+            .find(|&side| {
+                let on = around.iter().filter(|&&v| vertices[v as usize] == side).count();
+                2 * on > around.len()
+            })
+            .unwrap_or(Contact::Open)
+    };
+    places.iter().map(state).collect()
+}

@@ -1,0 +1,69 @@
+//! Whether a mesh fits a scene.
+
+use crate::error::Error;
+use crate::mesh::{BoundaryPart, Mesh, describe_point};
+use crate::real::{Real, point_f64};
+use crate::scenes::Scene;
+
+/// Checks that a mesh can carry a scene, and tells whether the scene's exact solution holds on it.
+///
+/// Dirichlet and Neumann data of a scene with an exact solution come from that solution wherever
+/// the mesh has such parts, so it stays the solution on any domain where it is smooth enough. Only
+/// the contact condition may fail there: it is tested on every contact facet.
+///
+/// # Errors
+/// [`Error::UnfitMesh`] if mesh and scene do not agree on having a contact part; [`Error::Mesh`]
+/// if a component of the mesh is held by nothing.
+pub fn check_fit<T: Real, const D: usize>(
+    scene: &Scene<D>,
+    mesh: &Mesh<T, D>,
+) -> Result<bool, Error> {
+    let unfit = |why: &str| Error::UnfitMesh { scene: scene.name.clone(), why: why.to_owned() };
+    let contact = mesh.has_part(BoundaryPart::Contact);
+    match (&scene.problem.gap, contact) {
+        (Some(_), false) => {
+            return Err(unfit(
+                "the scene has a Signorini condition, but no facet of the mesh is in a group named \"contact\"",
+            ));
+        }
+        (None, true) => {
+            return Err(unfit(
+                "the mesh has facets in the group \"contact\", but the scene has no Signorini condition",
+            ));
+        }
+        _ => {}
+    }
+    if scene.problem.reaction.is_none() {
+        mesh.check_supported()?;
+    }
+    Ok(first_failure(scene, mesh).is_none())
+}
+
+/// The first contact facet on which the exact solution breaks the contact condition.
+fn first_failure<T: Real, const D: usize>(
+    scene: &Scene<D>,
+    mesh: &Mesh<T, D>,
+) -> Option<String> {
+    let gap = scene.problem.gap.as_ref()?;
+    let exact = scene.problem.exact.as_ref()?;
+    let slack = 1e3 * T::EPSILON;
+    for facet in mesh.boundary().iter().filter(|f| f.part == BoundaryPart::Contact) {
+        let (cell, local) = (facet.cell as usize, facet.local as usize);
+        let x = point_f64(&mesh.facet_barycentre(cell, local));
+        let normal = point_f64(&mesh.geometry(cell).normal(local));
+        let alpha = scene
+            .problem
+            .coefficient
+            .as_ref()
+            .map_or(1.0, |a| a(&point_f64(&mesh.barycentre(cell))));
+        let gradient = (exact.gradient)(&x);
+        let opening = (exact.value)(&x) - gap(&x);
+        let pressure = alpha * gradient.dot(&normal);
+        let size = 1.0 + opening.abs() + alpha * gradient.norm();
+        // the smaller of two non-negative numbers must vanish
+        if !(opening.min(pressure).abs() <= slack.sqrt() * size) {
+            return Some(describe_point(&x));
+        }
+    }
+    None
+}

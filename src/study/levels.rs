@@ -1,0 +1,206 @@
+//! Nested levels of a scene, and the contact set of conforming P1 on each: what every scheme starts
+//! from.
+
+use std::collections::BTreeMap;
+use std::time::Instant;
+
+use crate::algebra::Contact;
+use crate::assemble::{DataQuadrature, Discretisation};
+use crate::error::Error;
+use crate::mesh::{Mesh, Refinement};
+use crate::problem::Problem;
+use crate::real::Real;
+use crate::scenes::Scene;
+use crate::scheme::ConformingP1;
+use crate::solve::{InequalitySolver, Outcome, Start};
+
+/// Contact of every vertex, found by conforming P1, with what it cost.
+#[derive(Clone, Debug)]
+pub struct VertexContact {
+    /// The state of every vertex.
+    pub contact: Vec<Contact>,
+    /// Seconds spent on this level and all coarser ones.
+    pub seconds: f64,
+    /// How many levels were solved.
+    pub levels: usize,
+}
+
+struct Level<T, const D: usize> {
+    mesh: Mesh<T, D>,
+    /// The coarser level, and how this one came from it.
+    from: Option<(usize, Refinement)>,
+    seconds: f64,
+    contact: Option<VertexContact>,
+}
+
+/// The levels of a scene, made when asked for and kept.
+///
+/// Level `n` of a box has `n` subdivisions of its shortest side and is the refinement of level
+/// `n / 2` as long as that is whole and not tiny. Level `k` of a given mesh is its `k`-th uniform
+/// refinement.
+pub struct Levels<'a, T, const D: usize> {
+    scene: &'a Scene<D>,
+    given: Option<&'a Mesh<T, D>>,
+    levels: BTreeMap<usize, Level<T, D>>,
+}
+
+/// Fewest subdivisions of a level that is worth a start of its own.
+const COARSEST: usize = 4;
+
+impl<'a, T: Real, const D: usize> Levels<'a, T, D> {
+    /// Levels of the scene's own domain, or of a mesh given instead.
+    pub fn new(scene: &'a Scene<D>, given: Option<&'a Mesh<T, D>>) -> Self {
+        Self { scene, given, levels: BTreeMap::new() }
+    }
+
+    fn coarser(&self, level: usize) -> Option<usize> {
+        match self.given {
+            Some(_) => level.checked_sub(1),
+            None => (level.is_multiple_of(2) && level / 2 >= COARSEST).then_some(level / 2),
+        }
+    }
+
+    /// Makes the mesh of a level and of all coarser ones it is refined from.
+    ///
+    /// # Errors
+    /// [`Error::Mesh`] if there would be more cells than can be numbered, [`Error::Parameter`] for
+    /// a level of zero on a built-in domain.
+    pub fn make(&mut self, level: usize) -> Result<(), Error> {
+        if self.levels.contains_key(&level) {
+            return Ok(());
+        }
+        let mut chain = vec![level];
+        while let Some(&last) = chain.last() {
+            match self.coarser(last) {
+                Some(coarser) if !self.levels.contains_key(&coarser) => chain.push(coarser),
+                _ => break,
+            }
+        }
+        self.check_size(level)?;
+        for level in chain.into_iter().rev() {
+            let before = self.coarser(level).and_then(|c| self.levels.get(&c).map(|l| (c, l)));
+            let start = Instant::now();
+            let (mesh, from, spent) = match before {
+                Some((coarser, entry)) => {
+                    let (mesh, refinement) = entry.mesh.refine()?;
+                    (mesh, Some((coarser, refinement)), entry.seconds)
+                }
+                None => (self.coarsest(level)?, None, 0.0),
+            };
+            let seconds = spent + start.elapsed().as_secs_f64();
+            self.levels.insert(level, Level { mesh, from, seconds, contact: None });
+        }
+        Ok(())
+    }
+
+    /// Refuses a level before any of its coarser ones is made.
+    pub(super) fn check_size(&self, level: usize) -> Result<(), Error> {
+        let cells = match self.given {
+            Some(mesh) => (mesh.n_cells() as f64) * 2_f64.powi(D as i32).powf(level as f64),
+            None => {
+                let simplices: f64 = (1..=D).map(|k| k as f64).product();
+                self.scene.domain.counts(level).iter().map(|&n| n as f64).product::<f64>() * simplices
+            }
+        };
+        // beyond this a discontinuous space has more unknowns and entries than 32-bit numbers reach
+        let limit = f64::from(u32::MAX) / ((D + 1) * (D + 1) * (D + 2)) as f64;
+        if cells > limit {
+            return Err(Error::Parameter {
+                parameter: "level",
+                value: level.to_string(),
+                allowed: format!("it would have {cells:.1e} cells, at most {limit:.1e} are possible"),
+            });
+        }
+        Ok(())
+    }
+
+    fn coarsest(&self, level: usize) -> Result<Mesh<T, D>, Error> {
+        match self.given {
+            Some(mesh) => Ok(mesh.clone()),
+            None => Mesh::kuhn_box(&self.scene.domain, self.scene.domain.counts(level)),
+        }
+    }
+
+    /// The mesh of a level that was made, and the seconds it took with all coarser ones.
+    pub fn mesh(&self, level: usize) -> Option<(&Mesh<T, D>, f64)> {
+        self.levels.get(&level).map(|l| (&l.mesh, l.seconds))
+    }
+
+    /// The contact set of the coarser level, carried to the vertices of a level that was made: a
+    /// new vertex is in contact if both its parents are.
+    pub fn start_from_coarser(
+        &mut self,
+        level: usize,
+        solver: &dyn InequalitySolver<T>,
+        quadrature: DataQuadrature,
+        repeat: usize,
+    ) -> Result<Option<VertexContact>, Error> {
+        let Some((coarser, _)) = self.levels.get(&level).and_then(|l| l.from.as_ref()) else {
+            return Ok(None);
+        };
+        let coarser = *coarser;
+        let coarse = self.contact(coarser, solver, quadrature, repeat)?;
+        let Some((_, refinement)) = self.levels.get(&level).and_then(|l| l.from.as_ref()) else {
+            return Ok(None);
+        };
+        let contact = refinement
+            .parents
+            .iter()
+            .map(|&[a, b]| match (coarse.contact[a as usize], coarse.contact[b as usize]) {
+                (one, other) if one == other => one,
+                _ => Contact::Open,
+            })
+            .collect();
+        Ok(Some(VertexContact { contact, ..coarse }))
+    }
+
+    /// The contact set of conforming P1 on a level that was made.
+    ///
+    /// # Errors
+    /// Those of assembly.
+    pub fn contact(
+        &mut self,
+        level: usize,
+        solver: &dyn InequalitySolver<T>,
+        quadrature: DataQuadrature,
+        repeat: usize,
+    ) -> Result<VertexContact, Error> {
+        if let Some(known) = self.levels.get(&level).and_then(|l| l.contact.clone()) {
+            return Ok(known);
+        }
+        self.make(level)?;
+        let start = self.start_from_coarser(level, solver, quadrature, repeat)?;
+        let problem = &self.scene.problem;
+        let Some(entry) = self.levels.get_mut(&level) else { unreachable!("made above") };
+        let found = solve_p1(problem, &entry.mesh, start, solver, quadrature, repeat)?;
+        entry.contact = Some(found.clone());
+        Ok(found)
+    }
+}
+
+fn solve_p1<T: Real, const D: usize>(
+    problem: &Problem<D>,
+    mesh: &Mesh<T, D>,
+    start: Option<VertexContact>,
+    solver: &dyn InequalitySolver<T>,
+    quadrature: DataQuadrature,
+    repeat: usize,
+) -> Result<VertexContact, Error> {
+    let (spent, levels) = start.as_ref().map_or((0.0, 0), |s| (s.seconds, s.levels));
+    let start = start.map_or(Start::Cold, |s| Start::Contact(s.contact));
+    let mut seconds = f64::INFINITY;
+    let mut contact = Vec::new();
+    for _ in 0..repeat.max(1) {
+        let clock = Instant::now();
+        let space = Discretisation::new(&ConformingP1, problem, mesh, quadrature)?;
+        let inequality = space.inequality()?;
+        let solution = solver.solve(&inequality, &start);
+        seconds = seconds.min(clock.elapsed().as_secs_f64());
+        // a start need not be right; one that failed is as good as none
+        contact = match solution.outcome {
+            Outcome::Converged => solution.contact,
+            _ => vec![Contact::Open; inequality.size()],
+        };
+    }
+    Ok(VertexContact { contact, seconds: spent + seconds, levels: levels + 1 })
+}

@@ -1,0 +1,283 @@
+//! A study: schemes on a scene, level by level.
+
+use std::path::PathBuf;
+
+use super::any_scheme::{AnyScheme, Solved, Task};
+use super::fit::check_fit;
+use super::levels::Levels;
+use super::{
+    CellFields, Errors, Iterations, Program, Report, Row, Seconds, fill_orders, peak_memory_bytes,
+    write_vtu,
+};
+use crate::assemble::DataQuadrature;
+use crate::error::Error;
+use crate::mesh::Mesh;
+use crate::real::Real;
+use crate::scenes::Scene;
+use crate::scheme::Setting;
+use crate::solve::{ActiveSet, InequalitySolver, Outcome};
+
+/// What a study tells whoever watches it.
+pub enum Progress<'a> {
+    /// A run begins: scene, scheme, level.
+    Started(&'a str, &'a str, usize),
+    /// A run ended.
+    Finished(&'a Row),
+}
+
+/// Schemes side by side on one scene.
+///
+/// ```
+/// use unilateral::prelude::*;
+/// # fn main() -> Result<(), unilateral::error::Error> {
+/// let report = Study::<f64, 2>::new(scenes::radial(1.0))
+///     .scheme(ConformingP1)
+///     .scheme(Wopsip::default())
+///     .levels([4, 8])
+///     .run()?;
+/// assert_eq!(report.rows.len(), 4);
+/// # Ok(())
+/// # }
+/// ```
+pub struct Study<'a, T: Real, const D: usize> {
+    scene: Scene<D>,
+    schemes: Vec<Box<dyn AnyScheme<T, D> + 'a>>,
+    levels: Vec<usize>,
+    mesh: Option<Mesh<T, D>>,
+    solver: Box<dyn InequalitySolver<T> + 'a>,
+    quadrature: DataQuadrature,
+    repeat: usize,
+    directory: Option<PathBuf>,
+    observer: Box<dyn Fn(Progress<'_>) + 'a>,
+}
+
+impl<'a, T: Real, const D: usize> Study<'a, T, D> {
+    /// A study of a scene, without schemes or levels yet.
+    pub fn new(scene: Scene<D>) -> Self {
+        Self {
+            scene,
+            schemes: Vec::new(),
+            levels: Vec::new(),
+            mesh: None,
+            solver: Box::new(ActiveSet::default()),
+            quadrature: DataQuadrature::default(),
+            repeat: 1,
+            directory: None,
+            observer: Box::new(|_| {}),
+        }
+    }
+    /// Adds a scheme.
+    pub fn scheme(mut self, scheme: impl AnyScheme<T, D> + 'a) -> Self {
+        self.schemes.push(Box::new(scheme));
+        self
+    }
+    /// Adds a scheme chosen at run time.
+    pub fn boxed_scheme(mut self, scheme: Box<dyn AnyScheme<T, D> + 'a>) -> Self {
+        self.schemes.push(scheme);
+        self
+    }
+    /// Sets the levels: subdivisions of the shortest side, or refinements of a given mesh.
+    pub fn levels(mut self, levels: impl IntoIterator<Item = usize>) -> Self {
+        self.levels = levels.into_iter().collect();
+        self
+    }
+    /// Runs on this mesh and refinements of it instead of the scene's own domain.
+    pub fn on_mesh(mut self, mesh: Mesh<T, D>) -> Self {
+        self.mesh = Some(mesh);
+        self
+    }
+    /// Sets the solver of the inequality.
+    pub fn solver(mut self, solver: impl InequalitySolver<T> + 'a) -> Self {
+        self.solver = Box::new(solver);
+        self
+    }
+    /// Sets the quadrature of data.
+    pub fn quadrature(mut self, quadrature: DataQuadrature) -> Self {
+        self.quadrature = quadrature;
+        self
+    }
+    /// Makes every time the smallest of this many runs.
+    pub fn repeat(mut self, times: usize) -> Self {
+        self.repeat = times.max(1);
+        self
+    }
+    /// Writes the fields of every scheme on the finest level to this directory, as
+    /// `SCENE-SCHEME.vtu`.
+    pub fn fields_to(mut self, directory: impl Into<PathBuf>) -> Self {
+        self.directory = Some(directory.into());
+        self
+    }
+    /// Sets who is told of progress.
+    pub fn observer(mut self, observer: impl Fn(Progress<'_>) + 'a) -> Self {
+        self.observer = Box::new(observer);
+        self
+    }
+
+    /// Checks what can be checked before anything is assembled.
+    ///
+    /// # Errors
+    /// [`Error::Parameter`] for an empty list of levels or schemes or a level of zero,
+    /// [`Error::UnfitMesh`], [`Error::Mesh`].
+    pub fn check(&self) -> Result<(), Error> {
+        let wrong = |parameter, value: &str, allowed: &str| {
+            Err(Error::Parameter {
+                parameter,
+                value: value.to_owned(),
+                allowed: allowed.to_owned(),
+            })
+        };
+        if self.schemes.is_empty() {
+            return wrong("schemes", "none", "a study needs at least one scheme");
+        }
+        if self.levels.is_empty() {
+            return wrong("levels", "none", "a study needs at least one level");
+        }
+        if self.mesh.is_none() && self.levels.contains(&0) {
+            return wrong("level", "0", "a built-in mesh has at least one subdivision");
+        }
+        let levels = Levels::new(&self.scene, self.mesh.as_ref());
+        self.levels.iter().try_for_each(|&level| levels.check_size(level))?;
+        if let Some(mesh) = &self.mesh {
+            check_fit(&self.scene, mesh)?;
+        }
+        Ok(())
+    }
+
+    /// Runs every scheme on every level.
+    ///
+    /// # Errors
+    /// Whatever is wrong with scene, mesh or parameters. A solve that does not converge is no
+    /// error: its row says why.
+    pub fn run(&self) -> Result<Report, Error> {
+        self.check()?;
+        let with_errors = match &self.mesh {
+            Some(mesh) => check_fit(&self.scene, mesh)?,
+            None => true,
+        };
+        let mut levels = Levels::new(&self.scene, self.mesh.as_ref());
+        let finest = self.levels.iter().copied().max();
+        let mut rows = Vec::new();
+        for scheme in &self.schemes {
+            for &level in &self.levels {
+                (self.observer)(Progress::Started(&self.scene.name, scheme.name(), level));
+                let with_fields = self.directory.is_some() && Some(level) == finest;
+                let row = self.row(&mut levels, &**scheme, level, with_errors, with_fields)?;
+                (self.observer)(Progress::Finished(&row));
+                rows.push(row);
+            }
+        }
+        fill_orders(&mut rows);
+        let program = Program::new("study", T::NAME, rayon::current_num_threads(), self.repeat);
+        Ok(Report { program, rows })
+    }
+
+    fn row(
+        &self,
+        levels: &mut Levels<'_, T, D>,
+        scheme: &dyn AnyScheme<T, D>,
+        level: usize,
+        with_errors: bool,
+        with_fields: bool,
+    ) -> Result<Row, Error> {
+        levels.make(level)?;
+        let problem = &self.scene.problem;
+        let (solver, quadrature) = (&*self.solver, self.quadrature);
+        let start = if !problem.is_constrained() {
+            None
+        } else if scheme.is_conforming_linear() {
+            levels.start_from_coarser(level, solver, quadrature, self.repeat)?
+        } else {
+            Some(levels.contact(level, solver, quadrature, self.repeat)?)
+        };
+        let Some((mesh, mesh_seconds)) = levels.mesh(level) else { unreachable!("made above") };
+        let solved = scheme.solve(&Task {
+            problem,
+            mesh,
+            start: start.as_ref().map(|s| &s.contact[..]),
+            solver,
+            quadrature,
+            with_errors,
+            repeat: self.repeat,
+            with_fields,
+        })?;
+        if let (Some(directory), Some(_)) = (&self.directory, &solved.fields) {
+            self.write_fields(directory, scheme, mesh, &solved)?;
+        }
+        let coarser = start.as_ref().map_or(0, |s| s.levels);
+        let solve = solved.solve_seconds + start.map_or(0.0, |s| s.seconds);
+        let seconds = Seconds {
+            mesh: mesh_seconds,
+            assemble: solved.assemble_seconds,
+            solve,
+            total: mesh_seconds + solved.assemble_seconds + solve,
+        };
+        let setting = Setting {
+            dimension: D,
+            obstacle: problem.lower.is_some() || problem.upper.is_some(),
+            contact: problem.gap.is_some(),
+            regularity: self.scene.regularity,
+        };
+        Ok(Row {
+            scene: self.scene.name.clone(),
+            dimension: D,
+            scheme: scheme.name().to_owned(),
+            constraint: scheme.constraint().to_owned(),
+            level,
+            parameters: solved.parameters,
+            solver: solver.name().to_owned(),
+            linear: "direct".to_owned(),
+            cells: mesh.n_cells(),
+            unknowns: solved.unknowns,
+            nonzeros: solved.nonzeros,
+            mesh_size: mesh.mesh_size(),
+            status: solved.outcome.name().to_owned(),
+            error: solved.error,
+            order: Errors::default(),
+            expected_order: scheme.expected_orders(&setting),
+            objective: solved.objective,
+            active: solved.active,
+            iterations: Iterations {
+                outer: solved.outer,
+                linear: solved.linear,
+                levels: coarser.saturating_sub(usize::from(!scheme.is_conforming_linear())),
+            },
+            certificate: solved.certificate,
+            seconds,
+            peak_memory_bytes: peak_memory_bytes(),
+            warnings: solved.warnings,
+        })
+    }
+
+    fn write_fields(
+        &self,
+        directory: &std::path::Path,
+        scheme: &dyn AnyScheme<T, D>,
+        mesh: &Mesh<T, D>,
+        solved: &Solved,
+    ) -> Result<(), Error> {
+        let Some(fields) = &solved.fields else { return Ok(()) };
+        std::fs::create_dir_all(directory).map_err(|e| Error::Write {
+            path: directory.display().to_string(),
+            why: e.to_string(),
+        })?;
+        let path = directory.join(format!("{}-{}.vtu", self.scene.name, scheme.name()));
+        let constrained = self.scene.problem.is_constrained();
+        write_vtu(
+            &path,
+            mesh,
+            &CellFields {
+                u: &fields.u,
+                obstacle: fields.obstacle.as_deref(),
+                multiplier: constrained.then_some(&fields.multiplier[..]),
+                contact: &fields.contact,
+            },
+        )
+    }
+}
+
+impl Row {
+    /// Whether the solve converged.
+    pub fn converged(&self) -> bool {
+        self.status == Outcome::Converged.name()
+    }
+}
