@@ -8,6 +8,7 @@ pub mod element;
 pub mod error;
 pub mod facet;
 pub mod mesh;
+pub mod prelude;
 pub mod problem;
 pub mod quadrature;
 pub mod real;

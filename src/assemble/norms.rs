@@ -21,9 +21,8 @@ const CHUNK: usize = 512;
 /// limit what it measures.
 const fn error_degree(dimension: usize) -> usize {
     match dimension {
-        1 => 19,
-        2 => 9,
-        _ => 7,
+        1 | 2 => 19,
+        _ => 9,
     }
 }
 

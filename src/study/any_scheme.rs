@@ -190,7 +190,8 @@ fn run<T: Real, const D: usize>(
     let free: Vec<u32> = (0..inequality.size() as u32)
         .filter(|&i| !matches!(inequality.bounds[i as usize], Bound::Fixed(_)))
         .collect();
-    if in_doubt && inequality.symmetric && !is_positive_definite(&inequality.matrix, &free) {
+    let definite = || is_positive_definite(&inequality.matrix, inequality.symmetric, &free);
+    if in_doubt && inequality.symmetric && definite() == Ok(false) {
         let values = vec![T::lit(0.0); inequality.size()];
         let contact = vec![Contact::Open; inequality.size()];
         let solution =

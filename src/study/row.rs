@@ -2,6 +2,8 @@
 
 use serde::Serialize;
 
+use super::Certificate;
+
 /// Errors against the exact solution, or observed orders of them.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct Errors {
@@ -44,21 +46,6 @@ pub struct Iterations {
     pub linear: usize,
     /// How many coarser levels the start came from.
     pub levels: usize,
-}
-
-/// Relative, dimensionless violations of the complementarity conditions.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub struct Certificate {
-    /// Largest violation of a bound.
-    pub feasibility: f64,
-    /// Largest violation of the multiplier's sign.
-    pub multiplier: f64,
-    /// Largest minimum of gap and multiplier.
-    pub complementarity: f64,
-    /// Norm of the residual off the contact set over the norm of the load.
-    pub residual: f64,
-    /// Guaranteed relative bound on the energy-norm distance to the discrete solution.
-    pub algebraic_bound: Option<f64>,
 }
 
 /// Wall times in seconds.

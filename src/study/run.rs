@@ -15,7 +15,7 @@ use crate::mesh::Mesh;
 use crate::real::Real;
 use crate::scenes::Scene;
 use crate::scheme::Setting;
-use crate::solve::{ActiveSet, InequalitySolver, Outcome};
+use crate::solve::{ActiveSet, InequalitySolver};
 
 /// What a study tells whoever watches it.
 pub enum Progress<'a> {
@@ -272,12 +272,5 @@ impl<'a, T: Real, const D: usize> Study<'a, T, D> {
                 contact: &fields.contact,
             },
         )
-    }
-}
-
-impl Row {
-    /// Whether the solve converged.
-    pub fn converged(&self) -> bool {
-        self.status == Outcome::Converged.name()
     }
 }

@@ -1,0 +1,117 @@
+//! Conditions on the data alone, with or without an exact solution.
+
+use super::probe::violation;
+use super::samples::{in_box, lattice, sides};
+use super::{Condition, Violation};
+use crate::mesh::BoundaryPart;
+use crate::real::Point;
+use crate::scenes::Scene;
+
+/// Data finite, coefficient and reaction of the right sign, bounds in order, gap present.
+pub(super) fn check<const D: usize>(
+    scene: &Scene<D>,
+    inside: &[Point<f64, D>],
+    samples: usize,
+) -> Result<(), Violation> {
+    let domain = &scene.domain;
+    for x in inside.iter().copied().chain(lattice(domain)) {
+        check_at(scene, &x)?;
+    }
+    for side in sides(domain) {
+        for x in in_box(domain).take(samples) {
+            let x = side.project(&x);
+            check_at(scene, &x)?;
+            match side.part {
+                BoundaryPart::Dirichlet => check_dirichlet(scene, &x)?,
+                BoundaryPart::Contact if scene.problem.gap.is_none() => {
+                    return Err(violation(scene, Condition::GapGiven, &x, f64::NAN, 0.0));
+                }
+                BoundaryPart::Neumann => {
+                    if let Some(q) = &scene.problem.neumann {
+                        finite(scene, "neumann", &x, q(&x, &side.normal))?;
+                    }
+                }
+                BoundaryPart::Contact => {}
+            }
+        }
+    }
+    Ok(())
+}
+
+fn finite<const D: usize>(
+    scene: &Scene<D>,
+    datum: &'static str,
+    x: &Point<f64, D>,
+    value: f64,
+) -> Result<(), Violation> {
+    if value.is_finite() {
+        return Ok(());
+    }
+    Err(violation(scene, Condition::Finite(datum), x, value, 0.0))
+}
+
+fn check_at<const D: usize>(scene: &Scene<D>, x: &Point<f64, D>) -> Result<(), Violation> {
+    let problem = &scene.problem;
+    let fields = [
+        ("coefficient", &problem.coefficient),
+        ("lower obstacle", &problem.lower),
+        ("upper obstacle", &problem.upper),
+        ("gap", &problem.gap),
+    ];
+    for (name, field) in fields {
+        if let Some(field) = field {
+            finite(scene, name, x, field(x))?;
+        }
+    }
+    for (name, datum) in [("source", &problem.source), ("reaction", &problem.reaction)] {
+        if let Some(datum) = datum {
+            finite(scene, name, x, datum.at(x))?;
+        }
+    }
+    if let Some(exact) = &problem.exact {
+        finite(scene, "solution", x, (exact.value)(x))?;
+        for &component in &(exact.gradient)(x) {
+            finite(scene, "gradient", x, component)?;
+        }
+    }
+    let alpha = problem.coefficient.as_ref().map_or(1.0, |alpha| alpha(x));
+    let reaction = problem.reaction.as_ref().map_or(0.0, |c| c.at(x));
+    for (value, passes) in [(alpha, alpha > 0.0), (reaction, reaction >= 0.0)] {
+        if !passes {
+            return Err(violation(scene, Condition::Ellipticity, x, value, 0.0));
+        }
+    }
+    let (lower, upper) = bounds(scene, x);
+    in_order(scene, x, lower, upper)
+}
+
+fn check_dirichlet<const D: usize>(scene: &Scene<D>, x: &Point<f64, D>) -> Result<(), Violation> {
+    let datum = scene.problem.dirichlet_at(x);
+    finite(scene, "dirichlet", x, datum)?;
+    let (lower, upper) = bounds(scene, x);
+    in_order(scene, x, lower, datum)?;
+    in_order(scene, x, datum, upper)
+}
+
+fn bounds<const D: usize>(scene: &Scene<D>, x: &Point<f64, D>) -> (f64, f64) {
+    let lower = scene.problem.lower.as_ref().map_or(f64::NEG_INFINITY, |psi| psi(x));
+    let upper = scene.problem.upper.as_ref().map_or(f64::INFINITY, |psi| psi(x));
+    (lower, upper)
+}
+
+/// `a <= b` up to rounding of the larger.
+fn in_order<const D: usize>(
+    scene: &Scene<D>,
+    x: &Point<f64, D>,
+    a: f64,
+    b: f64,
+) -> Result<(), Violation> {
+    if a <= b {
+        return Ok(());
+    }
+    let allowed = 1e-12 * a.abs().max(b.abs());
+    if a - b <= allowed {
+        return Ok(());
+    }
+    Err(violation(scene, Condition::Admissible, x, a - b, allowed))
+}

@@ -1,0 +1,95 @@
+//! The quantities of a scene that its conditions are about, and their sizes.
+
+use super::{Condition, Violation};
+use crate::problem::Exact;
+use crate::real::Point;
+use crate::scenes::Scene;
+
+/// Largest sizes met at the sample points; tolerances are multiples of these.
+pub(super) struct Scales {
+    /// Shortest side of the domain.
+    pub length: f64,
+    /// Of the value.
+    pub value: f64,
+    /// Of the gradient, or of the value over the length if that is larger.
+    pub slope: f64,
+    /// Of `alpha grad u`, likewise.
+    pub flux: f64,
+    /// Of the forces: load, reaction, flux over length.
+    pub force: f64,
+}
+
+/// A scene with its exact solution.
+pub(super) struct Probe<'a, const D: usize> {
+    pub scene: &'a Scene<D>,
+    exact: &'a Exact<D>,
+    pub scales: Scales,
+}
+
+impl<'a, const D: usize> Probe<'a, D> {
+    pub fn new(scene: &'a Scene<D>, exact: &'a Exact<D>, points: &[Point<f64, D>]) -> Self {
+        let length = (scene.domain.upper - scene.domain.lower).min();
+        let scales = Scales { length, value: 0.0, slope: 0.0, flux: 0.0, force: 0.0 };
+        let mut probe = Self { scene, exact, scales };
+        let largest = |size: &dyn Fn(&Point<f64, D>) -> f64| {
+            points.iter().map(|x| size(x).abs()).fold(0.0, f64::max)
+        };
+        let coefficient = largest(&|x| probe.coefficient(x));
+        let value = largest(&|x| probe.value(x));
+        let slope = largest(&|x| probe.gradient(x).norm()).max(value / length);
+        let flux = largest(&|x| probe.flux(x).norm()).max(coefficient * value / length);
+        let force = largest(&|x| probe.source(x))
+            .max(largest(&|x| probe.reaction(x) * probe.value(x)))
+            .max(flux / length);
+        probe.scales = Scales { length, value, slope, flux, force };
+        probe
+    }
+    pub fn value(&self, x: &Point<f64, D>) -> f64 {
+        (self.exact.value)(x)
+    }
+    pub fn gradient(&self, x: &Point<f64, D>) -> Point<f64, D> {
+        (self.exact.gradient)(x)
+    }
+    pub fn coefficient(&self, x: &Point<f64, D>) -> f64 {
+        self.scene.problem.coefficient.as_ref().map_or(1.0, |alpha| alpha(x))
+    }
+    /// `alpha grad u`.
+    pub fn flux(&self, x: &Point<f64, D>) -> Point<f64, D> {
+        self.gradient(x) * self.coefficient(x)
+    }
+    pub fn source(&self, x: &Point<f64, D>) -> f64 {
+        self.scene.problem.source.as_ref().map_or(0.0, |f| f.at(x))
+    }
+    pub fn reaction(&self, x: &Point<f64, D>) -> f64 {
+        self.scene.problem.reaction.as_ref().map_or(0.0, |c| c.at(x))
+    }
+    /// `u - psi_lower`, infinite without obstacle.
+    pub fn above_lower(&self, x: &Point<f64, D>) -> f64 {
+        self.scene.problem.lower.as_ref().map_or(f64::INFINITY, |psi| self.value(x) - psi(x))
+    }
+    /// `psi_upper - u`, infinite without obstacle.
+    pub fn below_upper(&self, x: &Point<f64, D>) -> f64 {
+        self.scene.problem.upper.as_ref().map_or(f64::INFINITY, |psi| psi(x) - self.value(x))
+    }
+    /// Fails unless `by <= allowed`; not-a-number fails.
+    pub fn require(
+        &self,
+        condition: Condition,
+        at: &Point<f64, D>,
+        by: f64,
+        allowed: f64,
+    ) -> Result<(), Violation> {
+        if by <= allowed { Ok(()) } else { Err(violation(self.scene, condition, at, by, allowed)) }
+    }
+}
+
+pub(super) fn violation<const D: usize>(
+    scene: &Scene<D>,
+    condition: Condition,
+    at: &Point<f64, D>,
+    by: f64,
+    allowed: f64,
+) -> Violation {
+    let at = at.iter().copied().collect();
+    Violation { scene: scene.name.clone(), condition, at, by, allowed }
+}

@@ -1,0 +1,36 @@
+//! The generic singularity of a Signorini problem, without load.
+
+use crate::problem::Problem;
+use crate::real::Point;
+use crate::scenes::{BoxDomain, Regularity, Scene, halfplane};
+
+/// Signorini problem without load on `(-1, 1)^(D-1) x (0, 1)`, `D` = 2 or 3, zero gap; contact
+/// changes at the origin (2D) or along the line where first and last coordinate vanish (3D).
+///
+/// Let `x` be the first and `z` the last coordinate, `r`, `theta` polar coordinates of `(x, z)`.
+/// The solution is `u = Re (x + iz)^{3/2} = r^{3/2} cos(3 theta/2)`, in 3D the same in every plane
+/// of constant middle coordinate.
+///
+/// *Equation*: `u` is harmonic, `f = 0`. *Contact side* `z = 0`, where
+/// `sigma = -du/dz = (3/2) r^{1/2} sin(theta/2)`: for `x >= 0`, `theta = 0`, `u = x^{3/2} >= 0` and
+/// `sigma = 0`; for `x < 0`, `theta = pi`, `u = 0` and `sigma = (3/2) |x|^{1/2} > 0`. Value and
+/// gradient are continuous up to the tip, where both vanish. *Regularity*: `H^s` for `s < 5/2`.
+pub fn signorini_harmonic<const D: usize>() -> Scene<D> {
+    const { assert!(D == 2 || D == 3, "a contact boundary needs two or three dimensions") };
+    let power =
+        |x: &Point<f64, D>| halfplane::three_halves(halfplane::point(x[0], x[D - 1]));
+    let gradient = move |x: &Point<f64, D>| {
+        let (_, [along, across]) = power(x);
+        let mut gradient = Point::zeros();
+        gradient[0] = along;
+        gradient[D - 1] = across;
+        gradient
+    };
+    Scene {
+        name: format!("signorini-harmonic-{D}d"),
+        summary: "Signorini without load, the harmonic function r^(3/2) cos(3 theta/2)",
+        domain: BoxDomain::above_contact(),
+        problem: Problem::new().signorini(|_| 0.0).exact(move |x| power(x).0, gradient),
+        regularity: Regularity { sobolev: 2.5, strictly_complementary: true },
+    }
+}
