@@ -6,6 +6,8 @@ use std::fmt;
 
 /// What a table shows in place of a number that does not apply.
 const NONE: &str = "-";
+/// Characters in a line.
+const WIDTH: usize = 100;
 
 impl fmt::Display for Report {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -14,7 +16,8 @@ impl fmt::Display for Report {
 }
 
 /// Writes one table for each scene, in the order in which scenes first occur, with a blank line
-/// between schemes.
+/// between schemes; times are in seconds. `certif.` is the largest of the four numbers of the
+/// certificate. A row that did not converge is followed by the reason.
 pub fn write_tables(f: &mut impl fmt::Write, rows: &[Row]) -> fmt::Result {
     for (i, scene) in distinct(rows.iter().map(|r| r.scene.as_str())).into_iter().enumerate() {
         if i > 0 {
@@ -28,20 +31,23 @@ pub fn write_tables(f: &mut impl fmt::Write, rows: &[Row]) -> fmt::Result {
 
 /// The table of one scene.
 fn write_scene(f: &mut impl fmt::Write, scene: &str, rows: &[&Row]) -> fmt::Result {
-    writeln!(f, "{scene}{}", heading(rows))?;
+    write_wrapped(f, &format!("{scene}: {}", heading(rows)))?;
     let columns = columns(rows);
     let widths: Vec<usize> = columns
         .iter()
         .map(|c| rows.iter().map(|r| (c.cell)(r).len()).chain([c.name.len()]).max().unwrap_or(0))
         .collect();
-    write_line(f, &columns, &widths, |c| c.name.to_owned())?;
+    // Two blanks between columns where they fit.
+    let widest = widths.iter().sum::<usize>() + 2 * (widths.len() - 1);
+    let gap = if widest <= WIDTH { "  " } else { " " };
+    write_line(f, &columns, &widths, gap, |c| c.name.to_owned())?;
     let series = distinct(rows.iter().map(|r| (r.scheme.as_str(), r.constraint.as_str())));
     for (i, key) in series.into_iter().enumerate() {
         if i > 0 {
             writeln!(f)?;
         }
         for row in rows.iter().filter(|r| (r.scheme.as_str(), r.constraint.as_str()) == key) {
-            write_line(f, &columns, &widths, |c| (c.cell)(row))?;
+            write_line(f, &columns, &widths, gap, |c| (c.cell)(row))?;
             if !row.converged() {
                 writeln!(f, "  ^ did not converge: {}", row.status)?;
             }
@@ -50,7 +56,7 @@ fn write_scene(f: &mut impl fmt::Write, scene: &str, rows: &[&Row]) -> fmt::Resu
     for warning in distinct(
         rows.iter().flat_map(|r| r.warnings.iter().map(|w| (r.scheme.as_str(), w.as_str()))),
     ) {
-        writeln!(f, "  warning, {}: {}", warning.0, warning.1)?;
+        write_wrapped(f, &format!("  warning, {}: {}", warning.0, warning.1))?;
     }
     Ok(())
 }
@@ -58,7 +64,7 @@ fn write_scene(f: &mut impl fmt::Write, scene: &str, rows: &[&Row]) -> fmt::Resu
 /// What the heading says after the name of the scene: solvers, and the orders that theory promises.
 fn heading(rows: &[&Row]) -> String {
     let solvers = distinct(rows.iter().map(|r| format!("{}/{}", r.solver, r.linear)));
-    let mut text = format!("   solver {}", solvers.join(", "));
+    let mut text = format!("solver {}", solvers.join(", "));
     let mut promises: Vec<(String, Vec<&str>)> = Vec::new();
     for row in rows {
         let expected = row.expected_order;
@@ -85,9 +91,23 @@ fn heading(rows: &[&Row]) -> String {
         })
         .collect();
     if !promises.is_empty() {
-        text += &format!("   expected order {}", promises.join(", "));
+        text += &format!("; expected order {}", promises.join(", "));
     }
     text
+}
+
+/// Writes text in lines of the width of a table, further lines indented.
+fn write_wrapped(f: &mut impl fmt::Write, text: &str) -> fmt::Result {
+    let mut line = String::new();
+    for word in text.split(' ') {
+        if !line.trim().is_empty() && line.chars().count() + word.chars().count() > WIDTH {
+            writeln!(f, "{}", line.trim_end())?;
+            line = "    ".to_owned();
+        }
+        line += word;
+        line.push(' ');
+    }
+    writeln!(f, "{}", line.trim_end())
 }
 
 /// One column of a table.
@@ -142,12 +162,14 @@ fn write_line(
     f: &mut impl fmt::Write,
     columns: &[Column],
     widths: &[usize],
+    gap: &str,
     cell: impl Fn(&Column) -> String,
 ) -> fmt::Result {
     let mut line = String::new();
     for (column, &width) in columns.iter().zip(widths) {
         let cell = cell(column);
-        line += &if column.left { format!("{cell:<width$} ") } else { format!("{cell:>width$} ") };
+        line += &if column.left { format!("{cell:<width$}") } else { format!("{cell:>width$}") };
+        line += gap;
     }
     writeln!(f, "{}", line.trim_end())
 }
@@ -167,15 +189,15 @@ fn fixed(x: Option<f64>) -> String {
     x.map_or_else(|| NONE.to_owned(), |x| format!("{x:.2}"))
 }
 
-/// Seconds with a fixed point at a tenth of a millisecond, fewer digits as they grow.
+/// Seconds in six characters, down to what a clock can tell.
 fn seconds(x: f64) -> String {
-    let digits = match x {
-        x if x < 10.0 => 4,
-        x if x < 100.0 => 3,
-        x if x < 1000.0 => 2,
-        _ => 1,
-    };
-    format!("{x:.digits$}")
+    match x {
+        x if x > 0.0 && x < 1e-3 => format!("{x:.1e}"),
+        x if x < 10.0 => format!("{x:.4}"),
+        x if x < 100.0 => format!("{x:.3}"),
+        x if x < 1000.0 => format!("{x:.2}"),
+        x => format!("{x:.1}"),
+    }
 }
 
 /// Each item once, in order of first occurrence.

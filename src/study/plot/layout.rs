@@ -89,7 +89,7 @@ impl Layout {
             match entry {
                 Entry::Curve(key, _) => {
                     segment(pen, *key, (*x, *y), (x + SYMBOL, *y))?;
-                    draw_mark(pen, *key, middle)?;
+                    draw_mark(pen, *key, middle, 1.0)?;
                 }
                 Entry::Failed => draw_failed(pen, middle)?,
             }

@@ -16,6 +16,10 @@ const BOTTOM: f64 = 48.0;
 /// Width and height of the area of the data.
 const SIZE: (f64, f64) = (PANEL.0 - LEFT - RIGHT, PANEL.1 - TOP - BOTTOM);
 
+/// Width of a failure's cross, and the distance of its middle from an edge it stands at.
+const CROSS: f64 = 17.0;
+const EDGE: f64 = 10.0;
+
 const TITLE: f64 = 16.0;
 const LABEL: f64 = 15.0;
 const TICK: f64 = 14.0;
@@ -49,31 +53,35 @@ impl<'a> Frame<'a> {
         frame
     }
 
-    /// A point relative to the upper left corner of the area. A run without an error stands at the
-    /// upper edge, where failures are looked for, lower by `stack` marks; one with an error beyond
-    /// the axis stands at the edge it is beyond.
-    fn place(&self, point: &Point, stack: usize) -> Place {
-        const EDGE: f64 = 9.0;
+    /// A point relative to the upper left corner of the area. One with an error beyond the axis
+    /// stands at the edge it is beyond, one without an error at the upper edge, where failures are
+    /// looked for.
+    fn place(&self, point: &Point) -> Place {
         let x = self.x.position(point.x.log10()) * SIZE.0;
         let y = match point.y.map(|y| (1.0 - self.y.position(y.log10())) * SIZE.1) {
-            Some(y) if y < 0.0 => EDGE,
             Some(y) if y > SIZE.1 => SIZE.1 - EDGE,
-            Some(y) => y,
-            None => EDGE + 13.0 * stack as f64,
+            Some(y) if y >= 0.0 => y,
+            _ => EDGE,
         };
         (x, y)
     }
 
-    /// Places of all points, curve by curve: failures without an error below each other.
+    /// Places of all points, curve by curve. Failures without an error are moved down until they do
+    /// not hide another failure.
     fn places(&self) -> Vec<Vec<Place>> {
-        let mut taken: Vec<f64> = Vec::new();
+        let failed = |p: &Point| !p.converged && p.y.is_some();
+        let mut taken: Vec<Place> =
+            self.panel.points().filter(failed).map(|p| self.place(&p)).collect();
         let mut place = |point: &Point| {
-            let x = self.place(point, 0).0;
-            let stack = taken.iter().filter(|t| (*t - x).abs() < 12.0).count();
+            let (x, mut y) = self.place(point);
             if point.y.is_none() {
-                taken.push(x);
+                let hides = |t: &Place, y: f64| (t.0 - x).abs() < CROSS && (t.1 - y).abs() < CROSS;
+                while y < SIZE.1 - EDGE && taken.iter().any(|t| hides(t, y)) {
+                    y += 1.0;
+                }
+                taken.push((x, y));
             }
-            self.place(point, stack)
+            (x, y)
         };
         self.panel.curves.iter().map(|c| c.points.iter().map(&mut place).collect()).collect()
     }
@@ -108,7 +116,7 @@ pub(super) fn draw_panel<DB: DrawingBackend>(pen: &Pen<DB>, panel: &Panel, at: P
     }
     draw_curves(pen, &frame, origin)?;
     if !panel.has_errors() {
-        pen.text("no errors: none are known", middle, LABEL, INK, Align::Centre)?;
+        pen.text("no exact solution: no errors", middle, LABEL, INK, Align::Centre)?;
     }
     let (right, bottom) = (origin.0 + SIZE.0, origin.1 + SIZE.1);
     pen.outline(&[origin, (right, origin.1), (right, bottom), (origin.0, bottom)], 1.0, INK)
@@ -185,10 +193,13 @@ fn draw_curves<DB: DrawingBackend>(pen: &Pen<DB>, frame: &Frame, origin: Place) 
                 if point.converged != converged {
                     continue;
                 }
-                if !converged {
+                if converged {
+                    draw_mark(pen, curve.key, at, 1.0)?;
+                } else {
+                    // The cross says that it failed, the small mark on it which scheme did.
                     draw_failed(pen, at)?;
+                    draw_mark(pen, curve.key, at, 0.7)?;
                 }
-                draw_mark(pen, curve.key, at)?;
             }
         }
     }

@@ -38,6 +38,8 @@ pub(super) enum Align {
 pub(super) struct Pen<'a, DB: DrawingBackend> {
     pub area: &'a DrawingArea<DB, Shift>,
     pub scale: f64,
+    /// How much too high the backend puts text that is to be centred, in parts of its size.
+    pub lift: f64,
 }
 
 impl<DB: DrawingBackend> Pen<'_, DB> {
@@ -103,8 +105,12 @@ impl<DB: DrawingBackend> Pen<'_, DB> {
             Align::Right => HPos::Right,
         };
         let mut font = (FAMILY, size * self.scale).into_font();
+        let mut at = at;
         if align == Align::Upwards {
             font = font.transform(FontTransform::Rotate270);
+            at.0 += self.lift * size;
+        } else {
+            at.1 += self.lift * size;
         }
         let style = font.color(&colour).pos(Pos::new(horizontal, VPos::Center));
         self.area.draw_text(text, &style, self.pixel(at)).map_err(|e| e.to_string())

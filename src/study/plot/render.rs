@@ -4,7 +4,6 @@ use super::Figure;
 use super::panel::draw_panel;
 use super::pen::{Drawn, FAMILY, Pen};
 use super::style::PAPER;
-use plotters::coord::Shift;
 use plotters::prelude::*;
 use plotters::style::{FontStyle, register_font};
 use std::path::Path;
@@ -22,15 +21,14 @@ fn embed_font() {
 
 impl Figure {
     /// Draws on any backend.
-    fn draw<DB: DrawingBackend>(&self, area: &DrawingArea<DB, Shift>, scale: f64) -> Drawn {
-        area.fill(&PAPER).map_err(|e| e.to_string())?;
-        let pen = Pen { area, scale };
+    fn draw<DB: DrawingBackend>(&self, pen: &Pen<DB>) -> Drawn {
+        pen.area.fill(&PAPER).map_err(|e| e.to_string())?;
         let layout = self.layout();
         for (panel, &at) in self.panels.iter().zip(&layout.panels) {
-            draw_panel(&pen, panel, at)?;
+            draw_panel(pen, panel, at)?;
         }
-        layout.draw_legend(&pen)?;
-        area.present().map_err(|e| e.to_string())
+        layout.draw_legend(pen)?;
+        pen.area.present().map_err(|e| e.to_string())
     }
 
     /// Width and height in pixels.
@@ -52,7 +50,7 @@ impl Figure {
         let mut text = String::new();
         {
             let area = SVGBackend::with_string(&mut text, size).into_drawing_area();
-            self.draw(&area, f64::from(FINE))?;
+            self.draw(&Pen { area: &area, scale: f64::from(FINE), lift: 0.0 })?;
         }
         let drawn = format!("<svg width=\"{}\" height=\"{}\"", size.0, size.1);
         let wanted = format!("<svg width=\"{}\" height=\"{}\"", shown.0, shown.1);
@@ -70,7 +68,7 @@ impl Figure {
         let mut fine = vec![0; 3 * drawn.0 as usize * drawn.1 as usize];
         {
             let area = BitMapBackend::with_buffer(&mut fine, drawn).into_drawing_area();
-            self.draw(&area, f64::from(scale * smooth))?;
+            self.draw(&Pen { area: &area, scale: f64::from(scale * smooth), lift: 0.14 })?;
         }
         let (size, pixels) = (self.pixels(scale), average(&fine, drawn, smooth));
         let mut file = BitMapBackend::new(path, size);

@@ -74,13 +74,19 @@ pub(super) fn segment<DB: DrawingBackend>(
     }
 }
 
-/// The mark of a curve.
-pub(super) fn draw_mark<DB: DrawingBackend>(pen: &Pen<DB>, key: usize, at: Place) -> Drawn {
+/// The mark of a curve, `size` times its usual size.
+pub(super) fn draw_mark<DB: DrawingBackend>(
+    pen: &Pen<DB>,
+    key: usize,
+    at: Place,
+    size: f64,
+) -> Drawn {
     let mark = &MARKS[key % MARKS.len()];
+    let radius = size * mark.radius;
     let corners: Vec<Place> = (0..mark.corners)
         .map(|i| {
             let angle = std::f64::consts::TAU * (mark.turn + i as f64 / mark.corners as f64);
-            (at.0 + mark.radius * angle.cos(), at.1 + mark.radius * angle.sin())
+            (at.0 + radius * angle.cos(), at.1 + radius * angle.sin())
         })
         .collect();
     if mark.filled {
@@ -92,15 +98,17 @@ pub(super) fn draw_mark<DB: DrawingBackend>(pen: &Pen<DB>, key: usize, at: Place
 
 /// The mark of a run that did not converge: a hollow cross.
 pub(super) fn draw_failed<DB: DrawingBackend>(pen: &Pen<DB>, at: Place) -> Drawn {
-    const REACH: f64 = 6.4;
-    const ARM: f64 = 1.7;
-    // The outline of an upright cross, turned by an eighth.
-    let upright = [
-        (ARM, ARM), (REACH, ARM), (REACH, -ARM), (ARM, -ARM), (ARM, -REACH), (-ARM, -REACH),
-        (-ARM, -ARM), (-REACH, -ARM), (-REACH, ARM), (-ARM, ARM), (-ARM, REACH), (ARM, REACH),
-    ];
-    let s = std::f64::consts::FRAC_1_SQRT_2;
-    let corners = upright.map(|(x, y)| (at.0 + s * (x - y), at.1 + s * (x + y)));
+    // Reach and half width of its arms.
+    const R: f64 = 9.0;
+    const W: f64 = 2.2;
+    // The arm to the right of an upright cross, to be turned by an eighth and then by quarters.
+    let arm = [(W, W), (R, W), (R, -W)];
+    let corners: Vec<Place> = (0..4)
+        .flat_map(|quarter| {
+            let (sin, cos) = (std::f64::consts::FRAC_PI_4 * f64::from(1 - 2 * quarter)).sin_cos();
+            arm.map(|(x, y)| (at.0 + x * cos - y * sin, at.1 + x * sin + y * cos))
+        })
+        .collect();
     pen.fill(&corners, PAPER)?;
-    pen.outline(&corners, 1.1, FAILED)
+    pen.outline(&corners, 1.2, FAILED)
 }
