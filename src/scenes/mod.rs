@@ -21,11 +21,7 @@ pub struct BoxDomain<const D: usize> {
 impl<const D: usize> BoxDomain<D> {
     /// The box with Dirichlet data on every side.
     pub fn dirichlet(lower: Point<f64, D>, upper: Point<f64, D>) -> Self {
-        Self {
-            lower,
-            upper,
-            sides: [[BoundaryPart::Dirichlet; 2]; D],
-        }
+        Self { lower, upper, sides: [[BoundaryPart::Dirichlet; 2]; D] }
     }
     /// The same box with another part on one side (`end` 0 for the lower, 1 for the upper one).
     pub fn side(mut self, axis: usize, end: usize, part: BoundaryPart) -> Self {

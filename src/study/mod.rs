@@ -2,4 +2,6 @@
 
 mod row;
 
-pub use row::{Certificate, Errors, ExpectedOrders, Iterations, PenaltyParameters, Row, Seconds};
+pub use row::{
+    Certificate, Errors, ExpectedOrders, Iterations, PenaltyParameters, Row, Seconds,
+};
