@@ -134,10 +134,7 @@ impl<const D: usize> Problem<D> {
         self
     }
     /// Sets the Signorini condition `u >= g` on the contact part.
-    pub fn signorini(
-        mut self,
-        gap: impl Fn(&Point<f64, D>) -> f64 + Send + Sync + 'static,
-    ) -> Self {
+    pub fn signorini(mut self, gap: impl Fn(&Point<f64, D>) -> f64 + Send + Sync + 'static) -> Self {
         self.gap = Some(Box::new(gap));
         self
     }
@@ -148,10 +145,7 @@ impl<const D: usize> Problem<D> {
         value: impl Fn(&Point<f64, D>) -> f64 + Send + Sync + 'static,
         gradient: impl Fn(&Point<f64, D>) -> Point<f64, D> + Send + Sync + 'static,
     ) -> Self {
-        self.exact = Some(Exact {
-            value: Box::new(value),
-            gradient: Box::new(gradient),
-        });
+        self.exact = Some(Exact { value: Box::new(value), gradient: Box::new(gradient) });
         self
     }
     /// The Dirichlet value at a point.

@@ -37,10 +37,20 @@ impl History {
             self.seen.push((fingerprint, self.step));
             return false;
         };
-        for (mark, &last) in cycle.iter_mut().zip(&self.last_move) {
-            *mark |= last > first;
-        }
+        self.mark_moved(first, cycle);
         true
+    }
+
+    /// Marks in `cycle` every unknown that has moved within the last `steps` records.
+    pub fn mark_recent(&self, steps: usize, cycle: &mut [bool]) {
+        self.mark_moved(self.step.saturating_sub(steps as u32), cycle);
+    }
+
+    /// Marks every unknown that has moved after a step.
+    fn mark_moved(&self, after: u32, cycle: &mut [bool]) {
+        for (mark, &last) in cycle.iter_mut().zip(&self.last_move) {
+            *mark |= last > after;
+        }
     }
 
     /// Forgets all states.

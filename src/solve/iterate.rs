@@ -26,6 +26,7 @@ pub(super) struct Iterate<'a, T> {
 /// The iterate whose projected Jacobi step is smallest.
 struct Best<T> {
     measure: f64,
+    outer: usize,
     values: Vec<T>,
     state: Vec<Contact>,
 }
@@ -54,6 +55,7 @@ impl<'a, T: Real> Iterate<'a, T> {
             scale: 1.0,
             best: Best {
                 measure: f64::INFINITY,
+                outer: 0,
                 values: values.clone(),
                 state: state.clone(),
             },
@@ -148,10 +150,16 @@ impl<'a, T: Real> Iterate<'a, T> {
         self.scale = if scale > 0.0 { scale } else { 1.0 };
         if measure < self.best.measure {
             self.best.measure = measure;
+            self.best.outer = self.outer;
             self.best.values.copy_from_slice(&self.values);
             self.best.state.copy_from_slice(&self.state);
         }
         true
+    }
+
+    /// The number of linear systems when the best iterate was found.
+    pub fn best_outer(&self) -> usize {
+        self.best.outer
     }
 
     /// Lets go and takes hold; true if any unknown changed its state.
