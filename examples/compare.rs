@@ -173,8 +173,7 @@ fn run(options: &Options) -> Request<bool> {
         Precision::F32 => chosen.run::<f32>(options)?,
     };
     let precision = if options.precision == Precision::F64 { f64::NAME } else { f32::NAME };
-    let program =
-        Program::new("compare", precision, rayon::current_num_threads(), options.repeat);
+    let program = Program::new("compare", precision, rayon::current_num_threads(), options.repeat);
     let report = Report { program, rows };
     write(options, &report).map_err(|e| e.to_string())?;
     Ok(report.rows.iter().all(Row::converged))
@@ -217,8 +216,8 @@ impl Chosen {
             Some(path) => {
                 let bytes =
                     fs::read(path).map_err(|e| format!("cannot read {}: {e}", path.display()))?;
-                let dimension = gmsh::dimension(&bytes)
-                    .map_err(|e| format!("{}: {e}", path.display()))?;
+                let dimension =
+                    gmsh::dimension(&bytes).map_err(|e| format!("{}: {e}", path.display()))?;
                 Some((dimension, bytes))
             }
         };
@@ -247,11 +246,8 @@ impl Chosen {
             [] => ["radial-2d", "signorini-2d"].map(str::to_owned).to_vec(),
             some => some.to_vec(),
         };
-        let given = Parameters {
-            scale: options.scale,
-            contrast: options.contrast,
-            load: options.load,
-        };
+        let given =
+            Parameters { scale: options.scale, contrast: options.contrast, load: options.load };
         let mut scenes = Vec::new();
         for name in &wanted {
             known("scene", name, &names)?;
@@ -380,8 +376,10 @@ impl Watcher {
             }
             (Progress::Finished(row), bar) if !self.quiet => {
                 for warning in &row.warnings {
-                    let text =
-                        format!("warning: {} {} level {}: {warning}", row.scene, row.scheme, row.level);
+                    let text = format!(
+                        "warning: {} {} level {}: {warning}",
+                        row.scene, row.scheme, row.level
+                    );
                     match bar {
                         Some(bar) => bar.suspend(|| eprintln!("{text}")),
                         None => eprintln!("{text}"),
@@ -413,7 +411,8 @@ fn write(options: &Options, report: &Report) -> Result<(), Error> {
     }
     if !options.quiet {
         let mut text = report.to_string();
-        text += &format!("report in {} ({} files and fields)\n", options.out.display(), written.len());
+        text +=
+            &format!("report in {} ({} files and fields)\n", options.out.display(), written.len());
         print(&text, to_stdout);
     }
     Ok(())

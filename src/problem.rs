@@ -134,7 +134,10 @@ impl<const D: usize> Problem<D> {
         self
     }
     /// Sets the Signorini condition `u >= g` on the contact part.
-    pub fn signorini(mut self, gap: impl Fn(&Point<f64, D>) -> f64 + Send + Sync + 'static) -> Self {
+    pub fn signorini(
+        mut self,
+        gap: impl Fn(&Point<f64, D>) -> f64 + Send + Sync + 'static,
+    ) -> Self {
         self.gap = Some(Box::new(gap));
         self
     }

@@ -28,7 +28,8 @@ impl<const D: usize> Slow<'_, D> {
     }
     /// The gradient of a piece from a linear system in its values.
     fn gradient(&self, c: usize, piece: &Piece) -> Point<f64, D> {
-        let edges = nalgebra::DMatrix::from_fn(D, D, |r, k| (self.corner(c, r + 1) - self.corner(c, 0))[k]);
+        let edges =
+            nalgebra::DMatrix::from_fn(D, D, |r, k| (self.corner(c, r + 1) - self.corner(c, 0))[k]);
         let rises = nalgebra::DVector::from_fn(D, |r, _| piece[r + 1] - piece[0]);
         let g = edges.lu().solve(&rises).unwrap();
         Point::from_fn(|k, _| g[k])
@@ -37,7 +38,8 @@ impl<const D: usize> Slow<'_, D> {
         piece[0] + self.gradient(c, piece).dot(&(x - self.corner(c, 0)))
     }
     fn volume(&self, c: usize) -> f64 {
-        let edges = nalgebra::DMatrix::from_fn(D, D, |r, k| (self.corner(c, r + 1) - self.corner(c, 0))[k]);
+        let edges =
+            nalgebra::DMatrix::from_fn(D, D, |r, k| (self.corner(c, r + 1) - self.corner(c, 0))[k]);
         edges.determinant().abs() / (1..=D).map(|k| k as f64).product::<f64>()
     }
     fn measure(points: &[Point<f64, D>]) -> f64 {
@@ -104,14 +106,18 @@ impl<const D: usize> Slow<'_, D> {
         let harmonic = a.len() as f64 / a.iter().map(|a| 1.0 / a).sum::<f64>();
         let h = match D {
             1 => sides.iter().map(|s| self.volume(s.0)).sum::<f64>() / sides.len() as f64,
-            _ => points.iter().flat_map(|p| points.iter().map(move |q| (p - q).norm())).fold(0.0, f64::max),
+            _ => points
+                .iter()
+                .flat_map(|p| points.iter().map(move |q| (p - q).norm()))
+                .fold(0.0, f64::max),
         };
         let jump = |w: &[&Piece], x: &Point<f64, D>| {
             let first = self.value(sides[0].0, w[0], x);
             if sides.len() == 2 { first - self.value(sides[1].0, w[1], x) } else { first }
         };
         let flux = |w: &[&Piece]| {
-            let sum: f64 = sides.iter().zip(w).map(|(s, w)| self.gradient(s.0, w).dot(&normal)).sum();
+            let sum: f64 =
+                sides.iter().zip(w).map(|(s, w)| self.gradient(s.0, w).dot(&normal)).sum();
             harmonic * sum / sides.len() as f64
         };
         let rule = Rule::of_degree(D - 1, 4);
@@ -125,7 +131,9 @@ impl<const D: usize> Slow<'_, D> {
                     let worst = sides
                         .iter()
                         .zip(&a)
-                        .map(|(s, a)| harmonic * harmonic / a * self.surface(s.0) / self.volume(s.0))
+                        .map(|(s, a)| {
+                            harmonic * harmonic / a * self.surface(s.0) / self.volume(s.0)
+                        })
                         .fold(0.0, f64::max);
                     1.5 * w * worst
                 });
@@ -137,7 +145,9 @@ impl<const D: usize> Slow<'_, D> {
                 measure * rule.iter().map(point).sum::<f64>()
             }
             Form::Over { eta } => {
-                let mean = |w: &[&Piece]| rule.iter().map(|(b, weight)| weight * jump(w, &at(b))).sum::<f64>();
+                let mean = |w: &[&Piece]| {
+                    rule.iter().map(|(b, weight)| weight * jump(w, &at(b))).sum::<f64>()
+                };
                 eta * harmonic / (h * h * h) * measure * mean(u) * mean(v)
             }
         }
@@ -162,7 +172,9 @@ impl<E, F> Any<E, F> {
     }
 }
 
-impl<const D: usize, E: ReferenceElement<f64, D>, F: FacetForm<f64, D> + Clone> Scheme<f64, D> for Any<E, F> {
+impl<const D: usize, E: ReferenceElement<f64, D>, F: FacetForm<f64, D> + Clone> Scheme<f64, D>
+    for Any<E, F>
+{
     type Element = E;
     type Facet = F;
     const DIRICHLET: DirichletBy = DirichletBy::FacetForm;
@@ -198,15 +210,19 @@ fn check<const D: usize, E: ReferenceElement<f64, D>, F: FacetForm<f64, D> + Clo
     let places = space.places();
     let find = |c: usize, i: usize| {
         let piece = basis(i);
-        let node: Vec<u32> = if E::LAYOUT.vertex == 1 || (E::LAYOUT.is_broken() && piece[i] == 1.0) {
+        let node: Vec<u32> = if E::LAYOUT.vertex == 1 || (E::LAYOUT.is_broken() && piece[i] == 1.0)
+        {
             vec![mesh.cell(c)[i]]
         } else {
             mesh.facet_vertices(c, i).collect()
         };
         let owner = E::LAYOUT.is_broken().then_some(c as u32);
-        (0..places.len()).find(|&k| places[k].cell() == owner && places[k].vertices() == node).unwrap()
+        (0..places.len())
+            .find(|&k| places[k].cell() == owner && places[k].vertices() == node)
+            .unwrap()
     };
-    let dofs: Vec<Vec<usize>> = (0..mesh.n_cells()).map(|c| (0..=D).map(|i| find(c, i)).collect()).collect();
+    let dofs: Vec<Vec<usize>> =
+        (0..mesh.n_cells()).map(|c| (0..=D).map(|i| find(c, i)).collect()).collect();
 
     let alpha = |c: usize| alpha_at(&mesh.barycentre(c));
     let slow = Slow { mesh, alpha: &alpha, reaction };
@@ -234,7 +250,8 @@ fn check<const D: usize, E: ReferenceElement<f64, D>, F: FacetForm<f64, D> + Clo
                             let mut trial = test.clone();
                             test[s] = &v;
                             trial[t] = &u;
-                            dense[dofs[c][i]][dofs[d][j]] += slow.facet_form(form, &sides, &trial, &test);
+                            dense[dofs[c][i]][dofs[d][j]] +=
+                                slow.facet_form(form, &sides, &trial, &test);
                         }
                     }
                 }
@@ -245,10 +262,14 @@ fn check<const D: usize, E: ReferenceElement<f64, D>, F: FacetForm<f64, D> + Clo
     for (i, row) in dense.iter().enumerate() {
         for (j, &entry) in row.iter().enumerate() {
             let ours = matrix.get(i, j);
-            assert!((ours - entry).abs() < 1e-13 * scale, "{D}-d ({i}, {j}): {ours:e} against {entry:e}");
+            assert!(
+                (ours - entry).abs() < 1e-13 * scale,
+                "{D}-d ({i}, {j}): {ours:e} against {entry:e}"
+            );
         }
     }
-    let symmetric = (0..n).all(|i| (0..i).all(|j| (dense[i][j] - dense[j][i]).abs() < 1e-12 * scale));
+    let symmetric =
+        (0..n).all(|i| (0..i).all(|j| (dense[i][j] - dense[j][i]).abs() < 1e-12 * scale));
     assert_eq!(symmetric, F::SYMMETRIC, "symmetry is as declared");
 }
 
@@ -262,7 +283,8 @@ fn mean_basis<const D: usize>(i: usize) -> Piece {
 
 fn check_all<const D: usize>(n: usize) {
     let mut random = Random(3);
-    let mesh = Raw::<D>::jittered(&mixed_box(), n, 0.5, &mut random).shuffled(&mut random).mesh::<f64>();
+    let mesh =
+        Raw::<D>::jittered(&mixed_box(), n, 0.5, &mut random).shuffled(&mut random).mesh::<f64>();
     let penalty = |rule| InteriorPenalty::<-1> { rule, degree: 1 };
     let over = OverPenalty { eta: 0.7, rule: WeightRule::Isotropic, mesh_size: f64::NAN };
     check::<D, P1, _>(&mesh, NoFacets, None, 0.0, vertex_basis::<D>);
@@ -271,18 +293,48 @@ fn check_all<const D: usize>(n: usize) {
         // in one dimension a facet mean is a vertex value and the test tells unknowns by place
         check::<D, CrouzeixRaviart, _>(&mesh, NoFacets, None, 2.5, mean_basis::<D>);
         let sym = Form::Penalty { sigma: Some(10.0), theta: -1.0 };
-        check::<D, CrouzeixRaviart, _>(&mesh, penalty(PenaltyRule::Diameter(10.0)), Some(sym), 0.0, mean_basis::<D>);
-        check::<D, Broken<CrouzeixRaviart>, _>(&mesh, over, Some(Form::Over { eta: 0.7 }), 0.0, mean_basis::<D>);
+        check::<D, CrouzeixRaviart, _>(
+            &mesh,
+            penalty(PenaltyRule::Diameter(10.0)),
+            Some(sym),
+            0.0,
+            mean_basis::<D>,
+        );
+        check::<D, Broken<CrouzeixRaviart>, _>(
+            &mesh,
+            over,
+            Some(Form::Over { eta: 0.7 }),
+            0.0,
+            mean_basis::<D>,
+        );
     }
     let sym = |sigma| Some(Form::Penalty { sigma, theta: -1.0 });
-    check::<D, Broken<P1>, _>(&mesh, penalty(PenaltyRule::Diameter(10.0)), sym(Some(10.0)), 0.0, vertex_basis::<D>);
-    check::<D, Broken<P1>, _>(&mesh, penalty(PenaltyRule::Proven(0.5)), sym(None), 1.0, vertex_basis::<D>);
+    check::<D, Broken<P1>, _>(
+        &mesh,
+        penalty(PenaltyRule::Diameter(10.0)),
+        sym(Some(10.0)),
+        0.0,
+        vertex_basis::<D>,
+    );
+    check::<D, Broken<P1>, _>(
+        &mesh,
+        penalty(PenaltyRule::Proven(0.5)),
+        sym(None),
+        1.0,
+        vertex_basis::<D>,
+    );
     check::<D, Broken<P1>, _>(&mesh, over, Some(Form::Over { eta: 0.7 }), 0.0, vertex_basis::<D>);
     let non_symmetric = InteriorPenalty::<1> { rule: PenaltyRule::Diameter(1.0), degree: 1 };
     let slow = Some(Form::Penalty { sigma: Some(1.0), theta: 1.0 });
     check::<D, Broken<P1>, _>(&mesh, non_symmetric, slow, 0.0, vertex_basis::<D>);
     // a conforming space with a facet form: its jumps vanish, its fluxes do not
-    check::<D, P1, _>(&mesh, penalty(PenaltyRule::Diameter(10.0)), sym(Some(10.0)), 0.0, vertex_basis::<D>);
+    check::<D, P1, _>(
+        &mesh,
+        penalty(PenaltyRule::Diameter(10.0)),
+        sym(Some(10.0)),
+        0.0,
+        vertex_basis::<D>,
+    );
 }
 
 #[test]
@@ -317,7 +369,8 @@ fn forms_do_not_depend_on_numbering_or_orientation() {
     fn check<const D: usize>() {
         let mut random = Random(11);
         let raw = Raw::<D>::jittered(&mixed_box(), 3, 0.4, &mut random);
-        let problem = Problem::<D>::new().coefficient(alpha_at).source(|x| x[0].cos()).dirichlet(|x| x.sum());
+        let problem =
+            Problem::<D>::new().coefficient(alpha_at).source(|x| x[0].cos()).dirichlet(|x| x.sum());
         let objective = |mesh: &Mesh<f64, D>, scheme: &dyn AnyScheme<f64, D>| {
             let inequality = scheme.inequality(&problem, mesh, DataQuadrature::default()).unwrap();
             let u = wild(mesh);
@@ -328,7 +381,10 @@ fn forms_do_not_depend_on_numbering_or_orientation() {
         let schemes: [&dyn AnyScheme<f64, D>; 3] = [
             &Sipg::default(),
             &Wopsip::default(),
-            &Any::<Broken<P1>, _>::new(InteriorPenalty::<1> { rule: PenaltyRule::Diameter(2.0), degree: 1 }),
+            &Any::<Broken<P1>, _>::new(InteriorPenalty::<1> {
+                rule: PenaltyRule::Diameter(2.0),
+                degree: 1,
+            }),
         ];
         for scheme in schemes {
             let (first, size) = objective(&raw.mesh(), scheme);
@@ -348,11 +404,17 @@ fn a_form_is_invariant_under_reversing_the_axes() {
     // the map x -> 1 - x reverses every facet's orientation in one dimension
     let domain = unilateral::scenes::BoxDomain::dirichlet(Point::zeros(), Point::repeat(1.0));
     let raw = Raw::<1>::jittered(&domain, 6, 0.5, &mut Random(5));
-    let mut mirrored = Raw { vertices: raw.vertices.clone(), cells: raw.cells.clone(), boundary: raw.boundary.clone() };
+    let mut mirrored = Raw {
+        vertices: raw.vertices.clone(),
+        cells: raw.cells.clone(),
+        boundary: raw.boundary.clone(),
+    };
     mirrored.vertices.iter_mut().for_each(|x| x[0] = 1.0 - x[0]);
     let problem = Problem::<1>::new();
     let matrix = |mesh: &Mesh<f64, 1>| {
-        Discretisation::new(&Sipg::default(), &problem, mesh, DataQuadrature::default()).unwrap().matrix()
+        Discretisation::new(&Sipg::default(), &problem, mesh, DataQuadrature::default())
+            .unwrap()
+            .matrix()
     };
     let (a, b) = (matrix(&raw.mesh()), matrix(&mirrored.mesh()));
     assert!(a.values.iter().zip(&b.values).all(|(x, y)| (x - y).abs() < 1e-12));
@@ -373,7 +435,9 @@ fn the_same_bits_for_any_number_of_threads() {
         for scheme in schemes {
             let run = |threads| {
                 let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-                pool.install(|| scheme.inequality(&problem, &mesh, DataQuadrature::default()).unwrap())
+                pool.install(|| {
+                    scheme.inequality(&problem, &mesh, DataQuadrature::default()).unwrap()
+                })
             };
             let one = run(1);
             for threads in [2, 8] {
@@ -392,13 +456,15 @@ fn the_same_bits_for_any_number_of_threads() {
 fn refilling_a_pattern_gives_the_same_matrix() {
     let mesh = Raw::<2>::jittered(&mixed_box(), 7, 0.3, &mut Random(4)).mesh::<f64>();
     let problem = Problem::<2>::new();
-    let space = Discretisation::new(&Sipg::default(), &problem, &mesh, DataQuadrature::default()).unwrap();
+    let space =
+        Discretisation::new(&Sipg::default(), &problem, &mesh, DataQuadrature::default()).unwrap();
     let first = space.matrix();
     let mut again = first.clone();
     again.values.fill(f64::NAN);
     space.fill(&mut again);
     assert_eq!(first, again);
-    let space = Discretisation::new(&ConformingP1, &problem, &mesh, DataQuadrature::default()).unwrap();
+    let space =
+        Discretisation::new(&ConformingP1, &problem, &mesh, DataQuadrature::default()).unwrap();
     let first = space.matrix();
     let mut again = first.clone();
     again.values.fill(f64::NAN);
@@ -415,13 +481,17 @@ fn continuous_functions_have_no_jump_and_constants_no_energy() {
     };
     let mesh = Raw::<2>::jittered(&domain, 4, 0.4, &mut Random(9)).mesh::<f64>();
     let problem = Problem::<2>::new();
-    let linear: Vec<f64> = mesh.cells().iter().map(|&v| 2.0 * mesh.vertices()[v as usize][0] - 1.0).collect();
+    let linear: Vec<f64> =
+        mesh.cells().iter().map(|&v| 2.0 * mesh.vertices()[v as usize][0] - 1.0).collect();
     let schemes: [&dyn AnyScheme<f64, 2>; 2] = [&Sipg::default(), &Wopsip::default()];
     for scheme in schemes {
         let inequality = scheme.inequality(&problem, &mesh, DataQuadrature::default()).unwrap();
         let one = vec![1.0; inequality.size()];
-        assert!(inequality.objective(&one).abs() < 1e-9 * inequality.matrix.nonzeros() as f64 * 1e-3);
-        let worst = (0..one.len()).map(|i| inequality.matrix.row_dot(i, &one).abs()).fold(0.0, f64::max);
+        assert!(
+            inequality.objective(&one).abs() < 1e-9 * inequality.matrix.nonzeros() as f64 * 1e-3
+        );
+        let worst =
+            (0..one.len()).map(|i| inequality.matrix.row_dot(i, &one).abs()).fold(0.0, f64::max);
         assert!(worst < 1e-9, "{}: {worst:e}", scheme.name());
         // grad = (2, 0) on the unit square, no jumps: half the form is two
         assert!((inequality.objective(&linear) - 2.0).abs() < 1e-9, "{}", scheme.name());
@@ -434,7 +504,9 @@ fn the_proven_bound_is_what_the_default_penalty_is_made_of() {
     let problem = Problem::<2>::new();
     let shortfall = |sigma| {
         let scheme = Sipg { penalty: PenaltyRule::Diameter(sigma) };
-        Discretisation::new(&scheme, &problem, &mesh, DataQuadrature::default()).unwrap().penalty_shortfall()
+        Discretisation::new(&scheme, &problem, &mesh, DataQuadrature::default())
+            .unwrap()
+            .penalty_shortfall()
     };
     // right isosceles cells: |dK|/|K| = (4 + 2 sqrt 2)/h, on a Dirichlet leg sigma must reach that
     let least = 4.0 + 2.0 * 2_f64.sqrt();
@@ -442,7 +514,8 @@ fn the_proven_bound_is_what_the_default_penalty_is_made_of() {
     let found = shortfall(least * 0.999).unwrap();
     assert!((found.needed - 4.0 * least).abs() < 1e-9 && found.weight < found.needed);
     assert!(shortfall(1.0).unwrap().facets > found.facets);
-    let default = Discretisation::new(&Sipg::default(), &problem, &mesh, DataQuadrature::default()).unwrap();
+    let default =
+        Discretisation::new(&Sipg::default(), &problem, &mesh, DataQuadrature::default()).unwrap();
     assert_eq!(default.penalty_shortfall(), None);
     let side = unilateral::facet::Side { coefficient: 2.0, volume: 0.5, surface: 3.0, height: 1.0 };
     let view = FacetView { measure: 1.0, diameter: 1.0, here: side, there: Some(side) };

@@ -24,16 +24,25 @@ fn check_topology<const D: usize>(mesh: &Mesh<f64, D>) {
             if let Neighbour::Cell { cell, local } = neighbours.across(c, i) {
                 let back = neighbours.across(cell as usize, local as usize);
                 assert_eq!(back, Neighbour::Cell { cell: c as u32, local: i as u8 });
-                assert!(mesh.facet_vertices(c, i).eq(mesh.facet_vertices(cell as usize, local as usize)));
+                assert!(
+                    mesh.facet_vertices(c, i)
+                        .eq(mesh.facet_vertices(cell as usize, local as usize))
+                );
                 let (a, b) = (mesh.geometry(c), mesh.geometry(cell as usize));
-                assert!((a.normal(i) + b.normal(local as usize)).norm() < 1e-12, "normals opposite");
+                assert!(
+                    (a.normal(i) + b.normal(local as usize)).norm() < 1e-12,
+                    "normals opposite"
+                );
                 assert!((a.facet_measure(i) - b.facet_measure(local as usize)).abs() < 1e-12);
             }
         }
     }
     assert_eq!(2 * facets.interior().len() + mesh.boundary().len(), mesh.cells().len());
     for part in [BoundaryPart::Dirichlet, BoundaryPart::Neumann, BoundaryPart::Contact] {
-        assert_eq!(facets.part(part).len(), mesh.boundary().iter().filter(|f| f.part == part).count());
+        assert_eq!(
+            facets.part(part).len(),
+            mesh.boundary().iter().filter(|f| f.part == part).count()
+        );
         for f in facets.part(part) {
             let (c, i) = facets.here(f);
             assert_eq!(neighbours.across(c, i), Neighbour::Boundary(part));
@@ -57,7 +66,8 @@ fn worst_shape<const D: usize>(mesh: &Mesh<f64, D>) -> f64 {
 
 fn check_refinement<const D: usize>(times: usize) {
     let mut random = Random(7);
-    let coarse = Raw::<D>::jittered(&mixed_box(), 2, 0.5, &mut random).shuffled(&mut random).mesh::<f64>();
+    let coarse =
+        Raw::<D>::jittered(&mixed_box(), 2, 0.5, &mut random).shuffled(&mut random).mesh::<f64>();
     let shape = worst_shape(&coarse);
     let hierarchy = Hierarchy::refined(coarse.clone(), times).unwrap();
     for (k, pair) in hierarchy.meshes().windows(2).enumerate() {
@@ -70,10 +80,13 @@ fn check_refinement<const D: usize>(times: usize) {
         for c in 0..after.n_cells() {
             // children have equal volumes and lie in their parents
             let parent = before.geometry(c >> D);
-            assert!((after.geometry(c).volume * f64::from(1 << D) / parent.volume - 1.0).abs() < 1e-10);
+            assert!(
+                (after.geometry(c).volume * f64::from(1 << D) / parent.volume - 1.0).abs() < 1e-10
+            );
             let corner = before.vertices()[before.cell(c >> D)[0] as usize];
             let inside = after.barycentre(c) - corner;
-            let lambda: Vec<f64> = (0..=D).map(|i| f64::from(i == 0) + parent.gradient(i).dot(&inside)).collect();
+            let lambda: Vec<f64> =
+                (0..=D).map(|i| f64::from(i == 0) + parent.gradient(i).dot(&inside)).collect();
             assert!(lambda.iter().all(|&l| l > 0.0));
         }
         for (v, &[a, b]) in hierarchy.refinements()[k].parents.iter().enumerate() {
@@ -113,7 +126,12 @@ fn refined_boxes_are_finer_boxes() {
                     let mut points: Vec<Vec<i64>> = mesh
                         .cell(c)
                         .iter()
-                        .map(|&v| mesh.vertices()[v as usize].iter().map(|x| (x * 64.0).round() as i64).collect())
+                        .map(|&v| {
+                            mesh.vertices()[v as usize]
+                                .iter()
+                                .map(|x| (x * 64.0).round() as i64)
+                                .collect()
+                        })
                         .collect();
                     points.sort();
                     points.concat()
@@ -131,8 +149,11 @@ fn refined_boxes_are_finer_boxes() {
 
 #[test]
 fn boxes_have_the_stated_cells_and_sides() {
-    let domain = BoxDomain::dirichlet(Point::from([-1.0, 0.0]), Point::from([1.0, 1.0]))
-        .side(1, 0, BoundaryPart::Contact);
+    let domain = BoxDomain::dirichlet(Point::from([-1.0, 0.0]), Point::from([1.0, 1.0])).side(
+        1,
+        0,
+        BoundaryPart::Contact,
+    );
     assert_eq!(domain.counts(8), [16, 8]);
     let mesh = Mesh::<f64, 2>::kuhn_box(&domain, domain.counts(8)).unwrap();
     check_topology(&mesh);
@@ -214,7 +235,9 @@ fn wrong_cells() {
     raw.vertices.push(Point::from([2.0, -1.0]));
     raw.cells.extend([0, 3, 4]);
     let error = refused(&raw);
-    assert!(matches!(&error, MeshError::FacetOfThreeCells { vertices, cells: [0, 1, 2] } if vertices == &[0, 3]));
+    assert!(
+        matches!(&error, MeshError::FacetOfThreeCells { vertices, cells: [0, 1, 2] } if vertices == &[0, 3])
+    );
     assert!(error.to_string().contains("[0, 3]"));
 }
 
@@ -223,17 +246,28 @@ fn wrong_boundaries() {
     let mut raw = square();
     let lost = raw.boundary.remove(1);
     let error = refused(&raw);
-    assert!(matches!(&error, MeshError::UntaggedFacet { vertices, .. } if vertices[..] == lost.vertices));
+    assert!(
+        matches!(&error, MeshError::UntaggedFacet { vertices, .. } if vertices[..] == lost.vertices)
+    );
     assert!(error.to_string().contains("dirichlet, neumann, contact"));
     let mut raw = square();
     raw.boundary.push(TaggedFacet { part: BoundaryPart::Contact, ..raw.boundary[0] });
-    assert!(matches!(refused(&raw), MeshError::FacetInTwoParts { first: "dirichlet", second: "contact", tag: 4, .. }));
+    assert!(matches!(
+        refused(&raw),
+        MeshError::FacetInTwoParts { first: "dirichlet", second: "contact", tag: 4, .. }
+    ));
     let mut raw = square();
     raw.boundary.push(TaggedFacet { vertices: [0, 3], part: BoundaryPart::Dirichlet });
-    assert!(matches!(refused(&raw), MeshError::NotABoundaryFacet { why: "lies between two cells", .. }));
+    assert!(matches!(
+        refused(&raw),
+        MeshError::NotABoundaryFacet { why: "lies between two cells", .. }
+    ));
     let mut raw = square();
     raw.boundary.push(TaggedFacet { vertices: [1, 2], part: BoundaryPart::Dirichlet });
-    assert!(matches!(refused(&raw), MeshError::NotABoundaryFacet { why: "belongs to no cell", .. }));
+    assert!(matches!(
+        refused(&raw),
+        MeshError::NotABoundaryFacet { why: "belongs to no cell", .. }
+    ));
     // the same facet twice in the same part is no contradiction
     let mut raw = square();
     raw.boundary.push(raw.boundary[0]);
@@ -251,7 +285,10 @@ fn a_component_that_nothing_holds() {
     let boundary: Vec<_> = raw
         .boundary
         .iter()
-        .map(|f| TaggedFacet { vertices: f.vertices.map(|v| v + shift), part: BoundaryPart::Neumann })
+        .map(|f| TaggedFacet {
+            vertices: f.vertices.map(|v| v + shift),
+            part: BoundaryPart::Neumann,
+        })
         .collect();
     raw.boundary.extend(boundary);
     let mut held = raw.boundary.clone();

@@ -40,7 +40,12 @@ fn row(scene: &str, scheme: &str, level: usize) -> Row {
         nonzeros: 70 * level * level,
         mesh_size: h,
         status: "converged".into(),
-        error: Errors { l2: Some(0.7 * h * h), h1: Some(2.0 * h), energy: None, max: Some(0.1 * h) },
+        error: Errors {
+            l2: Some(0.7 * h * h),
+            h1: Some(2.0 * h),
+            energy: None,
+            max: Some(0.1 * h),
+        },
         order: Errors::default(),
         expected_order: ExpectedOrders { l2: Some(2.0), h1: Some(1.0) },
         objective: Some(-0.1 - h / 3.0),
@@ -87,9 +92,26 @@ fn json_has_the_keys_that_scripts_rely_on() {
     assert!(json["program"]["target_cpu"].as_str().unwrap().starts_with(std::env::consts::ARCH));
     let row = &json["rows"][0];
     let required = [
-        "scene", "dimension", "scheme", "constraint", "level", "parameters", "cells", "unknowns",
-        "nonzeros", "mesh_size", "status", "error", "order", "expected_order", "objective",
-        "active", "iterations", "certificate", "seconds", "peak_memory_bytes",
+        "scene",
+        "dimension",
+        "scheme",
+        "constraint",
+        "level",
+        "parameters",
+        "cells",
+        "unknowns",
+        "nonzeros",
+        "mesh_size",
+        "status",
+        "error",
+        "order",
+        "expected_order",
+        "objective",
+        "active",
+        "iterations",
+        "certificate",
+        "seconds",
+        "peak_memory_bytes",
     ];
     let added = ["solver", "linear", "warnings"];
     let mut present = keys(row);
@@ -326,7 +348,11 @@ fn all_files_are_written_and_plots_show_what_they_should() {
     let written = report(rows).write(&scratch.0.join("deep")).unwrap();
     let names: Vec<_> = written.iter().map(|p| p.file_name().unwrap().to_str().unwrap()).collect();
     let expected = [
-        "report.json", "report.csv", "convergence.svg", "convergence.png", "work_precision.svg",
+        "report.json",
+        "report.csv",
+        "convergence.svg",
+        "convergence.png",
+        "work_precision.svg",
         "work_precision.png",
     ];
     assert_eq!(names, expected);

@@ -20,20 +20,9 @@ fn cold<T: Real>(inequality: &Inequality<T>) -> Solution<T> {
 fn solve_from_everywhere(inequality: &Inequality<f64>) -> Solution<f64> {
     let solution = cold(inequality);
     let n = inequality.size();
-    let alternating = (0..n)
-        .map(|i| {
-            if i % 2 == 0 {
-                Contact::Lower
-            } else {
-                Contact::Upper
-            }
-        })
-        .collect();
-    for start in [
-        vec![Contact::Lower; n],
-        vec![Contact::Upper; n],
-        alternating,
-    ] {
+    let alternating =
+        (0..n).map(|i| if i % 2 == 0 { Contact::Lower } else { Contact::Upper }).collect();
+    for start in [vec![Contact::Lower; n], vec![Contact::Upper; n], alternating] {
         let other = ActiveSet::default().solve(inequality, &Start::Contact(start));
         assert_eq!(other.outcome, Outcome::Converged);
         let scale = 1.0 + distance(&solution.values, &vec![0.0; n]);
@@ -48,11 +37,8 @@ fn assert_solved(inequality: &Inequality<f64>, solution: &Solution<f64>) {
     assert_eq!(solution.outcome, Outcome::Converged);
     let certificate = certify(inequality, &solution.values);
     assert!(certificate.largest() < 1e-9, "{certificate:?}");
-    for ((bound, contact), u) in inequality
-        .bounds
-        .iter()
-        .zip(&solution.contact)
-        .zip(&solution.values)
+    for ((bound, contact), u) in
+        inequality.bounds.iter().zip(&solution.contact).zip(&solution.values)
     {
         match contact {
             Contact::Open => {}
@@ -66,9 +52,7 @@ fn assert_solved(inequality: &Inequality<f64>, solution: &Solution<f64>) {
 fn string_over_obstacle_agrees_with_oracle() {
     let n = 40;
     let h = 1.0 / (n + 1) as f64;
-    let bounds = (1..=n)
-        .map(|i| Bound::Lower(0.1 - (i as f64 * h - 0.4).powi(2)))
-        .collect();
+    let bounds = (1..=n).map(|i| Bound::Lower(0.1 - (i as f64 * h - 0.4).powi(2))).collect();
     let problem = inequality(laplacian(n, 1, 2.0), &vec![-0.5 * h * h; n], bounds);
     let solution = solve_from_everywhere(&problem);
     assert!(distance(&solution.values, &projected_gauss_seidel(&problem)) < 1e-11);
@@ -119,13 +103,21 @@ fn cycles_of_the_textbook_method_are_resolved() {
         let matrix = random_definite(n, n / 2, 0.003, &mut random);
         let load: Vec<f64> = (0..n).map(|_| random.signed()).collect();
         let problem = inequality(sparse(&matrix), &load, vec![Bound::Lower(0.0); n]);
-        let plain = ActiveSet {
-            max_condensations: 0,
-            ..ActiveSet::default()
-        };
+        let plain = ActiveSet { max_condensations: 0, ..ActiveSet::default() };
         let plain = plain.solve(&problem, &Start::Cold);
-        if (plain.outcome==Outcome::Cycling) != textbook_cycles(&matrix, &load) {println!("plain differs seed {seed} n={n} {} {}", plain.outcome, plain.outer); }
-        let sol=cold(&problem); if sol.outcome!=Outcome::Converged { println!("seed {seed} {} outer {} {:?}", sol.outcome, sol.outer, certify(&problem,&sol.values)); continue;}
+        if (plain.outcome == Outcome::Cycling) != textbook_cycles(&matrix, &load) {
+            println!("plain differs seed {seed} n={n} {} {}", plain.outcome, plain.outer);
+        }
+        let sol = cold(&problem);
+        if sol.outcome != Outcome::Converged {
+            println!(
+                "seed {seed} {} outer {} {:?}",
+                sol.outcome,
+                sol.outer,
+                certify(&problem, &sol.values)
+            );
+            continue;
+        }
         if textbook_cycles(&matrix, &load) {
             cycles += 1;
             assert_eq!(plain.outcome, Outcome::Cycling, "seed {seed}");
@@ -141,26 +133,13 @@ fn cycles_of_the_textbook_method_are_resolved() {
 /// any start with one contact (Ben Gharbia, Gilbert, Math. Program. 134 (2012) 349-364).
 #[test]
 fn cycle_of_a_matrix_without_symmetry_is_resolved() {
-    let matrix = vec![
-        vec![1.0, 0.0, 2.0],
-        vec![2.0, 1.0, 0.0],
-        vec![0.0, 2.0, 1.0],
-    ];
+    let matrix = vec![vec![1.0, 0.0, 2.0], vec![2.0, 1.0, 0.0], vec![0.0, 2.0, 1.0]];
     let mut problem = inequality(sparse(&matrix), &[1.0; 3], vec![Bound::Lower(0.0); 3]);
     problem.symmetric = false;
     for first in [[1, 0, 0], [0, 1, 0], [0, 0, 1], [1, 1, 0]] {
-        let start = first.map(|c| {
-            if c == 1 {
-                Contact::Lower
-            } else {
-                Contact::Open
-            }
-        });
+        let start = first.map(|c| if c == 1 { Contact::Lower } else { Contact::Open });
         let start = Start::Contact(start.to_vec());
-        let plain = ActiveSet {
-            max_condensations: 0,
-            ..ActiveSet::default()
-        };
+        let plain = ActiveSet { max_condensations: 0, ..ActiveSet::default() };
         assert_eq!(plain.solve(&problem, &start).outcome, Outcome::Cycling);
         let solution = ActiveSet::default().solve(&problem, &start);
         assert_solved(&problem, &solution);
@@ -178,11 +157,17 @@ fn cycles_between_two_bounds_are_resolved() {
         let matrix = random_definite(n, n / 2, 0.003, &mut random);
         let load: Vec<f64> = (0..n).map(|_| random.signed()).collect();
         let problem = inequality(sparse(&matrix), &load, vec![Bound::Both(-0.5, 0.7); n]);
-        let plain = ActiveSet {
-            max_condensations: 0,
-            ..ActiveSet::default()
-        };
-        let sol=cold(&problem); if sol.outcome!=Outcome::Converged { println!("seed {seed} {} outer {} {:?}", sol.outcome, sol.outer, certify(&problem,&sol.values)); continue;}
+        let plain = ActiveSet { max_condensations: 0, ..ActiveSet::default() };
+        let sol = cold(&problem);
+        if sol.outcome != Outcome::Converged {
+            println!(
+                "seed {seed} {} outer {} {:?}",
+                sol.outcome,
+                sol.outer,
+                certify(&problem, &sol.values)
+            );
+            continue;
+        }
         cycles += usize::from(plain.solve(&problem, &Start::Cold).outcome == Outcome::Cycling);
         assert_solved(&problem, &cold(&problem));
     }
@@ -194,14 +179,10 @@ fn penalised_string_over_curved_obstacle_is_solved() {
     for (cells, penalty) in [(32, 1e3), (128, 1e5), (256, 1e8)] {
         let h = 1.0 / cells as f64;
         let end = |k: usize| k.div_ceil(2) as f64 * h;
-        let bounds = (0..2 * cells)
-            .map(|k| Bound::Lower(0.2 - 2.0 * (end(k) - 0.5).powi(2)))
-            .collect();
-        let problem = inequality(
-            penalised_string(cells, penalty),
-            &vec![-0.5 * h; 2 * cells],
-            bounds,
-        );
+        let bounds =
+            (0..2 * cells).map(|k| Bound::Lower(0.2 - 2.0 * (end(k) - 0.5).powi(2))).collect();
+        let problem =
+            inequality(penalised_string(cells, penalty), &vec![-0.5 * h; 2 * cells], bounds);
         assert_solved(&problem, &cold(&problem));
     }
 }
@@ -216,11 +197,7 @@ fn biactive_contact_does_not_cycle() {
         // The solution of a linear problem is its own obstacle on a half.
         let h = 1.0 / (n + 1) as f64;
         problem.load = vec![-h * h; n * n];
-        let free = inequality(
-            problem.matrix.clone(),
-            &problem.load,
-            vec![Bound::Free; n * n],
-        );
+        let free = inequality(problem.matrix.clone(), &problem.load, vec![Bound::Free; n * n]);
         let linear = cold(&free).values;
         problem.bounds = (0..n * n)
             .map(|k| Bound::Lower(if k % n < n / 2 { linear[k] } else { -1.0 }))
@@ -247,10 +224,7 @@ fn contact_everywhere() {
 fn contact_nowhere() {
     let mut problem = membrane::<f64>(12, 1.0, |_, _| -9.0);
     let solution = solve_from_everywhere(&problem);
-    assert_eq!(
-        (active(&problem, &solution.contact), cold(&problem).outer),
-        (0, 1)
-    );
+    assert_eq!((active(&problem, &solution.contact), cold(&problem).outer), (0, 1));
     problem.bounds = vec![Bound::Free; 12 * 12];
     assert_eq!(cold(&problem).values, solution.values);
     assert_eq!(cold(&problem).outer, 1);
@@ -269,10 +243,7 @@ fn bounds_that_coincide_cost_no_iterations() {
         problem.bounds[k] = Bound::Both(0.25, 0.25);
     }
     let solution = solve_from_everywhere(&problem);
-    assert_eq!(
-        (active(&problem, &solution.contact), solution.outer),
-        (3, 1)
-    );
+    assert_eq!((active(&problem, &solution.contact), solution.outer), (3, 1));
     assert_eq!(solution.values[50], 0.25);
 }
 
@@ -289,9 +260,7 @@ fn body_held_by_the_obstacle_alone() {
         rows[i + 1][i] -= 1.7;
     }
     let load: Vec<f64> = (0..n).map(|i| 0.1 * (i as f64).sin() - 0.02).collect();
-    let bounds = (0..n)
-        .map(|i| Bound::Lower(-(i as f64 / 10.0 - 1.0).powi(2)))
-        .collect();
+    let bounds = (0..n).map(|i| Bound::Lower(-(i as f64 / 10.0 - 1.0).powi(2))).collect();
     let mut problem = inequality(sparse(&rows), &load, bounds);
     let solution = cold(&problem);
     assert_solved(&problem, &solution);
@@ -299,18 +268,9 @@ fn body_held_by_the_obstacle_alone() {
     // Pulled away from it, there is no solution.
     problem.load = vec![1.0; n];
     let outcome = cold(&problem).outcome;
-    assert!(
-        matches!(outcome, Outcome::Singular | Outcome::NotCoercive),
-        "{outcome}"
-    );
-    let careful = ActiveSet {
-        check_definite: true,
-        ..ActiveSet::default()
-    };
-    assert_eq!(
-        careful.solve(&problem, &Start::Cold).outcome,
-        Outcome::NotCoercive
-    );
+    assert!(matches!(outcome, Outcome::Singular | Outcome::NotCoercive), "{outcome}");
+    let careful = ActiveSet { check_definite: true, ..ActiveSet::default() };
+    assert_eq!(careful.solve(&problem, &Start::Cold).outcome, Outcome::NotCoercive);
 }
 
 #[test]
@@ -325,52 +285,23 @@ fn indefinite_matrix_is_not_coercive() {
         assert!(solution.values.iter().all(|u| u.is_finite()));
         // From contact everywhere nothing would be noticed without asking.
         let start = Start::Contact(vec![Contact::Lower; n * n]);
-        let careful = ActiveSet {
-            check_definite: true,
-            ..ActiveSet::default()
-        };
-        assert_eq!(
-            careful.solve(&problem, &start).outcome,
-            Outcome::NotCoercive
-        );
+        let careful = ActiveSet { check_definite: true, ..ActiveSet::default() };
+        assert_eq!(careful.solve(&problem, &start).outcome, Outcome::NotCoercive);
         let mut unsymmetric = problem.clone();
         unsymmetric.symmetric = false;
-        assert_eq!(
-            careful.solve(&unsymmetric, &Start::Cold).outcome,
-            Outcome::NotCoercive
-        );
+        assert_eq!(careful.solve(&unsymmetric, &Start::Cold).outcome, Outcome::NotCoercive);
     }
 }
 
 #[test]
 fn definiteness_is_that_of_the_symmetric_part() {
     let free = [0, 1, 2];
-    let rotation = vec![
-        vec![1.0, 9.0, 0.0],
-        vec![-9.0, 1.0, 0.0],
-        vec![0.0, 0.5, 1.0],
-    ];
-    assert_eq!(
-        is_positive_definite(&sparse::<f64>(&rotation), false, &free),
-        Ok(true)
-    );
-    let shear = vec![
-        vec![1.0, 2.1, 0.0],
-        vec![0.0, 1.0, 0.0],
-        vec![0.0, 0.0, 1.0],
-    ];
-    assert_eq!(
-        is_positive_definite(&sparse::<f64>(&shear), false, &free),
-        Ok(false)
-    );
-    assert_eq!(
-        is_positive_definite(&sparse::<f64>(&shear), false, &[0, 2]),
-        Ok(true)
-    );
-    assert_eq!(
-        is_positive_definite(&sparse::<f64>(&shear), true, &[]),
-        Ok(true)
-    );
+    let rotation = vec![vec![1.0, 9.0, 0.0], vec![-9.0, 1.0, 0.0], vec![0.0, 0.5, 1.0]];
+    assert_eq!(is_positive_definite(&sparse::<f64>(&rotation), false, &free), Ok(true));
+    let shear = vec![vec![1.0, 2.1, 0.0], vec![0.0, 1.0, 0.0], vec![0.0, 0.0, 1.0]];
+    assert_eq!(is_positive_definite(&sparse::<f64>(&shear), false, &free), Ok(false));
+    assert_eq!(is_positive_definite(&sparse::<f64>(&shear), false, &[0, 2]), Ok(true));
+    assert_eq!(is_positive_definite(&sparse::<f64>(&shear), true, &[]), Ok(true));
 }
 
 #[test]
@@ -446,15 +377,9 @@ fn iteration_limit_comes_with_the_best_iterate() {
     assert!(exact.outer > 5);
     let mut before = f64::INFINITY;
     for max_outer in [1, 3, 5] {
-        let solver = ActiveSet {
-            max_outer,
-            ..ActiveSet::default()
-        };
+        let solver = ActiveSet { max_outer, ..ActiveSet::default() };
         let solution = solver.solve(&problem, &Start::Cold);
-        assert_eq!(
-            (solution.outcome, solution.outer),
-            (Outcome::IterationLimit, max_outer)
-        );
+        assert_eq!((solution.outcome, solution.outer), (Outcome::IterationLimit, max_outer));
         let error = distance(&solution.values, &exact.values);
         assert!(error < before && certify(&problem, &solution.values).largest() > 1e-9);
         before = error;
@@ -488,16 +413,8 @@ fn single_precision() {
 fn certificate_sees_every_violation() {
     let problem = membrane::<f64>(20, 10.0, |_, _| -0.3);
     let solution = cold(&problem);
-    let open = solution
-        .contact
-        .iter()
-        .position(|c| *c == Contact::Open)
-        .unwrap();
-    let closed = solution
-        .contact
-        .iter()
-        .position(|c| *c == Contact::Lower)
-        .unwrap();
+    let open = solution.contact.iter().position(|c| *c == Contact::Open).unwrap();
+    let closed = solution.contact.iter().position(|c| *c == Contact::Lower).unwrap();
     let moved = |i: usize, by: f64| {
         let mut u = solution.values.clone();
         u[i] += by;

@@ -75,7 +75,9 @@ pub enum MeshError {
         vertices: Vec<u32>,
     },
     /// A facet belongs to three cells.
-    #[error("facet {vertices:?} belongs to cells {cells:?}: a facet lies between two cells at most")]
+    #[error(
+        "facet {vertices:?} belongs to cells {cells:?}: a facet lies between two cells at most"
+    )]
     FacetOfThreeCells {
         /// Vertices of the facet.
         vertices: Vec<u32>,

@@ -110,7 +110,10 @@ impl<T: Real, const D: usize> Mesh<T, D> {
     }
     /// The barycentre of a cell.
     pub fn barycentre(&self, c: usize) -> Point<T, D> {
-        let sum = self.cell(c).iter().fold(Point::zeros(), |s: Point<T, D>, &v| s + self.vertices[v as usize]);
+        let sum = self
+            .cell(c)
+            .iter()
+            .fold(Point::zeros(), |s: Point<T, D>, &v| s + self.vertices[v as usize]);
         sum / T::lit(Self::CELL_VERTICES as f64)
     }
     /// The largest distance of two vertices of a cell.

@@ -73,9 +73,7 @@ impl<T: Real> InequalitySolver<T> for ActiveSet {
 
     fn solve(&self, inequality: &Inequality<T>, start: &Start) -> Solution<T> {
         let mut iterate = Iterate::new(inequality, start);
-        let outcome = self
-            .run(&mut iterate, start)
-            .unwrap_or_else(|outcome| outcome);
+        let outcome = self.run(&mut iterate, start).unwrap_or_else(|outcome| outcome);
         iterate.into_solution(outcome)
     }
 }
@@ -166,14 +164,8 @@ impl ActiveSet {
             gap: iterate.gap_noise(band),
             force: &|i| iterate.force_noise(i, band, band - self.band),
         };
-        let states = resolve(
-            iterate.inequality,
-            &iterate.values,
-            &iterate.state,
-            members,
-            &noise,
-        )?
-        .ok_or(Outcome::Cycling)?;
+        let states = resolve(iterate.inequality, &iterate.values, &iterate.state, members, &noise)?
+            .ok_or(Outcome::Cycling)?;
         for (&i, &contact) in members.iter().zip(&states) {
             iterate.set_state(i as usize, contact, history);
         }

@@ -16,11 +16,7 @@ pub(super) struct History {
 impl History {
     /// No state seen yet.
     pub fn new(unknowns: usize) -> Self {
-        Self {
-            seen: Vec::new(),
-            last_move: vec![0; unknowns],
-            step: 0,
-        }
+        Self { seen: Vec::new(), last_move: vec![0; unknowns], step: 0 }
     }
 
     /// Notes that unknown `i` moves into the state to be recorded next.
@@ -61,19 +57,16 @@ impl History {
 
 /// The sum over all unknowns on a bound of a pseudo-random number of unknown and bound.
 fn fingerprint(state: &[Contact]) -> u128 {
-    state
-        .iter()
-        .enumerate()
-        .fold(0, |sum: u128, (i, &contact)| {
-            let side = match contact {
-                Contact::Open => return sum,
-                Contact::Lower => 0,
-                Contact::Upper => 1,
-            };
-            let key = 2 * i as u64 + side;
-            let number = u128::from(scramble(key)) << 64 | u128::from(scramble(!key));
-            sum.wrapping_add(number)
-        })
+    state.iter().enumerate().fold(0, |sum: u128, (i, &contact)| {
+        let side = match contact {
+            Contact::Open => return sum,
+            Contact::Lower => 0,
+            Contact::Upper => 1,
+        };
+        let key = 2 * i as u64 + side;
+        let number = u128::from(scramble(key)) << 64 | u128::from(scramble(!key));
+        sum.wrapping_add(number)
+    })
 }
 
 /// The output function of SplitMix64 (Steele, Lea, Flood 2014): a bijection of 64 bits without

@@ -37,8 +37,7 @@ impl SmallProblem {
         let mut patience = PATIENCE;
         while patience > 0 {
             let (z, w) = self.complementary(&state, std::slice::from_ref(&self.constant))?;
-            let next: Vec<Contact> =
-                (0..n).map(|i| self.next(i, state[i], z[i], w[i])).collect();
+            let next: Vec<Contact> = (0..n).map(|i| self.next(i, state[i], z[i], w[i])).collect();
             let infeasible = (0..n).filter(|&i| next[i] != state[i]).count();
             if infeasible == 0 {
                 return Some(state);

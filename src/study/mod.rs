@@ -14,6 +14,17 @@ mod run;
 mod table;
 mod vtu;
 
-pub use row::{
-    Certificate, Errors, ExpectedOrders, Iterations, PenaltyParameters, Row, Seconds,
-};
+pub use crate::solve::Certificate;
+pub use any_scheme::{AnyScheme, Fields, Solved, Task};
+pub use csv::to_csv;
+pub use fit::check_fit;
+pub use levels::{Levels, VertexContact};
+pub use memory::peak_memory_bytes;
+pub use orders::{fill_orders, observed_order};
+pub use plot::{Figure, convergence, work_precision};
+pub use registry::{SCHEMES, SchemeOptions, scheme_by_name};
+pub use report::{Program, Report, target_cpu};
+pub use row::{Errors, ExpectedOrders, Iterations, PenaltyParameters, Row, Seconds};
+pub use run::{Progress, Study};
+pub use table::write_tables;
+pub use vtu::{CellFields, write_vtu};

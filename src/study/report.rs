@@ -98,7 +98,8 @@ impl Report {
             written.push(path);
             Ok::<(), Error>(())
         };
-        let text = |path: &Path, text: String| std::fs::write(path, text).map_err(|e| e.to_string());
+        let text =
+            |path: &Path, text: String| std::fs::write(path, text).map_err(|e| e.to_string());
         put("report.json", &|path| text(path, self.to_json()))?;
         put("report.csv", &|path| text(path, self.to_csv()))?;
         let errors = convergence(&self.rows);

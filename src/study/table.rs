@@ -82,13 +82,15 @@ fn heading(rows: &[&Row]) -> String {
         }
     }
     // Schemes need naming only where some are promised something else, or nothing.
-    let all = promises.len() == 1
-        && rows.iter().all(|r| promises[0].1.contains(&r.scheme.as_str()));
+    let all =
+        promises.len() == 1 && rows.iter().all(|r| promises[0].1.contains(&r.scheme.as_str()));
     let promises: Vec<String> = promises
         .into_iter()
-        .map(|(known, schemes)| {
-            if all { known } else { format!("{known} ({})", schemes.join(" ")) }
-        })
+        .map(
+            |(known, schemes)| {
+                if all { known } else { format!("{known} ({})", schemes.join(" ")) }
+            },
+        )
         .collect();
     if !promises.is_empty() {
         text += &format!("; expected order {}", promises.join(", "));

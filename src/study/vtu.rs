@@ -165,8 +165,8 @@ mod tests {
             contact: &[0.0],
         };
         let points = [[0.0; 3], [1.0, 0.0, 0.0]];
-        let error =
-            in_temporary_file("wrong", |path| write_simplices(path, 1, &points, &fields)).unwrap_err();
+        let error = in_temporary_file("wrong", |path| write_simplices(path, 1, &points, &fields))
+            .unwrap_err();
         assert_eq!(error.to_string(), "field multiplier has 2 values, the mesh needs 1");
     }
 }

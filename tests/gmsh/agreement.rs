@@ -22,19 +22,14 @@ fn boundary_length(mesh: &Mesh<f64, 2>) -> f64 {
         let v: Vec<u32> = mesh.facet_vertices(cell as usize, local as usize).collect();
         (mesh.vertices()[v[0] as usize] - mesh.vertices()[v[1] as usize]).norm()
     };
-    mesh.boundary()
-        .iter()
-        .map(|f| facet_length(f.cell, f.local))
-        .sum()
+    mesh.boundary().iter().map(|f| facet_length(f.cell, f.local)).sum()
 }
 
 #[test]
 fn the_disc_is_the_same_in_every_version() {
     let Some(folder) = folder() else { return };
     let read = |name: &str| {
-        gmsh::read::<f64, 2>(&folder.join(name))
-            .unwrap_or_else(|e| panic!("{name}: {e}"))
-            .mesh
+        gmsh::read::<f64, 2>(&folder.join(name)).unwrap_or_else(|e| panic!("{name}: {e}")).mesh
     };
     let discs = [
         ("disc.msh", read("disc.msh")),
@@ -45,15 +40,8 @@ fn the_disc_is_the_same_in_every_version() {
     for (name, mesh) in &discs {
         let sides = mesh.boundary().len() as f64;
         let angle = std::f64::consts::TAU / sides;
-        let (area, length) = (
-            1.125 * sides * angle.sin(),
-            3.0 * sides * (angle / 2.0).sin(),
-        );
-        assert!(
-            (volume(mesh) - area).abs() < 1e-9,
-            "{name}: area {} of {area}",
-            volume(mesh)
-        );
+        let (area, length) = (1.125 * sides * angle.sin(), 3.0 * sides * (angle / 2.0).sin());
+        assert!((volume(mesh) - area).abs() < 1e-9, "{name}: area {} of {area}", volume(mesh));
         assert!((boundary_length(mesh) - length).abs() < 1e-9, "{name}");
         assert_eq!(parts(mesh), [mesh.boundary().len(), 0, 0], "{name}");
         // Euler: vertices - edges + cells = 1
@@ -61,10 +49,7 @@ fn the_disc_is_the_same_in_every_version() {
         assert_eq!(mesh.vertices().len() + mesh.n_cells(), edges + 1, "{name}");
     }
     let [(_, text), _, (_, old)] = &discs;
-    assert_eq!(
-        (text.n_cells(), text.vertices().len()),
-        (old.n_cells(), old.vertices().len())
-    );
+    assert_eq!((text.n_cells(), text.vertices().len()), (old.n_cells(), old.vertices().len()));
     assert!((volume(text) - volume(old)).abs() < 1e-12);
     assert!((boundary_length(text) - boundary_length(old)).abs() < 1e-12);
 }
@@ -75,10 +60,7 @@ fn check<const D: usize>(name: &str, bytes: &[u8]) {
     let curved = name.contains("quadratic");
     assert_eq!(!read.warnings.is_empty(), curved, "{name}");
     for warning in &read.warnings {
-        assert!(
-            matches!(warning, GmshWarning::Straightened { order: 2, .. }),
-            "{name}: {warning}"
-        );
+        assert!(matches!(warning, GmshWarning::Straightened { order: 2, .. }), "{name}: {warning}");
     }
     eprintln!(
         "{name}: {} cells, volume {}, parts {:?}",
@@ -128,10 +110,7 @@ fn oracle<const D: usize>(bytes: &[u8]) -> (usize, Vec<Vec<[f64; D]>>) {
         }
     }
     let blocks = file.data.elements.unwrap().element_blocks;
-    let cells = blocks
-        .iter()
-        .filter(|b| b.entity_dim as usize == D)
-        .flat_map(|b| &b.elements);
+    let cells = blocks.iter().filter(|b| b.entity_dim as usize == D).flat_map(|b| &b.elements);
     let corners = |nodes: &[u64]| nodes[..=D].iter().map(|tag| points[tag]).collect();
     (points.len(), cells.map(|e| corners(&e.nodes)).collect())
 }
@@ -191,13 +170,8 @@ fn time_per_cell() {
             .boundary()
             .iter()
             .map(|f| {
-                let v: Vec<u32> = mesh
-                    .facet_vertices(f.cell as usize, f.local as usize)
-                    .collect();
-                unilateral::mesh::TaggedFacet {
-                    vertices: [v[0], v[1]],
-                    part: f.part,
-                }
+                let v: Vec<u32> = mesh.facet_vertices(f.cell as usize, f.local as usize).collect();
+                unilateral::mesh::TaggedFacet { vertices: [v[0], v[1]], part: f.part }
             })
             .collect();
         let (new, _) = time(&|| {

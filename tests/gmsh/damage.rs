@@ -56,11 +56,7 @@ fn samples() -> Vec<(Form, Vec<u8>)> {
 #[test]
 fn every_truncation_is_an_error() {
     for (_, bytes) in samples() {
-        let end = bytes
-            .windows(12)
-            .rposition(|w| w == b"$EndElements")
-            .unwrap()
-            + 12;
+        let end = bytes.windows(12).rposition(|w| w == b"$EndElements").unwrap() + 12;
         for length in 0..bytes.len() {
             for result in read_all(&bytes[..length]) {
                 assert!(result.is_err() || length >= end, "cut at {length} of {end}");
@@ -126,11 +122,7 @@ fn every_deleted_line_is_noticed() {
             // The dimension alone can be told without nodes.
             if ["MeshFormat", "Nodes", "Elements"].into_iter().any(within) {
                 let read = &read_all(damaged.as_bytes())[1..];
-                assert!(
-                    read.iter().all(Result::is_err),
-                    "line {} deleted",
-                    skipped + 1
-                );
+                assert!(read.iter().all(Result::is_err), "line {} deleted", skipped + 1);
             }
         }
     }
@@ -164,10 +156,8 @@ fn extreme_words() {
         let count = text.split(' ').count();
         for at in 0..count {
             for word in words {
-                let changed = text
-                    .split(' ')
-                    .enumerate()
-                    .map(|(k, w)| if k == at { word } else { w });
+                let changed =
+                    text.split(' ').enumerate().map(|(k, w)| if k == at { word } else { w });
                 survives(changed.collect::<Vec<_>>().join(" ").as_bytes());
             }
         }
@@ -181,13 +171,7 @@ fn extreme_binary_numbers() {
             continue;
         }
         for at in 0..bytes.len() - 8 {
-            for value in [
-                u64::MAX,
-                1 << 62,
-                1_000_000_000_000_000_000,
-                0x7fff_ffff_7fff_ffff,
-                0,
-            ] {
+            for value in [u64::MAX, 1 << 62, 1_000_000_000_000_000_000, 0x7fff_ffff_7fff_ffff, 0] {
                 let mut damaged = bytes.clone();
                 damaged[at..at + 8].copy_from_slice(&if form == Form::Big {
                     value.to_be_bytes()

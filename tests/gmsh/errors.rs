@@ -23,14 +23,8 @@ pub fn says(error: &GmshError, words: &[&str]) {
 #[track_caller]
 pub fn change(text: &str, from: &str, to: &str) -> (String, usize) {
     let lines: Vec<&str> = text.lines().collect();
-    let at = lines
-        .iter()
-        .position(|line| line.trim_end() == from)
-        .expect("the line to change");
-    let changed = lines
-        .iter()
-        .enumerate()
-        .map(|(k, line)| if k == at { to } else { line });
+    let at = lines.iter().position(|line| line.trim_end() == from).expect("the line to change");
+    let changed = lines.iter().enumerate().map(|(k, line)| if k == at { to } else { line });
     (changed.collect::<Vec<_>>().join("\n") + "\n", at + 1)
 }
 
@@ -44,10 +38,7 @@ fn unknown_node() {
     assert!(
         matches!(error, GmshError::UnknownNode { place: Place::Line(l), element: 6, node: 77 } if l == line)
     );
-    says(
-        &error,
-        &[&format!("line {line}"), "element 6", "node 77", "$Nodes"],
-    );
+    says(&error, &[&format!("line {line}"), "element 6", "node 77", "$Nodes"]);
     // of a boundary element, with sparse tags
     let (text, line) = change(FOUR, "5 40 10", "5 40 11");
     let error = fail::<2>(text.as_bytes());
@@ -67,10 +58,7 @@ fn repeated_node() {
     let mut sample = square();
     sample.nodes[1].0 = 10;
     for form in FORMS {
-        assert!(matches!(
-            fail::<2>(&sample.four(form)),
-            GmshError::RepeatedNode { node: 10, .. }
-        ));
+        assert!(matches!(fail::<2>(&sample.four(form)), GmshError::RepeatedNode { node: 10, .. }));
     }
 }
 
@@ -81,22 +69,12 @@ fn not_finite() {
     assert!(
         matches!(error, GmshError::NotFinite { place: Place::Line(l), node: 3, axis: 'y', .. } if l == line)
     );
-    says(
-        &error,
-        &[&format!("line {line}"), "node 3", "y", "NaN", "finite"],
-    );
+    says(&error, &[&format!("line {line}"), "node 3", "y", "NaN", "finite"]);
     let mut sample = square();
     sample.nodes[4].1[2] = f64::NEG_INFINITY;
     for form in FORMS {
         let error = fail::<2>(&sample.two(form));
-        assert!(matches!(
-            error,
-            GmshError::NotFinite {
-                node: 900_000,
-                axis: 'z',
-                ..
-            }
-        ));
+        assert!(matches!(error, GmshError::NotFinite { node: 900_000, axis: 'z', .. }));
     }
 }
 
@@ -107,28 +85,13 @@ fn not_flat() {
     assert!(
         matches!(error, GmshError::NotFlat { place: Place::Line(l), node: 5, axis: 'z', dimension: 2, .. } if l == line)
     );
-    says(
-        &error,
-        &[
-            &format!("line {line}"),
-            "node 5",
-            "0.25",
-            "plane of constant z",
-            "turn",
-        ],
-    );
+    says(&error, &[&format!("line {line}"), "node 5", "0.25", "plane of constant z", "turn"]);
     let mut sample = interval();
     sample.nodes[2].1[1] = 1.0;
     let error = fail::<1>(&sample.four(Form::Little));
     assert!(matches!(
         error,
-        GmshError::NotFlat {
-            place: Place::Byte(_),
-            node: 3,
-            axis: 'y',
-            dimension: 1,
-            ..
-        }
+        GmshError::NotFlat { place: Place::Byte(_), node: 3, axis: 'y', dimension: 1, .. }
     ));
     says(&error, &["byte ", "line of constant y and z"]);
 }
@@ -149,27 +112,10 @@ fn no_cells() {
 #[test]
 fn wrong_dimension() {
     let error = fail::<2>(&tetrahedron().four(Form::Big));
-    assert!(matches!(
-        error,
-        GmshError::WrongDimension {
-            asked: 2,
-            found: 3,
-            ..
-        }
-    ));
-    says(
-        &error,
-        &["dimension 3", "dimension 2", "ask for the dimension it has"],
-    );
+    assert!(matches!(error, GmshError::WrongDimension { asked: 2, found: 3, .. }));
+    says(&error, &["dimension 3", "dimension 2", "ask for the dimension it has"]);
     let error = fail::<3>(TWO.as_bytes());
-    assert!(matches!(
-        error,
-        GmshError::WrongDimension {
-            asked: 3,
-            found: 2,
-            ..
-        }
-    ));
+    assert!(matches!(error, GmshError::WrongDimension { asked: 3, found: 2, .. }));
     says(&error, &["dimension 2", "dimension 3", "physical group"]);
 }
 
@@ -197,28 +143,14 @@ fn not_simplicial() {
     );
     says(
         &error,
-        &[
-            &format!("line {line}"),
-            "element 6",
-            "quadrilateral",
-            "triangulate",
-            "Recombine",
-        ],
+        &[&format!("line {line}"), "element 6", "quadrilateral", "triangulate", "Recombine"],
     );
-    for (element_type, shape) in [
-        (3, "quadrilateral"),
-        (5, "hexahedron"),
-        (6, "prism"),
-        (7, "pyramid"),
-        (12, "hexahedron"),
-    ] {
+    for (element_type, shape) in
+        [(3, "quadrilateral"), (5, "hexahedron"), (6, "prism"), (7, "pyramid"), (12, "hexahedron")]
+    {
         let mut sample = tetrahedron();
         sample.blocks[2].element_type = element_type;
-        for bytes in FORMS
-            .map(|f| sample.four(f))
-            .into_iter()
-            .chain(FORMS.map(|f| sample.two(f)))
-        {
+        for bytes in FORMS.map(|f| sample.four(f)).into_iter().chain(FORMS.map(|f| sample.two(f))) {
             let error = fail::<3>(&bytes);
             assert!(
                 matches!(error, GmshError::NotSimplicial { element: 5, name, .. } if name == shape),
@@ -235,14 +167,8 @@ fn no_physical_groups() {
         (square(), "Physical Curve"),
         (tetrahedron(), "Physical Surface"),
     ] {
-        let mut sample = Sample {
-            names: Vec::new(),
-            ..sample
-        };
-        sample
-            .blocks
-            .iter_mut()
-            .for_each(|block| block.groups.clear());
+        let mut sample = Sample { names: Vec::new(), ..sample };
+        sample.blocks.iter_mut().for_each(|block| block.groups.clear());
         for bytes in [sample.four(Form::Text), sample.two(Form::Big)] {
             let error = match gmsh::dimension(&bytes).unwrap() {
                 1 => fail::<1>(&bytes),
@@ -262,24 +188,10 @@ fn unknown_group() {
     assert!(
         matches!(&error, GmshError::UnknownGroup { place: Place::Line(l), dimension: 1, tag: 2, name, .. } if *l == line && name == "outer wall")
     );
-    says(
-        &error,
-        &[
-            &format!("line {line}"),
-            "\"outer wall\"",
-            "dirichlet, neumann and contact",
-        ],
-    );
+    says(&error, &[&format!("line {line}"), "\"outer wall\"", "dirichlet, neumann and contact"]);
     let (text, line) = change(FOUR, "1 1 \"dirichlet\"", "1 1 \"Dirichlet\"");
     let error = fail::<2>(text.as_bytes());
-    says(
-        &error,
-        &[
-            &format!("line {line}"),
-            "\"Dirichlet\"",
-            "lower case: write dirichlet",
-        ],
-    );
+    says(&error, &[&format!("line {line}"), "\"Dirichlet\"", "lower case: write dirichlet"]);
 }
 
 #[test]
@@ -289,14 +201,5 @@ fn unnamed_group() {
     assert!(
         matches!(error, GmshError::UnnamedGroup { place: Place::Line(l), element: 3, dimension: 1, tag: 6 } if l == line)
     );
-    says(
-        &error,
-        &[
-            &format!("line {line}"),
-            "element 3",
-            "group 6",
-            "$PhysicalNames",
-            "name it",
-        ],
-    );
+    says(&error, &[&format!("line {line}"), "element 3", "group 6", "$PhysicalNames", "name it"]);
 }

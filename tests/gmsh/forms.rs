@@ -13,10 +13,7 @@ pub fn volume<const D: usize>(mesh: &Mesh<f64, D>) -> f64 {
     let x = mesh.vertices();
     let of_cell = |c: usize| {
         let cell = mesh.cell(c);
-        let e: Vec<_> = cell[1..]
-            .iter()
-            .map(|&v| x[v as usize] - x[cell[0] as usize])
-            .collect();
+        let e: Vec<_> = cell[1..].iter().map(|&v| x[v as usize] - x[cell[0] as usize]).collect();
         match D {
             1 => e[0][0].abs(),
             2 => (e[0][0] * e[1][1] - e[0][1] * e[1][0]).abs() / 2.0,
@@ -31,12 +28,8 @@ pub fn volume<const D: usize>(mesh: &Mesh<f64, D>) -> f64 {
 
 /// Number of facets of each part: dirichlet, neumann, contact.
 pub fn parts<const D: usize>(mesh: &Mesh<f64, D>) -> [usize; 3] {
-    [
-        BoundaryPart::Dirichlet,
-        BoundaryPart::Neumann,
-        BoundaryPart::Contact,
-    ]
-    .map(|part| mesh.boundary().iter().filter(|f| f.part == part).count())
+    [BoundaryPart::Dirichlet, BoundaryPart::Neumann, BoundaryPart::Contact]
+        .map(|part| mesh.boundary().iter().filter(|f| f.part == part).count())
 }
 
 /// Every form of a sample reads to the same mesh.
@@ -79,37 +72,22 @@ fn tetrahedron_in_all_forms() {
 #[test]
 fn parametric_nodes_are_read_by_their_position() {
     let plain = parse::<2>(&square().four(FORMS[0])).mesh;
-    let sample = Sample {
-        parametric: true,
-        ..square()
-    };
+    let sample = Sample { parametric: true, ..square() };
     for form in FORMS {
-        assert_eq!(
-            parse::<2>(&sample.four(form)).mesh.vertices(),
-            plain.vertices()
-        );
+        assert_eq!(parse::<2>(&sample.four(form)).mesh.vertices(), plain.vertices());
     }
 }
 
 #[test]
 fn files_made_by_hand() {
     let square = parse::<2>(include_bytes!("../data/square.msh")).mesh;
-    assert_eq!(
-        (square.n_cells(), parts(&square), volume(&square)),
-        (4, [1, 2, 1], 1.0)
-    );
+    assert_eq!((square.n_cells(), parts(&square), volume(&square)), (4, [1, 2, 1], 1.0));
     // The last cell of this one is listed for two groups.
     let again = parse::<2>(include_bytes!("../data/square_v2.msh")).mesh;
     assert_eq!(again.vertices(), square.vertices());
-    assert_eq!(
-        (again.cells(), again.boundary()),
-        (square.cells(), square.boundary())
-    );
+    assert_eq!((again.cells(), again.boundary()), (square.cells(), square.boundary()));
     let interval = parse::<1>(include_bytes!("../data/interval.msh")).mesh;
-    assert_eq!(
-        (interval.n_cells(), parts(&interval), volume(&interval)),
-        (3, [1, 1, 0], 2.0)
-    );
+    assert_eq!((interval.n_cells(), parts(&interval), volume(&interval)), (3, [1, 1, 0], 2.0));
     let body = parse::<3>(include_bytes!("../data/tetrahedron.msh")).mesh;
     assert_eq!((body.n_cells(), parts(&body)), (1, [3, 0, 1]));
 }
@@ -125,9 +103,7 @@ fn lines_may_end_as_on_windows() {
 
 #[test]
 fn single_precision() {
-    let mesh = gmsh::parse::<f32, 2>(&square().four(FORMS[1]))
-        .unwrap()
-        .mesh;
+    let mesh = gmsh::parse::<f32, 2>(&square().four(FORMS[1])).unwrap().mesh;
     assert_eq!(mesh.n_cells(), 4);
 }
 
@@ -148,23 +124,11 @@ fn elements_of_higher_order_are_read_as_straight_with_a_warning() {
         assert_eq!(read.mesh.vertices(), straight.vertices());
         assert_eq!(read.mesh.cells(), straight.cells());
         let expected = [
-            GmshWarning::Straightened {
-                name: "triangle",
-                order: 2,
-                count: 4,
-            },
-            GmshWarning::Straightened {
-                name: "line",
-                order: 2,
-                count: 4,
-            },
+            GmshWarning::Straightened { name: "triangle", order: 2, count: 4 },
+            GmshWarning::Straightened { name: "line", order: 2, count: 4 },
         ];
         assert_eq!(read.warnings, expected);
-        assert!(
-            read.warnings[0]
-                .to_string()
-                .contains("4 elements of type triangle of order 2")
-        );
+        assert!(read.warnings[0].to_string().contains("4 elements of type triangle of order 2"));
     }
 }
 

@@ -14,12 +14,7 @@ fn unreadable() {
 
 #[test]
 fn not_gmsh() {
-    for bytes in [
-        &b"solid ascii\nfacet"[..],
-        b"\x7fELF\x02\x01",
-        b"",
-        b"<?xml version=\"1.0\"?>",
-    ] {
+    for bytes in [&b"solid ascii\nfacet"[..], b"\x7fELF\x02\x01", b"", b"<?xml version=\"1.0\"?>"] {
         let error = fail::<2>(bytes);
         assert!(matches!(error, GmshError::NotGmsh { .. }));
         says(&error, &["not a Gmsh mesh", "$MeshFormat", "save"]);
@@ -38,10 +33,7 @@ fn unsupported_version() {
     }
     assert!(matches!(
         fail::<2>(b"$NOD\n3\n"),
-        GmshError::UnsupportedVersion {
-            place: Place::Line(1),
-            ..
-        }
+        GmshError::UnsupportedVersion { place: Place::Line(1), .. }
     ));
 }
 
@@ -51,10 +43,7 @@ fn unsupported_data_size() {
     let error = fail::<2>(text.as_bytes());
     assert!(matches!(
         error,
-        GmshError::UnsupportedDataSize {
-            place: Place::Line(2),
-            data_size: 4
-        }
+        GmshError::UnsupportedDataSize { place: Place::Line(2), data_size: 4 }
     ));
     says(&error, &["line 2", "4 bytes", "only of 8", "save again"]);
 }
@@ -65,13 +54,7 @@ fn byte_order() {
     bytes[20] = 13;
     let error = fail::<2>(&bytes);
     assert!(
-        matches!(
-            error,
-            GmshError::ByteOrder {
-                place: Place::Byte(20),
-                found: [13, 0, 0, 0]
-            }
-        ),
+        matches!(error, GmshError::ByteOrder { place: Place::Byte(20), found: [13, 0, 0, 0] }),
         "{error}"
     );
     says(&error, &["byte 20", "[13, 0, 0, 0]", "copy it again"]);
@@ -102,38 +85,17 @@ fn truncated() {
 fn missing_section() {
     let cut = TWO.find("$Elements").unwrap();
     let error = fail::<2>(&TWO.as_bytes()[..cut]);
-    assert!(matches!(
-        error,
-        GmshError::MissingSection {
-            section: "$Elements"
-        }
-    ));
+    assert!(matches!(error, GmshError::MissingSection { section: "$Elements" }));
     says(&error, &["$Elements", "save"]);
-    let text = TWO
-        .replace("$Nodes", "$Dots")
-        .replace("$EndNodes", "$EndDots");
-    assert!(matches!(
-        fail::<2>(text.as_bytes()),
-        GmshError::MissingSection { section: "$Nodes" }
-    ));
+    let text = TWO.replace("$Nodes", "$Dots").replace("$EndNodes", "$EndDots");
+    assert!(matches!(fail::<2>(text.as_bytes()), GmshError::MissingSection { section: "$Nodes" }));
 }
 
 #[test]
 fn partitioned() {
-    let text = FOUR.replace(
-        "$Nodes",
-        "$PartitionedEntities\n2\n$EndPartitionedEntities\n$Nodes",
-    );
+    let text = FOUR.replace("$Nodes", "$PartitionedEntities\n2\n$EndPartitionedEntities\n$Nodes");
     let error = fail::<2>(text.as_bytes());
-    assert!(
-        matches!(
-            error,
-            GmshError::Partitioned {
-                place: Place::Line(28)
-            }
-        ),
-        "{error}"
-    );
+    assert!(matches!(error, GmshError::Partitioned { place: Place::Line(28) }), "{error}");
     says(&error, &["line 28", "unpartitioned"]);
 }
 
@@ -144,21 +106,10 @@ fn not_a_number() {
     assert!(
         matches!(&error, GmshError::NotANumber { place: Place::Line(l), word, .. } if *l == line && word == "one")
     );
-    says(
-        &error,
-        &[&format!("line {line}"), "$Nodes", "coordinate y", "`one`"],
-    );
+    says(&error, &[&format!("line {line}"), "$Nodes", "coordinate y", "`one`"]);
     let (text, line) = change(FOUR, "103 30 40 90000000000", "103 30 -40 90000000000");
     let error = fail::<2>(text.as_bytes());
-    says(
-        &error,
-        &[
-            &format!("line {line}"),
-            "$Elements",
-            "tag of a node",
-            "`-40`",
-        ],
-    );
+    says(&error, &[&format!("line {line}"), "$Elements", "tag of a node", "`-40`"]);
 }
 
 #[test]
@@ -170,44 +121,22 @@ fn unexpected() {
         matches!(&error, GmshError::Unexpected { place: Place::Line(l), .. } if *l == line),
         "{error}"
     );
-    says(
-        &error,
-        &[
-            &format!("line {line}"),
-            "coordinate z",
-            "the end of the line",
-        ],
-    );
+    says(&error, &[&format!("line {line}"), "coordinate z", "the end of the line"]);
     // One too many.
     let (text, line) = change(TWO, "6 2 2 7 1 2 3 5", "6 2 2 7 1 2 3 5 4");
-    says(
-        &fail::<2>(text.as_bytes()),
-        &[&format!("line {line}"), "the end of the line", "`4`"],
-    );
+    says(&fail::<2>(text.as_bytes()), &[&format!("line {line}"), "the end of the line", "`4`"]);
     // The wrong end.
     let (text, line) = change(TWO, "$EndNodes", "$EndNode");
-    says(
-        &fail::<2>(text.as_bytes()),
-        &[&format!("line {line}"), "`$EndNodes`", "`$EndNode`"],
-    );
+    says(&fail::<2>(text.as_bytes()), &[&format!("line {line}"), "`$EndNodes`", "`$EndNode`"]);
     // A name without quotes.
     let (text, line) = change(TWO, "1 3 \"contact\"", "1 3 contact");
-    says(
-        &fail::<2>(text.as_bytes()),
-        &[&format!("line {line}"), "double quotes", "`contact`"],
-    );
+    says(&fail::<2>(text.as_bytes()), &[&format!("line {line}"), "double quotes", "`contact`"]);
     // Triangles on a curve.
     let (text, line) = change(FOUR, "2 1 2 4", "1 1 2 4");
-    says(
-        &fail::<2>(text.as_bytes()),
-        &[&format!("line {}", line + 1), "dimension 1", "triangle"],
-    );
+    says(&fail::<2>(text.as_bytes()), &[&format!("line {}", line + 1), "dimension 1", "triangle"]);
     // Words between sections.
     let text = TWO.replace("$Elements", "hello\n$Elements");
-    says(
-        &fail::<2>(text.as_bytes()),
-        &["line 19", "beginning of a section", "`hello`"],
-    );
+    says(&fail::<2>(text.as_bytes()), &["line 19", "beginning of a section", "`hello`"]);
 }
 
 #[test]
@@ -218,21 +147,11 @@ fn counts() {
         matches!(&error, GmshError::Count { place: Place::Line(18), announced: 6, found, .. } if found == "5"),
         "{error}"
     );
-    says(
-        &error,
-        &["line 18", "$Nodes", "6 nodes", "5 found", "damaged"],
-    );
+    says(&error, &["line 18", "$Nodes", "6 nodes", "5 found", "damaged"]);
     let (text, _) = change(TWO, "5", "4");
     let error = fail::<2>(text.as_bytes());
     assert!(
-        matches!(
-            &error,
-            GmshError::Count {
-                place: Place::Line(17),
-                announced: 4,
-                ..
-            }
-        ),
+        matches!(&error, GmshError::Count { place: Place::Line(17), announced: 4, .. }),
         "{error}"
     );
     // The blocks do not add up.
@@ -243,10 +162,7 @@ fn counts() {
         "{error}"
     );
     let (text, _) = change(FOUR, "6 9 1 104", "6 8 1 104");
-    assert!(matches!(
-        fail::<2>(text.as_bytes()),
-        GmshError::Count { announced: 8, .. }
-    ));
+    assert!(matches!(fail::<2>(text.as_bytes()), GmshError::Count { announced: 8, .. }));
 }
 
 #[test]
@@ -254,13 +170,7 @@ fn absurd_counts_take_no_memory() {
     let (text, _) = change(TWO, "5", "1000000000000000000");
     let error = fail::<2>(text.as_bytes());
     assert!(
-        matches!(
-            error,
-            GmshError::Count {
-                announced: 1_000_000_000_000_000_000,
-                ..
-            }
-        ),
+        matches!(error, GmshError::Count { announced: 1_000_000_000_000_000_000, .. }),
         "{error}"
     );
     let mut bytes = square().four(Form::Little);

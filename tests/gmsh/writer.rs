@@ -89,19 +89,11 @@ impl Out {
 impl Sample {
     /// The file in MSH 4.1.
     pub fn four(&self, form: Form) -> Vec<u8> {
-        let mut out = Out {
-            form,
-            bytes: Vec::new(),
-        };
+        let mut out = Out { form, bytes: Vec::new() };
         out.header("4.1", &self.names);
         out.text("$Entities\n");
         for dimension in 0..4 {
-            out.size(
-                self.blocks
-                    .iter()
-                    .filter(|b| b.dimension == dimension)
-                    .count() as u64,
-            );
+            out.size(self.blocks.iter().filter(|b| b.dimension == dimension).count() as u64);
         }
         out.end_line();
         for dimension in 0..4 {
@@ -175,10 +167,7 @@ impl Sample {
 
     /// The file in MSH 2.2; an element in several groups is repeated, as Gmsh does.
     pub fn two(&self, form: Form) -> Vec<u8> {
-        let mut out = Out {
-            form,
-            bytes: Vec::new(),
-        };
+        let mut out = Out { form, bytes: Vec::new() };
         out.header("2.2", &self.names);
         out.text(&format!("$Nodes\n{}\n", self.nodes.len()));
         for (tag, x) in &self.nodes {
@@ -187,19 +176,12 @@ impl Sample {
             out.end_line();
         }
         out.close("Nodes");
-        let count: usize = self
-            .blocks
-            .iter()
-            .map(|b| b.elements.len() * b.groups.len().max(1))
-            .sum();
+        let count: usize =
+            self.blocks.iter().map(|b| b.elements.len() * b.groups.len().max(1)).sum();
         out.text(&format!("$Elements\n{count}\n"));
         for block in &self.blocks {
             let none = vec![0];
-            let groups = if block.groups.is_empty() {
-                &none
-            } else {
-                &block.groups
-            };
+            let groups = if block.groups.is_empty() { &none } else { &block.groups };
             if form != Form::Text {
                 out.int(block.element_type);
                 out.int((block.elements.len() * groups.len()) as i32);
@@ -226,18 +208,8 @@ impl Sample {
 
 fn block(dimension: usize, entity: i32, groups: &[i32], first: u64, elements: &[&[u64]]) -> Block {
     let element_type = [15, 1, 2, 4][dimension];
-    let elements = elements
-        .iter()
-        .zip(first..)
-        .map(|(nodes, tag)| (tag, nodes.to_vec()))
-        .collect();
-    Block {
-        dimension,
-        entity,
-        groups: groups.to_vec(),
-        element_type,
-        elements,
-    }
+    let elements = elements.iter().zip(first..).map(|(nodes, tag)| (tag, nodes.to_vec())).collect();
+    Block { dimension, entity, groups: groups.to_vec(), element_type, elements }
 }
 
 /// The interval from 0 to 2, one end fixed and one free.
@@ -245,11 +217,7 @@ pub fn interval() -> Sample {
     let x = [0.0, 2.0, 0.5, 1.25];
     Sample {
         names: vec![(0, 1, "dirichlet"), (0, 2, "neumann"), (1, 3, "string")],
-        nodes: x
-            .iter()
-            .zip(1..)
-            .map(|(&x, tag)| (tag, [x, 0.0, 0.0]))
-            .collect(),
+        nodes: x.iter().zip(1..).map(|(&x, tag)| (tag, [x, 0.0, 0.0])).collect(),
         blocks: vec![
             block(0, 1, &[1], 1, &[&[1]]),
             block(0, 2, &[2], 2, &[&[2]]),
@@ -262,12 +230,7 @@ pub fn interval() -> Sample {
 /// The unit square of four triangles, with sparse tags of nodes, in two groups of cells.
 pub fn square() -> Sample {
     Sample {
-        names: vec![
-            (1, 1, "dirichlet"),
-            (1, 2, "neumann"),
-            (1, 3, "contact"),
-            (2, 7, "domain"),
-        ],
+        names: vec![(1, 1, "dirichlet"), (1, 2, "neumann"), (1, 3, "contact"), (2, 7, "domain")],
         nodes: vec![
             (10, [0.0, 0.0, 0.0]),
             (20, [1.0, 0.0, 0.0]),

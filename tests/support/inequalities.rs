@@ -25,11 +25,7 @@ impl Random {
 
 /// A sparse matrix from dense rows.
 pub fn sparse<T: Real>(dense: &[Vec<f64>]) -> SparseMatrix<T> {
-    let mut matrix = SparseMatrix {
-        row_starts: vec![0],
-        columns: vec![],
-        values: vec![],
-    };
+    let mut matrix = SparseMatrix { row_starts: vec![0], columns: vec![], values: vec![] };
     for row in dense {
         for (j, &a) in row.iter().enumerate().filter(|(_, a)| **a != 0.0) {
             matrix.columns.push(j as u32);
@@ -46,22 +42,12 @@ pub fn inequality<T: Real>(
     bounds: Vec<Bound<T>>,
 ) -> Inequality<T> {
     let load = load.iter().map(|&b| T::lit(b)).collect();
-    Inequality {
-        matrix,
-        symmetric: true,
-        load,
-        bounds,
-        places: vec![],
-    }
+    Inequality { matrix, symmetric: true, load, bounds, places: vec![] }
 }
 
 /// The five-point matrix of minus the Laplacian times `h^2` on `n x m` nodes.
 pub fn laplacian<T: Real>(n: usize, m: usize, diagonal: f64) -> SparseMatrix<T> {
-    let mut matrix = SparseMatrix {
-        row_starts: vec![0],
-        columns: vec![],
-        values: vec![],
-    };
+    let mut matrix = SparseMatrix { row_starts: vec![0], columns: vec![], values: vec![] };
     for j in 0..m {
         for i in 0..n {
             let k = j * n + i;
@@ -74,9 +60,7 @@ pub fn laplacian<T: Real>(n: usize, m: usize, diagonal: f64) -> SparseMatrix<T> 
             ];
             for column in neighbours.into_iter().flatten() {
                 matrix.columns.push(column as u32);
-                matrix
-                    .values
-                    .push(T::lit(if column == k { diagonal } else { -1.0 }));
+                matrix.values.push(T::lit(if column == k { diagonal } else { -1.0 }));
             }
             matrix.row_starts.push(matrix.columns.len() as u32);
         }
@@ -104,16 +88,12 @@ pub fn membrane<T: Real>(
 /// A random symmetric positive definite matrix, far from an M-matrix: of the given rank, and a
 /// multiple of the identity.
 pub fn random_definite(n: usize, rank: usize, shift: f64, random: &mut Random) -> Vec<Vec<f64>> {
-    let b: Vec<Vec<f64>> = (0..n)
-        .map(|_| (0..rank).map(|_| random.signed()).collect())
-        .collect();
+    let b: Vec<Vec<f64>> = (0..n).map(|_| (0..rank).map(|_| random.signed()).collect()).collect();
     let entry = |i: usize, j: usize| {
         let product: f64 = (0..rank).map(|k| b[i][k] * b[j][k]).sum();
         product + if i == j { shift } else { 0.0 }
     };
-    (0..n)
-        .map(|i| (0..n).map(|j| entry(i, j)).collect())
-        .collect()
+    (0..n).map(|i| (0..n).map(|j| entry(i, j)).collect()).collect()
 }
 
 /// A random matrix dominant by rows, not symmetric: a P-matrix.
@@ -134,11 +114,8 @@ pub fn penalised_string(cells: usize, penalty: f64) -> SparseMatrix<f64> {
     let n = 2 * cells;
     let mut dense = vec![vec![0.0; n]; n];
     for k in 0..n {
-        let (inside, across) = if k % 2 == 0 {
-            (k + 1, k.checked_sub(1))
-        } else {
-            (k - 1, Some(k + 1))
-        };
+        let (inside, across) =
+            if k % 2 == 0 { (k + 1, k.checked_sub(1)) } else { (k - 1, Some(k + 1)) };
         dense[k][k] = stiffness + penalty;
         dense[k][inside] = -stiffness;
         if let Some(j) = across.filter(|&j| j < n) {
@@ -169,11 +146,7 @@ pub fn random_bounds(n: usize, random: &mut Random) -> Vec<Bound<f64>> {
 /// and for those dominant by rows.
 pub fn projected_gauss_seidel(inequality: &Inequality<f64>) -> Vec<f64> {
     let n = inequality.size();
-    let mut u: Vec<f64> = inequality
-        .bounds
-        .iter()
-        .map(|bound| bound.nearest(0.0))
-        .collect();
+    let mut u: Vec<f64> = inequality.bounds.iter().map(|bound| bound.nearest(0.0)).collect();
     for _ in 0..200_000 {
         let mut moved = 0.0_f64;
         for i in 0..n {
@@ -193,9 +166,7 @@ pub fn projected_gauss_seidel(inequality: &Inequality<f64>) -> Vec<f64> {
 fn eliminate(mut a: Vec<Vec<f64>>, mut b: Vec<f64>) -> Vec<f64> {
     let n = b.len();
     for k in 0..n {
-        let pivot = (k..n)
-            .max_by(|&i, &j| a[i][k].abs().total_cmp(&a[j][k].abs()))
-            .unwrap();
+        let pivot = (k..n).max_by(|&i, &j| a[i][k].abs().total_cmp(&a[j][k].abs())).unwrap();
         a.swap(k, pivot);
         b.swap(k, pivot);
         for i in k + 1..n {
@@ -220,21 +191,14 @@ pub fn textbook_cycles(a: &[Vec<f64>], b: &[f64]) -> bool {
     let mut seen = vec![state.clone()];
     loop {
         let open: Vec<usize> = (0..n).filter(|&i| state[i] == Contact::Open).collect();
-        let block = open
-            .iter()
-            .map(|&i| open.iter().map(|&j| a[i][j]).collect())
-            .collect();
+        let block = open.iter().map(|&i| open.iter().map(|&j| a[i][j]).collect()).collect();
         let solution = eliminate(block, open.iter().map(|&i| b[i]).collect());
         let mut u = vec![0.0; n];
         open.iter().zip(solution).for_each(|(&i, x)| u[i] = x);
         let next: Vec<Contact> = (0..n)
             .map(|i| {
                 let force: f64 = (0..n).map(|j| a[i][j] * u[j]).sum::<f64>() - b[i];
-                if if state[i] == Contact::Open {
-                    u[i] < 0.0
-                } else {
-                    force >= 0.0
-                } {
+                if if state[i] == Contact::Open { u[i] < 0.0 } else { force >= 0.0 } {
                     Contact::Lower
                 } else {
                     Contact::Open
@@ -254,8 +218,5 @@ pub fn textbook_cycles(a: &[Vec<f64>], b: &[f64]) -> bool {
 
 /// The largest difference.
 pub fn distance<T: Real>(u: &[T], v: &[f64]) -> f64 {
-    u.iter()
-        .zip(v)
-        .map(|(u, v)| (u.to_f64() - v).abs())
-        .fold(0.0, f64::max)
+    u.iter().zip(v).map(|(u, v)| (u.to_f64() - v).abs()).fold(0.0, f64::max)
 }

@@ -28,7 +28,8 @@ impl Random {
 /// The unit box, Dirichlet but for Neumann at the upper end of the first axis and contact at the
 /// lower end of the last one (where there are two axes).
 pub fn mixed_box<const D: usize>() -> BoxDomain<D> {
-    let b = BoxDomain::dirichlet(Point::zeros(), Point::repeat(1.0)).side(0, 1, BoundaryPart::Neumann);
+    let b =
+        BoxDomain::dirichlet(Point::zeros(), Point::repeat(1.0)).side(0, 1, BoundaryPart::Neumann);
     if D > 1 { b.side(D - 1, 0, BoundaryPart::Contact) } else { b }
 }
 
@@ -45,7 +46,8 @@ impl<const D: usize> Raw<D> {
         let mut vertices = mesh.vertices().to_vec();
         for x in &mut vertices {
             for k in 0..D {
-                let inside = (0..D).all(|j| x[j] > domain.lower[j] + 1e-9 && x[j] < domain.upper[j] - 1e-9);
+                let inside =
+                    (0..D).all(|j| x[j] > domain.lower[j] + 1e-9 && x[j] < domain.upper[j] - 1e-9);
                 let shift = size / n as f64 * (random.unit() - 0.5);
                 if inside {
                     x[k] += shift;
@@ -79,8 +81,10 @@ impl<const D: usize> Raw<D> {
         let order = permutation(self.cells.len() / (D + 1), random);
         let mut cells = Vec::new();
         for c in order {
-            let mut cell: Vec<u32> =
-                self.cells[c * (D + 1)..(c + 1) * (D + 1)].iter().map(|&v| p[v as usize] as u32).collect();
+            let mut cell: Vec<u32> = self.cells[c * (D + 1)..(c + 1) * (D + 1)]
+                .iter()
+                .map(|&v| p[v as usize] as u32)
+                .collect();
             for k in (1..=D).rev() {
                 cell.swap(k, random.below(k + 1));
             }
@@ -89,7 +93,10 @@ impl<const D: usize> Raw<D> {
         let boundary = self
             .boundary
             .iter()
-            .map(|f| TaggedFacet { vertices: f.vertices.map(|v| p[v as usize] as u32), part: f.part })
+            .map(|f| TaggedFacet {
+                vertices: f.vertices.map(|v| p[v as usize] as u32),
+                part: f.part,
+            })
             .collect();
         Self { vertices, cells, boundary }
     }

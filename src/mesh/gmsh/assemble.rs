@@ -18,34 +18,19 @@ pub(super) fn assemble<T: Real, const D: usize>(
     let (cells, elements) = cells_of::<D>(contents, &index)?;
     check_flat::<D>(contents, &cells)?;
     let (boundary, facets) = tagged_facets::<D>(contents, &index)?;
-    let vertices = contents
-        .nodes
-        .points
-        .iter()
-        .map(|x| Point::from_fn(|k, _| x[k]))
-        .collect();
+    let vertices = contents.nodes.points.iter().map(|x| Point::from_fn(|k, _| x[k])).collect();
     let mesh = Mesh::new(vertices, cells, &boundary).map_err(|source| {
-        let cells = source
-            .cells()
-            .into_iter()
-            .filter_map(|cell| contents.element(D, *elements.get(cell)?));
-        let facet = source
-            .tagged_facet()
-            .and_then(|tag| contents.element(D - 1, *facets.get(tag)?));
+        let cells =
+            source.cells().into_iter().filter_map(|cell| contents.element(D, *elements.get(cell)?));
+        let facet =
+            source.tagged_facet().and_then(|tag| contents.element(D - 1, *facets.get(tag)?));
         let nodes = vertices_of(&source)
             .iter()
             .filter_map(|&v| contents.nodes.tags.get(v).copied())
             .collect();
-        GmshError::Mesh {
-            elements: cells.chain(facet).collect(),
-            nodes,
-            source,
-        }
+        GmshError::Mesh { elements: cells.chain(facet).collect(), nodes, source }
     })?;
-    Ok(GmshMesh {
-        mesh,
-        warnings: warnings(contents, D),
-    })
+    Ok(GmshMesh { mesh, warnings: warnings(contents, D) })
 }
 
 fn check_dimension(contents: &Contents, asked: usize) -> Result<(), GmshError> {
@@ -58,11 +43,7 @@ fn check_dimension(contents: &Contents, asked: usize) -> Result<(), GmshError> {
     } else {
         "ask for the dimension it has, or remove the larger elements"
     };
-    Err(GmshError::WrongDimension {
-        asked,
-        found,
-        advice,
-    })
+    Err(GmshError::WrongDimension { asked, found, advice })
 }
 
 /// Insists that every named group of boundary elements names a part of the boundary.
@@ -74,13 +55,7 @@ fn check_group_names(contents: &Contents, dimension: usize) -> Result<(), GmshEr
         let meant = BoundaryPart::from_name(&group.name.trim().to_lowercase());
         let hint = meant.map_or(String::new(), |part| format!(": write {}", part.name()));
         let (place, name) = (group.place, group.name.clone());
-        return Err(GmshError::UnknownGroup {
-            place,
-            dimension,
-            tag,
-            name,
-            hint,
-        });
+        return Err(GmshError::UnknownGroup { place, dimension, tag, name, hint });
     }
     Ok(())
 }
@@ -106,9 +81,7 @@ fn cells_of<const D: usize>(
             }
             for &node in corners {
                 cells.push(
-                    index
-                        .find(node)
-                        .ok_or_else(|| unknown_node(contents, D, element, node))?,
+                    index.find(node).ok_or_else(|| unknown_node(contents, D, element, node))?,
                 );
             }
             elements.push(element);
@@ -120,11 +93,7 @@ fn cells_of<const D: usize>(
 fn unknown_node(contents: &Contents, dimension: usize, element: usize, node: u64) -> GmshError {
     let simplices = &contents.simplices[dimension];
     let place = contents.place_of(simplices.positions[element]);
-    GmshError::UnknownNode {
-        place,
-        element: simplices.tags[element],
-        node,
-    }
+    GmshError::UnknownNode { place, element: simplices.tags[element], node }
 }
 
 /// The elements of the boundary that are in a group, and which element each of them is.
@@ -138,10 +107,9 @@ fn tagged_facets<const D: usize>(
     for (run, membership) in simplices.runs() {
         let of_element;
         let groups: &[i64] = match membership {
-            Membership::Entity(entity) => contents
-                .entities
-                .get(&(D - 1, entity))
-                .map_or(&[], Vec::as_slice),
+            Membership::Entity(entity) => {
+                contents.entities.get(&(D - 1, entity)).map_or(&[], Vec::as_slice)
+            }
             Membership::Group(0) => &[],
             Membership::Group(group) => {
                 of_element = [group];
@@ -168,9 +136,8 @@ fn tagged_facets<const D: usize>(
         for element in run.filter(|_| !parts.is_empty()) {
             let mut vertices = [0; D];
             for (vertex, &node) in vertices.iter_mut().zip(&simplices.corners[element * D..]) {
-                *vertex = index
-                    .find(node)
-                    .ok_or_else(|| unknown_node(contents, D - 1, element, node))?;
+                *vertex =
+                    index.find(node).ok_or_else(|| unknown_node(contents, D - 1, element, node))?;
             }
             for &part in &parts {
                 boundary.push(TaggedFacet { vertices, part });
@@ -179,11 +146,8 @@ fn tagged_facets<const D: usize>(
         }
     }
     if boundary.is_empty() {
-        let (elements, entity) = [
-            ("point", "Point"),
-            ("line", "Curve"),
-            ("triangle", "Surface"),
-        ][D - 1];
+        let (elements, entity) =
+            [("point", "Point"), ("line", "Curve"), ("triangle", "Surface")][D - 1];
         return Err(GmshError::NoPhysicalGroups { elements, entity });
     }
     Ok((boundary, elements))
@@ -197,9 +161,7 @@ fn check_flat<const D: usize>(contents: &Contents, cells: &[u32]) -> Result<(), 
     };
     let reference = points[first as usize];
     let extent = cells.iter().fold(0.0, |largest: f64, &v| {
-        (0..D).fold(largest, |largest, k| {
-            largest.max((points[v as usize][k] - reference[k]).abs())
-        })
+        (0..D).fold(largest, |largest, k| largest.max((points[v as usize][k] - reference[k]).abs()))
     });
     for axis in D..3 {
         // Room for rounding in the geometry: relative to the mesh, and to how far off it lies.
@@ -217,11 +179,7 @@ fn check_flat<const D: usize>(contents: &Contents, cells: &[u32]) -> Result<(), 
                 value,
                 constant: reference[axis],
                 dimension: D,
-                within: if D == 1 {
-                    "a line of constant y and z"
-                } else {
-                    "a plane of constant z"
-                },
+                within: if D == 1 { "a line of constant y and z" } else { "a plane of constant z" },
             });
         }
     }
@@ -245,13 +203,7 @@ fn vertices_of(error: &MeshError) -> Vec<usize> {
 }
 
 fn warnings(contents: &Contents, dimension: usize) -> Vec<GmshWarning> {
-    let name = [
-        Shape::Point,
-        Shape::Line,
-        Shape::Triangle,
-        Shape::Tetrahedron,
-    ]
-    .map(Shape::name);
+    let name = [Shape::Point, Shape::Line, Shape::Triangle, Shape::Tetrahedron].map(Shape::name);
     let straightened = |d: usize| {
         let curved = contents.simplices[d].curved.iter();
         curved.map(move |(&order, &count)| GmshWarning::Straightened {
@@ -260,7 +212,5 @@ fn warnings(contents: &Contents, dimension: usize) -> Vec<GmshWarning> {
             count,
         })
     };
-    straightened(dimension)
-        .chain(straightened(dimension - 1))
-        .collect()
+    straightened(dimension).chain(straightened(dimension - 1)).collect()
 }

@@ -17,10 +17,7 @@ impl Source<'_> {
     }
     /// Steps over binary numbers.
     pub(super) fn skip_bytes(&mut self, count: u64, size: usize) -> Result<(), GmshError> {
-        match usize::try_from(count)
-            .ok()
-            .and_then(|count| count.checked_mul(size))
-        {
+        match usize::try_from(count).ok().and_then(|count| count.checked_mul(size)) {
             Some(length) if length <= self.remaining() => {
                 self.at += length;
                 Ok(())
@@ -40,10 +37,6 @@ impl Source<'_> {
     pub(super) fn binary_integer(&mut self) -> Result<i64, GmshError> {
         let bytes = self.bytes()?;
         let big = self.encoding == Encoding::BigEndian;
-        Ok(i64::from(if big {
-            i32::from_be_bytes(bytes)
-        } else {
-            i32::from_le_bytes(bytes)
-        }))
+        Ok(i64::from(if big { i32::from_be_bytes(bytes) } else { i32::from_le_bytes(bytes) }))
     }
 }

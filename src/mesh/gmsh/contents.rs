@@ -88,11 +88,7 @@ impl Simplices {
         order: u8,
         membership: Membership,
     ) {
-        if self
-            .memberships
-            .last()
-            .is_none_or(|&(_, last)| last != membership)
-        {
+        if self.memberships.last().is_none_or(|&(_, last)| last != membership) {
             self.memberships.push((self.tags.len(), membership));
         }
         if order > 1 {
@@ -103,12 +99,8 @@ impl Simplices {
     }
     /// Runs of consecutive elements with the same groups.
     pub(super) fn runs(&self) -> impl Iterator<Item = (std::ops::Range<usize>, Membership)> + '_ {
-        let ends = self
-            .memberships
-            .iter()
-            .skip(1)
-            .map(|&(start, _)| start)
-            .chain([self.tags.len()]);
+        let ends =
+            self.memberships.iter().skip(1).map(|&(start, _)| start).chain([self.tags.len()]);
         self.memberships
             .iter()
             .zip(ends)
@@ -141,35 +133,23 @@ impl Contents {
     }
     /// The largest dimension of an element that is not a point.
     pub(super) fn dimension(&self) -> Result<usize, GmshError> {
-        (1..=3)
-            .rev()
-            .find(|&d| !self.simplices[d].tags.is_empty())
-            .ok_or(GmshError::NoCells)
+        (1..=3).rev().find(|&d| !self.simplices[d].tags.is_empty()).ok_or(GmshError::NoCells)
     }
     pub(super) fn place_of(&self, position: usize) -> Place {
-        if self.binary {
-            Place::Byte(position)
-        } else {
-            Place::Line(position)
-        }
+        if self.binary { Place::Byte(position) } else { Place::Line(position) }
     }
     /// An element by its position in the list of its dimension.
     pub(super) fn element(&self, dimension: usize, index: usize) -> Option<ElementPlace> {
         let simplices = &self.simplices[dimension];
         let place = self.place_of(*simplices.positions.get(index)?);
-        Some(ElementPlace {
-            element: *simplices.tags.get(index)?,
-            place,
-        })
+        Some(ElementPlace { element: *simplices.tags.get(index)?, place })
     }
 }
 
 /// The kind of an element type, whose elements need not be simplices.
 pub(super) fn known_kind(source: &Source, element_type: i64) -> Result<Kind, GmshError> {
-    Kind::from_type(element_type).ok_or_else(|| GmshError::UnknownElementType {
-        place: source.place(),
-        element_type,
-    })
+    Kind::from_type(element_type)
+        .ok_or_else(|| GmshError::UnknownElementType { place: source.place(), element_type })
 }
 
 /// The dimension of a simplex; an error that names the element for anything else.
@@ -179,12 +159,10 @@ pub(super) fn simplex_dimension(
     element_type: i64,
     element: u64,
 ) -> Result<usize, GmshError> {
-    shape
-        .simplex_dimension()
-        .ok_or_else(|| GmshError::NotSimplicial {
-            place: source.place(),
-            element,
-            element_type,
-            name: shape.name(),
-        })
+    shape.simplex_dimension().ok_or_else(|| GmshError::NotSimplicial {
+        place: source.place(),
+        element,
+        element_type,
+        name: shape.name(),
+    })
 }

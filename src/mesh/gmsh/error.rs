@@ -280,11 +280,7 @@ fn in_file(elements: &[ElementPlace], nodes: &[u64]) -> String {
         let tags: Vec<String> = nodes.iter().map(ToString::to_string).collect();
         parts.push(format!("nodes {}", tags.join(", ")));
     }
-    if parts.is_empty() {
-        String::new()
-    } else {
-        format!("; in the file: {}", parts.join(", "))
-    }
+    if parts.is_empty() { String::new() } else { format!("; in the file: {}", parts.join(", ")) }
 }
 
 /// What a caller should know about a mesh that was read all the same.

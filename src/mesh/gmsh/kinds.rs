@@ -57,11 +57,7 @@ impl Kind {
         // Orders six to ten came late and have numbers of their own.
         let order = |first: i64, order: i64| (element_type - first + order) as u8;
         Some(match element_type {
-            15 => Kind {
-                shape: Shape::Point,
-                order: 1,
-                nodes: 1,
-            },
+            15 => Kind { shape: Shape::Point, order: 1, nodes: 1 },
             1 => line(1),
             8 => line(2),
             26..=28 => line(order(26, 3)),
@@ -93,55 +89,31 @@ impl Kind {
 }
 
 fn line(order: u8) -> Kind {
-    Kind {
-        shape: Shape::Line,
-        order,
-        nodes: usize::from(order) + 1,
-    }
+    Kind { shape: Shape::Line, order, nodes: usize::from(order) + 1 }
 }
 
 fn triangle(order: u8) -> Kind {
     let k = usize::from(order);
-    Kind {
-        shape: Shape::Triangle,
-        order,
-        nodes: (k + 1) * (k + 2) / 2,
-    }
+    Kind { shape: Shape::Triangle, order, nodes: (k + 1) * (k + 2) / 2 }
 }
 
 /// Without nodes inside the triangle.
 fn triangle_edges(order: u8) -> Kind {
-    Kind {
-        shape: Shape::Triangle,
-        order,
-        nodes: 3 * usize::from(order),
-    }
+    Kind { shape: Shape::Triangle, order, nodes: 3 * usize::from(order) }
 }
 
 fn tetrahedron(order: u8) -> Kind {
     let k = usize::from(order);
-    Kind {
-        shape: Shape::Tetrahedron,
-        order,
-        nodes: (k + 1) * (k + 2) * (k + 3) / 6,
-    }
+    Kind { shape: Shape::Tetrahedron, order, nodes: (k + 1) * (k + 2) * (k + 3) / 6 }
 }
 
 /// Without nodes inside the tetrahedron and its faces.
 fn tetrahedron_edges(order: u8) -> Kind {
-    Kind {
-        shape: Shape::Tetrahedron,
-        order,
-        nodes: 6 * usize::from(order) - 2,
-    }
+    Kind { shape: Shape::Tetrahedron, order, nodes: 6 * usize::from(order) - 2 }
 }
 
 fn other(shape: Shape) -> Kind {
-    Kind {
-        shape,
-        order: 1,
-        nodes: 0,
-    }
+    Kind { shape, order: 1, nodes: 0 }
 }
 
 #[cfg(test)]

@@ -85,10 +85,8 @@ pub struct GmshMesh<T, const D: usize> {
 /// # Errors
 /// Every [`GmshError`].
 pub fn read<T: Real, const D: usize>(path: &Path) -> Result<GmshMesh<T, D>, GmshError> {
-    let bytes = std::fs::read(path).map_err(|source| GmshError::Unreadable {
-        path: path.into(),
-        source,
-    })?;
+    let bytes = std::fs::read(path)
+        .map_err(|source| GmshError::Unreadable { path: path.into(), source })?;
     parse(&bytes)
 }
 

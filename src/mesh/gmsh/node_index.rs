@@ -22,16 +22,9 @@ impl NodeIndex {
         let tags = &contents.nodes.tags;
         let count = tags.len();
         if count >= ABSENT as usize {
-            let source = MeshError::TooLarge {
-                what: "vertices",
-                count,
-                limit: ABSENT as usize - 1,
-            };
-            return Err(GmshError::Mesh {
-                source,
-                elements: Vec::new(),
-                nodes: Vec::new(),
-            });
+            let source =
+                MeshError::TooLarge { what: "vertices", count, limit: ABSENT as usize - 1 };
+            return Err(GmshError::Mesh { source, elements: Vec::new(), nodes: Vec::new() });
         }
         let largest = tags.iter().copied().max().unwrap_or(0);
         let repeated = |first: u32, second: u32| GmshError::RepeatedNode {

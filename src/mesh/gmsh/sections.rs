@@ -99,20 +99,13 @@ fn read_header(source: &mut Source) -> Result<Version, GmshError> {
                 source.skip_section()?;
             }
             b"$NOD" => {
-                return Err(GmshError::UnsupportedVersion {
-                    place,
-                    version: "1".into(),
-                });
+                return Err(GmshError::UnsupportedVersion { place, version: "1".into() });
             }
             b"" => {
-                return Err(GmshError::NotGmsh {
-                    found: "the end of the file".into(),
-                });
+                return Err(GmshError::NotGmsh { found: "the end of the file".into() });
             }
             word => {
-                return Err(GmshError::NotGmsh {
-                    found: format!("`{}`", excerpt(word)),
-                });
+                return Err(GmshError::NotGmsh { found: format!("`{}`", excerpt(word)) });
             }
         }
     }
@@ -183,23 +176,14 @@ fn read_names(source: &mut Source, contents: &mut Contents) -> Result<(), GmshEr
         };
         let tag = source.text_integer("the tag of a physical group")?;
         let line = source.rest_of_line().trim_ascii();
-        let name = line
-            .strip_prefix(b"\"")
-            .and_then(|rest| rest.strip_suffix(b"\""));
+        let name = line.strip_prefix(b"\"").and_then(|rest| rest.strip_suffix(b"\""));
         let Some(name) = name else {
             let (section, expected) = (source.section.clone(), "a name in double quotes".into());
             let found = format!("`{}`", excerpt(line));
-            return Err(GmshError::Unexpected {
-                place,
-                section,
-                expected,
-                found,
-            });
+            return Err(GmshError::Unexpected { place, section, expected, found });
         };
         let name = String::from_utf8_lossy(name).into_owned();
-        contents
-            .groups
-            .insert((dimension, tag), Group { name, place });
+        contents.groups.insert((dimension, tag), Group { name, place });
     }
     source.end_section("physical names", announced)
 }

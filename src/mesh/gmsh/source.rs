@@ -33,19 +33,8 @@ pub(super) struct Source<'a> {
 impl<'a> Source<'a> {
     pub(super) fn new(bytes: &'a [u8]) -> Self {
         // Editors put a byte order mark in front of text.
-        let at = if bytes.starts_with(b"\xef\xbb\xbf") {
-            3
-        } else {
-            0
-        };
-        Source {
-            bytes,
-            at,
-            line: 1,
-            last: at,
-            encoding: Encoding::Text,
-            section: String::new(),
-        }
+        let at = if bytes.starts_with(b"\xef\xbb\xbf") { 3 } else { 0 };
+        Source { bytes, at, line: 1, last: at, encoding: Encoding::Text, section: String::new() }
     }
     pub(super) fn is_binary(&self) -> bool {
         self.encoding != Encoding::Text
@@ -56,19 +45,11 @@ impl<'a> Source<'a> {
     }
     /// A position in the way of this file.
     pub(super) fn place_of(&self, position: usize) -> Place {
-        if self.is_binary() {
-            Place::Byte(position)
-        } else {
-            Place::Line(position)
-        }
+        if self.is_binary() { Place::Byte(position) } else { Place::Line(position) }
     }
     /// Where the word or number read last stands.
     pub(super) fn place(&self) -> Place {
-        self.place_of(if self.is_binary() {
-            self.last
-        } else {
-            self.line
-        })
+        self.place_of(if self.is_binary() { self.last } else { self.line })
     }
     /// Number of bytes not yet read.
     pub(super) fn remaining(&self) -> usize {
@@ -81,15 +62,8 @@ impl<'a> Source<'a> {
     // Errors at the present position.
 
     pub(super) fn truncated(&self) -> GmshError {
-        let place = self.place_of(if self.is_binary() {
-            self.bytes.len()
-        } else {
-            self.line
-        });
-        GmshError::Truncated {
-            place,
-            section: self.section.clone(),
-        }
+        let place = self.place_of(if self.is_binary() { self.bytes.len() } else { self.line });
+        GmshError::Truncated { place, section: self.section.clone() }
     }
     pub(super) fn unexpected(
         &self,
@@ -110,13 +84,7 @@ impl<'a> Source<'a> {
         found: impl Into<String>,
     ) -> GmshError {
         let (place, section) = (self.place(), self.section.clone());
-        GmshError::Count {
-            place,
-            section,
-            what,
-            announced,
-            found: found.into(),
-        }
+        GmshError::Count { place, section, what, announced, found: found.into() }
     }
 
     /// An unsigned number of eight bytes: a count, or a tag of a node or element in MSH 4.1.
@@ -131,11 +99,7 @@ impl<'a> Source<'a> {
     /// An integer of four bytes.
     #[inline]
     pub(super) fn integer(&mut self, expected: &'static str) -> Result<i64, GmshError> {
-        if self.is_binary() {
-            self.binary_integer()
-        } else {
-            self.text_integer(expected)
-        }
+        if self.is_binary() { self.binary_integer() } else { self.text_integer(expected) }
     }
     /// An integer of four bytes that has no sign: a tag of a node or element in MSH 2.2.
     #[inline]
@@ -195,11 +159,7 @@ impl<'a> Source<'a> {
     }
     /// Insists that the line of a record has no more words.
     pub(super) fn end_record(&mut self) -> Result<(), GmshError> {
-        if self.is_binary() {
-            Ok(())
-        } else {
-            self.end_line()
-        }
+        if self.is_binary() { Ok(()) } else { self.end_line() }
     }
     /// Insists that `announced` records of `size` bytes fit into what is left of a binary file, so
     /// that a damaged count is told from a file cut short, and neither takes memory.
@@ -250,13 +210,7 @@ impl<'a> Source<'a> {
         }
         if word[0] != b'$' {
             let section = self.section.clone();
-            return Err(GmshError::Count {
-                place,
-                section,
-                what,
-                announced,
-                found: "more".into(),
-            });
+            return Err(GmshError::Count { place, section, what, announced, found: "more".into() });
         }
         let found = format!("`{}`", excerpt(word));
         Err(GmshError::Unexpected {
@@ -271,10 +225,7 @@ impl<'a> Source<'a> {
         let end = self.section_end();
         loop {
             let Some(length) = find(&self.bytes[self.at..], end.as_bytes()) else {
-                self.line += self.bytes[self.at..]
-                    .iter()
-                    .filter(|&&byte| byte == b'\n')
-                    .count();
+                self.line += self.bytes[self.at..].iter().filter(|&&byte| byte == b'\n').count();
                 self.at = self.bytes.len();
                 return Err(self.truncated());
             };

@@ -15,10 +15,7 @@ impl<'a> Source<'a> {
         }
     }
     pub(super) fn skip_blanks(&mut self) {
-        while self
-            .peek()
-            .is_some_and(|byte| byte != b'\n' && byte.is_ascii_whitespace())
-        {
+        while self.peek().is_some_and(|byte| byte != b'\n' && byte.is_ascii_whitespace()) {
             self.at += 1;
         }
     }
@@ -27,10 +24,7 @@ impl<'a> Source<'a> {
         self.skip_blanks();
         self.last = self.at;
         let rest = &self.bytes[self.at..];
-        let length = rest
-            .iter()
-            .position(u8::is_ascii_whitespace)
-            .unwrap_or(rest.len());
+        let length = rest.iter().position(u8::is_ascii_whitespace).unwrap_or(rest.len());
         self.at += length;
         &rest[..length]
     }
@@ -79,9 +73,7 @@ impl<'a> Source<'a> {
     }
     pub(super) fn text_real(&mut self, expected: &'static str) -> Result<f64, GmshError> {
         let word = self.number_word(expected)?;
-        let number = std::str::from_utf8(word)
-            .ok()
-            .and_then(|text| text.parse().ok());
+        let number = std::str::from_utf8(word).ok().and_then(|text| text.parse().ok());
         number.ok_or_else(|| self.not_a_number(expected, word))
     }
     /// Insists that a line of text, in whatever file, has no more words.
@@ -110,11 +102,8 @@ fn parse_digits(word: &[u8]) -> Option<u64> {
 pub(super) fn excerpt(word: &[u8]) -> String {
     const LONGEST: usize = 40;
     let text = String::from_utf8_lossy(word);
-    let mut shown: String = text
-        .chars()
-        .take(LONGEST)
-        .map(|c| if c.is_control() { '\u{fffd}' } else { c })
-        .collect();
+    let mut shown: String =
+        text.chars().take(LONGEST).map(|c| if c.is_control() { '\u{fffd}' } else { c }).collect();
     if text.chars().nth(LONGEST).is_some() {
         shown.push('…');
     }

@@ -44,9 +44,7 @@ pub(super) fn read_entities(source: &mut Source, contents: &mut Contents) -> Res
     }
     source.end_section(
         "entities",
-        announced
-            .iter()
-            .fold(0, |sum: u64, &count| sum.saturating_add(count)),
+        announced.iter().fold(0, |sum: u64, &count| sum.saturating_add(count)),
     )
 }
 

@@ -50,17 +50,7 @@ pub(super) fn read_elements(source: &mut Source, contents: &mut Contents) -> Res
         let element_type = source.integer("the type of an element")?;
         let kind = known_kind(source, element_type)?;
         let tags = source.unsigned("the number of tags of an element")?;
-        read_element(
-            source,
-            contents,
-            &Front {
-                position,
-                element,
-                element_type,
-                kind,
-                tags,
-            },
-        )?;
+        read_element(source, contents, &Front { position, element, element_type, kind, tags })?;
         found += 1;
     }
     source.end_section("elements", announced)
@@ -84,25 +74,11 @@ fn read_same_type(
         ));
     }
     let tags = source.unsigned("the number of tags of an element")?;
-    source.check_room(
-        "elements of one type",
-        following,
-        4 + 4 * (tags as usize + kind.nodes),
-    )?;
+    source.check_room("elements of one type", following, 4 + 4 * (tags as usize + kind.nodes))?;
     for _ in 0..following {
         let position = source.position();
         let element = source.unsigned("the tag of an element")?;
-        read_element(
-            source,
-            contents,
-            &Front {
-                position,
-                element,
-                element_type,
-                kind,
-                tags,
-            },
-        )?;
+        read_element(source, contents, &Front { position, element, element_type, kind, tags })?;
     }
     Ok(following)
 }
@@ -124,32 +100,17 @@ fn read_element(
 ) -> Result<(), GmshError> {
     // The first tag is the physical group, zero for none; the others tell the entity and the
     // partitions.
-    let group = if front.tags > 0 {
-        source.integer("the tag of a physical group")?.abs()
-    } else {
-        0
-    };
+    let group =
+        if front.tags > 0 { source.integer("the tag of a physical group")?.abs() } else { 0 };
     source.skip(front.tags.saturating_sub(1), 4, "a tag of an element")?;
-    let Front {
-        kind,
-        element_type,
-        element,
-        ..
-    } = *front;
+    let Front { kind, element_type, element, .. } = *front;
     let dimension = simplex_dimension(source, kind.shape, element_type, element)?;
     let simplices = &mut contents.simplices[dimension];
     for _ in 0..=dimension {
-        simplices
-            .corners
-            .push(source.unsigned("the tag of a node")?);
+        simplices.corners.push(source.unsigned("the tag of a node")?);
     }
     source.skip((kind.nodes - dimension - 1) as u64, 4, "the tag of a node")?;
     source.end_record()?;
-    simplices.push(
-        front.position,
-        element,
-        kind.order,
-        Membership::Group(group),
-    );
+    simplices.push(front.position, element, kind.order, Membership::Group(group));
     Ok(())
 }

@@ -39,9 +39,8 @@ impl LogAxis {
     /// An axis that shows positive values with some room around them, over a decade at least.
     pub fn over(values: &[f64]) -> Self {
         let logs = values.iter().map(|v| v.log10());
-        let (low, high) = logs.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| {
-            (l.min(v), h.max(v))
-        });
+        let (low, high) =
+            logs.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| (l.min(v), h.max(v)));
         if low > high {
             return LogAxis { low: -1.0, high: 0.0 };
         }
@@ -91,8 +90,14 @@ mod tests {
 
     #[test]
     fn powers_of_ten_are_labelled_and_thinned_out() {
-        assert_eq!(labels(LogAxis { low: -3.2, high: 1.1 }, 8), ["10−3", "10−2", "10−1", "1", "10"]);
-        assert_eq!(labels(LogAxis { low: -16.0, high: 0.0 }, 5), ["10−16", "10−12", "10−8", "10−4", "1"]);
+        assert_eq!(
+            labels(LogAxis { low: -3.2, high: 1.1 }, 8),
+            ["10−3", "10−2", "10−1", "1", "10"]
+        );
+        assert_eq!(
+            labels(LogAxis { low: -16.0, high: 0.0 }, 5),
+            ["10−16", "10−12", "10−8", "10−4", "1"]
+        );
     }
 
     #[test]

@@ -94,7 +94,10 @@ impl<'a> Frame<'a> {
             for pair in places.windows(2) {
                 occupied.extend((1..16).map(|i| {
                     let t = f64::from(i) / 16.0;
-                    (pair[0].0 + t * (pair[1].0 - pair[0].0), pair[0].1 + t * (pair[1].1 - pair[0].1))
+                    (
+                        pair[0].0 + t * (pair[1].0 - pair[0].0),
+                        pair[0].1 + t * (pair[1].1 - pair[0].1),
+                    )
                 }));
             }
         }
@@ -150,7 +153,12 @@ fn draw_ticks<DB: DrawingBackend>(pen: &Pen<DB>, frame: &Frame, (left, top): Pla
             pen.line((left, y), (left + length(tick), y), 0.8, INK)?;
             if tick.labelled {
                 let (base, exponent) = tick.label();
-                draw_label(pen, &base, &exponent, (left - 6.0 - text_width(&exponent, 0.75 * TICK), y))?;
+                draw_label(
+                    pen,
+                    &base,
+                    &exponent,
+                    (left - 6.0 - text_width(&exponent, 0.75 * TICK), y),
+                )?;
             }
         }
     }

@@ -86,7 +86,12 @@ impl<DB: DrawingBackend> Pen<'_, DB> {
             // Longer by half a width at both ends, so that corners close.
             let (dx, dy) = (to.0 - from.0, to.1 - from.1);
             let s = 0.4 * width / dx.hypot(dy).max(1e-9);
-            self.line((from.0 - s * dx, from.1 - s * dy), (to.0 + s * dx, to.1 + s * dy), width, colour)?;
+            self.line(
+                (from.0 - s * dx, from.1 - s * dy),
+                (to.0 + s * dx, to.1 + s * dy),
+                width,
+                colour,
+            )?;
         }
         Ok(())
     }
