@@ -84,4 +84,14 @@ impl<'a, T: Real, const D: usize> ReactionTerm<'a, T, D> {
             }
         }
     }
+    /// Finds the point at which the datum is not finite.
+    pub fn check(&self, mesh: &Mesh<T, D>) -> Result<(), Error> {
+        for cell in 0..mesh.n_cells() {
+            for point in &self.table.points {
+                let x = point_f64(&mesh.point(cell, &point[..=D]));
+                finite(self.datum.at(&x), "reaction", &x, cell)?;
+            }
+        }
+        Ok(())
+    }
 }

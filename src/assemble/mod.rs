@@ -137,8 +137,15 @@ impl<'a, T: Real, const D: usize, S: Scheme<T, D>> Discretisation<'a, T, D, S> {
     pub fn inequality(&self) -> Result<Inequality<T>, Error> {
         let load = self.load()?;
         let bounds = self.bounds()?;
+        let matrix = self.matrix();
+        // the loops that fill the matrix cannot fail: whoever is to blame is sought afterwards
+        if let Some(reaction) = data::ReactionTerm::new(self)
+            && !matrix.values.iter().all(|v| v.to_f64().is_finite())
+        {
+            reaction.check(self.mesh)?;
+        }
         Ok(Inequality {
-            matrix: self.matrix(),
+            matrix,
             symmetric: <S::Facet as FacetForm<T, D>>::SYMMETRIC,
             load,
             bounds,
