@@ -42,7 +42,9 @@ fn round_trip<T: Real, const D: usize>(counts: [usize; D], cell_type: CellType) 
     let domain = cube::<D>(-1.0, 0.5);
     let mesh = Mesh::<T, D>::kuhn_box(&domain, counts).unwrap();
     let (cells, corners) = (mesh.n_cells(), D + 1);
-    let u: Vec<f64> = (0..cells * corners).map(|i| (i as f64).sqrt() - 1e-17).collect();
+    let u: Vec<f64> = (0..cells * corners)
+        .map(|i| (i as f64).sqrt() - 1e-17)
+        .collect();
     let obstacle: Vec<f64> = u.iter().map(|u| -u / 3.0).collect();
     let multiplier: Vec<f64> = (0..cells).map(|c| 1.0 / (1.0 + c as f64)).collect();
     let contact: Vec<f64> = (0..cells).map(|c| (c % 2) as f64).collect();
@@ -67,8 +69,26 @@ fn round_trip<T: Real, const D: usize>(counts: [usize; D], cell_type: CellType) 
         .collect();
     assert_eq!(points, expected);
     let (connectivity, offsets) = piece.cells.cell_verts.into_xml();
-    assert_eq!(connectivity, (0..(cells * corners) as u64).collect::<Vec<_>>());
-    assert_eq!(offsets, (1..=cells).map(|c| (c * corners) as u64).collect::<Vec<_>>());
+    for (c, cell) in connectivity.chunks(corners).enumerate() {
+        let mut sorted = cell.to_vec();
+        sorted.sort_unstable();
+        let own: Vec<_> = (c * corners..(c + 1) * corners).map(|i| i as u64).collect();
+        assert_eq!(sorted, own, "every cell has points of its own");
+        let x = |i: usize| Point::<f64, 3>::from_column_slice(&points[3 * cell[i] as usize..][..3]);
+        let edge = |i: usize| x(i) - x(0);
+        let volume = match D {
+            1 => edge(1).x,
+            2 => edge(1).cross(&edge(2)).z,
+            _ => edge(1).cross(&edge(2)).dot(&edge(3)),
+        };
+        assert!(volume > 0.0, "cell {c} is inside out");
+    }
+    assert_eq!(
+        offsets,
+        (1..=cells)
+            .map(|c| (c * corners) as u64)
+            .collect::<Vec<_>>()
+    );
     assert_eq!(piece.cells.types, vec![cell_type; cells]);
     assert_eq!(field(&piece.data.point, "u").unwrap(), u);
     assert_eq!(field(&piece.data.point, "obstacle").unwrap(), obstacle);
@@ -92,14 +112,25 @@ fn fields_that_are_not_there_are_not_written() {
     let domain = cube::<2>(0.0, 1.0);
     let mesh = Mesh::<f64, 2>::kuhn_box(&domain, [1, 1]).unwrap();
     let path = path("absent");
-    let fields = CellFields { u: &[1.0; 6], obstacle: None, multiplier: None, contact: &[0.0; 2] };
+    let fields = CellFields {
+        u: &[1.0; 6],
+        obstacle: None,
+        multiplier: None,
+        contact: &[0.0; 2],
+    };
     write_vtu(&path, &mesh, &fields).unwrap();
     let piece = read(&path);
     std::fs::remove_file(&path).unwrap();
     assert_eq!((piece.data.point.len(), piece.data.cell.len()), (1, 1));
 
-    let short = CellFields { contact: &[0.0], ..fields };
+    let short = CellFields {
+        contact: &[0.0],
+        ..fields
+    };
     let error = write_vtu(&path, &mesh, &short).unwrap_err().to_string();
-    assert!(error.ends_with("field contact has 1 values, the mesh needs 2"), "{error}");
+    assert!(
+        error.ends_with("field contact has 1 values, the mesh needs 2"),
+        "{error}"
+    );
     assert!(!path.exists(), "nothing is written");
 }

@@ -19,7 +19,10 @@ pub fn observed_order(
     fine_h: f64,
 ) -> Option<f64> {
     let positive = |x: f64| x.is_finite() && x > 0.0;
-    if ![coarse_error, fine_error, coarse_h, fine_h].into_iter().all(positive) {
+    if ![coarse_error, fine_error, coarse_h, fine_h]
+        .into_iter()
+        .all(positive)
+    {
         return None;
     }
     // Logarithms are subtracted, not quotients taken: a quotient of tiny numbers may overflow.
@@ -45,7 +48,9 @@ pub fn fill_orders(rows: &mut [Row]) {
 /// The row one level coarser.
 fn previous<'a>(rows: &'a [Row], row: &Row) -> Option<&'a Row> {
     rows.iter()
-        .filter(|r| r.scene == row.scene && r.scheme == row.scheme && r.constraint == row.constraint)
+        .filter(|r| {
+            r.scene == row.scene && r.scheme == row.scheme && r.constraint == row.constraint
+        })
         .filter(|r| r.level < row.level)
         .max_by_key(|r| r.level)
 }
@@ -55,9 +60,8 @@ fn order(coarse: &Row, fine: &Row) -> Errors {
     if !coarse.converged() || !fine.converged() {
         return Errors::default();
     }
-    let of = |c: Option<f64>, f: Option<f64>| {
-        observed_order(c?, f?, coarse.mesh_size, fine.mesh_size)
-    };
+    let of =
+        |c: Option<f64>, f: Option<f64>| observed_order(c?, f?, coarse.mesh_size, fine.mesh_size);
     Errors {
         l2: of(coarse.error.l2, fine.error.l2),
         h1: of(coarse.error.h1, fine.error.h1),

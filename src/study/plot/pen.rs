@@ -44,7 +44,10 @@ pub(super) struct Pen<'a, DB: DrawingBackend> {
 
 impl<DB: DrawingBackend> Pen<'_, DB> {
     fn pixel(&self, (x, y): Place) -> (i32, i32) {
-        ((x * self.scale).round() as i32, (y * self.scale).round() as i32)
+        (
+            (x * self.scale).round() as i32,
+            (y * self.scale).round() as i32,
+        )
     }
 
     /// One straight line. Lines of several parts are drawn part by part: backends disagree on the
@@ -86,7 +89,12 @@ impl<DB: DrawingBackend> Pen<'_, DB> {
             // Longer by half a width at both ends, so that corners close.
             let (dx, dy) = (to.0 - from.0, to.1 - from.1);
             let s = 0.4 * width / dx.hypot(dy).max(1e-9);
-            self.line((from.0 - s * dx, from.1 - s * dy), (to.0 + s * dx, to.1 + s * dy), width, colour)?;
+            self.line(
+                (from.0 - s * dx, from.1 - s * dy),
+                (to.0 + s * dx, to.1 + s * dy),
+                width,
+                colour,
+            )?;
         }
         Ok(())
     }
@@ -94,7 +102,9 @@ impl<DB: DrawingBackend> Pen<'_, DB> {
     /// A filled area.
     pub fn fill(&self, corners: &[Place], colour: RGBColor) -> Drawn {
         let corners: Vec<_> = corners.iter().map(|&c| self.pixel(c)).collect();
-        self.area.draw(&Polygon::new(corners, colour)).map_err(|e| e.to_string())
+        self.area
+            .draw(&Polygon::new(corners, colour))
+            .map_err(|e| e.to_string())
     }
 
     /// Text, its middle at the height of its place.
@@ -113,6 +123,8 @@ impl<DB: DrawingBackend> Pen<'_, DB> {
             at.1 += self.lift * size;
         }
         let style = font.color(&colour).pos(Pos::new(horizontal, VPos::Center));
-        self.area.draw_text(text, &style, self.pixel(at)).map_err(|e| e.to_string())
+        self.area
+            .draw_text(text, &style, self.pixel(at))
+            .map_err(|e| e.to_string())
     }
 }
