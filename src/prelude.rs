@@ -1,8 +1,8 @@
 //! What a program that compares schemes needs, in one line.
 
+pub use crate::element::{Broken, CrouzeixRaviart, P1, ReferenceElement};
 pub use crate::error::Error;
 pub use crate::facet::{FacetForm, FacetView, NoFacets, PenaltyRule, Sampling, Trace, WeightRule};
-pub use crate::element::{Broken, CrouzeixRaviart, P1, ReferenceElement};
 pub use crate::mesh::{BoundaryPart, Mesh};
 pub use crate::problem::Problem;
 pub use crate::real::{Point, Real};

@@ -148,10 +148,7 @@ impl<const D: usize> Problem<D> {
         value: impl Fn(&Point<f64, D>) -> f64 + Send + Sync + 'static,
         gradient: impl Fn(&Point<f64, D>) -> Point<f64, D> + Send + Sync + 'static,
     ) -> Self {
-        self.exact = Some(Exact {
-            value: Box::new(value),
-            gradient: Box::new(gradient),
-        });
+        self.exact = Some(Exact { value: Box::new(value), gradient: Box::new(gradient) });
         self
     }
     /// The Dirichlet value at a point.

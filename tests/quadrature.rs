@@ -18,11 +18,7 @@ fn all_powers(n: usize, degree: usize) -> Vec<Vec<usize>> {
     if n == 1 {
         return (0..=degree).map(|p| vec![p]).collect();
     }
-    let rest = |p| {
-        all_powers(n - 1, degree - p)
-            .into_iter()
-            .map(move |r| [vec![p], r].concat())
-    };
+    let rest = |p| all_powers(n - 1, degree - p).into_iter().map(move |r| [vec![p], r].concat());
     (0..=degree).flat_map(rest).collect()
 }
 
@@ -35,9 +31,7 @@ fn exact_for_every_monomial_of_the_degree() {
                 let sum: f64 = rule
                     .iter()
                     .map(|(x, w)| {
-                        w * (0..=dimension)
-                            .map(|k| x[k].powi(powers[k] as i32))
-                            .product::<f64>()
+                        w * (0..=dimension).map(|k| x[k].powi(powers[k] as i32)).product::<f64>()
                     })
                     .sum();
                 let exact = mean(&powers);

@@ -106,10 +106,7 @@ impl Place {
     pub fn new(cell: Option<u32>, vertices: &[u32]) -> Self {
         let mut v = [Self::NONE; 3];
         v[..vertices.len()].copy_from_slice(vertices);
-        Self {
-            cell: cell.unwrap_or(Self::NONE),
-            vertices: v,
-        }
+        Self { cell: cell.unwrap_or(Self::NONE), vertices: v }
     }
     /// The cell that owns the unknown, `None` if cells share it.
     pub fn cell(&self) -> Option<u32> {
@@ -117,11 +114,7 @@ impl Place {
     }
     /// The vertices whose barycentre is the unknown's node.
     pub fn vertices(&self) -> &[u32] {
-        let n = self
-            .vertices
-            .iter()
-            .position(|&v| v == Self::NONE)
-            .unwrap_or(3);
+        let n = self.vertices.iter().position(|&v| v == Self::NONE).unwrap_or(3);
         &self.vertices[..n]
     }
 }
@@ -159,11 +152,7 @@ impl<T: Real> Inequality<T> {
     /// Whether every number is finite. A bound at infinity is not: leave it out instead.
     pub fn is_finite(&self) -> bool {
         let finite = |x: T| x.to_f64().is_finite();
-        self.matrix
-            .values
-            .iter()
-            .chain(&self.load)
-            .all(|&x| finite(x))
+        self.matrix.values.iter().chain(&self.load).all(|&x| finite(x))
             && self.bounds.iter().all(|bound| match *bound {
                 Bound::Free => true,
                 Bound::Fixed(x) | Bound::Lower(x) | Bound::Upper(x) => finite(x),
@@ -172,9 +161,7 @@ impl<T: Real> Inequality<T> {
     }
     /// Whether some value is admissible for every unknown.
     pub fn is_feasible(&self) -> bool {
-        self.bounds
-            .iter()
-            .all(|bound| !matches!(*bound, Bound::Both(l, u) if l > u))
+        self.bounds.iter().all(|bound| !matches!(*bound, Bound::Both(l, u) if l > u))
     }
     /// `u.A u / 2 - b.u`, in `f64`.
     pub fn objective(&self, u: &[T]) -> f64 {

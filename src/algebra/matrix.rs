@@ -47,9 +47,7 @@ impl<T: Real> SparseMatrix<T> {
     /// The entry at (i, j), zero where none is stored.
     pub fn get(&self, i: usize, j: usize) -> T {
         let (columns, values) = self.row(i);
-        columns
-            .binary_search(&(j as u32))
-            .map_or_else(|_| T::lit(0.0), |k| values[k])
+        columns.binary_search(&(j as u32)).map_or_else(|_| T::lit(0.0), |k| values[k])
     }
     /// The diagonal.
     pub fn diagonal(&self) -> Vec<T> {
@@ -59,26 +57,17 @@ impl<T: Real> SparseMatrix<T> {
     #[inline]
     pub fn row_dot(&self, i: usize, x: &[T]) -> T {
         let (columns, values) = self.row(i);
-        columns
-            .iter()
-            .zip(values)
-            .fold(T::lit(0.0), |s, (&j, &a)| s + a * x[j as usize])
+        columns.iter().zip(values).fold(T::lit(0.0), |s, (&j, &a)| s + a * x[j as usize])
     }
     /// `y = A x`, by rows in parallel; the same bits for any number of threads.
     pub fn apply(&self, x: &[T], y: &mut [T]) {
-        y.par_iter_mut()
-            .with_min_len(4096)
-            .enumerate()
-            .for_each(|(i, y)| *y = self.row_dot(i, x));
+        y.par_iter_mut().with_min_len(4096).enumerate().for_each(|(i, y)| *y = self.row_dot(i, x));
     }
     /// Row `i` times a vector, every product and the sum in `f64`.
     #[inline]
     pub fn row_dot_f64(&self, i: usize, x: &[T]) -> f64 {
         let (columns, values) = self.row(i);
-        columns
-            .iter()
-            .zip(values)
-            .fold(0.0, |s, (&j, &a)| s + a.to_f64() * x[j as usize].to_f64())
+        columns.iter().zip(values).fold(0.0, |s, (&j, &a)| s + a.to_f64() * x[j as usize].to_f64())
     }
     /// `r = b - A x`, accumulated and kept in `f64` whatever the scalar.
     ///

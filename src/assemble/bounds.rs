@@ -162,12 +162,7 @@ fn between<T: Real, const D: usize>(
         (Some(l), Some(u)) => {
             if l - u > RELATIVE_SLACK * (l.abs() + u.abs()) {
                 let at = describe_point(x);
-                return Err(Error::EmptyConstraint {
-                    unknown,
-                    at,
-                    lower: l,
-                    upper: u,
-                });
+                return Err(Error::EmptyConstraint { unknown, at, lower: l, upper: u });
             }
             Bound::Both(T::lit(l), T::lit(l.max(u)))
         }

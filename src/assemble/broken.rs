@@ -75,11 +75,7 @@ pub(super) fn pattern<T: Real, const D: usize, S: Scheme<T, D>>(
         }
     });
     let values = vec![T::lit(0.0); end as usize];
-    SparseMatrix {
-        row_starts,
-        columns,
-        values,
-    }
+    SparseMatrix { row_starts, columns, values }
 }
 
 /// Calls a function with each cell and the entries of its rows, in parallel.
@@ -120,9 +116,7 @@ pub(super) fn fill<T: Real, const D: usize, S: Scheme<T, D>>(
     let stiffness = CellTable::new::<S::Element, D>(2 * (degree - 1));
     let facets = FacetTable::new::<S::Element, D>(<S::Facet as FacetForm<T, D>>::sampling(degree));
     let reaction = data::ReactionTerm::new(space);
-    let SparseMatrix {
-        row_starts, values, ..
-    } = matrix;
+    let SparseMatrix { row_starts, values, .. } = matrix;
     for_each_cell(row_starts, n, values, |cell, rows| {
         rows.fill(T::lit(0.0));
         let geometry = space.mesh.geometry(cell);
@@ -136,17 +130,10 @@ pub(super) fn fill<T: Real, const D: usize, S: Scheme<T, D>>(
         }
         if couples {
             for local in 0..=D {
-                let here = CellSide {
-                    cell,
-                    local,
-                    geometry: &geometry,
-                    coefficient: space.alpha(cell),
-                };
+                let here =
+                    CellSide { cell, local, geometry: &geometry, coefficient: space.alpha(cell) };
                 match neighbours.across(cell, local) {
-                    Neighbour::Cell {
-                        cell: other,
-                        local: other_local,
-                    } => {
+                    Neighbour::Cell { cell: other, local: other_local } => {
                         let other = other as usize;
                         let other_geometry = space.mesh.geometry(other);
                         let there = CellSide {
@@ -200,11 +187,7 @@ fn add_facet<T: Real, const D: usize, S: Scheme<T, D>>(
     let facet = FacetGeometry::new(space.mesh, here, Some(there));
     let sign = |is_here: bool| T::lit(if is_here { 1.0 } else { -1.0 });
     let penalty = space.form.penalty(&facet.view);
-    let samples = table
-        .on(me.local)
-        .iter()
-        .zip(table.on(other.local))
-        .zip(&table.weights);
+    let samples = table.on(me.local).iter().zip(table.on(other.local)).zip(&table.weights);
     for ((basis, other_basis), &weight) in samples {
         let mine: CellTraces<T> =
             traces::<T, D, S::Element, S::Facet>(&facet, me.geometry, sign(first), basis);

@@ -20,12 +20,7 @@ pub(super) fn finite<const D: usize>(
     if value.is_finite() {
         Ok(value)
     } else {
-        Err(Error::DataNotFinite {
-            datum,
-            value,
-            at: describe_point(at),
-            cell: cell as u32,
-        })
+        Err(Error::DataNotFinite { datum, value, at: describe_point(at), cell: cell as u32 })
     }
 }
 
@@ -43,16 +38,10 @@ pub(super) fn coefficients<T: Real, const D: usize>(
         if value > 0.0 && value.is_finite() {
             Ok(T::lit(value))
         } else {
-            Err(Error::CoefficientNotPositive {
-                value,
-                cell: cell as u32,
-            })
+            Err(Error::CoefficientNotPositive { value, cell: cell as u32 })
         }
     };
-    (0..mesh.n_cells())
-        .map(at)
-        .collect::<Result<Vec<_>, _>>()
-        .map(Some)
+    (0..mesh.n_cells()).map(at).collect::<Result<Vec<_>, _>>().map(Some)
 }
 
 /// The reaction term, with the rule that integrates it.
@@ -70,10 +59,7 @@ impl<'a, T: Real, const D: usize> ReactionTerm<'a, T, D> {
             Datum::Constant(_) => products,
             Datum::Function(_) => products.max(space.quadrature.cell),
         };
-        Some(Self {
-            datum,
-            table: CellTable::new::<S::Element, D>(degree),
-        })
+        Some(Self { datum, table: CellTable::new::<S::Element, D>(degree) })
     }
     /// Adds `(c phi_j, phi_i)` over a cell.
     pub fn add<E: ReferenceElement<T, D>>(

@@ -39,11 +39,7 @@ impl<'s, 'a, T: Real, const D: usize, S: Scheme<T, D>> Patches<'s, 'a, T, D, S> 
             DirichletBy::FacetForm => f.part(BoundaryPart::Dirichlet).end,
             DirichletBy::Pinning => f.interior().end,
         });
-        Self {
-            space,
-            facets,
-            coupled,
-        }
+        Self { space, facets, coupled }
     }
     fn n_cells(&self) -> usize {
         self.space.mesh.n_cells()
@@ -55,11 +51,7 @@ impl<'s, 'a, T: Real, const D: usize, S: Scheme<T, D>> Patches<'s, 'a, T, D, S> 
     /// Number of unknowns of a patch; those of a facet's two cells count twice where shared.
     #[inline(always)]
     fn size(&self, patch: usize) -> usize {
-        if patch < self.n_cells() {
-            Self::N
-        } else {
-            2 * Self::N
-        }
+        if patch < self.n_cells() { Self::N } else { 2 * Self::N }
     }
     /// Where a patch's local matrix starts.
     #[inline(always)]
@@ -73,11 +65,7 @@ impl<'s, 'a, T: Real, const D: usize, S: Scheme<T, D>> Patches<'s, 'a, T, D, S> 
         let cell = match &self.facets {
             Some(facets) if patch >= self.n_cells() => {
                 let facet = patch - self.n_cells();
-                if k < Self::N {
-                    facets.here(facet).0
-                } else {
-                    facets.there(facet).0
-                }
+                if k < Self::N { facets.here(facet).0 } else { facets.there(facet).0 }
             }
             _ => patch,
         };
@@ -132,10 +120,7 @@ pub(super) fn pattern<T: Real, const D: usize, S: Scheme<T, D>>(
         }
         (columns, lengths)
     };
-    let pieces: Vec<_> = (0..size.div_ceil(CHUNK))
-        .into_par_iter()
-        .map(rows_of)
-        .collect();
+    let pieces: Vec<_> = (0..size.div_ceil(CHUNK)).into_par_iter().map(rows_of).collect();
     let mut row_starts = Vec::with_capacity(size + 1);
     row_starts.push(0);
     let mut columns = Vec::with_capacity(pieces.iter().map(|p| p.0.len()).sum());
@@ -148,11 +133,7 @@ pub(super) fn pattern<T: Real, const D: usize, S: Scheme<T, D>>(
         }));
     }
     let values = vec![T::lit(0.0); columns.len()];
-    SparseMatrix {
-        row_starts,
-        columns,
-        values,
-    }
+    SparseMatrix { row_starts, columns, values }
 }
 
 /// The values, on a known pattern.
@@ -163,11 +144,7 @@ pub(super) fn fill<T: Real, const D: usize, S: Scheme<T, D>>(
     let patches = Patches::new(space);
     let locals = local_matrices(&patches);
     let (starts, places) = patches.incidence();
-    let SparseMatrix {
-        row_starts,
-        columns,
-        values,
-    } = matrix;
+    let SparseMatrix { row_starts, columns, values } = matrix;
     let size = row_starts.len() - 1;
     let mut pieces = Vec::with_capacity(size / CHUNK + 1);
     let mut rest = &mut values[..];
@@ -210,21 +187,17 @@ fn local_matrices<T: Real, const D: usize, S: Scheme<T, D>>(
     let reaction = data::ReactionTerm::new(space);
     let mut locals = vec![T::lit(0.0); patches.start(patches.len())];
     let (cells, facets) = locals.split_at_mut(patches.start(patches.n_cells()));
-    cells
-        .par_chunks_mut(n * n)
-        .with_min_len(CHUNK)
-        .enumerate()
-        .for_each(|(cell, out)| {
-            let geometry = space.mesh.geometry(cell);
-            let mut local = zero_local();
-            add_stiffness::<T, D, S::Element>(&geometry, space.alpha(cell), &stiffness, &mut local);
-            if let Some(reaction) = &reaction {
-                reaction.add::<S::Element>(space.mesh, cell, geometry.volume, &mut local);
-            }
-            for (row, values) in out.chunks_exact_mut(n).zip(&local) {
-                row.copy_from_slice(&values[..n]);
-            }
-        });
+    cells.par_chunks_mut(n * n).with_min_len(CHUNK).enumerate().for_each(|(cell, out)| {
+        let geometry = space.mesh.geometry(cell);
+        let mut local = zero_local();
+        add_stiffness::<T, D, S::Element>(&geometry, space.alpha(cell), &stiffness, &mut local);
+        if let Some(reaction) = &reaction {
+            reaction.add::<S::Element>(space.mesh, cell, geometry.volume, &mut local);
+        }
+        for (row, values) in out.chunks_exact_mut(n).zip(&local) {
+            row.copy_from_slice(&values[..n]);
+        }
+    });
     if let Some(all) = &patches.facets {
         let table =
             FacetTable::new::<S::Element, D>(<S::Facet as FacetForm<T, D>>::sampling(degree));
@@ -252,25 +225,13 @@ fn facet_matrix<T: Real, const D: usize, S: Scheme<T, D>>(
     let ((here, i), (there, j)) = (facets.here(facet), facets.there(facet));
     let (g_here, g_there) = (space.mesh.geometry(here), space.mesh.geometry(there));
     let alpha = |cell| space.alpha(cell);
-    let side_here = CellSide {
-        cell: here,
-        local: i,
-        geometry: &g_here,
-        coefficient: alpha(here),
-    };
-    let side_there = CellSide {
-        cell: there,
-        local: j,
-        geometry: &g_there,
-        coefficient: alpha(there),
-    };
+    let side_here = CellSide { cell: here, local: i, geometry: &g_here, coefficient: alpha(here) };
+    let side_there =
+        CellSide { cell: there, local: j, geometry: &g_there, coefficient: alpha(there) };
     let view = FacetGeometry::new(space.mesh, &side_here, interior.then_some(&side_there));
     let penalty = space.form.penalty(&view.view);
     for ((b_here, b_there), &weight) in table.on(i).iter().zip(table.on(j)).zip(&table.weights) {
-        let mut all = [Trace {
-            jump: T::lit(0.0),
-            flux: T::lit(0.0),
-        }; 2 * MAX_BASIS];
+        let mut all = [Trace { jump: T::lit(0.0), flux: T::lit(0.0) }; 2 * MAX_BASIS];
         let one = T::lit(1.0);
         all[..n].copy_from_slice(
             &traces::<T, D, S::Element, S::Facet>(&view, &g_here, one, b_here)[..n],

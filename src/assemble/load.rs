@@ -67,36 +67,30 @@ impl<T: Real, const D: usize, S: Scheme<T, D>> Discretisation<'_, T, D, S> {
             terms.fold(T::lit(0.0), |s, (basis, &w)| s + w * basis.values[i])
         };
         let means: Vec<T> = (0..Self::N).map(|i| f * mean(i)).collect();
-        load.par_chunks_mut(Self::N)
-            .with_min_len(CHUNK)
-            .enumerate()
-            .for_each(|(cell, out)| {
-                let volume = self.mesh.geometry(cell).volume;
-                for (value, &mean) in out.iter_mut().zip(&means) {
-                    *value += volume * mean;
-                }
-            });
+        load.par_chunks_mut(Self::N).with_min_len(CHUNK).enumerate().for_each(|(cell, out)| {
+            let volume = self.mesh.geometry(cell).volume;
+            for (value, &mean) in out.iter_mut().zip(&means) {
+                *value += volume * mean;
+            }
+        });
         Ok(())
     }
 
     fn add_source(&self, f: &Field<D>, load: &mut [T]) -> Result<(), Error> {
         let table = CellTable::<T>::new::<S::Element, D>(self.quadrature.cell);
-        load.par_chunks_mut(Self::N)
-            .with_min_len(CHUNK)
-            .enumerate()
-            .try_for_each(|(cell, out)| {
-                let volume = self.mesh.geometry(cell).volume;
-                let samples = table.points.iter().zip(&table.basis).zip(&table.weights);
-                for ((point, basis), &weight) in samples {
-                    count::source(1);
-                    let x = point_f64(&self.mesh.point(cell, &point[..=D]));
-                    let value = T::lit(data::finite(f(&x), "source", &x, cell)?);
-                    for (out, &phi) in out.iter_mut().zip(&basis.values) {
-                        *out += weight * volume * value * phi;
-                    }
+        load.par_chunks_mut(Self::N).with_min_len(CHUNK).enumerate().try_for_each(|(cell, out)| {
+            let volume = self.mesh.geometry(cell).volume;
+            let samples = table.points.iter().zip(&table.basis).zip(&table.weights);
+            for ((point, basis), &weight) in samples {
+                count::source(1);
+                let x = point_f64(&self.mesh.point(cell, &point[..=D]));
+                let value = T::lit(data::finite(f(&x), "source", &x, cell)?);
+                for (out, &phi) in out.iter_mut().zip(&basis.values) {
+                    *out += weight * volume * value * phi;
                 }
-                Ok(())
-            })
+            }
+            Ok(())
+        })
     }
 
     /// Dirichlet data as the trial trace of the facet form.
@@ -111,12 +105,7 @@ impl<T: Real, const D: usize, S: Scheme<T, D>> Discretisation<'_, T, D, S> {
         for facet in self.facets_of(BoundaryPart::Dirichlet) {
             let (cell, local) = (facet.cell as usize, facet.local as usize);
             let geometry = self.mesh.geometry(cell);
-            let here = CellSide {
-                cell,
-                local,
-                geometry: &geometry,
-                coefficient: self.alpha(cell),
-            };
+            let here = CellSide { cell, local, geometry: &geometry, coefficient: self.alpha(cell) };
             let view = FacetGeometry::new(self.mesh, &here, None);
             let penalty = self.form.penalty(&view.view);
             let values = self.dirichlet_samples(&rule, sampling, cell, local)?;
@@ -125,10 +114,7 @@ impl<T: Real, const D: usize, S: Scheme<T, D>> Discretisation<'_, T, D, S> {
             for ((basis, &weight), value) in samples {
                 let test =
                     traces::<T, D, S::Element, S::Facet>(&view, &geometry, T::lit(1.0), basis);
-                let datum = Trace {
-                    jump: T::lit(value),
-                    flux: T::lit(0.0),
-                };
+                let datum = Trace { jump: T::lit(value), flux: T::lit(0.0) };
                 for (out, &v) in out.iter_mut().zip(&test) {
                     *out += weight * view.view.measure * self.form.integrand(v, datum, penalty);
                 }
@@ -192,9 +178,7 @@ impl<T: Real, const D: usize, S: Scheme<T, D>> Discretisation<'_, T, D, S> {
         match sampling {
             Sampling::Points(_) => rule.points.iter().map(at).collect(),
             Sampling::Means => {
-                let terms = rule
-                    .iter()
-                    .map(|(point, w)| at(point).map(|value| w * value));
+                let terms = rule.iter().map(|(point, w)| at(point).map(|value| w * value));
                 Ok(vec![terms.sum::<Result<f64, Error>>()?])
             }
         }

@@ -86,10 +86,7 @@ impl<T: Real, const D: usize> FacetGeometry<T, D> {
             here: side(here),
             there: there.map(side),
         };
-        Self {
-            view,
-            normal: here.geometry.normal(here.local),
-        }
+        Self { view, normal: here.geometry.normal(here.local) }
     }
 }
 
@@ -104,20 +101,13 @@ pub(crate) fn traces<T: Real, const D: usize, E: ReferenceElement<T, D>, F: Face
     sign: T,
     basis: &BasisAt<T>,
 ) -> [Trace<T>; MAX_BASIS] {
-    let mut out = [Trace {
-        jump: T::lit(0.0),
-        flux: T::lit(f64::NAN),
-    }; MAX_BASIS];
+    let mut out = [Trace { jump: T::lit(0.0), flux: T::lit(f64::NAN) }; MAX_BASIS];
     for (trace, &value) in out.iter_mut().zip(&basis.values).take(E::N) {
         trace.jump = sign * value;
     }
     if F::USES_FLUX {
         super::count::normal_derivatives(E::N);
-        let mean = if facet.view.there.is_some() {
-            T::lit(0.5)
-        } else {
-            T::lit(1.0)
-        };
+        let mean = if facet.view.there.is_some() { T::lit(0.5) } else { T::lit(1.0) };
         let scale = facet.view.coefficient() * mean;
         let g = gradients::<T, D, E>(geometry, basis);
         for i in 0..E::N {

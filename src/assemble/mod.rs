@@ -87,15 +87,7 @@ impl<'a, T: Real, const D: usize, S: Scheme<T, D>> Discretisation<'a, T, D, S> {
         };
         let coefficients = data::coefficients(problem, mesh)?;
         let form = scheme.facet(mesh);
-        Ok(Self {
-            form,
-            problem,
-            mesh,
-            quadrature,
-            neighbours,
-            dofs,
-            coefficients,
-        })
+        Ok(Self { form, problem, mesh, quadrature, neighbours, dofs, coefficients })
     }
 
     /// Number of unknowns, Dirichlet ones included.
@@ -194,13 +186,7 @@ impl<'a, T: Real, const D: usize, S: Scheme<T, D>> Discretisation<'a, T, D, S> {
                     continue;
                 }
                 let facets = worst.map_or(0, |w| w.facets) + 1;
-                let here = PenaltyShortfall {
-                    facets,
-                    cell,
-                    local,
-                    weight,
-                    needed,
-                };
+                let here = PenaltyShortfall { facets, cell, local, weight, needed };
                 worst = match worst {
                     Some(w) if w.weight / w.needed <= weight / needed => {
                         Some(PenaltyShortfall { facets, ..w })
@@ -220,12 +206,7 @@ impl<'a, T: Real, const D: usize, S: Scheme<T, D>> Discretisation<'a, T, D, S> {
         local: usize,
     ) -> Option<FacetView<T>> {
         let geometry = self.mesh.geometry(cell);
-        let here = CellSide {
-            cell,
-            local,
-            geometry: &geometry,
-            coefficient: self.alpha(cell),
-        };
+        let here = CellSide { cell, local, geometry: &geometry, coefficient: self.alpha(cell) };
         match neighbours.across(cell, local) {
             Neighbour::Boundary(BoundaryPart::Dirichlet)
                 if S::DIRICHLET == DirichletBy::FacetForm =>
@@ -233,10 +214,7 @@ impl<'a, T: Real, const D: usize, S: Scheme<T, D>> Discretisation<'a, T, D, S> {
                 Some(FacetGeometry::new(self.mesh, &here, None).view)
             }
             Neighbour::Boundary(_) => None,
-            Neighbour::Cell {
-                cell: other,
-                local: other_local,
-            } => {
+            Neighbour::Cell { cell: other, local: other_local } => {
                 let geometry = self.mesh.geometry(other as usize);
                 let there = CellSide {
                     cell: other as usize,
@@ -252,9 +230,7 @@ impl<'a, T: Real, const D: usize, S: Scheme<T, D>> Discretisation<'a, T, D, S> {
     /// The diffusion coefficient of a cell.
     #[inline(always)]
     fn alpha(&self, cell: usize) -> T {
-        self.coefficients
-            .as_ref()
-            .map_or_else(|| T::lit(1.0), |a| a[cell])
+        self.coefficients.as_ref().map_or_else(|| T::lit(1.0), |a| a[cell])
     }
 }
 

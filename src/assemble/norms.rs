@@ -105,9 +105,7 @@ impl<T: Real, const D: usize, S: Scheme<T, D>> Discretisation<'_, T, D, S> {
             let value: f64 = (0..Self::N).map(|i| local[i] * basis.values[i]).sum();
             let mut error = -(exact.gradient)(&x);
             for k in 0..=D {
-                let slope: f64 = (0..Self::N)
-                    .map(|i| local[i] * basis.derivatives[i][k])
-                    .sum();
+                let slope: f64 = (0..Self::N).map(|i| local[i] * basis.derivatives[i][k]).sum();
                 error += point_f64(geometry.gradient(k)) * slope;
             }
             let difference = value - data::finite((exact.value)(&x), "exact solution", &x, cell)?;
@@ -142,9 +140,7 @@ impl<T: Real, const D: usize, S: Scheme<T, D>> Discretisation<'_, T, D, S> {
             Sampling::Means => Sampling::Means,
         });
         let value = |basis: &BasisAt<T>, local: &[f64]| -> f64 {
-            (0..Self::N)
-                .map(|i| local[i] * basis.values[i].to_f64())
-                .sum()
+            (0..Self::N).map(|i| local[i] * basis.values[i].to_f64()).sum()
         };
         let mut total = 0.0;
         for cell in 0..self.mesh.n_cells() {
@@ -153,10 +149,7 @@ impl<T: Real, const D: usize, S: Scheme<T, D>> Discretisation<'_, T, D, S> {
                 let across = neighbours.across(cell, local);
                 let jumps: Vec<f64> = match across {
                     Neighbour::Cell { cell: other, .. } if (other as usize) < cell => continue,
-                    Neighbour::Cell {
-                        cell: other,
-                        local: other_local,
-                    } => {
+                    Neighbour::Cell { cell: other, local: other_local } => {
                         let theirs = self.local_values(other as usize, u);
                         table
                             .on(local)
@@ -183,10 +176,7 @@ impl<T: Real, const D: usize, S: Scheme<T, D>> Discretisation<'_, T, D, S> {
                 };
                 let penalty = self.form.penalty(&view);
                 for (jump, &weight) in jumps.into_iter().zip(weights) {
-                    let trace = Trace {
-                        jump: T::lit(jump),
-                        flux: T::lit(0.0),
-                    };
+                    let trace = Trace { jump: T::lit(jump), flux: T::lit(0.0) };
                     let term = weight * view.measure * self.form.integrand(trace, trace, penalty);
                     total += term.to_f64();
                 }
@@ -197,13 +187,7 @@ impl<T: Real, const D: usize, S: Scheme<T, D>> Discretisation<'_, T, D, S> {
 
     /// The unknowns of a cell in `f64`.
     pub(super) fn local_values(&self, cell: usize, u: &[T]) -> [f64; MAX_BASIS] {
-        std::array::from_fn(|i| {
-            if i < Self::N {
-                u[self.dofs.of(cell, i)].to_f64()
-            } else {
-                0.0
-            }
-        })
+        std::array::from_fn(|i| if i < Self::N { u[self.dofs.of(cell, i)].to_f64() } else { 0.0 })
     }
 
     /// The discrete function at the vertices of each cell, `D + 1` values for each.

@@ -21,10 +21,7 @@ impl<T: Real> BasisAt<T> {
         basis
     }
     fn zero() -> Self {
-        Self {
-            values: [T::lit(0.0); MAX_BASIS],
-            derivatives: [[T::lit(0.0); 4]; MAX_BASIS],
-        }
+        Self { values: [T::lit(0.0); MAX_BASIS], derivatives: [[T::lit(0.0); 4]; MAX_BASIS] }
     }
     fn add(&mut self, weight: T, other: &Self) {
         for i in 0..MAX_BASIS {
@@ -68,11 +65,8 @@ impl<T: Real> FacetTable<T> {
             Sampling::Means => E::DEGREE,
         };
         let rule = Rule::of_degree(D - 1, degree);
-        let at = |local: usize| {
-            rule.points
-                .iter()
-                .map(move |p| BasisAt::new::<E, D>(&insert(p, local)))
-        };
+        let at =
+            |local: usize| rule.points.iter().map(move |p| BasisAt::new::<E, D>(&insert(p, local)));
         match sampling {
             Sampling::Points(_) => Self {
                 weights: rule.weights.iter().map(|&w| T::lit(w)).collect(),
@@ -86,10 +80,7 @@ impl<T: Real> FacetTable<T> {
                     }
                     mean
                 };
-                Self {
-                    weights: vec![T::lit(1.0)],
-                    basis: (0..=D).map(mean).collect(),
-                }
+                Self { weights: vec![T::lit(1.0)], basis: (0..=D).map(mean).collect() }
             }
         }
     }
@@ -119,11 +110,7 @@ impl CellTable<f64> {
     pub fn new_in_f64<T: Real, E: ReferenceElement<T, D>, const D: usize>(degree: usize) -> Self {
         let rule = Rule::of_degree(D, degree);
         Self {
-            basis: rule
-                .points
-                .iter()
-                .map(BasisAt::new_in_f64::<T, E, D>)
-                .collect(),
+            basis: rule.points.iter().map(BasisAt::new_in_f64::<T, E, D>).collect(),
             points: rule.points,
             weights: rule.weights,
         }

@@ -75,11 +75,7 @@ impl<T: Real, const D: usize, const THETA: i8> FacetForm<T, D> for InteriorPenal
             PenaltyRule::Proven(margin) => (None, format!("proven bound times {}", 1.0 + margin)),
             PenaltyRule::Diameter(sigma) => (Some(sigma), "sigma / h_F".to_owned()),
         };
-        PenaltyParameters {
-            sigma,
-            eta: None,
-            rule: Some(rule),
-        }
+        PenaltyParameters { sigma, eta: None, rule: Some(rule) }
     }
     #[inline(always)]
     fn integrand(&self, v: Trace<T>, u: Trace<T>, penalty: T) -> T {
@@ -146,11 +142,7 @@ impl<T: Real, const D: usize> FacetForm<T, D> for OverPenalty {
             WeightRule::Isotropic => "eta / h_F^3",
             WeightRule::Anisotropic => "eta / (h^2 l_F)",
         };
-        PenaltyParameters {
-            sigma: None,
-            eta: Some(self.eta),
-            rule: Some(rule.to_owned()),
-        }
+        PenaltyParameters { sigma: None, eta: Some(self.eta), rule: Some(rule.to_owned()) }
     }
     #[inline(always)]
     fn integrand(&self, v: Trace<T>, u: Trace<T>, penalty: T) -> T {

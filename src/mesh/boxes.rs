@@ -21,10 +21,7 @@ fn paths<const D: usize>() -> Vec<[usize; D]> {
             })
             .collect();
     }
-    paths
-        .into_iter()
-        .map(|p| std::array::from_fn(|k| p[k]))
-        .collect()
+    paths.into_iter().map(|p| std::array::from_fn(|k| p[k])).collect()
 }
 
 impl<const D: usize> BoxDomain<D> {
@@ -59,22 +56,14 @@ impl<T: Real, const D: usize> Mesh<T, D> {
         for k in 0..D {
             let side = domain.upper[k] - domain.lower[k];
             if !(side > 0.0 && side.is_finite()) {
-                return Err(wrong(
-                    "side of the box",
-                    side.to_string(),
-                    "positive and finite",
-                ));
+                return Err(wrong("side of the box", side.to_string(), "positive and finite"));
             }
         }
         let paths = paths::<D>();
         let product = |add: usize| {
-            counts
-                .iter()
-                .try_fold(1_usize, |n, &c| n.checked_mul(c.checked_add(add)?))
+            counts.iter().try_fold(1_usize, |n, &c| n.checked_mul(c.checked_add(add)?))
         };
-        let n_boxes = product(0)
-            .and_then(|n| n.checked_mul(paths.len()))
-            .unwrap_or(usize::MAX);
+        let n_boxes = product(0).and_then(|n| n.checked_mul(paths.len())).unwrap_or(usize::MAX);
         let n_vertices = product(1).unwrap_or(usize::MAX);
         check_size(n_boxes, n_vertices)?;
 
@@ -90,11 +79,7 @@ impl<T: Real, const D: usize> Mesh<T, D> {
             .map(|v| Point::from_fn(|k, _| T::lit(coordinate(k, v / strides[k] % (counts[k] + 1)))))
             .collect();
         let (cells, boundary) = cells_and_boundary(domain, counts, strides, &paths);
-        Ok(Self {
-            vertices,
-            cells,
-            boundary,
-        })
+        Ok(Self { vertices, cells, boundary })
     }
 }
 
@@ -122,18 +107,10 @@ fn cells_and_boundary<const D: usize>(
             // all but the last on the lower side of the last axis
             let (first, last) = (path[0], path[D - 1]);
             if index[first] + 1 == counts[first] {
-                boundary.push(BoundaryFacet {
-                    cell,
-                    local: 0,
-                    part: domain.sides[first][1],
-                });
+                boundary.push(BoundaryFacet { cell, local: 0, part: domain.sides[first][1] });
             }
             if index[last] == 0 {
-                boundary.push(BoundaryFacet {
-                    cell,
-                    local: D as u8,
-                    part: domain.sides[last][0],
-                });
+                boundary.push(BoundaryFacet { cell, local: D as u8, part: domain.sides[last][0] });
             }
         }
         for k in 0..D {

@@ -43,10 +43,7 @@ impl Neighbours {
     pub fn of<T: Real, const D: usize>(mesh: &Mesh<T, D>) -> Self {
         // a mesh that exists has passed this matching before
         let mut found = Self::match_facets::<D>(mesh.cells(), mesh.vertices().len())
-            .unwrap_or_else(|_| Self {
-                codes: Vec::new(),
-                per_cell: D + 1,
-            });
+            .unwrap_or_else(|_| Self { codes: Vec::new(), per_cell: D + 1 });
         for f in mesh.boundary() {
             found.set(f.cell as usize, f.local as usize, f.part);
         }
@@ -85,10 +82,7 @@ impl Neighbours {
             bucket.sort_unstable();
             let mut k = 0;
             while k < bucket.len() {
-                let same = bucket[k..]
-                    .iter()
-                    .take_while(|s| s.0 == bucket[k].0)
-                    .count();
+                let same = bucket[k..].iter().take_while(|s| s.0 == bucket[k].0).count();
                 if same > 1 {
                     pair_up::<D>(cells, &bucket[k..k + same], &mut codes)?;
                 }
@@ -106,10 +100,7 @@ impl Neighbours {
             0 => Neighbour::Boundary(BoundaryPart::Dirichlet),
             1 => Neighbour::Boundary(BoundaryPart::Neumann),
             2 => Neighbour::Boundary(BoundaryPart::Contact),
-            _ => Neighbour::Cell {
-                cell: code >> 2,
-                local: (code & 3) as u8,
-            },
+            _ => Neighbour::Cell { cell: code >> 2, local: (code & 3) as u8 },
         }
     }
     /// Whether nothing is known to lie across.
@@ -150,17 +141,10 @@ fn pair_up<const D: usize>(
             let ((first, i), (second, _)) = (side(j), side(k));
             if cell(first) == cell(second) {
                 let vertices = cell(first).to_vec();
-                return Err(MeshError::RepeatedCell {
-                    first,
-                    second,
-                    vertices,
-                });
+                return Err(MeshError::RepeatedCell { first, second, vertices });
             }
             if k == 2 {
-                let vertices = (0..=D)
-                    .filter(|&v| v != i)
-                    .map(|v| cell(first)[v])
-                    .collect();
+                let vertices = (0..=D).filter(|&v| v != i).map(|v| cell(first)[v]).collect();
                 let cells = [side(0).0, side(1).0, side(2).0];
                 return Err(MeshError::FacetOfThreeCells { vertices, cells });
             }
@@ -191,19 +175,12 @@ impl Facets {
                 if let Neighbour::Cell { cell, local: other } = neighbours.across(here, local)
                     && here < cell as usize
                 {
-                    sides.push([
-                        side_code(here, local),
-                        side_code(cell as usize, other as usize),
-                    ]);
+                    sides.push([side_code(here, local), side_code(cell as usize, other as usize)]);
                 }
             }
         }
         let mut starts = [0, sides.len(), 0, 0, 0];
-        let parts = [
-            BoundaryPart::Dirichlet,
-            BoundaryPart::Neumann,
-            BoundaryPart::Contact,
-        ];
+        let parts = [BoundaryPart::Dirichlet, BoundaryPart::Neumann, BoundaryPart::Contact];
         for (k, part) in parts.into_iter().enumerate() {
             let of_part = mesh.boundary().iter().filter(|f| f.part == part);
             sides.extend(of_part.map(|f| {

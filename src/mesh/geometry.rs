@@ -43,24 +43,13 @@ impl<T: Real, const D: usize> CellGeometry<T, D> {
                 determinant = a.dot(&gradients[1]);
             }
         }
-        let inverse = if determinant == zero {
-            zero
-        } else {
-            T::lit(1.0) / determinant
-        };
+        let inverse = if determinant == zero { zero } else { T::lit(1.0) / determinant };
         for k in 1..=D {
             gradients[k] *= inverse;
             gradients[0] = gradients[0] - gradients[k];
         }
-        let magnitude = if determinant < zero {
-            -determinant
-        } else {
-            determinant
-        };
-        Self {
-            volume: magnitude / T::lit(FACTORIAL[D]),
-            gradients,
-        }
+        let magnitude = if determinant < zero { -determinant } else { determinant };
+        Self { volume: magnitude / T::lit(FACTORIAL[D]), gradients }
     }
 
     /// The gradient of barycentric coordinate `i`.
@@ -81,11 +70,7 @@ impl<T: Real, const D: usize> CellGeometry<T, D> {
     /// The `(D - 1)`-dimensional measure of facet `i`; one in one dimension.
     #[inline(always)]
     pub fn facet_measure(&self, i: usize) -> T {
-        if D == 1 {
-            T::lit(1.0)
-        } else {
-            T::lit(D as f64) * self.volume * self.gradients[i].norm()
-        }
+        if D == 1 { T::lit(1.0) } else { T::lit(D as f64) * self.volume * self.gradients[i].norm() }
     }
     /// The measure of the whole boundary of the cell.
     #[inline(always)]
@@ -116,17 +101,13 @@ impl<T: Real, const D: usize> Mesh<T, D> {
         self.cell(c)
             .iter()
             .zip(barycentric)
-            .fold(Point::zeros(), |x, (&v, &b)| {
-                x + self.vertices[v as usize] * b
-            })
+            .fold(Point::zeros(), |x, (&v, &b)| x + self.vertices[v as usize] * b)
     }
     /// The barycentre of a facet.
     pub fn facet_barycentre(&self, c: usize, local: usize) -> Point<T, D> {
         let sum = self
             .facet_vertices(c, local)
-            .fold(Point::zeros(), |s: Point<T, D>, v| {
-                s + self.vertices[v as usize]
-            });
+            .fold(Point::zeros(), |s: Point<T, D>, v| s + self.vertices[v as usize]);
         sum / T::lit(D as f64)
     }
     /// The largest distance of two vertices of a facet: the length of an edge in two dimensions,
@@ -175,14 +156,7 @@ mod tests {
     #[test]
     fn simplices_of_known_volume() {
         check(&[Point::from([3.0]), Point::from([1.0])], 2.0);
-        check(
-            &[
-                Point::from([0.0, 0.0]),
-                Point::from([2.0, 0.5]),
-                Point::from([0.5, 1.0]),
-            ],
-            0.875,
-        );
+        check(&[Point::from([0.0, 0.0]), Point::from([2.0, 0.5]), Point::from([0.5, 1.0])], 0.875);
         check(
             &[
                 Point::from([0.0, 0.0, 0.0]),

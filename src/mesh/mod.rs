@@ -49,9 +49,7 @@ impl BoundaryPart {
     }
     /// The part a physical group names.
     pub fn from_name(name: &str) -> Option<Self> {
-        [Self::Dirichlet, Self::Neumann, Self::Contact]
-            .into_iter()
-            .find(|p| p.name() == name)
+        [Self::Dirichlet, Self::Neumann, Self::Contact].into_iter().find(|p| p.name() == name)
     }
 }
 
@@ -108,20 +106,14 @@ impl<T: Real, const D: usize> Mesh<T, D> {
     }
     /// Vertices of facet `local` of a cell, ascending: `D` of them.
     pub fn facet_vertices(&self, c: usize, local: usize) -> impl Iterator<Item = u32> + '_ {
-        self.cell(c)
-            .iter()
-            .enumerate()
-            .filter(move |(i, _)| *i != local)
-            .map(|(_, &v)| v)
+        self.cell(c).iter().enumerate().filter(move |(i, _)| *i != local).map(|(_, &v)| v)
     }
     /// The barycentre of a cell.
     pub fn barycentre(&self, c: usize) -> Point<T, D> {
         let sum = self
             .cell(c)
             .iter()
-            .fold(Point::zeros(), |s: Point<T, D>, &v| {
-                s + self.vertices[v as usize]
-            });
+            .fold(Point::zeros(), |s: Point<T, D>, &v| s + self.vertices[v as usize]);
         sum / T::lit(Self::CELL_VERTICES as f64)
     }
     /// The largest distance of two vertices of a cell.
@@ -138,9 +130,7 @@ impl<T: Real, const D: usize> Mesh<T, D> {
     }
     /// The largest cell diameter.
     pub fn mesh_size(&self) -> f64 {
-        (0..self.n_cells())
-            .map(|c| self.cell_diameter(c).to_f64())
-            .fold(0.0, f64::max)
+        (0..self.n_cells()).map(|c| self.cell_diameter(c).to_f64()).fold(0.0, f64::max)
     }
     /// The diagonal of the smallest box around the mesh: the length that makes WOPSIP's penalty
     /// factor dimensionless.

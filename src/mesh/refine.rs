@@ -148,11 +148,7 @@ impl<T: Real, const D: usize> Mesh<T, D> {
         let mut cells = Vec::with_capacity(n_fine * (D + 1));
         for cell in self.cells.chunks_exact(D + 1) {
             for child in children {
-                cells.extend(
-                    child
-                        .iter()
-                        .map(|&[i, j]| midpoints.number(cell[i], cell[j])),
-                );
+                cells.extend(child.iter().map(|&[i, j]| midpoints.number(cell[i], cell[j])));
             }
         }
         let mut boundary = Vec::with_capacity(self.boundary.len() << (D - 1));
@@ -163,24 +159,13 @@ impl<T: Real, const D: usize> Mesh<T, D> {
                 for local in 0..=D {
                     if child.iter().enumerate().all(|(i, v)| i == local || !off(v)) {
                         let cell = facet.cell * children.len() as u32 + k as u32;
-                        boundary.push(BoundaryFacet {
-                            cell,
-                            local: local as u8,
-                            part: facet.part,
-                        });
+                        boundary.push(BoundaryFacet { cell, local: local as u8, part: facet.part });
                     }
                 }
             }
         }
         boundary.sort_unstable_by_key(|f| (f.cell, f.local));
-        Ok((
-            Self {
-                vertices,
-                cells,
-                boundary,
-            },
-            Refinement { parents },
-        ))
+        Ok((Self { vertices, cells, boundary }, Refinement { parents }))
     }
 }
 
@@ -194,10 +179,7 @@ pub struct Hierarchy<T, const D: usize> {
 impl<T: Real, const D: usize> Hierarchy<T, D> {
     /// One mesh and nothing coarser.
     pub fn single(mesh: Mesh<T, D>) -> Self {
-        Self {
-            meshes: vec![mesh],
-            refinements: Vec::new(),
-        }
+        Self { meshes: vec![mesh], refinements: Vec::new() }
     }
     /// A mesh and `times` refinements of it.
     ///

@@ -32,19 +32,13 @@ impl<T: Real, const D: usize> Mesh<T, D> {
         for cell in cells.chunks_exact_mut(D + 1) {
             cell.sort_unstable();
         }
-        let rounded: Vec<Point<T, D>> = vertices
-            .iter()
-            .map(|x| Point::from_fn(|k, _| T::lit(x[k])))
-            .collect();
+        let rounded: Vec<Point<T, D>> =
+            vertices.iter().map(|x| Point::from_fn(|k, _| T::lit(x[k]))).collect();
         check_volumes::<T, D>(&rounded, &cells)?;
         let neighbours = Neighbours::match_facets::<D>(&cells, vertices.len())?;
         let boundary = match_boundary(&vertices, &cells, &neighbours, boundary)?;
         let (vertices, cells) = drop_unused(rounded, cells);
-        Ok(Self {
-            vertices,
-            cells,
-            boundary,
-        })
+        Ok(Self { vertices, cells, boundary })
     }
 
     /// Checks that every component of the mesh that hangs together through facets has a Dirichlet
@@ -90,38 +84,26 @@ fn check_lists<const D: usize>(vertices: &[Point<f64, D>], cells: &[u32]) -> Res
         return Err(MeshError::NoCells { dimension: D });
     }
     if !cells.len().is_multiple_of(per_cell) {
-        return Err(MeshError::IncompleteCell {
-            entries: cells.len(),
-            per_cell,
-        });
+        return Err(MeshError::IncompleteCell { entries: cells.len(), per_cell });
     }
     check_size(cells.len() / per_cell, vertices.len())?;
     for (vertex, x) in vertices.iter().enumerate() {
         if let Some(axis) = (0..D).find(|&k| !x[k].is_finite()) {
-            return Err(MeshError::NotFinite {
-                vertex,
-                axis,
-                value: x[axis],
-            });
+            return Err(MeshError::NotFinite { vertex, axis, value: x[axis] });
         }
     }
     if let Some(k) = cells.iter().position(|&v| v as usize >= vertices.len()) {
         let (cell, vertex) = (k / per_cell, cells[k]);
-        return Err(MeshError::VertexOutOfRange {
-            cell,
-            vertex,
-            vertices: vertices.len(),
-        });
+        return Err(MeshError::VertexOutOfRange { cell, vertex, vertices: vertices.len() });
     }
     Ok(())
 }
 
 /// Refuses meshes that 32-bit numbers cannot address.
 pub(super) fn check_size(cells: usize, vertices: usize) -> Result<(), MeshError> {
-    for (what, count, limit) in [
-        ("cells", cells, CELL_LIMIT),
-        ("vertices", vertices, u32::MAX as usize - 1),
-    ] {
+    for (what, count, limit) in
+        [("cells", cells, CELL_LIMIT), ("vertices", vertices, u32::MAX as usize - 1)]
+    {
         if count > limit {
             return Err(MeshError::TooLarge { what, count, limit });
         }
@@ -179,18 +161,9 @@ fn match_boundary<const D: usize>(
         key.sort_unstable();
         let Ok(k) = open.binary_search_by(|o| o.0.cmp(&key)) else {
             let inside = sides().any(|(c, local)| facet(c, local) == key);
-            let why = if inside {
-                "lies between two cells"
-            } else {
-                "belongs to no cell"
-            };
+            let why = if inside { "lies between two cells" } else { "belongs to no cell" };
             let (vertices, part) = (key.to_vec(), t.part.name());
-            return Err(MeshError::NotABoundaryFacet {
-                vertices,
-                part,
-                why,
-                tag,
-            });
+            return Err(MeshError::NotABoundaryFacet { vertices, part, why, tag });
         };
         match parts[k] {
             Some(first) if first != t.part => {
@@ -207,21 +180,11 @@ fn match_boundary<const D: usize>(
     let mut boundary = Vec::with_capacity(open.len());
     for (&(key, cell, local), part) in open.iter().zip(parts) {
         let Some(part) = part else {
-            let sum = key
-                .iter()
-                .fold(Point::<f64, D>::zeros(), |s, &v| s + vertices[v as usize]);
+            let sum = key.iter().fold(Point::<f64, D>::zeros(), |s, &v| s + vertices[v as usize]);
             let at = describe_point(&(sum / D as f64));
-            return Err(MeshError::UntaggedFacet {
-                vertices: key.to_vec(),
-                cell,
-                at,
-            });
+            return Err(MeshError::UntaggedFacet { vertices: key.to_vec(), cell, at });
         };
-        boundary.push(BoundaryFacet {
-            cell: cell as u32,
-            local: local as u8,
-            part,
-        });
+        boundary.push(BoundaryFacet { cell: cell as u32, local: local as u8, part });
     }
     boundary.sort_unstable_by_key(|f| (f.cell, f.local));
     Ok(boundary)

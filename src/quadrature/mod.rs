@@ -35,10 +35,7 @@ impl Rule {
     fn barycentre(dimension: usize) -> Self {
         let mut point = [0.0; 4];
         point[..=dimension].fill(1.0 / (dimension + 1) as f64);
-        Self {
-            points: vec![point],
-            weights: vec![1.0],
-        }
+        Self { points: vec![point], weights: vec![1.0] }
     }
 
     /// The points `a e_i + b (1, ..., 1)` with `a = 1 / sqrt(dimension + 2)`.
@@ -52,25 +49,16 @@ impl Rule {
             point[i] += a;
             point
         };
-        Self {
-            points: (0..n).map(point).collect(),
-            weights: vec![1.0 / n as f64; n],
-        }
+        Self { points: (0..n).map(point).collect(), weights: vec![1.0 / n as f64; n] }
     }
 
     /// Collapsed coordinates: a Gauss-Jacobi rule towards each vertex in turn.
     fn conical(dimension: usize, points_per_direction: usize) -> Self {
-        let mut rule = Self {
-            points: vec![[1.0, 0.0, 0.0, 0.0]],
-            weights: vec![1.0],
-        };
+        let mut rule = Self { points: vec![[1.0, 0.0, 0.0, 0.0]], weights: vec![1.0] };
         for d in 1..=dimension {
             // the simplex of dimension d as a cone over that of dimension d - 1
             let (nodes, weights) = gauss_jacobi(points_per_direction, d - 1);
-            let mut cone = Self {
-                points: Vec::new(),
-                weights: Vec::new(),
-            };
+            let mut cone = Self { points: Vec::new(), weights: Vec::new() };
             for (point, weight) in rule.points.iter().zip(&rule.weights) {
                 for (t, w) in nodes.iter().zip(&weights) {
                     let mut p = point.map(|b| b * (1.0 - t));

@@ -107,10 +107,7 @@ impl Entry {
         Self::new(takes, move |p| build(p.load.unwrap_or(default)).into())
     }
     /// Name, summary and dimension are read off the scene itself, so that they stand in one place.
-    fn new(
-        takes: Takes,
-        build: impl Fn(&Parameters) -> AnyScene + Send + Sync + 'static,
-    ) -> Self {
+    fn new(takes: Takes, build: impl Fn(&Parameters) -> AnyScene + Send + Sync + 'static) -> Self {
         let (name, summary, dimension) = match build(&Parameters::default()) {
             AnyScene::One(scene) => (scene.name, scene.summary, 1),
             AnyScene::Two(scene) => (scene.name, scene.summary, 2),
@@ -128,9 +125,13 @@ impl Entry {
     /// finite, and a load that is not finite.
     pub fn make(&self, parameters: &Parameters) -> Result<AnyScene, Error> {
         let Parameters { scale, contrast, load } = *parameters;
-        self.admit("scale", self.takes.scale, scale, "positive and finite, 1e-100 to 1e100", |x| {
-            SCALES.contains(&x)
-        })?;
+        self.admit(
+            "scale",
+            self.takes.scale,
+            scale,
+            "positive and finite, 1e-100 to 1e100",
+            |x| SCALES.contains(&x),
+        )?;
         self.admit("contrast", self.takes.contrast, contrast, "positive and finite", |x| {
             x > 0.0 && x.is_finite()
         })?;

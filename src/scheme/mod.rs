@@ -68,8 +68,5 @@ pub trait Scheme<T: Real, const D: usize>: Send + Sync {
 /// argument: one for solutions in `H^2`, `s - 1` below.
 fn linear_energy_order(setting: &Setting) -> ExpectedOrders {
     let s = setting.regularity.sobolev;
-    ExpectedOrders {
-        l2: None,
-        h1: (s > 1.5).then(|| (s - 1.0).min(1.0)),
-    }
+    ExpectedOrders { l2: None, h1: (s > 1.5).then(|| (s - 1.0).min(1.0)) }
 }

@@ -19,9 +19,7 @@ pub struct Sipg {
 
 impl Default for Sipg {
     fn default() -> Self {
-        Self {
-            penalty: PenaltyRule::Proven(0.5),
-        }
+        Self { penalty: PenaltyRule::Proven(0.5) }
     }
 }
 
@@ -34,10 +32,7 @@ impl<T: Real, const D: usize> Scheme<T, D> for Sipg {
         "sipg"
     }
     fn facet(&self, _: &Mesh<T, D>) -> InteriorPenalty<-1> {
-        InteriorPenalty {
-            rule: self.penalty,
-            degree: 1,
-        }
+        InteriorPenalty { rule: self.penalty, degree: 1 }
     }
     fn expected_orders(&self, setting: &Setting) -> ExpectedOrders {
         linear_energy_order(setting)

@@ -29,10 +29,7 @@ pub struct Wopsip {
 
 impl Default for Wopsip {
     fn default() -> Self {
-        Self {
-            eta: Eta::Dimensionless(1.0),
-            weight: WeightRule::Isotropic,
-        }
+        Self { eta: Eta::Dimensionless(1.0), weight: WeightRule::Isotropic }
     }
 }
 
@@ -53,11 +50,7 @@ impl<T: Real, const D: usize> Scheme<T, D> for Wopsip {
             WeightRule::Isotropic => f64::NAN,
             WeightRule::Anisotropic => mesh.mesh_size(),
         };
-        OverPenalty {
-            eta,
-            rule: self.weight,
-            mesh_size,
-        }
+        OverPenalty { eta, rule: self.weight, mesh_size }
     }
     fn expected_orders(&self, setting: &Setting) -> ExpectedOrders {
         linear_energy_order(setting)

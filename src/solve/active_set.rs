@@ -17,7 +17,8 @@ use crate::real::Real;
 /// where a bound is violated. For M-matrices it ends in the solution after finitely many steps.
 /// For other matrices it may cycle: a state that returns is recognised, and the problem condensed
 /// on all unknowns that have moved since is solved exactly ([`Outcome::Cycling`] if that is not
-/// possible within the limits below).
+/// possible within the limits below). The same is done where the method wanders, which is a cycle
+/// too long to be waited for: no iterate has been better than the best for `patience` steps.
 ///
 /// What differs by rounding only does not change state, or ties would cycle for ever. A bound is
 /// violated beyond rounding by `band` units of the scalar's epsilon times the largest
@@ -39,6 +40,8 @@ pub struct ActiveSet {
     pub band: f64,
     /// Corrections of each linear solution by its residual in `f64`.
     pub refinements: usize,
+    /// Linear systems without a better iterate after which the unknowns that moved are condensed.
+    pub patience: usize,
     /// Largest number of condensed problems.
     pub max_condensations: usize,
     /// Largest number of unknowns of a condensed problem; its matrix is dense.
@@ -55,7 +58,8 @@ impl Default for ActiveSet {
             max_outer: 200,
             band: 16.0,
             refinements: 1,
-            max_condensations: 5,
+            patience: 20,
+            max_condensations: 10,
             max_condensed: 500,
             check_definite: false,
         }
@@ -69,9 +73,7 @@ impl<T: Real> InequalitySolver<T> for ActiveSet {
 
     fn solve(&self, inequality: &Inequality<T>, start: &Start) -> Solution<T> {
         let mut iterate = Iterate::new(inequality, start);
-        let outcome = self
-            .run(&mut iterate, start)
-            .unwrap_or_else(|outcome| outcome);
+        let outcome = self.run(&mut iterate, start).unwrap_or_else(|outcome| outcome);
         iterate.into_solution(outcome)
     }
 }
@@ -94,6 +96,7 @@ impl ActiveSet {
         let mut history = History::new(inequality.size());
         history.record(&iterate.state, &mut cycle);
         let mut condensations = 0;
+        let mut progress = 0;
         let mut band = self.band;
         loop {
             if iterate.outer >= self.max_outer {
@@ -108,6 +111,8 @@ impl ActiveSet {
                     if !iterate.close(&mut history) {
                         return Err(Outcome::Singular);
                     }
+                    // From here on the state without contact would be a new one.
+                    history.clear();
                     history.record(&iterate.state, &mut cycle);
                     continue;
                 }
@@ -119,50 +124,48 @@ impl ActiveSet {
             if !iterate.change_state(band, band - self.band, &mut history) {
                 return self.confirm(iterate, band);
             }
-            if !history.record(&iterate.state, &mut cycle) {
+            let returned = history.record(&iterate.state, &mut cycle);
+            let wanders = iterate.outer - progress.max(iterate.best_outer()) >= self.patience;
+            if !returned && !wanders {
                 continue;
             }
-            if condensations == self.max_condensations {
-                return Err(Outcome::Cycling);
+            if !returned {
+                history.mark_recent(self.patience, &mut cycle);
+            }
+            progress = iterate.outer;
+            let members: Vec<u32> =
+                (0..cycle.len()).filter(|&i| cycle[i]).map(|i| i as u32).collect();
+            if condensations == self.max_condensations || members.len() > self.max_condensed {
+                if returned {
+                    return Err(Outcome::Cycling);
+                }
+                // It may still come to rest by itself.
+                continue;
             }
             condensations += 1;
-            self.condense(iterate, &cycle, band, &mut history)?;
+            self.condense(iterate, &members, band, &mut history)?;
             history.clear();
             history.record(&iterate.state, &mut cycle);
             band *= 8.0;
         }
     }
 
-    /// Sets the states of the unknowns marked in `cycle` to those that solve the problem condensed
-    /// on them.
+    /// Sets the states of some unknowns to those that solve the problem condensed on them.
     fn condense<T: Real>(
         &self,
         iterate: &mut Iterate<'_, T>,
-        cycle: &[bool],
+        members: &[u32],
         band: f64,
         history: &mut History,
     ) -> Result<(), Outcome> {
-        let members: Vec<u32> = (0..cycle.len())
-            .filter(|&i| cycle[i])
-            .map(|i| i as u32)
-            .collect();
-        if members.len() > self.max_condensed {
-            return Err(Outcome::Cycling);
-        }
         iterate.outer += 1;
         iterate.rest_on_bounds();
         let noise = Noise {
             gap: iterate.gap_noise(band),
             force: &|i| iterate.force_noise(i, band, band - self.band),
         };
-        let states = resolve(
-            iterate.inequality,
-            &iterate.values,
-            &iterate.state,
-            &members,
-            &noise,
-        )?
-        .ok_or(Outcome::Cycling)?;
+        let states = resolve(iterate.inequality, &iterate.values, &iterate.state, members, &noise)?
+            .ok_or(Outcome::Cycling)?;
         for (&i, &contact) in members.iter().zip(&states) {
             iterate.set_state(i as usize, contact, history);
         }

@@ -54,10 +54,7 @@ impl Certificate {
 
     /// The largest of the four violations.
     pub fn largest(&self) -> f64 {
-        self.feasibility
-            .max(self.multiplier)
-            .max(self.complementarity)
-            .max(self.residual)
+        self.feasibility.max(self.multiplier).max(self.complementarity).max(self.residual)
     }
 }
 
@@ -76,31 +73,18 @@ pub(super) fn certify_with_noise<T: Real>(
     if !inequality.is_well_formed() || u.len() != n {
         return (Certificate::WORTHLESS, 0.0);
     }
-    let Inequality {
-        matrix,
-        load,
-        bounds,
-        ..
-    } = inequality;
+    let Inequality { matrix, load, bounds, .. } = inequality;
     let mut deficit = vec![0.0; n];
     matrix.residual_f64(load, u, &mut deficit);
 
     let mut displacement = 0.0_f64;
-    let [
-        mut work,
-        mut energy,
-        mut diagonal_energy,
-        mut load_energy,
-        mut stiffness,
-    ] = [0.0; 5];
+    let [mut work, mut energy, mut diagonal_energy, mut load_energy, mut stiffness] = [0.0; 5];
     let [mut wrong, mut complementarity, mut residual] = [0.0_f64; 3];
     let mut violation = 0.0_f64;
     for i in 0..n {
         let (x, b, r) = (u[i].to_f64(), load[i].to_f64(), -deficit[i]);
         let d = positive_diagonal(inequality, i);
-        displacement = displacement
-            .max(x.abs())
-            .max(bounds[i].nearest(u[i]).to_f64().abs());
+        displacement = displacement.max(x.abs()).max(bounds[i].nearest(u[i]).to_f64().abs());
         energy += x * (b + r);
         work += (x * (b + r)).abs();
         diagonal_energy += d * x * x;
@@ -112,22 +96,13 @@ pub(super) fn certify_with_noise<T: Real>(
         complementarity += d * local.complementarity.powi(2);
         residual += d * local.residual.powi(2);
     }
-    if ![displacement, work, load_energy, wrong, residual]
-        .iter()
-        .all(|x| x.is_finite())
-    {
+    if ![displacement, work, load_energy, wrong, residual].iter().all(|x| x.is_finite()) {
         return (Certificate::WORTHLESS, 0.0);
     }
-    let displacement = if displacement > 0.0 {
-        displacement
-    } else {
-        1.0
-    };
+    let displacement = if displacement > 0.0 { displacement } else { 1.0 };
     let candidates = [energy, diagonal_energy, load_energy, 1.0];
     let least = [8.0 * f64::EPSILON * work, 0.0, 0.0, 0.0];
-    let energy = (0..4)
-        .find(|&k| candidates[k] > least[k])
-        .map_or(1.0, |k| candidates[k]);
+    let energy = (0..4).find(|&k| candidates[k] > least[k]).map_or(1.0, |k| candidates[k]);
     let norm = |sum: f64| (sum / energy).sqrt();
     let certificate = Certificate {
         feasibility: violation / displacement,
@@ -163,10 +138,7 @@ impl Local {
     /// `step` is `r_i / d_i`: positive where the unknown is pressed downwards.
     fn new<T: Real>(bound: &Bound<T>, x: f64, step: f64) -> Self {
         if let Some(value) = bound.only_value() {
-            return Self {
-                violation: (x - value.to_f64()).abs(),
-                ..Self::default()
-            };
+            return Self { violation: (x - value.to_f64()).abs(), ..Self::default() };
         }
         let to_lower = bound.lower().map_or(f64::INFINITY, |l| x - l.to_f64());
         let to_upper = bound.upper().map_or(f64::INFINITY, |u| u.to_f64() - x);
@@ -175,10 +147,7 @@ impl Local {
         } else {
             (to_upper, to_lower, -step)
         };
-        let mut local = Self {
-            violation: (-gap).max(0.0),
-            ..Self::default()
-        };
+        let mut local = Self { violation: (-gap).max(0.0), ..Self::default() };
         if gap > step.abs() {
             local.residual = step;
         } else if pressed < 0.0 {

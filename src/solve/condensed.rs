@@ -108,10 +108,7 @@ pub(super) fn resolve<T: Real>(
     }
 
     let bound = |absent: f64, of: &dyn Fn(usize) -> Option<T>| -> Vec<f64> {
-        members
-            .iter()
-            .map(|&i| of(i as usize).map_or(absent, T::to_f64))
-            .collect()
+        members.iter().map(|&i| of(i as usize).map_or(absent, T::to_f64)).collect()
     };
     let problem = SmallProblem {
         matrix: condensed,

@@ -16,11 +16,7 @@ pub(super) struct History {
 impl History {
     /// No state seen yet.
     pub fn new(unknowns: usize) -> Self {
-        Self {
-            seen: Vec::new(),
-            last_move: vec![0; unknowns],
-            step: 0,
-        }
+        Self { seen: Vec::new(), last_move: vec![0; unknowns], step: 0 }
     }
 
     /// Notes that unknown `i` moves into the state to be recorded next.
@@ -37,10 +33,20 @@ impl History {
             self.seen.push((fingerprint, self.step));
             return false;
         };
-        for (mark, &last) in cycle.iter_mut().zip(&self.last_move) {
-            *mark |= last > first;
-        }
+        self.mark_moved(first, cycle);
         true
+    }
+
+    /// Marks in `cycle` every unknown that has moved within the last `steps` records.
+    pub fn mark_recent(&self, steps: usize, cycle: &mut [bool]) {
+        self.mark_moved(self.step.saturating_sub(steps as u32), cycle);
+    }
+
+    /// Marks every unknown that has moved after a step.
+    fn mark_moved(&self, after: u32, cycle: &mut [bool]) {
+        for (mark, &last) in cycle.iter_mut().zip(&self.last_move) {
+            *mark |= last > after;
+        }
     }
 
     /// Forgets all states.
@@ -51,19 +57,16 @@ impl History {
 
 /// The sum over all unknowns on a bound of a pseudo-random number of unknown and bound.
 fn fingerprint(state: &[Contact]) -> u128 {
-    state
-        .iter()
-        .enumerate()
-        .fold(0, |sum: u128, (i, &contact)| {
-            let side = match contact {
-                Contact::Open => return sum,
-                Contact::Lower => 0,
-                Contact::Upper => 1,
-            };
-            let key = 2 * i as u64 + side;
-            let number = u128::from(scramble(key)) << 64 | u128::from(scramble(!key));
-            sum.wrapping_add(number)
-        })
+    state.iter().enumerate().fold(0, |sum: u128, (i, &contact)| {
+        let side = match contact {
+            Contact::Open => return sum,
+            Contact::Lower => 0,
+            Contact::Upper => 1,
+        };
+        let key = 2 * i as u64 + side;
+        let number = u128::from(scramble(key)) << 64 | u128::from(scramble(!key));
+        sum.wrapping_add(number)
+    })
 }
 
 /// The output function of SplitMix64 (Steele, Lea, Flood 2014): a bijection of 64 bits without

@@ -26,6 +26,7 @@ pub(super) struct Iterate<'a, T> {
 /// The iterate whose projected Jacobi step is smallest.
 struct Best<T> {
     measure: f64,
+    outer: usize,
     values: Vec<T>,
     state: Vec<Contact>,
 }
@@ -34,10 +35,7 @@ impl<'a, T: Real> Iterate<'a, T> {
     /// The admissible values nearest to zero, in the states of the start that the bounds have.
     pub fn new(inequality: &'a Inequality<T>, start: &Start) -> Self {
         let bounds = &inequality.bounds;
-        let values: Vec<T> = bounds
-            .iter()
-            .map(|bound| bound.nearest(T::lit(0.0)))
-            .collect();
+        let values: Vec<T> = bounds.iter().map(|bound| bound.nearest(T::lit(0.0))).collect();
         let guess = match start {
             Start::Cold => &[],
             Start::Contact(guess) => guess.as_slice(),
@@ -54,6 +52,7 @@ impl<'a, T: Real> Iterate<'a, T> {
             scale: 1.0,
             best: Best {
                 measure: f64::INFINITY,
+                outer: 0,
                 values: values.clone(),
                 state: state.clone(),
             },
@@ -71,22 +70,13 @@ impl<'a, T: Real> Iterate<'a, T> {
         } else {
             (self.best.values, self.best.state)
         };
-        Solution {
-            values,
-            contact,
-            outcome,
-            outer: self.outer,
-            linear: 0,
-        }
+        Solution { values, contact, outcome, outer: self.outer, linear: 0 }
     }
 
     /// Puts every unknown whose value is known on it, exactly.
     pub fn rest_on_bounds(&mut self) {
-        for ((value, bound), state) in self
-            .values
-            .iter_mut()
-            .zip(&self.inequality.bounds)
-            .zip(&self.state)
+        for ((value, bound), state) in
+            self.values.iter_mut().zip(&self.inequality.bounds).zip(&self.state)
         {
             if let Some(known) = known_value(bound, *state) {
                 *value = known;
@@ -101,13 +91,7 @@ impl<'a, T: Real> Iterate<'a, T> {
     pub fn solve_linear(&mut self, refinements: usize) -> Result<(), FactorError> {
         self.outer += 1;
         self.rest_on_bounds();
-        let Inequality {
-            matrix,
-            load,
-            bounds,
-            symmetric,
-            ..
-        } = self.inequality;
+        let Inequality { matrix, load, bounds, symmetric, .. } = self.inequality;
         self.free.clear();
         let states = bounds.iter().zip(&self.state).enumerate();
         let free = states.filter(|(_, (bound, state))| known_value(bound, **state).is_none());
@@ -116,8 +100,7 @@ impl<'a, T: Real> Iterate<'a, T> {
         for _ in 0..=refinements {
             matrix.residual_f64(load, &self.values, &mut self.deficit);
             self.correction.clear();
-            self.correction
-                .extend(self.free.iter().map(|&i| T::lit(self.deficit[i as usize])));
+            self.correction.extend(self.free.iter().map(|&i| T::lit(self.deficit[i as usize])));
             factors.solve_in_place(&mut self.correction, 1);
             for (&i, &correction) in self.free.iter().zip(&self.correction) {
                 self.values[i as usize] += correction;
@@ -148,10 +131,16 @@ impl<'a, T: Real> Iterate<'a, T> {
         self.scale = if scale > 0.0 { scale } else { 1.0 };
         if measure < self.best.measure {
             self.best.measure = measure;
+            self.best.outer = self.outer;
             self.best.values.copy_from_slice(&self.values);
             self.best.state.copy_from_slice(&self.state);
         }
         true
+    }
+
+    /// The number of linear systems when the best iterate was found.
+    pub fn best_outer(&self) -> usize {
+        self.best.outer
     }
 
     /// Lets go and takes hold; true if any unknown changed its state.
@@ -219,12 +208,7 @@ impl<'a, T: Real> Iterate<'a, T> {
     /// forces of free neighbours in the scalar, of all others in `f64`, and `spread` units of the
     /// largest force the diagonal could exert.
     pub fn force_noise(&self, i: usize, band: f64, spread: f64) -> f64 {
-        let Inequality {
-            matrix,
-            load,
-            bounds,
-            ..
-        } = self.inequality;
+        let Inequality { matrix, load, bounds, .. } = self.inequality;
         let (columns, entries) = matrix.row(i);
         let mut free = 0.0;
         let mut known = load[i].to_f64().abs();

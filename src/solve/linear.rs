@@ -61,14 +61,8 @@ pub struct Factors<T> {
 #[derive(Debug)]
 enum Kind<T> {
     Empty,
-    Cholesky {
-        symbolic: SymbolicCholesky<u32>,
-        values: Vec<T>,
-    },
-    Lu {
-        symbolic: SymbolicLu<u32>,
-        numeric: NumericLu<u32, T>,
-    },
+    Cholesky { symbolic: SymbolicCholesky<u32>, values: Vec<T> },
+    Lu { symbolic: SymbolicLu<u32>, numeric: NumericLu<u32, T> },
 }
 
 impl<T: Real> Factors<T> {
@@ -85,10 +79,7 @@ impl<T: Real> Factors<T> {
     ) -> Result<Self, FactorError> {
         let size = free.len();
         if size == 0 {
-            return Ok(Self {
-                size,
-                kind: Kind::Empty,
-            });
+            return Ok(Self { size, kind: Kind::Empty });
         }
         if symmetric {
             let mut restricted = Restricted::left_of_diagonal(matrix, free);
@@ -149,9 +140,7 @@ impl<T: Real> Factors<T> {
             CholeskySymbolicParams::default(),
         )?;
         let mut values = Vec::new();
-        values
-            .try_reserve_exact(symbolic.len_val())
-            .map_err(|_| FactorError::OutOfMemory)?;
+        values.try_reserve_exact(symbolic.len_val()).map_err(|_| FactorError::OutOfMemory)?;
         values.resize(symbolic.len_val(), T::lit(0.0));
         let scratch = symbolic.factorize_numeric_llt_scratch::<T>(PAR, Default::default());
         let mut memory = MemBuffer::try_new(scratch).map_err(|_| FactorError::OutOfMemory)?;
@@ -167,10 +156,7 @@ impl<T: Real> Factors<T> {
             )
             .map_err(|LltError::NonPositivePivot { .. }| FactorError::NotPositive)?;
         if pivots_hold(&symbolic, &values, &restricted.diagonal()) {
-            Ok(Self {
-                size: restricted.size(),
-                kind: Kind::Cholesky { symbolic, values },
-            })
+            Ok(Self { size: restricted.size(), kind: Kind::Cholesky { symbolic, values } })
         } else {
             Err(FactorError::Singular)
         }
@@ -189,15 +175,8 @@ impl<T: Real> Factors<T> {
                 LuError::SymbolicSingular { .. } => FactorError::Singular,
                 LuError::Generic(error) => error.into(),
             })?;
-        let factors = Self {
-            size: restricted.size(),
-            kind: Kind::Lu { symbolic, numeric },
-        };
-        if factors.condition_holds(restricted) {
-            Ok(factors)
-        } else {
-            Err(FactorError::Singular)
-        }
+        let factors = Self { size: restricted.size(), kind: Kind::Lu { symbolic, numeric } };
+        if factors.condition_holds(restricted) { Ok(factors) } else { Err(FactorError::Singular) }
     }
 
     /// Whether the matrix, its rows scaled to norm one, is regular to working precision.
@@ -209,17 +188,14 @@ impl<T: Real> Factors<T> {
         let mut sign = 1_u64;
         let mut x: Vec<T> = (0..self.size)
             .map(|i| {
-                sign = sign
-                    .wrapping_mul(6_364_136_223_846_793_005)
-                    .wrapping_add(1_442_695);
+                sign = sign.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695);
                 let norm: f64 = restricted.row(i).1.iter().map(|a| a.to_f64().abs()).sum();
                 T::lit(if sign >> 63 == 0 { norm } else { -norm })
             })
             .collect();
         self.solve_in_place(&mut x, 1);
         // Written so that a number that is not finite fails.
-        x.iter()
-            .all(|x| x.to_f64().abs() * LOST_PIVOT * T::EPSILON < 1.0)
+        x.iter().all(|x| x.to_f64().abs() * LOST_PIVOT * T::EPSILON < 1.0)
     }
 }
 
@@ -297,10 +273,7 @@ fn pivots_hold<T: Real>(symbolic: &SymbolicCholesky<u32>, values: &[T], diagonal
     match symbolic.raw() {
         SymbolicCholeskyRaw::Simplicial(simplicial) => {
             let starts = &simplicial.col_ptr()[..simplicial.ncols()];
-            starts
-                .iter()
-                .enumerate()
-                .all(|(j, &start)| holds(j, values[start as usize]))
+            starts.iter().enumerate().all(|(j, &start)| holds(j, values[start as usize]))
         }
         SymbolicCholeskyRaw::Supernodal(supernodal) => {
             let factor = SupernodalLltRef::<'_, u32, T>::new(supernodal, values);

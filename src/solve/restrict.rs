@@ -34,15 +34,8 @@ impl<T: Real> Restricted<T> {
             new[i as usize] = k as u32;
         }
         // A bound on what will be kept saves growing; the order of `free` keeps columns ascending.
-        let rows = free
-            .iter()
-            .map(|&i| matrix.row(i as usize).0.len())
-            .sum::<usize>();
-        let bound = if left {
-            (rows + free.len()).div_ceil(2)
-        } else {
-            rows
-        };
+        let rows = free.iter().map(|&i| matrix.row(i as usize).0.len()).sum::<usize>();
+        let bound = if left { (rows + free.len()).div_ceil(2) } else { rows };
         let mut restricted = Self {
             row_starts: Vec::with_capacity(free.len() + 1),
             columns: Vec::with_capacity(bound),
@@ -69,18 +62,11 @@ impl<T: Real> Restricted<T> {
         let n = self.size();
         let transpose = self.transpose();
         let half = T::lit(0.5);
-        let mut part = Self {
-            row_starts: vec![0],
-            columns: Vec::new(),
-            values: Vec::new(),
-        };
+        let mut part = Self { row_starts: vec![0], columns: Vec::new(), values: Vec::new() };
         for i in 0..n {
             let mut entries: [_; 2] = [self.row(i), transpose.row(i)];
             loop {
-                let next = entries
-                    .iter()
-                    .filter_map(|(columns, _)| columns.first())
-                    .min();
+                let next = entries.iter().filter_map(|(columns, _)| columns.first()).min();
                 let Some(&j) = next.filter(|&&j| j as usize <= i) else {
                     break;
                 };
@@ -121,20 +107,14 @@ impl<T: Real> Restricted<T> {
                 *place += 1;
             }
         }
-        Self {
-            row_starts,
-            columns,
-            values,
-        }
+        Self { row_starts, columns, values }
     }
 
     /// The diagonal, zero where none is stored.
     pub fn diagonal(&self) -> Vec<T> {
         let entry = |i: usize| {
             let (columns, values) = self.row(i);
-            columns
-                .binary_search(&(i as u32))
-                .map_or(T::lit(0.0), |k| values[k])
+            columns.binary_search(&(i as u32)).map_or(T::lit(0.0), |k| values[k])
         };
         (0..self.size()).map(entry).collect()
     }

@@ -157,9 +157,9 @@ fn solve<T: Real, const D: usize, S: Scheme<T, D>>(
     }
     let (solution, solve_seconds) = run(task, &inequality, shortfall.is_some());
     let u = &solution.values;
-    let usable = solution.outcome != Outcome::NotCoercive && u.iter().all(|v| v.to_f64().is_finite());
-    let error =
-        if task.with_errors && usable { space.errors(u)? } else { Errors::default() };
+    let usable =
+        solution.outcome != Outcome::NotCoercive && u.iter().all(|v| v.to_f64().is_finite());
+    let error = if task.with_errors && usable { space.errors(u)? } else { Errors::default() };
     let fields = (task.with_fields && usable).then(|| space.fields(&inequality, &solution));
     Ok(Solved {
         parameters: space.form().parameters(),

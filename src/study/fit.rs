@@ -40,10 +40,7 @@ pub fn check_fit<T: Real, const D: usize>(
 }
 
 /// The first contact facet on which the exact solution breaks the contact condition.
-fn first_failure<T: Real, const D: usize>(
-    scene: &Scene<D>,
-    mesh: &Mesh<T, D>,
-) -> Option<String> {
+fn first_failure<T: Real, const D: usize>(scene: &Scene<D>, mesh: &Mesh<T, D>) -> Option<String> {
     let gap = scene.problem.gap.as_ref()?;
     let exact = scene.problem.exact.as_ref()?;
     let slack = 1e3 * T::EPSILON;

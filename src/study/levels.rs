@@ -99,7 +99,8 @@ impl<'a, T: Real, const D: usize> Levels<'a, T, D> {
             Some(mesh) => (mesh.n_cells() as f64) * 2_f64.powi(D as i32).powf(level as f64),
             None => {
                 let simplices: f64 = (1..=D).map(|k| k as f64).product();
-                self.scene.domain.counts(level).iter().map(|&n| n as f64).product::<f64>() * simplices
+                self.scene.domain.counts(level).iter().map(|&n| n as f64).product::<f64>()
+                    * simplices
             }
         };
         // beyond this a discontinuous space has more unknowns and entries than 32-bit numbers reach
@@ -108,7 +109,9 @@ impl<'a, T: Real, const D: usize> Levels<'a, T, D> {
             return Err(Error::Parameter {
                 parameter: "level",
                 value: level.to_string(),
-                allowed: format!("it would have {cells:.1e} cells, at most {limit:.1e} are possible"),
+                allowed: format!(
+                    "it would have {cells:.1e} cells, at most {limit:.1e} are possible"
+                ),
             });
         }
         Ok(())

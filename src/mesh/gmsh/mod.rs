@@ -1,5 +1,108 @@
-//! Gmsh files.
-/// stub
-#[derive(Debug, thiserror::Error)]
-#[error("stub")]
-pub struct GmshError;
+//! Reading meshes of Gmsh: MSH 4.1 and 2.2, text and binary.
+//!
+//! The cells of the mesh are the elements of the largest dimension in the file, whatever physical
+//! group they are in. The parts of its boundary are the elements of one dimension less in the
+//! physical groups `dirichlet`, `neumann` and `contact`; elements in no group are ignored, so a
+//! boundary without a name is reported by [`Mesh::new`] as such. Elements of higher order are read
+//! as straight ones, with a [`GmshWarning`].
+//!
+//! In Gmsh the groups are made by lines such as
+//!
+//! ```text
+//! Physical Curve("dirichlet") = {1, 2, 3};
+//! Physical Curve("contact") = {4};
+//! Physical Surface("domain") = {1};
+//! ```
+//!
+//! in a script, or in its window. In one dimension the boundary is made of points.
+//!
+//! # Example
+//!
+//! ```
+//! use unilateral::mesh::gmsh;
+//!
+//! let file = br#"$MeshFormat
+//! 2.2 0 8
+//! $EndMeshFormat
+//! $PhysicalNames
+//! 2
+//! 0 1 "dirichlet"
+//! 1 2 "string"
+//! $EndPhysicalNames
+//! $Nodes
+//! 3
+//! 1 0 0 0
+//! 2 0.5 0 0
+//! 3 1 0 0
+//! $EndNodes
+//! $Elements
+//! 4
+//! 1 15 2 1 1 1
+//! 2 15 2 1 2 3
+//! 3 1 2 2 1 1 2
+//! 4 1 2 2 1 2 3
+//! $EndElements
+//! "#;
+//! assert_eq!(gmsh::dimension(file)?, 1);
+//! let read = gmsh::parse::<f64, 1>(file)?;
+//! assert_eq!(read.mesh.n_cells(), 2);
+//! assert!(read.warnings.is_empty());
+//! # Ok::<(), gmsh::GmshError>(())
+//! ```
+
+mod assemble;
+mod binary;
+mod contents;
+mod error;
+mod kinds;
+mod node_index;
+mod place;
+mod sections;
+mod source;
+mod text;
+mod version_four;
+mod version_two;
+
+pub use error::{GmshError, GmshWarning};
+pub use place::{ElementPlace, Place};
+
+use super::Mesh;
+use crate::real::Real;
+use sections::{Wanted, read_contents};
+use std::path::Path;
+
+/// A mesh read from a file, and what its reader should be told.
+#[derive(Clone, Debug)]
+pub struct GmshMesh<T, const D: usize> {
+    /// The mesh.
+    pub mesh: Mesh<T, D>,
+    /// What was read otherwise than it stands in the file.
+    pub warnings: Vec<GmshWarning>,
+}
+
+/// Reads a mesh of dimension `D` from a file.
+///
+/// # Errors
+/// Every [`GmshError`].
+pub fn read<T: Real, const D: usize>(path: &Path) -> Result<GmshMesh<T, D>, GmshError> {
+    let bytes = std::fs::read(path)
+        .map_err(|source| GmshError::Unreadable { path: path.into(), source })?;
+    parse(&bytes)
+}
+
+/// Reads a mesh of dimension `D` from the bytes of a file.
+///
+/// # Errors
+/// Every [`GmshError`] but [`GmshError::Unreadable`].
+pub fn parse<T: Real, const D: usize>(bytes: &[u8]) -> Result<GmshMesh<T, D>, GmshError> {
+    assemble::assemble(&read_contents(bytes, Wanted::Everything)?)
+}
+
+/// The largest dimension of an element, from the bytes of a file: the `D` to read it with.
+///
+/// # Errors
+/// What is wrong with the header or the elements of the file; [`GmshError::NoCells`] if it has
+/// nothing but points.
+pub fn dimension(bytes: &[u8]) -> Result<usize, GmshError> {
+    read_contents(bytes, Wanted::Elements)?.dimension()
+}

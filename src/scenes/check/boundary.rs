@@ -15,10 +15,7 @@ const CLOSE: f64 = 1e-9;
 const JUMP: f64 = 1e-3;
 
 /// Boundary data are those of the solution, and contact sides fulfil the Signorini conditions.
-pub(super) fn check<const D: usize>(
-    probe: &Probe<'_, D>,
-    samples: usize,
-) -> Result<(), Violation> {
+pub(super) fn check<const D: usize>(probe: &Probe<'_, D>, samples: usize) -> Result<(), Violation> {
     let (value, flux) = (EXACT * probe.scales.value, EXACT * probe.scales.flux);
     let problem = &probe.scene.problem;
     for side in sides(&probe.scene.domain) {
@@ -61,7 +58,8 @@ fn check_limit<const D: usize>(
     let (value, gradient) = (probe.value(x), probe.gradient(x));
     let inside = x - side.normal * (CLOSE * length);
     for y in side.rounded(x, length).into_iter().chain([inside]) {
-        let jump = (probe.value(&y) - value).abs().max(length * (probe.gradient(&y) - gradient).norm());
+        let jump =
+            (probe.value(&y) - value).abs().max(length * (probe.gradient(&y) - gradient).norm());
         probe.require(Condition::BoundaryLimit, &y, jump, JUMP * length * probe.scales.slope)?;
     }
     Ok(())

@@ -12,9 +12,7 @@ pub(super) fn settled_derivative(
     reach: f64,
     tolerance: f64,
 ) -> Option<f64> {
-    let central = |h: f64| {
-        (8.0 * (phi(h) - phi(-h)) - (phi(2.0 * h) - phi(-2.0 * h))) / (12.0 * h)
-    };
+    let central = |h: f64| (8.0 * (phi(h) - phi(-h)) - (phi(2.0 * h) - phi(-2.0 * h))) / (12.0 * h);
     let mut h = reach / 2.0;
     let mut coarse = central(h);
     for _ in 0..10 {

@@ -52,8 +52,7 @@ fn check_flux<const D: usize>(
     a: Point<f64, D>,
     b: Point<f64, D>,
 ) -> Result<(), Violation> {
-    let (a, b) =
-        bisect(probe.scales.length, a, b, |a, b| (probe.flux(b) - probe.flux(a)).norm());
+    let (a, b) = bisect(probe.scales.length, a, b, |a, b| (probe.flux(b) - probe.flux(a)).norm());
     if probe.coefficient(&a) != probe.coefficient(&b) {
         return Ok(());
     }

@@ -1,0 +1,168 @@
+//! What a file holds, before it is a mesh.
+
+use super::error::GmshError;
+use super::kinds::{Kind, Shape};
+use super::place::{ElementPlace, Place};
+use super::source::Source;
+use std::collections::{BTreeMap, HashMap};
+
+/// A named physical group.
+pub(super) struct Group {
+    /// The name, without its quotes.
+    pub(super) name: String,
+    /// Where it stands.
+    pub(super) place: Place,
+}
+
+/// What tells the groups of an element.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Membership {
+    /// The geometric entity it belongs to, in MSH 4.1.
+    Entity(i64),
+    /// A group, in MSH 2.2; zero for none.
+    Group(i64),
+}
+
+/// The nodes, in the order of the file.
+#[derive(Default)]
+pub(super) struct Nodes {
+    pub(super) tags: Vec<u64>,
+    pub(super) points: Vec<[f64; 3]>,
+    pub(super) positions: Vec<usize>,
+}
+
+impl Nodes {
+    pub(super) fn reserve(&mut self, nodes: usize) {
+        self.tags.reserve(nodes);
+        self.points.reserve(nodes);
+        self.positions.reserve(nodes);
+    }
+    /// Appends a node, whose coordinates must be finite.
+    pub(super) fn push(
+        &mut self,
+        source: &Source,
+        position: usize,
+        node: u64,
+        point: [f64; 3],
+    ) -> Result<(), GmshError> {
+        if let Some(axis) = point.iter().position(|x| !x.is_finite()) {
+            let place = source.place_of(position);
+            return Err(GmshError::NotFinite {
+                place,
+                node,
+                axis: ['x', 'y', 'z'][axis],
+                value: point[axis],
+            });
+        }
+        self.tags.push(node);
+        self.points.push(point);
+        self.positions.push(position);
+        Ok(())
+    }
+}
+
+/// The simplices of one dimension, in the order of the file.
+#[derive(Default)]
+pub(super) struct Simplices {
+    /// Tags of the corners, one more than the dimension for each.
+    pub(super) corners: Vec<u64>,
+    pub(super) tags: Vec<u64>,
+    pub(super) positions: Vec<usize>,
+    /// Where the groups of each change: the first element, and what tells its groups.
+    pub(super) memberships: Vec<(usize, Membership)>,
+    /// How many are of higher order, by order.
+    pub(super) curved: BTreeMap<u8, usize>,
+}
+
+impl Simplices {
+    pub(super) fn reserve(&mut self, elements: usize, corners_each: usize) {
+        self.tags.reserve(elements);
+        self.positions.reserve(elements);
+        self.corners.reserve(elements * corners_each);
+    }
+    /// Appends an element whose corners are in the list already.
+    pub(super) fn push(
+        &mut self,
+        position: usize,
+        element: u64,
+        order: u8,
+        membership: Membership,
+    ) {
+        if self.memberships.last().is_none_or(|&(_, last)| last != membership) {
+            self.memberships.push((self.tags.len(), membership));
+        }
+        if order > 1 {
+            *self.curved.entry(order).or_insert(0) += 1;
+        }
+        self.tags.push(element);
+        self.positions.push(position);
+    }
+    /// Runs of consecutive elements with the same groups.
+    pub(super) fn runs(&self) -> impl Iterator<Item = (std::ops::Range<usize>, Membership)> + '_ {
+        let ends =
+            self.memberships.iter().skip(1).map(|&(start, _)| start).chain([self.tags.len()]);
+        self.memberships
+            .iter()
+            .zip(ends)
+            .map(|(&(start, membership), end)| (start..end, membership))
+    }
+}
+
+/// Everything read from a file.
+pub(super) struct Contents {
+    /// Whether positions are offsets of bytes.
+    pub(super) binary: bool,
+    /// The named groups, by dimension and tag.
+    pub(super) groups: BTreeMap<(usize, i64), Group>,
+    /// The groups of the entities, by dimension and tag of the entity.
+    pub(super) entities: HashMap<(usize, i64), Vec<i64>>,
+    pub(super) nodes: Nodes,
+    /// The simplices, by dimension.
+    pub(super) simplices: [Simplices; 4],
+}
+
+impl Contents {
+    pub(super) fn new() -> Self {
+        Contents {
+            binary: false,
+            groups: BTreeMap::new(),
+            entities: HashMap::new(),
+            nodes: Nodes::default(),
+            simplices: Default::default(),
+        }
+    }
+    /// The largest dimension of an element that is not a point.
+    pub(super) fn dimension(&self) -> Result<usize, GmshError> {
+        (1..=3).rev().find(|&d| !self.simplices[d].tags.is_empty()).ok_or(GmshError::NoCells)
+    }
+    pub(super) fn place_of(&self, position: usize) -> Place {
+        if self.binary { Place::Byte(position) } else { Place::Line(position) }
+    }
+    /// An element by its position in the list of its dimension.
+    pub(super) fn element(&self, dimension: usize, index: usize) -> Option<ElementPlace> {
+        let simplices = &self.simplices[dimension];
+        let place = self.place_of(*simplices.positions.get(index)?);
+        Some(ElementPlace { element: *simplices.tags.get(index)?, place })
+    }
+}
+
+/// The kind of an element type, whose elements need not be simplices.
+pub(super) fn known_kind(source: &Source, element_type: i64) -> Result<Kind, GmshError> {
+    Kind::from_type(element_type)
+        .ok_or_else(|| GmshError::UnknownElementType { place: source.place(), element_type })
+}
+
+/// The dimension of a simplex; an error that names the element for anything else.
+pub(super) fn simplex_dimension(
+    source: &Source,
+    shape: Shape,
+    element_type: i64,
+    element: u64,
+) -> Result<usize, GmshError> {
+    shape.simplex_dimension().ok_or_else(|| GmshError::NotSimplicial {
+        place: source.place(),
+        element,
+        element_type,
+        name: shape.name(),
+    })
+}

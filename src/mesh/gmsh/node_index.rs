@@ -1,0 +1,66 @@
+//! From the tags of nodes to their positions in the file.
+
+use super::contents::Contents;
+use super::error::GmshError;
+use crate::mesh::MeshError;
+use std::collections::HashMap;
+use std::collections::hash_map::Entry;
+
+/// Where a node stands in the list, by its tag.
+pub(super) enum NodeIndex {
+    /// A table over all tags up to the largest; [`ABSENT`] where there is no node.
+    Dense(Vec<u32>),
+    /// Tags with large gaps.
+    Sparse(HashMap<u64, u32>),
+}
+
+const ABSENT: u32 = u32::MAX;
+
+impl NodeIndex {
+    /// The index of all nodes of a file, whose tags must be distinct.
+    pub(super) fn new(contents: &Contents) -> Result<Self, GmshError> {
+        let tags = &contents.nodes.tags;
+        let count = tags.len();
+        if count >= ABSENT as usize {
+            let source =
+                MeshError::TooLarge { what: "vertices", count, limit: ABSENT as usize - 1 };
+            return Err(GmshError::Mesh { source, elements: Vec::new(), nodes: Vec::new() });
+        }
+        let largest = tags.iter().copied().max().unwrap_or(0);
+        let repeated = |first: u32, second: u32| GmshError::RepeatedNode {
+            place: contents.place_of(contents.nodes.positions[second as usize]),
+            first: contents.place_of(contents.nodes.positions[first as usize]),
+            node: tags[second as usize],
+        };
+        if largest <= 4 * count as u64 + 1024 {
+            let mut table = vec![ABSENT; largest as usize + 1];
+            for (&tag, at) in tags.iter().zip(0..) {
+                let entry = &mut table[tag as usize];
+                if *entry != ABSENT {
+                    return Err(repeated(*entry, at));
+                }
+                *entry = at;
+            }
+            return Ok(NodeIndex::Dense(table));
+        }
+        let mut table = HashMap::with_capacity(count);
+        for (&tag, at) in tags.iter().zip(0..) {
+            match table.entry(tag) {
+                Entry::Occupied(entry) => return Err(repeated(*entry.get(), at)),
+                Entry::Vacant(entry) => entry.insert(at),
+            };
+        }
+        Ok(NodeIndex::Sparse(table))
+    }
+    /// The position of a node, if the file has it.
+    #[inline]
+    pub(super) fn find(&self, tag: u64) -> Option<u32> {
+        match self {
+            NodeIndex::Dense(table) => {
+                let at = *table.get(usize::try_from(tag).ok()?)?;
+                (at != ABSENT).then_some(at)
+            }
+            NodeIndex::Sparse(table) => table.get(&tag).copied(),
+        }
+    }
+}

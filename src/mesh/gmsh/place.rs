@@ -1,0 +1,36 @@
+//! Where in a mesh file something stands.
+
+use std::fmt;
+
+/// A position in a mesh file: a line of a text file, an offset into a binary one.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Place {
+    /// Line of a text file, counted from one.
+    Line(usize),
+    /// Offset of a byte in a binary file, counted from zero.
+    Byte(usize),
+}
+
+impl fmt::Display for Place {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Place::Line(line) => write!(f, "line {line}"),
+            Place::Byte(offset) => write!(f, "byte {offset}"),
+        }
+    }
+}
+
+/// An element of the file that an error is about.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct ElementPlace {
+    /// The tag Gmsh gave it.
+    pub element: u64,
+    /// Where it stands.
+    pub place: Place,
+}
+
+impl fmt::Display for ElementPlace {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "element {} ({})", self.element, self.place)
+    }
+}

@@ -1,0 +1,116 @@
+//! The sections of MSH 2.2, in which every element carries its own tags.
+
+use super::contents::{Contents, Membership, known_kind, simplex_dimension};
+use super::error::GmshError;
+use super::kinds::Kind;
+use super::source::Source;
+
+/// The number of records of a section: text in every file, on a line of its own.
+fn read_count(source: &mut Source, expected: &'static str) -> Result<u64, GmshError> {
+    source.skip_blank_lines();
+    let count = source.text_count(expected)?;
+    source.end_line()?;
+    source.rest_of_line();
+    Ok(count)
+}
+
+/// Reads the nodes.
+pub(super) fn read_nodes(source: &mut Source, contents: &mut Contents) -> Result<(), GmshError> {
+    let announced = read_count(source, "the number of nodes")?;
+    source.check_room("nodes", announced, 28)?;
+    contents.nodes.reserve(source.capacity(announced, 8));
+    for found in 0..announced {
+        source.begin_record("nodes", announced, found)?;
+        let position = source.position();
+        let node = source.unsigned("the tag of a node")?;
+        let point = [
+            source.real("coordinate x")?,
+            source.real("coordinate y")?,
+            source.real("coordinate z")?,
+        ];
+        source.end_record()?;
+        contents.nodes.push(source, position, node, point)?;
+    }
+    source.end_section("nodes", announced)
+}
+
+/// Reads the elements.
+pub(super) fn read_elements(source: &mut Source, contents: &mut Contents) -> Result<(), GmshError> {
+    let announced = read_count(source, "the number of elements")?;
+    source.check_room("elements", announced, 8)?;
+    let mut found = 0;
+    while found < announced {
+        source.begin_record("elements", announced, found)?;
+        if source.is_binary() {
+            found += read_same_type(source, contents, announced, found)?;
+            continue;
+        }
+        let position = source.position();
+        let element = source.unsigned("the tag of an element")?;
+        let element_type = source.integer("the type of an element")?;
+        let kind = known_kind(source, element_type)?;
+        let tags = source.unsigned("the number of tags of an element")?;
+        read_element(source, contents, &Front { position, element, element_type, kind, tags })?;
+        found += 1;
+    }
+    source.end_section("elements", announced)
+}
+
+/// In a binary file elements of one type stand together behind a header; returns how many.
+fn read_same_type(
+    source: &mut Source,
+    contents: &mut Contents,
+    announced: u64,
+    found: u64,
+) -> Result<u64, GmshError> {
+    let element_type = source.integer("the type of elements")?;
+    let kind = known_kind(source, element_type)?;
+    let following = source.unsigned("the number of elements of one type")?;
+    if following > announced - found {
+        return Err(source.miscounted(
+            "elements",
+            announced,
+            format!("{} or more", found + following),
+        ));
+    }
+    let tags = source.unsigned("the number of tags of an element")?;
+    source.check_room("elements of one type", following, 4 + 4 * (tags as usize + kind.nodes))?;
+    for _ in 0..following {
+        let position = source.position();
+        let element = source.unsigned("the tag of an element")?;
+        read_element(source, contents, &Front { position, element, element_type, kind, tags })?;
+    }
+    Ok(following)
+}
+
+/// What stands in front of the tags and nodes of an element.
+struct Front {
+    position: usize,
+    element: u64,
+    element_type: i64,
+    kind: Kind,
+    tags: u64,
+}
+
+/// The tags and nodes of an element.
+fn read_element(
+    source: &mut Source,
+    contents: &mut Contents,
+    front: &Front,
+) -> Result<(), GmshError> {
+    // The first tag is the physical group, zero for none; the others tell the entity and the
+    // partitions.
+    let group =
+        if front.tags > 0 { source.integer("the tag of a physical group")?.abs() } else { 0 };
+    source.skip(front.tags.saturating_sub(1), 4, "a tag of an element")?;
+    let Front { kind, element_type, element, .. } = *front;
+    let dimension = simplex_dimension(source, kind.shape, element_type, element)?;
+    let simplices = &mut contents.simplices[dimension];
+    for _ in 0..=dimension {
+        simplices.corners.push(source.unsigned("the tag of a node")?);
+    }
+    source.skip((kind.nodes - dimension - 1) as u64, 4, "the tag of a node")?;
+    source.end_record()?;
+    simplices.push(front.position, element, kind.order, Membership::Group(group));
+    Ok(())
+}
