@@ -24,33 +24,16 @@ impl Drop for Scratch {
 }
 
 fn keys(value: &Value) -> Vec<&str> {
-    value
-        .as_object()
-        .expect("an object")
-        .keys()
-        .map(String::as_str)
-        .collect()
+    value.as_object().expect("an object").keys().map(String::as_str).collect()
 }
 
 #[test]
 fn json_has_the_keys_that_scripts_rely_on() {
     let json: Value = serde_json::from_str(&report(rows()).to_json()).unwrap();
     assert_eq!(keys(&json), ["program", "rows"]);
-    let program = [
-        "name",
-        "version",
-        "threads",
-        "precision",
-        "repeat",
-        "target_cpu",
-    ];
+    let program = ["name", "version", "threads", "precision", "repeat", "target_cpu"];
     assert_eq!(keys(&json["program"]), program);
-    assert!(
-        json["program"]["target_cpu"]
-            .as_str()
-            .unwrap()
-            .starts_with(std::env::consts::ARCH)
-    );
+    assert!(json["program"]["target_cpu"].as_str().unwrap().starts_with(std::env::consts::ARCH));
     let row = &json["rows"][0];
     let required = [
         "scene",
@@ -84,18 +67,10 @@ fn json_has_the_keys_that_scripts_rely_on() {
     assert_eq!(keys(&row["order"]), ["l2", "h1", "energy", "max"]);
     assert_eq!(keys(&row["expected_order"]), ["l2", "h1"]);
     assert_eq!(keys(&row["iterations"]), ["outer", "linear", "levels"]);
-    let certificate = [
-        "feasibility",
-        "multiplier",
-        "complementarity",
-        "residual",
-        "algebraic_bound",
-    ];
+    let certificate =
+        ["feasibility", "multiplier", "complementarity", "residual", "algebraic_bound"];
     assert_eq!(keys(&row["certificate"]), certificate);
-    assert_eq!(
-        keys(&row["seconds"]),
-        ["mesh", "assemble", "solve", "total"]
-    );
+    assert_eq!(keys(&row["seconds"]), ["mesh", "assemble", "solve", "total"]);
     assert_eq!(json["rows"].as_array().unwrap().len(), 18);
 }
 
@@ -103,12 +78,7 @@ fn json_has_the_keys_that_scripts_rely_on() {
 fn what_does_not_apply_or_is_not_finite_is_null() {
     let mut bad = row("radial-2d", "p1", 8);
     bad.parameters = PenaltyParameters::default();
-    bad.error = Errors {
-        l2: Some(f64::NAN),
-        h1: Some(f64::INFINITY),
-        energy: None,
-        max: None,
-    };
+    bad.error = Errors { l2: Some(f64::NAN), h1: Some(f64::INFINITY), energy: None, max: None };
     bad.certificate.residual = f64::NAN;
     bad.certificate.feasibility = f64::NEG_INFINITY;
     bad.peak_memory_bytes = None;
@@ -137,10 +107,7 @@ fn what_does_not_apply_or_is_not_finite_is_null() {
     // Nor do plots and tables stumble over it.
     let scratch = Scratch::new("nan");
     report.write(&scratch.0).unwrap();
-    assert!(
-        report.to_string().contains("NaN"),
-        "a table must not hide a NaN"
-    );
+    assert!(report.to_string().contains("NaN"), "a table must not hide a NaN");
 }
 
 /// Cells of comma-separated values, by the rules and not by our writer.
@@ -180,28 +147,15 @@ fn csv_reads_back_to_the_same_numbers_as_json() {
     let json = serde_json::to_value(&report).unwrap();
     assert_eq!(csv.len(), rows.len() + 1);
     let header = &csv[0];
-    assert_eq!(
-        header[..6].join(" "),
-        "scene dimension scheme constraint level parameters.sigma"
-    );
-    let ends = [
-        "error.l2",
-        "order.h1",
-        "iterations.outer",
-        "certificate.residual",
-    ];
-    for key in ends
-        .into_iter()
-        .chain(["seconds.total", "peak_memory_bytes", "warnings"])
-    {
+    assert_eq!(header[..6].join(" "), "scene dimension scheme constraint level parameters.sigma");
+    let ends = ["error.l2", "order.h1", "iterations.outer", "certificate.residual"];
+    for key in ends.into_iter().chain(["seconds.total", "peak_memory_bytes", "warnings"]) {
         assert!(header.iter().any(|h| h == key), "{key}");
     }
     for (r, line) in csv[1..].iter().enumerate() {
         assert_eq!(line.len(), header.len());
         for (key, cell) in header.iter().zip(line) {
-            let value = key
-                .split('.')
-                .fold(&json["rows"][r], |value, part| &value[part]);
+            let value = key.split('.').fold(&json["rows"][r], |value, part| &value[part]);
             match value {
                 Value::Null => assert_eq!(cell, ""),
                 Value::String(s) => assert_eq!(cell, s),
@@ -222,11 +176,7 @@ fn csv_reads_back_to_the_same_numbers_as_json() {
 fn png_size(path: &Path) -> (u32, u32) {
     let bytes = std::fs::read(path).unwrap();
     assert_eq!(bytes[..8], *b"\x89PNG\r\n\x1a\n");
-    assert!(
-        bytes.len() > 5_000,
-        "{} bytes are a blank picture",
-        bytes.len()
-    );
+    assert!(bytes.len() > 5_000, "{} bytes are a blank picture", bytes.len());
     let number = |at: usize| u32::from_be_bytes(bytes[at..at + 4].try_into().unwrap());
     (number(16), number(20))
 }
@@ -241,10 +191,7 @@ fn all_files_are_written_and_plots_show_what_they_should() {
         row.error = Errors::default();
     }
     let written = report(rows).write(&scratch.0.join("deep")).unwrap();
-    let names: Vec<_> = written
-        .iter()
-        .map(|p| p.file_name().unwrap().to_str().unwrap())
-        .collect();
+    let names: Vec<_> = written.iter().map(|p| p.file_name().unwrap().to_str().unwrap()).collect();
     let expected = [
         "report.json",
         "report.csv",
@@ -256,21 +203,10 @@ fn all_files_are_written_and_plots_show_what_they_should() {
     assert_eq!(names, expected);
     for (svg, x) in [(&written[2], "mesh size h"), (&written[4], "time in s")] {
         let text = std::fs::read_to_string(svg).unwrap();
-        let labels = [
-            "L2 error",
-            "radial-2d",
-            "signorini-2d",
-            "p1",
-            "sipg",
-            "wopsip",
-        ];
+        let labels = ["L2 error", "radial-2d", "signorini-2d", "p1", "sipg", "wopsip"];
         let notes = ["did not converge", "no exact solution: no errors"];
         for label in [x].into_iter().chain(labels).chain(notes) {
-            assert!(
-                text.lines().any(|l| l.trim() == label),
-                "{label} is not in {}",
-                svg.display()
-            );
+            assert!(text.lines().any(|l| l.trim() == label), "{label} is not in {}", svg.display());
         }
         // Shown at a fraction of the size at which it is drawn.
         assert!(text.starts_with("<svg width=\"780\""), "{}", &text[..80]);
@@ -293,10 +229,7 @@ fn a_file_that_cannot_be_written_is_named() {
     let scratch = Scratch::new("blocked");
     std::fs::create_dir_all(scratch.0.join("report.csv")).unwrap();
     let error = report(rows()).write(&scratch.0).unwrap_err().to_string();
-    assert!(
-        error.starts_with("cannot write ") && error.contains("report.csv"),
-        "{error}"
-    );
+    assert!(error.starts_with("cannot write ") && error.contains("report.csv"), "{error}");
 }
 
 #[test]

@@ -11,10 +11,7 @@ fn orders_are_of_the_ratio_of_mesh_sizes() {
     assert!((order - 8f64.ln() / 3f64.ln()).abs() < 1e-14);
     // Quotients that overflow or vanish have an order all the same.
     assert!((observed_order(1e300, 1e-300, 1.0, 0.1).unwrap() - 600.0).abs() < 1e-9);
-    assert!(
-        observed_order(1e-3, 2e-3, 0.2, 0.1).unwrap() < 0.0,
-        "growing errors"
-    );
+    assert!(observed_order(1e-3, 2e-3, 0.2, 0.1).unwrap() < 0.0, "growing errors");
     for (coarse, fine, h, half) in [
         (0.0, 1.0, 0.2, 0.1),
         (1.0, 0.0, 0.2, 0.1),
@@ -70,14 +67,8 @@ fn tables_are_aligned_and_say_what_failed() {
     rows[3].status = "iteration-limit".into();
     rows[3].error = Errors::default();
     rows[3].warnings = vec!["eta below its bound".into()];
-    rows[2].expected_order = ExpectedOrders {
-        l2: None,
-        h1: Some(0.5),
-    };
-    rows[3].expected_order = ExpectedOrders {
-        l2: None,
-        h1: Some(0.5),
-    };
+    rows[2].expected_order = ExpectedOrders { l2: None, h1: Some(0.5) };
+    rows[3].expected_order = ExpectedOrders { l2: None, h1: Some(0.5) };
     fill_orders(&mut rows);
     let expected = "\
 radial-2d: solver active-set/direct; expected order L2 2 H1 1 (p1), H1 0.5 (wopsip)
@@ -103,16 +94,8 @@ fn tables_leave_out_what_says_nothing_and_name_constraints_that_vary() {
     }
     let text = report(rows).to_string();
     assert!(!text.contains("L2") && !text.contains("order"), "{text}");
-    assert!(
-        text.contains("vertices") && text.contains("facets"),
-        "{text}"
-    );
-    let widest = report(rows::rows())
-        .to_string()
-        .lines()
-        .map(str::len)
-        .max()
-        .unwrap();
+    assert!(text.contains("vertices") && text.contains("facets"), "{text}");
+    let widest = report(rows::rows()).to_string().lines().map(str::len).max().unwrap();
     assert!(widest <= 100, "{widest}");
     assert_eq!(report(Vec::new()).to_string(), "");
 }

@@ -42,9 +42,7 @@ fn round_trip<T: Real, const D: usize>(counts: [usize; D], cell_type: CellType) 
     let domain = cube::<D>(-1.0, 0.5);
     let mesh = Mesh::<T, D>::kuhn_box(&domain, counts).unwrap();
     let (cells, corners) = (mesh.n_cells(), D + 1);
-    let u: Vec<f64> = (0..cells * corners)
-        .map(|i| (i as f64).sqrt() - 1e-17)
-        .collect();
+    let u: Vec<f64> = (0..cells * corners).map(|i| (i as f64).sqrt() - 1e-17).collect();
     let obstacle: Vec<f64> = u.iter().map(|u| -u / 3.0).collect();
     let multiplier: Vec<f64> = (0..cells).map(|c| 1.0 / (1.0 + c as f64)).collect();
     let contact: Vec<f64> = (0..cells).map(|c| (c % 2) as f64).collect();
@@ -83,12 +81,7 @@ fn round_trip<T: Real, const D: usize>(counts: [usize; D], cell_type: CellType) 
         };
         assert!(volume > 0.0, "cell {c} is inside out");
     }
-    assert_eq!(
-        offsets,
-        (1..=cells)
-            .map(|c| (c * corners) as u64)
-            .collect::<Vec<_>>()
-    );
+    assert_eq!(offsets, (1..=cells).map(|c| (c * corners) as u64).collect::<Vec<_>>());
     assert_eq!(piece.cells.types, vec![cell_type; cells]);
     assert_eq!(field(&piece.data.point, "u").unwrap(), u);
     assert_eq!(field(&piece.data.point, "obstacle").unwrap(), obstacle);
@@ -112,25 +105,14 @@ fn fields_that_are_not_there_are_not_written() {
     let domain = cube::<2>(0.0, 1.0);
     let mesh = Mesh::<f64, 2>::kuhn_box(&domain, [1, 1]).unwrap();
     let path = path("absent");
-    let fields = CellFields {
-        u: &[1.0; 6],
-        obstacle: None,
-        multiplier: None,
-        contact: &[0.0; 2],
-    };
+    let fields = CellFields { u: &[1.0; 6], obstacle: None, multiplier: None, contact: &[0.0; 2] };
     write_vtu(&path, &mesh, &fields).unwrap();
     let piece = read(&path);
     std::fs::remove_file(&path).unwrap();
     assert_eq!((piece.data.point.len(), piece.data.cell.len()), (1, 1));
 
-    let short = CellFields {
-        contact: &[0.0],
-        ..fields
-    };
+    let short = CellFields { contact: &[0.0], ..fields };
     let error = write_vtu(&path, &mesh, &short).unwrap_err().to_string();
-    assert!(
-        error.ends_with("field contact has 1 values, the mesh needs 2"),
-        "{error}"
-    );
+    assert!(error.ends_with("field contact has 1 values, the mesh needs 2"), "{error}");
     assert!(!path.exists(), "nothing is written");
 }

@@ -14,11 +14,7 @@ pub fn to_csv(rows: &[Row]) -> String {
         let mut columns = Vec::new();
         // A row is plain data with string keys: its serialisation cannot fail, and should it ever,
         // the line would be missing and the reader's count of rows tell.
-        flatten(
-            "",
-            &serde_json::to_value(row).unwrap_or(Value::Null),
-            &mut columns,
-        );
+        flatten("", &serde_json::to_value(row).unwrap_or(Value::Null), &mut columns);
         if i == 0 {
             push_line(&mut text, columns.iter().map(|(key, _)| key.as_str()));
         }
@@ -31,11 +27,7 @@ pub fn to_csv(rows: &[Row]) -> String {
 fn flatten(prefix: &str, value: &Value, columns: &mut Vec<(String, String)>) {
     if let Value::Object(map) = value {
         for (key, inner) in map {
-            let joined = if prefix.is_empty() {
-                key.clone()
-            } else {
-                format!("{prefix}.{key}")
-            };
+            let joined = if prefix.is_empty() { key.clone() } else { format!("{prefix}.{key}") };
             flatten(&joined, inner, columns);
         }
     } else {

@@ -19,10 +19,7 @@ pub fn observed_order(
     fine_h: f64,
 ) -> Option<f64> {
     let positive = |x: f64| x.is_finite() && x > 0.0;
-    if ![coarse_error, fine_error, coarse_h, fine_h]
-        .into_iter()
-        .all(positive)
-    {
+    if ![coarse_error, fine_error, coarse_h, fine_h].into_iter().all(positive) {
         return None;
     }
     // Logarithms are subtracted, not quotients taken: a quotient of tiny numbers may overflow.

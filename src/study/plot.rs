@@ -42,11 +42,7 @@ pub fn convergence(rows: &[Row]) -> Figure {
         .flat_map(|scene| [Quantity::L2, Quantity::H1].map(|error| (scene, error)))
         .map(|(scene, error)| Panel::new(rows, &keys, scene, Quantity::MeshSize, error))
         .collect();
-    Figure {
-        panels,
-        keys,
-        columns,
-    }
+    Figure { panels, keys, columns }
 }
 
 /// L2 error against the seconds a run took altogether, one panel for each scene. Runs that did not
@@ -65,30 +61,17 @@ pub fn work_precision(rows: &[Row]) -> Figure {
         .iter()
         .map(|scene| Panel::new(rows, &keys, scene, Quantity::Seconds, Quantity::L2))
         .collect();
-    Figure {
-        panels,
-        keys,
-        columns,
-    }
+    Figure { panels, keys, columns }
 }
 
 impl Figure {
     /// Whether a run that is shown did not converge.
     fn has_failures(&self) -> bool {
-        self.panels.iter().any(|p| {
-            p.curves
-                .iter()
-                .any(|c| c.points.iter().any(|q| !q.converged))
-        })
+        self.panels.iter().any(|p| p.curves.iter().any(|c| c.points.iter().any(|q| !q.converged)))
     }
 
     /// Where everything stands.
     fn layout(&self) -> Layout {
-        Layout::new(
-            self.panels.len(),
-            self.columns,
-            &self.keys,
-            self.has_failures(),
-        )
+        Layout::new(self.panels.len(), self.columns, &self.keys, self.has_failures())
     }
 }

@@ -48,9 +48,7 @@ pub fn target_cpu() -> String {
     macro_rules! list {
         ($($name:literal),*) => { $(if cfg!(target_feature = $name) { features.push($name); })* };
     }
-    list!(
-        "avx2", "avx512f", "fma", "neon", "sve", "simd128", "v", "altivec", "vsx"
-    );
+    list!("avx2", "avx512f", "fma", "neon", "sve", "simd128", "v", "altivec", "vsx");
     // Every processor with AVX2 has what follows; it is news only where AVX2 is missing.
     if features.is_empty() {
         list!("avx", "sse4.2", "sse2");
@@ -116,8 +114,5 @@ impl Report {
 
 /// What could not be written, and why.
 pub(super) fn write_error(path: &Path, why: impl std::fmt::Display) -> Error {
-    Error::Write {
-        path: path.display().to_string(),
-        why: why.to_string(),
-    }
+    Error::Write { path: path.display().to_string(), why: why.to_string() }
 }

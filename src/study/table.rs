@@ -19,10 +19,7 @@ impl fmt::Display for Report {
 /// between schemes; times are in seconds. `certif.` is the largest of the four numbers of the
 /// certificate. A row that did not converge is followed by the reason.
 pub fn write_tables(f: &mut impl fmt::Write, rows: &[Row]) -> fmt::Result {
-    for (i, scene) in distinct(rows.iter().map(|r| r.scene.as_str()))
-        .into_iter()
-        .enumerate()
-    {
+    for (i, scene) in distinct(rows.iter().map(|r| r.scene.as_str())).into_iter().enumerate() {
         if i > 0 {
             writeln!(f)?;
         }
@@ -38,30 +35,18 @@ fn write_scene(f: &mut impl fmt::Write, scene: &str, rows: &[&Row]) -> fmt::Resu
     let columns = columns(rows);
     let widths: Vec<usize> = columns
         .iter()
-        .map(|c| {
-            rows.iter()
-                .map(|r| (c.cell)(r).len())
-                .chain([c.name.len()])
-                .max()
-                .unwrap_or(0)
-        })
+        .map(|c| rows.iter().map(|r| (c.cell)(r).len()).chain([c.name.len()]).max().unwrap_or(0))
         .collect();
     // Two blanks between columns where they fit.
     let widest = widths.iter().sum::<usize>() + 2 * (widths.len() - 1);
     let gap = if widest <= WIDTH { "  " } else { " " };
     write_line(f, &columns, &widths, gap, |c| c.name.to_owned())?;
-    let series = distinct(
-        rows.iter()
-            .map(|r| (r.scheme.as_str(), r.constraint.as_str())),
-    );
+    let series = distinct(rows.iter().map(|r| (r.scheme.as_str(), r.constraint.as_str())));
     for (i, key) in series.into_iter().enumerate() {
         if i > 0 {
             writeln!(f)?;
         }
-        for row in rows
-            .iter()
-            .filter(|r| (r.scheme.as_str(), r.constraint.as_str()) == key)
-        {
+        for row in rows.iter().filter(|r| (r.scheme.as_str(), r.constraint.as_str()) == key) {
             write_line(f, &columns, &widths, gap, |c| (c.cell)(row))?;
             if !row.converged() {
                 writeln!(f, "  ^ did not converge: {}", row.status)?;
@@ -69,8 +54,7 @@ fn write_scene(f: &mut impl fmt::Write, scene: &str, rows: &[&Row]) -> fmt::Resu
         }
     }
     for warning in distinct(
-        rows.iter()
-            .flat_map(|r| r.warnings.iter().map(|w| (r.scheme.as_str(), w.as_str()))),
+        rows.iter().flat_map(|r| r.warnings.iter().map(|w| (r.scheme.as_str(), w.as_str()))),
     ) {
         write_wrapped(f, &format!("  warning, {}: {}", warning.0, warning.1))?;
     }
@@ -85,10 +69,8 @@ fn heading(rows: &[&Row]) -> String {
     for row in rows {
         let expected = row.expected_order;
         let both = [("L2", expected.l2), ("H1", expected.h1)];
-        let known: Vec<String> = both
-            .iter()
-            .filter_map(|(name, p)| p.map(|p| format!("{name} {p}")))
-            .collect();
+        let known: Vec<String> =
+            both.iter().filter_map(|(name, p)| p.map(|p| format!("{name} {p}"))).collect();
         if known.is_empty() {
             continue;
         }
@@ -100,19 +82,15 @@ fn heading(rows: &[&Row]) -> String {
         }
     }
     // Schemes need naming only where some are promised something else, or nothing.
-    let all = promises.len() == 1
-        && rows
-            .iter()
-            .all(|r| promises[0].1.contains(&r.scheme.as_str()));
+    let all =
+        promises.len() == 1 && rows.iter().all(|r| promises[0].1.contains(&r.scheme.as_str()));
     let promises: Vec<String> = promises
         .into_iter()
-        .map(|(known, schemes)| {
-            if all {
-                known
-            } else {
-                format!("{known} ({})", schemes.join(" "))
-            }
-        })
+        .map(
+            |(known, schemes)| {
+                if all { known } else { format!("{known} ({})", schemes.join(" ")) }
+            },
+        )
         .collect();
     if !promises.is_empty() {
         text += &format!("; expected order {}", promises.join(", "));
@@ -146,24 +124,14 @@ struct Column {
 
 /// The columns that have something to tell about these rows.
 fn columns(rows: &[&Row]) -> Vec<Column> {
-    let text = |name, cell| Column {
-        name,
-        left: true,
-        cell,
-    };
-    let number = |name, cell| Column {
-        name,
-        left: false,
-        cell,
-    };
+    let text = |name, cell| Column { name, left: true, cell };
+    let number = |name, cell| Column { name, left: false, cell };
     let varies = rows.iter().any(|r| r.constraint != rows[0].constraint);
     let any = |get: fn(&Row) -> Option<f64>| rows.iter().any(|r| get(r).is_some());
     let mut columns = vec![text("scheme", |r| r.scheme.clone())];
     if varies {
         columns.push(text("bound at", |r| {
-            r.constraint
-                .strip_suffix("-means")
-                .map_or(r.constraint.clone(), |s| format!("{s}s"))
+            r.constraint.strip_suffix("-means").map_or(r.constraint.clone(), |s| format!("{s}s"))
         }));
     }
     columns.push(number("n", |r| r.level.to_string()));
@@ -202,11 +170,7 @@ fn write_line(
     let mut line = String::new();
     for (column, &width) in columns.iter().zip(widths) {
         let cell = cell(column);
-        line += &if column.left {
-            format!("{cell:<width$}")
-        } else {
-            format!("{cell:>width$}")
-        };
+        line += &if column.left { format!("{cell:<width$}") } else { format!("{cell:>width$}") };
         line += gap;
     }
     writeln!(f, "{}", line.trim_end())

@@ -79,24 +79,12 @@ fn write_simplices(
     array(&mut w, "Float64", "Points", 3, coordinates)?;
     writeln!(w, "</Points>\n<Cells>")?;
     let corners = connectivity(dimension, points);
-    array(
-        &mut w,
-        "Int64",
-        "connectivity",
-        1,
-        corners.iter().map(|i| i.to_le_bytes()),
-    )?;
+    array(&mut w, "Int64", "connectivity", 1, corners.iter().map(|i| i.to_le_bytes()))?;
     let ends = (0..n_cells).map(|c| (((c + 1) * (dimension + 1)) as i64).to_le_bytes());
     array(&mut w, "Int64", "offsets", 1, ends)?;
     // The format's numbers of line, triangle and tetrahedron.
     let cell_type = [3u8, 5, 10][dimension - 1];
-    array(
-        &mut w,
-        "UInt8",
-        "types",
-        1,
-        std::iter::repeat_n([cell_type], n_cells),
-    )?;
+    array(&mut w, "UInt8", "types", 1, std::iter::repeat_n([cell_type], n_cells))?;
     writeln!(w, "</Cells>\n</Piece>\n</UnstructuredGrid>\n</VTKFile>")?;
     w.flush()
 }
@@ -110,17 +98,10 @@ fn connectivity(dimension: usize, points: &[[f64; 3]]) -> Vec<i64> {
         return list;
     }
     let corners = dimension + 1;
-    for (cell, x) in list
-        .chunks_exact_mut(corners)
-        .zip(points.chunks_exact(corners))
-    {
+    for (cell, x) in list.chunks_exact_mut(corners).zip(points.chunks_exact(corners)) {
         let edge = |i: usize| -> [f64; 3] { std::array::from_fn(|k| x[i][k] - x[0][k]) };
         let (a, b) = (edge(1), edge(2));
-        let c = if dimension == 3 {
-            edge(3)
-        } else {
-            [0.0, 0.0, 1.0]
-        };
+        let c = if dimension == 3 { edge(3) } else { [0.0, 0.0, 1.0] };
         let volume = c[0] * (a[1] * b[2] - a[2] * b[1])
             + c[1] * (a[2] * b[0] - a[0] * b[2])
             + c[2] * (a[0] * b[1] - a[1] * b[0]);
@@ -136,10 +117,7 @@ fn check_length(name: &str, field: Option<&[f64]>, expected: usize) -> io::Resul
     match field {
         Some(values) if values.len() != expected => Err(io::Error::new(
             io::ErrorKind::InvalidInput,
-            format!(
-                "field {name} has {} values, the mesh needs {expected}",
-                values.len()
-            ),
+            format!("field {name} has {} values, the mesh needs {expected}", values.len()),
         )),
         _ => Ok(()),
     }
@@ -147,13 +125,7 @@ fn check_length(name: &str, field: Option<&[f64]>, expected: usize) -> io::Resul
 
 /// A field of numbers.
 fn floats(w: &mut impl Write, name: &str, values: &[f64]) -> io::Result<()> {
-    array(
-        w,
-        "Float64",
-        name,
-        1,
-        values.iter().map(|x| x.to_le_bytes()),
-    )
+    array(w, "Float64", name, 1, values.iter().map(|x| x.to_le_bytes()))
 }
 
 /// One array: its length in bytes and its items, encoded as one stream.
@@ -197,26 +169,16 @@ mod tests {
 
     #[test]
     fn a_segment_is_a_line_without_fields_that_are_not_there() {
-        let fields = CellFields {
-            u: &[1.0, 2.0],
-            obstacle: None,
-            multiplier: None,
-            contact: &[0.0],
-        };
+        let fields =
+            CellFields { u: &[1.0, 2.0], obstacle: None, multiplier: None, contact: &[0.0] };
         let points = [[0.0; 3], [1.0, 0.0, 0.0]];
         let text =
             in_temporary_file("line", |path| write_simplices(path, 1, &points, &fields)).unwrap();
         // Length 1 as 64 bits, then the number 3: nine bytes, twelve characters, no padding.
         assert!(text.contains("\nAQAAAAAAAAAD\n"), "{text}");
         // Sixteen bytes of 1.0 and 2.0 after their length.
-        assert!(
-            text.contains("\nEAAAAAAAAAAAAAAAAADwPwAAAAAAAABA\n"),
-            "{text}"
-        );
-        assert!(
-            !text.contains("obstacle") && !text.contains("multiplier"),
-            "{text}"
-        );
+        assert!(text.contains("\nEAAAAAAAAAAAAAAAAADwPwAAAAAAAABA\n"), "{text}");
+        assert!(!text.contains("obstacle") && !text.contains("multiplier"), "{text}");
     }
 
     #[test]
@@ -230,9 +192,6 @@ mod tests {
         let points = [[0.0; 3], [1.0, 0.0, 0.0]];
         let error = in_temporary_file("wrong", |path| write_simplices(path, 1, &points, &fields))
             .unwrap_err();
-        assert_eq!(
-            error.to_string(),
-            "field multiplier has 2 values, the mesh needs 1"
-        );
+        assert_eq!(error.to_string(), "field multiplier has 2 values, the mesh needs 1");
     }
 }

@@ -14,11 +14,7 @@ pub fn row(scene: &str, scheme: &str, level: usize) -> Row {
         scheme: scheme.into(),
         constraint: "vertices".into(),
         level,
-        parameters: PenaltyParameters {
-            sigma: Some(6.5),
-            eta: None,
-            rule: Some("proven".into()),
-        },
+        parameters: PenaltyParameters { sigma: Some(6.5), eta: None, rule: Some("proven".into()) },
         solver: "active-set".into(),
         linear: "direct".into(),
         cells: 2 * level * level,
@@ -33,17 +29,10 @@ pub fn row(scene: &str, scheme: &str, level: usize) -> Row {
             max: Some(0.1 * h),
         },
         order: Errors::default(),
-        expected_order: ExpectedOrders {
-            l2: Some(2.0),
-            h1: Some(1.0),
-        },
+        expected_order: ExpectedOrders { l2: Some(2.0), h1: Some(1.0) },
         objective: Some(-0.1 - h / 3.0),
         active: level,
-        iterations: Iterations {
-            outer: 3,
-            linear: 0,
-            levels: 1,
-        },
+        iterations: Iterations { outer: 3, linear: 0, levels: 1 },
         certificate: Certificate {
             feasibility: 0.0,
             multiplier: 1e-16,
@@ -51,12 +40,7 @@ pub fn row(scene: &str, scheme: &str, level: usize) -> Row {
             residual: 2.5e-15,
             algebraic_bound: None,
         },
-        seconds: Seconds {
-            mesh: 1e-4,
-            assemble: 2e-4,
-            solve: 0.0125,
-            total: 0.0128,
-        },
+        seconds: Seconds { mesh: 1e-4, assemble: 2e-4, solve: 0.0125, total: 0.0128 },
         peak_memory_bytes: Some(12_345_678),
         warnings: Vec::new(),
     }
@@ -76,8 +60,5 @@ pub fn rows() -> Vec<Row> {
 
 /// A report of rows.
 pub fn report(rows: Vec<Row>) -> Report {
-    Report {
-        program: Program::new("compare", "f64", 2, 1),
-        rows,
-    }
+    Report { program: Program::new("compare", "f64", 2, 1), rows }
 }

@@ -28,15 +28,8 @@ impl Tick {
             (d, 0) => (d.to_string(), String::new()),
             (1, 1) => ("10".to_owned(), String::new()),
             (d, e) => {
-                let factor = if d == 1 {
-                    String::new()
-                } else {
-                    format!("{d}·")
-                };
-                (
-                    format!("{factor}10"),
-                    e.to_string().replace('-', "\u{2212}"),
-                )
+                let factor = if d == 1 { String::new() } else { format!("{d}·") };
+                (format!("{factor}10"), e.to_string().replace('-', "\u{2212}"))
             }
         }
     }
@@ -46,20 +39,13 @@ impl LogAxis {
     /// An axis that shows positive values with some room around them, over a decade at least.
     pub fn over(values: &[f64]) -> Self {
         let logs = values.iter().map(|v| v.log10());
-        let (low, high) = logs.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| {
-            (l.min(v), h.max(v))
-        });
+        let (low, high) =
+            logs.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| (l.min(v), h.max(v)));
         if low > high {
-            return LogAxis {
-                low: -1.0,
-                high: 0.0,
-            };
+            return LogAxis { low: -1.0, high: 0.0 };
         }
         let room = (0.07 * (high - low)).max((1.0 - (high - low)) / 2.0);
-        LogAxis {
-            low: low - room,
-            high: high + room,
-        }
+        LogAxis { low: low - room, high: high + room }
     }
 
     /// Where a value stands: 0 at the low end, 1 at the high end.
@@ -81,11 +67,7 @@ impl LogAxis {
                     2 | 5 => powers < 2,
                     _ => false,
                 };
-                let tick = Tick {
-                    digit,
-                    exponent,
-                    labelled,
-                };
+                let tick = Tick { digit, exponent, labelled };
                 let inside = (self.low..=self.high).contains(&tick.log());
                 // Digits between powers would be a grey bar where powers stand close.
                 if inside && (digit == 1 || powers <= 6) {
@@ -103,60 +85,30 @@ mod tests {
 
     fn labels(axis: LogAxis, most: usize) -> Vec<String> {
         let labelled = axis.ticks(most).into_iter().filter(|t| t.labelled);
-        labelled
-            .map(Tick::label)
-            .map(|(base, exponent)| base + &exponent)
-            .collect()
+        labelled.map(Tick::label).map(|(base, exponent)| base + &exponent).collect()
     }
 
     #[test]
     fn powers_of_ten_are_labelled_and_thinned_out() {
         assert_eq!(
-            labels(
-                LogAxis {
-                    low: -3.2,
-                    high: 1.1
-                },
-                8
-            ),
+            labels(LogAxis { low: -3.2, high: 1.1 }, 8),
             ["10−3", "10−2", "10−1", "1", "10"]
         );
         assert_eq!(
-            labels(
-                LogAxis {
-                    low: -16.0,
-                    high: 0.0
-                },
-                5
-            ),
+            labels(LogAxis { low: -16.0, high: 0.0 }, 5),
             ["10−16", "10−12", "10−8", "10−4", "1"]
         );
     }
 
     #[test]
     fn a_short_axis_labels_digits_too() {
-        assert_eq!(
-            labels(
-                LogAxis {
-                    low: -1.4,
-                    high: -0.5
-                },
-                8
-            ),
-            ["5·10−2", "10−1", "2·10−1"]
-        );
+        assert_eq!(labels(LogAxis { low: -1.4, high: -0.5 }, 8), ["5·10−2", "10−1", "2·10−1"]);
     }
 
     #[test]
     fn a_single_value_gets_a_decade_around_it() {
         let axis = LogAxis::over(&[0.1]);
         assert!((axis.position(-1.0) - 0.5).abs() < 1e-12 && axis.high - axis.low >= 1.0);
-        assert_eq!(
-            LogAxis::over(&[]),
-            LogAxis {
-                low: -1.0,
-                high: 0.0
-            }
-        );
+        assert_eq!(LogAxis::over(&[]), LogAxis { low: -1.0, high: 0.0 });
     }
 }

@@ -49,17 +49,11 @@ impl Layout {
         let rows = panels.max(1).div_ceil(columns);
         let width = 2.0 * MARGIN + columns as f64 * PANEL.0;
         let places = (0..panels).map(|i| {
-            (
-                MARGIN + (i % columns) as f64 * PANEL.0,
-                MARGIN + (i / columns) as f64 * PANEL.1,
-            )
+            (MARGIN + (i % columns) as f64 * PANEL.0, MARGIN + (i / columns) as f64 * PANEL.1)
         });
 
-        let mut entries: Vec<Entry> = keys
-            .iter()
-            .enumerate()
-            .map(|(k, key)| Entry::Curve(k, key.label.clone()))
-            .collect();
+        let mut entries: Vec<Entry> =
+            keys.iter().enumerate().map(|(k, key)| Entry::Curve(k, key.label.clone())).collect();
         if failures {
             entries.push(Entry::Failed);
         }
@@ -85,11 +79,7 @@ impl Layout {
             }
             y += LINE;
         }
-        Layout {
-            size: (width, y - LINE / 2.0 + MARGIN),
-            panels: places.collect(),
-            legend,
-        }
+        Layout { size: (width, y - LINE / 2.0 + MARGIN), panels: places.collect(), legend }
     }
 
     /// Draws the legend.
@@ -103,13 +93,7 @@ impl Layout {
                 }
                 Entry::Failed => draw_failed(pen, middle)?,
             }
-            pen.text(
-                entry.label(),
-                (x + SYMBOL + 6.0, *y),
-                TEXT,
-                INK,
-                Align::Left,
-            )?;
+            pen.text(entry.label(), (x + SYMBOL + 6.0, *y), TEXT, INK, Align::Left)?;
         }
         Ok(())
     }

@@ -37,12 +37,7 @@ impl<'a> Frame<'a> {
     fn new(panel: &'a Panel) -> Self {
         let x = LogAxis::over(&panel.points().map(|p| p.x).collect::<Vec<_>>());
         let y = LogAxis::over(&panel.errors());
-        let mut frame = Frame {
-            panel,
-            x,
-            y,
-            slopes: None,
-        };
+        let mut frame = Frame { panel, x, y, slopes: None };
         if panel.has_errors() && !panel.slopes.is_empty() {
             for _ in 0..8 {
                 let axes = (&frame.x, &frame.y);
@@ -75,12 +70,8 @@ impl<'a> Frame<'a> {
     /// not hide another failure.
     fn places(&self) -> Vec<Vec<Place>> {
         let failed = |p: &Point| !p.converged && p.y.is_some();
-        let mut taken: Vec<Place> = self
-            .panel
-            .points()
-            .filter(failed)
-            .map(|p| self.place(&p))
-            .collect();
+        let mut taken: Vec<Place> =
+            self.panel.points().filter(failed).map(|p| self.place(&p)).collect();
         let mut place = |point: &Point| {
             let (x, mut y) = self.place(point);
             if point.y.is_none() {
@@ -92,11 +83,7 @@ impl<'a> Frame<'a> {
             }
             (x, y)
         };
-        self.panel
-            .curves
-            .iter()
-            .map(|c| c.points.iter().map(&mut place).collect())
-            .collect()
+        self.panel.curves.iter().map(|c| c.points.iter().map(&mut place).collect()).collect()
     }
 
     /// Pixels that marks and lines occupy.
@@ -123,52 +110,19 @@ pub(super) fn draw_panel<DB: DrawingBackend>(pen: &Pen<DB>, panel: &Panel, at: P
     let frame = Frame::new(panel);
     let origin = (at.0 + LEFT, at.1 + TOP);
     let middle = (origin.0 + SIZE.0 / 2.0, origin.1 + SIZE.1 / 2.0);
-    pen.text(
-        &panel.title,
-        (middle.0, at.1 + TOP / 2.0 + 1.0),
-        TITLE,
-        INK,
-        Align::Centre,
-    )?;
-    pen.text(
-        panel.x.label(),
-        (middle.0, at.1 + PANEL.1 - 14.0),
-        LABEL,
-        INK,
-        Align::Centre,
-    )?;
-    pen.text(
-        panel.y.label(),
-        (at.0 + 12.0, middle.1),
-        LABEL,
-        INK,
-        Align::Upwards,
-    )?;
+    pen.text(&panel.title, (middle.0, at.1 + TOP / 2.0 + 1.0), TITLE, INK, Align::Centre)?;
+    pen.text(panel.x.label(), (middle.0, at.1 + PANEL.1 - 14.0), LABEL, INK, Align::Centre)?;
+    pen.text(panel.y.label(), (at.0 + 12.0, middle.1), LABEL, INK, Align::Upwards)?;
     draw_ticks(pen, &frame, origin)?;
     if let Some(slopes) = &frame.slopes {
         slopes.draw(pen, origin)?;
     }
     draw_curves(pen, &frame, origin)?;
     if !panel.has_errors() {
-        pen.text(
-            "no exact solution: no errors",
-            middle,
-            LABEL,
-            INK,
-            Align::Centre,
-        )?;
+        pen.text("no exact solution: no errors", middle, LABEL, INK, Align::Centre)?;
     }
     let (right, bottom) = (origin.0 + SIZE.0, origin.1 + SIZE.1);
-    pen.outline(
-        &[
-            origin,
-            (right, origin.1),
-            (right, bottom),
-            (origin.0, bottom),
-        ],
-        1.0,
-        INK,
-    )
+    pen.outline(&[origin, (right, origin.1), (right, bottom), (origin.0, bottom)], 1.0, INK)
 }
 
 /// Lines behind the data, ticks and their labels.
@@ -231,11 +185,7 @@ fn draw_curves<DB: DrawingBackend>(pen: &Pen<DB>, frame: &Frame, origin: Place) 
     let places: Vec<Vec<Place>> = frame
         .places()
         .into_iter()
-        .map(|c| {
-            c.into_iter()
-                .map(|(x, y)| (origin.0 + x, origin.1 + y))
-                .collect()
-        })
+        .map(|c| c.into_iter().map(|(x, y)| (origin.0 + x, origin.1 + y)).collect())
         .collect();
     let curves = || frame.panel.curves.iter().zip(&places);
     for (curve, places) in curves() {

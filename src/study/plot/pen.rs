@@ -44,10 +44,7 @@ pub(super) struct Pen<'a, DB: DrawingBackend> {
 
 impl<DB: DrawingBackend> Pen<'_, DB> {
     fn pixel(&self, (x, y): Place) -> (i32, i32) {
-        (
-            (x * self.scale).round() as i32,
-            (y * self.scale).round() as i32,
-        )
+        ((x * self.scale).round() as i32, (y * self.scale).round() as i32)
     }
 
     /// One straight line. Lines of several parts are drawn part by part: backends disagree on the
@@ -102,9 +99,7 @@ impl<DB: DrawingBackend> Pen<'_, DB> {
     /// A filled area.
     pub fn fill(&self, corners: &[Place], colour: RGBColor) -> Drawn {
         let corners: Vec<_> = corners.iter().map(|&c| self.pixel(c)).collect();
-        self.area
-            .draw(&Polygon::new(corners, colour))
-            .map_err(|e| e.to_string())
+        self.area.draw(&Polygon::new(corners, colour)).map_err(|e| e.to_string())
     }
 
     /// Text, its middle at the height of its place.
@@ -123,8 +118,6 @@ impl<DB: DrawingBackend> Pen<'_, DB> {
             at.1 += self.lift * size;
         }
         let style = font.color(&colour).pos(Pos::new(horizontal, VPos::Center));
-        self.area
-            .draw_text(text, &style, self.pixel(at))
-            .map_err(|e| e.to_string())
+        self.area.draw_text(text, &style, self.pixel(at)).map_err(|e| e.to_string())
     }
 }

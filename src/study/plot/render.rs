@@ -15,11 +15,7 @@ fn embed_font() {
     static ONCE: Once = Once::new();
     ONCE.call_once(|| {
         // Should it ever not be read, drawing text says so: there is then no font of this name.
-        let _ = register_font(
-            FAMILY,
-            FontStyle::Normal,
-            epaint_default_fonts::UBUNTU_LIGHT,
-        );
+        let _ = register_font(FAMILY, FontStyle::Normal, epaint_default_fonts::UBUNTU_LIGHT);
     });
 }
 
@@ -54,11 +50,7 @@ impl Figure {
         let mut text = String::new();
         {
             let area = SVGBackend::with_string(&mut text, size).into_drawing_area();
-            self.draw(&Pen {
-                area: &area,
-                scale: f64::from(FINE),
-                lift: 0.0,
-            })?;
+            self.draw(&Pen { area: &area, scale: f64::from(FINE), lift: 0.0 })?;
         }
         let drawn = format!("<svg width=\"{}\" height=\"{}\"", size.0, size.1);
         let wanted = format!("<svg width=\"{}\" height=\"{}\"", shown.0, shown.1);
@@ -76,16 +68,11 @@ impl Figure {
         let mut fine = vec![0; 3 * drawn.0 as usize * drawn.1 as usize];
         {
             let area = BitMapBackend::with_buffer(&mut fine, drawn).into_drawing_area();
-            self.draw(&Pen {
-                area: &area,
-                scale: f64::from(scale * smooth),
-                lift: 0.14,
-            })?;
+            self.draw(&Pen { area: &area, scale: f64::from(scale * smooth), lift: 0.14 })?;
         }
         let (size, pixels) = (self.pixels(scale), average(&fine, drawn, smooth));
         let mut file = BitMapBackend::new(path, size);
-        file.blit_bitmap((0, 0), size, &pixels)
-            .map_err(|e| e.to_string())?;
+        file.blit_bitmap((0, 0), size, &pixels).map_err(|e| e.to_string())?;
         file.present().map_err(|e| e.to_string())
     }
 
@@ -96,10 +83,7 @@ impl Figure {
             let (w, h) = self.pixels(scale * smooth);
             u64::from(w) * u64::from(h) <= 60_000_000
         };
-        [(2, 3), (2, 2), (1, 3), (1, 2)]
-            .into_iter()
-            .find(fits)
-            .unwrap_or((1, 1))
+        [(2, 3), (2, 2), (1, 3), (1, 2)].into_iter().find(fits).unwrap_or((1, 1))
     }
 }
 

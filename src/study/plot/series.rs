@@ -61,24 +61,14 @@ pub(super) struct Key {
 /// The curves of a report, in the order in which they first occur. The place of the constraint is
 /// named where a scheme was run with more than one.
 pub(super) fn keys(rows: &[Row]) -> Vec<Key> {
-    let pairs = distinct(
-        rows.iter()
-            .map(|r| (r.scheme.as_str(), r.constraint.as_str())),
-    );
+    let pairs = distinct(rows.iter().map(|r| (r.scheme.as_str(), r.constraint.as_str())));
     pairs
         .iter()
         .map(|&(scheme, constraint)| {
             let ambiguous = pairs.iter().filter(|(s, _)| *s == scheme).count() > 1;
-            let label = if ambiguous {
-                format!("{scheme}, {constraint}")
-            } else {
-                scheme.to_owned()
-            };
-            Key {
-                scheme: scheme.to_owned(),
-                constraint: constraint.to_owned(),
-                label,
-            }
+            let label =
+                if ambiguous { format!("{scheme}, {constraint}") } else { scheme.to_owned() };
+            Key { scheme: scheme.to_owned(), constraint: constraint.to_owned(), label }
         })
         .collect()
 }
@@ -130,13 +120,7 @@ impl Panel {
             runs.sort_by_key(|r| r.level);
             let points: Vec<Point> = runs
                 .iter()
-                .filter_map(|r| {
-                    Some(Point {
-                        x: x.of(r)?,
-                        y: y.of(r),
-                        converged: r.converged(),
-                    })
-                })
+                .filter_map(|r| Some(Point { x: x.of(r)?, y: y.of(r), converged: r.converged() }))
                 // A converged run without an error has no place; one that failed must be seen.
                 .filter(|p| p.y.is_some() || !p.converged)
                 .collect();
@@ -147,21 +131,12 @@ impl Panel {
         let mut slopes = Vec::new();
         if x == Quantity::MeshSize {
             slopes = vec![1, 2];
-            let promised = rows
-                .iter()
-                .filter(|r| r.scene == scene)
-                .filter_map(|r| y.expected(r));
+            let promised = rows.iter().filter(|r| r.scene == scene).filter_map(|r| y.expected(r));
             if promised.fold(0.0, f64::max) > 2.0 {
                 slopes.push(3);
             }
         }
-        Panel {
-            title: scene.to_owned(),
-            x,
-            y,
-            curves,
-            slopes,
-        }
+        Panel { title: scene.to_owned(), x, y, curves, slopes }
     }
 
     /// Whether some run has an error.

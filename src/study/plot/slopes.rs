@@ -34,34 +34,22 @@ impl Slopes {
         let unit = (size.1 / (y.high - y.low)) / (size.0 / (x.high - x.low));
         // Wide enough for labels on top of each other to be read apart, not higher than a third.
         let apart = (slopes.len() as f64) * LABEL;
-        let width = (0.22 * size.0)
-            .max(apart / (steepest * unit))
-            .min(0.4 * size.0);
+        let width = (0.22 * size.0).max(apart / (steepest * unit)).min(0.4 * size.0);
         let width = width.min(size.1 / 3.0 / (steepest * unit));
-        let rises: Vec<_> = slopes
-            .iter()
-            .map(|&s| (s, f64::from(s) * unit * width))
-            .collect();
+        let rises: Vec<_> = slopes.iter().map(|&s| (s, f64::from(s) * unit * width)).collect();
         let height = steepest * unit * width;
 
         let right = size.0 - CLEAR - LABEL - width;
-        [
-            (right, size.1 - CLEAR),
-            (CLEAR, CLEAR + LABEL / 2.0 + height),
-        ]
-        .into_iter()
-        .find(|&(left, bottom)| {
-            let inside = |&(px, py): &Place| {
-                (left - CLEAR..left + width + LABEL + CLEAR).contains(&px)
-                    && (bottom - height - LABEL..bottom + CLEAR).contains(&py)
-            };
-            !data.iter().any(inside)
-        })
-        .map(|corner| Slopes {
-            corner,
-            width,
-            rises,
-        })
+        [(right, size.1 - CLEAR), (CLEAR, CLEAR + LABEL / 2.0 + height)]
+            .into_iter()
+            .find(|&(left, bottom)| {
+                let inside = |&(px, py): &Place| {
+                    (left - CLEAR..left + width + LABEL + CLEAR).contains(&px)
+                        && (bottom - height - LABEL..bottom + CLEAR).contains(&py)
+                };
+                !data.iter().any(inside)
+            })
+            .map(|corner| Slopes { corner, width, rises })
     }
 
     /// Draws it, the area's upper left corner at `origin`.
@@ -77,13 +65,7 @@ impl Slopes {
             pen.line((left, bottom), end, 0.8, GREY)?;
             // On flat triangles labels would run into each other: the steepest speaks for all.
             if step >= 10.0 || *rise == top {
-                pen.text(
-                    &slope.to_string(),
-                    (right + 4.0, end.1),
-                    13.0,
-                    GREY,
-                    Align::Left,
-                )?;
+                pen.text(&slope.to_string(), (right + 4.0, end.1), 13.0, GREY, Align::Left)?;
             }
         }
         Ok(())

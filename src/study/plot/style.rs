@@ -37,12 +37,7 @@ struct Mark {
 }
 
 const fn mark(corners: usize, turn: f64, radius: f64, filled: bool) -> Mark {
-    Mark {
-        corners,
-        turn,
-        radius,
-        filled,
-    }
+    Mark { corners, turn, radius, filled }
 }
 
 /// Small filled ones fit into large open ones.
