@@ -483,6 +483,23 @@ fn single_precision() {
 }
 
 #[test]
+fn refinement_gives_single_precision_its_digits() {
+    let problem = membrane::<f32>(100, 5.0, |_, _| -0.1);
+    let exact = cold(&membrane::<f64>(100, 5.0, |_, _| -0.1));
+    let start = Start::Contact(exact.contact);
+    let error = |refinements: usize| {
+        let solver = ActiveSet {
+            refinements,
+            ..ActiveSet::default()
+        };
+        let solution = solver.solve(&problem, &start);
+        assert_eq!(solution.outcome, Outcome::Converged);
+        distance(&solution.values, &exact.values)
+    };
+    assert!(error(1) < 1e-8 && error(1) < 0.1 * error(0));
+}
+
+#[test]
 fn certificate_sees_every_violation() {
     let problem = membrane::<f64>(20, 10.0, |_, _| -0.3);
     let solution = cold(&problem);

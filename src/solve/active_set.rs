@@ -39,7 +39,9 @@ pub struct ActiveSet {
     pub max_outer: usize,
     /// Units of rounding within which nothing changes state.
     pub band: f64,
-    /// Corrections of each linear solution by its residual in `f64`.
+    /// Corrections of each linear solution by its residual in `f64`. Every step starts from the
+    /// iterate before and so corrects it anyway; one more matters where a single step suffices
+    /// (a warm start), in `f32` by two digits and more.
     pub refinements: usize,
     /// Linear systems without a better iterate after which the unknowns that moved are condensed.
     pub patience: usize,
