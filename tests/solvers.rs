@@ -105,19 +105,6 @@ fn cycles_of_the_textbook_method_are_resolved() {
         let problem = inequality(sparse(&matrix), &load, vec![Bound::Lower(0.0); n]);
         let plain = ActiveSet { max_condensations: 0, ..ActiveSet::default() };
         let plain = plain.solve(&problem, &Start::Cold);
-        if (plain.outcome == Outcome::Cycling) != textbook_cycles(&matrix, &load) {
-            println!("plain differs seed {seed} n={n} {} {}", plain.outcome, plain.outer);
-        }
-        let sol = cold(&problem);
-        if sol.outcome != Outcome::Converged {
-            println!(
-                "seed {seed} {} outer {} {:?}",
-                sol.outcome,
-                sol.outer,
-                certify(&problem, &sol.values)
-            );
-            continue;
-        }
         if textbook_cycles(&matrix, &load) {
             cycles += 1;
             assert_eq!(plain.outcome, Outcome::Cycling, "seed {seed}");
@@ -151,24 +138,18 @@ fn cycle_of_a_matrix_without_symmetry_is_resolved() {
 #[test]
 fn cycles_between_two_bounds_are_resolved() {
     let mut cycles = 0;
-    for seed in 0..300 {
+    for seed in 0..200 {
         let mut random = Random::new(5000 + seed);
         let n = 40;
         let matrix = random_definite(n, n / 2, 0.003, &mut random);
         let load: Vec<f64> = (0..n).map(|_| random.signed()).collect();
         let problem = inequality(sparse(&matrix), &load, vec![Bound::Both(-0.5, 0.7); n]);
-        let plain = ActiveSet { max_condensations: 0, ..ActiveSet::default() };
-        let sol = cold(&problem);
-        if sol.outcome != Outcome::Converged {
-            println!(
-                "seed {seed} {} outer {} {:?}",
-                sol.outcome,
-                sol.outer,
-                certify(&problem, &sol.values)
-            );
-            continue;
-        }
-        cycles += usize::from(plain.solve(&problem, &Start::Cold).outcome == Outcome::Cycling);
+        let plain = ActiveSet {
+            max_condensations: 0,
+            ..ActiveSet::default()
+        };
+        // Some wander for longer than the limit.
+        cycles += usize::from(plain.solve(&problem, &Start::Cold).outcome != Outcome::Converged);
         assert_solved(&problem, &cold(&problem));
     }
     assert!(cycles > 10, "only {cycles} cycles");
@@ -407,6 +388,23 @@ fn single_precision() {
         let double = cold(&membrane(n, 5.0, obstacle));
         assert!(distance(&solution.values, &double.values) < 1e-5);
     }
+}
+
+#[test]
+fn refinement_gives_single_precision_its_digits() {
+    let problem = membrane::<f32>(100, 5.0, |_, _| -0.1);
+    let exact = cold(&membrane::<f64>(100, 5.0, |_, _| -0.1));
+    let start = Start::Contact(exact.contact);
+    let error = |refinements: usize| {
+        let solver = ActiveSet {
+            refinements,
+            ..ActiveSet::default()
+        };
+        let solution = solver.solve(&problem, &start);
+        assert_eq!(solution.outcome, Outcome::Converged);
+        distance(&solution.values, &exact.values)
+    };
+    assert!(error(1) < 1e-8 && error(1) < 0.1 * error(0));
 }
 
 #[test]

@@ -113,13 +113,15 @@ pub fn penalised_string(cells: usize, penalty: f64) -> SparseMatrix<f64> {
     let stiffness = cells as f64;
     let n = 2 * cells;
     let mut dense = vec![vec![0.0; n]; n];
-    for k in 0..n {
-        let (inside, across) =
-            if k % 2 == 0 { (k + 1, k.checked_sub(1)) } else { (k - 1, Some(k + 1)) };
-        dense[k][k] = stiffness + penalty;
-        dense[k][inside] = -stiffness;
+    for (k, row) in dense.iter_mut().enumerate() {
+        let (inside, across) = match k % 2 {
+            0 => (k + 1, k.checked_sub(1)),
+            _ => (k - 1, Some(k + 1)),
+        };
+        row[k] = stiffness + penalty;
+        row[inside] = -stiffness;
         if let Some(j) = across.filter(|&j| j < n) {
-            dense[k][j] = -penalty;
+            row[j] = -penalty;
         }
     }
     sparse(&dense)
@@ -170,9 +172,10 @@ fn eliminate(mut a: Vec<Vec<f64>>, mut b: Vec<f64>) -> Vec<f64> {
         a.swap(k, pivot);
         b.swap(k, pivot);
         for i in k + 1..n {
-            let factor = a[i][k] / a[k][k];
-            for j in k..n {
-                a[i][j] -= factor * a[k][j];
+            let (above, below) = a.split_at_mut(i);
+            let factor = below[0][k] / above[k][k];
+            for (x, pivot) in below[0].iter_mut().zip(&above[k]).skip(k) {
+                *x -= factor * pivot;
             }
             b[i] -= factor * b[k];
         }
