@@ -144,10 +144,7 @@ fn cycles_between_two_bounds_are_resolved() {
         let matrix = random_definite(n, n / 2, 0.003, &mut random);
         let load: Vec<f64> = (0..n).map(|_| random.signed()).collect();
         let problem = inequality(sparse(&matrix), &load, vec![Bound::Both(-0.5, 0.7); n]);
-        let plain = ActiveSet {
-            max_condensations: 0,
-            ..ActiveSet::default()
-        };
+        let plain = ActiveSet { max_condensations: 0, ..ActiveSet::default() };
         // Some wander for longer than the limit.
         cycles += usize::from(plain.solve(&problem, &Start::Cold).outcome != Outcome::Converged);
         assert_solved(&problem, &cold(&problem));
@@ -396,10 +393,7 @@ fn refinement_gives_single_precision_its_digits() {
     let exact = cold(&membrane::<f64>(100, 5.0, |_, _| -0.1));
     let start = Start::Contact(exact.contact);
     let error = |refinements: usize| {
-        let solver = ActiveSet {
-            refinements,
-            ..ActiveSet::default()
-        };
+        let solver = ActiveSet { refinements, ..ActiveSet::default() };
         let solution = solver.solve(&problem, &start);
         assert_eq!(solution.outcome, Outcome::Converged);
         distance(&solution.values, &exact.values)

@@ -139,10 +139,8 @@ impl ActiveSet {
                 history.mark_recent(self.patience, &mut cycle);
             }
             progress = iterate.outer;
-            let members: Vec<u32> = (0..cycle.len())
-                .filter(|&i| cycle[i])
-                .map(|i| i as u32)
-                .collect();
+            let members: Vec<u32> =
+                (0..cycle.len()).filter(|&i| cycle[i]).map(|i| i as u32).collect();
             if condensations == self.max_condensations || members.len() > self.max_condensed {
                 if returned {
                     return Err(Outcome::Cycling);

@@ -18,12 +18,7 @@ pub(super) struct History {
 impl History {
     /// No state seen yet.
     pub fn new(unknowns: usize) -> Self {
-        Self {
-            seen: Vec::new(),
-            last_move: vec![0; unknowns],
-            step: 0,
-            forgotten: None,
-        }
+        Self { seen: Vec::new(), last_move: vec![0; unknowns], step: 0, forgotten: None }
     }
 
     /// Notes that unknown `i` moves into the state to be recorded next.

@@ -82,11 +82,7 @@ impl SmallProblem {
                 match state[i] {
                     Contact::Open => {
                         meet(z[i] - self.lower[i] + self.gap_noise, dz[i], Contact::Lower);
-                        meet(
-                            self.upper[i] - z[i] + self.gap_noise,
-                            -dz[i],
-                            Contact::Upper,
-                        );
+                        meet(self.upper[i] - z[i] + self.gap_noise, -dz[i], Contact::Upper);
                     }
                     Contact::Lower => meet(w[i] + self.force_noise[i], dw[i], Contact::Open),
                     Contact::Upper => meet(-w[i] + self.force_noise[i], -dw[i], Contact::Open),
@@ -142,9 +138,7 @@ impl SmallProblem {
         state: &[Contact],
         constants: &[DVector<f64>],
     ) -> Option<(DMatrix<f64>, DMatrix<f64>)> {
-        let open: Vec<usize> = (0..state.len())
-            .filter(|&i| state[i] == Contact::Open)
-            .collect();
+        let open: Vec<usize> = (0..state.len()).filter(|&i| state[i] == Contact::Open).collect();
         let constants = DMatrix::from_columns(constants);
         let mut z = DMatrix::zeros(state.len(), constants.ncols());
         for (i, contact) in state.iter().enumerate() {
