@@ -5,8 +5,8 @@ use super::condensed::{Noise, resolve};
 use super::cycles::History;
 use super::iterate::Iterate;
 use super::linear::{FactorError, is_positive_definite};
-use super::{InequalitySolver, Outcome, Solution, Start};
-use crate::algebra::Inequality;
+use super::{InequalitySolver, Outcome, Solution};
+use crate::algebra::{Inequality, Start};
 use crate::real::Real;
 
 /// The primal-dual active set method, which is a semismooth Newton method (Hintermueller, Ito,
@@ -78,23 +78,19 @@ impl<T: Real> InequalitySolver<T> for ActiveSet {
         "active-set"
     }
 
-    fn solve(&self, inequality: &Inequality<T>, start: &Start) -> Solution<T> {
-        let mut iterate = Iterate::new(inequality, start);
-        let outcome = self.run(&mut iterate, start).unwrap_or_else(|outcome| outcome);
+    fn solve(&self, inequality: &Inequality<T>) -> Solution<T> {
+        let mut iterate = Iterate::new(inequality);
+        let outcome = self.run(&mut iterate).unwrap_or_else(|outcome| outcome);
         iterate.into_solution(outcome)
     }
 }
 
 impl ActiveSet {
     /// Runs until the active set rests; the error is the reason why it does not.
-    fn run<T: Real>(
-        &self,
-        iterate: &mut Iterate<'_, T>,
-        start: &Start,
-    ) -> Result<Outcome, Outcome> {
+    fn run<T: Real>(&self, iterate: &mut Iterate<'_, T>) -> Result<Outcome, Outcome> {
         let inequality = iterate.inequality;
         check_input(inequality)?;
-        let cold = matches!(start, Start::Cold);
+        let cold = inequality.start == Start::Cold;
         let cold_checks = cold && inequality.symmetric;
         if self.check_definite && !cold_checks {
             check_definite(inequality)?;
