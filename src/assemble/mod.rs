@@ -15,6 +15,7 @@ mod gather;
 mod load;
 mod local;
 mod norms;
+mod parallel;
 pub(crate) mod tables;
 
 use crate::algebra::{Inequality, Place, SparseMatrix, Start};
