@@ -5,12 +5,14 @@ mod certificate;
 mod condensed;
 mod cycles;
 mod iterate;
+mod kernels;
 mod linear;
 mod restrict;
 mod small;
 
 pub use active_set::ActiveSet;
 pub use certificate::{Certificate, active, certify};
+pub use kernels::SparseKernels;
 pub use linear::{FactorError, Factors, is_positive_definite};
 
 use crate::algebra::{Contact, Inequality};
