@@ -5,7 +5,7 @@ use std::time::Instant;
 use super::{Certificate, Errors, ExpectedOrders, PenaltyParameters};
 use crate::algebra::{Bound, Contact, Inequality, Place, Start};
 use crate::assemble::{DataQuadrature, Discretisation};
-use crate::element::ReferenceElement;
+use crate::element::{Layout, ReferenceElement};
 use crate::error::Error;
 use crate::facet::FacetForm;
 use crate::mesh::Mesh;
@@ -88,6 +88,8 @@ pub trait AnyScheme<T: Real, const D: usize>: Send + Sync {
     fn constraint(&self) -> &'static str;
     /// Orders theory proves.
     fn expected_orders(&self, setting: &Setting) -> ExpectedOrders;
+    /// Who owns its unknowns.
+    fn layout(&self) -> Layout;
     /// Whether its unknowns are those of conforming P1, so that it starts from a coarser level and
     /// not from P1 on the same one.
     fn is_conforming_linear(&self) -> bool;
@@ -118,6 +120,9 @@ impl<T: Real, const D: usize, S: Scheme<T, D>> AnyScheme<T, D> for S {
     }
     fn expected_orders(&self, setting: &Setting) -> ExpectedOrders {
         Scheme::expected_orders(self, setting)
+    }
+    fn layout(&self) -> Layout {
+        S::Element::LAYOUT
     }
     fn is_conforming_linear(&self) -> bool {
         let layout = S::Element::LAYOUT;
@@ -160,8 +165,12 @@ fn solve<T: Real, const D: usize, S: Scheme<T, D>>(
     }
     let (solution, solve_seconds) = run(task, &inequality, shortfall.is_some());
     let u = &solution.values;
-    let usable =
-        solution.outcome != Outcome::NotCoercive && u.iter().all(|v| v.to_f64().is_finite());
+    // without a factorisation there is no iterate, and no number that says anything about one
+    let nothing = matches!(
+        solution.outcome,
+        Outcome::NotCoercive | Outcome::Singular | Outcome::NotFinite | Outcome::OutOfMemory
+    );
+    let usable = !nothing && u.iter().all(|v| v.to_f64().is_finite());
     let error = if task.with_errors && usable { space.errors(u)? } else { Errors::default() };
     let fields = (task.with_fields && usable).then(|| space.fields(&inequality, &solution));
     Ok(Solved {
@@ -174,7 +183,7 @@ fn solve<T: Real, const D: usize, S: Scheme<T, D>>(
         active: crate::solve::active(&inequality, &solution.contact),
         outer: solution.outer,
         linear: solution.linear,
-        certificate: certify(&inequality, u),
+        certificate: if usable { certify(&inequality, u) } else { Certificate::WORTHLESS },
         assemble_seconds,
         solve_seconds,
         fields,
