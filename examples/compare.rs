@@ -238,7 +238,7 @@ fn read_mesh<T: Real, const D: usize>(
 fn default_levels(dimension: usize, on_mesh: bool) -> Vec<usize> {
     match dimension {
         _ if on_mesh => vec![0, 1],
-        3 => vec![4, 8, 16],
+        3 => vec![2, 4, 8],
         _ => vec![16, 32, 64, 128, 256],
     }
 }

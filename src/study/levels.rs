@@ -4,7 +4,7 @@
 use std::collections::BTreeMap;
 use std::time::Instant;
 
-use crate::algebra::Contact;
+use crate::algebra::{Contact, Start};
 use crate::assemble::{DataQuadrature, Discretisation};
 use crate::error::Error;
 use crate::mesh::{Mesh, Refinement};
@@ -12,7 +12,7 @@ use crate::problem::Problem;
 use crate::real::Real;
 use crate::scenes::Scene;
 use crate::scheme::ConformingP1;
-use crate::solve::{InequalitySolver, Outcome, Start};
+use crate::solve::{InequalitySolver, Outcome};
 
 /// Contact of every vertex, found by conforming P1, with what it cost.
 #[derive(Clone, Debug)]
@@ -225,8 +225,8 @@ fn solve_p1<T: Real, const D: usize>(
     for _ in 0..repeat.max(1) {
         let clock = Instant::now();
         let space = Discretisation::new(&ConformingP1, problem, mesh, quadrature)?;
-        let inequality = space.inequality()?;
-        let solution = solver.solve(&inequality, &start);
+        let inequality = space.inequality()?.with_start(start.clone());
+        let solution = solver.solve(&inequality);
         seconds = seconds.min(clock.elapsed().as_secs_f64());
         // a start need not be right; one that failed is as good as none
         contact = match solution.outcome {
