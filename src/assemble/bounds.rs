@@ -104,22 +104,20 @@ impl<T: Real, const D: usize, S: Scheme<T, D>> Discretisation<'_, T, D, S> {
                         self.facet_mean(&rule, cell, local, "dirichlet", &datum)?
                     }
                 };
-                pinned.push((unknown, value, x));
+                let old = std::mem::replace(&mut bounds[unknown], Bound::Fixed(T::lit(value)));
+                pinned.push((unknown, value, x, old));
             }
         }
         // obstacles must leave room for the datum; where both are zero but for rounding, only the
         // size of all data tells that it is rounding
-        let of_bounds = bounds.iter().flat_map(|b| [b.lower(), b.upper()]).flatten();
+        let of_bounds = bounds.iter().chain(pinned.iter().map(|p| &p.3));
+        let of_bounds = of_bounds.flat_map(|b| [b.lower(), b.upper()]).flatten();
         let sizes = of_bounds.map(Real::to_f64).chain(pinned.iter().map(|p| p.1));
         let size = sizes.fold(0.0, |size: f64, value| size.max(value.abs()));
-        for (unknown, value, x) in pinned {
-            let lower = bounds[unknown].lower().map(Real::to_f64);
-            let upper = bounds[unknown].upper().map(Real::to_f64);
-            if !matches!(bounds[unknown], Bound::Fixed(_)) {
-                check_room::<T, D>(lower, Some(value), size, unknown, &x)?;
-                check_room::<T, D>(Some(value), upper, size, unknown, &x)?;
-            }
-            bounds[unknown] = Bound::Fixed(T::lit(value));
+        for (unknown, value, x, old) in pinned {
+            let (lower, upper) = (old.lower().map(Real::to_f64), old.upper().map(Real::to_f64));
+            check_room::<T, D>(lower, Some(value), size, unknown, &x)?;
+            check_room::<T, D>(Some(value), upper, size, unknown, &x)?;
         }
         Ok(())
     }

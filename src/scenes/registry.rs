@@ -155,6 +155,10 @@ impl Entry {
         } else {
             return Ok(());
         };
-        Err(Error::Parameter { parameter, value: format!("{value:?}"), allowed })
+        Err(Error::Parameter {
+            parameter,
+            value: format!("{value:?}").trim_end_matches(".0").to_owned(),
+            allowed,
+        })
     }
 }
