@@ -1,38 +1,30 @@
 //! What each unknown may be: Dirichlet values, obstacles, the Signorini condition.
 
-use super::{Discretisation, count, data};
+use super::space::Space;
+use super::{count, data};
 use crate::algebra::Bound;
-use crate::element::{Node, ReferenceElement};
+use crate::element::Node;
 use crate::error::Error;
 use crate::mesh::{BoundaryPart, describe_point};
 use crate::problem::Field;
 use crate::quadrature::Rule;
-use crate::real::{Point, Real, point_f64};
-use crate::scheme::{DirichletBy, Scheme};
+use crate::real::{Point, Real};
 
 /// Two bounds contradict each other if they do so by more than this share of their size: less is
 /// rounding in the data.
 const RELATIVE_SLACK: f64 = 1e-9;
 
-impl<T: Real, const D: usize, S: Scheme<T, D>> Discretisation<'_, T, D, S> {
-    /// The bounds of all unknowns.
-    ///
-    /// Obstacles bind every unknown at its node: a vertex, or the barycentre of a facet. The
-    /// Signorini condition binds the unknowns of contact facets on the cell that has the facet:
-    /// vertex values against the gap there, facet means against the mean of the gap. An unknown
-    /// pinned by Dirichlet data is not constrained besides.
-    ///
-    /// # Errors
-    /// [`Error::EmptyConstraint`], [`Error::DataNotFinite`].
+impl<T: Real, const D: usize> Space<'_, T, D> {
+    /// The bounds of all unknowns; see `Discretisation::bounds`.
     pub fn bounds(&self) -> Result<Vec<Bound<T>>, Error> {
-        let mut bounds = vec![Bound::Free; self.unknowns()];
+        let mut bounds = vec![Bound::Free; self.dofs.size()];
         if self.problem.lower.is_some() || self.problem.upper.is_some() {
             self.bound_by_obstacles(&mut bounds)?;
         }
         if let Some(gap) = &self.problem.gap {
             self.bound_by_contact(gap, &mut bounds)?;
         }
-        if S::DIRICHLET == DirichletBy::Pinning {
+        if self.pins {
             self.pin(&mut bounds)?;
         }
         Ok(bounds)
@@ -40,13 +32,13 @@ impl<T: Real, const D: usize, S: Scheme<T, D>> Discretisation<'_, T, D, S> {
 
     fn bound_by_obstacles(&self, bounds: &mut [Bound<T>]) -> Result<(), Error> {
         for cell in 0..self.mesh.n_cells() {
-            for i in 0..Self::N {
+            for i in 0..self.per_cell() {
                 let unknown = self.dofs.of(cell, i);
                 if bounds[unknown] != Bound::Free {
                     continue;
                 }
                 count::bounds(1);
-                let x = self.node_point(cell, S::Element::node(i));
+                let x = self.node_point(cell, self.nodes[i]);
                 let at = |psi: &Option<Field<D>>| match psi {
                     Some(psi) => data::finite(psi(&x), "obstacle", &x, cell).map(Some),
                     None => Ok(None),
@@ -60,11 +52,10 @@ impl<T: Real, const D: usize, S: Scheme<T, D>> Discretisation<'_, T, D, S> {
 
     fn bound_by_contact(&self, gap: &Field<D>, bounds: &mut [Bound<T>]) -> Result<(), Error> {
         let rule = Rule::of_degree(D - 1, self.quadrature.facet);
-        for facet in self.facets_of(BoundaryPart::Contact) {
-            let (cell, local) = (facet.cell as usize, facet.local as usize);
+        for (cell, local) in self.facets_of(BoundaryPart::Contact) {
             for i in self.nodes_on(local) {
                 count::bounds(1);
-                let node = S::Element::node(i);
+                let node = self.nodes[i];
                 let x = self.node_point(cell, node);
                 let value = match node {
                     Node::Vertex(_) => data::finite(gap(&x), "gap", &x, cell)?,
@@ -84,14 +75,13 @@ impl<T: Real, const D: usize, S: Scheme<T, D>> Discretisation<'_, T, D, S> {
         let rule = Rule::of_degree(D - 1, self.quadrature.facet);
         let zero = !self.problem.has_dirichlet_data();
         let mut pinned = Vec::new();
-        for facet in self.facets_of(BoundaryPart::Dirichlet) {
-            let (cell, local) = (facet.cell as usize, facet.local as usize);
+        for (cell, local) in self.facets_of(BoundaryPart::Dirichlet) {
             for i in self.nodes_on(local) {
                 let unknown = self.dofs.of(cell, i);
                 if let Bound::Fixed(_) = bounds[unknown] {
                     continue;
                 }
-                let node = S::Element::node(i);
+                let node = self.nodes[i];
                 let x = self.node_point(cell, node);
                 let value = match node {
                     _ if zero => 0.0,
@@ -104,38 +94,24 @@ impl<T: Real, const D: usize, S: Scheme<T, D>> Discretisation<'_, T, D, S> {
                         self.facet_mean(&rule, cell, local, "dirichlet", &datum)?
                     }
                 };
-                let old = std::mem::replace(&mut bounds[unknown], Bound::Fixed(T::lit(value)));
-                pinned.push((unknown, value, x, old));
+                pinned.push((unknown, value, x, bounds[unknown]));
+                bounds[unknown] = Bound::Fixed(T::lit(value));
             }
         }
         // obstacles must leave room for the datum; where both are zero but for rounding, only the
         // size of all data tells that it is rounding
-        let of_bounds = bounds.iter().chain(pinned.iter().map(|p| &p.3));
-        let of_bounds = of_bounds.flat_map(|b| [b.lower(), b.upper()]).flatten();
-        let sizes = of_bounds.map(Real::to_f64).chain(pinned.iter().map(|p| p.1));
+        let limits = |b: &Bound<T>| [b.lower(), b.upper()].map(|x| x.map(Real::to_f64));
+        let room = pinned.iter().map(|p| limits(&p.3)).chain(bounds.iter().map(limits));
+        let sizes = room.flatten().flatten().chain(pinned.iter().map(|p| p.1));
         let size = sizes.fold(0.0, |size: f64, value| size.max(value.abs()));
-        for (unknown, value, x, old) in pinned {
-            let (lower, upper) = (old.lower().map(Real::to_f64), old.upper().map(Real::to_f64));
+        for (unknown, value, x, before) in pinned {
+            let [lower, upper] = limits(&before);
             check_room::<T, D>(lower, Some(value), size, unknown, &x)?;
             check_room::<T, D>(Some(value), upper, size, unknown, &x)?;
         }
         Ok(())
     }
 
-    /// The basis functions whose nodes lie on facet `local`.
-    pub(super) fn nodes_on(&self, local: usize) -> impl Iterator<Item = usize> + use<T, D, S> {
-        (0..Self::N).filter(move |&i| match S::Element::node(i) {
-            Node::Vertex(k) => k != local,
-            Node::FacetMean(k) => k == local,
-        })
-    }
-    /// The point at which a node sits.
-    pub(super) fn node_point(&self, cell: usize, node: Node) -> Point<f64, D> {
-        point_f64(&match node {
-            Node::Vertex(k) => self.mesh.vertices()[self.mesh.cell(cell)[k] as usize],
-            Node::FacetMean(k) => self.mesh.facet_barycentre(cell, k),
-        })
-    }
     /// The mean of a datum over a facet.
     fn facet_mean(
         &self,

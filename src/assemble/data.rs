@@ -1,14 +1,14 @@
 //! Data of the problem as the assembler meets them: evaluated in `f64`, checked, rounded once.
 
+use super::count;
 use super::local::Local;
+use super::space::Space;
 use super::tables::CellTable;
-use super::{Discretisation, count};
 use crate::element::ReferenceElement;
 use crate::error::Error;
 use crate::mesh::{Mesh, describe_point};
 use crate::problem::{Datum, Problem};
 use crate::real::{Point, Real, point_f64};
-use crate::scheme::Scheme;
 
 /// A datum that must be finite.
 pub(super) fn finite<const D: usize>(
@@ -52,14 +52,14 @@ pub(super) struct ReactionTerm<'a, T, const D: usize> {
 
 impl<'a, T: Real, const D: usize> ReactionTerm<'a, T, D> {
     /// Nothing if the problem has no reaction.
-    pub fn new<S: Scheme<T, D>>(space: &Discretisation<'a, T, D, S>) -> Option<Self> {
+    pub fn new<E: ReferenceElement<T, D>>(space: &Space<'a, T, D>) -> Option<Self> {
         let datum = space.problem.reaction.as_ref()?;
-        let products = 2 * <S::Element as ReferenceElement<T, D>>::DEGREE;
+        let products = 2 * E::DEGREE;
         let degree = match datum {
             Datum::Constant(_) => products,
             Datum::Function(_) => products.max(space.quadrature.cell),
         };
-        Some(Self { datum, table: CellTable::new::<S::Element, D>(degree) })
+        Some(Self { datum, table: CellTable::new::<E, D>(degree) })
     }
     /// Adds `(c phi_j, phi_i)` over a cell.
     pub fn add<E: ReferenceElement<T, D>>(

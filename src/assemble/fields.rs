@@ -1,19 +1,14 @@
 //! The solution, obstacle, multiplier and contact set on cells, for pictures.
 
-use super::Discretisation;
+use super::space::Space;
 use crate::algebra::{Contact, Inequality};
 use crate::mesh::BoundaryPart;
 use crate::real::{Real, point_f64};
-use crate::scheme::Scheme;
 use crate::solve::Solution;
 use crate::study::Fields;
 
-impl<T: Real, const D: usize, S: Scheme<T, D>> Discretisation<'_, T, D, S> {
-    /// Fields of a solution.
-    ///
-    /// The multiplier of an unknown is a force; over the measure that belongs to the unknown it is
-    /// a density, of volume for obstacles and of the contact boundary for Signorini. A cell shows
-    /// the mean over its unknowns that have such a measure.
+impl<T: Real, const D: usize> Space<'_, T, D> {
+    /// Fields of a solution; see `Discretisation::fields`.
     pub fn fields(&self, inequality: &Inequality<T>, solution: &Solution<T>) -> Fields {
         let u = &solution.values;
         let corner = |&v: &u32| point_f64(&self.mesh.vertices()[v as usize]);
@@ -24,7 +19,7 @@ impl<T: Real, const D: usize, S: Scheme<T, D>> Discretisation<'_, T, D, S> {
         let mut contact = Vec::with_capacity(n_cells);
         for cell in 0..n_cells {
             let (mut force, mut with_measure, mut constrained, mut touching) = (0.0, 0, 0, 0);
-            for i in 0..Self::N {
+            for i in 0..self.per_cell() {
                 let k = self.dofs.of(cell, i);
                 if measures[k] > 0.0 && inequality.bounds[k].is_inequality() {
                     let reaction = inequality.matrix.row_dot(k, u) - inequality.load[k];
@@ -51,17 +46,16 @@ impl<T: Real, const D: usize, S: Scheme<T, D>> Discretisation<'_, T, D, S> {
 
     /// The measure of domain or contact boundary that belongs to each unknown.
     fn constrained_measures(&self) -> Vec<f64> {
-        let mut measures = vec![0.0; self.unknowns()];
+        let mut measures = vec![0.0; self.dofs.size()];
         if self.problem.lower.is_some() || self.problem.upper.is_some() {
             for cell in 0..self.mesh.n_cells() {
-                let share = self.mesh.geometry(cell).volume.to_f64() / Self::N as f64;
-                for i in 0..Self::N {
+                let share = self.mesh.geometry(cell).volume.to_f64() / self.per_cell() as f64;
+                for i in 0..self.per_cell() {
                     measures[self.dofs.of(cell, i)] += share;
                 }
             }
         } else if self.problem.gap.is_some() {
-            for facet in self.facets_of(BoundaryPart::Contact) {
-                let (cell, local) = (facet.cell as usize, facet.local as usize);
+            for (cell, local) in self.facets_of(BoundaryPart::Contact) {
                 let measure = self.mesh.geometry(cell).facet_measure(local).to_f64();
                 let share = measure / self.nodes_on(local).count() as f64;
                 for i in self.nodes_on(local) {

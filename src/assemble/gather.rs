@@ -8,6 +8,7 @@ use std::convert::Infallible;
 use std::ops::Range;
 
 use super::local::{CellSide, FacetGeometry, add_stiffness, traces, zero_local};
+use super::space::Space;
 use super::tables::{CellTable, FacetTable};
 use super::{Discretisation, count, data, parallel};
 use crate::algebra::SparseMatrix;
@@ -19,7 +20,8 @@ use crate::scheme::{DirichletBy, Scheme};
 
 /// The patches of a discretisation and the unknowns of each.
 struct Patches<'s, 'a, T: Real, const D: usize, S: Scheme<T, D>> {
-    space: &'s Discretisation<'a, T, D, S>,
+    discretisation: &'s Discretisation<'a, T, D, S>,
+    space: &'s Space<'a, T, D>,
     facets: Option<Facets>,
     coupled: usize,
 }
@@ -27,7 +29,8 @@ struct Patches<'s, 'a, T: Real, const D: usize, S: Scheme<T, D>> {
 impl<'s, 'a, T: Real, const D: usize, S: Scheme<T, D>> Patches<'s, 'a, T, D, S> {
     const N: usize = Discretisation::<T, D, S>::N;
 
-    fn new(space: &'s Discretisation<'a, T, D, S>) -> Self {
+    fn new(discretisation: &'s Discretisation<'a, T, D, S>) -> Self {
+        let space = &discretisation.space;
         let facets = space
             .neighbours
             .as_ref()
@@ -37,7 +40,7 @@ impl<'s, 'a, T: Real, const D: usize, S: Scheme<T, D>> Patches<'s, 'a, T, D, S> 
             DirichletBy::FacetForm => f.part(BoundaryPart::Dirichlet).end,
             DirichletBy::Pinning => f.interior().end,
         });
-        Self { space, facets, coupled }
+        Self { discretisation, space, facets, coupled }
     }
     fn n_cells(&self) -> usize {
         self.space.mesh.n_cells()
@@ -71,7 +74,7 @@ impl<'s, 'a, T: Real, const D: usize, S: Scheme<T, D>> Patches<'s, 'a, T, D, S> 
     }
     /// For each unknown, the places (patch, position in it) at which it occurs, in order.
     fn incidence(&self) -> (Vec<u32>, Vec<(u32, u32)>) {
-        let size = self.space.unknowns();
+        let size = self.space.dofs.size();
         let mut starts = vec![0_u32; size + 1];
         for patch in 0..self.len() {
             for k in 0..self.size(patch) {
@@ -96,11 +99,11 @@ impl<'s, 'a, T: Real, const D: usize, S: Scheme<T, D>> Patches<'s, 'a, T, D, S> 
 
 /// The pattern, with values zero.
 pub(super) fn pattern<T: Real, const D: usize, S: Scheme<T, D>>(
-    space: &Discretisation<'_, T, D, S>,
+    discretisation: &Discretisation<'_, T, D, S>,
 ) -> SparseMatrix<T> {
-    let patches = Patches::new(space);
+    let patches = Patches::new(discretisation);
     let (starts, places) = patches.incidence();
-    let size = space.unknowns();
+    let size = discretisation.unknowns();
     let rows_of = |rows: Range<usize>| {
         let mut columns: Vec<u32> = Vec::new();
         let mut lengths = Vec::with_capacity(rows.len());
@@ -136,10 +139,10 @@ pub(super) fn pattern<T: Real, const D: usize, S: Scheme<T, D>>(
 
 /// The values, on a known pattern.
 pub(super) fn fill<T: Real, const D: usize, S: Scheme<T, D>>(
-    space: &Discretisation<'_, T, D, S>,
+    discretisation: &Discretisation<'_, T, D, S>,
     matrix: &mut SparseMatrix<T>,
 ) {
-    let patches = Patches::new(space);
+    let patches = Patches::new(discretisation);
     let locals = local_matrices(&patches);
     let (starts, places) = patches.incidence();
     let SparseMatrix { row_starts, columns, values } = matrix;
@@ -175,7 +178,7 @@ fn local_matrices<T: Real, const D: usize, S: Scheme<T, D>>(
     let space = patches.space;
     let degree = <S::Element as ReferenceElement<T, D>>::DEGREE;
     let stiffness = CellTable::new::<S::Element, D>(2 * (degree - 1));
-    let reaction = data::ReactionTerm::new(space);
+    let reaction = data::ReactionTerm::new::<S::Element>(space);
     let mut locals = vec![T::lit(0.0); patches.start(patches.len())];
     let (cells, facets) = locals.split_at_mut(patches.start(patches.n_cells()));
     let of_cells = |range: Range<usize>, entries: &mut [T]| {
@@ -199,7 +202,7 @@ fn local_matrices<T: Real, const D: usize, S: Scheme<T, D>>(
         let table = FacetTable::new::<S::Element, D>(sampling);
         let of_facets = |range: Range<usize>, entries: &mut [T]| {
             for (facet, out) in range.zip(entries.chunks_exact_mut(4 * n * n)) {
-                facet_matrix(space, all, &table, facet, out);
+                facet_matrix(patches.discretisation, all, &table, facet, out);
             }
             Ok::<(), Infallible>(())
         };
@@ -212,13 +215,14 @@ fn local_matrices<T: Real, const D: usize, S: Scheme<T, D>>(
 /// The form on one facet, for the unknowns of here and then there; on the boundary those of there
 /// stay zero.
 fn facet_matrix<T: Real, const D: usize, S: Scheme<T, D>>(
-    space: &Discretisation<'_, T, D, S>,
+    discretisation: &Discretisation<'_, T, D, S>,
     facets: &Facets,
     table: &FacetTable<T>,
     facet: usize,
     out: &mut [T],
 ) {
     count::facets(1);
+    let space = &discretisation.space;
     let n = Discretisation::<T, D, S>::N;
     let interior = facets.interior().contains(&facet);
     let ((here, i), (there, j)) = (facets.here(facet), facets.there(facet));
@@ -228,7 +232,7 @@ fn facet_matrix<T: Real, const D: usize, S: Scheme<T, D>>(
     let side_there =
         CellSide { cell: there, local: j, geometry: &g_there, coefficient: alpha(there) };
     let view = FacetGeometry::new(space.mesh, &side_here, interior.then_some(&side_there));
-    let penalty = space.form.penalty(&view.view);
+    let penalty = discretisation.form.penalty(&view.view);
     for ((b_here, b_there), &weight) in table.on(i).iter().zip(table.on(j)).zip(&table.weights) {
         let mut all = [Trace { jump: T::lit(0.0), flux: T::lit(0.0) }; 2 * MAX_BASIS];
         let one = T::lit(1.0);
@@ -243,8 +247,9 @@ fn facet_matrix<T: Real, const D: usize, S: Scheme<T, D>>(
         let size = if interior { 2 * n } else { n };
         for v in 0..size {
             for u in 0..size {
-                out[v * 2 * n + u] +=
-                    weight * view.view.measure * space.form.integrand(all[v], all[u], penalty);
+                out[v * 2 * n + u] += weight
+                    * view.view.measure
+                    * discretisation.form.integrand(all[v], all[u], penalty);
             }
         }
     }

@@ -16,18 +16,21 @@ mod load;
 mod local;
 mod norms;
 mod parallel;
+mod space;
 pub(crate) mod tables;
 
-use crate::algebra::{Inequality, Place, SparseMatrix, Start};
+use crate::algebra::{Bound, Inequality, Place, SparseMatrix, Start};
 use crate::element::{Node, ReferenceElement};
 use crate::error::Error;
 use crate::facet::{FacetForm, FacetView};
-use crate::mesh::{BoundaryPart, Facets, Mesh, Neighbour, Neighbours};
+use crate::mesh::{BoundaryPart, Mesh, Neighbour, Neighbours};
 use crate::problem::Problem;
 use crate::real::Real;
 use crate::scheme::{DirichletBy, Scheme};
-use dofs::Dofs;
+use crate::solve::Solution;
+use crate::study::Fields;
 use local::{CellSide, FacetGeometry};
+use space::Space;
 
 /// Degrees of the quadrature rules for data, beyond what the forms need.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -49,19 +52,16 @@ impl Default for DataQuadrature {
 
 /// A scheme applied to a problem on a mesh.
 pub struct Discretisation<'a, T: Real, const D: usize, S: Scheme<T, D>> {
+    space: Space<'a, T, D>,
     form: S::Facet,
-    problem: &'a Problem<D>,
-    mesh: &'a Mesh<T, D>,
-    quadrature: DataQuadrature,
-    neighbours: Option<Neighbours>,
-    dofs: Dofs<'a>,
-    coefficients: Option<Vec<T>>,
 }
 
 impl<'a, T: Real, const D: usize, S: Scheme<T, D>> Discretisation<'a, T, D, S> {
     const N: usize = <S::Element as ReferenceElement<T, D>>::N;
-    const BROKEN: bool = <S::Element as ReferenceElement<T, D>>::LAYOUT.is_broken();
     const COUPLES: bool = <S::Facet as FacetForm<T, D>>::COUPLES;
+    /// Whether each row belongs to one cell, which then writes it in place.
+    const OWNS_ROWS: bool =
+        Self::COUPLES && <S::Element as ReferenceElement<T, D>>::LAYOUT.is_broken();
 
     /// Joins scheme, problem and mesh; builds facets only if the scheme needs them.
     ///
@@ -73,27 +73,14 @@ impl<'a, T: Real, const D: usize, S: Scheme<T, D>> Discretisation<'a, T, D, S> {
         mesh: &'a Mesh<T, D>,
         quadrature: DataQuadrature,
     ) -> Result<Self, Error> {
-        let layout = <S::Element as ReferenceElement<T, D>>::LAYOUT;
-        let neighbours = (Self::COUPLES || layout.facet > 0).then(|| {
-            count::facet_topologies(1);
-            Neighbours::of(mesh)
-        });
-        let dofs = match &neighbours {
-            _ if layout.is_broken() => Dofs::broken(Self::N, mesh.n_cells()),
-            Some(neighbours) if layout.facet > 0 => {
-                let facets = Facets::of(mesh, neighbours);
-                Dofs::shared(facets.numbers::<D>(mesh.n_cells()), Self::N, facets.len())
-            }
-            _ => Dofs::vertices(mesh),
-        };
-        let coefficients = data::coefficients(problem, mesh)?;
-        let form = scheme.facet(mesh);
-        Ok(Self { form, problem, mesh, quadrature, neighbours, dofs, coefficients })
+        let pins = matches!(S::DIRICHLET, DirichletBy::Pinning);
+        let space = Space::new::<S::Element>(problem, mesh, quadrature, Self::COUPLES, pins)?;
+        Ok(Self { space, form: scheme.facet(mesh) })
     }
 
     /// Number of unknowns, Dirichlet ones included.
     pub fn unknowns(&self) -> usize {
-        self.dofs.size()
+        self.space.dofs.size()
     }
     /// The facet form in force.
     pub fn form(&self) -> &S::Facet {
@@ -101,7 +88,7 @@ impl<'a, T: Real, const D: usize, S: Scheme<T, D>> Discretisation<'a, T, D, S> {
     }
     /// The mesh.
     pub fn mesh(&self) -> &'a Mesh<T, D> {
-        self.mesh
+        self.space.mesh
     }
     /// Where the scheme imposes bounds: `vertices` or `facet-means`.
     pub fn constraint_name() -> &'static str {
@@ -113,17 +100,11 @@ impl<'a, T: Real, const D: usize, S: Scheme<T, D>> Discretisation<'a, T, D, S> {
 
     /// The pattern of the matrix, with values zero.
     pub fn pattern(&self) -> SparseMatrix<T> {
-        match (&self.neighbours, Self::BROKEN) {
-            (Some(neighbours), true) => broken::pattern(self, neighbours),
-            _ => gather::pattern(self),
-        }
+        if Self::OWNS_ROWS { broken::pattern(self) } else { gather::pattern(self) }
     }
     /// Overwrites the values of a matrix that has this discretisation's pattern.
     pub fn fill(&self, matrix: &mut SparseMatrix<T>) {
-        match (&self.neighbours, Self::BROKEN) {
-            (Some(neighbours), true) => broken::fill(self, neighbours, matrix),
-            _ => gather::fill(self, matrix),
-        }
+        if Self::OWNS_ROWS { broken::fill(self, matrix) } else { gather::fill(self, matrix) }
     }
     /// The matrix from nothing.
     pub fn matrix(&self) -> SparseMatrix<T> {
@@ -140,10 +121,10 @@ impl<'a, T: Real, const D: usize, S: Scheme<T, D>> Discretisation<'a, T, D, S> {
         let bounds = self.bounds()?;
         let matrix = self.matrix();
         // the loops that fill the matrix cannot fail: whoever is to blame is sought afterwards
-        if let Some(reaction) = data::ReactionTerm::new(self)
+        if let Some(reaction) = data::ReactionTerm::new::<S::Element>(&self.space)
             && !matrix.values.iter().all(|v| v.to_f64().is_finite())
         {
-            reaction.check(self.mesh)?;
+            reaction.check(self.mesh())?;
         }
         Ok(Inequality {
             matrix,
@@ -154,32 +135,41 @@ impl<'a, T: Real, const D: usize, S: Scheme<T, D>> Discretisation<'a, T, D, S> {
             start: Start::Cold,
         })
     }
+    /// The bounds of all unknowns.
+    ///
+    /// Obstacles bind every unknown at its node: a vertex, or the barycentre of a facet. The
+    /// Signorini condition binds the unknowns of contact facets on the cell that has the facet:
+    /// vertex values against the gap there, facet means against the mean of the gap. An unknown
+    /// pinned by Dirichlet data is not constrained besides.
+    ///
+    /// # Errors
+    /// [`Error::EmptyConstraint`], [`Error::DataNotFinite`].
+    pub fn bounds(&self) -> Result<Vec<Bound<T>>, Error> {
+        self.space.bounds()
+    }
     /// Where each unknown lives.
     pub fn places(&self) -> Vec<Place> {
-        let mut places = vec![Place::new(None, &[]); self.unknowns()];
-        for cell in 0..self.mesh.n_cells() {
-            let owner = Self::BROKEN.then_some(cell as u32);
-            for i in 0..Self::N {
-                places[self.dofs.of(cell, i)] = match S::Element::node(i) {
-                    Node::Vertex(k) => Place::new(owner, &[self.mesh.cell(cell)[k]]),
-                    Node::FacetMean(k) => {
-                        let mut vertices = [0; D];
-                        let facet = self.mesh.facet_vertices(cell, k);
-                        vertices.iter_mut().zip(facet).for_each(|(v, w)| *v = w);
-                        Place::new(owner, &vertices)
-                    }
-                };
-            }
-        }
-        places
+        self.space.places()
+    }
+    /// The discrete function at the vertices of each cell, `D + 1` values for each.
+    pub fn vertex_values(&self, u: &[T]) -> Vec<f64> {
+        self.space.vertex_values(u)
+    }
+    /// Solution, obstacle, multiplier and contact set on cells, for pictures.
+    ///
+    /// The multiplier of an unknown is a force; over the measure that belongs to the unknown it is
+    /// a density, of volume for obstacles and of the contact boundary for Signorini. A cell shows
+    /// the mean over its unknowns that have such a measure.
+    pub fn fields(&self, inequality: &Inequality<T>, solution: &Solution<T>) -> Fields {
+        self.space.fields(inequality, solution)
     }
 
     /// Facets whose weight lies below what the form needs to be provably coercive: how many, and
     /// the one that misses by the largest factor. Nothing if the form promises none.
     pub fn penalty_shortfall(&self) -> Option<PenaltyShortfall> {
-        let neighbours = self.neighbours.as_ref()?;
+        let neighbours = self.space.neighbours.as_ref()?;
         let mut worst: Option<PenaltyShortfall> = None;
-        for cell in 0..self.mesh.n_cells() {
+        for cell in 0..self.space.mesh.n_cells() {
             for local in 0..=D {
                 if let Neighbour::Cell { cell: other, .. } = neighbours.across(cell, local)
                     && (other as usize) < cell
@@ -214,32 +204,27 @@ impl<'a, T: Real, const D: usize, S: Scheme<T, D>> Discretisation<'a, T, D, S> {
         cell: usize,
         local: usize,
     ) -> Option<FacetView<T>> {
-        let geometry = self.mesh.geometry(cell);
-        let here = CellSide { cell, local, geometry: &geometry, coefficient: self.alpha(cell) };
+        let geometry = self.space.mesh.geometry(cell);
+        let here =
+            CellSide { cell, local, geometry: &geometry, coefficient: self.space.alpha(cell) };
         match neighbours.across(cell, local) {
             Neighbour::Boundary(BoundaryPart::Dirichlet)
                 if S::DIRICHLET == DirichletBy::FacetForm =>
             {
-                Some(FacetGeometry::new(self.mesh, &here, None).view)
+                Some(FacetGeometry::new(self.space.mesh, &here, None).view)
             }
             Neighbour::Boundary(_) => None,
             Neighbour::Cell { cell: other, local: other_local } => {
-                let geometry = self.mesh.geometry(other as usize);
+                let geometry = self.space.mesh.geometry(other as usize);
                 let there = CellSide {
                     cell: other as usize,
                     local: other_local as usize,
                     geometry: &geometry,
-                    coefficient: self.alpha(other as usize),
+                    coefficient: self.space.alpha(other as usize),
                 };
-                Some(FacetGeometry::new(self.mesh, &here, Some(&there)).view)
+                Some(FacetGeometry::new(self.space.mesh, &here, Some(&there)).view)
             }
         }
-    }
-
-    /// The diffusion coefficient of a cell.
-    #[inline(always)]
-    fn alpha(&self, cell: usize) -> T {
-        self.coefficients.as_ref().map_or_else(|| T::lit(1.0), |a| a[cell])
     }
 }
 

@@ -93,6 +93,11 @@ impl<T: Real> FacetTable<T> {
 }
 
 impl BasisAt<f64> {
+    /// The function with these coefficients.
+    #[inline(always)]
+    pub fn value(&self, coefficients: &[f64; MAX_BASIS]) -> f64 {
+        coefficients.iter().zip(&self.values).map(|(c, v)| c * v).sum()
+    }
     /// The basis of an element over `T`, in `f64`.
     pub fn new_in_f64<T: Real, E: ReferenceElement<T, D>, const D: usize>(
         point: &[f64; 4],
@@ -101,18 +106,6 @@ impl BasisAt<f64> {
         Self {
             values: basis.values.map(T::to_f64),
             derivatives: basis.derivatives.map(|row| row.map(T::to_f64)),
-        }
-    }
-}
-
-impl CellTable<f64> {
-    /// The table of an element over `T`, in `f64`.
-    pub fn new_in_f64<T: Real, E: ReferenceElement<T, D>, const D: usize>(degree: usize) -> Self {
-        let rule = Rule::of_degree(D, degree);
-        Self {
-            basis: rule.points.iter().map(BasisAt::new_in_f64::<T, E, D>).collect(),
-            points: rule.points,
-            weights: rule.weights,
         }
     }
 }

@@ -4,7 +4,7 @@ use std::time::Instant;
 
 use super::{Certificate, Errors, ExpectedOrders, PenaltyParameters};
 use crate::algebra::{Bound, Contact, Inequality, Place, Start};
-use crate::assemble::{DataQuadrature, Discretisation};
+use crate::assemble::{DataQuadrature, Discretisation, PenaltyShortfall};
 use crate::element::{Layout, ReferenceElement};
 use crate::error::Error;
 use crate::facet::FacetForm;
@@ -129,7 +129,10 @@ impl<T: Real, const D: usize, S: Scheme<T, D>> AnyScheme<T, D> for S {
         layout.vertex == 1 && layout.facet + layout.cell == 0 && !S::Facet::COUPLES
     }
     fn solve(&self, task: &Task<'_, T, D>) -> Result<Solved, Error> {
-        solve(self, task)
+        solve(task, &|| {
+            let Task { problem, mesh, quadrature, .. } = *task;
+            Ok(Box::new(Discretisation::new(self, problem, mesh, quadrature)?))
+        })
     }
     fn inequality(
         &self,
@@ -141,18 +144,47 @@ impl<T: Real, const D: usize, S: Scheme<T, D>> AnyScheme<T, D> for S {
     }
 }
 
-fn solve<T: Real, const D: usize, S: Scheme<T, D>>(
-    scheme: &S,
+/// What a solve needs of a discretisation, whatever its scheme.
+trait Discrete<T: Real> {
+    fn inequality(&self) -> Result<Inequality<T>, Error>;
+    fn penalty_shortfall(&self) -> Option<PenaltyShortfall>;
+    fn parameters(&self) -> PenaltyParameters;
+    fn errors(&self, u: &[T]) -> Result<Errors, Error>;
+    fn fields(&self, inequality: &Inequality<T>, solution: &Solution<T>) -> Fields;
+}
+
+impl<T: Real, const D: usize, S: Scheme<T, D>> Discrete<T> for Discretisation<'_, T, D, S> {
+    fn inequality(&self) -> Result<Inequality<T>, Error> {
+        self.inequality()
+    }
+    fn penalty_shortfall(&self) -> Option<PenaltyShortfall> {
+        self.penalty_shortfall()
+    }
+    fn parameters(&self) -> PenaltyParameters {
+        self.form().parameters()
+    }
+    fn errors(&self, u: &[T]) -> Result<Errors, Error> {
+        self.errors(u)
+    }
+    fn fields(&self, inequality: &Inequality<T>, solution: &Solution<T>) -> Fields {
+        self.fields(inequality, solution)
+    }
+}
+
+/// Makes a discretisation.
+type Make<'f, T> = &'f dyn Fn() -> Result<Box<dyn Discrete<T> + 'f>, Error>;
+
+fn solve<T: Real, const D: usize>(
     task: &Task<'_, T, D>,
+    make: Make<'_, T>,
 ) -> Result<Solved, Error> {
     let clock = Instant::now();
-    let space = Discretisation::new(scheme, task.problem, task.mesh, task.quadrature)?;
+    let space = make()?;
     let mut inequality = space.inequality()?;
     let mut assemble_seconds = clock.elapsed().as_secs_f64();
     for _ in 1..task.repeat {
         let clock = Instant::now();
-        let again = Discretisation::new(scheme, task.problem, task.mesh, task.quadrature)?;
-        drop(again.inequality()?);
+        drop(make()?.inequality()?);
         assemble_seconds = assemble_seconds.min(clock.elapsed().as_secs_f64());
     }
     if let Some(vertices) = task.start {
@@ -174,7 +206,7 @@ fn solve<T: Real, const D: usize, S: Scheme<T, D>>(
     let error = if task.with_errors && usable { space.errors(u)? } else { Errors::default() };
     let fields = (task.with_fields && usable).then(|| space.fields(&inequality, &solution));
     Ok(Solved {
-        parameters: space.form().parameters(),
+        parameters: space.parameters(),
         unknowns: inequality.size(),
         nonzeros: inequality.matrix.nonzeros(),
         outcome: solution.outcome,

@@ -1,0 +1,165 @@
+//! The discrete space on a mesh: all that does not depend on the facet form.
+//!
+//! Nothing here is generic in the scheme, so it is compiled once for each scalar and dimension: the
+//! element enters as numbers and one function.
+
+use super::dofs::Dofs;
+use super::tables::{BasisAt, CellTable};
+use super::{DataQuadrature, count, data};
+use crate::algebra::Place;
+use crate::element::{MAX_BASIS, Node, ReferenceElement};
+use crate::error::Error;
+use crate::mesh::{BoundaryFacet, BoundaryPart, Facets, Mesh, Neighbours};
+use crate::problem::Problem;
+use crate::quadrature::{Rule, insert};
+use crate::real::{Point, Real, point_f64};
+
+/// A finite element space with the problem posed on it.
+pub(crate) struct Space<'a, T: Real, const D: usize> {
+    pub problem: &'a Problem<D>,
+    pub mesh: &'a Mesh<T, D>,
+    pub quadrature: DataQuadrature,
+    pub neighbours: Option<Neighbours>,
+    pub dofs: Dofs<'a>,
+    pub coefficients: Option<Vec<T>>,
+    /// What each of a cell's unknowns is the value of.
+    pub nodes: Vec<Node>,
+    /// Degree of the element.
+    pub degree: usize,
+    /// Whether cells share no unknowns.
+    pub broken: bool,
+    /// Whether Dirichlet data are pinned; else the facet form imposes them.
+    pub pins: bool,
+    basis: fn(&[f64; 4]) -> BasisAt<f64>,
+}
+
+impl<'a, T: Real, const D: usize> Space<'a, T, D> {
+    /// The space of an element; facets are built only if asked for or numbered.
+    pub fn new<E: ReferenceElement<T, D>>(
+        problem: &'a Problem<D>,
+        mesh: &'a Mesh<T, D>,
+        quadrature: DataQuadrature,
+        with_facets: bool,
+        pins: bool,
+    ) -> Result<Self, Error> {
+        let neighbours = (with_facets || E::LAYOUT.facet > 0).then(|| {
+            count::facet_topologies(1);
+            Neighbours::of(mesh)
+        });
+        let dofs = match &neighbours {
+            _ if E::LAYOUT.is_broken() => Dofs::broken(E::N, mesh.n_cells()),
+            Some(neighbours) if E::LAYOUT.facet > 0 => {
+                let facets = Facets::of(mesh, neighbours);
+                Dofs::shared(facets.numbers::<D>(mesh.n_cells()), E::N, facets.len())
+            }
+            _ => Dofs::vertices(mesh),
+        };
+        Ok(Self {
+            problem,
+            mesh,
+            quadrature,
+            neighbours,
+            dofs,
+            coefficients: data::coefficients(problem, mesh)?,
+            nodes: (0..E::N).map(E::node).collect(),
+            degree: E::DEGREE,
+            broken: E::LAYOUT.is_broken(),
+            pins,
+            basis: BasisAt::new_in_f64::<T, E, D>,
+        })
+    }
+
+    /// The neighbours, in a space that was made with facets.
+    pub fn coupled_neighbours(&self) -> &Neighbours {
+        self.neighbours.as_ref().expect("facets are built for every form that couples cells")
+    }
+    /// Unknowns of a cell.
+    pub fn per_cell(&self) -> usize {
+        self.nodes.len()
+    }
+    /// The diffusion coefficient of a cell.
+    #[inline(always)]
+    pub fn alpha(&self, cell: usize) -> T {
+        self.coefficients.as_ref().map_or_else(|| T::lit(1.0), |a| a[cell])
+    }
+    /// The basis at a point of the cell.
+    pub fn basis_at(&self, point: &[f64; 4]) -> BasisAt<f64> {
+        (self.basis)(point)
+    }
+    /// The basis at the points of a cell rule.
+    pub fn cell_table(&self, degree: usize) -> CellTable<f64> {
+        let rule = Rule::of_degree(D, degree);
+        CellTable {
+            basis: rule.points.iter().map(self.basis).collect(),
+            points: rule.points,
+            weights: rule.weights,
+        }
+    }
+    /// The unknowns of a cell in `f64`.
+    pub fn local_values(&self, cell: usize, u: &[T]) -> [f64; MAX_BASIS] {
+        let mut local = [0.0; MAX_BASIS];
+        for (i, value) in local.iter_mut().enumerate().take(self.per_cell()) {
+            *value = u[self.dofs.of(cell, i)].to_f64();
+        }
+        local
+    }
+    /// The boundary facets of a part: cell and number in the cell.
+    pub fn facets_of(&self, part: BoundaryPart) -> impl Iterator<Item = (usize, usize)> {
+        let of_part = move |f: &&BoundaryFacet| f.part == part;
+        self.mesh.boundary().iter().filter(of_part).map(|f| (f.cell as usize, f.local as usize))
+    }
+    /// A point of a facet in space.
+    pub fn facet_point(&self, point: &[f64; 4], cell: usize, local: usize) -> Point<f64, D> {
+        let inserted = insert(point, local).map(T::lit);
+        point_f64(&self.mesh.point(cell, &inserted[..=D]))
+    }
+    /// The basis functions whose nodes lie on facet `local`.
+    pub fn nodes_on(&self, local: usize) -> impl Iterator<Item = usize> {
+        (0..self.per_cell()).filter(move |&i| match self.nodes[i] {
+            Node::Vertex(k) => k != local,
+            Node::FacetMean(k) => k == local,
+        })
+    }
+    /// The point at which a node sits.
+    pub fn node_point(&self, cell: usize, node: Node) -> Point<f64, D> {
+        point_f64(&match node {
+            Node::Vertex(k) => self.mesh.vertices()[self.mesh.cell(cell)[k] as usize],
+            Node::FacetMean(k) => self.mesh.facet_barycentre(cell, k),
+        })
+    }
+    /// Where each unknown lives.
+    pub fn places(&self) -> Vec<Place> {
+        let mut places = vec![Place::new(None, &[]); self.dofs.size()];
+        for cell in 0..self.mesh.n_cells() {
+            let owner = self.broken.then_some(cell as u32);
+            for (i, node) in self.nodes.iter().enumerate() {
+                places[self.dofs.of(cell, i)] = match *node {
+                    Node::Vertex(k) => Place::new(owner, &[self.mesh.cell(cell)[k]]),
+                    Node::FacetMean(k) => {
+                        let mut vertices = [0; D];
+                        let facet = self.mesh.facet_vertices(cell, k);
+                        vertices.iter_mut().zip(facet).for_each(|(v, w)| *v = w);
+                        Place::new(owner, &vertices)
+                    }
+                };
+            }
+        }
+        places
+    }
+    /// A discrete function at the vertices of each cell, `D + 1` values for each.
+    pub fn vertex_values(&self, u: &[T]) -> Vec<f64> {
+        let corners: Vec<BasisAt<f64>> = (0..=D)
+            .map(|k| {
+                let mut point = [0.0; 4];
+                point[k] = 1.0;
+                self.basis_at(&point)
+            })
+            .collect();
+        let mut out = Vec::with_capacity(self.mesh.n_cells() * (D + 1));
+        for cell in 0..self.mesh.n_cells() {
+            let local = self.local_values(cell, u);
+            out.extend(corners.iter().map(|basis| basis.value(&local)));
+        }
+        out
+    }
+}
