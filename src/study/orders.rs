@@ -9,7 +9,8 @@ use super::row::{Errors, Row};
 ///
 /// ```
 /// use unilateral::study::observed_order;
-/// assert_eq!(observed_order(4e-2, 1e-2, 0.5, 0.25), Some(2.0));
+/// let order = observed_order(4e-2, 1e-2, 0.5, 0.25).unwrap();
+/// assert!((order - 2.0).abs() < 1e-12);
 /// assert_eq!(observed_order(4e-2, 0.0, 0.5, 0.25), None);
 /// ```
 pub fn observed_order(
