@@ -1,5 +1,7 @@
-//! Meshes for tests.
+//! Meshes for tests, and what tests of accuracy share.
 #![allow(dead_code, reason = "each test file uses its own part")]
+
+pub mod accuracy;
 
 use unilateral::mesh::{BoundaryPart, Mesh, TaggedFacet};
 use unilateral::prelude::*;
