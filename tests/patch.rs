@@ -70,7 +70,8 @@ fn wopsip_misses_a_plane_as_an_independent_implementation_does() {
     let mut checks = Checks::default();
     for (n, h1, jump) in cases {
         let mesh = Mesh::<f64, 2>::kuhn_box(&unit_box(), [n, n]).unwrap();
-        let problem = Problem::new().exact(|x| x[0] + 2.0 * x[1], |_| Point::<f64, 2>::new(1.0, 2.0));
+        let problem =
+            Problem::new().exact(|x| x[0] + 2.0 * x[1], |_| Point::<f64, 2>::new(1.0, 2.0));
         let error = solve(&wopsip(1.0), &problem, &mesh).error;
         let [ours, energy] = [error.h1.unwrap(), error.energy.unwrap()];
         checks.printed(&format!("n = {n}, H1"), ours, h1, 0.5);
@@ -79,14 +80,14 @@ fn wopsip_misses_a_plane_as_an_independent_implementation_does() {
     checks.finish();
 }
 
-/// The linear function `1 + x - 2y`, `1 + x + y - 2z` or `1 - 2x`: it falls along the last axis, so
+/// The linear function `4 + x - 2y`, `4 + x + y - 2z` or `4 - 2x`: it falls along the last axis, so
 /// that it presses on a contact part at the lower end of that axis.
 fn slope<const D: usize>() -> Point<f64, D> {
     Point::from_fn(|k, _| if k + 1 == D { -2.0 } else { 1.0 })
 }
 
 fn linear<const D: usize>(x: &Point<f64, D>) -> f64 {
-    1.0 + slope::<D>().dot(x)
+    4.0 + slope::<D>().dot(x)
 }
 
 /// Problems that a linear function solves.
@@ -106,7 +107,10 @@ fn linear_problems<const D: usize>() -> Vec<(&'static str, Problem<D>)> {
         ("obstacle in contact", poisson().constant_source(-1.0).obstacle_below(linear)),
         ("obstacle below", poisson().obstacle_below(|x| linear(x) - 1.0)),
         ("two obstacles", {
-            poisson().constant_source(4.0).obstacle_below(|x| linear(x) - 1.0).obstacle_above(linear)
+            poisson()
+                .constant_source(4.0)
+                .obstacle_below(|x| linear(x) - 1.0)
+                .obstacle_above(linear)
         }),
     ]
 }

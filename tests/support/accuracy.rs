@@ -92,7 +92,11 @@ pub fn solve<T: Real, const D: usize>(
 }
 
 /// A scene of a test's own.
-pub fn own_scene<const D: usize>(name: &str, domain: BoxDomain<D>, problem: Problem<D>) -> Scene<D> {
+pub fn own_scene<const D: usize>(
+    name: &str,
+    domain: BoxDomain<D>,
+    problem: Problem<D>,
+) -> Scene<D> {
     let regularity = Regularity { sobolev: f64::INFINITY, strictly_complementary: true };
     Scene { name: name.to_owned(), summary: "of a test", domain, problem, regularity }
 }
@@ -163,7 +167,12 @@ impl Checks {
     pub fn finish(self) {
         assert!(self.done > 0, "nothing was checked");
         let Self { done, failed } = self;
-        assert!(failed.is_empty(), "{} of {done} do not hold:\n{}", failed.len(), failed.join("\n"));
+        assert!(
+            failed.is_empty(),
+            "{} of {done} do not hold:\n{}",
+            failed.len(),
+            failed.join("\n")
+        );
     }
 }
 
