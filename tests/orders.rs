@@ -9,15 +9,19 @@ use unilateral::prelude::*;
 use unilateral::scenes::{BoxDomain, Scene};
 use unilateral::study::Row;
 
-/// How far observed orders may lie from one in H1 and two in L2.
+/// Where observed orders may lie.
 #[derive(Clone, Copy)]
 struct Bands {
-    h1: f64,
-    l2: f64,
+    h1: [f64; 2],
+    l2: [f64; 2],
 }
 
 /// The bands of figures that are asymptotic.
-const TIGHT: Bands = Bands { h1: 0.05, l2: 0.15 };
+const TIGHT: Bands = Bands { h1: [0.95, 1.05], l2: [1.85, 2.15] };
+
+fn lies_in(order: f64, [low, high]: [f64; 2]) -> bool {
+    low <= order && order <= high
+}
 
 /// Orders of the finest of these rows against the one before, and what theory promises.
 fn check_orders(checks: &mut Checks, rows: &[Row], bands: Bands) {
@@ -28,13 +32,14 @@ fn check_orders(checks: &mut Checks, rows: &[Row], bands: Bands) {
     for row in rows.iter().filter(|row| row.level == finest) {
         let of = |order: Option<f64>| order.unwrap_or(f64::NAN);
         let [h1, l2] = [of(row.order.h1), of(row.order.l2)];
-        let holds = (h1 - 1.0).abs() <= bands.h1 && (l2 - 2.0).abs() <= bands.l2;
+        let holds = lies_in(h1, bands.h1) && lies_in(l2, bands.l2);
         checks.that(holds, || format!("{}: H1 {h1:.3}, L2 {l2:.3}", label(row)));
-        for (name, observed, promised) in
-            [("H1", h1, row.expected_order.h1), ("L2", l2, row.expected_order.l2)]
+        let expected = row.expected_order;
+        for (name, observed, promised, band) in
+            [("H1", h1, expected.h1, bands.h1), ("L2", l2, expected.l2, bands.l2)]
         {
             let Some(promised) = promised else { continue };
-            let holds = (observed - promised).abs() <= bands.h1;
+            let holds = lies_in(promised, band) && observed > promised - (1.0 - bands.h1[0]);
             checks.that(holds, || format!("{}: {name} {observed:.3}, not {promised}", label(row)));
         }
     }
@@ -80,7 +85,7 @@ fn radial_obstacle_on_an_interval() {
         }
         let [h1, l2] =
             [fitted(of_scheme, |row| row.error.h1), fitted(of_scheme, |row| row.error.l2)];
-        let holds = (h1 - 1.0).abs() <= TIGHT.h1 && (l2 - 2.0).abs() <= TIGHT.l2;
+        let holds = lies_in(h1, TIGHT.h1) && lies_in(l2, TIGHT.l2);
         checks.that(holds, || format!("{}: H1 {h1:.3}, L2 {l2:.3}", label(&of_scheme[0])));
     }
     checks.finish();
@@ -99,19 +104,34 @@ fn fitted(rows: &[Row], error: impl Fn(&Row) -> Option<f64>) -> f64 {
     cross / square
 }
 
-/// In space the levels that are quick are not asymptotic. WOPSIP least so: the second order of its
-/// over-penalty shows once the cells are small against the root of its factor, until when both
-/// orders are larger than they will be.
-const SPACE: Bands = Bands { h1: 0.15, l2: 0.3 };
+/// In space the levels that are quick are not asymptotic: the coarsest has four cells along the
+/// longest side, the finest sixteen, and the constants of several powers of the mesh size compete.
+const SPACE: Bands = Bands { h1: [0.9, 1.1], l2: [1.85, 2.25] };
+
+/// WOPSIP still less so: until cells are small against the root of its factor the error of its
+/// missing consistency, of second order in H1 too, is the larger part, and orders lie above those
+/// in the limit.
+const SPACE_OVER_PENALISED: Bands = Bands { h1: [0.95, 1.45], l2: [1.85, 2.25] };
+
+/// Checks the orders of every scheme on a scene in space.
+fn orders_in_space(scene: Scene<3>, levels: &[usize]) {
+    let mut checks = Checks::default();
+    for of_scheme in rows::<f64, 3>(scene, all_schemes(), levels.to_vec()).chunks(levels.len()) {
+        let over_penalised = of_scheme[0].scheme == "wopsip";
+        let bands = if over_penalised { SPACE_OVER_PENALISED } else { SPACE };
+        check_orders(&mut checks, of_scheme, bands);
+    }
+    checks.finish();
+}
 
 #[test]
 fn radial_obstacle_in_space() {
-    orders(scenes::radial::<3>(1.0), &[4, 8, 16], SPACE);
+    orders_in_space(scenes::radial::<3>(1.0), &[4, 8, 16]);
 }
 
 #[test]
 fn signorini_harmonic_in_space() {
-    orders(scenes::signorini_harmonic::<3>(), &[4, 8, 16], SPACE);
+    orders_in_space(scenes::signorini_harmonic::<3>(), &[2, 4, 8]);
 }
 
 fn unit_box<const D: usize>() -> BoxDomain<D> {
@@ -157,12 +177,12 @@ fn mixed<const D: usize>() -> Scene<D> {
 fn smooth_solutions() {
     orders(smooth::<1>(), &[64, 128], TIGHT);
     orders(smooth::<2>(), &[32, 64], TIGHT);
-    orders(smooth::<3>(), &[8, 16], SPACE);
+    orders_in_space(smooth::<3>(), &[8, 16]);
 }
 
 #[test]
 fn neumann_data_with_coefficient_and_reaction() {
     orders(mixed::<1>(), &[64, 128], TIGHT);
     orders(mixed::<2>(), &[32, 64], TIGHT);
-    orders(mixed::<3>(), &[8, 16], SPACE);
+    orders_in_space(mixed::<3>(), &[8, 16]);
 }

@@ -80,14 +80,14 @@ fn wopsip_misses_a_plane_as_an_independent_implementation_does() {
     checks.finish();
 }
 
-/// The linear function `4 + x - 2y`, `4 + x + y - 2z` or `4 - 2x`: it falls along the last axis, so
-/// that it presses on a contact part at the lower end of that axis.
+/// The slope of the linear function `8 + x - 2y`, `8 + x - 2y - 3z` or `8 - x`: it falls along
+/// every axis but the first, so that it presses on a contact part at the lower end of one.
 fn slope<const D: usize>() -> Point<f64, D> {
-    Point::from_fn(|k, _| if k + 1 == D { -2.0 } else { 1.0 })
+    Point::from_fn(|k, _| if k == 0 && D > 1 { 1.0 } else { -(k as f64 + 1.0) })
 }
 
 fn linear<const D: usize>(x: &Point<f64, D>) -> f64 {
-    4.0 + slope::<D>().dot(x)
+    8.0 + slope::<D>().dot(x)
 }
 
 /// Problems that a linear function solves.
@@ -217,6 +217,17 @@ fn linears_are_exact_above_an_open_gap() {
     on(&mut checks, "plate.msh", &small_mesh::<2>("plate.msh"));
     on(&mut checks, "cube.msh", &small_mesh::<3>("cube.msh"));
     checks.finish();
+}
+
+/// A Dirichlet value and a bound that are equal but for rounding: `sin(pi x)` at one is not zero.
+#[test]
+#[ignore = "refused as contradictory where both are near zero"]
+fn data_equal_but_for_rounding_do_not_contradict() {
+    let sine = |x: &Point<f64, 1>| (std::f64::consts::PI * x[0]).sin();
+    let mesh = Mesh::<f64, 1>::kuhn_box(&unit_box(), [4]).unwrap();
+    let problem = Problem::new().dirichlet(|_| 0.0).obstacle_below(sine);
+    let solved = solve(&ConformingP1, &problem, &mesh);
+    assert_eq!(solved.outcome.name(), "converged");
 }
 
 /// The coefficient jumps across `x = 1/2`, a union of facets; the solution is linear on either

@@ -4,18 +4,28 @@ mod support;
 
 use std::f64::consts::PI;
 use support::accuracy::{
-    Boxed, Checks, all_schemes, jump_norm, label, own_scene, rows, solve, wopsip,
+    Checks, all_schemes, jump_norm, label, norms_as_tables, own_scene, rows, solve,
+    solve_as_tables, wopsip,
 };
 use unilateral::mesh::Mesh;
 use unilateral::prelude::*;
 use unilateral::scenes::{BoxDomain, Scene};
+use unilateral::solve::Outcome;
+use unilateral::study::Row;
 
-/// In single precision the over-penalty's condition number eats the digits as soon as
-/// `eta / h^4` comes near the reciprocal of the rounding unit; before that errors are those of
-/// double precision.
+/// The mesh size at which rounding meets the discretisation error of an over-penalised scheme: the
+/// first grows like `eps eta / h^4`, the second falls like `h^2`.
+fn limit_of_over_penalty(row: &Row, epsilon: f64) -> f64 {
+    row.parameters.eta.map_or(0.0, |eta| (epsilon * eta).powf(1.0 / 6.0))
+}
+
+/// In single precision errors are those of double precision, for the over-penalised scheme as long
+/// as the mesh is not too fine for its factor; there, what is called converged has a certificate
+/// of single precision, and what is not says why.
 #[test]
 fn single_precision() {
     let mut checks = Checks::default();
+    let mut beyond = 0;
     for build in [|| scenes::radial::<2>(1.0), scenes::signorini_2d] {
         let levels = [8, 16];
         let single = rows::<f32, 2>(build(), all_schemes(), levels);
@@ -23,21 +33,24 @@ fn single_precision() {
         for (single, double) in single.iter().zip(&double) {
             let what = label(single);
             checks.certified(double, 1e-9);
-            if !single.converged() {
-                let reasons = ["iteration-limit", "cycling", "stalled", "singular", "not-coercive"];
+            let side = single.mesh_size / 2_f64.sqrt();
+            if side < limit_of_over_penalty(single, f64::from(f32::EPSILON) / 2.0) {
+                beyond += 1;
+                let reasons = ["converged", "cycling", "stalled", "iteration-limit"];
                 let typed = reasons.contains(&&*single.status);
-                let may = single.scheme == "wopsip";
-                checks.that(typed && may, || format!("{what}: {}", single.status));
+                checks.that(typed, || format!("{what}: {}", single.status));
                 continue;
             }
+            checks.certified(single, 1e-3);
             for (name, s, d) in
                 [("L2", single.error.l2, double.error.l2), ("H1", single.error.h1, double.error.h1)]
             {
-                let off = s.unwrap() / d.unwrap() - 1.0;
+                let off = s.unwrap_or(f64::NAN) / d.unwrap() - 1.0;
                 checks.that(off.abs() <= 0.03, || format!("{what}: {name} off by {off:.1e}"));
             }
         }
     }
+    assert_eq!(beyond, 2, "one level of one scene, for both sets of constraints");
     checks.finish();
 }
 
@@ -188,11 +201,16 @@ fn stretched_meshes_with_the_default_factor() {
     assert!(most / least < 1.5, "{relative:?}");
 }
 
-/// Errors over eight decades of the factor: the jumps shrink with its root, the rest tends to that
+/// Units of the last printed digit: half of one for rounding, and as much again of the fifth digit
+/// as the rule for the singular load may change, which is not quite that of the tables.
+const UNITS: f64 = 0.505;
+
+/// Errors over six decades of the factor: the jumps shrink with its root, the rest tends to that
 /// of Crouzeix-Raviart elements with bounds at vertices.
 #[test]
 fn size_of_the_over_penalty() {
     let mut checks = Checks::default();
+    let scene = scenes::signorini_2d();
     for (eta, l2, h1, jump) in [
         (1e-2, "2.571e-1", "3.486e-1", "9.789e-1"),
         (1e-1, "3.044e-2", "1.092e-1", "3.494e-1"),
@@ -201,13 +219,14 @@ fn size_of_the_over_penalty() {
         (1e2, "1.5377e-3", "8.9789e-2", "1.141e-2"),
         (1e4, "1.5294e-3", "8.9790e-2", "1.142e-3"),
     ] {
-        let scheme: Boxed<f64, 2> = Box::new(wopsip(eta));
-        let row = rows(scenes::signorini_2d(), vec![scheme], [16]).remove(0);
-        checks.certified(&row, 1e-9);
-        let [ours, energy] = [row.error.h1.unwrap(), row.error.energy.unwrap()];
-        checks.printed(&format!("L2 for eta = {eta}"), row.error.l2.unwrap(), l2, 0.5);
-        checks.printed(&format!("H1 for eta = {eta}"), ours, h1, 0.5);
-        checks.printed(&format!("jump for eta = {eta}"), jump_norm(energy, ours), jump, 0.5);
+        let (mesh, solved) = solve_as_tables(&scene, &wopsip(eta), 16);
+        let converged = solved.outcome == Outcome::Converged;
+        checks.that(converged, || format!("eta = {eta}: {}", solved.outcome));
+        let [own_h1, energy] = [solved.error.h1, solved.error.energy].map(Option::unwrap);
+        let [ours_l2, ours_h1] = norms_as_tables(&scene, &mesh, &solved.fields.unwrap().u);
+        checks.printed(&format!("L2 for eta = {eta}"), ours_l2, l2, UNITS);
+        checks.printed(&format!("H1 for eta = {eta}"), ours_h1, h1, UNITS);
+        checks.printed(&format!("jump for eta = {eta}"), jump_norm(energy, own_h1), jump, UNITS);
     }
     checks.finish();
 }

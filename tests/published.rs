@@ -3,15 +3,15 @@
 mod support;
 
 use nalgebra::Complex;
-use support::accuracy::{Boxed, Checks, jump_norm, own_scene, sipg, wopsip};
+use support::accuracy::{
+    Boxed, Checks, jump_norm, norms_as_tables, own_scene, sipg, solve_as_tables, wopsip,
+};
 use unilateral::algebra::Contact;
 use unilateral::assemble::DataQuadrature;
 use unilateral::mesh::Mesh;
 use unilateral::prelude::*;
-use unilateral::quadrature::Rule;
 use unilateral::scenes::{BoxDomain, Scene};
 use unilateral::solve::{ActiveSet, InequalitySolver, Outcome, Start};
-use unilateral::study::{Levels, Solved, Task};
 
 /// The obstacle problem of PETSc's `snes/tutorials/ex9` (Bueler, *PETSc for Partial Differential
 /// Equations*, chapter 12): five-point differences on `N x N` points, which are conforming linear
@@ -74,56 +74,6 @@ fn column<const D: usize>(name: &str) -> Boxed<f64, D> {
     }
 }
 
-/// The rules of the tables: five points of Gauss in each direction.
-const QUADRATURE: DataQuadrature = DataQuadrature { cell: 9, facet: 9 };
-
-/// A scheme's solution on a level, started from that of conforming elements.
-fn solve_level<const D: usize>(
-    scene: &Scene<D>,
-    name: &str,
-    level: usize,
-) -> (Mesh<f64, D>, Solved) {
-    let solver = ActiveSet::default();
-    let mut levels = Levels::new(scene, None);
-    levels.make(level).unwrap();
-    let start = levels.contact(level, &solver, QUADRATURE, 1).unwrap();
-    let mesh = levels.mesh(level).unwrap().0.clone();
-    let task = Task {
-        problem: &scene.problem,
-        mesh: &mesh,
-        start: Some(&start.contact),
-        solver: &solver,
-        quadrature: QUADRATURE,
-        with_errors: true,
-        repeat: 1,
-        with_fields: true,
-    };
-    let solved = column(name).solve(&task).unwrap();
-    (mesh, solved)
-}
-
-/// L2 norm and H1 seminorm of the error by the rule of the tables, whose last digits are those of
-/// this rule: it collapses a square onto each triangle, one side of it onto the triangle's first
-/// vertex.
-fn norms<const D: usize>(scene: &Scene<D>, mesh: &Mesh<f64, D>, u: &[f64]) -> [f64; 2] {
-    let exact = scene.problem.exact.as_ref().unwrap();
-    let rule = Rule::of_degree(D, 9);
-    let [mut l2, mut h1] = [0.0; 2];
-    for (cell, values) in u.chunks(D + 1).enumerate() {
-        let geometry = mesh.geometry(cell);
-        let sum = |s: Point<f64, D>, k: usize| s + geometry.gradient(k) * values[k];
-        let gradient = (0..=D).fold(Point::zeros(), sum);
-        for (point, weight) in rule.iter() {
-            let point: Vec<f64> = (0..=D).map(|k| point[D - k]).collect();
-            let x = mesh.point(cell, &point);
-            let value: f64 = point.iter().zip(values).map(|(b, u)| b * u).sum();
-            l2 += weight * geometry.volume * (value - (exact.value)(&x)).powi(2);
-            h1 += weight * geometry.volume * (gradient - (exact.gradient)(&x)).norm_squared();
-        }
-    }
-    [l2.sqrt(), h1.sqrt()]
-}
-
 /// Compares every figure of a table with ours, to its last digit.
 fn compare<const D: usize>(build: impl Fn(usize) -> Scene<D>, table: Table<'_>) {
     let mut checks = Checks::default();
@@ -132,13 +82,13 @@ fn compare<const D: usize>(build: impl Fn(usize) -> Scene<D>, table: Table<'_>) 
             let sides = build(*n).domain.upper - build(*n).domain.lower;
             let level = n * sides.min() as usize / sides.max() as usize;
             let scene = build(level);
-            let (mesh, solved) = solve_level(&scene, name, level);
+            let (mesh, solved) = solve_as_tables(&scene, &*column(name), level);
             let what = format!("{name} on {}, n = {n}", scene.name);
             let (outcome, found) = (solved.outcome, solved.certificate.largest());
             checks.that(outcome == Outcome::Converged && found < 1e-9, || {
                 format!("{what}: {outcome}, certificate {found:e}")
             });
-            let [l2, h1] = norms(&scene, &mesh, &solved.fields.unwrap().u);
+            let [l2, h1] = norms_as_tables(&scene, &mesh, &solved.fields.unwrap().u);
             let [own_h1, energy] = [solved.error.h1, solved.error.energy].map(Option::unwrap);
             let ours = [("L2", l2), ("H1", h1), ("jump", jump_norm(energy, own_h1))];
             for ((norm, ours), printed) in ours.into_iter().zip(figures.split(" / ")) {

@@ -1,11 +1,13 @@
 //! Runs of schemes on scenes and meshes, and figures compared with figures in print.
 
 use std::path::{Path, PathBuf};
+use unilateral::assemble::DataQuadrature;
 use unilateral::mesh::{Mesh, gmsh};
 use unilateral::prelude::*;
+use unilateral::quadrature::Rule;
 use unilateral::scenes::{BoxDomain, Regularity, Scene};
 use unilateral::solve::ActiveSet;
-use unilateral::study::{Row, Solved, Task};
+use unilateral::study::{Levels, Row, Solved, Task};
 
 /// A scheme chosen at run time.
 pub type Boxed<T, const D: usize> = Box<dyn AnyScheme<T, D>>;
@@ -89,6 +91,61 @@ pub fn solve<T: Real, const D: usize>(
         with_fields: true,
     };
     scheme.solve(&task).unwrap()
+}
+
+/// Rules for data as in the tables of the independent implementation: five points of Gauss in each
+/// direction.
+const AS_TABLES: DataQuadrature = DataQuadrature { cell: 9, facet: 9 };
+
+/// A scheme's solution on a level, started from that of conforming elements.
+pub fn solve_as_tables<const D: usize>(
+    scene: &Scene<D>,
+    scheme: &dyn AnyScheme<f64, D>,
+    level: usize,
+) -> (Mesh<f64, D>, Solved) {
+    let solver = ActiveSet::default();
+    let mut levels = Levels::new(scene, None);
+    levels.make(level).unwrap();
+    let start = levels.contact(level, &solver, AS_TABLES, 1).unwrap();
+    let mesh = levels.mesh(level).unwrap().0.clone();
+    let task = Task {
+        problem: &scene.problem,
+        mesh: &mesh,
+        start: Some(&start.contact),
+        solver: &solver,
+        quadrature: AS_TABLES,
+        with_errors: true,
+        repeat: 1,
+        with_fields: true,
+    };
+    let solved = scheme.solve(&task).unwrap();
+    (mesh, solved)
+}
+
+/// L2 norm and H1 seminorm of the error by the rule of those tables, whose last digits are those of
+/// this rule: it collapses a square onto each triangle, one side of it onto the triangle's first
+/// vertex.
+pub fn norms_as_tables<const D: usize>(
+    scene: &Scene<D>,
+    mesh: &Mesh<f64, D>,
+    u: &[f64],
+) -> [f64; 2] {
+    let exact = scene.problem.exact.as_ref().unwrap();
+    let rule = Rule::of_degree(D, 9);
+    let [mut l2, mut h1] = [0.0; 2];
+    for (cell, values) in u.chunks(D + 1).enumerate() {
+        let geometry = mesh.geometry(cell);
+        let sum = |s: Point<f64, D>, k: usize| s + geometry.gradient(k) * values[k];
+        let gradient = (0..=D).fold(Point::zeros(), sum);
+        for (point, weight) in rule.iter() {
+            let point: Vec<f64> = (0..=D).map(|k| point[D - k]).collect();
+            let x = mesh.point(cell, &point);
+            let value: f64 = point.iter().zip(values).map(|(b, u)| b * u).sum();
+            l2 += weight * geometry.volume * (value - (exact.value)(&x)).powi(2);
+            h1 += weight * geometry.volume * (gradient - (exact.gradient)(&x)).norm_squared();
+        }
+    }
+    [l2.sqrt(), h1.sqrt()]
 }
 
 /// A scene of a test's own.
