@@ -3,159 +3,52 @@
 //! `cargo run --release --example compare -- --help` tells the options. Exit codes: 0 if every row
 //! converged, 1 if some did not, 2 if the request was wrong.
 
-use std::fs;
-use std::io::{IsTerminal, Write};
-use std::path::PathBuf;
+use std::fs::{self, OpenOptions};
+use std::io::{ErrorKind, Write};
+use std::path::Path;
 use std::process::ExitCode;
 
-use clap::{Parser, ValueEnum};
+#[path = "compare/options.rs"]
+mod options;
+#[path = "compare/watcher.rs"]
+mod watcher;
+
+use options::{Options, check_numbers, choose, each_once, list};
+use watcher::Watcher;
+
 use unilateral::error::Error;
 use unilateral::mesh::{Mesh, gmsh};
 use unilateral::real::Real;
-use unilateral::scenes::{self, AnyScene, Parameters, Scene};
+use unilateral::scenes::{self, AnyScene, Parameters, Scene, Takes};
 use unilateral::study::{
-    Program, Progress, Report, Row, SCHEMES, SchemeOptions, Study, scheme_by_name,
+    Program, Report, Row, SCHEMES, SchemeOptions, Study, available_memory_bytes, scheme_by_name,
 };
-
-#[derive(Clone, Copy, Debug, PartialEq, ValueEnum)]
-enum Placement {
-    Vertices,
-    FacetMeans,
-}
-
-#[derive(Clone, Copy, Debug, PartialEq, ValueEnum)]
-enum Precision {
-    F64,
-    F32,
-}
-
-/// Compares finite element schemes on obstacle and Signorini problems.
-#[derive(Parser, Debug)]
-#[command(name = "compare", version, about)]
-struct Options {
-    /// Name every scene, scheme, constraint placement and solver, and end
-    #[arg(long)]
-    list: bool,
-    /// Scenes by name, or `all`
-    #[arg(long = "scene", value_delimiter = ',', value_name = "A[,B...]")]
-    scenes: Vec<String>,
-    /// Schemes by name, or `all`
-    #[arg(long = "scheme", value_delimiter = ',', value_name = "A[,B...]")]
-    schemes: Vec<String>,
-    /// Subdivisions of the scene's shortest side; with --mesh: uniform refinements, from 0
-    #[arg(long, value_delimiter = ',', value_name = "N[,N...]")]
-    levels: Vec<usize>,
-    /// Run on this Gmsh mesh; physical groups dirichlet, neumann, contact name the boundary parts
-    #[arg(long, value_name = "FILE")]
-    mesh: Option<PathBuf>,
-    /// Length scale of scenes that have one
-    #[arg(long, value_name = "L", allow_negative_numbers = true)]
-    scale: Option<f64>,
-    /// Ratio of coefficients of scenes that have one
-    #[arg(long, value_name = "X", allow_negative_numbers = true)]
-    contrast: Option<f64>,
-    /// Load of scenes that have one
-    #[arg(long, value_name = "X", allow_negative_numbers = true)]
-    load: Option<f64>,
-    /// Interior penalty X / h_F on every facet, instead of the proven bound with its margin
-    #[arg(long, value_name = "X", allow_negative_numbers = true)]
-    sigma: Option<f64>,
-    /// WOPSIP weight X / h_F^3 on every facet, instead of the dimensionless default
-    #[arg(long, value_name = "X", allow_negative_numbers = true)]
-    eta: Option<f64>,
-    /// Where discontinuous schemes impose the inequality
-    #[arg(long, value_enum, default_value = "vertices")]
-    constraint: Placement,
-    /// Solver of the inequality
-    #[arg(long, value_name = "NAME")]
-    solver: Option<String>,
-    /// Linear solver inside it: direct or iterative
-    #[arg(long, value_name = "NAME")]
-    linear: Option<String>,
-    /// Scalar of assembly and solve
-    #[arg(long, value_enum, default_value = "f64")]
-    precision: Precision,
-    /// Number of threads; all cores by default
-    #[arg(long, value_name = "N")]
-    threads: Option<usize>,
-    /// Every time is the smallest of K runs
-    #[arg(long, value_name = "K", default_value_t = 1)]
-    repeat: usize,
-    /// Where the report goes
-    #[arg(long, value_name = "DIR", default_value = "target/compare")]
-    out: PathBuf,
-    /// Also write the JSON report here; `-` for standard output
-    #[arg(long, value_name = "FILE")]
-    json: Option<PathBuf>,
-    /// No progress, no tables
-    #[arg(long)]
-    quiet: bool,
-}
-
-/// Solvers of the inequality and linear solvers inside them, with one line each.
-const SOLVERS: &[(&str, &str)] =
-    &[("active-set", "primal-dual active set, started from coarser levels in conforming P1")];
-const LINEAR: &[(&str, &str)] = &[("direct", "sparse Cholesky or LU")];
-const PLACEMENTS: &[(&str, &str)] = &[
-    ("vertices", "bounds on the values at the vertices of each cell"),
-    ("facet-means", "bounds on the means over the facets of each cell"),
-];
 
 /// Wrong requests, as one message.
 type Request<T> = Result<T, String>;
 
 fn main() -> ExitCode {
-    let options = Options::parse();
-    if options.list {
-        print(&list(), false);
-        return ExitCode::SUCCESS;
-    }
-    match run(&options) {
+    let outcome = options::parse().and_then(|options| {
+        if options.list { print(&list(), false).map(|()| true) } else { run(&options) }
+    });
+    match outcome {
         Ok(true) => ExitCode::SUCCESS,
         Ok(false) => ExitCode::from(1),
         Err(message) => {
-            eprintln!("error: {message}");
+            let _ = writeln!(std::io::stderr(), "error: {message}");
             ExitCode::from(2)
         }
     }
 }
 
 /// Prints to standard output, or to standard error; whoever closed the pipe wants no more.
-fn print(text: &str, to_error: bool) {
-    let result = if to_error {
-        std::io::stderr().write_all(text.as_bytes())
-    } else {
-        std::io::stdout().write_all(text.as_bytes())
-    };
-    if result.is_err() {
-        std::process::exit(0);
+fn print(text: &str, to_error: bool) -> Request<()> {
+    let mut stream: Box<dyn Write> =
+        if to_error { Box::new(std::io::stderr()) } else { Box::new(std::io::stdout()) };
+    match stream.write_all(text.as_bytes()).and_then(|()| stream.flush()) {
+        Err(e) if e.kind() != ErrorKind::BrokenPipe => Err(format!("cannot print: {e}")),
+        _ => Ok(()),
     }
-}
-
-fn list() -> String {
-    let scenes: Vec<(String, String)> =
-        scenes::catalogue().into_iter().map(|s| (s.name, s.summary.to_owned())).collect();
-    let mut text = String::new();
-    let mut group = |title: &str, rows: &mut dyn Iterator<Item = (&str, &str)>| {
-        text += &format!("{title}\n");
-        for (name, summary) in rows {
-            text += &format!("  {name:<24}{summary}\n");
-        }
-    };
-    group("scenes", &mut scenes.iter().map(|(n, s)| (&n[..], &s[..])));
-    group("schemes", &mut SCHEMES.iter().copied());
-    group("constraint placements", &mut PLACEMENTS.iter().copied());
-    group("solvers", &mut SOLVERS.iter().copied());
-    group("linear solvers", &mut LINEAR.iter().copied());
-    text
-}
-
-/// A name of a list, or a message with the list.
-fn known(kind: &str, name: &str, names: &[&str]) -> Request<()> {
-    if names.contains(&name) {
-        return Ok(());
-    }
-    Err(format!("unknown {kind} \"{name}\"; there are: {}", names.join(", ")))
 }
 
 /// Whether every row converged.
@@ -168,38 +61,14 @@ fn run(options: &Options) -> Request<bool> {
             .map_err(|e| format!("--threads {threads}: {e}"))?;
     }
     let chosen = Chosen::new(options)?;
-    let rows = match options.precision {
-        Precision::F64 => chosen.run::<f64>(options)?,
-        Precision::F32 => chosen.run::<f32>(options)?,
+    let (precision, rows) = match &options.precision[..] {
+        "f32" => (f32::NAME, chosen.run::<f32>(options)?),
+        _ => (f64::NAME, chosen.run::<f64>(options)?),
     };
-    let precision = if options.precision == Precision::F64 { f64::NAME } else { f32::NAME };
     let program = Program::new("compare", precision, rayon::current_num_threads(), options.repeat);
     let report = Report { program, rows };
-    write(options, &report).map_err(|e| e.to_string())?;
+    write(options, &report)?;
     Ok(report.rows.iter().all(Row::converged))
-}
-
-fn check_numbers(options: &Options) -> Request<()> {
-    for (name, value) in [("--sigma", options.sigma), ("--eta", options.eta)] {
-        if let Some(x) = value
-            && !(x > 0.0 && x.is_finite())
-        {
-            return Err(format!("{name} {x}: a penalty factor must be positive and finite"));
-        }
-    }
-    for (name, value) in [("--repeat", Some(options.repeat)), ("--threads", options.threads)] {
-        if value == Some(0) {
-            return Err(format!("{name} 0: at least 1"));
-        }
-    }
-    let names = |list: &[(&'static str, &str)]| list.iter().map(|s| s.0).collect::<Vec<_>>();
-    if let Some(name) = &options.solver {
-        known("solver", name, &names(SOLVERS))?;
-    }
-    if let Some(name) = &options.linear {
-        known("linear solver", name, &names(LINEAR))?;
-    }
-    Ok(())
 }
 
 /// What the options ask for, with every name found.
@@ -221,75 +90,59 @@ impl Chosen {
                 Some((dimension, bytes))
             }
         };
-        let scheme_names: Vec<&str> = SCHEMES.iter().map(|s| s.0).collect();
-        let schemes = match &options.schemes[..] {
-            [] => ["p1", "sipg", "wopsip"].map(str::to_owned).to_vec(),
-            [all] if all == "all" => scheme_names.iter().map(|&s| s.to_owned()).collect(),
-            some => some.to_vec(),
-        };
-        schemes.iter().try_for_each(|name| known("scheme", name, &scheme_names))?;
+        let names: Vec<&str> = SCHEMES.iter().map(|s| s.0).collect();
+        let schemes = choose("scheme", &options.schemes, &["p1", "sipg", "wopsip"], &names)?;
         let scenes = Self::scenes(options, mesh.as_ref().map(|m| m.0))?;
         Ok(Self { scenes, schemes, mesh })
     }
 
-    fn scenes(options: &Options, dimension: Option<usize>) -> Request<Vec<AnyScene>> {
-        let catalogue = scenes::catalogue();
+    fn scenes(options: &Options, mesh: Option<usize>) -> Request<Vec<AnyScene>> {
+        let mut catalogue = scenes::catalogue();
         let names: Vec<&str> = catalogue.iter().map(|s| &s.name[..]).collect();
-        let all = matches!(&options.scenes[..], [all] if all == "all");
-        let wanted: Vec<String> = match &options.scenes[..] {
-            // with a mesh, all scenes are all that live in its dimension
-            _ if all => catalogue
-                .iter()
-                .filter(|s| dimension.is_none_or(|d| d == s.dimension))
-                .map(|s| s.name.clone())
-                .collect(),
-            [] => ["radial-2d", "signorini-2d"].map(str::to_owned).to_vec(),
-            some => some.to_vec(),
+        let default = if mesh.is_some() { &names[..] } else { &["radial-2d", "signorini-2d"] };
+        let wanted = choose("scene", &options.scenes, default, &names)?;
+        // with a mesh, all scenes are all that live in its dimension
+        let any_fitting = !options.scenes_are_named();
+        catalogue.retain(|s| !any_fitting || mesh.is_none_or(|d| d == s.dimension));
+        let takers = |parameter: &str, takes: fn(&Takes) -> bool, value: Option<f64>| {
+            let takers: Vec<&str> =
+                catalogue.iter().filter(|s| takes(&s.takes)).map(|s| &s.name[..]).collect();
+            match value {
+                Some(x) if !takers.iter().any(|s| wanted.iter().any(|w| w == s)) => Err(format!(
+                    "--{parameter} {x:?}: none of the scenes chosen takes it; there are: {}",
+                    if takers.is_empty() { "none".to_owned() } else { takers.join(", ") }
+                )),
+                _ => Ok(()),
+            }
         };
-        let given =
-            Parameters { scale: options.scale, contrast: options.contrast, load: options.load };
+        takers("scale", |t| t.scale, options.scale)?;
+        takers("contrast", |t| t.contrast, options.contrast)?;
+        takers("load", |t| t.load, options.load)?;
         let mut scenes = Vec::new();
-        for name in &wanted {
-            known("scene", name, &names)?;
-            let Some(entry) = catalogue.iter().find(|s| s.name == *name) else { continue };
-            // a parameter goes to the scenes that take it, and must find one
-            let parameters = Parameters {
-                scale: given.scale.filter(|_| entry.takes.scale),
-                contrast: given.contrast.filter(|_| entry.takes.contrast),
-                load: given.load.filter(|_| entry.takes.load),
-            };
-            if let Some(d) = dimension
-                && d != entry.dimension
-            {
+        for entry in wanted.iter().filter_map(|name| catalogue.iter().find(|s| s.name == *name)) {
+            if let Some(d) = mesh.filter(|&d| d != entry.dimension) {
                 return Err(format!(
-                    "the mesh has dimension {d}, scene {name} has {}: choose a scene of dimension {d} (--list names them)",
-                    entry.dimension
+                    "the mesh has dimension {d}, scene {} has {}: choose a scene of dimension {d} (--list names them)",
+                    entry.name, entry.dimension
                 ));
             }
-            scenes.push(entry.make(&parameters).map_err(|e| e.to_string())?);
+            // a parameter goes to the scenes that take it
+            scenes.push(entry.make(&Parameters {
+                scale: options.scale.filter(|_| entry.takes.scale),
+                contrast: options.contrast.filter(|_| entry.takes.contrast),
+                load: options.load.filter(|_| entry.takes.load),
+            }));
         }
-        let taken = |takes: fn(&scenes::Takes) -> bool| {
-            catalogue.iter().any(|s| wanted.contains(&s.name) && takes(&s.takes))
-        };
-        for (name, value, takes) in [
-            ("scale", given.scale, taken(|t| t.scale)),
-            ("contrast", given.contrast, taken(|t| t.contrast)),
-            ("load", given.load, taken(|t| t.load)),
-        ] {
-            if let (Some(x), false) = (value, takes) {
-                return Err(format!("--{name} {x}: none of the scenes chosen takes it"));
-            }
-        }
-        Ok(scenes)
+        scenes.into_iter().collect::<Result<_, _>>().map_err(|e| e.to_string())
     }
 
     fn run<T: Real>(self, options: &Options) -> Request<Vec<Row>> {
         let Self { scenes, schemes, mesh } = self;
         let mesh = mesh.as_ref();
         let watcher = Watcher::new(options);
-        let mut runs: Vec<Box<dyn Fn() -> Request<Vec<Row>> + '_>> = Vec::new();
+        let mut runs = Vec::new();
         for scene in scenes {
-            runs.push(match scene {
+            runs.extend(match scene {
                 AnyScene::One(scene) => prepare::<T, 1>(scene, options, &schemes, mesh, &watcher)?,
                 AnyScene::Two(scene) => prepare::<T, 2>(scene, options, &schemes, mesh, &watcher)?,
                 AnyScene::Three(scene) => {
@@ -297,35 +150,44 @@ impl Chosen {
                 }
             });
         }
-        // nothing runs before everything has been checked
-        let mut rows = Vec::new();
-        for run in runs {
-            rows.extend(run()?);
+        if runs.is_empty() {
+            return Err("no scene fits the mesh; name one to be told why".to_owned());
         }
+        // nothing runs before everything has been checked
+        let is_new = check_output(options)?;
+        let rows: Request<Vec<Vec<Row>>> = runs.into_iter().map(|run| run()).collect();
         watcher.clear();
-        Ok(rows)
+        if rows.is_err() && is_new {
+            let _ = fs::remove_dir_all(&options.out);
+        }
+        Ok(rows?.concat())
     }
 }
 
-/// Checks a study and returns what runs it.
+/// What runs a study that has been checked.
+type Run<'a> = Box<dyn FnOnce() -> Request<Vec<Row>> + 'a>;
+
+/// Checks a study. Nothing is left of one that does not fit the mesh and was not asked for by name.
 fn prepare<'a, T: Real, const D: usize>(
     scene: Scene<D>,
     options: &'a Options,
     schemes: &[String],
     mesh: Option<&(usize, Vec<u8>)>,
     watcher: &'a Watcher,
-) -> Request<Box<dyn Fn() -> Request<Vec<Row>> + 'a>> {
+) -> Request<Option<Run<'a>>> {
     let scheme_options = SchemeOptions {
         sigma: options.sigma,
         eta: options.eta,
-        facet_means: options.constraint == Placement::FacetMeans,
+        facet_means: options.constraint == "facet-means",
     };
+    let name = scene.name.clone();
+    let levels = match &options.levels[..] {
+        [] => default_levels(D, mesh.is_some()),
+        some => each_once(some),
+    };
+    let n_runs = levels.len() * schemes.len();
     let mut study = Study::<T, D>::new(scene)
-        .levels(if options.levels.is_empty() {
-            default_levels(D, mesh.is_some())
-        } else {
-            options.levels.clone()
-        })
+        .levels(levels)
         .repeat(options.repeat)
         .fields_to(&options.out)
         .observer(|progress| watcher.tell(&progress));
@@ -334,17 +196,41 @@ fn prepare<'a, T: Real, const D: usize>(
             .map(|scheme| study.boxed_scheme(scheme))
             .ok_or_else(|| format!("scheme {name} does not exist in dimension {D}"))?;
     }
+    let mut place = format!("scene {name}");
     if let (Some((_, bytes)), Some(path)) = (mesh, &options.mesh) {
-        study = study.on_mesh(read_mesh(bytes, path)?);
+        place = format!("{}, {place}", path.display());
+        study = study.on_mesh(read_mesh(bytes, path, watcher)?);
     }
-    study.check().map_err(|e| e.to_string())?;
-    Ok(Box::new(move || study.run().map(|report| report.rows).map_err(|e| e.to_string())))
+    match study.check() {
+        Err(Error::UnfitMesh { .. }) if !options.scenes_are_named() => return Ok(None),
+        other => other.map_err(|e| format!("{place}: {e}"))?,
+    }
+    if let (Some(need), Some(free)) = (study.memory_estimate(), available_memory_bytes())
+        && need.bytes > free as f64
+    {
+        return Err(format!(
+            "scene {name}, scheme {}, level {}: would need about {:.1} GB of memory, {:.1} GB are available; choose a lower level",
+            need.scheme,
+            need.level,
+            need.bytes / 1e9,
+            free as f64 / 1e9
+        ));
+    }
+    watcher.expect(n_runs);
+    Ok(Some(Box::new(move || match study.run() {
+        Ok(report) => Ok(report.rows),
+        Err(e) => Err(format!("{place}: {e}")),
+    })))
 }
 
-fn read_mesh<T: Real, const D: usize>(bytes: &[u8], path: &std::path::Path) -> Request<Mesh<T, D>> {
+fn read_mesh<T: Real, const D: usize>(
+    bytes: &[u8],
+    path: &Path,
+    watcher: &Watcher,
+) -> Request<Mesh<T, D>> {
     let read = gmsh::parse::<T, D>(bytes).map_err(|e| format!("{}: {e}", path.display()))?;
     for warning in &read.warnings {
-        eprintln!("warning: {}: {warning}", path.display());
+        watcher.warn_once(format!("warning: {}: {warning}", path.display()));
     }
     Ok(read.mesh)
 }
@@ -352,68 +238,42 @@ fn read_mesh<T: Real, const D: usize>(bytes: &[u8], path: &std::path::Path) -> R
 fn default_levels(dimension: usize, on_mesh: bool) -> Vec<usize> {
     match dimension {
         _ if on_mesh => vec![0, 1],
-        3 => vec![4, 8, 16],
+        3 => vec![2, 4, 8],
         _ => vec![16, 32, 64, 128, 256],
     }
 }
 
-/// Shows progress on a terminal, and warnings.
-struct Watcher {
-    bar: Option<indicatif::ProgressBar>,
-    quiet: bool,
-}
-
-impl Watcher {
-    fn new(options: &Options) -> Self {
-        let show = !options.quiet && std::io::stderr().is_terminal();
-        Self { bar: show.then(indicatif::ProgressBar::new_spinner), quiet: options.quiet }
-    }
-    fn tell(&self, progress: &Progress<'_>) {
-        match (progress, &self.bar) {
-            (Progress::Started(scene, scheme, level), Some(bar)) => {
-                bar.set_message(format!("{scene}  {scheme}  level {level}"));
-                bar.tick();
-            }
-            (Progress::Finished(row), bar) if !self.quiet => {
-                for warning in &row.warnings {
-                    let text = format!(
-                        "warning: {} {} level {}: {warning}",
-                        row.scene, row.scheme, row.level
-                    );
-                    match bar {
-                        Some(bar) => bar.suspend(|| eprintln!("{text}")),
-                        None => eprintln!("{text}"),
-                    }
-                }
-            }
-            _ => {}
+/// Makes sure before the work, not after it, that the report can be written. Tells whether its
+/// directory is new.
+fn check_output(options: &Options) -> Request<bool> {
+    let is_new = !options.out.exists();
+    let fail = |path: &Path, e| format!("cannot write {}: {e}", path.display());
+    if let Some(path) = options.json.as_ref().filter(|p| p.as_os_str() != "-") {
+        let json_is_new = !path.exists();
+        OpenOptions::new().append(true).create(true).open(path).map_err(|e| fail(path, e))?;
+        if json_is_new {
+            fs::remove_file(path).map_err(|e| fail(path, e))?;
         }
     }
-    fn clear(&self) {
-        if let Some(bar) = &self.bar {
-            bar.finish_and_clear();
-        }
-    }
+    fs::create_dir_all(&options.out).map_err(|e| fail(&options.out, e))?;
+    let probe = options.out.join(format!(".compare-{}", std::process::id()));
+    fs::write(&probe, "").and_then(|()| fs::remove_file(&probe)).map_err(|e| fail(&probe, e))?;
+    Ok(is_new)
 }
 
-fn write(options: &Options, report: &Report) -> Result<(), Error> {
+fn write(options: &Options, report: &Report) -> Request<()> {
     let to_stdout = options.json.as_deref().is_some_and(|p| p.as_os_str() == "-");
-    let written = report.write(&options.out)?;
-    if let Some(path) = &options.json {
-        if to_stdout {
-            print(&report.to_json(), false);
-        } else {
-            fs::write(path, report.to_json()).map_err(|e| Error::Write {
-                path: path.display().to_string(),
-                why: e.to_string(),
-            })?;
-        }
+    report.write(&options.out).map_err(|e| e.to_string())?;
+    match &options.json {
+        Some(_) if to_stdout => print(&report.to_json(), false)?,
+        Some(path) => fs::write(path, report.to_json())
+            .map_err(|e| format!("cannot write {}: {e}", path.display()))?,
+        None => {}
     }
-    if !options.quiet {
-        let mut text = report.to_string();
-        text +=
-            &format!("report in {} ({} files and fields)\n", options.out.display(), written.len());
-        print(&text, to_stdout);
+    if options.quiet {
+        return Ok(());
     }
-    Ok(())
+    let out = options.out.display();
+    let end = format!("\nTimes are in seconds. Report, plots and fields are in {out}\n");
+    print(&(report.to_string() + &end), to_stdout)
 }

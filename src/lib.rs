@@ -1,4 +1,4 @@
-//! One assembler, many schemes, the same inequality.
+#![doc = include_str!("../README.md")]
 #![forbid(unsafe_code)]
 #![deny(missing_docs)]
 

@@ -7,7 +7,9 @@
     message = "`{Self}` is not a scalar this crate can solve in",
     note = "use `f64` or `f32`"
 )]
-pub trait Real: nalgebra::RealField + faer::traits::RealField + Copy {
+pub trait Real:
+    nalgebra::RealField + faer::traits::RealField + crate::solve::SparseKernels + Copy
+{
     /// The name users type and reports state.
     const NAME: &'static str;
     /// Distance from one to the next larger number, as `f64`.

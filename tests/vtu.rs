@@ -67,7 +67,20 @@ fn round_trip<T: Real, const D: usize>(counts: [usize; D], cell_type: CellType) 
         .collect();
     assert_eq!(points, expected);
     let (connectivity, offsets) = piece.cells.cell_verts.into_xml();
-    assert_eq!(connectivity, (0..(cells * corners) as u64).collect::<Vec<_>>());
+    for (c, cell) in connectivity.chunks(corners).enumerate() {
+        let mut sorted = cell.to_vec();
+        sorted.sort_unstable();
+        let own: Vec<_> = (c * corners..(c + 1) * corners).map(|i| i as u64).collect();
+        assert_eq!(sorted, own, "every cell has points of its own");
+        let x = |i: usize| Point::<f64, 3>::from_column_slice(&points[3 * cell[i] as usize..][..3]);
+        let edge = |i: usize| x(i) - x(0);
+        let volume = match D {
+            1 => edge(1).x,
+            2 => edge(1).cross(&edge(2)).z,
+            _ => edge(1).cross(&edge(2)).dot(&edge(3)),
+        };
+        assert!(volume > 0.0, "cell {c} is inside out");
+    }
     assert_eq!(offsets, (1..=cells).map(|c| (c * corners) as u64).collect::<Vec<_>>());
     assert_eq!(piece.cells.types, vec![cell_type; cells]);
     assert_eq!(field(&piece.data.point, "u").unwrap(), u);

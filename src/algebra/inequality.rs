@@ -89,6 +89,17 @@ pub enum Contact {
     Upper,
 }
 
+/// What a solver starts from: an active set, best of a coarser level or a simpler scheme.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub enum Start {
+    /// Nothing known.
+    #[default]
+    Cold,
+    /// A guess of the contact state of every unknown. States that a bound does not have, and
+    /// unknowns beyond the end, count as open.
+    Contact(Vec<Contact>),
+}
+
 /// Where an unknown lives: the vertices whose barycentre is its node, and the cell that owns it
 /// where cells do not share it.
 ///
@@ -135,9 +146,17 @@ pub struct Inequality<T> {
     pub bounds: Vec<Bound<T>>,
     /// Where each unknown lives.
     pub places: Vec<Place>,
+    /// What a solver starts from.
+    pub start: Start,
 }
 
 impl<T: Real> Inequality<T> {
+    /// The same inequality with another start.
+    #[must_use]
+    pub fn with_start(mut self, start: Start) -> Self {
+        self.start = start;
+        self
+    }
     /// Number of unknowns, Dirichlet ones included.
     pub fn size(&self) -> usize {
         self.load.len()

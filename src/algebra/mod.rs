@@ -5,5 +5,5 @@
 mod inequality;
 mod matrix;
 
-pub use inequality::{Bound, Contact, Inequality, Place};
+pub use inequality::{Bound, Contact, Inequality, Place, Start};
 pub use matrix::SparseMatrix;

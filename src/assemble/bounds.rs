@@ -83,6 +83,7 @@ impl<T: Real, const D: usize, S: Scheme<T, D>> Discretisation<'_, T, D, S> {
     fn pin(&self, bounds: &mut [Bound<T>]) -> Result<(), Error> {
         let rule = Rule::of_degree(D - 1, self.quadrature.facet);
         let zero = !self.problem.has_dirichlet_data();
+        let mut pinned = Vec::new();
         for facet in self.facets_of(BoundaryPart::Dirichlet) {
             let (cell, local) = (facet.cell as usize, facet.local as usize);
             for i in self.nodes_on(local) {
@@ -103,13 +104,22 @@ impl<T: Real, const D: usize, S: Scheme<T, D>> Discretisation<'_, T, D, S> {
                         self.facet_mean(&rule, cell, local, "dirichlet", &datum)?
                     }
                 };
-                // obstacles must leave room for the datum
-                let lower = bounds[unknown].lower().map(Real::to_f64);
-                let upper = bounds[unknown].upper().map(Real::to_f64);
-                between::<T, D>(lower, Some(value), unknown, &x)?;
-                between::<T, D>(Some(value), upper, unknown, &x)?;
-                bounds[unknown] = Bound::Fixed(T::lit(value));
+                pinned.push((unknown, value, x));
             }
+        }
+        // obstacles must leave room for the datum; where both are zero but for rounding, only the
+        // size of all data tells that it is rounding
+        let of_bounds = bounds.iter().flat_map(|b| [b.lower(), b.upper()]).flatten();
+        let sizes = of_bounds.map(Real::to_f64).chain(pinned.iter().map(|p| p.1));
+        let size = sizes.fold(0.0, |size: f64, value| size.max(value.abs()));
+        for (unknown, value, x) in pinned {
+            let lower = bounds[unknown].lower().map(Real::to_f64);
+            let upper = bounds[unknown].upper().map(Real::to_f64);
+            if !matches!(bounds[unknown], Bound::Fixed(_)) {
+                check_room::<T, D>(lower, Some(value), size, unknown, &x)?;
+                check_room::<T, D>(Some(value), upper, size, unknown, &x)?;
+            }
+            bounds[unknown] = Bound::Fixed(T::lit(value));
         }
         Ok(())
     }
@@ -160,11 +170,25 @@ fn between<T: Real, const D: usize>(
         (Some(l), None) => Bound::Lower(T::lit(l)),
         (None, Some(u)) => Bound::Upper(T::lit(u)),
         (Some(l), Some(u)) => {
-            if l - u > RELATIVE_SLACK * (l.abs() + u.abs()) {
-                let at = describe_point(x);
-                return Err(Error::EmptyConstraint { unknown, at, lower: l, upper: u });
-            }
+            check_room::<T, D>(lower, upper, l.abs() + u.abs(), unknown, x)?;
             Bound::Both(T::lit(l), T::lit(l.max(u)))
         }
     })
+}
+
+/// Whether there is room between two values, up to the rounding of data of this size.
+fn check_room<T: Real, const D: usize>(
+    lower: Option<f64>,
+    upper: Option<f64>,
+    size: f64,
+    unknown: usize,
+    x: &Point<f64, D>,
+) -> Result<(), Error> {
+    let slack = RELATIVE_SLACK.max(16.0 * T::EPSILON) * size;
+    match (lower, upper) {
+        (Some(lower), Some(upper)) if lower - upper > slack => {
+            Err(Error::EmptyConstraint { unknown, at: describe_point(x), lower, upper })
+        }
+        _ => Ok(()),
+    }
 }

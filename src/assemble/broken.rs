@@ -4,20 +4,17 @@
 //! ascending order of cells. A facet's form is evaluated from each of its two sides for the rows of
 //! that side, so no local matrix is ever stored and no two cells write to the same place.
 
-use rayon::prelude::*;
+use std::convert::Infallible;
 
 use super::local::{CellSide, FacetGeometry, Local, add_stiffness, traces, zero_local};
 use super::tables::{CellTable, FacetTable};
-use super::{Discretisation, count, data};
+use super::{Discretisation, count, data, parallel};
 use crate::algebra::SparseMatrix;
 use crate::element::ReferenceElement;
 use crate::facet::FacetForm;
 use crate::mesh::{BoundaryPart, CellGeometry, Neighbour, Neighbours};
 use crate::real::Real;
 use crate::scheme::{DirichletBy, Scheme};
-
-/// Cells of one piece of work.
-const CHUNK: usize = 1024;
 
 /// The cells coupled to a cell, itself included, ascending; at most `D + 2`.
 #[inline(always)]
@@ -85,24 +82,16 @@ fn for_each_cell<V: Send>(
     entries: &mut [V],
     work: impl Fn(usize, &mut [V]) + Sync,
 ) {
-    let n_cells = (row_starts.len() - 1) / n;
-    let mut pieces = Vec::with_capacity(n_cells / CHUNK + 1);
-    let mut rest = entries;
-    for first in (0..n_cells).step_by(CHUNK) {
-        let last = (first + CHUNK).min(n_cells);
-        let length = (row_starts[last * n] - row_starts[first * n]) as usize;
-        let (piece, tail) = rest.split_at_mut(length);
-        pieces.push((first..last, piece));
-        rest = tail;
-    }
-    pieces.into_par_iter().for_each(|(cells, mut piece)| {
+    let end = |cell: usize| row_starts[cell * n] as usize;
+    let piece = |cells: std::ops::Range<usize>, mut piece: &mut [V]| {
         for cell in cells {
-            let length = (row_starts[(cell + 1) * n] - row_starts[cell * n]) as usize;
-            let (rows, tail) = piece.split_at_mut(length);
+            let (rows, tail) = piece.split_at_mut(end(cell + 1) - end(cell));
             work(cell, rows);
             piece = tail;
         }
-    });
+        Ok::<(), Infallible>(())
+    };
+    let Ok(()) = parallel::for_each((row_starts.len() - 1) / n, &end, entries, &piece);
 }
 
 /// The values, on a known pattern.

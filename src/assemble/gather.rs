@@ -4,20 +4,18 @@
 //! dense matrix in parallel; then each row adds up what its patches hold, in the order of patches,
 //! so the sum does not depend on how the work was split.
 
-use rayon::prelude::*;
+use std::convert::Infallible;
+use std::ops::Range;
 
 use super::local::{CellSide, FacetGeometry, add_stiffness, traces, zero_local};
 use super::tables::{CellTable, FacetTable};
-use super::{Discretisation, count, data};
+use super::{Discretisation, count, data, parallel};
 use crate::algebra::SparseMatrix;
 use crate::element::{MAX_BASIS, ReferenceElement};
 use crate::facet::{FacetForm, Trace};
 use crate::mesh::{BoundaryPart, Facets};
 use crate::real::Real;
 use crate::scheme::{DirichletBy, Scheme};
-
-/// Patches of one piece of work, and rows of one.
-const CHUNK: usize = 2048;
 
 /// The patches of a discretisation and the unknowns of each.
 struct Patches<'s, 'a, T: Real, const D: usize, S: Scheme<T, D>> {
@@ -103,11 +101,11 @@ pub(super) fn pattern<T: Real, const D: usize, S: Scheme<T, D>>(
     let patches = Patches::new(space);
     let (starts, places) = patches.incidence();
     let size = space.unknowns();
-    let rows_of = |chunk: usize| {
+    let rows_of = |rows: Range<usize>| {
         let mut columns: Vec<u32> = Vec::new();
-        let mut lengths = Vec::with_capacity(CHUNK);
+        let mut lengths = Vec::with_capacity(rows.len());
         let mut row = Vec::new();
-        for i in chunk * CHUNK..((chunk + 1) * CHUNK).min(size) {
+        for i in rows {
             row.clear();
             for &(patch, _) in &places[starts[i] as usize..starts[i + 1] as usize] {
                 let patch = patch as usize;
@@ -120,7 +118,7 @@ pub(super) fn pattern<T: Real, const D: usize, S: Scheme<T, D>>(
         }
         (columns, lengths)
     };
-    let pieces: Vec<_> = (0..size.div_ceil(CHUNK)).into_par_iter().map(rows_of).collect();
+    let pieces = parallel::map(size, &rows_of);
     let mut row_starts = Vec::with_capacity(size + 1);
     row_starts.push(0);
     let mut columns = Vec::with_capacity(pieces.iter().map(|p| p.0.len()).sum());
@@ -145,17 +143,7 @@ pub(super) fn fill<T: Real, const D: usize, S: Scheme<T, D>>(
     let locals = local_matrices(&patches);
     let (starts, places) = patches.incidence();
     let SparseMatrix { row_starts, columns, values } = matrix;
-    let size = row_starts.len() - 1;
-    let mut pieces = Vec::with_capacity(size / CHUNK + 1);
-    let mut rest = &mut values[..];
-    for first in (0..size).step_by(CHUNK) {
-        let rows = first..(first + CHUNK).min(size);
-        let length = (row_starts[rows.end] - row_starts[rows.start]) as usize;
-        let (piece, tail) = rest.split_at_mut(length);
-        pieces.push((rows, piece));
-        rest = tail;
-    }
-    pieces.into_par_iter().for_each(|(rows, piece)| {
+    let gather = |rows: Range<usize>, piece: &mut [T]| {
         piece.fill(T::lit(0.0));
         let offset = row_starts[rows.start] as usize;
         for i in rows {
@@ -174,7 +162,10 @@ pub(super) fn fill<T: Real, const D: usize, S: Scheme<T, D>>(
                 }
             }
         }
-    });
+        Ok::<(), Infallible>(())
+    };
+    let end = |row: usize| row_starts[row] as usize;
+    let Ok(()) = parallel::for_each(row_starts.len() - 1, &end, values, &gather);
 }
 
 fn local_matrices<T: Real, const D: usize, S: Scheme<T, D>>(
@@ -187,25 +178,33 @@ fn local_matrices<T: Real, const D: usize, S: Scheme<T, D>>(
     let reaction = data::ReactionTerm::new(space);
     let mut locals = vec![T::lit(0.0); patches.start(patches.len())];
     let (cells, facets) = locals.split_at_mut(patches.start(patches.n_cells()));
-    cells.par_chunks_mut(n * n).with_min_len(CHUNK).enumerate().for_each(|(cell, out)| {
-        let geometry = space.mesh.geometry(cell);
-        let mut local = zero_local();
-        add_stiffness::<T, D, S::Element>(&geometry, space.alpha(cell), &stiffness, &mut local);
-        if let Some(reaction) = &reaction {
-            reaction.add::<S::Element>(space.mesh, cell, geometry.volume, &mut local);
+    let of_cells = |range: Range<usize>, entries: &mut [T]| {
+        for (cell, out) in range.zip(entries.chunks_exact_mut(n * n)) {
+            let geometry = space.mesh.geometry(cell);
+            let mut local = zero_local();
+            let alpha = space.alpha(cell);
+            add_stiffness::<T, D, S::Element>(&geometry, alpha, &stiffness, &mut local);
+            if let Some(reaction) = &reaction {
+                reaction.add::<S::Element>(space.mesh, cell, geometry.volume, &mut local);
+            }
+            for (row, values) in out.chunks_exact_mut(n).zip(&local) {
+                row.copy_from_slice(&values[..n]);
+            }
         }
-        for (row, values) in out.chunks_exact_mut(n).zip(&local) {
-            row.copy_from_slice(&values[..n]);
-        }
-    });
+        Ok::<(), Infallible>(())
+    };
+    let Ok(()) = parallel::for_each(patches.n_cells(), &|c| c * n * n, cells, &of_cells);
     if let Some(all) = &patches.facets {
-        let table =
-            FacetTable::new::<S::Element, D>(<S::Facet as FacetForm<T, D>>::sampling(degree));
-        facets
-            .par_chunks_mut(4 * n * n)
-            .with_min_len(CHUNK)
-            .enumerate()
-            .for_each(|(facet, out)| facet_matrix(space, all, &table, facet, out));
+        let sampling = <S::Facet as FacetForm<T, D>>::sampling(degree);
+        let table = FacetTable::new::<S::Element, D>(sampling);
+        let of_facets = |range: Range<usize>, entries: &mut [T]| {
+            for (facet, out) in range.zip(entries.chunks_exact_mut(4 * n * n)) {
+                facet_matrix(space, all, &table, facet, out);
+            }
+            Ok::<(), Infallible>(())
+        };
+        let end = |f: usize| f * 4 * n * n;
+        let Ok(()) = parallel::for_each(patches.coupled, &end, facets, &of_facets);
     }
     locals
 }

@@ -1,10 +1,10 @@
 //! The load: source, Neumann data, weak Dirichlet data. What is absent costs nothing.
 
-use rayon::prelude::*;
+use std::ops::Range;
 
 use super::local::{CellSide, FacetGeometry, traces};
 use super::tables::{BasisAt, CellTable, FacetTable};
-use super::{Discretisation, count, data};
+use super::{Discretisation, count, data, parallel};
 use crate::element::ReferenceElement;
 use crate::error::Error;
 use crate::facet::{FacetForm, Sampling, Trace};
@@ -13,9 +13,6 @@ use crate::problem::{Datum, Field};
 use crate::quadrature::{Rule, insert};
 use crate::real::{Point, Real, point_f64};
 use crate::scheme::{DirichletBy, Scheme};
-
-/// Cells of one piece of work.
-const CHUNK: usize = 1024;
 
 impl<T: Real, const D: usize, S: Scheme<T, D>> Discretisation<'_, T, D, S> {
     /// The load of all unknowns.
@@ -67,18 +64,18 @@ impl<T: Real, const D: usize, S: Scheme<T, D>> Discretisation<'_, T, D, S> {
             terms.fold(T::lit(0.0), |s, (basis, &w)| s + w * basis.values[i])
         };
         let means: Vec<T> = (0..Self::N).map(|i| f * mean(i)).collect();
-        load.par_chunks_mut(Self::N).with_min_len(CHUNK).enumerate().for_each(|(cell, out)| {
+        self.for_each_cell(load, &|cell, out| {
             let volume = self.mesh.geometry(cell).volume;
             for (value, &mean) in out.iter_mut().zip(&means) {
                 *value += volume * mean;
             }
-        });
-        Ok(())
+            Ok(())
+        })
     }
 
     fn add_source(&self, f: &Field<D>, load: &mut [T]) -> Result<(), Error> {
         let table = CellTable::<T>::new::<S::Element, D>(self.quadrature.cell);
-        load.par_chunks_mut(Self::N).with_min_len(CHUNK).enumerate().try_for_each(|(cell, out)| {
+        self.for_each_cell(load, &|cell, out| {
             let volume = self.mesh.geometry(cell).volume;
             let samples = table.points.iter().zip(&table.basis).zip(&table.weights);
             for ((point, basis), &weight) in samples {
@@ -91,6 +88,19 @@ impl<T: Real, const D: usize, S: Scheme<T, D>> Discretisation<'_, T, D, S> {
             }
             Ok(())
         })
+    }
+
+    /// Calls a function with each cell and its part of the load, in parallel.
+    fn for_each_cell(
+        &self,
+        load: &mut [T],
+        work: &(impl Fn(usize, &mut [T]) -> Result<(), Error> + Sync),
+    ) -> Result<(), Error> {
+        let piece = |cells: Range<usize>, entries: &mut [T]| {
+            let parts = cells.zip(entries.chunks_exact_mut(Self::N));
+            parts.into_iter().try_for_each(|(cell, out)| work(cell, out))
+        };
+        parallel::for_each(self.mesh.n_cells(), &|c| c * Self::N, load, &piece)
     }
 
     /// Dirichlet data as the trial trace of the facet form.

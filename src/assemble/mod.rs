@@ -15,9 +15,10 @@ mod gather;
 mod load;
 mod local;
 mod norms;
+mod parallel;
 pub(crate) mod tables;
 
-use crate::algebra::{Inequality, Place, SparseMatrix};
+use crate::algebra::{Inequality, Place, SparseMatrix, Start};
 use crate::element::{Node, ReferenceElement};
 use crate::error::Error;
 use crate::facet::{FacetForm, FacetView};
@@ -143,6 +144,7 @@ impl<'a, T: Real, const D: usize, S: Scheme<T, D>> Discretisation<'a, T, D, S> {
             load,
             bounds,
             places: self.places(),
+            start: Start::Cold,
         })
     }
     /// Where each unknown lives.

@@ -1,9 +1,9 @@
 //! Errors against the exact solution, and values for pictures.
 
-use rayon::prelude::*;
+use std::ops::Range;
 
 use super::tables::{BasisAt, CellTable, FacetTable};
-use super::{Discretisation, data};
+use super::{Discretisation, data, parallel};
 use crate::element::{MAX_BASIS, Node, ReferenceElement};
 use crate::error::Error;
 use crate::facet::{FacetForm, Sampling, Trace};
@@ -13,9 +13,6 @@ use crate::quadrature::Rule;
 use crate::real::{Real, point_f64};
 use crate::scheme::{DirichletBy, Scheme};
 use crate::study::Errors;
-
-/// Cells of one partial sum; sums are added in order, so the result does not depend on threads.
-const CHUNK: usize = 512;
 
 /// Degree of the rule for error norms: the exact solution is not polynomial, and the rule must not
 /// limit what it measures.
@@ -62,21 +59,19 @@ impl<T: Real, const D: usize, S: Scheme<T, D>> Discretisation<'_, T, D, S> {
         let Some(exact) = &self.problem.exact else {
             return Ok(Errors::default());
         };
-        let n_chunks = self.mesh.n_cells().div_ceil(CHUNK);
         let cells = CellTable::<f64>::new_in_f64::<T, S::Element, D>(error_degree(D));
-        let parts: Vec<SquaredErrors> = (0..n_chunks)
-            .into_par_iter()
-            .map(|chunk| {
-                let mut sum = SquaredErrors::default();
-                let end = ((chunk + 1) * CHUNK).min(self.mesh.n_cells());
-                for cell in chunk * CHUNK..end {
-                    sum.add(&self.cell_error(exact, &cells, cell, u)?);
-                }
-                Ok(sum)
-            })
-            .collect::<Result<_, Error>>()?;
+        // partial sums are added in order, so the result does not depend on threads
+        let parts = parallel::map(self.mesh.n_cells(), &|range: Range<usize>| {
+            let mut sum = SquaredErrors::default();
+            for cell in range {
+                sum.add(&self.cell_error(exact, &cells, cell, u)?);
+            }
+            Ok::<_, Error>(sum)
+        });
         let mut total = SquaredErrors::default();
-        parts.iter().for_each(|part| total.add(part));
+        for part in parts {
+            total.add(&part?);
+        }
         if let (Some(neighbours), true) = (&self.neighbours, Self::COUPLES) {
             total.energy += self.facet_error(neighbours, u)?;
         }

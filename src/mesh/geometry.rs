@@ -46,7 +46,8 @@ impl<T: Real, const D: usize> CellGeometry<T, D> {
         let inverse = if determinant == zero { zero } else { T::lit(1.0) / determinant };
         for k in 1..=D {
             gradients[k] *= inverse;
-            gradients[0] = gradients[0] - gradients[k];
+            let gradient = gradients[k];
+            gradients[0] -= gradient;
         }
         let magnitude = if determinant < zero { -determinant } else { determinant };
         Self { volume: magnitude / T::lit(FACTORIAL[D]), gradients }

@@ -126,7 +126,8 @@ fn check_volumes<T: Real, const D: usize>(
             }
         }
         let scaled = volume / diameter.powi(D as i32);
-        if !(scaled > 8.0 * T::EPSILON) {
+        // a volume that overflowed or vanished to nothing is no volume either
+        if scaled.is_nan() || scaled <= 8.0 * T::EPSILON {
             return Err(MeshError::DegenerateCell {
                 cell: c,
                 vertices: cell.to_vec(),

@@ -155,6 +155,6 @@ impl Entry {
         } else {
             return Ok(());
         };
-        Err(Error::Parameter { parameter, value: format!("{value}"), allowed })
+        Err(Error::Parameter { parameter, value: format!("{value:?}"), allowed })
     }
 }

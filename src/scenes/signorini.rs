@@ -8,7 +8,7 @@ use crate::scenes::{BoxDomain, Regularity, Scene, halfplane};
 /// at the origin, a vertex of every mesh with an even number of cells along the contact side.
 ///
 /// This is the problem class of Zeng, Chen and Wang, *Comput. Math. Appl.* 69 (2015); the solution
-/// is derived at [`transition_at`].
+/// is derived at `transition_at`.
 pub fn signorini_2d() -> Scene<2> {
     transition_at(0.0, "signorini-2d", "Signorini, zero Dirichlet data, contact changes at x = 0")
 }

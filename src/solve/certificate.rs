@@ -44,7 +44,7 @@ pub struct Certificate {
 
 impl Certificate {
     /// What cannot be judged.
-    const WORTHLESS: Self = Self {
+    pub const WORTHLESS: Self = Self {
         feasibility: f64::INFINITY,
         multiplier: f64::INFINITY,
         complementarity: f64::INFINITY,

@@ -11,12 +11,14 @@ pub(super) struct History {
     seen: Vec<(u128, u32)>,
     last_move: Vec<u32>,
     step: u32,
+    /// The step at which the states before were forgotten, if they were.
+    forgotten: Option<u32>,
 }
 
 impl History {
     /// No state seen yet.
     pub fn new(unknowns: usize) -> Self {
-        Self { seen: Vec::new(), last_move: vec![0; unknowns], step: 0 }
+        Self { seen: Vec::new(), last_move: vec![0; unknowns], step: 0, forgotten: None }
     }
 
     /// Notes that unknown `i` moves into the state to be recorded next.
@@ -26,6 +28,10 @@ impl History {
 
     /// Records a state. If it has been seen, marks in `cycle` every unknown that has moved since,
     /// and returns true.
+    ///
+    /// After [`History::restart`] every unknown counts that has moved since then: what moved only
+    /// on the way into the cycle may be what disputes the state restarted from, and would do so
+    /// for ever.
     pub fn record(&mut self, state: &[Contact], cycle: &mut [bool]) -> bool {
         self.step += 1;
         let fingerprint = fingerprint(state);
@@ -33,13 +39,14 @@ impl History {
             self.seen.push((fingerprint, self.step));
             return false;
         };
-        self.mark_moved(first, cycle);
+        self.mark_moved(self.forgotten.unwrap_or(first), cycle);
         true
     }
 
     /// Marks in `cycle` every unknown that has moved within the last `steps` records.
     pub fn mark_recent(&self, steps: usize, cycle: &mut [bool]) {
-        self.mark_moved(self.step.saturating_sub(steps as u32), cycle);
+        let recent = self.step.saturating_sub(steps as u32);
+        self.mark_moved(self.forgotten.unwrap_or(recent), cycle);
     }
 
     /// Marks every unknown that has moved after a step.
@@ -49,9 +56,11 @@ impl History {
         }
     }
 
-    /// Forgets all states.
-    pub fn clear(&mut self) {
+    /// Forgets all states and records one that was not reached by the method's own steps.
+    pub fn restart(&mut self, state: &[Contact]) {
         self.seen.clear();
+        self.record(state, &mut []);
+        self.forgotten = Some(self.step);
     }
 }
 

@@ -3,8 +3,8 @@
 use super::certificate::positive_diagonal;
 use super::cycles::History;
 use super::linear::{FactorError, Factors};
-use super::{Outcome, Solution, Start};
-use crate::algebra::{Bound, Contact, Inequality};
+use super::{Outcome, Solution};
+use crate::algebra::{Bound, Contact, Inequality, Start};
 use crate::real::Real;
 
 /// The current unknowns and states, and the best unknowns so far.
@@ -33,10 +33,10 @@ struct Best<T> {
 
 impl<'a, T: Real> Iterate<'a, T> {
     /// The admissible values nearest to zero, in the states of the start that the bounds have.
-    pub fn new(inequality: &'a Inequality<T>, start: &Start) -> Self {
+    pub fn new(inequality: &'a Inequality<T>) -> Self {
         let bounds = &inequality.bounds;
         let values: Vec<T> = bounds.iter().map(|bound| bound.nearest(T::lit(0.0))).collect();
-        let guess = match start {
+        let guess = match &inequality.start {
             Start::Cold => &[],
             Start::Contact(guess) => guess.as_slice(),
         };

@@ -1,24 +1,21 @@
-//! Direct solvers of linear systems: the only file that names the factorisations of faer.
+//! Direct solvers of linear systems. This file and [`kernels`](super::kernels) alone name the
+//! factorisations of faer.
 
 use faer::dyn_stack::{MemBuffer, MemStack};
-use faer::linalg::cholesky::llt::factor::{LltError, LltRegularization};
+use faer::linalg::cholesky::llt::factor::LltError;
 use faer::sparse::linalg::LuError;
 use faer::sparse::linalg::cholesky::{
-    CholeskySymbolicParams, LltRef, SymbolicCholesky, SymbolicCholeskyRaw, SymmetricOrdering,
+    CholeskySymbolicParams, SymbolicCholesky, SymbolicCholeskyRaw, SymmetricOrdering,
     factorize_symbolic_cholesky, supernodal::SupernodalLltRef,
 };
-use faer::sparse::linalg::lu::{
-    LuRef, LuSymbolicParams, NumericLu, SymbolicLu, factorize_symbolic_lu,
-};
+use faer::sparse::linalg::lu::{LuSymbolicParams, NumericLu, SymbolicLu, factorize_symbolic_lu};
 use faer::sparse::{FaerError, SparseColMatRef};
-use faer::{Conj, MatMut, Par, Side};
+use faer::{MatMut, Side};
 
+use super::kernels::PAR;
 use super::restrict::Restricted;
 use crate::algebra::SparseMatrix;
 use crate::real::Real;
-
-/// One thread, always: sums in the same order give the same bits on every machine.
-const PAR: Par = Par::Seq;
 
 /// A pivot below this many units of rounding of the diagonal entry it came from has lost every
 /// digit to cancellation: the matrix is singular as far as this scalar can tell.
@@ -110,22 +107,13 @@ impl<T: Real> Factors<T> {
             Kind::Empty => {}
             Kind::Cholesky { symbolic, values } => {
                 let scratch = symbolic.solve_in_place_scratch::<T>(right_sides, PAR);
-                LltRef::<'_, u32, T>::new(symbolic, values).solve_in_place_with_conj(
-                    Conj::No,
-                    x,
-                    PAR,
-                    MemStack::new(&mut MemBuffer::new(scratch)),
-                );
+                let mut memory = MemBuffer::new(scratch);
+                T::cholesky_solve(symbolic, values, x, MemStack::new(&mut memory));
             }
             Kind::Lu { symbolic, numeric } => {
                 let scratch = symbolic.solve_transpose_in_place_scratch::<T>(right_sides, PAR);
-                LuRef::<'_, u32, T>::new_unchecked(symbolic, numeric)
-                    .solve_transpose_in_place_with_conj(
-                        Conj::No,
-                        x,
-                        PAR,
-                        MemStack::new(&mut MemBuffer::new(scratch)),
-                    );
+                let mut memory = MemBuffer::new(scratch);
+                T::lu_solve_transpose(symbolic, numeric, x, MemStack::new(&mut memory));
             }
         }
     }
@@ -144,16 +132,7 @@ impl<T: Real> Factors<T> {
         values.resize(symbolic.len_val(), T::lit(0.0));
         let scratch = symbolic.factorize_numeric_llt_scratch::<T>(PAR, Default::default());
         let mut memory = MemBuffer::try_new(scratch).map_err(|_| FactorError::OutOfMemory)?;
-        symbolic
-            .factorize_numeric_llt(
-                &mut values,
-                a,
-                Side::Upper,
-                LltRegularization::default(),
-                PAR,
-                MemStack::new(&mut memory),
-                Default::default(),
-            )
+        T::cholesky(&symbolic, a, &mut values, MemStack::new(&mut memory))
             .map_err(|LltError::NonPositivePivot { .. }| FactorError::NotPositive)?;
         if pivots_hold(&symbolic, &values, &restricted.diagonal()) {
             Ok(Self { size: restricted.size(), kind: Kind::Cholesky { symbolic, values } })
@@ -168,13 +147,12 @@ impl<T: Real> Factors<T> {
         let mut numeric = NumericLu::new();
         let scratch = symbolic.factorize_numeric_lu_scratch::<T>(PAR, Default::default());
         let mut memory = MemBuffer::try_new(scratch).map_err(|_| FactorError::OutOfMemory)?;
-        let parameters = Default::default();
-        symbolic
-            .factorize_numeric_lu(&mut numeric, a, PAR, MemStack::new(&mut memory), parameters)
-            .map_err(|error| match error {
+        T::lu(&symbolic, a, &mut numeric, MemStack::new(&mut memory)).map_err(
+            |error| match error {
                 LuError::SymbolicSingular { .. } => FactorError::Singular,
                 LuError::Generic(error) => error.into(),
-            })?;
+            },
+        )?;
         let factors = Self { size: restricted.size(), kind: Kind::Lu { symbolic, numeric } };
         if factors.condition_holds(restricted) { Ok(factors) } else { Err(FactorError::Singular) }
     }

@@ -5,12 +5,14 @@ mod certificate;
 mod condensed;
 mod cycles;
 mod iterate;
+mod kernels;
 mod linear;
 mod restrict;
 mod small;
 
 pub use active_set::ActiveSet;
 pub use certificate::{Certificate, active, certify};
+pub use kernels::SparseKernels;
 pub use linear::{FactorError, Factors, is_positive_definite};
 
 use crate::algebra::{Contact, Inequality};
@@ -67,16 +69,6 @@ impl std::fmt::Display for Outcome {
     }
 }
 
-/// What a solver starts from: an active set, best of a coarser level or a simpler scheme.
-#[derive(Clone, Debug)]
-pub enum Start {
-    /// Nothing known.
-    Cold,
-    /// A guess of the contact state of every unknown. States that a bound does not have, and
-    /// unknowns beyond the end, count as open.
-    Contact(Vec<Contact>),
-}
-
 /// What a solver returns.
 #[derive(Clone, Debug)]
 pub struct Solution<T> {
@@ -97,5 +89,5 @@ pub trait InequalitySolver<T: Real>: Sync {
     /// The name users type and reports state.
     fn name(&self) -> &'static str;
     /// Solves; never fails silently: see [`Outcome`].
-    fn solve(&self, inequality: &Inequality<T>, start: &Start) -> Solution<T>;
+    fn solve(&self, inequality: &Inequality<T>) -> Solution<T>;
 }

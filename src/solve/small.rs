@@ -88,7 +88,9 @@ impl SmallProblem {
                     Contact::Upper => meet(-w[i] + self.force_noise[i], -dw[i], Contact::Open),
                 }
             }
-            let (at, Some((i, next))) = event else { return Some(state) };
+            let (at, Some((i, next))) = event else {
+                return Some(state);
+            };
             t = at;
             state[i] = next;
         }

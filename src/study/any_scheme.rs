@@ -3,16 +3,16 @@
 use std::time::Instant;
 
 use super::{Certificate, Errors, ExpectedOrders, PenaltyParameters};
-use crate::algebra::{Bound, Contact, Inequality, Place};
+use crate::algebra::{Bound, Contact, Inequality, Place, Start};
 use crate::assemble::{DataQuadrature, Discretisation};
-use crate::element::ReferenceElement;
+use crate::element::{Layout, ReferenceElement};
 use crate::error::Error;
 use crate::facet::FacetForm;
 use crate::mesh::Mesh;
 use crate::problem::Problem;
 use crate::real::Real;
 use crate::scheme::{Scheme, Setting};
-use crate::solve::{InequalitySolver, Outcome, Solution, Start, certify, is_positive_definite};
+use crate::solve::{InequalitySolver, Outcome, Solution, certify, is_positive_definite};
 
 /// What a scheme is asked to solve.
 pub struct Task<'a, T: Real, const D: usize> {
@@ -88,6 +88,8 @@ pub trait AnyScheme<T: Real, const D: usize>: Send + Sync {
     fn constraint(&self) -> &'static str;
     /// Orders theory proves.
     fn expected_orders(&self, setting: &Setting) -> ExpectedOrders;
+    /// Who owns its unknowns.
+    fn layout(&self) -> Layout;
     /// Whether its unknowns are those of conforming P1, so that it starts from a coarser level and
     /// not from P1 on the same one.
     fn is_conforming_linear(&self) -> bool;
@@ -119,6 +121,9 @@ impl<T: Real, const D: usize, S: Scheme<T, D>> AnyScheme<T, D> for S {
     fn expected_orders(&self, setting: &Setting) -> ExpectedOrders {
         Scheme::expected_orders(self, setting)
     }
+    fn layout(&self) -> Layout {
+        S::Element::LAYOUT
+    }
     fn is_conforming_linear(&self) -> bool {
         let layout = S::Element::LAYOUT;
         layout.vertex == 1 && layout.facet + layout.cell == 0 && !S::Facet::COUPLES
@@ -142,13 +147,16 @@ fn solve<T: Real, const D: usize, S: Scheme<T, D>>(
 ) -> Result<Solved, Error> {
     let clock = Instant::now();
     let space = Discretisation::new(scheme, task.problem, task.mesh, task.quadrature)?;
-    let inequality = space.inequality()?;
+    let mut inequality = space.inequality()?;
     let mut assemble_seconds = clock.elapsed().as_secs_f64();
     for _ in 1..task.repeat {
         let clock = Instant::now();
         let again = Discretisation::new(scheme, task.problem, task.mesh, task.quadrature)?;
         drop(again.inequality()?);
         assemble_seconds = assemble_seconds.min(clock.elapsed().as_secs_f64());
+    }
+    if let Some(vertices) = task.start {
+        inequality.start = Start::Contact(transfer(vertices, &inequality.places));
     }
     let shortfall = space.penalty_shortfall();
     let mut warnings = Vec::new();
@@ -157,8 +165,12 @@ fn solve<T: Real, const D: usize, S: Scheme<T, D>>(
     }
     let (solution, solve_seconds) = run(task, &inequality, shortfall.is_some());
     let u = &solution.values;
-    let usable =
-        solution.outcome != Outcome::NotCoercive && u.iter().all(|v| v.to_f64().is_finite());
+    // without a factorisation there is no iterate, and no number that says anything about one
+    let nothing = matches!(
+        solution.outcome,
+        Outcome::NotCoercive | Outcome::Singular | Outcome::NotFinite | Outcome::OutOfMemory
+    );
+    let usable = !nothing && u.iter().all(|v| v.to_f64().is_finite());
     let error = if task.with_errors && usable { space.errors(u)? } else { Errors::default() };
     let fields = (task.with_fields && usable).then(|| space.fields(&inequality, &solution));
     Ok(Solved {
@@ -171,7 +183,7 @@ fn solve<T: Real, const D: usize, S: Scheme<T, D>>(
         active: crate::solve::active(&inequality, &solution.contact),
         outer: solution.outer,
         linear: solution.linear,
-        certificate: certify(&inequality, u),
+        certificate: if usable { certify(&inequality, u) } else { Certificate::WORTHLESS },
         assemble_seconds,
         solve_seconds,
         fields,
@@ -198,15 +210,11 @@ fn run<T: Real, const D: usize>(
             Solution { values, contact, outcome: Outcome::NotCoercive, outer: 0, linear: 0 };
         return (solution, clock.elapsed().as_secs_f64());
     }
-    let start = match task.start {
-        Some(vertices) => Start::Contact(transfer(vertices, &inequality.places)),
-        None => Start::Cold,
-    };
     let mut seconds = f64::INFINITY;
     let mut last = None;
     for _ in 0..task.repeat.max(1) {
         let clock = Instant::now();
-        last = Some(task.solver.solve(inequality, &start));
+        last = Some(task.solver.solve(inequality));
         seconds = seconds.min(clock.elapsed().as_secs_f64());
     }
     match last {

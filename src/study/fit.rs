@@ -58,7 +58,8 @@ fn first_failure<T: Real, const D: usize>(scene: &Scene<D>, mesh: &Mesh<T, D>) -
         let pressure = alpha * gradient.dot(&normal);
         let size = 1.0 + opening.abs() + alpha * gradient.norm();
         // the smaller of two non-negative numbers must vanish
-        if !(opening.min(pressure).abs() <= slack.sqrt() * size) {
+        let violation = opening.min(pressure).abs();
+        if violation.is_nan() || violation > slack.sqrt() * size {
             return Some(describe_point(&x));
         }
     }

@@ -4,7 +4,7 @@
 use std::collections::BTreeMap;
 use std::time::Instant;
 
-use crate::algebra::Contact;
+use crate::algebra::{Contact, Start};
 use crate::assemble::{DataQuadrature, Discretisation};
 use crate::error::Error;
 use crate::mesh::{Mesh, Refinement};
@@ -12,7 +12,7 @@ use crate::problem::Problem;
 use crate::real::Real;
 use crate::scenes::Scene;
 use crate::scheme::ConformingP1;
-use crate::solve::{InequalitySolver, Outcome, Start};
+use crate::solve::{InequalitySolver, Outcome};
 
 /// Contact of every vertex, found by conforming P1, with what it cost.
 #[derive(Clone, Debug)]
@@ -93,16 +93,21 @@ impl<'a, T: Real, const D: usize> Levels<'a, T, D> {
         Ok(())
     }
 
-    /// Refuses a level before any of its coarser ones is made.
-    pub(super) fn check_size(&self, level: usize) -> Result<(), Error> {
-        let cells = match self.given {
+    /// How many cells a level has.
+    pub(super) fn cells(&self, level: usize) -> f64 {
+        match self.given {
             Some(mesh) => (mesh.n_cells() as f64) * 2_f64.powi(D as i32).powf(level as f64),
             None => {
                 let simplices: f64 = (1..=D).map(|k| k as f64).product();
                 self.scene.domain.counts(level).iter().map(|&n| n as f64).product::<f64>()
                     * simplices
             }
-        };
+        }
+    }
+
+    /// Refuses a level before any of its coarser ones is made.
+    pub(super) fn check_size(&self, level: usize) -> Result<(), Error> {
+        let cells = self.cells(level);
         // beyond this a discontinuous space has more unknowns and entries than 32-bit numbers reach
         let limit = f64::from(u32::MAX) / ((D + 1) * (D + 1) * (D + 2)) as f64;
         if cells > limit {
@@ -114,7 +119,31 @@ impl<'a, T: Real, const D: usize> Levels<'a, T, D> {
                 ),
             });
         }
-        Ok(())
+        self.check_scalar(level)
+    }
+
+    /// Refuses cells so small or large that their squares or volumes, or the reciprocals of these,
+    /// are out of the range of the scalar. Meshes that are given were checked when they were made.
+    fn check_scalar(&self, level: usize) -> Result<(), Error> {
+        let domain = &self.scene.domain;
+        let counts = domain.counts(level);
+        let side = |k: usize| (domain.upper[k] - domain.lower[k]) / counts[k] as f64;
+        let fits = |x: f64| {
+            let error = (T::lit(x).to_f64() / x - 1.0).abs();
+            x.is_normal() && error <= T::EPSILON
+        };
+        let power = D.max(2) as i32;
+        let outside = |&h: &f64| !(fits(h.powi(power)) && fits(h.powi(-power)));
+        match (0..D).map(side).find(outside).filter(|_| self.given.is_none()) {
+            None => Ok(()),
+            Some(h) => Err(Error::Parameter {
+                parameter: "precision",
+                value: T::NAME.to_owned(),
+                allowed: format!(
+                    "cannot hold the volume of cells of size {h:.1e}; choose another precision, scale or level"
+                ),
+            }),
+        }
     }
 
     fn coarsest(&self, level: usize) -> Result<Mesh<T, D>, Error> {
@@ -196,8 +225,8 @@ fn solve_p1<T: Real, const D: usize>(
     for _ in 0..repeat.max(1) {
         let clock = Instant::now();
         let space = Discretisation::new(&ConformingP1, problem, mesh, quadrature)?;
-        let inequality = space.inequality()?;
-        let solution = solver.solve(&inequality, &start);
+        let inequality = space.inequality()?.with_start(start.clone());
+        let solution = solver.solve(&inequality);
         seconds = seconds.min(clock.elapsed().as_secs_f64());
         // a start need not be right; one that failed is as good as none
         contact = match solution.outcome {

@@ -19,7 +19,7 @@ pub use any_scheme::{AnyScheme, Fields, Solved, Task};
 pub use csv::to_csv;
 pub use fit::check_fit;
 pub use levels::{Levels, VertexContact};
-pub use memory::peak_memory_bytes;
+pub use memory::{MemoryEstimate, available_memory_bytes, peak_memory_bytes};
 pub use orders::{fill_orders, observed_order};
 pub use plot::{Figure, convergence, work_precision};
 pub use registry::{SCHEMES, SchemeOptions, scheme_by_name};

@@ -89,7 +89,8 @@ impl Report {
     ///
     /// # Errors
     /// [`Error::Write`] at the first file that cannot be written.
-    pub fn write(&self, directory: &Path) -> Result<Vec<PathBuf>, Error> {
+    pub fn write(&self, directory: impl AsRef<Path>) -> Result<Vec<PathBuf>, Error> {
+        let directory = directory.as_ref();
         std::fs::create_dir_all(directory).map_err(|e| write_error(directory, e))?;
         let mut written = Vec::new();
         let mut put = |name: &str, file: &dyn Fn(&Path) -> Result<(), String>| {

@@ -5,9 +5,10 @@ use std::path::PathBuf;
 use super::any_scheme::{AnyScheme, Solved, Task};
 use super::fit::check_fit;
 use super::levels::Levels;
+use super::memory::estimate;
 use super::{
-    CellFields, Errors, Iterations, Program, Report, Row, Seconds, fill_orders, peak_memory_bytes,
-    write_vtu,
+    CellFields, Errors, Iterations, MemoryEstimate, Program, Report, Row, Seconds, fill_orders,
+    peak_memory_bytes, write_vtu,
 };
 use crate::assemble::DataQuadrature;
 use crate::error::Error;
@@ -141,6 +142,21 @@ impl<'a, T: Real, const D: usize> Study<'a, T, D> {
             check_fit(&self.scene, mesh)?;
         }
         Ok(())
+    }
+
+    /// What the largest run will need of memory with the direct solver, about; nothing for a study
+    /// without schemes or levels.
+    pub fn memory_estimate(&self) -> Option<MemoryEstimate> {
+        let levels = Levels::new(&self.scene, self.mesh.as_ref());
+        let level = self.levels.iter().copied().max()?;
+        let cells = levels.cells(level);
+        let obstacle = self.scene.problem.lower.is_some() || self.scene.problem.upper.is_some();
+        let of = |scheme: &dyn AnyScheme<T, D>| MemoryEstimate {
+            bytes: estimate(D, scheme.layout(), cells, obstacle, size_of::<T>()),
+            scheme: scheme.name().to_owned(),
+            level,
+        };
+        self.schemes.iter().map(|s| of(&**s)).max_by(|a, b| a.bytes.total_cmp(&b.bytes))
     }
 
     /// Runs every scheme on every level.

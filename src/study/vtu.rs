@@ -78,7 +78,8 @@ fn write_simplices(
     let coordinates = points.as_flattened().iter().map(|x| x.to_le_bytes());
     array(&mut w, "Float64", "Points", 3, coordinates)?;
     writeln!(w, "</Points>\n<Cells>")?;
-    array(&mut w, "Int64", "connectivity", 1, (0..n_points).map(|i| (i as i64).to_le_bytes()))?;
+    let corners = connectivity(dimension, points);
+    array(&mut w, "Int64", "connectivity", 1, corners.iter().map(|i| i.to_le_bytes()))?;
     let ends = (0..n_cells).map(|c| (((c + 1) * (dimension + 1)) as i64).to_le_bytes());
     array(&mut w, "Int64", "offsets", 1, ends)?;
     // The format's numbers of line, triangle and tetrahedron.
@@ -86,6 +87,29 @@ fn write_simplices(
     array(&mut w, "UInt8", "types", 1, std::iter::repeat_n([cell_type], n_cells))?;
     writeln!(w, "</Cells>\n</Piece>\n</UnstructuredGrid>\n</VTKFile>")?;
     w.flush()
+}
+
+/// The points of every cell. Cells of a mesh list their vertices by number, those of the format
+/// counterclockwise, or seen from the fourth: otherwise volumes come out negative and surfaces look
+/// inwards. So two points change places where need be, in the list and not in the fields.
+fn connectivity(dimension: usize, points: &[[f64; 3]]) -> Vec<i64> {
+    let mut list: Vec<i64> = (0..points.len() as i64).collect();
+    if dimension == 1 {
+        return list;
+    }
+    let corners = dimension + 1;
+    for (cell, x) in list.chunks_exact_mut(corners).zip(points.chunks_exact(corners)) {
+        let edge = |i: usize| -> [f64; 3] { std::array::from_fn(|k| x[i][k] - x[0][k]) };
+        let (a, b) = (edge(1), edge(2));
+        let c = if dimension == 3 { edge(3) } else { [0.0, 0.0, 1.0] };
+        let volume = c[0] * (a[1] * b[2] - a[2] * b[1])
+            + c[1] * (a[2] * b[0] - a[0] * b[2])
+            + c[2] * (a[0] * b[1] - a[1] * b[0]);
+        if volume < 0.0 {
+            cell.swap(corners - 2, corners - 1);
+        }
+    }
+    list
 }
 
 /// Refuses a field that does not fit: a reader would show nonsense or nothing at all.
@@ -112,11 +136,12 @@ fn array<const BYTES: usize>(
     components: usize,
     items: impl ExactSizeIterator<Item = [u8; BYTES]>,
 ) -> io::Result<()> {
-    writeln!(
-        w,
-        "<DataArray type=\"{kind}\" Name=\"{name}\" NumberOfComponents=\"{components}\" \
-         format=\"binary\">"
-    )?;
+    write!(w, "<DataArray type=\"{kind}\" Name=\"{name}\"")?;
+    // Where it is not needed, some readers take it for one column of a matrix.
+    if components > 1 {
+        write!(w, " NumberOfComponents=\"{components}\"")?;
+    }
+    writeln!(w, " format=\"binary\">")?;
     let mut encoder = EncoderWriter::new(&mut *w, &STANDARD);
     encoder.write_all(&((items.len() * BYTES) as u64).to_le_bytes())?;
     for item in items {

@@ -1,6 +1,6 @@
 //! Small inequalities with known properties, and slow solvers that are easy to believe.
 
-use unilateral::algebra::{Bound, Contact, Inequality, SparseMatrix};
+use unilateral::algebra::{Bound, Contact, Inequality, SparseMatrix, Start};
 use unilateral::real::Real;
 
 /// The minimal standard generator: a few lines, the same numbers everywhere.
@@ -42,7 +42,7 @@ pub fn inequality<T: Real>(
     bounds: Vec<Bound<T>>,
 ) -> Inequality<T> {
     let load = load.iter().map(|&b| T::lit(b)).collect();
-    Inequality { matrix, symmetric: true, load, bounds, places: vec![] }
+    Inequality { matrix, symmetric: true, load, bounds, places: vec![], start: Start::Cold }
 }
 
 /// The five-point matrix of minus the Laplacian times `h^2` on `n x m` nodes.
@@ -113,13 +113,15 @@ pub fn penalised_string(cells: usize, penalty: f64) -> SparseMatrix<f64> {
     let stiffness = cells as f64;
     let n = 2 * cells;
     let mut dense = vec![vec![0.0; n]; n];
-    for k in 0..n {
-        let (inside, across) =
-            if k % 2 == 0 { (k + 1, k.checked_sub(1)) } else { (k - 1, Some(k + 1)) };
-        dense[k][k] = stiffness + penalty;
-        dense[k][inside] = -stiffness;
+    for (k, row) in dense.iter_mut().enumerate() {
+        let (inside, across) = match k % 2 {
+            0 => (k + 1, k.checked_sub(1)),
+            _ => (k - 1, Some(k + 1)),
+        };
+        row[k] = stiffness + penalty;
+        row[inside] = -stiffness;
         if let Some(j) = across.filter(|&j| j < n) {
-            dense[k][j] = -penalty;
+            row[j] = -penalty;
         }
     }
     sparse(&dense)
@@ -170,9 +172,10 @@ fn eliminate(mut a: Vec<Vec<f64>>, mut b: Vec<f64>) -> Vec<f64> {
         a.swap(k, pivot);
         b.swap(k, pivot);
         for i in k + 1..n {
-            let factor = a[i][k] / a[k][k];
-            for j in k..n {
-                a[i][j] -= factor * a[k][j];
+            let (above, below) = a.split_at_mut(i);
+            let factor = below[0][k] / above[k][k];
+            for (x, pivot) in below[0].iter_mut().zip(&above[k]).skip(k) {
+                *x -= factor * pivot;
             }
             b[i] -= factor * b[k];
         }

@@ -1,0 +1,200 @@
+//! What the command line asks for, checked as far as it can be without scenes and meshes.
+
+use std::path::PathBuf;
+
+use clap::{CommandFactory, Parser, error::ErrorKind};
+use unilateral::scenes;
+use unilateral::study::SCHEMES;
+
+use super::Request;
+
+/// Compares finite element schemes on obstacle and Signorini problems.
+#[derive(Parser, Debug)]
+#[command(name = "compare", version, about)]
+pub struct Options {
+    /// Name every scene, scheme, constraint placement and solver, and end
+    #[arg(long)]
+    pub list: bool,
+    /// Scenes by name, or `all`
+    #[arg(long = "scene", value_delimiter = ',', value_name = "A[,B...]")]
+    pub scenes: Vec<String>,
+    /// Schemes by name, or `all`
+    #[arg(long = "scheme", value_delimiter = ',', value_name = "A[,B...]")]
+    pub schemes: Vec<String>,
+    /// Subdivisions of the scene's shortest side; with --mesh: uniform refinements, from 0
+    #[arg(long, value_delimiter = ',', value_name = "N[,N...]", allow_negative_numbers = true, value_parser = whole)]
+    pub levels: Vec<usize>,
+    /// Run on this Gmsh mesh; physical groups dirichlet, neumann, contact name the boundary parts
+    #[arg(long, value_name = "FILE")]
+    pub mesh: Option<PathBuf>,
+    /// Length scale of scenes that have one
+    #[arg(long, value_name = "L", allow_negative_numbers = true, value_parser = number)]
+    pub scale: Option<f64>,
+    /// Ratio of coefficients of scenes that have one
+    #[arg(long, value_name = "X", allow_negative_numbers = true, value_parser = number)]
+    pub contrast: Option<f64>,
+    /// Load of scenes that have one
+    #[arg(long, value_name = "X", allow_negative_numbers = true, value_parser = number)]
+    pub load: Option<f64>,
+    /// Interior penalty X / h_F on every facet, instead of the proven bound with its margin
+    #[arg(long, value_name = "X", allow_negative_numbers = true, value_parser = number)]
+    pub sigma: Option<f64>,
+    /// WOPSIP weight X / h_F^3 on every facet, instead of the dimensionless default
+    #[arg(long, value_name = "X", allow_negative_numbers = true, value_parser = number)]
+    pub eta: Option<f64>,
+    /// Where discontinuous schemes impose the inequality
+    #[arg(long, value_parser = ["vertices", "facet-means"], default_value = "vertices")]
+    pub constraint: String,
+    /// Solver of the inequality
+    #[arg(long, value_name = "NAME")]
+    pub solver: Option<String>,
+    /// Linear solver inside it: direct or iterative
+    #[arg(long, value_name = "NAME")]
+    pub linear: Option<String>,
+    /// Scalar of assembly and solve
+    #[arg(long, value_parser = ["f64", "f32"], default_value = "f64")]
+    pub precision: String,
+    /// Number of threads; all cores by default
+    #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = whole)]
+    pub threads: Option<usize>,
+    /// Every time is the smallest of K runs
+    #[arg(long, value_name = "K", allow_negative_numbers = true, value_parser = whole, default_value_t = 1)]
+    pub repeat: usize,
+    /// Where the report goes
+    #[arg(long, value_name = "DIR", default_value = "target/compare")]
+    pub out: PathBuf,
+    /// Also write the JSON report here; `-` for standard output
+    #[arg(long, value_name = "FILE")]
+    pub json: Option<PathBuf>,
+    /// No progress, no tables
+    #[arg(long)]
+    pub quiet: bool,
+}
+
+impl Options {
+    /// Whether the user named scenes, not all or whichever are the default.
+    pub fn scenes_are_named(&self) -> bool {
+        !self.scenes.is_empty() && !self.scenes.iter().any(|name| name == "all")
+    }
+}
+
+/// Solvers of the inequality and linear solvers inside them, with one line each.
+const SOLVERS: &[(&str, &str)] =
+    &[("active-set", "primal-dual active set, started from coarser levels in conforming P1")];
+const LINEAR: &[(&str, &str)] = &[("direct", "sparse Cholesky or LU")];
+const PLACEMENTS: &[(&str, &str)] = &[
+    ("vertices", "bounds on the values at the vertices of each cell"),
+    ("facet-means", "bounds on the means over the facets of each cell"),
+];
+
+/// More threads than this hardly help anyone, and the system may fail to start them.
+const MOST_THREADS: usize = 1024;
+
+fn whole(text: &str) -> Request<usize> {
+    text.parse().map_err(|_| "expected a whole number, such as 16".to_owned())
+}
+
+fn number(text: &str) -> Request<f64> {
+    text.parse().map_err(|_| "expected a number, such as 2.5 or 1e-3".to_owned())
+}
+
+/// The options. Help and version are answered here and end the program.
+pub fn parse() -> Request<Options> {
+    Options::try_parse().map_err(|e| if e.use_stderr() { one_line(&e) } else { e.exit() })
+}
+
+/// What the parser of options finds wrong, without its hints on usage.
+fn one_line(wrong: &clap::Error) -> String {
+    let text = wrong.to_string();
+    let hint = |line: &str| line.starts_with("Usage:") || line.starts_with("For more information");
+    let lines: Vec<&str> =
+        text.lines().map(str::trim).filter(|line| !line.is_empty() && !hint(line)).collect();
+    let message = lines.join("; ").replacen("error: ", "", 1);
+    if wrong.kind() != ErrorKind::UnknownArgument {
+        return message;
+    }
+    let command = Options::command();
+    let names =
+        command.get_arguments().filter_map(|a| a.get_long()).map(|name| format!("--{name}"));
+    format!("{message}; there are: {}, --help", names.collect::<Vec<_>>().join(", "))
+}
+
+pub fn list() -> String {
+    let scenes: Vec<(String, String)> =
+        scenes::catalogue().into_iter().map(|s| (s.name, s.summary.to_owned())).collect();
+    let mut text = String::new();
+    let mut group = |title: &str, rows: &mut dyn Iterator<Item = (&str, &str)>| {
+        text += &format!("{title}\n");
+        for (name, summary) in rows {
+            text += &format!("  {name:<24}{summary}\n");
+        }
+    };
+    group("scenes", &mut scenes.iter().map(|(n, s)| (&n[..], &s[..])));
+    group("schemes", &mut SCHEMES.iter().copied());
+    group("constraint placements", &mut PLACEMENTS.iter().copied());
+    group("solvers", &mut SOLVERS.iter().copied());
+    group("linear solvers", &mut LINEAR.iter().copied());
+    text
+}
+
+/// A name of a list, or a message with the list.
+fn known(kind: &str, name: &str, names: &[&str]) -> Request<()> {
+    if names.contains(&name) {
+        return Ok(());
+    }
+    Err(format!("unknown {kind} \"{name}\"; there are: {}", names.join(", ")))
+}
+
+/// The names asked for, each once; all of them if one is `all`.
+pub fn choose(
+    kind: &str,
+    asked: &[String],
+    default: &[&str],
+    names: &[&str],
+) -> Request<Vec<String>> {
+    let allowed = [names, &["all"]].concat();
+    asked.iter().try_for_each(|name| known(kind, name, &allowed))?;
+    Ok(if asked.is_empty() {
+        default.iter().map(|&name| name.to_owned()).collect()
+    } else if asked.iter().any(|name| name == "all") {
+        names.iter().map(|&name| name.to_owned()).collect()
+    } else {
+        each_once(asked)
+    })
+}
+
+pub fn each_once<T: Clone + PartialEq>(items: &[T]) -> Vec<T> {
+    let mut once = Vec::new();
+    for item in items {
+        if !once.contains(item) {
+            once.push(item.clone());
+        }
+    }
+    once
+}
+
+pub fn check_numbers(options: &Options) -> Request<()> {
+    for (name, value) in [("--sigma", options.sigma), ("--eta", options.eta)] {
+        if let Some(x) = value
+            && !(x > 0.0 && x.is_finite())
+        {
+            return Err(format!("{name} {x:?}: a penalty factor must be positive and finite"));
+        }
+    }
+    for (name, value) in [("--repeat", Some(options.repeat)), ("--threads", options.threads)] {
+        if value == Some(0) {
+            return Err(format!("{name} 0: must be at least 1"));
+        }
+    }
+    if let Some(threads) = options.threads.filter(|&n| n > MOST_THREADS) {
+        return Err(format!("--threads {threads}: must be at most {MOST_THREADS}"));
+    }
+    let names = |list: &[(&'static str, &str)]| list.iter().map(|s| s.0).collect::<Vec<_>>();
+    if let Some(name) = &options.solver {
+        known("solver", name, &names(SOLVERS))?;
+    }
+    if let Some(name) = &options.linear {
+        known("linear solver", name, &names(LINEAR))?;
+    }
+    Ok(())
+}

@@ -1,0 +1,47 @@
+//! A scheme in one file: the incomplete interior penalty method, beside two schemes of the library.
+//!
+//! C. Dawson, S. Sun, M. F. Wheeler, Comput. Methods Appl. Mech. Engrg. 193 (2004), 2565-2580.
+
+use unilateral::prelude::*;
+
+/// `sigma / h_F [u][v] - {d_n u}[v]`: no symmetrising term.
+struct Incomplete(f64);
+
+impl<T: Real, const D: usize> FacetForm<T, D> for Incomplete {
+    const USES_FLUX: bool = true;
+    const SYMMETRIC: bool = false;
+    fn penalty(&self, facet: &FacetView<T>) -> T {
+        T::lit(self.0) * facet.coefficient() / facet.diameter
+    }
+    fn integrand(&self, v: Trace<T>, u: Trace<T>, penalty: T) -> T {
+        penalty * u.jump * v.jump - u.flux * v.jump
+    }
+}
+
+/// An element, a facet form and a way to impose Dirichlet data.
+struct Iipg {
+    sigma: f64,
+}
+
+impl<T: Real, const D: usize> Scheme<T, D> for Iipg {
+    type Element = Broken<P1>;
+    type Facet = Incomplete;
+    const DIRICHLET: DirichletBy = DirichletBy::FacetForm;
+    fn name(&self) -> &str {
+        "iipg"
+    }
+    fn facet(&self, _: &Mesh<T, D>) -> Incomplete {
+        Incomplete(self.sigma)
+    }
+}
+
+fn main() -> Result<(), Error> {
+    let report = Study::<f64, 2>::new(scenes::radial(1.0))
+        .scheme(ConformingP1)
+        .scheme(Sipg::default())
+        .scheme(Iipg { sigma: 10.0 })
+        .levels([8, 16, 32])
+        .run()?;
+    print!("{report}");
+    Ok(())
+}
