@@ -11,7 +11,7 @@ use unilateral::assemble::DataQuadrature;
 use unilateral::mesh::Mesh;
 use unilateral::prelude::*;
 use unilateral::scenes::{BoxDomain, Scene};
-use unilateral::solve::{ActiveSet, InequalitySolver, Outcome, Start};
+use unilateral::solve::{ActiveSet, InequalitySolver, Outcome};
 
 /// The obstacle problem of PETSc's `snes/tutorials/ex9` (Bueler, *PETSc for Partial Differential
 /// Equations*, chapter 12): five-point differences on `N x N` points, which are conforming linear
@@ -34,7 +34,7 @@ fn ball_obstacle_of_petsc() {
         let mesh = Mesh::<f64, 2>::kuhn_box(&scene.domain, [points - 1; 2]).unwrap();
         let inequality =
             ConformingP1.inequality(&scene.problem, &mesh, DataQuadrature::default()).unwrap();
-        let solution = ActiveSet::default().solve(&inequality, &Start::Cold);
+        let solution = ActiveSet::default().solve(&inequality);
         assert_eq!(solution.outcome, Outcome::Converged);
         let nodes = mesh.vertices().iter().zip(&solution.values);
         let errors: Vec<f64> = nodes.map(|(x, u)| (u - (exact.value)(x)).abs()).collect();
