@@ -231,7 +231,6 @@ fn data_equal_but_for_rounding_do_not_contradict() {
 
 /// The same of a gap and an obstacle from above.
 #[test]
-#[ignore = "refused as contradictory where both are near zero"]
 fn bounds_equal_but_for_rounding_do_not_contradict() {
     let mesh = Mesh::<f64, 2>::kuhn_box(&mixed_box(), [3, 3]).unwrap();
     let problem = Problem::new().obstacle_above(|x| x[1]).signorini(|_| 1e-19);

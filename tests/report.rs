@@ -190,7 +190,7 @@ fn all_files_are_written_and_plots_show_what_they_should() {
     for row in &mut rows[9..] {
         row.error = Errors::default();
     }
-    let written = report(rows).write(&scratch.0.join("deep")).unwrap();
+    let written = report(rows).write(scratch.0.join("deep")).unwrap();
     let names: Vec<_> = written.iter().map(|p| p.file_name().unwrap().to_str().unwrap()).collect();
     let expected = [
         "report.json",

@@ -18,19 +18,25 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
     /// The bounds of all unknowns; see `Discretisation::bounds`.
     pub fn bounds(&self) -> Result<Vec<Bound<T>>, Error> {
         let mut bounds = vec![Bound::Free; self.dofs.size()];
+        let mut conflicts = Vec::new();
         if self.problem.lower.is_some() || self.problem.upper.is_some() {
-            self.bound_by_obstacles(&mut bounds)?;
+            self.bound_by_obstacles(&mut bounds, &mut conflicts)?;
         }
         if let Some(gap) = &self.problem.gap {
-            self.bound_by_contact(gap, &mut bounds)?;
+            self.bound_by_contact(gap, &mut bounds, &mut conflicts)?;
         }
         if self.pins {
-            self.pin(&mut bounds)?;
+            self.pin(&mut bounds, &mut conflicts)?;
         }
+        judge::<T, D>(&bounds, conflicts)?;
         Ok(bounds)
     }
 
-    fn bound_by_obstacles(&self, bounds: &mut [Bound<T>]) -> Result<(), Error> {
+    fn bound_by_obstacles(
+        &self,
+        bounds: &mut [Bound<T>],
+        conflicts: &mut Vec<Conflict<D>>,
+    ) -> Result<(), Error> {
         for cell in 0..self.mesh.n_cells() {
             for i in 0..self.per_cell() {
                 let unknown = self.dofs.of(cell, i);
@@ -44,13 +50,18 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
                     None => Ok(None),
                 };
                 let (lower, upper) = (at(&self.problem.lower)?, at(&self.problem.upper)?);
-                bounds[unknown] = between(lower, upper, unknown, &x)?;
+                bounds[unknown] = between(lower, upper, unknown, x, conflicts);
             }
         }
         Ok(())
     }
 
-    fn bound_by_contact(&self, gap: &Field<D>, bounds: &mut [Bound<T>]) -> Result<(), Error> {
+    fn bound_by_contact(
+        &self,
+        gap: &Field<D>,
+        bounds: &mut [Bound<T>],
+        conflicts: &mut Vec<Conflict<D>>,
+    ) -> Result<(), Error> {
         let rule = Rule::of_degree(D - 1, self.quadrature.facet);
         for (cell, local) in self.facets_of(BoundaryPart::Contact) {
             for i in self.nodes_on(local) {
@@ -65,16 +76,15 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
                 let old = bounds[unknown];
                 let lower = old.lower().map_or(value, |l| l.to_f64().max(value));
                 let upper = old.upper().map(Real::to_f64);
-                bounds[unknown] = between(Some(lower), upper, unknown, &x)?;
+                bounds[unknown] = between(Some(lower), upper, unknown, x, conflicts);
             }
         }
         Ok(())
     }
 
-    fn pin(&self, bounds: &mut [Bound<T>]) -> Result<(), Error> {
+    fn pin(&self, bounds: &mut [Bound<T>], conflicts: &mut Vec<Conflict<D>>) -> Result<(), Error> {
         let rule = Rule::of_degree(D - 1, self.quadrature.facet);
         let zero = !self.problem.has_dirichlet_data();
-        let mut pinned = Vec::new();
         for (cell, local) in self.facets_of(BoundaryPart::Dirichlet) {
             for i in self.nodes_on(local) {
                 let unknown = self.dofs.of(cell, i);
@@ -94,20 +104,16 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
                         self.facet_mean(&rule, cell, local, "dirichlet", &datum)?
                     }
                 };
-                pinned.push((unknown, value, x, bounds[unknown]));
+                // obstacles must leave room for the datum
+                let limits = (bounds[unknown].lower(), bounds[unknown].upper());
+                if let (Some(lower), _) = limits {
+                    note(lower.to_f64(), value, unknown, x, conflicts);
+                }
+                if let (_, Some(upper)) = limits {
+                    note(value, upper.to_f64(), unknown, x, conflicts);
+                }
                 bounds[unknown] = Bound::Fixed(T::lit(value));
             }
-        }
-        // obstacles must leave room for the datum; where both are zero but for rounding, only the
-        // size of all data tells that it is rounding
-        let limits = |b: &Bound<T>| [b.lower(), b.upper()].map(|x| x.map(Real::to_f64));
-        let room = pinned.iter().map(|p| limits(&p.3)).chain(bounds.iter().map(limits));
-        let sizes = room.flatten().flatten().chain(pinned.iter().map(|p| p.1));
-        let size = sizes.fold(0.0, |size: f64, value| size.max(value.abs()));
-        for (unknown, value, x, before) in pinned {
-            let [lower, upper] = limits(&before);
-            check_room::<T, D>(lower, Some(value), size, unknown, &x)?;
-            check_room::<T, D>(Some(value), upper, size, unknown, &x)?;
         }
         Ok(())
     }
@@ -132,37 +138,62 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
     }
 }
 
+/// A lower bound above an upper one: the unknown, its node, the two values.
+type Conflict<const D: usize> = (usize, Point<f64, D>, f64, f64);
+
+/// Notes two values of which the first must not exceed the second.
+fn note<const D: usize>(
+    lower: f64,
+    upper: f64,
+    unknown: usize,
+    x: Point<f64, D>,
+    conflicts: &mut Vec<Conflict<D>>,
+) {
+    if lower > upper {
+        conflicts.push((unknown, x, lower, upper));
+    }
+}
+
 /// The bound between two values, of which each may be absent.
 fn between<T: Real, const D: usize>(
     lower: Option<f64>,
     upper: Option<f64>,
     unknown: usize,
-    x: &Point<f64, D>,
-) -> Result<Bound<T>, Error> {
-    Ok(match (lower, upper) {
+    x: Point<f64, D>,
+    conflicts: &mut Vec<Conflict<D>>,
+) -> Bound<T> {
+    match (lower, upper) {
         (None, None) => Bound::Free,
         (Some(l), None) => Bound::Lower(T::lit(l)),
         (None, Some(u)) => Bound::Upper(T::lit(u)),
         (Some(l), Some(u)) => {
-            check_room::<T, D>(lower, upper, l.abs() + u.abs(), unknown, x)?;
+            note(l, u, unknown, x, conflicts);
             Bound::Both(T::lit(l), T::lit(l.max(u)))
         }
-    })
+    }
 }
 
-/// Whether there is room between two values, up to the rounding of data of this size.
-fn check_room<T: Real, const D: usize>(
-    lower: Option<f64>,
-    upper: Option<f64>,
-    size: f64,
-    unknown: usize,
-    x: &Point<f64, D>,
+/// Tells contradictions from rounding. Two values that are equal but for rounding may be zero but
+/// for rounding, so only the size of all data can tell.
+fn judge<T: Real, const D: usize>(
+    bounds: &[Bound<T>],
+    conflicts: Vec<Conflict<D>>,
 ) -> Result<(), Error> {
+    if conflicts.is_empty() {
+        return Ok(());
+    }
+    let values = |b: &Bound<T>| match *b {
+        Bound::Free => [None, None],
+        Bound::Fixed(a) | Bound::Lower(a) | Bound::Upper(a) => [Some(a), None],
+        Bound::Both(a, b) => [Some(a), Some(b)],
+    };
+    let sizes = bounds.iter().flat_map(values).flatten().map(|x| x.to_f64().abs());
+    let size = conflicts.iter().map(|c| c.2.abs().max(c.3.abs())).chain(sizes).fold(0.0, f64::max);
     let slack = RELATIVE_SLACK.max(16.0 * T::EPSILON) * size;
-    match (lower, upper) {
-        (Some(lower), Some(upper)) if lower - upper > slack => {
-            Err(Error::EmptyConstraint { unknown, at: describe_point(x), lower, upper })
+    match conflicts.into_iter().find(|(_, _, lower, upper)| lower - upper > slack) {
+        Some((unknown, x, lower, upper)) => {
+            Err(Error::EmptyConstraint { unknown, at: describe_point(&x), lower, upper })
         }
-        _ => Ok(()),
+        None => Ok(()),
     }
 }

@@ -17,6 +17,9 @@ use crate::quadrature::{Rule, insert};
 use crate::real::{Point, Real, point_f64};
 use crate::scheme::Scheme;
 
+/// What is added to a cell's part of the load.
+type OfCell<'w, T> = &'w (dyn Fn(usize, &mut [T]) -> Result<(), Error> + Sync);
+
 impl<T: Real, const D: usize> Space<'_, T, D> {
     /// Whether Dirichlet data enter through the facet form.
     fn has_weak_data(&self) -> bool {
@@ -92,11 +95,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
     }
 
     /// Calls a function with each cell and its part of the load, in parallel.
-    fn for_each_cell(
-        &self,
-        load: &mut [T],
-        work: &(dyn Fn(usize, &mut [T]) -> Result<(), Error> + Sync),
-    ) -> Result<(), Error> {
+    fn for_each_cell(&self, load: &mut [T], work: OfCell<'_, T>) -> Result<(), Error> {
         let n = self.per_cell();
         let piece = |mut cells: Range<usize>, entries: &mut [T]| {
             entries.chunks_exact_mut(n).try_for_each(|out| match cells.next() {

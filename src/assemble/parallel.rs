@@ -18,13 +18,16 @@ pub(super) fn items(piece: usize, n: usize) -> Range<usize> {
     piece * CHUNK..((piece + 1) * CHUNK).min(n)
 }
 
+/// What is done with the items and entries of a piece.
+pub(super) type Work<'w, V, E> = &'w (dyn Fn(Range<usize>, &mut [V]) -> Result<(), E> + Sync);
+
 /// Cuts `entries` so that each piece holds those of its items, where the entries of items `a..b` are
 /// `end(a)..end(b)`, and calls `work` with each piece's items and entries; the first error wins.
 pub(super) fn for_each<V: Send, E: Send>(
     n: usize,
     end: &dyn Fn(usize) -> usize,
     entries: &mut [V],
-    work: &(dyn Fn(Range<usize>, &mut [V]) -> Result<(), E> + Sync),
+    work: Work<'_, V, E>,
 ) -> Result<(), E> {
     let mut pieces = Vec::with_capacity(n_pieces(n));
     let mut rest = entries;

@@ -108,6 +108,12 @@ pub trait FacetForm<T: Real, const D: usize>: Send + Sync {
         let _ = facet;
         None
     }
+    /// The facet diameter below which rounding in the assembled matrix, with this rounding unit,
+    /// outweighs the discretisation error; none if no mesh is that fine.
+    fn rounding_limit(&self, epsilon: f64) -> Option<f64> {
+        let _ = epsilon;
+        None
+    }
     /// The factors in force, for reports.
     fn parameters(&self) -> PenaltyParameters {
         PenaltyParameters::default()

@@ -128,6 +128,19 @@ impl<T: Real, const D: usize> Mesh<T, D> {
         }
         nalgebra::ComplexField::sqrt(largest)
     }
+    /// The smallest distance of two vertices of a cell.
+    pub fn shortest_edge(&self) -> f64 {
+        let mut shortest = f64::INFINITY;
+        for cell in self.cells.chunks_exact(D + 1) {
+            for (i, &a) in cell.iter().enumerate() {
+                for &b in &cell[..i] {
+                    let edge = self.vertices[a as usize] - self.vertices[b as usize];
+                    shortest = shortest.min(edge.norm_squared().to_f64());
+                }
+            }
+        }
+        shortest.sqrt()
+    }
     /// The largest cell diameter.
     pub fn mesh_size(&self) -> f64 {
         (0..self.n_cells()).map(|c| self.cell_diameter(c).to_f64()).fold(0.0, f64::max)

@@ -2,7 +2,7 @@
 
 use super::validate::check_size;
 use super::{BoundaryFacet, Mesh, MeshError};
-use crate::real::{Point, Real};
+use crate::real::{Point, Real, point_f64};
 
 /// How the vertices of a refined mesh came from those of the coarse one.
 ///
@@ -18,38 +18,85 @@ pub struct Refinement {
 /// local numbers.
 type Children = &'static [&'static [[usize; 2]]];
 
-/// The corner children first, then, in three dimensions, the inner octahedron cut around the edge
-/// from the midpoint of vertices 0 and 2 to that of 1 and 3.
+/// The corner children first, then, in three dimensions, the inner octahedron cut around one of its
+/// diagonals.
 ///
-/// Every list is ascending in lexicographic order. Source: J. Bey, Computing 55 (1995), 355-378,
-/// whose rule this is, and who shows that it makes at most three classes of congruent tetrahedra
-/// of each initial one.
-const fn children(dimension: usize) -> Children {
-    match dimension {
-        1 => &[&[[0, 0], [0, 1]], &[[0, 1], [1, 1]]],
-        2 => &[
-            &[[0, 0], [0, 1], [0, 2]],
-            &[[0, 1], [1, 1], [1, 2]],
-            &[[0, 2], [1, 2], [2, 2]],
-            &[[0, 1], [0, 2], [1, 2]],
-        ],
-        _ => &[
-            &[[0, 0], [0, 1], [0, 2], [0, 3]],
-            &[[0, 1], [1, 1], [1, 2], [1, 3]],
-            &[[0, 2], [1, 2], [2, 2], [2, 3]],
-            &[[0, 3], [1, 3], [2, 3], [3, 3]],
-            &[[0, 1], [0, 2], [0, 3], [1, 3]],
-            &[[0, 1], [0, 2], [1, 2], [1, 3]],
-            &[[0, 2], [0, 3], [1, 3], [2, 3]],
-            &[[0, 2], [1, 2], [1, 3], [2, 3]],
-        ],
+/// Every list is ascending in lexicographic order.
+const CHILDREN: [Children; 3] = [
+    &[&[[0, 0], [0, 1]], &[[0, 1], [1, 1]]],
+    &[
+        &[[0, 0], [0, 1], [0, 2]],
+        &[[0, 1], [1, 1], [1, 2]],
+        &[[0, 2], [1, 2], [2, 2]],
+        &[[0, 1], [0, 2], [1, 2]],
+    ],
+    &[
+        &[[0, 0], [0, 1], [0, 2], [0, 3]],
+        &[[0, 1], [1, 1], [1, 2], [1, 3]],
+        &[[0, 2], [1, 2], [2, 2], [2, 3]],
+        &[[0, 3], [1, 3], [2, 3], [3, 3]],
+        &[[0, 1], [0, 2], [0, 3], [1, 3]],
+        &[[0, 1], [0, 2], [1, 2], [1, 3]],
+        &[[0, 2], [0, 3], [1, 3], [2, 3]],
+        &[[0, 2], [1, 2], [1, 3], [2, 3]],
+    ],
+];
+
+/// The same with the octahedron cut around the diagonal between the midpoints of 01 and 23.
+const AROUND_01_23: Children = &[
+    CHILDREN[2][0],
+    CHILDREN[2][1],
+    CHILDREN[2][2],
+    CHILDREN[2][3],
+    &[[0, 1], [0, 2], [0, 3], [2, 3]],
+    &[[0, 1], [0, 3], [1, 3], [2, 3]],
+    &[[0, 1], [1, 2], [1, 3], [2, 3]],
+    &[[0, 1], [0, 2], [1, 2], [2, 3]],
+];
+
+/// The same with the octahedron cut around the diagonal between the midpoints of 03 and 12.
+const AROUND_03_12: Children = &[
+    CHILDREN[2][0],
+    CHILDREN[2][1],
+    CHILDREN[2][2],
+    CHILDREN[2][3],
+    &[[0, 1], [0, 2], [0, 3], [1, 2]],
+    &[[0, 2], [0, 3], [1, 2], [2, 3]],
+    &[[0, 3], [1, 2], [1, 3], [2, 3]],
+    &[[0, 1], [0, 3], [1, 2], [1, 3]],
+];
+
+/// A diagonal is chosen over the one of Bey's rule only if it is shorter by more than this share:
+/// rounding must not decide between equal ones.
+const SHORTER: f64 = 1e-3;
+
+/// How a cell is cut. A tetrahedron is cut around the shortest diagonal of its inner octahedron, and
+/// where that is a tie around the one from the midpoint of 02 to that of 13.
+///
+/// Sources: the latter is the rule of J. Bey, Computing 55 (1995), 355-378, under which a tetrahedron
+/// has descendants of at most three shapes; but it depends on the order of vertices, which in a mesh
+/// from a file is arbitrary, and may begin with the longest diagonal. The former is that of
+/// S. Zhang, Houston J. Math. 21 (1995), 541-556. Boxes cut by Kuhn's rule stay such boxes.
+fn children<T: Real, const D: usize>(mesh: &Mesh<T, D>, cell: usize) -> Children {
+    if D < 3 {
+        return CHILDREN[D - 1];
     }
+    let x = |k: usize| point_f64(&mesh.vertices[mesh.cell(cell)[k] as usize]);
+    let diagonal = |[a, b, c, d]: [usize; 4]| (x(a) + x(b) - x(c) - x(d)).norm();
+    let mut best = (diagonal([0, 2, 1, 3]) * (1.0 - SHORTER), CHILDREN[2]);
+    for (ends, children) in [([0, 1, 2, 3], AROUND_01_23), ([0, 3, 1, 2], AROUND_03_12)] {
+        let length = diagonal(ends);
+        if length < best.0 {
+            best = (length, children);
+        }
+    }
+    best.1
 }
 
 /// The fine vertices, numbered by their pair of coarse parents in lexicographic order.
 ///
-/// This order is what makes repeated refinement work without storing how a cell was made: the
-/// children's vertices, ascending, come out in the order Bey's rule needs for the next step.
+/// This order makes the children's vertices, as they are listed, ascending, and for Bey's rule they
+/// are then in the order it needs for the next step.
 struct Midpoints {
     starts: Vec<u32>,
     upper: Vec<u32>,
@@ -128,8 +175,8 @@ impl<T: Real, const D: usize> Mesh<T, D> {
     /// # Errors
     /// [`MeshError::TooLarge`].
     pub fn refine(&self) -> Result<(Self, Refinement), MeshError> {
-        let children = children(D);
-        let n_fine = self.n_cells().saturating_mul(children.len());
+        let n_children = 1 << D;
+        let n_fine = self.n_cells().saturating_mul(n_children);
         check_size(n_fine, 0)?;
         let midpoints = Midpoints::new(self);
         let parents = midpoints.parents();
@@ -146,19 +193,19 @@ impl<T: Real, const D: usize> Mesh<T, D> {
             })
             .collect();
         let mut cells = Vec::with_capacity(n_fine * (D + 1));
-        for cell in self.cells.chunks_exact(D + 1) {
-            for child in children {
+        for (c, cell) in self.cells.chunks_exact(D + 1).enumerate() {
+            for child in children(self, c) {
                 cells.extend(child.iter().map(|&[i, j]| midpoints.number(cell[i], cell[j])));
             }
         }
         let mut boundary = Vec::with_capacity(self.boundary.len() << (D - 1));
         for facet in &self.boundary {
-            for (k, child) in children.iter().enumerate() {
+            for (k, child) in children(self, facet.cell as usize).iter().enumerate() {
                 // a fine facet lies on the coarse one if no vertex of it involves the opposite one
                 let off = |v: &[usize; 2]| v.contains(&(facet.local as usize));
                 for local in 0..=D {
                     if child.iter().enumerate().all(|(i, v)| i == local || !off(v)) {
-                        let cell = facet.cell * children.len() as u32 + k as u32;
+                        let cell = facet.cell * n_children as u32 + k as u32;
                         boundary.push(BoundaryFacet { cell, local: local as u8, part: facet.part });
                     }
                 }

@@ -149,6 +149,7 @@ trait Discrete<T: Real> {
     fn inequality(&self) -> Result<Inequality<T>, Error>;
     fn penalty_shortfall(&self) -> Option<PenaltyShortfall>;
     fn parameters(&self) -> PenaltyParameters;
+    fn rounding_limit(&self) -> Option<f64>;
     fn errors(&self, u: &[T]) -> Result<Errors, Error>;
     fn fields(&self, inequality: &Inequality<T>, solution: &Solution<T>) -> Fields;
 }
@@ -162,6 +163,9 @@ impl<T: Real, const D: usize, S: Scheme<T, D>> Discrete<T> for Discretisation<'_
     }
     fn parameters(&self) -> PenaltyParameters {
         self.form().parameters()
+    }
+    fn rounding_limit(&self) -> Option<f64> {
+        self.form().rounding_limit(T::EPSILON)
     }
     fn errors(&self, u: &[T]) -> Result<Errors, Error> {
         self.errors(u)
@@ -194,6 +198,15 @@ fn solve<T: Real, const D: usize>(
     let mut warnings = Vec::new();
     if let Some(s) = shortfall {
         warnings.push(s.to_string());
+    }
+    if let Some(limit) = space.rounding_limit() {
+        let shortest = task.mesh.shortest_edge();
+        if shortest < limit {
+            warnings.push(format!(
+                "facets of length {shortest:.1e} are below {limit:.1e}, where rounding of the assembled matrix in {} may outweigh the discretisation error",
+                T::NAME
+            ));
+        }
     }
     let (solution, solve_seconds) = run(task, &inequality, shortfall.is_some());
     let u = &solution.values;

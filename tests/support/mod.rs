@@ -3,7 +3,6 @@
 
 pub mod accuracy;
 
-use std::collections::HashMap;
 use unilateral::mesh::{BoundaryPart, Mesh, TaggedFacet};
 use unilateral::prelude::*;
 use unilateral::scenes::BoxDomain;
@@ -106,44 +105,4 @@ impl<const D: usize> Raw<D> {
     pub fn mesh<T: Real>(&self) -> Mesh<T, D> {
         Mesh::new(self.vertices.clone(), self.cells.clone(), &self.boundary).unwrap()
     }
-}
-
-/// A mesh of tetrahedra refined by cutting every edge in half and the octahedron left inside each
-/// along the shortest of its three diagonals, which keeps the shape of cells on any mesh.
-pub fn refined_by_shortest_diagonals(mesh: &Mesh<f64, 3>) -> Mesh<f64, 3> {
-    let mut vertices = mesh.vertices().to_vec();
-    let mut midpoints = HashMap::new();
-    let mut midpoint = |a: u32, b: u32| {
-        *midpoints.entry([a.min(b), a.max(b)]).or_insert_with(|| {
-            vertices.push((vertices[a as usize] + vertices[b as usize]) * 0.5);
-            vertices.len() as u32 - 1
-        })
-    };
-    let mut octahedra = Vec::new();
-    let mut cells = Vec::new();
-    for c in 0..mesh.n_cells() {
-        let corners: [u32; 4] = std::array::from_fn(|k| mesh.cell(c)[k]);
-        let middle = corners.map(|a| corners.map(|b| if a == b { a } else { midpoint(a, b) }));
-        middle.iter().for_each(|corner| cells.extend(corner));
-        // opposite midpoints, then the other four around the diagonal between them
-        octahedra.push([[0, 2, 1, 3], [0, 1, 2, 3], [0, 3, 1, 2]].map(|[a, b, c, d]| {
-            let ring = [middle[a][c], middle[c][b], middle[b][d], middle[d][a]];
-            (middle[a][b], middle[c][d], ring)
-        }));
-    }
-    let mut boundary = Vec::new();
-    for facet in mesh.boundary() {
-        let v: Vec<u32> = mesh.facet_vertices(facet.cell as usize, facet.local as usize).collect();
-        let [a, b, c] = [midpoint(v[1], v[2]), midpoint(v[0], v[2]), midpoint(v[0], v[1])];
-        let parts = [[v[0], b, c], [v[1], a, c], [v[2], a, b], [a, b, c]];
-        boundary.extend(parts.map(|vertices| TaggedFacet { vertices, part: facet.part }));
-    }
-    for diagonals in octahedra {
-        let length =
-            |d: &(u32, u32, [u32; 4])| (vertices[d.0 as usize] - vertices[d.1 as usize]).norm();
-        let shortest = |a: &_, b: &_| length(a).total_cmp(&length(b));
-        let (p, q, ring) = diagonals.into_iter().min_by(shortest).unwrap();
-        (0..4).for_each(|k| cells.extend([p, q, ring[k], ring[(k + 1) % 4]]));
-    }
-    Mesh::new(vertices, cells, &boundary).unwrap()
 }
