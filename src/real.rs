@@ -14,6 +14,9 @@ pub trait Real:
     const NAME: &'static str;
     /// Distance from one to the next larger number, as `f64`.
     const EPSILON: f64;
+    /// A certificate above this is not that of a solution, whatever the size of rounding: 1e-9, and
+    /// 1e-4 in single precision.
+    const CERTIFICATE_LIMIT: f64;
     /// The nearest scalar to a constant or datum.
     fn lit(x: f64) -> Self;
     /// The same number in `f64`, exactly.
@@ -23,6 +26,7 @@ pub trait Real:
 impl Real for f64 {
     const NAME: &'static str = "f64";
     const EPSILON: f64 = f64::EPSILON;
+    const CERTIFICATE_LIMIT: f64 = 1e-9;
     #[inline(always)]
     fn lit(x: f64) -> Self {
         x
@@ -36,6 +40,7 @@ impl Real for f64 {
 impl Real for f32 {
     const NAME: &'static str = "f32";
     const EPSILON: f64 = f32::EPSILON as f64;
+    const CERTIFICATE_LIMIT: f64 = 1e-4;
     #[inline(always)]
     fn lit(x: f64) -> Self {
         x as f32

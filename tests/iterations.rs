@@ -173,3 +173,62 @@ fn large_penalties() {
     }
     checks.finish();
 }
+
+/// A penalty so large that rounding rules is never called a success.
+#[test]
+fn worthless_answers_are_not_converged() {
+    let scheme = Wopsip { eta: Eta::Absolute(1e10), weight: WeightRule::Isotropic };
+    let report =
+        Study::<f64, 2>::new(scenes::signorini_2d()).scheme(scheme).levels([128]).run().unwrap();
+    let row = &report.rows[0];
+    assert!(!row.converged() || row.certificate.largest() < 1e-9, "{:?}", row.certificate);
+    assert_eq!(row.status, "stalled");
+    assert!(row.warnings.iter().any(|w| w.contains("rounding")), "{:?}", row.warnings);
+}
+
+/// A body held by contact alone, at one point: a start without contact must not end as singular.
+#[test]
+fn a_body_held_at_one_point_is_not_singular() {
+    let sides = [[BoundaryPart::Neumann; 2], [BoundaryPart::Contact, BoundaryPart::Neumann]];
+    let domain = scenes::BoxDomain {
+        lower: Point::from([-1.0, 0.0]),
+        upper: Point::from([1.0, 1.0]),
+        sides,
+    };
+    let scene = || scenes::Scene::<2> {
+        name: "table-2d".into(),
+        summary: "a block on a peak",
+        domain: domain.clone(),
+        problem: Problem::new()
+            .constant_source(-1.0)
+            .signorini(|x: &Point<f64, 2>| -1000.0 * x[0] * x[0]),
+        regularity: scenes::Regularity { sobolev: 2.5, strictly_complementary: true },
+    };
+    let report = Study::<f64, 2>::new(scene())
+        .scheme(ConformingP1)
+        .scheme(CrouzeixRaviartScheme)
+        .scheme(FacetMeans(Wopsip::default()))
+        .levels([4, 8, 16])
+        .run()
+        .unwrap();
+    for row in &report.rows {
+        assert_eq!(row.status, "converged", "{} level {}", row.scheme, row.level);
+        assert!(row.certificate.largest() < 1e-9);
+    }
+}
+
+/// An obstacle that touches curved Dirichlet data: means are compared with means.
+#[test]
+fn a_curved_obstacle_may_touch_the_datum() {
+    let bump = |x: &Point<f64, 2>| x[0] * (1.0 - x[0]);
+    let scene = scenes::Scene::<2> {
+        name: "bump-2d".into(),
+        summary: "a curved obstacle that touches the boundary",
+        domain: scenes::BoxDomain::dirichlet(Point::zeros(), Point::repeat(1.0)),
+        problem: Problem::new().constant_source(-3.0).dirichlet(bump).obstacle_below(bump),
+        regularity: scenes::Regularity { sobolev: 2.5, strictly_complementary: true },
+    };
+    let report =
+        Study::<f64, 2>::new(scene).scheme(CrouzeixRaviartScheme).levels([4, 8]).run().unwrap();
+    assert!(report.rows.iter().all(|row| row.converged()));
+}

@@ -32,7 +32,7 @@ fn check_pair(checks: &mut Checks, coarse: &Row, fine: &Row, halvings: usize) {
 
 /// Runs every scheme on two refinements of a mesh in the plane.
 fn on(mesh: Mesh<f64, 2>, scene: Scene<2>, levels: [usize; 2]) {
-    assert!(check_fit(&scene, &mesh).unwrap(), "the exact solution does not hold");
+    assert_eq!(check_fit(&scene, &mesh).unwrap(), None, "the exact solution does not hold");
     let mut checks = Checks::default();
     for pair in rows_on(mesh, scene, all_schemes(), levels).chunks(2) {
         check_pair(&mut checks, &pair[0], &pair[1], levels[1] - levels[0]);
@@ -44,7 +44,7 @@ fn on(mesh: Mesh<f64, 2>, scene: Scene<2>, levels: [usize; 2]) {
 
 /// Runs schemes on a mesh in space and its refinement.
 fn on_refined(mesh: &Mesh<f64, 3>, build: fn() -> Scene<3>, schemes: fn() -> Vec<Boxed<f64, 3>>) {
-    assert!(check_fit(&build(), mesh).unwrap(), "the exact solution does not hold");
+    assert_eq!(check_fit(&build(), mesh).unwrap(), None, "the exact solution does not hold");
     let mut checks = Checks::default();
     let coarse = rows_on(mesh.clone(), build(), schemes(), [0]);
     let fine = rows_on(mesh.refine().unwrap().0, build(), schemes(), [0]);
@@ -112,7 +112,7 @@ fn radial_in_space() -> Scene<3> {
 fn block() -> Option<Mesh<f64, 3>> {
     let mesh = shared_mesh("block.msh")?;
     // contact of the file is at y = 0, of the scene at z = 0
-    assert!(!check_fit(&scenes::signorini_harmonic::<3>(), &mesh).unwrap());
+    assert!(check_fit(&scenes::signorini_harmonic::<3>(), &mesh).unwrap().is_some());
     Some(turned(&mesh))
 }
 

@@ -114,6 +114,9 @@ impl Place {
     const NONE: u32 = u32::MAX;
 
     /// A place at one to three vertices, owned by a cell or shared.
+    ///
+    /// # Panics
+    /// If there are more than three.
     pub fn new(cell: Option<u32>, vertices: &[u32]) -> Self {
         let mut v = [Self::NONE; 3];
         v[..vertices.len()].copy_from_slice(vertices);
@@ -183,6 +186,9 @@ impl<T: Real> Inequality<T> {
         self.bounds.iter().all(|bound| !matches!(*bound, Bound::Both(l, u) if l > u))
     }
     /// `u.A u / 2 - b.u`, in `f64`.
+    ///
+    /// # Panics
+    /// If `u` is shorter than the number of unknowns.
     pub fn objective(&self, u: &[T]) -> f64 {
         (0..self.size())
             .map(|i| {

@@ -59,10 +59,6 @@ impl<T: Real> SparseMatrix<T> {
         let (columns, values) = self.row(i);
         columns.iter().zip(values).fold(T::lit(0.0), |s, (&j, &a)| s + a * x[j as usize])
     }
-    /// `y = A x`, by rows in parallel; the same bits for any number of threads.
-    pub fn apply(&self, x: &[T], y: &mut [T]) {
-        y.par_iter_mut().with_min_len(4096).enumerate().for_each(|(i, y)| *y = self.row_dot(i, x));
-    }
     /// Row `i` times a vector, every product and the sum in `f64`.
     #[inline]
     pub fn row_dot_f64(&self, i: usize, x: &[T]) -> f64 {

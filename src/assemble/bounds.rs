@@ -105,12 +105,19 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
                     }
                 };
                 // obstacles must leave room for the datum
-                let limits = (bounds[unknown].lower(), bounds[unknown].upper());
-                if let (Some(lower), _) = limits {
-                    note(lower.to_f64(), value, unknown, x, conflicts);
+                let [lower, upper] = [&self.problem.lower, &self.problem.upper].map(|psi| {
+                    psi.as_ref().map(|psi| match node {
+                        Node::Vertex(_) => Ok(psi(&x)),
+                        // a mean is compared with a mean: over a curved obstacle the value at the
+                        // barycentre may lie above the mean of a datum that touches it
+                        Node::FacetMean(_) => self.facet_mean(&rule, cell, local, "obstacle", psi),
+                    })
+                });
+                if let Some(lower) = lower {
+                    note(lower?, value, unknown, x, conflicts);
                 }
-                if let (_, Some(upper)) = limits {
-                    note(value, upper.to_f64(), unknown, x, conflicts);
+                if let Some(upper) = upper {
+                    note(value, upper?, unknown, x, conflicts);
                 }
                 bounds[unknown] = Bound::Fixed(T::lit(value));
             }

@@ -103,6 +103,9 @@ impl<'a, T: Real, const D: usize, S: Scheme<T, D>> Discretisation<'a, T, D, S> {
         if Self::OWNS_ROWS { broken::pattern(self) } else { gather::pattern(self) }
     }
     /// Overwrites the values of a matrix that has this discretisation's pattern.
+    ///
+    /// # Panics
+    /// If it has another.
     pub fn fill(&self, matrix: &mut SparseMatrix<T>) {
         if Self::OWNS_ROWS { broken::fill(self, matrix) } else { gather::fill(self, matrix) }
     }
@@ -152,6 +155,9 @@ impl<'a, T: Real, const D: usize, S: Scheme<T, D>> Discretisation<'a, T, D, S> {
         self.space.places()
     }
     /// The discrete function at the vertices of each cell, `D + 1` values for each.
+    ///
+    /// # Panics
+    /// If `u` is shorter than the number of unknowns.
     pub fn vertex_values(&self, u: &[T]) -> Vec<f64> {
         self.space.vertex_values(u)
     }

@@ -102,6 +102,8 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
                     .sum(),
                 Node::Vertex(_) => (exact.value)(&self.node_point(cell, *node)),
             };
+            let x = self.node_point(cell, *node);
+            let exact_value = data::finite(exact_value, "exact solution", &x, cell)?;
             sum.max = sum.max.max((value - exact_value).abs());
         }
         Ok(sum)
@@ -118,6 +120,9 @@ impl<T: Real, const D: usize, S: Scheme<T, D>> Discretisation<'_, T, D, S> {
     ///
     /// # Errors
     /// [`Error::DataNotFinite`].
+    ///
+    /// # Panics
+    /// If `u` is shorter than the number of unknowns.
     pub fn errors(&self, u: &[T]) -> Result<Errors, Error> {
         let Some(exact) = &self.space.problem.exact else { return Ok(Errors::default()) };
         let mut total = self.space.cell_errors(exact, u)?;

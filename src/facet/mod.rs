@@ -108,11 +108,13 @@ pub trait FacetForm<T: Real, const D: usize>: Send + Sync {
         let _ = facet;
         None
     }
-    /// The facet diameter below which rounding in the assembled matrix, with this rounding unit,
-    /// outweighs the discretisation error; none if no mesh is that fine.
-    fn rounding_limit(&self, epsilon: f64) -> Option<f64> {
-        let _ = epsilon;
-        None
+    /// The length of an edge below which rounding in the assembled matrix, with this rounding unit
+    /// and on a domain of this diameter, may outweigh the discretisation error.
+    ///
+    /// By default for a condition number of `(h / length)^-2` against an error of
+    /// `(h / length)^2`; the factor of one half is measured.
+    fn rounding_limit(&self, epsilon: f64, length: f64) -> f64 {
+        0.5 * length * epsilon.powf(0.25)
     }
     /// The factors in force, for reports.
     fn parameters(&self) -> PenaltyParameters {

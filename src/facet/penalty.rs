@@ -137,10 +137,11 @@ impl<T: Real, const D: usize> FacetForm<T, D> for OverPenalty {
             }
         }
     }
-    /// The condition number grows like `eta h^-4`, the discretisation error falls like `h^2`: they
-    /// meet at the sixth root of `epsilon eta`.
-    fn rounding_limit(&self, epsilon: f64) -> Option<f64> {
-        Some((epsilon * self.eta).powf(1.0 / 6.0))
+    /// With lengths in units of the domain's diameter the condition number grows like `eta h^-4`
+    /// and the discretisation error falls like `h^2`: they meet at the sixth root of
+    /// `epsilon eta`.
+    fn rounding_limit(&self, epsilon: f64, length: f64) -> f64 {
+        0.5 * length * (epsilon * self.eta / (length * length)).powf(1.0 / 6.0)
     }
     fn parameters(&self) -> PenaltyParameters {
         let rule = match self.rule {

@@ -24,6 +24,9 @@ impl Rule {
     /// dimension). Above: the conical product of Gauss-Jacobi rules, `ceil((degree + 1) / 2)`
     /// points in each direction (A. H. Stroud, Approximate Calculation of Multiple Integrals,
     /// 1971, section 2.5).
+    ///
+    /// # Panics
+    /// If the dimension is above three.
     pub fn of_degree(dimension: usize, degree: usize) -> Self {
         match (dimension, degree) {
             (0, _) | (_, 0 | 1) => Self::barycentre(dimension),

@@ -1,16 +1,15 @@
 //! The same scheme with its bounds on facet means.
 
-use super::{DirichletBy, Scheme, Setting};
+use super::{DirichletBy, Scheme};
 use crate::element::{Broken, CrouzeixRaviart, P1};
 use crate::mesh::Mesh;
 use crate::real::Real;
-use crate::study::ExpectedOrders;
 
 /// A scheme on broken linears, written in the basis of facet means, so that bounds on these means
 /// bind single unknowns.
 ///
 /// Space, form and Dirichlet data are those of the scheme inside; only the constraint set differs.
-/// For WOPSIP the matrix in this basis has no positive entry off the diagonal on non-obtuse meshes.
+/// No order is proven for this set; it is measured. For WOPSIP the matrix in this basis has no positive entry off the diagonal on non-obtuse meshes.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct FacetMeans<S>(pub S);
 
@@ -27,8 +26,5 @@ where
     }
     fn facet(&self, mesh: &Mesh<T, D>) -> S::Facet {
         self.0.facet(mesh)
-    }
-    fn expected_orders(&self, setting: &Setting) -> ExpectedOrders {
-        self.0.expected_orders(setting)
     }
 }

@@ -107,7 +107,7 @@ impl ActiveSet {
             }
             match iterate.solve_linear(self.refinements) {
                 Ok(()) => {}
-                Err(FactorError::Singular) if cold && iterate.outer == 1 => {
+                Err(FactorError::Singular) if iterate.outer == 1 => {
                     if self.check_definite {
                         return Err(Outcome::NotCoercive);
                     }
@@ -179,8 +179,9 @@ impl ActiveSet {
     fn confirm<T: Real>(&self, iterate: &Iterate<'_, T>, band: f64) -> Result<Outcome, Outcome> {
         let (certificate, unit) = certify_with_noise(iterate.inequality, &iterate.values);
         let rounding = 8.0 * band * T::EPSILON;
-        if certificate.feasibility <= rounding && certificate.largest() <= rounding * unit.max(1.0)
-        {
+        // rounding may excuse much for a large penalty, but not that the answer is worthless
+        let largest = (rounding * unit.max(1.0)).min(T::CERTIFICATE_LIMIT);
+        if certificate.feasibility <= rounding && certificate.largest() <= largest {
             Ok(Outcome::Converged)
         } else {
             Err(Outcome::Stalled)

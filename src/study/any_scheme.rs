@@ -149,7 +149,7 @@ trait Discrete<T: Real> {
     fn inequality(&self) -> Result<Inequality<T>, Error>;
     fn penalty_shortfall(&self) -> Option<PenaltyShortfall>;
     fn parameters(&self) -> PenaltyParameters;
-    fn rounding_limit(&self) -> Option<f64>;
+    fn rounding_limit(&self) -> f64;
     fn errors(&self, u: &[T]) -> Result<Errors, Error>;
     fn fields(&self, inequality: &Inequality<T>, solution: &Solution<T>) -> Fields;
 }
@@ -164,8 +164,8 @@ impl<T: Real, const D: usize, S: Scheme<T, D>> Discrete<T> for Discretisation<'_
     fn parameters(&self) -> PenaltyParameters {
         self.form().parameters()
     }
-    fn rounding_limit(&self) -> Option<f64> {
-        self.form().rounding_limit(T::EPSILON)
+    fn rounding_limit(&self) -> f64 {
+        self.form().rounding_limit(T::EPSILON, self.mesh().domain_diameter())
     }
     fn errors(&self, u: &[T]) -> Result<Errors, Error> {
         self.errors(u)
@@ -191,7 +191,9 @@ fn solve<T: Real, const D: usize>(
         drop(make()?.inequality()?);
         assemble_seconds = assemble_seconds.min(clock.elapsed().as_secs_f64());
     }
-    if let Some(vertices) = task.start {
+    // contact nowhere is no knowledge: such a start must be free to find that nothing else holds
+    // the body
+    if let Some(vertices) = task.start.filter(|v| v.iter().any(|&c| c != Contact::Open)) {
         inequality.start = Start::Contact(transfer(vertices, &inequality.places));
     }
     let shortfall = space.penalty_shortfall();
@@ -199,14 +201,12 @@ fn solve<T: Real, const D: usize>(
     if let Some(s) = shortfall {
         warnings.push(s.to_string());
     }
-    if let Some(limit) = space.rounding_limit() {
-        let shortest = task.mesh.shortest_edge();
-        if shortest < limit {
-            warnings.push(format!(
-                "facets of length {shortest:.1e} are below {limit:.1e}, where rounding of the assembled matrix in {} may outweigh the discretisation error",
-                T::NAME
-            ));
-        }
+    let (limit, shortest) = (space.rounding_limit(), task.mesh.shortest_edge());
+    if shortest < limit {
+        warnings.push(format!(
+            "edges of length {shortest:.1e} are below {limit:.1e}, where rounding of the assembled matrix in {} may outweigh the discretisation error",
+            T::NAME
+        ));
     }
     let (solution, solve_seconds) = run(task, &inequality, shortfall.is_some());
     let u = &solution.values;

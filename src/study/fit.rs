@@ -5,7 +5,8 @@ use crate::mesh::{BoundaryPart, Mesh, describe_point};
 use crate::real::{Real, point_f64};
 use crate::scenes::Scene;
 
-/// Checks that a mesh can carry a scene, and tells whether the scene's exact solution holds on it.
+/// Checks that a mesh can carry a scene, and tells where the scene's exact solution fails on it: the
+/// barycentre of a facet, or none.
 ///
 /// Dirichlet and Neumann data of a scene with an exact solution come from that solution wherever
 /// the mesh has such parts, so it stays the solution on any domain where it is smooth enough. Only
@@ -17,26 +18,41 @@ use crate::scenes::Scene;
 pub fn check_fit<T: Real, const D: usize>(
     scene: &Scene<D>,
     mesh: &Mesh<T, D>,
-) -> Result<bool, Error> {
-    let unfit = |why: &str| Error::UnfitMesh { scene: scene.name.clone(), why: why.to_owned() };
-    let contact = mesh.has_part(BoundaryPart::Contact);
-    match (&scene.problem.gap, contact) {
-        (Some(_), false) => {
-            return Err(unfit(
-                "the scene has a Signorini condition, but no facet of the mesh is in a group named \"contact\"",
-            ));
-        }
-        (None, true) => {
-            return Err(unfit(
-                "the mesh has facets in the group \"contact\", but the scene has no Signorini condition",
-            ));
-        }
-        _ => {}
-    }
+) -> Result<Option<String>, Error> {
+    check_contact(scene, mesh.has_part(BoundaryPart::Contact))?;
     if scene.problem.reaction.is_none() {
         mesh.check_supported()?;
     }
-    Ok(first_failure(scene, mesh).is_none())
+    Ok(first_failure(scene, mesh))
+}
+
+/// Checks that the built-in domain of a scene has the parts its problem needs.
+///
+/// # Errors
+/// [`Error::UnfitMesh`].
+pub(super) fn check_domain<const D: usize>(scene: &Scene<D>) -> Result<(), Error> {
+    let has = |part| scene.domain.sides.iter().flatten().any(|&side| side == part);
+    check_contact(scene, has(BoundaryPart::Contact))?;
+    let held = has(BoundaryPart::Contact) || has(BoundaryPart::Dirichlet);
+    if !held && scene.problem.reaction.is_none() {
+        let why = "its domain has neither a dirichlet nor a contact side: the problem is singular";
+        return Err(Error::UnfitMesh { scene: scene.name.clone(), why: why.to_owned() });
+    }
+    Ok(())
+}
+
+/// A contact part without a Signorini condition, or the other way round, is a mistake.
+fn check_contact<const D: usize>(scene: &Scene<D>, contact: bool) -> Result<(), Error> {
+    let why = match (&scene.problem.gap, contact) {
+        (Some(_), false) => {
+            "the scene has a Signorini condition, but no facet of the mesh is in a group named \"contact\""
+        }
+        (None, true) => {
+            "the mesh has facets in the group \"contact\", but the scene has no Signorini condition"
+        }
+        _ => return Ok(()),
+    };
+    Err(Error::UnfitMesh { scene: scene.name.clone(), why: why.to_owned() })
 }
 
 /// The first contact facet on which the exact solution breaks the contact condition.

@@ -228,7 +228,7 @@ fn solve_p1<T: Real, const D: usize>(
         let inequality = space.inequality()?.with_start(start.clone());
         let solution = solver.solve(&inequality);
         seconds = seconds.min(clock.elapsed().as_secs_f64());
-        // a start need not be right; one that failed is as good as none
+        // a start need not be right; all open, one that failed is as good as none
         contact = match solution.outcome {
             Outcome::Converged => solution.contact,
             _ => vec![Contact::Open; inequality.size()],

@@ -43,12 +43,15 @@ pub fn fill_orders(rows: &mut [Row]) {
     }
 }
 
-/// The row one level coarser.
+/// The row one level coarser, with the same penalty.
 fn previous<'a>(rows: &'a [Row], row: &Row) -> Option<&'a Row> {
     rows.iter()
         .filter(|r| {
             r.scene == row.scene && r.scheme == row.scheme && r.constraint == row.constraint
         })
+        // the same scheme with another penalty is another scheme; the dimensionless factor of one
+        // rule resolves to the same number on all levels of a domain
+        .filter(|r| r.parameters == row.parameters)
         .filter(|r| r.level < row.level)
         .max_by_key(|r| r.level)
 }

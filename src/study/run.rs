@@ -3,12 +3,12 @@
 use std::path::PathBuf;
 
 use super::any_scheme::{AnyScheme, Solved, Task};
-use super::fit::check_fit;
+use super::fit::{check_domain, check_fit};
 use super::levels::Levels;
 use super::memory::estimate;
 use super::{
-    CellFields, Errors, Iterations, MemoryEstimate, Program, Report, Row, Seconds, fill_orders,
-    peak_memory_bytes, write_vtu,
+    CellFields, Errors, ExpectedOrders, Iterations, MemoryEstimate, Program, Report, Row, Seconds,
+    fill_orders, peak_memory_bytes, write_vtu,
 };
 use crate::assemble::DataQuadrature;
 use crate::error::Error;
@@ -138,8 +138,11 @@ impl<'a, T: Real, const D: usize> Study<'a, T, D> {
         }
         let levels = Levels::new(&self.scene, self.mesh.as_ref());
         self.levels.iter().try_for_each(|&level| levels.check_size(level))?;
-        if let Some(mesh) = &self.mesh {
-            check_fit(&self.scene, mesh)?;
+        match &self.mesh {
+            Some(mesh) => {
+                check_fit(&self.scene, mesh)?;
+            }
+            None => check_domain(&self.scene)?,
         }
         Ok(())
     }
@@ -166,10 +169,11 @@ impl<'a, T: Real, const D: usize> Study<'a, T, D> {
     /// error: its row says why.
     pub fn run(&self) -> Result<Report, Error> {
         self.check()?;
-        let with_errors = match &self.mesh {
+        let failure = match &self.mesh {
             Some(mesh) => check_fit(&self.scene, mesh)?,
-            None => true,
+            None => None,
         };
+        let failure = failure.as_deref();
         let mut levels = Levels::new(&self.scene, self.mesh.as_ref());
         let finest = self.levels.iter().copied().max();
         let mut rows = Vec::new();
@@ -177,7 +181,7 @@ impl<'a, T: Real, const D: usize> Study<'a, T, D> {
             for &level in &self.levels {
                 (self.observer)(Progress::Started(&self.scene.name, scheme.name(), level));
                 let with_fields = self.directory.is_some() && Some(level) == finest;
-                let row = self.row(&mut levels, &**scheme, level, with_errors, with_fields)?;
+                let row = self.row(&mut levels, &**scheme, level, failure, with_fields)?;
                 (self.observer)(Progress::Finished(&row));
                 rows.push(row);
             }
@@ -192,7 +196,7 @@ impl<'a, T: Real, const D: usize> Study<'a, T, D> {
         levels: &mut Levels<'_, T, D>,
         scheme: &dyn AnyScheme<T, D>,
         level: usize,
-        with_errors: bool,
+        failure: Option<&str>,
         with_fields: bool,
     ) -> Result<Row, Error> {
         levels.make(level)?;
@@ -212,12 +216,18 @@ impl<'a, T: Real, const D: usize> Study<'a, T, D> {
             start: start.as_ref().map(|s| &s.contact[..]),
             solver,
             quadrature,
-            with_errors,
+            with_errors: failure.is_none(),
             repeat: self.repeat,
             with_fields,
         })?;
         if let (Some(directory), Some(_)) = (&self.directory, &solved.fields) {
             self.write_fields(directory, scheme, mesh, &solved)?;
+        }
+        let mut warnings = solved.warnings.clone();
+        if let Some(at) = failure {
+            warnings.push(format!(
+                "the scene's solution breaks the contact condition of this mesh at {at}: no errors"
+            ));
         }
         let coarser = start.as_ref().map_or(0, |s| s.levels);
         let solve = solved.solve_seconds + start.map_or(0.0, |s| s.seconds);
@@ -249,7 +259,10 @@ impl<'a, T: Real, const D: usize> Study<'a, T, D> {
             status: solved.outcome.name().to_owned(),
             error: solved.error,
             order: Errors::default(),
-            expected_order: scheme.expected_orders(&setting),
+            expected_order: match failure {
+                None => scheme.expected_orders(&setting),
+                Some(_) => ExpectedOrders::default(),
+            },
             objective: solved.objective,
             active: solved.active,
             iterations: Iterations {
@@ -260,7 +273,7 @@ impl<'a, T: Real, const D: usize> Study<'a, T, D> {
             certificate: solved.certificate,
             seconds,
             peak_memory_bytes: peak_memory_bytes(),
-            warnings: solved.warnings,
+            warnings,
         })
     }
 
