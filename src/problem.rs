@@ -159,9 +159,13 @@ impl<const D: usize> Problem<D> {
             (None, None) => 0.0,
         }
     }
+    /// Whether an obstacle binds in the domain.
+    pub fn has_obstacle(&self) -> bool {
+        self.lower.is_some() || self.upper.is_some()
+    }
     /// Whether any inequality binds.
     pub fn is_constrained(&self) -> bool {
-        self.lower.is_some() || self.upper.is_some() || self.gap.is_some()
+        self.has_obstacle() || self.gap.is_some()
     }
     /// Whether Dirichlet data are other than zero by default.
     pub fn has_dirichlet_data(&self) -> bool {

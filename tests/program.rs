@@ -3,9 +3,13 @@
 //! `cargo test` builds the program first. `cargo test --test program` does not: it runs whatever
 //! `cargo build --example compare` left.
 
+#[path = "rows/keys.rs"]
+mod keys;
+
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
+use keys::ROW_KEYS;
 use serde_json::Value;
 use unilateral::prelude::*;
 use unilateral::problem::Datum;
@@ -412,29 +416,6 @@ fn obstacles_may_touch_the_datum() {
         assert!(report.unwrap().rows.iter().all(Row::converged));
     }
 }
-
-const ROW_KEYS: [&str; 20] = [
-    "scene",
-    "dimension",
-    "scheme",
-    "constraint",
-    "level",
-    "parameters",
-    "cells",
-    "unknowns",
-    "nonzeros",
-    "mesh_size",
-    "status",
-    "error",
-    "order",
-    "expected_order",
-    "objective",
-    "active",
-    "iterations",
-    "certificate",
-    "seconds",
-    "peak_memory_bytes",
-];
 
 /// Keys of inner objects, and which of their values may be null in a row that converged.
 const INNER_KEYS: [(&str, &[&str], bool); 7] = [

@@ -19,7 +19,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
     pub fn bounds(&self) -> Result<Vec<Bound<T>>, Error> {
         let mut bounds = vec![Bound::Free; self.dofs.size()];
         let mut conflicts = Vec::new();
-        if self.problem.lower.is_some() || self.problem.upper.is_some() {
+        if self.problem.has_obstacle() {
             self.bound_by_obstacles(&mut bounds, &mut conflicts)?;
         }
         if let Some(gap) = &self.problem.gap {

@@ -112,18 +112,12 @@ pub(super) fn fill<T: Real, const D: usize, S: Scheme<T, D>>(
             reaction.add::<S::Element>(space.mesh, cell, geometry.volume, &mut own);
         }
         for local in 0..=D {
-            let here =
-                CellSide { cell, local, geometry: &geometry, coefficient: space.alpha(cell) };
+            let here = space.side(cell, local, &geometry);
             match neighbours.across(cell, local) {
                 Neighbour::Cell { cell: other, local: other_local } => {
                     let other = other as usize;
                     let other_geometry = space.mesh.geometry(other);
-                    let there = CellSide {
-                        cell: other,
-                        local: other_local as usize,
-                        geometry: &other_geometry,
-                        coefficient: space.alpha(other),
-                    };
+                    let there = space.side(other, other_local as usize, &other_geometry);
                     let mut across = zero_local();
                     add_facet(discretisation, &facets, &here, &there, &mut own, &mut across);
                     let block = blocks.iter().position(|&b| b == other as u32).unwrap_or(0);

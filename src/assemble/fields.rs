@@ -47,7 +47,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
     /// The measure of domain or contact boundary that belongs to each unknown.
     fn constrained_measures(&self) -> Vec<f64> {
         let mut measures = vec![0.0; self.dofs.size()];
-        if self.problem.lower.is_some() || self.problem.upper.is_some() {
+        if self.problem.has_obstacle() {
             for cell in 0..self.mesh.n_cells() {
                 let share = self.mesh.geometry(cell).volume.to_f64() / self.per_cell() as f64;
                 for i in 0..self.per_cell() {

@@ -7,7 +7,7 @@
 use std::convert::Infallible;
 use std::ops::Range;
 
-use super::local::{CellSide, FacetGeometry, add_stiffness, traces, zero_local};
+use super::local::{FacetGeometry, add_stiffness, traces, zero_local};
 use super::space::Space;
 use super::tables::{CellTable, FacetTable};
 use super::{Discretisation, count, data, parallel};
@@ -227,10 +227,7 @@ fn facet_matrix<T: Real, const D: usize, S: Scheme<T, D>>(
     let interior = facets.interior().contains(&facet);
     let ((here, i), (there, j)) = (facets.here(facet), facets.there(facet));
     let (g_here, g_there) = (space.mesh.geometry(here), space.mesh.geometry(there));
-    let alpha = |cell| space.alpha(cell);
-    let side_here = CellSide { cell: here, local: i, geometry: &g_here, coefficient: alpha(here) };
-    let side_there =
-        CellSide { cell: there, local: j, geometry: &g_there, coefficient: alpha(there) };
+    let (side_here, side_there) = (space.side(here, i, &g_here), space.side(there, j, &g_there));
     let view = FacetGeometry::new(space.mesh, &side_here, interior.then_some(&side_there));
     let penalty = discretisation.form.penalty(&view.view);
     for ((b_here, b_there), &weight) in table.on(i).iter().zip(table.on(j)).zip(&table.weights) {

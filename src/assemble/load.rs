@@ -4,7 +4,7 @@
 
 use std::ops::Range;
 
-use super::local::{CellSide, FacetGeometry, traces};
+use super::local::{FacetGeometry, traces};
 use super::space::Space;
 use super::tables::FacetTable;
 use super::{Discretisation, count, data, parallel};
@@ -177,8 +177,7 @@ impl<T: Real, const D: usize, S: Scheme<T, D>> Discretisation<'_, T, D, S> {
         let rule = Rule::of_degree(D - 1, space.quadrature.facet);
         for (cell, local) in space.facets_of(BoundaryPart::Dirichlet) {
             let geometry = space.mesh.geometry(cell);
-            let coefficient = space.alpha(cell);
-            let here = CellSide { cell, local, geometry: &geometry, coefficient };
+            let here = space.side(cell, local, &geometry);
             let view = FacetGeometry::new(space.mesh, &here, None);
             let penalty = self.form.penalty(&view.view);
             let values = space.dirichlet_samples(&rule, sampling, cell, local)?;

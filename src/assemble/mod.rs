@@ -29,7 +29,7 @@ use crate::real::Real;
 use crate::scheme::{DirichletBy, Scheme};
 use crate::solve::Solution;
 use crate::study::Fields;
-use local::{CellSide, FacetGeometry};
+use local::FacetGeometry;
 use space::Space;
 
 /// Degrees of the quadrature rules for data, beyond what the forms need.
@@ -210,25 +210,20 @@ impl<'a, T: Real, const D: usize, S: Scheme<T, D>> Discretisation<'a, T, D, S> {
         cell: usize,
         local: usize,
     ) -> Option<FacetView<T>> {
-        let geometry = self.space.mesh.geometry(cell);
-        let here =
-            CellSide { cell, local, geometry: &geometry, coefficient: self.space.alpha(cell) };
+        let space = &self.space;
+        let geometry = space.mesh.geometry(cell);
+        let here = space.side(cell, local, &geometry);
         match neighbours.across(cell, local) {
             Neighbour::Boundary(BoundaryPart::Dirichlet)
                 if S::DIRICHLET == DirichletBy::FacetForm =>
             {
-                Some(FacetGeometry::new(self.space.mesh, &here, None).view)
+                Some(FacetGeometry::new(space.mesh, &here, None).view)
             }
             Neighbour::Boundary(_) => None,
             Neighbour::Cell { cell: other, local: other_local } => {
-                let geometry = self.space.mesh.geometry(other as usize);
-                let there = CellSide {
-                    cell: other as usize,
-                    local: other_local as usize,
-                    geometry: &geometry,
-                    coefficient: self.space.alpha(other as usize),
-                };
-                Some(FacetGeometry::new(self.space.mesh, &here, Some(&there)).view)
+                let geometry = space.mesh.geometry(other as usize);
+                let there = space.side(other as usize, other_local as usize, &geometry);
+                Some(FacetGeometry::new(space.mesh, &here, Some(&there)).view)
             }
         }
     }

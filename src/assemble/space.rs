@@ -4,12 +4,13 @@
 //! element enters as numbers and one function.
 
 use super::dofs::Dofs;
+use super::local::CellSide;
 use super::tables::{BasisAt, CellTable};
 use super::{DataQuadrature, count, data};
 use crate::algebra::Place;
 use crate::element::{MAX_BASIS, Node, ReferenceElement};
 use crate::error::Error;
-use crate::mesh::{BoundaryFacet, BoundaryPart, Facets, Mesh, Neighbours};
+use crate::mesh::{BoundaryFacet, BoundaryPart, CellGeometry, Facets, Mesh, Neighbours};
 use crate::problem::Problem;
 use crate::quadrature::{Rule, insert};
 use crate::real::{Point, Real, point_f64};
@@ -81,6 +82,16 @@ impl<'a, T: Real, const D: usize> Space<'a, T, D> {
     #[inline(always)]
     pub fn alpha(&self, cell: usize) -> T {
         self.coefficients.as_ref().map_or_else(|| T::lit(1.0), |a| a[cell])
+    }
+    /// A cell seen from one of its facets.
+    #[inline(always)]
+    pub fn side<'g>(
+        &self,
+        cell: usize,
+        local: usize,
+        geometry: &'g CellGeometry<T, D>,
+    ) -> CellSide<'g, T, D> {
+        CellSide { cell, local, geometry, coefficient: self.alpha(cell) }
     }
     /// The basis at a point of the cell.
     pub fn basis_at(&self, point: &[f64; 4]) -> BasisAt<f64> {

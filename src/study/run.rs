@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use super::any_scheme::{AnyScheme, Solved, Task};
 use super::fit::{check_domain, check_fit};
-use super::levels::Levels;
+use super::levels::{Levels, VertexContact};
 use super::memory::estimate;
 use super::{
     CellFields, Errors, ExpectedOrders, Iterations, MemoryEstimate, Program, Report, Row, Seconds,
@@ -120,6 +120,11 @@ impl<'a, T: Real, const D: usize> Study<'a, T, D> {
     /// [`Error::Parameter`] for an empty list of levels or schemes or a level of zero,
     /// [`Error::UnfitMesh`], [`Error::Mesh`].
     pub fn check(&self) -> Result<(), Error> {
+        self.where_exact_fails().map(|_| ())
+    }
+
+    /// Checks, and tells where the scene's exact solution fails on a given mesh.
+    fn where_exact_fails(&self) -> Result<Option<String>, Error> {
         let wrong = |parameter, value: &str, allowed: &str| {
             Err(Error::Parameter {
                 parameter,
@@ -139,12 +144,9 @@ impl<'a, T: Real, const D: usize> Study<'a, T, D> {
         let levels = Levels::new(&self.scene, self.mesh.as_ref());
         self.levels.iter().try_for_each(|&level| levels.check_size(level))?;
         match &self.mesh {
-            Some(mesh) => {
-                check_fit(&self.scene, mesh)?;
-            }
-            None => check_domain(&self.scene)?,
+            Some(mesh) => check_fit(&self.scene, mesh),
+            None => check_domain(&self.scene).map(|()| None),
         }
-        Ok(())
     }
 
     /// What the largest run will need of memory with the direct solver, about; nothing for a study
@@ -153,7 +155,7 @@ impl<'a, T: Real, const D: usize> Study<'a, T, D> {
         let levels = Levels::new(&self.scene, self.mesh.as_ref());
         let level = self.levels.iter().copied().max()?;
         let cells = levels.cells(level);
-        let obstacle = self.scene.problem.lower.is_some() || self.scene.problem.upper.is_some();
+        let obstacle = self.scene.problem.has_obstacle();
         let of = |scheme: &dyn AnyScheme<T, D>| MemoryEstimate {
             bytes: estimate(D, scheme.layout(), cells, obstacle, size_of::<T>()),
             scheme: scheme.name().to_owned(),
@@ -168,11 +170,7 @@ impl<'a, T: Real, const D: usize> Study<'a, T, D> {
     /// Whatever is wrong with scene, mesh or parameters. A solve that does not converge is no
     /// error: its row says why.
     pub fn run(&self) -> Result<Report, Error> {
-        self.check()?;
-        let failure = match &self.mesh {
-            Some(mesh) => check_fit(&self.scene, mesh)?,
-            None => None,
-        };
+        let failure = self.where_exact_fails()?;
         let failure = failure.as_deref();
         let mut levels = Levels::new(&self.scene, self.mesh.as_ref());
         let finest = self.levels.iter().copied().max();
@@ -200,22 +198,14 @@ impl<'a, T: Real, const D: usize> Study<'a, T, D> {
         with_fields: bool,
     ) -> Result<Row, Error> {
         levels.make(level)?;
-        let problem = &self.scene.problem;
-        let (solver, quadrature) = (&*self.solver, self.quadrature);
-        let start = if !problem.is_constrained() {
-            None
-        } else if scheme.is_conforming_linear() {
-            levels.start_from_coarser(level, solver, quadrature, self.repeat)?
-        } else {
-            Some(levels.contact(level, solver, quadrature, self.repeat)?)
-        };
+        let start = self.start(levels, scheme, level)?;
         let Some((mesh, mesh_seconds)) = levels.mesh(level) else { unreachable!("made above") };
         let solved = scheme.solve(&Task {
-            problem,
+            problem: &self.scene.problem,
             mesh,
             start: start.as_ref().map(|s| &s.contact[..]),
-            solver,
-            quadrature,
+            solver: &*self.solver,
+            quadrature: self.quadrature,
             with_errors: failure.is_none(),
             repeat: self.repeat,
             with_fields,
@@ -237,12 +227,6 @@ impl<'a, T: Real, const D: usize> Study<'a, T, D> {
             solve,
             total: mesh_seconds + solved.assemble_seconds + solve,
         };
-        let setting = Setting {
-            dimension: D,
-            obstacle: problem.lower.is_some() || problem.upper.is_some(),
-            contact: problem.gap.is_some(),
-            regularity: self.scene.regularity,
-        };
         Ok(Row {
             scene: self.scene.name.clone(),
             dimension: D,
@@ -250,7 +234,7 @@ impl<'a, T: Real, const D: usize> Study<'a, T, D> {
             constraint: scheme.constraint().to_owned(),
             level,
             parameters: solved.parameters,
-            solver: solver.name().to_owned(),
+            solver: self.solver.name().to_owned(),
             linear: "direct".to_owned(),
             cells: mesh.n_cells(),
             unknowns: solved.unknowns,
@@ -260,7 +244,7 @@ impl<'a, T: Real, const D: usize> Study<'a, T, D> {
             error: solved.error,
             order: Errors::default(),
             expected_order: match failure {
-                None => scheme.expected_orders(&setting),
+                None => scheme.expected_orders(&self.setting()),
                 Some(_) => ExpectedOrders::default(),
             },
             objective: solved.objective,
@@ -275,6 +259,35 @@ impl<'a, T: Real, const D: usize> Study<'a, T, D> {
             peak_memory_bytes: peak_memory_bytes(),
             warnings,
         })
+    }
+
+    /// What a scheme starts from: P1 on the coarser level for P1 itself, P1 on the same level for
+    /// all others.
+    fn start(
+        &self,
+        levels: &mut Levels<'_, T, D>,
+        scheme: &dyn AnyScheme<T, D>,
+        level: usize,
+    ) -> Result<Option<VertexContact>, Error> {
+        let (solver, quadrature) = (&*self.solver, self.quadrature);
+        if !self.scene.problem.is_constrained() {
+            Ok(None)
+        } else if scheme.is_conforming_linear() {
+            levels.start_from_coarser(level, solver, quadrature, self.repeat)
+        } else {
+            levels.contact(level, solver, quadrature, self.repeat).map(Some)
+        }
+    }
+
+    /// What promises of orders may depend on.
+    fn setting(&self) -> Setting {
+        let problem = &self.scene.problem;
+        Setting {
+            dimension: D,
+            obstacle: problem.has_obstacle(),
+            contact: problem.gap.is_some(),
+            regularity: self.scene.regularity,
+        }
     }
 
     fn write_fields(
