@@ -10,8 +10,8 @@ struct Incomplete(f64);
 impl<T: Real, const D: usize> FacetForm<T, D> for Incomplete {
     const USES_FLUX: bool = true;
     const SYMMETRIC: bool = false;
-    fn penalty(&self, facet: &FacetView<T>) -> T {
-        T::lit(self.0) * facet.coefficient() / facet.diameter
+    fn penalty(&self, facet: &FacetView<T, D>) -> T {
+        T::lit(self.0) * facet.coefficient() / facet.diameter()
     }
     fn integrand(&self, v: Trace<T>, u: Trace<T>, penalty: T) -> T {
         penalty * u.jump * v.jump - u.flux * v.jump

@@ -2,12 +2,13 @@
 
 pub use crate::element::{Broken, CrouzeixRaviart, P1, ReferenceElement};
 pub use crate::error::Error;
-pub use crate::facet::{FacetForm, FacetView, NoFacets, PenaltyRule, Sampling, Trace, WeightRule};
+pub use crate::facet::{FacetForm, FacetView, NoFacets, PenaltyRule, Trace, WeightRule};
 pub use crate::mesh::{BoundaryPart, Mesh};
 pub use crate::problem::Problem;
 pub use crate::real::{Point, Real};
 pub use crate::scenes;
 pub use crate::scheme::{
-    ConformingP1, CrouzeixRaviartScheme, DirichletBy, Eta, FacetMeans, Scheme, Sipg, Wopsip,
+    Bmmpr, Br2, ConformingP1, CrouzeixRaviartScheme, DirichletBy, Eta, FacetMeans, Iipg, Ldg, Nipg,
+    Scheme, Sipg, Wopsip,
 };
 pub use crate::study::{AnyScheme, Report, Study};

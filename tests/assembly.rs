@@ -286,7 +286,8 @@ fn check_all<const D: usize>(n: usize) {
     let mesh =
         Raw::<D>::jittered(&mixed_box(), n, 0.5, &mut random).shuffled(&mut random).mesh::<f64>();
     let penalty = |rule| InteriorPenalty::<-1> { rule, degree: 1 };
-    let over = OverPenalty { eta: 0.7, rule: WeightRule::Isotropic, mesh_size: f64::NAN };
+    let over =
+        OverPenalty { eta: 0.7, degree: 1, rule: WeightRule::Isotropic, mesh_size: f64::NAN };
     check::<D, P1, _>(&mesh, NoFacets, None, 0.0, vertex_basis::<D>);
     check::<D, P1, _>(&mesh, NoFacets, None, 2.5, vertex_basis::<D>);
     if D > 1 {
@@ -505,7 +506,7 @@ fn the_proven_bound_is_what_the_default_penalty_is_made_of() {
     let mesh = Mesh::<f64, 2>::kuhn_box(&mixed_box(), [4, 4]).unwrap();
     let problem = Problem::<2>::new();
     let shortfall = |sigma| {
-        let scheme = Sipg { penalty: PenaltyRule::Diameter(sigma) };
+        let scheme = Sipg { penalty: PenaltyRule::Diameter(sigma), ..Sipg::default() };
         Discretisation::new(&scheme, &problem, &mesh, DataQuadrature::default())
             .unwrap()
             .penalty_shortfall()
@@ -520,6 +521,6 @@ fn the_proven_bound_is_what_the_default_penalty_is_made_of() {
         Discretisation::new(&Sipg::default(), &problem, &mesh, DataQuadrature::default()).unwrap();
     assert_eq!(default.penalty_shortfall(), None);
     let side = unilateral::facet::Side { coefficient: 2.0, volume: 0.5, surface: 3.0, height: 1.0 };
-    let view = FacetView { measure: 1.0, diameter: 1.0, here: side, there: Some(side) };
+    let view = FacetView::new(&mesh, (0, 0), 1.0, side, Some(side));
     assert_eq!(proven_bound::<f64, 2>(1, &view), 0.5 * 2.0 * 6.0);
 }

@@ -177,7 +177,8 @@ fn large_penalties() {
 /// A penalty so large that rounding rules is never called a success.
 #[test]
 fn worthless_answers_are_not_converged() {
-    let scheme = Wopsip { eta: Eta::Absolute(1e10), weight: WeightRule::Isotropic };
+    let scheme =
+        Wopsip { eta: Eta::Absolute(1e10), weight: WeightRule::Isotropic, ..Wopsip::default() };
     let report =
         Study::<f64, 2>::new(scenes::signorini_2d()).scheme(scheme).levels([128]).run().unwrap();
     let row = &report.rows[0];

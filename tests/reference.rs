@@ -34,9 +34,11 @@ fn scheme(reference: &Value) -> Option<Box<dyn AnyScheme<f64, 2>>> {
         "cr" => Box::new(CrouzeixRaviartScheme),
         "sipg" => {
             let sigma = reference["sigma"].as_f64().unwrap();
-            Box::new(Sipg { penalty: PenaltyRule::Diameter(sigma) })
+            Box::new(Sipg { penalty: PenaltyRule::Diameter(sigma), ..Sipg::default() })
         }
-        "wopsip" => Box::new(Wopsip { eta: eta(), weight: WeightRule::Isotropic }),
+        "wopsip" => {
+            Box::new(Wopsip { eta: eta(), weight: WeightRule::Isotropic, ..Wopsip::default() })
+        }
         _ => return None,
     })
 }

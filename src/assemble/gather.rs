@@ -7,9 +7,9 @@
 use std::convert::Infallible;
 use std::ops::Range;
 
-use super::local::{FacetGeometry, add_stiffness, traces, zero_local};
+use super::local::{StiffnessTable, traces, view, zero_local};
 use super::space::Space;
-use super::tables::{CellTable, FacetTable};
+use super::tables::FacetTable;
 use super::{Discretisation, count, data, parallel};
 use crate::algebra::SparseMatrix;
 use crate::element::{MAX_BASIS, ReferenceElement};
@@ -177,18 +177,17 @@ fn local_matrices<T: Real, const D: usize, S: Scheme<T, D>>(
     let n = Discretisation::<T, D, S>::N;
     let space = patches.space;
     let degree = <S::Element as ReferenceElement<T, D>>::DEGREE;
-    let stiffness = CellTable::new::<S::Element, D>(2 * (degree - 1));
+    let stiffness = StiffnessTable::new::<S::Element, D>();
     let reaction = data::ReactionTerm::new::<S::Element>(space);
     let mut locals = vec![T::lit(0.0); patches.start(patches.len())];
     let (cells, facets) = locals.split_at_mut(patches.start(patches.n_cells()));
     let of_cells = |range: Range<usize>, entries: &mut [T]| {
         for (cell, out) in range.zip(entries.chunks_exact_mut(n * n)) {
-            let geometry = space.mesh.geometry(cell);
+            let metric = space.metric(cell);
             let mut local = zero_local();
-            let alpha = space.alpha(cell);
-            add_stiffness::<T, D, S::Element>(&geometry, alpha, &stiffness, &mut local);
+            stiffness.add::<S::Element, D>(&metric, space.alpha(cell), &mut local);
             if let Some(reaction) = &reaction {
-                reaction.add::<S::Element>(space.mesh, cell, geometry.volume, &mut local);
+                reaction.add::<S::Element>(space.mesh, cell, metric.volume, &mut local);
             }
             for (row, values) in out.chunks_exact_mut(n).zip(&local) {
                 row.copy_from_slice(&values[..n]);
@@ -198,8 +197,7 @@ fn local_matrices<T: Real, const D: usize, S: Scheme<T, D>>(
     };
     let Ok(()) = parallel::for_each(patches.n_cells(), &|c| c * n * n, cells, &of_cells);
     if let Some(all) = &patches.facets {
-        let sampling = <S::Facet as FacetForm<T, D>>::sampling(degree);
-        let table = FacetTable::new::<S::Element, D>(sampling);
+        let table = FacetTable::new::<S::Element, D>(S::Facet::moments(degree));
         let of_facets = |range: Range<usize>, entries: &mut [T]| {
             for (facet, out) in range.zip(entries.chunks_exact_mut(4 * n * n)) {
                 facet_matrix(patches.discretisation, all, &table, facet, out);
@@ -226,27 +224,28 @@ fn facet_matrix<T: Real, const D: usize, S: Scheme<T, D>>(
     let n = Discretisation::<T, D, S>::N;
     let interior = facets.interior().contains(&facet);
     let ((here, i), (there, j)) = (facets.here(facet), facets.there(facet));
-    let (g_here, g_there) = (space.mesh.geometry(here), space.mesh.geometry(there));
-    let (side_here, side_there) = (space.side(here, i, &g_here), space.side(there, j, &g_there));
-    let view = FacetGeometry::new(space.mesh, &side_here, interior.then_some(&side_there));
-    let penalty = discretisation.form.penalty(&view.view);
-    for ((b_here, b_there), &weight) in table.on(i).iter().zip(table.on(j)).zip(&table.weights) {
+    let (m_here, m_there) = (space.metric(here), space.metric(there));
+    let (side_here, side_there) = (space.side(here, i, &m_here), space.side(there, j, &m_there));
+    let view = view(space.mesh, &side_here, interior.then_some(&side_there));
+    let form = &discretisation.form;
+    let penalty = form.penalty(&view);
+    let moments = table.on(i).iter().zip(table.on(j)).zip(&table.degrees);
+    for ((b_here, b_there), &degree) in moments {
         let mut all = [Trace { jump: T::lit(0.0), flux: T::lit(0.0) }; 2 * MAX_BASIS];
-        let one = T::lit(1.0);
         all[..n].copy_from_slice(
-            &traces::<T, D, S::Element, S::Facet>(&view, &g_here, one, b_here)[..n],
+            &traces::<T, D, S::Element, S::Facet>(form, &view, &side_here, true, b_here)[..n],
         );
         if interior {
             all[n..2 * n].copy_from_slice(
-                &traces::<T, D, S::Element, S::Facet>(&view, &g_there, -one, b_there)[..n],
+                &traces::<T, D, S::Element, S::Facet>(form, &view, &side_there, false, b_there)
+                    [..n],
             );
         }
+        let penalty = penalty * T::lit(form.moment_weight(degree));
         let size = if interior { 2 * n } else { n };
         for v in 0..size {
             for u in 0..size {
-                out[v * 2 * n + u] += weight
-                    * view.view.measure
-                    * discretisation.form.integrand(all[v], all[u], penalty);
+                out[v * 2 * n + u] += view.measure * form.integrand(all[v], all[u], penalty);
             }
         }
     }

@@ -4,16 +4,18 @@
 
 use std::ops::Range;
 
-use super::local::{FacetGeometry, traces};
+use super::lifted::{LiftTable, Lifting};
+use super::local::{traces, view};
+use super::metric::Metrics;
 use super::space::Space;
 use super::tables::FacetTable;
 use super::{Discretisation, count, data, parallel};
 use crate::element::ReferenceElement;
 use crate::error::Error;
-use crate::facet::{FacetForm, Sampling, Trace};
+use crate::facet::{FacetForm, Trace};
 use crate::mesh::BoundaryPart;
 use crate::problem::{Datum, Field};
-use crate::quadrature::{Rule, insert};
+use crate::quadrature::{OrthonormalPolynomials, Rule, insert};
 use crate::real::{Point, Real, point_f64};
 use crate::scheme::Scheme;
 
@@ -134,25 +136,38 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         Ok(())
     }
 
-    /// Dirichlet data at the points of a facet rule, or their mean.
-    pub fn dirichlet_samples(
+    /// Moments of Dirichlet data on a facet.
+    pub fn dirichlet_moments(
         &self,
-        rule: &Rule,
-        sampling: Sampling,
+        moments: &FacetMoments,
         cell: usize,
         local: usize,
     ) -> Result<Vec<f64>, Error> {
-        let at = |point| {
+        let mut sums = vec![0.0; moments.polynomials.len()];
+        for (point, w) in moments.rule.iter() {
             count::dirichlet(1);
             let x = self.facet_point(point, cell, local);
-            data::finite(self.problem.dirichlet_at(&x), "dirichlet", &x, cell)
-        };
-        match sampling {
-            Sampling::Points(_) => rule.points.iter().map(at).collect(),
-            Sampling::Means => {
-                let terms = rule.iter().map(|(point, w)| at(point).map(|value| w * value));
-                Ok(vec![terms.sum::<Result<f64, Error>>()?])
+            let value = data::finite(self.problem.dirichlet_at(&x), "dirichlet", &x, cell)?;
+            for (k, sum) in sums.iter_mut().enumerate() {
+                *sum += w * value * moments.polynomials.value(k, point);
             }
+        }
+        Ok(sums)
+    }
+}
+
+/// What moments of data on facets are computed with.
+pub(super) struct FacetMoments {
+    polynomials: OrthonormalPolynomials,
+    rule: Rule,
+}
+
+impl FacetMoments {
+    /// Moments up to a degree, by a rule of another.
+    pub fn new(dimension: usize, degree: usize, rule: usize) -> Self {
+        Self {
+            polynomials: OrthonormalPolynomials::new(dimension - 1, degree),
+            rule: Rule::of_degree(dimension - 1, rule),
         }
     }
 }
@@ -173,36 +188,45 @@ impl<T: Real, const D: usize, S: Scheme<T, D>> Discretisation<'_, T, D, S> {
     /// Dirichlet data as the trial trace of the facet form.
     fn add_dirichlet(&self, load: &mut [T]) -> Result<(), Error> {
         let space = &self.space;
-        let (sampling, table) = self.boundary_samples();
-        let rule = Rule::of_degree(D - 1, space.quadrature.facet);
+        let degree = S::Facet::moments(S::Element::DEGREE);
+        let table = FacetTable::<T>::new::<S::Element, D>(degree);
+        let moments = FacetMoments::new(D, degree, space.quadrature.facet);
+        let mut lifted = Vec::new();
         for (cell, local) in space.facets_of(BoundaryPart::Dirichlet) {
-            let geometry = space.mesh.geometry(cell);
-            let here = space.side(cell, local, &geometry);
-            let view = FacetGeometry::new(space.mesh, &here, None);
-            let penalty = self.form.penalty(&view.view);
-            let values = space.dirichlet_samples(&rule, sampling, cell, local)?;
+            let metric = space.metric(cell);
+            let here = space.side(cell, local, &metric);
+            let facet = view(space.mesh, &here, None);
+            let penalty = self.form.penalty(&facet);
+            let values = space.dirichlet_moments(&moments, cell, local)?;
             let out = &mut load[cell * Self::N..(cell + 1) * Self::N];
-            let samples = table.on(local).iter().zip(&table.weights).zip(values);
-            for ((basis, &weight), value) in samples {
-                let one = T::lit(1.0);
-                let test = traces::<T, D, S::Element, S::Facet>(&view, &geometry, one, basis);
+            for (k, (basis, &value)) in table.on(local).iter().zip(&values).enumerate() {
+                let test =
+                    traces::<T, D, S::Element, S::Facet>(&self.form, &facet, &here, true, basis);
                 let datum = Trace { jump: T::lit(value), flux: T::lit(0.0) };
+                let penalty = penalty * T::lit(self.form.moment_weight(table.degrees[k]));
                 for (out, &v) in out.iter_mut().zip(&test) {
-                    *out += weight * view.view.measure * self.form.integrand(v, datum, penalty);
+                    *out += facet.measure * self.form.integrand(v, datum, penalty);
                 }
             }
+            if S::Facet::LIFTED {
+                lifted.push((cell, (local, values)));
+            }
         }
+        self.add_lifted(&lifted, load);
         Ok(())
     }
 
-    /// How the form samples Dirichlet facets, where data need a finer rule than the basis.
-    pub(super) fn boundary_samples(&self) -> (Sampling, FacetTable<T>) {
-        let degree = <S::Element as ReferenceElement<T, D>>::DEGREE;
-        let sampling = <S::Facet as FacetForm<T, D>>::sampling(degree);
-        let table = FacetTable::<T>::new::<S::Element, D>(match sampling {
-            Sampling::Points(_) => Sampling::Points(self.space.quadrature.facet),
-            Sampling::Means => Sampling::Means,
-        });
-        (sampling, table)
+    /// What the products of lifts make of Dirichlet data: cell, facet and moments of each datum.
+    fn add_lifted(&self, data: &[(usize, (usize, Vec<f64>))], load: &mut [T]) {
+        let (space, Some(neighbours)) = (&self.space, &self.space.neighbours) else { return };
+        if data.is_empty() {
+            return;
+        }
+        let table = LiftTable::new::<S::Element, D>();
+        let metrics = Metrics::of(space.mesh);
+        let lifting = Lifting { space, form: &self.form, metrics: &metrics, table: &table };
+        for (cell, datum) in data {
+            lifting.add_load::<S::Element>(neighbours, *cell, datum, load);
+        }
     }
 }

@@ -12,10 +12,13 @@ mod data;
 mod dofs;
 mod fields;
 mod gather;
+mod lifted;
 mod load;
 mod local;
+mod metric;
 mod norms;
 mod parallel;
+mod products;
 mod space;
 pub(crate) mod tables;
 
@@ -29,7 +32,7 @@ use crate::real::Real;
 use crate::scheme::{DirichletBy, Scheme};
 use crate::solve::Solution;
 use crate::study::Fields;
-use local::FacetGeometry;
+use local::view;
 use space::Space;
 
 /// Degrees of the quadrature rules for data, beyond what the forms need.
@@ -100,14 +103,28 @@ impl<'a, T: Real, const D: usize, S: Scheme<T, D>> Discretisation<'a, T, D, S> {
 
     /// The pattern of the matrix, with values zero.
     pub fn pattern(&self) -> SparseMatrix<T> {
-        if Self::OWNS_ROWS { broken::pattern(self) } else { gather::pattern(self) }
+        if Self::OWNS_ROWS {
+            broken::pattern(&self.space, S::Facet::LIFTED)
+        } else {
+            gather::pattern(self)
+        }
     }
     /// Overwrites the values of a matrix that has this discretisation's pattern.
     ///
     /// # Panics
     /// If it has another.
     pub fn fill(&self, matrix: &mut SparseMatrix<T>) {
-        if Self::OWNS_ROWS { broken::fill(self, matrix) } else { gather::fill(self, matrix) }
+        const {
+            assert!(
+                !S::Facet::LIFTED || (Self::OWNS_ROWS && S::Element::DEGREE <= 2),
+                "lifts of jumps are made for broken elements of degree one and two"
+            );
+        }
+        if Self::OWNS_ROWS {
+            broken::fill::<T, D, S::Element, S::Facet>(&self.space, &self.form, matrix);
+        } else {
+            gather::fill(self, matrix);
+        }
     }
     /// The matrix from nothing.
     pub fn matrix(&self) -> SparseMatrix<T> {
@@ -209,21 +226,19 @@ impl<'a, T: Real, const D: usize, S: Scheme<T, D>> Discretisation<'a, T, D, S> {
         neighbours: &Neighbours,
         cell: usize,
         local: usize,
-    ) -> Option<FacetView<T>> {
+    ) -> Option<FacetView<'a, T, D>> {
         let space = &self.space;
-        let geometry = space.mesh.geometry(cell);
-        let here = space.side(cell, local, &geometry);
+        let metric = space.metric(cell);
+        let here = space.side(cell, local, &metric);
         match neighbours.across(cell, local) {
-            Neighbour::Boundary(BoundaryPart::Dirichlet)
-                if S::DIRICHLET == DirichletBy::FacetForm =>
-            {
-                Some(FacetGeometry::new(space.mesh, &here, None).view)
+            Neighbour::Boundary(BoundaryPart::Dirichlet) if !space.pins => {
+                Some(view(space.mesh, &here, None))
             }
             Neighbour::Boundary(_) => None,
             Neighbour::Cell { cell: other, local: other_local } => {
-                let geometry = space.mesh.geometry(other as usize);
-                let there = space.side(other as usize, other_local as usize, &geometry);
-                Some(FacetGeometry::new(space.mesh, &here, Some(&there)).view)
+                let metric = space.metric(other as usize);
+                let there = space.side(other as usize, other_local as usize, &metric);
+                Some(view(space.mesh, &here, Some(&there)))
             }
         }
     }

@@ -2,10 +2,11 @@
 
 use std::ops::Range;
 
+use super::load::FacetMoments;
 use super::space::Space;
 use super::tables::{BasisAt, CellTable, FacetTable};
 use super::{Discretisation, data, parallel};
-use crate::element::{MAX_BASIS, Node};
+use crate::element::{MAX_BASIS, Node, ReferenceElement};
 use crate::error::Error;
 use crate::facet::{FacetForm, Trace};
 use crate::mesh::{BoundaryPart, Neighbour, Neighbours};
@@ -140,9 +141,9 @@ impl<T: Real, const D: usize, S: Scheme<T, D>> Discretisation<'_, T, D, S> {
     /// The facet form at the jumps of the error.
     fn facet_error(&self, neighbours: &Neighbours, u: &[T]) -> Result<f64, Error> {
         let space = &self.space;
-        let (sampling, boundary_table) = self.boundary_samples();
-        let table = FacetTable::<T>::new::<S::Element, D>(sampling);
-        let rule = Rule::of_degree(D - 1, space.quadrature.facet);
+        let degree = S::Facet::moments(S::Element::DEGREE);
+        let table = FacetTable::<T>::new::<S::Element, D>(degree);
+        let moments = FacetMoments::new(D, degree, space.quadrature.facet);
         let value = |basis: &BasisAt<T>, local: &[f64; MAX_BASIS]| -> f64 {
             local.iter().zip(&basis.values).map(|(c, v)| c * v.to_f64()).sum()
         };
@@ -151,28 +152,26 @@ impl<T: Real, const D: usize, S: Scheme<T, D>> Discretisation<'_, T, D, S> {
             let mine = space.local_values(cell, u);
             for local in 0..=D {
                 let across = neighbours.across(cell, local);
-                let (jumps, weights): (Vec<f64>, _) = match across {
+                let jumps: Vec<f64> = match across {
                     Neighbour::Cell { cell: other, .. } if (other as usize) < cell => continue,
                     Neighbour::Cell { cell: other, local: other_local } => {
                         let theirs = space.local_values(other as usize, u);
                         let sides = table.on(local).iter().zip(table.on(other_local as usize));
-                        let jumps = sides.map(|(a, b)| value(a, &mine) - value(b, &theirs));
-                        (jumps.collect(), &table.weights)
+                        sides.map(|(a, b)| value(a, &mine) - value(b, &theirs)).collect()
                     }
                     Neighbour::Boundary(BoundaryPart::Dirichlet) if !space.pins => {
-                        let data = space.dirichlet_samples(&rule, sampling, cell, local)?;
-                        let samples = boundary_table.on(local).iter().zip(data);
-                        let jumps = samples.map(|(basis, g)| value(basis, &mine) - g);
-                        (jumps.collect(), &boundary_table.weights)
+                        let data = space.dirichlet_moments(&moments, cell, local)?;
+                        let sides = table.on(local).iter().zip(data);
+                        sides.map(|(basis, g)| value(basis, &mine) - g).collect()
                     }
                     Neighbour::Boundary(_) => continue,
                 };
                 let Some(view) = self.facet_view(neighbours, cell, local) else { continue };
                 let penalty = self.form.penalty(&view);
-                for (jump, &weight) in jumps.into_iter().zip(weights) {
+                for (jump, &degree) in jumps.into_iter().zip(&table.degrees) {
                     let trace = Trace { jump: T::lit(jump), flux: T::lit(0.0) };
-                    let term = weight * view.measure * self.form.integrand(trace, trace, penalty);
-                    total += term.to_f64();
+                    let penalty = penalty * T::lit(self.form.moment_weight(degree));
+                    total += (view.measure * self.form.integrand(trace, trace, penalty)).to_f64();
                 }
             }
         }

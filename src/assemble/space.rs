@@ -5,12 +5,13 @@
 
 use super::dofs::Dofs;
 use super::local::CellSide;
+use super::metric::CellMetric;
 use super::tables::{BasisAt, CellTable};
 use super::{DataQuadrature, count, data};
 use crate::algebra::Place;
 use crate::element::{MAX_BASIS, Node, ReferenceElement};
 use crate::error::Error;
-use crate::mesh::{BoundaryFacet, BoundaryPart, CellGeometry, Facets, Mesh, Neighbours};
+use crate::mesh::{BoundaryFacet, BoundaryPart, Facets, Mesh, Neighbours};
 use crate::problem::Problem;
 use crate::quadrature::{Rule, insert};
 use crate::real::{Point, Real, point_f64};
@@ -89,9 +90,9 @@ impl<'a, T: Real, const D: usize> Space<'a, T, D> {
         &self,
         cell: usize,
         local: usize,
-        geometry: &'g CellGeometry<T, D>,
+        metric: &'g CellMetric<T, D>,
     ) -> CellSide<'g, T, D> {
-        CellSide { cell, local, geometry, coefficient: self.alpha(cell) }
+        CellSide { cell, local, metric, coefficient: self.alpha(cell) }
     }
     /// The basis at a point of the cell.
     pub fn basis_at(&self, point: &[f64; 4]) -> BasisAt<f64> {
@@ -118,6 +119,10 @@ impl<'a, T: Real, const D: usize> Space<'a, T, D> {
     pub fn facets_of(&self, part: BoundaryPart) -> impl Iterator<Item = (usize, usize)> {
         let of_part = move |f: &&BoundaryFacet| f.part == part;
         self.mesh.boundary().iter().filter(of_part).map(|f| (f.cell as usize, f.local as usize))
+    }
+    /// The metric of a cell, computed.
+    pub fn metric(&self, cell: usize) -> CellMetric<T, D> {
+        CellMetric::new(&self.mesh.geometry(cell))
     }
     /// A point of a facet in space.
     pub fn facet_point(&self, point: &[f64; 4], cell: usize, local: usize) -> Point<f64, D> {

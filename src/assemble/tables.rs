@@ -1,8 +1,7 @@
 //! Basis functions tabulated once per assembly: the small arrays that hot loops read.
 
 use crate::element::{MAX_BASIS, ReferenceElement};
-use crate::facet::Sampling;
-use crate::quadrature::{Rule, insert};
+use crate::quadrature::{OrthonormalPolynomials, Rule, insert};
 use crate::real::Real;
 
 /// Values and derivatives of all basis functions at one point.
@@ -51,43 +50,44 @@ impl<T: Real> CellTable<T> {
     }
 }
 
-/// Samples of the basis on each facet of a cell: at the points of a rule, or their means.
+/// Moments of the basis on each facet of a cell, against orthonormal polynomials on the facet.
 pub(crate) struct FacetTable<T> {
-    pub weights: Vec<T>,
-    /// By facet, then by sample.
+    /// Degree of each moment, ascending.
+    pub degrees: Vec<usize>,
+    /// By facet, then by moment.
     basis: Vec<BasisAt<T>>,
 }
 
 impl<T: Real> FacetTable<T> {
-    pub fn new<E: ReferenceElement<T, D>, const D: usize>(sampling: Sampling) -> Self {
-        let degree = match sampling {
-            Sampling::Points(degree) => degree,
-            Sampling::Means => E::DEGREE,
-        };
-        let rule = Rule::of_degree(D - 1, degree);
-        let at =
-            |local: usize| rule.points.iter().map(move |p| BasisAt::new::<E, D>(&insert(p, local)));
-        match sampling {
-            Sampling::Points(_) => Self {
-                weights: rule.weights.iter().map(|&w| T::lit(w)).collect(),
-                basis: (0..=D).flat_map(at).collect(),
-            },
-            Sampling::Means => {
-                let mean = |local| {
-                    let mut mean = BasisAt::zero();
-                    for (basis, &w) in at(local).zip(&rule.weights) {
-                        mean.add(T::lit(w), &basis);
-                    }
-                    mean
-                };
-                Self { weights: vec![T::lit(1.0)], basis: (0..=D).map(mean).collect() }
+    /// Moments up to a degree.
+    pub fn new<E: ReferenceElement<T, D>, const D: usize>(degree: usize) -> Self {
+        let polynomials = OrthonormalPolynomials::new(D - 1, degree);
+        let rule = Rule::of_degree(D - 1, degree + E::DEGREE);
+        let moment = |local: usize, k: usize| {
+            let mut moment = BasisAt::zero();
+            for (point, w) in rule.iter() {
+                let basis = BasisAt::<T>::new::<E, D>(&insert(point, local));
+                moment.add(T::lit(w * polynomials.value(k, point)), &basis);
             }
+            // derivatives have no moments of the element's own degree: what is left is rounding
+            if polynomials.degree(k) >= E::DEGREE {
+                moment.derivatives = BasisAt::zero().derivatives;
+            }
+            moment
+        };
+        let all = 0..polynomials.len();
+        Self {
+            degrees: all.clone().map(|k| polynomials.degree(k)).collect(),
+            basis: (0..=D)
+                .flat_map(|local| all.clone().map(move |k| (local, k)))
+                .map(|(local, k)| moment(local, k))
+                .collect(),
         }
     }
-    /// The samples on facet `local`.
+    /// The moments on facet `local`.
     #[inline(always)]
     pub fn on(&self, local: usize) -> &[BasisAt<T>] {
-        let n = self.weights.len();
+        let n = self.degrees.len();
         &self.basis[local * n..(local + 1) * n]
     }
 }

@@ -4,84 +4,42 @@
 //!
 //! The two cells of an interior facet are *here*, the one with the lower number, and *there*. The
 //! normal points from here to there, on the boundary outward. The jump is here minus there, on the
-//! boundary the value. The flux is the mean of the normal derivatives times the harmonic mean of
-//! the coefficients, on the boundary the one-sided flux. Only interior and Dirichlet facets carry a
+//! boundary the value. The flux is a mean of the normal derivatives times the harmonic mean of the
+//! coefficients, on the boundary the one-sided flux. Only interior and Dirichlet facets carry a
 //! form; on Neumann and contact facets the trace is free or bounded by the constraint.
+//!
+//! A form sees traces through their moments on the facet: their coefficients in orthonormal
+//! polynomials up to a degree the form chooses. Up to the element's own degree nothing is lost,
+//! and the sum over moments is the integral over the facet.
+//!
+//! The lift `r(v)` of a jump is the piecewise polynomial field of degree one less than the element
+//! with `int r(v) . tau = - sum_F int_F [v] {tau . n}`, the mean with the same shares as in the
+//! flux; `r_F(v)` is the part of one facet.
 
+mod interior_penalty;
+mod lifting;
 mod none;
-mod penalty;
+mod over_penalty;
+mod proven;
+mod view;
 
+pub use interior_penalty::{InteriorPenalty, PenaltyRule};
+pub use lifting::{FacetLifts, Lifted};
 pub use none::NoFacets;
-pub use penalty::{InteriorPenalty, OverPenalty, PenaltyRule, WeightRule, proven_bound};
+pub use over_penalty::{OverPenalty, WeightRule};
+pub use proven::proven_bound;
+pub use view::{FacetView, Side};
 
 use crate::real::Real;
 use crate::study::PenaltyParameters;
 
-/// Jump and mean normal flux of a function at a point of a facet, or of one of its moments.
+/// A moment of the jump and of the mean normal flux of a function on a facet.
 #[derive(Clone, Copy, Debug)]
 pub struct Trace<T> {
     /// Here minus there.
     pub jump: T,
     /// The mean normal flux; not a number where the form says it does not use it.
     pub flux: T,
-}
-
-/// One cell as its facet sees it.
-#[derive(Clone, Copy, Debug)]
-pub struct Side<T> {
-    /// The diffusion coefficient of the cell.
-    pub coefficient: T,
-    /// The volume of the cell.
-    pub volume: T,
-    /// The measure of the cell's whole boundary.
-    pub surface: T,
-    /// The height of the cell over the facet.
-    pub height: T,
-}
-
-/// A facet and its cells: what a penalty may depend on.
-#[derive(Clone, Copy, Debug)]
-pub struct FacetView<T> {
-    /// The measure of the facet; one in one dimension.
-    pub measure: T,
-    /// Its diameter `h_F`; in one dimension the mean length of the cells it joins.
-    pub diameter: T,
-    /// The cell here.
-    pub here: Side<T>,
-    /// The cell there; none on the boundary.
-    pub there: Option<Side<T>>,
-}
-
-impl<T: Real> FacetView<T> {
-    /// The harmonic mean of the coefficients, `2 a b / (a + b)`; on the boundary the coefficient.
-    #[inline(always)]
-    pub fn coefficient(&self) -> T {
-        match &self.there {
-            None => self.here.coefficient,
-            Some(there) => {
-                let (a, b) = (self.here.coefficient, there.coefficient);
-                T::lit(2.0) * a * b / (a + b)
-            }
-        }
-    }
-    /// The larger of a quantity on the two sides.
-    #[inline(always)]
-    pub fn largest(&self, quantity: impl Fn(&Side<T>) -> T) -> T {
-        let here = quantity(&self.here);
-        match &self.there {
-            Some(there) if quantity(there) > here => quantity(there),
-            _ => here,
-        }
-    }
-}
-
-/// How a form looks at traces.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Sampling {
-    /// At the points of a quadrature rule of this degree.
-    Points(usize),
-    /// Through their means over the facet.
-    Means,
 }
 
 /// A facet term of a bilinear form, written as its integrand.
@@ -96,15 +54,29 @@ pub trait FacetForm<T: Real, const D: usize>: Send + Sync {
     const USES_FLUX: bool;
     /// Whether `integrand(v, u)` equals `integrand(u, v)`.
     const SYMMETRIC: bool = true;
-    /// How traces are sampled, for an element of this degree.
-    fn sampling(degree: usize) -> Sampling {
-        Sampling::Points(2 * degree)
+    /// Whether `int alpha r(v) . r(u)` is added, which couples cells with the neighbours of their
+    /// neighbours. Only broken elements carry such a form.
+    const LIFTED: bool = false;
+    /// Up to which degree the form sees moments of traces, for an element of this degree.
+    fn moments(degree: usize) -> usize {
+        degree
+    }
+    /// The share of the cell here in the mean flux; that of the cell there is what is left to one.
+    #[inline(always)]
+    fn share(&self, facet: &FacetView<T, D>) -> T {
+        let _ = facet;
+        T::lit(0.5)
     }
     /// The penalty weight of a facet, computed once for each.
-    fn penalty(&self, facet: &FacetView<T>) -> T;
+    fn penalty(&self, facet: &FacetView<T, D>) -> T;
+    /// By what the penalty weight is multiplied for moments of this degree.
+    fn moment_weight(&self, degree: usize) -> f64 {
+        let _ = degree;
+        1.0
+    }
     /// The least weight with which the form is provably coercive; none if it always is, or if the
     /// weight is chosen by that very bound.
-    fn least_penalty(&self, facet: &FacetView<T>) -> Option<T> {
+    fn least_penalty(&self, facet: &FacetView<T, D>) -> Option<T> {
         let _ = facet;
         None
     }
@@ -120,6 +92,6 @@ pub trait FacetForm<T: Real, const D: usize>: Send + Sync {
     fn parameters(&self) -> PenaltyParameters {
         PenaltyParameters::default()
     }
-    /// The formula, per unit measure of the facet.
+    /// The formula, per unit measure of the facet, for one moment of each trace.
     fn integrand(&self, v: Trace<T>, u: Trace<T>, penalty: T) -> T;
 }

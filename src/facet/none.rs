@@ -10,7 +10,7 @@ pub struct NoFacets;
 impl<T: Real, const D: usize> FacetForm<T, D> for NoFacets {
     const COUPLES: bool = false;
     const USES_FLUX: bool = false;
-    fn penalty(&self, _: &FacetView<T>) -> T {
+    fn penalty(&self, _: &FacetView<T, D>) -> T {
         T::lit(0.0)
     }
     #[inline(always)]

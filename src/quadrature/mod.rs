@@ -4,8 +4,10 @@
 //! rule serves cells of dimension `d` and facets of cells of dimension `d + 1`.
 
 mod gauss;
+mod orthonormal;
 
 pub use gauss::gauss_jacobi;
+pub use orthonormal::OrthonormalPolynomials;
 
 /// A rule on the simplex of some dimension.
 #[derive(Clone, Debug, PartialEq)]

@@ -1,14 +1,24 @@
 //! Schemes: an element, a facet form and a way to impose Dirichlet data. Nothing else.
 
+mod bmmpr;
+mod br2;
 mod conforming;
 mod crouzeix_raviart;
 mod facet_means;
+mod iipg;
+mod ldg;
+mod nipg;
 mod sipg;
 mod wopsip;
 
+pub use bmmpr::Bmmpr;
+pub use br2::Br2;
 pub use conforming::ConformingP1;
 pub use crouzeix_raviart::CrouzeixRaviartScheme;
 pub use facet_means::FacetMeans;
+pub use iipg::Iipg;
+pub use ldg::{Ldg, LocalFluxes};
+pub use nipg::Nipg;
 pub use sipg::Sipg;
 pub use wopsip::{Eta, Wopsip};
 
@@ -69,4 +79,22 @@ pub trait Scheme<T: Real, const D: usize>: Send + Sync {
 fn linear_energy_order(setting: &Setting) -> ExpectedOrders {
     let s = setting.regularity.sobolev;
     ExpectedOrders { l2: None, h1: (s > 1.5).then(|| (s - 1.0).min(1.0)) }
+}
+
+/// The order in the energy norm of elements of this degree: for quadratics three halves where an
+/// inequality binds (F. Brezzi, W. W. Hager, P.-A. Raviart, Numer. Math. 28 (1977), 431-443;
+/// F. Wang, W. Han, X.-L. Cheng, SIAM J. Numer. Anal. 48 (2010), 708-733).
+fn energy_order(setting: &Setting, degree: usize) -> ExpectedOrders {
+    let s = setting.regularity.sobolev;
+    let most = match degree {
+        1 => return linear_energy_order(setting),
+        _ if setting.obstacle || setting.contact => 1.5,
+        p => p as f64,
+    };
+    ExpectedOrders { l2: None, h1: (s > 1.5).then(|| (s - 1.0).min(most)) }
+}
+
+/// The name of a scheme on linears or on quadratics.
+fn name_by_degree(names: [&'static str; 2], degree: usize) -> &'static str {
+    names[usize::from(degree > 1)]
 }

@@ -1,7 +1,7 @@
 //! The weakly over-penalised symmetric interior penalty method.
 
-use super::{DirichletBy, Scheme, Setting, linear_energy_order};
-use crate::element::{Broken, P1};
+use super::{DirichletBy, Scheme, Setting, energy_order, name_by_degree};
+use crate::element::{Broken, P1, ReferenceElement};
 use crate::facet::{OverPenalty, WeightRule};
 use crate::mesh::Mesh;
 use crate::real::Real;
@@ -10,49 +10,66 @@ use crate::study::ExpectedOrders;
 /// How the factor of the over-penalty is chosen.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Eta {
-    /// This number times the square of the domain's diameter: invariant under scaling.
+    /// This number times the domain's diameter to the power `2k`, `k` the element's degree:
+    /// invariant under scaling.
     Dimensionless(f64),
-    /// This number as it stands, of the dimension of a length squared.
+    /// This number as it stands, of the dimension of a length to the power `2k`.
     Absolute(f64),
 }
 
-/// Weak over-penalty on broken linears: no consistency terms, positive definite for every factor.
+/// Weak over-penalty on broken elements: no consistency terms, positive definite for every factor.
 ///
-/// Orders: Y. Zeng, J. Chen, F. Wang, Comput. Math. Appl. 69 (2015), energy norm, both inequalities.
+/// Orders: Y. Zeng, J. Chen, F. Wang, Comput. Math. Appl. 69 (2015), energy norm, both inequalities,
+/// for linears; nothing is proven for inequalities with quadratics.
 #[derive(Clone, Copy, Debug)]
-pub struct Wopsip {
+pub struct Wopsip<E = P1> {
     /// The factor.
     pub eta: Eta,
     /// How it becomes a weight.
     pub weight: WeightRule,
+    /// The element whose broken version it is on.
+    pub element: E,
 }
 
 impl Default for Wopsip {
     fn default() -> Self {
-        Self { eta: Eta::Dimensionless(1.0), weight: WeightRule::Isotropic }
+        let eta = Eta::Dimensionless(1.0);
+        Self { eta, weight: WeightRule::Isotropic, element: P1 }
     }
 }
 
-impl<T: Real, const D: usize> Scheme<T, D> for Wopsip {
-    type Element = Broken<P1>;
+impl<E> Wopsip<E> {
+    /// The same on the broken version of another element: `Wopsip::default().on(P2)`.
+    pub fn on<F>(self, element: F) -> Wopsip<F> {
+        Wopsip { eta: self.eta, weight: self.weight, element }
+    }
+}
+
+impl<T: Real, const D: usize, E: ReferenceElement<T, D>> Scheme<T, D> for Wopsip<E> {
+    type Element = Broken<E>;
     type Facet = OverPenalty;
     const DIRICHLET: DirichletBy = DirichletBy::FacetForm;
 
     fn name(&self) -> &str {
-        "wopsip"
+        name_by_degree(["wopsip", "wopsip-p2"], E::DEGREE)
     }
     fn facet(&self, mesh: &Mesh<T, D>) -> OverPenalty {
         let eta = match self.eta {
             Eta::Absolute(eta) => eta,
-            Eta::Dimensionless(factor) => factor * mesh.domain_diameter().powi(2),
+            Eta::Dimensionless(factor) => {
+                factor * mesh.domain_diameter().powi(2 * E::DEGREE as i32)
+            }
         };
         let mesh_size = match self.weight {
             WeightRule::Isotropic => f64::NAN,
             WeightRule::Anisotropic => mesh.mesh_size(),
         };
-        OverPenalty { eta, rule: self.weight, mesh_size }
+        OverPenalty { eta, degree: E::DEGREE, rule: self.weight, mesh_size }
     }
     fn expected_orders(&self, setting: &Setting) -> ExpectedOrders {
-        linear_energy_order(setting)
+        match E::DEGREE {
+            1 => energy_order(setting, 1),
+            _ => ExpectedOrders::default(),
+        }
     }
 }

@@ -1,14 +1,16 @@
 //! Schemes by name.
 
 use super::AnyScheme;
-use crate::facet::{PenaltyRule, WeightRule};
+use crate::facet::PenaltyRule;
 use crate::real::Real;
-use crate::scheme::{ConformingP1, CrouzeixRaviartScheme, Eta, FacetMeans, Sipg, Wopsip};
+use crate::scheme::{
+    Bmmpr, Br2, ConformingP1, CrouzeixRaviartScheme, Eta, FacetMeans, Iipg, Ldg, Nipg, Sipg, Wopsip,
+};
 
 /// What a user may choose about schemes by name.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct SchemeOptions {
-    /// Interior penalty factor over the facet's diameter; the proven bound where absent.
+    /// Interior penalty factor over the facet's diameter; the scheme's own choice where absent.
     pub sigma: Option<f64>,
     /// WOPSIP factor as it stands; the dimensionless default where absent.
     pub eta: Option<f64>,
@@ -17,15 +19,28 @@ pub struct SchemeOptions {
 }
 
 impl SchemeOptions {
+    fn penalty(&self, default: PenaltyRule) -> PenaltyRule {
+        self.sigma.map_or(default, PenaltyRule::Diameter)
+    }
     fn sipg(&self) -> Sipg {
-        self.sigma
-            .map_or_else(Sipg::default, |sigma| Sipg { penalty: PenaltyRule::Diameter(sigma) })
+        let default = Sipg::default();
+        Sipg { penalty: self.penalty(default.penalty), ..default }
+    }
+    fn nipg(&self) -> Nipg {
+        let default = Nipg::default();
+        Nipg { penalty: self.penalty(default.penalty), ..default }
+    }
+    fn iipg(&self) -> Iipg {
+        let default = Iipg::default();
+        Iipg { penalty: self.penalty(default.penalty), ..default }
+    }
+    fn ldg(&self, switch: bool) -> Ldg {
+        let default = Ldg::default();
+        Ldg { eta: self.sigma.unwrap_or(default.eta), switch, ..default }
     }
     fn wopsip(&self) -> Wopsip {
-        self.eta.map_or_else(Wopsip::default, |eta| Wopsip {
-            eta: Eta::Absolute(eta),
-            weight: WeightRule::Isotropic,
-        })
+        let default = Wopsip::default();
+        Wopsip { eta: self.eta.map_or(default.eta, Eta::Absolute), ..default }
     }
 }
 
@@ -35,6 +50,15 @@ pub const SCHEMES: &[(&str, &str)] = &[
     ("p1", "conforming linear elements"),
     ("cr", "Crouzeix-Raviart elements, bounds on facet means"),
     ("sipg", "symmetric interior penalty on broken linears (takes --sigma)"),
+    ("nipg", "non-symmetric interior penalty on broken linears (takes --sigma)"),
+    ("iipg", "incomplete interior penalty on broken linears (takes --sigma)"),
+    ("ldg", "local discontinuous Galerkin on broken linears, mean fluxes (takes --sigma)"),
+    (
+        "ldg-switch",
+        "local discontinuous Galerkin on broken linears, one-sided fluxes (takes --sigma)",
+    ),
+    ("br2", "second method of Bassi and Rebay on broken linears"),
+    ("bmmpr", "method of Brezzi, Manzini, Marini, Pietra and Russo on broken linears"),
     ("wopsip", "weakly over-penalised symmetric interior penalty on broken linears (takes --eta)"),
 ];
 
@@ -43,14 +67,46 @@ pub fn scheme_by_name<T: Real, const D: usize>(
     name: &str,
     options: &SchemeOptions,
 ) -> Option<Box<dyn AnyScheme<T, D>>> {
-    let scheme: Box<dyn AnyScheme<T, D>> = match (name, options.facet_means) {
-        ("p1", _) => Box::new(ConformingP1),
-        ("cr", _) => Box::new(CrouzeixRaviartScheme),
-        ("sipg", false) => Box::new(options.sipg()),
-        ("sipg", true) => Box::new(FacetMeans(options.sipg())),
-        ("wopsip", false) => Box::new(options.wopsip()),
-        ("wopsip", true) => Box::new(FacetMeans(options.wopsip())),
+    match name {
+        "p1" => Some(Box::new(ConformingP1)),
+        "cr" => Some(Box::new(CrouzeixRaviartScheme)),
+        _ if options.facet_means => with_facet_means(name, options),
+        _ => with_nodes(name, options),
+    }
+}
+
+/// The discontinuous scheme of this name with bounds at nodes.
+fn with_nodes<T: Real, const D: usize>(
+    name: &str,
+    options: &SchemeOptions,
+) -> Option<Box<dyn AnyScheme<T, D>>> {
+    Some(match name {
+        "sipg" => Box::new(options.sipg()),
+        "nipg" => Box::new(options.nipg()),
+        "iipg" => Box::new(options.iipg()),
+        "ldg" => Box::new(options.ldg(false)),
+        "ldg-switch" => Box::new(options.ldg(true)),
+        "br2" => Box::new(Br2::default()),
+        "bmmpr" => Box::new(Bmmpr::default()),
+        "wopsip" => Box::new(options.wopsip()),
         _ => return None,
-    };
-    Some(scheme)
+    })
+}
+
+/// The discontinuous scheme of this name with bounds on facet means.
+fn with_facet_means<T: Real, const D: usize>(
+    name: &str,
+    options: &SchemeOptions,
+) -> Option<Box<dyn AnyScheme<T, D>>> {
+    Some(match name {
+        "sipg" => Box::new(FacetMeans(options.sipg())),
+        "nipg" => Box::new(FacetMeans(options.nipg())),
+        "iipg" => Box::new(FacetMeans(options.iipg())),
+        "ldg" => Box::new(FacetMeans(options.ldg(false))),
+        "ldg-switch" => Box::new(FacetMeans(options.ldg(true))),
+        "br2" => Box::new(FacetMeans(Br2::default())),
+        "bmmpr" => Box::new(FacetMeans(Bmmpr::default())),
+        "wopsip" => Box::new(FacetMeans(options.wopsip())),
+        _ => return None,
+    })
 }

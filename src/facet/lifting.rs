@@ -1,0 +1,110 @@
+//! Forms made of lifts of jumps.
+
+use super::{FacetForm, FacetView, Trace};
+use crate::real::Real;
+use crate::study::PenaltyParameters;
+
+/// `eta sum_F int alpha r_F(u) . r_F(v)` with the consistency terms of the symmetric interior
+/// penalty: the lifts of single facets as a penalty.
+///
+/// With `w = alpha_F share` of a cell the lift of a moment `m` of the jump has the energy
+/// `w^2 / alpha |F|^2 / |K| c(m)` in each cell of the facet, where `c` depends on the degree of the
+/// moment and of the lift only. Coercive for `eta` above the number of facets of a cell, because the
+/// square of a sum of so many lifts is at most so many times the sum of their squares.
+///
+/// Source: F. Bassi, S. Rebay, G. Mariotti, S. Pedinotti, M. Savini, 2nd European Conference on
+/// Turbomachinery (1997), 99-108; F. Brezzi, G. Manzini, L. D. Marini, P. Pietra, A. Russo, Numer.
+/// Methods Partial Differential Equations 16 (2000), 365-378.
+#[derive(Clone, Copy, Debug)]
+pub struct FacetLifts {
+    /// The factor, without dimension.
+    pub eta: f64,
+    /// Polynomial degree of the element, one or two.
+    pub degree: usize,
+    /// Whether the form needs `eta` above the number of facets of a cell.
+    pub bounded: bool,
+}
+
+impl FacetLifts {
+    fn weight<T: Real, const D: usize>(eta: f64, facet: &FacetView<T, D>) -> T {
+        let share = T::lit(if facet.there.is_some() { 0.5 } else { 1.0 });
+        let w = facet.coefficient() * share;
+        let energy = facet.sum(|side| w * w * facet.measure / (side.coefficient * side.volume));
+        T::lit(eta) * energy
+    }
+}
+
+impl<T: Real, const D: usize> FacetForm<T, D> for FacetLifts {
+    const USES_FLUX: bool = true;
+
+    fn moments(degree: usize) -> usize {
+        degree - 1
+    }
+    fn penalty(&self, facet: &FacetView<T, D>) -> T {
+        Self::weight(self.eta, facet)
+    }
+    /// `|K| / |F|^2 int_K s^2` for the polynomial `s` of the lift's degree with
+    /// `int_K s q = int_F e q`, `e` a normalised moment: one for constants; for linears from the
+    /// inverse of their mass matrix.
+    fn moment_weight(&self, moment: usize) -> f64 {
+        let d = D as f64;
+        match (self.degree, moment) {
+            (1, _) => 1.0,
+            (_, 0) => 2.0 * (d + 1.0) / d,
+            _ => (d + 2.0) / d,
+        }
+    }
+    fn least_penalty(&self, facet: &FacetView<T, D>) -> Option<T> {
+        self.bounded.then(|| Self::weight((D + 1) as f64, facet))
+    }
+    fn parameters(&self) -> PenaltyParameters {
+        let rule = Some("eta int r_F . r_F".to_owned());
+        PenaltyParameters { sigma: None, eta: Some(self.eta), rule }
+    }
+    #[inline(always)]
+    fn integrand(&self, v: Trace<T>, u: Trace<T>, penalty: T) -> T {
+        penalty * u.jump * v.jump - u.flux * v.jump - v.flux * u.jump
+    }
+}
+
+/// The form inside, and besides `int alpha r(u) . r(v)`: with the consistency terms of a symmetric
+/// form this completes the square `|grad v + r(v)|^2`.
+///
+/// Source: D. N. Arnold, F. Brezzi, B. Cockburn, L. D. Marini, SIAM J. Numer. Anal. 39 (2002),
+/// 1749-1779, section 3.
+#[derive(Clone, Copy, Debug)]
+pub struct Lifted<F>(pub F);
+
+impl<T: Real, const D: usize, F: FacetForm<T, D>> FacetForm<T, D> for Lifted<F> {
+    const USES_FLUX: bool = F::USES_FLUX;
+    const SYMMETRIC: bool = F::SYMMETRIC;
+    const LIFTED: bool = true;
+
+    fn moments(degree: usize) -> usize {
+        F::moments(degree)
+    }
+    #[inline(always)]
+    fn share(&self, facet: &FacetView<T, D>) -> T {
+        self.0.share(facet)
+    }
+    #[inline(always)]
+    fn penalty(&self, facet: &FacetView<T, D>) -> T {
+        self.0.penalty(facet)
+    }
+    fn moment_weight(&self, degree: usize) -> f64 {
+        self.0.moment_weight(degree)
+    }
+    fn least_penalty(&self, facet: &FacetView<T, D>) -> Option<T> {
+        self.0.least_penalty(facet)
+    }
+    fn rounding_limit(&self, epsilon: f64, length: f64) -> f64 {
+        self.0.rounding_limit(epsilon, length)
+    }
+    fn parameters(&self) -> PenaltyParameters {
+        self.0.parameters()
+    }
+    #[inline(always)]
+    fn integrand(&self, v: Trace<T>, u: Trace<T>, penalty: T) -> T {
+        self.0.integrand(v, u, penalty)
+    }
+}

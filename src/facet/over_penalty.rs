@@ -1,0 +1,85 @@
+//! The weak over-penalty.
+
+use super::{FacetForm, FacetView, Trace};
+use crate::real::Real;
+use crate::study::PenaltyParameters;
+
+/// How the over-penalty gets its weight.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum WeightRule {
+    /// `eta h_F^-(2k+1)` for elements of degree `k`.
+    Isotropic,
+    /// `eta h^-2k (sqrt(l_here) + sqrt(l_there))^-2`, on the boundary `eta h^-2k / l`, with `l` the
+    /// height of a cell over the facet and `h` the mesh size: robust on stretched meshes.
+    ///
+    /// Source: H. Ishizaka, arXiv 2212.03822 and 2403.07899.
+    Anisotropic,
+}
+
+/// `kappa_F P[u] P[v]`, `P` the projection on polynomials of degree `k - 1` on the facet, its mean
+/// for linear elements: the weak over-penalty, without consistency terms and without normal
+/// derivatives. The weight carries the coefficient's harmonic mean.
+///
+/// Source: S. C. Brenner, L. Owens, L.-Y. Sung, ETNA 30 (2008), 107-127; for degrees above one the
+/// same, J. Comput. Appl. Math. 236 (2012), 2883-2894.
+#[derive(Clone, Copy, Debug)]
+pub struct OverPenalty {
+    /// The factor, of the dimension of a length to the power `2k`.
+    pub eta: f64,
+    /// The degree `k` of the element.
+    pub degree: usize,
+    /// How it becomes a weight.
+    pub rule: WeightRule,
+    /// The largest cell diameter, for the anisotropic rule.
+    pub mesh_size: f64,
+}
+
+impl<T: Real, const D: usize> FacetForm<T, D> for OverPenalty {
+    const USES_FLUX: bool = false;
+
+    fn moments(degree: usize) -> usize {
+        degree - 1
+    }
+    #[inline(always)]
+    fn penalty(&self, facet: &FacetView<T, D>) -> T {
+        let eta = T::lit(self.eta) * facet.coefficient();
+        match self.rule {
+            WeightRule::Isotropic => {
+                let h = facet.diameter();
+                (1..self.degree).fold(eta / (h * h * h), |weight, _| weight / (h * h))
+            }
+            WeightRule::Anisotropic => {
+                let root = nalgebra::ComplexField::sqrt(facet.here.height);
+                let length = match &facet.there {
+                    None => facet.here.height,
+                    Some(there) => {
+                        let sum = root + nalgebra::ComplexField::sqrt(there.height);
+                        sum * sum
+                    }
+                };
+                let h = T::lit(self.mesh_size);
+                (0..self.degree).fold(eta / length, |weight, _| weight / (h * h))
+            }
+        }
+    }
+    /// With lengths in units of the domain's diameter the condition number grows like
+    /// `eta h^-(2k+2)` and the discretisation error falls like `h^(k+1)`: they meet where `h` is
+    /// `epsilon eta` to the power `1 / (3k+3)`.
+    fn rounding_limit(&self, epsilon: f64, length: f64) -> f64 {
+        let k = self.degree as i32;
+        let eta = self.eta / length.powi(2 * k);
+        0.5 * length * (epsilon * eta).powf(1.0 / f64::from(3 * k + 3))
+    }
+    fn parameters(&self) -> PenaltyParameters {
+        let k = self.degree;
+        let rule = match self.rule {
+            WeightRule::Isotropic => format!("eta / h_F^{}", 2 * k + 1),
+            WeightRule::Anisotropic => format!("eta / (h^{} l_F)", 2 * k),
+        };
+        PenaltyParameters { sigma: None, eta: Some(self.eta), rule: Some(rule) }
+    }
+    #[inline(always)]
+    fn integrand(&self, v: Trace<T>, u: Trace<T>, penalty: T) -> T {
+        penalty * u.jump * v.jump
+    }
+}

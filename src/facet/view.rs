@@ -1,0 +1,92 @@
+//! A facet and its cells, as a penalty may see them.
+
+use crate::mesh::Mesh;
+use crate::real::{Point, Real};
+
+/// One cell as its facet sees it.
+#[derive(Clone, Copy, Debug)]
+pub struct Side<T> {
+    /// The diffusion coefficient of the cell.
+    pub coefficient: T,
+    /// The volume of the cell.
+    pub volume: T,
+    /// The measure of the cell's whole boundary.
+    pub surface: T,
+    /// The height of the cell over the facet.
+    pub height: T,
+}
+
+/// A facet and its cells: what a penalty may depend on.
+///
+/// What is a method is computed when asked for, so that a penalty which does not need it does not
+/// pay.
+#[derive(Clone, Copy, Debug)]
+pub struct FacetView<'a, T: Real, const D: usize> {
+    mesh: &'a Mesh<T, D>,
+    /// The cell here, and the facet's number in it.
+    place: (usize, usize),
+    /// The measure of the facet; one in one dimension.
+    pub measure: T,
+    /// The cell here.
+    pub here: Side<T>,
+    /// The cell there; none on the boundary.
+    pub there: Option<Side<T>>,
+}
+
+impl<'a, T: Real, const D: usize> FacetView<'a, T, D> {
+    /// The view of facet `local` of the cell here.
+    #[inline(always)]
+    pub fn new(
+        mesh: &'a Mesh<T, D>,
+        place: (usize, usize),
+        measure: T,
+        here: Side<T>,
+        there: Option<Side<T>>,
+    ) -> Self {
+        Self { mesh, place, measure, here, there }
+    }
+    /// The diameter `h_F` of the facet; in one dimension the mean length of the cells it joins.
+    #[inline(always)]
+    pub fn diameter(&self) -> T {
+        match (D, &self.there) {
+            (1, None) => self.here.volume,
+            (1, Some(there)) => (self.here.volume + there.volume) * T::lit(0.5),
+            _ => self.mesh.facet_diameter(self.place.0, self.place.1),
+        }
+    }
+    /// The unit normal, from here to there, outward on the boundary.
+    pub fn normal(&self) -> Point<T, D> {
+        self.mesh.geometry(self.place.0).normal(self.place.1)
+    }
+    /// The harmonic mean of the coefficients, `2 a b / (a + b)`; on the boundary the coefficient.
+    #[inline(always)]
+    pub fn coefficient(&self) -> T {
+        self.conductance(T::lit(0.5))
+    }
+    /// The harmonic mean of the coefficients with this share of the cell here; on the boundary the
+    /// coefficient.
+    #[inline(always)]
+    pub fn conductance(&self, share: T) -> T {
+        match &self.there {
+            None => self.here.coefficient,
+            Some(there) => {
+                let (a, b) = (self.here.coefficient, there.coefficient);
+                a * b / (share * b + (T::lit(1.0) - share) * a)
+            }
+        }
+    }
+    /// The larger of a quantity on the two sides.
+    #[inline(always)]
+    pub fn largest(&self, quantity: impl Fn(&Side<T>) -> T) -> T {
+        let here = quantity(&self.here);
+        match &self.there {
+            Some(there) if quantity(there) > here => quantity(there),
+            _ => here,
+        }
+    }
+    /// The sum of a quantity over the sides.
+    #[inline(always)]
+    pub fn sum(&self, quantity: impl Fn(&Side<T>) -> T) -> T {
+        quantity(&self.here) + self.there.as_ref().map_or(T::lit(0.0), quantity)
+    }
+}

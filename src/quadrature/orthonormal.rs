@@ -1,0 +1,107 @@
+//! Orthonormal polynomials on simplices.
+
+use super::Rule;
+
+/// Polynomials on the simplex of some dimension, orthonormal in the mean: the mean of the product
+/// of two of them is one if they are the same and zero if not.
+///
+/// They are sorted by degree and each is orthogonal to all polynomials of lower degree, so the
+/// first ones span the polynomials of any lower degree. The first is the constant one.
+#[derive(Clone, Debug)]
+pub struct OrthonormalPolynomials {
+    /// Powers of the first barycentric coordinates, by degree.
+    powers: Vec<[i32; 3]>,
+    /// Row by row, the coefficients of the powers.
+    coefficients: Vec<Vec<f64>>,
+}
+
+impl OrthonormalPolynomials {
+    /// All polynomials up to this degree, by the Gram-Schmidt process.
+    ///
+    /// # Panics
+    /// If the dimension is above three.
+    pub fn new(dimension: usize, degree: usize) -> Self {
+        let powers = powers(dimension, degree);
+        let rule = Rule::of_degree(dimension, 2 * degree);
+        let mean = |a: &[f64], b: &[f64]| -> f64 {
+            let value = |row: &[f64], point| -> f64 {
+                powers.iter().zip(row).map(|(p, c)| c * power(point, p)).sum()
+            };
+            rule.iter().map(|(point, w)| w * value(a, point) * value(b, point)).sum()
+        };
+        let mut coefficients: Vec<Vec<f64>> = Vec::new();
+        for k in 0..powers.len() {
+            let mut row = vec![0.0; powers.len()];
+            row[k] = 1.0;
+            // twice, so that rounding of the first pass does not stay
+            for _ in 0..2 {
+                for other in &coefficients {
+                    let part = mean(&row, other);
+                    row.iter_mut().zip(other).for_each(|(r, o)| *r -= part * o);
+                }
+            }
+            let norm = mean(&row, &row).sqrt();
+            coefficients.push(row.into_iter().map(|r| r / norm).collect());
+        }
+        Self { powers, coefficients }
+    }
+    /// How many there are.
+    pub fn len(&self) -> usize {
+        self.powers.len()
+    }
+    /// Whether there is none; never so.
+    pub fn is_empty(&self) -> bool {
+        self.powers.is_empty()
+    }
+    /// The degree of polynomial `k`.
+    pub fn degree(&self, k: usize) -> usize {
+        self.powers[k].iter().sum::<i32>() as usize
+    }
+    /// Polynomial `k` at a point in barycentric coordinates.
+    pub fn value(&self, k: usize, point: &[f64; 4]) -> f64 {
+        self.powers.iter().zip(&self.coefficients[k]).map(|(p, c)| c * power(point, p)).sum()
+    }
+}
+
+fn power(point: &[f64; 4], powers: &[i32; 3]) -> f64 {
+    powers.iter().zip(point).map(|(&p, &x)| x.powi(p)).product()
+}
+
+/// The powers of `dimension` variables up to a degree, sorted by degree.
+fn powers(dimension: usize, degree: usize) -> Vec<[i32; 3]> {
+    let range = |axis: usize| 0..=if axis < dimension { degree as i32 } else { 0 };
+    let mut all: Vec<[i32; 3]> = range(0)
+        .flat_map(|a| range(1).flat_map(move |b| range(2).map(move |c| [a, b, c])))
+        .filter(|p| p.iter().sum::<i32>() <= degree as i32)
+        .collect();
+    all.sort_by_key(|p| (p.iter().sum::<i32>(), std::cmp::Reverse(*p)));
+    all
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use approx::assert_relative_eq;
+
+    #[test]
+    fn orthonormal_sorted_and_complete() {
+        for dimension in 0..=3 {
+            for degree in 0..=3 {
+                let basis = OrthonormalPolynomials::new(dimension, degree);
+                let count = (1..=dimension).fold(1, |c, k| c * (degree + k) / k);
+                assert_eq!(basis.len(), count);
+                let rule = Rule::of_degree(dimension, 2 * degree);
+                for i in 0..count {
+                    assert!(i == 0 || basis.degree(i) >= basis.degree(i - 1));
+                    for j in 0..count {
+                        let mean: f64 = rule
+                            .iter()
+                            .map(|(x, w)| w * basis.value(i, x) * basis.value(j, x))
+                            .sum();
+                        assert_relative_eq!(mean, f64::from(i == j), epsilon = 1e-12);
+                    }
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,94 @@
+//! The local discontinuous Galerkin method.
+
+use super::{DirichletBy, Scheme, Setting, energy_order, name_by_degree};
+use crate::element::{Broken, P1, ReferenceElement};
+use crate::facet::{FacetForm, FacetView, Lifted, Trace};
+use crate::mesh::Mesh;
+use crate::real::{Real, point_f64};
+use crate::study::{ExpectedOrders, PenaltyParameters};
+
+/// `int alpha (grad u + r(u)) . (grad v + r(v)) + eta alpha_F / h_F [u][v]` on broken elements:
+/// coercive for every positive factor.
+///
+/// Source: B. Cockburn, C.-W. Shu, SIAM J. Numer. Anal. 35 (1998), 2440-2463; without auxiliary
+/// variables D. N. Arnold, F. Brezzi, B. Cockburn, L. D. Marini, SIAM J. Numer. Anal. 39 (2002),
+/// 1749-1779.
+/// Orders: F. Wang, W. Han, X.-L. Cheng, SIAM J. Numer. Anal. 48 (2010), 708-733 for obstacles and
+/// IMA J. Numer. Anal. 31 (2011), 1754-1772 for Signorini.
+#[derive(Clone, Copy, Debug)]
+pub struct Ldg<E = P1> {
+    /// The factor of the penalty; by default one.
+    pub eta: f64,
+    /// The switch `beta`: off for the mean flux, on for the flux of one side, that from which a
+    /// fixed direction points to the other.
+    pub switch: bool,
+    /// The element whose broken version it is on.
+    pub element: E,
+}
+
+impl Default for Ldg {
+    fn default() -> Self {
+        Self { eta: 1.0, switch: false, element: P1 }
+    }
+}
+
+impl<E> Ldg<E> {
+    /// The same on the broken version of another element: `Ldg::default().on(P2)`.
+    pub fn on<F>(self, element: F) -> Ldg<F> {
+        Ldg { eta: self.eta, switch: self.switch, element }
+    }
+}
+
+impl<T: Real, const D: usize, E: ReferenceElement<T, D>> Scheme<T, D> for Ldg<E> {
+    type Element = Broken<E>;
+    type Facet = Lifted<LocalFluxes>;
+    const DIRICHLET: DirichletBy = DirichletBy::FacetForm;
+
+    fn name(&self) -> &str {
+        match self.switch {
+            false => name_by_degree(["ldg", "ldg-p2"], E::DEGREE),
+            true => name_by_degree(["ldg-switch", "ldg-switch-p2"], E::DEGREE),
+        }
+    }
+    fn facet(&self, _: &Mesh<T, D>) -> Lifted<LocalFluxes> {
+        Lifted(LocalFluxes { eta: self.eta, switch: self.switch })
+    }
+    fn expected_orders(&self, setting: &Setting) -> ExpectedOrders {
+        energy_order(setting, E::DEGREE)
+    }
+}
+
+/// The facet terms of the method besides the products of lifts.
+#[derive(Clone, Copy, Debug)]
+pub struct LocalFluxes {
+    eta: f64,
+    switch: bool,
+}
+
+/// The direction of the switch: across no facet of a mesh along the axes or their diagonals.
+const DIRECTION: [f64; 3] = [1.0, 0.377, 0.142];
+
+impl<T: Real, const D: usize> FacetForm<T, D> for LocalFluxes {
+    const USES_FLUX: bool = true;
+
+    fn share(&self, facet: &FacetView<T, D>) -> T {
+        if !self.switch {
+            return T::lit(0.5);
+        }
+        let normal = point_f64(&facet.normal());
+        let along: f64 = normal.iter().zip(DIRECTION).map(|(n, d)| n * d).sum();
+        T::lit(if along > 0.0 { 1.0 } else { 0.0 })
+    }
+    fn penalty(&self, facet: &FacetView<T, D>) -> T {
+        T::lit(self.eta) * facet.coefficient() / facet.diameter()
+    }
+    fn parameters(&self) -> PenaltyParameters {
+        let beta = if self.switch { "one-sided flux" } else { "mean flux" };
+        let rule = Some(format!("eta / h_F, {beta}"));
+        PenaltyParameters { sigma: Some(self.eta), eta: None, rule }
+    }
+    #[inline(always)]
+    fn integrand(&self, v: Trace<T>, u: Trace<T>, penalty: T) -> T {
+        penalty * u.jump * v.jump - u.flux * v.jump - v.flux * u.jump
+    }
+}
