@@ -37,6 +37,7 @@ impl<T: Real, const D: usize> Scheme<T, D> for Wopsip {
     type Element = Broken<P1>;
     type Facet = OverPenalty;
     const DIRICHLET: DirichletBy = DirichletBy::FacetForm;
+    const CONSISTENT: bool = false;
 
     fn name(&self) -> &str {
         "wopsip"
