@@ -2,9 +2,9 @@
 
 use super::error::{KitError, Law};
 use super::meshes::{self, Sample};
+use super::problems;
 use super::report::ConsistencyReport;
 use super::tested::{Judged, Tested, solve_and_judge};
-use super::problems;
 use crate::mesh::describe_point;
 use crate::problem::Problem;
 use crate::real::{Real, point_f64};

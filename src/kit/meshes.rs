@@ -49,8 +49,7 @@ pub(super) fn regular<T: Real, const D: usize>(
     domain: &BoxDomain<D>,
     n: usize,
 ) -> Result<Sample<T, D>, KitError> {
-    let mesh =
-        Mesh::kuhn_box(domain, [n; D]).map_err(|why| KitError::NotAssembled { law, why })?;
+    let mesh = Mesh::kuhn_box(domain, [n; D]).map_err(|why| KitError::NotAssembled { law, why })?;
     Ok(Sample { name: "a regular box", mesh })
 }
 

@@ -9,15 +9,16 @@ fn direction<const D: usize>(number: usize) -> Point<f64, D> {
     Point::from_fn(|k, _| entries[(number + 2 * k) % entries.len()])
 }
 
-/// Data of every kind, none of them constant: nothing cancels by symmetry. The function named
-/// exact provides boundary data; it solves nothing.
+/// Data of every kind: nothing cancels by symmetry. The function named exact provides boundary
+/// data; it solves nothing. The load is linear, so that rules that favour a vertex of the cell
+/// integrate it exactly in every numbering.
 pub(super) fn rich<const D: usize>() -> Problem<D> {
     let x_along = |x: &Point<f64, D>| direction::<D>(0).dot(x);
     Problem::new()
         .exact(move |x| 1.0 + x_along(x).powi(2), move |x| direction(0) * (2.0 * x_along(x)))
         .coefficient(move |x| 1.0 + 0.5 * x_along(x).sin())
         .reaction(0.7)
-        .source(move |x| x_along(x).cos())
+        .source(move |x| 1.0 - 2.0 * x_along(x))
 }
 
 /// A problem that a polynomial of this degree solves, a sum of powers of different linear

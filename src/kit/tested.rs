@@ -106,7 +106,5 @@ pub(super) fn solve_and_judge<T: Real, const D: usize>(
 ) -> Result<Judged, KitError> {
     let inequality = assemble(law, scheme, problem, &sample.mesh)?;
     let u = solve(law, &inequality, sample)?;
-    scheme
-        .judge(problem, &sample.mesh, &u)
-        .map_err(|why| KitError::NotAssembled { law, why })
+    scheme.judge(problem, &sample.mesh, &u).map_err(|why| KitError::NotAssembled { law, why })
 }
