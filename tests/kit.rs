@@ -7,9 +7,10 @@ mod broken_schemes;
 mod family;
 #[path = "kit/laws.rs"]
 mod laws;
+#[path = "kit/quadratics.rs"]
+mod quadratics;
 
 use family::Family;
-
 use unilateral::kit::check_scheme;
 use unilateral::prelude::*;
 

@@ -18,7 +18,7 @@ pub(super) fn check<T: Real, const D: usize>(
 ) -> Result<CoercivityReport, KitError> {
     let (law, domain, n) = (Law::Coercivity, meshes::clamped(), meshes::subdivisions(D));
     let mut smallest = f64::INFINITY;
-    // one coefficient everywhere: where it varies the normal fluxes are weighted down
+    // without reaction, which would help
     let problem = problems::smooth();
     for sample in [meshes::regular(law, &domain, n)?, meshes::moved(law, &domain, n)?] {
         let Sample { name, mesh } = sample;

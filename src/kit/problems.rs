@@ -44,7 +44,7 @@ pub(super) fn polynomial<const D: usize>(degree: usize) -> Problem<D> {
     })
 }
 
-/// A smooth solution that is no polynomial: an exponential, harmonic in no direction.
+/// A smooth solution that is no polynomial: an exponential, largest at the upper corner.
 pub(super) fn smooth<const D: usize>() -> Problem<D> {
     let value = |x: &Point<f64, D>| direction::<D>(0).dot(x).exp();
     Problem::new()
