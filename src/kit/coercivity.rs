@@ -49,6 +49,6 @@ fn not_coercive(part: &SparseMatrix<f64>, mesh: String) -> KitError {
     let eigenvalues = dense.symmetric_eigenvalues();
     // a Cholesky factorisation calls those singular that are not positive but for rounding
     let rounding = 16.0 * f64::EPSILON * unknowns as f64;
-    let not_positive = eigenvalues.iter().filter(|&&e| !(e > rounding)).count();
+    let not_positive = unknowns - eigenvalues.iter().filter(|&&e| e > rounding).count();
     KitError::NotCoercive { mesh, not_positive, unknowns, smallest: eigenvalues.min() }
 }
