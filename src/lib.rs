@@ -7,6 +7,7 @@ pub mod assemble;
 pub mod element;
 pub mod error;
 pub mod facet;
+pub mod kit;
 pub mod mesh;
 pub mod prelude;
 pub mod problem;

@@ -20,6 +20,7 @@ where
     type Element = Broken<CrouzeixRaviart>;
     type Facet = S::Facet;
     const DIRICHLET: DirichletBy = S::DIRICHLET;
+    const CONSISTENT: bool = S::CONSISTENT;
 
     fn name(&self) -> &str {
         self.0.name()

@@ -63,6 +63,9 @@ pub trait Scheme<T: Real, const D: usize>: Send + Sync {
     type Facet: FacetForm<T, D>;
     /// How Dirichlet data are imposed.
     const DIRICHLET: DirichletBy;
+    /// Whether the exact solution satisfies the discrete equations, so that polynomials of the
+    /// element's degree are reproduced; [`crate::kit`] holds a scheme to it either way.
+    const CONSISTENT: bool = true;
     /// The name users type and reports state.
     fn name(&self) -> &str;
     /// The facet form on a mesh, its parameters resolved.

@@ -49,6 +49,7 @@ impl<T: Real, const D: usize, E: ReferenceElement<T, D>> Scheme<T, D> for Wopsip
     type Element = Broken<E>;
     type Facet = OverPenalty;
     const DIRICHLET: DirichletBy = DirichletBy::FacetForm;
+    const CONSISTENT: bool = false;
 
     fn name(&self) -> &str {
         name_by_degree(["wopsip", "wopsip-p2"], E::DEGREE)

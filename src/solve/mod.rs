@@ -7,6 +7,7 @@ mod cycles;
 mod iterate;
 mod kernels;
 mod linear;
+mod mean_jump;
 mod restrict;
 mod small;
 
@@ -14,6 +15,7 @@ pub use active_set::ActiveSet;
 pub use certificate::{Certificate, active, certify};
 pub use kernels::SparseKernels;
 pub use linear::{FactorError, Factors, is_positive_definite};
+pub use mean_jump::MeanJump;
 
 use crate::algebra::{Contact, Inequality};
 use crate::real::Real;

@@ -1,0 +1,54 @@
+//! A form is positive definite, its symmetric part if it is not symmetric.
+
+use nalgebra::DMatrix;
+
+use super::error::{KitError, Law};
+use super::matrix::Assembled;
+use super::meshes::{self, Sample};
+use super::problems;
+use super::report::CoercivityReport;
+use super::spectrum::{Diagonal, Factored, Lanczos};
+use super::tested::{Tested, assemble};
+use crate::algebra::SparseMatrix;
+use crate::real::Real;
+use crate::solve::FactorError;
+
+pub(super) fn check<T: Real, const D: usize>(
+    scheme: &dyn Tested<T, D>,
+) -> Result<CoercivityReport, KitError> {
+    let (law, domain, n) = (Law::Coercivity, meshes::clamped(), meshes::subdivisions(D));
+    let mut smallest = f64::INFINITY;
+    // without reaction, which would help
+    let problem = problems::smooth();
+    for sample in [meshes::regular(law, &domain, n)?, meshes::moved(law, &domain, n)?] {
+        let Sample { name, mesh } = sample;
+        let inequality = assemble(law, scheme, &problem, &mesh)?;
+        let part = Assembled::of(&inequality).scaled_symmetric_part();
+        smallest = f64::min(smallest, smallest_eigenvalue(&part, name)?);
+    }
+    Ok(CoercivityReport { smallest })
+}
+
+/// The smallest eigenvalue of a positive definite matrix; of another one, that and their number
+/// in the error.
+fn smallest_eigenvalue(part: &SparseMatrix<f64>, name: &str) -> Result<f64, KitError> {
+    let mesh = name.to_owned();
+    match Factored::new(part) {
+        Ok(a) if part.size() > 0 => Lanczos::default()
+            .smallest(&a, &Diagonal::one(part.size()))
+            .map_err(|why| KitError::NoEigenvalue { mesh, why }),
+        Ok(_) => Ok(f64::INFINITY),
+        Err(FactorError::NotPositive | FactorError::Singular) => Err(not_coercive(part, mesh)),
+        Err(why) => Err(KitError::NotFactored { mesh, why }),
+    }
+}
+
+fn not_coercive(part: &SparseMatrix<f64>, mesh: String) -> KitError {
+    let unknowns = part.size();
+    let dense = DMatrix::from_fn(unknowns, unknowns, |i, j| part.get(i, j));
+    let eigenvalues = dense.symmetric_eigenvalues();
+    // a Cholesky factorisation calls those singular that are not positive but for rounding
+    let rounding = 16.0 * f64::EPSILON * unknowns as f64;
+    let not_positive = unknowns - eigenvalues.iter().filter(|&&e| e > rounding).count();
+    KitError::NotCoercive { mesh, not_positive, unknowns, smallest: eigenvalues.min() }
+}

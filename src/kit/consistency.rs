@@ -1,0 +1,80 @@
+//! The patch test.
+
+use super::error::{KitError, Law};
+use super::meshes::{self, Sample};
+use super::problems;
+use super::report::ConsistencyReport;
+use super::tested::{Judged, Tested, solve_and_judge};
+use crate::mesh::describe_point;
+use crate::problem::Problem;
+use crate::real::{Real, point_f64};
+
+/// Rounding units that the error may have: some hundreds for the condition of a small matrix,
+/// some tens for the sums of its entries.
+const UNITS: f64 = 8192.0;
+
+pub(super) fn check<T: Real, const D: usize>(
+    scheme: &dyn Tested<T, D>,
+) -> Result<ConsistencyReport, KitError> {
+    let (law, domain, n) = (Law::Consistency, meshes::mixed(), meshes::subdivisions(D));
+    let declared = scheme.is_consistent();
+    let degree = scheme.degree();
+    let problem = problems::polynomial::<D>(degree);
+    let tolerance = UNITS * T::EPSILON;
+    let mut error = if declared { 0.0 } else { f64::INFINITY };
+    for sample in [meshes::regular(law, &domain, n)?, meshes::moved(law, &domain, n)?] {
+        let judged = solve_and_judge(law, scheme, &problem, &sample)?;
+        let here = relative_error(&judged, &problem, &sample);
+        let mesh = sample.name.to_owned();
+        match (declared, here <= tolerance) {
+            (true, true) => error = f64::max(error, here),
+            (false, false) => error = f64::min(error, here),
+            (false, true) => {
+                return Err(KitError::ConsistentAfterAll { mesh, degree, error: here });
+            }
+            (true, false) => {
+                let (cell, at) = worst_cell(&judged, &problem, &sample);
+                let error = here;
+                return Err(KitError::NotConsistent { mesh, degree, error, tolerance, cell, at });
+            }
+        }
+    }
+    Ok(ConsistencyReport { declared, error })
+}
+
+/// The larger of the errors at nodes and of mesh size times that of the gradient, relative to the
+/// polynomial; not a number where there is none.
+fn relative_error<T: Real, const D: usize>(
+    judged: &Judged,
+    problem: &Problem<D>,
+    sample: &Sample<T, D>,
+) -> f64 {
+    let [value, gradient] = [judged.errors.max, judged.errors.h1].map(|e| e.unwrap_or(f64::NAN));
+    let vertices = sample.mesh.vertices();
+    let size = vertices.iter().fold(1.0, |m, x| {
+        let value: f64 = problem.dirichlet_at(&point_f64(x));
+        f64::max(m, value.abs())
+    });
+    let gradient = gradient * sample.mesh.mesh_size();
+    if value.is_nan() || gradient.is_nan() { f64::NAN } else { value.max(gradient) / size }
+}
+
+/// The cell with the largest error at a vertex, and its barycentre.
+fn worst_cell<T: Real, const D: usize>(
+    judged: &Judged,
+    problem: &Problem<D>,
+    sample: &Sample<T, D>,
+) -> (usize, String) {
+    let mesh = &sample.mesh;
+    let (mut largest, mut worst) = (0.0, 0);
+    for (cell, values) in judged.vertex_values.chunks_exact(D + 1).enumerate() {
+        for (&v, value) in mesh.cell(cell).iter().zip(values) {
+            let exact = problem.dirichlet_at(&point_f64(&mesh.vertices()[v as usize]));
+            let error = (value - exact).abs();
+            if error > largest {
+                (largest, worst) = (error, cell);
+            }
+        }
+    }
+    (worst, describe_point(&point_f64(&mesh.barycentre(worst))))
+}

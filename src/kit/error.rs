@@ -1,0 +1,310 @@
+//! What is wrong with a scheme, where, and by how much.
+
+use std::fmt;
+
+use super::spectrum::SpectrumError;
+use crate::error::Error;
+use crate::solve::{FactorError, Outcome};
+
+/// A law of the kit.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Law {
+    /// Of the reference element.
+    Element,
+    /// Of the matrix and its transpose.
+    Symmetry,
+    /// Of the sign of the form.
+    Coercivity,
+    /// Of numberings.
+    Invariance,
+    /// Of polynomials.
+    Consistency,
+    /// Of convergence.
+    Orders,
+}
+
+impl fmt::Display for Law {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Law::Element => "element",
+            Law::Symmetry => "symmetry",
+            Law::Coercivity => "coercivity",
+            Law::Invariance => "invariance",
+            Law::Consistency => "consistency",
+            Law::Orders => "orders",
+        })
+    }
+}
+
+/// A law that does not hold. Every message starts with the law's name.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum KitError {
+    /// The layout does not own as many unknowns as there are basis functions.
+    #[error(
+        "element: the layout owns {owned} unknowns of a cell, there are {functions} basis functions (at most {limit})"
+    )]
+    LayoutCount {
+        /// Unknowns of a cell by layout.
+        owned: usize,
+        /// Basis functions.
+        functions: usize,
+        /// Largest number there may be.
+        limit: usize,
+    },
+    /// A node is not dual to the basis.
+    #[error("element: node {node} of basis function {function} is {found:.6}, not {expected}")]
+    NotDual {
+        /// The node.
+        node: usize,
+        /// The basis function.
+        function: usize,
+        /// The functional at the function.
+        found: f64,
+        /// One or zero.
+        expected: f64,
+    },
+    /// The basis does not sum to one.
+    #[error("element: at {at} the basis functions sum to {sum:.6}, not to one")]
+    NotPartitionOfUnity {
+        /// The point, barycentric.
+        at: String,
+        /// Their sum.
+        sum: f64,
+    },
+    /// A polynomial of the element's degree is not in the span of its basis.
+    #[error(
+        "element: a polynomial of degree {degree} differs by {difference:.3e} from its interpolant at {at}, although the element is said to be of degree {stated}"
+    )]
+    PolynomialMissing {
+        /// Degree of the polynomial.
+        degree: usize,
+        /// Degree of the element.
+        stated: usize,
+        /// The point, barycentric.
+        at: String,
+        /// Interpolant minus polynomial.
+        difference: f64,
+    },
+    /// A derivative is not that of the values.
+    #[error(
+        "element: basis function {function} has derivative {stated:.6} at {at} from vertex {from} to vertex {to}, differences give {difference:.6}"
+    )]
+    WrongDerivative {
+        /// The basis function.
+        function: usize,
+        /// The point, barycentric.
+        at: String,
+        /// The direction points away from this vertex of the cell.
+        from: usize,
+        /// The direction points to this vertex of the cell.
+        to: usize,
+        /// The stated derivative.
+        stated: f64,
+        /// That of the values.
+        difference: f64,
+    },
+    /// The form is declared symmetric and is not.
+    #[error(
+        "symmetry: the form is declared symmetric, but the entry at ({row}, {column}) is {entry:.6e} and its mirror image {mirrored:.6e}; row: {row_place}; column: {column_place}"
+    )]
+    NotSymmetric {
+        /// Row of the entry.
+        row: usize,
+        /// Column of the entry.
+        column: usize,
+        /// The entry.
+        entry: f64,
+        /// The entry with row and column exchanged.
+        mirrored: f64,
+        /// Where the unknown of the row lives.
+        row_place: String,
+        /// Where the unknown of the column lives.
+        column_place: String,
+    },
+    /// The form is declared not symmetric and is.
+    #[error(
+        "symmetry: the form is declared not symmetric, but no entry differs from its mirror image by more than {difference:.1e} of its rows: declare it symmetric"
+    )]
+    SymmetricAfterAll {
+        /// The largest relative difference.
+        difference: f64,
+    },
+    /// The symmetric part is not positive definite.
+    #[error(
+        "coercivity: on {mesh} the form has {not_positive} of {unknowns} eigenvalues that are not positive, the smallest {smallest:.3e} (diagonal scaled to ones)"
+    )]
+    NotCoercive {
+        /// The mesh.
+        mesh: String,
+        /// How many eigenvalues are not positive.
+        not_positive: usize,
+        /// How many there are.
+        unknowns: usize,
+        /// The smallest.
+        smallest: f64,
+    },
+    /// The smallest eigenvalue was not found.
+    #[error("coercivity: no smallest eigenvalue on {mesh}: {why}")]
+    NoEigenvalue {
+        /// The mesh.
+        mesh: String,
+        /// Why not.
+        #[source]
+        why: SpectrumError,
+    },
+    /// Definiteness could not be decided.
+    #[error("coercivity: the matrix could not be factored on {mesh}: {why}")]
+    NotFactored {
+        /// The mesh.
+        mesh: String,
+        /// Why not.
+        #[source]
+        why: FactorError,
+    },
+    /// Two unknowns of a cell live at the same place, so that numberings cannot be compared.
+    #[error("invariance: unknowns {first} and {second} live at the same place, {place}")]
+    UnknownsNotTold {
+        /// An unknown.
+        first: usize,
+        /// Another.
+        second: usize,
+        /// Where they live.
+        place: String,
+    },
+    /// An entry of the matrix depends on numbers of vertices or cells.
+    #[error(
+        "invariance: the entry at ({row}, {column}) changes from {before:.6e} to {after:.6e} when vertices and cells are renumbered; row: {row_place}; column: {column_place}"
+    )]
+    EntryDependsOnNumbering {
+        /// Row of the entry.
+        row: usize,
+        /// Column of the entry.
+        column: usize,
+        /// The entry.
+        before: f64,
+        /// The same entry in the other numbering.
+        after: f64,
+        /// Where the unknown of the row lives.
+        row_place: String,
+        /// Where the unknown of the column lives.
+        column_place: String,
+    },
+    /// An entry of the load depends on numbers of vertices or cells.
+    #[error(
+        "invariance: the load of unknown {unknown} ({place}) changes from {before:.6e} to {after:.6e} when vertices and cells are renumbered"
+    )]
+    LoadDependsOnNumbering {
+        /// The unknown.
+        unknown: usize,
+        /// Where it lives.
+        place: String,
+        /// Its load.
+        before: f64,
+        /// Its load in the other numbering.
+        after: f64,
+    },
+    /// The solution depends on numbers of vertices or cells.
+    #[error(
+        "invariance: the solution at unknown {unknown} ({place}) changes from {before:.6e} to {after:.6e} when vertices and cells are renumbered"
+    )]
+    SolutionDependsOnNumbering {
+        /// The unknown.
+        unknown: usize,
+        /// Where it lives.
+        place: String,
+        /// Its value.
+        before: f64,
+        /// Its value in the other numbering.
+        after: f64,
+    },
+    /// The patch test fails.
+    #[error(
+        "consistency: on {mesh} the error against a polynomial of degree {degree} is {error:.3e}, rounding explains {tolerance:.1e}; worst in cell {cell}, near {at}"
+    )]
+    NotConsistent {
+        /// The mesh.
+        mesh: String,
+        /// Degree of the polynomial.
+        degree: usize,
+        /// The relative error.
+        error: f64,
+        /// What rounding explains.
+        tolerance: f64,
+        /// The cell with the largest error at a vertex.
+        cell: usize,
+        /// Its barycentre.
+        at: String,
+    },
+    /// The patch test succeeds for a scheme that declares it must not.
+    #[error(
+        "consistency: the scheme is declared inconsistent, but on {mesh} it reproduces a polynomial of degree {degree} to {error:.3e}: declare it consistent"
+    )]
+    ConsistentAfterAll {
+        /// The mesh.
+        mesh: String,
+        /// Degree of the polynomial.
+        degree: usize,
+        /// The relative error.
+        error: f64,
+    },
+    /// Convergence is slower than it must be.
+    #[error(
+        "orders: the {norm} error falls from {coarse:.3e} to {fine:.3e}, an order of {measured:.2} where {expected} is due"
+    )]
+    OrderMissed {
+        /// "L2" or "H1".
+        norm: &'static str,
+        /// The order measured.
+        measured: f64,
+        /// The order due.
+        expected: f64,
+        /// The error on the coarse mesh.
+        coarse: f64,
+        /// The error on the fine mesh.
+        fine: f64,
+    },
+    /// A linear problem could not be solved.
+    #[error("{law}: the linear problem on {mesh} ended as {outcome}")]
+    NotSolved {
+        /// The law that needs its solution.
+        law: Law,
+        /// The mesh.
+        mesh: String,
+        /// How the solve ended.
+        outcome: Outcome,
+    },
+    /// Mesh, data or assembly failed.
+    #[error("{law}: {why}")]
+    NotAssembled {
+        /// The law under test.
+        law: Law,
+        /// Why not.
+        #[source]
+        why: Error,
+    },
+}
+
+impl KitError {
+    /// The law that does not hold.
+    pub fn law(&self) -> Law {
+        match self {
+            Self::LayoutCount { .. }
+            | Self::NotDual { .. }
+            | Self::NotPartitionOfUnity { .. }
+            | Self::PolynomialMissing { .. }
+            | Self::WrongDerivative { .. } => Law::Element,
+            Self::NotSymmetric { .. } | Self::SymmetricAfterAll { .. } => Law::Symmetry,
+            Self::NotCoercive { .. } | Self::NoEigenvalue { .. } | Self::NotFactored { .. } => {
+                Law::Coercivity
+            }
+            Self::UnknownsNotTold { .. }
+            | Self::EntryDependsOnNumbering { .. }
+            | Self::LoadDependsOnNumbering { .. }
+            | Self::SolutionDependsOnNumbering { .. } => Law::Invariance,
+            Self::NotConsistent { .. } | Self::ConsistentAfterAll { .. } => Law::Consistency,
+            Self::OrderMissed { .. } => Law::Orders,
+            Self::NotSolved { law, .. } | Self::NotAssembled { law, .. } => *law,
+        }
+    }
+}

@@ -1,0 +1,167 @@
+//! Nothing depends on how vertices and cells are numbered.
+
+use std::collections::HashMap;
+
+use super::error::{KitError, Law};
+use super::matrix::{Assembled, row_sizes};
+use super::meshes::{self, Renumbered, Sample};
+use super::problems;
+use super::report::InvarianceReport;
+use super::tested::{Tested, assemble, solve};
+use crate::algebra::Place;
+use crate::real::Real;
+
+/// Rounding units by which entries of matrix and load may change.
+const ENTRY_UNITS: f64 = 512.0;
+/// Rounding units by which unknowns may change, which condition magnifies.
+const SOLUTION_UNITS: f64 = 8192.0;
+
+pub(super) fn check<T: Real, const D: usize>(
+    scheme: &dyn Tested<T, D>,
+) -> Result<InvarianceReport, KitError> {
+    let law = Law::Invariance;
+    let sample = meshes::moved::<T, D>(law, &meshes::mixed(), meshes::subdivisions(D))?;
+    let problem = problems::rich();
+    let inequality = assemble(law, scheme, &problem, &sample.mesh)?;
+    let u = solve(law, &inequality, &sample)?;
+    let before = Numbered { assembled: Assembled::of(&inequality), solution: in_f64(&u) };
+    let mut report = InvarianceReport { matrix: 0.0, load: 0.0, solution: 0.0 };
+    for seed in [1, 2] {
+        let Renumbered { mesh, vertices, cells } = meshes::renumbered(law, &sample.mesh, seed)?;
+        let other = Sample { name: "a renumbered box", mesh };
+        let inequality = assemble(law, scheme, &problem, &other.mesh)?;
+        let u = solve(law, &inequality, &other)?;
+        let after = Numbered { assembled: Assembled::of(&inequality), solution: in_f64(&u) };
+        let new = after.numbers_of(&before, &vertices, &cells)?;
+        let Numbered { assembled, .. } = &before;
+        let tolerance = ENTRY_UNITS * T::EPSILON;
+        report.matrix = report.matrix.max(matrix(assembled, &after.assembled, &new, tolerance)?);
+        report.load = report.load.max(before.load(&after, &new, tolerance)?);
+        let tolerance = SOLUTION_UNITS * T::EPSILON;
+        report.solution = report.solution.max(before.solution(&after, &new, tolerance)?);
+    }
+    Ok(report)
+}
+
+fn in_f64<T: Real>(u: &[T]) -> Vec<f64> {
+    u.iter().map(|x| x.to_f64()).collect()
+}
+
+/// A linear problem and its solution in one numbering.
+struct Numbered {
+    assembled: Assembled,
+    solution: Vec<f64>,
+}
+
+/// The cell and the vertices of a place, in the numbers of the first mesh.
+type Key = (Option<u32>, Vec<u32>);
+
+fn key(place: &Place, vertex: impl Fn(u32) -> u32, cell: impl Fn(u32) -> u32) -> Key {
+    let mut vertices: Vec<u32> = place.vertices().iter().map(|&v| vertex(v)).collect();
+    vertices.sort_unstable();
+    (place.cell().map(cell), vertices)
+}
+
+impl Numbered {
+    /// The number here of every unknown there; vertices and cells have these numbers there.
+    fn numbers_of(
+        &self,
+        there: &Self,
+        vertices: &[u32],
+        cells: &[u32],
+    ) -> Result<Vec<usize>, KitError> {
+        let places = &self.assembled.places;
+        let mut here = HashMap::with_capacity(places.len());
+        for (second, place) in places.iter().enumerate() {
+            let key = key(place, |v| vertices[v as usize], |c| cells[c as usize]);
+            if let Some(first) = here.insert(key, second) {
+                let place = self.assembled.describe(second);
+                return Err(KitError::UnknownsNotTold { first, second, place });
+            }
+        }
+        // both meshes have the same places, so that one that is not found is one that is there twice
+        let find = |(first, place): (usize, &Place)| {
+            here.remove(&key(place, |v| v, |c| c)).ok_or_else(|| {
+                let place = there.assembled.describe(first);
+                KitError::UnknownsNotTold { first, second: first, place }
+            })
+        };
+        there.assembled.places.iter().enumerate().map(find).collect()
+    }
+
+    fn load(&self, after: &Self, new: &[usize], tolerance: f64) -> Result<f64, KitError> {
+        let (old, other) = (&self.assembled.load, &after.assembled.load);
+        let (change, unknown) = largest_change(old, other, new);
+        if change <= tolerance {
+            return Ok(change);
+        }
+        let place = self.assembled.describe(unknown);
+        let (before, after) = (old[unknown], other[new[unknown]]);
+        Err(KitError::LoadDependsOnNumbering { unknown, place, before, after })
+    }
+
+    fn solution(&self, after: &Self, new: &[usize], tolerance: f64) -> Result<f64, KitError> {
+        let (change, unknown) = largest_change(&self.solution, &after.solution, new);
+        if change <= tolerance {
+            return Ok(change);
+        }
+        let place = self.assembled.describe(unknown);
+        let (before, after) = (self.solution[unknown], after.solution[new[unknown]]);
+        Err(KitError::SolutionDependsOnNumbering { unknown, place, before, after })
+    }
+}
+
+/// The largest change relative to the largest number, and where.
+fn largest_change(before: &[f64], after: &[f64], new: &[usize]) -> (f64, usize) {
+    let size = before.iter().fold(f64::MIN_POSITIVE, |m, x| m.max(x.abs()));
+    let mut largest = (0.0, 0);
+    for (i, x) in before.iter().enumerate() {
+        let change = (x - after[new[i]]).abs() / size;
+        // written so that a number that is not finite is the largest
+        if !(change <= largest.0 || largest.0.is_nan()) {
+            largest = (change, i);
+        }
+    }
+    largest
+}
+
+/// The largest change of an entry, relative to the size of its row and column.
+fn matrix(
+    before: &Assembled,
+    after: &Assembled,
+    new: &[usize],
+    tolerance: f64,
+) -> Result<f64, KitError> {
+    let sizes = row_sizes(&before.matrix);
+    let mut largest: f64 = 0.0;
+    let mut compare = |row: usize, column: usize| {
+        let entries = [before.matrix.get(row, column), after.matrix.get(new[row], new[column])];
+        let change = (entries[0] - entries[1]).abs() / (sizes[row] * sizes[column]).sqrt();
+        if change <= tolerance {
+            largest = largest.max(change);
+            return Ok(());
+        }
+        Err(KitError::EntryDependsOnNumbering {
+            row,
+            column,
+            before: entries[0],
+            after: entries[1],
+            row_place: before.describe(row),
+            column_place: before.describe(column),
+        })
+    };
+    let mut old = vec![0; new.len()];
+    for (i, &k) in new.iter().enumerate() {
+        old[k] = i;
+    }
+    // entries of either pattern: one that only the other has must be zero
+    for i in 0..new.len() {
+        for &j in before.matrix.row(i).0 {
+            compare(i, j as usize)?;
+        }
+        for &j in after.matrix.row(new[i]).0 {
+            compare(i, old[j as usize])?;
+        }
+    }
+    Ok(largest)
+}

@@ -1,0 +1,110 @@
+//! The meshes that schemes are tried on.
+
+use super::error::{KitError, Law};
+use super::random::Random;
+use crate::mesh::{BoundaryPart, Mesh, TaggedFacet};
+use crate::real::{Point, Real, point_f64};
+use crate::scenes::BoxDomain;
+
+/// How far a vertex may move, in units of the distance to the next one.
+const SHIFT: f64 = 0.2;
+
+/// A mesh with a name for messages.
+pub(super) struct Sample<T, const D: usize> {
+    pub name: &'static str,
+    pub mesh: Mesh<T, D>,
+}
+
+/// A mesh with other numbers of vertices and cells, and the old ones of each.
+pub(super) struct Renumbered<T, const D: usize> {
+    pub mesh: Mesh<T, D>,
+    /// The old number of each vertex.
+    pub vertices: Vec<u32>,
+    /// The old number of each cell.
+    pub cells: Vec<u32>,
+}
+
+/// Subdivisions of the boxes on which matrices are looked at.
+pub(super) const fn subdivisions(dimension: usize) -> usize {
+    match dimension {
+        1 => 6,
+        2 => 4,
+        _ => 2,
+    }
+}
+
+/// The unit box with Dirichlet data everywhere.
+pub(super) fn clamped<const D: usize>() -> BoxDomain<D> {
+    BoxDomain::dirichlet(Point::zeros(), Point::repeat(1.0))
+}
+
+/// The unit box with Dirichlet data but for the upper end of the first axis.
+pub(super) fn mixed<const D: usize>() -> BoxDomain<D> {
+    clamped().side(0, 1, BoundaryPart::Neumann)
+}
+
+/// A box as it is cut.
+pub(super) fn regular<T: Real, const D: usize>(
+    law: Law,
+    domain: &BoxDomain<D>,
+    n: usize,
+) -> Result<Sample<T, D>, KitError> {
+    let mesh = Mesh::kuhn_box(domain, [n; D]).map_err(|why| KitError::NotAssembled { law, why })?;
+    Ok(Sample { name: "a regular box", mesh })
+}
+
+/// The same box with vertices moved at random, those of the boundary along it only.
+pub(super) fn moved<T: Real, const D: usize>(
+    law: Law,
+    domain: &BoxDomain<D>,
+    n: usize,
+) -> Result<Sample<T, D>, KitError> {
+    let mesh = regular::<f64, D>(law, domain, n)?.mesh;
+    let mut random = Random(7);
+    let move_one = |x: &Point<f64, D>| {
+        Point::from_fn(|k, _| {
+            let shift = SHIFT * (2.0 * random.unit() - 1.0) / n as f64;
+            let inside = x[k] > domain.lower[k] && x[k] < domain.upper[k];
+            if inside { x[k] + shift } else { x[k] }
+        })
+    };
+    let vertices = mesh.vertices().iter().map(move_one).collect();
+    let mesh = Mesh::new(vertices, mesh.cells().to_vec(), &tagged(&mesh, |v| v))
+        .map_err(|why| KitError::NotAssembled { law, why: why.into() })?;
+    Ok(Sample { name: "a box with moved vertices", mesh })
+}
+
+/// The facets of the boundary by the new numbers of their vertices.
+fn tagged<T: Real, const D: usize>(
+    mesh: &Mesh<T, D>,
+    number: impl Fn(u32) -> u32,
+) -> Vec<TaggedFacet<D>> {
+    let tag = |facet: &crate::mesh::BoundaryFacet| {
+        let mut vertices = [0; D];
+        let old = mesh.facet_vertices(facet.cell as usize, facet.local as usize);
+        vertices.iter_mut().zip(old).for_each(|(v, old)| *v = number(old));
+        TaggedFacet { vertices, part: facet.part }
+    };
+    mesh.boundary().iter().map(tag).collect()
+}
+
+/// The same mesh with vertices and cells renumbered at random.
+pub(super) fn renumbered<T: Real, const D: usize>(
+    law: Law,
+    mesh: &Mesh<T, D>,
+    seed: u64,
+) -> Result<Renumbered<T, D>, KitError> {
+    let mut random = Random(seed);
+    let vertices = random.permutation(mesh.vertices().len());
+    let cells = random.permutation(mesh.n_cells());
+    let mut new = vec![0; vertices.len()];
+    for (k, &old) in vertices.iter().enumerate() {
+        new[old as usize] = k as u32;
+    }
+    let points = vertices.iter().map(|&old| point_f64(&mesh.vertices()[old as usize])).collect();
+    let corners = cells.iter().flat_map(|&old| mesh.cell(old as usize));
+    let corners = corners.map(|&v| new[v as usize]).collect();
+    let mesh = Mesh::new(points, corners, &tagged(mesh, |v| new[v as usize]))
+        .map_err(|why| KitError::NotAssembled { law, why: why.into() })?;
+    Ok(Renumbered { mesh, vertices, cells })
+}

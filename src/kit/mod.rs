@@ -1,0 +1,131 @@
+//! A kit for authors of schemes: laws that every scheme obeys, each checked by one function, and
+//! all of them by [`check_scheme`].
+//!
+//! | law | function | what it catches |
+//! |---|---|---|
+//! | element | [`check_element`] | a node not dual to its function, a wrong derivative, a wrong count |
+//! | symmetry | [`check_symmetry`] | a form that is not as symmetric as it declares |
+//! | coercivity | [`check_coercivity`] | a penalty that is too small |
+//! | invariance | [`check_invariance`] | a form that depends on how cells and vertices are numbered |
+//! | consistency | [`check_consistency`] | a wrong sign or factor of a term on facets |
+//! | orders | [`check_orders`] | a scheme that converges slower than its element allows |
+//!
+//! They run on small boxes, as they are and with moved vertices, in the dimension and scalar of the
+//! call; tolerances are multiples of the scalar's rounding unit. An error names the law, the place
+//! and the size of what is wrong.
+//!
+//! ```
+//! use unilateral::kit::check_scheme;
+//! use unilateral::prelude::*;
+//!
+//! let report = check_scheme::<f64, 2, _>(&Sipg::default()).unwrap();
+//! assert!(report.coercivity.smallest > 0.0);
+//!
+//! let too_weak = Sipg { penalty: PenaltyRule::Diameter(1.0) };
+//! let error = check_scheme::<f64, 2, _>(&too_weak).unwrap_err();
+//! assert!(error.to_string().starts_with("coercivity: "));
+//! ```
+
+mod coercivity;
+mod consistency;
+mod element;
+mod error;
+mod invariance;
+mod matrix;
+mod meshes;
+mod orders;
+mod problems;
+mod random;
+mod report;
+pub mod spectrum;
+mod symmetry;
+mod tested;
+
+pub use element::check_element;
+pub use error::{KitError, Law};
+pub use report::{
+    CoercivityReport, ConsistencyReport, ElementReport, InvarianceReport, KitReport, OrdersReport,
+    SymmetryReport,
+};
+
+use crate::real::Real;
+use crate::scheme::Scheme;
+use tested::{Of, Tested};
+
+/// Checks every law in turn; those that need a solution come after those that say there is one.
+///
+/// # Errors
+/// The first law that does not hold.
+pub fn check_scheme<T: Real, const D: usize, S: Scheme<T, D>>(
+    scheme: &S,
+) -> Result<KitReport, KitError> {
+    let element = check_element::<T, D, S::Element>()?;
+    let tested: &dyn Tested<T, D> = &Of(scheme);
+    Ok(KitReport {
+        scheme: tested.name().to_owned(),
+        dimension: D,
+        scalar: T::NAME,
+        element,
+        symmetry: symmetry::check(tested)?,
+        coercivity: coercivity::check(tested)?,
+        invariance: invariance::check(tested)?,
+        consistency: consistency::check(tested)?,
+        orders: orders::check(tested)?,
+    })
+}
+
+/// The matrix is symmetric to rounding if the form declares it, and measurably not otherwise.
+///
+/// # Errors
+/// [`KitError::NotSymmetric`], [`KitError::SymmetricAfterAll`].
+pub fn check_symmetry<T: Real, const D: usize, S: Scheme<T, D>>(
+    scheme: &S,
+) -> Result<SymmetryReport, KitError> {
+    symmetry::check::<T, D>(&Of(scheme))
+}
+
+/// The symmetric part of the matrix is positive definite on the unknowns that are not given.
+///
+/// # Errors
+/// [`KitError::NotCoercive`].
+pub fn check_coercivity<T: Real, const D: usize, S: Scheme<T, D>>(
+    scheme: &S,
+) -> Result<CoercivityReport, KitError> {
+    coercivity::check::<T, D>(&Of(scheme))
+}
+
+/// Matrix, load and solution do not depend on the numbers of vertices and cells, nor on the order
+/// in which a cell lists its vertices.
+///
+/// # Errors
+/// [`KitError::EntryDependsOnNumbering`], [`KitError::LoadDependsOnNumbering`],
+/// [`KitError::SolutionDependsOnNumbering`], [`KitError::UnknownsNotTold`].
+pub fn check_invariance<T: Real, const D: usize, S: Scheme<T, D>>(
+    scheme: &S,
+) -> Result<InvarianceReport, KitError> {
+    invariance::check::<T, D>(&Of(scheme))
+}
+
+/// The patch test: a polynomial of the element's degree is reproduced to rounding if the scheme
+/// declares itself consistent ([`Scheme::CONSISTENT`]), and measurably missed otherwise.
+///
+/// # Errors
+/// [`KitError::NotConsistent`], [`KitError::ConsistentAfterAll`].
+pub fn check_consistency<T: Real, const D: usize, S: Scheme<T, D>>(
+    scheme: &S,
+) -> Result<ConsistencyReport, KitError> {
+    consistency::check::<T, D>(&Of(scheme))
+}
+
+/// Errors against a smooth solution fall with the order of the element: its degree in the broken
+/// H1 seminorm, one more in L2 where the scheme promises it
+/// ([`Scheme::expected_orders`] without inequalities) or where duality proves it, which is for
+/// consistent symmetric forms.
+///
+/// # Errors
+/// [`KitError::OrderMissed`].
+pub fn check_orders<T: Real, const D: usize, S: Scheme<T, D>>(
+    scheme: &S,
+) -> Result<OrdersReport, KitError> {
+    orders::check::<T, D>(&Of(scheme))
+}

@@ -1,0 +1,53 @@
+//! The linear problems that schemes are tried on.
+
+use crate::problem::Problem;
+use crate::real::Point;
+
+/// A direction that no symmetry of the box favours, another one for each number.
+fn direction<const D: usize>(number: usize) -> Point<f64, D> {
+    let entries = [0.7, -0.4, 0.5, -0.8, 0.3];
+    Point::from_fn(|k, _| entries[(number + 2 * k) % entries.len()])
+}
+
+/// Data of every kind: nothing cancels by symmetry. The function named exact provides boundary
+/// data; it solves nothing. The load is linear, so that rules that favour a vertex of the cell
+/// integrate it exactly in every numbering.
+pub(super) fn rich<const D: usize>() -> Problem<D> {
+    let x_along = |x: &Point<f64, D>| direction::<D>(0).dot(x);
+    Problem::new()
+        .exact(move |x| 1.0 + x_along(x).powi(2), move |x| direction(0) * (2.0 * x_along(x)))
+        .coefficient(move |x| 1.0 + 0.5 * x_along(x).sin())
+        .reaction(0.7)
+        .source(move |x| 1.0 - 2.0 * x_along(x))
+}
+
+/// A problem that a polynomial of this degree solves, a sum of powers of different linear
+/// functions.
+pub(super) fn polynomial<const D: usize>(degree: usize) -> Problem<D> {
+    let alpha = 2.5;
+    let at = |m: usize, x: &Point<f64, D>| direction::<D>(m).dot(x);
+    let value = move |x: &Point<f64, D>| (0..=degree).map(|m| at(m, x).powi(m as i32)).sum();
+    let gradient = move |x: &Point<f64, D>| {
+        let term = |m: usize| direction(m) * (m as f64 * at(m, x).powi(m as i32 - 1));
+        (1..=degree).map(term).fold(Point::zeros(), |s, g| s + g)
+    };
+    let problem = Problem::new().exact(value, gradient).coefficient(move |_| alpha);
+    if degree < 2 {
+        return problem;
+    }
+    problem.source(move |x| {
+        let term = |m: usize| {
+            let factor = (m * (m - 1)) as f64 * direction::<D>(m).norm_squared();
+            factor * at(m, x).powi(m as i32 - 2)
+        };
+        -alpha * (2..=degree).map(term).sum::<f64>()
+    })
+}
+
+/// A smooth solution that is no polynomial: an exponential, largest at the upper corner.
+pub(super) fn smooth<const D: usize>() -> Problem<D> {
+    let value = |x: &Point<f64, D>| direction::<D>(0).dot(x).exp();
+    Problem::new()
+        .exact(value, move |x| direction(0) * value(x))
+        .source(move |x| -direction::<D>(0).norm_squared() * value(x))
+}

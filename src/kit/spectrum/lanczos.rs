@@ -1,0 +1,202 @@
+//! The method of Lanczos, with full reorthogonalisation.
+
+use nalgebra::{DMatrix, SymmetricEigen};
+
+use super::Positive;
+use crate::kit::random::Random;
+
+/// The smallest and the largest eigenvalue of `B^-1 A`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Extremes {
+    /// The smallest eigenvalue.
+    pub smallest: f64,
+    /// The largest eigenvalue.
+    pub largest: f64,
+}
+
+impl Extremes {
+    /// The condition number: the quotient of the two.
+    pub fn condition(&self) -> f64 {
+        self.largest / self.smallest
+    }
+}
+
+/// Why no eigenvalue was found.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum SpectrumError {
+    /// The residual did not fall to the tolerance.
+    #[error(
+        "after {steps} steps the eigenvalue {value:e} is known to a relative residual of {residual:.1e} only, asked for {tolerance:.1e}"
+    )]
+    NotReached {
+        /// Steps made.
+        steps: usize,
+        /// The best estimate.
+        value: f64,
+        /// Its relative residual.
+        residual: f64,
+        /// The tolerance.
+        tolerance: f64,
+    },
+    /// A number that is not finite or a direction in which the matrix is not positive.
+    #[error("after {steps} steps the matrix proved not to be positive definite or not finite")]
+    NotPositive {
+        /// Steps made.
+        steps: usize,
+    },
+    /// The two matrices have different sizes, or none.
+    #[error("matrices of {a} and {b} rows have no common spectrum")]
+    Sizes {
+        /// Rows of the first.
+        a: usize,
+        /// Rows of the second.
+        b: usize,
+    },
+}
+
+/// The method of Lanczos for the largest eigenvalue of a product of positive definite matrices.
+///
+/// The iteration runs in the inner product of `B`, in which `B^-1 A` and `A^-1 B` are symmetric;
+/// the smallest eigenvalue is the reciprocal of the largest one of `A^-1 B` (shift and invert at
+/// zero). The start is pseudo-random and always the same.
+///
+/// The tolerance bounds the residual relative to the eigenvalue, and so the relative distance to
+/// the next eigenvalue. It has to be finer than the figure that is wanted: where eigenvalues
+/// cluster, a loose one is content with an eigenvalue inside the cluster. Rounding adds the
+/// condition number times the rounding unit to the smallest eigenvalue.
+#[derive(Clone, Copy, Debug)]
+pub struct Lanczos {
+    /// Largest residual, relative to the eigenvalue.
+    pub tolerance: f64,
+    /// Largest number of steps, each of which keeps a vector.
+    pub max_steps: usize,
+}
+
+impl Default for Lanczos {
+    fn default() -> Self {
+        Self { tolerance: 1e-10, max_steps: 1000 }
+    }
+}
+
+impl Lanczos {
+    /// Both extreme eigenvalues of `B^-1 A`.
+    ///
+    /// # Errors
+    /// [`SpectrumError`].
+    pub fn extremes(&self, a: &dyn Positive, b: &dyn Positive) -> Result<Extremes, SpectrumError> {
+        Ok(Extremes { smallest: self.smallest(a, b)?, largest: self.largest(a, b)? })
+    }
+
+    /// The largest eigenvalue of `B^-1 A`.
+    ///
+    /// # Errors
+    /// [`SpectrumError`].
+    pub fn largest(&self, a: &dyn Positive, b: &dyn Positive) -> Result<f64, SpectrumError> {
+        let operator = |x: &[f64]| {
+            let mut y = a.apply(x);
+            b.solve(&mut y);
+            y
+        };
+        self.run(a.size(), &operator, b)
+    }
+
+    /// The smallest eigenvalue of `B^-1 A`.
+    ///
+    /// # Errors
+    /// [`SpectrumError`].
+    pub fn smallest(&self, a: &dyn Positive, b: &dyn Positive) -> Result<f64, SpectrumError> {
+        let operator = |x: &[f64]| {
+            let mut y = b.apply(x);
+            a.solve(&mut y);
+            y
+        };
+        self.run(a.size(), &operator, b).map(|value| 1.0 / value)
+    }
+
+    /// The largest eigenvalue of an operator that is symmetric in the inner product of `b`.
+    fn run(
+        &self,
+        size: usize,
+        operator: &dyn Fn(&[f64]) -> Vec<f64>,
+        b: &dyn Positive,
+    ) -> Result<f64, SpectrumError> {
+        if size != b.size() || size == 0 {
+            return Err(SpectrumError::Sizes { a: size, b: b.size() });
+        }
+        let mut random = Random(1);
+        let mut next: Vec<f64> = (0..size).map(|_| random.unit() - 0.5).collect();
+        let mut basis: Vec<Vec<f64>> = Vec::new();
+        let (mut diagonal, mut beside) = (Vec::new(), Vec::new());
+        let mut check = 4;
+        let mut length = norm(&next, b);
+        loop {
+            let steps = basis.len();
+            if !(length.is_finite() && length > 0.0) {
+                return Err(SpectrumError::NotPositive { steps });
+            }
+            next.iter_mut().for_each(|x| *x /= length);
+            let mut image = operator(&next);
+            basis.push(next);
+            diagonal.push(orthogonalise(&mut image, &basis, b));
+            length = norm(&image, b);
+            let steps = basis.len();
+            let last = steps == size.min(self.max_steps);
+            // an invariant space, but for rounding, needs no further step
+            let closed = length <= f64::EPSILON * diagonal[steps - 1].abs();
+            if steps >= check || last || closed {
+                let (value, share) = largest_of_tridiagonal(&diagonal, &beside);
+                let residual = (length * share / value).abs();
+                if residual <= self.tolerance && value > 0.0 {
+                    return Ok(value);
+                }
+                if last || closed {
+                    let tolerance = self.tolerance;
+                    return Err(SpectrumError::NotReached { steps, value, residual, tolerance });
+                }
+                check = steps + steps / 4 + 1;
+            }
+            beside.push(length);
+            next = image;
+        }
+    }
+}
+
+/// The norm in the inner product of `b`.
+fn norm(x: &[f64], b: &dyn Positive) -> f64 {
+    dot(x, &b.apply(x)).sqrt()
+}
+
+fn dot(x: &[f64], y: &[f64]) -> f64 {
+    x.iter().zip(y).map(|(x, y)| x * y).sum()
+}
+
+/// Makes a vector orthogonal to a basis in the inner product of `b`, twice against rounding;
+/// returns its component along the last vector of the basis.
+fn orthogonalise(x: &mut [f64], basis: &[Vec<f64>], b: &dyn Positive) -> f64 {
+    let mut along_last = 0.0;
+    for _ in 0..2 {
+        let image = b.apply(x);
+        for (k, v) in basis.iter().enumerate() {
+            let component = dot(v, &image);
+            x.iter_mut().zip(v).for_each(|(x, v)| *x -= component * v);
+            if k + 1 == basis.len() {
+                along_last += component;
+            }
+        }
+    }
+    along_last
+}
+
+/// The largest eigenvalue of a tridiagonal matrix, and the last entry of its eigenvector.
+fn largest_of_tridiagonal(diagonal: &[f64], beside: &[f64]) -> (f64, f64) {
+    let n = diagonal.len();
+    let matrix = DMatrix::from_fn(n, n, |i, j| match i.abs_diff(j) {
+        0 => diagonal[i],
+        1 => beside[i.min(j)],
+        _ => 0.0,
+    });
+    let eigen = SymmetricEigen::new(matrix);
+    let k = eigen.eigenvalues.imax();
+    (eigen.eigenvalues[k], eigen.eigenvectors[(n - 1, k)])
+}

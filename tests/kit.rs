@@ -1,0 +1,51 @@
+//! Every scheme passes the kit, in every dimension and scalar; broken ones are caught by the law
+//! that is meant for them.
+
+#[path = "kit/broken_schemes.rs"]
+mod broken_schemes;
+#[path = "kit/family.rs"]
+mod family;
+#[path = "kit/laws.rs"]
+mod laws;
+#[path = "kit/quadratics.rs"]
+mod quadratics;
+
+use family::Family;
+use unilateral::kit::check_scheme;
+use unilateral::prelude::*;
+
+/// A test for each line: a name, and how the scheme is made.
+macro_rules! schemes {
+    ($($name:ident: $scheme:expr;)*) => {
+        $(
+            #[test]
+            fn $name() {
+                fn on<T: Real, const D: usize, S: Scheme<T, D>>(scheme: &S) {
+                    let report = check_scheme::<T, D, S>(scheme).unwrap_or_else(|e| panic!("{e}"));
+                    assert_eq!((report.dimension, report.scalar), (D, T::NAME));
+                    println!("{report}");
+                }
+                let scheme = $scheme;
+                on::<f64, 1, _>(&scheme);
+                on::<f64, 2, _>(&scheme);
+                on::<f64, 3, _>(&scheme);
+                on::<f32, 1, _>(&scheme);
+                on::<f32, 2, _>(&scheme);
+                on::<f32, 3, _>(&scheme);
+            }
+        )*
+    };
+}
+
+schemes! {
+    conforming: ConformingP1;
+    crouzeix_raviart: CrouzeixRaviartScheme;
+    sipg: Sipg::default();
+    sipg_by_diameter: Sipg { penalty: PenaltyRule::Diameter(10.0) };
+    sipg_on_means: FacetMeans(Sipg::default());
+    non_symmetric: Family::<1> { factor: 1.0 };
+    incomplete: Family::<0> { factor: 10.0 };
+    wopsip: Wopsip::default();
+    wopsip_anisotropic: Wopsip { weight: WeightRule::Anisotropic, ..Wopsip::default() };
+    wopsip_on_means: FacetMeans(Wopsip::default());
+}

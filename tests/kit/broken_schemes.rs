@@ -1,0 +1,294 @@
+//! Schemes with one mistake each.
+
+use std::marker::PhantomData;
+
+use unilateral::element::{Layout, Node};
+use unilateral::facet::proven_bound;
+use unilateral::kit::{
+    KitError, Law, check_coercivity, check_consistency, check_element, check_invariance,
+    check_orders, check_scheme, check_symmetry,
+};
+use unilateral::prelude::*;
+
+/// Interior penalty `sigma [u][v] - a {d_n u}[v] - b {d_n v}[u]` with a wrong sign, share or
+/// declaration at will.
+#[derive(Clone, Copy)]
+struct Form<const SYMMETRIC: bool> {
+    /// Factor of the consistency term.
+    flux: f64,
+    /// Factor of its mirror image.
+    mirrored: f64,
+    /// Factor of the proven penalty.
+    share: f64,
+    /// Added to the penalty in units of itself where the cell here is the larger one.
+    lean: f64,
+    /// Power of the diameter of the facet by which the penalty is multiplied.
+    power: i32,
+}
+
+impl<const SYMMETRIC: bool> Form<SYMMETRIC> {
+    const RIGHT: Self = Self { flux: 1.0, mirrored: 1.0, share: 1.5, lean: 0.0, power: 0 };
+}
+
+impl<T: Real, const D: usize, const SYMMETRIC: bool> FacetForm<T, D> for Form<SYMMETRIC> {
+    const USES_FLUX: bool = true;
+    const SYMMETRIC: bool = SYMMETRIC;
+    fn penalty(&self, facet: &FacetView<T>) -> T {
+        let here_is_larger = facet.there.as_ref().is_some_and(|t| facet.here.volume > t.volume);
+        let lean = if here_is_larger { 1.0 + self.lean } else { 1.0 };
+        let power = facet.diameter.to_f64().powi(self.power);
+        T::lit(self.share * lean * power) * proven_bound::<T, D>(1, facet)
+    }
+    fn integrand(&self, v: Trace<T>, u: Trace<T>, penalty: T) -> T {
+        let [flux, mirrored] = [self.flux, self.mirrored].map(T::lit);
+        penalty * u.jump * v.jump - flux * u.flux * v.jump - mirrored * v.flux * u.jump
+    }
+}
+
+/// A scheme with such a form, on some element.
+struct Broken1<E, const SYMMETRIC: bool, const CONSISTENT: bool> {
+    form: Form<SYMMETRIC>,
+    element: PhantomData<E>,
+}
+
+impl<T: Real, const D: usize, E, const SYMMETRIC: bool, const CONSISTENT: bool> Scheme<T, D>
+    for Broken1<E, SYMMETRIC, CONSISTENT>
+where
+    E: ReferenceElement<T, D>,
+{
+    type Element = Broken<E>;
+    type Facet = Form<SYMMETRIC>;
+    const DIRICHLET: DirichletBy = DirichletBy::FacetForm;
+    const CONSISTENT: bool = CONSISTENT;
+    fn name(&self) -> &str {
+        "broken"
+    }
+    fn facet(&self, _: &Mesh<T, D>) -> Form<SYMMETRIC> {
+        self.form
+    }
+}
+
+type Symmetric = Broken1<P1, true, true>;
+type NotSymmetric = Broken1<P1, false, true>;
+type NotConsistent = Broken1<P1, true, false>;
+
+fn symmetric(form: Form<true>) -> Symmetric {
+    Broken1 { form, element: PhantomData }
+}
+
+/// The law by itself and all laws together fail with an error that names the law.
+fn caught<R1, R2>(law: Law, alone: Result<R1, KitError>, all: Result<R2, KitError>) -> KitError {
+    let alone = alone.err().unwrap_or_else(|| panic!("the law of {law} does not catch it"));
+    let all = all.err().unwrap_or_else(|| panic!("no law catches it"));
+    for error in [&alone, &all] {
+        assert_eq!(error.law(), law, "{error}");
+        assert!(error.to_string().starts_with(&format!("{law}: ")), "{error}");
+    }
+    alone
+}
+
+#[test]
+fn the_same_form_without_a_mistake_passes() {
+    let scheme = symmetric(Form::RIGHT);
+    let report = check_scheme::<f64, 2, _>(&scheme).unwrap_or_else(|e| panic!("{e}"));
+    let sipg = check_scheme::<f64, 2, _>(&Sipg::default()).unwrap_or_else(|e| panic!("{e}"));
+    assert_eq!(report.coercivity, sipg.coercivity);
+    assert_eq!(report.orders, sipg.orders);
+}
+
+fn wrong_sign<const D: usize>() {
+    let scheme = symmetric(Form { flux: -1.0, mirrored: -1.0, ..Form::RIGHT });
+    let error = caught(
+        Law::Consistency,
+        check_consistency::<f64, D, _>(&scheme),
+        check_scheme::<f64, D, _>(&scheme),
+    );
+    let KitError::NotConsistent { error, tolerance, .. } = error else { panic!("{error}") };
+    assert!(error > 1e6 * tolerance, "{error} against {tolerance}");
+}
+
+#[test]
+fn a_wrong_sign_of_the_flux_is_not_consistent() {
+    wrong_sign::<1>();
+    wrong_sign::<2>();
+    wrong_sign::<3>();
+}
+
+#[test]
+fn a_wrong_factor_of_the_flux_is_not_consistent() {
+    let scheme = symmetric(Form { flux: 1.001, mirrored: 1.001, ..Form::RIGHT });
+    let [alone, all] =
+        [check_consistency::<f64, 2, _>(&scheme).err(), check_scheme::<f64, 2, _>(&scheme).err()];
+    for error in [alone, all] {
+        assert!(matches!(error, Some(KitError::NotConsistent { .. })), "{error:?}");
+    }
+}
+
+fn lopsided<const D: usize>() {
+    let scheme = symmetric(Form { mirrored: 0.0, ..Form::RIGHT });
+    let error = caught(
+        Law::Symmetry,
+        check_symmetry::<f64, D, _>(&scheme),
+        check_scheme::<f64, D, _>(&scheme),
+    );
+    let KitError::NotSymmetric { row, column, entry, mirrored, .. } = error else {
+        panic!("{error}")
+    };
+    assert!(row != column && (entry - mirrored).abs() > 1e-2, "{entry} and {mirrored}");
+}
+
+#[test]
+fn an_incomplete_form_is_not_symmetric() {
+    lopsided::<1>();
+    lopsided::<2>();
+    lopsided::<3>();
+}
+
+#[test]
+fn a_form_that_hides_its_symmetry_is_told() {
+    let scheme = NotSymmetric { form: Form::RIGHT, element: PhantomData };
+    let error = caught(
+        Law::Symmetry,
+        check_symmetry::<f32, 2, _>(&scheme),
+        check_scheme::<f32, 2, _>(&scheme),
+    );
+    assert!(matches!(error, KitError::SymmetricAfterAll { .. }), "{error}");
+}
+
+fn leaning<const D: usize>() {
+    let scheme = symmetric(Form { lean: 0.01, ..Form::RIGHT });
+    let error = caught(
+        Law::Invariance,
+        check_invariance::<f64, D, _>(&scheme),
+        check_scheme::<f64, D, _>(&scheme),
+    );
+    let KitError::EntryDependsOnNumbering { before, after, .. } = error else { panic!("{error}") };
+    assert!((before - after).abs() > 1e-3 * before.abs(), "{before} and {after}");
+}
+
+#[test]
+fn a_penalty_that_depends_on_orientation_is_not_invariant() {
+    leaning::<1>();
+    leaning::<2>();
+    leaning::<3>();
+}
+
+fn too_weak<const D: usize>(share: f64) {
+    let scheme = symmetric(Form { share, ..Form::RIGHT });
+    let error = caught(
+        Law::Coercivity,
+        check_coercivity::<f64, D, _>(&scheme),
+        check_scheme::<f64, D, _>(&scheme),
+    );
+    let KitError::NotCoercive { not_positive, unknowns, smallest, .. } = error else {
+        panic!("{error}")
+    };
+    assert!(not_positive > 0 && not_positive < unknowns && smallest < 0.0, "{smallest}");
+}
+
+/// The proven bound is sharp in one dimension; above it the measured thresholds are less.
+#[test]
+fn a_penalty_below_the_threshold_is_not_coercive() {
+    too_weak::<1>(0.9);
+    too_weak::<2>(0.4);
+    too_weak::<3>(0.2);
+}
+
+#[test]
+fn a_consistent_form_that_says_otherwise_is_told() {
+    let scheme = NotConsistent { form: Form::RIGHT, element: PhantomData };
+    let error = caught(
+        Law::Consistency,
+        check_consistency::<f64, 2, _>(&scheme),
+        check_scheme::<f64, 2, _>(&scheme),
+    );
+    assert!(matches!(error, KitError::ConsistentAfterAll { .. }), "{error}");
+}
+
+/// A penalty without consistency terms is not consistent and, of this strength, not convergent.
+#[test]
+fn a_penalty_alone_misses_the_order() {
+    let form = Form { flux: 0.0, mirrored: 0.0, ..Form::RIGHT };
+    let scheme = NotConsistent { form, element: PhantomData };
+    let error =
+        caught(Law::Orders, check_orders::<f64, 2, _>(&scheme), check_scheme::<f64, 2, _>(&scheme));
+    let KitError::OrderMissed { norm, measured, expected, .. } = error else { panic!("{error}") };
+    assert!(norm == "H1" && measured < 0.5 && expected == 1.0, "{norm}: {measured}");
+}
+
+/// With the power of the weak over-penalty it converges.
+#[test]
+fn an_over_penalty_alone_does_not() {
+    let form = Form { flux: 0.0, mirrored: 0.0, power: -2, ..Form::RIGHT };
+    let scheme = NotConsistent { form, element: PhantomData };
+    let orders = check_orders::<f64, 2, _>(&scheme).unwrap_or_else(|e| panic!("{e}"));
+    assert!(orders.h1 > 0.8, "{orders:?}");
+}
+
+/// Linears with a mistake, by number.
+#[derive(Clone, Copy)]
+struct Wrong<const MISTAKE: usize>;
+
+const DERIVATIVE: usize = 0;
+const NODE: usize = 1;
+const SUM: usize = 2;
+const COUNT: usize = 3;
+const DEGREE: usize = 4;
+
+impl<T: Real, const D: usize, const MISTAKE: usize> ReferenceElement<T, D> for Wrong<MISTAKE> {
+    const N: usize = D + 1;
+    const DEGREE: usize = if MISTAKE == DEGREE { 2 } else { 1 };
+    const LAYOUT: Layout =
+        Layout { vertex: 1, facet: 0, cell: if MISTAKE == COUNT { 1 } else { 0 } };
+    fn values(lambda: &[T], out: &mut [T]) {
+        <P1 as ReferenceElement<T, D>>::values(lambda, out);
+        if MISTAKE == SUM {
+            // vanishes at all vertices
+            out[0] += lambda[0] * lambda[1];
+        }
+    }
+    fn derivatives(lambda: &[T], out: &mut [[T; 4]]) {
+        <P1 as ReferenceElement<T, D>>::derivatives(lambda, out);
+        if MISTAKE == DERIVATIVE {
+            out[1][0] = T::lit(0.125);
+        }
+    }
+    fn node(i: usize) -> Node {
+        if MISTAKE == NODE { Node::FacetMean(i) } else { Node::Vertex(i) }
+    }
+}
+
+fn wrong_element<const D: usize, const MISTAKE: usize>() -> KitError {
+    let scheme = Broken1::<Wrong<MISTAKE>, true, true> { form: Form::RIGHT, element: PhantomData };
+    caught(
+        Law::Element,
+        check_element::<f64, D, Wrong<MISTAKE>>(),
+        check_scheme::<f64, D, _>(&scheme),
+    )
+}
+
+fn wrong_elements<const D: usize>() {
+    let error = wrong_element::<D, DERIVATIVE>();
+    assert!(matches!(error, KitError::WrongDerivative { function: 1, .. }), "{error}");
+    let error = wrong_element::<D, NODE>();
+    assert!(matches!(error, KitError::NotDual { node: 0, .. }), "{error}");
+    let error = wrong_element::<D, SUM>();
+    assert!(matches!(error, KitError::NotPartitionOfUnity { .. }), "{error}");
+    let error = wrong_element::<D, DEGREE>();
+    assert!(matches!(error, KitError::PolynomialMissing { degree: 2, .. }), "{error}");
+}
+
+#[test]
+fn mistakes_of_elements_are_told_apart() {
+    wrong_elements::<1>();
+    wrong_elements::<2>();
+    wrong_elements::<3>();
+}
+
+/// A broken element owns all its unknowns, so the count is wrong of the element itself only.
+#[test]
+fn a_wrong_count_is_told() {
+    let error = check_element::<f64, 2, Wrong<COUNT>>().unwrap_err();
+    let KitError::LayoutCount { owned, functions, .. } = error else { panic!("{error}") };
+    assert_eq!((owned, functions), (4, 3));
+}

@@ -1,0 +1,155 @@
+//! What the kit measures, where it is known.
+
+use unilateral::algebra::SparseMatrix;
+use unilateral::kit::spectrum::{Diagonal, Factored, Lanczos, SpectrumError};
+use unilateral::kit::{check_consistency, check_orders, check_scheme, check_symmetry};
+use unilateral::mesh::Mesh;
+use unilateral::prelude::*;
+use unilateral::scenes::BoxDomain;
+use unilateral::solve::MeanJump;
+
+use super::family::Family;
+
+/// Duality promises one order more in L2 to consistent symmetric forms and to no others.
+#[test]
+fn orders_asked_for_follow_from_what_is_declared() {
+    let sipg = check_orders::<f64, 2, _>(&Sipg::default()).unwrap();
+    assert_eq!((sipg.l2_expected, sipg.h1_expected), (Some(2.0), 1.0));
+    assert!(sipg.l2 > 1.75 && sipg.h1 > 0.75, "{sipg:?}");
+    let incomplete = check_orders::<f64, 2, _>(&Family::<0> { factor: 10.0 }).unwrap();
+    assert_eq!(incomplete.l2_expected, None);
+    let wopsip = check_orders::<f64, 2, _>(&Wopsip::default()).unwrap();
+    assert_eq!(wopsip.l2_expected, None);
+}
+
+/// WOPSIP on a line, by the closed form of its slope and jumps, is far from the rounding that
+/// consistent schemes are held to.
+#[test]
+fn declarations_are_reported_with_what_was_measured() {
+    let wopsip = check_consistency::<f64, 1, _>(&Wopsip::default()).unwrap();
+    assert!(!wopsip.declared && wopsip.error > 1e-3, "{wopsip:?}");
+    let sipg = check_consistency::<f64, 1, _>(&Sipg::default()).unwrap();
+    assert!(sipg.declared && sipg.error < 1e-13, "{sipg:?}");
+    let means = check_consistency::<f64, 1, _>(&FacetMeans(Wopsip::default())).unwrap();
+    assert!(!means.declared, "the basis does not change consistency");
+    let incomplete = check_symmetry::<f64, 3, _>(&Family::<0> { factor: 10.0 }).unwrap();
+    assert!(!incomplete.declared && incomplete.difference > 1e-2, "{incomplete:?}");
+}
+
+#[test]
+fn a_report_names_every_law() {
+    let report = check_scheme::<f32, 3, _>(&Wopsip::default()).unwrap().to_string();
+    for law in ["element", "symmetry", "coercivity", "invariance", "consistency", "orders"] {
+        assert!(report.contains(law), "{law} is missing in\n{report}");
+    }
+    assert!(report.starts_with("wopsip in 3 dimensions, f32") && report.contains("not consistent"));
+}
+
+/// The matrix of second differences.
+fn differences(n: usize) -> SparseMatrix<f64> {
+    let mut out = SparseMatrix { row_starts: vec![0], columns: Vec::new(), values: Vec::new() };
+    for i in 0..n {
+        for j in i.saturating_sub(1)..(i + 2).min(n) {
+            out.columns.push(j as u32);
+            out.values.push(if i == j { 2.0 } else { -1.0 });
+        }
+        out.row_starts.push(out.columns.len() as u32);
+    }
+    out
+}
+
+/// Its eigenvalues are `4 sin^2(k pi / (2 n + 2))`.
+#[test]
+fn eigenvalues_of_second_differences() {
+    for n in [1, 2, 3, 7, 50, 200] {
+        let matrix = differences(n);
+        let a = Factored::new(&matrix).unwrap();
+        let sine = |k: usize| (k as f64 * std::f64::consts::PI / (2 * n + 2) as f64).sin();
+        let found = Lanczos::default().extremes(&a, &Diagonal::one(n)).unwrap();
+        for (ours, k) in [(found.smallest, 1), (found.largest, n)] {
+            let exact = 4.0 * sine(k).powi(2);
+            assert!((ours - exact).abs() < 1e-11 * exact, "n = {n}: {ours} against {exact}");
+        }
+        // a pencil of a matrix and twice its own is one half everywhere
+        let twice = SparseMatrix {
+            values: matrix.values.iter().map(|a| 2.0 * a).collect(),
+            ..matrix.clone()
+        };
+        let half = Lanczos::default().extremes(&a, &Factored::new(&twice).unwrap()).unwrap();
+        assert!((half.smallest - 0.5).abs() + (half.largest - 0.5).abs() < 1e-11, "{half:?}");
+    }
+}
+
+#[test]
+fn a_spectrum_that_is_not_reached_is_an_error() {
+    let matrix = differences(400);
+    let a = Factored::new(&matrix).unwrap();
+    let lanczos = Lanczos { tolerance: 1e-10, max_steps: 5 };
+    let error = lanczos.largest(&a, &Diagonal::one(400)).unwrap_err();
+    let SpectrumError::NotReached { steps: 5, residual, .. } = error else { panic!("{error}") };
+    assert!(residual > 1e-10);
+    let error = lanczos.extremes(&a, &Diagonal::one(3)).unwrap_err();
+    assert_eq!(error, SpectrumError::Sizes { a: 400, b: 3 });
+    let mut negative = Diagonal::one(400);
+    negative.0[7] = -1e9;
+    let error = lanczos.largest(&a, &negative).unwrap_err();
+    assert!(matches!(error, SpectrumError::NotPositive { .. }), "{error}");
+}
+
+/// The change of variables is what it is said to be, on every part of the boundary.
+#[test]
+fn means_and_jumps() {
+    fn on<const D: usize>() {
+        let domain = BoxDomain::dirichlet(Point::zeros(), Point::repeat(1.0))
+            .side(0, 1, unilateral::mesh::BoundaryPart::Neumann)
+            .side(D - 1, 0, unilateral::mesh::BoundaryPart::Contact);
+        let mesh = Mesh::<f64, D>::kuhn_box(&domain, [3; D]).unwrap();
+        let assemble = |scheme: &FacetMeans<Wopsip>| {
+            let problem = Problem::new();
+            let quadrature = Default::default();
+            let discretisation =
+                unilateral::assemble::Discretisation::new(scheme, &problem, &mesh, quadrature);
+            discretisation.unwrap().matrix()
+        };
+        let factor = |eta: f64| {
+            FacetMeans(Wopsip { eta: Eta::Absolute(eta), weight: WeightRule::Isotropic })
+        };
+        let (one, many) = (assemble(&factor(1.0)), assemble(&factor(100.0)));
+        let change = MeanJump::of(&mesh);
+        let [small, large] = [&one, &many].map(|matrix| change.transform(matrix));
+        assert!(small.is_well_formed() && small.size() == one.size());
+        // a global constant has the mean one on every facet and no jump but at the boundary
+        let y: Vec<f64> =
+            (0..change.size()).map(|k| f64::from(u8::from(k < change.means()))).collect();
+        let c = change.expand(&y);
+        let inner = |c: &[f64]| c.iter().filter(|&&c| c == 1.0).count();
+        let dirichlet = mesh.boundary().iter();
+        let dirichlet =
+            dirichlet.filter(|f| f.part == unilateral::mesh::BoundaryPart::Dirichlet).count();
+        assert_eq!(inner(&c), change.size() - dirichlet);
+        // E^T A E applied in one go and step by step
+        let mut random = 1_u64;
+        let x: Vec<f64> = (0..change.size())
+            .map(|_| {
+                random = random.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695);
+                (random >> 40) as f64 / (1_u64 << 24) as f64 - 0.5
+            })
+            .collect();
+        let expanded = change.expand(&x);
+        let product: Vec<f64> = (0..one.size()).map(|i| one.row_dot(i, &expanded)).collect();
+        for (i, gathered) in change.gather(&product).into_iter().enumerate() {
+            assert!((gathered - small.row_dot(i, &x)).abs() < 1e-11 * small.get(i, i).max(1.0));
+        }
+        // the factor is seen on the diagonal of jumps and nowhere else
+        for i in 0..small.size() {
+            let (columns, values) = small.row(i);
+            for (&j, &a) in columns.iter().zip(values) {
+                let same = (a - large.get(i, j as usize)).abs() < 1e-9;
+                let on_jump = i == j as usize && i >= change.means();
+                assert_eq!(same, !on_jump, "entry ({i}, {j}) of {D}D");
+            }
+        }
+    }
+    on::<2>();
+    on::<3>();
+}
