@@ -3,14 +3,11 @@
 
 #[path = "kit/broken_schemes.rs"]
 mod broken_schemes;
-#[path = "kit/family.rs"]
-mod family;
 #[path = "kit/laws.rs"]
 mod laws;
 #[path = "kit/quadratics.rs"]
 mod quadratics;
 
-use family::Family;
 use unilateral::kit::check_scheme;
 use unilateral::prelude::*;
 
@@ -41,10 +38,15 @@ schemes! {
     conforming: ConformingP1;
     crouzeix_raviart: CrouzeixRaviartScheme;
     sipg: Sipg::default();
-    sipg_by_diameter: Sipg { penalty: PenaltyRule::Diameter(10.0) };
+    sipg_by_diameter: Sipg { penalty: PenaltyRule::Diameter(10.0), ..Sipg::default() };
     sipg_on_means: FacetMeans(Sipg::default());
-    non_symmetric: Family::<1> { factor: 1.0 };
-    incomplete: Family::<0> { factor: 10.0 };
+    nipg: Nipg::default();
+    iipg: Iipg::default();
+    ldg: Ldg::default();
+    ldg_one_sided: Ldg { switch: true, ..Ldg::default() };
+    br2: Br2::default();
+    bmmpr: Bmmpr::default();
+    bmmpr_on_means: FacetMeans(Bmmpr::default());
     wopsip: Wopsip::default();
     wopsip_anisotropic: Wopsip { weight: WeightRule::Anisotropic, ..Wopsip::default() };
     wopsip_on_means: FacetMeans(Wopsip::default());

@@ -21,7 +21,7 @@
 //! let report = check_scheme::<f64, 2, _>(&Sipg::default()).unwrap();
 //! assert!(report.coercivity.smallest > 0.0);
 //!
-//! let too_weak = Sipg { penalty: PenaltyRule::Diameter(1.0) };
+//! let too_weak = Sipg { penalty: PenaltyRule::Diameter(1.0), ..Sipg::default() };
 //! let error = check_scheme::<f64, 2, _>(&too_weak).unwrap_err();
 //! assert!(error.to_string().starts_with("coercivity: "));
 //! ```

@@ -33,10 +33,10 @@ impl<const SYMMETRIC: bool> Form<SYMMETRIC> {
 impl<T: Real, const D: usize, const SYMMETRIC: bool> FacetForm<T, D> for Form<SYMMETRIC> {
     const USES_FLUX: bool = true;
     const SYMMETRIC: bool = SYMMETRIC;
-    fn penalty(&self, facet: &FacetView<T>) -> T {
+    fn penalty(&self, facet: &FacetView<T, D>) -> T {
         let here_is_larger = facet.there.as_ref().is_some_and(|t| facet.here.volume > t.volume);
         let lean = if here_is_larger { 1.0 + self.lean } else { 1.0 };
-        let power = facet.diameter.to_f64().powi(self.power);
+        let power = facet.diameter().to_f64().powi(self.power);
         T::lit(self.share * lean * power) * proven_bound::<T, D>(1, facet)
     }
     fn integrand(&self, v: Trace<T>, u: Trace<T>, penalty: T) -> T {

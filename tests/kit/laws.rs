@@ -8,15 +8,17 @@ use unilateral::prelude::*;
 use unilateral::scenes::BoxDomain;
 use unilateral::solve::MeanJump;
 
-use super::family::Family;
-
 /// Duality promises one order more in L2 to consistent symmetric forms and to no others.
 #[test]
 fn orders_asked_for_follow_from_what_is_declared() {
     let sipg = check_orders::<f64, 2, _>(&Sipg::default()).unwrap();
     assert_eq!((sipg.l2_expected, sipg.h1_expected), (Some(2.0), 1.0));
     assert!(sipg.l2 > 1.75 && sipg.h1 > 0.75, "{sipg:?}");
-    let incomplete = check_orders::<f64, 2, _>(&Family::<0> { factor: 10.0 }).unwrap();
+    let incomplete = check_orders::<f64, 2, _>(&Iipg {
+        penalty: PenaltyRule::Diameter(10.0),
+        ..Iipg::default()
+    })
+    .unwrap();
     assert_eq!(incomplete.l2_expected, None);
     let wopsip = check_orders::<f64, 2, _>(&Wopsip::default()).unwrap();
     assert_eq!(wopsip.l2_expected, None);
@@ -32,7 +34,11 @@ fn declarations_are_reported_with_what_was_measured() {
     assert!(sipg.declared && sipg.error < 1e-13, "{sipg:?}");
     let means = check_consistency::<f64, 1, _>(&FacetMeans(Wopsip::default())).unwrap();
     assert!(!means.declared, "the basis does not change consistency");
-    let incomplete = check_symmetry::<f64, 3, _>(&Family::<0> { factor: 10.0 }).unwrap();
+    let incomplete = check_symmetry::<f64, 3, _>(&Iipg {
+        penalty: PenaltyRule::Diameter(10.0),
+        ..Iipg::default()
+    })
+    .unwrap();
     assert!(!incomplete.declared && incomplete.difference > 1e-2, "{incomplete:?}");
 }
 
@@ -111,9 +117,7 @@ fn means_and_jumps() {
                 unilateral::assemble::Discretisation::new(scheme, &problem, &mesh, quadrature);
             discretisation.unwrap().matrix()
         };
-        let factor = |eta: f64| {
-            FacetMeans(Wopsip { eta: Eta::Absolute(eta), weight: WeightRule::Isotropic })
-        };
+        let factor = |eta: f64| FacetMeans(Wopsip { eta: Eta::Absolute(eta), ..Wopsip::default() });
         let (one, many) = (assemble(&factor(1.0)), assemble(&factor(100.0)));
         let change = MeanJump::of(&mesh);
         let [small, large] = [&one, &many].map(|matrix| change.transform(matrix));

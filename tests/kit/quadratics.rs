@@ -79,11 +79,11 @@ struct MeansOnly;
 
 impl<T: Real> FacetForm<T, 2> for MeansOnly {
     const USES_FLUX: bool = true;
-    fn sampling(_: usize) -> Sampling {
-        Sampling::Means
+    fn moments(_: usize) -> usize {
+        0
     }
-    fn penalty(&self, facet: &FacetView<T>) -> T {
-        T::lit(20.0) / facet.diameter
+    fn penalty(&self, facet: &FacetView<T, 2>) -> T {
+        T::lit(20.0) / facet.diameter()
     }
     fn integrand(&self, v: Trace<T>, u: Trace<T>, penalty: T) -> T {
         penalty * u.jump * v.jump - u.flux * v.jump - v.flux * u.jump
