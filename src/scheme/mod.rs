@@ -1,14 +1,22 @@
 //! Schemes: an element, a facet form and a way to impose Dirichlet data. Nothing else.
 
+mod bounded_nodes;
+mod cell_means;
 mod conforming;
+mod conforming_p2;
 mod crouzeix_raviart;
 mod facet_means;
+mod midpoints;
 mod sipg;
 mod wopsip;
 
+pub use bounded_nodes::BoundedNodes;
+pub use cell_means::CellMeans;
 pub use conforming::ConformingP1;
+pub use conforming_p2::ConformingP2;
 pub use crouzeix_raviart::CrouzeixRaviartScheme;
 pub use facet_means::FacetMeans;
+pub use midpoints::Midpoints;
 pub use sipg::Sipg;
 pub use wopsip::{Eta, Wopsip};
 
@@ -53,6 +61,8 @@ pub trait Scheme<T: Real, const D: usize>: Send + Sync {
     type Facet: FacetForm<T, D>;
     /// How Dirichlet data are imposed.
     const DIRICHLET: DirichletBy;
+    /// At which nodes it imposes the inequality.
+    const BOUNDED: BoundedNodes = BoundedNodes::All;
     /// The name users type and reports state.
     fn name(&self) -> &str;
     /// The facet form on a mesh, its parameters resolved.

@@ -126,7 +126,7 @@ impl<T: Real, const D: usize, S: Scheme<T, D>> AnyScheme<T, D> for S {
     }
     fn is_conforming_linear(&self) -> bool {
         let layout = S::Element::LAYOUT;
-        layout.vertex == 1 && layout.facet + layout.cell == 0 && !S::Facet::COUPLES
+        layout.vertex == 1 && layout.edge + layout.facet + layout.cell == 0 && !S::Facet::COUPLES
     }
     fn solve(&self, task: &Task<'_, T, D>) -> Result<Solved, Error> {
         solve(task, &|| {

@@ -87,9 +87,9 @@ mod tests {
 
     #[test]
     fn the_estimate_meets_peaks_that_were_measured() {
-        let broken = |cell| Layout { vertex: 0, facet: 0, cell };
-        let p1 = Layout { vertex: 1, facet: 0, cell: 0 };
-        let cr = Layout { vertex: 0, facet: 1, cell: 0 };
+        let broken = |cell| Layout::in_cells(cell);
+        let p1 = Layout { vertex: 1, edge: 0, facet: 0, cell: 0 };
+        let cr = Layout { vertex: 0, edge: 0, facet: 1, cell: 0 };
         for (dimension, layout, cells, obstacle, scalar_bytes, peak) in [
             (1, broken(2), 1_000_000, true, 8, 740.6e6),
             (1, p1, 1_000_000, true, 8, 319.4e6),

@@ -3,7 +3,9 @@
 use super::AnyScheme;
 use crate::facet::{PenaltyRule, WeightRule};
 use crate::real::Real;
-use crate::scheme::{ConformingP1, CrouzeixRaviartScheme, Eta, FacetMeans, Sipg, Wopsip};
+use crate::scheme::{
+    ConformingP1, ConformingP2, CrouzeixRaviartScheme, Eta, FacetMeans, Sipg, Wopsip,
+};
 
 /// What a user may choose about schemes by name.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -33,6 +35,7 @@ impl SchemeOptions {
 /// [`scheme_by_name`].
 pub const SCHEMES: &[(&str, &str)] = &[
     ("p1", "conforming linear elements"),
+    ("p2", "conforming quadratic elements"),
     ("cr", "Crouzeix-Raviart elements, bounds on facet means"),
     ("sipg", "symmetric interior penalty on broken linears (takes --sigma)"),
     ("wopsip", "weakly over-penalised symmetric interior penalty on broken linears (takes --eta)"),
@@ -45,6 +48,7 @@ pub fn scheme_by_name<T: Real, const D: usize>(
 ) -> Option<Box<dyn AnyScheme<T, D>>> {
     let scheme: Box<dyn AnyScheme<T, D>> = match (name, options.facet_means) {
         ("p1", _) => Box::new(ConformingP1),
+        ("p2", _) => Box::new(ConformingP2),
         ("cr", _) => Box::new(CrouzeixRaviartScheme),
         ("sipg", false) => Box::new(options.sipg()),
         ("sipg", true) => Box::new(FacetMeans(options.sipg())),
