@@ -75,8 +75,8 @@ impl<'a, T: Real, const D: usize> Space<'a, T, D> {
         let constraint = self.bounded.name(self.degree, self.nodes[0]);
         let refuse =
             |condition, allowed| Err(Error::NothingToBound { constraint, condition, allowed });
-        if self.problem.has_obstacle() && self.bounded_nodes().next().is_none() {
-            return refuse("an obstacle", "the scheme's element has no such values");
+        if self.problem.is_constrained() && self.bounded_nodes().next().is_none() {
+            return refuse("an inequality", "the scheme's element has no such values");
         }
         if self.problem.gap.is_some() && self.bounded_nodes_on(0).next().is_none() {
             return refuse(

@@ -96,3 +96,54 @@ impl Edges {
         cells.flat_map(|cell| edge_vertices(D).iter().map(move |&e| of_cell(cell, e))).collect()
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use std::collections::BTreeSet;
+
+    use super::{Edges, edge_vertices};
+    use crate::mesh::{Facets, Mesh, Neighbours};
+    use crate::real::Point;
+    use crate::scenes::BoxDomain;
+
+    fn check<const D: usize>(counts: [usize; D]) -> usize {
+        let domain = BoxDomain::dirichlet(Point::zeros(), Point::repeat(1.0));
+        let mesh = Mesh::<f64, D>::kuhn_box(&domain, counts).unwrap();
+        let edges = Edges::of(&mesh);
+        let pairs = mesh.cells().chunks(D + 1).flat_map(|cell| {
+            cell.iter().flat_map(|&a| cell.iter().map(move |&b| [a, b])).filter(|[a, b]| a < b)
+        });
+        // a sorted set numbers its members in lexicographic order
+        let expected: Vec<[u32; 2]> = pairs.collect::<BTreeSet<_>>().into_iter().collect();
+        assert_eq!(edges.len(), expected.len());
+        for (k, &[a, b]) in expected.iter().enumerate() {
+            assert_eq!(edges.number(a, b), Some(k as u32));
+        }
+        let last = mesh.vertices().len() as u32 - 1;
+        assert_eq!(edges.number(0, 0), None);
+        assert_eq!(edges.number(last, 0), None);
+        let numbers = edges.numbers(&mesh);
+        let per_cell = edge_vertices(D).len();
+        assert_eq!(numbers.len(), per_cell * mesh.n_cells());
+        for (cell, numbers) in mesh.cells().chunks(D + 1).zip(numbers.chunks(per_cell)) {
+            for (&[i, j], &number) in edge_vertices(D).iter().zip(numbers) {
+                assert_eq!([cell[i], cell[j]], expected[number as usize]);
+            }
+        }
+        match D {
+            1 => assert_eq!(edges.len(), mesh.n_cells()),
+            2 => assert_eq!(edges.len(), Facets::of(&mesh, &Neighbours::of(&mesh)).len()),
+            _ => {}
+        }
+        edges.len()
+    }
+
+    #[test]
+    fn every_pair_that_a_cell_joins_is_an_edge_once() {
+        assert_eq!(check([5]), 5);
+        // along the axes and diagonals
+        assert_eq!(check([3, 2]), 9 + 8 + 6);
+        // along axes, diagonals of faces, diagonals of cubes
+        assert_eq!(check([2, 1, 1]), (8 + 6 + 6) + (4 + 4 + 3) + 2);
+    }
+}
