@@ -21,7 +21,8 @@ use unilateral::mesh::{Mesh, gmsh};
 use unilateral::real::Real;
 use unilateral::scenes::{self, AnyScene, Parameters, Scene, Takes};
 use unilateral::study::{
-    Program, Report, Row, SCHEMES, SchemeOptions, Study, available_memory_bytes, scheme_by_name,
+    Placement, Program, Report, Row, SCHEMES, SchemeOptions, Study, available_memory_bytes,
+    scheme_by_name,
 };
 
 /// Wrong requests, as one message.
@@ -178,7 +179,7 @@ fn prepare<'a, T: Real, const D: usize>(
     let scheme_options = SchemeOptions {
         sigma: options.sigma,
         eta: options.eta,
-        facet_means: options.constraint == "facet-means",
+        placement: Placement::by_name(&options.constraint).unwrap_or_default(),
     };
     let name = scene.name.clone();
     let levels = match &options.levels[..] {

@@ -11,7 +11,9 @@ struct Incomplete(f64);
 
 impl<T: Real, const D: usize> FacetForm<T, D> for Incomplete {
     const USES_FLUX: bool = true;
-    const SYMMETRIC: bool = false;
+    fn is_symmetric(&self) -> bool {
+        false
+    }
     fn penalty(&self, facet: &FacetView<T, D>) -> T {
         T::lit(self.0) * facet.coefficient() / facet.diameter()
     }

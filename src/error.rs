@@ -49,6 +49,16 @@ pub enum Error {
         /// The smaller upper bound.
         upper: f64,
     },
+    /// A constraint set has nothing that an inequality could bind.
+    #[error("bounds on {constraint} cannot impose {condition}: {allowed}")]
+    NothingToBound {
+        /// Name of the constraint set.
+        constraint: &'static str,
+        /// The inequality.
+        condition: &'static str,
+        /// Which sets can.
+        allowed: &'static str,
+    },
     /// The mesh does not fit the scene.
     #[error("mesh does not fit scene {scene}: {why}")]
     UnfitMesh {

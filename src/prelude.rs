@@ -1,6 +1,6 @@
 //! What a program that compares schemes needs, in one line.
 
-pub use crate::element::{Broken, CrouzeixRaviart, P1, ReferenceElement};
+pub use crate::element::{Broken, CrouzeixRaviart, P1, P2, ReferenceElement};
 pub use crate::error::Error;
 pub use crate::facet::{FacetForm, FacetView, NoFacets, PenaltyRule, Trace, WeightRule};
 pub use crate::mesh::{BoundaryPart, Mesh};
@@ -8,7 +8,7 @@ pub use crate::problem::Problem;
 pub use crate::real::{Point, Real};
 pub use crate::scenes;
 pub use crate::scheme::{
-    Bmmpr, Br2, ConformingP1, CrouzeixRaviartScheme, DirichletBy, Eta, FacetMeans, Iipg, Ldg, Nipg,
-    Scheme, Sipg, Wopsip,
+    Bmmpr, Br2, CellMeans, ConformingP1, ConformingP2, CrouzeixRaviartScheme, DirichletBy, Eta,
+    FacetMeans, Iipg, Ldg, Midpoints, Nipg, Scheme, Sipg, Wopsip,
 };
 pub use crate::study::{AnyScheme, Report, Study};

@@ -275,7 +275,6 @@ fn linears() {
 }
 
 #[test]
-#[cfg(any())]
 fn quadratics() {
     every_method::<1, P2>(P2, 4);
     every_method::<2, P2>(P2, 2);

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::{CommandFactory, Parser, error::ErrorKind};
 use unilateral::scenes;
-use unilateral::study::SCHEMES;
+use unilateral::study::{Placement, SCHEMES};
 
 use super::Request;
 
@@ -43,7 +43,7 @@ pub struct Options {
     #[arg(long, value_name = "X", allow_negative_numbers = true, value_parser = number)]
     pub eta: Option<f64>,
     /// Where discontinuous schemes impose the inequality
-    #[arg(long, value_parser = ["vertices", "facet-means"], default_value = "vertices")]
+    #[arg(long, value_parser = Placement::ALL.map(|p| p.0), default_value = "vertices")]
     pub constraint: String,
     /// Solver of the inequality
     #[arg(long, value_name = "NAME")]
@@ -82,11 +82,6 @@ impl Options {
 const SOLVERS: &[(&str, &str)] =
     &[("active-set", "primal-dual active set, started from coarser levels in conforming P1")];
 const LINEAR: &[(&str, &str)] = &[("direct", "sparse Cholesky or LU")];
-const PLACEMENTS: &[(&str, &str)] = &[
-    ("vertices", "bounds on the values at the vertices of each cell"),
-    ("facet-means", "bounds on the means over the facets of each cell"),
-];
-
 /// More threads than this hardly help anyone, and the system may fail to start them.
 const MOST_THREADS: usize = 1024;
 
@@ -131,7 +126,7 @@ pub fn list() -> String {
     };
     group("scenes", &mut scenes.iter().map(|(n, s)| (&n[..], &s[..])));
     group("schemes", &mut SCHEMES.iter().copied());
-    group("constraint placements", &mut PLACEMENTS.iter().copied());
+    group("constraint placements", &mut Placement::ALL.iter().map(|p| (p.0, p.2)));
     group("solvers", &mut SOLVERS.iter().copied());
     group("linear solvers", &mut LINEAR.iter().copied());
     text

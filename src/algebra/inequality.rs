@@ -103,22 +103,24 @@ pub enum Start {
 /// Where an unknown lives: the vertices whose barycentre is its node, and the cell that owns it
 /// where cells do not share it.
 ///
-/// One vertex: a vertex value. `D` vertices: the mean over a facet.
+/// One vertex: a vertex value. Two: the value at the midpoint of an edge. `D` vertices: the mean over
+/// a facet. `D + 1`: the mean over the cell. In a dimension in which two of these coincide, so do the
+/// nodes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Place {
     cell: u32,
-    vertices: [u32; 3],
+    vertices: [u32; 4],
 }
 
 impl Place {
     const NONE: u32 = u32::MAX;
 
-    /// A place at one to three vertices, owned by a cell or shared.
+    /// A place at one to four vertices, owned by a cell or shared.
     ///
     /// # Panics
-    /// If there are more than three.
+    /// If there are more than four.
     pub fn new(cell: Option<u32>, vertices: &[u32]) -> Self {
-        let mut v = [Self::NONE; 3];
+        let mut v = [Self::NONE; 4];
         v[..vertices.len()].copy_from_slice(vertices);
         Self { cell: cell.unwrap_or(Self::NONE), vertices: v }
     }
@@ -128,7 +130,7 @@ impl Place {
     }
     /// The vertices whose barycentre is the unknown's node.
     pub fn vertices(&self) -> &[u32] {
-        let n = self.vertices.iter().position(|&v| v == Self::NONE).unwrap_or(3);
+        let n = self.vertices.iter().position(|&v| v == Self::NONE).unwrap_or(4);
         &self.vertices[..n]
     }
 }

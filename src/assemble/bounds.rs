@@ -1,7 +1,7 @@
 //! What each unknown may be: Dirichlet values, obstacles, the Signorini condition.
 
 use super::space::Space;
-use super::{count, data};
+use super::{DataQuadrature, count, data};
 use crate::algebra::Bound;
 use crate::element::Node;
 use crate::error::Error;
@@ -37,17 +37,23 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         bounds: &mut [Bound<T>],
         conflicts: &mut Vec<Conflict<D>>,
     ) -> Result<(), Error> {
+        let bounded: Vec<usize> = self.bounded_nodes().collect();
+        let rules = self.mean_rules();
         for cell in 0..self.mesh.n_cells() {
-            for i in 0..self.per_cell() {
+            for &i in &bounded {
                 let unknown = self.dofs.of(cell, i);
                 if bounds[unknown] != Bound::Free {
                     continue;
                 }
                 count::bounds(1);
-                let x = self.node_point(cell, self.nodes[i]);
-                let at = |psi: &Option<Field<D>>| match psi {
-                    Some(psi) => data::finite(psi(&x), "obstacle", &x, cell).map(Some),
-                    None => Ok(None),
+                let node = self.nodes[i];
+                let x = self.node_point(cell, node);
+                let at = |psi: &Option<Field<D>>| match (psi, node) {
+                    (Some(psi), Node::CellMean) => {
+                        self.at_node(&rules, cell, node, "obstacle", psi).map(Some)
+                    }
+                    (Some(psi), _) => data::finite(psi(&x), "obstacle", &x, cell).map(Some),
+                    (None, _) => Ok(None),
                 };
                 let (lower, upper) = (at(&self.problem.lower)?, at(&self.problem.upper)?);
                 bounds[unknown] = between(lower, upper, unknown, x, conflicts);
@@ -62,20 +68,17 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         bounds: &mut [Bound<T>],
         conflicts: &mut Vec<Conflict<D>>,
     ) -> Result<(), Error> {
-        let rule = Rule::of_degree(D - 1, self.quadrature.facet);
+        let rules = self.mean_rules();
         for (cell, local) in self.facets_of(BoundaryPart::Contact) {
-            for i in self.nodes_on(local) {
+            for i in self.bounded_nodes_on(local) {
                 count::bounds(1);
                 let node = self.nodes[i];
-                let x = self.node_point(cell, node);
-                let value = match node {
-                    Node::Vertex(_) => data::finite(gap(&x), "gap", &x, cell)?,
-                    Node::FacetMean(_) => self.facet_mean(&rule, cell, local, "gap", gap)?,
-                };
+                let value = self.at_node(&rules, cell, node, "gap", gap)?;
                 let unknown = self.dofs.of(cell, i);
                 let old = bounds[unknown];
                 let lower = old.lower().map_or(value, |l| l.to_f64().max(value));
                 let upper = old.upper().map(Real::to_f64);
+                let x = self.node_point(cell, node);
                 bounds[unknown] = between(Some(lower), upper, unknown, x, conflicts);
             }
         }
@@ -83,8 +86,9 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
     }
 
     fn pin(&self, bounds: &mut [Bound<T>], conflicts: &mut Vec<Conflict<D>>) -> Result<(), Error> {
-        let rule = Rule::of_degree(D - 1, self.quadrature.facet);
+        let rules = self.mean_rules();
         let zero = !self.problem.has_dirichlet_data();
+        let datum = |x: &Point<f64, D>| self.problem.dirichlet_at(x);
         for (cell, local) in self.facets_of(BoundaryPart::Dirichlet) {
             for i in self.nodes_on(local) {
                 let unknown = self.dofs.of(cell, i);
@@ -92,32 +96,17 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
                     continue;
                 }
                 let node = self.nodes[i];
+                let at = |name, datum: Datum<'_, D>| self.at_node(&rules, cell, node, name, datum);
+                let value = if zero { 0.0 } else { at("dirichlet", &datum)? };
                 let x = self.node_point(cell, node);
-                let value = match node {
-                    _ if zero => 0.0,
-                    Node::Vertex(_) => {
-                        count::dirichlet(1);
-                        data::finite(self.problem.dirichlet_at(&x), "dirichlet", &x, cell)?
-                    }
-                    Node::FacetMean(_) => {
-                        let datum = |x: &Point<f64, D>| self.problem.dirichlet_at(x);
-                        self.facet_mean(&rule, cell, local, "dirichlet", &datum)?
-                    }
-                };
-                // obstacles must leave room for the datum
-                let [lower, upper] = [&self.problem.lower, &self.problem.upper].map(|psi| {
-                    psi.as_ref().map(|psi| match node {
-                        Node::Vertex(_) => Ok(psi(&x)),
-                        // a mean is compared with a mean: over a curved obstacle the value at the
-                        // barycentre may lie above the mean of a datum that touches it
-                        Node::FacetMean(_) => self.facet_mean(&rule, cell, local, "obstacle", psi),
-                    })
-                });
-                if let Some(lower) = lower {
-                    note(lower?, value, unknown, x, conflicts);
+                // obstacles must leave room for the datum; a mean is compared with a mean: over a
+                // curved obstacle the value at the barycentre may lie above the mean of a datum
+                // that touches it
+                if let Some(psi) = &self.problem.lower {
+                    note(at("obstacle", psi)?, value, unknown, x, conflicts);
                 }
-                if let Some(upper) = upper {
-                    note(value, upper?, unknown, x, conflicts);
+                if let Some(psi) = &self.problem.upper {
+                    note(value, at("obstacle", psi)?, unknown, x, conflicts);
                 }
                 bounds[unknown] = Bound::Fixed(T::lit(value));
             }
@@ -125,25 +114,43 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         Ok(())
     }
 
-    /// The mean of a datum over a facet.
-    fn facet_mean(
+    /// The rules for means over facets and cells.
+    fn mean_rules(&self) -> [Rule; 2] {
+        let DataQuadrature { facet, cell } = self.quadrature;
+        [Rule::of_degree(D - 1, facet), Rule::of_degree(D, cell)]
+    }
+
+    /// What an unknown is of a datum: its value at a point, its mean over a facet or cell.
+    fn at_node(
         &self,
-        rule: &Rule,
+        [facet_rule, cell_rule]: &[Rule; 2],
         cell: usize,
-        local: usize,
+        node: Node,
         name: &'static str,
-        datum: &dyn Fn(&Point<f64, D>) -> f64,
+        datum: Datum<'_, D>,
     ) -> Result<f64, Error> {
-        let terms = rule.iter().map(|(point, weight)| {
+        let at = |x: Point<f64, D>| {
             if name == "dirichlet" {
                 count::dirichlet(1);
             }
-            let x = self.facet_point(point, cell, local);
-            data::finite(datum(&x), name, &x, cell).map(|value| weight * value)
-        });
-        terms.sum()
+            data::finite(datum(&x), name, &x, cell)
+        };
+        match node {
+            Node::Vertex(_) | Node::Edge(_) => at(self.node_point(cell, node)),
+            Node::FacetMean(local) => facet_rule
+                .iter()
+                .map(|(point, weight)| Ok(weight * at(self.facet_point(point, cell, local))?))
+                .sum(),
+            Node::CellMean => cell_rule
+                .iter()
+                .map(|(point, weight)| Ok(weight * at(self.cell_point(point, cell))?))
+                .sum(),
+        }
     }
 }
+
+/// A function of space.
+type Datum<'f, const D: usize> = &'f dyn Fn(&Point<f64, D>) -> f64;
 
 /// A lower bound above an upper one: the unknown, its node, the two values.
 type Conflict<const D: usize> = (usize, Point<f64, D>, f64, f64);

@@ -44,21 +44,22 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         }
     }
 
-    /// The measure of domain or contact boundary that belongs to each unknown.
+    /// The measure of domain or contact boundary that belongs to each unknown of the constraint set.
     fn constrained_measures(&self) -> Vec<f64> {
         let mut measures = vec![0.0; self.dofs.size()];
         if self.problem.has_obstacle() {
             for cell in 0..self.mesh.n_cells() {
-                let share = self.mesh.geometry(cell).volume.to_f64() / self.per_cell() as f64;
-                for i in 0..self.per_cell() {
+                let volume = self.mesh.geometry(cell).volume.to_f64();
+                let share = volume / self.bounded_nodes().count() as f64;
+                for i in self.bounded_nodes() {
                     measures[self.dofs.of(cell, i)] += share;
                 }
             }
         } else if self.problem.gap.is_some() {
             for (cell, local) in self.facets_of(BoundaryPart::Contact) {
                 let measure = self.mesh.geometry(cell).facet_measure(local).to_f64();
-                let share = measure / self.nodes_on(local).count() as f64;
-                for i in self.nodes_on(local) {
+                let share = measure / self.bounded_nodes_on(local).count() as f64;
+                for i in self.bounded_nodes_on(local) {
                     measures[self.dofs.of(cell, i)] += share;
                 }
             }

@@ -23,7 +23,7 @@ mod space;
 pub(crate) mod tables;
 
 use crate::algebra::{Bound, Inequality, Place, SparseMatrix, Start};
-use crate::element::{Node, ReferenceElement};
+use crate::element::ReferenceElement;
 use crate::error::Error;
 use crate::facet::{FacetForm, FacetView};
 use crate::mesh::{BoundaryPart, Mesh, Neighbour, Neighbours};
@@ -69,7 +69,7 @@ impl<'a, T: Real, const D: usize, S: Scheme<T, D>> Discretisation<'a, T, D, S> {
     /// Joins scheme, problem and mesh; builds facets only if the scheme needs them.
     ///
     /// # Errors
-    /// [`Error::CoefficientNotPositive`].
+    /// [`Error::CoefficientNotPositive`], [`Error::NothingToBound`].
     pub fn new(
         scheme: &S,
         problem: &'a Problem<D>,
@@ -77,7 +77,9 @@ impl<'a, T: Real, const D: usize, S: Scheme<T, D>> Discretisation<'a, T, D, S> {
         quadrature: DataQuadrature,
     ) -> Result<Self, Error> {
         let pins = matches!(S::DIRICHLET, DirichletBy::Pinning);
-        let space = Space::new::<S::Element>(problem, mesh, quadrature, Self::COUPLES, pins)?;
+        let bounded = scheme.bounded_nodes();
+        let space =
+            Space::new::<S::Element>(problem, mesh, quadrature, Self::COUPLES, pins, bounded)?;
         Ok(Self { space, form: scheme.facet(mesh) })
     }
 
@@ -93,14 +95,6 @@ impl<'a, T: Real, const D: usize, S: Scheme<T, D>> Discretisation<'a, T, D, S> {
     pub fn mesh(&self) -> &'a Mesh<T, D> {
         self.space.mesh
     }
-    /// Where the scheme imposes bounds: `vertices` or `facet-means`.
-    pub fn constraint_name() -> &'static str {
-        match <S::Element as ReferenceElement<T, D>>::node(0) {
-            Node::Vertex(_) => "vertices",
-            Node::FacetMean(_) => "facet-means",
-        }
-    }
-
     /// The pattern of the matrix, with values zero.
     pub fn pattern(&self) -> SparseMatrix<T> {
         if Self::OWNS_ROWS {
@@ -148,7 +142,7 @@ impl<'a, T: Real, const D: usize, S: Scheme<T, D>> Discretisation<'a, T, D, S> {
         }
         Ok(Inequality {
             matrix,
-            symmetric: <S::Facet as FacetForm<T, D>>::SYMMETRIC,
+            symmetric: self.form.is_symmetric(),
             load,
             bounds,
             places: self.places(),
@@ -157,10 +151,11 @@ impl<'a, T: Real, const D: usize, S: Scheme<T, D>> Discretisation<'a, T, D, S> {
     }
     /// The bounds of all unknowns.
     ///
-    /// Obstacles bind every unknown at its node: a vertex, or the barycentre of a facet. The
-    /// Signorini condition binds the unknowns of contact facets on the cell that has the facet:
-    /// vertex values against the gap there, facet means against the mean of the gap. An unknown
-    /// pinned by Dirichlet data is not constrained besides.
+    /// Of the unknowns in the scheme's constraint set, obstacles bind every one at its node: a
+    /// vertex, the midpoint of an edge or the barycentre of a facet; means over a cell against the
+    /// mean of the obstacle. The Signorini condition binds those of contact facets on the cell that
+    /// has the facet: point values against the gap there, facet means against the mean of the gap.
+    /// An unknown pinned by Dirichlet data is not constrained besides.
     ///
     /// # Errors
     /// [`Error::EmptyConstraint`], [`Error::DataNotFinite`].

@@ -80,7 +80,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         let n = self.per_cell();
         let mut sum = SquaredErrors::default();
         for ((point, basis), &weight) in table.points.iter().zip(&table.basis).zip(&table.weights) {
-            let x = point_f64(&self.mesh.point(cell, &point.map(T::lit)[..=D]));
+            let x = self.cell_point(point, cell);
             let mut error = -(exact.gradient)(&x);
             for k in 0..=D {
                 let slope: f64 = (0..n).map(|i| local[i] * basis.derivatives[i][k]).sum();
@@ -101,7 +101,11 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
                     .iter()
                     .map(|(point, w)| w * (exact.value)(&self.facet_point(point, cell, k)))
                     .sum(),
-                Node::Vertex(_) => (exact.value)(&self.node_point(cell, *node)),
+                Node::CellMean => {
+                    let samples = table.points.iter().zip(&table.weights);
+                    samples.map(|(p, w)| w * (exact.value)(&self.cell_point(p, cell))).sum()
+                }
+                Node::Vertex(_) | Node::Edge(_) => (exact.value)(&self.node_point(cell, *node)),
             };
             let x = self.node_point(cell, *node);
             let exact_value = data::finite(exact_value, "exact solution", &x, cell)?;

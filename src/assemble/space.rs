@@ -11,10 +11,11 @@ use super::{DataQuadrature, count, data};
 use crate::algebra::Place;
 use crate::element::{MAX_BASIS, Node, ReferenceElement};
 use crate::error::Error;
-use crate::mesh::{BoundaryFacet, BoundaryPart, Facets, Mesh, Neighbours};
+use crate::mesh::{BoundaryFacet, BoundaryPart, Mesh, Neighbours, edge_vertices};
 use crate::problem::Problem;
 use crate::quadrature::{Rule, insert};
 use crate::real::{Point, Real, point_f64};
+use crate::scheme::BoundedNodes;
 
 /// A finite element space with the problem posed on it.
 pub(crate) struct Space<'a, T: Real, const D: usize> {
@@ -32,6 +33,8 @@ pub(crate) struct Space<'a, T: Real, const D: usize> {
     pub broken: bool,
     /// Whether Dirichlet data are pinned; else the facet form imposes them.
     pub pins: bool,
+    /// Which nodes an inequality binds.
+    pub bounded: BoundedNodes,
     basis: fn(&[f64; 4]) -> BasisAt<f64>,
 }
 
@@ -43,20 +46,14 @@ impl<'a, T: Real, const D: usize> Space<'a, T, D> {
         quadrature: DataQuadrature,
         with_facets: bool,
         pins: bool,
+        bounded: BoundedNodes,
     ) -> Result<Self, Error> {
         let neighbours = (with_facets || E::LAYOUT.facet > 0).then(|| {
             count::facet_topologies(1);
             Neighbours::of(mesh)
         });
-        let dofs = match &neighbours {
-            _ if E::LAYOUT.is_broken() => Dofs::broken(E::N, mesh.n_cells()),
-            Some(neighbours) if E::LAYOUT.facet > 0 => {
-                let facets = Facets::of(mesh, neighbours);
-                Dofs::shared(facets.numbers::<D>(mesh.n_cells()), E::N, facets.len())
-            }
-            _ => Dofs::vertices(mesh),
-        };
-        Ok(Self {
+        let dofs = Dofs::new(E::LAYOUT, mesh, neighbours.as_ref());
+        let space = Self {
             problem,
             mesh,
             quadrature,
@@ -67,8 +64,29 @@ impl<'a, T: Real, const D: usize> Space<'a, T, D> {
             degree: E::DEGREE,
             broken: E::LAYOUT.is_broken(),
             pins,
+            bounded,
             basis: BasisAt::new_in_f64::<T, E, D>,
-        })
+        };
+        space.check_constraint_set()?;
+        Ok(space)
+    }
+
+    /// Refuses an inequality that would bind nothing at all.
+    fn check_constraint_set(&self) -> Result<(), Error> {
+        let constraint = self.bounded.name(self.degree, self.nodes[0]);
+        let refuse =
+            |condition, allowed| Err(Error::NothingToBound { constraint, condition, allowed });
+        if self.problem.is_constrained() && self.bounded_nodes().next().is_none() {
+            return refuse("an inequality", "the scheme's element has no such values");
+        }
+        if self.problem.gap.is_some() && self.bounded_nodes_on(0).next().is_none() {
+            return refuse(
+                "a Signorini condition",
+                "only bounds on values or means that belong to the facets of a cell can, as those \
+                 at nodes, vertices or midpoints or on facet means",
+            );
+        }
+        Ok(())
     }
 
     /// The neighbours, in a space that was made with facets.
@@ -129,18 +147,38 @@ impl<'a, T: Real, const D: usize> Space<'a, T, D> {
         let inserted = insert(point, local).map(T::lit);
         point_f64(&self.mesh.point(cell, &inserted[..=D]))
     }
+    /// A point of a cell in space.
+    pub fn cell_point(&self, point: &[f64; 4], cell: usize) -> Point<f64, D> {
+        point_f64(&self.mesh.point(cell, &point.map(T::lit)[..=D]))
+    }
     /// The basis functions whose nodes lie on facet `local`.
     pub fn nodes_on(&self, local: usize) -> impl Iterator<Item = usize> {
         (0..self.per_cell()).filter(move |&i| match self.nodes[i] {
             Node::Vertex(k) => k != local,
+            Node::Edge(k) => !edge_vertices(D)[k].contains(&local),
             Node::FacetMean(k) => k == local,
+            Node::CellMean => false,
         })
+    }
+    /// The basis functions whose unknowns an obstacle binds.
+    pub fn bounded_nodes(&self) -> impl Iterator<Item = usize> {
+        (0..self.per_cell()).filter(|&i| self.bounded.in_domain(self.nodes[i]))
+    }
+    /// The basis functions whose unknowns a Signorini condition on facet `local` binds.
+    pub fn bounded_nodes_on(&self, local: usize) -> impl Iterator<Item = usize> {
+        self.nodes_on(local).filter(|&i| self.bounded.on_contact(self.nodes[i], D))
     }
     /// The point at which a node sits.
     pub fn node_point(&self, cell: usize, node: Node) -> Point<f64, D> {
+        let vertex = |k: usize| self.mesh.vertices()[self.mesh.cell(cell)[k] as usize];
         point_f64(&match node {
-            Node::Vertex(k) => self.mesh.vertices()[self.mesh.cell(cell)[k] as usize],
+            Node::Vertex(k) => vertex(k),
+            Node::Edge(k) => {
+                let [i, j] = edge_vertices(D)[k];
+                (vertex(i) + vertex(j)) * T::lit(0.5)
+            }
             Node::FacetMean(k) => self.mesh.facet_barycentre(cell, k),
+            Node::CellMean => self.mesh.barycentre(cell),
         })
     }
     /// Where each unknown lives.
@@ -148,9 +186,12 @@ impl<'a, T: Real, const D: usize> Space<'a, T, D> {
         let mut places = vec![Place::new(None, &[]); self.dofs.size()];
         for cell in 0..self.mesh.n_cells() {
             let owner = self.broken.then_some(cell as u32);
+            let vertices = self.mesh.cell(cell);
             for (i, node) in self.nodes.iter().enumerate() {
                 places[self.dofs.of(cell, i)] = match *node {
-                    Node::Vertex(k) => Place::new(owner, &[self.mesh.cell(cell)[k]]),
+                    Node::Vertex(k) => Place::new(owner, &[vertices[k]]),
+                    Node::Edge(k) => Place::new(owner, &edge_vertices(D)[k].map(|v| vertices[v])),
+                    Node::CellMean => Place::new(owner, vertices),
                     Node::FacetMean(k) => {
                         let mut vertices = [0; D];
                         let facet = self.mesh.facet_vertices(cell, k);

@@ -13,7 +13,7 @@ pub struct Broken<E>(pub E);
 impl<T: Real, const D: usize, E: ReferenceElement<T, D>> ReferenceElement<T, D> for Broken<E> {
     const N: usize = E::N;
     const DEGREE: usize = E::DEGREE;
-    const LAYOUT: Layout = Layout { vertex: 0, facet: 0, cell: E::N };
+    const LAYOUT: Layout = Layout::in_cells(E::N);
 
     #[inline(always)]
     fn values(lambda: &[T], out: &mut [T]) {

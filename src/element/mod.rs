@@ -2,23 +2,33 @@
 
 mod broken;
 mod crouzeix_raviart;
+#[cfg(test)]
+mod laws;
 mod p1;
+mod p2;
+mod quadratic_cell_mean;
 
 pub use broken::Broken;
 pub use crouzeix_raviart::CrouzeixRaviart;
 pub use p1::P1;
+pub use p2::P2;
+pub use quadratic_cell_mean::QuadraticCellMean;
 
 use crate::real::Real;
 
 /// Largest number of basis functions of an element: quadratics on a tetrahedron.
 pub const MAX_BASIS: usize = 10;
 
-/// Unknowns owned by each vertex, facet and cell: all that sets a space apart from its broken or
-/// conforming relatives.
+/// Unknowns owned by each vertex, edge, facet and cell: all that sets a space apart from its broken
+/// or conforming relatives.
+///
+/// A cell lists its unknowns in this order. Edges are not facets, also where the two coincide.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Layout {
     /// Unknowns at each vertex; vertex `i` of the cell comes `i`-th.
     pub vertex: usize,
+    /// Unknowns on each edge, in the order of [`edge_vertices`](crate::mesh::edge_vertices).
+    pub edge: usize,
     /// Unknowns on each facet; the facet opposite vertex `i` comes `i`-th.
     pub facet: usize,
     /// Unknowns in each cell, shared with no other.
@@ -26,9 +36,18 @@ pub struct Layout {
 }
 
 impl Layout {
+    /// All unknowns in the cells.
+    pub const fn in_cells(cell: usize) -> Self {
+        Self { vertex: 0, edge: 0, facet: 0, cell }
+    }
     /// Whether no two cells share an unknown.
     pub const fn is_broken(&self) -> bool {
-        self.vertex == 0 && self.facet == 0
+        self.vertex == 0 && self.edge == 0 && self.facet == 0
+    }
+    /// Number of unknowns of a cell of this dimension.
+    pub const fn per_cell(&self, dimension: usize) -> usize {
+        let edges = dimension * (dimension + 1) / 2;
+        (self.vertex + self.facet) * (dimension + 1) + self.edge * edges + self.cell
     }
 }
 
@@ -37,8 +56,13 @@ impl Layout {
 pub enum Node {
     /// The value at a vertex of the cell.
     Vertex(usize),
+    /// The value at the midpoint of an edge of the cell, in the order of
+    /// [`edge_vertices`](crate::mesh::edge_vertices).
+    Edge(usize),
     /// The mean over the facet opposite a vertex of the cell.
     FacetMean(usize),
+    /// The mean over the cell.
+    CellMean,
 }
 
 /// A finite element on the `D`-simplex.

@@ -13,47 +13,61 @@ pub enum PenaltyRule {
     Diameter(f64),
 }
 
-/// `sigma_F [u][v] - {d_n u}[v] + theta {d_n v}[u]`: theta = -1 symmetric (SIPG), 1 non-symmetric,
-/// 0 incomplete.
+/// Which of the three forms: what becomes of `{d_n v}[u]`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Symmetry {
+    /// Subtracted: the form is symmetric (SIPG).
+    Symmetric,
+    /// Left out (IIPG).
+    Incomplete,
+    /// Added: coercive for every positive weight (NIPG).
+    NonSymmetric,
+}
+
+/// `sigma_F [u][v] - {d_n u}[v] + theta {d_n v}[u]` with theta = -1, 0, 1 for the symmetric, the
+/// incomplete and the non-symmetric form.
 ///
 /// Source: D. N. Arnold, SIAM J. Numer. Anal. 19 (1982), 742-760; the family in D. N. Arnold,
 /// F. Brezzi, B. Cockburn, L. D. Marini, SIAM J. Numer. Anal. 39 (2002), 1749-1779; the weights for
 /// jumping coefficients in A. Ern, A. F. Stephansen, P. Zunino, IMA J. Numer. Anal. 29 (2009),
 /// 235-256.
 #[derive(Clone, Copy, Debug)]
-pub struct InteriorPenalty<const THETA: i8> {
+pub struct InteriorPenalty {
+    /// Which of the three.
+    pub symmetry: Symmetry,
     /// How the weight is chosen.
     pub rule: PenaltyRule,
     /// Polynomial degree of the element, for the proven bound.
     pub degree: usize,
 }
 
-impl<const THETA: i8> InteriorPenalty<THETA> {
+impl InteriorPenalty {
     /// Which part of the symmetric form's bound is enough: the incomplete form has half of the
     /// consistency terms, and their square counts.
-    const PART: f64 = if THETA == 0 { 0.25 } else { 1.0 };
+    fn part(&self) -> f64 {
+        if self.symmetry == Symmetry::Incomplete { 0.25 } else { 1.0 }
+    }
 }
 
-impl<T: Real, const D: usize, const THETA: i8> FacetForm<T, D> for InteriorPenalty<THETA> {
+impl<T: Real, const D: usize> FacetForm<T, D> for InteriorPenalty {
     const USES_FLUX: bool = true;
-    const SYMMETRIC: bool = THETA == -1;
 
+    fn is_symmetric(&self) -> bool {
+        self.symmetry == Symmetry::Symmetric
+    }
     #[inline(always)]
     fn penalty(&self, facet: &FacetView<T, D>) -> T {
         match self.rule {
             PenaltyRule::Proven(margin) => {
-                T::lit((1.0 + margin) * Self::PART) * proven_bound::<T, D>(self.degree, facet)
+                T::lit((1.0 + margin) * self.part()) * proven_bound::<T, D>(self.degree, facet)
             }
             PenaltyRule::Diameter(sigma) => T::lit(sigma) * facet.coefficient() / facet.diameter(),
         }
     }
     fn least_penalty(&self, facet: &FacetView<T, D>) -> Option<T> {
-        match self.rule {
-            // the non-symmetric form is coercive for every positive weight
-            PenaltyRule::Diameter(_) if THETA < 1 => {
-                Some(T::lit(Self::PART) * proven_bound::<T, D>(self.degree, facet))
-            }
-            _ => None,
+        match (self.rule, self.symmetry) {
+            (PenaltyRule::Proven(_), _) | (_, Symmetry::NonSymmetric) => None,
+            _ => Some(T::lit(self.part()) * proven_bound::<T, D>(self.degree, facet)),
         }
     }
     fn parameters(&self) -> PenaltyParameters {
@@ -65,7 +79,11 @@ impl<T: Real, const D: usize, const THETA: i8> FacetForm<T, D> for InteriorPenal
     }
     #[inline(always)]
     fn integrand(&self, v: Trace<T>, u: Trace<T>, penalty: T) -> T {
-        let theta = T::lit(f64::from(THETA));
-        penalty * u.jump * v.jump - u.flux * v.jump + theta * v.flux * u.jump
+        let theta = match self.symmetry {
+            Symmetry::Symmetric => -1.0,
+            Symmetry::Incomplete => 0.0,
+            Symmetry::NonSymmetric => 1.0,
+        };
+        penalty * u.jump * v.jump - u.flux * v.jump + T::lit(theta) * v.flux * u.jump
     }
 }

@@ -77,9 +77,11 @@ pub struct Lifted<F>(pub F);
 
 impl<T: Real, const D: usize, F: FacetForm<T, D>> FacetForm<T, D> for Lifted<F> {
     const USES_FLUX: bool = F::USES_FLUX;
-    const SYMMETRIC: bool = F::SYMMETRIC;
     const LIFTED: bool = true;
 
+    fn is_symmetric(&self) -> bool {
+        self.0.is_symmetric()
+    }
     fn moments(degree: usize) -> usize {
         F::moments(degree)
     }

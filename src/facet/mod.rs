@@ -23,7 +23,7 @@ mod over_penalty;
 mod proven;
 mod view;
 
-pub use interior_penalty::{InteriorPenalty, PenaltyRule};
+pub use interior_penalty::{InteriorPenalty, PenaltyRule, Symmetry};
 pub use lifting::{FacetLifts, Lifted};
 pub use none::NoFacets;
 pub use over_penalty::{OverPenalty, WeightRule};
@@ -52,11 +52,13 @@ pub trait FacetForm<T: Real, const D: usize>: Send + Sync {
     const COUPLES: bool = true;
     /// Whether the formula reads fluxes; if not, no normal derivative is computed.
     const USES_FLUX: bool;
-    /// Whether `integrand(v, u)` equals `integrand(u, v)`.
-    const SYMMETRIC: bool = true;
     /// Whether `int alpha r(v) . r(u)` is added, which couples cells with the neighbours of their
     /// neighbours. Only broken elements carry such a form.
     const LIFTED: bool = false;
+    /// Whether `integrand(v, u)` equals `integrand(u, v)`.
+    fn is_symmetric(&self) -> bool {
+        true
+    }
     /// Up to which degree the form sees moments of traces, for an element of this degree.
     fn moments(degree: usize) -> usize {
         degree

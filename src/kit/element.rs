@@ -3,6 +3,7 @@
 use super::error::KitError;
 use super::report::ElementReport;
 use crate::element::{Layout, MAX_BASIS, Node, ReferenceElement};
+use crate::mesh::edge_vertices;
 use crate::quadrature::{Rule, insert};
 use crate::real::Real;
 
@@ -68,8 +69,8 @@ fn derivatives<T: Real, const D: usize, E: ReferenceElement<T, D>>(
 /// The unknowns of a cell, its own and those it shares.
 fn owned(layout: Layout, dimension: usize) -> usize {
     // taken apart, so that an owner that is added later cannot be forgotten here
-    let Layout { vertex, facet, cell } = layout;
-    (dimension + 1) * (vertex + facet) + cell
+    let Layout { vertex, edge, facet, cell } = layout;
+    (dimension + 1) * (vertex + facet) + dimension * (dimension + 1) / 2 * edge + cell
 }
 
 /// A node as what it is: a functional.
@@ -79,6 +80,14 @@ fn apply(node: Node, dimension: usize, degree: usize, f: &dyn Fn(&[f64; 4]) -> f
             let mut point = [0.0; 4];
             point[k] = 1.0;
             f(&point)
+        }
+        Node::Edge(k) => {
+            let mut point = [0.0; 4];
+            edge_vertices(dimension)[k].iter().for_each(|&v| point[v] = 0.5);
+            f(&point)
+        }
+        Node::CellMean => {
+            Rule::of_degree(dimension, degree).iter().map(|(point, weight)| weight * f(point)).sum()
         }
         Node::FacetMean(k) => {
             let rule = Rule::of_degree(dimension - 1, degree);

@@ -9,8 +9,8 @@ use crate::error::Error;
 use crate::facet::FacetForm;
 use crate::mesh::Mesh;
 use crate::problem::Problem;
-use crate::real::Real;
-use crate::scenes::Regularity;
+use crate::real::{Point, Real};
+use crate::scenes::{BoxDomain, Regularity};
 use crate::scheme::{Scheme, Setting};
 use crate::solve::{ActiveSet, InequalitySolver, Outcome};
 use crate::study::{Errors, ExpectedOrders};
@@ -55,7 +55,9 @@ impl<T: Real, const D: usize, S: Scheme<T, D>> Tested<T, D> for Of<'_, S> {
         S::CONSISTENT
     }
     fn is_symmetric(&self) -> bool {
-        <S::Facet as FacetForm<T, D>>::SYMMETRIC
+        let domain = BoxDomain::dirichlet(Point::zeros(), Point::repeat(1.0));
+        let mesh = Mesh::kuhn_box(&domain, [1; D]);
+        mesh.is_ok_and(|mesh| self.0.facet(&mesh).is_symmetric())
     }
     fn promised(&self) -> ExpectedOrders {
         let regularity = Regularity { sobolev: f64::INFINITY, strictly_complementary: true };

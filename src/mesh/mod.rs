@@ -11,6 +11,7 @@
 //! * A mesh is immutable once made, and what [`Mesh::new`] accepts carries a finite element space.
 
 mod boxes;
+mod edges;
 mod error;
 mod facets;
 mod geometry;
@@ -18,6 +19,7 @@ pub mod gmsh;
 mod refine;
 mod validate;
 
+pub use edges::{EDGE_VERTICES, Edges, edge_vertices};
 pub use error::MeshError;
 pub use facets::{Facets, Neighbour, Neighbours};
 pub use geometry::CellGeometry;

@@ -1,7 +1,7 @@
 //! Uniform refinement, with the parent relation kept.
 
 use super::validate::check_size;
-use super::{BoundaryFacet, Mesh, MeshError};
+use super::{BoundaryFacet, Edges, Mesh, MeshError};
 use crate::real::{Point, Real, point_f64};
 
 /// How the vertices of a refined mesh came from those of the coarse one.
@@ -97,73 +97,20 @@ fn children<T: Real, const D: usize>(mesh: &Mesh<T, D>, cell: usize) -> Children
 ///
 /// This order makes the children's vertices, as they are listed, ascending, and for Bey's rule they
 /// are then in the order it needs for the next step.
-struct Midpoints {
-    starts: Vec<u32>,
-    upper: Vec<u32>,
-}
+struct Midpoints(Edges);
 
 impl Midpoints {
-    fn new<T: Real, const D: usize>(mesh: &Mesh<T, D>) -> Self {
-        let n = mesh.vertices().len();
-        let mut starts = vec![0_u32; n + 1];
-        for cell in mesh.cells().chunks_exact(D + 1) {
-            for (i, &a) in cell.iter().enumerate() {
-                starts[a as usize + 1] += (D - i) as u32;
-            }
-        }
-        for v in 0..n {
-            starts[v + 1] += starts[v];
-        }
-        let mut upper = vec![0_u32; starts[n] as usize];
-        let mut fill = starts.clone();
-        for cell in mesh.cells().chunks_exact(D + 1) {
-            for (i, &a) in cell.iter().enumerate() {
-                for &b in &cell[i + 1..] {
-                    upper[fill[a as usize] as usize] = b;
-                    fill[a as usize] += 1;
-                }
-            }
-        }
-        let mut kept = 0;
-        for v in 0..n {
-            let (begin, end) = (starts[v] as usize, starts[v + 1] as usize);
-            upper[begin..end].sort_unstable();
-            starts[v] = kept as u32;
-            for k in begin..end {
-                let b = upper[k];
-                if k == begin || b != upper[kept - 1] || kept == starts[v] as usize {
-                    upper[kept] = b;
-                    kept += 1;
-                }
-            }
-        }
-        starts[n] = kept as u32;
-        upper.truncate(kept);
-        Self { starts, upper }
-    }
-
-    fn range(&self, a: u32) -> std::ops::Range<usize> {
-        self.starts[a as usize] as usize..self.starts[a as usize + 1] as usize
-    }
-
     /// Number of the midpoint of `a <= b`.
     fn number(&self, a: u32, b: u32) -> u32 {
-        let base = a + self.starts[a as usize];
-        if a == b {
-            base
-        } else {
-            let range = self.range(a);
-            let position = self.upper[range].iter().position(|&u| u == b).unwrap_or(0);
-            base + 1 + position as u32
-        }
+        let before = if a == b { self.0.first_at(a) } else { self.0.number(a, b).unwrap_or(0) + 1 };
+        a + before
     }
 
-    fn parents(&self) -> Vec<[u32; 2]> {
-        let n = self.starts.len() - 1;
-        let mut parents = Vec::with_capacity(n + self.upper.len());
-        for a in 0..n as u32 {
+    fn parents(&self, n_vertices: usize) -> Vec<[u32; 2]> {
+        let mut parents = Vec::with_capacity(n_vertices + self.0.len());
+        for a in 0..n_vertices as u32 {
             parents.push([a, a]);
-            parents.extend(self.upper[self.range(a)].iter().map(|&b| [a, b]));
+            parents.extend(self.0.upper_ends(a).iter().map(|&b| [a, b]));
         }
         parents
     }
@@ -178,8 +125,8 @@ impl<T: Real, const D: usize> Mesh<T, D> {
         let n_children = 1 << D;
         let n_fine = self.n_cells().saturating_mul(n_children);
         check_size(n_fine, 0)?;
-        let midpoints = Midpoints::new(self);
-        let parents = midpoints.parents();
+        let midpoints = Midpoints(Edges::of(self));
+        let parents = midpoints.parents(self.vertices.len());
         check_size(n_fine, parents.len())?;
         let half = T::lit(0.5);
         let vertices: Vec<Point<T, D>> = parents

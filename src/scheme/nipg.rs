@@ -2,7 +2,7 @@
 
 use super::{DirichletBy, Scheme, Setting, energy_order, name_by_degree};
 use crate::element::{Broken, P1, ReferenceElement};
-use crate::facet::{InteriorPenalty, PenaltyRule};
+use crate::facet::{InteriorPenalty, PenaltyRule, Symmetry};
 use crate::mesh::Mesh;
 use crate::real::Real;
 use crate::study::ExpectedOrders;
@@ -35,14 +35,14 @@ impl<E> Nipg<E> {
 
 impl<T: Real, const D: usize, E: ReferenceElement<T, D>> Scheme<T, D> for Nipg<E> {
     type Element = Broken<E>;
-    type Facet = InteriorPenalty<1>;
+    type Facet = InteriorPenalty;
     const DIRICHLET: DirichletBy = DirichletBy::FacetForm;
 
     fn name(&self) -> &str {
         name_by_degree(["nipg", "nipg-p2"], E::DEGREE)
     }
-    fn facet(&self, _: &Mesh<T, D>) -> InteriorPenalty<1> {
-        InteriorPenalty { rule: self.penalty, degree: E::DEGREE }
+    fn facet(&self, _: &Mesh<T, D>) -> InteriorPenalty {
+        InteriorPenalty { symmetry: Symmetry::NonSymmetric, rule: self.penalty, degree: E::DEGREE }
     }
     fn expected_orders(&self, setting: &Setting) -> ExpectedOrders {
         energy_order(setting, E::DEGREE)

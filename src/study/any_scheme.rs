@@ -116,7 +116,7 @@ impl<T: Real, const D: usize, S: Scheme<T, D>> AnyScheme<T, D> for S {
         Scheme::name(self)
     }
     fn constraint(&self) -> &'static str {
-        Discretisation::<T, D, S>::constraint_name()
+        self.bounded_nodes().name(S::Element::DEGREE, S::Element::node(0))
     }
     fn expected_orders(&self, setting: &Setting) -> ExpectedOrders {
         Scheme::expected_orders(self, setting)
@@ -126,7 +126,7 @@ impl<T: Real, const D: usize, S: Scheme<T, D>> AnyScheme<T, D> for S {
     }
     fn is_conforming_linear(&self) -> bool {
         let layout = S::Element::LAYOUT;
-        layout.vertex == 1 && layout.facet + layout.cell == 0 && !S::Facet::COUPLES
+        layout.vertex == 1 && layout.edge + layout.facet + layout.cell == 0 && !S::Facet::COUPLES
     }
     fn solve(&self, task: &Task<'_, T, D>) -> Result<Solved, Error> {
         solve(task, &|| {

@@ -50,7 +50,7 @@ pub struct MemoryEstimate {
 /// contact set in the interior drops out: by 1.4 in two and 1.5 in three dimensions. With `f32` the
 /// peak was 0.6 of that with `f64`. On these the estimate is right to a fifth; a scene with much or
 /// little contact may be off by a half. Layouts with more unknowns than linear ones were not
-/// measured and are scaled by the square of their number.
+/// measured, but for conforming quadratics, and are scaled by the square of their number.
 pub(super) fn estimate(
     dimension: usize,
     layout: Layout,
@@ -64,12 +64,14 @@ pub(super) fn estimate(
         _ => cells.cbrt(),
     };
     let constants = match dimension {
-        1 => [320.0, 320.0, 750.0],
-        2 => [17.5, 37.0, 135.0],
-        _ => [10.0, 85.0, 480.0],
+        1 => [320.0, 320.0, 750.0, 660.0],
+        2 => [17.5, 37.0, 135.0, 103.0],
+        _ => [10.0, 85.0, 480.0, 215.0],
     };
     let constant = if layout.is_broken() {
         constants[2] * (layout.cell as f64 / (dimension + 1) as f64).powi(2)
+    } else if layout.edge > 0 {
+        constants[3]
     } else if layout.facet > 0 {
         constants[1]
     } else {
@@ -87,9 +89,10 @@ mod tests {
 
     #[test]
     fn the_estimate_meets_peaks_that_were_measured() {
-        let broken = |cell| Layout { vertex: 0, facet: 0, cell };
-        let p1 = Layout { vertex: 1, facet: 0, cell: 0 };
-        let cr = Layout { vertex: 0, facet: 1, cell: 0 };
+        let broken = |cell| Layout::in_cells(cell);
+        let p1 = Layout { vertex: 1, edge: 0, facet: 0, cell: 0 };
+        let p2 = Layout { vertex: 1, edge: 1, facet: 0, cell: 0 };
+        let cr = Layout { vertex: 0, edge: 0, facet: 1, cell: 0 };
         for (dimension, layout, cells, obstacle, scalar_bytes, peak) in [
             (1, broken(2), 1_000_000, true, 8, 740.6e6),
             (1, p1, 1_000_000, true, 8, 319.4e6),
@@ -108,6 +111,13 @@ mod tests {
             (3, cr, 41_472, false, 8, 190.5e6),
             (3, p1, 663_552, true, 8, 591.3e6),
             (3, p1, 331_776, false, 8, 333.0e6),
+            (1, p2, 250_000, true, 8, 170.4e6),
+            (2, p2, 131_072, true, 8, 228.1e6),
+            (2, p2, 320_000, true, 8, 574.3e6),
+            (2, p2, 160_000, false, 8, 444.0e6),
+            (3, p2, 34_992, true, 8, 218.9e6),
+            (3, p2, 82_944, true, 8, 777.5e6),
+            (3, p2, 41_472, false, 8, 437.8e6),
         ] {
             let bytes = estimate(dimension, layout, f64::from(cells), obstacle, scalar_bytes);
             let ratio = bytes / peak;

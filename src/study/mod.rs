@@ -22,7 +22,7 @@ pub use levels::{Levels, VertexContact};
 pub use memory::{MemoryEstimate, available_memory_bytes, peak_memory_bytes};
 pub use orders::{fill_orders, observed_order};
 pub use plot::{Figure, convergence, work_precision};
-pub use registry::{SCHEMES, SchemeOptions, scheme_by_name};
+pub use registry::{Placement, SCHEMES, SchemeOptions, scheme_by_name};
 pub use report::{Program, Report, target_cpu};
 pub use row::{Errors, ExpectedOrders, Iterations, PenaltyParameters, Row, Seconds};
 pub use run::{Progress, Study};

@@ -1,11 +1,52 @@
 //! Schemes by name.
 
 use super::AnyScheme;
+use crate::element::{Broken, P1, P2};
 use crate::facet::PenaltyRule;
+use crate::mesh::Mesh;
 use crate::real::Real;
 use crate::scheme::{
-    Bmmpr, Br2, ConformingP1, CrouzeixRaviartScheme, Eta, FacetMeans, Iipg, Ldg, Nipg, Sipg, Wopsip,
+    Bmmpr, BoundedNodes, Br2, CellMeans, ConformingP1, ConformingP2, CrouzeixRaviartScheme,
+    DirichletBy, Eta, FacetMeans, Iipg, Ldg, Nipg, Scheme, Setting, Sipg, Wopsip, midpoint_orders,
 };
+use crate::study::ExpectedOrders;
+
+/// Where schemes that have a choice impose the inequality.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Placement {
+    /// At the nodes of the element: vertices for linears, midpoints of edges besides for quadratics.
+    #[default]
+    Nodes,
+    /// On means over facets: discontinuous schemes on linears.
+    FacetMeans,
+    /// At midpoints of edges only: schemes on quadratics.
+    Midpoints,
+    /// On means over cells: discontinuous schemes on quadratics, obstacles only.
+    CellMeans,
+}
+
+impl Placement {
+    /// All placements, by the names users type, with one line each.
+    pub const ALL: [(&'static str, Self, &'static str); 5] = [
+        (
+            "vertices",
+            Self::Nodes,
+            "values at vertices (linear elements), all nodes (quadratic ones)",
+        ),
+        ("nodes", Self::Nodes, "the same"),
+        ("facet-means", Self::FacetMeans, "means over facets (discontinuous schemes on linears)"),
+        ("midpoints", Self::Midpoints, "midpoints of edges only (schemes on quadratics)"),
+        (
+            "cell-means",
+            Self::CellMeans,
+            "means over cells (discontinuous schemes on quadratics, obstacles only)",
+        ),
+    ];
+    /// The placement of this name.
+    pub fn by_name(name: &str) -> Option<Self> {
+        Self::ALL.iter().find(|p| p.0 == name).map(|p| p.1)
+    }
+}
 
 /// What a user may choose about schemes by name.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -14,8 +55,8 @@ pub struct SchemeOptions {
     pub sigma: Option<f64>,
     /// WOPSIP factor as it stands; the dimensionless default where absent.
     pub eta: Option<f64>,
-    /// Whether discontinuous schemes impose bounds on facet means instead of vertex values.
-    pub facet_means: bool,
+    /// Where the inequality is imposed by schemes that have this placement; others keep their own.
+    pub placement: Placement,
 }
 
 impl SchemeOptions {
@@ -48,6 +89,7 @@ impl SchemeOptions {
 /// [`scheme_by_name`].
 pub const SCHEMES: &[(&str, &str)] = &[
     ("p1", "conforming linear elements"),
+    ("p2", "conforming quadratic elements"),
     ("cr", "Crouzeix-Raviart elements, bounds on facet means"),
     ("sipg", "symmetric interior penalty on broken linears (takes --sigma)"),
     ("nipg", "non-symmetric interior penalty on broken linears (takes --sigma)"),
@@ -60,6 +102,14 @@ pub const SCHEMES: &[(&str, &str)] = &[
     ("br2", "second method of Bassi and Rebay on broken linears"),
     ("bmmpr", "method of Brezzi, Manzini, Marini, Pietra and Russo on broken linears"),
     ("wopsip", "weakly over-penalised symmetric interior penalty on broken linears (takes --eta)"),
+    ("sipg-p2", "sipg on broken quadratics"),
+    ("nipg-p2", "nipg on broken quadratics"),
+    ("iipg-p2", "iipg on broken quadratics"),
+    ("ldg-p2", "ldg on broken quadratics"),
+    ("ldg-switch-p2", "ldg-switch on broken quadratics"),
+    ("br2-p2", "br2 on broken quadratics"),
+    ("bmmpr-p2", "bmmpr on broken quadratics"),
+    ("wopsip-p2", "wopsip on broken quadratics, moments of degree one (takes --eta)"),
 ];
 
 /// The scheme of this name.
@@ -67,46 +117,84 @@ pub fn scheme_by_name<T: Real, const D: usize>(
     name: &str,
     options: &SchemeOptions,
 ) -> Option<Box<dyn AnyScheme<T, D>>> {
-    match name {
-        "p1" => Some(Box::new(ConformingP1)),
-        "cr" => Some(Box::new(CrouzeixRaviartScheme)),
-        _ if options.facet_means => with_facet_means(name, options),
-        _ => with_nodes(name, options),
+    let at = options.placement;
+    Some(match name {
+        "p1" => Box::new(ConformingP1),
+        "p2" => Box::new(Quadratic { scheme: ConformingP2, at }),
+        "cr" => Box::new(CrouzeixRaviartScheme),
+        "sipg" => linear(options.sipg(), at),
+        "nipg" => linear(options.nipg(), at),
+        "iipg" => linear(options.iipg(), at),
+        "ldg" => linear(options.ldg(false), at),
+        "ldg-switch" => linear(options.ldg(true), at),
+        "br2" => linear(Br2::default(), at),
+        "bmmpr" => linear(Bmmpr::default(), at),
+        "wopsip" => linear(options.wopsip(), at),
+        "sipg-p2" => quadratic(options.sipg().on(P2), at),
+        "nipg-p2" => quadratic(options.nipg().on(P2), at),
+        "iipg-p2" => quadratic(options.iipg().on(P2), at),
+        "ldg-p2" => quadratic(options.ldg(false).on(P2), at),
+        "ldg-switch-p2" => quadratic(options.ldg(true).on(P2), at),
+        "br2-p2" => quadratic(Br2::default().on(P2), at),
+        "bmmpr-p2" => quadratic(Bmmpr::default().on(P2), at),
+        "wopsip-p2" => quadratic(options.wopsip().on(P2), at),
+        _ => return None,
+    })
+}
+
+/// A scheme on broken linears with bounds where the user wants them.
+fn linear<T: Real, const D: usize, S>(scheme: S, at: Placement) -> Box<dyn AnyScheme<T, D>>
+where
+    S: Scheme<T, D, Element = Broken<P1>> + 'static,
+{
+    match at {
+        Placement::FacetMeans => Box::new(FacetMeans(scheme)),
+        _ => Box::new(scheme),
     }
 }
 
-/// The discontinuous scheme of this name with bounds at nodes.
-fn with_nodes<T: Real, const D: usize>(
-    name: &str,
-    options: &SchemeOptions,
-) -> Option<Box<dyn AnyScheme<T, D>>> {
-    Some(match name {
-        "sipg" => Box::new(options.sipg()),
-        "nipg" => Box::new(options.nipg()),
-        "iipg" => Box::new(options.iipg()),
-        "ldg" => Box::new(options.ldg(false)),
-        "ldg-switch" => Box::new(options.ldg(true)),
-        "br2" => Box::new(Br2::default()),
-        "bmmpr" => Box::new(Bmmpr::default()),
-        "wopsip" => Box::new(options.wopsip()),
-        _ => return None,
-    })
+/// A scheme on broken quadratics with bounds where the user wants them.
+fn quadratic<T: Real, const D: usize, S>(scheme: S, at: Placement) -> Box<dyn AnyScheme<T, D>>
+where
+    S: Scheme<T, D, Element = Broken<P2>> + 'static,
+{
+    match at {
+        Placement::CellMeans => Box::new(CellMeans(scheme)),
+        _ => Box::new(Quadratic { scheme, at }),
+    }
 }
 
-/// The discontinuous scheme of this name with bounds on facet means.
-fn with_facet_means<T: Real, const D: usize>(
-    name: &str,
-    options: &SchemeOptions,
-) -> Option<Box<dyn AnyScheme<T, D>>> {
-    Some(match name {
-        "sipg" => Box::new(FacetMeans(options.sipg())),
-        "nipg" => Box::new(FacetMeans(options.nipg())),
-        "iipg" => Box::new(FacetMeans(options.iipg())),
-        "ldg" => Box::new(FacetMeans(options.ldg(false))),
-        "ldg-switch" => Box::new(FacetMeans(options.ldg(true))),
-        "br2" => Box::new(FacetMeans(Br2::default())),
-        "bmmpr" => Box::new(FacetMeans(Bmmpr::default())),
-        "wopsip" => Box::new(FacetMeans(options.wopsip())),
-        _ => return None,
-    })
+/// A scheme on quadratics with bounds at all nodes or, chosen at run time so that it is not
+/// compiled twice, at midpoints.
+struct Quadratic<S> {
+    scheme: S,
+    at: Placement,
+}
+
+impl<T: Real, const D: usize, S: Scheme<T, D>> Scheme<T, D> for Quadratic<S> {
+    type Element = S::Element;
+    type Facet = S::Facet;
+    const DIRICHLET: DirichletBy = S::DIRICHLET;
+    const CONSISTENT: bool = S::CONSISTENT;
+
+    fn name(&self) -> &str {
+        self.scheme.name()
+    }
+    fn bounded_nodes(&self) -> BoundedNodes {
+        match self.at {
+            Placement::Midpoints => BoundedNodes::Midpoints,
+            _ => self.scheme.bounded_nodes(),
+        }
+    }
+    fn facet(&self, mesh: &Mesh<T, D>) -> S::Facet {
+        self.scheme.facet(mesh)
+    }
+    fn expected_orders(&self, setting: &Setting) -> ExpectedOrders {
+        match self.at {
+            Placement::Midpoints => {
+                midpoint_orders(setting, || self.scheme.expected_orders(setting))
+            }
+            _ => self.scheme.expected_orders(setting),
+        }
+    }
 }

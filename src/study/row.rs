@@ -70,7 +70,8 @@ pub struct Row {
     pub dimension: usize,
     /// Name of the scheme.
     pub scheme: String,
-    /// Where the inequality is imposed: `vertices` or `facet-means`.
+    /// Where the inequality is imposed: `vertices`, `facet-means`, `nodes`, `midpoints` or
+    /// `cell-means`.
     pub constraint: String,
     /// Subdivisions of the shortest side, or number of refinements of a mesh file.
     pub level: usize,

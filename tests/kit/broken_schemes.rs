@@ -32,7 +32,9 @@ impl<const SYMMETRIC: bool> Form<SYMMETRIC> {
 
 impl<T: Real, const D: usize, const SYMMETRIC: bool> FacetForm<T, D> for Form<SYMMETRIC> {
     const USES_FLUX: bool = true;
-    const SYMMETRIC: bool = SYMMETRIC;
+    fn is_symmetric(&self) -> bool {
+        SYMMETRIC
+    }
     fn penalty(&self, facet: &FacetView<T, D>) -> T {
         let here_is_larger = facet.there.as_ref().is_some_and(|t| facet.here.volume > t.volume);
         let lean = if here_is_larger { 1.0 + self.lean } else { 1.0 };
@@ -239,7 +241,7 @@ impl<T: Real, const D: usize, const MISTAKE: usize> ReferenceElement<T, D> for W
     const N: usize = D + 1;
     const DEGREE: usize = if MISTAKE == DEGREE { 2 } else { 1 };
     const LAYOUT: Layout =
-        Layout { vertex: 1, facet: 0, cell: if MISTAKE == COUNT { 1 } else { 0 } };
+        Layout { vertex: 1, edge: 0, facet: 0, cell: if MISTAKE == COUNT { 1 } else { 0 } };
     fn values(lambda: &[T], out: &mut [T]) {
         <P1 as ReferenceElement<T, D>>::values(lambda, out);
         if MISTAKE == SUM {

@@ -2,7 +2,7 @@
 //! values and means over sides.
 
 use unilateral::element::{Layout, Node};
-use unilateral::facet::InteriorPenalty;
+use unilateral::facet::{InteriorPenalty, Symmetry};
 use unilateral::kit::{KitError, check_consistency, check_scheme};
 use unilateral::prelude::*;
 
@@ -14,7 +14,7 @@ struct SideMeans;
 impl<T: Real> ReferenceElement<T, 2> for SideMeans {
     const N: usize = 6;
     const DEGREE: usize = 2;
-    const LAYOUT: Layout = Layout { vertex: 1, facet: 1, cell: 0 };
+    const LAYOUT: Layout = Layout { vertex: 1, edge: 0, facet: 1, cell: 0 };
     fn values(lambda: &[T], out: &mut [T]) {
         for i in 0..3 {
             let (j, k) = ((i + 1) % 3, (i + 2) % 3);
@@ -38,24 +38,25 @@ impl<T: Real> ReferenceElement<T, 2> for SideMeans {
     }
 }
 
-struct Quadratic<const THETA: i8> {
+struct Quadratic {
+    symmetry: Symmetry,
     rule: PenaltyRule,
 }
 
-impl<T: Real, const THETA: i8> Scheme<T, 2> for Quadratic<THETA> {
+impl<T: Real> Scheme<T, 2> for Quadratic {
     type Element = Broken<SideMeans>;
-    type Facet = InteriorPenalty<THETA>;
+    type Facet = InteriorPenalty;
     const DIRICHLET: DirichletBy = DirichletBy::FacetForm;
     fn name(&self) -> &str {
         "quadratic"
     }
-    fn facet(&self, _: &Mesh<T, 2>) -> InteriorPenalty<THETA> {
-        InteriorPenalty { rule: self.rule, degree: 2 }
+    fn facet(&self, _: &Mesh<T, 2>) -> InteriorPenalty {
+        InteriorPenalty { symmetry: self.symmetry, rule: self.rule, degree: 2 }
     }
 }
 
 fn passes<T: Real>() {
-    let symmetric = Quadratic::<-1> { rule: PenaltyRule::Proven(0.5) };
+    let symmetric = Quadratic { symmetry: Symmetry::Symmetric, rule: PenaltyRule::Proven(0.5) };
     let report = check_scheme::<T, 2, _>(&symmetric).unwrap_or_else(|e| panic!("{e}"));
     assert_eq!((report.element.degree, report.element.functions), (2, 6));
     assert_eq!((report.orders.h1_expected, report.orders.l2_expected), (2.0, Some(3.0)));
@@ -63,7 +64,7 @@ fn passes<T: Real>() {
     let precise = T::EPSILON < 1e-10;
     assert!(report.orders.h1 > 1.75 && (report.orders.l2 > 2.75 || !precise), "{report}");
     // without symmetry even degrees lose an order in L2, which nothing promised
-    let without = Quadratic::<1> { rule: PenaltyRule::Diameter(10.0) };
+    let without = Quadratic { symmetry: Symmetry::NonSymmetric, rule: PenaltyRule::Diameter(10.0) };
     let report = check_scheme::<T, 2, _>(&without).unwrap_or_else(|e| panic!("{e}"));
     assert_eq!(report.orders.l2_expected, None);
 }

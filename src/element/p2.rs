@@ -1,0 +1,43 @@
+//! Quadratic Lagrange elements.
+
+use super::{Layout, Node, ReferenceElement};
+use crate::mesh::edge_vertices;
+use crate::real::Real;
+
+/// Continuous piecewise quadratics: the values at the vertices, then those at the midpoints of the
+/// edges in the order of [`edge_vertices`].
+///
+/// Basis `l_i (2 l_i - 1)` and `4 l_i l_j`, with `l` the barycentric coordinates.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct P2;
+
+impl<T: Real, const D: usize> ReferenceElement<T, D> for P2 {
+    const N: usize = (D + 1) * (D + 2) / 2;
+    const DEGREE: usize = 2;
+    const LAYOUT: Layout = Layout { vertex: 1, edge: 1, facet: 0, cell: 0 };
+
+    #[inline(always)]
+    fn values(lambda: &[T], out: &mut [T]) {
+        for (value, &l) in out[..=D].iter_mut().zip(lambda) {
+            *value = l * (T::lit(2.0) * l - T::lit(1.0));
+        }
+        for (value, &[i, j]) in out[D + 1..].iter_mut().zip(edge_vertices(D)) {
+            *value = T::lit(4.0) * lambda[i] * lambda[j];
+        }
+    }
+    #[inline(always)]
+    fn derivatives(lambda: &[T], out: &mut [[T; 4]]) {
+        for (i, row) in out[..=D].iter_mut().enumerate() {
+            *row = [T::lit(0.0); 4];
+            row[i] = T::lit(4.0) * lambda[i] - T::lit(1.0);
+        }
+        for (row, &[i, j]) in out[D + 1..].iter_mut().zip(edge_vertices(D)) {
+            *row = [T::lit(0.0); 4];
+            row[i] = T::lit(4.0) * lambda[j];
+            row[j] = T::lit(4.0) * lambda[i];
+        }
+    }
+    fn node(i: usize) -> Node {
+        if i <= D { Node::Vertex(i) } else { Node::Edge(i - D - 1) }
+    }
+}

@@ -1,0 +1,59 @@
+//! Quadratics in a basis that has the mean over the cell among its unknowns.
+
+use super::{Layout, Node, P2, ReferenceElement};
+use crate::real::Real;
+
+/// Discontinuous quadratics given by their values at the vertices and at the midpoints of all edges but the last,
+/// and by their mean over the cell in place of the last midpoint.
+///
+/// The mean is `sum_i m_i v_i` over the nodes of [`P2`], with `m = (2 - D) / ((D + 1)(D + 2))` at
+/// vertices and `4 / ((D + 1)(D + 2))` at midpoints: Simpson's rule in one dimension, the mean of
+/// the three midpoints in two. So with the functions `phi` of [`P2`] and `e` the last edge the basis
+/// is `phi_i - m_i / m_e phi_e`, and `phi_e / m_e` for the mean. It is an edge that gives way
+/// because in two dimensions the values at vertices do not enter the mean.
+///
+/// No unknown is shared: it spans the same space as [`Broken<P2>`](super::Broken).
+#[derive(Clone, Copy, Debug, Default)]
+pub struct QuadraticCellMean;
+
+/// The mean of each function of [`P2`].
+const fn mean(dimension: usize, i: usize) -> f64 {
+    let numerator = if i <= dimension { 2.0 - dimension as f64 } else { 4.0 };
+    numerator / ((dimension + 1) * (dimension + 2)) as f64
+}
+
+impl<T: Real, const D: usize> ReferenceElement<T, D> for QuadraticCellMean {
+    const N: usize = <P2 as ReferenceElement<T, D>>::N;
+    const DEGREE: usize = 2;
+    const LAYOUT: Layout = Layout::in_cells(<P2 as ReferenceElement<T, D>>::N);
+
+    #[inline(always)]
+    fn values(lambda: &[T], out: &mut [T]) {
+        <P2 as ReferenceElement<T, D>>::values(lambda, out);
+        let last = <Self as ReferenceElement<T, D>>::N - 1;
+        let of_mean = out[last] / T::lit(mean(D, last));
+        for (i, value) in out[..last].iter_mut().enumerate() {
+            *value -= T::lit(mean(D, i)) * of_mean;
+        }
+        out[last] = of_mean;
+    }
+    #[inline(always)]
+    fn derivatives(lambda: &[T], out: &mut [[T; 4]]) {
+        <P2 as ReferenceElement<T, D>>::derivatives(lambda, out);
+        let last = <Self as ReferenceElement<T, D>>::N - 1;
+        let of_mean = out[last].map(|slope| slope / T::lit(mean(D, last)));
+        for (i, row) in out[..last].iter_mut().enumerate() {
+            for (slope, &of_mean) in row.iter_mut().zip(&of_mean) {
+                *slope -= T::lit(mean(D, i)) * of_mean;
+            }
+        }
+        out[last] = of_mean;
+    }
+    fn node(i: usize) -> Node {
+        if i + 1 == <Self as ReferenceElement<T, D>>::N {
+            Node::CellMean
+        } else {
+            <P2 as ReferenceElement<T, D>>::node(i)
+        }
+    }
+}
