@@ -1,4 +1,5 @@
-//! Schemes: an element, a facet form and a way to impose Dirichlet data. Nothing else.
+//! Schemes: an element, a facet form, a way to impose Dirichlet data and a constraint set. Nothing
+//! else.
 
 mod bmmpr;
 mod bounded_nodes;
