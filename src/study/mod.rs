@@ -24,7 +24,9 @@ pub use orders::{fill_orders, observed_order};
 pub use plot::{Figure, convergence, work_precision};
 pub use registry::{SCHEMES, SchemeOptions, scheme_by_name};
 pub use report::{Program, Report, target_cpu};
-pub use row::{Errors, ExpectedOrders, Iterations, PenaltyParameters, Row, Seconds};
+pub use row::{
+    ContactErrors, Errors, ExpectedOrders, Iterations, Orders, PenaltyParameters, Row, Seconds,
+};
 pub use run::{Progress, Study};
 pub use table::write_tables;
 pub use vtu::{CellFields, write_vtu};

@@ -7,7 +7,7 @@ use super::fit::{check_domain, check_fit};
 use super::levels::{Levels, VertexContact};
 use super::memory::estimate;
 use super::{
-    CellFields, Errors, ExpectedOrders, Iterations, MemoryEstimate, Program, Report, Row, Seconds,
+    CellFields, ExpectedOrders, Iterations, MemoryEstimate, Orders, Program, Report, Row, Seconds,
     fill_orders, peak_memory_bytes, write_vtu,
 };
 use crate::assemble::DataQuadrature;
@@ -242,7 +242,8 @@ impl<'a, T: Real, const D: usize> Study<'a, T, D> {
             mesh_size: mesh.mesh_size(),
             status: solved.outcome.name().to_owned(),
             error: solved.error,
-            order: Errors::default(),
+            contact: solved.contact,
+            order: Orders::default(),
             expected_order: match failure {
                 None => scheme.expected_orders(&self.setting()),
                 Some(_) => ExpectedOrders::default(),
