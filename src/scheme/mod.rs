@@ -3,6 +3,7 @@
 mod conforming;
 mod crouzeix_raviart;
 mod facet_means;
+mod orders;
 mod sipg;
 mod wopsip;
 
@@ -18,6 +19,7 @@ use crate::mesh::Mesh;
 use crate::real::Real;
 use crate::scenes::Regularity;
 use crate::study::ExpectedOrders;
+use orders::{linear_energy_order, with_duality};
 
 /// How a scheme imposes Dirichlet data.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -39,6 +41,16 @@ pub struct Setting {
     pub contact: bool,
     /// What is known of the solution.
     pub regularity: Regularity,
+    /// Whether the dual of the linear problem has solutions in `H^2`: with a coefficient that does
+    /// not vary, on intervals and on convex domains with Dirichlet data on the whole boundary.
+    pub regular_dual: bool,
+}
+
+impl Setting {
+    /// Whether no inequality binds.
+    pub fn is_linear(&self) -> bool {
+        !self.obstacle && !self.contact
+    }
 }
 
 /// A discretisation of the bilinear form and of Dirichlet data.
@@ -62,11 +74,4 @@ pub trait Scheme<T: Real, const D: usize>: Send + Sync {
         let _ = setting;
         ExpectedOrders::default()
     }
-}
-
-/// The order in the energy norm that linear elements have by the Falk and Brezzi-Hager-Raviart
-/// argument: one for solutions in `H^2`, `s - 1` below.
-fn linear_energy_order(setting: &Setting) -> ExpectedOrders {
-    let s = setting.regularity.sobolev;
-    ExpectedOrders { l2: None, h1: (s > 1.5).then(|| (s - 1.0).min(1.0)) }
 }

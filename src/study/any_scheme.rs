@@ -95,6 +95,8 @@ pub trait AnyScheme<T: Real, const D: usize>: Send + Sync {
     /// Whether its unknowns are those of conforming P1, so that it starts from a coarser level and
     /// not from P1 on the same one.
     fn is_conforming_linear(&self) -> bool;
+    /// Penalty factors in force on a mesh.
+    fn parameters(&self, mesh: &Mesh<T, D>) -> PenaltyParameters;
     /// Assembles and solves.
     ///
     /// # Errors
@@ -129,6 +131,9 @@ impl<T: Real, const D: usize, S: Scheme<T, D>> AnyScheme<T, D> for S {
     fn is_conforming_linear(&self) -> bool {
         let layout = S::Element::LAYOUT;
         layout.vertex == 1 && layout.facet + layout.cell == 0 && !S::Facet::COUPLES
+    }
+    fn parameters(&self, mesh: &Mesh<T, D>) -> PenaltyParameters {
+        self.facet(mesh).parameters()
     }
     fn solve(&self, task: &Task<'_, T, D>) -> Result<Solved, Error> {
         solve(task, &|| {

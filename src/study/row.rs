@@ -21,8 +21,9 @@ pub struct Errors {
 /// [`Discretisation::contact_errors`](crate::assemble::Discretisation::contact_errors).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct ContactErrors {
-    /// Error of the multiplier as a density at vertices, in the lumped L2 norm, two layers of cells
-    /// around the exact free boundary left out.
+    /// Error of the multiplier as a density at vertices, in L1.
+    pub multiplier_l1: Option<f64>,
+    /// The same in the lumped L2 norm.
     pub multiplier_l2: Option<f64>,
     /// Measure of the symmetric difference of the contact sets.
     pub contact_area_error: Option<f64>,
@@ -41,7 +42,9 @@ pub struct Orders {
     pub energy: Option<f64>,
     /// In the maximum over nodes.
     pub max: Option<f64>,
-    /// Of the multiplier.
+    /// Of the multiplier in L1.
+    pub multiplier_l1: Option<f64>,
+    /// Of the multiplier in L2.
     pub multiplier_l2: Option<f64>,
 }
 

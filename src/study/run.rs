@@ -12,7 +12,7 @@ use super::{
 };
 use crate::assemble::DataQuadrature;
 use crate::error::Error;
-use crate::mesh::Mesh;
+use crate::mesh::{BoundaryPart, Mesh};
 use crate::real::Real;
 use crate::scenes::Scene;
 use crate::scheme::Setting;
@@ -283,11 +283,16 @@ impl<'a, T: Real, const D: usize> Study<'a, T, D> {
     /// What promises of orders may depend on.
     fn setting(&self) -> Setting {
         let problem = &self.scene.problem;
+        let mut sides = self.scene.domain.sides.iter().flatten();
+        let all_dirichlet = sides.all(|&side| side == BoundaryPart::Dirichlet);
         Setting {
             dimension: D,
             obstacle: problem.has_obstacle(),
             contact: problem.gap.is_some(),
             regularity: self.scene.regularity,
+            // the built-in domains are boxes
+            regular_dual: problem.coefficient.is_none()
+                && (D == 1 || self.mesh.is_none() && all_dirichlet),
         }
     }
 

@@ -29,7 +29,8 @@ pub fn row(scene: &str, scheme: &str, level: usize) -> Row {
             max: Some(0.1 * h),
         },
         contact: ContactErrors {
-            multiplier_l2: Some(0.3 * h),
+            multiplier_l1: Some(0.3 * h),
+            multiplier_l2: Some(0.5 * h.sqrt()),
             contact_area_error: Some(0.2 * h),
             free_boundary_distance: None,
         },

@@ -101,9 +101,8 @@ const SLACK: f64 = 1e-9;
 
 /// The largest distance of a point of the first set from the second.
 fn one_sided<const D: usize>(from: &[Point<f64, D>], to: &[Point<f64, D>]) -> f64 {
-    let nearest = |x: &Point<f64, D>| {
-        to.iter().map(|y| (x - y).norm_squared()).fold(f64::INFINITY, f64::min)
-    };
+    let nearest =
+        |x: &Point<f64, D>| to.iter().map(|y| (x - y).norm_squared()).fold(f64::INFINITY, f64::min);
     from.iter().map(nearest).fold(0.0, f64::max).sqrt()
 }
 

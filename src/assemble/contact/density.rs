@@ -6,7 +6,6 @@ use crate::algebra::{Contact, Inequality};
 use crate::assemble::data;
 use crate::assemble::space::Space;
 use crate::error::Error;
-use crate::mesh::BoundaryPart;
 use crate::problem::{ContactSet, Field};
 use crate::quadrature::Rule;
 use crate::real::Real;
@@ -17,45 +16,26 @@ use crate::solve::Solution;
 const DEGREES: [usize; 2] = [5, 2];
 
 impl<T: Real, const D: usize> Space<'_, T, D> {
-    /// The lumped L2 norm of the error of the density; none if no vertex is far enough from the
-    /// free boundary.
-    pub(super) fn multiplier_error(
+    /// The errors of the density in L1 and lumped L2; none if no vertex counts.
+    pub(super) fn multiplier_errors(
         &self,
         multiplier: &Field<D>,
         set: Option<&ContactSet<D>>,
         carriers: &[Carrier],
         inequality: &Inequality<T>,
         solution: &Solution<T>,
-    ) -> Result<Option<f64>, Error> {
+    ) -> Result<Option<[f64; 2]>, Error> {
         let mut weights = vec![0.0; self.mesh.vertices().len()];
         let mut forces = self.vertex_forces(inequality, solution);
         for &carrier in carriers {
             self.subtract_exact(multiplier, set, carrier, &mut weights, &mut forces)?;
         }
-        let skipped = self.near_jumps(set, carriers);
-        let counted = |v: &usize| weights[*v] > 0.0 && !skipped[*v];
-        if std::env::var("CANDIDATES").is_ok() {
-            let dirichlet = self.near_jumps(None, carriers);
-            let n = |keep: &dyn Fn(usize) -> bool, p: i32| -> f64 {
-                (0..weights.len())
-                    .filter(|&v| weights[v] > 0.0 && keep(v))
-                    .map(|v| weights[v] * (forces[v] / weights[v]).abs().powi(p))
-                    .sum()
-            };
-            let all = |v: usize| !dirichlet[v];
-            eprintln!(
-                "candidates: L1 all {:.4e} L2 all {:.4e} L2 off {:.4e} L1 off {:.4e}",
-                n(&all, 1),
-                n(&all, 2).sqrt(),
-                n(&|v| !skipped[v], 2).sqrt(),
-                n(&|v| !skipped[v], 1)
-            );
-        }
-        if !(0..weights.len()).any(|v| counted(&v)) {
-            return Ok(None);
-        }
-        let squares = (0..weights.len()).filter(counted).map(|v| forces[v] * forces[v] / weights[v]);
-        Ok(Some(squares.sum::<f64>().sqrt()))
+        let given = self.on_dirichlet_part();
+        let counted = |v: &usize| weights[*v] > 0.0 && !given[*v];
+        let vertices = || (0..weights.len()).filter(counted);
+        let squares: f64 = vertices().map(|v| forces[v] * forces[v] / weights[v]).sum();
+        let sum: f64 = vertices().map(|v| forces[v].abs()).sum();
+        Ok(vertices().next().map(|_| [sum, squares.sqrt()]))
     }
 
     /// The force of all constrained unknowns in contact, shared by the vertices around them.
@@ -117,33 +97,4 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         }
         Ok(())
     }
-
-    /// The vertices on the Dirichlet part and those of two layers of carriers around the exact free
-    /// boundary.
-    fn near_jumps(&self, set: Option<&ContactSet<D>>, carriers: &[Carrier]) -> Vec<bool> {
-        let vertex = |carrier: &Carrier, k: usize| self.mesh.cell(carrier.cell)[k] as usize;
-        let mut near = vec![false; self.mesh.vertices().len()];
-        if let Some(set) = set {
-            let is_cut = |carrier: &Carrier| {
-                let corners = self.corner_points(*carrier);
-                Piece::whole(carrier.dimension::<D>()).is_cut(&corners, &set.indicator)
-            };
-            let mut layer: Vec<bool> = carriers.iter().map(is_cut).collect();
-            for _ in 0..LAYERS {
-                let within = carriers.iter().zip(&layer).filter(|(_, within)| **within);
-                for (carrier, _) in within {
-                    carrier.corners::<D>().for_each(|k| near[vertex(carrier, k)] = true);
-                }
-                let touches = |c: &Carrier| c.corners::<D>().any(|k| near[vertex(c, k)]);
-                layer = carriers.iter().map(touches).collect();
-            }
-        }
-        for (cell, local) in self.facets_of(BoundaryPart::Dirichlet) {
-            self.mesh.facet_vertices(cell, local).for_each(|v| near[v as usize] = true);
-        }
-        near
-    }
 }
-
-/// Layers of cells around the free boundary in which densities are not compared.
-const LAYERS: usize = 2;

@@ -107,3 +107,30 @@ pub(super) fn in_space<const D: usize>(
 ) -> Point<f64, D> {
     corners.iter().zip(barycentric).fold(Point::zeros(), |x, (corner, &b)| x + corner * b)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::f64::consts::PI;
+
+    /// Share of the unit simplex in a ball of radius one half around its right-angled corner.
+    fn share_in_ball<const D: usize>() -> f64 {
+        let mut corners = [Point::<f64, D>::zeros(); 4];
+        (0..D).for_each(|k| corners[k + 1][k] = 1.0);
+        let ball: Field<D> = Box::new(|x| 0.5 - x.norm());
+        let [mut all, mut within] = [0.0; 2];
+        Piece::whole(D).split(&corners, &ball, &mut |piece| {
+            all += piece.share;
+            within += if ball(&piece.barycentre(&corners)) > 0.0 { piece.share } else { 0.0 };
+        });
+        assert_eq!(all, 1.0, "halves make up the whole");
+        within
+    }
+
+    #[test]
+    fn pieces_follow_a_sphere() {
+        assert!((share_in_ball::<1>() - 0.5).abs() < 1e-4);
+        assert!((share_in_ball::<2>() - PI / 8.0).abs() < 2e-3);
+        assert!((share_in_ball::<3>() - PI / 8.0).abs() < 2e-2);
+    }
+}
