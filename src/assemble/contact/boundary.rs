@@ -1,5 +1,7 @@
 //! The free boundary of a discrete solution and its distance from the exact one.
 
+use rayon::prelude::*;
+
 use super::Carrier;
 use super::pieces::in_space;
 use crate::assemble::space::Space;
@@ -63,7 +65,10 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
     /// The points of the exact free boundary that lie on some carrier: a mesh from a file need not
     /// cover the domain of the scene.
     fn within_mesh(&self, set: &ContactSet<D>, carriers: &[Carrier]) -> Vec<Point<f64, D>> {
-        let mut found = vec![false; set.free_boundary.len()];
+        // in the order of their first coordinates, so that few are tried on each carrier
+        let mut points = set.free_boundary.clone();
+        points.sort_unstable_by(|x, y| x[0].total_cmp(&y[0]));
+        let mut found = vec![false; points.len()];
         for carrier in carriers {
             let corners = self.corner_points(*carrier);
             let corners = &corners[..=carrier.dimension::<D>()];
@@ -72,14 +77,16 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
             };
             let (low, high) = (fold(f64::min), fold(f64::max));
             let slack = SLACK * (high - low).norm().max(f64::MIN_POSITIVE);
-            for (found, x) in found.iter_mut().zip(&set.free_boundary) {
-                if *found || (0..D).any(|k| x[k] < low[k] - slack || x[k] > high[k] + slack) {
+            let first = points.partition_point(|x| x[0] < low[0] - slack);
+            let near = points[first..].iter().take_while(|x| x[0] <= high[0] + slack);
+            for (found, x) in found[first..].iter_mut().zip(near) {
+                if *found || (1..D).any(|k| x[k] < low[k] - slack || x[k] > high[k] + slack) {
                     continue;
                 }
                 *found = self.covers(*carrier, x);
             }
         }
-        set.free_boundary.iter().zip(found).filter(|(_, found)| *found).map(|(x, _)| *x).collect()
+        points.iter().zip(found).filter(|(_, found)| *found).map(|(x, _)| *x).collect()
     }
 
     /// Whether a point lies on a carrier.
@@ -103,7 +110,7 @@ const SLACK: f64 = 1e-9;
 fn one_sided<const D: usize>(from: &[Point<f64, D>], to: &[Point<f64, D>]) -> f64 {
     let nearest =
         |x: &Point<f64, D>| to.iter().map(|y| (x - y).norm_squared()).fold(f64::INFINITY, f64::min);
-    from.iter().map(nearest).fold(0.0, f64::max).sqrt()
+    from.par_iter().map(nearest).reduce(|| 0.0, f64::max).sqrt()
 }
 
 /// Barycentric coordinates of evenly spaced points on the simplex of some dimension.
