@@ -10,10 +10,13 @@ use std::process::ExitCode;
 
 #[path = "compare/options.rs"]
 mod options;
+#[path = "compare/penalties.rs"]
+mod penalties;
 #[path = "compare/watcher.rs"]
 mod watcher;
 
 use options::{Options, check_numbers, choose, each_once, list};
+use penalties::{check_penalties, scheme_options};
 use watcher::Watcher;
 
 use unilateral::error::Error;
@@ -21,9 +24,11 @@ use unilateral::mesh::{Mesh, gmsh};
 use unilateral::real::Real;
 use unilateral::scenes::{self, AnyScene, Parameters, Scene, Takes};
 use unilateral::study::{
-    Placement, Program, Report, Row, SCHEMES, SchemeOptions, Study, available_memory_bytes,
-    scheme_by_name,
+    Program, Report, Row, SCHEMES, Study, available_memory_bytes, orders_table, scheme_by_name,
 };
+
+/// How far an observed order may fall below a promised one that counts as kept.
+const ORDER_TOLERANCE: f64 = 0.1;
 
 /// Wrong requests, as one message.
 type Request<T> = Result<T, String>;
@@ -93,6 +98,7 @@ impl Chosen {
         };
         let names: Vec<&str> = SCHEMES.iter().map(|s| s.0).collect();
         let schemes = choose("scheme", &options.schemes, &["p1", "sipg", "wopsip"], &names)?;
+        check_penalties(options, &schemes, &names)?;
         let scenes = Self::scenes(options, mesh.as_ref().map(|m| m.0))?;
         Ok(Self { scenes, schemes, mesh })
     }
@@ -176,11 +182,7 @@ fn prepare<'a, T: Real, const D: usize>(
     mesh: Option<&(usize, Vec<u8>)>,
     watcher: &'a Watcher,
 ) -> Request<Option<Run<'a>>> {
-    let scheme_options = SchemeOptions {
-        sigma: options.sigma,
-        eta: options.eta,
-        placement: Placement::by_name(&options.constraint).unwrap_or_default(),
-    };
+    let scheme_options = scheme_options(options);
     let name = scene.name.clone();
     let levels = match &options.levels[..] {
         [] => default_levels(D, mesh.is_some()),
@@ -249,10 +251,11 @@ fn default_levels(dimension: usize, on_mesh: bool) -> Vec<usize> {
 fn check_output(options: &Options) -> Request<bool> {
     let is_new = !options.out.exists();
     let fail = |path: &Path, e| format!("cannot write {}: {e}", path.display());
-    if let Some(path) = options.json.as_ref().filter(|p| p.as_os_str() != "-") {
-        let json_is_new = !path.exists();
+    let json = options.json.as_ref().filter(|p| p.as_os_str() != "-");
+    for path in json.into_iter().chain(&options.orders) {
+        let file_is_new = !path.exists();
         OpenOptions::new().append(true).create(true).open(path).map_err(|e| fail(path, e))?;
-        if json_is_new {
+        if file_is_new {
             fs::remove_file(path).map_err(|e| fail(path, e))?;
         }
     }
@@ -270,6 +273,10 @@ fn write(options: &Options, report: &Report) -> Request<()> {
         Some(path) => fs::write(path, report.to_json())
             .map_err(|e| format!("cannot write {}: {e}", path.display()))?,
         None => {}
+    }
+    if let Some(path) = &options.orders {
+        fs::write(path, orders_table(&report.observed_orders(), ORDER_TOLERANCE))
+            .map_err(|e| format!("cannot write {}: {e}", path.display()))?;
     }
     if options.quiet {
         return Ok(());

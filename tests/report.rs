@@ -45,7 +45,8 @@ fn json_has_the_keys_that_scripts_rely_on() {
     assert_eq!(keys(row).len(), ROW_KEYS.len() + added.len());
     assert_eq!(keys(&row["parameters"]), ["sigma", "eta", "rule"]);
     assert_eq!(keys(&row["error"]), ["l2", "h1", "energy", "max"]);
-    assert_eq!(keys(&row["order"]), ["l2", "h1", "energy", "max"]);
+    let orders = ["l2", "h1", "energy", "max", "multiplier_l1", "multiplier_l2"];
+    assert_eq!(keys(&row["order"]), orders);
     assert_eq!(keys(&row["expected_order"]), ["l2", "h1"]);
     assert_eq!(keys(&row["iterations"]), ["outer", "linear", "levels"]);
     let certificate =

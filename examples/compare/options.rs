@@ -66,6 +66,9 @@ pub struct Options {
     /// Also write the JSON report here; `-` for standard output
     #[arg(long, value_name = "FILE")]
     pub json: Option<PathBuf>,
+    /// Also write a table of observed against promised orders here, in Markdown
+    #[arg(long, value_name = "FILE")]
+    pub orders: Option<PathBuf>,
     /// No progress, no tables
     #[arg(long)]
     pub quiet: bool,

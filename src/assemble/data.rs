@@ -24,7 +24,8 @@ pub(super) fn finite<const D: usize>(
     }
 }
 
-/// The diffusion coefficient at the barycentre of every cell, if there is one.
+/// The diffusion coefficient at the barycentre of every cell, if there is one; a coefficient that
+/// would vanish or overflow when rounded is refused.
 pub(super) fn coefficients<T: Real, const D: usize>(
     problem: &Problem<D>,
     mesh: &Mesh<T, D>,
@@ -35,10 +36,20 @@ pub(super) fn coefficients<T: Real, const D: usize>(
     let at = |cell: usize| {
         count::coefficient(1);
         let value = alpha(&point_f64(&mesh.barycentre(cell)));
-        if value > 0.0 && value.is_finite() {
-            Ok(T::lit(value))
+        if !(value > 0.0 && value.is_finite()) {
+            return Err(Error::CoefficientNotPositive { value, cell: cell as u32 });
+        }
+        let rounded = T::lit(value);
+        if (rounded.to_f64() / value - 1.0).abs() <= T::EPSILON {
+            Ok(rounded)
         } else {
-            Err(Error::CoefficientNotPositive { value, cell: cell as u32 })
+            Err(Error::Parameter {
+                parameter: "precision",
+                value: T::NAME.to_owned(),
+                allowed: format!(
+                    "cannot hold the coefficient {value:e} of cell {cell}; choose another precision or scale the coefficient"
+                ),
+            })
         }
     };
     (0..mesh.n_cells()).map(at).collect::<Result<Vec<_>, _>>().map(Some)

@@ -7,6 +7,7 @@
 
 mod bounds;
 mod broken;
+mod contact;
 pub(crate) mod count;
 mod data;
 mod dofs;

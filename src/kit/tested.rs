@@ -61,7 +61,13 @@ impl<T: Real, const D: usize, S: Scheme<T, D>> Tested<T, D> for Of<'_, S> {
     }
     fn promised(&self) -> ExpectedOrders {
         let regularity = Regularity { sobolev: f64::INFINITY, strictly_complementary: true };
-        let setting = Setting { dimension: D, obstacle: false, contact: false, regularity };
+        let setting = Setting {
+            dimension: D,
+            obstacle: false,
+            contact: false,
+            regularity,
+            regular_dual: true,
+        };
         self.0.expected_orders(&setting)
     }
     fn assemble(&self, problem: &Problem<D>, mesh: &Mesh<T, D>) -> Result<Inequality<T>, Error> {

@@ -1,6 +1,6 @@
 //! Conforming linear elements.
 
-use super::{DirichletBy, Scheme, Setting, linear_energy_order};
+use super::{DirichletBy, Scheme, Setting, energy_order, with_duality};
 use crate::element::P1;
 use crate::facet::NoFacets;
 use crate::mesh::Mesh;
@@ -27,6 +27,6 @@ impl<T: Real, const D: usize> Scheme<T, D> for ConformingP1 {
         NoFacets
     }
     fn expected_orders(&self, setting: &Setting) -> ExpectedOrders {
-        linear_energy_order(setting)
+        with_duality(energy_order(setting, 1), setting)
     }
 }

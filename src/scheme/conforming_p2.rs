@@ -1,6 +1,6 @@
 //! Conforming quadratic elements.
 
-use super::{DirichletBy, Scheme, Setting, energy_order};
+use super::{DirichletBy, Scheme, Setting, energy_order, with_duality};
 use crate::element::P2;
 use crate::facet::NoFacets;
 use crate::mesh::Mesh;
@@ -19,8 +19,7 @@ use crate::study::ExpectedOrders;
 /// segments and triangles, false on tetrahedra, where the weights of vertices are negative
 /// (S. Gaddam, T. Gudi, Comput. Methods Appl. Math. 18 (2018), 223-236, add bubbles there); with a
 /// Signorini condition `min(s - 1, 3/2)` (Z. Belhachmi, F. Ben Belgacem, Math. Comp. 72 (2003),
-/// 83-104; G. Drouet, P. Hild, SIAM J. Numer. Anal. 53 (2015), 1488-1507). In L2 nothing is
-/// promised: the proof by duality needs more than a [`Setting`] tells of domain and data.
+/// 83-104; G. Drouet, P. Hild, SIAM J. Numer. Anal. 53 (2015), 1488-1507).
 #[derive(Clone, Copy, Debug, Default)]
 pub struct ConformingP2;
 
@@ -36,6 +35,6 @@ impl<T: Real, const D: usize> Scheme<T, D> for ConformingP2 {
         NoFacets
     }
     fn expected_orders(&self, setting: &Setting) -> ExpectedOrders {
-        energy_order(setting, 2)
+        with_duality(energy_order(setting, 2), setting)
     }
 }

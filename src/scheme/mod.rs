@@ -13,6 +13,7 @@ mod iipg;
 mod ldg;
 mod midpoints;
 mod nipg;
+mod orders;
 mod sipg;
 mod wopsip;
 
@@ -38,6 +39,7 @@ use crate::mesh::Mesh;
 use crate::real::Real;
 use crate::scenes::Regularity;
 use crate::study::ExpectedOrders;
+use orders::{energy_order, with_duality};
 
 /// How a scheme imposes Dirichlet data.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -59,6 +61,16 @@ pub struct Setting {
     pub contact: bool,
     /// What is known of the solution.
     pub regularity: Regularity,
+    /// Whether the dual of the linear problem has solutions in `H^2`: with a coefficient that does
+    /// not vary, on intervals and on convex domains with Dirichlet data on the whole boundary.
+    pub regular_dual: bool,
+}
+
+impl Setting {
+    /// Whether no inequality binds.
+    pub fn is_linear(&self) -> bool {
+        !self.obstacle && !self.contact
+    }
 }
 
 /// A discretisation of the bilinear form and of Dirichlet data.
@@ -89,27 +101,6 @@ pub trait Scheme<T: Real, const D: usize>: Send + Sync {
         let _ = setting;
         ExpectedOrders::default()
     }
-}
-
-/// The order in the energy norm that linear elements have by the Falk and Brezzi-Hager-Raviart
-/// argument: one for solutions in `H^2`, `s - 1` below.
-fn linear_energy_order(setting: &Setting) -> ExpectedOrders {
-    let s = setting.regularity.sobolev;
-    ExpectedOrders { l2: None, h1: (s > 1.5).then(|| (s - 1.0).min(1.0)) }
-}
-
-/// The order in the energy norm of consistent schemes on elements of this degree. For quadratics
-/// with bounds at all nodes it is three halves where an inequality binds, see [`ConformingP2`] and
-/// F. Wang, W. Han, X.-L. Cheng, SIAM J. Numer. Anal. 48 (2010), 708-733.
-fn energy_order(setting: &Setting, degree: usize) -> ExpectedOrders {
-    let s = setting.regularity.sobolev;
-    let highest = match (setting.obstacle, setting.contact) {
-        _ if degree == 1 => return linear_energy_order(setting),
-        (false, false) => Some(degree as f64),
-        (true, _) if setting.dimension == 3 => None,
-        _ => Some(1.5),
-    };
-    ExpectedOrders { l2: None, h1: highest.filter(|_| s > 1.5).map(|p| (s - 1.0).min(p)) }
 }
 
 /// The name of a scheme on linears or on quadratics.

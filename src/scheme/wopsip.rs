@@ -1,6 +1,6 @@
 //! The weakly over-penalised symmetric interior penalty method.
 
-use super::{DirichletBy, Scheme, Setting, energy_order, name_by_degree};
+use super::{DirichletBy, Scheme, Setting, energy_order, name_by_degree, with_duality};
 use crate::element::{Broken, P1, ReferenceElement};
 use crate::facet::{OverPenalty, WeightRule};
 use crate::mesh::Mesh;
@@ -69,7 +69,7 @@ impl<T: Real, const D: usize, E: ReferenceElement<T, D>> Scheme<T, D> for Wopsip
     }
     fn expected_orders(&self, setting: &Setting) -> ExpectedOrders {
         match E::DEGREE {
-            1 => energy_order(setting, 1),
+            1 => with_duality(energy_order(setting, 1), setting),
             _ => ExpectedOrders::default(),
         }
     }

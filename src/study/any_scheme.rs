@@ -2,7 +2,7 @@
 
 use std::time::Instant;
 
-use super::{Certificate, Errors, ExpectedOrders, PenaltyParameters};
+use super::{Certificate, ContactErrors, Errors, ExpectedOrders, PenaltyParameters};
 use crate::algebra::{Bound, Contact, Inequality, Place, Start};
 use crate::assemble::{DataQuadrature, Discretisation, PenaltyShortfall};
 use crate::element::{Layout, ReferenceElement};
@@ -60,12 +60,14 @@ pub struct Solved {
     pub outcome: Outcome,
     /// Errors against the exact solution.
     pub error: Errors,
+    /// Distances of multiplier and contact set from the exact ones.
+    pub contact: ContactErrors,
     /// The objective, for symmetric schemes.
     pub objective: Option<f64>,
     /// Constrained unknowns in contact.
-    pub active: usize,
+    pub active: Option<usize>,
     /// Outer iterations.
-    pub outer: usize,
+    pub outer: Option<usize>,
     /// Inner iterations.
     pub linear: usize,
     /// The certificate.
@@ -93,6 +95,8 @@ pub trait AnyScheme<T: Real, const D: usize>: Send + Sync {
     /// Whether its unknowns are those of conforming P1, so that it starts from a coarser level and
     /// not from P1 on the same one.
     fn is_conforming_linear(&self) -> bool;
+    /// Penalty factors in force on a mesh.
+    fn parameters(&self, mesh: &Mesh<T, D>) -> PenaltyParameters;
     /// Assembles and solves.
     ///
     /// # Errors
@@ -128,6 +132,9 @@ impl<T: Real, const D: usize, S: Scheme<T, D>> AnyScheme<T, D> for S {
         let layout = S::Element::LAYOUT;
         layout.vertex == 1 && layout.edge + layout.facet + layout.cell == 0 && !S::Facet::COUPLES
     }
+    fn parameters(&self, mesh: &Mesh<T, D>) -> PenaltyParameters {
+        self.facet(mesh).parameters()
+    }
     fn solve(&self, task: &Task<'_, T, D>) -> Result<Solved, Error> {
         solve(task, &|| {
             let Task { problem, mesh, quadrature, .. } = *task;
@@ -151,6 +158,11 @@ trait Discrete<T: Real> {
     fn parameters(&self) -> PenaltyParameters;
     fn rounding_limit(&self) -> f64;
     fn errors(&self, u: &[T]) -> Result<Errors, Error>;
+    fn contact_errors(
+        &self,
+        inequality: &Inequality<T>,
+        solution: &Solution<T>,
+    ) -> Result<ContactErrors, Error>;
     fn fields(&self, inequality: &Inequality<T>, solution: &Solution<T>) -> Fields;
 }
 
@@ -169,6 +181,13 @@ impl<T: Real, const D: usize, S: Scheme<T, D>> Discrete<T> for Discretisation<'_
     }
     fn errors(&self, u: &[T]) -> Result<Errors, Error> {
         self.errors(u)
+    }
+    fn contact_errors(
+        &self,
+        inequality: &Inequality<T>,
+        solution: &Solution<T>,
+    ) -> Result<ContactErrors, Error> {
+        self.contact_errors(inequality, solution)
     }
     fn fields(&self, inequality: &Inequality<T>, solution: &Solution<T>) -> Fields {
         self.fields(inequality, solution)
@@ -216,7 +235,11 @@ fn solve<T: Real, const D: usize>(
         Outcome::NotCoercive | Outcome::Singular | Outcome::NotFinite | Outcome::OutOfMemory
     );
     let usable = !nothing && u.iter().all(|v| v.to_f64().is_finite());
-    let error = if task.with_errors && usable { space.errors(u)? } else { Errors::default() };
+    let (error, contact) = if task.with_errors && usable {
+        (space.errors(u)?, space.contact_errors(&inequality, &solution)?)
+    } else {
+        Default::default()
+    };
     let fields = (task.with_fields && usable).then(|| space.fields(&inequality, &solution));
     Ok(Solved {
         parameters: space.parameters(),
@@ -224,9 +247,10 @@ fn solve<T: Real, const D: usize>(
         nonzeros: inequality.matrix.nonzeros(),
         outcome: solution.outcome,
         error,
+        contact,
         objective: (inequality.symmetric && usable).then(|| inequality.objective(u)),
-        active: crate::solve::active(&inequality, &solution.contact),
-        outer: solution.outer,
+        active: usable.then(|| crate::solve::active(&inequality, &solution.contact)),
+        outer: usable.then_some(solution.outer),
         linear: solution.linear,
         certificate: if usable { certify(&inequality, u) } else { Certificate::WORTHLESS },
         assemble_seconds,

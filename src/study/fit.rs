@@ -1,9 +1,11 @@
 //! Whether a mesh fits a scene.
 
+use crate::assemble::{DataQuadrature, Discretisation};
 use crate::error::Error;
 use crate::mesh::{BoundaryPart, Mesh, describe_point};
 use crate::real::{Real, point_f64};
 use crate::scenes::Scene;
+use crate::scheme::{ConformingP1, CrouzeixRaviartScheme};
 
 /// Checks that a mesh can carry a scene, and tells where the scene's exact solution fails on it: the
 /// barycentre of a facet, or none.
@@ -13,8 +15,9 @@ use crate::scenes::Scene;
 /// the contact condition may fail there: it is tested on every contact facet.
 ///
 /// # Errors
-/// [`Error::UnfitMesh`] if mesh and scene do not agree on having a contact part; [`Error::Mesh`]
-/// if a component of the mesh is held by nothing.
+/// [`Error::UnfitMesh`] if mesh and scene do not agree on having a contact part, or if the data of
+/// the scene are no data on the mesh: not finite, or without an admissible value; [`Error::Mesh`] if
+/// a component of the mesh is held by nothing.
 pub fn check_fit<T: Real, const D: usize>(
     scene: &Scene<D>,
     mesh: &Mesh<T, D>,
@@ -23,7 +26,30 @@ pub fn check_fit<T: Real, const D: usize>(
     if scene.problem.reaction.is_none() {
         mesh.check_supported()?;
     }
+    check_data(scene, mesh)?;
     Ok(first_failure(scene, mesh))
+}
+
+/// A mesh may reach beyond where the data of a scene make sense. All kinds of nodes are tried before
+/// any scheme runs: vertices, facets, and the points of quadrature.
+fn check_data<T: Real, const D: usize>(scene: &Scene<D>, mesh: &Mesh<T, D>) -> Result<(), Error> {
+    let (problem, quadrature) = (&scene.problem, DataQuadrature::default());
+    let at_vertices = || {
+        let space = Discretisation::new(&ConformingP1, problem, mesh, quadrature)?;
+        space.load().and_then(|_| space.bounds()).map(|_| ())
+    };
+    let on_facets = || {
+        let space = Discretisation::new(&CrouzeixRaviartScheme, problem, mesh, quadrature)?;
+        space.bounds().map(|_| ())
+    };
+    at_vertices().and_then(|()| on_facets()).map_err(|why| match why {
+        Error::DataNotFinite { .. }
+        | Error::CoefficientNotPositive { .. }
+        | Error::EmptyConstraint { .. } => {
+            Error::UnfitMesh { scene: scene.name.clone(), why: why.to_string() }
+        }
+        other => other,
+    })
 }
 
 /// Checks that the built-in domain of a scene has the parts its problem needs.

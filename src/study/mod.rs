@@ -6,7 +6,9 @@ mod fit;
 mod levels;
 mod memory;
 mod orders;
+mod orders_table;
 mod plot;
+mod promises;
 mod registry;
 mod report;
 mod row;
@@ -21,10 +23,14 @@ pub use fit::check_fit;
 pub use levels::{Levels, VertexContact};
 pub use memory::{MemoryEstimate, available_memory_bytes, peak_memory_bytes};
 pub use orders::{fill_orders, observed_order};
+pub use orders_table::orders_table;
 pub use plot::{Figure, convergence, work_precision};
+pub use promises::{Norm, ObservedOrders, OrderMissed, OrdersMissed};
 pub use registry::{Placement, SCHEMES, SchemeOptions, scheme_by_name};
 pub use report::{Program, Report, target_cpu};
-pub use row::{Errors, ExpectedOrders, Iterations, PenaltyParameters, Row, Seconds};
+pub use row::{
+    ContactErrors, Errors, ExpectedOrders, Iterations, Orders, PenaltyParameters, Row, Seconds,
+};
 pub use run::{Progress, Study};
 pub use table::write_tables;
 pub use vtu::{CellFields, write_vtu};

@@ -1,6 +1,6 @@
 //! Observed orders of convergence.
 
-use super::row::{Errors, Row};
+use super::row::{Orders, Row};
 
 /// The exponent `p` for which the errors of two meshes behave like `h^p`.
 ///
@@ -34,9 +34,9 @@ pub fn observed_order(
 /// Where either of the two did not converge, or has no error, the order is none. It is never taken
 /// against a level further back, since a reader could not tell.
 pub fn fill_orders(rows: &mut [Row]) {
-    let orders: Vec<Errors> = rows
+    let orders: Vec<Orders> = rows
         .iter()
-        .map(|row| previous(rows, row).map_or_else(Errors::default, |coarse| order(coarse, row)))
+        .map(|row| previous(rows, row).map_or_else(Orders::default, |coarse| order(coarse, row)))
         .collect();
     for (row, order) in rows.iter_mut().zip(orders) {
         row.order = order;
@@ -57,17 +57,19 @@ fn previous<'a>(rows: &'a [Row], row: &Row) -> Option<&'a Row> {
 }
 
 /// The orders of two rows.
-fn order(coarse: &Row, fine: &Row) -> Errors {
+fn order(coarse: &Row, fine: &Row) -> Orders {
     if !coarse.converged() || !fine.converged() {
-        return Errors::default();
+        return Orders::default();
     }
     let of =
         |c: Option<f64>, f: Option<f64>| observed_order(c?, f?, coarse.mesh_size, fine.mesh_size);
-    Errors {
+    Orders {
         l2: of(coarse.error.l2, fine.error.l2),
         h1: of(coarse.error.h1, fine.error.h1),
         energy: of(coarse.error.energy, fine.error.energy),
         max: of(coarse.error.max, fine.error.max),
+        multiplier_l1: of(coarse.contact.multiplier_l1, fine.contact.multiplier_l1),
+        multiplier_l2: of(coarse.contact.multiplier_l2, fine.contact.multiplier_l2),
     }
 }
 

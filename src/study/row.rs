@@ -4,7 +4,7 @@ use serde::Serialize;
 
 use super::Certificate;
 
-/// Errors against the exact solution, or observed orders of them.
+/// Errors against the exact solution.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct Errors {
     /// L2 norm.
@@ -15,6 +15,37 @@ pub struct Errors {
     pub energy: Option<f64>,
     /// Maximum over nodes.
     pub max: Option<f64>,
+}
+
+/// Distances of multiplier and contact set from the exact ones, comparable across schemes; see
+/// [`Discretisation::contact_errors`](crate::assemble::Discretisation::contact_errors).
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct ContactErrors {
+    /// Error of the multiplier as a density at vertices, in L1.
+    pub multiplier_l1: Option<f64>,
+    /// The same in the lumped L2 norm.
+    pub multiplier_l2: Option<f64>,
+    /// Measure of the symmetric difference of the contact sets.
+    pub contact_area_error: Option<f64>,
+    /// Hausdorff distance of the free boundaries.
+    pub free_boundary_distance: Option<f64>,
+}
+
+/// Observed orders.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct Orders {
+    /// Of the error in the L2 norm.
+    pub l2: Option<f64>,
+    /// In the broken H1 seminorm.
+    pub h1: Option<f64>,
+    /// In the scheme's own norm.
+    pub energy: Option<f64>,
+    /// In the maximum over nodes.
+    pub max: Option<f64>,
+    /// Of the multiplier in L1.
+    pub multiplier_l1: Option<f64>,
+    /// Of the multiplier in L2.
+    pub multiplier_l2: Option<f64>,
 }
 
 /// Orders that theory promises.
@@ -40,8 +71,8 @@ pub struct PenaltyParameters {
 /// Iteration counts.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct Iterations {
-    /// Active sets tried on this level.
-    pub outer: usize,
+    /// Active sets tried on this level; none where there was nothing to iterate with.
+    pub outer: Option<usize>,
     /// Inner iterations on this level, zero for direct solvers.
     pub linear: usize,
     /// How many coarser levels the start came from.
@@ -93,14 +124,17 @@ pub struct Row {
     pub status: String,
     /// Errors against the exact solution.
     pub error: Errors,
+    /// Distances of multiplier and contact set, keys of the row itself.
+    #[serde(flatten)]
+    pub contact: ContactErrors,
     /// Observed order against the previous level of the same scene and scheme.
-    pub order: Errors,
+    pub order: Orders,
     /// What theory promises.
     pub expected_order: ExpectedOrders,
     /// `a(u,u)/2 - l(u)`; null for non-symmetric schemes.
     pub objective: Option<f64>,
-    /// Constrained unknowns in contact, Dirichlet ones not counted.
-    pub active: usize,
+    /// Constrained unknowns in contact, Dirichlet ones not counted; none where there is no iterate.
+    pub active: Option<usize>,
     /// Iteration counts.
     pub iterations: Iterations,
     /// The certificate.

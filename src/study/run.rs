@@ -7,12 +7,12 @@ use super::fit::{check_domain, check_fit};
 use super::levels::{Levels, VertexContact};
 use super::memory::estimate;
 use super::{
-    CellFields, Errors, ExpectedOrders, Iterations, MemoryEstimate, Program, Report, Row, Seconds,
+    CellFields, ExpectedOrders, Iterations, MemoryEstimate, Orders, Program, Report, Row, Seconds,
     fill_orders, peak_memory_bytes, write_vtu,
 };
 use crate::assemble::DataQuadrature;
 use crate::error::Error;
-use crate::mesh::Mesh;
+use crate::mesh::{BoundaryPart, Mesh};
 use crate::real::Real;
 use crate::scenes::Scene;
 use crate::scheme::Setting;
@@ -242,7 +242,8 @@ impl<'a, T: Real, const D: usize> Study<'a, T, D> {
             mesh_size: mesh.mesh_size(),
             status: solved.outcome.name().to_owned(),
             error: solved.error,
-            order: Errors::default(),
+            contact: solved.contact,
+            order: Orders::default(),
             expected_order: match failure {
                 None => scheme.expected_orders(&self.setting()),
                 Some(_) => ExpectedOrders::default(),
@@ -282,11 +283,16 @@ impl<'a, T: Real, const D: usize> Study<'a, T, D> {
     /// What promises of orders may depend on.
     fn setting(&self) -> Setting {
         let problem = &self.scene.problem;
+        let mut sides = self.scene.domain.sides.iter().flatten();
+        let all_dirichlet = sides.all(|&side| side == BoundaryPart::Dirichlet);
         Setting {
             dimension: D,
             obstacle: problem.has_obstacle(),
             contact: problem.gap.is_some(),
             regularity: self.scene.regularity,
+            // the built-in domains are boxes
+            regular_dual: problem.coefficient.is_none()
+                && (D == 1 || self.mesh.is_none() && all_dirichlet),
         }
     }
 

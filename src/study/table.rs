@@ -137,7 +137,7 @@ fn columns(rows: &[&Row]) -> Vec<Column> {
     columns.push(number("n", |r| r.level.to_string()));
     columns.push(number("h", |r| scientific(Some(r.mesh_size))));
     columns.push(number("unknowns", |r| r.unknowns.to_string()));
-    columns.push(number("outer", |r| r.iterations.outer.to_string()));
+    columns.push(number("outer", |r| whole(r.iterations.outer)));
     if any(|r| r.error.l2) {
         columns.push(number("L2", |r| scientific(r.error.l2)));
         columns.push(number("order", |r| fixed(r.order.l2)));
@@ -146,7 +146,7 @@ fn columns(rows: &[&Row]) -> Vec<Column> {
         columns.push(number("H1", |r| scientific(r.error.h1)));
         columns.push(number("order", |r| fixed(r.order.h1)));
     }
-    columns.push(number("active", |r| r.active.to_string()));
+    columns.push(number("active", |r| whole(r.active)));
     columns.push(number("certif.", |r| {
         let c = &r.certificate;
         // The largest, where NaN counts as larger than anything: it must not hide.
@@ -174,6 +174,11 @@ fn write_line(
         line += gap;
     }
     writeln!(f, "{}", line.trim_end())
+}
+
+/// A number of things.
+fn whole(x: Option<usize>) -> String {
+    x.map_or_else(|| NONE.to_owned(), |x| x.to_string())
 }
 
 /// Three digits and the power of ten: `1.37e-2`.

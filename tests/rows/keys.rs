@@ -1,7 +1,7 @@
 //! What scripts rely on.
 
 /// The keys of a row, in order.
-pub const ROW_KEYS: [&str; 20] = [
+pub const ROW_KEYS: [&str; 24] = [
     "scene",
     "dimension",
     "scheme",
@@ -14,6 +14,10 @@ pub const ROW_KEYS: [&str; 20] = [
     "mesh_size",
     "status",
     "error",
+    "multiplier_l1",
+    "multiplier_l2",
+    "contact_area_error",
+    "free_boundary_distance",
     "order",
     "expected_order",
     "objective",

@@ -1,8 +1,8 @@
 //! Rows to report, for the tests of reports.
 
 use unilateral::study::{
-    Certificate, Errors, ExpectedOrders, Iterations, PenaltyParameters, Program, Report, Row,
-    Seconds, fill_orders,
+    Certificate, ContactErrors, Errors, ExpectedOrders, Iterations, Orders, PenaltyParameters,
+    Program, Report, Row, Seconds, fill_orders,
 };
 
 /// A row with errors of order 2 and 1.
@@ -28,11 +28,17 @@ pub fn row(scene: &str, scheme: &str, level: usize) -> Row {
             energy: None,
             max: Some(0.1 * h),
         },
-        order: Errors::default(),
+        contact: ContactErrors {
+            multiplier_l1: Some(0.3 * h),
+            multiplier_l2: Some(0.5 * h.sqrt()),
+            contact_area_error: Some(0.2 * h),
+            free_boundary_distance: None,
+        },
+        order: Orders::default(),
         expected_order: ExpectedOrders { l2: Some(2.0), h1: Some(1.0) },
         objective: Some(-0.1 - h / 3.0),
-        active: level,
-        iterations: Iterations { outer: 3, linear: 0, levels: 1 },
+        active: Some(level),
+        iterations: Iterations { outer: Some(3), linear: 0, levels: 1 },
         certificate: Certificate {
             feasibility: 0.0,
             multiplier: 1e-16,

@@ -1,0 +1,144 @@
+//! Data that no problem can have.
+
+use unilateral::prelude::*;
+use unilateral::problem::Datum;
+use unilateral::scenes::{BoxDomain, Regularity, Scene};
+use unilateral::study::Row;
+
+/// A scene on the unit square with these data, held on its sides.
+fn scene(problem: Problem<2>) -> Scene<2> {
+    Scene {
+        name: "mine".into(),
+        summary: "",
+        domain: BoxDomain::dirichlet(Point::zeros(), Point::repeat(1.0)).side(
+            1,
+            0,
+            if problem.gap.is_some() { BoundaryPart::Contact } else { BoundaryPart::Neumann },
+        ),
+        problem,
+        regularity: Regularity { sobolev: 2.0, strictly_complementary: true },
+    }
+}
+
+fn study(problem: Problem<2>) -> Result<Report, Error> {
+    Study::<f64, 2>::new(scene(problem))
+        .scheme(ConformingP1)
+        .scheme(Sipg::default())
+        .levels([4])
+        .run()
+}
+
+/// A datum that is bad right of the middle only.
+fn partly(bad: f64) -> impl Fn(&Point<f64, 2>) -> f64 + Send + Sync + Copy + 'static {
+    move |x| if x[0] > 0.5 { bad } else { 1.0 }
+}
+
+#[test]
+fn data_that_are_not_finite_are_named_with_the_point() {
+    let problem = || Problem::new().constant_source(1.0);
+    for bad in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
+        let value = partly(bad);
+        for (name, problem) in [
+            ("source", Problem::new().source(value)),
+            ("source", Problem::new().constant_source(bad)),
+            ("dirichlet", problem().dirichlet(value)),
+            ("neumann", problem().neumann(move |x, _| value(x))),
+            ("obstacle", problem().obstacle_below(value)),
+            ("obstacle", problem().obstacle_above(value)),
+            ("gap", problem().signorini(value)),
+            ("reaction", problem().reaction(Datum::Function(Box::new(value)))),
+            ("reaction", problem().reaction(bad)),
+        ] {
+            match study(problem) {
+                Err(Error::DataNotFinite { datum, value, at, .. }) => {
+                    assert_eq!(datum, name);
+                    assert!(!value.is_finite());
+                    assert!(at.starts_with('(') && at.contains(", "), "{at}");
+                }
+                Err(other) => panic!("{name} {bad}: {other}"),
+                Ok(_) => panic!("{name} {bad} went unnoticed"),
+            }
+        }
+    }
+}
+
+#[test]
+fn coefficients_must_be_positive_and_obstacles_leave_room() {
+    for bad in [0.0, -1.0, f64::NAN, f64::INFINITY] {
+        let found = study(Problem::new().coefficient(partly(bad)));
+        assert!(matches!(found, Err(Error::CoefficientNotPositive { .. })), "{bad}");
+    }
+    let crossed = Problem::new().obstacle_below(|_| 0.5).obstacle_above(|x| 1.0 - x[0]);
+    let Err(Error::EmptyConstraint { lower, upper, .. }) = study(crossed) else {
+        panic!("crossed obstacles went unnoticed")
+    };
+    assert!(lower > upper);
+    let over_datum = Problem::new().obstacle_below(|_| 0.5);
+    assert!(matches!(study(over_datum), Err(Error::EmptyConstraint { .. })));
+}
+
+/// Obstacles that touch the Dirichlet datum leave room, whatever rounding makes of them.
+#[test]
+fn obstacles_may_touch_the_datum() {
+    fn touching<T: Real>() -> Result<Report, Error> {
+        let value = |x: &Point<f64, 2>| 0.1 + (x[0] * 7.0).sin();
+        let again = |x: &Point<f64, 2>| ((x[0] * 7.0).sin() - 1.0) + 1.1;
+        let problem = Problem::new().dirichlet(value).obstacle_below(again);
+        Study::<T, 2>::new(scene(problem)).scheme(ConformingP1).levels([6]).run()
+    }
+    for report in [touching::<f64>(), touching::<f32>()] {
+        assert!(report.unwrap().rows.iter().all(Row::converged));
+    }
+}
+
+/// A coefficient that is fine in double precision may vanish or overflow in single precision.
+#[test]
+fn coefficients_must_fit_the_precision() {
+    fn run<T: Real>(alpha: f64) -> Result<Report, Error> {
+        let problem = Problem::new().constant_source(alpha).coefficient(move |_| alpha);
+        Study::<T, 2>::new(scene(problem)).scheme(ConformingP1).levels([4]).run()
+    }
+    for alpha in [1e-50, 1e-42, 1e50] {
+        assert!(run::<f64>(alpha).unwrap().rows[0].converged());
+        match run::<f32>(alpha) {
+            Err(Error::Parameter { parameter: "precision", value, allowed }) => {
+                assert_eq!(value, "f32");
+                assert!(allowed.contains(&format!("{alpha:e}")), "{allowed}");
+            }
+            Err(other) => panic!("{alpha:e}: {other}"),
+            Ok(_) => panic!("{alpha:e} went unnoticed"),
+        }
+    }
+    assert!(run::<f32>(1e-3).unwrap().rows[0].converged());
+}
+
+/// A mesh that reaches where a scene has no data is refused before anything runs on it, also if
+/// other meshes of the scene would do.
+#[test]
+fn meshes_beyond_the_data_of_a_scene_do_not_fit() {
+    let square = BoxDomain::dirichlet(Point::zeros(), Point::repeat(2.0));
+    let mesh = Mesh::<f64, 2>::kuhn_box(&square, [4, 4]).unwrap();
+    let runs = std::cell::Cell::new(0);
+    let run = |problem: Problem<2>| {
+        let mut scene = scene(problem);
+        scene.domain = BoxDomain::dirichlet(Point::zeros(), Point::repeat(1.0));
+        let study = Study::<f64, 2>::new(scene).scheme(ConformingP1).levels([0]);
+        let study = study.on_mesh(mesh.clone()).observer(|_| runs.set(runs.get() + 1));
+        study.check().and_then(|()| study.run().map(|_| ()))
+    };
+    let far = |x: &Point<f64, 2>| if x[0] > 1.0 { f64::NAN } else { 0.0 };
+    let above = |x: &Point<f64, 2>| x[0] - 1.5;
+    for problem in [
+        Problem::new().dirichlet(far),
+        Problem::new().source(far),
+        Problem::new().obstacle_below(far),
+        Problem::new().obstacle_below(above),
+        Problem::new().coefficient(move |x| 1.0 + far(x)),
+    ] {
+        let found = run(problem);
+        assert!(matches!(found, Err(Error::UnfitMesh { .. })), "{found:?}");
+    }
+    assert_eq!(runs.get(), 0, "nothing was told to run");
+    run(Problem::new().constant_source(1.0)).unwrap();
+    assert!(runs.get() > 0);
+}

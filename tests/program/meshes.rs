@@ -1,0 +1,111 @@
+//! Meshes of users, wrong and right.
+
+use serde_json::Value;
+
+use super::run::{Scratch, refused, rows};
+use super::square::Square;
+
+#[test]
+fn wrong_meshes_are_refused() {
+    let scratch = Scratch::new("meshes");
+    let sound = Square::sound();
+    let without_groups = Square::with(|s| {
+        s.names.clear();
+        s.elements = vec!["1 1 0 1 2", "5 2 0 1 2 5", "6 2 0 2 3 5", "7 2 0 3 4 5", "8 2 0 4 1 5"];
+    });
+    let all_neumann = Square::with(|s| {
+        s.elements[..4].copy_from_slice(&[
+            "1 1 2 3 1 1 2",
+            "2 1 2 3 1 2 3",
+            "3 1 2 3 1 3 4",
+            "4 1 2 3 1 4 1",
+        ]);
+    });
+    let cases: &[(&str, &str, String, &[&str])] = &[
+        ("radial-2d", "empty", String::new(), &["not a Gmsh mesh"]),
+        ("radial-2d", "prose", "Dear reader,\n".into(), &["not a Gmsh mesh", "$MeshFormat"]),
+        ("radial-2d", "half", sound[..sound.len() / 2].into(), &["the file ends", "line"]),
+        ("radial-2d", "three-quarters", sound[..sound.len() * 3 / 4].into(), &["the file ends"]),
+        ("radial-2d", "groups", without_groups, &["physical group", "dirichlet"]),
+        (
+            "radial-2d",
+            "wall",
+            Square::with(|s| s.names[0] = "1 1 \"wall\""),
+            &["\"wall\"", "dirichlet, neumann and contact"],
+        ),
+        ("radial-2d", "words", Square::with(|s| s.nodes[0] = "1 zero 0 0"), &["`zero`", "line 1"]),
+        ("radial-2d", "nan", Square::with(|s| s.nodes[0] = "1 nan 0 0"), &["NaN", "finite"]),
+        (
+            "radial-2d",
+            "flat",
+            Square::with(|s| s.nodes[4] = "5 0.5 0 0"),
+            &["degenerate", "element 5"],
+        ),
+        (
+            "radial-2d",
+            "twice",
+            Square::with(|s| s.elements.push("9 2 2 9 1 5 1 2")),
+            &["same vertices", "element 9"],
+        ),
+        (
+            "radial-2d",
+            "untagged",
+            Square::with(|s| s.elements.retain(|e| !e.starts_with("1 "))),
+            &["no boundary part", "dirichlet, neumann, contact"],
+        ),
+        (
+            "radial-2d",
+            "both",
+            Square::with(|s| s.elements.push("9 1 2 3 1 1 2")),
+            &["two boundary parts", "dirichlet and neumann"],
+        ),
+        (
+            "radial-2d",
+            "range",
+            Square::with(|s| s.elements[7] = "8 2 2 9 1 4 1 6"),
+            &["element 8", "node 6"],
+        ),
+        ("radial-2d", "floating", all_neumann, &["neither a dirichlet nor a contact", "4 cells"]),
+        ("radial-2d", "touching", Square::in_contact(), &["radial-2d", "\"contact\""]),
+        ("signorini-2d", "free", sound.clone(), &["signorini-2d", "\"contact\""]),
+        ("radial-3d", "plane", sound.clone(), &["dimension 2", "radial-3d", "--list"]),
+        ("nowhere", "fine", sound.clone(), &["unknown scene \"nowhere\"", "radial-2d"]),
+    ];
+    for (scene, name, mesh, expected) in cases {
+        let path = scratch.file(&format!("{name}.msh"), mesh);
+        refused(&scratch, &["--scene", scene, "--mesh", &path], expected);
+        let names_file = expected[0].contains("dimension") || expected[0].contains("unknown");
+        if !names_file {
+            refused(&scratch, &["--scene", scene, "--mesh", &path], &[&format!("{name}.msh")]);
+        }
+    }
+    let missing = scratch.path("missing.msh");
+    refused(&scratch, &["--mesh", &missing], &["cannot read", "missing.msh"]);
+    let directory = scratch.0.display().to_string();
+    refused(&scratch, &["--mesh", &directory], &["cannot read", &directory]);
+    let path = scratch.file("sound.msh", &sound);
+    refused(
+        &scratch,
+        &["--scene", "radial-2d", "--mesh", &path, "--levels", "40"],
+        &["level = 40"],
+    );
+}
+
+#[test]
+fn meshes_of_gmsh_are_refined_and_choose_their_scenes() {
+    let scratch = Scratch::new("refined");
+    let sound = scratch.file("sound.msh", &Square::sound());
+    let touching = scratch.file("touching.msh", &Square::in_contact());
+
+    let report = scratch.report(&format!("--scene radial-2d --mesh {sound} --levels 0,1 --quiet"));
+    let cells: Vec<&Value> = rows(&report).iter().map(|row| &row["cells"]).collect();
+    assert_eq!(cells, [4, 16, 4, 16, 4, 16]);
+
+    // Without a name, and for all, the scenes are those the mesh fits.
+    for (mesh, signorini) in [(&sound, false), (&touching, true)] {
+        let report = scratch.report(&format!("--mesh {mesh} --levels 0 --scheme p1 --quiet"));
+        let names: Vec<&str> = rows(&report).iter().map(|r| r["scene"].as_str().unwrap()).collect();
+        assert_eq!(names.contains(&"radial-2d"), !signorini, "{names:?}");
+        assert_eq!(names.contains(&"signorini-2d"), signorini, "{names:?}");
+    }
+}

@@ -1,0 +1,98 @@
+//! What is printed and written where.
+
+use std::path::Path;
+use std::process::Command;
+
+use serde_json::Value;
+use unilateral::scenes;
+
+use super::run::{Scratch, program, read_json, rows, stderr, stdout};
+
+#[test]
+fn the_list_names_everything() {
+    let scratch = Scratch::new("list");
+    let output = scratch.run("--list");
+    assert_eq!(output.status.code(), Some(0));
+    let list = stdout(&output);
+    let fixed = ["p1", "cr", "sipg", "wopsip", "vertices", "facet-means", "active-set", "direct"];
+    let catalogue = scenes::catalogue();
+    let names = catalogue.iter().map(|s| &s.name[..]).chain(fixed);
+    for name in names {
+        let line = list.lines().find(|l| l.split_whitespace().next() == Some(name));
+        let line = line.unwrap_or_else(|| panic!("no {name} in {list}"));
+        assert!(line.split_whitespace().count() > 2, "{name} is not explained");
+    }
+    assert!(!scratch.0.join("out").exists());
+}
+
+#[test]
+fn output_goes_where_it_is_asked_to() {
+    let scratch = Scratch::new("output");
+    let small = "--scene radial-1d --scheme p1 --levels 4";
+
+    let output = scratch.run(&format!("{small} --json -"));
+    let printed: Value = serde_json::from_str(&stdout(&output)).unwrap();
+    assert_eq!(rows(&printed).len(), 1);
+    assert!(stderr(&output).contains("radial-1d"), "tables go to standard error");
+
+    let copy = scratch.path("copy.json");
+    let output = scratch.run(&format!("{small} --quiet --json {copy}"));
+    assert_eq!((stdout(&output), stderr(&output)), (String::new(), String::new()));
+    assert_eq!(read_json(Path::new(&copy)), read_json(&scratch.0.join("out/report.json")));
+
+    let output = scratch.run(&format!("{small} --quiet --json -"));
+    assert_eq!(stderr(&output), "");
+    assert!(serde_json::from_str::<Value>(&stdout(&output)).is_ok());
+}
+
+#[test]
+fn options_show_in_the_report() {
+    let scratch = Scratch::new("parameters");
+    let broken = "--scene radial-2d --scheme sipg,wopsip --levels 4 --quiet";
+
+    let report =
+        scratch.report(&format!("{broken} --sigma 20 --eta 3 --precision f32 --threads 1"));
+    assert_eq!(report["program"]["precision"], "f32");
+    assert_eq!(report["program"]["threads"], 1);
+    assert_eq!(rows(&report)[0]["parameters"]["sigma"], 20.0);
+    assert_eq!(rows(&report)[1]["parameters"]["eta"], 3.0);
+
+    let report = scratch.report(&format!("{broken} --constraint facet-means --repeat 2"));
+    assert_eq!(report["program"]["repeat"], 2);
+    assert!(rows(&report).iter().all(|row| row["constraint"] == "facet-means"));
+
+    // Names and levels that are repeated are run once.
+    let report = scratch.report("--scene radial-1d,radial-1d --scheme p1,p1 --levels 4,4 --quiet");
+    assert_eq!(rows(&report).len(), 1);
+}
+
+#[test]
+fn orders_are_written_beside_what_is_promised() {
+    let scratch = Scratch::new("orders");
+    let path = scratch.path("orders.md");
+    let output = scratch.run(&format!("--scene radial-2d --levels 16,32 --quiet --orders {path}"));
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    let text = std::fs::read_to_string(path).unwrap();
+    let line = |scheme: &str| {
+        let start = format!("| radial-2d | {scheme} | vertices | 16, 32 | ");
+        text.lines().find(|l| l.starts_with(&start)).unwrap_or_else(|| panic!("{text}"))
+    };
+    for scheme in ["p1", "sipg", "wopsip"] {
+        assert!(line(scheme).ends_with(" | 1 | kept |"), "{text}");
+    }
+}
+
+/// As in `compare --list | head -1`: nobody reads on.
+#[test]
+fn a_closed_pipe_is_no_error() {
+    let scratch = Scratch::new("pipe");
+    let (reader, writer) = std::io::pipe().unwrap();
+    drop(reader);
+    let output = Command::new(program())
+        .args(["--list", "--out", &scratch.path("out")])
+        .stdout(writer)
+        .output()
+        .unwrap();
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    assert_eq!(stderr(&output), "");
+}

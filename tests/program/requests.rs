@@ -1,0 +1,106 @@
+//! Wrong requests.
+
+use super::run::{Scratch, refused, stdout};
+
+#[test]
+fn wrong_options_are_refused() {
+    let scratch = Scratch::new("options");
+    let schemes = "there are: p1";
+    let (penalty, at_least) = ("must be positive and finite", "must be at least 1");
+    let (whole, number) = ("expected a whole number", "expected a number");
+    let cases: &[(&str, &[&str])] = &[
+        ("--scene nowhere", &["unknown scene \"nowhere\"", "radial-2d", "signorini-2d", "all"]),
+        ("--scene radial-2d,", &["unknown scene \"\"", "radial-2d"]),
+        ("--scheme p7", &["unknown scheme \"p7\"", schemes, "wopsip"]),
+        ("--scheme all,p7", &["unknown scheme \"p7\"", schemes]),
+        ("--solver magic", &["unknown solver \"magic\"", "active-set"]),
+        ("--linear magic", &["unknown linear solver \"magic\"", "direct"]),
+        ("--constraint edges", &["edges", "vertices", "facet-means"]),
+        ("--precision f16", &["f16", "f64", "f32"]),
+        ("--levels 0", &["level = 0", "at least one"]),
+        ("--levels 4,0", &["level = 0", "at least one"]),
+        ("--levels 1000000000", &["level = 1000000000", "cells", "at most"]),
+        ("--levels 99999999999999999999", &["99999999999999999999", whole]),
+        ("--levels -4", &["'-4'", "--levels", whole]),
+        ("--levels four", &["'four'", "--levels", whole]),
+        ("--levels 4.5", &["'4.5'", whole]),
+        ("--levels 4,,8", &["''", "--levels", whole]),
+        ("--levels=", &["''", "--levels", whole]),
+        ("--levels", &["--levels", "value is required"]),
+        ("--repeat 0", &["--repeat 0", at_least]),
+        ("--repeat -1", &["'-1'", whole]),
+        ("--threads 0", &["--threads 0", at_least]),
+        ("--threads 100000", &["--threads 100000", "at most"]),
+        ("--sigma 0", &["--sigma 0", penalty]),
+        ("--sigma -1", &["--sigma -1", penalty]),
+        ("--sigma NaN", &["--sigma NaN", penalty]),
+        ("--sigma inf", &["--sigma inf", penalty]),
+        ("--sigma much", &["'much'", "--sigma", number]),
+        ("--sigma 4 --sigma 5", &["--sigma", "multiple times"]),
+        ("--eta 0", &["--eta 0", penalty]),
+        ("--eta -1", &["--eta -1", penalty]),
+        ("--eta NaN", &["--eta NaN", penalty]),
+        ("--eta inf", &["--eta inf", penalty]),
+        ("--eta much", &["'much'", "--eta", number]),
+        ("--sigma 4 --scheme p1,cr", &["--sigma 4", "none of the schemes chosen", "are: sipg"]),
+        ("--sigma 4 --scheme wopsip", &["--sigma 4", "none of the schemes chosen", "are: sipg"]),
+        ("--eta 4 --scheme p1,sipg", &["--eta 4", "none of the schemes chosen", "are: wopsip"]),
+        ("--scale 0", &["scale = 0", "positive and finite"]),
+        ("--scale NaN", &["scale = NaN", "positive and finite"]),
+        ("--scale -1", &["scale = -1", "positive and finite"]),
+        ("--scale 1e300", &["scale = 1e300", "1e100"]),
+        ("--scale 2 --scene ball-2d", &["--scale 2", "none of the scenes chosen", "radial-2d"]),
+        ("--scale 1e-30 --precision f32", &["precision = f32", "radial-2d", "scale"]),
+        ("--contrast 3 --scene ball-2d", &["--contrast 3", "none of the scenes chosen"]),
+        ("--load 3 --scene ball-2d", &["--load 3", "none of the scenes chosen"]),
+        ("--levles 4", &["--levles", "--levels"]),
+        ("--nonsense", &["--nonsense", "there are: --list, --scene", "--quiet"]),
+        ("radial-2d", &["radial-2d", "there are: --list, --scene"]),
+    ];
+    for (options, expected) in cases {
+        let options: Vec<&str> = options.split(' ').collect();
+        refused(&scratch, &options, expected);
+    }
+}
+
+/// Names of schemes may be promised before they exist; whether one does, the list tells.
+#[test]
+fn schemes_that_do_not_exist_yet_are_refused_with_the_list() {
+    let scratch = Scratch::new("planned");
+    let listed = stdout(&scratch.run("--list"));
+    let exists = |name: &str| {
+        listed.lines().any(|l| l.starts_with("  ") && l.split_whitespace().next() == Some(name))
+    };
+    for name in ["p2", "nipg", "iipg", "ldg", "br2", "sipg-p2", "ldg-p2", "P1", "p1 "] {
+        if !exists(name) {
+            let unknown = format!("unknown scheme \"{name}\"");
+            refused(&scratch, &["--scheme", name], &[&unknown, "there are: p1", "sipg"]);
+        }
+    }
+}
+
+#[test]
+fn places_that_cannot_be_written_are_refused_before_the_work() {
+    let scratch = Scratch::new("places");
+    let file = scratch.file("file", "");
+    let below = scratch.path("file/report");
+    refused(&scratch, &["--out", &file], &["cannot write", &file]);
+    refused(&scratch, &["--out", &below], &["cannot write", &below]);
+    refused(&scratch, &["--json", &below], &["cannot write", &below]);
+    refused(&scratch, &["--orders", &below], &["cannot write", &below]);
+    let directory = scratch.0.display().to_string();
+    refused(&scratch, &["--json", &directory], &["cannot write", &directory]);
+    assert!(std::fs::read(file).unwrap().is_empty());
+}
+
+#[test]
+fn more_than_the_memory_is_refused() {
+    let Some(memory) = unilateral::study::available_memory_bytes() else { return };
+    let needed = 250e9;
+    if memory as f64 > needed {
+        return;
+    }
+    let scratch = Scratch::new("memory");
+    let options = ["--scheme", "sipg", "--scene", "ball-2d", "--levels", "8,7000"];
+    refused(&scratch, &options, &["ball-2d", "sipg", "level 7000", "GB of memory", "lower level"]);
+}

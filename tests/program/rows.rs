@@ -1,0 +1,161 @@
+//! Rows of reports.
+
+use serde_json::Value;
+use unilateral::scenes;
+
+use super::keys::ROW_KEYS;
+use super::run::{Scratch, read_json, rows, stderr, stdout};
+
+/// Keys of inner objects, and which of their values may be null in a row that converged.
+const INNER_KEYS: [(&str, &[&str], bool); 7] = [
+    ("parameters", &["sigma", "eta", "rule"], true),
+    ("error", &["l2", "h1", "energy", "max"], true),
+    ("order", &["l2", "h1", "energy", "max", "multiplier_l1", "multiplier_l2"], true),
+    ("expected_order", &["l2", "h1"], true),
+    ("iterations", &["outer", "linear", "levels"], false),
+    ("certificate", &["feasibility", "multiplier", "complementarity", "residual"], false),
+    ("seconds", &["mesh", "assemble", "solve", "total"], false),
+];
+
+/// Every key is there, with a value of its type.
+fn check_row(row: &Value) {
+    let converged = row["status"] == "converged";
+    for key in ROW_KEYS {
+        let value = &row[key];
+        let fits = match key {
+            "scene" | "scheme" | "constraint" | "status" => value.is_string(),
+            "dimension" | "level" | "cells" | "unknowns" | "nonzeros" => value.is_u64(),
+            "active" => value.is_u64() || (value.is_null() && !converged),
+            "multiplier_l1" | "multiplier_l2" | "contact_area_error" | "free_boundary_distance" => {
+                value.is_number() || value.is_null()
+            }
+            "peak_memory_bytes" => value.is_u64() || value.is_null(),
+            "mesh_size" => value.is_f64(),
+            "objective" => value.is_number() || value.is_null(),
+            _ => value.is_object(),
+        };
+        assert!(row.get(key).is_some() && fits, "{key}: {value}");
+    }
+    for (outer, keys, may_be_null) in INNER_KEYS {
+        for key in keys {
+            let value = row[outer].get(key).unwrap_or_else(|| panic!("no {outer}.{key}"));
+            let null = value.is_null() && (may_be_null || !converged);
+            let fits = if *key == "rule" { value.is_string() } else { value.is_number() };
+            assert!(null || fits, "{outer}.{key}: {value}");
+        }
+    }
+    assert!(row["certificate"].get("algebraic_bound").is_some());
+}
+
+#[test]
+fn the_report_has_every_key_and_file() {
+    let scratch = Scratch::new("report");
+    let output = scratch.run("--levels 4,8");
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    assert_eq!(stderr(&output), "", "progress where there is no terminal");
+    let tables = stdout(&output);
+    assert!(tables.contains("radial-2d") && tables.contains("signorini-2d"), "{tables}");
+    assert!(tables.contains("seconds") && tables.contains(&scratch.path("out")), "{tables}");
+
+    let report = read_json(&scratch.0.join("out/report.json"));
+    for key in ["name", "version", "threads", "precision", "repeat", "target_cpu"] {
+        assert!(report["program"].get(key).is_some_and(|v| !v.is_null()), "program.{key}");
+    }
+    assert_eq!(rows(&report).len(), 2 * 3 * 2);
+    rows(&report).iter().for_each(check_row);
+
+    let csv = std::fs::read_to_string(scratch.0.join("out/report.csv")).unwrap();
+    let header: Vec<&str> = csv.lines().next().unwrap().split(',').collect();
+    let inner = |outer| INNER_KEYS.iter().find(|(name, ..)| *name == outer);
+    for key in ROW_KEYS {
+        match inner(key) {
+            None => assert!(header.contains(&key), "{key}"),
+            Some((_, keys, _)) => keys.iter().for_each(|k| {
+                assert!(header.contains(&&*format!("{key}.{k}")), "{key}.{k}");
+            }),
+        }
+    }
+    assert_eq!(csv.lines().count(), 1 + rows(&report).len());
+
+    let mut files = vec!["report.json".to_owned(), "report.csv".to_owned()];
+    for plot in ["convergence", "work_precision"] {
+        files.extend(["svg", "png"].map(|ending| format!("{plot}.{ending}")));
+    }
+    for scene in ["radial-2d", "signorini-2d"] {
+        files.extend(["p1", "sipg", "wopsip"].map(|scheme| format!("{scene}-{scheme}.vtu")));
+    }
+    let mut found: Vec<String> = std::fs::read_dir(scratch.0.join("out"))
+        .unwrap()
+        .map(|f| f.unwrap().file_name().into_string().unwrap())
+        .collect();
+    files.sort();
+    found.sort();
+    assert_eq!(found, files);
+}
+
+/// Removes what may differ from run to run.
+fn without_times(mut report: Value) -> Value {
+    report["program"]["threads"] = Value::Null;
+    for row in report["rows"].as_array_mut().unwrap() {
+        row["seconds"] = Value::Null;
+        row["peak_memory_bytes"] = Value::Null;
+    }
+    report
+}
+
+#[test]
+fn runs_repeat_whatever_the_threads() {
+    let scratch = Scratch::new("threads");
+    let report = |threads| {
+        let options = format!("--scheme all --levels 8,16 --quiet --threads {threads}");
+        without_times(scratch.report(&options))
+    };
+    let first = report(2);
+    assert_eq!(first, report(2));
+    for (one, two) in rows(&report(1)).iter().zip(rows(&first)) {
+        assert_eq!(one["active"], two["active"]);
+        for key in ["l2", "h1", "energy", "max"] {
+            let (a, b) = (one["error"][key].as_f64().unwrap(), two["error"][key].as_f64().unwrap());
+            assert!((a - b).abs() <= 1e-9 * b, "{key}: {a} and {b}");
+        }
+    }
+}
+
+#[test]
+fn every_scene_runs_with_every_scheme() {
+    let scratch = Scratch::new("all");
+    let report = scratch.report("--scene all --scheme all --levels 4 --quiet");
+    let schemes = unilateral::study::SCHEMES.len();
+    assert_eq!(rows(&report).len(), scenes::catalogue().len() * schemes);
+    for dimension in 1..=3 {
+        assert!(rows(&report).iter().any(|row| row["dimension"] == dimension));
+    }
+    rows(&report).iter().for_each(check_row);
+}
+
+#[test]
+fn a_row_that_does_not_converge_is_told_and_the_others_are_complete() {
+    let scratch = Scratch::new("stubborn");
+    let output = scratch.run("--scene radial-2d --scheme sipg,p1 --sigma 1 --levels 4,8");
+    assert_eq!(output.status.code(), Some(1), "{}", stderr(&output));
+    let tables = stdout(&output);
+    assert!(tables.contains("not-coercive") && tables.contains("warning, sipg"), "{tables}");
+    let report = read_json(&scratch.0.join("out/report.json"));
+    rows(&report).iter().for_each(check_row);
+    let (bad, good) = rows(&report).split_at(2);
+    for row in bad {
+        assert_eq!(row["status"], "not-coercive");
+        assert!(row["objective"].is_null() && row["active"].is_null());
+        let inner = [("error", "l2"), ("order", "l2"), ("certificate", "residual")];
+        for (outer, key) in inner.into_iter().chain([("iterations", "outer")]) {
+            assert!(row[outer][key].is_null(), "{outer}.{key}");
+        }
+        assert_eq!(row["parameters"]["sigma"], 1.0);
+        assert!(!row["warnings"].as_array().unwrap().is_empty());
+    }
+    for row in good {
+        assert_eq!(row["status"], "converged");
+        assert!(row["error"]["l2"].is_f64());
+    }
+    assert!(good[1]["order"]["l2"].is_f64());
+}

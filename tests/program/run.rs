@@ -1,0 +1,91 @@
+//! Running the program.
+
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+
+use serde_json::Value;
+
+/// The example, which cargo builds next to the tests.
+pub fn program() -> PathBuf {
+    let test = std::env::current_exe().expect("a running test has a path");
+    let target = test.parent().and_then(Path::parent).expect("tests lie in a folder of target");
+    let name = format!("compare{}", std::env::consts::EXE_SUFFIX);
+    let program = target.join("examples").join(name);
+    assert!(program.exists(), "{program:?} is missing: `cargo build --example compare` makes it");
+    program
+}
+
+/// A directory of its own for a test, gone when the test is over.
+pub struct Scratch(pub PathBuf);
+
+impl Scratch {
+    pub fn new(name: &str) -> Self {
+        let name = format!("unilateral-program-{}-{name}", std::process::id());
+        let path = std::env::temp_dir().join(name);
+        std::fs::create_dir_all(&path).unwrap();
+        Scratch(path)
+    }
+    /// A file with this text, and its path.
+    pub fn file(&self, name: &str, text: &str) -> String {
+        let path = self.0.join(name);
+        std::fs::write(&path, text).unwrap();
+        path.display().to_string()
+    }
+    pub fn path(&self, name: &str) -> String {
+        self.0.join(name).display().to_string()
+    }
+    /// Runs the program with a report in `out`, unless the options say where.
+    pub fn run(&self, options: &str) -> Output {
+        self.run_split(&options.split_whitespace().collect::<Vec<_>>())
+    }
+    pub fn run_split(&self, options: &[&str]) -> Output {
+        let mut command = Command::new(program());
+        if !options.contains(&"--out") {
+            command.args(["--out", &self.path("out")]);
+        }
+        command.args(options).output().unwrap()
+    }
+    /// The report of a run that succeeded.
+    pub fn report(&self, options: &str) -> Value {
+        let output = self.run(options);
+        assert_eq!(output.status.code(), Some(0), "{options}: {}", stderr(&output));
+        read_json(&self.0.join("out/report.json"))
+    }
+}
+
+impl Drop for Scratch {
+    fn drop(&mut self) {
+        let _ = std::fs::remove_dir_all(&self.0);
+    }
+}
+
+pub fn stdout(output: &Output) -> String {
+    String::from_utf8(output.stdout.clone()).unwrap()
+}
+
+pub fn stderr(output: &Output) -> String {
+    String::from_utf8(output.stderr.clone()).unwrap()
+}
+
+pub fn read_json(path: &Path) -> Value {
+    serde_json::from_str(&std::fs::read_to_string(path).unwrap()).unwrap()
+}
+
+pub fn rows(report: &Value) -> &[Value] {
+    report["rows"].as_array().unwrap()
+}
+
+/// What every wrong request must get: exit 2, one line that says `expected`, and no report.
+pub fn refused(scratch: &Scratch, options: &[&str], expected: &[&str]) {
+    let output = scratch.run_split(options);
+    let (out, message) = (stdout(&output), stderr(&output));
+    assert_eq!(output.status.code(), Some(2), "{options:?}: {message}");
+    assert_eq!(out, "", "{options:?}");
+    assert!(message.starts_with("error: "), "{options:?}: {message}");
+    assert!(message.ends_with('\n') && message.lines().count() == 1, "{options:?}: {message}");
+    assert!(!message.contains("panicked"), "{options:?}: {message}");
+    for part in expected {
+        assert!(message.contains(part), "{options:?}: no {part:?} in {message}");
+    }
+    assert!(!scratch.0.join("out").exists(), "{options:?} left a report");
+}
