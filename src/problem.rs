@@ -51,6 +51,58 @@ pub struct Exact<const D: usize> {
     pub value: Field<D>,
     /// Its gradient.
     pub gradient: VectorField<D>,
+    /// Density of the multiplier. With obstacles it is `lambda = -div(alpha grad u) + c u - f` per
+    /// unit volume, everywhere in the domain; it is negative where an obstacle from above holds the
+    /// solution. With the Signorini condition it is `sigma = alpha du/dn` per unit area of the
+    /// contact part and means nothing elsewhere. None where it is not a function or not known.
+    pub multiplier: Option<Field<D>>,
+    /// The contact set; none where data and solution do not tell it.
+    pub contact: Option<ContactSet<D>>,
+}
+
+/// The set where the exact solution is at a bound: a part of the domain with obstacles, a part of the
+/// contact boundary with the Signorini condition.
+pub struct ContactSet<const D: usize> {
+    /// Positive inside the contact set, negative outside, zero on its free boundary.
+    pub indicator: Field<D>,
+    /// Points of the free boundary. In one dimension and for a Signorini condition in two these are
+    /// all there are, otherwise a sample much denser than meshes are. Empty where there is none.
+    pub free_boundary: Vec<Point<f64, D>>,
+}
+
+impl<const D: usize> Exact<D> {
+    /// A solution and its gradient, of which no more is known.
+    pub fn new(
+        value: impl Fn(&Point<f64, D>) -> f64 + Send + Sync + 'static,
+        gradient: impl Fn(&Point<f64, D>) -> Point<f64, D> + Send + Sync + 'static,
+    ) -> Self {
+        Self {
+            value: Box::new(value),
+            gradient: Box::new(gradient),
+            multiplier: None,
+            contact: None,
+        }
+    }
+    /// Sets the density of the multiplier.
+    #[must_use]
+    pub fn with_multiplier(
+        mut self,
+        lambda: impl Fn(&Point<f64, D>) -> f64 + Send + Sync + 'static,
+    ) -> Self {
+        self.multiplier = Some(Box::new(lambda));
+        self
+    }
+    /// Sets the contact set: a function positive inside and negative outside, and points of the
+    /// free boundary.
+    #[must_use]
+    pub fn with_contact(
+        mut self,
+        indicator: impl Fn(&Point<f64, D>) -> f64 + Send + Sync + 'static,
+        free_boundary: Vec<Point<f64, D>>,
+    ) -> Self {
+        self.contact = Some(ContactSet { indicator: Box::new(indicator), free_boundary });
+        self
+    }
 }
 
 /// A variational inequality: data and, where known, its solution.
@@ -144,11 +196,15 @@ impl<const D: usize> Problem<D> {
     /// Sets the exact solution and its gradient, and makes it the Dirichlet datum and, times the
     /// coefficient, the Neumann datum, unless those are set.
     pub fn exact(
-        mut self,
+        self,
         value: impl Fn(&Point<f64, D>) -> f64 + Send + Sync + 'static,
         gradient: impl Fn(&Point<f64, D>) -> Point<f64, D> + Send + Sync + 'static,
     ) -> Self {
-        self.exact = Some(Exact { value: Box::new(value), gradient: Box::new(gradient) });
+        self.solved_by(Exact::new(value, gradient))
+    }
+    /// The same with what else is known of the solution.
+    pub fn solved_by(mut self, exact: Exact<D>) -> Self {
+        self.exact = Some(exact);
         self
     }
     /// The Dirichlet value at a point.

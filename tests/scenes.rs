@@ -336,7 +336,7 @@ fn the_check_refuses_a_multiplier_of_the_wrong_sign() {
 #[test]
 fn the_check_refuses_a_wrong_gradient() {
     let mut scene = hertz_2d();
-    let Exact { value, gradient } = scene.problem.exact.take().unwrap();
+    let Exact { value, gradient, .. } = scene.problem.exact.take().unwrap();
     scene.problem = scene.problem.exact(value, move |x| gradient(x) * (1.0 + 1e-4));
     assert_eq!(refused(&scene), Condition::Gradient);
 }
@@ -400,7 +400,7 @@ fn the_check_refuses_data_that_are_not_finite() {
     scene.problem = scene.problem.obstacle_below(|x| (1.0 - x.norm_squared()).sqrt());
     assert_eq!(refused(&scene), Condition::Finite("lower obstacle"));
     let mut scene = radial::<3>(1.0);
-    let Exact { value, gradient } = scene.problem.exact.take().unwrap();
+    let Exact { value, gradient, .. } = scene.problem.exact.take().unwrap();
     scene.problem = scene.problem.exact(value, move |x| gradient(x) + x * (0.0 / x.norm()));
     let violation = check_scene(&scene, 300).unwrap_err();
     assert_eq!(violation.condition, Condition::Finite("gradient"));
@@ -445,7 +445,7 @@ fn a_kink_passes_only_where_an_obstacle_holds_it() {
 #[test]
 fn the_check_refuses_a_jump_of_the_value() {
     let mut scene = radial::<2>(1.0);
-    let Exact { value, gradient } = scene.problem.exact.take().unwrap();
+    let Exact { value, gradient, .. } = scene.problem.exact.take().unwrap();
     scene.problem =
         scene.problem.exact(move |x| value(x) + f64::from(u8::from(x.norm() > 1.0)), gradient);
     assert_eq!(refused(&scene), Condition::Continuity);

@@ -1,8 +1,8 @@
 //! A membrane over a ball.
 
-use crate::problem::Problem;
+use crate::problem::{Exact, Problem};
 use crate::real::Point;
-use crate::scenes::{BoxDomain, Regularity, Scene};
+use crate::scenes::{BoxDomain, Regularity, Scene, free_boundary};
 
 /// Radius of the contact disc: the root in `(0, 1)` of `a^2 ln(2/a) = 1 - a^2`.
 const A: f64 = 0.697_965_148_223_373_6;
@@ -36,13 +36,20 @@ pub fn ball_2d() -> Scene<2> {
         let s = x.norm_squared();
         if s <= A * A { -x / (1.0 - s).sqrt() } else { x * (-amplitude / s) }
     };
+    let multiplier = |x: &Point<f64, 2>| {
+        let s = x.norm_squared();
+        if s <= A * A { (2.0 - s) / (1.0 - s).powf(1.5) } else { 0.0 }
+    };
+    let exact = Exact::new(value, gradient)
+        .with_multiplier(multiplier)
+        .with_contact(|x| A - x.norm(), free_boundary::sphere(A, 4.0));
     Scene {
         name: "ball-2d".into(),
         summary: "no load, the obstacle is a ball; contact in a disc",
         domain: BoxDomain::dirichlet(Point::repeat(-2.0), Point::repeat(2.0)),
         problem: Problem::new()
             .obstacle_below(|x: &Point<f64, 2>| sphere_with_skirt(x.norm()))
-            .exact(value, gradient),
+            .solved_by(exact),
         regularity: Regularity { sobolev: 2.5, strictly_complementary: true },
     }
 }

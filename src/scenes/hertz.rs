@@ -2,7 +2,7 @@
 
 use nalgebra::Complex;
 
-use crate::problem::Problem;
+use crate::problem::{Exact, Problem};
 use crate::real::Point;
 use crate::scenes::{BoxDomain, Regularity, Scene, halfplane};
 
@@ -39,11 +39,14 @@ pub fn hertz_2d() -> Scene<2> {
         let derivative = root(w) - w;
         Point::<f64, 2>::new(derivative.re, -derivative.im)
     };
+    let exact = Exact::new(value, gradient)
+        .with_multiplier(|x| (A * A - x[0] * x[0]).max(0.0).sqrt())
+        .with_contact(|x| A - x[0].abs(), vec![Point::from([-A, 0.0]), Point::from([A, 0.0])]);
     Scene {
         name: "hertz-2d".into(),
         summary: "Signorini without load, parabolic gap, contact on a segment",
         domain: BoxDomain::above_contact(),
-        problem: Problem::new().signorini(|x| -x[0] * x[0] / 2.0).exact(value, gradient),
+        problem: Problem::new().signorini(|x| -x[0] * x[0] / 2.0).solved_by(exact),
         regularity: Regularity { sobolev: 2.5, strictly_complementary: true },
     }
 }

@@ -7,6 +7,7 @@
 
 mod ball;
 pub mod check;
+mod free_boundary;
 mod halfplane;
 mod hertz;
 mod radial;

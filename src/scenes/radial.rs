@@ -1,8 +1,8 @@
 //! A membrane pulled onto a plane.
 
-use crate::problem::Problem;
+use crate::problem::{Exact, Problem};
 use crate::real::Point;
-use crate::scenes::{BoxDomain, Regularity, Scene};
+use crate::scenes::{BoxDomain, Regularity, Scene, free_boundary};
 
 /// A constant load presses the membrane onto the plane `psi = 0`; contact is the ball `|x| <= L`.
 /// The domain is `L (-3/2, 3/2)^D`, `D` = 1, 2 or 3, the load `f = -2/L^2`, `L` is `scale`.
@@ -29,14 +29,15 @@ pub fn radial<const D: usize>(scale: f64) -> Scene<D> {
         // Zero in contact, so the direction x/r is never formed at the origin.
         if r <= 1.0 { Point::zeros() } else { x * (slope::<D>(r) / (r * scale)) }
     };
+    let load = 2.0 / (scale * scale);
+    let exact = Exact::new(value, gradient)
+        .with_multiplier(move |x| if x.norm() <= scale { load } else { 0.0 })
+        .with_contact(move |x| 1.0 - (x / scale).norm(), free_boundary::sphere(scale, 3.0 * scale));
     Scene {
         name: format!("radial-{D}d"),
         summary: "constant load on a plane obstacle, contact in a ball; scale sets its radius",
         domain: BoxDomain::dirichlet(Point::repeat(-1.5 * scale), Point::repeat(1.5 * scale)),
-        problem: Problem::new()
-            .constant_source(-2.0 / (scale * scale))
-            .obstacle_below(|_| 0.0)
-            .exact(value, gradient),
+        problem: Problem::new().constant_source(-load).obstacle_below(|_| 0.0).solved_by(exact),
         regularity: Regularity { sobolev: 2.5, strictly_complementary: true },
     }
 }

@@ -1,6 +1,6 @@
 //! Signorini conditions with homogeneous Dirichlet data: the singularity `r^{3/2}` under a polynomial.
 
-use crate::problem::Problem;
+use crate::problem::{Exact, Problem};
 use crate::real::Point;
 use crate::scenes::{BoxDomain, Regularity, Scene, halfplane};
 
@@ -38,14 +38,14 @@ fn transition_at(c: f64, name: &str, summary: &'static str) -> Scene<2> {
         let (q, grad_q, _) = bubble(x);
         grad_w * q + grad_q * w
     };
+    let exact = Exact::new(move |x| bubble(x).0 * harmonic(x).0, gradient)
+        .with_multiplier(move |x| 1.5 * (1.0 - x[0] * x[0]) * (c - x[0]).max(0.0).sqrt())
+        .with_contact(move |x| c - x[0], vec![Point::from([c, 0.0])]);
     Scene {
         name: name.into(),
         summary,
         domain: BoxDomain::above_contact(),
-        problem: Problem::new()
-            .source(source)
-            .signorini(|_| 0.0)
-            .exact(move |x| bubble(x).0 * harmonic(x).0, gradient),
+        problem: Problem::new().source(source).signorini(|_| 0.0).solved_by(exact),
         regularity: Regularity { sobolev: 2.5, strictly_complementary: true },
     }
 }

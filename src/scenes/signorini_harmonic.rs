@@ -1,8 +1,8 @@
 //! The generic singularity of a Signorini problem, without load.
 
-use crate::problem::Problem;
+use crate::problem::{Exact, Problem};
 use crate::real::Point;
-use crate::scenes::{BoxDomain, Regularity, Scene, halfplane};
+use crate::scenes::{BoxDomain, Regularity, Scene, free_boundary, halfplane};
 
 /// Signorini problem without load on `(-1, 1)^(D-1) x (0, 1)`, `D` = 2 or 3, zero gap; contact
 /// changes at the origin (2D) or along the line where first and last coordinate vanish (3D).
@@ -25,11 +25,20 @@ pub fn signorini_harmonic<const D: usize>() -> Scene<D> {
         gradient[D - 1] = across;
         gradient
     };
+    let transition = if D == 2 {
+        vec![Point::zeros()]
+    } else {
+        let end = |y: f64| Point::from_fn(|k, _| if k == 1 { y } else { 0.0 });
+        free_boundary::segment(end(-1.0), end(1.0), 2.0)
+    };
+    let exact = Exact::new(move |x| power(x).0, gradient)
+        .with_multiplier(|x| 1.5 * (-x[0]).max(0.0).sqrt())
+        .with_contact(|x| -x[0], transition);
     Scene {
         name: format!("signorini-harmonic-{D}d"),
         summary: "Signorini without load, the harmonic function r^(3/2) cos(3 theta/2)",
         domain: BoxDomain::above_contact(),
-        problem: Problem::new().signorini(|_| 0.0).exact(move |x| power(x).0, gradient),
+        problem: Problem::new().signorini(|_| 0.0).solved_by(exact),
         regularity: Regularity { sobolev: 2.5, strictly_complementary: true },
     }
 }
