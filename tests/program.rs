@@ -336,11 +336,13 @@ fn scene(problem: Problem<2>) -> Scene<2> {
     Scene {
         name: "mine".into(),
         summary: "",
-        domain: BoxDomain::dirichlet(Point::zeros(), Point::repeat(1.0)).side(
-            1,
-            0,
-            if problem.gap.is_some() { BoundaryPart::Contact } else { BoundaryPart::Neumann },
-        ),
+        domain: BoxDomain::dirichlet(Point::zeros(), Point::repeat(1.0))
+            .side(
+                1,
+                0,
+                if problem.gap.is_some() { BoundaryPart::Contact } else { BoundaryPart::Neumann },
+            )
+            .into(),
         problem,
         regularity: Regularity { sobolev: 2.0, strictly_complementary: true },
     }

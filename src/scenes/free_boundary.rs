@@ -47,3 +47,9 @@ pub(super) fn segment<const D: usize>(
     let n = ((to - from).norm() / (ON_CURVES * side)).ceil().max(1.0);
     (0..=n as u32).map(|k| from + (to - from) * (f64::from(k) / n)).collect()
 }
+
+/// Points of the circle of this radius around the origin in the plane where the last coordinate is
+/// zero, in a domain of this side.
+pub(super) fn circle(radius: f64, side: f64) -> Vec<Point<f64, 3>> {
+    sphere::<2>(radius, side).iter().map(|x| x.push(0.0)).collect()
+}

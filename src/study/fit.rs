@@ -31,7 +31,7 @@ pub fn check_fit<T: Real, const D: usize>(
 /// # Errors
 /// [`Error::UnfitMesh`].
 pub(super) fn check_domain<const D: usize>(scene: &Scene<D>) -> Result<(), Error> {
-    let has = |part| scene.domain.sides.iter().flatten().any(|&side| side == part);
+    let has = |part| scene.domain.has_part(part);
     check_contact(scene, has(BoundaryPart::Contact))?;
     let held = has(BoundaryPart::Contact) || has(BoundaryPart::Dirichlet);
     if !held && scene.problem.reaction.is_none() {
