@@ -130,7 +130,7 @@ pub struct Violation {
 /// * it takes the boundary data, and fulfils the Signorini conditions on contact sides;
 /// * multiplier and contact set are those of the solution, where they are stated.
 ///
-/// Differences use steps from a thousandth of the shortest side downwards until two successive
+/// Differences use steps from a thousandth of the shortest side downwards until three successive
 /// ones agree; a point where none do lies on an interface or a singularity and is passed over. If
 /// more than a quarter of the points are, that is [`Condition::Resolution`].
 ///
