@@ -8,7 +8,6 @@ use support::accuracy::{
 };
 use unilateral::algebra::Contact;
 use unilateral::assemble::DataQuadrature;
-use unilateral::mesh::Mesh;
 use unilateral::prelude::*;
 use unilateral::scenes::{BoxDomain, Scene};
 use unilateral::solve::{ActiveSet, InequalitySolver, Outcome};
