@@ -107,8 +107,8 @@ fn to_hexagon<const D: usize>(x: &Point<f64, D>) -> Point<f64, D> {
     polar::<D>(r * (1.0 - t), k * FRAC_PI_3) + polar::<D>(r * t, (k + 1.0) * FRAC_PI_3)
 }
 
-/// Bends the hexagon: the side of a smaller concentric one through `x` becomes an arc, lengths along
-/// it become angles.
+/// Bends the hexagon: the side of a smaller concentric one through `x` becomes an arc, lengths
+/// along it become angles.
 fn to_disc<const D: usize>(x: &Point<f64, D>) -> Point<f64, D> {
     let (k, _) = sector(x[1].atan2(x[0]));
     // coordinates along the two rays that bound the sector

@@ -38,8 +38,8 @@ pub fn ball_2d() -> Scene<2> {
 /// The same in space: an unloaded body on `(-2, 2)^3` held up by the same obstacle.
 ///
 /// Here `u = A (1/r - 1/2)` for `r > a`, which is harmonic. The slopes agree for
-/// `A = a^3/sqrt(1 - a^2)`, then the values do if `2a^2 - a^3/2 = 1`: `a = 0.78924`. The multiplier is
-/// `(3 - 2 r^2)/(1 - r^2)^{3/2} > 0`; `u > psi` for `r > a`, as `r^2 (u - psi)'` increases.
+/// `A = a^3/sqrt(1 - a^2)`, then the values do if `2a^2 - a^3/2 = 1`: `a = 0.78924`. The multiplier
+/// is `(3 - 2 r^2)/(1 - r^2)^{3/2} > 0`; `u > psi` for `r > a`, as `r^2 (u - psi)'` increases.
 pub fn ball_3d() -> Scene<3> {
     let dome = Dome { radius: 1.0, skirt: 0.9, contact: A_IN_SPACE };
     let summary = "no load, the obstacle is a ball; contact in a ball";
@@ -50,9 +50,9 @@ pub fn ball_3d() -> Scene<3> {
 /// The same on the unit disc, `u = 0` on the circle, over the ball of radius 1/2, its tangent cone
 /// beyond `r = 9/20`; example 36 of the library MFEM.
 ///
-/// Here `u = A ln(1/r)` for `r > a`. The slopes agree for `A = a^2/sqrt(1/4 - a^2)`, then the values
-/// do if `a^2 ln(1/a) = 1/4 - a^2`: `a = 0.34898`. Meshes are polygons inside the disc, on whose sides
-/// the datum is zero and the solution is not; the error of that is of second order.
+/// Here `u = A ln(1/r)` for `r > a`. The slopes agree for `A = a^2/sqrt(1/4 - a^2)`, then the
+/// values do if `a^2 ln(1/a) = 1/4 - a^2`: `a = 0.34898`. Meshes are polygons inside the disc, on
+/// whose sides the datum is zero and the solution is not; the error of that is of second order.
 pub fn disc_2d() -> Scene<2> {
     let dome = Dome { radius: 0.5, skirt: 0.45, contact: A_ON_DISC };
     let summary = "circular membrane, no load, the obstacle is a ball; curved boundary";

@@ -5,8 +5,9 @@ use crate::real::Point;
 use crate::scenes::jet::positive_power;
 use crate::scenes::{BoxDomain, Regularity, Scene};
 
-/// The first example of B. Keith, T. M. Surowiec, *Found. Comput. Math.* (2024), "Proximal Galerkin":
-/// on `(-1, 1)^2` with `psi = 0` the solution is `u = max(x, 0)^4`, the load `f = -12 max(x, 0)^2`.
+/// The first example of B. Keith, T. M. Surowiec, *Found. Comput. Math.* (2024), "Proximal
+/// Galerkin": on `(-1, 1)^2` with `psi = 0` the solution is `u = max(x, 0)^4`, the load
+/// `f = -12 max(x, 0)^2`.
 ///
 /// `-Laplace u = f` holds everywhere, so the multiplier vanishes: the membrane touches the half
 /// `x <= 0` without force, and data do not tell the contact set. `u` lies in `H^s` for `s < 9/2`.
@@ -26,9 +27,9 @@ pub fn biactive_half_2d() -> Scene<2> {
 
 /// The third example there: contact without force in a ring, with force around it.
 ///
-/// On `(-1, 1)^2` with `psi = 0` the solution is `u = 256 s^4`, `s = max(1/4 - r^2, 0)`. The load is
-/// `-Laplace u = -256 (48 r^2 s^2 - 16 s^3)` for `r^2 < 1/4`, zero up to `r^2 = 3/4` and -1 beyond,
-/// where the multiplier is 1; elsewhere it vanishes. `u` lies in `H^s` for `s < 9/2`.
+/// On `(-1, 1)^2` with `psi = 0` the solution is `u = 256 s^4`, `s = max(1/4 - r^2, 0)`. The load
+/// is `-Laplace u = -256 (48 r^2 s^2 - 16 s^3)` for `r^2 < 1/4`, zero up to `r^2 = 3/4` and -1
+/// beyond, where the multiplier is 1; elsewhere it vanishes. `u` lies in `H^s` for `s < 9/2`.
 pub fn biactive_ring_2d() -> Scene<2> {
     // by s: with |grad s|^2 = 4 r^2 and Laplace s = -4
     let power = |x: &Point<f64, 2>| positive_power(0.25 - x.norm_squared(), 4);

@@ -10,13 +10,15 @@ use crate::scenes::{BoxDomain, Regularity, Scene};
 const M: f64 = SQRT_2 / 2.0 * (1.0 - FRAC_PI_4);
 
 /// A string on `(-1, 1)` with `-m <= u <= m`, `m = (1 - pi/4)/sqrt(2)`, under the load
-/// `f = pi^2 sin(pi x)`; contact with the ceiling on `[1/4, 3/4]`, with the floor on the mirror image.
+/// `f = pi^2 sin(pi x)`; contact with the ceiling on `[1/4, 3/4]`, with the floor on the mirror
+/// image.
 ///
 /// The solution is odd. For `x >= 0`, with the distance `t = min(x, 1 - x)`, it is
 /// `u = sin(pi t) - (pi/sqrt(2)) t` for `t < 1/4` and `m` otherwise. *Off contact*:
 /// `-u'' = pi^2 sin(pi t) = f`. *On contact*: the multiplier is `-f`, negative at the ceiling and
 /// positive at the floor. *At `t = 1/4`*: `u = m`, `u' = 0`. *Between the bounds*: `u` rises up to
-/// `t = 1/4`, for its slope `pi cos(pi t) - pi/sqrt(2)` is positive. `C^{1,1}`, `H^s` for `s < 5/2`.
+/// `t = 1/4`, for its slope `pi cos(pi t) - pi/sqrt(2)` is positive. `C^{1,1}`, `H^s` for
+/// `s < 5/2`.
 pub fn bilateral_1d() -> Scene<1> {
     let load = |x: f64| PI * PI * (PI * x).sin();
     let distance = |x: f64| x.abs().min(1.0 - x.abs());

@@ -36,8 +36,8 @@ pub enum Condition {
     Gradient,
     /// The value has no jump.
     Continuity,
-    /// The normal flux jumps only where an obstacle holds the kink: there the multiplier is a measure
-    /// on a line or surface.
+    /// The normal flux jumps only where an obstacle holds the kink: there the multiplier is a
+    /// measure on a line or surface.
     Kink,
     /// `u >= psi_lower`.
     LowerObstacle,
@@ -63,10 +63,11 @@ pub enum Condition {
     ContactFlux,
     /// `u = g` or `alpha du/dn = 0` on the contact part.
     ContactComplementarity,
-    /// The stated multiplier is `-div(alpha grad u) + c u - f`, or `alpha du/dn` on the contact part.
+    /// The stated multiplier is `-div(alpha grad u) + c u - f`, or `alpha du/dn` on the contact
+    /// part.
     Multiplier,
-    /// A bound is touched inside the stated contact set and not outside, where there is no multiplier
-    /// either.
+    /// A bound is touched inside the stated contact set and not outside, where there is no
+    /// multiplier either.
     ContactSet,
     /// Stated points of the free boundary are zeros of the contact set's indicator.
     FreeBoundary,

@@ -9,14 +9,14 @@ use crate::scenes::{BoxDomain, Regularity, Scene, free_boundary};
 /// Radius of the contact ball.
 const A: f64 = 0.5;
 
-/// A membrane without load on `(-1, 1)^D`, `D` = 2 or 3, over the cone `psi = 1 - r`; contact in the
-/// ball `r <= a = 1/2`.
+/// A membrane without load on `(-1, 1)^D`, `D` = 2 or 3, over the cone `psi = 1 - r`; contact in
+/// the ball `r <= a = 1/2`.
 ///
-/// The solution is `psi` on contact and beyond `a ln(a/r) + 1/2` (2D) or `1/(4r)` (3D). *Off contact*:
-/// `u` is harmonic. *Across `r = a`*: the value is 1/2 and the slope -1 on both sides. *On contact*:
-/// the multiplier is `-Laplace psi = (D - 1)/r > 0`. It is unbounded; in 2D it is not even square
-/// integrable, and `u` lies in `H^s` for `s < 2` (2D), `s < 5/2` (3D). *Above the obstacle*: `u` is
-/// convex along rays, so above its tangent, which is `psi`.
+/// The solution is `psi` on contact and beyond `a ln(a/r) + 1/2` (2D) or `1/(4r)` (3D). *Off
+/// contact*: `u` is harmonic. *Across `r = a`*: the value is 1/2 and the slope -1 on both sides.
+/// *On contact*: the multiplier is `-Laplace psi = (D - 1)/r > 0`. It is unbounded; in 2D it is not
+/// even square integrable, and `u` lies in `H^s` for `s < 2` (2D), `s < 5/2` (3D). *Above the
+/// obstacle*: `u` is convex along rays, so above its tangent, which is `psi`.
 pub fn cone<const D: usize>() -> Scene<D> {
     const { assert!(D == 2 || D == 3, "the solution is known in two and three dimensions") };
     let value = |x: &Point<f64, D>| match x.norm() {

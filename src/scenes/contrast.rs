@@ -9,8 +9,8 @@ use crate::scenes::{BoxDomain, Regularity, Scene, free_boundary};
 /// for `x <= 1/4`.
 ///
 /// The solution is `v(x)/contrast` up to the interface, `v = max(x - 1/4, 0)^2/2`, and
-/// `v(1/2)/contrast + v(x) - v(1/2)` beyond. *Off contact*: `-alpha u'' = -1 = f`. *On contact*: the
-/// multiplier is 1. *Across the interface*: `u` is continuous and `alpha u' = v'` is. For
+/// `v(1/2)/contrast + v(x) - v(1/2)` beyond. *Off contact*: `-alpha u'' = -1 = f`. *On contact*:
+/// the multiplier is 1. *Across the interface*: `u` is continuous and `alpha u' = v'` is. For
 /// `contrast != 1` the slope jumps, so `u` lies in `H^s` for `s < 3/2` only; on either side of the
 /// interface for `s < 5/2`.
 pub fn contrast<const D: usize>(contrast: f64) -> Scene<D> {
@@ -48,12 +48,12 @@ pub fn contrast<const D: usize>(contrast: f64) -> Scene<D> {
 /// Radius of the contact disc of [`contrast_disc_2d`].
 const A: f64 = 0.5;
 
-/// A membrane on `(-3/2, 3/2)^2`, pressed by `f = -2` onto `psi = 0`, with the coefficient `alpha` =
-/// `contrast` in the unit disc and one outside: an interface that no mesh of the square resolves.
+/// A membrane on `(-3/2, 3/2)^2`, pressed by `f = -2` onto `psi = 0`, with the coefficient `alpha`
+/// = `contrast` in the unit disc and one outside: an interface that no mesh of the square resolves.
 /// Contact in the disc `r <= a = 1/2`.
 ///
-/// With `v(r) = (r^2 - a^2)/2 - a^2 ln(r/a)` for `r > a`, zero below, the solution is `v/contrast` in
-/// the unit disc and `v(1)/contrast + v - v(1)` outside. *Off contact*: `-Laplace v = -2`. *On
+/// With `v(r) = (r^2 - a^2)/2 - a^2 ln(r/a)` for `r > a`, zero below, the solution is `v/contrast`
+/// in the unit disc and `v(1)/contrast + v - v(1)` outside. *Off contact*: `-Laplace v = -2`. *On
 /// contact*: the multiplier is 2; `v` and `v'` vanish at `r = a`. *Across the interface*: `u` and
 /// `alpha du/dr = v'` are continuous. For `contrast != 1` the slope jumps: `H^s` for `s < 3/2`.
 pub fn contrast_disc_2d(contrast: f64) -> Scene<2> {

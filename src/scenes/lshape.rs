@@ -6,13 +6,13 @@ use crate::problem::{Exact, Problem};
 use crate::real::Point;
 use crate::scenes::{Domain, Regularity, Scene};
 
-/// The L-shaped membrane of S. Bartels, C. Carstensen, *Numer. Math.* 99 (2004): `(-2, 2)^2` without
-/// `[0, 2] x [-2, 0]`, `psi = 0`, zero Dirichlet data.
+/// The L-shaped membrane of S. Bartels, C. Carstensen, *Numer. Math.* 99 (2004): `(-2, 2)^2`
+/// without `[0, 2] x [-2, 0]`, `psi = 0`, zero Dirichlet data.
 ///
 /// With polar coordinates around the corner, `0 < phi < 3 pi/2`, the solution is
 /// `u = r^{2/3} g(r) sin(2 phi/3)`, where the cut-off `g` is 1 for `r < 1/4`, 0 for `r > 3/4` and
-/// `1 - 10 t^3 + 15 t^4 - 6 t^5`, `t = 2 (r - 1/4)`, between: twice continuously differentiable. Since
-/// `r^{2/3} sin(2 phi/3)` is harmonic,
+/// `1 - 10 t^3 + 15 t^4 - 6 t^5`, `t = 2 (r - 1/4)`, between: twice continuously differentiable.
+/// Since `r^{2/3} sin(2 phi/3)` is harmonic,
 ///
 /// ```text
 /// -Laplace u = -(r^{2/3} (g'' + g'/r) + (4/3) r^{-1/3} g') sin(2 phi/3).

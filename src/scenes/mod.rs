@@ -1,9 +1,9 @@
 //! The catalogue: named inequalities, most with an exact solution.
 //!
-//! A scene is a function that returns a [`Scene`], alone in a file or with those that share its formula; the derivation of its solution
-//! stands in its doc comment, and [`check_scene`] tests that derivation numerically. It is
-//! registered by one line in [`catalogue`]; a scene that is not registered works as well, for a
-//! [`Scene`] is a plain value.
+//! A scene is a function that returns a [`Scene`], alone in a file or with those that share its
+//! formula; the derivation of its solution stands in its doc comment, and [`check_scene`] tests
+//! that derivation numerically. It is registered by one line in [`catalogue`]; a scene that is not
+//! registered works as well, for a [`Scene`] is a plain value.
 
 mod ball;
 mod biactive;

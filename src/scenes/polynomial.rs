@@ -11,10 +11,11 @@ const R0: f64 = 0.7;
 /// The "constant obstacle" of Nochetto, Siebert and Veeser, *Numer. Math.* 95 (2003), in `D`
 /// dimensions: `(-1, 1)^D`, `psi = 0`, contact in the ball `r <= r0 = 0.7`.
 ///
-/// The solution is `u = s^2`, `s = max(r^2 - r0^2, 0)`. *Off contact*: `-Laplace u = -8 r^2 - 4D s`,
-/// the load there. *On contact*: the load is `f = -8 r0^2 (1 - r^2 + r0^2)` and the multiplier is
-/// `-f > 0`, since `r <= r0`. `f` is continuous across `r = r0`, where both are `-8 r0^2`. The
-/// second derivatives jump: `C^{1,1}`, `H^s` for `s < 5/2`.
+/// The solution is `u = s^2`, `s = max(r^2 - r0^2, 0)`. *Off contact*:
+/// `-Laplace u = -8 r^2 - 4D s`, the load there. *On contact*: the load is
+/// `f = -8 r0^2 (1 - r^2 + r0^2)` and the multiplier is `-f > 0`, since `r <= r0`. `f` is
+/// continuous across `r = r0`, where both are `-8 r0^2`. The second derivatives jump: `C^{1,1}`,
+/// `H^s` for `s < 5/2`.
 pub fn polynomial<const D: usize>() -> Scene<D> {
     let force = |s: f64| 8.0 * R0 * R0 * (1.0 - s + R0 * R0);
     let source = move |x: &Point<f64, D>| {
@@ -39,9 +40,10 @@ pub fn polynomial<const D: usize>() -> Scene<D> {
 /// `degenerate2-2d`, `degenerate3-2d` and `degenerate4-2d`: contact without force in the disc
 /// `r <= r0 = 0.7`, left with order `k`.
 ///
-/// On `(-1, 1)^2` with `psi = 0` the solution is `u = s^k`, `s = max(r^2 - r0^2, 0)`, and the load is
-/// `f = -Laplace u = -4 k (k - 1) r^2 s^(k-2) - 4 k s^(k-1)`, zero for `r <= r0`. So the multiplier
-/// vanishes everywhere and data do not tell the contact set. `u` lies in `H^s` for `s < k + 1/2`.
+/// On `(-1, 1)^2` with `psi = 0` the solution is `u = s^k`, `s = max(r^2 - r0^2, 0)`, and the load
+/// is `f = -Laplace u = -4 k (k - 1) r^2 s^(k-2) - 4 k s^(k-1)`, zero for `r <= r0`. So the
+/// multiplier vanishes everywhere and data do not tell the contact set. `u` lies in `H^s` for
+/// `s < k + 1/2`.
 pub fn degenerate(k: i32) -> Scene<2> {
     Scene {
         name: format!("degenerate{k}-2d"),

@@ -9,8 +9,8 @@ use crate::scenes::{BoxDomain, Regularity, Scene};
 ///
 /// The solution is `u = (1 - |x_1|)/2`. *Off contact*: `u` is linear, and `u - psi = |x_1|/2 > 0`.
 /// *On contact*: `du/dx_1` falls by one, so the multiplier is the measure of density one on
-/// `x_1 = 0` and no function. `u` lies in `H^s` for `s < 3/2`. On meshes in which that plane consists
-/// of facets, conforming linear elements are exact.
+/// `x_1 = 0` and no function. `u` lies in `H^s` for `s < 3/2`. On meshes in which that plane
+/// consists of facets, conforming linear elements are exact.
 pub fn ridge<const D: usize>() -> Scene<D> {
     Scene {
         name: format!("ridge-{D}d"),
@@ -28,9 +28,9 @@ pub fn ridge<const D: usize>() -> Scene<D> {
 /// `psi = 1 - max(|x|, |y|)` everywhere.
 ///
 /// `u = psi` takes the Dirichlet data zero. The multiplier is `-f = 1` plus the measure of density
-/// `sqrt(2)` on both diagonals, by which the normal derivative falls across them; both are positive.
-/// `u` lies in `H^s` for `s < 3/2`. On meshes of which one diagonal is not a line the error of
-/// conforming linear elements is that of interpolation.
+/// `sqrt(2)` on both diagonals, by which the normal derivative falls across them; both are
+/// positive. `u` lies in `H^s` for `s < 3/2`. On meshes of which one diagonal is not a line the
+/// error of conforming linear elements is that of interpolation.
 pub fn pyramid_full_2d() -> Scene<2> {
     let height = |x: &Point<f64, 2>| 1.0 - x[0].abs().max(x[1].abs());
     let gradient = |x: &Point<f64, 2>| {

@@ -1,4 +1,5 @@
-//! Signorini conditions with homogeneous Dirichlet data: the singularity `r^{3/2}` under a polynomial.
+//! Signorini conditions with homogeneous Dirichlet data: the singularity `r^{3/2}` under a
+//! polynomial.
 
 use std::f64::consts::SQRT_2;
 
@@ -43,8 +44,8 @@ pub fn signorini_line_3d() -> Scene<3> {
 /// *Dirichlet sides*: `q = 0`. *Contact side*: there `dq/dy = 0` and `q >= 0`, so `u = q w` and
 /// `sigma = -du/dy = -q dw/dy`. For `x > c`: `w = (x - c)^{3/2} > 0` and `dw/dy = 0`, the open
 /// part. For `x < c`: `w = 0` and `-dw/dy = (3/2)(c - x)^{1/2} > 0`, contact. So `u >= 0`,
-/// `sigma >= 0` and `u sigma = 0`. *Regularity*: `r^{3/2}` lies in `H^s` for `s < 5/2`, the best that
-/// a change of contact generically admits.
+/// `sigma >= 0` and `u sigma = 0`. *Regularity*: `r^{3/2}` lies in `H^s` for `s < 5/2`, the best
+/// that a change of contact generically admits.
 fn transition_at<const D: usize>(c: f64, name: &str, summary: &'static str) -> Scene<D> {
     let solution = move |x: &Point<f64, D>| Jet::bubble(x) * Jet::three_halves(x, c, 1.0);
     let end = |y: f64| {
@@ -79,9 +80,9 @@ const RIGHT: f64 = 0.5;
 
 /// Two changes of contact: a segment `[-2/5, 1/2]` in contact, zero Dirichlet data, zero gap.
 ///
-/// With `uR = Re (x - 1/2 + iy)^{3/2}`, open to the right of 1/2, `uL = Re (-2/5 - x + iy)^{3/2}`, open
-/// to the left of -2/5, and a polynomial step `s(x)` that rises from 0 to 1 between -1/5 and 1/5, the
-/// solution is `u = (1 - x^2)(1 - y^2)((1 - s) uL + s uR)`; the load is `-Laplace u`.
+/// With `uR = Re (x - 1/2 + iy)^{3/2}`, open to the right of 1/2, `uL = Re (-2/5 - x + iy)^{3/2}`,
+/// open to the left of -2/5, and a polynomial step `s(x)` that rises from 0 to 1 between -1/5 and
+/// 1/5, the solution is `u = (1 - x^2)(1 - y^2)((1 - s) uL + s uR)`; the load is `-Laplace u`.
 ///
 /// *Contact side*: where `s` is neither 0 nor 1 both pieces are in contact, so that a convex
 /// combination of their pressures acts and `u = 0`; elsewhere as in [`signorini_2d`].

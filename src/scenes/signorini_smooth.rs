@@ -5,8 +5,8 @@ use crate::real::Point;
 use crate::scenes::jet::{Jet, positive_power};
 use crate::scenes::{BoxDomain, Regularity, Scene, free_boundary};
 
-/// `signorini-smooth2-2d`, `-smooth3-2d`, `-smooth4-2d`: gap and pressure both vanish with order `k`
-/// where contact changes, at the origin.
+/// `signorini-smooth2-2d`, `-smooth3-2d`, `-smooth4-2d`: gap and pressure both vanish with order
+/// `k` where contact changes, at the origin.
 ///
 /// The solution is that of `wedge` with `b = 0`, which lies in `H^s` for `s < k + 1/2`.
 pub fn signorini_smooth(k: i32) -> Scene<2> {

@@ -9,11 +9,11 @@ use crate::scenes::{BoxDomain, Regularity, Scene};
 const C1: f64 = -0.077_025_104_449_637_6;
 const C2: f64 = 0.165_204_152_153_577_5;
 
-/// A string with reaction, `-u'' + u = sin x` on `(-1, 1)`, with Signorini conditions at both ends and
-/// no Dirichlet data at all: the left end in contact, the right end open. Zero gap.
+/// A string with reaction, `-u'' + u = sin x` on `(-1, 1)`, with Signorini conditions at both ends
+/// and no Dirichlet data at all: the left end in contact, the right end open. Zero gap.
 ///
-/// The solution is `u = c1 e^x + c2 e^-x + sin(x)/2`, where `-u'' + u = sin x` whatever `c1`, `c2` are;
-/// they are fixed by `u(-1) = 0` and `u'(1) = 0`. Then `sigma(-1) = -u'(-1) = 0.20726` and
+/// The solution is `u = c1 e^x + c2 e^-x + sin(x)/2`, where `-u'' + u = sin x` whatever `c1`, `c2`
+/// are; they are fixed by `u(-1) = 0` and `u'(1) = 0`. Then `sigma(-1) = -u'(-1) = 0.20726` and
 /// `u(1) = 0.27213`, both positive. The solution is smooth.
 pub fn signorini_reaction_1d() -> Scene<1> {
     let value = |x: &Point<f64, 1>| C1 * x[0].exp() + C2 * (-x[0]).exp() + x[0].sin() / 2.0;

@@ -11,9 +11,9 @@ type Piece = (f64, [f64; 3]);
 /// `[1/3, 2/3]`.
 ///
 /// The solution is `u = x(x + 2)` for `x < 1/3`, `psi` on contact, and symmetric about `x = 1/2`.
-/// *Off contact*: `-u'' = -2 = f`. *On contact*: the multiplier is `16 + 2 = 18`. *At `x = 1/3`*: both
-/// sides have the value `7/9` and the slope `8/3`. *Above the obstacle*: `u - psi = (3x - 1)^2`.
-/// The second derivative jumps: `C^{1,1}`, `H^s` for `s < 5/2`.
+/// *Off contact*: `-u'' = -2 = f`. *On contact*: the multiplier is `16 + 2 = 18`. *At `x = 1/3`*:
+/// both sides have the value `7/9` and the slope `8/3`. *Above the obstacle*:
+/// `u - psi = (3x - 1)^2`. The second derivative jumps: `C^{1,1}`, `H^s` for `s < 5/2`.
 pub fn parabola_1d() -> Scene<1> {
     const PIECES: [Piece; 3] = [
         (1.0 / 3.0, [0.0, 2.0, 1.0]),
@@ -32,11 +32,12 @@ pub fn parabola_1d() -> Scene<1> {
 /// `x < 1/5` and `x > 4/5`, and lifted by `f = 8` between; contact on `[0, 1/10]` and `[9/10, 1]`,
 /// up to the ends of the string.
 ///
-/// The solution is `psi` on `[0, 0.1]`, `8x^2 - 0.8x + 0.09` on `[0.1, 0.2]`, `-4x^2 + 4x - 0.39` on
-/// `[0.2, 0.8]`, and symmetric about `x = 1/2`. *Off contact*: `-u''` is -16 and 8 where `f` is.
-/// *On contact*: the multiplier is `2 + 16 = 18`. *Across `x = 0.1`*: value 0.09 and slope 0.8 on both
-/// sides; *across `x = 0.2`*: 0.25 and 2.4. *Above the obstacle*: `u - psi` vanishes with its slope at
-/// 0.1, is convex to 0.2 and a parabola with its top at 1/2 beyond. `C^{1,1}`, `H^s` for `s < 5/2`.
+/// The solution is `psi` on `[0, 0.1]`, `8x^2 - 0.8x + 0.09` on `[0.1, 0.2]`, `-4x^2 + 4x - 0.39`
+/// on `[0.2, 0.8]`, and symmetric about `x = 1/2`. *Off contact*: `-u''` is -16 and 8 where `f` is.
+/// *On contact*: the multiplier is `2 + 16 = 18`. *Across `x = 0.1`*: value 0.09 and slope 0.8 on
+/// both sides; *across `x = 0.2`*: 0.25 and 2.4. *Above the obstacle*: `u - psi` vanishes with its
+/// slope at 0.1, is convex to 0.2 and a parabola with its top at 1/2 beyond. `C^{1,1}`, `H^s` for
+/// `s < 5/2`.
 pub fn icelike_1d() -> Scene<1> {
     const PIECES: [Piece; 5] = [
         (0.1, [0.0, 1.0, -1.0]),

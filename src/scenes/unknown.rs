@@ -32,8 +32,8 @@ pub fn spiral_2d() -> Scene<2> {
 }
 
 /// A Signorini problem of F. Ben Belgacem, Y. Renard, *Math. Comp.* 72 (2003), with the sign of `u`
-/// turned: `(0, 1)^2`, `f = 2 pi sin(2 pi x)`, contact with zero gap on `y = 0`, `u = 0` on `y = 1`, no
-/// flux on the other sides.
+/// turned: `(0, 1)^2`, `f = 2 pi sin(2 pi x)`, contact with zero gap on `y = 0`, `u = 0` on
+/// `y = 1`, no flux on the other sides.
 ///
 /// Where contact changes the solution has the generic singularity: `H^s` for `s < 5/2`.
 pub fn signorini_sine_2d() -> Scene<2> {
@@ -53,8 +53,8 @@ pub fn signorini_sine_2d() -> Scene<2> {
     }
 }
 
-/// Torsion of a square bar that yields: on `(0, 1)^2` the stress function `u` is zero on the boundary
-/// and bounded by the distance to it; `f` = `load` is twice the angle of twist.
+/// Torsion of a square bar that yields: on `(0, 1)^2` the stress function `u` is zero on the
+/// boundary and bounded by the distance to it; `f` = `load` is twice the angle of twist.
 ///
 /// `u` lies in every `W^{2,p}`, `p < infinity`, after H. Brezis, G. Stampacchia, *Bull. Soc. Math.
 /// France* 96 (1968). Energies are known for the loads 5, 10 and 20.

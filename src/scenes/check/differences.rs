@@ -5,8 +5,8 @@
 ///
 /// Fourth-order central differences with steps halved until three successive ones agree. Across a
 /// kink or near a singularity they do not agree until the stencil has left it behind, so each point
-/// gets the step it needs; two may agree by chance while the error changes its course. The smallest step is a thousandth of the largest: below that, rounding
-/// grows.
+/// gets the step it needs; two may agree by chance while the error changes its course. The smallest
+/// step is a thousandth of the largest: below that, rounding grows.
 pub(super) fn settled_derivative(
     phi: impl Fn(f64) -> f64,
     reach: f64,
