@@ -13,8 +13,9 @@ use crate::scenes::Scene;
 /// the contact condition may fail there: it is tested on every contact facet.
 ///
 /// # Errors
-/// [`Error::UnfitMesh`] if mesh and scene do not agree on having a contact part; [`Error::Mesh`]
-/// if a component of the mesh is held by nothing.
+/// [`Error::UnfitMesh`] if mesh and scene do not agree on having a contact part or an obstacle
+/// leaves no room for the Dirichlet datum, as may be on another domain; [`Error::Mesh`] if a
+/// component of the mesh is held by nothing.
 pub fn check_fit<T: Real, const D: usize>(
     scene: &Scene<D>,
     mesh: &Mesh<T, D>,
@@ -23,7 +24,30 @@ pub fn check_fit<T: Real, const D: usize>(
     if scene.problem.reaction.is_none() {
         mesh.check_supported()?;
     }
+    check_dirichlet(scene, mesh)?;
     Ok(first_failure(scene, mesh))
+}
+
+/// The Dirichlet datum lies between the obstacles at every vertex of the Dirichlet part.
+fn check_dirichlet<T: Real, const D: usize>(
+    scene: &Scene<D>,
+    mesh: &Mesh<T, D>,
+) -> Result<(), Error> {
+    let problem = &scene.problem;
+    for facet in mesh.boundary().iter().filter(|f| f.part == BoundaryPart::Dirichlet) {
+        for v in mesh.facet_vertices(facet.cell as usize, facet.local as usize) {
+            let x = point_f64(&mesh.vertices()[v as usize]);
+            let datum = problem.dirichlet_at(&x);
+            let below = problem.lower.as_ref().map_or(f64::NEG_INFINITY, |psi| psi(&x) - datum);
+            let above = problem.upper.as_ref().map_or(f64::NEG_INFINITY, |psi| datum - psi(&x));
+            if below.max(above) > (1e3 * T::EPSILON).sqrt() * (1.0 + datum.abs()) {
+                let place = describe_point(&x);
+                let why = format!("its Dirichlet datum {datum:e} is beyond an obstacle at {place}");
+                return Err(Error::UnfitMesh { scene: scene.name.clone(), why });
+            }
+        }
+    }
+    Ok(())
 }
 
 /// Checks that the built-in domain of a scene has the parts its problem needs.
