@@ -5,7 +5,7 @@ use std::collections::HashSet;
 use unilateral::error::Error;
 use unilateral::mesh::{BoundaryPart, Mesh, MeshError};
 use unilateral::real::Point;
-use unilateral::scenes::{Domain, disc_2d, lshape_2d};
+use unilateral::scenes::{BoxDomain, Domain, disc_2d, lshape_2d, radial, spiral_2d};
 use unilateral::scheme::ConformingP1;
 use unilateral::study::Study;
 
@@ -121,4 +121,18 @@ fn studies_run_on_both_shapes_from_coarser_levels() {
         let order = last.order.h1.unwrap();
         assert!(order > least_order && order < 1.3, "{name}: order {order}");
     }
+}
+
+/// Zero is the datum of the spiral on its own boundary, but the obstacle is 3.6 high at the origin.
+#[test]
+fn a_mesh_on_which_an_obstacle_leaves_no_room_for_the_datum_does_not_fit() {
+    let unit = BoxDomain::dirichlet(Point::zeros(), Point::repeat(1.0));
+    let mesh = Mesh::<f64, 2>::kuhn_box(&unit, [4, 4]).unwrap();
+    let check = |scene| {
+        Study::<f64, 2>::new(scene).scheme(ConformingP1).levels([0]).on_mesh(mesh.clone()).check()
+    };
+    let Err(Error::UnfitMesh { scene, why }) = check(spiral_2d()) else { panic!("it fits") };
+    assert_eq!(scene, "spiral-2d");
+    assert!(why.contains("beyond an obstacle"), "{why}");
+    check(radial::<2>(1.0)).unwrap();
 }
