@@ -70,6 +70,18 @@ pub struct ContactSet<const D: usize> {
     pub free_boundary: Vec<Point<f64, D>>,
 }
 
+/// The least value of `J(v) = a(v, v)/2 - l(v)` on the domain of a scene, where no solution is known.
+///
+/// It was extrapolated from conforming linear elements on uniform meshes with up to 256 (or 512)
+/// subdivisions, by an independent program.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ReferenceEnergy {
+    /// The energy.
+    pub value: f64,
+    /// By how much it may be wrong.
+    pub uncertainty: f64,
+}
+
 impl<const D: usize> Exact<D> {
     /// A solution and its gradient, of which no more is known.
     pub fn new(
@@ -126,6 +138,8 @@ pub struct Problem<const D: usize> {
     pub gap: Option<Field<D>>,
     /// The exact solution.
     pub exact: Option<Exact<D>>,
+    /// The least energy, where it is known and the solution is not.
+    pub reference_energy: Option<ReferenceEnergy>,
 }
 
 impl<const D: usize> Problem<D> {
@@ -205,6 +219,11 @@ impl<const D: usize> Problem<D> {
     /// The same with what else is known of the solution.
     pub fn solved_by(mut self, exact: Exact<D>) -> Self {
         self.exact = Some(exact);
+        self
+    }
+    /// Sets the least energy and its uncertainty.
+    pub fn reference_energy(mut self, value: f64, uncertainty: f64) -> Self {
+        self.reference_energy = Some(ReferenceEnergy { value, uncertainty });
         self
     }
     /// The Dirichlet value at a point.

@@ -199,7 +199,7 @@ fn a_body_held_at_one_point_is_not_singular() {
     let scene = || scenes::Scene::<2> {
         name: "table-2d".into(),
         summary: "a block on a peak",
-        domain: domain.clone(),
+        domain: domain.clone().into(),
         problem: Problem::new()
             .constant_source(-1.0)
             .signorini(|x: &Point<f64, 2>| -1000.0 * x[0] * x[0]),
@@ -225,7 +225,7 @@ fn a_curved_obstacle_may_touch_the_datum() {
     let scene = scenes::Scene::<2> {
         name: "bump-2d".into(),
         summary: "a curved obstacle that touches the boundary",
-        domain: scenes::BoxDomain::dirichlet(Point::zeros(), Point::repeat(1.0)),
+        domain: scenes::BoxDomain::dirichlet(Point::zeros(), Point::repeat(1.0)).into(),
         problem: Problem::new().constant_source(-3.0).dirichlet(bump).obstacle_below(bump),
         regularity: scenes::Regularity { sobolev: 2.5, strictly_complementary: true },
     };

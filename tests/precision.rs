@@ -62,7 +62,7 @@ fn values<const D: usize>(
     scene: &Scene<D>,
     level: usize,
 ) -> Vec<f64> {
-    let mesh = Mesh::kuhn_box(&scene.domain, scene.domain.counts(level)).unwrap();
+    let mesh = scene.domain.mesh(level).unwrap();
     let solved = solve(scheme, &scene.problem, &mesh);
     let certificate = solved.certificate.largest();
     checks.that(solved.outcome.name() == "converged" && certificate < 1e-9, || {
@@ -139,7 +139,8 @@ fn stretched_meshes() {
     let ratios = [1, 4, 16, 64];
     let mut checks = Checks::default();
     let scene = sines();
-    let meshes = ratios.map(|r| Mesh::<f64, 2>::kuhn_box(&scene.domain, [16, 16 * r]).unwrap());
+    let meshes = ratios
+        .map(|r| Mesh::<f64, 2>::kuhn_box(&scene.domain.bounding_box(), [16, 16 * r]).unwrap());
     let mut spread = |scheme: &dyn AnyScheme<f64, 2>, printed: [&str; 4], jumps: [&str; 4]| {
         let mut energies = Vec::new();
         for ((mesh, ratio), (h1, jump)) in
@@ -190,7 +191,8 @@ fn stretched_meshes_with_the_default_factor() {
     let robust = Wopsip { weight: WeightRule::Anisotropic, ..Wopsip::default() };
     let relative: Vec<f64> = [1, 4, 16, 64]
         .map(|r| {
-            let mesh = Mesh::<f64, 2>::kuhn_box(&scene.domain, [16, 16 * r]).unwrap();
+            let mesh =
+                Mesh::<f64, 2>::kuhn_box(&scene.domain.bounding_box(), [16, 16 * r]).unwrap();
             let energy =
                 |s: &dyn AnyScheme<f64, 2>| solve(s, &scene.problem, &mesh).error.energy.unwrap();
             energy(&robust) / energy(&CrouzeixRaviartScheme)

@@ -8,7 +8,6 @@ use support::accuracy::{
 };
 use unilateral::algebra::Contact;
 use unilateral::assemble::DataQuadrature;
-use unilateral::mesh::Mesh;
 use unilateral::prelude::*;
 use unilateral::scenes::{BoxDomain, Scene};
 use unilateral::solve::{ActiveSet, InequalitySolver, Outcome};
@@ -31,7 +30,7 @@ fn ball_obstacle_of_petsc() {
     let exact = scene.problem.exact.as_ref().unwrap();
     let mut checks = Checks::default();
     for (points, mean, max, active) in cases {
-        let mesh = Mesh::<f64, 2>::kuhn_box(&scene.domain, [points - 1; 2]).unwrap();
+        let mesh = scene.domain.mesh::<f64>(points - 1).unwrap();
         let inequality =
             ConformingP1.inequality(&scene.problem, &mesh, DataQuadrature::default()).unwrap();
         let solution = ActiveSet::default().solve(&inequality);
@@ -79,7 +78,8 @@ fn compare<const D: usize>(build: impl Fn(usize) -> Scene<D>, table: Table<'_>) 
     let mut checks = Checks::default();
     for (name, rows) in table {
         for (n, figures) in *rows {
-            let sides = build(*n).domain.upper - build(*n).domain.lower;
+            let domain = build(*n).domain.bounding_box();
+            let sides = domain.upper - domain.lower;
             let level = n * sides.min() as usize / sides.max() as usize;
             let scene = build(level);
             let (mesh, solved) = solve_as_tables(&scene, &*column(name), level);

@@ -11,11 +11,13 @@
 //! * A mesh is immutable once made, and what [`Mesh::new`] accepts carries a finite element space.
 
 mod boxes;
+mod disc;
 mod edges;
 mod error;
 mod facets;
 mod geometry;
 pub mod gmsh;
+mod lshape;
 mod refine;
 mod validate;
 

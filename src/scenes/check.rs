@@ -13,6 +13,7 @@ mod interfaces;
 mod interior;
 mod probe;
 mod samples;
+mod stated;
 
 use std::fmt;
 
@@ -35,7 +36,8 @@ pub enum Condition {
     Gradient,
     /// The value has no jump.
     Continuity,
-    /// The flux jumps only where an obstacle holds the kink.
+    /// The normal flux jumps only where an obstacle holds the kink: there the multiplier is a
+    /// measure on a line or surface.
     Kink,
     /// `u >= psi_lower`.
     LowerObstacle,
@@ -61,6 +63,14 @@ pub enum Condition {
     ContactFlux,
     /// `u = g` or `alpha du/dn = 0` on the contact part.
     ContactComplementarity,
+    /// The stated multiplier is `-div(alpha grad u) + c u - f`, or `alpha du/dn` on the contact
+    /// part.
+    Multiplier,
+    /// A bound is touched inside the stated contact set and not outside, where there is no
+    /// multiplier either.
+    ContactSet,
+    /// Stated points of the free boundary are zeros of the contact set's indicator.
+    FreeBoundary,
 }
 
 impl fmt::Display for Condition {
@@ -84,6 +94,9 @@ impl fmt::Display for Condition {
             Self::Gap => "u >= g on the contact part",
             Self::ContactFlux => "alpha du/dn >= 0 on the contact part",
             Self::ContactComplementarity => "u = g or alpha du/dn = 0 on the contact part",
+            Self::Multiplier => "stated multiplier equal to that of the solution",
+            Self::ContactSet => "contact inside the stated contact set and nowhere else",
+            Self::FreeBoundary => "free boundary between contact and no contact",
         })
     }
 }
@@ -115,22 +128,22 @@ pub struct Violation {
 ///   an obstacle holds with a force of the right sign;
 /// * it respects the obstacles, its multiplier `-div(alpha grad u) + c u - f` vanishes where none
 ///   is touched and has the sign of the one that is;
-/// * it takes the boundary data, and fulfils the Signorini conditions on contact sides.
+/// * it takes the boundary data, and fulfils the Signorini conditions on contact sides;
+/// * multiplier and contact set are those of the solution, where they are stated.
 ///
-/// Differences use steps from a thousandth of the shortest side downwards until two successive
+/// Differences use steps from a thousandth of the shortest side downwards until three successive
 /// ones agree; a point where none do lies on an interface or a singularity and is passed over. If
 /// more than a quarter of the points are, that is [`Condition::Resolution`].
 ///
 /// Tolerances are relative to the largest values met, `1e-6` for the multiplier and the gradient
-/// and `1e-8` for the rest. Not seen are flux jumps across interfaces at which the coefficient
-/// jumps, and errors confined to regions that hold no sample.
+/// and `1e-8` for the rest. Not seen are errors confined to regions that hold no sample.
 ///
 /// # Errors
 ///
 /// The first [`Violation`] found.
 pub fn check_scene<const D: usize>(scene: &Scene<D>, samples: usize) -> Result<(), Violation> {
     let samples = samples.max(2);
-    let inside: Vec<_> = samples::in_box(&scene.domain).take(samples).collect();
+    let inside = samples::inside(&scene.domain, samples);
     data::check(scene, &inside, samples)?;
     let Some(exact) = &scene.problem.exact else { return Ok(()) };
     let probe = Probe::new(scene, exact, &inside);
@@ -138,5 +151,6 @@ pub fn check_scene<const D: usize>(scene: &Scene<D>, samples: usize) -> Result<(
     interfaces::check(&probe, &inside)?;
     interior::check_obstacles(&probe, &inside)?;
     interior::check_multiplier(&probe, &inside)?;
-    boundary::check(&probe, samples)
+    boundary::check(&probe, samples)?;
+    stated::check_free_boundary(&probe, &inside)
 }

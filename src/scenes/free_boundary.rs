@@ -12,8 +12,8 @@ const ON_SURFACES: f64 = 1.0 / 100.0;
 /// Points of the sphere of this radius around the origin, in a domain of this side: two in one
 /// dimension, a regular polygon in two, a spiral in three.
 ///
-/// The spiral has equal areas between equal steps of height and turns by the golden angle from point
-/// to point; see R. Swinbank, R. J. Purser, Q. J. R. Meteorol. Soc. 132 (2006), 1769-1793.
+/// The spiral has equal areas between equal steps of height and turns by the golden angle from
+/// point to point; see R. Swinbank, R. J. Purser, Q. J. R. Meteorol. Soc. 132 (2006), 1769-1793.
 pub(super) fn sphere<const D: usize>(radius: f64, side: f64) -> Vec<Point<f64, D>> {
     let on = |axes: &[f64]| Point::from_fn(|k, _| radius * axes[k]);
     match D {
@@ -46,4 +46,10 @@ pub(super) fn segment<const D: usize>(
 ) -> Vec<Point<f64, D>> {
     let n = ((to - from).norm() / (ON_CURVES * side)).ceil().max(1.0);
     (0..=n as u32).map(|k| from + (to - from) * (f64::from(k) / n)).collect()
+}
+
+/// Points of the circle of this radius around the origin in the plane where the last coordinate is
+/// zero, in a domain of this side.
+pub(super) fn circle(radius: f64, side: f64) -> Vec<Point<f64, 3>> {
+    sphere::<2>(radius, side).iter().map(|x| x.push(0.0)).collect()
 }

@@ -45,7 +45,7 @@ pub fn hertz_2d() -> Scene<2> {
     Scene {
         name: "hertz-2d".into(),
         summary: "Signorini without load, parabolic gap, contact on a segment",
-        domain: BoxDomain::above_contact(),
+        domain: BoxDomain::above_contact().into(),
         problem: Problem::new().signorini(|x| -x[0] * x[0] / 2.0).solved_by(exact),
         regularity: Regularity { sobolev: 2.5, strictly_complementary: true },
     }

@@ -1,62 +1,65 @@
 //! The catalogue: named inequalities, most with an exact solution.
 //!
-//! A scene is one function in one file that returns a [`Scene`]; the derivation of its solution
-//! stands in its doc comment, and [`check_scene`] tests that derivation numerically. It is
-//! registered by one line in [`catalogue`]; a scene that is not registered works as well, for a
-//! [`Scene`] is a plain value.
+//! A scene is a function that returns a [`Scene`], alone in a file or with those that share its
+//! formula; the derivation of its solution stands in its doc comment, and [`check_scene`] tests
+//! that derivation numerically. It is registered by one line in [`catalogue`]; a scene that is not
+//! registered works as well, for a [`Scene`] is a plain value.
 
 mod ball;
+mod biactive;
+mod bilateral;
 pub mod check;
+mod cone;
+mod contrast;
+mod domain;
 mod free_boundary;
 mod halfplane;
 mod hertz;
+mod hertz_in_space;
+mod jet;
+mod lshape;
+mod oscillating;
+mod polynomial;
 mod radial;
 mod registry;
+mod ridge;
 mod signorini;
 mod signorini_harmonic;
+mod signorini_layers;
+mod signorini_smooth;
+mod signorini_string;
+mod strings;
+mod unknown;
 
-pub use ball::ball_2d;
+pub use ball::{ball_2d, ball_3d, disc_2d};
+pub use biactive::{biactive_half_2d, biactive_ring_2d};
+pub use bilateral::bilateral_1d;
 pub use check::check_scene;
+pub use cone::cone;
+pub use contrast::{contrast, contrast_disc_2d};
+pub use domain::{BoxDomain, Domain};
 pub use hertz::hertz_2d;
-pub use radial::radial;
+pub use hertz_in_space::hertz_3d;
+pub use lshape::lshape_2d;
+pub use oscillating::oscillating_1d;
+pub use polynomial::{degenerate, polynomial};
+pub use radial::{radial, radial_quarter_2d};
 pub use registry::{AnyScene, Entry, Takes, by_name, catalogue};
-pub use signorini::signorini_2d;
+pub use ridge::{pyramid_full_2d, ridge};
+pub use signorini::{
+    signorini_2d, signorini_irrational_2d, signorini_line_3d, signorini_shifted_2d,
+    signorini_two_2d,
+};
 pub use signorini_harmonic::signorini_harmonic;
+pub use signorini_layers::signorini_layers_2d;
+pub use signorini_smooth::{signorini_biactive_2d, signorini_disc, signorini_smooth};
+pub use signorini_string::{
+    signorini_closed_1d, signorini_grazing_1d, signorini_open_1d, signorini_reaction_1d,
+};
+pub use strings::{icelike_1d, parabola_1d};
+pub use unknown::{pyramid_2d, signorini_sine_2d, spiral_2d, torsion_2d};
 
-use crate::mesh::BoundaryPart;
 use crate::problem::Problem;
-use crate::real::Point;
-
-/// An axis-parallel box and the part of the boundary each of its sides belongs to.
-#[derive(Clone, Debug)]
-pub struct BoxDomain<const D: usize> {
-    /// Lowest corner.
-    pub lower: Point<f64, D>,
-    /// Highest corner.
-    pub upper: Point<f64, D>,
-    /// Part of the sides `x_k = lower_k` and `x_k = upper_k`, for each axis `k`.
-    pub sides: [[BoundaryPart; 2]; D],
-}
-
-impl<const D: usize> BoxDomain<D> {
-    /// The box with Dirichlet data on every side.
-    pub fn dirichlet(lower: Point<f64, D>, upper: Point<f64, D>) -> Self {
-        Self { lower, upper, sides: [[BoundaryPart::Dirichlet; 2]; D] }
-    }
-    /// The same box with another part on one side (`end` 0 for the lower, 1 for the upper one).
-    #[must_use]
-    pub fn side(mut self, axis: usize, end: usize, part: BoundaryPart) -> Self {
-        self.sides[axis][end] = part;
-        self
-    }
-    /// The box of Signorini scenes: `(-1,1)^(D-1) x (0,1)`, contact where the last coordinate is
-    /// zero, Dirichlet data on the other sides.
-    pub fn above_contact() -> Self {
-        let mut lower = Point::repeat(-1.0);
-        lower[D - 1] = 0.0;
-        Self::dirichlet(lower, Point::repeat(1.0)).side(D - 1, 0, BoundaryPart::Contact)
-    }
-}
 
 /// Regularity of the exact solution, from which theory predicts orders.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -74,7 +77,7 @@ pub struct Scene<const D: usize> {
     /// One line for lists.
     pub summary: &'static str,
     /// The built-in domain.
-    pub domain: BoxDomain<D>,
+    pub domain: Domain<D>,
     /// The data.
     pub problem: Problem<D>,
     /// What is known of the solution's regularity.

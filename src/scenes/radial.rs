@@ -1,5 +1,6 @@
 //! A membrane pulled onto a plane.
 
+use crate::mesh::BoundaryPart;
 use crate::problem::{Exact, Problem};
 use crate::real::Point;
 use crate::scenes::{BoxDomain, Regularity, Scene, free_boundary};
@@ -36,9 +37,27 @@ pub fn radial<const D: usize>(scale: f64) -> Scene<D> {
     Scene {
         name: format!("radial-{D}d"),
         summary: "constant load on a plane obstacle, contact in a ball; scale sets its radius",
-        domain: BoxDomain::dirichlet(Point::repeat(-1.5 * scale), Point::repeat(1.5 * scale)),
+        domain: BoxDomain::centred(1.5 * scale).into(),
         problem: Problem::new().constant_source(-load).obstacle_below(|_| 0.0).solved_by(exact),
         regularity: Regularity { sobolev: 2.5, strictly_complementary: true },
+    }
+}
+
+/// A quarter of `radial-2d`: `(0, 3/2)^2` with no flux through the sides on the axes of symmetry.
+pub fn radial_quarter_2d() -> Scene<2> {
+    let domain = BoxDomain::dirichlet(Point::zeros(), Point::repeat(1.5))
+        .side(0, 0, BoundaryPart::Neumann)
+        .side(1, 0, BoundaryPart::Neumann);
+    let mut scene = radial::<2>(1.0);
+    if let Some(contact) = scene.problem.exact.as_mut().and_then(|exact| exact.contact.as_mut()) {
+        contact.free_boundary.retain(|x| x.min() >= 0.0);
+    }
+    Scene {
+        name: "radial-quarter-2d".into(),
+        summary: "a quarter of radial-2d, with Neumann sides on the axes of symmetry",
+        domain: domain.into(),
+        problem: scene.problem.neumann(|_, _| 0.0),
+        regularity: scene.regularity,
     }
 }
 

@@ -1,22 +1,76 @@
 //! Scenes by name.
 
+use std::ops::RangeInclusive;
+
 use crate::error::Error;
 use crate::scenes::{
-    Parameters, Scene, ball_2d, hertz_2d, radial, signorini_2d, signorini_harmonic,
+    Parameters, Scene, ball_2d, ball_3d, biactive_half_2d, biactive_ring_2d, bilateral_1d, cone,
+    contrast, contrast_disc_2d, degenerate, disc_2d, hertz_2d, hertz_3d, icelike_1d, lshape_2d,
+    oscillating_1d, parabola_1d, polynomial, pyramid_2d, pyramid_full_2d, radial,
+    radial_quarter_2d, ridge, signorini_2d, signorini_biactive_2d, signorini_closed_1d,
+    signorini_disc, signorini_grazing_1d, signorini_harmonic, signorini_irrational_2d,
+    signorini_layers_2d, signorini_line_3d, signorini_open_1d, signorini_reaction_1d,
+    signorini_shifted_2d, signorini_sine_2d, signorini_smooth, signorini_two_2d, spiral_2d,
+    torsion_2d,
 };
 
-/// All registered scenes: obstacle problems first, then Signorini problems, those in three
-/// dimensions last. Registering a scene is one line here.
+/// All registered scenes: obstacle problems first, those without a closed solution last among them,
+/// then Signorini problems in one, two and three dimensions. Registering a scene is one line here.
 pub fn catalogue() -> Vec<Entry> {
     vec![
+        Entry::fixed(parabola_1d),
+        Entry::fixed(icelike_1d),
+        Entry::fixed(oscillating_1d),
+        Entry::fixed(bilateral_1d),
+        Entry::fixed(ridge::<1>),
+        Entry::fixed(ridge::<2>),
+        Entry::fixed(ridge::<3>),
         Entry::scaled(radial::<1>),
         Entry::scaled(radial::<2>),
         Entry::scaled(radial::<3>),
+        Entry::fixed(radial_quarter_2d),
+        Entry::fixed(polynomial::<1>),
+        Entry::fixed(polynomial::<2>),
+        Entry::fixed(polynomial::<3>),
         Entry::fixed(ball_2d),
+        Entry::fixed(ball_3d),
+        Entry::fixed(disc_2d),
+        Entry::fixed(biactive_half_2d),
+        Entry::fixed(biactive_ring_2d),
+        Entry::fixed(lshape_2d),
+        Entry::fixed(cone::<2>),
+        Entry::fixed(cone::<3>),
+        Entry::fixed(pyramid_full_2d),
+        Entry::fixed(|| degenerate(2)),
+        Entry::fixed(|| degenerate(3)),
+        Entry::fixed(|| degenerate(4)),
+        Entry::contrasted(1e6, contrast::<1>),
+        Entry::contrasted(1e6, contrast::<2>),
+        Entry::contrasted(1e6, contrast_disc_2d),
+        Entry::fixed(spiral_2d),
+        Entry::loaded(5.0, torsion_2d),
+        Entry::loaded(-4.0, pyramid_2d),
+        Entry::fixed(signorini_reaction_1d),
+        Entry::fixed(signorini_open_1d),
+        Entry::fixed(signorini_closed_1d),
+        Entry::fixed(signorini_grazing_1d),
         Entry::fixed(signorini_harmonic::<2>),
         Entry::fixed(signorini_2d),
+        Entry::fixed(signorini_shifted_2d),
+        Entry::fixed(signorini_irrational_2d),
+        Entry::fixed(|| signorini_smooth(2)),
+        Entry::fixed(|| signorini_smooth(3)),
+        Entry::fixed(|| signorini_smooth(4)),
+        Entry::fixed(signorini_biactive_2d),
         Entry::fixed(hertz_2d),
+        Entry::fixed(signorini_two_2d),
+        Entry::contrasted(1e4, signorini_layers_2d),
+        Entry::fixed(signorini_sine_2d),
         Entry::fixed(signorini_harmonic::<3>),
+        Entry::fixed(signorini_line_3d),
+        Entry::fixed(|| signorini_disc(2)),
+        Entry::fixed(|| signorini_disc(3)),
+        Entry::fixed(hertz_3d),
     ]
 }
 
@@ -78,7 +132,9 @@ pub struct Entry {
 }
 
 /// Scales whose square and cube, and the reciprocals of these, are ordinary numbers.
-const SCALES: std::ops::RangeInclusive<f64> = 1e-100..=1e100;
+const SCALES: RangeInclusive<f64> = 1e-100..=1e100;
+/// Contrasts that neither overflow nor vanish in the solution.
+const CONTRASTS: RangeInclusive<f64> = 1e-100..=1e100;
 
 impl Entry {
     /// A scene without parameters.
@@ -121,8 +177,8 @@ impl Entry {
     /// # Errors
     ///
     /// [`Error::Parameter`] for a parameter the scene does not take, a scale that is not positive
-    /// and finite (or so large or small that its cube is not), a contrast that is not positive and
-    /// finite, and a load that is not finite.
+    /// and finite (or so large or small that its cube is not), a contrast likewise, and a
+    /// load that is not finite.
     pub fn make(&self, parameters: &Parameters) -> Result<AnyScene, Error> {
         let Parameters { scale, contrast, load } = *parameters;
         self.admit(
@@ -132,9 +188,13 @@ impl Entry {
             "positive and finite, 1e-100 to 1e100",
             |x| SCALES.contains(&x),
         )?;
-        self.admit("contrast", self.takes.contrast, contrast, "positive and finite", |x| {
-            x > 0.0 && x.is_finite()
-        })?;
+        self.admit(
+            "contrast",
+            self.takes.contrast,
+            contrast,
+            "positive and finite, 1e-100 to 1e100",
+            |x| CONTRASTS.contains(&x),
+        )?;
         self.admit("load", self.takes.load, load, "finite", f64::is_finite)?;
         Ok((self.build)(parameters))
     }

@@ -1,8 +1,12 @@
-//! Signorini conditions with homogeneous Dirichlet data: the singularity `r^{3/2}` under a polynomial.
+//! Signorini conditions with homogeneous Dirichlet data: the singularity `r^{3/2}` under a
+//! polynomial.
+
+use std::f64::consts::SQRT_2;
 
 use crate::problem::{Exact, Problem};
 use crate::real::Point;
-use crate::scenes::{BoxDomain, Regularity, Scene, halfplane};
+use crate::scenes::jet::Jet;
+use crate::scenes::{BoxDomain, Regularity, Scene, free_boundary};
 
 /// Signorini problem with zero Dirichlet data and zero gap on `(-1, 1) x (0, 1)`; contact changes
 /// at the origin, a vertex of every mesh with an even number of cells along the contact side.
@@ -13,45 +17,110 @@ pub fn signorini_2d() -> Scene<2> {
     transition_at(0.0, "signorini-2d", "Signorini, zero Dirichlet data, contact changes at x = 0")
 }
 
-/// The Signorini problem whose contact changes at `(c, 0)`, `-1 < c < 1`.
+/// The same with the change of contact at `x = 0.3`, which is a vertex of few meshes.
+pub fn signorini_shifted_2d() -> Scene<2> {
+    let summary = "Signorini, zero Dirichlet data, contact changes at x = 0.3";
+    transition_at(0.3, "signorini-shifted-2d", summary)
+}
+
+/// The same with the change of contact at `x = sqrt(2)/10`, which is a vertex of no mesh.
+pub fn signorini_irrational_2d() -> Scene<2> {
+    let summary = "Signorini, zero Dirichlet data, contact changes at x = sqrt(2)/10";
+    transition_at(SQRT_2 / 10.0, "signorini-irrational-2d", summary)
+}
+
+/// The same in space, on `(-1, 1)^2 x (0, 1)`; contact changes along the line `x = 1/5`.
+pub fn signorini_line_3d() -> Scene<3> {
+    let summary = "Signorini in space, zero Dirichlet data, contact changes along x = 0.2";
+    transition_at(0.2, "signorini-line-3d", summary)
+}
+
+/// The Signorini problem whose contact changes where the first coordinate is `c`, `-1 < c < 1`.
 ///
-/// With the harmonic `w = Re (x - c + iy)^{3/2}` and `q = (1 - x^2)(1 - y^2)` the solution is
-/// `u = q w`, with load `f = -Laplace u = -(w Laplace q + 2 grad q . grad w)`, bounded.
+/// Let `x` be the first and `y` the last coordinate. With the harmonic
+/// `w = Re (x - c + iy)^{3/2}` and `q = prod_k (1 - x_k^2)` the solution is `u = q w`, with load
+/// `f = -Laplace u = -(w Laplace q + 2 grad q . grad w)`, bounded.
 ///
 /// *Dirichlet sides*: `q = 0`. *Contact side*: there `dq/dy = 0` and `q >= 0`, so `u = q w` and
 /// `sigma = -du/dy = -q dw/dy`. For `x > c`: `w = (x - c)^{3/2} > 0` and `dw/dy = 0`, the open
 /// part. For `x < c`: `w = 0` and `-dw/dy = (3/2)(c - x)^{1/2} > 0`, contact. So `u >= 0`,
-/// `sigma >= 0` and `u sigma = 0`. *Regularity*: `r^{3/2}` in two dimensions lies in `H^s` for
-/// `s < 5/2`, the best that a change of contact generically admits.
-fn transition_at(c: f64, name: &str, summary: &'static str) -> Scene<2> {
-    let harmonic = move |x: &Point<f64, 2>| {
-        let (w, [wx, wy]) = halfplane::three_halves(halfplane::point(x[0] - c, x[1]));
-        (w, Point::<f64, 2>::new(wx, wy))
+/// `sigma >= 0` and `u sigma = 0`. *Regularity*: `r^{3/2}` lies in `H^s` for `s < 5/2`, the best
+/// that a change of contact generically admits.
+fn transition_at<const D: usize>(c: f64, name: &str, summary: &'static str) -> Scene<D> {
+    let solution = move |x: &Point<f64, D>| Jet::bubble(x) * Jet::three_halves(x, c, 1.0);
+    let end = |y: f64| {
+        Point::from_fn(|k, _| match k {
+            0 => c,
+            k if k + 1 == D => 0.0,
+            _ => y,
+        })
     };
-    let source = move |x: &Point<f64, 2>| {
-        let (w, grad_w) = harmonic(x);
-        let (_, grad_q, laplace_q) = bubble(x);
-        -(w * laplace_q + 2.0 * grad_q.dot(&grad_w))
+    let transition = match D {
+        2 => vec![end(0.0)],
+        _ => free_boundary::segment(end(-1.0), end(1.0), 2.0),
     };
-    let gradient = move |x: &Point<f64, 2>| {
-        let (w, grad_w) = harmonic(x);
-        let (q, grad_q, _) = bubble(x);
-        grad_w * q + grad_q * w
-    };
-    let exact = Exact::new(move |x| bubble(x).0 * harmonic(x).0, gradient)
-        .with_multiplier(move |x| 1.5 * (1.0 - x[0] * x[0]) * (c - x[0]).max(0.0).sqrt())
-        .with_contact(move |x| c - x[0], vec![Point::from([c, 0.0])]);
+    let exact = Exact::new(move |x| solution(x).value, move |x| solution(x).gradient)
+        .with_multiplier(move |x| 1.5 * Jet::bubble(x).value * (c - x[0]).max(0.0).sqrt())
+        .with_contact(move |x| c - x[0], transition);
     Scene {
         name: name.into(),
         summary,
-        domain: BoxDomain::above_contact(),
-        problem: Problem::new().source(source).signorini(|_| 0.0).solved_by(exact),
+        domain: BoxDomain::above_contact().into(),
+        problem: Problem::new()
+            .source(move |x| -solution(x).laplacian)
+            .signorini(|_| 0.0)
+            .solved_by(exact),
         regularity: Regularity { sobolev: 2.5, strictly_complementary: true },
     }
 }
 
-/// `(1 - x^2)(1 - y^2)`, its gradient and its Laplacian.
-fn bubble(x: &Point<f64, 2>) -> (f64, Point<f64, 2>, f64) {
-    let (p, q) = (1.0 - x[0] * x[0], 1.0 - x[1] * x[1]);
-    (p * q, Point::<f64, 2>::new(-2.0 * x[0] * q, -2.0 * x[1] * p), -2.0 * (p + q))
+/// Ends of the contact segment of [`signorini_two_2d`].
+const LEFT: f64 = -0.4;
+const RIGHT: f64 = 0.5;
+
+/// Two changes of contact: a segment `[-2/5, 1/2]` in contact, zero Dirichlet data, zero gap.
+///
+/// With `uR = Re (x - 1/2 + iy)^{3/2}`, open to the right of 1/2, `uL = Re (-2/5 - x + iy)^{3/2}`,
+/// open to the left of -2/5, and a polynomial step `s(x)` that rises from 0 to 1 between -1/5 and
+/// 1/5, the solution is `u = (1 - x^2)(1 - y^2)((1 - s) uL + s uR)`; the load is `-Laplace u`.
+///
+/// *Contact side*: where `s` is neither 0 nor 1 both pieces are in contact, so that a convex
+/// combination of their pressures acts and `u = 0`; elsewhere as in [`signorini_2d`].
+/// `H^s` for `s < 5/2`.
+pub fn signorini_two_2d() -> Scene<2> {
+    let solution = |x: &Point<f64, 2>| {
+        let left = Jet::three_halves(x, LEFT, -1.0);
+        let right = Jet::three_halves(x, RIGHT, 1.0);
+        Jet::bubble(x) * (left + Jet::along(0, step(x[0])) * (right - left))
+    };
+    let pressure = |x: &Point<f64, 2>| {
+        let [s, _, _] = step(x[0]);
+        let (left, right) = ((x[0] - LEFT).max(0.0).sqrt(), (RIGHT - x[0]).max(0.0).sqrt());
+        1.5 * (1.0 - x[0] * x[0]) * ((1.0 - s) * left + s * right)
+    };
+    let exact = Exact::new(move |x| solution(x).value, move |x| solution(x).gradient)
+        .with_multiplier(pressure)
+        .with_contact(
+            |x| (x[0] - LEFT).min(RIGHT - x[0]),
+            vec![Point::from([LEFT, 0.0]), Point::from([RIGHT, 0.0])],
+        );
+    Scene {
+        name: "signorini-two-2d".into(),
+        summary: "Signorini, zero Dirichlet data, contact on a segment: two singularities",
+        domain: BoxDomain::above_contact().into(),
+        problem: Problem::new()
+            .source(move |x| -solution(x).laplacian)
+            .signorini(|_| 0.0)
+            .solved_by(exact),
+        regularity: Regularity { sobolev: 2.5, strictly_complementary: true },
+    }
+}
+
+/// `10 t^3 - 15 t^4 + 6 t^5` for `t` from 0 to 1 as `x` goes from -1/5 to 1/5, and its first two
+/// derivatives.
+fn step(x: f64) -> [f64; 3] {
+    let t = ((x + 0.2) / 0.4).clamp(0.0, 1.0);
+    let s = 1.0 - t;
+    let value = t * t * t * (10.0 - 15.0 * t + 6.0 * t * t);
+    [value, 30.0 * t * t * s * s / 0.4, 60.0 * t * s * (1.0 - 2.0 * t) / 0.16]
 }

@@ -37,7 +37,7 @@ pub fn signorini_harmonic<const D: usize>() -> Scene<D> {
     Scene {
         name: format!("signorini-harmonic-{D}d"),
         summary: "Signorini without load, the harmonic function r^(3/2) cos(3 theta/2)",
-        domain: BoxDomain::above_contact(),
+        domain: BoxDomain::above_contact().into(),
         problem: Problem::new().signorini(|_| 0.0).solved_by(exact),
         regularity: Regularity { sobolev: 2.5, strictly_complementary: true },
     }

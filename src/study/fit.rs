@@ -57,7 +57,7 @@ fn check_data<T: Real, const D: usize>(scene: &Scene<D>, mesh: &Mesh<T, D>) -> R
 /// # Errors
 /// [`Error::UnfitMesh`].
 pub(super) fn check_domain<const D: usize>(scene: &Scene<D>) -> Result<(), Error> {
-    let has = |part| scene.domain.sides.iter().flatten().any(|&side| side == part);
+    let has = |part| scene.domain.has_part(part);
     check_contact(scene, has(BoundaryPart::Contact))?;
     let held = has(BoundaryPart::Contact) || has(BoundaryPart::Dirichlet);
     if !held && scene.problem.reaction.is_none() {

@@ -35,8 +35,8 @@ struct Level<T, const D: usize> {
 
 /// The levels of a scene, made when asked for and kept.
 ///
-/// Level `n` of a box has `n` subdivisions of its shortest side and is the refinement of level
-/// `n / 2` as long as that is whole and not tiny. Level `k` of a given mesh is its `k`-th uniform
+/// Level `n` of a built-in domain has `n` subdivisions of its shortest side and is the refinement of
+/// level `n / 2` as long as that is whole and not tiny. Level `k` of a given mesh is its `k`-th uniform
 /// refinement.
 pub struct Levels<'a, T, const D: usize> {
     scene: &'a Scene<D>,
@@ -82,7 +82,10 @@ impl<'a, T: Real, const D: usize> Levels<'a, T, D> {
             let start = Instant::now();
             let (mesh, from, spent) = match before {
                 Some((coarser, entry)) => {
-                    let (mesh, refinement) = entry.mesh.refine()?;
+                    let (mesh, refinement) = match self.given {
+                        Some(_) => entry.mesh.refine()?,
+                        None => self.scene.domain.refine(&entry.mesh)?,
+                    };
                     (mesh, Some((coarser, refinement)), entry.seconds)
                 }
                 None => (self.coarsest(level)?, None, 0.0),
@@ -97,11 +100,7 @@ impl<'a, T: Real, const D: usize> Levels<'a, T, D> {
     pub(super) fn cells(&self, level: usize) -> f64 {
         match self.given {
             Some(mesh) => (mesh.n_cells() as f64) * 2_f64.powi(D as i32).powf(level as f64),
-            None => {
-                let simplices: f64 = (1..=D).map(|k| k as f64).product();
-                self.scene.domain.counts(level).iter().map(|&n| n as f64).product::<f64>()
-                    * simplices
-            }
+            None => self.scene.domain.cells(level),
         }
     }
 
@@ -125,16 +124,14 @@ impl<'a, T: Real, const D: usize> Levels<'a, T, D> {
     /// Refuses cells so small or large that their squares or volumes, or the reciprocals of these,
     /// are out of the range of the scalar. Meshes that are given were checked when they were made.
     fn check_scalar(&self, level: usize) -> Result<(), Error> {
-        let domain = &self.scene.domain;
-        let counts = domain.counts(level);
-        let side = |k: usize| (domain.upper[k] - domain.lower[k]) / counts[k] as f64;
         let fits = |x: f64| {
             let error = (T::lit(x).to_f64() / x - 1.0).abs();
             x.is_normal() && error <= T::EPSILON
         };
         let power = D.max(2) as i32;
         let outside = |&h: &f64| !(fits(h.powi(power)) && fits(h.powi(-power)));
-        match (0..D).map(side).find(outside).filter(|_| self.given.is_none()) {
+        let spacings = self.scene.domain.spacings(level);
+        match spacings.into_iter().find(outside).filter(|_| self.given.is_none()) {
             None => Ok(()),
             Some(h) => Err(Error::Parameter {
                 parameter: "precision",
@@ -149,7 +146,7 @@ impl<'a, T: Real, const D: usize> Levels<'a, T, D> {
     fn coarsest(&self, level: usize) -> Result<Mesh<T, D>, Error> {
         match self.given {
             Some(mesh) => Ok(mesh.clone()),
-            None => Mesh::kuhn_box(&self.scene.domain, self.scene.domain.counts(level)),
+            None => self.scene.domain.mesh(level),
         }
     }
 

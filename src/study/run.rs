@@ -14,7 +14,7 @@ use crate::assemble::DataQuadrature;
 use crate::error::Error;
 use crate::mesh::{BoundaryPart, Mesh};
 use crate::real::Real;
-use crate::scenes::Scene;
+use crate::scenes::{Domain, Scene};
 use crate::scheme::Setting;
 use crate::solve::{ActiveSet, InequalitySolver};
 
@@ -283,16 +283,17 @@ impl<'a, T: Real, const D: usize> Study<'a, T, D> {
     /// What promises of orders may depend on.
     fn setting(&self) -> Setting {
         let problem = &self.scene.problem;
-        let mut sides = self.scene.domain.sides.iter().flatten();
-        let all_dirichlet = sides.all(|&side| side == BoundaryPart::Dirichlet);
+        let domain = &self.scene.domain;
+        let is_convex = !matches!(domain, Domain::LShape { .. });
+        let all_dirichlet =
+            ![BoundaryPart::Neumann, BoundaryPart::Contact].iter().any(|&p| domain.has_part(p));
         Setting {
             dimension: D,
             obstacle: problem.has_obstacle(),
             contact: problem.gap.is_some(),
             regularity: self.scene.regularity,
-            // the built-in domains are boxes
             regular_dual: problem.coefficient.is_none()
-                && (D == 1 || self.mesh.is_none() && all_dirichlet),
+                && (D == 1 || self.mesh.is_none() && is_convex && all_dirichlet),
         }
     }
 

@@ -10,11 +10,13 @@ fn scene(problem: Problem<2>) -> Scene<2> {
     Scene {
         name: "mine".into(),
         summary: "",
-        domain: BoxDomain::dirichlet(Point::zeros(), Point::repeat(1.0)).side(
-            1,
-            0,
-            if problem.gap.is_some() { BoundaryPart::Contact } else { BoundaryPart::Neumann },
-        ),
+        domain: BoxDomain::dirichlet(Point::zeros(), Point::repeat(1.0))
+            .side(
+                1,
+                0,
+                if problem.gap.is_some() { BoundaryPart::Contact } else { BoundaryPart::Neumann },
+            )
+            .into(),
         problem,
         regularity: Regularity { sobolev: 2.0, strictly_complementary: true },
     }
@@ -121,7 +123,7 @@ fn meshes_beyond_the_data_of_a_scene_do_not_fit() {
     let runs = std::cell::Cell::new(0);
     let run = |problem: Problem<2>| {
         let mut scene = scene(problem);
-        scene.domain = BoxDomain::dirichlet(Point::zeros(), Point::repeat(1.0));
+        scene.domain = BoxDomain::dirichlet(Point::zeros(), Point::repeat(1.0)).into();
         let study = Study::<f64, 2>::new(scene).scheme(ConformingP1).levels([0]);
         let study = study.on_mesh(mesh.clone()).observer(|_| runs.set(runs.get() + 1));
         study.check().and_then(|()| study.run().map(|_| ()))

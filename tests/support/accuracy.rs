@@ -155,7 +155,13 @@ pub fn own_scene<const D: usize>(
     problem: Problem<D>,
 ) -> Scene<D> {
     let regularity = Regularity { sobolev: f64::INFINITY, strictly_complementary: true };
-    Scene { name: name.to_owned(), summary: "of a test", domain, problem, regularity }
+    Scene {
+        name: name.to_owned(),
+        summary: "of a test",
+        domain: domain.into(),
+        problem,
+        regularity,
+    }
 }
 
 /// The penalty part of WOPSIP's energy norm, where coefficient is one and there is no reaction.

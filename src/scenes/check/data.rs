@@ -1,7 +1,7 @@
 //! Conditions on the data alone, with or without an exact solution.
 
 use super::probe::violation;
-use super::samples::{in_box, lattice, sides};
+use super::samples::{BoundaryPoint, boundary, lattice};
 use super::{Condition, Violation};
 use crate::mesh::BoundaryPart;
 use crate::real::Point;
@@ -17,22 +17,19 @@ pub(super) fn check<const D: usize>(
     for x in inside.iter().copied().chain(lattice(domain)) {
         check_at(scene, &x)?;
     }
-    for side in sides(domain) {
-        for x in in_box(domain).take(samples) {
-            let x = side.project(&x);
-            check_at(scene, &x)?;
-            match side.part {
-                BoundaryPart::Dirichlet => check_dirichlet(scene, &x)?,
-                BoundaryPart::Contact if scene.problem.gap.is_none() => {
-                    return Err(violation(scene, Condition::GapGiven, &x, f64::NAN, 0.0));
-                }
-                BoundaryPart::Neumann => {
-                    if let Some(q) = &scene.problem.neumann {
-                        finite(scene, "neumann", &x, q(&x, &side.normal))?;
-                    }
-                }
-                BoundaryPart::Contact => {}
+    for BoundaryPoint { x, normal, part } in boundary(domain, samples) {
+        check_at(scene, &x)?;
+        match part {
+            BoundaryPart::Dirichlet => check_dirichlet(scene, &x)?,
+            BoundaryPart::Contact if scene.problem.gap.is_none() => {
+                return Err(violation(scene, Condition::GapGiven, &x, f64::NAN, 0.0));
             }
+            BoundaryPart::Neumann => {
+                if let Some(q) = &scene.problem.neumann {
+                    finite(scene, "neumann", &x, q(&x, &normal))?;
+                }
+            }
+            BoundaryPart::Contact => {}
         }
     }
     Ok(())

@@ -3,10 +3,10 @@
 /// The derivative of `phi` at zero, from values at arguments of size up to `reach`, or `None` where
 /// it cannot be told to within `tolerance`.
 ///
-/// Fourth-order central differences with steps halved until two successive ones agree. Across a
+/// Fourth-order central differences with steps halved until three successive ones agree. Across a
 /// kink or near a singularity they do not agree until the stencil has left it behind, so each point
-/// gets the step it needs. The smallest step is a thousandth of the largest: below that, rounding
-/// grows.
+/// gets the step it needs; two may agree by chance while the error changes its course. The smallest
+/// step is a thousandth of the largest: below that, rounding grows.
 pub(super) fn settled_derivative(
     phi: impl Fn(f64) -> f64,
     reach: f64,
@@ -15,13 +15,15 @@ pub(super) fn settled_derivative(
     let central = |h: f64| (8.0 * (phi(h) - phi(-h)) - (phi(2.0 * h) - phi(-2.0 * h))) / (12.0 * h);
     let mut h = reach / 2.0;
     let mut coarse = central(h);
+    let mut agreed = false;
     for _ in 0..10 {
         h /= 2.0;
         let fine = central(h);
-        if (fine - coarse).abs() <= tolerance {
+        let agrees = (fine - coarse).abs() <= tolerance;
+        if agrees && agreed {
             return Some(fine);
         }
-        coarse = fine;
+        (coarse, agreed) = (fine, agrees);
     }
     None
 }

@@ -2,6 +2,7 @@
 
 use super::interior::TOUCHING;
 use super::probe::Probe;
+use super::samples::sees;
 use super::{Condition, Violation};
 use crate::real::Point;
 
@@ -20,7 +21,8 @@ pub(super) fn check<const D: usize>(
     probe: &Probe<'_, D>,
     points: &[Point<f64, D>],
 ) -> Result<(), Violation> {
-    for pair in points.windows(2) {
+    let domain = &probe.scene.domain;
+    for pair in points.windows(2).filter(|pair| sees(domain, &pair[0], &pair[1])) {
         check_value(probe, pair[0], pair[1])?;
         check_flux(probe, pair[0], pair[1])?;
     }
@@ -46,17 +48,23 @@ fn check_value<const D: usize>(
 ///
 /// If the flux along the segment drops by `j` across an interface, the obstacle exerts there a
 /// force of a positive multiple of `j` per unit area: upwards from below for `j > 0`. Where the
-/// coefficient jumps, the tangential flux does too, without any force; such segments are left out.
+/// coefficient jumps, the tangential flux does too, without any force; then only the flux along the
+/// jump of the gradient counts, which is normal to the interface since the value is continuous.
 fn check_flux<const D: usize>(
     probe: &Probe<'_, D>,
     a: Point<f64, D>,
     b: Point<f64, D>,
 ) -> Result<(), Violation> {
     let (a, b) = bisect(probe.scales.length, a, b, |a, b| (probe.flux(b) - probe.flux(a)).norm());
+    let mut across = (b - a).normalize();
     if probe.coefficient(&a) != probe.coefficient(&b) {
-        return Ok(());
+        let jump = probe.gradient(&b) - probe.gradient(&a);
+        if jump.norm() <= KINK * probe.scales.slope {
+            return Ok(());
+        }
+        across = jump.normalize() * jump.dot(&across).signum();
     }
-    let rise = (probe.flux(&b) - probe.flux(&a)).dot(&(b - a).normalize());
+    let rise = (probe.flux(&b) - probe.flux(&a)).dot(&across);
     let distance = if rise > 0.0 { probe.below_upper(&a) } else { probe.above_lower(&a) };
     let touching = TOUCHING * probe.scales.slope * probe.scales.length;
     if distance <= touching {

@@ -2,6 +2,7 @@
 
 use super::differences::settled_derivative;
 use super::probe::Probe;
+use super::stated;
 use super::{Condition, Violation};
 use crate::real::Point;
 
@@ -70,9 +71,10 @@ pub(super) fn check_multiplier<const D: usize>(
                 (false, false) => (Condition::Equation, multiplier.abs()),
                 (true, false) => (Condition::MultiplierSign, -multiplier),
                 (false, true) => (Condition::MultiplierSign, multiplier),
-                (true, true) => continue,
+                (true, true) => (Condition::MultiplierSign, 0.0),
             };
         probe.require(condition, x, by, allowed)?;
+        stated::check_inside(probe, x, multiplier, allowed)?;
     }
     skipped.check(probe, points.len())
 }
@@ -97,9 +99,7 @@ fn shifted<const D: usize>(x: &Point<f64, D>, axis: usize, by: f64) -> Point<f64
 
 /// Largest stencil that stays inside the domain, where alone a scene need be defined.
 fn reach<const D: usize>(probe: &Probe<'_, D>, x: &Point<f64, D>) -> f64 {
-    let domain = &probe.scene.domain;
-    let to_boundary = (x - domain.lower).min().min((domain.upper - x).min());
-    (REACH * probe.scales.length).min(0.9 * to_boundary)
+    (REACH * probe.scales.length).min(0.9 * probe.scene.domain.depth(x))
 }
 
 /// Derivatives that did not settle.

@@ -7,7 +7,7 @@ use crate::scenes::Scene;
 
 /// Largest sizes met at the sample points; tolerances are multiples of these.
 pub(super) struct Scales {
-    /// Shortest side of the domain.
+    /// Shortest side of the domain, or radius of a disc.
     pub length: f64,
     /// Of the value.
     pub value: f64,
@@ -22,13 +22,13 @@ pub(super) struct Scales {
 /// A scene with its exact solution.
 pub(super) struct Probe<'a, const D: usize> {
     pub scene: &'a Scene<D>,
-    exact: &'a Exact<D>,
+    pub exact: &'a Exact<D>,
     pub scales: Scales,
 }
 
 impl<'a, const D: usize> Probe<'a, D> {
     pub fn new(scene: &'a Scene<D>, exact: &'a Exact<D>, points: &[Point<f64, D>]) -> Self {
-        let length = (scene.domain.upper - scene.domain.lower).min();
+        let length = scene.domain.length();
         let scales = Scales { length, value: 0.0, slope: 0.0, flux: 0.0, force: 0.0 };
         let mut probe = Self { scene, exact, scales };
         let largest = |size: &dyn Fn(&Point<f64, D>) -> f64| {

@@ -2,16 +2,14 @@
 
 use crate::mesh::BoundaryPart;
 use crate::real::Point;
-use crate::scenes::BoxDomain;
+use crate::scenes::{BoxDomain, Domain};
 
 /// Quasi-random points of a box: the additive recurrence `x_n = 1/2 + n theta mod 1`, where
 /// `theta_k = 1/phi^k` and `phi` is the positive root of `phi^(D+1) = phi + 1`.
 ///
 /// In one dimension this is the golden ratio; `1, theta_1, ..., theta_D` are independent over the
 /// rationals, so the points fill the box evenly and never sit on mesh lines.
-pub(super) fn in_box<const D: usize>(
-    domain: &BoxDomain<D>,
-) -> impl Iterator<Item = Point<f64, D>> + '_ {
+fn in_box<const D: usize>(domain: BoxDomain<D>) -> impl Iterator<Item = Point<f64, D>> {
     // The map contracts by a factor of at most 1/(D + 1) at its fixed point.
     let phi = (0..60).fold(2.0_f64, |phi, _| (1.0 + phi).powf(1.0 / (D as f64 + 1.0)));
     (1_u32..).map(move |n| {
@@ -23,61 +21,111 @@ pub(super) fn in_box<const D: usize>(
     })
 }
 
-/// Vertices of a uniform lattice of the box, corners included, and the origin if it is inside:
-/// points of symmetry and of dyadic fractions, where meshes put vertices and scenes their tips.
+/// The first quasi-random points that lie inside a domain.
+pub(super) fn inside<const D: usize>(domain: &Domain<D>, samples: usize) -> Vec<Point<f64, D>> {
+    in_box(domain.bounding_box()).filter(|x| domain.depth(x) > 0.0).take(samples).collect()
+}
+
+/// Vertices of a uniform lattice of the box around a domain, those inside it and on its boundary,
+/// and the origin if it is among them: points of symmetry and of dyadic fractions, where meshes put
+/// vertices and scenes their tips.
 pub(super) fn lattice<const D: usize>(
-    domain: &BoxDomain<D>,
+    domain: &Domain<D>,
 ) -> impl Iterator<Item = Point<f64, D>> + '_ {
     let per_axis: usize = if D < 3 { 16 } else { 8 };
-    let origin = (0..D).all(|k| domain.lower[k] <= 0.0 && 0.0 <= domain.upper[k]);
+    let bounds = domain.bounding_box();
     (0..(per_axis + 1).pow(D as u32))
         .map(move |mut code| {
             Point::from_fn(|k, _| {
                 let step = code % (per_axis + 1);
                 code /= per_axis + 1;
                 let t = step as f64 / per_axis as f64;
-                (1.0 - t) * domain.lower[k] + t * domain.upper[k]
+                (1.0 - t) * bounds.lower[k] + t * bounds.upper[k]
             })
         })
-        .chain(origin.then(Point::zeros))
+        .chain([Point::zeros()])
+        .filter(|x| domain.depth(x) >= 0.0)
 }
 
-/// A side of the box.
-pub(super) struct Side<const D: usize> {
-    /// Its part of the boundary.
-    pub part: BoundaryPart,
-    /// Its outward unit normal.
+/// A point of the boundary.
+pub(super) struct BoundaryPoint<const D: usize> {
+    /// The point.
+    pub x: Point<f64, D>,
+    /// The outward unit normal there.
     pub normal: Point<f64, D>,
-    axis: usize,
-    level: f64,
+    /// The part of the boundary.
+    pub part: BoundaryPart,
 }
 
-impl<const D: usize> Side<D> {
-    /// The point moved along the normal onto the side.
-    pub fn project(&self, x: &Point<f64, D>) -> Point<f64, D> {
-        let mut x = *x;
-        x[self.axis] = self.level;
-        x
+impl<const D: usize> BoundaryPoint<D> {
+    fn dirichlet(x: Point<f64, D>, normal: Point<f64, D>) -> Self {
+        Self { x, normal, part: BoundaryPart::Dirichlet }
     }
-    /// Points of the side that rounding may make of one: a few units in the last place inside and
-    /// outside, and the other zero.
-    pub fn rounded(&self, x: &Point<f64, D>, length: f64) -> [Point<f64, D>; 3] {
-        let shift = self.normal * (4.0 * f64::EPSILON * length.max(self.level.abs()));
-        let mut negated = *x;
-        if self.level == 0.0 {
-            negated[self.axis] = -0.0;
-        }
-        [x - shift, x + shift, negated]
+    /// Points that rounding may make of this one: a few units in the last place inside and outside,
+    /// and the other zero.
+    pub fn rounded(&self, length: f64) -> [Point<f64, D>; 3] {
+        let level = self.x.dot(&self.normal).abs();
+        let shift = self.normal * (4.0 * f64::EPSILON * length.max(level));
+        let negated =
+            self.x.zip_map(&self.normal, |x, n| if n != 0.0 && x == 0.0 { -0.0 } else { x });
+        [self.x - shift, self.x + shift, negated]
     }
 }
 
-/// The sides of the box.
-pub(super) fn sides<const D: usize>(domain: &BoxDomain<D>) -> impl Iterator<Item = Side<D>> + '_ {
-    (0..D).flat_map(move |axis| {
-        [(0, -1.0, &domain.lower), (1, 1.0, &domain.upper)].map(|(end, sign, corner)| {
-            let mut normal = Point::zeros();
-            normal[axis] = sign;
-            Side { part: domain.sides[axis][end], normal, axis, level: corner[axis] }
+/// Quasi-random points of the boundary: as many on each side, or twice as many on a circle.
+pub(super) fn boundary<const D: usize>(
+    domain: &Domain<D>,
+    samples: usize,
+) -> Vec<BoundaryPoint<D>> {
+    let around = domain.bounding_box();
+    match *domain {
+        Domain::Box(ref domain) => on_sides(domain, samples).collect(),
+        Domain::LShape { .. } => on_sides(&around, samples)
+            .filter(|p| domain.depth(&p.x) >= 0.0)
+            .chain(in_box(around.clone()).take(samples).map(beside_quadrant))
+            .collect(),
+        Domain::Disc { radius } => in_box(around)
+            .take(2 * samples)
+            .map(|x| BoundaryPoint::dirichlet(x.normalize() * radius, x.normalize()))
+            .collect(),
+    }
+}
+
+/// Points projected onto every side of a box.
+fn on_sides<const D: usize>(
+    domain: &BoxDomain<D>,
+    samples: usize,
+) -> impl Iterator<Item = BoundaryPoint<D>> + '_ {
+    (0..D).flat_map(|axis| [(axis, 0, -1.0), (axis, 1, 1.0)]).flat_map(move |(axis, end, sign)| {
+        let level = if end == 0 { domain.lower[axis] } else { domain.upper[axis] };
+        in_box(domain.clone()).take(samples).map(move |mut x| {
+            x[axis] = level;
+            let normal = Point::from_fn(|k, _| if k == axis { sign } else { 0.0 });
+            BoundaryPoint { x, normal, part: domain.sides[axis][end] }
         })
     })
+}
+
+/// A point on the sides that meet in the corner at the origin of the domain without the quadrant
+/// `x >= 0`, `y <= 0`.
+fn beside_quadrant<const D: usize>(x: Point<f64, D>) -> BoundaryPoint<D> {
+    let on = |along: usize, at: f64, across: usize, normal: f64| {
+        let axis =
+            |axis: usize, size: f64| Point::from_fn(|k, _| if k == axis { size } else { 0.0 });
+        BoundaryPoint::dirichlet(axis(along, at), axis(across, normal))
+    };
+    if x[0] > 0.0 { on(0, x[0], 1, -1.0) } else { on(1, x[0], 0, 1.0) }
+}
+
+/// Whether the segment between two points of a domain surely lies in it.
+pub(super) fn sees<const D: usize>(
+    domain: &Domain<D>,
+    a: &Point<f64, D>,
+    b: &Point<f64, D>,
+) -> bool {
+    match domain {
+        // both halves of the L-shape are convex
+        Domain::LShape { .. } => a[0].max(b[0]) < 0.0 || a[1 % D].min(b[1 % D]) > 0.0,
+        Domain::Box(_) | Domain::Disc { .. } => true,
+    }
 }

@@ -1,0 +1,86 @@
+//! A re-entrant corner together with contact.
+
+use std::f64::consts::{FRAC_PI_2, FRAC_PI_4};
+
+use crate::problem::{Exact, Problem};
+use crate::real::Point;
+use crate::scenes::{Domain, Regularity, Scene};
+
+/// The L-shaped membrane of S. Bartels, C. Carstensen, *Numer. Math.* 99 (2004): `(-2, 2)^2`
+/// without `[0, 2] x [-2, 0]`, `psi = 0`, zero Dirichlet data.
+///
+/// With polar coordinates around the corner, `0 < phi < 3 pi/2`, the solution is
+/// `u = r^{2/3} g(r) sin(2 phi/3)`, where the cut-off `g` is 1 for `r < 1/4`, 0 for `r > 3/4` and
+/// `1 - 10 t^3 + 15 t^4 - 6 t^5`, `t = 2 (r - 1/4)`, between: twice continuously differentiable.
+/// Since `r^{2/3} sin(2 phi/3)` is harmonic,
+///
+/// ```text
+/// -Laplace u = -(r^{2/3} (g'' + g'/r) + (4/3) r^{-1/3} g') sin(2 phi/3).
+/// ```
+///
+/// The load is that, less 1 for `r > 5/4`, where the multiplier is 1. It vanishes elsewhere, so the
+/// ring `3/4 < r < 5/4` is in contact without force. At the corner `u` behaves like `r^{2/3}`: it
+/// lies in `H^s` for `s < 5/3`.
+pub fn lshape_2d() -> Scene<2> {
+    let pressed = |x: &Point<f64, 2>| if x.norm() > 1.25 { 1.0 } else { 0.0 };
+    let value = |x: &Point<f64, 2>| {
+        let (r, phi) = polar(x);
+        r.powf(2.0 / 3.0) * cut_off(r)[0] * (2.0 * phi / 3.0).sin()
+    };
+    let gradient = |x: &Point<f64, 2>| {
+        let (r, phi) = polar(x);
+        if r == 0.0 {
+            return Point::zeros();
+        }
+        let [g, slope, _] = cut_off(r);
+        let root = r.powf(-1.0 / 3.0);
+        let radial = (2.0 / 3.0 * root * g + r * root * slope) * (2.0 * phi / 3.0).sin();
+        let angular = 2.0 / 3.0 * root * g * (2.0 * phi / 3.0).cos();
+        (x * radial + Point::<f64, 2>::new(-x[1], x[0]) * angular) / r
+    };
+    let source = move |x: &Point<f64, 2>| {
+        let (r, phi) = polar(x);
+        let [_, slope, curvature] = cut_off(r);
+        let smooth = if slope == 0.0 {
+            0.0
+        } else {
+            r.powf(2.0 / 3.0) * curvature + 7.0 / 3.0 * r.powf(-1.0 / 3.0) * slope
+        };
+        -smooth * (2.0 * phi / 3.0).sin() - pressed(x)
+    };
+    Scene {
+        name: "lshape-2d".into(),
+        summary: "L-shaped membrane over a plane: a corner singularity, contact outside a disc",
+        domain: Domain::LShape { half: 2.0 },
+        problem: Problem::new()
+            .source(source)
+            .obstacle_below(|_| 0.0)
+            .solved_by(Exact::new(value, gradient).with_multiplier(pressed)),
+        regularity: Regularity { sobolev: 5.0 / 3.0, strictly_complementary: false },
+    }
+}
+
+/// Distance from the corner and angle from the positive `x` axis. The angle is measured from the
+/// middle of the domain, so that its jump lies in the middle of what is cut out and not on the
+/// boundary, where rounding errors would cross it.
+fn polar(x: &Point<f64, 2>) -> (f64, f64) {
+    let middle = FRAC_PI_2 + FRAC_PI_4;
+    let (sin, cos) = middle.sin_cos();
+    let from_middle = (cos * x[1] - sin * x[0]).atan2(cos * x[0] + sin * x[1]);
+    (x.norm(), middle + from_middle)
+}
+
+/// The cut-off and its first two derivatives.
+fn cut_off(r: f64) -> [f64; 3] {
+    let t = 2.0 * (r - 0.25);
+    if t <= 0.0 {
+        return [1.0, 0.0, 0.0];
+    }
+    if t >= 1.0 {
+        return [0.0; 3];
+    }
+    let s = 1.0 - t;
+    // of the value the form without cancellation near t = 1
+    let value = s * s * s * (1.0 + 3.0 * t + 6.0 * t * t);
+    [value, -60.0 * t * t * s * s, -240.0 * t * s * (1.0 - 2.0 * t)]
+}

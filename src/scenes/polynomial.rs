@@ -1,0 +1,69 @@
+//! Powers of `r^2 - r0^2` over a plane obstacle, with and without force on the contact ball.
+
+use crate::problem::{Exact, Problem};
+use crate::real::Point;
+use crate::scenes::jet::{Jet, positive_power};
+use crate::scenes::{BoxDomain, Regularity, Scene, free_boundary};
+
+/// Radius of the contact ball.
+const R0: f64 = 0.7;
+
+/// The "constant obstacle" of Nochetto, Siebert and Veeser, *Numer. Math.* 95 (2003), in `D`
+/// dimensions: `(-1, 1)^D`, `psi = 0`, contact in the ball `r <= r0 = 0.7`.
+///
+/// The solution is `u = s^2`, `s = max(r^2 - r0^2, 0)`. *Off contact*:
+/// `-Laplace u = -8 r^2 - 4D s`, the load there. *On contact*: the load is
+/// `f = -8 r0^2 (1 - r^2 + r0^2)` and the multiplier is `-f > 0`, since `r <= r0`. `f` is
+/// continuous across `r = r0`, where both are `-8 r0^2`. The second derivatives jump: `C^{1,1}`,
+/// `H^s` for `s < 5/2`.
+pub fn polynomial<const D: usize>() -> Scene<D> {
+    let force = |s: f64| 8.0 * R0 * R0 * (1.0 - s + R0 * R0);
+    let source = move |x: &Point<f64, D>| {
+        let s = x.norm_squared();
+        if s > R0 * R0 { -power::<D>(x, 2).laplacian } else { -force(s) }
+    };
+    let exact = Exact::new(|x| power(x, 2).value, |x| power(x, 2).gradient)
+        .with_multiplier(move |x: &Point<f64, D>| {
+            let s = x.norm_squared();
+            if s > R0 * R0 { 0.0 } else { force(s) }
+        })
+        .with_contact(|x| R0 - x.norm(), free_boundary::sphere(R0, 2.0));
+    Scene {
+        name: format!("polynomial-{D}d"),
+        summary: "a polynomial over a plane obstacle, continuous load, contact in a ball",
+        domain: BoxDomain::centred(1.0).into(),
+        problem: Problem::new().source(source).obstacle_below(|_| 0.0).solved_by(exact),
+        regularity: Regularity { sobolev: 2.5, strictly_complementary: true },
+    }
+}
+
+/// `degenerate2-2d`, `degenerate3-2d` and `degenerate4-2d`: contact without force in the disc
+/// `r <= r0 = 0.7`, left with order `k`.
+///
+/// On `(-1, 1)^2` with `psi = 0` the solution is `u = s^k`, `s = max(r^2 - r0^2, 0)`, and the load
+/// is `f = -Laplace u = -4 k (k - 1) r^2 s^(k-2) - 4 k s^(k-1)`, zero for `r <= r0`. So the
+/// multiplier vanishes everywhere and data do not tell the contact set. `u` lies in `H^s` for
+/// `s < k + 1/2`.
+pub fn degenerate(k: i32) -> Scene<2> {
+    Scene {
+        name: format!("degenerate{k}-2d"),
+        summary: "contact with a plane obstacle in a disc, without any force",
+        domain: BoxDomain::centred(1.0).into(),
+        problem: Problem::new()
+            .source(move |x| -power(x, k).laplacian)
+            .obstacle_below(|_| 0.0)
+            .solved_by(
+                Exact::new(move |x| power(x, k).value, move |x| power(x, k).gradient)
+                    .with_multiplier(|_| 0.0),
+            ),
+        regularity: Regularity { sobolev: f64::from(k) + 0.5, strictly_complementary: false },
+    }
+}
+
+/// `max(r^2 - r0^2, 0)^k`: with `s = r^2 - r0^2`, `|grad s|^2 = 4 r^2` and `Laplace s = 2 D`.
+fn power<const D: usize>(x: &Point<f64, D>, k: i32) -> Jet<D> {
+    let r_squared = x.norm_squared();
+    let [value, first, second] = positive_power(r_squared - R0 * R0, k);
+    let laplacian = second * 4.0 * r_squared + first * 2.0 * D as f64;
+    Jet { value, gradient: x * (2.0 * first), laplacian }
+}

@@ -1,0 +1,95 @@
+//! Signorini conditions with solutions as smooth as one likes, whose contact is left slowly.
+
+use crate::problem::{Exact, Problem};
+use crate::real::Point;
+use crate::scenes::jet::{Jet, positive_power};
+use crate::scenes::{BoxDomain, Regularity, Scene, free_boundary};
+
+/// `signorini-smooth2-2d`, `-smooth3-2d`, `-smooth4-2d`: gap and pressure both vanish with order
+/// `k` where contact changes, at the origin.
+///
+/// The solution is that of `wedge` with `b = 0`, which lies in `H^s` for `s < k + 1/2`.
+pub fn signorini_smooth(k: i32) -> Scene<2> {
+    let exact = wedge(k, 0.0).with_contact(|x| -x[0], vec![Point::zeros()]);
+    Scene {
+        name: format!("signorini-smooth{k}-2d"),
+        summary: "Signorini, gap and pressure vanish with the order in the name",
+        domain: BoxDomain::above_contact().into(),
+        problem: Problem::new()
+            .source(move |x| -wedge_jet(x, k, 0.0).laplacian)
+            .signorini(|_| 0.0)
+            .solved_by(exact),
+        regularity: Regularity { sobolev: f64::from(k) + 0.5, strictly_complementary: true },
+    }
+}
+
+/// Contact without pressure on a segment: on `|x| <= 1/4` both gap and pressure vanish.
+///
+/// The solution is that of `wedge` with `b = 1/4` and `k = 2`; data do not tell the contact set.
+pub fn signorini_biactive_2d() -> Scene<2> {
+    Scene {
+        name: "signorini-biactive-2d".into(),
+        summary: "Signorini, gap and pressure both vanish on a segment",
+        domain: BoxDomain::above_contact().into(),
+        problem: Problem::new()
+            .source(|x| -wedge_jet(x, 2, 0.25).laplacian)
+            .signorini(|_| 0.0)
+            .solved_by(wedge(2, 0.25)),
+        regularity: Regularity { sobolev: 2.5, strictly_complementary: false },
+    }
+}
+
+/// `u = q (P - y N)` on `(-1, 1) x (0, 1)` with `q = (1 - x^2)(1 - y^2)`, `P = max(x - b, 0)^k` and
+/// `N = max(-x - b, 0)^k`, and its pressure.
+///
+/// *Dirichlet sides*: `q = 0`. *Contact side*: `u = (1 - x^2) P >= 0` and, as `dq/dy = 0` there,
+/// `sigma = -du/dy = (1 - x^2) N >= 0`; one of `P` and `N` vanishes.
+fn wedge(k: i32, b: f64) -> Exact<2> {
+    Exact::new(move |x| wedge_jet(x, k, b).value, move |x| wedge_jet(x, k, b).gradient)
+        .with_multiplier(move |x| (1.0 - x[0] * x[0]) * positive_power(-x[0] - b, k)[0])
+}
+
+fn wedge_jet(x: &Point<f64, 2>, k: i32, b: f64) -> Jet<2> {
+    let [value, first, second] = positive_power(-x[0] - b, k);
+    let open = Jet::along(0, positive_power(x[0] - b, k));
+    let pressed = Jet::along(0, [value, -first, second]);
+    Jet::bubble(x) * (open - Jet::along(1, [x[1], 1.0, 0.0]) * pressed)
+}
+
+/// `signorini-disc2-3d` and `-disc3-3d`: contact in a disc in space, left with order `k`.
+///
+/// On `(-1, 1)^2 x (0, 1)`, zero gap, the solution is `u = max(p, 0)^k - z max(-p, 0)^k` with
+/// `p = x^2 + y^2 - 1/4`; the load is `-Laplace u`. *Contact side*: `u = max(p, 0)^k` and
+/// `sigma = max(-p, 0)^k`. `u` lies in `H^s` for `s < k + 1/2`.
+pub fn signorini_disc(k: i32) -> Scene<3> {
+    let solution = move |x: &Point<f64, 3>| {
+        let height = Jet::along(2, [x[2], 1.0, 0.0]);
+        disc_power(x, 1.0, k) - height * disc_power(x, -1.0, k)
+    };
+    let exact = Exact::new(move |x| solution(x).value, move |x| solution(x).gradient)
+        .with_multiplier(move |x| disc_power(x, -1.0, k).value)
+        .with_contact(|x| -from_circle(x), free_boundary::circle(0.5, 2.0));
+    Scene {
+        name: format!("signorini-disc{k}-3d"),
+        summary: "Signorini in space, contact in a disc, left with the order in the name",
+        domain: BoxDomain::above_contact().into(),
+        problem: Problem::new()
+            .source(move |x| -solution(x).laplacian)
+            .signorini(|_| 0.0)
+            .solved_by(exact),
+        regularity: Regularity { sobolev: f64::from(k) + 0.5, strictly_complementary: true },
+    }
+}
+
+/// `x^2 + y^2 - 1/4`.
+fn from_circle(x: &Point<f64, 3>) -> f64 {
+    x[0] * x[0] + x[1] * x[1] - 0.25
+}
+
+/// `max(sign p, 0)^k`: `|grad p|^2 = 4 (x^2 + y^2)` and `Laplace p = 4`.
+fn disc_power(x: &Point<f64, 3>, sign: f64, k: i32) -> Jet<3> {
+    let [value, first, second] = positive_power(sign * from_circle(x), k);
+    let gradient = Point::<f64, 3>::new(x[0], x[1], 0.0) * (2.0 * sign * first);
+    let laplacian = second * 4.0 * (x[0] * x[0] + x[1] * x[1]) + sign * first * 4.0;
+    Jet { value, gradient, laplacian }
+}

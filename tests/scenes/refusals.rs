@@ -1,0 +1,220 @@
+//! The check says no.
+
+use unilateral::mesh::BoundaryPart;
+use unilateral::problem::{Exact, Problem};
+use unilateral::real::Point;
+use unilateral::scenes::check::Condition;
+use unilateral::scenes::{
+    BoxDomain, Regularity, Scene, ball_2d, check_scene, contrast, hertz_2d, lshape_2d, radial,
+    signorini_2d, signorini_harmonic,
+};
+
+fn refused<const D: usize>(scene: &Scene<D>) -> Condition {
+    check_scene(scene, 300).expect_err("a wrong scene passed").condition
+}
+
+#[test]
+fn the_check_refuses_a_load_of_the_wrong_sign() {
+    let mut scene = radial::<2>(1.0);
+    scene.problem.source = Some(2.0.into());
+    let condition = refused(&scene);
+    assert!(matches!(condition, Condition::Equation | Condition::MultiplierSign), "{condition}");
+}
+
+#[test]
+fn the_check_refuses_a_load_that_is_slightly_off() {
+    let mut scene = signorini_2d();
+    let f = scene.problem.source.take().unwrap();
+    scene.problem = scene.problem.source(move |x| f.at(x) + 1e-4);
+    assert_eq!(refused(&scene), Condition::Equation);
+}
+
+#[test]
+fn the_check_refuses_a_multiplier_of_the_wrong_sign() {
+    let mut scene = radial::<2>(1.0);
+    scene.problem = scene.problem.source(|x| if x.norm() <= 1.0 { 1.0 } else { -2.0 });
+    assert_eq!(refused(&scene), Condition::MultiplierSign);
+}
+
+#[test]
+fn the_check_refuses_a_wrong_gradient() {
+    let mut scene = hertz_2d();
+    let Exact { value, gradient, .. } = scene.problem.exact.take().unwrap();
+    scene.problem = scene.problem.exact(value, move |x| gradient(x) * (1.0 + 1e-4));
+    assert_eq!(refused(&scene), Condition::Gradient);
+}
+
+#[test]
+fn the_check_refuses_an_obstacle_above_the_solution() {
+    let mut scene = radial::<2>(1.0);
+    scene.problem = scene.problem.obstacle_below(|x| if x.norm() < 0.5 { 1e-3 } else { 0.0 });
+    assert_eq!(refused(&scene), Condition::LowerObstacle);
+    let mut scene = radial::<2>(1.0);
+    scene.problem = scene.problem.obstacle_above(|x| if x.norm() < 1.2 { 1e-3 } else { 1e3 });
+    assert_eq!(refused(&scene), Condition::UpperObstacle);
+}
+
+#[test]
+fn the_check_refuses_wrong_boundary_data() {
+    let mut scene = ball_2d();
+    scene.problem = scene.problem.dirichlet(|x| (2.0 / x.norm()).ln());
+    assert_eq!(refused(&scene), Condition::Dirichlet);
+    let mut scene = radial::<2>(1.0);
+    scene.domain = BoxDomain::centred(1.5).side(0, 1, BoundaryPart::Neumann).into();
+    scene.problem = scene.problem.neumann(|_, _| 0.0);
+    assert_eq!(refused(&scene), Condition::Neumann);
+}
+
+#[test]
+fn the_check_refuses_broken_signorini_conditions() {
+    let mut scene = hertz_2d();
+    scene.problem = scene.problem.signorini(|x| 1e-3 - x[0] * x[0] / 2.0);
+    assert_eq!(refused(&scene), Condition::Gap);
+    let mut scene = hertz_2d();
+    scene.problem = scene.problem.signorini(|x| -1e-3 - x[0] * x[0] / 2.0);
+    assert_eq!(refused(&scene), Condition::ContactComplementarity);
+    let mut scene = hertz_2d();
+    scene.domain = BoxDomain::above_contact().side(1, 1, BoundaryPart::Contact).into();
+    scene.problem = scene.problem.signorini(|_| -10.0);
+    assert!(matches!(refused(&scene), Condition::ContactFlux | Condition::ContactComplementarity));
+    let mut scene = hertz_2d();
+    scene.problem.gap = None;
+    assert_eq!(refused(&scene), Condition::GapGiven);
+}
+
+#[test]
+fn the_check_refuses_the_gradient_of_a_neglected_branch_cut() {
+    // atan2 sees the sign of zero: just below the axis the angle is -pi.
+    let power = |exponent: f64, x: &Point<f64, 2>| {
+        let (r, theta) = (x.norm(), x[1].atan2(x[0]));
+        (r.powf(exponent) * (exponent * theta).cos(), r.powf(exponent) * (exponent * theta).sin())
+    };
+    let mut scene = signorini_harmonic::<2>();
+    scene.problem = scene.problem.exact(
+        move |x| power(1.5, x).0,
+        move |x| Point::from([1.5 * power(0.5, x).0, -1.5 * power(0.5, x).1]),
+    );
+    assert_eq!(refused(&scene), Condition::BoundaryLimit);
+}
+
+#[test]
+fn the_check_refuses_data_that_are_not_finite() {
+    let mut scene = ball_2d();
+    scene.problem = scene.problem.obstacle_below(|x| (1.0 - x.norm_squared()).sqrt());
+    assert_eq!(refused(&scene), Condition::Finite("lower obstacle"));
+    let mut scene = radial::<3>(1.0);
+    let Exact { value, gradient, .. } = scene.problem.exact.take().unwrap();
+    scene.problem = scene.problem.exact(value, move |x| gradient(x) + x * (0.0 / x.norm()));
+    let violation = check_scene(&scene, 300).unwrap_err();
+    assert_eq!(violation.condition, Condition::Finite("gradient"));
+    assert_eq!(violation.at, [0.0; 3]);
+}
+
+#[test]
+fn the_check_refuses_a_coefficient_that_is_not_positive() {
+    let mut scene = radial::<1>(1.0);
+    scene.problem = scene.problem.coefficient(|x| x[0]);
+    assert_eq!(refused(&scene), Condition::Ellipticity);
+}
+
+/// `u = sign * (1/2 - |x|/2)`, harmonic but for a kink at `x = 0` that only an obstacle can hold.
+fn ridge(sign: f64, problem: Problem<1>) -> Scene<1> {
+    Scene {
+        name: "ridge".into(),
+        summary: "a kink",
+        domain: BoxDomain::centred(1.0).into(),
+        problem: problem.exact(
+            move |x| sign * (1.0 - x[0].abs()) / 2.0,
+            move |x| Point::from([-sign * x[0].signum() / 2.0]),
+        ),
+        regularity: Regularity { sobolev: 1.5, strictly_complementary: true },
+    }
+}
+
+#[test]
+fn a_kink_passes_only_where_an_obstacle_holds_it() {
+    let held = Problem::new().obstacle_below(|x: &Point<f64, 1>| 0.5 - x[0].abs());
+    check_scene(&ridge(1.0, held), 300).unwrap();
+    let held = Problem::new().obstacle_above(|x: &Point<f64, 1>| x[0].abs() - 0.5);
+    check_scene(&ridge(-1.0, held), 300).unwrap();
+    assert_eq!(refused(&ridge(1.0, Problem::new())), Condition::Kink);
+    // An obstacle from below cannot pull.
+    let wrong_side = Problem::new().obstacle_below(|x: &Point<f64, 1>| -0.5 - x[0].abs());
+    assert_eq!(refused(&ridge(-1.0, wrong_side)), Condition::Kink);
+}
+
+#[test]
+fn the_check_refuses_a_jump_of_the_value() {
+    let mut scene = radial::<2>(1.0);
+    let Exact { value, gradient, .. } = scene.problem.exact.take().unwrap();
+    scene.problem =
+        scene.problem.exact(move |x| value(x) + f64::from(u8::from(x.norm() > 1.0)), gradient);
+    assert_eq!(refused(&scene), Condition::Continuity);
+}
+
+#[test]
+fn a_violation_says_what_where_and_by_how_much() {
+    let mut scene = radial::<2>(1.0);
+    scene.problem.source = Some(2.0.into());
+    let text = check_scene(&scene, 300).unwrap_err().to_string();
+    for part in ["radial-2d", "not fulfilled", "at [", "off by", "allowed"] {
+        assert!(text.contains(part), "{text}");
+    }
+}
+
+// --- Multipliers, contact sets, interfaces, other domains ------------------------------------
+
+/// The scene with another statement on its solution.
+fn restated<const D: usize>(
+    mut scene: Scene<D>,
+    restate: impl FnOnce(Exact<D>) -> Exact<D>,
+) -> Scene<D> {
+    let exact = scene.problem.exact.take().unwrap();
+    scene.problem = scene.problem.solved_by(restate(exact));
+    scene
+}
+
+#[test]
+fn the_check_refuses_a_wrong_multiplier() {
+    let doubled = restated(radial::<2>(1.0), |exact| exact.with_multiplier(|_| 2.0));
+    assert_eq!(refused(&doubled), Condition::Multiplier);
+    let none = restated(hertz_2d(), |exact| exact.with_multiplier(|_| 0.0));
+    assert_eq!(refused(&none), Condition::Multiplier);
+}
+
+#[test]
+fn the_check_refuses_a_wrong_contact_set() {
+    for radius in [0.9, 1.1] {
+        let off = move |x: &Point<f64, 2>| radius - x.norm();
+        let scene = restated(radial::<2>(1.0), |exact| exact.with_contact(off, Vec::new()));
+        assert_eq!(refused(&scene), Condition::ContactSet);
+        let off = move |x: &Point<f64, 2>| radius / 2.0 - x[0].abs();
+        let scene = restated(hertz_2d(), |exact| exact.with_contact(off, Vec::new()));
+        assert_eq!(refused(&scene), Condition::ContactSet);
+    }
+    let nowhere = restated(signorini_2d(), |exact| exact.with_contact(|_| f64::NAN, Vec::new()));
+    assert_eq!(refused(&nowhere), Condition::Finite("indicator"));
+}
+
+#[test]
+fn the_check_refuses_a_point_that_is_not_on_the_free_boundary() {
+    let beside = vec![Point::from([1e-6, 0.0])];
+    let scene = restated(signorini_2d(), |exact| exact.with_contact(|x| -x[0], beside));
+    assert_eq!(refused(&scene), Condition::FreeBoundary);
+}
+
+#[test]
+fn the_check_refuses_a_flux_that_jumps_with_the_coefficient() {
+    let mut scene = contrast::<2>(10.0);
+    scene.problem = scene.problem.coefficient(|x| if x[0] < 0.5 { 10.0 } else { 1.1 });
+    scene.problem = scene.problem.source(|x| if x[0] < 0.5 { -1.0 } else { -1.1 });
+    let condition = refused(&scene);
+    assert_eq!(condition, Condition::Kink);
+}
+
+#[test]
+fn the_check_refuses_wrong_data_on_the_re_entrant_sides() {
+    let mut scene = lshape_2d();
+    scene.problem = scene.problem.dirichlet(|x| if x.amax() < 1.9 { 1e-3 } else { 0.0 });
+    assert_eq!(refused(&scene), Condition::Dirichlet);
+}
