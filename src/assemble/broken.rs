@@ -237,55 +237,24 @@ impl<T: Real, const D: usize> Filling<'_, '_, T, D> {
                     let here = if from_here { (cell, local) } else { there };
                     let weight = self.weights.at::<D>(here, from_here);
                     let across = coupled.position(other) * n;
-                    self.add_own(&me, &weight, own, &mut rows);
                     self.write_across(&me, there, &weight, across, &mut rows);
+                    self.add_facet(&me, Some((there, across)), &weight, own, &mut rows);
                 }
                 Neighbour::Boundary(BoundaryPart::Dirichlet) if !self.space.pins => {
                     let weight = self.weights.at::<D>((cell, local), true);
-                    self.add_own(&me, &weight, own, &mut rows);
+                    self.add_facet(&me, None, &weight, own, &mut rows);
                 }
                 Neighbour::Boundary(_) => {}
             }
         }
     }
 
-    /// Adds the form on a facet to the columns of the cell whose rows these are.
-    #[inline(always)]
-    fn add_own<const N: usize>(
-        &self,
-        me: &CellSide<'_, T, D>,
-        weight: &FacetWeight<T>,
-        own: usize,
-        rows: &mut Rows<'_, T, N>,
-    ) {
-        count::facets(1);
-        let form = &self.weights.coefficients;
-        let measure = me.metric.measures[me.local];
-        let products = self.jumps.own(me.local);
-        for (products, &class) in products.iter().zip(&self.jumps.weights) {
-            let scale = measure * form.jump_jump.at(weight.penalty * class);
-            rows.add(own, |i, j| scale * products[i][j]);
-        }
-        for (moment, &class) in self.facets.on(me.local).iter().zip(&self.flux_moments) {
-            let penalty = weight.penalty * class;
-            let flux = me.normal_derivatives(moment, rows.n).map(|d| weight.own_share * d);
-            let flux_flux = form.flux_flux.at(penalty) / measure;
-            let (jump_flux, flux_jump) = (form.jump_flux.at(penalty), form.flux_jump.at(penalty));
-            let by_flux: [T; MAX_BASIS] =
-                std::array::from_fn(|i| jump_flux * moment.values[i] + flux_flux * flux[i]);
-            rows.add(own, |i, j| by_flux[i] * flux[j] + flux_jump * flux[i] * moment.values[j]);
-        }
-    }
-
-    /// Writes the form on a facet to the columns of the cell across.
-    ///
-    /// Jumps and fluxes both flip their sign with the direction of the normal, so their products do
-    /// not: here normals point out of the cell whose rows these are.
+    /// Writes the products of jumps to the columns of the cell across.
     #[inline(always)]
     fn write_across<const N: usize>(
         &self,
         me: &CellSide<'_, T, D>,
-        (other, other_local): (usize, usize),
+        (_, other_local): (usize, usize),
         weight: &FacetWeight<T>,
         across: usize,
         rows: &mut Rows<'_, T, N>,
@@ -301,26 +270,51 @@ impl<T: Real, const D: usize> Filling<'_, '_, T, D> {
                 rows.add(across, |i, j| scale * products[i][j]);
             }
         }
-        if self.flux_moments.is_empty() {
-            return;
+    }
+
+    /// Adds the products of jumps to the columns of the cell whose rows these are, and all products
+    /// with fluxes to its columns and to those of the cell across.
+    ///
+    /// Jumps and fluxes both flip their sign with the direction of the normal, so their products do
+    /// not: here normals point out of the cell whose rows these are.
+    #[inline(always)]
+    fn add_facet<const N: usize>(
+        &self,
+        me: &CellSide<'_, T, D>,
+        other: Option<((usize, usize), usize)>,
+        weight: &FacetWeight<T>,
+        own: usize,
+        rows: &mut Rows<'_, T, N>,
+    ) {
+        count::facets(1);
+        let form = &self.weights.coefficients;
+        let measure = me.metric.measures[me.local];
+        let products = self.jumps.own(me.local);
+        for (products, &class) in products.iter().zip(&self.jumps.weights) {
+            let scale = measure * form.jump_jump.at(weight.penalty * class);
+            rows.add(own, |i, j| scale * products[i][j]);
         }
-        let metric = self.metrics.at::<D>(other);
-        let coefficient = self.space.alpha(other);
-        let side = CellSide { cell: other, local: other_local, metric: &metric, coefficient };
-        let mine = self.facets.on(me.local).iter();
-        let moments = mine.zip(self.facets.on(other_local)).zip(&self.flux_moments);
-        for ((mine, theirs), &class) in moments {
+        let n = if N == 0 { rows.n } else { N };
+        for (k, &class) in self.flux_moments.iter().enumerate() {
             let penalty = weight.penalty * class;
-            let flux = me.normal_derivatives(mine, rows.n).map(|d| weight.own_share * d);
-            let other_flux =
-                side.normal_derivatives(theirs, rows.n).map(|d| -weight.other_share * d);
             let flux_flux = form.flux_flux.at(penalty) / measure;
             let (jump_flux, flux_jump) = (form.jump_flux.at(penalty), form.flux_jump.at(penalty));
+            let mine = &self.facets.on(me.local)[k];
+            let flux = me.normal_derivatives(mine, n).map(|d| weight.own_share * d);
             let by_flux: [T; MAX_BASIS] =
                 std::array::from_fn(|i| jump_flux * mine.values[i] + flux_flux * flux[i]);
-            rows.add(across, |i, j| {
-                by_flux[i] * other_flux[j] - flux_jump * flux[i] * theirs.values[j]
-            });
+            rows.add(own, |i, j| by_flux[i] * flux[j] + flux_jump * flux[i] * mine.values[j]);
+            if let Some(((cell, local), across)) = other {
+                let metric = self.metrics.at::<D>(cell);
+                let coefficient = self.space.alpha(cell);
+                let other = CellSide { cell, local, metric: &metric, coefficient };
+                let theirs = &self.facets.on(local)[k];
+                let other_flux =
+                    other.normal_derivatives(theirs, n).map(|d| -weight.other_share * d);
+                rows.add(across, |i, j| {
+                    by_flux[i] * other_flux[j] - flux_jump * flux[i] * theirs.values[j]
+                });
+            }
         }
     }
 }
