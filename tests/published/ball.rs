@@ -48,4 +48,3 @@ fn ball_obstacle_of_petsc() {
     }
     checks.finish();
 }
-

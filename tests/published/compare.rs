@@ -1,8 +1,6 @@
 //! Tables of an independent implementation, compared figure by figure.
 
-use crate::support::accuracy::{
-    Boxed, Checks, norms_as_tables, sipg, solve_as_tables, wopsip,
-};
+use crate::support::accuracy::{Boxed, Checks, norms_as_tables, sipg, solve_as_tables, wopsip};
 use unilateral::prelude::*;
 use unilateral::problem::Datum;
 use unilateral::scenes::Scene;

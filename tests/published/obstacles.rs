@@ -140,7 +140,6 @@ fn radial_obstacle_in_space() {
     );
 }
 
-
 /// A string over a parabola.
 #[test]
 fn obstacle_on_an_interval() {

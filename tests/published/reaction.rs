@@ -45,7 +45,8 @@ fn smooth_load() {
         let error = row.error;
         let [max, h1, l2] = [error.max, error.h1, error.l2].map(Option::unwrap);
         eprintln!("{power} {max:e} {h1:e} {l2:e} {:e}", h1.hypot(l2));
-        for ((norm, ours), printed) in [("max", max), ("H1", h1), ("L2", l2)].into_iter().zip(printed)
+        for ((norm, ours), printed) in
+            [("max", max), ("H1", h1), ("L2", l2)].into_iter().zip(printed)
         {
             checks.printed(&format!("{norm}, h = 2^-{power}"), ours, printed, 0.5);
         }
