@@ -2,6 +2,7 @@
 
 mod support;
 
+use std::ops::Range;
 use support::accuracy::{Boxed, Checks, label, own_scene, rows, solve_as_tables};
 use unilateral::mesh::Mesh;
 use unilateral::prelude::*;
@@ -99,63 +100,114 @@ fn smooth<const D: usize>() -> Scene<D> {
     own_scene("smooth", domain, Problem::new().source(load).exact(value, gradient))
 }
 
-fn smooth_quadratics<const D: usize>(levels: [usize; 2]) {
-    let mut checks = Checks::default();
-    for name in QUADRATICS {
-        let clock = std::time::Instant::now();
-        for row in rows(smooth::<D>(), vec![named(name)], levels) {
-            checks.certified(&row, 1e-9);
-            eprintln!(
-                "{} H1 {:?} L2 {:?}  {:?}",
-                label(&row),
-                row.order.h1,
-                row.order.l2,
-                clock.elapsed()
-            );
+/// Checks orders two in H1 and three in L2 over two levels. In L2 nothing is asked of the methods that
+/// are not symmetric, whose duals are not consistent: on an interval they have order 2.007 and 2.000
+/// (`nipg-p2`, `iipg-p2`), in the plane 2.058 and 2.047, in space on these meshes still 3.
+fn smooth_quadratics<const D: usize>(
+    checks: &mut Checks,
+    schemes: &[&str],
+    levels: [usize; 2],
+    h1: Range<f64>,
+    l2: Range<f64>,
+) {
+    let boxed = schemes.iter().map(|name| named(name)).collect();
+    for row in rows(smooth::<D>(), boxed, levels) {
+        checks.certified(&row, 1e-9);
+        if row.level != levels[1] {
+            continue;
         }
+        let orders = [row.order.h1, row.order.l2].map(Option::unwrap);
+        let is_symmetric = !["nipg-p2", "iipg-p2"].contains(&row.scheme.as_str());
+        let holds = h1.contains(&orders[0]) && (!is_symmetric || l2.contains(&orders[1]));
+        checks.that(holds, || format!("{}: H1 {:.3}, L2 {:.3}", label(&row), orders[0], orders[1]));
+        let promised = row.expected_order.h1.unwrap_or(orders[0]);
+        checks.that(orders[0] > promised - 0.1, || format!("{}: not {promised}", label(&row)));
+    }
+}
+
+/// Measured on an interval: H1 2.000 to 2.023, L2 3.000 to 3.025; in the plane 2.000 to 2.037 and 3.001
+/// to 3.069.
+#[test]
+fn quadratics_without_inequalities() {
+    let mut checks = Checks::default();
+    let consistent = &QUADRATICS[..7];
+    let c = &mut checks;
+    smooth_quadratics::<1>(c, consistent, [64, 128], 1.95..2.05, 2.95..3.05);
+    smooth_quadratics::<2>(c, consistent, [16, 32], 1.95..2.05, 2.9..3.1);
+    checks.finish();
+}
+
+/// The meshes that are quick are coarse. Measured: H1 1.972 to 2.122, L2 2.968 to 3.168, most for
+/// `ldg-p2`.
+#[test]
+fn quadratics_without_inequalities_in_space() {
+    let mut checks = Checks::default();
+    smooth_quadratics::<3>(&mut checks, &QUADRATICS[..7], [3, 6], 1.9..2.15, 2.9..3.2);
+    checks.finish();
+}
+
+/// The missing consistency of the over-penalised method is of a higher order, but on coarse meshes
+/// larger: orders fall to two and three from above, on an interval 2.006 and 3.620 with 32 cells, in
+/// the plane 1.989 and 3.139, in space 3.394 and 4.060 with six cells along a side, where it is all of
+/// the error. The weight of order `h^-5` leaves no room for finer meshes in one dimension: rounding
+/// outweighs the error with 128 cells, of which a warning tells.
+#[test]
+fn over_penalised_quadratics_without_inequalities() {
+    let mut checks = Checks::default();
+    let (c, schemes) = (&mut checks, &["wopsip-p2"]);
+    smooth_quadratics::<1>(c, schemes, [16, 32], 1.95..2.05, 2.95..3.7);
+    smooth_quadratics::<2>(c, schemes, [16, 32], 1.95..2.05, 2.95..3.2);
+    smooth_quadratics::<3>(c, schemes, [3, 6], 1.95..3.5, 2.95..4.2);
+    let fine = rows(smooth::<1>(), vec![named("wopsip-p2")], [64, 128]);
+    c.that(fine[1].error.h1 > fine[0].error.h1, || "rounding does not show".to_owned());
+    c.that(!fine[1].warnings.is_empty(), || "no warning of rounding".to_owned());
+    checks.finish();
+}
+
+/// Quadratics under an inequality: the order in H1 over two refinements of each of the eight schemes.
+fn quadratics(scene: impl Fn() -> Scene<2>, coarse: usize, band: Range<f64>) {
+    let mut checks = Checks::default();
+    let schemes = QUADRATICS.iter().map(|name| named(name)).collect();
+    let found = rows(scene(), schemes, [coarse, 2 * coarse, 4 * coarse]);
+    for of_scheme in found.chunks(3) {
+        for row in of_scheme {
+            checks.certified(row, 1e-9);
+        }
+        let [first, .., last] = of_scheme else { unreachable!("three levels") };
+        let order = (first.error.h1.unwrap() / last.error.h1.unwrap()).log2() / 2.0;
+        checks.that(band.contains(&order), || format!("{}: {order:.3}", label(last)));
+        let promised = last.expected_order.h1.unwrap_or(order);
+        checks.that(order > promised - 0.1, || format!("{}: not {promised}", label(last)));
     }
     checks.finish();
 }
 
-#[test]
-fn quadratics_on_an_interval() {
-    smooth_quadratics::<1>([64, 128]);
-}
-
-#[test]
-fn quadratics_in_the_plane() {
-    smooth_quadratics::<2>([16, 32]);
-}
-
-#[test]
-fn quadratics_in_space() {
-    smooth_quadratics::<3>([3, 6]);
-}
-
-fn quadratics(scene: impl Fn() -> Scene<2>, levels: [usize; 3]) {
-    let mut checks = Checks::default();
-    for name in QUADRATICS {
-        let clock = std::time::Instant::now();
-        for row in rows(scene(), vec![named(name)], levels) {
-            checks.certified(&row, 1e-9);
-            eprintln!(
-                "{} H1 {:?} L2 {:?} {:?}",
-                label(&row),
-                row.order.h1,
-                row.order.l2,
-                clock.elapsed()
-            );
-        }
-    }
-    checks.finish();
-}
-
+/// How the free boundary lies between vertices changes with the level, so that the order over one pair
+/// of levels is anything from 1.2 to 1.8; over two it was measured
+/// 1.530, 1.537, 1.536, 1.520, 1.502, 1.533, 1.528, 1.534.
 #[test]
 fn quadratics_on_the_radial_obstacle() {
-    quadratics(|| scenes::radial::<2>(1.0), [8, 16, 32]);
+    quadratics(|| scenes::radial(1.0), 8, 1.4..1.6);
 }
 
+/// Measured: 1.477, 1.477, 1.480, 1.467, 1.451, 1.480, 1.480, 1.474.
+#[test]
+#[ignore = "takes half a minute"]
+fn quadratics_on_the_radial_obstacle_on_finer_meshes() {
+    quadratics(|| scenes::radial(1.0), 16, 1.4..1.6);
+}
+
+/// Nothing but the change of contact limits the order. Measured: 1.493, 1.494, 1.494,
+/// 1.497, 1.493, 1.491, 1.493, 1.496.
+#[test]
+fn quadratics_under_a_harmonic_signorini_condition() {
+    quadratics(scenes::signorini_harmonic::<2>, 8, 1.45..1.55);
+}
+
+/// Here the solution has a smooth part besides, whose error falls with order two and is the larger one
+/// on meshes such as these: orders lie above the limit and fall towards it. Measured: 1.836, 1.867,
+/// 1.838, 1.906, 1.923, 1.833, 1.834, 1.852.
 #[test]
 fn quadratics_under_a_signorini_condition() {
-    quadratics(scenes::signorini_harmonic::<2>, [8, 16, 32]);
+    quadratics(scenes::signorini_2d, 8, 1.5..2.0);
 }

@@ -55,8 +55,9 @@ fn nodal_errors(checks: &mut Checks, scene: &Scene<1>) -> Vec<f64> {
         .collect()
 }
 
-/// The errors of the exact discrete solutions, by an independent program, against those printed in
-/// the paper, where the iteration stopped at a tolerance of 1e-8 and nothing else differs.
+/// The errors of the exact discrete solutions, computed in rational numbers (parabolas with the right
+/// values at the first node of contact), to every digit; and those of the paper, whose iteration stopped
+/// at a tolerance of 1e-8, as far as they are larger than that.
 ///
 /// E. Bueler, mg-glaciers, the data of its paper on multilevel methods in one dimension, the
 /// "traditional" problem.
@@ -73,21 +74,29 @@ fn the_string_pressed_onto_a_parabola() {
         "4.5033e-7",
         "1.1230e-7",
         "2.8110e-8",
-        "7.0227e-9",
-        "1.7556e-9",
-        "4.3671e-10",
+        "7.0230e-9",
+        "1.7563e-9",
+        "4.3901e-10",
     ];
     let paper = [
-        5.8231e-3, 2.0485e-3, 4.3550e-4, 1.1826e-4, 2.8384e-5, 7.2444e-6, 1.7941e-6, 4.5170e-7,
-        1.1308e-7, 2.8832e-8, 7.3249e-9, 2.0552e-9, 6.0838e-10,
+        "5.8231e-3",
+        "2.0485e-3",
+        "4.3550e-4",
+        "1.1826e-4",
+        "2.8384e-5",
+        "7.2444e-6",
+        "1.7941e-6",
+        "4.5170e-7",
+        "1.1308e-7",
+        "2.8832e-8",
     ];
     let mut checks = Checks::default();
     let errors = nodal_errors(&mut checks, &scenes::parabola_1d());
     for (k, (&ours, printed)) in errors.iter().zip(discrete).enumerate() {
         checks.printed(&format!("J = {}", k + 2), ours, printed, 0.5);
     }
-    for (k, (&ours, theirs)) in errors.iter().zip(paper).enumerate() {
-        checks.close(&format!("J = {} in the paper", k + 2), ours, theirs, 1e-8);
+    for (k, (&ours, printed)) in errors.iter().zip(paper).enumerate() {
+        checks.printed_within(&format!("J = {} in the paper", k + 2), ours, printed, 1e-8);
     }
     checks.finish();
 }
