@@ -201,7 +201,7 @@ fn quadratics_on_the_radial_obstacle_on_finer_meshes() {
 /// 1.497, 1.493, 1.491, 1.493, 1.496.
 #[test]
 fn quadratics_under_a_harmonic_signorini_condition() {
-    quadratics(scenes::signorini_harmonic::<2>, 8, 1.45..1.55);
+    quadratics(scenes::signorini_harmonic::<2>, 4, 1.4..1.6);
 }
 
 /// Here the solution has a smooth part besides, whose error falls with order two and is the larger one
