@@ -37,8 +37,8 @@ fn jump_norm<const D: usize>(problem: &Problem<D>, error: &Errors) -> f64 {
     (energy * energy - h1 * h1 - reaction * l2 * l2).sqrt()
 }
 
-/// Compares every figure of a table with ours, to its last digit. Its rules have five points of Gauss
-/// in each direction, on intervals six.
+/// Compares every figure of a table with ours, to its last digit. Its rules have five points of
+/// Gauss in each direction, on intervals six.
 pub fn compare<const D: usize>(build: impl Fn(usize) -> Scene<D>, table: Table<'_>) {
     let degree = if D == 1 { 11 } else { 9 };
     let mut checks = Checks::default();

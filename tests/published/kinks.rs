@@ -9,9 +9,9 @@ use unilateral::quadrature::Rule;
 use unilateral::scenes::Scene;
 use unilateral::solve::Outcome;
 
-/// The halves beside the median to the longest side, which joins the first vertex to the last: their
-/// corners in barycentric coordinates. In squares on the diagonal that is no line of the mesh, that
-/// diagonal runs between them.
+/// The halves beside the median to the longest side, which joins the first vertex to the last:
+/// their corners in barycentric coordinates. In squares on the diagonal that is no line of the
+/// mesh, that diagonal runs between them.
 const HALVES: [[[f64; 3]; 3]; 2] = {
     let [first, middle, last] = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
     let foot = [0.5, 0.0, 0.5];
@@ -80,9 +80,9 @@ fn a_ridge_on_mesh_lines_is_reproduced() {
     checks.finish();
 }
 
-/// A ridge through the middles of cells: figures of an independent program by rules of six points in
-/// each direction, which the kink makes inexact, except for conforming elements: these are flat on
-/// the cells of the kink.
+/// A ridge through the middles of cells: figures of an independent program by rules of six points
+/// in each direction, which the kink makes inexact, except for conforming elements: these are flat
+/// on the cells of the kink.
 #[test]
 fn a_ridge_between_mesh_lines() {
     let table: &[(&str, &[(usize, &str)])] = &[

@@ -60,7 +60,7 @@ fn radial_obstacle_in_the_plane() {
 }
 
 #[test]
-#[ignore = "takes a minute"]
+#[ignore = "takes a quarter of a minute"]
 fn radial_obstacle_in_the_plane_on_the_finest_mesh() {
     compare(
         |_| scenes::radial::<2>(1.0),

@@ -1,5 +1,5 @@
-//! A string with reaction, Signorini conditions at both ends: tables of a thesis (bachelor's thesis,
-//! Technical University of Munich, on the Signorini problem in one dimension).
+//! A string with reaction, Signorini conditions at both ends: tables of a thesis (bachelor's
+//! thesis, Technical University of Munich, on the Signorini problem in one dimension).
 
 use crate::support::accuracy::Checks;
 use unilateral::algebra::Inequality;
@@ -18,8 +18,8 @@ fn mesh(power: i32) -> Mesh<f64, 1> {
 }
 
 /// Solves, and tells the size of what rounding does: the residual of each of the `n` rows, a sum of
-/// terms of size `n u`, is known up to their rounding, which is random, so that the solution is known up
-/// to the root of `n` times that; four times this is allowed.
+/// terms of size `n u`, is known up to their rounding, which is random, so that the solution is
+/// known up to the root of `n` times that; four times this is allowed.
 fn solve(inequality: &Inequality<f64>) -> (Vec<f64>, f64) {
     let solution = ActiveSet::default().solve(inequality);
     assert_eq!(solution.outcome, Outcome::Converged);
@@ -75,7 +75,8 @@ fn smooth_load() {
     checks.finish();
 }
 
-/// Integrals of `|x|^-0.499` times each hat function on a mesh of `(-1, 1)` that has a node at zero.
+/// Integrals of `|x|^-0.499` times each hat function on a mesh of `(-1, 1)` that has a node at
+/// zero.
 fn rough_load(mesh: &Mesh<f64, 1>) -> Vec<f64> {
     let x: Vec<f64> = mesh.vertices().iter().map(|x| x[0]).collect();
     let mut load = vec![0.0; x.len()];
@@ -113,9 +114,9 @@ fn norms(values: &[f64]) -> [f64; 3] {
     [max, (h1 + l2).sqrt(), l2.sqrt()]
 }
 
-/// Errors against the solution on a mesh of size `2^-12`, the load integrated exactly: the figures of
-/// a computation in forty digits. The thesis names another load, but its figures are those of this
-/// one: its H1 norms to every digit, the others but for up to a hundredth on the finest mesh.
+/// Errors against the solution on a mesh of size `2^-12`, the load integrated exactly: the figures
+/// of a computation in forty digits. The thesis names another load, but its figures are those of
+/// this one: its H1 norms to every digit, the others but for up to a hundredth on the finest mesh.
 #[test]
 fn rough_load_without_exact_solution() {
     let table: Rows<'_> = &[

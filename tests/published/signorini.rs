@@ -55,7 +55,7 @@ fn signorini_with_zero_data_in_the_plane() {
 }
 
 #[test]
-#[ignore = "takes half a minute"]
+#[ignore = "takes a quarter of a minute"]
 fn signorini_with_zero_data_in_the_plane_on_the_finest_mesh() {
     compare(
         |_| scenes::signorini_2d(),
@@ -179,7 +179,7 @@ fn hertz_contact_in_space() {
 }
 
 #[test]
-#[ignore = "takes half a minute"]
+#[ignore = "takes a quarter of a minute"]
 fn hertz_contact_in_space_on_the_finest_mesh() {
     compare(
         |_| scenes::hertz_3d(),

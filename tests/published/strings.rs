@@ -18,8 +18,8 @@ fn refined(coarse: &[Contact]) -> Vec<Contact> {
     fine
 }
 
-/// Root of `h` times the sum of squares of nodal errors for `2^(J+1)` cells, `J` = 2 to 14, the load
-/// `h f` at each node.
+/// Root of `h` times the sum of squares of nodal errors for `2^(J+1)` cells, `J` = 2 to 14, the
+/// load `h f` at each node.
 fn nodal_errors(checks: &mut Checks, scene: &Scene<1>) -> Vec<f64> {
     let problem = &scene.problem;
     let exact = problem.exact.as_ref().unwrap();
@@ -55,9 +55,9 @@ fn nodal_errors(checks: &mut Checks, scene: &Scene<1>) -> Vec<f64> {
         .collect()
 }
 
-/// The errors of the exact discrete solutions, computed in rational numbers (parabolas with the right
-/// values at the first node of contact), to every digit; and those of the paper, whose iteration stopped
-/// at a tolerance of 1e-8, as far as they are larger than that.
+/// The errors of the exact discrete solutions, computed in rational numbers (parabolas with the
+/// right values at the first node of contact), to every digit; and those of the paper, whose
+/// iteration stopped at a tolerance of 1e-8, as far as they are larger than that.
 ///
 /// E. Bueler, mg-glaciers, the data of its paper on multilevel methods in one dimension, the
 /// "traditional" problem.

@@ -143,9 +143,9 @@ pub fn norms_as_tables<const D: usize>(
     norms_by_rule(scene, mesh, u, DEGREE_OF_TABLES)
 }
 
-/// L2 norm and H1 seminorm of the error by a rule of this degree, which collapses a square onto each
-/// triangle, one side of it onto the triangle's first vertex. Where the error is not smooth in a cell
-/// the last digits of a table are those of its rule.
+/// L2 norm and H1 seminorm of the error by a rule of this degree, which collapses a square onto
+/// each triangle, one side of it onto the triangle's first vertex. Where the error is not smooth in
+/// a cell the last digits of a table are those of its rule.
 pub fn norms_by_rule<const D: usize>(
     scene: &Scene<D>,
     mesh: &Mesh<f64, D>,
