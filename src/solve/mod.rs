@@ -7,6 +7,8 @@ mod certificate;
 mod condensed;
 mod conjugate_gradients;
 mod cycles;
+mod facet_pairs;
+mod facet_split;
 mod hierarchy;
 mod inexact;
 mod iterate;

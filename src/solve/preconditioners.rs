@@ -5,6 +5,7 @@ use std::sync::Arc;
 use super::aggregation::galerkin;
 use super::auxiliary_space::{AuxiliarySpace, Vertices};
 use super::conjugate_gradients::Preconditioner;
+use super::facet_split::FacetSplit;
 use super::hierarchy::{Coarser, VertexLevel};
 use super::linear::FactorError;
 use super::multigrid::Multigrid;
@@ -17,6 +18,7 @@ use crate::real::Real;
 pub(super) enum Preconditioners<'a, T> {
     Multigrid(Multigrid<'a, T>),
     AuxiliarySpace(AuxiliarySpace<'a, T>),
+    FacetSplit(FacetSplit<'a, T>),
 }
 
 impl<'a, T: Real> Preconditioners<'a, T> {
@@ -52,9 +54,14 @@ impl<'a, T: Real> Preconditioners<'a, T> {
                 Some(Self::Multigrid(Multigrid::new(matrix, Some(coarser))))
             }
             Functions::Same(level) => {
-                let multigrid = Multigrid::new(&level.matrix, level.coarser.as_ref());
-                let vertices = Vertices::new(multigrid, &level.fixed, places)?;
-                AuxiliarySpace::new(matrix, places, vertices).map(Self::AuxiliarySpace)
+                let vertices = || {
+                    let multigrid = Multigrid::new(&level.matrix, level.coarser.as_ref());
+                    Vertices::new(multigrid, &level.fixed, places)
+                };
+                if let Some(split) = FacetSplit::new(matrix, places, vertices) {
+                    return Some(Self::FacetSplit(split));
+                }
+                AuxiliarySpace::new(matrix, places, vertices()?).map(Self::AuxiliarySpace)
             }
         }
     }
@@ -67,6 +74,7 @@ impl<'a, T: Real> Preconditioners<'a, T> {
         match self {
             Self::Multigrid(multigrid) => multigrid.fix(fixed),
             Self::AuxiliarySpace(space) => space.fix(fixed),
+            Self::FacetSplit(split) => split.fix(fixed),
         }
     }
 
@@ -75,6 +83,7 @@ impl<'a, T: Real> Preconditioners<'a, T> {
         match self {
             Self::Multigrid(_) => "multigrid",
             Self::AuxiliarySpace(_) => "auxiliary-space",
+            Self::FacetSplit(_) => "facet-split",
         }
     }
 }
@@ -84,6 +93,7 @@ impl<T: Real> Preconditioner<T> for Preconditioners<'_, T> {
         match self {
             Self::Multigrid(multigrid) => multigrid.apply(r, z),
             Self::AuxiliarySpace(space) => space.apply(r, z),
+            Self::FacetSplit(split) => split.apply(r, z),
         }
     }
 }
