@@ -16,7 +16,7 @@ const LARGEST: usize = 16;
 
 /// The inverse blocks of the cells plus a multigrid cycle on the vertices that no fixed unknown
 /// touches.
-pub(super) struct AuxiliarySpace<'a, T> {
+pub(super) struct AuxiliarySpace<'a, T: Real> {
     blocks: Blocks<T>,
     vertices: Vertices<'a, T>,
 }
@@ -65,7 +65,7 @@ pub(super) fn cell_size(places: &[Place]) -> Option<usize> {
 }
 
 /// Conforming linear functions inside another space, through multigrid.
-pub(super) struct Vertices<'a, T> {
+pub(super) struct Vertices<'a, T: Real> {
     multigrid: Multigrid<'a, T>,
     given: &'a [bool],
     /// The unknowns around each vertex, with weights.

@@ -22,7 +22,7 @@ use crate::real::Real;
 /// mean and jump of the two are corrected each by itself; where all of it is fixed, or a Dirichlet
 /// facet lies, the mean is one-sided and penalised. Cells with both fixed and free vertex values
 /// keep these, and are solved for together with the one-sided means next to them.
-pub(super) struct FacetSplit<'a, T> {
+pub(super) struct FacetSplit<'a, T: Real> {
     matrix: &'a SparseMatrix<T>,
     pairs: Pairs<T>,
     vertices: Vertices<'a, T>,

@@ -1,5 +1,7 @@
 //! One multigrid cycle for conforming linear functions that vanish on given vertices.
 
+use std::borrow::Cow;
+
 use super::hierarchy::Coarser;
 use super::linear::{FactorError, Factors};
 use super::smoother::{backward, forward, invert_diagonal, residual};
@@ -10,18 +12,19 @@ use crate::real::Real;
 /// A V-cycle with one Gauss-Seidel sweep forward before and one backward after the coarser grid:
 /// symmetric and positive definite, so that conjugate gradients can use it.
 ///
-/// The form on each level is that of its own mesh, on the functions that vanish where a fixed fine
-/// vertex lies in their support: a subspace of the fine functions on which coarse and fine form
-/// agree, so that nothing is assembled when the fixed vertices change. Source for coarse spaces
-/// inside the domain that the fine mesh resolves: R. Kornhuber, H. Yserentant, Numer. Math. 67
-/// (1994), 301-314.
-pub(super) struct Multigrid<'a, T> {
+/// Coarse functions are cut off at the fixed fine vertices: R. Kornhuber, Numer. Math. 69 (1994),
+/// 167-184. The form on each level is that of its own mesh except for the functions that lost
+/// something, for which it is computed from the finer form: few, near the fixed vertices.
+pub(super) struct Multigrid<'a, T: Real> {
     grids: Vec<Grid<'a, T>>,
     coarsest: Coarsest<T>,
 }
 
-struct Grid<'a, T> {
-    matrix: &'a SparseMatrix<T>,
+struct Grid<'a, T: Real> {
+    original: &'a SparseMatrix<T>,
+    matrix: Cow<'a, SparseMatrix<T>>,
+    /// Rows of the matrix that are not those of the original.
+    cut: Vec<u32>,
     transfer: Option<&'a Transfer<T>>,
     given: &'a [bool],
     diagonal: Vec<T>,
@@ -48,7 +51,9 @@ impl<'a, T: Real> Grid<'a, T> {
         let n = matrix.size();
         let zeros = || vec![T::lit(0.0); n];
         Self {
-            matrix,
+            original: matrix,
+            matrix: Cow::Borrowed(matrix),
+            cut: Vec::new(),
             transfer: coarser.map(|c| &*c.transfer),
             given,
             diagonal: matrix.diagonal(),
@@ -59,6 +64,71 @@ impl<'a, T: Real> Grid<'a, T> {
             residual: zeros(),
             old: if n > super::pieces::PIECE { zeros() } else { Vec::new() },
         }
+    }
+}
+
+impl<T: Real> Grid<'_, T> {
+    /// Sets the rows of functions that lost fixed fine unknowns, and restores those that did before.
+    fn cut_off(&mut self, finer: &Grid<'_, T>, transfer: &Transfer<T>) {
+        let mut near = vec![false; finer.fixed.len()];
+        for i in (0..near.len()).filter(|&i| finer.fixed[i]) {
+            near[i] = true;
+            finer.matrix.row(i).0.iter().for_each(|&j| near[j as usize] = true);
+        }
+        finer.cut.iter().for_each(|&i| near[i as usize] = true);
+        let fixed = &self.fixed;
+        let is_cut = |j: usize| !fixed[j] && transfer.any_child(j, |i| near[i]);
+        let cut: Vec<u32> = (0..fixed.len()).filter(|&j| is_cut(j)).map(|j| j as u32).collect();
+        let before = std::mem::replace(&mut self.cut, cut);
+        if before.is_empty() && self.cut.is_empty() {
+            return;
+        }
+        let matrix = self.matrix.to_mut();
+        for &j in &before {
+            let range = row_range(matrix, j);
+            matrix.values[range.clone()].copy_from_slice(&self.original.values[range]);
+            self.diagonal[j as usize] = self.original.get(j as usize, j as usize);
+        }
+        for &j in &self.cut {
+            let range = row_range(matrix, j);
+            let columns = &matrix.columns[range.clone()];
+            let values = &mut matrix.values[range];
+            values.fill(T::lit(0.0));
+            transfer.children(j as usize, |i, weight| {
+                if !finer.fixed[i] {
+                    add_row(&finer.matrix, &finer.fixed, transfer, (i, weight), (columns, values));
+                }
+            });
+            if let Ok(k) = columns.binary_search(&j) {
+                self.diagonal[j as usize] = values[k];
+            }
+        }
+    }
+}
+
+fn row_range<T>(matrix: &SparseMatrix<T>, j: u32) -> std::ops::Range<usize> {
+    let j = j as usize;
+    matrix.row_starts[j] as usize..matrix.row_starts[j + 1] as usize
+}
+
+/// Adds a fine row, times a weight, to a coarse one.
+fn add_row<T: Real>(
+    matrix: &SparseMatrix<T>,
+    fixed: &[bool],
+    transfer: &Transfer<T>,
+    (i, weight): (usize, T),
+    (columns, values): (&[u32], &mut [T]),
+) {
+    let (neighbours, entries) = matrix.row(i);
+    for (&k, &a) in neighbours.iter().zip(entries) {
+        if fixed[k as usize] {
+            continue;
+        }
+        transfer.parents(k as usize, |parent, other| {
+            if let Ok(at) = columns.binary_search(&parent) {
+                values[at] += weight * a * other;
+            }
+        });
     }
 }
 
@@ -87,7 +157,8 @@ impl<'a, T: Real> Multigrid<'a, T> {
             if let Some(finer) = finer.last() {
                 grid.fixed.copy_from_slice(grid.given);
                 if let Some(transfer) = finer.transfer {
-                    transfer.fix_touched(&finer.fixed, &mut grid.fixed);
+                    transfer.fix_covered(&finer.fixed, &mut grid.fixed);
+                    grid.cut_off(finer, transfer);
                 }
             }
             invert_diagonal(&grid.diagonal, &grid.fixed, &mut grid.inverse);
@@ -100,8 +171,8 @@ impl<'a, T: Real> Multigrid<'a, T> {
             self.coarsest.factors = None;
             return Ok(());
         }
-        if self.coarsest.factors.is_none() || free != self.coarsest.free {
-            self.coarsest.factors = Some(Factors::new(last.matrix, true, &free)?);
+        if self.coarsest.factors.is_none() || free != self.coarsest.free || !last.cut.is_empty() {
+            self.coarsest.factors = Some(Factors::new(&last.matrix, true, &free)?);
             self.coarsest.free = free;
         }
         Ok(())
@@ -119,9 +190,9 @@ fn cycle<T: Real>(grids: &mut [Grid<'_, T>], coarsest: &mut Coarsest<T>, force: 
         coarsest.solve(force, x);
         return;
     }
-    forward(grid.matrix, &grid.inverse, force, x);
+    forward(&grid.matrix, &grid.inverse, force, x);
     if let (Some(transfer), Some(coarse)) = (grid.transfer, rest.first_mut()) {
-        residual(grid.matrix, &grid.inverse, force, x, &mut grid.residual);
+        residual(&grid.matrix, &grid.inverse, force, x, &mut grid.residual);
         let mut coarse_force = std::mem::take(&mut coarse.force);
         let mut coarse_values = std::mem::take(&mut coarse.values);
         transfer.restrict(&grid.residual, &mut coarse_force);
@@ -130,7 +201,7 @@ fn cycle<T: Real>(grids: &mut [Grid<'_, T>], coarsest: &mut Coarsest<T>, force: 
         rest[0].force = coarse_force;
         rest[0].values = coarse_values;
     }
-    backward(grid.matrix, &grid.inverse, force, x, &mut grid.old);
+    backward(&grid.matrix, &grid.inverse, force, x, &mut grid.old);
 }
 
 impl<T: Real> Coarsest<T> {

@@ -15,7 +15,7 @@ use crate::algebra::{Bound, Inequality, Place};
 use crate::real::Real;
 
 /// A preconditioner for the unknowns that are free.
-pub(super) enum Preconditioners<'a, T> {
+pub(super) enum Preconditioners<'a, T: Real> {
     Multigrid(Multigrid<'a, T>),
     AuxiliarySpace(AuxiliarySpace<'a, T>),
     FacetSplit(FacetSplit<'a, T>),

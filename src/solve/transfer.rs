@@ -166,19 +166,52 @@ impl<T: Real> Transfer<T> {
         fine
     }
 
-    /// Fixes every coarse unknown whose function does not vanish on all fixed fine ones.
-    pub(super) fn fix_touched(&self, fine_fixed: &[bool], coarse_fixed: &mut [bool]) {
+    /// Fixes every coarse unknown whose function is nothing but fixed fine ones.
+    pub(super) fn fix_covered(&self, fine_fixed: &[bool], coarse_fixed: &mut [bool]) {
         each_mut(coarse_fixed, |range, piece| {
             for (j, fixed) in range.zip(piece).filter(|(_, fixed)| !**fixed) {
-                let is_fixed = |&i: &u32| fine_fixed[i as usize];
-                *fixed = match &self.kind {
-                    Kind::Midpoints { starts, children, own, .. } => {
-                        let list = &children[starts[j] as usize..starts[j + 1] as usize];
-                        is_fixed(&own[j]) || list.iter().any(is_fixed)
-                    }
-                    Kind::Weights { coarse, .. } => coarse.row(j).0.iter().any(is_fixed),
-                };
+                *fixed = !self.any_child(j, |i| !fine_fixed[i]);
             }
         });
+    }
+
+    /// Whether something holds for any fine unknown that a coarse function does not vanish on.
+    pub(super) fn any_child(&self, j: usize, holds: impl Fn(usize) -> bool) -> bool {
+        let mut any = false;
+        self.children(j, |i, _| any |= holds(i));
+        any
+    }
+
+    /// Calls a function with each fine unknown of a coarse one, and its weight.
+    #[inline(always)]
+    pub(super) fn children(&self, j: usize, mut call: impl FnMut(usize, T)) {
+        match &self.kind {
+            Kind::Midpoints { starts, children, own, .. } => {
+                call(own[j] as usize, T::lit(1.0));
+                for &i in &children[starts[j] as usize..starts[j + 1] as usize] {
+                    call(i as usize, T::lit(0.5));
+                }
+            }
+            Kind::Weights { coarse, .. } => {
+                let (columns, weights) = coarse.row(j);
+                columns.iter().zip(weights).for_each(|(&i, &w)| call(i as usize, w));
+            }
+        }
+    }
+
+    /// Calls a function with each coarse unknown of a fine one, and its weight.
+    #[inline(always)]
+    pub(super) fn parents(&self, i: usize, mut call: impl FnMut(u32, T)) {
+        match &self.kind {
+            Kind::Midpoints { parents, .. } => {
+                for parent in parents[i] {
+                    call(parent, T::lit(0.5));
+                }
+            }
+            Kind::Weights { fine, .. } => {
+                let (columns, weights) = fine.row(i);
+                columns.iter().zip(weights).for_each(|(&j, &w)| call(j, w));
+            }
+        }
     }
 }
