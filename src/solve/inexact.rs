@@ -6,14 +6,11 @@ use super::cycles::key_of;
 use super::iterate::{known_value, rest};
 use super::linear::FactorError;
 use super::nearby::Nearby;
-use super::pieces::each_mut;
+use super::pieces::{each_mut, map, map_mut};
 use super::preconditioners::Preconditioners;
 use super::{Outcome, Solution};
 use crate::algebra::{Bound, Contact, Inequality, Start};
 use crate::real::Real;
-
-/// Every linear system is solved to this share of its initial error while the active set moves.
-const SHARE: f64 = 0.1;
 
 /// Most iterations for one linear system.
 const MOST_ITERATIONS: usize = 500;
@@ -50,6 +47,7 @@ pub(super) struct Inexact<'a, T> {
 }
 
 /// What a look at the whole iterate tells.
+#[derive(Default)]
 struct Look {
     flips: Vec<(u32, Contact)>,
     /// Largest violation of a bound.
@@ -137,6 +135,7 @@ impl<'a, T: Real> Inexact<'a, T> {
         self.energy = self.look(settings.band).energy;
         let is_linear = !self.inequality.bounds.iter().any(Bound::is_inequality);
         let (mut settled, mut refresh) = (is_linear, true);
+        let mut careful = false;
         let (mut best, mut idle, mut repeats) = (f64::INFINITY, 0, 0);
         loop {
             if refresh {
@@ -153,7 +152,7 @@ impl<'a, T: Real> Inexact<'a, T> {
             }
             let stop = Stop {
                 norm: tolerance * self.energy,
-                share: if settled { 0.0 } else { SHARE },
+                share: if settled || careful { 0.0 } else { preconditioner.share() },
                 iterations: MOST_ITERATIONS,
             };
             let run = self.solve_linear(&mut gradients, preconditioner, stop);
@@ -188,7 +187,11 @@ impl<'a, T: Real> Inexact<'a, T> {
                 idle = if merit < best { 0 } else { idle + 1 };
                 best = best.min(merit);
                 if idle > settings.patience {
-                    return None;
+                    if careful {
+                        return None;
+                    }
+                    // perhaps the active set wanders because systems are solved too badly
+                    (careful, idle) = (true, 0);
                 }
                 self.flip(&look.flips);
             }
@@ -224,28 +227,34 @@ impl<'a, T: Real> Inexact<'a, T> {
     fn look(&mut self, band: f64) -> Look {
         let Inequality { matrix, load, .. } = self.inequality;
         let values = &self.values;
-        each_mut(&mut self.residual, |range, r| {
+        let sizes = map_mut(&mut self.residual, |range, r| {
+            let (mut energy, mut scale) = (0.0, 0.0_f64);
             for (i, r) in range.zip(r) {
-                *r = T::lit(load[i].to_f64() - matrix.row_dot_f64(i, values));
+                let (x, b) = (values[i].to_f64(), load[i].to_f64());
+                let residual = b - matrix.row_dot_f64(i, values);
+                *r = T::lit(residual);
+                energy += x * (b - residual);
+                scale = scale.max(x.abs());
             }
+            (energy, scale)
         });
-        let mut look = Look {
-            flips: Vec::new(),
-            violation: 0.0,
-            scale: 0.0,
-            wrong: 0.0,
-            off_contact: 0.0,
-            energy: 0.0,
-        };
-        for (i, &x) in values.iter().enumerate() {
-            let (x, b, r) = (x.to_f64(), load[i].to_f64(), self.residual[i].to_f64());
-            look.scale = look.scale.max(x.abs());
-            look.energy += x * (b - r);
+        let mut look = Look::default();
+        for (energy, scale) in sizes {
+            look.energy += energy;
+            look.scale = look.scale.max(scale);
         }
         look.scale = if look.scale > 0.0 { look.scale } else { 1.0 };
         let noise = band * T::EPSILON * look.scale;
-        for i in 0..values.len() {
-            self.judge(i, noise, band, &mut look);
+        let parts = map(values.len(), |range| {
+            let mut part = Look::default();
+            range.for_each(|i| self.judge(i, noise, band, &mut part));
+            part
+        });
+        for part in parts {
+            look.flips.extend(part.flips);
+            look.violation = look.violation.max(part.violation);
+            look.wrong += part.wrong;
+            look.off_contact += part.off_contact;
         }
         look.wrong = look.wrong.sqrt();
         look.off_contact = look.off_contact.sqrt();

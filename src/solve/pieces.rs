@@ -19,19 +19,37 @@ fn alone(n: usize) -> bool {
     n <= PIECE || rayon::current_num_threads() == 1
 }
 
+/// What `work` makes of each piece of `n` numbers, in order.
+pub(super) fn map<R: Send>(n: usize, work: impl Fn(Range<usize>) -> R + Sync) -> Vec<R> {
+    let pieces = n.div_ceil(PIECE);
+    let one = |k: usize| work(range(k, n));
+    if alone(n) {
+        (0..pieces).map(one).collect()
+    } else {
+        (0..pieces).into_par_iter().map(one).collect()
+    }
+}
+
+/// The same where `work` may change its piece of `x`.
+pub(super) fn map_mut<A: Send, R: Send>(
+    x: &mut [A],
+    work: impl Fn(Range<usize>, &mut [A]) -> R + Sync,
+) -> Vec<R> {
+    let n = x.len();
+    let one = |(k, x): (usize, &mut [A])| work(range(k, n), x);
+    if alone(n) {
+        x.chunks_mut(PIECE).enumerate().map(one).collect()
+    } else {
+        x.par_chunks_mut(PIECE).enumerate().map(one).collect()
+    }
+}
+
 /// Calls `work` with each piece of `x`, and adds up what it returns.
 pub(super) fn sum_mut<A: Send>(
     x: &mut [A],
     work: impl Fn(Range<usize>, &mut [A]) -> f64 + Sync,
 ) -> f64 {
-    let n = x.len();
-    let one = |(k, x): (usize, &mut [A])| work(range(k, n), x);
-    if alone(n) {
-        x.chunks_mut(PIECE).enumerate().map(one).sum()
-    } else {
-        let parts: Vec<f64> = x.par_chunks_mut(PIECE).enumerate().map(one).collect();
-        parts.iter().sum()
-    }
+    map_mut(x, work).iter().sum()
 }
 
 /// The same with two vectors of one length.

@@ -78,6 +78,16 @@ impl<'a, T: Real> Preconditioners<'a, T> {
         }
     }
 
+    /// The share of its initial error to which it pays to solve a system while the active set
+    /// moves. Where the penalty of a facet hardly ties vertex values, small errors in the energy
+    /// are large ones in these, and a new set is expensive.
+    pub fn share(&self) -> f64 {
+        match self {
+            Self::FacetSplit(split) if !split.are_means() => 0.01,
+            _ => 0.1,
+        }
+    }
+
     /// The name in reports.
     pub fn name(&self) -> &'static str {
         match self {

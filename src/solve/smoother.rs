@@ -11,9 +11,13 @@ use crate::real::Real;
 /// One over the diagonal, zero where fixed.
 pub(super) fn invert_diagonal<T: Real>(diagonal: &[T], fixed: &[bool], inverse: &mut [T]) {
     let (zero, one) = (T::lit(0.0), T::lit(1.0));
-    for ((inverse, &d), &fixed) in inverse.iter_mut().zip(diagonal).zip(fixed) {
-        *inverse = if fixed || d == zero { zero } else { one / d };
-    }
+    each_mut(inverse, |range, piece| {
+        for ((inverse, &d), &fixed) in
+            piece.iter_mut().zip(&diagonal[range.clone()]).zip(&fixed[range])
+        {
+            *inverse = if fixed || d == zero { zero } else { one / d };
+        }
+    });
 }
 
 /// A forward sweep from zero.
