@@ -12,6 +12,9 @@ const NONE: u32 = u32::MAX;
 /// Neighbours count as strongly coupled above this share of the mean of their diagonals.
 const STRONG: f64 = 0.05;
 
+/// Weights up to this are left away.
+const NEGLIGIBLE: f64 = 1e-4;
+
 /// The damping of the smoothed functions, over the largest eigenvalue of the scaled matrix.
 const DAMPING: f64 = 4.0 / 3.0;
 
@@ -115,6 +118,8 @@ fn smoothed<T: Real>(
                     None => row.push((target, weight)),
                 }
             }
+            // what is left of entries that are zero but for rounding
+            row.retain(|(_, weight)| weight.abs() > NEGLIGIBLE);
             row.sort_unstable_by_key(|&(column, _)| column);
         }
         rows.columns.extend(row.iter().map(|&(column, _)| column));

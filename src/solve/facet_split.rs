@@ -74,11 +74,6 @@ impl<'a, T: Real> FacetSplit<'a, T> {
         })
     }
 
-    /// Whether the unknowns are facet means.
-    pub fn are_means(&self) -> bool {
-        self.pairs.are_means
-    }
-
     /// Sets which unknowns are fixed.
     ///
     /// # Errors

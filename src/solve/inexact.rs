@@ -16,7 +16,7 @@ use crate::real::Real;
 const MOST_ITERATIONS: usize = 500;
 
 /// Fewer changes of state than this hardly change the error: the next system is solved well.
-const FEW: usize = 4;
+const FEW: usize = 16;
 
 /// Most times a system is solved again because of rounding.
 const MOST_REPEATS: usize = 3;

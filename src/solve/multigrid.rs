@@ -68,6 +68,24 @@ impl<'a, T: Real> Grid<'a, T> {
 }
 
 impl<T: Real> Grid<'_, T> {
+    /// Factors the form on some functions. Those that were cut off may have become dependent, which
+    /// a slightly larger diagonal mends.
+    fn factor(&self, free: &[u32]) -> Result<Factors<T>, FactorError> {
+        match Factors::new(&self.matrix, true, free) {
+            Err(FactorError::NotPositive | FactorError::Singular) if !self.cut.is_empty() => {
+                let mut matrix = self.matrix.clone().into_owned();
+                for j in 0..matrix.size() as u32 {
+                    let range = row_range(&matrix, j);
+                    if let Ok(k) = matrix.columns[range.clone()].binary_search(&j) {
+                        matrix.values[range.start + k] *= T::lit(1.0 + T::EPSILON.sqrt());
+                    }
+                }
+                Factors::new(&matrix, true, free)
+            }
+            other => other,
+        }
+    }
+
     /// Sets the rows of functions that lost fixed fine unknowns, and restores those that did before.
     fn cut_off(&mut self, finer: &Grid<'_, T>, transfer: &Transfer<T>) {
         let mut near = vec![false; finer.fixed.len()];
@@ -172,7 +190,7 @@ impl<'a, T: Real> Multigrid<'a, T> {
             return Ok(());
         }
         if self.coarsest.factors.is_none() || free != self.coarsest.free || !last.cut.is_empty() {
-            self.coarsest.factors = Some(Factors::new(&last.matrix, true, &free)?);
+            self.coarsest.factors = Some(last.factor(&free)?);
             self.coarsest.free = free;
         }
         Ok(())

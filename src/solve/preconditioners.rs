@@ -79,11 +79,11 @@ impl<'a, T: Real> Preconditioners<'a, T> {
     }
 
     /// The share of its initial error to which it pays to solve a system while the active set
-    /// moves. Where the penalty of a facet hardly ties vertex values, small errors in the energy
-    /// are large ones in these, and a new set is expensive.
+    /// moves. Where facets are hardly tied, small errors in the energy are large ones in single
+    /// unknowns, and these are what makes the set move.
     pub fn share(&self) -> f64 {
         match self {
-            Self::FacetSplit(split) if !split.are_means() => 0.01,
+            Self::FacetSplit(_) => 0.01,
             _ => 0.1,
         }
     }

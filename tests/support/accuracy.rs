@@ -111,7 +111,7 @@ pub fn solve_as_tables<const D: usize>(
     let task = Task {
         problem: &scene.problem,
         mesh: &mesh,
-        start: Some(&start.contact),
+        start: Some(&start),
         solver: &solver,
         quadrature: AS_TABLES,
         with_errors: true,
