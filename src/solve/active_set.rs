@@ -134,7 +134,7 @@ impl ActiveSet {
         }
         Inexact::new(inequality, nearby)
             .run(self, nearby)
-            .map_err(|iterate| (iterate.outer, iterate.linear))
+            .map_err(|in_vain| (in_vain.outer, in_vain.linear))
     }
 
     fn solve_directly<T: Real>(&self, inequality: &Inequality<T>) -> Solution<T> {

@@ -204,7 +204,7 @@ fn invert<T: Real>(a: &mut [T], size: usize, fixed: &[bool]) -> bool {
     let one = T::lit(1.0);
     for k in (0..size).filter(|&k| !fixed[k]) {
         let pivot = a[k * size + k];
-        if !(pivot > T::lit(0.0)) || !pivot.is_finite() {
+        if pivot <= T::lit(0.0) || !pivot.is_finite() {
             return false;
         }
         let inverse = one / pivot;

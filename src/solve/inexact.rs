@@ -5,8 +5,9 @@ use super::conjugate_gradients::{ConjugateGradients, End, Preconditioner, Run, S
 use super::cycles::key_of;
 use super::iterate::{known_value, rest};
 use super::linear::FactorError;
+use super::look::Look;
 use super::nearby::Nearby;
-use super::pieces::{each_mut, map, map_mut};
+use super::pieces::each_mut;
 use super::preconditioners::Preconditioners;
 use super::{Outcome, Solution};
 use crate::algebra::{Bound, Contact, Inequality, Start};
@@ -26,14 +27,14 @@ const RITZ: f64 = 0.9;
 
 /// The current iterate.
 pub(super) struct Inexact<'a, T> {
-    inequality: &'a Inequality<T>,
+    pub inequality: &'a Inequality<T>,
     pub values: Vec<T>,
     pub state: Vec<Contact>,
     /// Whether an unknown has a known value: a Dirichlet datum or a bound it rests on.
     fixed: Vec<bool>,
-    diagonal: Vec<T>,
+    pub diagonal: Vec<T>,
     /// `b - A u`, zero where fixed while linear systems are solved.
-    residual: Vec<T>,
+    pub residual: Vec<T>,
     fingerprint: u128,
     seen: Vec<u128>,
     pub outer: usize,
@@ -46,30 +47,52 @@ pub(super) struct Inexact<'a, T> {
     norm: f64,
 }
 
-/// What a look at the whole iterate tells.
-#[derive(Default)]
-struct Look {
-    flips: Vec<(u32, Contact)>,
-    /// Largest violation of a bound.
-    violation: f64,
-    /// Largest displacement.
-    scale: f64,
-    /// Dual norm of the multipliers of wrong sign, and of the residual off contact.
-    wrong: f64,
-    off_contact: f64,
-    /// Energy norm.
-    energy: f64,
+/// What was done before factors were asked to take over.
+pub(super) struct InVain {
+    pub outer: usize,
+    pub linear: usize,
 }
 
-impl Look {
-    /// Whether bounds and signs of multipliers hold to a tolerance.
-    fn holds_to(&self, tolerance: f64) -> bool {
-        self.violation <= tolerance * self.scale && self.wrong <= tolerance * self.energy
+/// How the active set fares.
+struct Course {
+    /// Whether it changed after the last linear system.
+    has_moved: bool,
+    /// Whether the next system is to be solved well, and whether all are.
+    settled: bool,
+    careful: bool,
+    best: f64,
+    idle: usize,
+    repeats: usize,
+}
+
+impl Course {
+    fn new(settled: bool) -> Self {
+        let best = f64::INFINITY;
+        Self { has_moved: true, settled, careful: false, best, idle: 0, repeats: 0 }
     }
 
-    /// How far the active set is from a solution.
-    fn merit(&self) -> f64 {
-        self.violation / self.scale + self.wrong / self.energy
+    fn is_careful(&self) -> bool {
+        self.settled || self.careful
+    }
+
+    /// Whether it may still arrive.
+    fn goes_on(&mut self, look: &Look, returned: bool, patience: usize) -> bool {
+        self.has_moved = !look.flips.is_empty();
+        self.settled = returned || look.flips.len() < FEW;
+        if !self.has_moved {
+            return true;
+        }
+        let merit = look.merit();
+        self.idle = if merit < self.best { 0 } else { self.idle + 1 };
+        self.best = self.best.min(merit);
+        if self.idle > patience {
+            if self.careful {
+                return false;
+            }
+            // perhaps the active set wanders because systems are solved too badly
+            (self.careful, self.idle) = (true, 0);
+        }
+        true
     }
 }
 
@@ -107,18 +130,22 @@ impl<'a, T: Real> Inexact<'a, T> {
         iterate
     }
 
-    /// Solves; `None` where the method does not apply or did not get far enough, and factors may.
-    pub fn run(mut self, settings: &ActiveSet, nearby: &Nearby<T>) -> Result<Solution<T>, Self> {
+    /// Solves; an error where the method does not apply or did not get far enough, and factors may.
+    pub fn run(mut self, settings: &ActiveSet, nearby: &Nearby<T>) -> Result<Solution<T>, InVain> {
         let Some(functions) = Preconditioners::functions(self.inequality, nearby) else {
-            return Err(self);
+            return Err(self.in_vain());
         };
         let Some(mut preconditioner) = Preconditioners::new(self.inequality, &functions) else {
-            return Err(self);
+            return Err(self.in_vain());
         };
         match self.iterate(settings, nearby, &mut preconditioner) {
             Some(outcome) => Ok(self.into_solution(outcome, &mut preconditioner)),
-            None => Err(self),
+            None => Err(self.in_vain()),
         }
+    }
+
+    fn in_vain(&self) -> InVain {
+        InVain { outer: self.outer, linear: self.linear }
     }
 
     /// `None` if it does not get anywhere.
@@ -134,11 +161,9 @@ impl<'a, T: Real> Inexact<'a, T> {
         let mut gradients = ConjugateGradients::new(self.inequality.size());
         self.energy = self.look(settings.band).energy;
         let is_linear = !self.inequality.bounds.iter().any(Bound::is_inequality);
-        let (mut settled, mut refresh) = (is_linear, true);
-        let mut careful = false;
-        let (mut best, mut idle, mut repeats) = (f64::INFINITY, 0, 0);
+        let mut course = Course::new(is_linear);
         loop {
-            if refresh {
+            if course.has_moved {
                 if self.outer >= settings.max_outer {
                     return Some(Outcome::IterationLimit);
                 }
@@ -152,7 +177,7 @@ impl<'a, T: Real> Inexact<'a, T> {
             }
             let stop = Stop {
                 norm: tolerance * self.energy,
-                share: if settled || careful { 0.0 } else { preconditioner.share() },
+                share: if course.is_careful() { 0.0 } else { preconditioner.share() },
                 iterations: MOST_ITERATIONS,
             };
             let run = self.solve_linear(&mut gradients, preconditioner, stop);
@@ -174,27 +199,16 @@ impl<'a, T: Real> Inexact<'a, T> {
                     return Some(Outcome::Converged);
                 }
                 // rounding has driven apart the residual and what the iteration thinks it is
-                repeats += 1;
-                if repeats > MOST_REPEATS {
+                course.repeats += 1;
+                if course.repeats > MOST_REPEATS {
                     return Some(Outcome::Stalled);
                 }
             }
-            refresh = !look.flips.is_empty();
-            settled = !refresh;
-            if refresh {
-                settled = self.has_returned(&look.flips) || look.flips.len() < FEW;
-                let merit = look.merit();
-                idle = if merit < best { 0 } else { idle + 1 };
-                best = best.min(merit);
-                if idle > settings.patience {
-                    if careful {
-                        return None;
-                    }
-                    // perhaps the active set wanders because systems are solved too badly
-                    (careful, idle) = (true, 0);
-                }
-                self.flip(&look.flips);
+            let returned = self.has_returned(&look.flips);
+            if !course.goes_on(&look, returned, settings.patience) {
+                return None;
             }
+            self.flip(&look.flips);
         }
     }
 
@@ -223,99 +237,11 @@ impl<'a, T: Real> Inexact<'a, T> {
         run
     }
 
-    /// Computes the residual anew and judges every unknown.
-    fn look(&mut self, band: f64) -> Look {
-        let Inequality { matrix, load, .. } = self.inequality;
-        let values = &self.values;
-        let sizes = map_mut(&mut self.residual, |range, r| {
-            let (mut energy, mut scale) = (0.0, 0.0_f64);
-            for (i, r) in range.zip(r) {
-                let (x, b) = (values[i].to_f64(), load[i].to_f64());
-                let residual = b - matrix.row_dot_f64(i, values);
-                *r = T::lit(residual);
-                energy += x * (b - residual);
-                scale = scale.max(x.abs());
-            }
-            (energy, scale)
-        });
-        let mut look = Look::default();
-        for (energy, scale) in sizes {
-            look.energy += energy;
-            look.scale = look.scale.max(scale);
-        }
-        look.scale = if look.scale > 0.0 { look.scale } else { 1.0 };
-        let noise = band * T::EPSILON * look.scale;
-        let parts = map(values.len(), |range| {
-            let mut part = Look::default();
-            range.for_each(|i| self.judge(i, noise, band, &mut part));
-            part
-        });
-        for part in parts {
-            look.flips.extend(part.flips);
-            look.violation = look.violation.max(part.violation);
-            look.wrong += part.wrong;
-            look.off_contact += part.off_contact;
-        }
-        look.wrong = look.wrong.sqrt();
-        look.off_contact = look.off_contact.sqrt();
-        look.energy = if look.energy > 0.0 { look.energy.sqrt() } else { self.load_energy() };
-        look
-    }
-
-    #[inline(always)]
-    fn judge(&self, i: usize, noise: f64, band: f64, look: &mut Look) {
-        let bound = &self.inequality.bounds[i];
-        if let Bound::Fixed(_) = bound {
-            return;
-        }
-        let (x, r) = (self.values[i].to_f64(), self.residual[i].to_f64());
-        let d = self.diagonal[i].to_f64();
-        let pull = match self.state[i] {
-            Contact::Open => {
-                look.off_contact += r * r / d;
-                let below = bound.lower().map_or(0.0, |l| l.to_f64() - x);
-                let above = bound.upper().map_or(0.0, |u| x - u.to_f64());
-                if below > noise {
-                    look.flips.push((i as u32, Contact::Lower));
-                    look.violation = look.violation.max(below);
-                } else if above > noise {
-                    look.flips.push((i as u32, Contact::Upper));
-                    look.violation = look.violation.max(above);
-                }
-                return;
-            }
-            _ if bound.only_value().is_some() => return,
-            Contact::Lower => r,
-            Contact::Upper => -r,
-        };
-        if pull > 0.0 {
-            look.wrong += pull * pull / d;
-            if pull > self.force_noise(i, band) {
-                look.flips.push((i as u32, Contact::Open));
-            }
-        }
-    }
-
-    /// The size of rounding in the force on an unknown.
-    fn force_noise(&self, i: usize, band: f64) -> f64 {
-        let (columns, entries) = self.inequality.matrix.row(i);
-        let mut sum = self.inequality.load[i].to_f64().abs();
-        for (&j, a) in columns.iter().zip(entries) {
-            sum += (a.to_f64() * self.values[j as usize].to_f64()).abs();
-        }
-        band * T::EPSILON * sum
-    }
-
-    /// The energy that the load could raise, roughly: a scale where nothing else gives one.
-    fn load_energy(&self) -> f64 {
-        let terms = self.inequality.load.iter().zip(&self.diagonal);
-        let sum: f64 =
-            terms.map(|(b, d)| b.to_f64().powi(2) / d.to_f64().abs().max(f64::MIN_POSITIVE)).sum();
-        if sum > 0.0 { sum.sqrt() } else { 1.0 }
-    }
-
     /// Whether the active set after these flips has been there before.
     fn has_returned(&mut self, flips: &[(u32, Contact)]) -> bool {
+        if flips.is_empty() {
+            return false;
+        }
         for &(i, contact) in flips {
             let before = self.state[i as usize];
             self.fingerprint = self

@@ -14,6 +14,7 @@ mod inexact;
 mod iterate;
 mod kernels;
 mod linear;
+mod look;
 mod multigrid;
 mod nearby;
 mod pieces;

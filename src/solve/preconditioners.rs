@@ -16,9 +16,9 @@ use crate::real::Real;
 
 /// A preconditioner for the unknowns that are free.
 pub(super) enum Preconditioners<'a, T: Real> {
-    Multigrid(Multigrid<'a, T>),
-    AuxiliarySpace(AuxiliarySpace<'a, T>),
-    FacetSplit(FacetSplit<'a, T>),
+    Multigrid(Box<Multigrid<'a, T>>),
+    AuxiliarySpace(Box<AuxiliarySpace<'a, T>>),
+    FacetSplit(Box<FacetSplit<'a, T>>),
 }
 
 impl<'a, T: Real> Preconditioners<'a, T> {
@@ -49,9 +49,9 @@ impl<'a, T: Real> Preconditioners<'a, T> {
     pub fn new(inequality: &'a Inequality<T>, functions: &'a Functions<T>) -> Option<Self> {
         let Inequality { matrix, places, .. } = inequality;
         match functions {
-            Functions::Unknown => Some(Self::Multigrid(Multigrid::new(matrix, None))),
+            Functions::Unknown => Some(Self::Multigrid(Box::new(Multigrid::new(matrix, None)))),
             Functions::Coarser(coarser) => {
-                Some(Self::Multigrid(Multigrid::new(matrix, Some(coarser))))
+                Some(Self::Multigrid(Box::new(Multigrid::new(matrix, Some(coarser)))))
             }
             Functions::Same(level) => {
                 let vertices = || {
@@ -59,9 +59,10 @@ impl<'a, T: Real> Preconditioners<'a, T> {
                     Vertices::new(multigrid, &level.fixed, places)
                 };
                 if let Some(split) = FacetSplit::new(matrix, places, vertices) {
-                    return Some(Self::FacetSplit(split));
+                    return Some(Self::FacetSplit(Box::new(split)));
                 }
-                AuxiliarySpace::new(matrix, places, vertices()?).map(Self::AuxiliarySpace)
+                let space = AuxiliarySpace::new(matrix, places, vertices()?)?;
+                Some(Self::AuxiliarySpace(Box::new(space)))
             }
         }
     }
