@@ -123,7 +123,7 @@ pub fn solve_by_rule<const D: usize>(
     let task = Task {
         problem: &scene.problem,
         mesh: &mesh,
-        start: Some(&start.contact),
+        start: Some(&start),
         solver: &solver,
         quadrature,
         with_errors: true,
