@@ -45,7 +45,7 @@ fn h1_as_tables<S: Scheme<f64, 2, Element = P2>>(
     let (solver, quadrature) = (ActiveSet::default(), DataQuadrature::default());
     let mut levels = Levels::new(scene, None);
     levels.make(level).unwrap();
-    let start = levels.contact(level, &solver, quadrature, 1).unwrap().contact;
+    let start = levels.contact(level, &solver, quadrature, 1).unwrap().contact.clone();
     let mesh = levels.mesh(level).unwrap().0;
     let space = Discretisation::new(scheme, &scene.problem, mesh, quadrature).unwrap();
     let mut inequality = space.inequality().unwrap();

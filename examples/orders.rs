@@ -1,0 +1,83 @@
+//! Every scheme on every scene, with observed orders beside those that theory promises:
+//!
+//! ```text
+//! cargo run --release --example orders -- docs/orders.md
+//! ```
+//!
+//! Without a file the table goes to standard output. A word after the file picks the scenes whose
+//! names contain it; `--quick` halves the levels.
+
+use std::error::Error;
+
+use unilateral::prelude::*;
+use unilateral::scenes::{AnyScene, Parameters, Scene, catalogue};
+use unilateral::study::{Program, Row, SCHEMES, SchemeOptions, orders_table, scheme_by_name};
+
+/// How far an observed order may fall below a promised one that counts as kept.
+const TOLERANCE: f64 = 0.1;
+
+fn main() -> Result<(), Box<dyn Error>> {
+    let words: Vec<String> = std::env::args().skip(1).collect();
+    let quick = words.iter().any(|word| word == "--quick");
+    let mut words = words.iter().filter(|word| *word != "--quick");
+    let (file, pattern) = (words.next(), words.next());
+    let mut rows = Vec::new();
+    for entry in catalogue() {
+        if pattern.is_some_and(|pattern| !entry.name.contains(pattern.as_str())) {
+            continue;
+        }
+        eprintln!("{}", entry.name);
+        for degree in [1, 2] {
+            rows.extend(match entry.make(&Parameters::default())? {
+                AnyScene::One(scene) => run(scene, degree, quick)?,
+                AnyScene::Two(scene) => run(scene, degree, quick)?,
+                AnyScene::Three(scene) => run(scene, degree, quick)?,
+            });
+        }
+    }
+    let program = Program::new("orders", "f64", rayon::current_num_threads(), 1);
+    let report = Report { program, rows };
+    let table = orders_table(&report.observed_orders(), TOLERANCE);
+    match file {
+        Some(file) => std::fs::write(file, page(&table, &report))?,
+        None => print!("{table}"),
+    }
+    Ok(())
+}
+
+/// All schemes of a degree on a scene, quadratics on coarser levels: they have more unknowns.
+fn run<const D: usize>(
+    scene: Scene<D>,
+    degree: usize,
+    quick: bool,
+) -> Result<Vec<Row>, Box<dyn Error>> {
+    let finest = match D {
+        1 => 64,
+        2 => 32 / degree,
+        _ => 8 / degree,
+    };
+    let finest = if quick { finest / 2 } else { finest };
+    let levels = [4, 2, 1].map(|part| finest / part).into_iter().filter(|&n| n > 0);
+    let options = SchemeOptions::default();
+    let names = SCHEMES.iter().filter(|(name, _)| name.ends_with("p2") == (degree == 2));
+    let schemes = names.filter_map(|(name, _)| scheme_by_name::<f64, D>(name, &options));
+    let study = Study::<f64, D>::new(scene).levels(levels);
+    Ok(schemes.fold(study, Study::boxed_scheme).run()?.rows)
+}
+
+/// The table with what made it and what its words mean.
+fn page(table: &str, report: &Report) -> String {
+    format!(
+        "# Observed and promised orders\n\n\
+         Made by `cargo run --release --example orders -- docs/orders.md`, version {}, with the \
+         default penalties and constraint sets. The orders of coarse levels are those of coarse \
+         levels: a promise is for small mesh sizes, so `missed` here means not yet reached, or \
+         missed, and finer levels tell which (`compare --scene S --scheme A --levels 32,64,128`).\n\n\
+         Levels that end with another word than `converged` did so for a reason: \
+         `iteration-limit`, the active set did not settle; `cycling`, it came back to where it was; \
+         `stalled`, rounding keeps the certificate above its limit; `not-coercive`, the matrix is \
+         not positive definite; `singular`, nothing holds the body; `infeasible`, no function lies \
+         between the bounds; `not-finite`, a number was not. See `solve::Outcome`.\n\n{table}",
+        report.program.version
+    )
+}
