@@ -1,0 +1,219 @@
+//! The matrix of one cell, as a list.
+
+use std::marker::PhantomData;
+
+use crate::assemble::data::ReactionTerm;
+use crate::assemble::local::{StiffnessTable, zero_local};
+use crate::assemble::metric::CellMetric;
+use crate::assemble::space::Space;
+use crate::element::{MAX_BASIS, ReferenceElement};
+use crate::mesh::Mesh;
+use crate::real::Real;
+
+/// The matrix of a cell by rows, `N` entries each.
+type Entries<T> = [T; MAX_BASIS * MAX_BASIS];
+
+/// Matrices of cells, one after the other.
+pub(super) trait CellMatrix<T> {
+    /// Computes that of a cell.
+    fn of_cell(&mut self, cell: usize);
+    /// An entry of it.
+    fn entry(&self, i: usize, j: usize) -> T;
+}
+
+/// What cells contribute, tabulated.
+pub(super) struct CellMatrices<'s, 'a, T: Real, const D: usize> {
+    space: &'s Space<'a, T, D>,
+    /// For each pair `k < l` of barycentric coordinates what their product of gradients adds.
+    pairs: Vec<Entries<T>>,
+    reaction: Option<ReactionTerm<'a, T, D>>,
+    /// If basis function `i` is `c` times barycentric coordinate `i` but for a constant: `c^2`.
+    square: Option<T>,
+}
+
+impl<'s, 'a, T: Real, const D: usize> CellMatrices<'s, 'a, T, D> {
+    pub fn new<E: ReferenceElement<T, D>>(space: &'s Space<'a, T, D>) -> Self {
+        let zero = T::lit(0.0);
+        let table = StiffnessTable::new::<E, D>();
+        let mut pairs = Vec::new();
+        let mut square = (E::DEGREE == 1 && E::N == D + 1).then(|| {
+            let first = CellMetric { products: unit(0, 1), volume: zero, measures: [zero; 4] };
+            table.entry::<D>(&first, 0, 1)
+        });
+        for k in 0..D {
+            for l in k + 1..=D {
+                let metric = CellMetric { products: unit(k, l), volume: zero, measures: [zero; 4] };
+                let mut pair = [zero; MAX_BASIS * MAX_BASIS];
+                for i in 0..E::N {
+                    for j in 0..E::N {
+                        let entry = table.entry::<D>(&metric, i, j);
+                        pair[i * E::N + j] = entry;
+                        let alone =
+                            if (i.min(j), i.max(j)) == (k, l) { square } else { Some(zero) };
+                        if i != j && Some(entry) != alone {
+                            square = None;
+                        }
+                    }
+                }
+                pairs.push(pair);
+            }
+        }
+        Self { space, pairs, reaction: ReactionTerm::new::<E>(space), square }
+    }
+
+    /// The square by which products of gradients make the whole matrix, if they do.
+    pub fn only_gradients(&self) -> Option<T> {
+        self.square.filter(|_| self.reaction.is_none())
+    }
+
+    /// Writes the matrix of a cell.
+    #[inline(always)]
+    fn write<E: ReferenceElement<T, D>>(&self, cell: usize, out: &mut Entries<T>) {
+        let shape = Shape::of(self.space.mesh, cell, self.space.alpha(cell));
+        let out = &mut out[..E::N * E::N];
+        let mut pair = 0;
+        for k in 0..D {
+            for l in k + 1..=D {
+                let product = shape.products[k][l];
+                let entries = &self.pairs[pair][..E::N * E::N];
+                if pair == 0 {
+                    out.iter_mut().zip(entries).for_each(|(out, &entry)| *out = product * entry);
+                } else {
+                    out.iter_mut().zip(entries).for_each(|(out, &entry)| *out += product * entry);
+                }
+                pair += 1;
+            }
+        }
+        if let Some(reaction) = &self.reaction {
+            let mut local = zero_local();
+            reaction.add::<E>(self.space.mesh, cell, shape.volume, &mut local);
+            for (row, values) in out.chunks_exact_mut(E::N).zip(&local) {
+                row.iter_mut().zip(values).for_each(|(entry, &value)| *entry += value);
+            }
+        }
+    }
+}
+
+/// What the matrix of a cell needs of its geometry, made without a detour through memory.
+struct Shape<T> {
+    volume: T,
+    /// `int scale grad lambda_i . grad lambda_j` over the cell.
+    products: [[T; 4]; 4],
+}
+
+impl<T: Real> Shape<T> {
+    /// The shape of a cell: with `n_k` the gradients times the determinant of the edges, `d`, the
+    /// products are `scale n_i . n_j / (D! |d|)`.
+    #[inline(always)]
+    fn of<const D: usize>(mesh: &Mesh<T, D>, cell: usize, scale: T) -> Self {
+        let zero = T::lit(0.0);
+        let corners = mesh.cell(cell);
+        let mut edges = [[zero; 3]; 3];
+        let origin = &mesh.vertices()[corners[0] as usize];
+        for k in 0..D {
+            let corner = &mesh.vertices()[corners[k + 1] as usize];
+            for axis in 0..D {
+                edges[k][axis] = corner[axis] - origin[axis];
+            }
+        }
+        let [a, b, c] = edges;
+        let normals = match D {
+            1 => [[T::lit(1.0), zero, zero], [zero; 3], [zero; 3]],
+            2 => [[b[1], -b[0], zero], [-a[1], a[0], zero], [zero; 3]],
+            _ => [cross(b, c), cross(c, a), cross(a, b)],
+        };
+        let determinant = dot::<T, D>(a, normals[0]);
+        let size = if determinant < zero { -determinant } else { determinant };
+        let scale = if size == zero { zero } else { scale / (size * T::lit(FACTORIAL[D])) };
+        let mut products = [[zero; 4]; 4];
+        for i in 1..=D {
+            // rows sum to zero
+            for j in 1..=D {
+                products[i][j] = if i <= j {
+                    scale * dot::<T, D>(normals[i - 1], normals[j - 1])
+                } else {
+                    products[j][i]
+                };
+            }
+        }
+        for i in 1..=D {
+            let sum = (1..=D).fold(zero, |sum, j| sum - products[i][j]);
+            products[i][0] = sum;
+            products[0][i] = sum;
+            products[0][0] -= sum;
+        }
+        Self { volume: size / T::lit(FACTORIAL[D]), products }
+    }
+}
+
+const FACTORIAL: [f64; 4] = [1.0, 1.0, 2.0, 6.0];
+
+#[inline(always)]
+fn dot<T: Real, const D: usize>(a: [T; 3], b: [T; 3]) -> T {
+    (1..D).fold(a[0] * b[0], |sum, k| sum + a[k] * b[k])
+}
+
+#[inline(always)]
+fn cross<T: Real>(a: [T; 3], b: [T; 3]) -> [T; 3] {
+    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
+}
+
+/// Matrices that are products of gradients times a square: they stay in registers.
+pub(super) struct Gradients<'c, 's, 'a, T: Real, const D: usize> {
+    cells: &'c CellMatrices<'s, 'a, T, D>,
+    square: T,
+    products: [[T; 4]; 4],
+}
+
+impl<'c, 's, 'a, T: Real, const D: usize> Gradients<'c, 's, 'a, T, D> {
+    pub fn new(cells: &'c CellMatrices<'s, 'a, T, D>, square: T) -> Self {
+        Self { cells, square, products: [[T::lit(0.0); 4]; 4] }
+    }
+}
+
+impl<T: Real, const D: usize> CellMatrix<T> for Gradients<'_, '_, '_, T, D> {
+    #[inline(always)]
+    fn of_cell(&mut self, cell: usize) {
+        let space = self.cells.space;
+        self.products = Shape::of(space.mesh, cell, self.square * space.alpha(cell)).products;
+    }
+    #[inline(always)]
+    fn entry(&self, i: usize, j: usize) -> T {
+        self.products[i][j]
+    }
+}
+
+/// Matrices of any kind.
+pub(super) struct General<'c, 's, 'a, E, T: Real, const D: usize> {
+    cells: &'c CellMatrices<'s, 'a, T, D>,
+    entries: Entries<T>,
+    element: PhantomData<E>,
+}
+
+impl<'c, 's, 'a, E, T: Real, const D: usize> General<'c, 's, 'a, E, T, D> {
+    pub fn new(cells: &'c CellMatrices<'s, 'a, T, D>) -> Self {
+        let entries = [T::lit(0.0); MAX_BASIS * MAX_BASIS];
+        Self { cells, entries, element: PhantomData }
+    }
+}
+
+impl<E: ReferenceElement<T, D>, T: Real, const D: usize> CellMatrix<T>
+    for General<'_, '_, '_, E, T, D>
+{
+    #[inline(always)]
+    fn of_cell(&mut self, cell: usize) {
+        self.cells.write::<E>(cell, &mut self.entries);
+    }
+    #[inline(always)]
+    fn entry(&self, i: usize, j: usize) -> T {
+        self.entries[i * E::N + j]
+    }
+}
+
+/// Products of gradients of which only those of one pair are not zero.
+fn unit<T: Real>(k: usize, l: usize) -> [[T; 4]; 4] {
+    let mut products = [[T::lit(0.0); 4]; 4];
+    products[k][l] = T::lit(1.0);
+    products[l][k] = T::lit(1.0);
+    products
+}
