@@ -21,18 +21,27 @@ const LEAST_ROWS: usize = 256;
 /// Rows by kind of owner: a range for each kind.
 pub(in crate::assemble) type Rows = [Range<u32>; KINDS];
 
-/// The rows of each piece. Every piece has the same share of each kind of row, so that rows of
-/// vertices come with those of the edges beside them.
+/// The rows of each thread's pieces.
 pub(super) fn pieces(dofs: &Dofs<'_>) -> Vec<Rows> {
     let threads = rayon::current_num_threads();
     let most = if threads == 1 { 1 } else { 2 * threads };
-    let n = most.min(dofs.size() / LEAST_ROWS).max(1);
+    parts(dofs.kinds(), most.min(dofs.size() / LEAST_ROWS))
+}
+
+/// Cuts rows into this many pieces of the same share of each kind, so that rows of vertices come
+/// with those of the edges beside them.
+fn parts(rows: &Rows, n: usize) -> Vec<Rows> {
+    let n = n.max(1);
     let share = |rows: &Range<u32>, piece: usize| {
         rows.start + (rows.len() as u64 * piece as u64 / n as u64) as u32
     };
-    let piece = |p| dofs.kinds().each_ref().map(|rows| share(rows, p)..share(rows, p + 1));
+    let piece = |p| rows.each_ref().map(|rows| share(rows, p)..share(rows, p + 1));
     (0..n).map(piece).collect()
 }
+
+/// Rows after which scratch memory is used again, and the most parts that this makes of a piece.
+const PART_ROWS: usize = 1 << 14;
+const MOST_PARTS: usize = 16;
 
 /// Blocks of consecutive cells with the unknowns they have.
 pub(in crate::assemble) struct Blocks {
@@ -71,6 +80,20 @@ impl Blocks {
     /// The cells of a block.
     fn cells(block: usize, n_cells: usize) -> Range<usize> {
         block * BLOCK..((block + 1) * BLOCK).min(n_cells)
+    }
+    /// Cuts a piece into parts that one thread takes one after the other: as many as help, unless
+    /// cells have so distant numbers that many belong to several parts.
+    pub fn parts_of(&self, piece: &Rows) -> Vec<Rows> {
+        let rows: usize = piece.iter().map(|rows| rows.len()).sum();
+        let mut n = (rows / PART_ROWS).clamp(1, MOST_PARTS);
+        let most = self.of(piece).count() * 5 / 4;
+        loop {
+            let parts = parts(piece, n);
+            if n == 1 || parts.iter().map(|part| self.of(part).count()).sum::<usize>() <= most {
+                return parts;
+            }
+            n /= 2;
+        }
     }
     /// The blocks that may have rows of a piece: their cells, how they lie to it, their hulls.
     pub fn of<'b>(

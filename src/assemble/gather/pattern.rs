@@ -1,12 +1,13 @@
 //! The pattern of a space that shares unknowns, and where in it each cell adds its matrix.
 
+use std::ops::Range;
 use std::sync::atomic::{AtomicU8, Ordering};
 
 use rayon::prelude::*;
 
 use super::cut::{Blocks, Rows, pieces};
 use crate::algebra::SparseMatrix;
-use crate::assemble::dofs::{Dofs, kind_of};
+use crate::assemble::dofs::{Dofs, KINDS, kind_of};
 use crate::element::ReferenceElement;
 use crate::real::Real;
 
@@ -26,8 +27,11 @@ pub(in crate::assemble) struct Places {
 /// Longest row whose places a byte can name.
 pub(super) const LONGEST: usize = 256;
 
-/// Rows of a piece, kind after kind: their columns and lengths.
-struct Made {
+/// Rows of a piece by kind: their columns and lengths.
+type Made = [MadeRows; KINDS];
+
+#[derive(Default)]
+struct MadeRows {
     columns: Vec<u32>,
     lengths: Vec<u32>,
 }
@@ -41,11 +45,15 @@ pub(super) fn pattern<T: Real, const D: usize, E: ReferenceElement<T, D>>(
     let cut = pieces(dofs);
     let make = |rows: &Rows| Maker { dofs, blocks: &blocks, places: &places }.rows::<T, E, D>(rows);
     let mut made: Vec<Made> = cut.par_iter().map(make).collect();
-    let row_starts = row_starts(dofs.size(), &cut, &made);
+    let row_starts = row_starts(dofs.size(), &made);
     let columns = match &mut made[..] {
-        // kind after kind, the rows of a single piece are all rows in order
-        [only] => std::mem::take(&mut only.columns),
-        _ => join(&row_starts, &cut, &made),
+        [only] => {
+            let mut columns = std::mem::take(only).map(|rows| rows.columns).into_iter();
+            let mut all = columns.find(|columns| !columns.is_empty()).unwrap_or_default();
+            columns.for_each(|more| all.extend(more));
+            all
+        }
+        _ => join(&row_starts, &made),
     };
     let nonzeros = columns.len();
     // a numbering has one pattern: what another thread may have left here is the same
@@ -59,16 +67,13 @@ fn zeros(n: usize) -> Vec<AtomicU8> {
 }
 
 /// Where rows start, from their lengths.
-fn row_starts(size: usize, cut: &[Rows], made: &[Made]) -> Vec<u32> {
+fn row_starts(size: usize, made: &[Made]) -> Vec<u32> {
     let mut starts = Vec::with_capacity(size + 1);
     starts.push(0);
     let mut end = 0;
-    let mut used = vec![0; cut.len()];
-    for kind in 0..cut[0].len() {
-        for ((rows, piece), used) in cut.iter().zip(made).zip(&mut used) {
-            let lengths = &piece.lengths[*used..*used + rows[kind].len()];
-            *used += lengths.len();
-            starts.extend(lengths.iter().map(|length| {
+    for kind in 0..KINDS {
+        for piece in made {
+            starts.extend(piece[kind].lengths.iter().map(|length| {
                 end += length;
                 end
             }));
@@ -78,18 +83,15 @@ fn row_starts(size: usize, cut: &[Rows], made: &[Made]) -> Vec<u32> {
 }
 
 /// The columns of all pieces in the order of rows.
-fn join(row_starts: &[u32], cut: &[Rows], made: &[Made]) -> Vec<u32> {
+fn join(row_starts: &[u32], made: &[Made]) -> Vec<u32> {
     let mut columns = vec![0; row_starts[row_starts.len() - 1] as usize];
     let mut copies = Vec::new();
     let mut rest = &mut columns[..];
-    let mut used = vec![0; cut.len()];
-    for kind in 0..cut[0].len() {
-        for ((rows, piece), used) in cut.iter().zip(made).zip(&mut used) {
-            let rows = &rows[kind];
-            let entries = row_starts[rows.end as usize] - row_starts[rows.start as usize];
-            let (out, tail) = rest.split_at_mut(entries as usize);
-            copies.push((out, &piece.columns[*used..*used + entries as usize]));
-            *used += entries as usize;
+    for kind in 0..KINDS {
+        for piece in made {
+            let from = &piece[kind].columns;
+            let (out, tail) = rest.split_at_mut(from.len());
+            copies.push((out, from));
             rest = tail;
         }
     }
@@ -105,103 +107,168 @@ struct Maker<'m> {
 }
 
 impl Maker<'_> {
-    /// For each row of a piece the cells that have it: where they start, and each cell times `N`
-    /// plus the number of the unknown in it.
+    /// The rows of a piece, in parts, so that scratch memory is small and used again.
+    fn rows<T: Real, E: ReferenceElement<T, D>, const D: usize>(&self, piece: &Rows) -> Made {
+        let mut around = Around::default();
+        let mut row = Row { seen: vec![0; self.dofs.size()], ..Row::default() };
+        // no more entries than those of all cells; what is not used is never touched
+        let entries = |rows: &Range<u32>| self.places.len() / self.dofs.size() * rows.len();
+        let mut made = piece.each_ref().map(|rows| MadeRows {
+            columns: Vec::with_capacity(entries(rows)),
+            lengths: Vec::with_capacity(rows.len()),
+        });
+        for part in self.blocks.parts_of(piece) {
+            self.find_around::<T, E, D>(&part, &mut around);
+            let mut k = 0;
+            for (rows, made) in part.iter().zip(&mut made) {
+                for _ in rows.clone() {
+                    self.row::<T, E, D>(around.row(k), &mut row, made);
+                    k += 1;
+                }
+            }
+        }
+        made.iter_mut().for_each(|rows| rows.columns.shrink_to_fit());
+        made
+    }
+
+    /// Finds the cells around each row of a part: a counting sort.
     #[inline(always)]
-    fn incidence<T: Real, E: ReferenceElement<T, D>, const D: usize>(
+    fn find_around<T: Real, E: ReferenceElement<T, D>, const D: usize>(
         &self,
-        rows: &Rows,
-    ) -> (Vec<u32>, Vec<u32>) {
+        part: &Rows,
+        around: &mut Around,
+    ) {
         let mut n_rows = 0;
-        let offsets = rows.each_ref().map(|rows| {
+        let offsets = part.each_ref().map(|rows| {
             n_rows += rows.len();
             n_rows - rows.len()
         });
+        let Around { starts, slots } = around;
         // counts two places on become, summed, starts one place on, which filling makes starts
-        let mut starts = vec![0_u32; n_rows + 2];
-        let mut numbers = Vec::new();
-        let mut visit = |visit: &mut dyn FnMut(usize, usize)| {
-            for (cells, ..) in self.blocks.of(rows) {
-                let first = cells.start;
-                let unknowns = self.dofs.of_cells(cells, &mut numbers);
-                for (c, unknowns) in unknowns.chunks_exact(E::N).enumerate() {
-                    for i in 0..E::N {
-                        let kind = kind_of(E::LAYOUT, D, i);
-                        let row = unknowns[i].wrapping_sub(rows[kind].start);
-                        if (row as usize) < rows[kind].len() {
-                            visit(offsets[kind] + row as usize, (first + c) * E::N + i);
-                        }
-                    }
-                }
-            }
-        };
-        visit(&mut |row, _| starts[row + 2] += 1);
+        starts.clear();
+        starts.resize(n_rows + 2, 0);
+        self.visit::<T, E, D>(part, &offsets, |row, _| starts[row + 2] += 1);
         for row in 0..n_rows {
             starts[row + 2] += starts[row + 1];
         }
-        let mut slots = vec![0_u32; starts[n_rows + 1] as usize];
-        visit(&mut |row, slot| {
+        slots.clear();
+        slots.resize(starts[n_rows + 1] as usize, 0);
+        self.visit::<T, E, D>(part, &offsets, |row, slot| {
             let at = &mut starts[row + 1];
             slots[*at as usize] = slot as u32;
             *at += 1;
         });
-        (starts, slots)
     }
 
-    /// The rows of a piece.
-    fn rows<T: Real, E: ReferenceElement<T, D>, const D: usize>(&self, rows: &Rows) -> Made {
-        let (starts, slots) = self.incidence::<T, E, D>(rows);
-        let n_rows = starts.len() - 2;
-        let table = self.dofs.table();
-        let mut row = Row { seen: vec![0; self.dofs.size()], ..Row::default() };
-        let mut columns = Vec::with_capacity(slots.len());
-        let mut lengths = Vec::with_capacity(n_rows);
-        for k in 0..n_rows {
-            let slots = &slots[starts[k] as usize..starts[k + 1] as usize];
-            row.start(columns.len() as u32, slots.len() * E::N);
-            for (&slot, met) in slots.iter().zip(row.met.chunks_exact_mut(E::N)) {
-                let first = slot as usize / E::N * E::N;
-                let unknowns = table.as_ref().map(|t| &t[first..first + E::N]);
-                for j in 0..E::N {
-                    let column = unknowns.map_or((first + j) as u32, |u| u[j]);
-                    let seen = &mut row.seen[column as usize];
-                    let is_new = *seen <= row.base;
-                    let number = if is_new { row.n as u32 } else { *seen - row.base - 1 };
-                    *seen = row.base + number + 1;
-                    met[j] = number;
-                    row.columns[row.n] = column;
-                    row.n += usize::from(is_new);
-                }
-            }
-            row.rank();
-            row.append_to(&mut columns);
-            lengths.push(row.n as u32);
-            for (&slot, met) in slots.iter().zip(row.met.chunks_exact(E::N)) {
-                let places = &self.places[slot as usize * E::N..][..E::N];
-                for (place, &number) in places.iter().zip(met) {
-                    place.store(row.ranks[number as usize] as u8, Ordering::Relaxed);
+    /// Calls a function with each row of a part and each cell that has it: the cell times `N` plus
+    /// the number of the unknown in it.
+    #[inline(always)]
+    fn visit<T: Real, E: ReferenceElement<T, D>, const D: usize>(
+        &self,
+        part: &Rows,
+        offsets: &[usize; KINDS],
+        mut visit: impl FnMut(usize, usize),
+    ) {
+        let mut numbers = Vec::new();
+        for (cells, ..) in self.blocks.of(part) {
+            let first = cells.start;
+            let unknowns = self.dofs.of_cells(cells, &mut numbers);
+            for (c, unknowns) in unknowns.chunks_exact(E::N).enumerate() {
+                for i in 0..E::N {
+                    let kind = kind_of(E::LAYOUT, D, i);
+                    let row = unknowns[i].wrapping_sub(part[kind].start);
+                    if (row as usize) < part[kind].len() {
+                        visit(offsets[kind] + row as usize, (first + c) * E::N + i);
+                    }
                 }
             }
         }
-        columns.shrink_to_fit();
-        Made { columns, lengths }
+    }
+
+    /// Makes a row from the cells around it, and their places in it.
+    #[inline(always)]
+    fn row<T: Real, E: ReferenceElement<T, D>, const D: usize>(
+        &self,
+        around: &[u32],
+        row: &mut Row,
+        made: &mut MadeRows,
+    ) {
+        row.make_room(around.len() * E::N);
+        let Row { seen, columns, met, ranks, base } = row;
+        let table = self.dofs.table();
+        let mut n = 0_u32;
+        for (&slot, met) in around.iter().zip(met.chunks_exact_mut(E::N)) {
+            let first = slot as usize / E::N * E::N;
+            let unknowns = table.map(|t| &t[first..first + E::N]);
+            for j in 0..E::N {
+                let column = unknowns.map_or((first + j) as u32, |u| u[j]);
+                let seen = &mut seen[column as usize];
+                let is_new = *seen <= *base;
+                let number = if is_new { n } else { *seen - *base - 1 };
+                *seen = *base + number + 1;
+                met[j] = number;
+                columns[n as usize] = column;
+                n += u32::from(is_new);
+            }
+        }
+        *base += n;
+        let n = n as usize;
+        rank(&mut columns[..n.next_multiple_of(LANES)], n, ranks);
+        let start = made.columns.len();
+        made.columns.resize(start + n, 0);
+        let out = &mut made.columns[start..];
+        for (&rank, &column) in ranks[..n].iter().zip(&columns[..n]) {
+            out[rank as usize] = column;
+        }
+        made.lengths.push(n as u32);
+        for (&slot, met) in around.iter().zip(met.chunks_exact(E::N)) {
+            let places = &self.places[slot as usize * E::N..][..E::N];
+            for (place, &number) in places.iter().zip(met) {
+                place.store(ranks[number as usize] as u8, Ordering::Relaxed);
+            }
+        }
     }
 }
 
-/// A row in the making: its columns in the order in which they are met.
+/// The cells around rows.
+#[derive(Default)]
+struct Around {
+    starts: Vec<u32>,
+    /// Each cell times `N` plus the number of the row's unknown in it.
+    slots: Vec<u32>,
+}
+
+impl Around {
+    #[inline(always)]
+    fn row(&self, k: usize) -> &[u32] {
+        &self.slots[self.starts[k] as usize..self.starts[k + 1] as usize]
+    }
+}
+
+/// A row in the making.
 #[derive(Default)]
 struct Row {
     /// For each column one more than the running number at which it was last met first.
     seen: Vec<u32>,
     /// Running number of the first column of this row.
     base: u32,
-    /// How many columns were met.
-    n: usize,
+    /// The columns in the order in which they are met.
     columns: Vec<u32>,
     /// For each unknown of each cell the number of its column.
     met: Vec<u32>,
     /// The place in the row of each column.
     ranks: Vec<u32>,
+}
+
+impl Row {
+    #[inline(always)]
+    fn make_room(&mut self, most: usize) {
+        if self.met.len() < most {
+            self.columns.resize(most + LANES, 0);
+            self.ranks.resize(most + LANES, 0);
+            self.met.resize(most, 0);
+        }
+    }
 }
 
 /// Columns compared at once.
@@ -210,49 +277,29 @@ const LANES: usize = 8;
 /// Longest row ranked by comparing all pairs, which vectorises; longer ones are sorted.
 const ALL_PAIRS: usize = 128;
 
-impl Row {
-    #[inline(always)]
-    fn start(&mut self, base: u32, most: usize) {
-        (self.base, self.n) = (base, 0);
-        if self.columns.len() < most + LANES {
-            self.columns.resize(most + LANES, 0);
-            self.ranks.resize(most + LANES, 0);
-            self.met.resize(most, 0);
-        }
+/// The place of each of the first `n` columns in their sorted order; the others are overwritten.
+#[inline(always)]
+fn rank(columns: &mut [u32], n: usize, ranks: &mut [u32]) {
+    if n > ALL_PAIRS {
+        return sort(&columns[..n], ranks);
     }
-    /// Finds the place of each column.
-    #[inline(always)]
-    fn rank(&mut self) {
-        if self.n > ALL_PAIRS {
-            return self.sort();
-        }
-        self.columns[self.n..self.n + LANES].fill(u32::MAX);
-        let padded = &self.columns[..self.n.next_multiple_of(LANES)];
-        for (rank, &column) in self.ranks.iter_mut().zip(&self.columns[..self.n]) {
-            let mut below = [0_u32; LANES];
-            for others in padded.chunks_exact(LANES) {
-                for k in 0..LANES {
-                    below[k] += u32::from(others[k] < column);
-                }
+    columns[n..].fill(u32::MAX);
+    for (ranks, own) in ranks.chunks_exact_mut(LANES).zip(columns.chunks_exact(LANES)) {
+        let mut below = [0_u32; LANES];
+        for &other in &columns[..n] {
+            for k in 0..LANES {
+                below[k] += u32::from(other < own[k]);
             }
-            *rank = below.iter().sum();
         }
+        ranks.copy_from_slice(&below);
     }
-    #[cold]
-    fn sort(&mut self) {
-        let mut order: Vec<u32> = (0..self.n as u32).collect();
-        order.sort_unstable_by_key(|&k| self.columns[k as usize]);
-        for (rank, k) in order.into_iter().enumerate() {
-            self.ranks[k as usize] = rank as u32;
-        }
-    }
-    #[inline(always)]
-    fn append_to(&self, columns: &mut Vec<u32>) {
-        let start = columns.len();
-        columns.resize(start + self.n, 0);
-        let out = &mut columns[start..];
-        for (&rank, &column) in self.ranks.iter().zip(&self.columns[..self.n]) {
-            out[rank as usize] = column;
-        }
+}
+
+#[cold]
+fn sort(columns: &[u32], ranks: &mut [u32]) {
+    let mut order: Vec<u32> = (0..columns.len() as u32).collect();
+    order.sort_unstable_by_key(|&k| columns[k as usize]);
+    for (rank, k) in order.into_iter().enumerate() {
+        ranks[k as usize] = rank as u32;
     }
 }
