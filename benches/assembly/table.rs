@@ -13,21 +13,23 @@ const ENOUGH: Duration = Duration::from_secs(8);
 const BIG: usize = 32 << 20;
 
 /// Bytes per second of a plain fill and a plain copy, the most that was seen so far; a copy reads
-/// and writes.
+/// and writes. Fresh memory is filled once after it was asked for: what it costs to get it from the
+/// system is part of every assembly from nothing.
 struct Bandwidth {
     from: Vec<f64>,
     to: Vec<f64>,
     fill: [f64; 2],
     copy: [f64; 2],
+    fresh: [f64; 2],
 }
 
 impl Bandwidth {
     fn new() -> Self {
         let (from, to) = (vec![1.0; BIG], vec![2.0; BIG]);
-        Self { from, to, fill: [0.0; 2], copy: [0.0; 2] }
+        Self { from, to, fill: [0.0; 2], copy: [0.0; 2], fresh: [0.0; 2] }
     }
     fn measure(&mut self) {
-        let Self { from, to, fill, copy } = self;
+        let Self { from, to, fill, copy, fresh } = self;
         for threads in [1, 2] {
             let share = BIG / threads;
             let mut fill_all = || {
@@ -44,6 +46,12 @@ impl Bandwidth {
             };
             let seconds = self::seconds(threads, &mut copy_all);
             copy[threads - 1] = copy[threads - 1].max((16 * BIG) as f64 / seconds);
+            let mut fill_fresh = || {
+                let one = |_: &rayon::Scope<'_>| drop(black_box(vec![black_box(1.0); share]));
+                rayon::scope(|s| (0..threads).for_each(|_| s.spawn(one)));
+            };
+            let seconds = self::seconds(threads, &mut fill_fresh);
+            fresh[threads - 1] = fresh[threads - 1].max((8 * BIG) as f64 / seconds);
         }
     }
 }
@@ -122,11 +130,12 @@ pub fn print(filters: &[String]) {
         eprintln!("{} ...", case.name);
         lines.extend(measure(case, &mut bandwidth));
     });
-    let [fill, copy] = [bandwidth.fill, bandwidth.copy].map(|b| b.map(|b| b / 1e9));
+    let Bandwidth { fill, copy, fresh, .. } = bandwidth;
+    let [fill, copy, fresh] = [fill, copy, fresh].map(|b| b.map(|b| b / 1e9));
     println!(
         "\nPlain fill {:.1} GB/s on one thread and {:.1} on two, plain copy (read and written) {:.1} \
-         and {:.1}.\n",
-        fill[0], fill[1], copy[0], copy[1]
+         and {:.1}, fill of fresh memory {:.1} and {:.1}.\n",
+        fill[0], fill[1], copy[0], copy[1], fresh[0], fresh[1]
     );
     println!(
         "| case | n | what | threads | ns per cell | 10^6 cells per s | speed-up | GB/s | of fill | of copy |"

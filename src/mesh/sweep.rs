@@ -30,7 +30,7 @@ impl<'m, const D: usize> Sweep<'m, D> {
     /// Sweeps that meet each cell of these at its first `leading` vertices.
     pub fn new(cells: &'m [u32], n_vertices: usize, leading: usize) -> Self {
         let hull = |block: &[u32]| {
-            let mut hull = u32::MAX..0;
+            let mut hull = Range { start: u32::MAX, end: 0 };
             for cell in block.chunks_exact(D + 1) {
                 for &v in &cell[..leading] {
                     hull = hull.start.min(v)..hull.end.max(v + 1);

@@ -10,8 +10,12 @@ use crate::element::{MAX_BASIS, ReferenceElement};
 use crate::mesh::Mesh;
 use crate::real::Real;
 
-/// The matrix of a cell by rows, `N` entries each.
-type Entries<T> = [T; MAX_BASIS * MAX_BASIS];
+/// The upper triangle of a cell's matrix, by rows; a power of two holds the largest.
+type Triangle<T> = [T; 64];
+const _: () = assert!(MAX_BASIS * (MAX_BASIS + 1) / 2 <= 64);
+
+/// Pairs of barycentric coordinates of a tetrahedron.
+const PAIRS: usize = 6;
 
 /// Matrices of cells, one after the other.
 pub(super) trait CellMatrix<T> {
@@ -25,7 +29,9 @@ pub(super) trait CellMatrix<T> {
 pub(super) struct CellMatrices<'s, 'a, T: Real, const D: usize> {
     space: &'s Space<'a, T, D>,
     /// For each pair `k < l` of barycentric coordinates what their product of gradients adds.
-    pairs: Vec<Entries<T>>,
+    pairs: [Triangle<T>; PAIRS],
+    /// For entry `(i, j)`, at `N i + j`, where it is in the triangle.
+    places: [u8; MAX_BASIS * MAX_BASIS],
     reaction: Option<ReactionTerm<'a, T, D>>,
     /// If basis function `i` is `c` times barycentric coordinate `i` but for a constant: `c^2`.
     square: Option<T>,
@@ -35,30 +41,28 @@ impl<'s, 'a, T: Real, const D: usize> CellMatrices<'s, 'a, T, D> {
     pub fn new<E: ReferenceElement<T, D>>(space: &'s Space<'a, T, D>) -> Self {
         let zero = T::lit(0.0);
         let table = StiffnessTable::new::<E, D>();
-        let mut pairs = Vec::new();
-        let mut square = (E::DEGREE == 1 && E::N == D + 1).then(|| {
-            let first = CellMetric { products: unit(0, 1), volume: zero, measures: [zero; 4] };
-            table.entry::<D>(&first, 0, 1)
-        });
-        for k in 0..D {
-            for l in k + 1..=D {
-                let metric = CellMetric { products: unit(k, l), volume: zero, measures: [zero; 4] };
-                let mut pair = [zero; MAX_BASIS * MAX_BASIS];
-                for i in 0..E::N {
-                    for j in 0..E::N {
-                        let entry = table.entry::<D>(&metric, i, j);
-                        pair[i * E::N + j] = entry;
-                        let alone =
-                            if (i.min(j), i.max(j)) == (k, l) { square } else { Some(zero) };
-                        if i != j && Some(entry) != alone {
-                            square = None;
-                        }
+        let unit = |k, l| CellMetric { products: unit(k, l), volume: zero, measures: [zero; 4] };
+        let linear = E::DEGREE == 1 && E::N == D + 1;
+        let mut square = linear.then(|| table.entry::<D>(&unit(0, 1), 0, 1));
+        let mut pairs = [[zero; 64]; PAIRS];
+        let mut places = [0; MAX_BASIS * MAX_BASIS];
+        for (pair, (k, l)) in pairs_of::<D>().enumerate() {
+            let mut place = 0;
+            for i in 0..E::N {
+                for j in i..E::N {
+                    let entry = table.entry::<D>(&unit(k, l), i, j);
+                    pairs[pair][place] = entry;
+                    places[i * E::N + j] = place as u8;
+                    places[j * E::N + i] = place as u8;
+                    place += 1;
+                    let alone = if (i, j) == (k, l) { square } else { Some(zero) };
+                    if i != j && Some(entry) != alone {
+                        square = None;
                     }
                 }
-                pairs.push(pair);
             }
         }
-        Self { space, pairs, reaction: ReactionTerm::new::<E>(space), square }
+        Self { space, pairs, places, reaction: ReactionTerm::new::<E>(space), square }
     }
 
     /// The square by which products of gradients make the whole matrix, if they do.
@@ -68,30 +72,37 @@ impl<'s, 'a, T: Real, const D: usize> CellMatrices<'s, 'a, T, D> {
 
     /// Writes the matrix of a cell.
     #[inline(always)]
-    fn write<E: ReferenceElement<T, D>>(&self, cell: usize, out: &mut Entries<T>) {
+    fn write<E: ReferenceElement<T, D>>(&self, cell: usize, out: &mut Triangle<T>) {
         let shape = Shape::of(self.space.mesh, cell, self.space.alpha(cell));
-        let out = &mut out[..E::N * E::N];
-        let mut pair = 0;
-        for k in 0..D {
-            for l in k + 1..=D {
-                let product = shape.products[k][l];
-                let entries = &self.pairs[pair][..E::N * E::N];
-                if pair == 0 {
-                    out.iter_mut().zip(entries).for_each(|(out, &entry)| *out = product * entry);
-                } else {
-                    out.iter_mut().zip(entries).for_each(|(out, &entry)| *out += product * entry);
-                }
-                pair += 1;
+        let mut products = [T::lit(0.0); PAIRS];
+        for (product, (k, l)) in products.iter_mut().zip(pairs_of::<D>()) {
+            *product = shape.products[k][l];
+        }
+        for place in 0..E::N * (E::N + 1) / 2 {
+            let mut sum = products[0] * self.pairs[0][place];
+            for pair in 1..D * (D + 1) / 2 {
+                sum += products[pair] * self.pairs[pair][place];
             }
+            out[place] = sum;
         }
         if let Some(reaction) = &self.reaction {
             let mut local = zero_local();
             reaction.add::<E>(self.space.mesh, cell, shape.volume, &mut local);
-            for (row, values) in out.chunks_exact_mut(E::N).zip(&local) {
-                row.iter_mut().zip(values).for_each(|(entry, &value)| *entry += value);
+            let mut place = 0;
+            for i in 0..E::N {
+                for j in i..E::N {
+                    out[place] += local[i][j];
+                    place += 1;
+                }
             }
         }
     }
+}
+
+/// The pairs `k < l` of barycentric coordinates.
+#[inline(always)]
+fn pairs_of<const D: usize>() -> impl Iterator<Item = (usize, usize)> {
+    (0..D).flat_map(|k| (k + 1..=D).map(move |l| (k, l)))
 }
 
 /// What the matrix of a cell needs of its geometry, made without a detour through memory.
@@ -186,14 +197,13 @@ impl<T: Real, const D: usize> CellMatrix<T> for Gradients<'_, '_, '_, T, D> {
 /// Matrices of any kind.
 pub(super) struct General<'c, 's, 'a, E, T: Real, const D: usize> {
     cells: &'c CellMatrices<'s, 'a, T, D>,
-    entries: Entries<T>,
+    triangle: Triangle<T>,
     element: PhantomData<E>,
 }
 
 impl<'c, 's, 'a, E, T: Real, const D: usize> General<'c, 's, 'a, E, T, D> {
     pub fn new(cells: &'c CellMatrices<'s, 'a, T, D>) -> Self {
-        let entries = [T::lit(0.0); MAX_BASIS * MAX_BASIS];
-        Self { cells, entries, element: PhantomData }
+        Self { cells, triangle: [T::lit(0.0); 64], element: PhantomData }
     }
 }
 
@@ -202,11 +212,11 @@ impl<E: ReferenceElement<T, D>, T: Real, const D: usize> CellMatrix<T>
 {
     #[inline(always)]
     fn of_cell(&mut self, cell: usize) {
-        self.cells.write::<E>(cell, &mut self.entries);
+        self.cells.write::<E>(cell, &mut self.triangle);
     }
     #[inline(always)]
     fn entry(&self, i: usize, j: usize) -> T {
-        self.entries[i * E::N + j]
+        self.triangle[self.cells.places[i * E::N + j] as usize % 64]
     }
 }
 

@@ -64,7 +64,7 @@ impl Blocks {
         let n_cells = dofs.n_cells();
         let hull = |block: usize| {
             let mut numbers = Vec::new();
-            let mut hull = [const { u32::MAX..0 }; KINDS];
+            let mut hull = [const { Range { start: u32::MAX, end: 0 } }; KINDS];
             let cells = Self::cells(block, n_cells);
             for unknowns in dofs.of_cells(cells, &mut numbers).chunks_exact(dofs.per_cell()) {
                 for (i, &unknown) in unknowns.iter().enumerate() {

@@ -111,7 +111,7 @@ impl Maker<'_> {
     fn rows<T: Real, E: ReferenceElement<T, D>, const D: usize>(&self, piece: &Rows) -> Made {
         let mut around = Around::default();
         let mut row = Row { seen: vec![0; self.dofs.size()], ..Row::default() };
-        // no more entries than those of all cells; what is not used is never touched
+        // about as many entries as the cells' matrices have: what is not used is never touched
         let entries = |rows: &Range<u32>| self.places.len() / self.dofs.size() * rows.len();
         let mut made = piece.each_ref().map(|rows| MadeRows {
             columns: Vec::with_capacity(entries(rows)),
