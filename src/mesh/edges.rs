@@ -101,6 +101,16 @@ impl Edges {
     pub fn upper_ends(&self, a: u32) -> &[u32] {
         &self.upper[self.first_at(a) as usize..self.first_at(a + 1) as usize]
     }
+    /// The number of every edge of every cell of the same mesh, in the order of [`edge_vertices`];
+    /// by searches, where [`Edges::numbered`] has them as it finds the edges.
+    pub fn numbers<T: Real, const D: usize>(&self, mesh: &Mesh<T, D>) -> Vec<u32> {
+        let of_cell = |cell: &[u32], [i, j]: [usize; 2]| {
+            // every pair of a cell's vertices is an edge
+            self.number(cell[i], cell[j]).unwrap_or_default()
+        };
+        let cells = mesh.cells().chunks_exact(D + 1);
+        cells.flat_map(|cell| edge_vertices(D).iter().map(move |&e| of_cell(cell, e))).collect()
+    }
 }
 
 /// The higher ends of the edges of a range of lower vertices, and how many each has.
@@ -176,6 +186,7 @@ mod tests {
         let mesh = Mesh::<f64, D>::kuhn_box(&domain, counts).unwrap();
         let (edges, numbers) = Edges::numbered(&mesh);
         assert_eq!(edges, Edges::of(&mesh));
+        assert_eq!(numbers, edges.numbers(&mesh));
         let pairs = mesh.cells().chunks(D + 1).flat_map(|cell| {
             cell.iter().flat_map(|&a| cell.iter().map(move |&b| [a, b])).filter(|[a, b]| a < b)
         });
