@@ -23,6 +23,7 @@ use unilateral::error::Error;
 use unilateral::mesh::{Mesh, gmsh};
 use unilateral::real::Real;
 use unilateral::scenes::{self, AnyScene, Parameters, Scene, Takes};
+use unilateral::solve::{ActiveSet, Linear};
 use unilateral::study::{
     Program, Report, Row, SCHEMES, Study, available_memory_bytes, orders_table, scheme_by_name,
 };
@@ -189,7 +190,13 @@ fn prepare<'a, T: Real, const D: usize>(
         some => each_once(some),
     };
     let n_runs = levels.len() * schemes.len();
+    let linear = match options.linear.as_deref() {
+        Some("direct") => Linear::Direct,
+        Some(_) => Linear::Iterative,
+        None => Linear::BySize,
+    };
     let mut study = Study::<T, D>::new(scene)
+        .solver(ActiveSet { linear, ..ActiveSet::default() })
         .levels(levels)
         .repeat(options.repeat)
         .fields_to(&options.out)

@@ -8,7 +8,11 @@
     note = "use `f64` or `f32`"
 )]
 pub trait Real:
-    nalgebra::RealField + faer::traits::RealField + crate::solve::SparseKernels + Copy
+    nalgebra::RealField
+    + faer::traits::RealField
+    + crate::solve::SparseKernels
+    + crate::study::RegisteredSchemes
+    + Copy
 {
     /// The name users type and reports state.
     const NAME: &'static str;

@@ -52,12 +52,11 @@ schemes! {
     wopsip_on_means: FacetMeans(Wopsip::default());
     conforming_quadratics: ConformingP2;
     sipg_on_quadratics: Sipg::default().on(P2);
-    sipg_on_cell_means: CellMeans(Sipg::default().on(P2));
     nipg_on_quadratics: Nipg::default().on(P2);
     iipg_on_quadratics: Iipg::default().on(P2);
     ldg_on_quadratics: Ldg::default().on(P2);
     ldg_one_sided_on_quadratics: Ldg { switch: true, ..Ldg::default() }.on(P2);
     br2_on_quadratics: Br2::default().on(P2);
     bmmpr_on_quadratics: Bmmpr::default().on(P2);
-    wopsip_on_quadratics: Wopsip::default().on(P2);
+    wopsip_on_quadratics: Wopsip { eta: Eta::Dimensionless(1e-2), ..Wopsip::default() }.on(P2);
 }

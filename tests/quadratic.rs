@@ -342,7 +342,7 @@ fn multipliers_names_and_single_precision() {
     assert_eq!((named.name(), named.constraint()), ("p2", "nodes"));
     fn check<const D: usize>(checks: &mut Checks, level: usize) {
         let scene = scenes::radial::<D>(1.0);
-        let mesh = Mesh::<f64, D>::kuhn_box(&scene.domain, [level; D]).unwrap();
+        let mesh = scene.domain.mesh::<f64>(level).unwrap();
         for scheme in all::<f64, D>() {
             let solved = solve(&*scheme, &scene.problem, &mesh);
             let multiplier = solved.fields.unwrap().multiplier;

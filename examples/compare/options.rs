@@ -48,7 +48,7 @@ pub struct Options {
     /// Solver of the inequality
     #[arg(long, value_name = "NAME")]
     pub solver: Option<String>,
-    /// Linear solver inside it: direct or iterative
+    /// Linear solver inside it: direct or iterative; by default whichever is faster
     #[arg(long, value_name = "NAME")]
     pub linear: Option<String>,
     /// Scalar of assembly and solve
@@ -84,7 +84,10 @@ impl Options {
 /// Solvers of the inequality and linear solvers inside them, with one line each.
 const SOLVERS: &[(&str, &str)] =
     &[("active-set", "primal-dual active set, started from coarser levels in conforming P1")];
-const LINEAR: &[(&str, &str)] = &[("direct", "sparse Cholesky or LU")];
+const LINEAR: &[(&str, &str)] = &[
+    ("direct", "sparse Cholesky or LU"),
+    ("iterative", "conjugate gradients with multigrid on conforming P1, for symmetric schemes"),
+];
 /// More threads than this hardly help anyone, and the system may fail to start them.
 const MOST_THREADS: usize = 1024;
 

@@ -51,7 +51,7 @@ impl<T: Real> SparseMatrix<T> {
     }
     /// The diagonal.
     pub fn diagonal(&self) -> Vec<T> {
-        (0..self.size()).map(|i| self.get(i, i)).collect()
+        (0..self.size()).into_par_iter().with_min_len(4096).map(|i| self.get(i, i)).collect()
     }
     /// Row `i` times a vector.
     #[inline]

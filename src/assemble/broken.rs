@@ -9,16 +9,17 @@
 
 use std::convert::Infallible;
 
-use super::lifted::{self, LiftTable};
-use super::local::{CellSide, StiffnessTable, flux_share, view, zero_local};
+use super::lifted::{LiftTable, Lifting};
+use super::local::{CellSide, StiffnessTable, zero_local};
 use super::metric::Metrics;
 use super::products::JumpProducts;
 use super::space::Space;
 use super::tables::FacetTable;
+use super::weights::{FacetWeight, FacetWeights};
 use super::{count, data, parallel};
 use crate::algebra::SparseMatrix;
-use crate::element::{MAX_BASIS, ReferenceElement};
-use crate::facet::{FacetForm, FacetView, Trace};
+use crate::element::MAX_BASIS;
+use crate::facet::AnyForm;
 use crate::mesh::{BoundaryPart, Neighbour, Neighbours};
 use crate::real::Real;
 
@@ -124,236 +125,234 @@ fn for_each_cell<V: Send>(
 }
 
 /// All that the loop over cells reads.
-struct Filling<'s, 'a, T: Real, const D: usize, F> {
+struct Filling<'s, 'a, T: Real, const D: usize> {
     space: &'s Space<'a, T, D>,
-    form: &'s F,
-    metrics: Metrics<T>,
+    neighbours: &'s Neighbours,
+    metrics: &'s Metrics<T>,
+    weights: &'s FacetWeights<T>,
     stiffness: StiffnessTable<T>,
     facets: FacetTable<T>,
     jumps: JumpProducts<T>,
-    /// How many moments have fluxes.
-    flux_moments: usize,
+    /// By what the penalty is multiplied for each moment that has a flux.
+    flux_moments: Vec<T>,
+    lifted: bool,
 }
 
 /// The values, on a known pattern.
-pub(super) fn fill<T: Real, const D: usize, E: ReferenceElement<T, D>, F: FacetForm<T, D>>(
+pub(super) fn fill<T: Real, const D: usize>(
     space: &Space<'_, T, D>,
-    form: &F,
+    form: &dyn AnyForm<T, D>,
+    metrics: &Metrics<T>,
+    weights: &FacetWeights<T>,
     matrix: &mut SparseMatrix<T>,
 ) {
-    let neighbours = space.coupled_neighbours();
-    let facets = FacetTable::new::<E, D>(F::moments(E::DEGREE));
+    let facets = space.facet_table(form.moments(space.degree));
+    let of_degree = |k| form.moment_weight(k);
+    let has_flux = |k: &&usize| form.uses_flux() && **k < space.degree;
     let filling = Filling {
         space,
-        form,
-        metrics: Metrics::of(space.mesh),
-        stiffness: StiffnessTable::new::<E, D>(),
-        jumps: JumpProducts::new::<D>(&facets, |degree| form.moment_weight(degree)),
-        flux_moments: facets.degrees.iter().filter(|&&k| k < E::DEGREE).count(),
+        neighbours: space.coupled_neighbours(),
+        metrics,
+        weights,
+        stiffness: space.stiffness_table(),
+        jumps: JumpProducts::new::<D>(&facets, of_degree),
+        flux_moments: facets.degrees.iter().filter(has_flux).map(|&k| of_degree(k)).collect(),
         facets,
+        lifted: form.is_lifted(),
     };
-    let lifts = F::LIFTED.then(|| LiftTable::new::<E, D>());
-    let reaction = data::ReactionTerm::new::<E>(space);
     let SparseMatrix { row_starts, values, .. } = matrix;
-    for_each_cell(row_starts, E::N, values, |cell, rows| {
-        let coupled = Coupled::of::<D>(neighbours, cell, F::LIFTED);
-        filling.write_cell::<E>(neighbours, cell, &coupled, rows);
-        if let Some(table) = &lifts {
-            let lifting = lifted::Lifting { space, form, metrics: &filling.metrics, table };
-            lifting.add::<E>(neighbours, cell, &coupled, rows);
-        }
-        if let Some(reaction) = &reaction {
+    match (D, space.per_cell()) {
+        (1, 2) => filling.fill::<2>(row_starts, values),
+        (1, 3) | (2, 3) => filling.fill::<3>(row_starts, values),
+        (2, 6) => filling.fill::<6>(row_starts, values),
+        (3, 4) => filling.fill::<4>(row_starts, values),
+        (3, 10) => filling.fill::<10>(row_starts, values),
+        _ => filling.fill::<0>(row_starts, values),
+    }
+    if form.is_lifted() {
+        let table = LiftTable::new(space);
+        let lifting = Lifting { space, form, metrics, table: &table };
+        filling.add_to_cells(row_starts, values, &|cell, coupled, rows| {
+            lifting.add(filling.neighbours, cell, coupled, rows);
+        });
+    }
+    if let Some(reaction) = data::ReactionTerm::new(space) {
+        let n = space.per_cell();
+        filling.add_to_cells(row_starts, values, &|cell, coupled, rows| {
             let mut own = zero_local();
-            reaction.add::<E>(space.mesh, cell, filling.metrics.at::<D>(cell).volume, &mut own);
-            let block = coupled.position(cell);
-            for (row, values) in rows.chunks_exact_mut(coupled.n * E::N).zip(&own) {
-                for (entry, value) in row[block * E::N..].iter_mut().zip(&values[..E::N]) {
+            reaction.add(space.mesh, cell, metrics.at::<D>(cell).volume, &mut own);
+            let block = coupled.position(cell) * n;
+            for (row, values) in rows.chunks_exact_mut(coupled.n * n).zip(&own) {
+                for (entry, value) in row[block..].iter_mut().zip(&values[..n]) {
                     *entry += *value;
                 }
             }
-        }
-    });
+        });
+    }
 }
 
-impl<T: Real, const D: usize, F: FacetForm<T, D>> Filling<'_, '_, T, D, F> {
+/// What adds to the rows of a cell.
+type AddToCell<'w, T> = &'w (dyn Fn(usize, &Coupled, &mut [T]) + Sync);
+
+impl<T: Real, const D: usize> Filling<'_, '_, T, D> {
+    /// Calls a function with each cell and its rows.
+    fn add_to_cells(&self, row_starts: &[u32], values: &mut [T], add: AddToCell<'_, T>) {
+        for_each_cell(row_starts, self.space.per_cell(), values, |cell, rows| {
+            add(cell, &Coupled::of::<D>(self.neighbours, cell, self.lifted), rows);
+        });
+    }
+
+    /// The rows of all cells, for elements of `N` functions; any number for `N = 0`.
+    fn fill<const N: usize>(&self, row_starts: &[u32], values: &mut [T]) {
+        for_each_cell(row_starts, self.space.per_cell(), values, |cell, rows| {
+            let coupled = Coupled::of::<D>(self.neighbours, cell, self.lifted);
+            if self.lifted {
+                rows.fill(T::lit(0.0));
+            }
+            let rows =
+                Rows::<T, N> { n: self.n::<N>(), row: rows.len() / self.n::<N>(), entries: rows };
+            self.write_cell(cell, &coupled, rows);
+        });
+    }
+    #[inline(always)]
+    fn n<const N: usize>(&self) -> usize {
+        if N == 0 { self.space.per_cell() } else { N }
+    }
+
     /// Writes the rows of a cell: its stiffness and the form on its facets.
     #[inline(always)]
-    fn write_cell<E: ReferenceElement<T, D>>(
-        &self,
-        neighbours: &Neighbours,
-        cell: usize,
-        coupled: &Coupled,
-        rows: &mut [T],
-    ) {
-        let row = coupled.n * E::N;
-        if F::LIFTED {
-            rows.fill(T::lit(0.0));
-        }
+    fn write_cell<const N: usize>(&self, cell: usize, coupled: &Coupled, mut rows: Rows<'_, T, N>) {
+        let n = self.n::<N>();
         let metric = self.metrics.at(cell);
         let coefficient = self.space.alpha(cell);
-        let own = coupled.position(cell) * E::N;
-        for i in 0..E::N {
-            let out = &mut rows[i * row + own..i * row + own + E::N];
-            for j in 0..E::N {
-                out[j] = coefficient * self.stiffness.entry::<D>(&metric, i, j);
-            }
-        }
+        let own = coupled.position(cell) * n;
+        rows.write(own, |i, j| coefficient * self.stiffness.entry::<D>(&metric, i, j));
         for local in 0..=D {
             let me = CellSide { cell, local, metric: &metric, coefficient };
-            match neighbours.across(cell, local) {
+            match self.neighbours.across(cell, local) {
                 Neighbour::Cell { cell: other, local: other_local } => {
-                    let cell = other as usize;
-                    let metric = self.metrics.at(cell);
-                    let local = other_local as usize;
-                    let coefficient = self.space.alpha(cell);
-                    let other = CellSide { cell, local, metric: &metric, coefficient };
-                    let across = coupled.position(cell) * E::N;
-                    self.add_facet::<E>(&me, Some((&other, across)), own, row, rows);
+                    let other = other as usize;
+                    let there = (other, other_local as usize);
+                    let from_here = cell < other;
+                    let here = if from_here { (cell, local) } else { there };
+                    let weight = self.weights.at::<D>(here, from_here);
+                    let across = coupled.position(other) * n;
+                    self.write_across(&me, there, &weight, across, &mut rows);
+                    self.add_facet(&me, Some((there, across)), &weight, own, &mut rows);
                 }
                 Neighbour::Boundary(BoundaryPart::Dirichlet) if !self.space.pins => {
-                    self.add_facet::<E>(&me, None, own, row, rows);
+                    let weight = self.weights.at::<D>((cell, local), true);
+                    self.add_facet(&me, None, &weight, own, &mut rows);
                 }
                 Neighbour::Boundary(_) => {}
             }
         }
     }
 
-    /// Adds the form on a facet to the rows of one of its cells: to the columns of this cell, which
-    /// start at `own`, and to those of the other, which start at the number beside it.
+    /// Writes the products of jumps to the columns of the cell across.
     #[inline(always)]
-    fn add_facet<E: ReferenceElement<T, D>>(
+    fn write_across<const N: usize>(
         &self,
         me: &CellSide<'_, T, D>,
-        other: Option<(&CellSide<'_, T, D>, usize)>,
+        (_, other_local): (usize, usize),
+        weight: &FacetWeight<T>,
+        across: usize,
+        rows: &mut Rows<'_, T, N>,
+    ) {
+        let form = &self.weights.coefficients;
+        let measure = me.metric.measures[me.local];
+        let products = self.jumps.across(me.local, other_local);
+        for (class, (products, &factor)) in products.iter().zip(&self.jumps.weights).enumerate() {
+            let scale = -measure * form.jump_jump.at(weight.penalty * factor);
+            if class == 0 {
+                rows.write(across, |i, j| scale * products[i][j]);
+            } else {
+                rows.add(across, |i, j| scale * products[i][j]);
+            }
+        }
+    }
+
+    /// Adds the products of jumps to the columns of the cell whose rows these are, and all products
+    /// with fluxes to its columns and to those of the cell across.
+    ///
+    /// Jumps and fluxes both flip their sign with the direction of the normal, so their products do
+    /// not: here normals point out of the cell whose rows these are.
+    #[inline(always)]
+    fn add_facet<const N: usize>(
+        &self,
+        me: &CellSide<'_, T, D>,
+        other: Option<((usize, usize), usize)>,
+        weight: &FacetWeight<T>,
         own: usize,
-        row: usize,
-        rows: &mut [T],
+        rows: &mut Rows<'_, T, N>,
     ) {
         count::facets(1);
-        let is_here = other.is_none_or(|(other, _)| me.cell < other.cell);
-        let facet = match other {
-            Some((other, _)) if is_here => view(self.space.mesh, me, Some(other)),
-            Some((other, _)) => view(self.space.mesh, other, Some(me)),
-            None => view(self.space.mesh, me, None),
-        };
-        let penalty = self.form.penalty(&facet);
+        let form = &self.weights.coefficients;
+        let measure = me.metric.measures[me.local];
         let products = self.jumps.own(me.local);
-        for (class, &weight) in self.jumps.weights.iter().enumerate() {
-            let scale = facet.measure * self.jump_jump(penalty * weight);
-            add_scaled::<T>(E::N, scale, &products[class], own, row, rows);
+        for (products, &class) in products.iter().zip(&self.jumps.weights) {
+            let scale = measure * form.jump_jump.at(weight.penalty * class);
+            rows.add(own, |i, j| scale * products[i][j]);
         }
-        if let Some((other, across)) = other {
-            let products = self.jumps.across(me.local, other.local);
-            for (class, &weight) in self.jumps.weights.iter().enumerate() {
-                let scale = -facet.measure * self.jump_jump(penalty * weight);
-                if class == 0 && !F::LIFTED {
-                    write_scaled::<T>(E::N, scale, &products[class], across, row, rows);
-                } else {
-                    add_scaled::<T>(E::N, scale, &products[class], across, row, rows);
-                }
+        let n = if N == 0 { rows.n } else { N };
+        for (k, &class) in self.flux_moments.iter().enumerate() {
+            let penalty = weight.penalty * class;
+            let flux_flux = form.flux_flux.at(penalty) / measure;
+            let (jump_flux, flux_jump) = (form.jump_flux.at(penalty), form.flux_jump.at(penalty));
+            let mine = &self.facets.on(me.local)[k];
+            let flux = me.normal_derivatives(mine, n).map(|d| weight.own_share * d);
+            let by_flux: [T; MAX_BASIS] =
+                std::array::from_fn(|i| jump_flux * mine.values[i] + flux_flux * flux[i]);
+            rows.add(own, |i, j| by_flux[i] * flux[j] + flux_jump * flux[i] * mine.values[j]);
+            if let Some(((cell, local), across)) = other {
+                let metric = self.metrics.at::<D>(cell);
+                let coefficient = self.space.alpha(cell);
+                let other = CellSide { cell, local, metric: &metric, coefficient };
+                let theirs = &self.facets.on(local)[k];
+                let other_flux =
+                    other.normal_derivatives(theirs, n).map(|d| -weight.other_share * d);
+                rows.add(across, |i, j| {
+                    by_flux[i] * other_flux[j] - flux_jump * flux[i] * theirs.values[j]
+                });
             }
-        }
-        if F::USES_FLUX {
-            self.add_fluxes::<E>(&facet, is_here, penalty, me, other, own, row, rows);
-        }
-    }
-
-    /// Adds the products of jumps with fluxes and of fluxes with each other.
-    ///
-    /// Both flip their sign with the direction of the normal, so their products do not: here all
-    /// normals point out of this cell.
-    #[inline(always)]
-    #[expect(clippy::too_many_arguments, reason = "the pieces of one facet, passed in registers")]
-    fn add_fluxes<E: ReferenceElement<T, D>>(
-        &self,
-        facet: &FacetView<T, D>,
-        is_here: bool,
-        penalty: T,
-        me: &CellSide<'_, T, D>,
-        other: Option<(&CellSide<'_, T, D>, usize)>,
-        own: usize,
-        row: usize,
-        rows: &mut [T],
-    ) {
-        let share = flux_share(self.form, facet, is_here);
-        for moment in 0..self.flux_moments {
-            let weight = T::lit(self.form.moment_weight(self.facets.degrees[moment]));
-            let (jump_flux, flux_jump, flux_flux) = self.with_flux(penalty * weight);
-            let flux_flux = flux_flux / facet.measure;
-            let mine = &self.facets.on(me.local)[moment];
-            let flux = me.normal_derivatives::<E>(mine).map(|d| share * d);
-            for i in 0..E::N {
-                let (jump, slope) = (mine.values[i], flux[i]);
-                let (a, b) = (jump_flux * jump + flux_flux * slope, flux_jump * slope);
-                let out = &mut rows[i * row + own..i * row + own + E::N];
-                for j in 0..E::N {
-                    out[j] += a * flux[j] + b * mine.values[j];
-                }
-            }
-            if let Some((other, across)) = other {
-                let theirs = &self.facets.on(other.local)[moment];
-                let other_share = flux_share(self.form, facet, !is_here);
-                // their outward normal is the opposite of mine
-                let other_flux = other.normal_derivatives::<E>(theirs).map(|d| -other_share * d);
-                for i in 0..E::N {
-                    let (jump, slope) = (mine.values[i], flux[i]);
-                    let (a, b) = (jump_flux * jump + flux_flux * slope, flux_jump * slope);
-                    let out = &mut rows[i * row + across..i * row + across + E::N];
-                    for j in 0..E::N {
-                        out[j] += a * other_flux[j] - b * theirs.values[j];
-                    }
-                }
-            }
-        }
-    }
-
-    /// The form's coefficient of `[v][u]`.
-    #[inline(always)]
-    fn jump_jump(&self, penalty: T) -> T {
-        let flux = T::lit(if F::USES_FLUX { 0.0 } else { f64::NAN });
-        let jump = Trace { jump: T::lit(1.0), flux };
-        self.form.integrand(jump, jump, penalty)
-    }
-    /// The form's coefficients of `[v] flux(u)`, `flux(v) [u]` and `flux(v) flux(u)`.
-    #[inline(always)]
-    fn with_flux(&self, penalty: T) -> (T, T, T) {
-        let jump = Trace { jump: T::lit(1.0), flux: T::lit(0.0) };
-        let flux = Trace { jump: T::lit(0.0), flux: T::lit(1.0) };
-        let at = |v, u| self.form.integrand(v, u, penalty);
-        (at(jump, flux), at(flux, jump), at(flux, flux))
-    }
-}
-
-#[inline(always)]
-fn add_scaled<T: Real>(
-    n: usize,
-    scale: T,
-    products: &[[T; MAX_BASIS]; MAX_BASIS],
-    start: usize,
-    row: usize,
-    rows: &mut [T],
-) {
-    for i in 0..n {
-        let out = &mut rows[i * row + start..i * row + start + n];
-        for j in 0..n {
-            out[j] += scale * products[i][j];
         }
     }
 }
 
-#[inline(always)]
-fn write_scaled<T: Real>(
+/// The rows of a cell, `n` of them; `N` is that number where it is known in advance.
+struct Rows<'r, T, const N: usize> {
     n: usize,
-    scale: T,
-    products: &[[T; MAX_BASIS]; MAX_BASIS],
-    start: usize,
+    /// Length of each.
     row: usize,
-    rows: &mut [T],
-) {
-    for i in 0..n {
-        let out = &mut rows[i * row + start..i * row + start + n];
-        for j in 0..n {
-            out[j] = scale * products[i][j];
+    entries: &'r mut [T],
+}
+
+impl<T: Real, const N: usize> Rows<'_, T, N> {
+    #[inline(always)]
+    fn block(&mut self, i: usize, start: usize) -> &mut [T] {
+        let n = if N == 0 { self.n } else { N };
+        &mut self.entries[i * self.row + start..i * self.row + start + n]
+    }
+    /// Writes a dense block that starts at this column.
+    #[inline(always)]
+    fn write(&mut self, start: usize, entry: impl Fn(usize, usize) -> T) {
+        let n = if N == 0 { self.n } else { N };
+        for i in 0..n {
+            let out = self.block(i, start);
+            for j in 0..n {
+                out[j] = entry(i, j);
+            }
+        }
+    }
+    /// Adds to a dense block that starts at this column.
+    #[inline(always)]
+    fn add(&mut self, start: usize, entry: impl Fn(usize, usize) -> T) {
+        let n = if N == 0 { self.n } else { N };
+        for i in 0..n {
+            let out = self.block(i, start);
+            for j in 0..n {
+                out[j] += entry(i, j);
+            }
         }
     }
 }

@@ -4,7 +4,6 @@ use super::count;
 use super::local::Local;
 use super::space::Space;
 use super::tables::CellTable;
-use crate::element::ReferenceElement;
 use crate::error::Error;
 use crate::mesh::{Mesh, describe_point};
 use crate::problem::{Datum, Problem};
@@ -59,27 +58,23 @@ pub(super) fn coefficients<T: Real, const D: usize>(
 pub(super) struct ReactionTerm<'a, T, const D: usize> {
     datum: &'a Datum<D>,
     table: CellTable<T>,
+    n: usize,
 }
 
 impl<'a, T: Real, const D: usize> ReactionTerm<'a, T, D> {
     /// Nothing if the problem has no reaction.
-    pub fn new<E: ReferenceElement<T, D>>(space: &Space<'a, T, D>) -> Option<Self> {
+    pub fn new(space: &Space<'a, T, D>) -> Option<Self> {
         let datum = space.problem.reaction.as_ref()?;
-        let products = 2 * E::DEGREE;
+        let products = 2 * space.degree;
         let degree = match datum {
             Datum::Constant(_) => products,
             Datum::Function(_) => products.max(space.quadrature.cell),
         };
-        Some(Self { datum, table: CellTable::new::<E, D>(degree) })
+        let table = space.cell_table(degree).rounded();
+        Some(Self { datum, table, n: space.per_cell() })
     }
     /// Adds `(c phi_j, phi_i)` over a cell.
-    pub fn add<E: ReferenceElement<T, D>>(
-        &self,
-        mesh: &Mesh<T, D>,
-        cell: usize,
-        volume: T,
-        out: &mut Local<T>,
-    ) {
+    pub fn add(&self, mesh: &Mesh<T, D>, cell: usize, volume: T, out: &mut Local<T>) {
         let table = &self.table;
         for ((point, basis), &weight) in table.points.iter().zip(&table.basis).zip(&table.weights) {
             count::reaction(1);
@@ -88,8 +83,8 @@ impl<'a, T: Real, const D: usize> ReactionTerm<'a, T, D> {
                 Datum::Function(c) => c(&point_f64(&mesh.point(cell, &point[..=D]))),
             };
             let scale = T::lit(c) * volume * weight;
-            for i in 0..E::N {
-                for j in 0..E::N {
+            for i in 0..self.n {
+                for j in 0..self.n {
                     out[i][j] += scale * basis.values[i] * basis.values[j];
                 }
             }

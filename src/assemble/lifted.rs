@@ -14,8 +14,8 @@ use super::local::{CellSide, flux_share, view};
 use super::metric::{CellMetric, Metrics};
 use super::space::Space;
 use super::tables::{BasisAt, FacetTable};
-use crate::element::{MAX_BASIS, ReferenceElement};
-use crate::facet::FacetForm;
+use crate::element::MAX_BASIS;
+use crate::facet::AnyForm;
 use crate::mesh::{BoundaryPart, Neighbour, Neighbours};
 use crate::quadrature::{OrthonormalPolynomials, Rule, insert};
 use crate::real::Real;
@@ -35,8 +35,9 @@ pub(crate) struct LiftTable<T> {
 }
 
 impl<T: Real> LiftTable<T> {
-    pub fn new<E: ReferenceElement<T, D>, const D: usize>() -> Self {
-        let degree = E::DEGREE - 1;
+    /// The lifts of a space of degree one or two.
+    pub fn new<const D: usize>(space: &Space<'_, T, D>) -> Self {
+        let degree = space.degree - 1;
         let mut products = [[[[T::lit(0.0); MAX_MOMENTS]; MAX_MOMENTS]; 4]; 4];
         let tests: Vec<Vec<Vec<f64>>> = (0..=D).map(|l| tests(D, degree, l)).collect();
         for l in 0..=D {
@@ -50,7 +51,7 @@ impl<T: Real> LiftTable<T> {
                 }
             }
         }
-        Self { facets: FacetTable::new::<E, D>(degree), products }
+        Self { facets: space.facet_table(degree), products }
     }
 }
 
@@ -69,9 +70,9 @@ fn tests(dimension: usize, degree: usize, local: usize) -> Vec<Vec<f64>> {
 }
 
 /// The lifts of a discretisation.
-pub(crate) struct Lifting<'s, 'a, T: Real, const D: usize, F> {
+pub(crate) struct Lifting<'s, 'a, T: Real, const D: usize> {
     pub space: &'s Space<'a, T, D>,
-    pub form: &'s F,
+    pub form: &'s dyn AnyForm<T, D>,
     pub metrics: &'s Metrics<T>,
     pub table: &'s LiftTable<T>,
 }
@@ -85,29 +86,23 @@ struct Carrier<T> {
     share: T,
 }
 
-impl<T: Real, const D: usize, F: FacetForm<T, D>> Lifting<'_, '_, T, D, F> {
+impl<T: Real, const D: usize> Lifting<'_, '_, T, D> {
     /// Adds the products to the rows of a cell.
-    pub fn add<E: ReferenceElement<T, D>>(
-        &self,
-        neighbours: &Neighbours,
-        cell: usize,
-        coupled: &Coupled,
-        rows: &mut [T],
-    ) {
-        self.add_centre::<E>(neighbours, cell, None, coupled, rows);
+    pub fn add(&self, neighbours: &Neighbours, cell: usize, coupled: &Coupled, rows: &mut [T]) {
+        self.add_centre(neighbours, cell, None, coupled, rows);
         for local in 0..=D {
             if let Neighbour::Cell { cell: other, local: other_local } =
                 neighbours.across(cell, local)
             {
                 let seen = Some((other_local as usize, local));
-                self.add_centre::<E>(neighbours, other as usize, seen, coupled, rows);
+                self.add_centre(neighbours, other as usize, seen, coupled, rows);
             }
         }
     }
 
     /// Adds what one centre contributes to the rows of a cell: the cell itself, or a neighbour that
     /// sees the cell across one facet, with its number there and here.
-    fn add_centre<E: ReferenceElement<T, D>>(
+    fn add_centre(
         &self,
         neighbours: &Neighbours,
         centre: usize,
@@ -119,24 +114,25 @@ impl<T: Real, const D: usize, F: FacetForm<T, D>> Lifting<'_, '_, T, D, F> {
         let carriers: [Option<Carrier<T>>; 4] = std::array::from_fn(|l| {
             if l <= D { self.carrier(neighbours, centre, &metric, l) } else { None }
         });
-        let row = rows.len() / E::N;
+        let n = self.space.per_cell();
+        let row = rows.len() / n;
         for test in carriers.iter().flatten() {
             let (sign, local) = match seen {
                 None => (T::lit(1.0), test.local),
                 Some((there, here)) if there == test.local => (T::lit(-1.0), here),
                 Some(_) => continue,
             };
-            let tested = self.moments::<E>(local);
+            let tested = self.moments(local);
             for trial in carriers.iter().flatten() {
                 let scale = sign * self.scale(centre, &metric, test, trial);
-                let weighted = self.weighted::<E>(&tested, test.local, trial.local, scale);
-                let columns = self.moments::<E>(trial.local);
-                let start = coupled.position(centre) * E::N;
-                self.add_block::<E>(&weighted, &columns, T::lit(1.0), start, row, rows);
+                let weighted = self.weighted(&tested, test.local, trial.local, scale);
+                let columns = self.moments(trial.local);
+                let start = coupled.position(centre) * n;
+                self.add_block(&weighted, &columns, T::lit(1.0), start, row, rows);
                 if let Some((other, other_local)) = trial.across {
-                    let columns = self.moments::<E>(other_local);
-                    let start = coupled.position(other) * E::N;
-                    self.add_block::<E>(&weighted, &columns, T::lit(-1.0), start, row, rows);
+                    let columns = self.moments(other_local);
+                    let start = coupled.position(other) * n;
+                    self.add_block(&weighted, &columns, T::lit(-1.0), start, row, rows);
                 }
             }
         }
@@ -173,7 +169,7 @@ impl<T: Real, const D: usize, F: FacetForm<T, D>> Lifting<'_, '_, T, D, F> {
                 let is_here = centre < cell;
                 let (here, there) = if is_here { (&me, &other) } else { (&other, &me) };
                 let facet = view(mesh, here, Some(there));
-                let share = flux_share(self.form, &facet, is_here);
+                let share = flux_share(&facet, self.form.share(&facet), is_here);
                 Some(Carrier { local, across: Some((cell, other_local)), share })
             }
             Neighbour::Boundary(BoundaryPart::Dirichlet) => {
@@ -183,11 +179,11 @@ impl<T: Real, const D: usize, F: FacetForm<T, D>> Lifting<'_, '_, T, D, F> {
         }
     }
 
-    fn moments<E: ReferenceElement<T, D>>(&self, local: usize) -> Moments<T> {
+    fn moments(&self, local: usize) -> Moments<T> {
         let mut moments = [[T::lit(0.0); MAX_MOMENTS]; MAX_BASIS];
         for (m, basis) in self.table.facets.on(local).iter().enumerate() {
             let basis: &BasisAt<T> = basis;
-            for i in 0..E::N {
+            for i in 0..self.space.per_cell() {
                 moments[i][m] = basis.values[i];
             }
         }
@@ -195,16 +191,10 @@ impl<T: Real, const D: usize, F: FacetForm<T, D>> Lifting<'_, '_, T, D, F> {
     }
 
     /// The moments of test functions times the products with the moments of another facet.
-    fn weighted<E: ReferenceElement<T, D>>(
-        &self,
-        tested: &Moments<T>,
-        test: usize,
-        trial: usize,
-        scale: T,
-    ) -> Moments<T> {
+    fn weighted(&self, tested: &Moments<T>, test: usize, trial: usize, scale: T) -> Moments<T> {
         let products = &self.table.products[test][trial];
         let mut weighted = [[T::lit(0.0); MAX_MOMENTS]; MAX_BASIS];
-        for i in 0..E::N {
+        for i in 0..self.space.per_cell() {
             for n in 0..MAX_MOMENTS {
                 for m in 0..MAX_MOMENTS {
                     weighted[i][n] += scale * tested[i][m] * products[m][n];
@@ -214,7 +204,7 @@ impl<T: Real, const D: usize, F: FacetForm<T, D>> Lifting<'_, '_, T, D, F> {
         weighted
     }
 
-    fn add_block<E: ReferenceElement<T, D>>(
+    fn add_block(
         &self,
         tests: &Moments<T>,
         trials: &Moments<T>,
@@ -223,9 +213,10 @@ impl<T: Real, const D: usize, F: FacetForm<T, D>> Lifting<'_, '_, T, D, F> {
         row: usize,
         rows: &mut [T],
     ) {
-        for i in 0..E::N {
-            let out = &mut rows[i * row + start..i * row + start + E::N];
-            for j in 0..E::N {
+        let n = self.space.per_cell();
+        for i in 0..n {
+            let out = &mut rows[i * row + start..i * row + start + n];
+            for j in 0..n {
                 for m in 0..MAX_MOMENTS {
                     out[j] += sign * tests[i][m] * trials[j][m];
                 }
@@ -235,7 +226,7 @@ impl<T: Real, const D: usize, F: FacetForm<T, D>> Lifting<'_, '_, T, D, F> {
 
     /// Adds to the load what a Dirichlet datum on a facet of the centre lifts to: the number of the
     /// facet and the moments of the datum, of which lifts take the first.
-    pub fn add_load<E: ReferenceElement<T, D>>(
+    pub fn add_load(
         &self,
         neighbours: &Neighbours,
         centre: usize,
@@ -248,9 +239,10 @@ impl<T: Real, const D: usize, F: FacetForm<T, D>> Lifting<'_, '_, T, D, F> {
             let Some(test) = self.carrier(neighbours, centre, &metric, local) else { continue };
             let scale = self.scale(centre, &metric, &test, &datum);
             let mut add = |cell: usize, local: usize, sign: T| {
-                let tested = self.moments::<E>(local);
-                let weighted = self.weighted::<E>(&tested, test.local, *datum_local, scale);
-                let out = &mut load[cell * E::N..(cell + 1) * E::N];
+                let tested = self.moments(local);
+                let weighted = self.weighted(&tested, test.local, *datum_local, scale);
+                let n = self.space.per_cell();
+                let out = &mut load[cell * n..(cell + 1) * n];
                 for (out, weighted) in out.iter_mut().zip(&weighted) {
                     for (w, &moment) in weighted.iter().zip(moments) {
                         *out += sign * *w * T::lit(moment);

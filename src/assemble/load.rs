@@ -8,16 +8,13 @@ use super::lifted::{LiftTable, Lifting};
 use super::local::{traces, view};
 use super::metric::Metrics;
 use super::space::Space;
-use super::tables::FacetTable;
-use super::{Discretisation, count, data, parallel};
-use crate::element::ReferenceElement;
+use super::{count, data, parallel};
 use crate::error::Error;
-use crate::facet::{FacetForm, Trace};
+use crate::facet::{AnyForm, Trace};
 use crate::mesh::BoundaryPart;
 use crate::problem::{Datum, Field};
 use crate::quadrature::{OrthonormalPolynomials, Rule, insert};
 use crate::real::{Point, Real, point_f64};
-use crate::scheme::Scheme;
 
 /// What is added to a cell's part of the load.
 type OfCell<'w, T> = &'w (dyn Fn(usize, &mut [T]) -> Result<(), Error> + Sync);
@@ -172,61 +169,61 @@ impl FacetMoments {
     }
 }
 
-impl<T: Real, const D: usize, S: Scheme<T, D>> Discretisation<'_, T, D, S> {
+impl<T: Real, const D: usize> Space<'_, T, D> {
     /// The load of all unknowns.
-    ///
-    /// # Errors
-    /// [`Error::DataNotFinite`].
-    pub fn load(&self) -> Result<Vec<T>, Error> {
-        let mut by_cell = self.space.load_by_cell()?;
-        if self.space.has_weak_data() {
-            self.add_dirichlet(&mut by_cell)?;
+    pub fn load(&self, form: &dyn AnyForm<T, D>) -> Result<Vec<T>, Error> {
+        let mut by_cell = self.load_by_cell()?;
+        if self.has_weak_data() {
+            self.add_dirichlet(form, &mut by_cell)?;
         }
-        Ok(self.space.gather_load(by_cell))
+        Ok(self.gather_load(by_cell))
     }
 
     /// Dirichlet data as the trial trace of the facet form.
-    fn add_dirichlet(&self, load: &mut [T]) -> Result<(), Error> {
-        let space = &self.space;
-        let degree = S::Facet::moments(S::Element::DEGREE);
-        let table = FacetTable::<T>::new::<S::Element, D>(degree);
-        let moments = FacetMoments::new(D, degree, space.quadrature.facet);
+    fn add_dirichlet(&self, form: &dyn AnyForm<T, D>, load: &mut [T]) -> Result<(), Error> {
+        let n = self.per_cell();
+        let degree = form.moments(self.degree);
+        let table = self.facet_table(degree);
+        let moments = FacetMoments::new(D, degree, self.quadrature.facet);
         let mut lifted = Vec::new();
-        for (cell, local) in space.facets_of(BoundaryPart::Dirichlet) {
-            let metric = space.metric(cell);
-            let here = space.side(cell, local, &metric);
-            let facet = view(space.mesh, &here, None);
-            let penalty = self.form.penalty(&facet);
-            let values = space.dirichlet_moments(&moments, cell, local)?;
-            let out = &mut load[cell * Self::N..(cell + 1) * Self::N];
+        for (cell, local) in self.facets_of(BoundaryPart::Dirichlet) {
+            let metric = self.metric(cell);
+            let here = self.side(cell, local, &metric);
+            let facet = view(self.mesh, &here, None);
+            let penalty = form.penalty(&facet);
+            let values = self.dirichlet_moments(&moments, cell, local)?;
+            let out = &mut load[cell * n..(cell + 1) * n];
             for (k, (basis, &value)) in table.on(local).iter().zip(&values).enumerate() {
-                let test =
-                    traces::<T, D, S::Element, S::Facet>(&self.form, &facet, &here, true, basis);
+                let test = traces(form, &facet, &here, true, basis, n);
                 let datum = Trace { jump: T::lit(value), flux: T::lit(0.0) };
-                let penalty = penalty * T::lit(self.form.moment_weight(table.degrees[k]));
+                let penalty = penalty * form.moment_weight(table.degrees[k]);
                 for (out, &v) in out.iter_mut().zip(&test) {
-                    *out += facet.measure * self.form.integrand(v, datum, penalty);
+                    *out += facet.measure * form.integrand(v, datum, penalty);
                 }
             }
-            if S::Facet::LIFTED {
+            if form.is_lifted() {
                 lifted.push((cell, (local, values)));
             }
         }
-        self.add_lifted(&lifted, load);
+        self.add_lifted(form, &lifted, load);
         Ok(())
     }
 
     /// What the products of lifts make of Dirichlet data: cell, facet and moments of each datum.
-    fn add_lifted(&self, data: &[(usize, (usize, Vec<f64>))], load: &mut [T]) {
-        let (space, Some(neighbours)) = (&self.space, &self.space.neighbours) else { return };
-        if data.is_empty() {
+    fn add_lifted(
+        &self,
+        form: &dyn AnyForm<T, D>,
+        data: &[(usize, (usize, Vec<f64>))],
+        load: &mut [T],
+    ) {
+        let Some(neighbours) = self.neighbours.as_ref().filter(|_| !data.is_empty()) else {
             return;
-        }
-        let table = LiftTable::new::<S::Element, D>();
-        let metrics = Metrics::of(space.mesh);
-        let lifting = Lifting { space, form: &self.form, metrics: &metrics, table: &table };
+        };
+        let table = LiftTable::new(self);
+        let metrics = Metrics::of(self.mesh);
+        let lifting = Lifting { space: self, form, metrics: &metrics, table: &table };
         for (cell, datum) in data {
-            lifting.add_load::<S::Element>(neighbours, *cell, datum, load);
+            lifting.add_load(neighbours, *cell, datum, load);
         }
     }
 }

@@ -2,8 +2,8 @@
 
 use super::metric::CellMetric;
 use super::tables::{BasisAt, CellTable};
-use crate::element::{MAX_BASIS, ReferenceElement};
-use crate::facet::{FacetForm, FacetView, Side, Trace};
+use crate::element::MAX_BASIS;
+use crate::facet::{AnyForm, FacetView, Side, Trace};
 use crate::mesh::Mesh;
 use crate::real::Real;
 
@@ -21,21 +21,21 @@ pub(crate) struct StiffnessTable<T> {
 }
 
 impl<T: Real> StiffnessTable<T> {
-    pub fn new<E: ReferenceElement<T, D>, const D: usize>() -> Self {
-        let table = CellTable::<T>::new::<E, D>(2 * (E::DEGREE - 1));
+    /// From the basis at the points of a rule that integrates products of derivatives.
+    pub fn new(dimension: usize, table: &CellTable<f64>) -> Self {
         let mut pairs = Vec::new();
-        for k in 0..D {
-            for l in k + 1..=D {
-                let mut pair = zero_local();
+        for k in 0..dimension {
+            for l in k + 1..=dimension {
+                let mut pair: Local<f64> = zero_local();
                 for (basis, &weight) in table.basis.iter().zip(&table.weights) {
-                    let d = &basis.derivatives;
-                    for i in 0..E::N {
-                        for j in 0..E::N {
-                            pair[i][j] -= weight * (d[i][k] - d[i][l]) * (d[j][k] - d[j][l]);
+                    let along = basis.derivatives.map(|d| d[k] - d[l]);
+                    for i in 0..MAX_BASIS {
+                        for j in 0..MAX_BASIS {
+                            pair[i][j] -= weight * along[i] * along[j];
                         }
                     }
                 }
-                pairs.push(pair);
+                pairs.push(pair.map(|row| row.map(T::lit)));
             }
         }
         Self { pairs }
@@ -55,14 +55,15 @@ impl<T: Real> StiffnessTable<T> {
     }
     /// Adds `alpha (grad phi_j, grad phi_i)` over a cell.
     #[inline(always)]
-    pub fn add<E: ReferenceElement<T, D>, const D: usize>(
+    pub fn add<const D: usize>(
         &self,
+        n: usize,
         metric: &CellMetric<T, D>,
         coefficient: T,
         out: &mut Local<T>,
     ) {
-        for i in 0..E::N {
-            for j in 0..E::N {
+        for i in 0..n {
+            for j in 0..n {
                 out[i][j] += coefficient * self.entry(metric, i, j);
             }
         }
@@ -92,14 +93,11 @@ impl<T: Real, const D: usize> CellSide<'_, T, D> {
     /// The derivative of each basis function along the outward normal, of one moment and times the
     /// measure of the facet.
     #[inline(always)]
-    pub fn normal_derivatives<E: ReferenceElement<T, D>>(
-        &self,
-        basis: &BasisAt<T>,
-    ) -> [T; MAX_BASIS] {
-        super::count::normal_derivatives(E::N);
+    pub fn normal_derivatives(&self, basis: &BasisAt<T>, n: usize) -> [T; MAX_BASIS] {
+        super::count::normal_derivatives(n);
         let mut out = [T::lit(0.0); MAX_BASIS];
         let products = &self.metric.products[self.local];
-        for i in 0..E::N {
+        for i in 0..n {
             let mut sum = T::lit(0.0);
             for k in 0..=D {
                 sum += basis.derivatives[i][k] * products[k];
@@ -124,41 +122,40 @@ pub(crate) fn view<'m, T: Real, const D: usize>(
 /// The share of a facet's flux that a cell's normal derivative has: the conductance of the facet
 /// times the share the form gives to the cell here or there.
 #[inline(always)]
-pub(crate) fn flux_share<T: Real, const D: usize, F: FacetForm<T, D>>(
-    form: &F,
+pub(crate) fn flux_share<T: Real, const D: usize>(
     facet: &FacetView<T, D>,
+    share: T,
     is_here: bool,
 ) -> T {
     match facet.there {
         None => facet.here.coefficient,
         Some(_) => {
-            let share = form.share(facet);
             let own = if is_here { share } else { T::lit(1.0) - share };
             facet.conductance(share) * own
         }
     }
 }
 
-/// Traces of a cell's basis functions: one moment on a facet.
+/// Traces of the first `n` basis functions of a cell: one moment on a facet.
 ///
 /// Fluxes are not numbers if the form does not use them, so that a form which reads what it did not
 /// ask for fails its first test.
-#[inline(always)]
-pub(crate) fn traces<T: Real, const D: usize, E: ReferenceElement<T, D>, F: FacetForm<T, D>>(
-    form: &F,
+pub(crate) fn traces<T: Real, const D: usize>(
+    form: &dyn AnyForm<T, D>,
     facet: &FacetView<T, D>,
     side: &CellSide<'_, T, D>,
     is_here: bool,
     basis: &BasisAt<T>,
+    n: usize,
 ) -> [Trace<T>; MAX_BASIS] {
     let sign = T::lit(if is_here { 1.0 } else { -1.0 });
     let mut out = [Trace { jump: T::lit(0.0), flux: T::lit(f64::NAN) }; MAX_BASIS];
-    for (trace, &value) in out.iter_mut().zip(&basis.values).take(E::N) {
+    for (trace, &value) in out.iter_mut().zip(&basis.values).take(n) {
         trace.jump = sign * value;
     }
-    if F::USES_FLUX {
-        let scale = sign * flux_share(form, facet, is_here) / facet.measure;
-        for (trace, derivative) in out.iter_mut().zip(side.normal_derivatives::<E>(basis)) {
+    if form.uses_flux() {
+        let scale = sign * flux_share(facet, form.share(facet), is_here) / facet.measure;
+        for (trace, derivative) in out.iter_mut().zip(side.normal_derivatives(basis, n)).take(n) {
             trace.flux = scale * derivative;
         }
     }

@@ -20,21 +20,25 @@ mod metric;
 mod norms;
 mod parallel;
 mod products;
+mod shortfall;
 mod space;
 pub(crate) mod tables;
+mod weights;
 
 use crate::algebra::{Bound, Inequality, Place, SparseMatrix, Start};
 use crate::element::ReferenceElement;
 use crate::error::Error;
-use crate::facet::{FacetForm, FacetView};
-use crate::mesh::{BoundaryPart, Mesh, Neighbour, Neighbours};
+use crate::facet::{AnyForm, FacetForm};
+use crate::mesh::Mesh;
 use crate::problem::Problem;
 use crate::real::Real;
 use crate::scheme::{DirichletBy, Scheme};
 use crate::solve::Solution;
-use crate::study::Fields;
-use local::view;
+use crate::study::{Errors, Fields};
+use metric::Metrics;
+pub use shortfall::PenaltyShortfall;
 use space::Space;
+use weights::FacetWeights;
 
 /// Degrees of the quadrature rules for data, beyond what the forms need.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -116,7 +120,9 @@ impl<'a, T: Real, const D: usize, S: Scheme<T, D>> Discretisation<'a, T, D, S> {
             );
         }
         if Self::OWNS_ROWS {
-            broken::fill::<T, D, S::Element, S::Facet>(&self.space, &self.form, matrix);
+            let metrics = Metrics::of(self.space.mesh);
+            let weights = FacetWeights::of(&self.space, &self.form, &metrics);
+            broken::fill(&self.space, &self.form, &metrics, &weights, matrix);
         } else {
             gather::fill(self, matrix);
         }
@@ -136,7 +142,7 @@ impl<'a, T: Real, const D: usize, S: Scheme<T, D>> Discretisation<'a, T, D, S> {
         let bounds = self.bounds()?;
         let matrix = self.matrix();
         // the loops that fill the matrix cannot fail: whoever is to blame is sought afterwards
-        if let Some(reaction) = data::ReactionTerm::new::<S::Element>(&self.space)
+        if let Some(reaction) = data::ReactionTerm::new(&self.space)
             && !matrix.values.iter().all(|v| v.to_f64().is_finite())
         {
             reaction.check(self.mesh())?;
@@ -186,74 +192,30 @@ impl<'a, T: Real, const D: usize, S: Scheme<T, D>> Discretisation<'a, T, D, S> {
     /// Facets whose weight lies below what the form needs to be provably coercive: how many, and
     /// the one that misses by the largest factor. Nothing if the form promises none.
     pub fn penalty_shortfall(&self) -> Option<PenaltyShortfall> {
-        let neighbours = self.space.neighbours.as_ref()?;
-        let mut worst: Option<PenaltyShortfall> = None;
-        for cell in 0..self.space.mesh.n_cells() {
-            for local in 0..=D {
-                if let Neighbour::Cell { cell: other, .. } = neighbours.across(cell, local)
-                    && (other as usize) < cell
-                {
-                    continue;
-                }
-                let Some(view) = self.facet_view(neighbours, cell, local) else {
-                    continue;
-                };
-                let needed = self.form.least_penalty(&view)?.to_f64();
-                let weight = self.form.penalty(&view).to_f64();
-                if weight >= needed {
-                    continue;
-                }
-                let facets = worst.map_or(0, |w| w.facets) + 1;
-                let here = PenaltyShortfall { facets, cell, local, weight, needed };
-                worst = match worst {
-                    Some(w) if w.weight / w.needed <= weight / needed => {
-                        Some(PenaltyShortfall { facets, ..w })
-                    }
-                    _ => Some(here),
-                };
-            }
-        }
-        worst
+        self.space.penalty_shortfall(&self.form)
     }
-
-    /// The view of a facet that carries a form, from the cell here.
-    fn facet_view(
-        &self,
-        neighbours: &Neighbours,
-        cell: usize,
-        local: usize,
-    ) -> Option<FacetView<'a, T, D>> {
-        let space = &self.space;
-        let metric = space.metric(cell);
-        let here = space.side(cell, local, &metric);
-        match neighbours.across(cell, local) {
-            Neighbour::Boundary(BoundaryPart::Dirichlet) if !space.pins => {
-                Some(view(space.mesh, &here, None))
-            }
-            Neighbour::Boundary(_) => None,
-            Neighbour::Cell { cell: other, local: other_local } => {
-                let metric = space.metric(other as usize);
-                let there = space.side(other as usize, other_local as usize, &metric);
-                Some(view(space.mesh, &here, Some(&there)))
-            }
-        }
+    /// The load of all unknowns.
+    ///
+    /// # Errors
+    /// [`Error::DataNotFinite`].
+    pub fn load(&self) -> Result<Vec<T>, Error> {
+        self.space.load(&self.form)
     }
-}
-
-/// A warning: penalties below the bound that proves coercivity.
-#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
-#[error(
-    "the penalty of {facets} facets lies below the bound that proves coercivity; worst at facet {local} of cell {cell}: {weight:.3e} where {needed:.3e} is enough"
-)]
-pub struct PenaltyShortfall {
-    /// How many facets lie below.
-    pub facets: usize,
-    /// Cell of the facet that misses by the largest factor.
-    pub cell: usize,
-    /// Number of that facet in the cell.
-    pub local: usize,
-    /// Its weight.
-    pub weight: f64,
-    /// The weight that is provably enough.
-    pub needed: f64,
+    /// Errors of a vector of unknowns against the exact solution; none where there is no exact
+    /// solution.
+    ///
+    /// The energy norm is the broken seminorm weighted with the coefficient, plus the reaction
+    /// term, plus the facet form at jumps without flux, of Dirichlet data as far as the form sees
+    /// them: for interior penalty the usual norm `|.|_1^2 + sum sigma_F ||[.]||^2`, for WOPSIP the
+    /// square root of the form itself.
+    ///
+    /// # Errors
+    /// [`Error::DataNotFinite`].
+    ///
+    /// # Panics
+    /// If `u` is shorter than the number of unknowns.
+    pub fn errors(&self, u: &[T]) -> Result<Errors, Error> {
+        let form: &dyn AnyForm<T, D> = &self.form;
+        self.space.errors(Self::COUPLES.then_some(form), u)
+    }
 }

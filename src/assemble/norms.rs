@@ -4,16 +4,15 @@ use std::ops::Range;
 
 use super::load::FacetMoments;
 use super::space::Space;
-use super::tables::{BasisAt, CellTable, FacetTable};
-use super::{Discretisation, data, parallel};
-use crate::element::{MAX_BASIS, Node, ReferenceElement};
+use super::tables::{BasisAt, CellTable};
+use super::{data, parallel};
+use crate::element::{MAX_BASIS, Node};
 use crate::error::Error;
-use crate::facet::{FacetForm, Trace};
+use crate::facet::{AnyForm, Trace};
 use crate::mesh::{BoundaryPart, Neighbour, Neighbours};
 use crate::problem::Exact;
 use crate::quadrature::Rule;
 use crate::real::{Real, point_f64};
-use crate::scheme::Scheme;
 use crate::study::Errors;
 
 /// Degree of the rule for error norms: the exact solution is not polynomial, and the rule must not
@@ -115,24 +114,13 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
     }
 }
 
-impl<T: Real, const D: usize, S: Scheme<T, D>> Discretisation<'_, T, D, S> {
-    /// Errors of a vector of unknowns against the exact solution; none where there is no exact
-    /// solution.
-    ///
-    /// The energy norm is the broken seminorm weighted with the coefficient, plus the reaction
-    /// term, plus the facet form at jumps without flux: for interior penalty the usual norm
-    /// `|.|_1^2 + sum sigma_F ||[.]||^2`, for WOPSIP the square root of the form itself.
-    ///
-    /// # Errors
-    /// [`Error::DataNotFinite`].
-    ///
-    /// # Panics
-    /// If `u` is shorter than the number of unknowns.
-    pub fn errors(&self, u: &[T]) -> Result<Errors, Error> {
-        let Some(exact) = &self.space.problem.exact else { return Ok(Errors::default()) };
-        let mut total = self.space.cell_errors(exact, u)?;
-        if let (Some(neighbours), true) = (&self.space.neighbours, Self::COUPLES) {
-            total.energy += self.facet_error(neighbours, u)?;
+impl<T: Real, const D: usize> Space<'_, T, D> {
+    /// Errors of a vector of unknowns; see `Discretisation::errors`.
+    pub fn errors(&self, form: Option<&dyn AnyForm<T, D>>, u: &[T]) -> Result<Errors, Error> {
+        let Some(exact) = &self.problem.exact else { return Ok(Errors::default()) };
+        let mut total = self.cell_errors(exact, u)?;
+        if let (Some(neighbours), Some(form)) = (&self.neighbours, form) {
+            total.energy += self.facet_error(form, neighbours, u)?;
         }
         Ok(Errors {
             l2: Some(total.l2.sqrt()),
@@ -143,39 +131,43 @@ impl<T: Real, const D: usize, S: Scheme<T, D>> Discretisation<'_, T, D, S> {
     }
 
     /// The facet form at the jumps of the error.
-    fn facet_error(&self, neighbours: &Neighbours, u: &[T]) -> Result<f64, Error> {
-        let space = &self.space;
-        let degree = S::Facet::moments(S::Element::DEGREE);
-        let table = FacetTable::<T>::new::<S::Element, D>(degree);
-        let moments = FacetMoments::new(D, degree, space.quadrature.facet);
+    fn facet_error(
+        &self,
+        form: &dyn AnyForm<T, D>,
+        neighbours: &Neighbours,
+        u: &[T],
+    ) -> Result<f64, Error> {
+        let degree = form.moments(self.degree);
+        let table = self.facet_table(degree);
+        let moments = FacetMoments::new(D, degree, self.quadrature.facet);
         let value = |basis: &BasisAt<T>, local: &[f64; MAX_BASIS]| -> f64 {
             local.iter().zip(&basis.values).map(|(c, v)| c * v.to_f64()).sum()
         };
         let mut total = 0.0;
-        for cell in 0..space.mesh.n_cells() {
-            let mine = space.local_values(cell, u);
+        for cell in 0..self.mesh.n_cells() {
+            let mine = self.local_values(cell, u);
             for local in 0..=D {
                 let across = neighbours.across(cell, local);
                 let jumps: Vec<f64> = match across {
                     Neighbour::Cell { cell: other, .. } if (other as usize) < cell => continue,
                     Neighbour::Cell { cell: other, local: other_local } => {
-                        let theirs = space.local_values(other as usize, u);
+                        let theirs = self.local_values(other as usize, u);
                         let sides = table.on(local).iter().zip(table.on(other_local as usize));
                         sides.map(|(a, b)| value(a, &mine) - value(b, &theirs)).collect()
                     }
-                    Neighbour::Boundary(BoundaryPart::Dirichlet) if !space.pins => {
-                        let data = space.dirichlet_moments(&moments, cell, local)?;
+                    Neighbour::Boundary(BoundaryPart::Dirichlet) if !self.pins => {
+                        let data = self.dirichlet_moments(&moments, cell, local)?;
                         let sides = table.on(local).iter().zip(data);
                         sides.map(|(basis, g)| value(basis, &mine) - g).collect()
                     }
                     Neighbour::Boundary(_) => continue,
                 };
                 let Some(view) = self.facet_view(neighbours, cell, local) else { continue };
-                let penalty = self.form.penalty(&view);
+                let penalty = form.penalty(&view);
                 for (jump, &degree) in jumps.into_iter().zip(&table.degrees) {
                     let trace = Trace { jump: T::lit(jump), flux: T::lit(0.0) };
-                    let penalty = penalty * T::lit(self.form.moment_weight(degree));
-                    total += (view.measure * self.form.integrand(trace, trace, penalty)).to_f64();
+                    let penalty = penalty * form.moment_weight(degree);
+                    total += (view.measure * form.integrand(trace, trace, penalty)).to_f64();
                 }
             }
         }

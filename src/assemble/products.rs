@@ -20,15 +20,15 @@ pub(crate) struct JumpProducts<T> {
 
 impl<T: Real> JumpProducts<T> {
     /// The products of the moments in a table, with the weight of each degree.
-    pub fn new<const D: usize>(table: &FacetTable<T>, weight: impl Fn(usize) -> f64) -> Self {
-        let of_degree: Vec<f64> = table.degrees.iter().map(|&k| weight(k)).collect();
-        let mut weights = Vec::new();
+    pub fn new<const D: usize>(table: &FacetTable<T>, weight: impl Fn(usize) -> T) -> Self {
+        let of_degree: Vec<T> = table.degrees.iter().map(|&k| weight(k)).collect();
+        let mut weights: Vec<T> = Vec::new();
         for &w in &of_degree {
             if !weights.contains(&w) {
                 weights.push(w);
             }
         }
-        let sum = |local: usize, other: usize, class: f64| {
+        let sum = |local: usize, other: usize, class: T| {
             let mut sum = zero_local();
             let moments = table.on(local).iter().zip(table.on(other)).zip(&of_degree);
             for ((mine, theirs), _) in moments.filter(|(_, w)| **w == class) {
@@ -47,7 +47,7 @@ impl<T: Real> JumpProducts<T> {
         Self {
             own: own.map(|(l, m, c)| sum(l, m, c)).collect(),
             across: across.map(|(l, m, c)| sum(l, m, c)).collect(),
-            weights: weights.iter().map(|&w| T::lit(w)).collect(),
+            weights,
             facets: D + 1,
         }
     }

@@ -4,9 +4,9 @@
 //! element enters as numbers and one function.
 
 use super::dofs::Dofs;
-use super::local::CellSide;
+use super::local::{CellSide, StiffnessTable};
 use super::metric::CellMetric;
-use super::tables::{BasisAt, CellTable};
+use super::tables::{BasisAt, CellTable, FacetTable};
 use super::{DataQuadrature, count, data};
 use crate::algebra::Place;
 use crate::element::{MAX_BASIS, Node, ReferenceElement};
@@ -115,6 +115,14 @@ impl<'a, T: Real, const D: usize> Space<'a, T, D> {
     /// The basis at a point of the cell.
     pub fn basis_at(&self, point: &[f64; 4]) -> BasisAt<f64> {
         (self.basis)(point)
+    }
+    /// The stiffness of the reference element.
+    pub fn stiffness_table(&self) -> StiffnessTable<T> {
+        StiffnessTable::new(D, &self.cell_table(2 * (self.degree - 1)))
+    }
+    /// Moments of the basis on facets, up to a degree.
+    pub fn facet_table(&self, degree: usize) -> FacetTable<T> {
+        FacetTable::new(D, self.degree, self.basis, degree)
     }
     /// The basis at the points of a cell rule.
     pub fn cell_table(&self, degree: usize) -> CellTable<f64> {

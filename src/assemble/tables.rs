@@ -39,13 +39,13 @@ pub(crate) struct CellTable<T> {
     pub basis: Vec<BasisAt<T>>,
 }
 
-impl<T: Real> CellTable<T> {
-    pub fn new<E: ReferenceElement<T, D>, const D: usize>(degree: usize) -> Self {
-        let rule = Rule::of_degree(D, degree);
-        Self {
-            points: rule.points.iter().map(|p| p.map(T::lit)).collect(),
-            weights: rule.weights.iter().map(|&w| T::lit(w)).collect(),
-            basis: rule.points.iter().map(BasisAt::new::<E, D>).collect(),
+impl CellTable<f64> {
+    /// The same in another scalar.
+    pub fn rounded<T: Real>(&self) -> CellTable<T> {
+        CellTable {
+            points: self.points.iter().map(|p| p.map(T::lit)).collect(),
+            weights: self.weights.iter().map(|&w| T::lit(w)).collect(),
+            basis: self.basis.iter().map(BasisAt::rounded).collect(),
         }
     }
 }
@@ -59,29 +59,30 @@ pub(crate) struct FacetTable<T> {
 }
 
 impl<T: Real> FacetTable<T> {
-    /// Moments up to a degree.
-    pub fn new<E: ReferenceElement<T, D>, const D: usize>(degree: usize) -> Self {
-        let polynomials = OrthonormalPolynomials::new(D - 1, degree);
-        let rule = Rule::of_degree(D - 1, degree + E::DEGREE);
+    /// Moments up to a degree of a basis of some degree.
+    pub fn new(
+        dimension: usize,
+        basis_degree: usize,
+        basis: fn(&[f64; 4]) -> BasisAt<f64>,
+        degree: usize,
+    ) -> Self {
+        let polynomials = OrthonormalPolynomials::new(dimension - 1, degree);
+        let rule = Rule::of_degree(dimension - 1, degree + basis_degree);
         let moment = |local: usize, k: usize| {
             let mut moment = BasisAt::zero();
             for (point, w) in rule.iter() {
-                let basis = BasisAt::<T>::new::<E, D>(&insert(point, local));
-                moment.add(T::lit(w * polynomials.value(k, point)), &basis);
+                moment.add(w * polynomials.value(k, point), &basis(&insert(point, local)));
             }
             // derivatives have no moments of the element's own degree: what is left is rounding
-            if polynomials.degree(k) >= E::DEGREE {
+            if polynomials.degree(k) >= basis_degree {
                 moment.derivatives = BasisAt::zero().derivatives;
             }
-            moment
+            moment.rounded()
         };
-        let all = 0..polynomials.len();
+        let n = polynomials.len();
         Self {
-            degrees: all.clone().map(|k| polynomials.degree(k)).collect(),
-            basis: (0..=D)
-                .flat_map(|local| all.clone().map(move |k| (local, k)))
-                .map(|(local, k)| moment(local, k))
-                .collect(),
+            degrees: (0..n).map(|k| polynomials.degree(k)).collect(),
+            basis: (0..(dimension + 1) * n).map(|i| moment(i / n, i % n)).collect(),
         }
     }
     /// The moments on facet `local`.
@@ -93,6 +94,13 @@ impl<T: Real> FacetTable<T> {
 }
 
 impl BasisAt<f64> {
+    /// The same in another scalar.
+    fn rounded<T: Real>(&self) -> BasisAt<T> {
+        BasisAt {
+            values: self.values.map(T::lit),
+            derivatives: self.derivatives.map(|row| row.map(T::lit)),
+        }
+    }
     /// The function with these coefficients.
     #[inline(always)]
     pub fn value(&self, coefficients: &[f64; MAX_BASIS]) -> f64 {

@@ -16,6 +16,7 @@
 //! with `int r(v) . tau = - sum_F int_F [v] {tau . n}`, the mean with the same shares as in the
 //! flux; `r_F(v)` is the part of one facet.
 
+mod erased;
 mod interior_penalty;
 mod lifting;
 mod none;
@@ -23,6 +24,7 @@ mod over_penalty;
 mod proven;
 mod view;
 
+pub(crate) use erased::AnyForm;
 pub use interior_penalty::{InteriorPenalty, PenaltyRule, Symmetry};
 pub use lifting::{FacetLifts, Lifted};
 pub use none::NoFacets;
@@ -94,6 +96,8 @@ pub trait FacetForm<T: Real, const D: usize>: Send + Sync {
     fn parameters(&self) -> PenaltyParameters {
         PenaltyParameters::default()
     }
-    /// The formula, per unit measure of the facet, for one moment of each trace.
+    /// The formula, per unit measure of the facet, for one moment of each trace: bilinear in the
+    /// traces, and at most linear in the penalty weight. The assembler reads it off at unit traces,
+    /// with the weights zero and one.
     fn integrand(&self, v: Trace<T>, u: Trace<T>, penalty: T) -> T;
 }

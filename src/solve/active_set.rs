@@ -3,8 +3,10 @@
 use super::certificate::certify_with_noise;
 use super::condensed::{Noise, resolve};
 use super::cycles::History;
+use super::inexact::Inexact;
 use super::iterate::Iterate;
 use super::linear::{FactorError, is_positive_definite};
+use super::nearby::{Functions, Linear, Nearby};
 use super::{InequalitySolver, Outcome, Solution};
 use crate::algebra::{Inequality, Start};
 use crate::real::Real;
@@ -53,7 +55,12 @@ pub struct ActiveSet {
     /// not Dirichlet values, its symmetric part if it is not symmetric. Error size does not detect
     /// loss of coercivity. Free of cost for a cold start with a symmetric matrix.
     pub check_definite: bool,
+    /// The linear solver inside.
+    pub linear: Linear,
 }
+
+/// Unknowns above which the iterative solver is faster where nested meshes are known.
+const CROSSOVER: usize = 10_000;
 
 /// How much the band may widen: a thousand units of rounding in all leave a certificate below 1e-9
 /// in `f64` and about 1e-4 in `f32`.
@@ -69,6 +76,7 @@ impl Default for ActiveSet {
             max_condensations: 10,
             max_condensed: 500,
             check_definite: false,
+            linear: Linear::default(),
         }
     }
 }
@@ -79,6 +87,57 @@ impl<T: Real> InequalitySolver<T> for ActiveSet {
     }
 
     fn solve(&self, inequality: &Inequality<T>) -> Solution<T> {
+        self.solve_near(inequality, &Nearby::default())
+    }
+
+    fn solve_near(&self, inequality: &Inequality<T>, nearby: &Nearby<T>) -> Solution<T> {
+        let is_iterative = <Self as InequalitySolver<T>>::uses_nearby(self, inequality.size());
+        let is_known = !matches!(nearby.functions, Functions::Unknown);
+        let is_asked = self.linear == Linear::Iterative;
+        if is_iterative
+            && (is_known || is_asked)
+            && inequality.symmetric
+            && check_input(inequality).is_ok()
+        {
+            match self.solve_inexactly(inequality, nearby) {
+                Ok(solution) => return solution,
+                Err((outer, linear)) => {
+                    let mut solution = self.solve_directly(inequality);
+                    solution.outer += outer;
+                    solution.linear += linear;
+                    return solution;
+                }
+            }
+        }
+        self.solve_directly(inequality)
+    }
+
+    fn uses_nearby(&self, unknowns: usize) -> bool {
+        match self.linear {
+            Linear::Direct => false,
+            Linear::Iterative => true,
+            Linear::BySize => unknowns >= CROSSOVER,
+        }
+    }
+}
+
+impl ActiveSet {
+    /// Without factors of the matrix. The error is how many outer and inner iterations were made in
+    /// vain.
+    fn solve_inexactly<T: Real>(
+        &self,
+        inequality: &Inequality<T>,
+        nearby: &Nearby<T>,
+    ) -> Result<Solution<T>, (usize, usize)> {
+        if self.check_definite && check_definite(inequality).is_err() {
+            return Err((0, 0));
+        }
+        Inexact::new(inequality, nearby)
+            .run(self, nearby)
+            .map_err(|in_vain| (in_vain.outer, in_vain.linear))
+    }
+
+    fn solve_directly<T: Real>(&self, inequality: &Inequality<T>) -> Solution<T> {
         let mut iterate = Iterate::new(inequality);
         let outcome = self.run(&mut iterate).unwrap_or_else(|outcome| outcome);
         iterate.into_solution(outcome)

@@ -66,16 +66,21 @@ impl History {
 
 /// The sum over all unknowns on a bound of a pseudo-random number of unknown and bound.
 fn fingerprint(state: &[Contact]) -> u128 {
-    state.iter().enumerate().fold(0, |sum: u128, (i, &contact)| {
-        let side = match contact {
-            Contact::Open => return sum,
-            Contact::Lower => 0,
-            Contact::Upper => 1,
-        };
-        let key = 2 * i as u64 + side;
-        let number = u128::from(scramble(key)) << 64 | u128::from(scramble(!key));
-        sum.wrapping_add(number)
-    })
+    state
+        .iter()
+        .enumerate()
+        .fold(0, |sum: u128, (i, &contact)| sum.wrapping_add(key_of(i, contact)))
+}
+
+/// What one unknown contributes to a fingerprint.
+pub(super) fn key_of(i: usize, contact: Contact) -> u128 {
+    let side = match contact {
+        Contact::Open => return 0,
+        Contact::Lower => 0,
+        Contact::Upper => 1,
+    };
+    let key = 2 * i as u64 + side;
+    u128::from(scramble(key)) << 64 | u128::from(scramble(!key))
 }
 
 /// The output function of SplitMix64 (Steele, Lea, Flood 2014): a bijection of 64 bits without

@@ -70,7 +70,15 @@ impl<'a, T: Real> Iterate<'a, T> {
         } else {
             (self.best.values, self.best.state)
         };
-        Solution { values, contact, outcome, outer: self.outer, linear: 0 }
+        Solution {
+            values,
+            contact,
+            outcome,
+            outer: self.outer,
+            linear: 0,
+            linear_solver: "direct",
+            algebraic_bound: None,
+        }
     }
 
     /// Puts every unknown whose value is known on it, exactly.
@@ -227,7 +235,7 @@ impl<'a, T: Real> Iterate<'a, T> {
 
 /// The state an unknown can have under its bound: open where the bound named does not exist; on
 /// the lower of two bounds that coincide.
-fn rest<T: Real>(bound: &Bound<T>, contact: Contact) -> Contact {
+pub(super) fn rest<T: Real>(bound: &Bound<T>, contact: Contact) -> Contact {
     match contact {
         _ if bound.is_inequality() && bound.only_value().is_some() => Contact::Lower,
         Contact::Lower if bound.lower().is_some() => Contact::Lower,
@@ -237,7 +245,7 @@ fn rest<T: Real>(bound: &Bound<T>, contact: Contact) -> Contact {
 }
 
 /// The value an unknown has without solving for it.
-fn known_value<T: Real>(bound: &Bound<T>, state: Contact) -> Option<T> {
+pub(super) fn known_value<T: Real>(bound: &Bound<T>, state: Contact) -> Option<T> {
     bound.only_value().or(match state {
         Contact::Open => None,
         Contact::Lower => bound.lower(),

@@ -1,21 +1,38 @@
 //! Solvers of the algebraic inequality, and the certificate of what they return.
 
 mod active_set;
+mod aggregation;
+mod auxiliary_space;
 mod certificate;
 mod condensed;
+mod conjugate_gradients;
 mod cycles;
+mod facet_pairs;
+mod facet_split;
+mod hierarchy;
+mod inexact;
 mod iterate;
 mod kernels;
 mod linear;
+mod look;
 mod mean_jump;
+mod multigrid;
+mod nearby;
+mod pieces;
+mod preconditioners;
 mod restrict;
 mod small;
+mod smoother;
+mod transfer;
 
 pub use active_set::ActiveSet;
 pub use certificate::{Certificate, active, certify};
+pub use hierarchy::{Coarser, VertexLevel};
 pub use kernels::SparseKernels;
 pub use linear::{FactorError, Factors, is_positive_definite};
 pub use mean_jump::MeanJump;
+pub use nearby::{Functions, Linear, Nearby};
+pub use transfer::Transfer;
 
 use crate::algebra::{Contact, Inequality};
 use crate::real::Real;
@@ -84,6 +101,10 @@ pub struct Solution<T> {
     pub outer: usize,
     /// Inner iterations of linear solvers, zero for direct ones.
     pub linear: usize,
+    /// The linear solver used: `direct`, or the name of a preconditioner.
+    pub linear_solver: &'static str,
+    /// Bound on the energy norm of the error over that of the solution, where the solver knows one.
+    pub algebraic_bound: Option<f64>,
 }
 
 /// A solver of the algebraic inequality.
@@ -92,4 +113,15 @@ pub trait InequalitySolver<T: Real>: Sync {
     fn name(&self) -> &'static str;
     /// Solves; never fails silently: see [`Outcome`].
     fn solve(&self, inequality: &Inequality<T>) -> Solution<T>;
+    /// The same with knowledge of what is nearby; a solver that has no use for it ignores it.
+    fn solve_near(&self, inequality: &Inequality<T>, nearby: &Nearby<T>) -> Solution<T> {
+        let _ = nearby;
+        self.solve(inequality)
+    }
+    /// Whether it has use for nested meshes where no bound asks for a start from them, for a system
+    /// of this many unknowns.
+    fn uses_nearby(&self, unknowns: usize) -> bool {
+        let _ = unknowns;
+        false
+    }
 }

@@ -2,6 +2,7 @@
 
 use std::time::Instant;
 
+use super::levels::VertexContact;
 use super::{Certificate, ContactErrors, Errors, ExpectedOrders, PenaltyParameters};
 use crate::algebra::{Bound, Contact, Inequality, Place, Start};
 use crate::assemble::{DataQuadrature, Discretisation, PenaltyShortfall};
@@ -12,7 +13,7 @@ use crate::mesh::Mesh;
 use crate::problem::Problem;
 use crate::real::Real;
 use crate::scheme::{Scheme, Setting};
-use crate::solve::{InequalitySolver, Outcome, Solution, certify, is_positive_definite};
+use crate::solve::{InequalitySolver, Nearby, Outcome, Solution, certify, is_positive_definite};
 
 /// What a scheme is asked to solve.
 pub struct Task<'a, T: Real, const D: usize> {
@@ -20,8 +21,8 @@ pub struct Task<'a, T: Real, const D: usize> {
     pub problem: &'a Problem<D>,
     /// The mesh.
     pub mesh: &'a Mesh<T, D>,
-    /// Contact of every vertex to start from; none for a cold start.
-    pub start: Option<&'a [Contact]>,
+    /// Contact and value of every vertex to start from; none for a cold start.
+    pub start: Option<&'a VertexContact<T>>,
     /// The solver.
     pub solver: &'a dyn InequalitySolver<T>,
     /// Quadrature of data.
@@ -70,6 +71,8 @@ pub struct Solved {
     pub outer: Option<usize>,
     /// Inner iterations.
     pub linear: usize,
+    /// The linear solver used.
+    pub linear_solver: &'static str,
     /// The certificate.
     pub certificate: Certificate,
     /// Seconds of assembly.
@@ -210,10 +213,16 @@ fn solve<T: Real, const D: usize>(
         drop(make()?.inequality()?);
         assemble_seconds = assemble_seconds.min(clock.elapsed().as_secs_f64());
     }
-    // contact nowhere is no knowledge: such a start must be free to find that nothing else holds
-    // the body
-    if let Some(vertices) = task.start.filter(|v| v.iter().any(|&c| c != Contact::Open)) {
-        inequality.start = Start::Contact(transfer(vertices, &inequality.places));
+    let mut nearby = Nearby::default();
+    if let Some(start) = task.start {
+        // contact nowhere is no knowledge: such a start must be free to find that nothing else
+        // holds the body
+        if start.contact.iter().any(|&c| c != Contact::Open) {
+            inequality.start = Start::Contact(transfer(&start.contact, &inequality.places));
+        }
+        nearby.functions = start.functions.clone();
+        nearby.values =
+            (!start.values.is_empty()).then(|| means(&start.values, &inequality.places));
     }
     let shortfall = space.penalty_shortfall();
     let mut warnings = Vec::new();
@@ -227,7 +236,7 @@ fn solve<T: Real, const D: usize>(
             T::NAME
         ));
     }
-    let (solution, solve_seconds) = run(task, &inequality, shortfall.is_some());
+    let (solution, solve_seconds) = run(task, &inequality, &nearby, shortfall.is_some());
     let u = &solution.values;
     // without a factorisation there is no iterate, and no number that says anything about one
     let nothing = matches!(
@@ -252,7 +261,13 @@ fn solve<T: Real, const D: usize>(
         active: usable.then(|| crate::solve::active(&inequality, &solution.contact)),
         outer: usable.then_some(solution.outer),
         linear: solution.linear,
-        certificate: if usable { certify(&inequality, u) } else { Certificate::WORTHLESS },
+        linear_solver: solution.linear_solver,
+        certificate: match usable {
+            true => {
+                Certificate { algebraic_bound: solution.algebraic_bound, ..certify(&inequality, u) }
+            }
+            false => Certificate::WORTHLESS,
+        },
         assemble_seconds,
         solve_seconds,
         fields,
@@ -265,6 +280,7 @@ fn solve<T: Real, const D: usize>(
 fn run<T: Real, const D: usize>(
     task: &Task<'_, T, D>,
     inequality: &Inequality<T>,
+    nearby: &Nearby<T>,
     in_doubt: bool,
 ) -> (Solution<T>, f64) {
     let clock = Instant::now();
@@ -275,15 +291,22 @@ fn run<T: Real, const D: usize>(
     if in_doubt && inequality.symmetric && definite() == Ok(false) {
         let values = vec![T::lit(0.0); inequality.size()];
         let contact = vec![Contact::Open; inequality.size()];
-        let solution =
-            Solution { values, contact, outcome: Outcome::NotCoercive, outer: 0, linear: 0 };
+        let solution = Solution {
+            values,
+            contact,
+            outcome: Outcome::NotCoercive,
+            outer: 0,
+            linear: 0,
+            linear_solver: "direct",
+            algebraic_bound: None,
+        };
         return (solution, clock.elapsed().as_secs_f64());
     }
     let mut seconds = f64::INFINITY;
     let mut last = None;
     for _ in 0..task.repeat.max(1) {
         let clock = Instant::now();
-        last = Some(task.solver.solve(inequality));
+        last = Some(task.solver.solve_near(inequality, nearby));
         seconds = seconds.min(clock.elapsed().as_secs_f64());
     }
     match last {
@@ -306,4 +329,14 @@ fn transfer(vertices: &[Contact], places: &[Place]) -> Vec<Contact> {
             .unwrap_or(Contact::Open)
     };
     places.iter().map(state).collect()
+}
+
+/// Values at vertices carried to unknowns: the mean over the vertices around each node.
+fn means<T: Real>(vertices: &[T], places: &[Place]) -> Vec<T> {
+    let mean = |place: &Place| {
+        let around = place.vertices();
+        let sum = around.iter().fold(T::lit(0.0), |s, &v| s + vertices[v as usize]);
+        sum / T::lit(around.len().max(1) as f64)
+    };
+    places.iter().map(mean).collect()
 }

@@ -2,9 +2,10 @@
 //! from.
 
 use std::collections::BTreeMap;
+use std::sync::Arc;
 use std::time::Instant;
 
-use crate::algebra::{Contact, Start};
+use crate::algebra::{Bound, Contact, Start};
 use crate::assemble::{DataQuadrature, Discretisation};
 use crate::error::Error;
 use crate::mesh::{Mesh, Refinement};
@@ -12,13 +13,17 @@ use crate::problem::Problem;
 use crate::real::Real;
 use crate::scenes::Scene;
 use crate::scheme::ConformingP1;
-use crate::solve::{InequalitySolver, Outcome};
+use crate::solve::{Coarser, Functions, InequalitySolver, Nearby, Outcome, Transfer, VertexLevel};
 
-/// Contact of every vertex, found by conforming P1, with what it cost.
+/// Contact and value of every vertex, found by conforming P1, with what it cost.
 #[derive(Clone, Debug)]
-pub struct VertexContact {
+pub struct VertexContact<T> {
     /// The state of every vertex.
     pub contact: Vec<Contact>,
+    /// The value at every vertex; empty if no solution was found.
+    pub values: Vec<T>,
+    /// The conforming linear functions of this and coarser levels.
+    pub functions: Functions<T>,
     /// Seconds spent on this level and all coarser ones.
     pub seconds: f64,
     /// How many levels were solved.
@@ -29,8 +34,10 @@ struct Level<T, const D: usize> {
     mesh: Mesh<T, D>,
     /// The coarser level, and how this one came from it.
     from: Option<(usize, Refinement)>,
+    /// How functions of the coarser level are written on this one.
+    transfer: Option<Arc<Transfer<T>>>,
     seconds: f64,
-    contact: Option<VertexContact>,
+    contact: Option<Arc<VertexContact<T>>>,
 }
 
 /// The levels of a scene, made when asked for and kept.
@@ -46,6 +53,10 @@ pub struct Levels<'a, T, const D: usize> {
 
 /// Fewest subdivisions of a level that is worth a start of its own.
 const COARSEST: usize = 4;
+
+/// How well an iterative solver solves what only something else starts from: relative to the
+/// energy, below the discretisation error of all meshes that fit into memory.
+const START_ACCURACY: f64 = 1e-4;
 
 impl<'a, T: Real, const D: usize> Levels<'a, T, D> {
     /// Levels of the scene's own domain, or of a mesh given instead.
@@ -91,7 +102,7 @@ impl<'a, T: Real, const D: usize> Levels<'a, T, D> {
                 None => (self.coarsest(level)?, None, 0.0),
             };
             let seconds = spent + start.elapsed().as_secs_f64();
-            self.levels.insert(level, Level { mesh, from, seconds, contact: None });
+            self.levels.insert(level, Level { mesh, from, transfer: None, seconds, contact: None });
         }
         Ok(())
     }
@@ -155,7 +166,7 @@ impl<'a, T: Real, const D: usize> Levels<'a, T, D> {
         self.levels.get(&level).map(|l| (&l.mesh, l.seconds))
     }
 
-    /// The contact set of the coarser level, carried to the vertices of a level that was made: a
+    /// Contact and values of the coarser level, carried to the vertices of a level that was made: a
     /// new vertex is in contact if both its parents are.
     pub fn start_from_coarser(
         &mut self,
@@ -163,24 +174,37 @@ impl<'a, T: Real, const D: usize> Levels<'a, T, D> {
         solver: &dyn InequalitySolver<T>,
         quadrature: DataQuadrature,
         repeat: usize,
-    ) -> Result<Option<VertexContact>, Error> {
+    ) -> Result<Option<Arc<VertexContact<T>>>, Error> {
         let Some((coarser, _)) = self.levels.get(&level).and_then(|l| l.from.as_ref()) else {
             return Ok(None);
         };
         let coarser = *coarser;
         let coarse = self.contact(coarser, solver, quadrature, repeat)?;
-        let Some((_, refinement)) = self.levels.get(&level).and_then(|l| l.from.as_ref()) else {
-            return Ok(None);
-        };
-        let contact = refinement
-            .parents
+        let clock = Instant::now();
+        let Some(entry) = self.levels.get_mut(&level) else { unreachable!("made above") };
+        let Some((_, refinement)) = &entry.from else { return Ok(None) };
+        let parents = &refinement.parents;
+        let contact = parents
             .iter()
             .map(|&[a, b]| match (coarse.contact[a as usize], coarse.contact[b as usize]) {
                 (one, other) if one == other => one,
                 _ => Contact::Open,
             })
             .collect();
-        Ok(Some(VertexContact { contact, ..coarse }))
+        let make = || Arc::new(Transfer::midpoints(parents.clone(), coarse.contact.len()));
+        let transfer = entry.transfer.get_or_insert_with(make);
+        let values = match coarse.values.len() == coarse.contact.len() {
+            true => transfer.values(&coarse.values),
+            false => Vec::new(),
+        };
+        let functions = match &coarse.functions {
+            Functions::Same(same) => Coarser::new(same.clone(), transfer.clone()),
+            _ => None,
+        };
+        let seconds = coarse.seconds + clock.elapsed().as_secs_f64();
+        let functions = functions.map_or(Functions::Unknown, Functions::Coarser);
+        let levels = coarse.levels;
+        Ok(Some(Arc::new(VertexContact { contact, values, functions, seconds, levels })))
     }
 
     /// The contact set of conforming P1 on a level that was made.
@@ -193,7 +217,7 @@ impl<'a, T: Real, const D: usize> Levels<'a, T, D> {
         solver: &dyn InequalitySolver<T>,
         quadrature: DataQuadrature,
         repeat: usize,
-    ) -> Result<VertexContact, Error> {
+    ) -> Result<Arc<VertexContact<T>>, Error> {
         if let Some(known) = self.levels.get(&level).and_then(|l| l.contact.clone()) {
             return Ok(known);
         }
@@ -201,7 +225,7 @@ impl<'a, T: Real, const D: usize> Levels<'a, T, D> {
         let start = self.start_from_coarser(level, solver, quadrature, repeat)?;
         let problem = &self.scene.problem;
         let Some(entry) = self.levels.get_mut(&level) else { unreachable!("made above") };
-        let found = solve_p1(problem, &entry.mesh, start, solver, quadrature, repeat)?;
+        let found = Arc::new(solve_p1(problem, &entry.mesh, start, solver, quadrature, repeat)?);
         entry.contact = Some(found.clone());
         Ok(found)
     }
@@ -210,26 +234,46 @@ impl<'a, T: Real, const D: usize> Levels<'a, T, D> {
 fn solve_p1<T: Real, const D: usize>(
     problem: &Problem<D>,
     mesh: &Mesh<T, D>,
-    start: Option<VertexContact>,
+    start: Option<Arc<VertexContact<T>>>,
     solver: &dyn InequalitySolver<T>,
     quadrature: DataQuadrature,
     repeat: usize,
-) -> Result<VertexContact, Error> {
+) -> Result<VertexContact<T>, Error> {
     let (spent, levels) = start.as_ref().map_or((0.0, 0), |s| (s.seconds, s.levels));
-    let start = start.map_or(Start::Cold, |s| Start::Contact(s.contact));
     let mut seconds = f64::INFINITY;
-    let mut contact = Vec::new();
+    let mut last = None;
     for _ in 0..repeat.max(1) {
         let clock = Instant::now();
         let space = Discretisation::new(&ConformingP1, problem, mesh, quadrature)?;
-        let inequality = space.inequality()?.with_start(start.clone());
-        let solution = solver.solve(&inequality);
+        let mut inequality = space.inequality()?;
+        let mut nearby = Nearby { accuracy: Some(START_ACCURACY), ..Nearby::default() };
+        if let Some(start) = &start {
+            inequality.start = Start::Contact(start.contact.clone());
+            nearby.values = Some(start.values.clone());
+            nearby.functions = start.functions.clone();
+        }
+        let solution = solver.solve_near(&inequality, &nearby);
         seconds = seconds.min(clock.elapsed().as_secs_f64());
-        // a start need not be right; all open, one that failed is as good as none
-        contact = match solution.outcome {
-            Outcome::Converged => solution.contact,
-            _ => vec![Contact::Open; inequality.size()],
-        };
+        last = Some((inequality, solution));
     }
-    Ok(VertexContact { contact, seconds: spent + seconds, levels: levels + 1 })
+    let Some((inequality, solution)) = last else { unreachable!("at least one run") };
+    let clock = Instant::now();
+    // a start need not be right; all open, one that failed is as good as none
+    let (contact, values) = match solution.outcome {
+        Outcome::Converged => (solution.contact, solution.values),
+        _ => (vec![Contact::Open; inequality.size()], Vec::new()),
+    };
+    // in one dimension factors are as sparse as the matrix
+    let functions = if D == 1 {
+        Functions::Unknown
+    } else {
+        let fixed = inequality.bounds.iter().map(|b| matches!(b, Bound::Fixed(_))).collect();
+        let coarser = start.and_then(|start| match &start.functions {
+            Functions::Coarser(coarser) => Some(coarser.clone()),
+            _ => None,
+        });
+        Functions::Same(Arc::new(VertexLevel::new(inequality.matrix, fixed, coarser)))
+    };
+    let seconds = spent + seconds + clock.elapsed().as_secs_f64();
+    Ok(VertexContact { contact, values, functions, seconds, levels: levels + 1 })
 }

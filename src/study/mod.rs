@@ -26,7 +26,7 @@ pub use orders::{fill_orders, observed_order};
 pub use orders_table::orders_table;
 pub use plot::{Figure, convergence, work_precision};
 pub use promises::{Norm, ObservedOrders, OrderMissed, OrdersMissed};
-pub use registry::{Placement, SCHEMES, SchemeOptions, scheme_by_name};
+pub use registry::{Placement, RegisteredSchemes, SCHEMES, SchemeOptions, scheme_by_name};
 pub use report::{Program, Report, target_cpu};
 pub use row::{
     ContactErrors, Errors, ExpectedOrders, Iterations, Orders, PenaltyParameters, Row, Seconds,

@@ -1,5 +1,7 @@
 //! Schemes by name.
 
+use std::any::Any;
+
 use super::AnyScheme;
 use crate::element::{Broken, P1, P2};
 use crate::facet::PenaltyRule;
@@ -86,7 +88,7 @@ impl SchemeOptions {
 }
 
 /// Names of the schemes, with one line each. Registering a scheme is one line here and one in
-/// [`scheme_by_name`].
+/// `made` below.
 pub const SCHEMES: &[(&str, &str)] = &[
     ("p1", "conforming linear elements"),
     ("p2", "conforming quadratic elements"),
@@ -114,6 +116,54 @@ pub const SCHEMES: &[(&str, &str)] = &[
 
 /// The scheme of this name.
 pub fn scheme_by_name<T: Real, const D: usize>(
+    name: &str,
+    options: &SchemeOptions,
+) -> Option<Box<dyn AnyScheme<T, D>>> {
+    let erased = T::registered_scheme(D, name, options)?;
+    erased.downcast::<Box<dyn AnyScheme<T, D>>>().ok().map(|scheme| *scheme)
+}
+
+/// The registered schemes, compiled in this library for each scalar and dimension, so that programs
+/// which choose by name need not compile them all again.
+pub trait RegisteredSchemes {
+    /// A `Box<dyn AnyScheme<Self, D>>` for this dimension `D`.
+    fn registered_scheme(
+        dimension: usize,
+        name: &str,
+        options: &SchemeOptions,
+    ) -> Option<Box<dyn Any>>;
+}
+
+impl RegisteredSchemes for f64 {
+    fn registered_scheme(
+        dimension: usize,
+        name: &str,
+        options: &SchemeOptions,
+    ) -> Option<Box<dyn Any>> {
+        erased::<f64>(dimension, name, options)
+    }
+}
+
+impl RegisteredSchemes for f32 {
+    fn registered_scheme(
+        dimension: usize,
+        name: &str,
+        options: &SchemeOptions,
+    ) -> Option<Box<dyn Any>> {
+        erased::<f32>(dimension, name, options)
+    }
+}
+
+fn erased<T: Real>(dimension: usize, name: &str, options: &SchemeOptions) -> Option<Box<dyn Any>> {
+    Some(match dimension {
+        1 => Box::new(made::<T, 1>(name, options)?),
+        2 => Box::new(made::<T, 2>(name, options)?),
+        3 => Box::new(made::<T, 3>(name, options)?),
+        _ => return None,
+    })
+}
+
+fn made<T: Real, const D: usize>(
     name: &str,
     options: &SchemeOptions,
 ) -> Option<Box<dyn AnyScheme<T, D>>> {

@@ -1,6 +1,7 @@
 //! A study: schemes on a scene, level by level.
 
 use std::path::PathBuf;
+use std::sync::Arc;
 
 use super::any_scheme::{AnyScheme, Solved, Task};
 use super::fit::{check_domain, check_fit};
@@ -11,6 +12,7 @@ use super::{
     fill_orders, peak_memory_bytes, write_vtu,
 };
 use crate::assemble::DataQuadrature;
+use crate::element::Layout;
 use crate::error::Error;
 use crate::mesh::{BoundaryPart, Mesh};
 use crate::real::Real;
@@ -203,7 +205,7 @@ impl<'a, T: Real, const D: usize> Study<'a, T, D> {
         let solved = scheme.solve(&Task {
             problem: &self.scene.problem,
             mesh,
-            start: start.as_ref().map(|s| &s.contact[..]),
+            start: start.as_deref(),
             solver: &*self.solver,
             quadrature: self.quadrature,
             with_errors: failure.is_none(),
@@ -220,7 +222,7 @@ impl<'a, T: Real, const D: usize> Study<'a, T, D> {
             ));
         }
         let coarser = start.as_ref().map_or(0, |s| s.levels);
-        let solve = solved.solve_seconds + start.map_or(0.0, |s| s.seconds);
+        let solve = solved.solve_seconds + start.as_ref().map_or(0.0, |s| s.seconds);
         let seconds = Seconds {
             mesh: mesh_seconds,
             assemble: solved.assemble_seconds,
@@ -235,7 +237,7 @@ impl<'a, T: Real, const D: usize> Study<'a, T, D> {
             level,
             parameters: solved.parameters,
             solver: self.solver.name().to_owned(),
-            linear: "direct".to_owned(),
+            linear: solved.linear_solver.to_owned(),
             cells: mesh.n_cells(),
             unknowns: solved.unknowns,
             nonzeros: solved.nonzeros,
@@ -269,9 +271,10 @@ impl<'a, T: Real, const D: usize> Study<'a, T, D> {
         levels: &mut Levels<'_, T, D>,
         scheme: &dyn AnyScheme<T, D>,
         level: usize,
-    ) -> Result<Option<VertexContact>, Error> {
+    ) -> Result<Option<Arc<VertexContact<T>>>, Error> {
         let (solver, quadrature) = (&*self.solver, self.quadrature);
-        if !self.scene.problem.is_constrained() {
+        let unknowns = levels.mesh(level).map_or(0, |(mesh, _)| unknowns(mesh, scheme.layout()));
+        if !self.scene.problem.is_constrained() && !solver.uses_nearby(unknowns) {
             Ok(None)
         } else if scheme.is_conforming_linear() {
             levels.start_from_coarser(level, solver, quadrature, self.repeat)
@@ -322,4 +325,10 @@ impl<'a, T: Real, const D: usize> Study<'a, T, D> {
             },
         )
     }
+}
+
+/// Number of unknowns of a layout on a mesh.
+fn unknowns<T: Real, const D: usize>(mesh: &Mesh<T, D>, layout: Layout) -> usize {
+    let facets = ((D + 1) * mesh.n_cells() + mesh.boundary().len()) / 2;
+    layout.vertex * mesh.vertices().len() + layout.facet * facets + layout.cell * mesh.n_cells()
 }

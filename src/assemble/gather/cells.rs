@@ -3,7 +3,7 @@
 use std::marker::PhantomData;
 
 use crate::assemble::data::ReactionTerm;
-use crate::assemble::local::{StiffnessTable, zero_local};
+use crate::assemble::local::zero_local;
 use crate::assemble::metric::CellMetric;
 use crate::assemble::space::Space;
 use crate::element::{MAX_BASIS, ReferenceElement};
@@ -40,7 +40,7 @@ pub(super) struct CellMatrices<'s, 'a, T: Real, const D: usize> {
 impl<'s, 'a, T: Real, const D: usize> CellMatrices<'s, 'a, T, D> {
     pub fn new<E: ReferenceElement<T, D>>(space: &'s Space<'a, T, D>) -> Self {
         let zero = T::lit(0.0);
-        let table = StiffnessTable::new::<E, D>();
+        let table = space.stiffness_table();
         let unit = |k, l| CellMetric { products: unit(k, l), volume: zero, measures: [zero; 4] };
         let linear = E::DEGREE == 1 && E::N == D + 1;
         let mut square = linear.then(|| table.entry::<D>(&unit(0, 1), 0, 1));
@@ -62,7 +62,7 @@ impl<'s, 'a, T: Real, const D: usize> CellMatrices<'s, 'a, T, D> {
                 }
             }
         }
-        Self { space, pairs, places, reaction: ReactionTerm::new::<E>(space), square }
+        Self { space, pairs, places, reaction: ReactionTerm::new(space), square }
     }
 
     /// The square by which products of gradients make the whole matrix, if they do.
@@ -87,7 +87,7 @@ impl<'s, 'a, T: Real, const D: usize> CellMatrices<'s, 'a, T, D> {
         }
         if let Some(reaction) = &self.reaction {
             let mut local = zero_local();
-            reaction.add::<E>(self.space.mesh, cell, shape.volume, &mut local);
+            reaction.add(self.space.mesh, cell, shape.volume, &mut local);
             let mut place = 0;
             for i in 0..E::N {
                 for j in i..E::N {

@@ -9,7 +9,7 @@ use std::convert::Infallible;
 use std::ops::Range;
 
 use crate::algebra::SparseMatrix;
-use crate::assemble::local::{StiffnessTable, traces, view, zero_local};
+use crate::assemble::local::{traces, view, zero_local};
 use crate::assemble::space::Space;
 use crate::assemble::tables::FacetTable;
 use crate::assemble::{Discretisation, count, data, parallel};
@@ -178,17 +178,17 @@ fn local_matrices<T: Real, const D: usize, S: Scheme<T, D>>(
     let n = Discretisation::<T, D, S>::N;
     let space = patches.space;
     let degree = <S::Element as ReferenceElement<T, D>>::DEGREE;
-    let stiffness = StiffnessTable::new::<S::Element, D>();
-    let reaction = data::ReactionTerm::new::<S::Element>(space);
+    let stiffness = space.stiffness_table();
+    let reaction = data::ReactionTerm::new(space);
     let mut locals = vec![T::lit(0.0); patches.start(patches.len())];
     let (cells, facets) = locals.split_at_mut(patches.start(patches.n_cells()));
     let of_cells = |range: Range<usize>, entries: &mut [T]| {
         for (cell, out) in range.zip(entries.chunks_exact_mut(n * n)) {
             let metric = space.metric(cell);
             let mut local = zero_local();
-            stiffness.add::<S::Element, D>(&metric, space.alpha(cell), &mut local);
+            stiffness.add::<D>(n, &metric, space.alpha(cell), &mut local);
             if let Some(reaction) = &reaction {
-                reaction.add::<S::Element>(space.mesh, cell, metric.volume, &mut local);
+                reaction.add(space.mesh, cell, metric.volume, &mut local);
             }
             for (row, values) in out.chunks_exact_mut(n).zip(&local) {
                 row.copy_from_slice(&values[..n]);
@@ -198,7 +198,7 @@ fn local_matrices<T: Real, const D: usize, S: Scheme<T, D>>(
     };
     let Ok(()) = parallel::for_each(patches.n_cells(), &|c| c * n * n, cells, &of_cells);
     if let Some(all) = &patches.facets {
-        let table = FacetTable::new::<S::Element, D>(S::Facet::moments(degree));
+        let table = space.facet_table(S::Facet::moments(degree));
         let of_facets = |range: Range<usize>, entries: &mut [T]| {
             for (facet, out) in range.zip(entries.chunks_exact_mut(4 * n * n)) {
                 facet_matrix(patches.discretisation, all, &table, facet, out);
@@ -233,14 +233,10 @@ fn facet_matrix<T: Real, const D: usize, S: Scheme<T, D>>(
     let moments = table.on(i).iter().zip(table.on(j)).zip(&table.degrees);
     for ((b_here, b_there), &degree) in moments {
         let mut all = [Trace { jump: T::lit(0.0), flux: T::lit(0.0) }; 2 * MAX_BASIS];
-        all[..n].copy_from_slice(
-            &traces::<T, D, S::Element, S::Facet>(form, &view, &side_here, true, b_here)[..n],
-        );
+        all[..n].copy_from_slice(&traces(form, &view, &side_here, true, b_here, n)[..n]);
         if interior {
-            all[n..2 * n].copy_from_slice(
-                &traces::<T, D, S::Element, S::Facet>(form, &view, &side_there, false, b_there)
-                    [..n],
-            );
+            all[n..2 * n]
+                .copy_from_slice(&traces(form, &view, &side_there, false, b_there, n)[..n]);
         }
         let penalty = penalty * T::lit(form.moment_weight(degree));
         let size = if interior { 2 * n } else { n };

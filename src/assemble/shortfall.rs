@@ -1,0 +1,81 @@
+//! Penalties below the bound that proves coercivity.
+
+use super::local::view;
+use super::space::Space;
+use crate::facet::{AnyForm, FacetView};
+use crate::mesh::{BoundaryPart, Neighbour, Neighbours};
+use crate::real::Real;
+
+impl<'a, T: Real, const D: usize> Space<'a, T, D> {
+    /// See `Discretisation::penalty_shortfall`.
+    pub fn penalty_shortfall(&self, form: &dyn AnyForm<T, D>) -> Option<PenaltyShortfall> {
+        let neighbours = self.neighbours.as_ref()?;
+        let mut worst: Option<PenaltyShortfall> = None;
+        for cell in 0..self.mesh.n_cells() {
+            for local in 0..=D {
+                if let Neighbour::Cell { cell: other, .. } = neighbours.across(cell, local)
+                    && (other as usize) < cell
+                {
+                    continue;
+                }
+                let Some(view) = self.facet_view(neighbours, cell, local) else {
+                    continue;
+                };
+                let needed = form.least_penalty(&view)?.to_f64();
+                let weight = form.penalty(&view).to_f64();
+                if weight >= needed {
+                    continue;
+                }
+                let facets = worst.map_or(0, |w| w.facets) + 1;
+                let here = PenaltyShortfall { facets, cell, local, weight, needed };
+                worst = match worst {
+                    Some(w) if w.weight / w.needed <= weight / needed => {
+                        Some(PenaltyShortfall { facets, ..w })
+                    }
+                    _ => Some(here),
+                };
+            }
+        }
+        worst
+    }
+
+    /// The view of a facet that carries a form, from the cell here.
+    pub fn facet_view(
+        &self,
+        neighbours: &Neighbours,
+        cell: usize,
+        local: usize,
+    ) -> Option<FacetView<'a, T, D>> {
+        let metric = self.metric(cell);
+        let here = self.side(cell, local, &metric);
+        match neighbours.across(cell, local) {
+            Neighbour::Boundary(BoundaryPart::Dirichlet) if !self.pins => {
+                Some(view(self.mesh, &here, None))
+            }
+            Neighbour::Boundary(_) => None,
+            Neighbour::Cell { cell: other, local: other_local } => {
+                let metric = self.metric(other as usize);
+                let there = self.side(other as usize, other_local as usize, &metric);
+                Some(view(self.mesh, &here, Some(&there)))
+            }
+        }
+    }
+}
+
+/// A warning: penalties below the bound that proves coercivity.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[error(
+    "the penalty of {facets} facets lies below the bound that proves coercivity; worst at facet {local} of cell {cell}: {weight:.3e} where {needed:.3e} is enough"
+)]
+pub struct PenaltyShortfall {
+    /// How many facets lie below.
+    pub facets: usize,
+    /// Cell of the facet that misses by the largest factor.
+    pub cell: usize,
+    /// Number of that facet in the cell.
+    pub local: usize,
+    /// Its weight.
+    pub weight: f64,
+    /// The weight that is provably enough.
+    pub needed: f64,
+}

@@ -1,0 +1,353 @@
+//! The active set method with inexact linear solutions: no factors of the matrix.
+
+use super::active_set::ActiveSet;
+use super::conjugate_gradients::{ConjugateGradients, End, Preconditioner, Run, Stop, dot};
+use super::cycles::key_of;
+use super::iterate::{known_value, rest};
+use super::linear::FactorError;
+use super::look::Look;
+use super::nearby::Nearby;
+use super::pieces::each_mut;
+use super::preconditioners::Preconditioners;
+use super::{Outcome, Solution};
+use crate::algebra::{Bound, Contact, Inequality, Start};
+use crate::real::Real;
+
+/// Most iterations for one linear system.
+const MOST_ITERATIONS: usize = 500;
+
+/// Fewer changes of state than this hardly change the error: the next system is solved well.
+const FEW: usize = 16;
+
+/// Most times a system is solved again because of rounding.
+const MOST_REPEATS: usize = 3;
+
+/// The smallest Ritz value is this much larger, at most, than the smallest eigenvalue.
+const RITZ: f64 = 0.9;
+
+/// The current iterate.
+pub(super) struct Inexact<'a, T> {
+    pub inequality: &'a Inequality<T>,
+    pub values: Vec<T>,
+    pub state: Vec<Contact>,
+    /// Whether an unknown has a known value: a Dirichlet datum or a bound it rests on.
+    fixed: Vec<bool>,
+    pub diagonal: Vec<T>,
+    /// `b - A u`, zero where fixed while linear systems are solved.
+    pub residual: Vec<T>,
+    fingerprint: u128,
+    seen: Vec<u128>,
+    pub outer: usize,
+    pub linear: usize,
+    /// Smallest Ritz value so far.
+    lowest: f64,
+    /// Energy norm of the iterate.
+    energy: f64,
+    /// Preconditioned norm of the residual after the last linear system.
+    norm: f64,
+}
+
+/// What was done before factors were asked to take over.
+pub(super) struct InVain {
+    pub outer: usize,
+    pub linear: usize,
+}
+
+/// How the active set fares.
+struct Course {
+    /// Whether it changed after the last linear system.
+    has_moved: bool,
+    /// Whether the next system is to be solved well, and whether all are.
+    settled: bool,
+    careful: bool,
+    best: f64,
+    idle: usize,
+    repeats: usize,
+}
+
+impl Course {
+    fn new(settled: bool) -> Self {
+        let best = f64::INFINITY;
+        Self { has_moved: true, settled, careful: false, best, idle: 0, repeats: 0 }
+    }
+
+    fn is_careful(&self) -> bool {
+        self.settled || self.careful
+    }
+
+    /// Whether it may still arrive.
+    fn goes_on(&mut self, look: &Look, returned: bool, patience: usize) -> bool {
+        self.has_moved = !look.flips.is_empty();
+        self.settled = returned || look.flips.len() < FEW;
+        if !self.has_moved {
+            return true;
+        }
+        let merit = look.merit();
+        self.idle = if merit < self.best { 0 } else { self.idle + 1 };
+        self.best = self.best.min(merit);
+        if self.idle > patience {
+            if self.careful {
+                return false;
+            }
+            // perhaps the active set wanders because systems are solved too badly
+            (self.careful, self.idle) = (true, 0);
+        }
+        true
+    }
+}
+
+impl<'a, T: Real> Inexact<'a, T> {
+    pub fn new(inequality: &'a Inequality<T>, nearby: &Nearby<T>) -> Self {
+        let Inequality { bounds, matrix, start, .. } = inequality;
+        let n = inequality.size();
+        let guess = match start {
+            Start::Cold => &[],
+            Start::Contact(guess) => guess.as_slice(),
+        };
+        let state: Vec<Contact> =
+            (0..n).map(|i| rest(&bounds[i], guess.get(i).copied().unwrap_or_default())).collect();
+        let near = nearby.values.as_deref().filter(|v| v.len() == n);
+        let values =
+            (0..n).map(|i| bounds[i].nearest(near.map_or(T::lit(0.0), |v| v[i]))).collect();
+        let fingerprint =
+            state.iter().enumerate().fold(0, |sum: u128, (i, &c)| sum.wrapping_add(key_of(i, c)));
+        let mut iterate = Self {
+            inequality,
+            values,
+            state,
+            fixed: vec![false; n],
+            diagonal: matrix.diagonal(),
+            residual: vec![T::lit(0.0); n],
+            fingerprint,
+            seen: vec![fingerprint],
+            outer: 0,
+            linear: 0,
+            lowest: 1.0,
+            energy: 1.0,
+            norm: f64::INFINITY,
+        };
+        iterate.rest_on_bounds();
+        iterate
+    }
+
+    /// Solves; an error where the method does not apply or did not get far enough, and factors may.
+    pub fn run(mut self, settings: &ActiveSet, nearby: &Nearby<T>) -> Result<Solution<T>, InVain> {
+        let Some(functions) = Preconditioners::functions(self.inequality, nearby) else {
+            return Err(self.in_vain());
+        };
+        let Some(mut preconditioner) = Preconditioners::new(self.inequality, &functions) else {
+            return Err(self.in_vain());
+        };
+        match self.iterate(settings, nearby, &mut preconditioner) {
+            Some(outcome) => Ok(self.into_solution(outcome, &mut preconditioner)),
+            None => Err(self.in_vain()),
+        }
+    }
+
+    fn in_vain(&self) -> InVain {
+        InVain { outer: self.outer, linear: self.linear }
+    }
+
+    /// `None` if it does not get anywhere.
+    fn iterate(
+        &mut self,
+        settings: &ActiveSet,
+        nearby: &Nearby<T>,
+        preconditioner: &mut Preconditioners<'_, T>,
+    ) -> Option<Outcome> {
+        let tolerance = nearby.accuracy.unwrap_or(0.0).max(0.1 * T::CERTIFICATE_LIMIT);
+        // a residual by itself says little: where the answer need not be good it is not asked for
+        let limit = if nearby.accuracy.is_some() { f64::INFINITY } else { T::CERTIFICATE_LIMIT };
+        let mut gradients = ConjugateGradients::new(self.inequality.size());
+        self.energy = self.look(settings.band).energy;
+        let is_linear = !self.inequality.bounds.iter().any(Bound::is_inequality);
+        let mut course = Course::new(is_linear);
+        loop {
+            if course.has_moved {
+                if self.outer >= settings.max_outer {
+                    return Some(Outcome::IterationLimit);
+                }
+                self.outer += 1;
+                match preconditioner.fix(&self.fixed) {
+                    Ok(()) => {}
+                    Err(FactorError::OutOfMemory) => return Some(Outcome::OutOfMemory),
+                    // factors of the whole matrix tell why
+                    Err(_) => return None,
+                }
+            }
+            let stop = Stop {
+                norm: tolerance * self.energy,
+                share: if course.is_careful() { 0.0 } else { preconditioner.share() },
+                iterations: MOST_ITERATIONS,
+            };
+            let run = self.solve_linear(&mut gradients, preconditioner, stop);
+            match run.end {
+                End::Reached => {}
+                End::NotPositive => return Some(Outcome::NotCoercive),
+                End::NotFinite => return Some(Outcome::NotFinite),
+                End::Limit => return None,
+            }
+            let look = self.look(settings.band);
+            if !(look.energy.is_finite() && look.scale.is_finite()) {
+                return Some(Outcome::NotFinite);
+            }
+            self.energy = look.energy;
+            self.norm = run.last;
+            let is_exact = run.last <= 1.01 * tolerance * self.energy;
+            if is_exact && (look.flips.is_empty() || look.holds_to(tolerance)) {
+                if look.off_contact <= limit * self.energy {
+                    return Some(Outcome::Converged);
+                }
+                // rounding has driven apart the residual and what the iteration thinks it is
+                course.repeats += 1;
+                if course.repeats > MOST_REPEATS {
+                    return Some(Outcome::Stalled);
+                }
+            }
+            let returned = self.has_returned(&look.flips);
+            if !course.goes_on(&look, returned, settings.patience) {
+                return None;
+            }
+            self.flip(&look.flips);
+        }
+    }
+
+    /// One linear system, from the iterate as it is.
+    fn solve_linear(
+        &mut self,
+        gradients: &mut ConjugateGradients<T>,
+        preconditioner: &mut dyn Preconditioner<T>,
+        stop: Stop,
+    ) -> Run {
+        let fixed = &self.fixed;
+        each_mut(&mut self.residual, |range, r| {
+            for (r, &fixed) in r.iter_mut().zip(&fixed[range]) {
+                if fixed {
+                    *r = T::lit(0.0);
+                }
+            }
+        });
+        let iterate = (&mut self.values[..], &mut self.residual[..]);
+        let run =
+            gradients.solve(&self.inequality.matrix, &self.fixed, preconditioner, iterate, stop);
+        self.linear += run.iterations;
+        if let Some((low, _)) = run.ritz {
+            self.lowest = self.lowest.min(low);
+        }
+        run
+    }
+
+    /// Whether the active set after these flips has been there before.
+    fn has_returned(&mut self, flips: &[(u32, Contact)]) -> bool {
+        if flips.is_empty() {
+            return false;
+        }
+        for &(i, contact) in flips {
+            let before = self.state[i as usize];
+            self.fingerprint = self
+                .fingerprint
+                .wrapping_sub(key_of(i as usize, before))
+                .wrapping_add(key_of(i as usize, contact));
+        }
+        let returned = self.seen.contains(&self.fingerprint);
+        self.seen.push(self.fingerprint);
+        returned
+    }
+
+    /// Changes states, puts unknowns on their bounds and keeps the residual up to date.
+    fn flip(&mut self, flips: &[(u32, Contact)]) {
+        for &(i, contact) in flips {
+            let i = i as usize;
+            self.state[i] = contact;
+            let known = known_value(&self.inequality.bounds[i], contact);
+            self.fixed[i] = known.is_some();
+            if let Some(value) = known {
+                let change = value - self.values[i];
+                self.values[i] = value;
+                let (columns, entries) = self.inequality.matrix.row(i);
+                for (&j, &a) in columns.iter().zip(entries) {
+                    self.residual[j as usize] -= a * change;
+                }
+            }
+        }
+    }
+
+    fn rest_on_bounds(&mut self) {
+        for (i, bound) in self.inequality.bounds.iter().enumerate() {
+            let known = known_value(bound, self.state[i]);
+            self.fixed[i] = known.is_some();
+            if let Some(value) = known {
+                self.values[i] = value;
+            }
+        }
+    }
+
+    /// The solution, with a bound on its energy error if it converged.
+    fn into_solution(
+        mut self,
+        outcome: Outcome,
+        preconditioner: &mut Preconditioners<'_, T>,
+    ) -> Solution<T> {
+        let is_good = outcome == Outcome::Converged;
+        let bound = is_good.then(|| self.error_bound(preconditioner)).flatten();
+        Solution {
+            values: self.values,
+            contact: self.state,
+            outcome,
+            outer: self.outer,
+            linear: self.linear,
+            linear_solver: preconditioner.name(),
+            algebraic_bound: bound,
+        }
+    }
+
+    /// A bound on the energy norm of the error over that of the solution, after moving every value
+    /// into its bounds.
+    ///
+    /// For admissible `u` and multipliers `m` of the right sign that vanish off contact, half the
+    /// square of the energy error is at most half of `r . inv(A) r`, `r = b + m - A u`. Wrong
+    /// multipliers go into `r`. The inverse is at most the preconditioner over the smallest
+    /// eigenvalue of the preconditioned matrix, for which stands the smallest Ritz value.
+    fn error_bound(&mut self, preconditioner: &mut Preconditioners<'_, T>) -> Option<f64> {
+        let bounds = &self.inequality.bounds;
+        let mut is_moved = false;
+        for (value, bound) in self.values.iter_mut().zip(bounds) {
+            let nearest = bound.nearest(*value);
+            is_moved |= nearest != *value;
+            *value = nearest;
+        }
+        if is_moved {
+            let values = &self.values;
+            let Inequality { matrix, load, .. } = self.inequality;
+            each_mut(&mut self.residual, |range, r| {
+                for (i, r) in range.zip(r) {
+                    *r = T::lit(load[i].to_f64() - matrix.row_dot_f64(i, values));
+                }
+            });
+        }
+        let mut is_wrong = false;
+        for (i, bound) in bounds.iter().enumerate() {
+            let pull = match self.state[i] {
+                Contact::Open => continue,
+                Contact::Lower => self.residual[i].to_f64(),
+                Contact::Upper => -self.residual[i].to_f64(),
+            };
+            if pull > 0.0 && bound.only_value().is_none() {
+                self.fixed[i] = false;
+                is_wrong = true;
+            }
+        }
+        if is_moved || is_wrong {
+            for (r, &fixed) in self.residual.iter_mut().zip(&self.fixed) {
+                if fixed {
+                    *r = T::lit(0.0);
+                }
+            }
+            let mut z = vec![T::lit(0.0); self.values.len()];
+            preconditioner.fix(&self.fixed).ok()?;
+            preconditioner.apply(&self.residual, &mut z);
+            self.norm = dot(&self.residual, &mut z).max(0.0).sqrt();
+        }
+        Some(self.norm / (RITZ * self.lowest).sqrt() / self.energy)
+    }
+}

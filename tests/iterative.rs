@@ -1,0 +1,200 @@
+//! The iterative linear solver: counts that do not grow, the same solutions as with factors, the
+//! same bits twice, and a reason wherever it does not succeed.
+
+use unilateral::algebra::{Bound, Inequality, SparseMatrix};
+use unilateral::assemble::{DataQuadrature, Discretisation};
+use unilateral::prelude::*;
+use unilateral::scenes::Scene;
+use unilateral::solve::{ActiveSet, InequalitySolver, Linear, Outcome};
+use unilateral::study::Row;
+
+fn with(linear: Linear) -> ActiveSet {
+    ActiveSet { linear, ..ActiveSet::default() }
+}
+
+fn rows<const D: usize>(
+    scene: Scene<D>,
+    scheme: impl AnyScheme<f64, D>,
+    levels: &[usize],
+    linear: Linear,
+) -> Vec<Row> {
+    let study = Study::<f64, D>::new(scene).scheme(scheme).solver(with(linear));
+    let rows = study.levels(levels.iter().copied()).run().unwrap().rows;
+    for row in &rows {
+        assert_eq!(row.status, "converged", "{} on level {}", row.scheme, row.level);
+        eprintln!(
+            "{} {} {}: outer {} inner {} bound {:?} linear {}",
+            row.scene,
+            row.scheme,
+            row.level,
+            row.iterations.outer,
+            row.iterations.linear,
+            row.certificate.algebraic_bound,
+            row.linear
+        );
+    }
+    rows
+}
+
+/// Solves with both and compares; returns the inner iterations of every level.
+fn counts<const D: usize>(
+    scene: fn(f64) -> Scene<D>,
+    scheme: impl AnyScheme<f64, D> + Copy,
+    levels: &[usize],
+    linear: &str,
+) -> Vec<usize> {
+    let found = rows(scene(1.0), scheme, levels, Linear::Iterative);
+    let exact = rows(scene(1.0), scheme, levels, Linear::Direct);
+    for (row, exact) in found.iter().zip(&exact) {
+        assert_eq!((&*row.linear, &*exact.linear), (linear, "direct"));
+        let (a, b) = (row.objective.unwrap(), exact.objective.unwrap());
+        assert!((a - b).abs() <= 1e-8 * b.abs(), "objective {a} and {b}");
+        let (a, b) = (row.error.l2.unwrap(), exact.error.l2.unwrap());
+        // errors differ by no more than solutions do, whose size is one
+        assert!((a - b).abs() <= 1e-8, "error {a} and {b}");
+        assert!(row.certificate.largest() <= 1e-9, "{:?}", row.certificate);
+        assert!(row.certificate.algebraic_bound.unwrap() <= 1e-9, "{:?}", row.certificate);
+        assert!(row.iterations.outer <= 10, "{} outer", row.iterations.outer);
+    }
+    found.iter().map(|row| row.iterations.linear).collect()
+}
+
+fn assert_level(counts: &[usize], most: usize) {
+    let (first, rest) = counts.split_first().unwrap();
+    for count in rest {
+        assert!(count <= &most, "{counts:?}");
+        assert!(2 * count <= 3 * first.max(&(most / 2)), "{counts:?}");
+    }
+}
+
+#[test]
+fn counts_of_conforming_functions_do_not_grow() {
+    assert_level(&counts::<2>(scenes::radial, ConformingP1, &[32, 64, 128], "multigrid"), 25);
+    assert_level(&counts::<3>(scenes::radial, ConformingP1, &[8, 16], "multigrid"), 30);
+}
+
+#[test]
+fn counts_of_nonconforming_functions_do_not_grow() {
+    let counts =
+        counts::<2>(scenes::radial, CrouzeixRaviartScheme, &[16, 32, 64], "auxiliary-space");
+    assert_level(&counts, 60);
+}
+
+#[test]
+fn counts_of_interior_penalty_do_not_grow() {
+    let counts = counts::<2>(scenes::radial, Sipg::default(), &[16, 32, 64], "auxiliary-space");
+    assert_level(&counts, 50);
+}
+
+#[test]
+fn counts_of_over_penalty_on_facet_means_do_not_grow() {
+    let scheme = FacetMeans(Wopsip::default());
+    assert_level(&counts::<2>(scenes::radial, scheme, &[16, 32, 64], "facet-split"), 60);
+}
+
+#[test]
+fn counts_of_over_penalty_on_vertices_do_not_grow() {
+    let scheme = Wopsip::default();
+    assert_level(&counts::<2>(scenes::radial, scheme, &[16, 32, 64], "facet-split"), 90);
+}
+
+#[test]
+fn counts_in_three_dimensions_stay_small() {
+    let sipg = counts::<3>(scenes::radial, Sipg::default(), &[4, 8], "auxiliary-space");
+    assert_level(&sipg, 80);
+    let wopsip = counts::<3>(scenes::radial, Wopsip::default(), &[4, 8], "facet-split");
+    assert_level(&wopsip, 150);
+}
+
+fn inequality<S: Scheme<f64, 2>>(scheme: &S, level: usize) -> Inequality<f64> {
+    let scene = scenes::radial::<2>(1.0);
+    let mesh = Mesh::kuhn_box(&scene.domain, [level; 2]).unwrap();
+    let space =
+        Discretisation::new(scheme, &scene.problem, &mesh, DataQuadrature::default()).unwrap();
+    space.inequality().unwrap()
+}
+
+#[test]
+fn one_mesh_alone_will_do() {
+    let mut inner = Vec::new();
+    for level in [32, 64, 128] {
+        let inequality = inequality(&ConformingP1, level);
+        let solution = with(Linear::Iterative).solve(&inequality);
+        assert_eq!((solution.outcome, solution.linear_solver), (Outcome::Converged, "multigrid"));
+        eprintln!("alone {level}: {} {}", solution.outer, solution.linear);
+        inner.push(solution.linear / solution.outer);
+        let exact = with(Linear::Direct).solve(&inequality);
+        let largest = exact.values.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
+        for (a, b) in solution.values.iter().zip(&exact.values) {
+            assert!((a - b).abs() <= 1e-8 * largest, "{a} and {b}");
+        }
+    }
+    assert!(inner[2] <= inner[0] + 6, "{inner:?}");
+    for solution in [
+        with(Linear::Iterative).solve(&inequality(&Sipg::default(), 16)),
+        with(Linear::Iterative).solve(&inequality(&FacetMeans(Wopsip::default()), 16)),
+    ] {
+        assert_eq!(solution.outcome, Outcome::Converged);
+        assert!(solution.linear > 0);
+    }
+}
+
+#[test]
+fn threads_do_not_change_a_bit() {
+    let inequality = inequality(&ConformingP1, 160);
+    let solve = |threads| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+        pool.install(|| with(Linear::Iterative).solve(&inequality))
+    };
+    let (one, again, two) = (solve(1), solve(1), solve(2));
+    assert_eq!(one.outcome, Outcome::Converged);
+    assert_eq!(one.values, again.values);
+    assert_eq!(one.values, two.values);
+}
+
+/// Second differences on a square grid with `shift` on the diagonal besides.
+fn grid(n: usize, shift: f64) -> Inequality<f64> {
+    let mut inequality = inequality(&ConformingP1, n);
+    let SparseMatrix { row_starts, columns, values } = &mut inequality.matrix;
+    for i in 0..row_starts.len() - 1 {
+        for k in row_starts[i] as usize..row_starts[i + 1] as usize {
+            if columns[k] as usize == i {
+                values[k] += shift;
+            }
+        }
+    }
+    inequality.bounds.fill(Bound::Free);
+    inequality
+}
+
+#[test]
+fn what_cannot_be_solved_is_named() {
+    let outcome = |inequality: &Inequality<f64>| with(Linear::Iterative).solve(inequality).outcome;
+    assert_eq!(outcome(&grid(40, 0.0)), Outcome::Singular);
+    assert_eq!(outcome(&grid(40, -0.1)), Outcome::NotCoercive);
+    assert_eq!(outcome(&grid(40, 0.1)), Outcome::Converged);
+    let mut wrong = grid(40, 0.1);
+    wrong.load[5] = f64::NAN;
+    assert_eq!(outcome(&wrong), Outcome::NotFinite);
+    let mut wrong = grid(40, 0.1);
+    wrong.places.truncate(3);
+    let solution = with(Linear::Iterative).solve(&wrong);
+    assert_eq!((solution.outcome, solution.linear_solver), (Outcome::Converged, "direct"));
+}
+
+#[test]
+fn the_bound_on_the_error_is_one() {
+    let inequality = inequality(&ConformingP1, 48);
+    let exact = with(Linear::Direct).solve(&inequality).values;
+    let solution = with(Linear::Iterative).solve(&inequality);
+    let energy = |u: &[f64]| {
+        let zero = vec![0.0; u.len()];
+        let r = inequality.matrix.residual(&zero, u);
+        -u.iter().zip(&r).map(|(u, r)| u * r).sum::<f64>()
+    };
+    let difference: Vec<f64> = exact.iter().zip(&solution.values).map(|(a, b)| a - b).collect();
+    let error = (energy(&difference) / energy(&exact)).sqrt();
+    let bound = solution.algebraic_bound.unwrap();
+    assert!(error <= bound * 1.01 + 1e-13, "{error} and {bound}");
+    assert!(bound <= 1e-9, "{bound}");
+}
