@@ -1,47 +1,64 @@
-//! Cells assembled per second: from nothing (pattern and values) and refilling a known pattern, on
-//! one and two threads.
+//! What assembly, facet topology, edges and refinement cost per cell, against the bandwidth of memory.
 //!
-//! `cargo bench --bench assembly`; a filter picks cases, e.g. `cargo bench --bench assembly -- 2d/sipg`.
+//! `cargo bench --bench assembly` prints the table of `docs/assembly.md` and then runs criterion;
+//! after `--`
+//!
+//! * `--table` prints the table alone, for example of the cases `--table 2d/p1`;
+//! * `--large` assembles meshes of up to 10^7 cells, each in a process of its own, and states peaks
+//!   of memory;
+//! * anything else goes to criterion, for example a filter like `2d/sipg`.
 
-use std::hint::black_box;
+#[path = "assembly/cases.rs"]
+mod cases;
+#[path = "assembly/large.rs"]
+mod large;
+#[path = "assembly/table.rs"]
+mod table;
 
-use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
-use unilateral::assemble::{DataQuadrature, Discretisation};
-use unilateral::prelude::*;
-use unilateral::scenes::BoxDomain;
+use std::time::Duration;
 
-/// One scheme on one mesh, with and without its pattern.
-fn scheme<const D: usize, S: Scheme<f64, D>>(c: &mut Criterion, scheme: &S, subdivisions: usize) {
-    let domain = BoxDomain::dirichlet(Point::zeros(), Point::repeat(1.0));
-    let Ok(mesh) = Mesh::<f64, D>::kuhn_box(&domain, [subdivisions; D]) else { return };
-    let problem = Problem::<D>::new();
-    let name = format!("{D}d/{}", scheme.name());
-    let mut group = c.benchmark_group(&name);
-    group.throughput(Throughput::Elements(mesh.n_cells() as u64)).sample_size(10);
-    for threads in [1, 2] {
-        let Ok(pool) = rayon::ThreadPoolBuilder::new().num_threads(threads).build() else { return };
-        let discretise = || Discretisation::new(scheme, &problem, &mesh, DataQuadrature::default());
-        // from nothing includes facets and unknowns, which a refill does not need again
-        group.bench_function(BenchmarkId::new("from nothing", threads), |b| {
-            b.iter(|| pool.install(|| discretise().map(|space| black_box(space.matrix()))))
-        });
-        let Ok(space) = discretise() else { return };
-        let mut matrix = space.matrix();
-        group.bench_function(BenchmarkId::new("refill", threads), |b| {
-            b.iter(|| pool.install(|| space.fill(black_box(&mut matrix))))
-        });
+use criterion::{BenchmarkId, Criterion, Throughput};
+
+use cases::Case;
+
+/// The cases of the table in criterion's statistics.
+fn criterion(filters: &[String]) {
+    let mut criterion = Criterion::default()
+        .sample_size(10)
+        .warm_up_time(Duration::from_millis(500))
+        .measurement_time(Duration::from_secs(2))
+        .configure_from_args();
+    let mut run = |case: &mut Case<'_>| {
+        let mut group = criterion.benchmark_group(&case.name);
+        group.throughput(Throughput::Elements(case.cells as u64));
+        for job in &mut case.jobs {
+            for threads in [1, 2] {
+                group.bench_function(BenchmarkId::new(job.name, threads), |b| {
+                    b.iter(|| cases::on(threads, &mut *job.work))
+                });
+            }
+        }
+        group.finish();
+    };
+    cases::each(filters, &mut run);
+}
+
+fn main() {
+    let arguments: Vec<String> = std::env::args().skip(1).collect();
+    let has = |flag: &str| arguments.iter().any(|a| a == flag);
+    let names: Vec<String> = arguments.iter().filter(|a| !a.starts_with('-')).cloned().collect();
+    if has("--one-large") {
+        return large::one(&names);
     }
-    group.finish();
+    if has("--large") {
+        return large::all(&names);
+    }
+    if has("--table") {
+        return table::print(&names);
+    }
+    // a run that only tests that benchmarks run, or lists them, is criterion's own
+    if has("--bench") && arguments.len() == 1 {
+        table::print(&[]);
+    }
+    criterion(&names);
 }
-
-fn assembly(c: &mut Criterion) {
-    scheme::<2, _>(c, &ConformingP1, 512);
-    scheme::<2, _>(c, &Sipg::default(), 256);
-    scheme::<2, _>(c, &Wopsip::default(), 256);
-    scheme::<3, _>(c, &ConformingP1, 32);
-    scheme::<3, _>(c, &Sipg::default(), 16);
-    scheme::<3, _>(c, &Wopsip::default(), 16);
-}
-
-criterion_group!(benches, assembly);
-criterion_main!(benches);

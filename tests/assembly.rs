@@ -11,6 +11,7 @@ use unilateral::facet::{InteriorPenalty, OverPenalty, Symmetry, proven_bound};
 use unilateral::mesh::{BoundaryPart, Mesh};
 use unilateral::prelude::*;
 use unilateral::quadrature::Rule;
+use unilateral::scheme::ConformingP2;
 
 /// A function on one cell: its values at the cell's vertices.
 type Piece = Vec<f64>;
@@ -438,8 +439,13 @@ fn the_same_bits_for_any_number_of_threads() {
             .source(|x| x[0].sin())
             .dirichlet(|x| x[0])
             .neumann(|x, n| x[0] * n[0]);
-        let schemes: [&dyn AnyScheme<f64, D>; 4] =
-            [&ConformingP1, &CrouzeixRaviartScheme, &Sipg::default(), &Wopsip::default()];
+        let schemes: [&dyn AnyScheme<f64, D>; 5] = [
+            &ConformingP1,
+            &ConformingP2,
+            &CrouzeixRaviartScheme,
+            &Sipg::default(),
+            &Wopsip::default(),
+        ];
         for scheme in schemes {
             let run = |threads| {
                 let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
@@ -462,22 +468,25 @@ fn the_same_bits_for_any_number_of_threads() {
 
 #[test]
 fn refilling_a_pattern_gives_the_same_matrix() {
-    let mesh = Raw::<2>::jittered(&mixed_box(), 7, 0.3, &mut Random(4)).mesh::<f64>();
-    let problem = Problem::<2>::new();
-    let space =
-        Discretisation::new(&Sipg::default(), &problem, &mesh, DataQuadrature::default()).unwrap();
-    let first = space.matrix();
-    let mut again = first.clone();
-    again.values.fill(f64::NAN);
-    space.fill(&mut again);
-    assert_eq!(first, again);
-    let space =
-        Discretisation::new(&ConformingP1, &problem, &mesh, DataQuadrature::default()).unwrap();
-    let first = space.matrix();
-    let mut again = first.clone();
-    again.values.fill(f64::NAN);
-    space.fill(&mut again);
-    assert_eq!(first, again);
+    fn check<S: Scheme<f64, 2>>(scheme: &S) {
+        let mesh = Raw::<2>::jittered(&mixed_box(), 7, 0.3, &mut Random(4)).mesh::<f64>();
+        let problem = Problem::<2>::new();
+        let discretise =
+            || Discretisation::new(scheme, &problem, &mesh, DataQuadrature::default()).unwrap();
+        let space = discretise();
+        let first = space.matrix();
+        // also where another discretisation made the pattern
+        for space in [space, discretise()] {
+            let mut again = first.clone();
+            again.values.fill(f64::NAN);
+            space.fill(&mut again);
+            assert_eq!(first, again, "{}", scheme.name());
+        }
+    }
+    check(&Sipg::default());
+    check(&ConformingP1);
+    check(&ConformingP2);
+    check(&CrouzeixRaviartScheme);
 }
 
 #[test]

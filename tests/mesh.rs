@@ -5,7 +5,7 @@ mod support;
 use proptest::prelude::*;
 use support::{Random, Raw, mixed_box};
 use unilateral::mesh::{
-    BoundaryPart, Facets, Hierarchy, Mesh, MeshError, Neighbour, Neighbours, TaggedFacet,
+    BoundaryPart, Edges, Facets, Hierarchy, Mesh, MeshError, Neighbour, Neighbours, TaggedFacet,
 };
 use unilateral::prelude::*;
 use unilateral::scenes::BoxDomain;
@@ -168,6 +168,32 @@ fn boxes_have_the_stated_cells_and_sides() {
         let diagonal = mesh.vertices()[cell[2] as usize] - mesh.vertices()[cell[0] as usize];
         assert!(diagonal.iter().all(|&d| (d - 0.125).abs() < 1e-15));
     }
+}
+
+#[test]
+fn topology_does_not_depend_on_the_number_of_threads() {
+    fn check<const D: usize>(n: usize) {
+        let mut random = Random(8);
+        let raw = Raw::<D>::jittered(&mixed_box(), n, 0.3, &mut random).shuffled(&mut random);
+        let mesh = raw.mesh::<f64>();
+        let run = |threads| {
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+            pool.install(|| {
+                let (fine, refinement) = mesh.refine().unwrap();
+                let lists = (fine.cells().to_vec(), fine.boundary().to_vec(), refinement);
+                (Neighbours::of(&mesh), Edges::numbered(&mesh), lists, fine.vertices().to_vec())
+            })
+        };
+        let one = run(1);
+        check_topology(&mesh);
+        // enough vertices for several ranges
+        for threads in [2, 8] {
+            assert!(one == run(threads), "{D}-d with {threads} threads");
+        }
+    }
+    check::<1>(3000);
+    check::<2>(40);
+    check::<3>(10);
 }
 
 proptest! {

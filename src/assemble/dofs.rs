@@ -1,7 +1,12 @@
 //! Which unknowns a cell has.
 
 use std::borrow::Cow;
+use std::ops::Range;
+use std::sync::OnceLock;
 
+use rayon::prelude::*;
+
+use super::gather::Places;
 use crate::element::Layout;
 use crate::mesh::{Edges, Facets, Mesh, Neighbours};
 use crate::real::Real;
@@ -10,7 +15,23 @@ use crate::real::Real;
 pub(crate) struct Dofs<'a> {
     table: Option<Cow<'a, [u32]>>,
     per_cell: usize,
-    size: usize,
+    n_cells: usize,
+    /// The unknowns of vertices, edges, facets and cells, in this order.
+    kinds: [Range<u32>; KINDS],
+    /// Where cells add to the matrix that these unknowns make, once its pattern is known.
+    pub(super) places: OnceLock<Places>,
+}
+
+/// Kinds of owners of unknowns: vertices, edges, facets and cells.
+pub(super) const KINDS: usize = 4;
+
+/// Which kind owns unknown `i` of a cell.
+#[inline(always)]
+pub(super) const fn kind_of(layout: Layout, dimension: usize, i: usize) -> usize {
+    let vertices = Layout { edge: 0, facet: 0, cell: 0, ..layout }.per_cell(dimension);
+    let edges = Layout { facet: 0, cell: 0, ..layout }.per_cell(dimension);
+    let facets = Layout { cell: 0, ..layout }.per_cell(dimension);
+    (i >= vertices) as usize + (i >= edges) as usize + (i >= facets) as usize
 }
 
 /// Vertices, edges, facets or cells that own unknowns.
@@ -30,43 +51,83 @@ impl<'a> Dofs<'a> {
         mesh: &'a Mesh<T, D>,
         neighbours: Option<&Neighbours>,
     ) -> Self {
-        let per_cell = layout.per_cell(D);
+        let (per_cell, n_cells) = (layout.per_cell(D), mesh.n_cells());
+        let mut dofs = Self {
+            table: None,
+            per_cell,
+            n_cells,
+            kinds: Default::default(),
+            places: OnceLock::new(),
+        };
         if layout.is_broken() {
-            return Self { table: None, per_cell, size: per_cell * mesh.n_cells() };
+            dofs.kinds = ranges([0, 0, 0, per_cell * n_cells]);
+            return dofs;
         }
-        let mut owners = Vec::new();
+        let none = || Owners { unknowns: 0, numbers: Cow::Borrowed(&[]), count: 0 };
+        let mut owners: [Owners<'_>; KINDS] = std::array::from_fn(|_| none());
         if layout.vertex > 0 {
             let (numbers, count) = (Cow::Borrowed(mesh.cells()), mesh.vertices().len());
-            owners.push(Owners { unknowns: layout.vertex, numbers, count });
+            owners[0] = Owners { unknowns: layout.vertex, numbers, count };
         }
         if layout.edge > 0 {
-            let edges = Edges::of(mesh);
-            let numbers = Cow::Owned(edges.numbers(mesh));
-            owners.push(Owners { unknowns: layout.edge, numbers, count: edges.len() });
+            let (edges, numbers) = Edges::numbered(mesh);
+            let numbers = Cow::Owned(numbers);
+            owners[1] = Owners { unknowns: layout.edge, numbers, count: edges.len() };
         }
         if let (true, Some(neighbours)) = (layout.facet > 0, neighbours) {
             let facets = Facets::of(mesh, neighbours);
-            let numbers = Cow::Owned(facets.numbers::<D>(mesh.n_cells()));
-            owners.push(Owners { unknowns: layout.facet, numbers, count: facets.len() });
+            let numbers = Cow::Owned(facets.numbers::<D>(n_cells));
+            owners[2] = Owners { unknowns: layout.facet, numbers, count: facets.len() };
         }
         if layout.cell > 0 {
-            let (numbers, count) = ((0..mesh.n_cells() as u32).collect(), mesh.n_cells());
-            owners.push(Owners { unknowns: layout.cell, numbers, count });
+            let numbers = (0..n_cells as u32).collect();
+            owners[3] = Owners { unknowns: layout.cell, numbers, count: n_cells };
         }
-        let size = owners.iter().map(|o| o.unknowns * o.count).sum();
-        let table = match owners.pop() {
+        dofs.kinds = ranges(owners.each_ref().map(|o| o.unknowns * o.count));
+        let only = owners.iter().position(|o| o.unknowns * o.numbers.len() == per_cell * n_cells);
+        dofs.table = Some(match only {
             // one unknown for each: the table is that of the owners, for vertices the mesh's own
-            Some(only) if owners.is_empty() && only.unknowns == 1 => only.numbers,
-            last => {
-                owners.extend(last);
-                Cow::Owned(table(&owners, mesh.n_cells(), per_cell))
-            }
-        };
-        Self { table: Some(table), per_cell, size }
+            Some(only) if owners[only].unknowns == 1 => owners[only].numbers.clone(),
+            _ => Cow::Owned(table(&owners, n_cells, per_cell)),
+        });
+        dofs
     }
     /// Number of unknowns.
     pub fn size(&self) -> usize {
-        self.size
+        self.kinds[KINDS - 1].end as usize
+    }
+    /// Unknowns of a cell.
+    pub(super) fn per_cell(&self) -> usize {
+        self.per_cell
+    }
+    /// Number of cells.
+    pub(super) fn n_cells(&self) -> usize {
+        self.n_cells
+    }
+    /// The unknowns of each kind of owner.
+    pub(super) fn kinds(&self) -> &[Range<u32>; KINDS] {
+        &self.kinds
+    }
+    /// The unknowns of all cells where they are not simply consecutive.
+    pub(super) fn table(&self) -> Option<&[u32]> {
+        self.table.as_deref()
+    }
+    /// The unknowns of some cells, in a buffer if they have no table.
+    #[inline(always)]
+    pub(super) fn of_cells<'d>(
+        &'d self,
+        cells: Range<usize>,
+        buffer: &'d mut Vec<u32>,
+    ) -> &'d [u32] {
+        let range = cells.start * self.per_cell..cells.end * self.per_cell;
+        match &self.table {
+            Some(table) => &table[range],
+            None => {
+                buffer.clear();
+                buffer.extend(range.map(|k| k as u32));
+                buffer
+            }
+        }
     }
     /// Unknown `i` of a cell.
     #[inline(always)]
@@ -76,19 +137,31 @@ impl<'a> Dofs<'a> {
     }
 }
 
+/// Consecutive ranges of these lengths.
+fn ranges(lengths: [usize; KINDS]) -> [Range<u32>; KINDS] {
+    let mut end = 0;
+    lengths.map(|length| {
+        end += length as u32;
+        end - length as u32..end
+    })
+}
+
 /// The unknowns of every cell: first those of the first owners, and so on.
-fn table(owners: &[Owners<'_>], n_cells: usize, per_cell: usize) -> Vec<u32> {
-    let mut table = Vec::with_capacity(n_cells * per_cell);
-    for cell in 0..n_cells {
+fn table(owners: &[Owners<'_>; KINDS], n_cells: usize, per_cell: usize) -> Vec<u32> {
+    let mut table = vec![0; n_cells * per_cell];
+    let fill = |(cell, mut out): (usize, &mut [u32])| {
         let mut first = 0;
         for of in owners {
             let n = of.numbers.len() / n_cells;
             for &owner in &of.numbers[cell * n..(cell + 1) * n] {
                 let start = first + owner as usize * of.unknowns;
-                table.extend((start..start + of.unknowns).map(|unknown| unknown as u32));
+                let (own, rest) = out.split_at_mut(of.unknowns);
+                own.iter_mut().enumerate().for_each(|(k, unknown)| *unknown = (start + k) as u32);
+                out = rest;
             }
             first += of.unknowns * of.count;
         }
-    }
+    };
+    table.par_chunks_exact_mut(per_cell).enumerate().with_min_len(1024).for_each(fill);
     table
 }

@@ -1,5 +1,11 @@
 //! Facets: which two cells meet where.
 
+use std::ops::Range;
+use std::sync::atomic::{AtomicU32, Ordering};
+
+use rayon::prelude::*;
+
+use super::sweep::{Met, Sweep};
 use super::{BoundaryPart, Mesh, MeshError};
 use crate::real::Real;
 
@@ -55,41 +61,19 @@ impl Neighbours {
         cells: &[u32],
         n_vertices: usize,
     ) -> Result<Self, MeshError> {
-        let per_cell = D + 1;
-        let mut codes = vec![UNKNOWN; cells.len()];
-        // half-facets in buckets by their lowest vertex: a counting sort, then tiny sorts
-        let lowest = |cell: &[u32], local: usize| cell[usize::from(local == 0)] as usize;
-        let mut starts = vec![0_u32; n_vertices + 1];
-        for cell in cells.chunks_exact(per_cell) {
-            for local in 0..per_cell {
-                starts[lowest(cell, local) + 1] += 1;
-            }
+        // the lowest vertex of a facet is the first or the second of its cell
+        let sweep = Sweep::<D>::new(cells, n_vertices, 2);
+        let mut codes = Vec::new();
+        codes.resize_with(cells.len(), || AtomicU32::new(UNKNOWN));
+        let matched = |vertices: &Range<u32>| match_from(&sweep, vertices.clone(), &codes);
+        if !sweep.ranges().par_iter().all(matched)
+            && let Some(error) = mismatch::<D>(cells)
+        {
+            return Err(error);
         }
-        for v in 0..n_vertices {
-            starts[v + 1] += starts[v];
-        }
-        let mut fill = starts.clone();
-        let mut sides = vec![(0_u64, 0_u32); cells.len()];
-        for (c, cell) in cells.chunks_exact(per_cell).enumerate() {
-            for local in 0..per_cell {
-                let at = &mut fill[lowest(cell, local)];
-                sides[*at as usize] = (upper_key::<D>(cell, local), side_code(c, local));
-                *at += 1;
-            }
-        }
-        for v in 0..n_vertices {
-            let bucket = &mut sides[starts[v] as usize..starts[v + 1] as usize];
-            bucket.sort_unstable();
-            let mut k = 0;
-            while k < bucket.len() {
-                let same = bucket[k..].iter().take_while(|s| s.0 == bucket[k].0).count();
-                if same > 1 {
-                    pair_up::<D>(cells, &bucket[k..k + same], &mut codes)?;
-                }
-                k += same;
-            }
-        }
-        Ok(Self { codes, per_cell })
+        // each code was written by the one thread that has the lowest vertex of its facet
+        let codes = codes.into_iter().map(AtomicU32::into_inner).collect();
+        Ok(Self { codes, per_cell: D + 1 })
     }
 
     /// What lies across facet `local` of a cell.
@@ -112,48 +96,84 @@ impl Neighbours {
     }
 }
 
-/// The vertices of a facet above its lowest one, packed to compare at once.
-#[inline(always)]
-fn upper_key<const D: usize>(cell: &[u32], local: usize) -> u64 {
-    let mut key = 0;
-    let mut seen = 0;
-    for (i, &v) in cell.iter().enumerate() {
-        if i != local {
-            if seen > 0 {
-                key = key << 32 | u64::from(v);
-            }
-            seen += 1;
-        }
-    }
-    debug_assert_eq!(seen, D);
-    key
+/// A facet met so far from one cell.
+struct Half {
+    /// Its highest vertex in three dimensions.
+    highest: u32,
+    /// The facet met before it with the same second vertex.
+    before: Option<u32>,
+    side: u32,
+    matched: bool,
 }
 
-fn pair_up<const D: usize>(
-    cells: &[u32],
-    same: &[(u64, u32)],
-    codes: &mut [u32],
-) -> Result<(), MeshError> {
-    let side = |k: usize| ((same[k].1 >> 2) as usize, (same[k].1 & 3) as usize);
-    let cell = |c: usize| &cells[c * (D + 1)..(c + 1) * (D + 1)];
-    for k in 1..same.len() {
-        for j in 0..k {
-            let ((first, i), (second, _)) = (side(j), side(k));
-            if cell(first) == cell(second) {
-                let vertices = cell(first).to_vec();
-                return Err(MeshError::RepeatedCell { first, second, vertices });
-            }
-            if k == 2 {
-                let vertices = (0..=D).filter(|&v| v != i).map(|v| cell(first)[v]).collect();
-                let cells = [side(0).0, side(1).0, side(2).0];
-                return Err(MeshError::FacetOfThreeCells { vertices, cells });
+/// Matches the facets whose lowest vertex is in a range; false where that does not make a mesh.
+fn match_from<const D: usize>(
+    sweep: &Sweep<'_, D>,
+    vertices: Range<u32>,
+    codes: &[AtomicU32],
+) -> bool {
+    let mut met = Met::new(sweep.n_vertices());
+    let mut halves: Vec<Half> = Vec::new();
+    for (lowest, cells) in sweep.around(vertices).each() {
+        met.next_vertex();
+        halves.clear();
+        for (c, first) in cells {
+            // the first vertex of a cell is the lowest of all facets but the one opposite it
+            for local in if first == 0 { 1..D + 1 } else { 0..1 } {
+                let cell = sweep.cell(c);
+                let vertex = |k: usize| cell[k + usize::from(k >= local)];
+                // a point has no second vertex: all of them are met together
+                let second = if D > 1 { vertex(1) } else { lowest };
+                let highest = if D > 2 { vertex(2) } else { second };
+                let side = side_code(c, local);
+                let before = met.with(second);
+                let mut found = before;
+                while let Some(k) = found
+                    && halves[k as usize].highest != highest
+                {
+                    found = halves[k as usize].before;
+                }
+                let Some(other) = found.map(|k| &mut halves[k as usize]) else {
+                    met.push(second);
+                    halves.push(Half { highest, before, side, matched: false });
+                    continue;
+                };
+                let opposite = sweep.cell((other.side >> 2) as usize)[(other.side & 3) as usize];
+                if std::mem::replace(&mut other.matched, true) || opposite == cell[local] {
+                    return false;
+                }
+                let place = |side: u32| (side >> 2) as usize * (D + 1) + (side & 3) as usize;
+                codes[place(side)].store(other.side, Ordering::Relaxed);
+                codes[place(other.side)].store(side, Ordering::Relaxed);
             }
         }
     }
-    let ((here, i), (there, j)) = (side(0), side(1));
-    codes[here * (D + 1) + i] = side_code(there, j);
-    codes[there * (D + 1) + j] = side_code(here, i);
-    Ok(())
+    true
+}
+
+/// The first facet, in lexicographic order, at which cells do not make a mesh.
+fn mismatch<const D: usize>(cells: &[u32]) -> Option<MeshError> {
+    let cell = |c: usize| &cells[c * (D + 1)..(c + 1) * (D + 1)];
+    let vertices = |(c, local): (usize, usize)| -> [u32; D] {
+        std::array::from_fn(|k| cell(c)[k + usize::from(k >= local)])
+    };
+    let mut sides: Vec<_> = (0..cells.len()).map(|k| (k / (D + 1), k % (D + 1))).collect();
+    sides.sort_unstable_by_key(|&side| (vertices(side), side));
+    for same in sides.chunk_by(|&a, &b| vertices(a) == vertices(b)) {
+        for k in 1..same.len() {
+            let second = same[k].0;
+            if let Some(&(first, _)) = same[..k].iter().find(|side| cell(side.0) == cell(second)) {
+                let vertices = cell(first).to_vec();
+                return Some(MeshError::RepeatedCell { first, second, vertices });
+            }
+            if k == 2 {
+                let vertices = vertices(same[0]).to_vec();
+                let cells = [same[0].0, same[1].0, second];
+                return Some(MeshError::FacetOfThreeCells { vertices, cells });
+            }
+        }
+    }
+    None
 }
 
 /// All facets, each once, in four ranges: interior, Dirichlet, Neumann, contact.
@@ -200,11 +220,11 @@ impl Facets {
         self.sides.is_empty()
     }
     /// Numbers of the interior facets.
-    pub fn interior(&self) -> std::ops::Range<usize> {
+    pub fn interior(&self) -> Range<usize> {
         self.starts[0]..self.starts[1]
     }
     /// Numbers of the facets of a part of the boundary.
-    pub fn part(&self, part: BoundaryPart) -> std::ops::Range<usize> {
+    pub fn part(&self, part: BoundaryPart) -> Range<usize> {
         self.starts[part as usize + 1]..self.starts[part as usize + 2]
     }
     /// Cell on the first side and the facet's number in it.

@@ -19,6 +19,7 @@ mod geometry;
 pub mod gmsh;
 mod lshape;
 mod refine;
+mod sweep;
 mod validate;
 
 pub use edges::{EDGE_VERTICES, Edges, edge_vertices};

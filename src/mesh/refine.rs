@@ -1,8 +1,10 @@
 //! Uniform refinement, with the parent relation kept.
 
+use rayon::prelude::*;
+
 use super::validate::check_size;
-use super::{BoundaryFacet, Edges, Mesh, MeshError};
-use crate::real::{Point, Real, point_f64};
+use super::{BoundaryFacet, Edges, Mesh, MeshError, edge_vertices};
+use crate::real::{Real, point_f64};
 
 /// How the vertices of a refined mesh came from those of the coarse one.
 ///
@@ -93,27 +95,32 @@ fn children<T: Real, const D: usize>(mesh: &Mesh<T, D>, cell: usize) -> Children
     best.1
 }
 
-/// The fine vertices, numbered by their pair of coarse parents in lexicographic order.
+/// The coarse vertices whose midpoints the fine ones are, numbered by their pairs in lexicographic
+/// order.
 ///
 /// This order makes the children's vertices, as they are listed, ascending, and for Bey's rule they
 /// are then in the order it needs for the next step.
-struct Midpoints(Edges);
-
-impl Midpoints {
-    /// Number of the midpoint of `a <= b`.
-    fn number(&self, a: u32, b: u32) -> u32 {
-        let before = if a == b { self.0.first_at(a) } else { self.0.number(a, b).unwrap_or(0) + 1 };
-        a + before
+fn parents(edges: &Edges, n_vertices: usize) -> Vec<[u32; 2]> {
+    let mut parents = Vec::with_capacity(n_vertices + edges.len());
+    for a in 0..n_vertices as u32 {
+        parents.push([a, a]);
+        parents.extend(edges.upper_ends(a).iter().map(|&b| [a, b]));
     }
+    parents
+}
 
-    fn parents(&self, n_vertices: usize) -> Vec<[u32; 2]> {
-        let mut parents = Vec::with_capacity(n_vertices + self.0.len());
-        for a in 0..n_vertices as u32 {
-            parents.push([a, a]);
-            parents.extend(self.0.upper_ends(a).iter().map(|&b| [a, b]));
-        }
-        parents
+/// Fine vertices at the vertices and midpoints of a cell: by the pair of its vertices they lie
+/// between.
+fn midpoints<const D: usize>(edges: &Edges, cell: &[u32], numbers: &[u32]) -> [[u32; 4]; 4] {
+    let mut midpoints = [[0; 4]; 4];
+    for (i, &a) in cell.iter().enumerate() {
+        midpoints[i][i] = a + edges.first_at(a);
     }
+    // the edges before number `k` make as many vertices, those up to vertex `a` another `a + 1`
+    for (&[i, j], number) in edge_vertices(D).iter().zip(numbers) {
+        midpoints[i][j] = cell[i] + 1 + number;
+    }
+    midpoints
 }
 
 impl<T: Real, const D: usize> Mesh<T, D> {
@@ -125,26 +132,30 @@ impl<T: Real, const D: usize> Mesh<T, D> {
         let n_children = 1 << D;
         let n_fine = self.n_cells().saturating_mul(n_children);
         check_size(n_fine, 0)?;
-        let midpoints = Midpoints(Edges::of(self));
-        let parents = midpoints.parents(self.vertices.len());
+        let (edges, numbers) = Edges::numbered(self);
+        let parents = parents(&edges, self.vertices.len());
         check_size(n_fine, parents.len())?;
         let half = T::lit(0.5);
-        let vertices: Vec<Point<T, D>> = parents
-            .iter()
-            .map(|&[a, b]| {
-                if a == b {
-                    self.vertices[a as usize]
-                } else {
-                    (self.vertices[a as usize] + self.vertices[b as usize]) * half
-                }
-            })
-            .collect();
-        let mut cells = Vec::with_capacity(n_fine * (D + 1));
-        for (c, cell) in self.cells.chunks_exact(D + 1).enumerate() {
-            for child in children(self, c) {
-                cells.extend(child.iter().map(|&[i, j]| midpoints.number(cell[i], cell[j])));
+        let middle = |&[a, b]: &[u32; 2]| {
+            let (x, y) = (self.vertices[a as usize], self.vertices[b as usize]);
+            if a == b { x } else { (x + y) * half }
+        };
+        let vertices = parents.par_iter().with_min_len(4096).map(middle).collect();
+        let mut cells = vec![0; n_fine * (D + 1)];
+        let cut = |(c, (out, numbers)): (usize, (&mut [u32], &[u32]))| {
+            let midpoints = midpoints::<D>(&edges, self.cell(c), numbers);
+            for (out, child) in out.chunks_exact_mut(D + 1).zip(children(self, c)) {
+                out.iter_mut().zip(*child).for_each(|(vertex, &[i, j])| *vertex = midpoints[i][j]);
             }
-        }
+        };
+        let fine = cells.par_chunks_exact_mut(n_children * (D + 1));
+        let numbers = numbers.par_chunks_exact(edge_vertices(D).len());
+        fine.zip(numbers).enumerate().with_min_len(1024).for_each(cut);
+        Ok((Self { vertices, cells, boundary: self.refined_boundary() }, Refinement { parents }))
+    }
+
+    /// The boundary facets of the refined mesh.
+    fn refined_boundary(&self) -> Vec<BoundaryFacet> {
         let mut boundary = Vec::with_capacity(self.boundary.len() << (D - 1));
         for facet in &self.boundary {
             for (k, child) in children(self, facet.cell as usize).iter().enumerate() {
@@ -152,14 +163,14 @@ impl<T: Real, const D: usize> Mesh<T, D> {
                 let off = |v: &[usize; 2]| v.contains(&(facet.local as usize));
                 for local in 0..=D {
                     if child.iter().enumerate().all(|(i, v)| i == local || !off(v)) {
-                        let cell = facet.cell * n_children as u32 + k as u32;
+                        let cell = (facet.cell << D) + k as u32;
                         boundary.push(BoundaryFacet { cell, local: local as u8, part: facet.part });
                     }
                 }
             }
         }
         boundary.sort_unstable_by_key(|f| (f.cell, f.local));
-        Ok((Self { vertices, cells, boundary }, Refinement { parents }))
+        boundary
     }
 }
 

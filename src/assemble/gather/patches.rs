@@ -1,4 +1,5 @@
-//! Rows of spaces that share unknowns: local matrices first, then every row gathers its own entries.
+//! Rows of spaces that share unknowns and have a form on facets: local matrices first, then every
+//! row gathers its own entries.
 //!
 //! A patch is a cell, or an interior or Dirichlet facet with its cells. Each patch fills a small
 //! dense matrix in parallel; then each row adds up what its patches hold, in the order of patches,
@@ -7,11 +8,11 @@
 use std::convert::Infallible;
 use std::ops::Range;
 
-use super::local::{traces, view, zero_local};
-use super::space::Space;
-use super::tables::FacetTable;
-use super::{Discretisation, count, data, parallel};
 use crate::algebra::SparseMatrix;
+use crate::assemble::local::{traces, view, zero_local};
+use crate::assemble::space::Space;
+use crate::assemble::tables::FacetTable;
+use crate::assemble::{Discretisation, count, data, parallel};
 use crate::element::{MAX_BASIS, ReferenceElement};
 use crate::facet::{FacetForm, Trace};
 use crate::mesh::{BoundaryPart, Facets};
