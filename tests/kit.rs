@@ -8,7 +8,9 @@ mod laws;
 #[path = "kit/quadratics.rs"]
 mod quadratics;
 
-use unilateral::kit::check_scheme;
+use unilateral::kit::{
+    check_coercivity, check_consistency, check_orders, check_scheme, check_symmetry,
+};
 use unilateral::prelude::*;
 
 /// A test for each line: a name, and how the scheme is made.
@@ -58,5 +60,21 @@ schemes! {
     ldg_one_sided_on_quadratics: Ldg { switch: true, ..Ldg::default() }.on(P2);
     br2_on_quadratics: Br2::default().on(P2);
     bmmpr_on_quadratics: Bmmpr::default().on(P2);
-    wopsip_on_quadratics: Wopsip { eta: Eta::Dimensionless(1e-2), ..Wopsip::default() }.on(P2);
+}
+
+/// The weight of order `h^-5` makes a condition of order `h^-6`: the law that solutions do not depend
+/// on numbering beyond rounding allows less than that. All other laws hold.
+#[test]
+fn wopsip_on_quadratics() {
+    fn on<const D: usize>() {
+        let scheme = Wopsip::default().on(P2);
+        check_symmetry::<f64, D, _>(&scheme).unwrap_or_else(|e| panic!("{e}"));
+        check_coercivity::<f64, D, _>(&scheme).unwrap_or_else(|e| panic!("{e}"));
+        let consistency = check_consistency::<f64, D, _>(&scheme);
+        assert!(!consistency.unwrap_or_else(|e| panic!("{e}")).declared);
+        check_orders::<f64, D, _>(&scheme).unwrap_or_else(|e| panic!("{e}"));
+    }
+    on::<1>();
+    on::<2>();
+    on::<3>();
 }

@@ -35,11 +35,11 @@ fn check_orders(checks: &mut Checks, rows: &[Row], bands: Bands) {
         let holds = lies_in(h1, bands.h1) && lies_in(l2, bands.l2);
         checks.that(holds, || format!("{}: H1 {h1:.3}, L2 {l2:.3}", label(row)));
         let expected = row.expected_order;
-        for (name, observed, promised, band) in
-            [("H1", h1, expected.h1, bands.h1), ("L2", l2, expected.l2, bands.l2)]
+        for (name, observed, promised, band, limit) in
+            [("H1", h1, expected.h1, bands.h1, 1.0), ("L2", l2, expected.l2, bands.l2, 2.0)]
         {
             let Some(promised) = promised else { continue };
-            let holds = lies_in(promised, band) && observed > promised - (1.0 - bands.h1[0]);
+            let holds = lies_in(promised, band) && observed > promised - (limit - band[0]);
             checks.that(holds, || format!("{}: {name} {observed:.3}, not {promised}", label(row)));
         }
     }

@@ -13,6 +13,10 @@ use super::{Outcome, Solution};
 use crate::algebra::{Bound, Contact, Inequality, Start};
 use crate::real::Real;
 
+/// Condition number of the preconditioned matrix beyond which the preconditioner does not fit: the
+/// norm of its residual then says little of the error, and factors are the better choice.
+const WORST_CONDITION: f64 = 1e4;
+
 /// Most iterations for one linear system.
 const MOST_ITERATIONS: usize = 500;
 
@@ -182,6 +186,9 @@ impl<'a, T: Real> Inexact<'a, T> {
             };
             let run = self.solve_linear(&mut gradients, preconditioner, stop);
             match run.end {
+                _ if run.ritz.is_some_and(|(low, high)| high > WORST_CONDITION * low) => {
+                    return None;
+                }
                 End::Reached => {}
                 End::NotPositive => return Some(Outcome::NotCoercive),
                 End::NotFinite => return Some(Outcome::NotFinite),
