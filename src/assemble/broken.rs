@@ -10,7 +10,7 @@
 use std::convert::Infallible;
 
 use super::lifted::{LiftTable, Lifting};
-use super::local::{CellSide, StiffnessTable, zero_local};
+use super::local::{CellSide, StiffnessTable, vector, zero_local};
 use super::metric::Metrics;
 use super::products::JumpProducts;
 use super::space::Space;
@@ -18,7 +18,6 @@ use super::tables::FacetTable;
 use super::weights::{FacetWeight, FacetWeights};
 use super::{count, data, parallel};
 use crate::algebra::SparseMatrix;
-use crate::element::MAX_BASIS;
 use crate::facet::AnyForm;
 use crate::mesh::{BoundaryPart, Neighbour, Neighbours};
 use crate::real::Real;
@@ -300,20 +299,17 @@ impl<T: Real, const D: usize> Filling<'_, '_, T, D> {
             let flux_flux = form.flux_flux.at(penalty) / measure;
             let (jump_flux, flux_jump) = (form.jump_flux.at(penalty), form.flux_jump.at(penalty));
             let mine = &self.facets.on(me.local)[k];
-            let flux = me.normal_derivatives(mine, n).map(|d| weight.own_share * d);
-            let by_flux: [T; MAX_BASIS] =
-                std::array::from_fn(|i| jump_flux * mine.values[i] + flux_flux * flux[i]);
-            rows.add(own, |i, j| by_flux[i] * flux[j] + flux_jump * flux[i] * mine.values[j]);
+            let flux = me.normal_derivatives(mine, n, weight.own_share);
+            let by_flux = vector(n, |i| jump_flux * mine.values[i] + flux_flux * flux[i]);
+            let by_jump = vector(n, |i| flux_jump * flux[i]);
+            rows.add(own, |i, j| by_flux[i] * flux[j] + by_jump[i] * mine.values[j]);
             if let Some(((cell, local), across)) = other {
                 let metric = self.metrics.at::<D>(cell);
                 let coefficient = self.space.alpha(cell);
                 let other = CellSide { cell, local, metric: &metric, coefficient };
                 let theirs = &self.facets.on(local)[k];
-                let other_flux =
-                    other.normal_derivatives(theirs, n).map(|d| -weight.other_share * d);
-                rows.add(across, |i, j| {
-                    by_flux[i] * other_flux[j] - flux_jump * flux[i] * theirs.values[j]
-                });
+                let other_flux = other.normal_derivatives(theirs, n, -weight.other_share);
+                rows.add(across, |i, j| by_flux[i] * other_flux[j] - by_jump[i] * theirs.values[j]);
             }
         }
     }

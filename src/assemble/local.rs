@@ -90,22 +90,31 @@ impl<T: Real, const D: usize> CellSide<'_, T, D> {
             height: T::lit(D as f64) * self.metric.volume / measure,
         }
     }
-    /// The derivative of each basis function along the outward normal, of one moment and times the
-    /// measure of the facet.
+    /// The derivatives of the first `n` basis functions along the outward normal, of one moment and
+    /// times the measure of the facet and a factor.
     #[inline(always)]
-    pub fn normal_derivatives(&self, basis: &BasisAt<T>, n: usize) -> [T; MAX_BASIS] {
+    pub fn normal_derivatives(&self, basis: &BasisAt<T>, n: usize, factor: T) -> [T; MAX_BASIS] {
         super::count::normal_derivatives(n);
-        let mut out = [T::lit(0.0); MAX_BASIS];
         let products = &self.metric.products[self.local];
-        for i in 0..n {
-            let mut sum = T::lit(0.0);
-            for k in 0..=D {
+        let scale = T::lit(-(D as f64)) * factor;
+        vector(n, |i| {
+            let mut sum = basis.derivatives[i][0] * products[0];
+            for k in 1..=D {
                 sum += basis.derivatives[i][k] * products[k];
             }
-            out[i] = T::lit(-(D as f64)) * sum;
-        }
-        out
+            scale * sum
+        })
     }
+}
+
+/// The first `n` entries of a vector; the others are zero and never read.
+#[inline(always)]
+pub(crate) fn vector<T: Real>(n: usize, entry: impl Fn(usize) -> T) -> [T; MAX_BASIS] {
+    let mut out = [T::lit(0.0); MAX_BASIS];
+    for (i, out) in out.iter_mut().enumerate().take(n) {
+        *out = entry(i);
+    }
+    out
 }
 
 /// The view of a facet from the cell here, and from the cell there if there is one.
@@ -155,8 +164,9 @@ pub(crate) fn traces<T: Real, const D: usize>(
     }
     if form.uses_flux() {
         let scale = sign * flux_share(facet, form.share(facet), is_here) / facet.measure;
-        for (trace, derivative) in out.iter_mut().zip(side.normal_derivatives(basis, n)).take(n) {
-            trace.flux = scale * derivative;
+        let derivatives = side.normal_derivatives(basis, n, scale);
+        for (trace, derivative) in out.iter_mut().zip(derivatives).take(n) {
+            trace.flux = derivative;
         }
     }
     out

@@ -3,7 +3,7 @@
 use std::convert::Infallible;
 
 use super::parallel;
-use crate::mesh::{CellGeometry, Mesh};
+use crate::mesh::Mesh;
 use crate::real::Real;
 
 /// Products of gradients of a cell's barycentric coordinates, and its measures: all that enters the
@@ -24,16 +24,18 @@ impl<T: Real, const D: usize> CellMetric<T, D> {
 
     /// The metric of one cell.
     #[inline(always)]
-    pub fn new(geometry: &CellGeometry<T, D>) -> Self {
-        let mut metric = Self::zero(geometry.volume);
-        for i in 0..=D {
-            metric.measures[i] = geometry.facet_measure(i);
-            for j in i + 1..=D {
-                let product = geometry.volume * geometry.gradient(i).dot(geometry.gradient(j));
-                metric.set(i, j, product);
-            }
+    pub fn of(mesh: &Mesh<T, D>, cell: usize) -> Self {
+        let (volume, products) = shape(mesh, cell, T::lit(1.0));
+        let mut measures = [T::lit(0.0); 4];
+        for (measure, (i, row)) in measures.iter_mut().zip(products.iter().enumerate()).take(D + 1)
+        {
+            // |F| = D |K| |grad lambda|; one in one dimension
+            *measure = T::lit(D as f64) * nalgebra::ComplexField::sqrt(volume * row[i]);
         }
-        metric
+        if D == 1 {
+            measures[..2].fill(T::lit(1.0));
+        }
+        Self { volume, measures, products }
     }
     #[inline(always)]
     fn zero(volume: T) -> Self {
@@ -79,6 +81,66 @@ impl<T: Real, const D: usize> CellMetric<T, D> {
     }
 }
 
+/// The volume of a cell and `int scale grad lambda_i . grad lambda_j` over it, made without a detour
+/// through memory: with `n_k` the gradients times the determinant `d` of the edges the products are
+/// `scale n_i . n_j / (D! |d|)`.
+#[inline(always)]
+pub(crate) fn shape<T: Real, const D: usize>(
+    mesh: &Mesh<T, D>,
+    cell: usize,
+    scale: T,
+) -> (T, [[T; 4]; 4]) {
+    let zero = T::lit(0.0);
+    let corners = mesh.cell(cell);
+    let mut edges = [[zero; 3]; 3];
+    let origin = &mesh.vertices()[corners[0] as usize];
+    for k in 0..D {
+        let corner = &mesh.vertices()[corners[k + 1] as usize];
+        for axis in 0..D {
+            edges[k][axis] = corner[axis] - origin[axis];
+        }
+    }
+    let [a, b, c] = edges;
+    let normals = match D {
+        1 => [[T::lit(1.0), zero, zero], [zero; 3], [zero; 3]],
+        2 => [[b[1], -b[0], zero], [-a[1], a[0], zero], [zero; 3]],
+        _ => [cross(b, c), cross(c, a), cross(a, b)],
+    };
+    let determinant = dot::<T, D>(a, normals[0]);
+    let size = if determinant < zero { -determinant } else { determinant };
+    let scale = if size == zero { zero } else { scale / (size * T::lit(FACTORIAL[D])) };
+    let mut products = [[zero; 4]; 4];
+    for i in 1..=D {
+        // rows sum to zero
+        for j in 1..=D {
+            products[i][j] = if i <= j {
+                scale * dot::<T, D>(normals[i - 1], normals[j - 1])
+            } else {
+                products[j][i]
+            };
+        }
+    }
+    for i in 1..=D {
+        let sum = (1..=D).fold(zero, |sum, j| sum - products[i][j]);
+        products[i][0] = sum;
+        products[0][i] = sum;
+        products[0][0] -= sum;
+    }
+    (size / T::lit(FACTORIAL[D]), products)
+}
+
+const FACTORIAL: [f64; 4] = [1.0, 1.0, 2.0, 6.0];
+
+#[inline(always)]
+fn dot<T: Real, const D: usize>(a: [T; 3], b: [T; 3]) -> T {
+    (1..D).fold(a[0] * b[0], |sum, k| sum + a[k] * b[k])
+}
+
+#[inline(always)]
+fn cross<T: Real>(a: [T; 3], b: [T; 3]) -> [T; 3] {
+    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
+}
+
 /// The metrics of all cells, computed once: each is read by the cell and by its neighbours.
 pub(crate) struct Metrics<T> {
     kept: Vec<T>,
@@ -91,7 +153,7 @@ impl<T: Real> Metrics<T> {
         let mut kept = vec![T::lit(0.0); n * mesh.n_cells()];
         let fill = |cells: std::ops::Range<usize>, piece: &mut [T]| {
             for (cell, out) in cells.zip(piece.chunks_exact_mut(n)) {
-                CellMetric::new(&mesh.geometry(cell)).write(out);
+                CellMetric::of(mesh, cell).write(out);
             }
             Ok::<(), Infallible>(())
         };

@@ -25,6 +25,8 @@ mod space;
 pub(crate) mod tables;
 mod weights;
 
+use std::sync::OnceLock;
+
 use crate::algebra::{Bound, Inequality, Place, SparseMatrix, Start};
 use crate::element::ReferenceElement;
 use crate::error::Error;
@@ -62,6 +64,8 @@ impl Default for DataQuadrature {
 pub struct Discretisation<'a, T: Real, const D: usize, S: Scheme<T, D>> {
     space: Space<'a, T, D>,
     form: S::Facet,
+    /// What facet forms need of cells and facets, computed for the first matrix.
+    prepared: OnceLock<(Metrics<T>, FacetWeights<T>)>,
 }
 
 impl<'a, T: Real, const D: usize, S: Scheme<T, D>> Discretisation<'a, T, D, S> {
@@ -85,7 +89,7 @@ impl<'a, T: Real, const D: usize, S: Scheme<T, D>> Discretisation<'a, T, D, S> {
         let bounded = scheme.bounded_nodes();
         let space =
             Space::new::<S::Element>(problem, mesh, quadrature, Self::COUPLES, pins, bounded)?;
-        Ok(Self { space, form: scheme.facet(mesh) })
+        Ok(Self { space, form: scheme.facet(mesh), prepared: OnceLock::new() })
     }
 
     /// Number of unknowns, Dirichlet ones included.
@@ -120,9 +124,12 @@ impl<'a, T: Real, const D: usize, S: Scheme<T, D>> Discretisation<'a, T, D, S> {
             );
         }
         if Self::OWNS_ROWS {
-            let metrics = Metrics::of(self.space.mesh);
-            let weights = FacetWeights::of(&self.space, &self.form, &metrics);
-            broken::fill(&self.space, &self.form, &metrics, &weights, matrix);
+            let (metrics, weights) = self.prepared.get_or_init(|| {
+                let metrics = Metrics::of(self.space.mesh);
+                let weights = FacetWeights::of(&self.space, &self.form, &metrics);
+                (metrics, weights)
+            });
+            broken::fill(&self.space, &self.form, metrics, weights, matrix);
         } else {
             gather::fill(self, matrix);
         }

@@ -148,7 +148,7 @@ impl<'a, T: Real, const D: usize> Space<'a, T, D> {
     }
     /// The metric of a cell, computed.
     pub fn metric(&self, cell: usize) -> CellMetric<T, D> {
-        CellMetric::new(&self.mesh.geometry(cell))
+        CellMetric::of(self.mesh, cell)
     }
     /// A point of a facet in space.
     pub fn facet_point(&self, point: &[f64; 4], cell: usize, local: usize) -> Point<f64, D> {

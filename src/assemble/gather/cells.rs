@@ -4,10 +4,9 @@ use std::marker::PhantomData;
 
 use crate::assemble::data::ReactionTerm;
 use crate::assemble::local::zero_local;
-use crate::assemble::metric::CellMetric;
+use crate::assemble::metric::{CellMetric, shape};
 use crate::assemble::space::Space;
 use crate::element::{MAX_BASIS, ReferenceElement};
-use crate::mesh::Mesh;
 use crate::real::Real;
 
 /// The upper triangle of a cell's matrix, by rows; a power of two holds the largest.
@@ -73,10 +72,10 @@ impl<'s, 'a, T: Real, const D: usize> CellMatrices<'s, 'a, T, D> {
     /// Writes the matrix of a cell.
     #[inline(always)]
     fn write<E: ReferenceElement<T, D>>(&self, cell: usize, out: &mut Triangle<T>) {
-        let shape = Shape::of(self.space.mesh, cell, self.space.alpha(cell));
+        let (volume, shape) = shape(self.space.mesh, cell, self.space.alpha(cell));
         let mut products = [T::lit(0.0); PAIRS];
         for (product, (k, l)) in products.iter_mut().zip(pairs_of::<D>()) {
-            *product = shape.products[k][l];
+            *product = shape[k][l];
         }
         for place in 0..E::N * (E::N + 1) / 2 {
             let mut sum = products[0] * self.pairs[0][place];
@@ -87,7 +86,7 @@ impl<'s, 'a, T: Real, const D: usize> CellMatrices<'s, 'a, T, D> {
         }
         if let Some(reaction) = &self.reaction {
             let mut local = zero_local();
-            reaction.add(self.space.mesh, cell, shape.volume, &mut local);
+            reaction.add(self.space.mesh, cell, volume, &mut local);
             let mut place = 0;
             for i in 0..E::N {
                 for j in i..E::N {
@@ -103,70 +102,6 @@ impl<'s, 'a, T: Real, const D: usize> CellMatrices<'s, 'a, T, D> {
 #[inline(always)]
 fn pairs_of<const D: usize>() -> impl Iterator<Item = (usize, usize)> {
     (0..D).flat_map(|k| (k + 1..=D).map(move |l| (k, l)))
-}
-
-/// What the matrix of a cell needs of its geometry, made without a detour through memory.
-struct Shape<T> {
-    volume: T,
-    /// `int scale grad lambda_i . grad lambda_j` over the cell.
-    products: [[T; 4]; 4],
-}
-
-impl<T: Real> Shape<T> {
-    /// The shape of a cell: with `n_k` the gradients times the determinant of the edges, `d`, the
-    /// products are `scale n_i . n_j / (D! |d|)`.
-    #[inline(always)]
-    fn of<const D: usize>(mesh: &Mesh<T, D>, cell: usize, scale: T) -> Self {
-        let zero = T::lit(0.0);
-        let corners = mesh.cell(cell);
-        let mut edges = [[zero; 3]; 3];
-        let origin = &mesh.vertices()[corners[0] as usize];
-        for k in 0..D {
-            let corner = &mesh.vertices()[corners[k + 1] as usize];
-            for axis in 0..D {
-                edges[k][axis] = corner[axis] - origin[axis];
-            }
-        }
-        let [a, b, c] = edges;
-        let normals = match D {
-            1 => [[T::lit(1.0), zero, zero], [zero; 3], [zero; 3]],
-            2 => [[b[1], -b[0], zero], [-a[1], a[0], zero], [zero; 3]],
-            _ => [cross(b, c), cross(c, a), cross(a, b)],
-        };
-        let determinant = dot::<T, D>(a, normals[0]);
-        let size = if determinant < zero { -determinant } else { determinant };
-        let scale = if size == zero { zero } else { scale / (size * T::lit(FACTORIAL[D])) };
-        let mut products = [[zero; 4]; 4];
-        for i in 1..=D {
-            // rows sum to zero
-            for j in 1..=D {
-                products[i][j] = if i <= j {
-                    scale * dot::<T, D>(normals[i - 1], normals[j - 1])
-                } else {
-                    products[j][i]
-                };
-            }
-        }
-        for i in 1..=D {
-            let sum = (1..=D).fold(zero, |sum, j| sum - products[i][j]);
-            products[i][0] = sum;
-            products[0][i] = sum;
-            products[0][0] -= sum;
-        }
-        Self { volume: size / T::lit(FACTORIAL[D]), products }
-    }
-}
-
-const FACTORIAL: [f64; 4] = [1.0, 1.0, 2.0, 6.0];
-
-#[inline(always)]
-fn dot<T: Real, const D: usize>(a: [T; 3], b: [T; 3]) -> T {
-    (1..D).fold(a[0] * b[0], |sum, k| sum + a[k] * b[k])
-}
-
-#[inline(always)]
-fn cross<T: Real>(a: [T; 3], b: [T; 3]) -> [T; 3] {
-    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
 }
 
 /// Matrices that are products of gradients times a square: they stay in registers.
@@ -186,7 +121,7 @@ impl<T: Real, const D: usize> CellMatrix<T> for Gradients<'_, '_, '_, T, D> {
     #[inline(always)]
     fn of_cell(&mut self, cell: usize) {
         let space = self.cells.space;
-        self.products = Shape::of(space.mesh, cell, self.square * space.alpha(cell)).products;
+        self.products = shape(space.mesh, cell, self.square * space.alpha(cell)).1;
     }
     #[inline(always)]
     fn entry(&self, i: usize, j: usize) -> T {
