@@ -51,6 +51,8 @@ pub struct ActiveSet {
     pub max_condensations: usize,
     /// Largest number of unknowns of a condensed problem; its matrix is dense.
     pub max_condensed: usize,
+    /// Largest number of steps of an interior point method, where nothing else settles the contact.
+    pub max_interior: usize,
     /// Whether to make sure first that the matrix is positive definite on all unknowns that are
     /// not Dirichlet values, its symmetric part if it is not symmetric. Error size does not detect
     /// loss of coercivity. Free of cost for a cold start with a symmetric matrix.
@@ -75,6 +77,7 @@ impl Default for ActiveSet {
             patience: 20,
             max_condensations: 10,
             max_condensed: 500,
+            max_interior: 60,
             check_definite: false,
             linear: Linear::default(),
         }
@@ -159,6 +162,7 @@ impl ActiveSet {
         history.record(&iterate.state, &mut cycle);
         let mut condensations = 0;
         let mut progress = 0;
+        let mut approached = false;
         let mut band = self.band;
         loop {
             if iterate.outer >= self.max_outer {
@@ -196,8 +200,15 @@ impl ActiveSet {
             progress = iterate.outer;
             let members: Vec<u32> =
                 (0..cycle.len()).filter(|&i| cycle[i]).map(|i| i as u32).collect();
+            if std::env::var("TRACE").is_ok() { eprintln!("outer {} members {} condensations {} returned {} approached {}", iterate.outer, members.len(), condensations, returned, approached); }
             if condensations == self.max_condensations || members.len() > self.max_condensed {
-                if returned {
+                if self.max_interior > 0 && !approached {
+                    approached = true;
+                    iterate.approach(self.max_interior, &mut history);
+                    history = History::new(inequality.size());
+                    history.record(&iterate.state, &mut cycle);
+                    (progress, condensations) = (iterate.outer, 0);
+                } else if returned {
                     return Err(Outcome::Cycling);
                 }
                 // It may still come to rest by itself, or wander among fewer unknowns.

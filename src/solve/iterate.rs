@@ -2,6 +2,7 @@
 
 use super::certificate::positive_diagonal;
 use super::cycles::History;
+use super::interior::InteriorPoint;
 use super::linear::{FactorError, Factors};
 use super::{Outcome, Solution};
 use crate::algebra::{Bound, Contact, Inequality, Start};
@@ -189,6 +190,19 @@ impl<'a, T: Real> Iterate<'a, T> {
         if self.state[i] != contact {
             self.state[i] = contact;
             history.moved(i);
+        }
+    }
+
+    /// Moves to where an interior point method gets from the best iterate in so many steps; stays
+    /// if it does not get anywhere.
+    pub fn approach(&mut self, most: usize, history: &mut History) {
+        let mut point = InteriorPoint::new(self.inequality, &self.best.values);
+        let contact = point.run(most);
+        self.outer += point.steps;
+        let Some(contact) = contact else { return };
+        self.values = point.values();
+        for (i, contact) in contact.into_iter().enumerate() {
+            self.set_state(i, rest(&self.inequality.bounds[i], contact), history);
         }
     }
 

@@ -11,6 +11,7 @@ mod facet_pairs;
 mod facet_split;
 mod hierarchy;
 mod inexact;
+mod interior;
 mod iterate;
 mod kernels;
 mod linear;
