@@ -3,6 +3,7 @@
 use super::certificate::certify_with_noise;
 use super::condensed::{Noise, resolve};
 use super::cycles::History;
+use super::descent::descend;
 use super::inexact::Inexact;
 use super::iterate::Iterate;
 use super::linear::{FactorError, is_positive_definite};
@@ -142,7 +143,8 @@ impl ActiveSet {
 
     fn solve_directly<T: Real>(&self, inequality: &Inequality<T>) -> Solution<T> {
         let mut iterate = Iterate::new(inequality);
-        let outcome = self.run(&mut iterate).unwrap_or_else(|outcome| outcome);
+        let outcome =
+            self.run(&mut iterate).unwrap_or_else(|outcome| self.settle(&mut iterate, outcome));
         iterate.into_solution(outcome)
     }
 }
@@ -200,7 +202,6 @@ impl ActiveSet {
             progress = iterate.outer;
             let members: Vec<u32> =
                 (0..cycle.len()).filter(|&i| cycle[i]).map(|i| i as u32).collect();
-            if std::env::var("TRACE").is_ok() { eprintln!("outer {} members {} condensations {} returned {} approached {}", iterate.outer, members.len(), condensations, returned, approached); }
             if condensations == self.max_condensations || members.len() > self.max_condensed {
                 if self.max_interior > 0 && !approached {
                     approached = true;
@@ -208,6 +209,10 @@ impl ActiveSet {
                     history = History::new(inequality.size());
                     history.record(&iterate.state, &mut cycle);
                     (progress, condensations) = (iterate.outer, 0);
+                } else if approached && inequality.symmetric {
+                    iterate.return_to_best();
+                    descend(iterate, self)?;
+                    return self.confirm(iterate, self.band);
                 } else if returned {
                     return Err(Outcome::Cycling);
                 }
@@ -242,6 +247,26 @@ impl ActiveSet {
             iterate.set_state(i as usize, contact, history);
         }
         Ok(())
+    }
+
+    /// What to call the best iterate where the active set does not rest: it may be a solution, or as
+    /// near to one as rounding allows.
+    fn settle<T: Real>(&self, iterate: &mut Iterate<'_, T>, outcome: Outcome) -> Outcome {
+        if !matches!(outcome, Outcome::IterationLimit | Outcome::Cycling) {
+            return outcome;
+        }
+        let last = (iterate.values.clone(), iterate.state.clone());
+        iterate.return_to_best();
+        if self.confirm(iterate, self.band).is_ok() {
+            return Outcome::Converged;
+        }
+        let (certificate, unit) = certify_with_noise(iterate.inequality, &iterate.values);
+        (iterate.values, iterate.state) = last;
+        if certificate.largest() <= 8.0 * self.band * T::EPSILON * unit {
+            Outcome::Stalled
+        } else {
+            outcome
+        }
     }
 
     /// The active set rests: whether the complementarity conditions hold indeed, by the

@@ -206,6 +206,26 @@ impl<'a, T: Real> Iterate<'a, T> {
         }
     }
 
+    /// Moves every value into its bounds.
+    pub fn admit(&mut self) {
+        for (value, bound) in self.values.iter_mut().zip(&self.inequality.bounds) {
+            *value = bound.nearest(*value);
+        }
+    }
+
+    /// Whether no bound is violated beyond rounding.
+    pub fn is_admissible(&self, band: f64) -> bool {
+        let noise = self.gap_noise(band);
+        let off = |(&x, bound): (&T, &Bound<T>)| (x.to_f64() - bound.nearest(x).to_f64()).abs();
+        self.values.iter().zip(&self.inequality.bounds).map(off).all(|off| off <= noise)
+    }
+
+    /// Goes back to the best iterate.
+    pub fn return_to_best(&mut self) {
+        self.values.copy_from_slice(&self.best.values);
+        self.state.copy_from_slice(&self.best.state);
+    }
+
     /// Puts every unknown on a bound, the lower one if it has two; false if none was off it.
     pub fn close(&mut self, history: &mut History) -> bool {
         let mut changed = false;
