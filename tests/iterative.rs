@@ -109,7 +109,7 @@ fn counts_in_three_dimensions_stay_small() {
 
 fn inequality<S: Scheme<f64, 2>>(scheme: &S, level: usize) -> Inequality<f64> {
     let scene = scenes::radial::<2>(1.0);
-    let mesh = Mesh::kuhn_box(&scene.domain, [level; 2]).unwrap();
+    let mesh = scene.domain.mesh(level).unwrap();
     let space =
         Discretisation::new(scheme, &scene.problem, &mesh, DataQuadrature::default()).unwrap();
     space.inequality().unwrap()

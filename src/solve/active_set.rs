@@ -21,7 +21,8 @@ use crate::real::Real;
 /// For other matrices it may cycle: a state that returns is recognised, and the problem condensed
 /// on all unknowns that have moved since is solved exactly ([`Outcome::Cycling`] if that is not
 /// possible within the limits below). The same is done where the method wanders, which is a cycle
-/// too long to be waited for: no iterate has been better than the best for `patience` steps.
+/// too long to be waited for: no iterate has been better than the best for `patience` steps. Where
+/// that does not help either, or too many unknowns move, there is a [`LastResort`].
 ///
 /// What differs by rounding only does not change state, or ties would cycle for ever. A bound is
 /// violated beyond rounding by `band` units of the scalar's epsilon times the largest
@@ -52,14 +53,32 @@ pub struct ActiveSet {
     pub max_condensations: usize,
     /// Largest number of unknowns of a condensed problem; its matrix is dense.
     pub max_condensed: usize,
-    /// Largest number of steps of an interior point method, where nothing else settles the contact.
-    pub max_interior: usize,
+    /// What else is done.
+    pub last_resort: LastResort,
     /// Whether to make sure first that the matrix is positive definite on all unknowns that are
     /// not Dirichlet values, its symmetric part if it is not symmetric. Error size does not detect
     /// loss of coercivity. Free of cost for a cold start with a symmetric matrix.
     pub check_definite: bool,
     /// The linear solver inside.
     pub linear: Linear,
+}
+
+/// What is done where the active set does not settle.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum LastResort {
+    /// Nothing: the outcome says so.
+    Never,
+    /// The active set is found anew by an interior point method (Mehrotra, SIAM J. Optim. 2 (1992)
+    /// 575-601); if it does not settle from there, energy is lowered monotonically.
+    #[default]
+    WhenUnsettled,
+    /// The interior point method is asked first.
+    AtOnce,
+    /// Energy is lowered monotonically from the start: a face of the bounds after the other is
+    /// searched for its minimum. Ends for every symmetric positive definite matrix (Bertsekas, SIAM
+    /// J. Control Optim. 20 (1982) 221-246; More, Toraldo, SIAM J. Optim. 1 (1991) 93-113), if
+    /// `max_outer` is large enough. Others are solved as if unsettled.
+    Monotone,
 }
 
 /// Unknowns above which the iterative solver is faster where nested meshes are known.
@@ -78,7 +97,7 @@ impl Default for ActiveSet {
             patience: 20,
             max_condensations: 10,
             max_condensed: 500,
-            max_interior: 60,
+            last_resort: LastResort::default(),
             check_definite: false,
             linear: Linear::default(),
         }
@@ -159,12 +178,17 @@ impl ActiveSet {
         if self.check_definite && !cold_checks {
             check_definite(inequality)?;
         }
+        let mut is_untried = self.last_resort == LastResort::WhenUnsettled;
+        match self.last_resort {
+            LastResort::Monotone if inequality.symmetric => return self.descend(iterate),
+            LastResort::AtOnce => iterate.approach(),
+            _ => {}
+        }
         let mut cycle = vec![false; inequality.size()];
         let mut history = History::new(inequality.size());
         history.record(&iterate.state, &mut cycle);
         let mut condensations = 0;
         let mut progress = 0;
-        let mut approached = false;
         let mut band = self.band;
         loop {
             if iterate.outer >= self.max_outer {
@@ -203,16 +227,15 @@ impl ActiveSet {
             let members: Vec<u32> =
                 (0..cycle.len()).filter(|&i| cycle[i]).map(|i| i as u32).collect();
             if condensations == self.max_condensations || members.len() > self.max_condensed {
-                if self.max_interior > 0 && !approached {
-                    approached = true;
-                    iterate.approach(self.max_interior, &mut history);
+                if is_untried {
+                    is_untried = false;
+                    iterate.approach();
                     history = History::new(inequality.size());
                     history.record(&iterate.state, &mut cycle);
                     (progress, condensations) = (iterate.outer, 0);
-                } else if approached && inequality.symmetric {
+                } else if self.last_resort != LastResort::Never && inequality.symmetric {
                     iterate.return_to_best();
-                    descend(iterate, self)?;
-                    return self.confirm(iterate, self.band);
+                    return self.descend(iterate);
                 } else if returned {
                     return Err(Outcome::Cycling);
                 }
@@ -225,6 +248,12 @@ impl ActiveSet {
             history.restart(&iterate.state);
             band = (4.0 * band).min(WIDEST * self.band);
         }
+    }
+
+    /// The method that must end, from the iterate as it is.
+    fn descend<T: Real>(&self, iterate: &mut Iterate<'_, T>) -> Result<Outcome, Outcome> {
+        descend(iterate, self)?;
+        self.confirm(iterate, self.band)
     }
 
     /// Sets the states of some unknowns to those that solve the problem condensed on them.
@@ -255,17 +284,16 @@ impl ActiveSet {
         if !matches!(outcome, Outcome::IterationLimit | Outcome::Cycling) {
             return outcome;
         }
-        let last = (iterate.values.clone(), iterate.state.clone());
-        iterate.return_to_best();
-        if self.confirm(iterate, self.band).is_ok() {
-            return Outcome::Converged;
-        }
-        let (certificate, unit) = certify_with_noise(iterate.inequality, &iterate.values);
-        (iterate.values, iterate.state) = last;
-        if certificate.largest() <= 8.0 * self.band * T::EPSILON * unit {
-            Outcome::Stalled
-        } else {
+        let best = iterate.best_values();
+        let (certificate, unit) = certify_with_noise(iterate.inequality, best);
+        let rounding = 8.0 * self.band * T::EPSILON * unit.max(1.0);
+        if certificate.largest() > rounding {
             outcome
+        } else if certificate.largest() <= T::CERTIFICATE_LIMIT {
+            iterate.return_to_best();
+            Outcome::Converged
+        } else {
+            Outcome::Stalled
         }
     }
 

@@ -11,8 +11,11 @@ const SHARE: f64 = 0.995;
 /// Complementarity over energy below which contact and gap are told apart.
 const CLOSE: f64 = 1e-18;
 
-/// A step this short gains nothing any more: rounding.
-const SHORTEST: f64 = 1e-6;
+/// Most steps.
+const MOST: usize = 60;
+
+/// Where so many steps do not halve the products of gaps and forces, rounding rules.
+const PATIENCE: usize = 5;
 
 /// One bound of one unknown: `side` times the unknown is above `side` times the bound by `gap`.
 struct Wall {
@@ -82,7 +85,8 @@ impl<'a, T: Real> InteriorPoint<'a, T> {
             for (bound, side) in [(lower, 1.0), (upper, -1.0)] {
                 if let Some(bound) = bound {
                     let gap = (side * (point.values[i] - bound.to_f64())).max(least);
-                    let wall = Wall { unknown: i, side, gap, force: 0.0, gap_step: 0.0, force_step: 0.0 };
+                    let wall =
+                        Wall { unknown: i, side, gap, force: 0.0, gap_step: 0.0, force_step: 0.0 };
                     point.walls.push(wall);
                     if width.is_infinite() {
                         point.values[i] = bound.to_f64() + side * gap;
@@ -97,21 +101,21 @@ impl<'a, T: Real> InteriorPoint<'a, T> {
 
     /// Approaches the solution; the contact states found, or `None` if a matrix has no factors or
     /// a number is not finite.
-    pub fn run(&mut self, most: usize) -> Option<Vec<Contact>> {
+    pub fn run(&mut self) -> Option<Vec<Contact>> {
         let mut deficit = vec![0.0; self.values.len()];
-        while self.steps < most {
+        let (mut least, mut idle) = (f64::INFINITY, 0);
+        while self.steps < MOST {
             let energy = self.deficit(&mut deficit);
             let mean = self.mean_product();
             if !mean.is_finite() || !energy.is_finite() {
                 return None;
             }
-            if mean * self.walls.len() as f64 <= CLOSE * energy {
+            idle = if mean < 0.5 * least { 0 } else { idle + 1 };
+            least = if idle == 0 { mean } else { least };
+            if mean * self.walls.len() as f64 <= CLOSE * energy || idle > PATIENCE {
                 break;
             }
-            let length = self.step(&deficit, mean)?;
-            if length < SHORTEST {
-                break;
-            }
+            self.step(&deficit, mean)?;
         }
         Some(self.contact())
     }
@@ -122,8 +126,8 @@ impl<'a, T: Real> InteriorPoint<'a, T> {
         self.values.iter().zip(&self.inequality.bounds).map(nearest).collect()
     }
 
-    /// One step; its length as a share of the whole.
-    fn step(&mut self, deficit: &[f64], mean: f64) -> Option<f64> {
+    /// One step; `None` without factors.
+    fn step(&mut self, deficit: &[f64], mean: f64) -> Option<()> {
         self.steps += 1;
         let mut matrix = self.inequality.matrix.clone();
         for wall in &self.walls {
@@ -152,7 +156,7 @@ impl<'a, T: Real> InteriorPoint<'a, T> {
             wall.gap += length * wall.gap_step;
             wall.force += length * wall.force_step;
         }
-        Some(length)
+        Some(())
     }
 
     /// The Newton step for given products of gaps and forces.
@@ -200,7 +204,8 @@ impl<'a, T: Real> InteriorPoint<'a, T> {
     /// The size of energies in this problem.
     fn energy(&self) -> f64 {
         let terms = self.values.iter().zip(&self.inequality.load).zip(&self.diagonal);
-        let load: f64 = terms.map(|((x, b), d)| (x * b.to_f64()).abs() + b.to_f64().powi(2) / d).sum();
+        let load: f64 =
+            terms.map(|((x, b), d)| (x * b.to_f64()).abs() + b.to_f64().powi(2) / d).sum();
         if load > 0.0 { load } else { 1.0 }
     }
 

@@ -193,16 +193,16 @@ impl<'a, T: Real> Iterate<'a, T> {
         }
     }
 
-    /// Moves to where an interior point method gets from the best iterate in so many steps; stays
-    /// if it does not get anywhere.
-    pub fn approach(&mut self, most: usize, history: &mut History) {
+    /// Moves to where an interior point method gets from the best iterate; stays if it does not get
+    /// anywhere.
+    pub fn approach(&mut self) {
         let mut point = InteriorPoint::new(self.inequality, &self.best.values);
-        let contact = point.run(most);
+        let contact = point.run();
         self.outer += point.steps;
-        let Some(contact) = contact else { return };
-        self.values = point.values();
-        for (i, contact) in contact.into_iter().enumerate() {
-            self.set_state(i, rest(&self.inequality.bounds[i], contact), history);
+        if let Some(contact) = contact {
+            let states = contact.iter().zip(&self.inequality.bounds);
+            self.state = states.map(|(&contact, bound)| rest(bound, contact)).collect();
+            self.values = point.values();
         }
     }
 
@@ -218,6 +218,11 @@ impl<'a, T: Real> Iterate<'a, T> {
         let noise = self.gap_noise(band);
         let off = |(&x, bound): (&T, &Bound<T>)| (x.to_f64() - bound.nearest(x).to_f64()).abs();
         self.values.iter().zip(&self.inequality.bounds).map(off).all(|off| off <= noise)
+    }
+
+    /// The best values.
+    pub fn best_values(&self) -> &[T] {
+        &self.best.values
     }
 
     /// Goes back to the best iterate.

@@ -27,7 +27,7 @@ mod small;
 mod smoother;
 mod transfer;
 
-pub use active_set::ActiveSet;
+pub use active_set::{ActiveSet, LastResort};
 pub use certificate::{Certificate, active, certify};
 pub use hierarchy::{Coarser, VertexLevel};
 pub use kernels::SparseKernels;
