@@ -1,5 +1,7 @@
 //! What the solver falls back on, forced: it agrees with slow solvers that are easy to believe.
 
+// other tests use the rest
+#[allow(dead_code)]
 #[path = "support/inequalities.rs"]
 mod inequalities;
 
@@ -116,9 +118,8 @@ fn curved_and_kinked_obstacles_converge() {
     }
 }
 
-/// Energy never rises along the monotone method, wherever it is stopped.
 #[test]
-fn energy_falls() {
+fn the_monotone_method_finds_the_least_energy() {
     let problem = of(&scenes::ball_2d(), &wopsip(10.0), 6);
     let energy = |u: &[f64]| -> f64 {
         let load = |i: usize| 0.5 * problem.matrix.row_dot(i, u) - problem.load[i];
