@@ -54,7 +54,8 @@ fn counts<const D: usize>(
         assert!((a - b).abs() <= 1e-8, "error {a} and {b}");
         assert!(row.certificate.largest() <= 1e-9, "{:?}", row.certificate);
         assert!(row.certificate.algebraic_bound.unwrap() <= 1e-9, "{:?}", row.certificate);
-        assert!(row.iterations.outer.unwrap() <= 10, "{:?}", row.iterations);
+        let outer = row.iterations.outer.unwrap();
+        assert!(outer <= 10, "{outer} outer");
     }
     found.iter().map(|row| row.iterations.linear).collect()
 }

@@ -3,6 +3,7 @@
 use super::certificate::certify_with_noise;
 use super::condensed::{Noise, resolve};
 use super::cycles::History;
+use super::descent::descend;
 use super::inexact::Inexact;
 use super::iterate::Iterate;
 use super::linear::{FactorError, is_positive_definite};
@@ -20,7 +21,8 @@ use crate::real::Real;
 /// For other matrices it may cycle: a state that returns is recognised, and the problem condensed
 /// on all unknowns that have moved since is solved exactly ([`Outcome::Cycling`] if that is not
 /// possible within the limits below). The same is done where the method wanders, which is a cycle
-/// too long to be waited for: no iterate has been better than the best for `patience` steps.
+/// too long to be waited for: no iterate has been better than the best for `patience` steps. Where
+/// that does not help either, or too many unknowns move, there is a [`LastResort`].
 ///
 /// What differs by rounding only does not change state, or ties would cycle for ever. A bound is
 /// violated beyond rounding by `band` units of the scalar's epsilon times the largest
@@ -51,12 +53,32 @@ pub struct ActiveSet {
     pub max_condensations: usize,
     /// Largest number of unknowns of a condensed problem; its matrix is dense.
     pub max_condensed: usize,
+    /// What else is done.
+    pub last_resort: LastResort,
     /// Whether to make sure first that the matrix is positive definite on all unknowns that are
     /// not Dirichlet values, its symmetric part if it is not symmetric. Error size does not detect
     /// loss of coercivity. Free of cost for a cold start with a symmetric matrix.
     pub check_definite: bool,
     /// The linear solver inside.
     pub linear: Linear,
+}
+
+/// What is done where the active set does not settle.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum LastResort {
+    /// Nothing: the outcome says so.
+    Never,
+    /// The active set is found anew by an interior point method (Mehrotra, SIAM J. Optim. 2 (1992)
+    /// 575-601); if it does not settle from there, energy is lowered monotonically.
+    #[default]
+    WhenUnsettled,
+    /// The interior point method is asked first.
+    AtOnce,
+    /// Energy is lowered monotonically from the start: a face of the bounds after the other is
+    /// searched for its minimum. Ends for every symmetric positive definite matrix (Bertsekas, SIAM
+    /// J. Control Optim. 20 (1982) 221-246; More, Toraldo, SIAM J. Optim. 1 (1991) 93-113), if
+    /// `max_outer` is large enough. Others are solved as if unsettled.
+    Monotone,
 }
 
 /// Unknowns above which the iterative solver is faster where nested meshes are known.
@@ -75,6 +97,7 @@ impl Default for ActiveSet {
             patience: 20,
             max_condensations: 10,
             max_condensed: 500,
+            last_resort: LastResort::default(),
             check_definite: false,
             linear: Linear::default(),
         }
@@ -139,7 +162,8 @@ impl ActiveSet {
 
     fn solve_directly<T: Real>(&self, inequality: &Inequality<T>) -> Solution<T> {
         let mut iterate = Iterate::new(inequality);
-        let outcome = self.run(&mut iterate).unwrap_or_else(|outcome| outcome);
+        let outcome =
+            self.run(&mut iterate).unwrap_or_else(|outcome| self.settle(&mut iterate, outcome));
         iterate.into_solution(outcome)
     }
 }
@@ -153,6 +177,12 @@ impl ActiveSet {
         let cold_checks = cold && inequality.symmetric;
         if self.check_definite && !cold_checks {
             check_definite(inequality)?;
+        }
+        let mut is_untried = self.last_resort == LastResort::WhenUnsettled;
+        match self.last_resort {
+            LastResort::Monotone if inequality.symmetric => return self.descend(iterate),
+            LastResort::AtOnce => iterate.approach(),
+            _ => {}
         }
         let mut cycle = vec![false; inequality.size()];
         let mut history = History::new(inequality.size());
@@ -197,7 +227,16 @@ impl ActiveSet {
             let members: Vec<u32> =
                 (0..cycle.len()).filter(|&i| cycle[i]).map(|i| i as u32).collect();
             if condensations == self.max_condensations || members.len() > self.max_condensed {
-                if returned {
+                if is_untried {
+                    is_untried = false;
+                    iterate.approach();
+                    history = History::new(inequality.size());
+                    history.record(&iterate.state, &mut cycle);
+                    (progress, condensations) = (iterate.outer, 0);
+                } else if self.last_resort != LastResort::Never && inequality.symmetric {
+                    iterate.return_to_best();
+                    return self.descend(iterate);
+                } else if returned {
                     return Err(Outcome::Cycling);
                 }
                 // It may still come to rest by itself, or wander among fewer unknowns.
@@ -209,6 +248,12 @@ impl ActiveSet {
             history.restart(&iterate.state);
             band = (4.0 * band).min(WIDEST * self.band);
         }
+    }
+
+    /// The method that must end, from the iterate as it is.
+    fn descend<T: Real>(&self, iterate: &mut Iterate<'_, T>) -> Result<Outcome, Outcome> {
+        descend(iterate, self)?;
+        self.confirm(iterate, self.band)
     }
 
     /// Sets the states of some unknowns to those that solve the problem condensed on them.
@@ -231,6 +276,25 @@ impl ActiveSet {
             iterate.set_state(i as usize, contact, history);
         }
         Ok(())
+    }
+
+    /// What to call the best iterate where the active set does not rest: it may be a solution, or as
+    /// near to one as rounding allows.
+    fn settle<T: Real>(&self, iterate: &mut Iterate<'_, T>, outcome: Outcome) -> Outcome {
+        if !matches!(outcome, Outcome::IterationLimit | Outcome::Cycling) {
+            return outcome;
+        }
+        let best = iterate.best_values();
+        let (certificate, unit) = certify_with_noise(iterate.inequality, best);
+        let rounding = 8.0 * self.band * T::EPSILON * unit.max(1.0);
+        if certificate.largest() > rounding {
+            outcome
+        } else if certificate.largest() <= T::CERTIFICATE_LIMIT {
+            iterate.return_to_best();
+            Outcome::Converged
+        } else {
+            Outcome::Stalled
+        }
     }
 
     /// The active set rests: whether the complementarity conditions hold indeed, by the

@@ -2,6 +2,7 @@
 
 use super::certificate::positive_diagonal;
 use super::cycles::History;
+use super::interior::InteriorPoint;
 use super::linear::{FactorError, Factors};
 use super::{Outcome, Solution};
 use crate::algebra::{Bound, Contact, Inequality, Start};
@@ -190,6 +191,44 @@ impl<'a, T: Real> Iterate<'a, T> {
             self.state[i] = contact;
             history.moved(i);
         }
+    }
+
+    /// Moves to where an interior point method gets from the best iterate; stays if it does not get
+    /// anywhere.
+    pub fn approach(&mut self) {
+        let mut point = InteriorPoint::new(self.inequality, &self.best.values);
+        let contact = point.run();
+        self.outer += point.steps;
+        if let Some(contact) = contact {
+            let states = contact.iter().zip(&self.inequality.bounds);
+            self.state = states.map(|(&contact, bound)| rest(bound, contact)).collect();
+            self.values = point.values();
+        }
+    }
+
+    /// Moves every value into its bounds.
+    pub fn admit(&mut self) {
+        for (value, bound) in self.values.iter_mut().zip(&self.inequality.bounds) {
+            *value = bound.nearest(*value);
+        }
+    }
+
+    /// Whether no bound is violated beyond rounding.
+    pub fn is_admissible(&self, band: f64) -> bool {
+        let noise = self.gap_noise(band);
+        let off = |(&x, bound): (&T, &Bound<T>)| (x.to_f64() - bound.nearest(x).to_f64()).abs();
+        self.values.iter().zip(&self.inequality.bounds).map(off).all(|off| off <= noise)
+    }
+
+    /// The best values.
+    pub fn best_values(&self) -> &[T] {
+        &self.best.values
+    }
+
+    /// Goes back to the best iterate.
+    pub fn return_to_best(&mut self) {
+        self.values.copy_from_slice(&self.best.values);
+        self.state.copy_from_slice(&self.best.state);
     }
 
     /// Puts every unknown on a bound, the lower one if it has two; false if none was off it.

@@ -1,0 +1,169 @@
+//! What the solver falls back on, forced: it agrees with slow solvers that are easy to believe.
+
+// other tests use the rest
+#[allow(dead_code)]
+#[path = "support/inequalities.rs"]
+mod inequalities;
+
+use inequalities::*;
+use unilateral::algebra::{Bound, Contact, Inequality, Start};
+use unilateral::assemble::{DataQuadrature, Discretisation};
+use unilateral::prelude::*;
+use unilateral::scenes::Scene;
+use unilateral::solve::{ActiveSet, InequalitySolver, LastResort, Linear, Outcome, certify};
+
+/// Every solver there is for symmetric matrices, by what forces it.
+fn agree(what: &str, problem: &Inequality<f64>) {
+    let direct = ActiveSet { linear: Linear::Direct, ..ActiveSet::default() }.solve(problem);
+    let iterative = ActiveSet { linear: Linear::Iterative, ..ActiveSet::default() }.solve(problem);
+    let interior = ActiveSet { last_resort: LastResort::AtOnce, ..ActiveSet::default() };
+    let monotone = ActiveSet { last_resort: LastResort::Monotone, max_outer: 2000, ..interior };
+    let scale = 1.0 + distance(&direct.values, &vec![0.0; problem.size()]);
+    let others = [
+        ("direct", direct.clone()),
+        ("iterative", iterative),
+        ("interior", interior.solve(problem)),
+        ("monotone", monotone.solve(problem)),
+    ];
+    for (name, solution) in others {
+        assert_eq!(solution.outcome, Outcome::Converged, "{what}: {name}");
+        let certificate = certify(problem, &solution.values);
+        assert!(certificate.largest() < 1e-8, "{what}: {name}: {certificate:?}");
+        let off = distance(&solution.values, &direct.values);
+        assert!(off < 1e-8 * scale, "{what}: {name} is off by {off}");
+    }
+}
+
+#[test]
+fn all_agree_on_random_problems() {
+    for seed in 0..100 {
+        let mut random = Random::new(seed);
+        let n = 6 + seed as usize % 20;
+        let matrix = random_definite(n, n / 2, 0.003, &mut random);
+        let load: Vec<f64> = (0..n).map(|_| random.signed()).collect();
+        let problem = inequality(sparse(&matrix), &load, random_bounds(n, &mut random));
+        agree(&format!("seed {seed}"), &problem);
+    }
+}
+
+/// The inequality of a scene at a level.
+fn of<S: Scheme<f64, 2>>(scene: &Scene<2>, scheme: &S, level: usize) -> Inequality<f64> {
+    let mesh = scene.domain.mesh(level).unwrap();
+    let space =
+        Discretisation::new(scheme, &scene.problem, &mesh, DataQuadrature::default()).unwrap();
+    space.inequality().unwrap()
+}
+
+fn scenes_of_all_kinds() -> Vec<Scene<2>> {
+    vec![
+        scenes::ball_2d(),
+        scenes::cone(),
+        scenes::biactive_half_2d(),
+        scenes::degenerate(2),
+        scenes::signorini_shifted_2d(),
+        scenes::signorini_irrational_2d(),
+    ]
+}
+
+fn wopsip(eta: f64) -> Wopsip {
+    Wopsip { eta: Eta::Absolute(eta), ..Wopsip::default() }
+}
+
+#[test]
+fn all_agree_on_scenes() {
+    for scene in scenes_of_all_kinds() {
+        let name = &scene.name;
+        agree(&format!("{name} p1"), &of(&scene, &ConformingP1, 6));
+        agree(&format!("{name} cr"), &of(&scene, &CrouzeixRaviartScheme, 6));
+        agree(&format!("{name} sipg"), &of(&scene, &Sipg::default(), 4));
+        for eta in [1.0, 10.0, 100.0] {
+            let scheme = wopsip(eta);
+            agree(&format!("{name} wopsip {eta}"), &of(&scene, &scheme, 4));
+            agree(&format!("{name} means {eta}"), &of(&scene, &FacetMeans(scheme), 4));
+        }
+    }
+}
+
+/// What a slow solver finds on the smallest of them.
+#[test]
+fn the_oracle_agrees() {
+    for scene in scenes_of_all_kinds() {
+        for problem in [of(&scene, &wopsip(1.0), 3), of(&scene, &Sipg::default(), 3)] {
+            let expected = projected_gauss_seidel(&problem);
+            let found = ActiveSet { last_resort: LastResort::AtOnce, ..ActiveSet::default() }
+                .solve(&problem);
+            let off = distance(&found.values, &expected);
+            assert!(off < 1e-8, "{}: {off}", scene.name);
+        }
+    }
+}
+
+/// Where contact is ragged the active set does not settle by itself.
+#[test]
+fn curved_and_kinked_obstacles_converge() {
+    let runs = [
+        (scenes::ball_2d(), Wopsip::default(), 64),
+        (scenes::ball_2d(), wopsip(10.0), 64),
+        (scenes::cone(), wopsip(1.0), 32),
+        (scenes::cone(), wopsip(10.0), 32),
+        (scenes::pyramid_full_2d(), Wopsip::default(), 16),
+    ];
+    for (scene, scheme, level) in runs {
+        let report = Study::<f64, 2>::new(scene).scheme(scheme).levels([level]).run().unwrap();
+        let row = &report.rows[0];
+        assert_eq!(row.status, "converged", "{}", row.scene);
+        assert!(row.certificate.largest() < 1e-8, "{}: {:?}", row.scene, row.certificate);
+        let outer = row.iterations.outer.unwrap();
+        assert!(outer <= 90, "{}: {outer} steps", row.scene);
+    }
+}
+
+#[test]
+fn the_monotone_method_finds_the_least_energy() {
+    let problem = of(&scenes::ball_2d(), &wopsip(10.0), 6);
+    let energy = |u: &[f64]| -> f64 {
+        let load = |i: usize| 0.5 * problem.matrix.row_dot(i, u) - problem.load[i];
+        (0..u.len()).map(|i| u[i] * load(i)).sum()
+    };
+    let solver = ActiveSet { last_resort: LastResort::Monotone, ..ActiveSet::default() };
+    let found = solver.solve(&problem);
+    assert_eq!(found.outcome, Outcome::Converged);
+    let least = energy(&found.values);
+    let oracle = energy(&cold_from_contact(&problem));
+    assert!((least - oracle).abs() <= 1e-10 * oracle.abs(), "{least} and {oracle}");
+}
+
+fn cold_from_contact(problem: &Inequality<f64>) -> Vec<f64> {
+    let start = Start::Contact(vec![Contact::Lower; problem.size()]);
+    ActiveSet::default().solve(&problem.clone().with_start(start)).values
+}
+
+/// Every solver names what is wrong, whatever it was asked to start with.
+#[test]
+fn what_has_no_solution_is_named() {
+    let good = of(&scenes::ball_2d(), &Sipg::default(), 4);
+    let mut wrong_number = good.clone();
+    wrong_number.load[3] = f64::NAN;
+    let mut no_room = good.clone();
+    no_room.bounds[5] = Bound::Both(1.0, 0.0);
+    let weak = Sipg { penalty: PenaltyRule::Diameter(0.5), ..Sipg::default() };
+    let indefinite = of(&scenes::ball_2d(), &weak, 4);
+    let mut floating =
+        inequality(sparse(&[vec![1.0, -1.0], vec![-1.0, 1.0]]), &[1.0, 1.0], vec![Bound::Free; 2]);
+    let resorts = [LastResort::WhenUnsettled, LastResort::AtOnce, LastResort::Monotone];
+    for linear in [Linear::Direct, Linear::Iterative] {
+        for last_resort in resorts {
+            let solver = ActiveSet { linear, last_resort, ..ActiveSet::default() };
+            let outcome = |problem: &Inequality<f64>| solver.solve(problem).outcome;
+            assert_eq!(outcome(&wrong_number), Outcome::NotFinite);
+            assert_eq!(outcome(&no_room), Outcome::Infeasible);
+            assert_eq!(outcome(&indefinite), Outcome::NotCoercive, "{solver:?}");
+            floating.bounds = vec![Bound::Free; 2];
+            assert_eq!(outcome(&floating), Outcome::Singular, "{solver:?}");
+            // a floor does not hold what is pulled upwards
+            floating.bounds = vec![Bound::Lower(0.0); 2];
+            let outcome = outcome(&floating);
+            assert!(matches!(outcome, Outcome::Singular | Outcome::NotCoercive), "{solver:?}");
+        }
+    }
+}

@@ -1,0 +1,105 @@
+//! How far the solver reaches: every scene with every scheme, penalty and place of the constraint.
+
+use std::collections::BTreeMap;
+
+use unilateral::prelude::*;
+use unilateral::scenes::{AnyScene, Parameters, Scene, catalogue};
+use unilateral::study::{Placement, Row, SCHEMES, SchemeOptions, scheme_by_name};
+
+/// Over-penalties from almost none to where rounding rules.
+const ETAS: [f64; 5] = [1e-2, 1.0, 10.0, 1e4, 1e8];
+
+/// A scheme by name, its penalty if not the default, and a placement.
+type Choice = (&'static str, Option<f64>, &'static str);
+
+fn choices() -> Vec<Choice> {
+    let mut choices = Vec::new();
+    for &(name, _) in SCHEMES {
+        let placements: &[_] = match name {
+            "p1" | "cr" => &["vertices"],
+            "p2" => &["nodes", "midpoints"],
+            name if name.ends_with("-p2") => &["nodes", "midpoints", "cell-means"],
+            _ => &["vertices", "facet-means"],
+        };
+        for placement in placements {
+            choices.push((name, None, *placement));
+            if name.starts_with("wopsip") {
+                choices.extend(ETAS.map(|eta| (name, Some(eta), *placement)));
+            }
+        }
+    }
+    choices
+}
+
+/// The rows of a scene under a choice, none where the scheme does not fit the scene.
+fn rows<const D: usize>(scene: Scene<D>, choice: Choice, levels: &[usize]) -> Vec<Row> {
+    let (name, eta, placement) = choice;
+    let placement = Placement::by_name(placement).unwrap();
+    let options = SchemeOptions { eta, placement, ..SchemeOptions::default() };
+    let scheme = scheme_by_name::<f64, D>(name, &options).unwrap();
+    let study = Study::<f64, D>::new(scene).boxed_scheme(scheme).levels(levels.iter().copied());
+    study.run().map(|report| report.rows).unwrap_or_default()
+}
+
+/// Three small levels of each dimension.
+fn levels(dimension: usize) -> [usize; 3] {
+    match dimension {
+        1 => [8, 32, 128],
+        2 => [8, 16, 32],
+        _ => [1, 2, 4],
+    }
+}
+
+/// Whether a variable of the environment names this, or is absent.
+fn is_asked(variable: &str, name: &str) -> bool {
+    std::env::var(variable).map_or(true, |asked| asked.split(',').any(|asked| asked == name))
+}
+
+#[test]
+#[ignore = "takes minutes: prints the table of docs/solvers.md"]
+fn reach() {
+    let mut summary = BTreeMap::<(usize, String), Vec<Row>>::new();
+    for entry in catalogue().iter().filter(|entry| is_asked("SCENES", &entry.name)) {
+        let choices = choices();
+        let chosen = choices.iter().filter(|choice| is_asked("SCHEMES", choice.0));
+        for (k, &choice) in chosen.enumerate() {
+            let levels = levels(entry.dimension);
+            let found = match entry.make(&Parameters::default()).unwrap() {
+                AnyScene::One(scene) => rows(scene, choice, &levels),
+                AnyScene::Two(scene) => rows(scene, choice, &levels),
+                AnyScene::Three(scene) => rows(scene, choice, &levels),
+            };
+            let eta = choice.1.map_or("default".into(), |eta| format!("{eta:e}"));
+            let label = format!("{} | {} | {eta}", choice.0, choice.2);
+            for row in &found {
+                if !row.converged() {
+                    println!(
+                        "| {} | {label} | {} | {} | {} | {:.1e} |",
+                        row.scene,
+                        row.level,
+                        row.status,
+                        row.iterations.outer.unwrap_or(0),
+                        row.certificate.largest()
+                    );
+                }
+            }
+            summary.entry((k, label)).or_default().extend(found);
+        }
+    }
+    let mut uncertified = 0;
+    println!("\n| scheme | bounds on | eta | runs | converged | most steps | mean steps |");
+    println!("|---|---|---|---|---|---|---|");
+    for ((_, label), rows) in &summary {
+        let steps = || rows.iter().map(|row| row.iterations.outer.unwrap_or(0));
+        let converged = rows.iter().filter(|row| row.converged());
+        uncertified += converged.clone().filter(|row| row.certificate.largest() > 1e-8).count();
+        println!(
+            "| {label} | {} | {} | {} | {:.1} |",
+            rows.len(),
+            converged.count(),
+            steps().max().unwrap_or(0),
+            steps().sum::<usize>() as f64 / rows.len().max(1) as f64
+        );
+    }
+    assert_eq!(uncertified, 0);
+}
