@@ -38,15 +38,20 @@ pub(in crate::study) struct NamedCurve<'a> {
 }
 
 /// The panels of a scene, one for each norm in which there are errors, below each other.
-pub(in crate::study) fn cost_figure(scene: &str, curves: &[NamedCurve<'_>], cost: Cost) -> Figure {
+pub(in crate::study) fn cost_figure(scene: &str, named: &[NamedCurve<'_>], cost: Cost) -> Figure {
     let x = cost.quantity();
     let panel = |y: Quantity| {
-        let curves = curves.iter().enumerate().map(|(key, curve)| Curve {
+        let curves = named.iter().enumerate().map(|(key, curve)| Curve {
             key,
             points: curve.rows.iter().filter_map(|row| Point::of(row, x, y)).collect(),
         });
         let curves = curves.filter(|c| !c.points.is_empty()).collect();
-        Panel { title: scene.to_owned(), x, y, curves, slopes: Vec::new() }
+        let rows = || named.iter().flat_map(|c| &c.rows).copied();
+        // an order in the mesh size is that order over the dimension in the number of unknowns
+        let dimension = rows().next().map(|r| r.dimension as u32);
+        let falls_over = dimension.filter(|_| cost == Cost::Unknowns);
+        let slopes = if falls_over.is_some() { y.slopes(rows()) } else { Vec::new() };
+        Panel { title: scene.to_owned(), x, y, curves, slopes, falls_over }
     };
     let mut panels: Vec<Panel> = [Quantity::L2, Quantity::H1, Quantity::Energy].map(panel).into();
     // one panel says that there are no errors; it need not be said three times
@@ -56,5 +61,5 @@ pub(in crate::study) fn cost_figure(scene: &str, curves: &[NamedCurve<'_>], cost
         seen += 1;
         p.has_errors() || (!any && seen == 1)
     });
-    Figure { panels, keys: curves.iter().map(|c| Key::labelled(&c.label)).collect(), columns: 1 }
+    Figure { panels, keys: named.iter().map(|c| Key::labelled(&c.label)).collect(), columns: 1 }
 }

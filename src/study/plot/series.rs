@@ -59,6 +59,12 @@ impl Quantity {
             _ => None,
         }
     }
+
+    /// Orders worth comparing with.
+    pub fn slopes<'a>(self, rows: impl Iterator<Item = &'a Row>) -> Vec<u32> {
+        let promised = rows.filter_map(|r| self.expected(r)).fold(0.0, f64::max);
+        if promised > 2.0 { vec![1, 2, 3] } else { vec![1, 2] }
+    }
 }
 
 /// A curve's name: one colour and one mark in all panels.
@@ -133,6 +139,8 @@ pub(super) struct Panel {
     pub curves: Vec<Curve>,
     /// Slopes to compare with.
     pub slopes: Vec<u32>,
+    /// Whether these slopes fall, each over this dimension.
+    pub falls_over: Option<u32>,
 }
 
 impl Panel {
@@ -151,15 +159,9 @@ impl Panel {
                 curves.push(Curve { key: k, points });
             }
         }
-        let mut slopes = Vec::new();
-        if x == Quantity::MeshSize {
-            slopes = vec![1, 2];
-            let promised = rows.iter().filter(|r| r.scene == scene).filter_map(|r| y.expected(r));
-            if promised.fold(0.0, f64::max) > 2.0 {
-                slopes.push(3);
-            }
-        }
-        Panel { title: scene.to_owned(), x, y, curves, slopes }
+        let of_scene = rows.iter().filter(|r| r.scene == scene);
+        let slopes = if x == Quantity::MeshSize { y.slopes(of_scene) } else { Vec::new() };
+        Panel { title: scene.to_owned(), x, y, curves, slopes, falls_over: None }
     }
 
     /// Whether some run has an error.

@@ -165,7 +165,10 @@ mod tests {
 
     #[test]
     fn special_characters_are_written_as_they_look() {
-        assert_eq!(latex("a_b & 50% {x} \\ ~^"), "a\\_b \\& 50\\% \\{x\\} \\textbackslash{} \\textasciitilde{}\\textasciicircum{}");
+        assert_eq!(
+            latex("a_b & 50% {x} \\ ~^"),
+            "a\\_b \\& 50\\% \\{x\\} \\textbackslash{} \\textasciitilde{}\\textasciicircum{}"
+        );
         assert_eq!(latex("$1 #2"), "\\$1 \\#2");
         assert_eq!(markdown("a|b_c*d"), "a\\|b\\_c\\*d");
         assert_eq!(power("1.37e-2"), "$1.37\\cdot 10^{-2}$");

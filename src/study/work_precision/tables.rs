@@ -91,7 +91,15 @@ fn phases(scene: &str, rows: &[&Measured], variants: &[Variant]) -> Table {
     Table {
         title: format!("{scene}: phases of the fastest run"),
         columns: head(&[
-            "scheme", "linear solver", "n", "mesh", "assembly", "start", "solve", "total", "runs",
+            "scheme",
+            "linear solver",
+            "n",
+            "mesh",
+            "assembly",
+            "start",
+            "solve",
+            "total",
+            "runs",
         ]),
         rows: rows.iter().map(line).collect(),
         remarks: Vec::new(),

@@ -10,9 +10,8 @@ pub(super) fn verdict(reach: &[Reach], scene: &str, subject: &str) -> Option<Str
     let of_scene: Vec<&Reach> =
         reach.iter().filter(|r| r.variant.scene == scene && r.norm == ErrorNorm::L2).collect();
     let variants: Vec<Variant> = of_scene.iter().map(|r| r.variant.clone()).collect();
-    let reached = |error: f64| {
-        of_scene.iter().filter(|r| r.error == error && r.seconds.is_some()).count()
-    };
+    let reached =
+        |error: f64| of_scene.iter().filter(|r| r.error == error && r.seconds.is_some()).count();
     let most = of_scene.iter().map(|r| reached(r.error)).max()?;
     let errors = of_scene.iter().map(|r| r.error).filter(|&e| reached(e) == most);
     let error = errors.fold(f64::INFINITY, f64::min);
@@ -24,14 +23,15 @@ pub(super) fn verdict(reach: &[Reach], scene: &str, subject: &str) -> Option<Str
     let chosen = *named.or_else(fastest)?;
     let others = there.iter().filter(|r| r.variant != chosen.variant).map(|r| {
         let ratio = chosen.seconds.unwrap_or(f64::NAN) / r.seconds.unwrap_or(f64::NAN);
-        format!("{} times the time of {}", two_digits(ratio), r.variant.label(&variants))
+        (two_digits(ratio), r.variant.label(&variants))
     });
     let name = chosen.variant.label(&variants);
     let seconds = chosen.seconds.unwrap_or(f64::NAN);
     let mut text = format!("{scene}: at an L2 error of {error:e} {name} takes {seconds:.2e} s");
-    for (k, other) in others.enumerate() {
-        text += if k == 0 { ", " } else { "; " };
-        text += &other;
+    for (k, (ratio, other)) in others.enumerate() {
+        let comma = if k == 0 { ", " } else { "; " };
+        let time = if k == 0 { "the time" } else { "that" };
+        text += &format!("{comma}{ratio} times {time} of {other}");
     }
     if !missing.is_empty() {
         let names: Vec<String> = missing.iter().map(|r| r.variant.label(&variants)).collect();
