@@ -79,8 +79,7 @@ fn run(options: &Options) -> Request<bool> {
         .map_err(|e| format!("scene {name}: {e}"))?;
     }
     report.provenance.complete = true;
-    bar.set_message("drawing");
-    report.write(&options.out).map_err(|e| e.to_string())?;
+    report.write_data(&options.out).map_err(|e| e.to_string())?;
     bar.finish_and_clear();
     if let Some(path) = &options.save {
         fs::write(path, report.to_json())

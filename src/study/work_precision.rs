@@ -30,7 +30,7 @@ use crate::solve::{ActiveSet, Linear};
 use case::Single;
 
 /// How long finished rows of a round may wait to be written.
-const PATIENCE: Duration = Duration::from_secs(10);
+const PATIENCE: Duration = Duration::from_secs(1);
 
 /// What a study tells whoever watches it.
 pub enum WorkProgress<'a> {
@@ -145,7 +145,7 @@ impl<'a, const D: usize> WorkPrecision<'a, D> {
         self.subject = scheme.to_owned();
         self
     }
-    /// Writes the report to this directory after every round, and within one every ten seconds.
+    /// Writes the report to this directory after every round, and within one every second.
     pub fn write_to(mut self, directory: impl Into<PathBuf>) -> Self {
         self.directory = Some(directory.into());
         self
@@ -173,12 +173,12 @@ impl<'a, const D: usize> WorkPrecision<'a, D> {
         self.run_into(&mut report)?;
         report.provenance.complete = true;
         if let Some(directory) = &self.directory {
-            report.write(directory)?;
+            report.write_data(directory)?;
         }
         Ok(report)
     }
 
-    /// Runs everything and adds it to a report of other scenes. That the report is complete is for
+    /// Runs everything, adds it to a report of other scenes and draws its figures. That the report is complete is for
     /// the caller to say.
     ///
     /// # Errors
@@ -217,7 +217,12 @@ impl<'a, const D: usize> WorkPrecision<'a, D> {
             }
             self.save(report, before, &slots)?;
         }
-        Ok(())
+        match (&self.directory, slots.first()) {
+            (Some(directory), Some(slot)) => {
+                report.write_figures(directory, &slot.case.variant.scene).map(|_| ())
+            }
+            _ => Ok(()),
+        }
     }
 
     /// Runs a case, unless it has failed, takes too long or would not fit.

@@ -24,6 +24,9 @@ const COUNTS: [&str; 8] = [
 /// What must be the same to rounding.
 const NUMBERS: [&str; 4] = ["/error/l2", "/error/h1", "/error/energy", "/error/max"];
 
+/// How many rows without a counterpart are named when changes are printed.
+const FIRST: usize = 5;
+
 /// What changed against a baseline.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Changes {
@@ -41,10 +44,12 @@ impl fmt::Display for Changes {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let (n, k) = (self.compared, self.changed.len());
         writeln!(f, "against the baseline: {n} rows compared, {k} numbers changed")?;
-        let groups =
-            [("changed", &self.changed), ("not run now", &self.missing), ("new", &self.new)];
-        for (kind, lines) in groups {
-            lines.iter().try_for_each(|line| writeln!(f, "  {kind}: {line}"))?;
+        self.changed.iter().try_for_each(|line| writeln!(f, "  changed: {line}"))?;
+        for (kind, lines) in [("not run now", &self.missing), ("new", &self.new)] {
+            lines.iter().take(FIRST).try_for_each(|line| writeln!(f, "  {kind}: {line}"))?;
+            if lines.len() > FIRST {
+                writeln!(f, "  {kind}: {} more", lines.len() - FIRST)?;
+            }
         }
         Ok(())
     }

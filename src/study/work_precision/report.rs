@@ -173,14 +173,14 @@ impl WorkReport {
         files.into_iter().map(put).collect()
     }
 
-    /// Writes, for every scene, errors against time, unknowns and memory as `SCENE-time`,
+    /// Writes the errors of a scene against time, unknowns and memory as `SCENE-time`,
     /// `SCENE-unknowns` and `SCENE-memory`, each as `.svg` and `.png`.
     ///
     /// # Errors
     /// [`Error::Write`] at the first file that cannot be written.
-    pub fn write_figures(&self, directory: &Path) -> Result<Vec<PathBuf>, Error> {
+    pub fn write_figures(&self, directory: &Path, scene: &str) -> Result<Vec<PathBuf>, Error> {
         let mut written = Vec::new();
-        for (name, figure) in figures(self) {
+        for (name, figure) in figures(self, scene) {
             let svg = directory.join(format!("{name}.svg"));
             written.push(replace(&svg, |path| {
                 fs::write(path, figure.to_svg()?).map_err(|e| e.to_string())
@@ -191,13 +191,15 @@ impl WorkReport {
         Ok(written)
     }
 
-    /// Writes data and figures.
+    /// Writes data, and figures of all scenes.
     ///
     /// # Errors
     /// [`Error::Write`] at the first file that cannot be written.
     pub fn write(&self, directory: impl AsRef<Path>) -> Result<Vec<PathBuf>, Error> {
         let mut written = self.write_data(directory.as_ref())?;
-        written.extend(self.write_figures(directory.as_ref())?);
+        for scene in self.scenes() {
+            written.extend(self.write_figures(directory.as_ref(), scene)?);
+        }
         Ok(written)
     }
 }
