@@ -1,6 +1,7 @@
 //! A report as comma-separated values.
 
 use super::row::Row;
+use serde::Serialize;
 use serde_json::Value;
 
 /// One line a row, the keys of the row joined by dots (`error.l2`, `iterations.outer`), header
@@ -9,6 +10,11 @@ use serde_json::Value;
 /// Lines are made from the same serialisation as the JSON report, so that the two agree in keys,
 /// order and digits. Without rows there are no keys, and the text is empty.
 pub fn to_csv(rows: &[Row]) -> String {
+    lines(rows)
+}
+
+/// The same for anything that is written as one object a line.
+pub(super) fn lines<R: Serialize>(rows: &[R]) -> String {
     let mut text = String::new();
     for (i, row) in rows.iter().enumerate() {
         let mut columns = Vec::new();

@@ -15,6 +15,7 @@ mod row;
 mod run;
 mod table;
 mod vtu;
+mod work_precision;
 
 pub use crate::solve::Certificate;
 pub use any_scheme::{AnyScheme, Fields, Solved, Task};
@@ -34,3 +35,7 @@ pub use row::{
 pub use run::{Progress, Study};
 pub use table::write_tables;
 pub use vtu::{CellFields, write_vtu};
+pub use work_precision::{
+    Candidate, Case, Changes, ErrorNorm, Failure, Measured, Named, Phases, Precision, Provenance,
+    Reach, Table, Variant, WorkPoint, WorkPrecision, WorkProgress, WorkReport, changes, work_at,
+};

@@ -4,6 +4,7 @@
 //! [`style`]) are kept apart from the file formats ([`render`]), so that SVG and PNG show the same.
 
 mod axis;
+mod cost;
 mod layout;
 mod panel;
 mod pen;
@@ -13,6 +14,7 @@ mod slopes;
 mod style;
 
 use super::row::Row;
+pub(super) use cost::{Cost, NamedCurve, cost_figure};
 use layout::Layout;
 use series::{Key, Panel, Quantity, keys, scenes};
 

@@ -181,7 +181,7 @@ impl<'a, T: Real, const D: usize> Study<'a, T, D> {
             for &level in &self.levels {
                 (self.observer)(Progress::Started(&self.scene.name, scheme.name(), level));
                 let with_fields = self.directory.is_some() && Some(level) == finest;
-                let row = self.row(&mut levels, &**scheme, level, failure, with_fields)?;
+                let (row, _) = self.row(&mut levels, &**scheme, level, failure, with_fields)?;
                 (self.observer)(Progress::Finished(&row));
                 rows.push(row);
             }
@@ -191,6 +191,18 @@ impl<'a, T: Real, const D: usize> Study<'a, T, D> {
         Ok(Report { program, rows })
     }
 
+    /// Runs the first scheme on the first level alone, with levels of its own, so that all its work is
+    /// done now. Returns the row and the seconds of its solve that the start from coarser levels took.
+    pub(super) fn run_alone(&self) -> Result<(Row, f64), Error> {
+        let failure = self.where_exact_fails()?;
+        let (Some(scheme), Some(&level)) = (self.schemes.first(), self.levels.first()) else {
+            unreachable!("checked above")
+        };
+        let mut levels = Levels::new(&self.scene, self.mesh.as_ref());
+        self.row(&mut levels, &**scheme, level, failure.as_deref(), false)
+    }
+
+    /// A row, and the seconds of its start from coarser levels.
     fn row(
         &self,
         levels: &mut Levels<'_, T, D>,
@@ -198,7 +210,7 @@ impl<'a, T: Real, const D: usize> Study<'a, T, D> {
         level: usize,
         failure: Option<&str>,
         with_fields: bool,
-    ) -> Result<Row, Error> {
+    ) -> Result<(Row, f64), Error> {
         levels.make(level)?;
         let start = self.start(levels, scheme, level)?;
         let Some((mesh, mesh_seconds)) = levels.mesh(level) else { unreachable!("made above") };
@@ -222,14 +234,15 @@ impl<'a, T: Real, const D: usize> Study<'a, T, D> {
             ));
         }
         let coarser = start.as_ref().map_or(0, |s| s.levels);
-        let solve = solved.solve_seconds + start.as_ref().map_or(0.0, |s| s.seconds);
+        let start_seconds = start.as_ref().map_or(0.0, |s| s.seconds);
+        let solve = solved.solve_seconds + start_seconds;
         let seconds = Seconds {
             mesh: mesh_seconds,
             assemble: solved.assemble_seconds,
             solve,
             total: mesh_seconds + solved.assemble_seconds + solve,
         };
-        Ok(Row {
+        let row = Row {
             scene: self.scene.name.clone(),
             dimension: D,
             scheme: scheme.name().to_owned(),
@@ -261,7 +274,8 @@ impl<'a, T: Real, const D: usize> Study<'a, T, D> {
             seconds,
             peak_memory_bytes: peak_memory_bytes(),
             warnings,
-        })
+        };
+        Ok((row, start_seconds))
     }
 
     /// What a scheme starts from: P1 on the coarser level for P1 itself, P1 on the same level for

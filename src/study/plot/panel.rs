@@ -41,7 +41,8 @@ impl<'a> Frame<'a> {
         if panel.has_errors() && !panel.slopes.is_empty() {
             for _ in 0..8 {
                 let axes = (&frame.x, &frame.y);
-                frame.slopes = Slopes::place(&panel.slopes, axes, SIZE, &frame.occupied());
+                let slopes = (&panel.slopes[..], panel.falls_over);
+                frame.slopes = Slopes::place(slopes, axes, SIZE, &frame.occupied());
                 if frame.slopes.is_some() {
                     return frame;
                 }

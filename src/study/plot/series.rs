@@ -10,10 +10,16 @@ pub(super) enum Quantity {
     MeshSize,
     /// Seconds altogether.
     Seconds,
+    /// Number of unknowns.
+    Unknowns,
+    /// Peak of memory in megabytes.
+    Memory,
     /// L2 error.
     L2,
     /// Error in the broken H1 seminorm.
     H1,
+    /// Error in the scheme's own norm.
+    Energy,
 }
 
 impl Quantity {
@@ -22,8 +28,11 @@ impl Quantity {
         match self {
             Quantity::MeshSize => "mesh size h",
             Quantity::Seconds => "time in s",
+            Quantity::Unknowns => "number of unknowns",
+            Quantity::Memory => "peak memory in MB",
             Quantity::L2 => "L2 error",
             Quantity::H1 => "broken H1 error",
+            Quantity::Energy => "error in the scheme's own norm",
         }
     }
 
@@ -33,8 +42,11 @@ impl Quantity {
             Quantity::MeshSize => Some(row.mesh_size),
             // No clock is finer: what looks like less is a time that was not taken.
             Quantity::Seconds => Some(row.seconds.total.max(1e-6)),
+            Quantity::Unknowns => Some(row.unknowns as f64),
+            Quantity::Memory => row.peak_memory_bytes.map(|bytes| bytes as f64 / 1e6),
             Quantity::L2 => row.error.l2,
             Quantity::H1 => row.error.h1,
+            Quantity::Energy => row.error.energy,
         };
         value.filter(|x| x.is_finite() && *x > 0.0)
     }
@@ -47,6 +59,12 @@ impl Quantity {
             _ => None,
         }
     }
+
+    /// Orders worth comparing with.
+    pub fn slopes<'a>(self, rows: impl Iterator<Item = &'a Row>) -> Vec<u32> {
+        let promised = rows.filter_map(|r| self.expected(r)).fold(0.0, f64::max);
+        if promised > 2.0 { vec![1, 2, 3] } else { vec![1, 2] }
+    }
 }
 
 /// A curve's name: one colour and one mark in all panels.
@@ -56,6 +74,13 @@ pub(super) struct Key {
     constraint: String,
     /// What the legend says.
     pub label: String,
+}
+
+impl Key {
+    /// A key that is known by its label alone.
+    pub fn labelled(label: &str) -> Self {
+        Key { scheme: label.to_owned(), constraint: String::new(), label: label.to_owned() }
+    }
 }
 
 /// The curves of a report, in the order in which they first occur. The place of the constraint is
@@ -87,6 +112,15 @@ pub(super) struct Point {
     pub converged: bool,
 }
 
+impl Point {
+    /// The point of a row, if it has a place. A converged run without an error has none; one that
+    /// failed must be seen.
+    pub fn of(row: &Row, x: Quantity, y: Quantity) -> Option<Self> {
+        let point = Point { x: x.of(row)?, y: y.of(row), converged: row.converged() };
+        (point.y.is_some() || !point.converged).then_some(point)
+    }
+}
+
 /// The runs of one scheme.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Curve {
@@ -105,6 +139,8 @@ pub(super) struct Panel {
     pub curves: Vec<Curve>,
     /// Slopes to compare with.
     pub slopes: Vec<u32>,
+    /// Whether these slopes fall, each over this dimension.
+    pub falls_over: Option<u32>,
 }
 
 impl Panel {
@@ -118,25 +154,14 @@ impl Panel {
                 .filter(|r| r.scheme == key.scheme && r.constraint == key.constraint)
                 .collect();
             runs.sort_by_key(|r| r.level);
-            let points: Vec<Point> = runs
-                .iter()
-                .filter_map(|r| Some(Point { x: x.of(r)?, y: y.of(r), converged: r.converged() }))
-                // A converged run without an error has no place; one that failed must be seen.
-                .filter(|p| p.y.is_some() || !p.converged)
-                .collect();
+            let points: Vec<Point> = runs.iter().filter_map(|r| Point::of(r, x, y)).collect();
             if !points.is_empty() {
                 curves.push(Curve { key: k, points });
             }
         }
-        let mut slopes = Vec::new();
-        if x == Quantity::MeshSize {
-            slopes = vec![1, 2];
-            let promised = rows.iter().filter(|r| r.scene == scene).filter_map(|r| y.expected(r));
-            if promised.fold(0.0, f64::max) > 2.0 {
-                slopes.push(3);
-            }
-        }
-        Panel { title: scene.to_owned(), x, y, curves, slopes }
+        let of_scene = rows.iter().filter(|r| r.scene == scene);
+        let slopes = if x == Quantity::MeshSize { y.slopes(of_scene) } else { Vec::new() };
+        Panel { title: scene.to_owned(), x, y, curves, slopes, falls_over: None }
     }
 
     /// Whether some run has an error.

@@ -1,0 +1,228 @@
+//! Work against precision: what schemes, linear solvers and scalars take to reach a given error.
+//!
+//! `cargo run --release --example work_precision -- --help` tells the options; `-- --quick` ends
+//! within a minute. Exit codes: 0 if every run converged and nothing changed against the baseline,
+//! 1 otherwise, 2 if the request was wrong.
+
+use std::fs;
+use std::io::{ErrorKind, IsTerminal, Write};
+use std::process::{Command, ExitCode};
+use std::time::Duration;
+
+#[path = "work_precision/options.rs"]
+mod options;
+
+use clap::Parser;
+use indicatif::{ProgressBar, ProgressStyle};
+use options::{Options, Request};
+use unilateral::real::Real;
+use unilateral::scenes::{self, AnyScene, Parameters, Scene};
+use unilateral::solve::{ActiveSet, Linear};
+use unilateral::study::{
+    Case, Named, Precision, Study, WorkPrecision, WorkProgress, WorkReport, changes,
+    peak_memory_bytes, scheme_by_name,
+};
+
+fn main() -> ExitCode {
+    let options = Options::parse();
+    let outcome = options.check().and_then(|()| match options.peak {
+        true => peak(&options),
+        false => run(&options),
+    });
+    match outcome {
+        Ok(true) => ExitCode::SUCCESS,
+        Ok(false) => ExitCode::from(1),
+        Err(message) => {
+            let _ = writeln!(std::io::stderr(), "error: {message}");
+            ExitCode::from(2)
+        }
+    }
+}
+
+/// Prints; whoever closed the pipe wants no more.
+fn print(text: &str) -> Request<()> {
+    match std::io::stdout().write_all(text.as_bytes()) {
+        Err(e) if e.kind() != ErrorKind::BrokenPipe => Err(format!("cannot print: {e}")),
+        _ => Ok(()),
+    }
+}
+
+fn scene(name: &str) -> Request<AnyScene> {
+    let entry = scenes::by_name(name).ok_or_else(|| format!("there is no scene {name}"))?;
+    entry.make(&Parameters::default()).map_err(|e| e.to_string())
+}
+
+/// Whether every run converged and nothing changed.
+fn run(options: &Options) -> Request<bool> {
+    if let Some(threads) = options.threads() {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads);
+        pool.build_global().map_err(|e| format!("--threads {threads}: {e}"))?;
+    }
+    // what cannot be read or written is better known before the work
+    let baseline = match &options.against {
+        Some(path) => Some(
+            fs::read_to_string(path).map_err(|e| format!("cannot read {}: {e}", path.display()))?,
+        ),
+        None => None,
+    };
+    let mut report = WorkReport::new("work_precision", options.rounds());
+    if let Some(text) = &baseline {
+        changes(text, &report).map_err(|e| e.to_string())?;
+    }
+    let bar = bar(options);
+    for name in options.scenes() {
+        match scene(&name)? {
+            AnyScene::One(s) => study(options, &bar, s, &mut report),
+            AnyScene::Two(s) => study(options, &bar, s, &mut report),
+            AnyScene::Three(s) => study(options, &bar, s, &mut report),
+        }
+        .map_err(|e| format!("scene {name}: {e}"))?;
+    }
+    report.provenance.complete = true;
+    report.write_data(&options.out).map_err(|e| e.to_string())?;
+    bar.finish_and_clear();
+    if let Some(path) = &options.save {
+        fs::write(path, report.to_json())
+            .map_err(|e| format!("cannot write {}: {e}", path.display()))?;
+    }
+    if !options.quiet {
+        print(&report.to_text())?;
+        print(&format!("\nReport and plots are in {}\n", options.out.display()))?;
+    }
+    let mut same = true;
+    if let Some(text) = &baseline {
+        let changes = changes(text, &report).map_err(|e| e.to_string())?;
+        print(&format!("\n{changes}"))?;
+        print("ratios of times, of runs made now:\n")?;
+        print(&report.verdicts().iter().map(|v| format!("  {v}\n")).collect::<String>())?;
+        same = changes.changed.is_empty();
+    }
+    Ok(same && report.failures().is_empty())
+}
+
+/// A bar on a terminal, nothing elsewhere.
+fn bar(options: &Options) -> ProgressBar {
+    if options.quiet || !std::io::stderr().is_terminal() {
+        return ProgressBar::hidden();
+    }
+    let template = "{bar:24} {pos} of {len} runs, {elapsed}, {eta} to go: {msg}";
+    let bar = ProgressBar::new(0);
+    bar.enable_steady_tick(Duration::from_millis(200));
+    match ProgressStyle::with_template(template) {
+        Ok(style) => bar.with_style(style),
+        Err(_) => bar,
+    }
+}
+
+/// Measures a scene and adds it to the report.
+fn study<const D: usize>(
+    options: &Options,
+    bar: &ProgressBar,
+    first: Scene<D>,
+    report: &mut WorkReport,
+) -> Result<(), unilateral::error::Error>
+where
+    AnyScene: Pick<D>,
+{
+    let name = first.name.clone();
+    let remake = move || match scene(&name).ok().and_then(Pick::<D>::pick) {
+        Some(scene) => scene,
+        None => unreachable!("it was made before"),
+    };
+    let mut study = WorkPrecision::<D>::new(remake)
+        .linear(options.linear())
+        .precisions(options.precisions())
+        .levels(options.levels(D))
+        .rounds(options.rounds())
+        .limit(options.limit)
+        .subject(&options.subject)
+        .write_to(&options.out)
+        .memory(|case| memory_of(case, options.threads()))
+        .observer(|progress| match progress {
+            WorkProgress::Planned(n) => bar.inc_length(n as u64),
+            WorkProgress::Finished => bar.inc(1),
+            WorkProgress::Started(case, round) => {
+                let v = &case.variant;
+                bar.set_message(format!(
+                    "{}, {} on {}, level {}, round {}",
+                    v.scene,
+                    v.scheme,
+                    v.constraint,
+                    case.level,
+                    round + 1
+                ));
+            }
+        });
+    for (name, scheme_options) in options.schemes() {
+        study = study.scheme(Named { name, options: scheme_options });
+    }
+    study.run_into(report)
+}
+
+/// The scene of a dimension, if it is of that dimension.
+trait Pick<const D: usize> {
+    fn pick(self) -> Option<Scene<D>>;
+}
+
+impl Pick<1> for AnyScene {
+    fn pick(self) -> Option<Scene<1>> {
+        if let AnyScene::One(scene) = self { Some(scene) } else { None }
+    }
+}
+
+impl Pick<2> for AnyScene {
+    fn pick(self) -> Option<Scene<2>> {
+        if let AnyScene::Two(scene) = self { Some(scene) } else { None }
+    }
+}
+
+impl Pick<3> for AnyScene {
+    fn pick(self) -> Option<Scene<3>> {
+        if let AnyScene::Three(scene) = self { Some(scene) } else { None }
+    }
+}
+
+/// The peak of memory of a process that runs this case and nothing else.
+fn memory_of(case: &Case, threads: Option<usize>) -> Option<u64> {
+    let v = &case.variant;
+    let mut command = Command::new(std::env::current_exe().ok()?);
+    command.args(["--peak", "--scene", &v.scene]);
+    command.args(["--scheme", &format!("{}:{}", v.scheme, v.constraint)]);
+    command.args(["--linear", &v.linear_asked, "--precision", &v.precision]);
+    command.args(["--levels", &case.level.to_string()]);
+    if let Some(threads) = threads {
+        command.env("RAYON_NUM_THREADS", threads.to_string());
+    }
+    let output = command.output().ok()?;
+    String::from_utf8(output.stdout).ok()?.trim().parse().ok()
+}
+
+/// Runs one case and prints what memory it took.
+fn peak(options: &Options) -> Request<bool> {
+    let one = "--peak runs one case";
+    let name = options.scenes().pop().ok_or(one)?;
+    let is_single = options.precisions().first() == Some(&Precision::Single);
+    match scene(&name)? {
+        AnyScene::One(s) if is_single => once::<f32, 1>(options, s)?,
+        AnyScene::One(s) => once::<f64, 1>(options, s)?,
+        AnyScene::Two(s) if is_single => once::<f32, 2>(options, s)?,
+        AnyScene::Two(s) => once::<f64, 2>(options, s)?,
+        AnyScene::Three(s) if is_single => once::<f32, 3>(options, s)?,
+        AnyScene::Three(s) => once::<f64, 3>(options, s)?,
+    }
+    let bytes = peak_memory_bytes().ok_or("the system does not tell")?;
+    print(&format!("{bytes}\n"))?;
+    Ok(true)
+}
+
+fn once<T: Real, const D: usize>(options: &Options, scene: Scene<D>) -> Request<()> {
+    let linear = options.linear().first().copied().unwrap_or(Linear::BySize);
+    let mut study = Study::<T, D>::new(scene)
+        .levels(options.levels(D))
+        .solver(ActiveSet { linear, ..ActiveSet::default() });
+    for (name, scheme_options) in options.schemes() {
+        let scheme = scheme_by_name(&name, &scheme_options);
+        study = study.boxed_scheme(scheme.ok_or_else(|| format!("there is no scheme {name}"))?);
+    }
+    study.run().map(drop).map_err(|e| e.to_string())
+}
