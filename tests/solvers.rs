@@ -8,7 +8,6 @@ use unilateral::algebra::{Bound, Contact, Inequality, Start};
 use unilateral::real::Real;
 use unilateral::solve::{
     ActiveSet, Factors, InequalitySolver, LastResort, Outcome, Solution, active, certify,
-    is_positive_definite,
 };
 
 fn cold<T: Real>(inequality: &Inequality<T>) -> Solution<T> {
