@@ -76,8 +76,9 @@ fn page(table: &str, report: &Report) -> String {
          Levels that end with another word than `converged` did so for a reason: \
          `iteration-limit`, the active set did not settle; `cycling`, it came back to where it was; \
          `stalled`, rounding keeps the certificate above its limit; `not-coercive`, the matrix is \
-         not positive definite; `singular`, nothing holds the body; `infeasible`, no function lies \
-         between the bounds; `not-finite`, a number was not. See `solve::Outcome`.\n\n{table}",
+         not positive definite; `singular`, nothing holds the body, or rounding hides what does; `infeasible`, no function lies \
+         between the bounds; `not-finite`, a number was not; \
+         `malformed`, matrix and data do not fit; `out-of-memory`, the factors were too large. See `solve::Outcome`.\n\n{table}",
         report.program.version
     )
 }

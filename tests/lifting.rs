@@ -6,7 +6,7 @@ mod support;
 use nalgebra::{DMatrix, DVector};
 use support::{Random, Raw, mixed_box};
 use unilateral::assemble::{DataQuadrature, Discretisation};
-use unilateral::mesh::{BoundaryPart, Mesh};
+use unilateral::mesh::{BoundaryPart, Mesh, TaggedFacet};
 use unilateral::prelude::*;
 use unilateral::quadrature::{Rule, insert};
 
@@ -224,12 +224,24 @@ fn check<const D: usize, E, S>(
     let mut random = Random(17);
     let mesh =
         Raw::<D>::jittered(&mixed_box(), n, 0.4, &mut random).shuffled(&mut random).mesh::<f64>();
+    check_on::<D, E, S>(&mesh, which, scheme, share);
+}
+
+fn check_on<const D: usize, E, S>(
+    mesh: &Mesh<f64, D>,
+    which: Method,
+    scheme: &S,
+    share: &dyn Fn(&Point<f64, D>) -> f64,
+) where
+    E: ReferenceElement<f64, D>,
+    S: Scheme<f64, D, Element = Broken<E>>,
+{
     let alpha = |x: &Point<f64, D>| if x[0] < 0.5 { 3.0 } else { 0.25 };
     let problem = Problem::<D>::new().coefficient(alpha).dirichlet(|x| 1.0 + x[0] * x[D - 1]);
-    let space = Discretisation::new(scheme, &problem, &mesh, DataQuadrature::default()).unwrap();
+    let space = Discretisation::new(scheme, &problem, mesh, DataQuadrature::default()).unwrap();
     let matrix = space.matrix();
     assert!(matrix.is_well_formed());
-    let slow = Slow { mesh: &mesh, alpha: &alpha, facets: facets(&mesh), degree: E::DEGREE };
+    let slow = Slow { mesh, alpha: &alpha, facets: facets(mesh), degree: E::DEGREE };
     let of_sides = |sides: &Sides| share(&slow.normal(sides[0]));
     let functions: Vec<Function<D>> =
         (0..space.unknowns()).map(|k| slow.function::<E>(k / E::N, k % E::N, &of_sides)).collect();
@@ -279,4 +291,30 @@ fn quadratics() {
     every_method::<1, P2>(P2, 4);
     every_method::<2, P2>(P2, 2);
     every_method::<3, P2>(P2, 1);
+}
+
+/// A simplex cut at its barycentre: every cell is the neighbour of every other.
+fn cut_at_barycentre<const D: usize>() -> Mesh<f64, D> {
+    let mut vertices = vec![Point::<f64, D>::zeros()];
+    vertices.extend((0..D).map(|k| Point::from_fn(|j, _| f64::from(j == k))));
+    vertices.push(Point::repeat(1.0 / (D + 1) as f64));
+    let others = |k: usize| (0..=D as u32).filter(move |&v| v != k as u32);
+    let cells = (0..=D).flat_map(|k| others(k).chain([D as u32 + 1])).collect();
+    let side = |k: usize| {
+        let v: Vec<u32> = others(k).collect();
+        TaggedFacet { vertices: std::array::from_fn(|i| v[i]), part: BoundaryPart::Dirichlet }
+    };
+    Mesh::new(vertices, cells, &(0..=D).map(side).collect::<Vec<_>>()).unwrap()
+}
+
+#[test]
+fn cells_that_are_all_neighbours_of_each_other() {
+    fn on<const D: usize>() {
+        let mesh = cut_at_barycentre::<D>();
+        let (mean, bmmpr) = (|_: &Point<f64, D>| 0.5, Bmmpr { eta: 0.7, ..Bmmpr::default() });
+        check_on::<D, P1, _>(&mesh, Method::Bmmpr(0.7), &bmmpr, &mean);
+        check_on::<D, P2, _>(&mesh, Method::Bmmpr(0.7), &bmmpr.on(P2), &mean);
+    }
+    on::<2>();
+    on::<3>();
 }

@@ -36,13 +36,13 @@ pub struct Options {
     /// Load of scenes that have one
     #[arg(long, value_name = "X", allow_negative_numbers = true, value_parser = number)]
     pub load: Option<f64>,
-    /// Interior penalty X / h_F on every facet, instead of the proven bound with its margin
+    /// Interior penalty X / h_F on every facet, instead of the scheme's own choice
     #[arg(long, value_name = "X", allow_negative_numbers = true, value_parser = number)]
     pub sigma: Option<f64>,
-    /// WOPSIP weight X / h_F^3 on every facet, instead of the dimensionless default
+    /// WOPSIP weight X / h_F^3 on every facet (quadratics: h_F^5), instead of the dimensionless default
     #[arg(long, value_name = "X", allow_negative_numbers = true, value_parser = number)]
     pub eta: Option<f64>,
-    /// Where discontinuous schemes impose the inequality
+    /// Where schemes that have the choice impose the inequality
     #[arg(long, value_parser = Placement::ALL.map(|p| p.0), default_value = "vertices")]
     pub constraint: String,
     /// Solver of the inequality

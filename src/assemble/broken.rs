@@ -37,9 +37,16 @@ impl Coupled {
         found.cells[0] = cell as u32;
         for local in 0..=D {
             if let Neighbour::Cell { cell: other, .. } = neighbours.across(cell, local) {
-                found.insert(other);
-                if lifted {
-                    found.insert_neighbours::<D>(neighbours, other as usize);
+                if !lifted {
+                    found.insert(other);
+                    continue;
+                }
+                // around a vertex or an edge of three cells each is the neighbour of the others
+                found.insert_new(other);
+                for local in 0..=D {
+                    if let Neighbour::Cell { cell, .. } = neighbours.across(other as usize, local) {
+                        found.insert_new(cell);
+                    }
                 }
             }
         }
@@ -55,13 +62,9 @@ impl Coupled {
         self.cells[k] = other;
         self.n += 1;
     }
-    fn insert_neighbours<const D: usize>(&mut self, neighbours: &Neighbours, cell: usize) {
-        for local in 0..=D {
-            if let Neighbour::Cell { cell: other, .. } = neighbours.across(cell, local)
-                && !self.cells[..self.n].contains(&other)
-            {
-                self.insert(other);
-            }
+    fn insert_new(&mut self, other: u32) {
+        if !self.cells[..self.n].contains(&other) {
+            self.insert(other);
         }
     }
     /// The place of a coupled cell among them.

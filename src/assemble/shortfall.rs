@@ -21,7 +21,8 @@ impl<'a, T: Real, const D: usize> Space<'a, T, D> {
                 let Some(view) = self.facet_view(neighbours, cell, local) else {
                     continue;
                 };
-                let needed = form.least_penalty(&view)?.to_f64();
+                let Some(needed) = form.least_penalty(&view) else { continue };
+                let needed = needed.to_f64();
                 let weight = form.penalty(&view).to_f64();
                 if weight >= needed {
                     continue;

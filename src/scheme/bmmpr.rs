@@ -1,6 +1,6 @@
 //! The method of Brezzi, Manzini, Marini, Pietra and Russo.
 
-use super::{DirichletBy, Scheme, Setting, energy_order, name_by_degree, with_duality};
+use super::{DirichletBy, Scheme, Setting, broken_energy_order, name_by_degree, with_duality};
 use crate::element::{Broken, P1, ReferenceElement};
 use crate::facet::{FacetLifts, Lifted};
 use crate::mesh::Mesh;
@@ -47,6 +47,6 @@ impl<T: Real, const D: usize, E: ReferenceElement<T, D>> Scheme<T, D> for Bmmpr<
         Lifted(FacetLifts { eta: self.eta, degree: E::DEGREE, bounded: false })
     }
     fn expected_orders(&self, setting: &Setting) -> ExpectedOrders {
-        with_duality(energy_order(setting, E::DEGREE), setting)
+        with_duality(broken_energy_order(setting, E::DEGREE), setting)
     }
 }

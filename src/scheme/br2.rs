@@ -1,6 +1,6 @@
 //! The second method of Bassi and Rebay.
 
-use super::{DirichletBy, Scheme, Setting, energy_order, name_by_degree, with_duality};
+use super::{DirichletBy, Scheme, Setting, broken_energy_order, name_by_degree, with_duality};
 use crate::element::{Broken, P1, ReferenceElement};
 use crate::facet::FacetLifts;
 use crate::mesh::Mesh;
@@ -48,6 +48,6 @@ impl<T: Real, const D: usize, E: ReferenceElement<T, D>> Scheme<T, D> for Br2<E>
         FacetLifts { eta, degree: E::DEGREE, bounded: true }
     }
     fn expected_orders(&self, setting: &Setting) -> ExpectedOrders {
-        with_duality(energy_order(setting, E::DEGREE), setting)
+        with_duality(broken_energy_order(setting, E::DEGREE), setting)
     }
 }

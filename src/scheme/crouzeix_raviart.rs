@@ -1,6 +1,6 @@
 //! Non-conforming linear elements.
 
-use super::{DirichletBy, Scheme, Setting, energy_order, with_duality};
+use super::{DirichletBy, Scheme, Setting, broken_energy_order, with_duality};
 use crate::element::CrouzeixRaviart;
 use crate::facet::NoFacets;
 use crate::mesh::Mesh;
@@ -26,6 +26,6 @@ impl<T: Real, const D: usize> Scheme<T, D> for CrouzeixRaviartScheme {
         NoFacets
     }
     fn expected_orders(&self, setting: &Setting) -> ExpectedOrders {
-        with_duality(energy_order(setting, 1), setting)
+        with_duality(broken_energy_order(setting, 1), setting)
     }
 }

@@ -1,6 +1,6 @@
 //! The local discontinuous Galerkin method.
 
-use super::{DirichletBy, Scheme, Setting, energy_order, name_by_degree, with_duality};
+use super::{DirichletBy, Scheme, Setting, broken_energy_order, name_by_degree, with_duality};
 use crate::element::{Broken, P1, ReferenceElement};
 use crate::facet::{FacetForm, FacetView, Lifted, Trace};
 use crate::mesh::Mesh;
@@ -54,7 +54,7 @@ impl<T: Real, const D: usize, E: ReferenceElement<T, D>> Scheme<T, D> for Ldg<E>
         Lifted(LocalFluxes { eta: self.eta, switch: self.switch })
     }
     fn expected_orders(&self, setting: &Setting) -> ExpectedOrders {
-        with_duality(energy_order(setting, E::DEGREE), setting)
+        with_duality(broken_energy_order(setting, E::DEGREE), setting)
     }
 }
 

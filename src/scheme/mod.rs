@@ -39,7 +39,7 @@ use crate::mesh::Mesh;
 use crate::real::Real;
 use crate::scenes::Regularity;
 use crate::study::ExpectedOrders;
-use orders::{energy_order, with_duality};
+use orders::{broken_energy_order, energy_order, with_duality};
 
 /// How a scheme imposes Dirichlet data.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -1,6 +1,6 @@
 //! The non-symmetric interior penalty method.
 
-use super::{DirichletBy, Scheme, Setting, energy_order, name_by_degree};
+use super::{DirichletBy, Scheme, Setting, broken_energy_order, name_by_degree};
 use crate::element::{Broken, P1, ReferenceElement};
 use crate::facet::{InteriorPenalty, PenaltyRule, Symmetry};
 use crate::mesh::Mesh;
@@ -45,6 +45,6 @@ impl<T: Real, const D: usize, E: ReferenceElement<T, D>> Scheme<T, D> for Nipg<E
         InteriorPenalty { symmetry: Symmetry::NonSymmetric, rule: self.penalty, degree: E::DEGREE }
     }
     fn expected_orders(&self, setting: &Setting) -> ExpectedOrders {
-        energy_order(setting, E::DEGREE)
+        broken_energy_order(setting, E::DEGREE)
     }
 }

@@ -31,6 +31,18 @@ pub(super) fn energy_order(setting: &Setting, degree: usize) -> ExpectedOrders {
     ExpectedOrders { l2: None, h1: most.filter(|_| s > 1.5).map(|most| (s - 1.0).min(most)) }
 }
 
+/// The same for schemes whose functions jump. Under an inequality their proofs ask for solutions in
+/// `H^2`, and those for Signorini conditions cover linears only.
+pub(super) fn broken_energy_order(setting: &Setting, degree: usize) -> ExpectedOrders {
+    let is_smooth = setting.regularity.sobolev >= 2.0;
+    let covered = is_smooth && (degree == 1 || !setting.contact);
+    if setting.is_linear() || covered {
+        energy_order(setting, degree)
+    } else {
+        ExpectedOrders::default()
+    }
+}
+
 /// Adds one more order in L2 where the problem is linear and its dual problem has solutions in
 /// `H^2`: for schemes that are consistent with the dual problem, that is symmetric ones.
 ///

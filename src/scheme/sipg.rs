@@ -1,6 +1,6 @@
 //! The symmetric interior penalty method.
 
-use super::{DirichletBy, Scheme, Setting, energy_order, name_by_degree, with_duality};
+use super::{DirichletBy, Scheme, Setting, broken_energy_order, name_by_degree, with_duality};
 use crate::element::{Broken, P1, ReferenceElement};
 use crate::facet::{InteriorPenalty, PenaltyRule, Symmetry};
 use crate::mesh::Mesh;
@@ -44,6 +44,6 @@ impl<T: Real, const D: usize, E: ReferenceElement<T, D>> Scheme<T, D> for Sipg<E
         InteriorPenalty { symmetry: Symmetry::Symmetric, rule: self.penalty, degree: E::DEGREE }
     }
     fn expected_orders(&self, setting: &Setting) -> ExpectedOrders {
-        with_duality(energy_order(setting, E::DEGREE), setting)
+        with_duality(broken_energy_order(setting, E::DEGREE), setting)
     }
 }

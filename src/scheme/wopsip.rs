@@ -1,6 +1,6 @@
 //! The weakly over-penalised symmetric interior penalty method.
 
-use super::{DirichletBy, Scheme, Setting, energy_order, name_by_degree, with_duality};
+use super::{DirichletBy, Scheme, Setting, broken_energy_order, name_by_degree, with_duality};
 use crate::element::{Broken, P1, ReferenceElement};
 use crate::facet::{OverPenalty, WeightRule};
 use crate::mesh::Mesh;
@@ -20,7 +20,8 @@ pub enum Eta {
 /// Weak over-penalty on broken elements: no consistency terms, positive definite for every factor.
 ///
 /// Orders: Y. Zeng, J. Chen, F. Wang, Comput. Math. Appl. 69 (2015), energy norm, both inequalities,
-/// for linears; nothing is proven for inequalities with quadratics.
+/// for linears; S. C. Brenner, L. Owens, L.-Y. Sung, J. Comput. Appl. Math. 236 (2012), 2883-2894 for
+/// equations in the plane with quadratics, for which nothing is proven under inequalities.
 #[derive(Clone, Copy, Debug)]
 pub struct Wopsip<E = P1> {
     /// The factor.
@@ -69,8 +70,8 @@ impl<T: Real, const D: usize, E: ReferenceElement<T, D>> Scheme<T, D> for Wopsip
     }
     fn expected_orders(&self, setting: &Setting) -> ExpectedOrders {
         match E::DEGREE {
-            1 => with_duality(energy_order(setting, 1), setting),
-            _ => ExpectedOrders::default(),
+            2 if !setting.is_linear() || setting.dimension > 2 => ExpectedOrders::default(),
+            degree => with_duality(broken_energy_order(setting, degree), setting),
         }
     }
 }

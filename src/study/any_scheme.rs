@@ -241,7 +241,11 @@ fn solve<T: Real, const D: usize>(
     // without a factorisation there is no iterate, and no number that says anything about one
     let nothing = matches!(
         solution.outcome,
-        Outcome::NotCoercive | Outcome::Singular | Outcome::NotFinite | Outcome::OutOfMemory
+        Outcome::NotCoercive
+            | Outcome::Singular
+            | Outcome::NotFinite
+            | Outcome::OutOfMemory
+            | Outcome::Malformed
     );
     let usable = !nothing && u.iter().all(|v| v.to_f64().is_finite());
     let (error, contact) = if task.with_errors && usable {

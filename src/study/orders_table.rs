@@ -10,7 +10,7 @@ const NONE: &str = "-";
 /// One line for every scheme on every scene: where bounds are imposed, the levels, observed and
 /// promised order in L2 and H1, and whether the promises were kept.
 ///
-/// The verdict is `kept` or, by norm, `missed`; `nothing promised` where nothing is proven, and
+/// The verdict is `kept` or, by norm, `missed`; `exact` where errors are rounding; `nothing promised` where nothing is proven, and
 /// `unobserved` where fewer than two levels converged. Levels that did not converge follow with the
 /// typed reason.
 pub fn orders_table(orders: &[ObservedOrders], tolerance: f64) -> String {
@@ -47,14 +47,16 @@ pub fn orders_table(orders: &[ObservedOrders], tolerance: f64) -> String {
 
 fn verdict(line: &ObservedOrders, tolerance: f64) -> String {
     let missed = |norm: &Norm| {
-        let promised = norm.of(&line.promised)?;
+        let promised = norm.of(&line.promised).filter(|_| !line.exact.contains(norm))?;
         let kept = norm.of(&line.observed)? >= promised - tolerance;
         (!kept).then(|| norm.to_string())
     };
-    let promised = |norm: &Norm| norm.of(&line.promised).is_some();
+    let promised = |norm: &Norm| norm.of(&line.promised).is_some() && !line.exact.contains(norm);
     let unobserved = |norm: &Norm| promised(norm) && norm.of(&line.observed).is_none();
     let missed: Vec<String> = Norm::ALL.iter().filter_map(missed).collect();
-    let mut parts = vec![if !Norm::ALL.iter().any(promised) {
+    let mut parts = vec![if !line.exact.is_empty() && !Norm::ALL.iter().any(promised) {
+        "exact".to_owned()
+    } else if !Norm::ALL.iter().any(promised) {
         "nothing promised".to_owned()
     } else if !missed.is_empty() {
         format!("missed in {}", missed.join(", "))

@@ -5,6 +5,9 @@ use super::report::Report;
 use super::row::{ExpectedOrders, Row};
 use super::table::distinct;
 
+/// An error of this share of the mesh size, of solutions whose size is one, is rounding.
+const ROUNDING: f64 = 1e-8;
+
 /// What was observed of one scheme on one scene, on its two finest levels that converged.
 ///
 /// Coarser levels do not count: promises hold in the limit. Nor does a level whose solve did not
@@ -23,6 +26,9 @@ pub struct ObservedOrders {
     pub observed: ExpectedOrders,
     /// What theory promises.
     pub promised: ExpectedOrders,
+    /// Norms in which the error on the finer level is rounding: the scheme has the exact solution
+    /// in its space, and there is no order to observe.
+    pub exact: Vec<Norm>,
     /// Levels that did not converge, with the typed reason.
     pub failures: Vec<(usize, String)>,
 }
@@ -111,7 +117,7 @@ impl ObservedOrders {
     pub fn missed(&self, tolerance: f64) -> Vec<OrderMissed> {
         let [scene, scheme, constraint] = [&self.scene, &self.scheme, &self.constraint];
         let miss = |norm: Norm| {
-            let promised = norm.of(&self.promised)?;
+            let promised = norm.of(&self.promised).filter(|_| !self.exact.contains(&norm))?;
             match (norm.of(&self.observed), self.levels) {
                 (Some(observed), Some([coarse, fine])) => {
                     (observed < promised - tolerance).then(|| OrderMissed::Below {
@@ -138,27 +144,32 @@ impl ObservedOrders {
     }
 
     /// What the rows of one scheme on one scene show.
-    fn of(rows: &[&Row]) -> Self {
+    fn of(rows: &[&Row]) -> Option<Self> {
         let mut sorted = rows.to_vec();
         sorted.sort_by_key(|row| row.level);
         let failed = sorted.iter().filter(|row| !row.converged());
         let failures = failed.map(|row| (row.level, row.status.clone())).collect();
-        let finest = sorted[sorted.len() - 1];
+        let finest = *sorted.last()?;
         sorted.retain(|row| row.converged());
         let pair = sorted.last_chunk::<2>();
         let order = |norm: fn(&Row) -> Option<f64>| {
             let [coarse, fine] = pair?;
             observed_order(norm(coarse)?, norm(fine)?, coarse.mesh_size, fine.mesh_size)
         };
-        Self {
+        let errors = [(Norm::L2, finest.error.l2), (Norm::H1, finest.error.h1)];
+        let is_rounding = |error: Option<f64>| {
+            error.is_some_and(|error| error <= ROUNDING * finest.mesh_size.min(1.0))
+        };
+        Some(Self {
             scene: finest.scene.clone(),
             scheme: finest.scheme.clone(),
             constraint: finest.constraint.clone(),
             levels: pair.map(|pair| pair.map(|row| row.level)),
             observed: ExpectedOrders { l2: order(|r| r.error.l2), h1: order(|r| r.error.h1) },
             promised: finest.expected_order,
+            exact: errors.into_iter().filter(|e| is_rounding(e.1)).map(|e| e.0).collect(),
             failures,
-        }
+        })
     }
 }
 
@@ -172,7 +183,10 @@ impl Report {
         };
         let keys = distinct(self.rows.iter().map(key));
         let rows_of = |wanted| self.rows.iter().filter(|row| key(row) == wanted).collect();
-        keys.into_iter().map(rows_of).map(|rows: Vec<&Row>| ObservedOrders::of(&rows)).collect()
+        keys.into_iter()
+            .map(rows_of)
+            .filter_map(|rows: Vec<&Row>| ObservedOrders::of(&rows))
+            .collect()
     }
 
     /// Tests every promise of theory: orders observed on the two finest levels of a scheme on a
