@@ -296,7 +296,11 @@ impl<T: Real, const D: usize> Filling<'_, '_, T, D> {
             let scale = measure * form.jump_jump.at(weight.penalty * class);
             rows.add(own, |i, j| scale * products[i][j]);
         }
+        if self.flux_moments.is_empty() {
+            return;
+        }
         let n = if N == 0 { rows.n } else { N };
+        let other_metric = other.map(|((cell, _), _)| self.metrics.at::<D>(cell));
         for (k, &class) in self.flux_moments.iter().enumerate() {
             let penalty = weight.penalty * class;
             let flux_flux = form.flux_flux.at(penalty) / measure;
@@ -306,10 +310,9 @@ impl<T: Real, const D: usize> Filling<'_, '_, T, D> {
             let by_flux = vector(n, |i| jump_flux * mine.values[i] + flux_flux * flux[i]);
             let by_jump = vector(n, |i| flux_jump * flux[i]);
             rows.add(own, |i, j| by_flux[i] * flux[j] + by_jump[i] * mine.values[j]);
-            if let Some(((cell, local), across)) = other {
-                let metric = self.metrics.at::<D>(cell);
+            if let (Some(((cell, local), across)), Some(metric)) = (other, &other_metric) {
                 let coefficient = self.space.alpha(cell);
-                let other = CellSide { cell, local, metric: &metric, coefficient };
+                let other = CellSide { cell, local, metric, coefficient };
                 let theirs = &self.facets.on(local)[k];
                 let other_flux = other.normal_derivatives(theirs, n, -weight.other_share);
                 rows.add(across, |i, j| by_flux[i] * other_flux[j] - by_jump[i] * theirs.values[j]);

@@ -16,6 +16,9 @@ use crate::problem::{Datum, Field};
 use crate::quadrature::{OrthonormalPolynomials, Rule, insert};
 use crate::real::{Point, Real, point_f64};
 
+/// A cell, one of its facets and the moments of the Dirichlet datum on it.
+type FacetDatum = (usize, (usize, Vec<f64>));
+
 /// What is added to a cell's part of the load.
 type OfCell<'w, T> = &'w (dyn Fn(usize, &mut [T]) -> Result<(), Error> + Sync);
 
@@ -170,17 +173,28 @@ impl FacetMoments {
 }
 
 impl<T: Real, const D: usize> Space<'_, T, D> {
-    /// The load of all unknowns.
-    pub fn load(&self, form: &dyn AnyForm<T, D>) -> Result<Vec<T>, Error> {
+    /// The load of all unknowns; the metrics of all cells are asked for only where jumps are lifted.
+    pub fn load<'m>(
+        &self,
+        form: &dyn AnyForm<T, D>,
+        metrics: &dyn Fn() -> &'m Metrics<T>,
+    ) -> Result<Vec<T>, Error> {
         let mut by_cell = self.load_by_cell()?;
         if self.has_weak_data() {
-            self.add_dirichlet(form, &mut by_cell)?;
+            let lifted = self.add_dirichlet(form, &mut by_cell)?;
+            if !lifted.is_empty() {
+                self.add_lifted(form, metrics(), &lifted, &mut by_cell);
+            }
         }
         Ok(self.gather_load(by_cell))
     }
 
-    /// Dirichlet data as the trial trace of the facet form.
-    fn add_dirichlet(&self, form: &dyn AnyForm<T, D>, load: &mut [T]) -> Result<(), Error> {
+    /// Dirichlet data as the trial trace of the facet form; returns those whose jumps are lifted.
+    fn add_dirichlet(
+        &self,
+        form: &dyn AnyForm<T, D>,
+        load: &mut [T],
+    ) -> Result<Vec<FacetDatum>, Error> {
         let n = self.per_cell();
         let degree = form.moments(self.degree);
         let table = self.facet_table(degree);
@@ -205,25 +219,21 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
                 lifted.push((cell, (local, values)));
             }
         }
-        self.add_lifted(form, &lifted, load);
-        Ok(())
+        Ok(lifted)
     }
 
-    /// What the products of lifts make of Dirichlet data: cell, facet and moments of each datum.
+    /// What the products of lifts make of Dirichlet data.
     fn add_lifted(
         &self,
         form: &dyn AnyForm<T, D>,
-        data: &[(usize, (usize, Vec<f64>))],
+        metrics: &Metrics<T>,
+        data: &[FacetDatum],
         load: &mut [T],
     ) {
-        let Some(neighbours) = self.neighbours.as_ref().filter(|_| !data.is_empty()) else {
-            return;
-        };
         let table = LiftTable::new(self);
-        let metrics = Metrics::of(self.mesh);
-        let lifting = Lifting { space: self, form, metrics: &metrics, table: &table };
+        let lifting = Lifting { space: self, form, metrics, table: &table };
         for (cell, datum) in data {
-            lifting.add_load(neighbours, *cell, datum, load);
+            lifting.add_load(self.coupled_neighbours(), *cell, datum, load);
         }
     }
 }

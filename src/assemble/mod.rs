@@ -64,7 +64,7 @@ impl Default for DataQuadrature {
 pub struct Discretisation<'a, T: Real, const D: usize, S: Scheme<T, D>> {
     space: Space<'a, T, D>,
     form: S::Facet,
-    /// What facet forms need of cells and facets, computed for the first matrix.
+    /// What facet forms need of cells and facets, computed when first needed.
     prepared: OnceLock<(Metrics<T>, FacetWeights<T>)>,
 }
 
@@ -124,15 +124,18 @@ impl<'a, T: Real, const D: usize, S: Scheme<T, D>> Discretisation<'a, T, D, S> {
             );
         }
         if Self::OWNS_ROWS {
-            let (metrics, weights) = self.prepared.get_or_init(|| {
-                let metrics = Metrics::of(self.space.mesh);
-                let weights = FacetWeights::of(&self.space, &self.form, &metrics);
-                (metrics, weights)
-            });
+            let (metrics, weights) = self.prepared();
             broken::fill(&self.space, &self.form, metrics, weights, matrix);
         } else {
             gather::fill(self, matrix);
         }
+    }
+    fn prepared(&self) -> &(Metrics<T>, FacetWeights<T>) {
+        self.prepared.get_or_init(|| {
+            let metrics = Metrics::of(self.space.mesh);
+            let weights = FacetWeights::of(&self.space, &self.form, &metrics);
+            (metrics, weights)
+        })
     }
     /// The matrix from nothing.
     pub fn matrix(&self) -> SparseMatrix<T> {
@@ -206,7 +209,7 @@ impl<'a, T: Real, const D: usize, S: Scheme<T, D>> Discretisation<'a, T, D, S> {
     /// # Errors
     /// [`Error::DataNotFinite`].
     pub fn load(&self) -> Result<Vec<T>, Error> {
-        self.space.load(&self.form)
+        self.space.load(&self.form, &|| &self.prepared().0)
     }
     /// Errors of a vector of unknowns against the exact solution; none where there is no exact
     /// solution.

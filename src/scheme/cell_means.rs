@@ -11,8 +11,8 @@ use crate::study::ExpectedOrders;
 /// the mean of the obstacle.
 ///
 /// Space, form and Dirichlet data are those of the scheme inside; only the constraint set differs.
-/// No order is proven for this set; it is measured. A Signorini condition is refused: no mean over a
-/// cell lives on the boundary.
+/// No order is proven for this set under an inequality; it is measured. A Signorini condition is
+/// refused: no mean over a cell lives on the boundary.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct CellMeans<S>(pub S);
 
@@ -35,9 +35,10 @@ where
         self.0.facet(mesh)
     }
     fn expected_orders(&self, setting: &Setting) -> ExpectedOrders {
-        if setting.obstacle || setting.contact {
-            return ExpectedOrders::default();
+        if setting.is_linear() {
+            self.0.expected_orders(setting)
+        } else {
+            ExpectedOrders::default()
         }
-        self.0.expected_orders(setting)
     }
 }
