@@ -1,5 +1,5 @@
 #![doc = include_str!("../README.md")]
-#![forbid(unsafe_code)]
+#![deny(unsafe_code)]
 #![deny(missing_docs)]
 
 pub mod algebra;
@@ -8,6 +8,7 @@ pub mod element;
 pub mod error;
 pub mod facet;
 pub mod kit;
+mod memory;
 pub mod mesh;
 pub mod prelude;
 pub mod problem;

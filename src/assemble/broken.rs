@@ -10,15 +10,17 @@
 use std::convert::Infallible;
 
 use super::lifted::{LiftTable, Lifting};
-use super::local::{CellSide, StiffnessTable, vector, zero_local};
+use super::local::{CellSide, StiffnessTable, zero_local};
 use super::metric::Metrics;
 use super::products::JumpProducts;
 use super::space::Space;
-use super::tables::FacetTable;
+use super::tables::{BasisAt, FacetTable};
 use super::weights::{FacetWeight, FacetWeights};
 use super::{count, data, parallel};
 use crate::algebra::SparseMatrix;
+use crate::element::MAX_BASIS;
 use crate::facet::AnyForm;
+use crate::memory::in_large_pages;
 use crate::mesh::{BoundaryPart, Neighbour, Neighbours};
 use crate::real::Real;
 
@@ -82,7 +84,7 @@ pub(super) fn pattern<T: Real, const D: usize>(
     let neighbours = space.coupled_neighbours();
     let n = space.per_cell();
     let n_cells = space.mesh.n_cells();
-    let mut row_starts = Vec::with_capacity(n * n_cells + 1);
+    let mut row_starts = in_large_pages(Vec::with_capacity(n * n_cells + 1));
     row_starts.push(0_u32);
     let mut end = 0;
     for cell in 0..n_cells {
@@ -92,7 +94,7 @@ pub(super) fn pattern<T: Real, const D: usize>(
             row_starts.push(end);
         }
     }
-    let mut columns = vec![0_u32; end as usize];
+    let mut columns = in_large_pages(vec![0_u32; end as usize]);
     for_each_cell(&row_starts, n, &mut columns, |cell, rows| {
         let coupled = Coupled::of::<D>(neighbours, cell, lifted);
         for row in rows.chunks_exact_mut(coupled.n * n) {
@@ -103,7 +105,7 @@ pub(super) fn pattern<T: Real, const D: usize>(
             }
         }
     });
-    let values = vec![T::lit(0.0); end as usize];
+    let values = in_large_pages(vec![T::lit(0.0); end as usize]);
     SparseMatrix { row_starts, columns, values }
 }
 
@@ -137,6 +139,8 @@ struct Filling<'s, 'a, T: Real, const D: usize> {
     jumps: JumpProducts<T>,
     /// By what the penalty is multiplied for each moment that has a flux.
     flux_moments: Vec<T>,
+    /// If the gradient of basis function `i` is `c` times that of barycentric coordinate `i`: `c`.
+    gradient: T,
     lifted: bool,
 }
 
@@ -150,6 +154,7 @@ pub(super) fn fill<T: Real, const D: usize>(
 ) {
     let facets = space.facet_table(form.moments(space.degree));
     let of_degree = |k| form.moment_weight(k);
+    let gradient = space.gradient_factor();
     let has_flux = |k: &&usize| form.uses_flux() && **k < space.degree;
     let filling = Filling {
         space,
@@ -160,16 +165,17 @@ pub(super) fn fill<T: Real, const D: usize>(
         jumps: JumpProducts::new::<D>(&facets, of_degree),
         flux_moments: facets.degrees.iter().filter(has_flux).map(|&k| of_degree(k)).collect(),
         facets,
+        gradient: gradient.unwrap_or_else(|| T::lit(0.0)),
         lifted: form.is_lifted(),
     };
     let SparseMatrix { row_starts, values, .. } = matrix;
-    match (D, space.per_cell()) {
-        (1, 2) => filling.fill::<2>(row_starts, values),
-        (1, 3) | (2, 3) => filling.fill::<3>(row_starts, values),
-        (2, 6) => filling.fill::<6>(row_starts, values),
-        (3, 4) => filling.fill::<4>(row_starts, values),
-        (3, 10) => filling.fill::<10>(row_starts, values),
-        _ => filling.fill::<0>(row_starts, values),
+    match (D, space.per_cell(), gradient) {
+        (1, 2, Some(_)) => filling.fill::<2, true>(row_starts, values),
+        (2, 3, Some(_)) => filling.fill::<3, true>(row_starts, values),
+        (3, 4, Some(_)) => filling.fill::<4, true>(row_starts, values),
+        (1, 3, _) => filling.fill::<3, false>(row_starts, values),
+        (2, 6, _) => filling.fill::<6, false>(row_starts, values),
+        _ => filling.fill::<MAX_BASIS, false>(row_starts, values),
     }
     if form.is_lifted() {
         let table = LiftTable::new(space);
@@ -204,157 +210,176 @@ impl<T: Real, const D: usize> Filling<'_, '_, T, D> {
         });
     }
 
-    /// The rows of all cells, for elements of `N` functions; any number for `N = 0`.
-    fn fill<const N: usize>(&self, row_starts: &[u32], values: &mut [T]) {
-        for_each_cell(row_starts, self.space.per_cell(), values, |cell, rows| {
+    /// The rows of all cells, for elements of `N` functions, or of fewer for the largest `N`.
+    ///
+    /// `LINEAR`: gradients of basis functions are those of barycentric coordinates times a factor.
+    fn fill<const N: usize, const LINEAR: bool>(&self, row_starts: &[u32], values: &mut [T]) {
+        let n = if N == MAX_BASIS { self.space.per_cell() } else { N };
+        for_each_cell(row_starts, n, values, |cell, rows| {
             let coupled = Coupled::of::<D>(self.neighbours, cell, self.lifted);
             if self.lifted {
                 rows.fill(T::lit(0.0));
             }
-            let rows =
-                Rows::<T, N> { n: self.n::<N>(), row: rows.len() / self.n::<N>(), entries: rows };
-            self.write_cell(cell, &coupled, rows);
+            let rows = Rows { n, length: rows.len() / n, entries: rows };
+            self.write_cell::<N, LINEAR>(cell, &coupled, rows);
         });
-    }
-    #[inline(always)]
-    fn n<const N: usize>(&self) -> usize {
-        if N == 0 { self.space.per_cell() } else { N }
     }
 
     /// Writes the rows of a cell: its stiffness and the form on its facets.
     #[inline(always)]
-    fn write_cell<const N: usize>(&self, cell: usize, coupled: &Coupled, mut rows: Rows<'_, T, N>) {
-        let n = self.n::<N>();
+    fn write_cell<const N: usize, const LINEAR: bool>(
+        &self,
+        cell: usize,
+        coupled: &Coupled,
+        mut rows: Rows<'_, T>,
+    ) {
         let metric = self.metrics.at(cell);
         let coefficient = self.space.alpha(cell);
-        let own = coupled.position(cell) * n;
-        rows.write(own, |i, j| coefficient * self.stiffness.entry::<D>(&metric, i, j));
+        let mut own: Block<T, N> = if LINEAR {
+            let scale = coefficient * self.gradient * self.gradient;
+            block(|i, j| scale * metric.products[i][j])
+        } else {
+            block(|i, j| coefficient * self.stiffness.entry::<D>(&metric, i, j))
+        };
         for local in 0..=D {
             let me = CellSide { cell, local, metric: &metric, coefficient };
             match self.neighbours.across(cell, local) {
                 Neighbour::Cell { cell: other, local: other_local } => {
-                    let other = other as usize;
-                    let there = (other, other_local as usize);
-                    let from_here = cell < other;
+                    let there = (other as usize, other_local as usize);
+                    let from_here = cell < there.0;
                     let here = if from_here { (cell, local) } else { there };
                     let weight = self.weights.at::<D>(here, from_here);
-                    let across = coupled.position(other) * n;
-                    self.write_across(&me, there, &weight, across, &mut rows);
-                    self.add_facet(&me, Some((there, across)), &weight, own, &mut rows);
+                    let mut across = self.add_jumps(&me, Some(there.1), &weight, &mut own);
+                    self.add_fluxes::<N, LINEAR>(&me, Some(there), &weight, &mut own, &mut across);
+                    rows.write(coupled.position(there.0), &across);
                 }
                 Neighbour::Boundary(BoundaryPart::Dirichlet) if !self.space.pins => {
                     let weight = self.weights.at::<D>((cell, local), true);
-                    self.add_facet(&me, None, &weight, own, &mut rows);
+                    let mut none = self.add_jumps(&me, None, &weight, &mut own);
+                    self.add_fluxes::<N, LINEAR>(&me, None, &weight, &mut own, &mut none);
                 }
                 Neighbour::Boundary(_) => {}
             }
         }
+        rows.write(coupled.position(cell), &own);
     }
 
-    /// Writes the products of jumps to the columns of the cell across.
+    /// Adds the products of jumps to the columns of the cell whose rows these are, and returns those
+    /// in the columns of the cell across, which has the facet under the number `other`.
     #[inline(always)]
-    fn write_across<const N: usize>(
+    fn add_jumps<const N: usize>(
         &self,
         me: &CellSide<'_, T, D>,
-        (_, other_local): (usize, usize),
+        other: Option<usize>,
         weight: &FacetWeight<T>,
-        across: usize,
-        rows: &mut Rows<'_, T, N>,
-    ) {
+        own: &mut Block<T, N>,
+    ) -> Block<T, N> {
+        count::facets(1);
         let form = &self.weights.coefficients;
-        let measure = me.metric.measures[me.local];
-        let products = self.jumps.across(me.local, other_local);
-        for (class, (products, &factor)) in products.iter().zip(&self.jumps.weights).enumerate() {
-            let scale = -measure * form.jump_jump.at(weight.penalty * factor);
-            if class == 0 {
-                rows.write(across, |i, j| scale * products[i][j]);
-            } else {
-                rows.add(across, |i, j| scale * products[i][j]);
+        let mut across = [[T::lit(0.0); N]; N];
+        for (class, &factor) in self.jumps.weights.iter().enumerate() {
+            let scale = me.metric.measures[me.local] * form.jump_jump.at(weight.penalty * factor);
+            let mine = &self.jumps.own(me.local)[class];
+            add(own, |i, j| scale * mine[i][j]);
+            if let Some(other) = other {
+                let theirs = &self.jumps.across(me.local, other)[class];
+                add(&mut across, |i, j| -scale * theirs[i][j]);
             }
         }
+        across
     }
 
-    /// Adds the products of jumps to the columns of the cell whose rows these are, and all products
-    /// with fluxes to its columns and to those of the cell across.
+    /// Adds all products with fluxes to the columns of the cell whose rows these are and to those of
+    /// the cell across.
     ///
     /// Jumps and fluxes both flip their sign with the direction of the normal, so their products do
     /// not: here normals point out of the cell whose rows these are.
     #[inline(always)]
-    fn add_facet<const N: usize>(
+    fn add_fluxes<const N: usize, const LINEAR: bool>(
         &self,
         me: &CellSide<'_, T, D>,
-        other: Option<((usize, usize), usize)>,
+        other: Option<(usize, usize)>,
         weight: &FacetWeight<T>,
-        own: usize,
-        rows: &mut Rows<'_, T, N>,
+        own: &mut Block<T, N>,
+        across: &mut Block<T, N>,
     ) {
-        count::facets(1);
         let form = &self.weights.coefficients;
         let measure = me.metric.measures[me.local];
-        let products = self.jumps.own(me.local);
-        for (products, &class) in products.iter().zip(&self.jumps.weights) {
-            let scale = measure * form.jump_jump.at(weight.penalty * class);
-            rows.add(own, |i, j| scale * products[i][j]);
-        }
-        if self.flux_moments.is_empty() {
-            return;
-        }
-        let n = if N == 0 { rows.n } else { N };
-        let other_metric = other.map(|((cell, _), _)| self.metrics.at::<D>(cell));
+        let of_mine = &me.metric.products[me.local];
+        let of_theirs = other.map(|(cell, local)| self.metrics.products_of::<D>(cell, local));
         for (k, &class) in self.flux_moments.iter().enumerate() {
             let penalty = weight.penalty * class;
             let flux_flux = form.flux_flux.at(penalty) / measure;
             let (jump_flux, flux_jump) = (form.jump_flux.at(penalty), form.flux_jump.at(penalty));
             let mine = &self.facets.on(me.local)[k];
-            let flux = me.normal_derivatives(mine, n, weight.own_share);
-            let by_flux = vector(n, |i| jump_flux * mine.values[i] + flux_flux * flux[i]);
-            let by_jump = vector(n, |i| flux_jump * flux[i]);
-            rows.add(own, |i, j| by_flux[i] * flux[j] + by_jump[i] * mine.values[j]);
-            if let (Some(((cell, local), across)), Some(metric)) = (other, &other_metric) {
-                let coefficient = self.space.alpha(cell);
-                let other = CellSide { cell, local, metric, coefficient };
+            let flux: [T; N] = self.flux::<N, LINEAR>(mine, of_mine, weight.own_share);
+            let by_flux: [T; N] =
+                std::array::from_fn(|i| jump_flux * mine.values[i] + flux_flux * flux[i]);
+            let by_jump = flux.map(|flux| flux_jump * flux);
+            add(own, |i, j| by_flux[i] * flux[j] + by_jump[i] * mine.values[j]);
+            if let (Some((_, local)), Some(of_theirs)) = (other, &of_theirs) {
                 let theirs = &self.facets.on(local)[k];
-                let other_flux = other.normal_derivatives(theirs, n, -weight.other_share);
-                rows.add(across, |i, j| by_flux[i] * other_flux[j] - by_jump[i] * theirs.values[j]);
+                let flux: [T; N] = self.flux::<N, LINEAR>(theirs, of_theirs, -weight.other_share);
+                add(across, |i, j| by_flux[i] * flux[j] - by_jump[i] * theirs.values[j]);
             }
+        }
+    }
+
+    /// The fluxes of the basis functions of a cell through one of its facets, of one moment: their
+    /// derivatives along the outward normal times the measure of the facet and a factor.
+    /// `products`: those of the gradient opposite the facet with all gradients.
+    #[inline(always)]
+    fn flux<const N: usize, const LINEAR: bool>(
+        &self,
+        basis: &BasisAt<T>,
+        products: &[T; 4],
+        factor: T,
+    ) -> [T; N] {
+        count::normal_derivatives(N);
+        let scale = T::lit(-(D as f64)) * factor;
+        if LINEAR {
+            let scale = scale * self.gradient;
+            return std::array::from_fn(|i| scale * products[i]);
+        }
+        std::array::from_fn(|i| {
+            let sum = |sum, k: usize| sum + basis.derivatives[i][k] * products[k];
+            scale * (1..=D).fold(basis.derivatives[i][0] * products[0], sum)
+        })
+    }
+}
+
+/// A dense block of the rows of a cell.
+type Block<T, const N: usize> = [[T; N]; N];
+
+#[inline(always)]
+fn block<T, const N: usize>(entry: impl Fn(usize, usize) -> T) -> Block<T, N> {
+    std::array::from_fn(|i| std::array::from_fn(|j| entry(i, j)))
+}
+
+#[inline(always)]
+fn add<T: Real, const N: usize>(block: &mut Block<T, N>, entry: impl Fn(usize, usize) -> T) {
+    for i in 0..N {
+        for j in 0..N {
+            block[i][j] += entry(i, j);
         }
     }
 }
 
-/// The rows of a cell, `n` of them; `N` is that number where it is known in advance.
-struct Rows<'r, T, const N: usize> {
+/// The `n` rows of a cell.
+struct Rows<'r, T> {
     n: usize,
-    /// Length of each.
-    row: usize,
+    /// Entries of each.
+    length: usize,
     entries: &'r mut [T],
 }
 
-impl<T: Real, const N: usize> Rows<'_, T, N> {
+impl<T: Real> Rows<'_, T> {
+    /// Writes the columns of the coupled cell at this place.
     #[inline(always)]
-    fn block(&mut self, i: usize, start: usize) -> &mut [T] {
-        let n = if N == 0 { self.n } else { N };
-        &mut self.entries[i * self.row + start..i * self.row + start + n]
-    }
-    /// Writes a dense block that starts at this column.
-    #[inline(always)]
-    fn write(&mut self, start: usize, entry: impl Fn(usize, usize) -> T) {
-        let n = if N == 0 { self.n } else { N };
-        for i in 0..n {
-            let out = self.block(i, start);
-            for j in 0..n {
-                out[j] = entry(i, j);
-            }
-        }
-    }
-    /// Adds to a dense block that starts at this column.
-    #[inline(always)]
-    fn add(&mut self, start: usize, entry: impl Fn(usize, usize) -> T) {
-        let n = if N == 0 { self.n } else { N };
-        for i in 0..n {
-            let out = self.block(i, start);
-            for j in 0..n {
-                out[j] += entry(i, j);
-            }
+    fn write<const N: usize>(&mut self, place: usize, block: &Block<T, N>) {
+        let n = self.n.min(N);
+        for (row, from) in self.entries.chunks_exact_mut(self.length).zip(block) {
+            row[place * n..(place + 1) * n].copy_from_slice(&from[..n]);
         }
     }
 }

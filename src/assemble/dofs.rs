@@ -8,6 +8,7 @@ use rayon::prelude::*;
 
 use super::gather::Places;
 use crate::element::Layout;
+use crate::memory::in_large_pages;
 use crate::mesh::{Edges, Facets, Mesh, Neighbours};
 use crate::real::Real;
 
@@ -148,7 +149,7 @@ fn ranges(lengths: [usize; KINDS]) -> [Range<u32>; KINDS] {
 
 /// The unknowns of every cell: first those of the first owners, and so on.
 fn table(owners: &[Owners<'_>; KINDS], n_cells: usize, per_cell: usize) -> Vec<u32> {
-    let mut table = vec![0; n_cells * per_cell];
+    let mut table = in_large_pages(vec![0; n_cells * per_cell]);
     let fill = |(cell, mut out): (usize, &mut [u32])| {
         let mut first = 0;
         for of in owners {

@@ -3,6 +3,7 @@
 use std::convert::Infallible;
 
 use super::parallel;
+use crate::memory::in_large_pages;
 use crate::mesh::Mesh;
 use crate::real::Real;
 
@@ -129,6 +130,28 @@ pub(crate) fn shape<T: Real, const D: usize>(
     (size / T::lit(FACTORIAL[D]), products)
 }
 
+/// The place of a pair of gradients among those above the diagonal, by rows, in each dimension; zero
+/// on the diagonal.
+const PAIR: [[[usize; 4]; 4]; 4] = {
+    let mut pairs = [[[0; 4]; 4]; 4];
+    let mut dimension = 1;
+    while dimension <= 3 {
+        let (mut i, mut k) = (0, 0);
+        while i < dimension {
+            let mut j = i + 1;
+            while j <= dimension {
+                pairs[dimension][i][j] = k;
+                pairs[dimension][j][i] = k;
+                k += 1;
+                j += 1;
+            }
+            i += 1;
+        }
+        dimension += 1;
+    }
+    pairs
+};
+
 const FACTORIAL: [f64; 4] = [1.0, 1.0, 2.0, 6.0];
 
 #[inline(always)]
@@ -150,7 +173,7 @@ impl<T: Real> Metrics<T> {
     /// The metrics of a mesh, in parallel.
     pub fn of<const D: usize>(mesh: &Mesh<T, D>) -> Self {
         let n = CellMetric::<T, D>::KEPT;
-        let mut kept = vec![T::lit(0.0); n * mesh.n_cells()];
+        let mut kept = in_large_pages(vec![T::lit(0.0); n * mesh.n_cells()]);
         let fill = |cells: std::ops::Range<usize>, piece: &mut [T]| {
             for (cell, out) in cells.zip(piece.chunks_exact_mut(n)) {
                 CellMetric::of(mesh, cell).write(out);
@@ -165,5 +188,23 @@ impl<T: Real> Metrics<T> {
     pub fn at<const D: usize>(&self, cell: usize) -> CellMetric<T, D> {
         let n = CellMetric::<T, D>::KEPT;
         CellMetric::read(&self.kept[cell * n..(cell + 1) * n])
+    }
+    /// The products of the gradient opposite facet `local` of a cell with all of its gradients.
+    #[inline(always)]
+    pub fn products_of<const D: usize>(&self, cell: usize, local: usize) -> [T; 4] {
+        let n = CellMetric::<T, D>::KEPT;
+        let kept = &self.kept[cell * n + D + 2..(cell + 1) * n];
+        let places = &PAIR[D][local & 3];
+        let mut row = [T::lit(0.0); 4];
+        let mut sum = T::lit(0.0);
+        for k in 0..=D {
+            row[k] = if k == local { T::lit(0.0) } else { kept[places[k]] };
+            sum -= row[k];
+        }
+        // a gradient's own product is what makes the sum zero
+        for (k, product) in row.iter_mut().enumerate().take(D + 1) {
+            *product = if k == local { sum } else { *product };
+        }
+        row
     }
 }

@@ -116,6 +116,17 @@ impl<'a, T: Real, const D: usize> Space<'a, T, D> {
     pub fn basis_at(&self, point: &[f64; 4]) -> BasisAt<f64> {
         (self.basis)(point)
     }
+    /// The factor `c` if the gradient of each basis function `i` is `c` times that of barycentric
+    /// coordinate `i`, so that products of gradients make the whole stiffness.
+    pub fn gradient_factor(&self) -> Option<T> {
+        let derivatives = self.basis_at(&[1.0 / (D + 1) as f64; 4]).derivatives;
+        let factor = derivatives[0][0];
+        let is_one = |i: usize, k: usize| derivatives[i][k] == if i == k { factor } else { 0.0 };
+        let all = self.degree == 1
+            && self.per_cell() == D + 1
+            && (0..=D).all(|i| (0..=D).all(|k| is_one(i, k)));
+        all.then(|| T::lit(factor))
+    }
     /// The stiffness of the reference element.
     pub fn stiffness_table(&self) -> StiffnessTable<T> {
         StiffnessTable::new(D, &self.cell_table(2 * (self.degree - 1)))

@@ -8,6 +8,7 @@ use super::metric::Metrics;
 use super::parallel;
 use super::space::Space;
 use crate::facet::{FacetForm, Trace};
+use crate::memory::in_large_pages;
 use crate::mesh::{BoundaryPart, Neighbour};
 use crate::real::Real;
 
@@ -84,7 +85,7 @@ impl<T: Real> FacetWeights<T> {
         let stride = if F::USES_FLUX { 3 } else { 1 };
         let per_cell = stride * (D + 1);
         let n_cells = space.mesh.n_cells();
-        let mut entries = vec![T::lit(0.0); per_cell * n_cells];
+        let mut entries = in_large_pages(vec![T::lit(0.0); per_cell * n_cells]);
         let fill = |cells: Range<usize>, piece: &mut [T]| {
             for (cell, out) in cells.zip(piece.chunks_exact_mut(per_cell)) {
                 let metric = metrics.at(cell);

@@ -7,6 +7,7 @@ use rayon::prelude::*;
 
 use super::Mesh;
 use super::sweep::{Met, Sweep};
+use crate::memory::in_large_pages;
 use crate::real::Real;
 
 /// Vertices of the edges of a cell, by their numbers in it. A cell of dimension `D` has the first
@@ -41,7 +42,7 @@ impl Edges {
     /// [`edge_vertices`].
     pub fn numbered<T: Real, const D: usize>(mesh: &Mesh<T, D>) -> (Self, Vec<u32>) {
         let pairs = edge_vertices(D);
-        let mut places = Vec::new();
+        let mut places = in_large_pages(Vec::with_capacity(pairs.len() * mesh.n_cells()));
         places.resize_with(pairs.len() * mesh.n_cells(), AtomicU32::default);
         let edges = Self::found::<D>(mesh.cells(), mesh.vertices().len(), Some(&places));
         let mut numbers: Vec<u32> = places.into_iter().map(AtomicU32::into_inner).collect();
@@ -66,7 +67,7 @@ impl Edges {
         let ranges = sweep.ranges();
         let found = |vertices: &Range<u32>| upper_ends(&sweep, vertices.clone(), places);
         let mut found: Vec<(Vec<u32>, Vec<u32>)> = ranges.par_iter().map(found).collect();
-        let mut starts = Vec::with_capacity(n_vertices + 1);
+        let mut starts = in_large_pages(Vec::with_capacity(n_vertices + 1));
         starts.push(0);
         let mut end = 0;
         for (_, degrees) in &found {

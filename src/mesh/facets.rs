@@ -7,6 +7,7 @@ use rayon::prelude::*;
 
 use super::sweep::{Met, Sweep};
 use super::{BoundaryPart, Mesh, MeshError};
+use crate::memory::in_large_pages;
 use crate::real::Real;
 
 /// What lies across a facet of a cell.
@@ -63,7 +64,7 @@ impl Neighbours {
     ) -> Result<Self, MeshError> {
         // the lowest vertex of a facet is the first or the second of its cell
         let sweep = Sweep::<D>::new(cells, n_vertices, 2);
-        let mut codes = Vec::new();
+        let mut codes = in_large_pages(Vec::with_capacity(cells.len()));
         codes.resize_with(cells.len(), || AtomicU32::new(UNKNOWN));
         let matched = |vertices: &Range<u32>| match_from(&sweep, vertices.clone(), &codes);
         if !sweep.ranges().par_iter().all(matched)
@@ -189,7 +190,8 @@ pub struct Facets {
 impl Facets {
     /// The facets of a mesh.
     pub fn of<T: Real, const D: usize>(mesh: &Mesh<T, D>, neighbours: &Neighbours) -> Self {
-        let mut sides = Vec::with_capacity((mesh.cells().len() + mesh.boundary().len()) / 2);
+        let n = (mesh.cells().len() + mesh.boundary().len()) / 2;
+        let mut sides = in_large_pages(Vec::with_capacity(n));
         for here in 0..mesh.n_cells() {
             for local in 0..=D {
                 if let Neighbour::Cell { cell, local: other } = neighbours.across(here, local)
@@ -242,7 +244,7 @@ impl Facets {
     }
     /// The number of every facet of every cell, `D + 1` for each cell.
     pub fn numbers<const D: usize>(&self, n_cells: usize) -> Vec<u32> {
-        let mut numbers = vec![0; n_cells * (D + 1)];
+        let mut numbers = in_large_pages(vec![0; n_cells * (D + 1)]);
         for facet in 0..self.len() {
             for (cell, local) in [self.here(facet), self.there(facet)] {
                 numbers[cell * (D + 1) + local] = facet as u32;

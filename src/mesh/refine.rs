@@ -4,6 +4,7 @@ use rayon::prelude::*;
 
 use super::validate::check_size;
 use super::{BoundaryFacet, Edges, Mesh, MeshError, edge_vertices};
+use crate::memory::in_large_pages;
 use crate::real::{Real, point_f64};
 
 /// How the vertices of a refined mesh came from those of the coarse one.
@@ -101,7 +102,7 @@ fn children<T: Real, const D: usize>(mesh: &Mesh<T, D>, cell: usize) -> Children
 /// This order makes the children's vertices, as they are listed, ascending, and for Bey's rule they
 /// are then in the order it needs for the next step.
 fn parents(edges: &Edges, n_vertices: usize) -> Vec<[u32; 2]> {
-    let mut parents = Vec::with_capacity(n_vertices + edges.len());
+    let mut parents = in_large_pages(Vec::with_capacity(n_vertices + edges.len()));
     for a in 0..n_vertices as u32 {
         parents.push([a, a]);
         parents.extend(edges.upper_ends(a).iter().map(|&b| [a, b]));
@@ -141,7 +142,7 @@ impl<T: Real, const D: usize> Mesh<T, D> {
             if a == b { x } else { (x + y) * half }
         };
         let vertices = parents.par_iter().with_min_len(4096).map(middle).collect();
-        let mut cells = vec![0; n_fine * (D + 1)];
+        let mut cells = in_large_pages(vec![0; n_fine * (D + 1)]);
         let cut = |(c, (out, numbers)): (usize, (&mut [u32], &[u32]))| {
             let midpoints = midpoints::<D>(&edges, self.cell(c), numbers);
             for (out, child) in out.chunks_exact_mut(D + 1).zip(children(self, c)) {

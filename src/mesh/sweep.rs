@@ -4,6 +4,8 @@ use std::ops::Range;
 
 use rayon::prelude::*;
 
+use crate::memory::in_large_pages;
+
 /// Cells of one block, of which only the range of their vertices is known.
 const BLOCK: usize = 256;
 
@@ -62,12 +64,12 @@ impl<'m, const D: usize> Sweep<'m, D> {
     pub fn around(&self, vertices: Range<u32>) -> Around {
         let n = vertices.len();
         // counts two places on become, summed, starts one place on, which filling makes starts
-        let mut starts = vec![0_u32; n + 2];
+        let mut starts = in_large_pages(vec![0_u32; n + 2]);
         self.visit(&vertices, |v, _| starts[v + 2] += 1);
         for v in 0..n {
             starts[v + 2] += starts[v + 1];
         }
-        let mut slots = vec![0_u32; starts[n + 1] as usize];
+        let mut slots = in_large_pages(vec![0_u32; starts[n + 1] as usize]);
         self.visit(&vertices, |v, slot| {
             let at = &mut starts[v + 1];
             slots[*at as usize] = slot;
@@ -114,7 +116,7 @@ pub(super) struct Met {
 
 impl Met {
     pub fn new(n_vertices: usize) -> Self {
-        Self { last: vec![0; n_vertices], base: 0, n: 0 }
+        Self { last: in_large_pages(vec![0; n_vertices]), base: 0, n: 0 }
     }
     /// Forgets all.
     #[inline(always)]

@@ -9,6 +9,7 @@ use super::cut::{Blocks, Rows, pieces};
 use crate::algebra::SparseMatrix;
 use crate::assemble::dofs::{Dofs, KINDS, kind_of};
 use crate::element::ReferenceElement;
+use crate::memory::in_large_pages;
 use crate::real::Real;
 
 /// Where each cell adds its matrix: made with the pattern, kept for every filling of it.
@@ -58,17 +59,17 @@ pub(super) fn pattern<T: Real, const D: usize, E: ReferenceElement<T, D>>(
     let nonzeros = columns.len();
     // a numbering has one pattern: what another thread may have left here is the same
     let _ = dofs.places.set(Places { places, blocks, nonzeros });
-    SparseMatrix { row_starts, columns, values: vec![T::lit(0.0); nonzeros] }
+    SparseMatrix { row_starts, columns, values: in_large_pages(vec![T::lit(0.0); nonzeros]) }
 }
 
 fn zeros(n: usize) -> Vec<AtomicU8> {
     // bytes that the system hands out as zeros, taken for what they are in place
-    vec![0_u8; n].into_iter().map(AtomicU8::new).collect()
+    in_large_pages(vec![0_u8; n]).into_iter().map(AtomicU8::new).collect()
 }
 
 /// Where rows start, from their lengths.
 fn row_starts(size: usize, made: &[Made]) -> Vec<u32> {
-    let mut starts = Vec::with_capacity(size + 1);
+    let mut starts = in_large_pages(Vec::with_capacity(size + 1));
     starts.push(0);
     let mut end = 0;
     for kind in 0..KINDS {
@@ -84,7 +85,7 @@ fn row_starts(size: usize, made: &[Made]) -> Vec<u32> {
 
 /// The columns of all pieces in the order of rows.
 fn join(row_starts: &[u32], made: &[Made]) -> Vec<u32> {
-    let mut columns = vec![0; row_starts[row_starts.len() - 1] as usize];
+    let mut columns = in_large_pages(vec![0; row_starts[row_starts.len() - 1] as usize]);
     let mut copies = Vec::new();
     let mut rest = &mut columns[..];
     for kind in 0..KINDS {
@@ -110,12 +111,12 @@ impl Maker<'_> {
     /// The rows of a piece, in parts, so that scratch memory is small and used again.
     fn rows<T: Real, E: ReferenceElement<T, D>, const D: usize>(&self, piece: &Rows) -> Made {
         let mut around = Around::default();
-        let mut row = Row { seen: vec![0; self.dofs.size()], ..Row::default() };
+        let mut row = Row { seen: in_large_pages(vec![0; self.dofs.size()]), ..Row::default() };
         // about as many entries as the cells' matrices have: what is not used is never touched
         let entries = |rows: &Range<u32>| self.places.len() / self.dofs.size() * rows.len();
         let mut made = piece.each_ref().map(|rows| MadeRows {
-            columns: Vec::with_capacity(entries(rows)),
-            lengths: Vec::with_capacity(rows.len()),
+            columns: in_large_pages(Vec::with_capacity(entries(rows))),
+            lengths: in_large_pages(Vec::with_capacity(rows.len())),
         });
         for part in self.blocks.parts_of(piece) {
             self.find_around::<T, E, D>(&part, &mut around);
