@@ -264,7 +264,7 @@ fn check<const D: usize, E: ReferenceElement<f64, D>, F: FacetForm<f64, D> + Clo
         for (j, &entry) in row.iter().enumerate() {
             let ours = matrix.get(i, j);
             assert!(
-                (ours - entry).abs() < 1e-13 * scale,
+                (ours - entry).abs() < 1e-14 * scale,
                 "{D}-d ({i}, {j}): {ours:e} against {entry:e}"
             );
         }

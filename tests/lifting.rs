@@ -252,7 +252,7 @@ fn check_on<const D: usize, E, S>(
             worst = worst.max((matrix.get(i, j) - slow.form(which, u, v)).abs());
         }
     }
-    assert!(worst <= 1e-13 * scale, "{}: {worst:e} of {scale:e}", scheme.name());
+    assert!(worst <= 1e-14 * scale, "{}: {worst:e} of {scale:e}", scheme.name());
 }
 
 fn every_method<const D: usize, E: ReferenceElement<f64, D>>(element: E, n: usize) {

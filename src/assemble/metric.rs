@@ -20,8 +20,9 @@ pub(crate) struct CellMetric<T, const D: usize> {
 }
 
 impl<T: Real, const D: usize> CellMetric<T, D> {
-    /// Numbers kept of a cell: volume, facet measures, products above the diagonal.
-    const KEPT: usize = 1 + (D + 1) + D * (D + 1) / 2;
+    /// Numbers kept of a cell: volume, facet measures, all products by rows. Those above the diagonal
+    /// would do, but whole rows are read as they are, by this cell and by its neighbours.
+    const KEPT: usize = 1 + (D + 1) + (D + 1) * (D + 1);
 
     /// The metric of one cell.
     #[inline(always)]
@@ -38,18 +39,6 @@ impl<T: Real, const D: usize> CellMetric<T, D> {
         }
         Self { volume, measures, products }
     }
-    #[inline(always)]
-    fn zero(volume: T) -> Self {
-        Self { volume, measures: [T::lit(0.0); 4], products: [[T::lit(0.0); 4]; 4] }
-    }
-    /// Sets an entry above the diagonal, with what follows for the others: rows sum to zero.
-    #[inline(always)]
-    fn set(&mut self, i: usize, j: usize, product: T) {
-        self.products[i][j] = product;
-        self.products[j][i] = product;
-        self.products[i][i] -= product;
-        self.products[j][j] -= product;
-    }
     /// The measure of the whole boundary.
     #[inline(always)]
     pub fn surface(&self) -> T {
@@ -59,24 +48,17 @@ impl<T: Real, const D: usize> CellMetric<T, D> {
     fn write(&self, out: &mut [T]) {
         out[0] = self.volume;
         out[1..D + 2].copy_from_slice(&self.measures[..=D]);
-        let mut k = D + 2;
-        for i in 0..D {
-            for j in i + 1..=D {
-                out[k] = self.products[i][j];
-                k += 1;
-            }
+        for (row, out) in self.products.iter().zip(out[D + 2..].chunks_exact_mut(D + 1)) {
+            out.copy_from_slice(&row[..=D]);
         }
     }
     #[inline(always)]
     fn read(kept: &[T]) -> Self {
-        let mut metric = Self::zero(kept[0]);
+        let zero = T::lit(0.0);
+        let mut metric = Self { volume: kept[0], measures: [zero; 4], products: [[zero; 4]; 4] };
         metric.measures[..=D].copy_from_slice(&kept[1..D + 2]);
-        let mut k = D + 2;
-        for i in 0..D {
-            for j in i + 1..=D {
-                metric.set(i, j, kept[k]);
-                k += 1;
-            }
+        for (row, kept) in metric.products.iter_mut().zip(kept[D + 2..].chunks_exact(D + 1)) {
+            row[..=D].copy_from_slice(kept);
         }
         metric
     }
@@ -130,28 +112,6 @@ pub(crate) fn shape<T: Real, const D: usize>(
     (size / T::lit(FACTORIAL[D]), products)
 }
 
-/// The place of a pair of gradients among those above the diagonal, by rows, in each dimension; zero
-/// on the diagonal.
-const PAIR: [[[usize; 4]; 4]; 4] = {
-    let mut pairs = [[[0; 4]; 4]; 4];
-    let mut dimension = 1;
-    while dimension <= 3 {
-        let (mut i, mut k) = (0, 0);
-        while i < dimension {
-            let mut j = i + 1;
-            while j <= dimension {
-                pairs[dimension][i][j] = k;
-                pairs[dimension][j][i] = k;
-                k += 1;
-                j += 1;
-            }
-            i += 1;
-        }
-        dimension += 1;
-    }
-    pairs
-};
-
 const FACTORIAL: [f64; 4] = [1.0, 1.0, 2.0, 6.0];
 
 #[inline(always)]
@@ -193,18 +153,9 @@ impl<T: Real> Metrics<T> {
     #[inline(always)]
     pub fn products_of<const D: usize>(&self, cell: usize, local: usize) -> [T; 4] {
         let n = CellMetric::<T, D>::KEPT;
-        let kept = &self.kept[cell * n + D + 2..(cell + 1) * n];
-        let places = &PAIR[D][local & 3];
+        let start = cell * n + D + 2 + local * (D + 1);
         let mut row = [T::lit(0.0); 4];
-        let mut sum = T::lit(0.0);
-        for k in 0..=D {
-            row[k] = if k == local { T::lit(0.0) } else { kept[places[k]] };
-            sum -= row[k];
-        }
-        // a gradient's own product is what makes the sum zero
-        for (k, product) in row.iter_mut().enumerate().take(D + 1) {
-            *product = if k == local { sum } else { *product };
-        }
+        row[..=D].copy_from_slice(&self.kept[start..=start + D]);
         row
     }
 }
