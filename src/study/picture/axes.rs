@@ -7,17 +7,17 @@ use super::section::Spot;
 use crate::study::plot::{Align, Drawn, INK, PAPER, Pen, Place, colour, text_width};
 
 /// Sizes of text.
-pub(super) const TITLE: f64 = 16.0;
-pub(super) const LABEL: f64 = 15.0;
-pub(super) const TICK: f64 = 14.0;
+pub(super) const TITLE: f64 = 17.0;
+pub(super) const LABEL: f64 = 16.5;
+pub(super) const TICK: f64 = 15.5;
 
 /// Room for ticks and labels beside and below the data.
-pub(super) const LEFT: f64 = 56.0;
+pub(super) const LEFT: f64 = 58.0;
 pub(super) const RIGHT: f64 = 14.0;
 pub(super) const TOP: f64 = 26.0;
-pub(super) const BOTTOM: f64 = 42.0;
+pub(super) const BOTTOM: f64 = 44.0;
 /// Height of a line of the legend.
-pub(super) const LINE: f64 = 20.0;
+pub(super) const LINE: f64 = 21.0;
 
 /// The contact set found.
 pub(super) const CONTACT: RGBColor = RGBColor(150, 190, 222);
@@ -54,7 +54,7 @@ impl Stroke {
             Stroke::Found => pen.line(from, to, 2.0, INK),
             Stroke::Touching => pen.line(from, to, 7.0, CONTACT),
             Stroke::Exact => pen.line(from, to, 1.8, EXACT),
-            Stroke::Given => pen.dashes(from, to, 1.2, INK, (5.0, 3.0)),
+            Stroke::Given => pen.line(from, to, 4.0, FAINT),
             Stroke::Solution => pen.line(from, to, 1.6, colour(0)),
         }
     }
@@ -150,10 +150,10 @@ impl Frame {
         for (value, text) in ticks {
             let (x, _) = self.place([value, self.low[1]]);
             pen.line((x, bottom), (x, bottom - 4.0), 0.8, INK)?;
-            pen.text(&text, (x, bottom + 10.0), TICK, INK, Align::Centre)?;
+            pen.text(&text, (x, bottom + 11.0), TICK, INK, Align::Centre)?;
         }
         let middle = 0.5 * (left + right);
-        draw_quantity(pen, names[0], power, (middle, bottom + 28.0))?;
+        draw_quantity(pen, names[0], power, (middle, bottom + 30.0))?;
         let most = if self.size.1 < 120.0 { 3 } else { 5 };
         let (ticks, power) = labels(self.low[1], self.high[1], most);
         for (value, text) in ticks {

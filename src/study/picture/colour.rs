@@ -2,7 +2,7 @@
 
 use plotters::prelude::RGBColor;
 
-/// A colour for a number from 0 to 1: from dark blue to pale yellow-green, its lightness growing
+/// A colour for a number from 0 to 1: from dark blue over green to pale rose, its lightness growing
 /// evenly, so that the picture reads the same in grey.
 ///
 /// This is the scheme of D. A. Green, Bull. Astr. Soc. India 39 (2011), 289-295: a helix around the

@@ -14,7 +14,7 @@ use crate::study::plot::{Align, Drawn, INK, Pen, Place};
 const TALLEST: f64 = 1.4;
 /// Height of the bar of colours, and of it with its labels.
 const BAR: f64 = 12.0;
-const BAR_ROOM: f64 = 58.0;
+const BAR_ROOM: f64 = 62.0;
 
 /// A panel with equal axes.
 #[derive(Clone, Debug, Default)]
@@ -64,6 +64,8 @@ impl Map {
             let corners: Vec<Place> = corners.iter().map(|&c| frame.place(c)).collect();
             pen.fill(&corners, *colour)?;
         }
+        // below the lines, some of which run along it
+        frame.draw(pen, self.axes)?;
         let ends = |ends: &[Spot; 2]| (frame.place(ends[0]), frame.place(ends[1]));
         for (stroke, segment) in &self.lines {
             let (from, to) = ends(segment);
@@ -76,7 +78,6 @@ impl Map {
         for &mark in &self.marks {
             draw_mark(pen, frame.place(mark))?;
         }
-        frame.draw(pen, self.axes)?;
         let below = at.1 + TOP + size.1 + BOTTOM;
         if let Some(scale) = &self.scale {
             draw_bar(pen, scale, (at.0 + LEFT, below + 6.0), room)?;
@@ -126,5 +127,5 @@ fn draw_bar<DB: DrawingBackend>(
             pen.text(&text, (x, bottom + 12.0), TICK, INK, Align::Centre)?;
         }
     }
-    draw_quantity(pen, &scale.name, power, (left + 0.5 * width, bottom + 30.0))
+    draw_quantity(pen, &scale.name, power, (left + 0.5 * width, bottom + 33.0))
 }

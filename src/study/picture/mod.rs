@@ -57,9 +57,9 @@ const MOST_SHAPES: usize = 150_000;
 
 /// Widths of panels that stand alone in a row and of those that stand in two columns.
 const WIDE: f64 = 430.0;
-const NARROW: f64 = 275.0;
+const NARROW: f64 = 276.0;
 /// A domain this much wider than high gets a row to itself.
-const ELONGATED: f64 = 1.5;
+const ELONGATED: f64 = 3.0;
 const MARGIN: f64 = 8.0;
 const HEADING: f64 = 28.0;
 const GAP: f64 = 10.0;
@@ -85,6 +85,15 @@ impl Panel {
             Panel::Graph(graph) => graph.lines.len(),
         }
     }
+}
+
+/// Where the panels stand.
+struct Layout<'a> {
+    /// With their upper left corners.
+    panels: Vec<(&'a Panel, Place)>,
+    width: f64,
+    /// Width and height of it all.
+    size: (f64, f64),
 }
 
 /// A picture of a solution.
@@ -201,38 +210,36 @@ impl Picture {
         Ok([png, svg])
     }
 
-    /// Panels row by row, each with its upper left corner and width, and the size of it all.
-    fn layout(&self) -> (Vec<(&Panel, Place, f64)>, (f64, f64)) {
-        let is_wide = |panel: &Panel| match panel {
+    /// Panels row by row.
+    fn layout(&self) -> Layout<'_> {
+        let alone = self.panels.first().is_some_and(|panel| match panel {
             Panel::Map(map) => map.high[0] - map.low[0] > ELONGATED * (map.high[1] - map.low[1]),
             Panel::Graph(_) => true,
-        };
-        let alone = self.panels.first().is_some_and(is_wide);
+        });
         let (columns, width) = if alone { (1, WIDE) } else { (2, NARROW) };
         let mut placed = Vec::new();
         let mut y = MARGIN + HEADING;
         for row in self.panels.chunks(columns) {
-            let widths =
-                || row.iter().map(|p| if is_wide(p) { columns as f64 * width } else { width });
-            for (k, (panel, width)) in row.iter().zip(widths()).enumerate() {
-                placed.push((panel, (MARGIN + k as f64 * width, y), width));
+            for (k, panel) in row.iter().enumerate() {
+                placed.push((panel, (MARGIN + k as f64 * width, y)));
             }
-            y += row.iter().zip(widths()).map(|(p, w)| p.height(w)).fold(0.0, f64::max) + GAP;
+            y += row.iter().map(|p| p.height(width)).fold(0.0, f64::max) + GAP;
         }
-        (placed, (2.0 * MARGIN + columns as f64 * width, y))
+        let size = (2.0 * MARGIN + columns as f64 * width, y);
+        Layout { panels: placed, width, size }
     }
 }
 
 impl Drawing for Picture {
     fn size(&self) -> (f64, f64) {
-        self.layout().1
+        self.layout().size
     }
 
     fn draw<DB: DrawingBackend>(&self, pen: &Pen<DB>) -> Drawn {
-        let (placed, size) = self.layout();
+        let Layout { panels, width, size } = self.layout();
         let heading = (0.5 * size.0, MARGIN + 0.4 * HEADING);
         pen.text(&self.title, heading, axes::TITLE + 1.0, INK, Align::Centre)?;
-        for (panel, at, width) in placed {
+        for (panel, at) in panels {
             match panel {
                 Panel::Map(map) => map.draw(pen, at, width)?,
                 Panel::Graph(graph) => graph.draw(pen, at, width)?,

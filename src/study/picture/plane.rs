@@ -238,9 +238,13 @@ impl<'a, T: Real, const D: usize> Plane<'a, T, D> {
                 }
             }
         }
+        let drawn = triangles.len();
         shade(&mut map, "density of the multiplier", &triangles, false);
+        let all: usize = self.sections.iter().map(|s| s.corners.len() - 2).sum();
         if map.scale.is_none() {
             map.note = Some("none in this slice");
+        } else if drawn < all {
+            map.title += " (white: none known)";
         }
         map.lines.extend(self.rim());
         Panel::Map(map)

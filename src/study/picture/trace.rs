@@ -61,7 +61,7 @@ pub(super) fn graph<T: Real, const D: usize>(
     }
     let along = |v: u32| mesh.vertices()[v as usize][axis].to_f64();
     let mut graph = Graph {
-        title: "multiplier on the contact boundary".to_owned(),
+        title: "multiplier".to_owned(),
         axes: [["x", "y"][axis].to_owned(), "density".to_owned()],
         legend: vec![(Symbol::Line(Stroke::Solution), "density found".to_owned())],
         ..Graph::default()
