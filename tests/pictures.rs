@@ -31,7 +31,8 @@ fn picture<const D: usize>(
 
 fn cube<const D: usize>(n: usize) -> Mesh<f64, D> {
     let sides = [[BoundaryPart::Dirichlet; 2]; D];
-    BoxDomain { lower: Point::zeros(), upper: Point::repeat(1.0), sides }.mesh(n).unwrap()
+    let domain = BoxDomain { lower: Point::zeros(), upper: Point::repeat(1.0), sides };
+    Mesh::kuhn_box(&domain, [n; D]).unwrap()
 }
 
 /// A function with these values on the cells of a mesh.

@@ -226,6 +226,11 @@ impl<'a, T: Real, const D: usize> Plane<'a, T, D> {
             return Panel::Map(self.multiplier_on_facets());
         }
         let mut map = self.map("multiplier");
+        if !self.problem.has_obstacle() && !self.is_along_contact() {
+            map.note = Some("only on the contact boundary");
+            map.lines.extend(self.rim());
+            return Panel::Map(map);
+        }
         let mut triangles = Vec::new();
         for section in &self.sections {
             let value = |k: usize| {
