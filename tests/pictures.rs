@@ -58,7 +58,7 @@ fn paths(svg: &str) -> Vec<(String, Vec<Vec<[f64; 2]>>)> {
         };
         text.trim_start_matches('M').split('l').map(step).collect()
     };
-    let filled = svg.lines().filter(|l| l.starts_with("<path"));
+    let filled = svg.lines().filter(|l| l.starts_with("<path shape-rendering"));
     let of = |line: &str| {
         let path = attribute(line, " d");
         let polygons = path.split('z').filter(|p| !p.is_empty()).map(polygon).collect();

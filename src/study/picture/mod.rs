@@ -187,7 +187,7 @@ impl Picture {
             });
         }
         let text = draw_svg(self).map_err(|why| write_error(Path::new("SVG"), why))?;
-        Ok(svg::merge_polygons(&text))
+        Ok(svg::merge_shapes(&text))
     }
 
     /// Writes the picture as a PNG file.
