@@ -235,7 +235,14 @@ impl<'a, T: Real, const D: usize> Plane<'a, T, D> {
         for section in &self.sections {
             let value = |k: usize| {
                 let corner = &section.corners[k];
-                Some((corner.at, self.view.density(section.cell, &corner.barycentric)?))
+                Some((
+                    corner.at,
+                    self.view.density(
+                        section.cell,
+                        self.touches[section.cell],
+                        &corner.barycentric,
+                    )?,
+                ))
             };
             for k in 2..section.corners.len() {
                 if let (Some(a), Some(b), Some(c)) = (value(0), value(k - 1), value(k)) {

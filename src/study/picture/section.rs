@@ -166,12 +166,13 @@ impl<'a, T: Real, const D: usize> View<'a, T, D> {
         at_corners + at_middles.sum::<f64>()
     }
 
-    /// The density of the multiplier at a point of a cell. A Dirichlet vertex has none of its own
-    /// and none counts there where the others of the cell have none.
-    pub fn density(&self, cell: usize, barycentric: &[f64; 4]) -> Option<f64> {
+    /// The density of the multiplier at a point of a cell. A Dirichlet vertex has none of its own:
+    /// there it counts as zero in a cell that is not in contact and has none elsewhere, and is not
+    /// known otherwise.
+    pub fn density(&self, cell: usize, touches: bool, barycentric: &[f64; 4]) -> Option<f64> {
         let known = &self.fields.found.density;
         let at = |k: usize| known.get(self.mesh.cell(cell)[k] as usize).copied().flatten();
-        let free = (0..=D).all(|k| at(k).is_none_or(|density| density == 0.0));
+        let free = !touches && (0..=D).all(|k| at(k).is_none_or(|density| density == 0.0));
         let mut sum = 0.0;
         for k in (0..=D).filter(|k| barycentric[*k] != 0.0) {
             match at(k) {
