@@ -242,6 +242,9 @@ fn what_cannot_be_drawn_is_refused() {
     let beyond = Fields { found, ..function(&mesh, |_| 0.0) };
     assert!(message(&beyond, None).contains("this mesh of 8 cells"));
 
+    let no_level = solve_level::<f64, 2>(&scenes::radial(1.0), &ConformingP1, 0).map(drop);
+    assert!(no_level.unwrap_err().to_string().contains("at least one subdivision"));
+
     let (problem, mesh) = (Problem::<3>::new(), cube::<3>(1));
     let outside = Some(Slice { axis: 0, at: 1.5 });
     let missed = Picture::of("", &problem, &mesh, &function(&mesh, |_| 0.0), outside);

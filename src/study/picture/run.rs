@@ -19,6 +19,13 @@ pub fn solve_level<T: Real, const D: usize>(
     scheme: &dyn AnyScheme<T, D>,
     level: usize,
 ) -> Result<(Mesh<T, D>, Solved), Error> {
+    if level == 0 {
+        return Err(Error::Parameter {
+            parameter: "level",
+            value: "0".to_owned(),
+            allowed: "a built-in mesh has at least one subdivision".to_owned(),
+        });
+    }
     let solver = ActiveSet::default();
     let quadrature = DataQuadrature::default();
     let mut levels = Levels::new(scene, None);
