@@ -100,13 +100,26 @@ fn run(options: &Options) -> Request<bool> {
     Ok(same && report.failures().is_empty())
 }
 
+/// How many runs there will be on all scenes, unless some take too long.
+fn planned(options: &Options) -> usize {
+    let variants = options.schemes().len() * options.linear().len() * options.precisions().len();
+    let of_scene = |name: &String| {
+        let levels = scenes::by_name(name).map(|entry| options.levels(entry.dimension));
+        let mut levels = levels.unwrap_or_default();
+        levels.sort_unstable();
+        levels.dedup();
+        levels.len()
+    };
+    variants * options.rounds() * options.scenes().iter().map(of_scene).sum::<usize>()
+}
+
 /// A bar on a terminal, nothing elsewhere.
 fn bar(options: &Options) -> ProgressBar {
     if options.quiet || !std::io::stderr().is_terminal() {
         return ProgressBar::hidden();
     }
-    let template = "{bar:24} {pos} of {len} runs, {elapsed}, {eta} to go: {msg}";
-    let bar = ProgressBar::new(0);
+    let template = "{bar:24} {pos} of {len} runs, {elapsed}, {eta} to go: {wide_msg}";
+    let bar = ProgressBar::new(planned(options) as u64);
     bar.enable_steady_tick(Duration::from_millis(200));
     match ProgressStyle::with_template(template) {
         Ok(style) => bar.with_style(style),
@@ -139,7 +152,8 @@ where
         .write_to(&options.out)
         .memory(|case| memory_of(case, options.threads()))
         .observer(|progress| match progress {
-            WorkProgress::Planned(n) => bar.inc_length(n as u64),
+            // the bar was made for all scenes
+            WorkProgress::Planned(_) => {}
             WorkProgress::Finished => bar.inc(1),
             WorkProgress::Started(case, round) => {
                 let v = &case.variant;

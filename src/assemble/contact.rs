@@ -5,6 +5,7 @@
 
 mod boundary;
 mod density;
+mod found;
 mod pieces;
 
 use super::Discretisation;

@@ -2,7 +2,7 @@
 
 use super::space::Space;
 use crate::algebra::{Contact, Inequality};
-use crate::mesh::BoundaryPart;
+use crate::mesh::{BoundaryPart, edge_vertices};
 use crate::real::{Real, point_f64};
 use crate::solve::Solution;
 use crate::study::Fields;
@@ -41,7 +41,28 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
                 .map(|psi| self.mesh.cells().iter().map(|v| psi(&corner(v))).collect()),
             multiplier,
             contact,
+            midpoints: self.midpoint_values(u),
+            found: self.found_contact(inequality, solution),
         }
+    }
+
+    /// The values of a quadratic function at the midpoints of each cell's edges, in the order of
+    /// [`edge_vertices`]; none for a linear one, whose vertices tell all.
+    fn midpoint_values(&self, u: &[T]) -> Vec<f64> {
+        if self.degree < 2 {
+            return Vec::new();
+        }
+        let middle = |&[i, j]: &[usize; 2]| {
+            let mut point = [0.0; 4];
+            (point[i], point[j]) = (0.5, 0.5);
+            self.basis_at(&point)
+        };
+        let midpoints: Vec<_> = edge_vertices(D).iter().map(middle).collect();
+        let of_cell = |cell| {
+            let local = self.local_values(cell, u);
+            midpoints.iter().map(move |basis| basis.value(&local))
+        };
+        (0..self.mesh.n_cells()).flat_map(of_cell).collect()
     }
 
     /// The measure of domain or contact boundary that belongs to each unknown of the constraint set.

@@ -2,6 +2,7 @@
 
 use std::time::Instant;
 
+use super::FoundContact;
 use super::levels::VertexContact;
 use super::{Certificate, ContactErrors, Errors, ExpectedOrders, PenaltyParameters};
 use crate::algebra::{Bound, Contact, Inequality, Place, Start};
@@ -47,6 +48,10 @@ pub struct Fields {
     pub multiplier: Vec<f64>,
     /// Share of each cell's constrained unknowns in contact.
     pub contact: Vec<f64>,
+    /// A quadratic solution at the midpoints of each cell's edges; empty for a linear one.
+    pub midpoints: Vec<f64>,
+    /// The contact set found, and the multiplier's density at vertices.
+    pub found: FoundContact,
 }
 
 /// What a scheme found.

@@ -16,7 +16,10 @@ mod style;
 use super::row::Row;
 pub(super) use cost::{Cost, NamedCurve, cost_figure};
 use layout::Layout;
+pub(super) use pen::{Align, Drawn, Pen, Place, text_width};
+pub(super) use render::{Drawing, draw_png, draw_svg};
 use series::{Key, Panel, Quantity, keys, scenes};
+pub(super) use style::{INK, PAPER, colour};
 
 /// A drawing that can be written as SVG or PNG.
 #[derive(Clone, Debug)]

@@ -39,7 +39,11 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
     }
 
     /// The force of all constrained unknowns in contact, shared by the vertices around them.
-    fn vertex_forces(&self, inequality: &Inequality<T>, solution: &Solution<T>) -> Vec<f64> {
+    pub(super) fn vertex_forces(
+        &self,
+        inequality: &Inequality<T>,
+        solution: &Solution<T>,
+    ) -> Vec<f64> {
         let mut deficit = vec![0.0; inequality.size()];
         inequality.matrix.residual_f64(&inequality.load, &solution.values, &mut deficit);
         let mut forces = vec![0.0; self.mesh.vertices().len()];

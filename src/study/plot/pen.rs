@@ -5,17 +5,17 @@ use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 
 /// Why a drawing failed, as text: backends differ in their errors.
-pub(super) type Drawn = Result<(), String>;
+pub(in crate::study) type Drawn = Result<(), String>;
 
 /// A place on the drawing, to the right and down.
-pub(super) type Place = (f64, f64);
+pub(in crate::study) type Place = (f64, f64);
 
 /// The typeface. PNG files are drawn with the one of this name that [`super::render`] embeds; an
 /// SVG file names it, and viewers that lack it take the next.
 pub(super) const FAMILY: &str = "Ubuntu, DejaVu Sans, Arial, sans-serif";
 
 /// A typeface's width of a text.
-pub(super) fn text_width(text: &str, size: f64) -> f64 {
+pub(in crate::study) fn text_width(text: &str, size: f64) -> f64 {
     // Measured large, since the answer is in whole pixels.
     let measured = (FAMILY, 10.0 * size).into_font().box_size(text);
     measured.map_or(0.6 * size * text.len() as f64, |(w, _)| f64::from(w) / 10.0)
@@ -23,7 +23,7 @@ pub(super) fn text_width(text: &str, size: f64) -> f64 {
 
 /// How a text stands at its place.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Align {
+pub(in crate::study) enum Align {
     /// Starts there.
     Left,
     /// Centred.
@@ -35,7 +35,7 @@ pub(super) enum Align {
 }
 
 /// Draws on a backend with `scale` pixels to the unit.
-pub(super) struct Pen<'a, DB: DrawingBackend> {
+pub(in crate::study) struct Pen<'a, DB: DrawingBackend> {
     pub area: &'a DrawingArea<DB, Shift>,
     pub scale: f64,
     /// How much too high the backend puts text that is to be centred, in parts of its size.

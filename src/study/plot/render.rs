@@ -19,61 +19,17 @@ fn embed_font() {
     });
 }
 
-impl Figure {
-    /// Draws on any backend.
-    fn draw<DB: DrawingBackend>(&self, pen: &Pen<DB>) -> Drawn {
-        pen.area.fill(&PAPER).map_err(|e| e.to_string())?;
-        let layout = self.layout();
-        for (panel, &at) in self.panels.iter().zip(&layout.panels) {
-            draw_panel(pen, panel, at)?;
-        }
-        layout.draw_legend(pen)?;
-        pen.area.present().map_err(|e| e.to_string())
-    }
+/// What can be drawn on any backend.
+pub(in crate::study) trait Drawing {
+    /// Width and height.
+    fn size(&self) -> (f64, f64);
+    /// Draws it on empty paper.
+    fn draw<DB: DrawingBackend>(&self, pen: &Pen<DB>) -> Drawn;
 
     /// Width and height in pixels.
     fn pixels(&self, scale: u32) -> (u32, u32) {
-        let (width, height) = self.layout().size;
+        let (width, height) = self.size();
         (scale * width.ceil() as u32, scale * height.ceil() as u32)
-    }
-
-    /// The figure as the text of an SVG file.
-    ///
-    /// # Errors
-    /// The backend's reason, as text.
-    pub fn to_svg(&self) -> Result<String, String> {
-        // The backend knows whole pixels only. Drawn larger and shown smaller, lines and marks stand
-        // where they belong.
-        const FINE: u32 = 8;
-        embed_font();
-        let (size, shown) = (self.pixels(FINE), self.pixels(1));
-        let mut text = String::new();
-        {
-            let area = SVGBackend::with_string(&mut text, size).into_drawing_area();
-            self.draw(&Pen { area: &area, scale: f64::from(FINE), lift: 0.0 })?;
-        }
-        let drawn = format!("<svg width=\"{}\" height=\"{}\"", size.0, size.1);
-        let wanted = format!("<svg width=\"{}\" height=\"{}\"", shown.0, shown.1);
-        Ok(text.replacen(&drawn, &wanted, 1))
-    }
-
-    /// Writes the figure as a PNG file, two pixels to the unit where its size allows.
-    ///
-    /// # Errors
-    /// The backend's reason, as text.
-    pub fn write_png(&self, path: &Path) -> Result<(), String> {
-        embed_font();
-        let (scale, smooth) = self.resolution();
-        let drawn = self.pixels(scale * smooth);
-        let mut fine = vec![0; 3 * drawn.0 as usize * drawn.1 as usize];
-        {
-            let area = BitMapBackend::with_buffer(&mut fine, drawn).into_drawing_area();
-            self.draw(&Pen { area: &area, scale: f64::from(scale * smooth), lift: 0.14 })?;
-        }
-        let (size, pixels) = (self.pixels(scale), average(&fine, drawn, smooth));
-        let mut file = BitMapBackend::new(path, size);
-        file.blit_bitmap((0, 0), size, &pixels).map_err(|e| e.to_string())?;
-        file.present().map_err(|e| e.to_string())
     }
 
     /// Pixels to the unit, and how many times finer to draw: the backend leaves jagged edges, which
@@ -85,6 +41,78 @@ impl Figure {
         };
         [(2, 3), (2, 2), (1, 3), (1, 2)].into_iter().find(fits).unwrap_or((1, 1))
     }
+}
+
+impl Drawing for Figure {
+    fn size(&self) -> (f64, f64) {
+        self.layout().size
+    }
+
+    fn draw<DB: DrawingBackend>(&self, pen: &Pen<DB>) -> Drawn {
+        let layout = self.layout();
+        for (panel, &at) in self.panels.iter().zip(&layout.panels) {
+            draw_panel(pen, panel, at)?;
+        }
+        layout.draw_legend(pen)
+    }
+}
+
+impl Figure {
+    /// The figure as the text of an SVG file.
+    ///
+    /// # Errors
+    /// The backend's reason, as text.
+    pub fn to_svg(&self) -> Result<String, String> {
+        draw_svg(self)
+    }
+
+    /// Writes the figure as a PNG file, two pixels to the unit where its size allows.
+    ///
+    /// # Errors
+    /// The backend's reason, as text.
+    pub fn write_png(&self, path: &Path) -> Result<(), String> {
+        draw_png(self, path)
+    }
+}
+
+/// Draws on paper.
+fn draw<DB: DrawingBackend>(drawing: &impl Drawing, pen: &Pen<DB>) -> Drawn {
+    pen.area.fill(&PAPER).map_err(|e| e.to_string())?;
+    drawing.draw(pen)?;
+    pen.area.present().map_err(|e| e.to_string())
+}
+
+/// A drawing as the text of an SVG file.
+pub(in crate::study) fn draw_svg(drawing: &impl Drawing) -> Result<String, String> {
+    // The backend knows whole pixels only. Drawn larger and shown smaller, lines and marks stand
+    // where they belong.
+    const FINE: u32 = 8;
+    embed_font();
+    let (size, shown) = (drawing.pixels(FINE), drawing.pixels(1));
+    let mut text = String::new();
+    {
+        let area = SVGBackend::with_string(&mut text, size).into_drawing_area();
+        draw(drawing, &Pen { area: &area, scale: f64::from(FINE), lift: 0.0 })?;
+    }
+    let drawn = format!("<svg width=\"{}\" height=\"{}\"", size.0, size.1);
+    let wanted = format!("<svg width=\"{}\" height=\"{}\"", shown.0, shown.1);
+    Ok(text.replacen(&drawn, &wanted, 1))
+}
+
+/// Writes a drawing as a PNG file.
+pub(in crate::study) fn draw_png(drawing: &impl Drawing, path: &Path) -> Result<(), String> {
+    embed_font();
+    let (scale, smooth) = drawing.resolution();
+    let drawn = drawing.pixels(scale * smooth);
+    let mut fine = vec![0; 3 * drawn.0 as usize * drawn.1 as usize];
+    {
+        let area = BitMapBackend::with_buffer(&mut fine, drawn).into_drawing_area();
+        draw(drawing, &Pen { area: &area, scale: f64::from(scale * smooth), lift: 0.14 })?;
+    }
+    let (size, pixels) = (drawing.pixels(scale), average(&fine, drawn, smooth));
+    let mut file = BitMapBackend::new(path, size);
+    file.blit_bitmap((0, 0), size, &pixels).map_err(|e| e.to_string())?;
+    file.present().map_err(|e| e.to_string())
 }
 
 /// Each pixel the mean of a square of finer ones.

@@ -5,7 +5,7 @@ use super::pen::{Drawn, Pen, Place};
 use plotters::prelude::{DrawingBackend, RGBColor};
 
 /// Text and frames.
-pub(super) const INK: RGBColor = RGBColor(30, 30, 30);
+pub(in crate::study) const INK: RGBColor = RGBColor(30, 30, 30);
 /// Reference slopes.
 pub(super) const GREY: RGBColor = RGBColor(120, 120, 120);
 /// Lines behind the data.
@@ -13,7 +13,7 @@ pub(super) const GRID: RGBColor = RGBColor(226, 226, 226);
 /// Runs that did not converge.
 pub(super) const FAILED: RGBColor = RGBColor(214, 0, 0);
 /// Paper.
-pub(super) const PAPER: RGBColor = RGBColor(255, 255, 255);
+pub(in crate::study) const PAPER: RGBColor = RGBColor(255, 255, 255);
 
 /// Colours that remain distinct to colour-blind readers (Okabe and Ito), without yellow, which is
 /// faint on white.
@@ -55,7 +55,7 @@ const MARKS: [Mark; 10] = [
 ];
 
 /// The colour of a curve.
-pub(super) fn colour(key: usize) -> RGBColor {
+pub(in crate::study) fn colour(key: usize) -> RGBColor {
     COLOURS[key % COLOURS.len()]
 }
 

@@ -121,7 +121,7 @@ impl WorkReport {
     /// The same in LaTeX, for `\input`; it needs the package `booktabs`.
     pub fn to_latex(&self) -> String {
         let text = self.document(Table::to_latex, |line| {
-            format!("\\noindent {}\\par\n", super::table::latex(line))
+            format!("{{\\raggedright\\noindent {}\\par}}\n", super::table::latex(line))
         });
         format!("% needs \\usepackage{{booktabs}}\n{text}")
     }

@@ -39,10 +39,9 @@ impl Cell {
 
     fn latex(&self) -> String {
         match self {
-            Cell::Words(text) => latex(text),
-            Cell::Number(text, None) => power(text),
-            Cell::Number(text, Some(remark)) => format!("{} ({})", power(text), power(remark)),
             Cell::Nothing => "--".to_owned(),
+            // numbers as `1.37e-2`: written out as powers they would not fit into the line
+            _ => latex(&self.plain()),
         }
     }
 }
@@ -96,13 +95,14 @@ impl Table {
         text
     }
 
-    /// A `table` with rules of the package `booktabs`.
+    /// A `table` with rules of the package `booktabs`, small and tight so that a dozen columns fit
+    /// into the width of the text.
     pub fn to_latex(&self) -> String {
         let columns: String =
             (0..self.columns.len()).map(|k| if self.is_left(k) { 'l' } else { 'r' }).collect();
         let line = |cells: Vec<String>| format!("{} \\\\\n", cells.join(" & "));
         let mut text = format!(
-            "\\begin{{table}}\n\\centering\\small\n\\caption{{{}}}\n\\begin{{tabular}}{{{columns}}}\n\\toprule\n",
+            "\\begin{{table}}\n\\centering\\scriptsize\\setlength{{\\tabcolsep}}{{2pt}}\n\\caption{{{}}}\n\\begin{{tabular}}{{{columns}}}\n\\toprule\n",
             latex(&self.title)
         );
         text += &line(self.columns.iter().map(|c| latex(c)).collect());
@@ -139,14 +139,6 @@ pub(super) fn latex(text: &str) -> String {
     escaped
 }
 
-/// A number in LaTeX, its power of ten written out.
-fn power(text: &str) -> String {
-    match text.split_once('e') {
-        Some((digits, exponent)) => format!("${digits}\\cdot 10^{{{exponent}}}$"),
-        None => format!("${text}$"),
-    }
-}
-
 /// Words in Markdown: characters that would be markup as they look.
 pub(super) fn markdown(text: &str) -> String {
     let mut escaped = String::new();
@@ -161,7 +153,7 @@ pub(super) fn markdown(text: &str) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::{Cell, Table, latex, markdown, power};
+    use super::{Cell, Table, latex, markdown};
 
     #[test]
     fn special_characters_are_written_as_they_look() {
@@ -171,8 +163,6 @@ mod tests {
         );
         assert_eq!(latex("$1 #2"), "\\$1 \\#2");
         assert_eq!(markdown("a|b_c*d"), "a\\|b\\_c\\*d");
-        assert_eq!(power("1.37e-2"), "$1.37\\cdot 10^{-2}$");
-        assert_eq!(power("12"), "$12$");
     }
 
     #[test]
@@ -192,6 +182,6 @@ mod tests {
         assert_eq!(table.to_text(), text);
         assert!(table.to_markdown().contains("| :-- | --: |\n| p1 | 8 |\n| wopsip | - |\n"));
         assert!(table.to_latex().contains("\\begin{tabular}{lr}\n\\toprule\nscheme & n \\\\\n"));
-        assert!(table.to_latex().contains("cr & $1\\cdot 10^{-3}$ ($1.5$) \\\\\n\\bottomrule"));
+        assert!(table.to_latex().contains("cr & 1e-3 (1.5) \\\\\n\\bottomrule"));
     }
 }

@@ -1,0 +1,191 @@
+//! A solution as a picture: the function, the contact set found against the exact free boundary, the
+//! jumps across facets and the multiplier, as PNG and SVG.
+//!
+//! `cargo run --release --example pictures -- --help` tells the options. Exit codes: 0 if every
+//! solve converged, 1 if one did not (its last iterate is drawn, and said to be one), 2 if the
+//! request was wrong.
+
+use std::fs;
+use std::io::{ErrorKind, Write};
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+
+use clap::Parser;
+use unilateral::error::Error;
+use unilateral::mesh::Mesh;
+use unilateral::scenes::{self, AnyScene, Parameters, Scene};
+use unilateral::solve::Outcome;
+use unilateral::study::{
+    AnyScheme, CellFields, Fields, Picture, Placement, SCHEMES, SchemeOptions, Slice, Solved,
+    scheme_by_name, solve_level, write_pvd, write_vtu,
+};
+
+/// A wrong request, as a message.
+type Request<T> = Result<T, String>;
+
+/// Draws the solution of a scheme on a scene.
+#[derive(Parser, Debug)]
+#[command(name = "pictures", version, about)]
+struct Options {
+    /// Scene by name
+    #[arg(long, default_value = "radial-2d")]
+    scene: String,
+    /// Scheme by name, with a placement of the bounds after a colon, as in wopsip:facet-means
+    #[arg(long, default_value = "wopsip")]
+    scheme: String,
+    /// Subdivisions of the scene's shortest side; by default 16, in space 8
+    #[arg(long, value_name = "N")]
+    level: Option<usize>,
+    /// In space: the coordinate that the slice fixes, x, y or z
+    #[arg(long, value_parser = ["x", "y", "z"], requires = "at")]
+    across: Option<String>,
+    /// In space: the value of that coordinate
+    #[arg(long, value_name = "X", requires = "across", allow_negative_numbers = true)]
+    at: Option<f64>,
+    /// Also write the fields of these levels as .vtu files and a .pvd file that lists them
+    #[arg(long, value_delimiter = ',', value_name = "N[,N...]")]
+    series: Vec<usize>,
+    /// Where the files go
+    #[arg(long, value_name = "DIR", default_value = "target/pictures")]
+    out: PathBuf,
+}
+
+fn main() -> ExitCode {
+    match run(&Options::parse()) {
+        Ok(true) => ExitCode::SUCCESS,
+        Ok(false) => ExitCode::from(1),
+        Err(message) => {
+            let _ = writeln!(std::io::stderr(), "error: {message}");
+            ExitCode::from(2)
+        }
+    }
+}
+
+/// Whether every solve converged.
+fn run(options: &Options) -> Request<bool> {
+    let entry = scenes::by_name(&options.scene).ok_or_else(|| {
+        let names: Vec<String> = scenes::catalogue().into_iter().map(|e| e.name).collect();
+        format!("there is no scene {}; there are: {}", options.scene, names.join(", "))
+    })?;
+    match entry.make(&Parameters::default()).map_err(|e| e.to_string())? {
+        AnyScene::One(scene) => draw(options, &scene),
+        AnyScene::Two(scene) => draw(options, &scene),
+        AnyScene::Three(scene) => draw(options, &scene),
+    }
+}
+
+fn scheme<const D: usize>(choice: &str) -> Request<Box<dyn AnyScheme<f64, D>>> {
+    let (name, place) = match choice.split_once(':') {
+        Some((name, place)) => (name, Some(place)),
+        None => (choice, None),
+    };
+    let placement = match place {
+        None => Placement::default(),
+        Some(place) => Placement::by_name(place).ok_or_else(|| {
+            let names = Placement::ALL.map(|p| p.0).join(", ");
+            format!("there is no placement {place}; there are: {names}")
+        })?,
+    };
+    scheme_by_name(name, &SchemeOptions { placement, ..SchemeOptions::default() }).ok_or_else(
+        || {
+            let names: Vec<&str> = SCHEMES.iter().map(|s| s.0).collect();
+            format!("there is no scheme {name}; there are: {}", names.join(", "))
+        },
+    )
+}
+
+fn draw<const D: usize>(options: &Options, scene: &Scene<D>) -> Request<bool> {
+    let scheme = scheme::<D>(&options.scheme)?;
+    let level = options.level.unwrap_or(if D == 3 { 8 } else { 16 });
+    let slice = match (&options.across, options.at) {
+        (Some(name), Some(at)) => {
+            Some(Slice { axis: ["x", "y", "z"].iter().position(|n| n == name).unwrap_or(2), at })
+        }
+        _ => None,
+    };
+    let (mesh, solved) = solve_level(scene, &*scheme, level).map_err(|e| e.to_string())?;
+    let fields = fields(&solved, level)?;
+    let converged = solved.outcome == Outcome::Converged;
+    let mut title =
+        format!("{}: {} ({}), level {level}", scene.name, scheme.name(), scheme.constraint());
+    if !converged {
+        title += &format!(", NOT CONVERGED: {}", solved.outcome.name());
+    }
+    let picture = Picture::of(&title, &scene.problem, &mesh, fields, slice);
+    let name = file_name(scene, &*scheme, level);
+    let written = picture
+        .and_then(|picture| picture.write(&options.out, &name))
+        .map_err(|e| e.to_string())?;
+    for path in written {
+        print(&format!("{}\n", path.display()))?;
+    }
+    Ok(series(options, scene, &*scheme)? && converged)
+}
+
+/// Writes the fields of all levels of the series; whether all converged.
+fn series<const D: usize>(
+    options: &Options,
+    scene: &Scene<D>,
+    scheme: &dyn AnyScheme<f64, D>,
+) -> Request<bool> {
+    let mut files = Vec::new();
+    let mut converged = true;
+    for &level in &options.series {
+        let (mesh, solved) = solve_level(scene, scheme, level).map_err(|e| e.to_string())?;
+        let path = options.out.join(format!("{}.vtu", file_name(scene, scheme, level)));
+        write_fields(&path, &mesh, fields(&solved, level)?, scene).map_err(|e| e.to_string())?;
+        converged &= solved.outcome == Outcome::Converged;
+        files.push((level as f64, path));
+    }
+    if !files.is_empty() {
+        let name = format!("{}-{}-{}.pvd", scene.name, scheme.name(), scheme.constraint());
+        let path = options.out.join(name.replace(' ', "-"));
+        write_pvd(&path, &files).map_err(|e| e.to_string())?;
+        print(&format!("{}\n", path.display()))?;
+    }
+    Ok(converged)
+}
+
+fn write_fields<const D: usize>(
+    path: &Path,
+    mesh: &Mesh<f64, D>,
+    fields: &Fields,
+    scene: &Scene<D>,
+) -> Result<(), Error> {
+    if let Some(directory) = path.parent() {
+        fs::create_dir_all(directory).map_err(|e| Error::Write {
+            path: directory.display().to_string(),
+            why: e.to_string(),
+        })?;
+    }
+    let multiplier = scene.problem.is_constrained().then_some(&fields.multiplier[..]);
+    let fields = CellFields {
+        u: &fields.u,
+        obstacle: fields.obstacle.as_deref(),
+        multiplier,
+        contact: &fields.contact,
+    };
+    write_vtu(path, mesh, &fields)
+}
+
+fn fields(solved: &Solved, level: usize) -> Request<&Fields> {
+    solved.fields.as_ref().ok_or_else(|| {
+        format!("level {level}: {}: there is nothing to draw", solved.outcome.name())
+    })
+}
+
+fn file_name<const D: usize>(
+    scene: &Scene<D>,
+    scheme: &dyn AnyScheme<f64, D>,
+    level: usize,
+) -> String {
+    format!("{}-{}-{}-{level}", scene.name, scheme.name(), scheme.constraint()).replace(' ', "-")
+}
+
+/// Prints; whoever closed the pipe wants no more.
+fn print(text: &str) -> Request<()> {
+    match std::io::stdout().write_all(text.as_bytes()) {
+        Err(e) if e.kind() != ErrorKind::BrokenPipe => Err(format!("cannot print: {e}")),
+        _ => Ok(()),
+    }
+}

@@ -1,0 +1,299 @@
+//! Pictures of solutions, looked at as a reader of their files would.
+
+use std::path::PathBuf;
+
+use unilateral::mesh::{BoundaryPart, Mesh, edge_vertices};
+use unilateral::prelude::*;
+use unilateral::scenes::{BoxDomain, Scene};
+use unilateral::study::{
+    CellFields, Fields, FoundContact, Picture, Slice, solve_level, write_pvd, write_vtu,
+};
+
+/// The fill of areas in contact.
+const CONTACT: &str = "#96BEDE";
+/// Parts of a unit in the coordinates of an SVG file, and units across the data of a panel where
+/// two stand in a row.
+const FINE: f64 = 8.0;
+const ACROSS: f64 = 204.0;
+
+/// The picture of a scheme on a scene, with the mesh and what was found.
+fn picture<const D: usize>(
+    scene: &Scene<D>,
+    scheme: &dyn AnyScheme<f64, D>,
+    level: usize,
+) -> (Picture, Mesh<f64, D>, Fields) {
+    let (mesh, solved) = solve_level(scene, scheme, level).unwrap();
+    assert_eq!(solved.outcome.name(), "converged");
+    let fields = solved.fields.unwrap();
+    let picture = Picture::of("a & b", &scene.problem, &mesh, &fields, None).unwrap();
+    (picture, mesh, fields)
+}
+
+fn cube<const D: usize>(n: usize) -> Mesh<f64, D> {
+    let sides = [[BoundaryPart::Dirichlet; 2]; D];
+    let domain = BoxDomain { lower: Point::zeros(), upper: Point::repeat(1.0), sides };
+    Mesh::kuhn_box(&domain, [n; D]).unwrap()
+}
+
+/// A function with these values on the cells of a mesh.
+fn function<const D: usize>(mesh: &Mesh<f64, D>, value: impl Fn(usize) -> f64) -> Fields {
+    Fields { u: (0..mesh.cells().len()).map(value).collect(), ..Fields::default() }
+}
+
+fn volume<const D: usize>(mesh: &Mesh<f64, D>, cells: &[usize]) -> f64 {
+    cells.iter().map(|&cell| mesh.geometry(cell).volume).sum()
+}
+
+/// Filled paths: colour, and the corners of each polygon.
+fn paths(svg: &str) -> Vec<(String, Vec<Vec<[f64; 2]>>)> {
+    let attribute = |line: &str, name: &str| -> String {
+        line.split(&format!("{name}=\"")).nth(1).unwrap().split('"').next().unwrap().to_owned()
+    };
+    let polygon = |text: &str| {
+        let mut at = [0.0; 2];
+        let step = |part: &str| {
+            let numbers: Vec<f64> = part.split(' ').map(|n| n.parse().unwrap()).collect();
+            at = [at[0] + numbers[0], at[1] + numbers[1]];
+            at
+        };
+        text.trim_start_matches('M').split('l').map(step).collect()
+    };
+    let filled = svg.lines().filter(|l| l.starts_with("<path shape-rendering"));
+    let of = |line: &str| {
+        let path = attribute(line, " d");
+        let polygons = path.split('z').filter(|p| !p.is_empty()).map(polygon).collect();
+        (attribute(line, "fill"), polygons)
+    };
+    filled.map(of).collect()
+}
+
+fn area(polygon: &[[f64; 2]]) -> f64 {
+    let next = polygon.iter().cycle().skip(1);
+    0.5 * polygon.iter().zip(next).map(|(a, b)| a[0] * b[1] - a[1] * b[0]).sum::<f64>().abs()
+}
+
+fn areas(svg: &str) -> Vec<(String, f64)> {
+    let sum = |polygons: &Vec<Vec<[f64; 2]>>| polygons.iter().map(|p| area(p)).sum();
+    paths(svg).iter().map(|(fill, polygons)| (fill.clone(), sum(polygons))).collect()
+}
+
+#[test]
+fn the_area_painted_is_that_of_the_cells_in_contact() {
+    let scene = scenes::radial::<2>(1.0);
+    let (picture, mesh, fields) = picture(&scene, &Wopsip::default(), 16);
+    let contact = volume(&mesh, &fields.found.cells);
+    // near that of the unit disc, which is the exact set
+    assert!((contact - std::f64::consts::PI).abs() < 0.4, "{contact}");
+    assert!((picture.contact_measure() - contact).abs() < 1e-12);
+    assert!((picture.measure() - 9.0).abs() < 1e-12);
+    let painted = areas(&picture.to_svg().unwrap());
+    let of_contact = painted.iter().filter(|(fill, _)| fill == CONTACT).map(|p| p.1);
+    // the other area of this colour is the entry of the legend
+    let largest = of_contact.fold(0.0, f64::max);
+    let unit = FINE * ACROSS / 3.0;
+    assert!((largest / unit.powi(2) / contact - 1.0).abs() < 2e-3, "{largest}");
+}
+
+#[test]
+fn all_that_is_drawn_lies_on_the_paper_and_the_legend_names_it() {
+    let scene = scenes::radial::<2>(1.0);
+    let (picture, ..) = picture(&scene, &Sipg::default(), 8);
+    let svg = picture.to_svg().unwrap();
+    let size: Vec<f64> = svg
+        .split("viewBox=\"0 0 ")
+        .nth(1)
+        .unwrap()
+        .split('"')
+        .next()
+        .unwrap()
+        .split(' ')
+        .map(|n| n.parse().unwrap())
+        .collect();
+    let paths = paths(&svg);
+    assert!(paths.len() > 20, "{}", paths.len());
+    for [x, y] in paths.into_iter().flat_map(|p| p.1).flatten() {
+        assert!((0.0..=size[0]).contains(&x) && (0.0..=size[1]).contains(&y), "{x} {y}");
+    }
+    for text in ["in contact", "free boundary, found", "free boundary, exact", "|mean jump|"] {
+        assert!(svg.contains(text), "{text}");
+    }
+    assert!(svg.contains("a &amp; b") && svg.ends_with("</svg>\n"));
+}
+
+#[test]
+fn jumps_are_drawn_as_they_are() {
+    // one and two on the triangles of the square: one jump, across the diagonal
+    let mesh = cube::<2>(1);
+    let fields = function(&mesh, |k| if k < 3 { 1.0 } else { 2.0 });
+    let problem = Problem::new();
+    let picture = Picture::of("two", &problem, &mesh, &fields, None).unwrap();
+    let halves = areas(&picture.to_svg().unwrap());
+    let square = (FINE * ACROSS).powi(2);
+    let large: Vec<_> = halves.iter().filter(|(_, area)| *area > 0.4 * square).collect();
+    assert_eq!(large.len(), 2, "{halves:?}");
+    assert_ne!(large[0].0, large[1].0);
+    assert!(large.iter().all(|(_, area)| (area / square - 0.5).abs() < 1e-3));
+    // a continuous function has none
+    let continuous = Picture::of("one", &problem, &mesh, &function(&mesh, |_| 1.0), None);
+    assert!(continuous.unwrap().to_svg().unwrap().contains("none beyond rounding"));
+}
+
+#[test]
+fn slices_of_a_cube_have_area_one_and_volumes_are_kept() {
+    let mesh = cube::<3>(2);
+    let mut fields = function(&mesh, |k| k as f64);
+    fields.found.cells = (0..mesh.n_cells()).step_by(3).collect();
+    let problem = Problem::<3>::new();
+    let of = |axis: usize, at: f64| {
+        Picture::of("slice", &problem, &mesh, &fields, Some(Slice { axis, at })).unwrap()
+    };
+    for axis in 0..3 {
+        // within cells, along faces, at both ends
+        for at in [0.1, 0.3, 0.5, 0.77, 0.0, 1.0] {
+            let measure = of(axis, at).measure();
+            assert!((measure - 1.0).abs() < 1e-12, "{axis} {at}: {measure}");
+        }
+        // sections of cells are quadratic between vertices: two points of Gauss are exact
+        let shift = 0.25 / 3.0_f64.sqrt();
+        let heights = [0.25 - shift, 0.25 + shift, 0.75 - shift, 0.75 + shift];
+        let sum: f64 = heights.iter().map(|&at| 0.25 * of(axis, at).contact_measure()).sum();
+        assert!((sum - volume(&mesh, &fields.found.cells)).abs() < 1e-12, "{axis}: {sum}");
+    }
+}
+
+#[test]
+fn contact_in_space_is_seen_on_its_own_boundary() {
+    let scene = scenes::signorini_line_3d();
+    let (picture, mesh, fields) = picture(&scene, &ConformingP1, 4);
+    let facets = fields.found.facets.iter();
+    let area: f64 = facets.map(|&(cell, k)| mesh.geometry(cell).facet_measure(k)).sum();
+    assert!(area > 1.0, "{area}");
+    assert!((picture.contact_measure() - area).abs() < 1e-12);
+    assert!(picture.to_svg().unwrap().contains("free boundary, exact"));
+}
+
+#[test]
+fn density_and_midpoints_are_those_of_the_solution() {
+    let scene = scenes::radial::<2>(1.0);
+    let (_, mesh, fields) = picture(&scene, &ConformingP1, 16);
+    let inside = |x: &Point<f64, 2>| x.norm() < 0.6;
+    let density = fields.found.density.iter().zip(mesh.vertices()).filter(|(_, x)| inside(x));
+    let density: Vec<f64> = density.map(|(d, _)| d.unwrap()).collect();
+    assert!(density.len() > 20);
+    // the load alone holds the membrane down there
+    assert!(density.iter().all(|d| (d - 2.0).abs() < 1e-9), "{density:?}");
+    assert!(fields.midpoints.is_empty());
+
+    let (_, mesh, fields) = picture(&scene, &ConformingP2, 16);
+    let exact = &scene.problem.exact.as_ref().unwrap().value;
+    let edges = edge_vertices(2);
+    assert_eq!(fields.midpoints.len(), edges.len() * mesh.n_cells());
+    for (k, u) in fields.midpoints.iter().enumerate() {
+        let cell = mesh.cell(k / edges.len());
+        let ends = edges[k % edges.len()].map(|v| mesh.vertices()[cell[v] as usize]);
+        let error = (u - exact(&(0.5 * (ends[0] + ends[1])))).abs();
+        assert!(error < 5e-3, "{error}");
+    }
+}
+
+#[test]
+fn a_string_is_drawn_as_a_curve_over_its_obstacle() {
+    let (picture, mesh, fields) = picture(&scenes::radial::<1>(1.0), &Wopsip::default(), 16);
+    assert!((picture.measure() - 3.0).abs() < 1e-12);
+    let contact = volume(&mesh, &fields.found.cells);
+    assert!((1.5..2.5).contains(&contact), "{contact}");
+    assert!((picture.contact_measure() - contact).abs() < 1e-12);
+    let svg = picture.to_svg().unwrap();
+    for text in ["obstacle", "density found", "exact density", "free boundary, exact"] {
+        assert!(svg.contains(text), "{text}");
+    }
+}
+
+#[test]
+fn pictures_are_the_same_bytes_for_any_number_of_threads() {
+    let scene = scenes::signorini_2d();
+    let bytes = |threads: usize| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+        pool.install(|| {
+            let (picture, ..) = picture(&scene, &Wopsip::default(), 8);
+            let directory = scratch(&format!("threads-{threads}"));
+            let files = picture.write(&directory, "same").unwrap();
+            let bytes = files.map(|file| std::fs::read(file).unwrap());
+            std::fs::remove_dir_all(directory).unwrap();
+            bytes
+        })
+    };
+    let one = bytes(1);
+    assert_eq!(one[0][1..4], *b"PNG");
+    assert!(one == bytes(3));
+}
+
+#[test]
+fn what_cannot_be_drawn_is_refused() {
+    let problem = Problem::<2>::new();
+    let mesh = cube::<2>(2);
+    let message = |fields: &Fields, slice| {
+        Picture::of("", &problem, &mesh, fields, slice).unwrap_err().to_string()
+    };
+    let slice = Some(Slice { axis: 2, at: 0.5 });
+    assert!(message(&function(&mesh, |_| 0.0), slice).contains("a mesh in space"));
+    assert!(message(&Fields::default(), None).contains("this mesh of 8 cells"));
+    let found = FoundContact { cells: vec![8], ..FoundContact::default() };
+    let beyond = Fields { found, ..function(&mesh, |_| 0.0) };
+    assert!(message(&beyond, None).contains("this mesh of 8 cells"));
+
+    let no_level = solve_level::<f64, 2>(&scenes::radial(1.0), &ConformingP1, 0).map(drop);
+    assert!(no_level.unwrap_err().to_string().contains("at least one subdivision"));
+
+    let (problem, mesh) = (Problem::<3>::new(), cube::<3>(1));
+    let outside = Some(Slice { axis: 0, at: 1.5 });
+    let missed = Picture::of("", &problem, &mesh, &function(&mesh, |_| 0.0), outside);
+    assert!(missed.unwrap_err().to_string().contains("misses the mesh"));
+
+    let (problem, mesh) = (Problem::<2>::new(), cube::<2>(100));
+    let steep = function(&mesh, |k| (k % 3) as f64);
+    let large = Picture::of("", &problem, &mesh, &steep, None).unwrap().to_svg();
+    assert!(large.unwrap_err().to_string().contains("choose a coarser level, or PNG"));
+}
+
+/// A directory of its own for a test.
+fn scratch(name: &str) -> PathBuf {
+    let path = std::env::temp_dir().join(format!("unilateral-{}-{name}", std::process::id()));
+    std::fs::create_dir_all(&path).unwrap();
+    path
+}
+
+#[test]
+fn a_series_lists_every_level_and_its_files_are_there() {
+    let directory = scratch("series");
+    let levels = [1, 2, 4];
+    let series: Vec<(f64, PathBuf)> = levels
+        .iter()
+        .map(|&level| {
+            let mesh = cube::<2>(level);
+            let path = directory.join(format!("square-{level}.vtu"));
+            let (u, contact) = (vec![1.0; 3 * mesh.n_cells()], vec![0.0; mesh.n_cells()]);
+            let fields = CellFields { u: &u, obstacle: None, multiplier: None, contact: &contact };
+            write_vtu(&path, &mesh, &fields).unwrap();
+            (level as f64, path)
+        })
+        .collect();
+    let path = directory.join("square.pvd");
+    write_pvd(&path, &series).unwrap();
+    let text = std::fs::read_to_string(&path).unwrap();
+    assert!(text.contains("<VTKFile type=\"Collection\""));
+    let attribute = |line: &str, name: &str| -> String {
+        line.split(&format!("{name}=\"")).nth(1).unwrap().split('"').next().unwrap().to_owned()
+    };
+    let sets: Vec<&str> = text.lines().filter(|l| l.starts_with("<DataSet")).collect();
+    assert_eq!(sets.len(), levels.len());
+    for (line, level) in sets.iter().zip(levels) {
+        assert_eq!(attribute(line, "timestep"), level.to_string());
+        // relative to the list itself
+        assert_eq!(attribute(line, "file"), format!("square-{level}.vtu"));
+        let piece = std::fs::read_to_string(directory.join(attribute(line, "file"))).unwrap();
+        assert!(piece.contains(&format!("NumberOfCells=\"{}\"", 2 * level * level)));
+    }
+    assert!(write_pvd(&directory.join("none/square.pvd"), &series).is_err());
+    std::fs::remove_dir_all(directory).unwrap();
+}
