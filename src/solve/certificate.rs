@@ -73,9 +73,9 @@ pub(super) fn certify_with_noise<T: Real>(
     if !inequality.is_well_formed() || u.len() != n {
         return (Certificate::WORTHLESS, 0.0);
     }
-    let Inequality { matrix, load, bounds, .. } = inequality;
+    let Inequality { load, bounds, .. } = inequality;
     let mut deficit = vec![0.0; n];
-    matrix.residual_f64(load, u, &mut deficit);
+    inequality.residual_f64(u, &mut deficit);
 
     let mut displacement = 0.0_f64;
     let [mut work, mut energy, mut diagonal_energy, mut load_energy, mut stiffness] = [0.0; 5];

@@ -279,6 +279,14 @@ impl<'a, T: Real> Inexact<'a, T> {
         }
     }
 
+    /// The residual where the matrix is kept factored.
+    pub(super) fn exact_residual(&self) -> Option<Vec<f64>> {
+        let factored = self.inequality.factored.as_ref()?;
+        let mut residual = vec![0.0; self.values.len()];
+        factored.residual(|i| self.values[i].to_f64(), &mut residual);
+        Some(residual)
+    }
+
     fn rest_on_bounds(&mut self) {
         for (i, bound) in self.inequality.bounds.iter().enumerate() {
             let known = known_value(bound, self.state[i]);
@@ -324,11 +332,13 @@ impl<'a, T: Real> Inexact<'a, T> {
             *value = nearest;
         }
         if is_moved {
+            let exact = self.exact_residual();
             let values = &self.values;
             let Inequality { matrix, load, .. } = self.inequality;
             each_mut(&mut self.residual, |range, r| {
                 for (i, r) in range.zip(r) {
-                    *r = T::lit(load[i].to_f64() - matrix.row_dot_f64(i, values));
+                    let assembled = || load[i].to_f64() - matrix.row_dot_f64(i, values);
+                    *r = T::lit(exact.as_ref().map_or_else(assembled, |exact| exact[i]));
                 }
             });
         }
