@@ -313,6 +313,7 @@ impl<'a, T: Real> Inexact<'a, T> {
             linear: self.linear,
             linear_solver: preconditioner.name(),
             algebraic_bound: bound,
+            forces: Vec::new(),
         }
     }
 

@@ -13,7 +13,9 @@ use crate::mesh::Mesh;
 use crate::problem::Problem;
 use crate::real::Real;
 use crate::scheme::{Scheme, Setting};
-use crate::solve::{InequalitySolver, Nearby, Outcome, Solution, certify, is_positive_definite};
+use crate::solve::{
+    InequalitySolver, Nearby, Outcome, Solution, certify_with_forces, is_positive_definite,
+};
 
 /// What a scheme is asked to solve.
 pub struct Task<'a, T: Real, const D: usize> {
@@ -267,9 +269,10 @@ fn solve<T: Real, const D: usize>(
         linear: solution.linear,
         linear_solver: solution.linear_solver,
         certificate: match usable {
-            true => {
-                Certificate { algebraic_bound: solution.algebraic_bound, ..certify(&inequality, u) }
-            }
+            true => Certificate {
+                algebraic_bound: solution.algebraic_bound,
+                ..certify_with_forces(&inequality, u, &solution.forces)
+            },
             false => Certificate::WORTHLESS,
         },
         assemble_seconds,
@@ -303,6 +306,7 @@ fn run<T: Real, const D: usize>(
             linear: 0,
             linear_solver: "direct",
             algebraic_bound: None,
+            forces: Vec::new(),
         };
         return (solution, clock.elapsed().as_secs_f64());
     }
