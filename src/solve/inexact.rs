@@ -208,6 +208,10 @@ impl<'a, T: Real> Inexact<'a, T> {
                 // rounding has driven apart the residual and what the iteration thinks it is
                 course.repeats += 1;
                 if course.repeats > MOST_REPEATS {
+                    // where forces of jumps are kept beside values there is less rounding
+                    if self.inequality.factored.is_some() {
+                        return None;
+                    }
                     return Some(Outcome::Stalled);
                 }
             }

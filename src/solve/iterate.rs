@@ -143,7 +143,8 @@ impl<'a, T: Real> Iterate<'a, T> {
     }
 
     /// The same where the matrix is kept factored: values and forces of jumps are corrected together,
-    /// until corrections no longer get smaller.
+    /// until corrections no longer get smaller. If they are not small then, the matrix is singular as
+    /// far as this scalar can tell.
     fn solve_factored(
         &mut self,
         hybrid: &Hybrid<'a, T>,
@@ -155,6 +156,7 @@ impl<'a, T: Real> Iterate<'a, T> {
         let factors = hybrid.factor(&is_free)?;
         let mut mismatch = vec![0.0; self.forces.len()];
         let mut least = f64::INFINITY;
+        let mut is_lost = false;
         for correction in 0..MOST_CORRECTIONS {
             let (values, forces) = (&self.values, &self.forces);
             let value = |i: usize| values[i].to_f64();
@@ -173,6 +175,8 @@ impl<'a, T: Real> Iterate<'a, T> {
                 *force += T::lit(*change);
             }
             let is_small = size <= CORRECTED * T::EPSILON * scale;
+            // as many digits wrong as right: factors of no use
+            is_lost = size > T::EPSILON.sqrt() * scale;
             // written so that numbers that are not finite end it
             if correction >= refinements && (is_small || !(size <= 0.5 * least)) {
                 break;
@@ -182,7 +186,7 @@ impl<'a, T: Real> Iterate<'a, T> {
         let (values, forces) = (&self.values, &self.forces);
         let force = |jump: usize| forces[jump].to_f64();
         factored.residual_with_forces(|i| values[i].to_f64(), force, &mut self.deficit);
-        Ok(())
+        if is_lost { Err(FactorError::Singular) } else { Ok(()) }
     }
 
     /// Finds the scale and keeps the iterate if it is the best; false if it is not finite.

@@ -234,7 +234,7 @@ fn solve<T: Real, const D: usize>(
     let (limit, shortest) = (space.rounding_limit(), task.mesh.shortest_edge());
     if shortest < limit {
         warnings.push(format!(
-            "edges of length {shortest:.1e} are below {limit:.1e}, where rounding of the assembled matrix in {} may outweigh the discretisation error",
+            "edges of length {shortest:.1e} are below {limit:.1e}, where rounding in {} may outweigh the discretisation error",
             T::NAME
         ));
     }
