@@ -148,6 +148,15 @@ impl<T: Real> Factored<T> {
         self.residual_with_forces(u, |f| forces[f], r);
     }
 
+    /// The size of energies: `u.K u + p.p / s + |c.u|`, the last by its terms.
+    pub fn energy(&self, u: impl Fn(usize) -> f64 + Sync, forces: impl Fn(usize) -> f64) -> f64 {
+        let of_unknown =
+            |i: usize| u(i) * self.stiffness(i, &u) + (u(i) * self.load[i].to_f64()).abs();
+        let of_jump = |f: usize| forces(f).powi(2) / self.weights[f].to_f64();
+        (0..self.load.len()).map(of_unknown).sum::<f64>()
+            + (0..self.n_jumps()).map(of_jump).sum::<f64>()
+    }
+
     /// By how much jumps and forces disagree: `g - M u + p / s`, one entry.
     #[inline]
     pub fn mismatch(&self, jump: usize, u: impl Fn(usize) -> f64, force: f64) -> f64 {

@@ -12,7 +12,8 @@
 //! ```
 //!
 //! in which no weight meets a stiffness. Only where some unknowns of a block are fixed and there are
-//! fewer free ones than jumps, weights remain beside stiffnesses; refinement removes what they do.
+//! fewer free ones than jumps, weights remain beside stiffnesses; there they are cut down, and
+//! refinement restores them.
 //!
 //! Source of the elimination: static condensation of hybrid methods, B. Cockburn,
 //! J. Gopalakrishnan, R. Lazarov, SIAM J. Numer. Anal. 47 (2009), 1319-1365.
@@ -20,6 +21,10 @@
 use super::linear::{FactorError, Factors};
 use crate::algebra::{Factored, SparseMatrix, Term};
 use crate::real::Real;
+
+/// Weights that hide a stiffness are cut down to this part of what hides it entirely; refinement
+/// restores them.
+const KEPT: f64 = 1e-3;
 
 /// No mean: the jump has one side only.
 const NONE: u32 = u32::MAX;
@@ -181,7 +186,9 @@ impl<'a, T: Real> Hybrid<'a, T> {
         let n_free = self.free(block, is_free).count();
         let n = n_free + sides.len();
         // forces in units of the stiffness
-        let largest = self.free(block, is_free).map(|i| stiffness(i, i)).fold(0.0, f64::max);
+        let diagonal = || self.free(block, is_free).map(|i| stiffness(i, i));
+        let largest = diagonal().fold(0.0, f64::max);
+        let least = diagonal().filter(|&d| d > 0.0).fold(largest, f64::min);
         let unit = if largest > 0.0 { largest } else { 1.0 };
         out.clear();
         out.resize(n * n, 0.0);
@@ -195,8 +202,14 @@ impl<'a, T: Real> Hybrid<'a, T> {
                 out[l * n + k] = weight;
             }
         }
+        // a block with fewer free unknowns than jumps is tied to what is across in more ways than it
+        // can move: there weights hide its stiffness
+        let most = match n_free > 0 && n_free < sides.len() {
+            true => least * KEPT / T::EPSILON,
+            false => f64::INFINITY,
+        };
         for (l, side) in (n_free..).zip(sides) {
-            out[l * n + l] = -unit / self.weight(side);
+            out[l * n + l] = -unit / self.weight(side).min(most);
         }
         let sign = invert_in_place(out, n).ok_or(FactorError::Singular)?;
         // as many negative eigenvalues as jumps, if the stiffness has none
@@ -216,14 +229,14 @@ impl<'a, T: Real> Hybrid<'a, T> {
     }
 
     /// Solves `K u + M^T p = r` on the free unknowns, `M u - p / s = t`; `r` becomes `u`, zero where
-    /// fixed, and `t` becomes `p`.
+    /// fixed, and `t` becomes `p`. Returns the energy `u.K u + p.p / s = u.r - p.t`.
     pub fn solve(
         &self,
         factors: &HybridFactors<T>,
         is_free: &[bool],
         r: &mut [f64],
         t: &mut [f64],
-    ) {
+    ) -> f64 {
         let mut load = vec![0.0; self.pattern.size()];
         let mut local = Vec::new();
         for block in 0..self.starts.len() - 1 {
@@ -239,21 +252,27 @@ impl<'a, T: Real> Hybrid<'a, T> {
         factors.means.solve_in_place(&mut means, 1);
         let mean = |k: u32| if k == NONE { 0.0 } else { means[k as usize].to_f64() };
         let given = t.to_vec();
+        let mut energy = 0.0;
         for block in 0..self.starts.len() - 1 {
             self.right_side(block, is_free, r, &given, &mean, &mut local);
             let n = self.factored.block;
             let mut k = 0;
             for i in block * n..(block + 1) * n {
-                r[i] = if is_free[i] { factors.row(block, k, &local) } else { 0.0 };
+                let value = if is_free[i] { factors.row(block, k, &local) } else { 0.0 };
+                energy += value * r[i];
+                r[i] = value;
                 k += usize::from(is_free[i]);
             }
             for (k, side) in (k..).zip(self.sides(block)) {
                 // both sides know the force; one is enough
                 if side.sign > 0.0 || side.mean == NONE {
-                    t[side.jump as usize] = side.sign * factors.row(block, k, &local);
+                    let force = side.sign * factors.row(block, k, &local);
+                    energy -= force * given[side.jump as usize];
+                    t[side.jump as usize] = force;
                 }
             }
         }
+        energy
     }
 
     /// What stands on the right of a block's equations.

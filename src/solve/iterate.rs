@@ -164,7 +164,7 @@ impl<'a, T: Real> Iterate<'a, T> {
                 *out = factored.mismatch(jump, value, forces[jump].to_f64());
             }
             factored.residual_with_forces(value, |f| forces[f].to_f64(), &mut self.deficit);
-            hybrid.solve(&factors, &is_free, &mut self.deficit, &mut mismatch);
+            let work = hybrid.solve(&factors, &is_free, &mut self.deficit, &mut mismatch);
             let (mut size, mut scale) = (0.0_f64, 0.0_f64);
             for (value, change) in self.values.iter_mut().zip(&self.deficit) {
                 *value += T::lit(*change);
@@ -175,8 +175,10 @@ impl<'a, T: Real> Iterate<'a, T> {
                 *force += T::lit(*change);
             }
             let is_small = size <= CORRECTED * T::EPSILON * scale;
-            // as many digits wrong as right: factors of no use
-            is_lost = size > T::EPSILON.sqrt() * scale;
+            // by a quarter of the digits; in energy, because single unknowns of thin cells may be lost
+            let (values, forces) = (&self.values, &self.forces);
+            let energy = factored.energy(|i| values[i].to_f64(), |f| forces[f].to_f64());
+            is_lost = work.abs() > T::EPSILON.sqrt() * energy;
             // written so that numbers that are not finite end it
             if correction >= refinements && (is_small || !(size <= 0.5 * least)) {
                 break;
