@@ -300,3 +300,29 @@ fn table_in_the_plane() {
         }
     }
 }
+
+/// The table of errors under an obstacle, with the seconds that the solution takes.
+#[test]
+#[ignore = "a table, a minute"]
+fn table_under_an_obstacle() {
+    let scene = scenes::radial::<2>(1.0);
+    for n in [16, 32, 64, 128] {
+        for eta in [1.0, 1e4, 1e8] {
+            let mesh = scene.domain.mesh::<f64>(n).unwrap();
+            let scheme = FacetMeans(wopsip(eta));
+            let space =
+                Discretisation::new(&scheme, &scene.problem, &mesh, Default::default()).unwrap();
+            let clock = std::time::Instant::now();
+            let inequality = space.inequality().unwrap();
+            print!("| {n} | {eta:e} | {:.3}s", clock.elapsed().as_secs_f64());
+            for is_old in [true, false] {
+                let clock = std::time::Instant::now();
+                let found = solution(&inequality, is_old);
+                let seconds = clock.elapsed().as_secs_f64();
+                let error = space.errors(&found.values).unwrap().l2.unwrap();
+                print!(" | {error:.3e} {} {} {seconds:.3}s", found.outcome, found.outer);
+            }
+            println!(" |");
+        }
+    }
+}

@@ -28,7 +28,7 @@ use crate::real::Real;
 /// not finite or sizes do not match, all four are infinite.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
 pub struct Certificate {
-    /// Largest violation of a bound or Dirichlet value, or of a jump by its force, over `U`.
+    /// Largest violation of a bound or Dirichlet value, over `U`.
     pub feasibility: f64,
     /// Dual norm over `E` of the multipliers in contact that have the wrong sign, each counted up
     /// to the distance to the opposite bound, where it would have the right one.
@@ -36,7 +36,8 @@ pub struct Certificate {
     /// Energy norm with the diagonal, over `E`, of the smaller of gap and step where both are
     /// positive.
     pub complementarity: f64,
-    /// Dual norm over `E` of the residual off contact.
+    /// Dual norm over `E` of the residual off contact; if larger, the largest difference, over `U`,
+    /// of a jump and what its force makes of it ([`certify_with_forces`]).
     pub residual: f64,
     /// Guaranteed relative bound on the energy-norm distance to the discrete solution.
     pub algebraic_bound: Option<f64>,
@@ -65,8 +66,8 @@ pub fn certify<T: Real>(inequality: &Inequality<T>, u: &[T]) -> Certificate {
 
 /// The same with the forces `p` of the jumps of a [`Factored`](crate::algebra::Factored) matrix,
 /// where they are known besides the values: forces are then `c - K u - M^T p`, without the rounding
-/// that differences of values have, and what `p / s` and the jumps differ by is a displacement like
-/// the violation of a bound. No forces (or not as many as jumps): those that the values have.
+/// that differences of values have, and what jumps and `p / s` differ by is measured as a
+/// displacement. No forces (or not as many as jumps): those that the values have.
 pub fn certify_with_forces<T: Real>(
     inequality: &Inequality<T>,
     u: &[T],
@@ -93,7 +94,7 @@ pub(super) fn certify_with_noise<T: Real>(
     let mut displacement = 0.0_f64;
     let [mut work, mut energy, mut diagonal_energy, mut load_energy, mut stiffness] = [0.0; 5];
     let [mut wrong, mut complementarity, mut residual] = [0.0_f64; 3];
-    let mut violation = mismatch;
+    let mut violation = 0.0_f64;
     for i in 0..n {
         let (x, b, r) = (u[i].to_f64(), load[i].to_f64(), -deficit[i]);
         let d = positive_diagonal(inequality, i);
@@ -109,8 +110,7 @@ pub(super) fn certify_with_noise<T: Real>(
         complementarity += d * local.complementarity.powi(2);
         residual += d * local.residual.powi(2);
     }
-    if ![displacement, work, load_energy, wrong, residual, violation].iter().all(|x| x.is_finite())
-    {
+    if ![displacement, work, load_energy, wrong, residual, mismatch].iter().all(|x| x.is_finite()) {
         return (Certificate::WORTHLESS, 0.0);
     }
     let displacement = if displacement > 0.0 { displacement } else { 1.0 };
@@ -122,7 +122,7 @@ pub(super) fn certify_with_noise<T: Real>(
         feasibility: violation / displacement,
         multiplier: norm(wrong),
         complementarity: norm(complementarity),
-        residual: norm(residual),
+        residual: norm(residual).max(mismatch / displacement),
         algebraic_bound: None,
     };
     (certificate, displacement * norm(stiffness))
