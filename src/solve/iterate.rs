@@ -179,8 +179,9 @@ impl<'a, T: Real> Iterate<'a, T> {
             let (values, forces) = (&self.values, &self.forces);
             let energy = factored.energy(|i| values[i].to_f64(), |f| forces[f].to_f64());
             is_lost = work.abs() > T::EPSILON.sqrt() * energy;
-            // written so that numbers that are not finite end it
-            if correction >= refinements && (is_small || !(size <= 0.5 * least)) {
+            // numbers that are not finite do not get smaller either
+            let goes_on = size <= 0.5 * least && !is_small;
+            if correction >= refinements && !goes_on {
                 break;
             }
             least = size;
