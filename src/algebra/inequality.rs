@@ -1,6 +1,6 @@
 //! The algebraic variational inequality.
 
-use super::SparseMatrix;
+use super::{Factored, SparseMatrix};
 use crate::real::Real;
 
 /// What an unknown may be. Absent bounds are absent: there is no large number that means none.
@@ -153,6 +153,8 @@ pub struct Inequality<T> {
     pub places: Vec<Place>,
     /// What a solver starts from.
     pub start: Start,
+    /// Matrix and load once more, not multiplied out, where that is more exact.
+    pub factored: Option<Factored<T>>,
 }
 
 impl<T: Real> Inequality<T> {
@@ -172,6 +174,27 @@ impl<T: Real> Inequality<T> {
         self.matrix.size() == self.size()
             && self.bounds.len() == self.size()
             && self.matrix.is_well_formed()
+            && self.factored.as_ref().is_none_or(|f| f.is_well_formed(self.size()))
+    }
+    /// `r = b - A u` in `f64`, of the matrix as exact as it is known.
+    ///
+    /// # Panics
+    /// If `u` or `r` is shorter than the number of unknowns.
+    pub fn residual_f64(&self, u: &[T], r: &mut [f64]) {
+        match &self.factored {
+            Some(factored) => factored.residual(|i| u[i].to_f64(), r),
+            None => self.matrix.residual_f64(&self.load, u, r),
+        }
+    }
+    /// The same of unknowns that are not stored in the scalar.
+    ///
+    /// # Panics
+    /// If `r` is shorter than the number of unknowns.
+    pub fn residual_of(&self, u: &(dyn Fn(usize) -> f64 + Sync), r: &mut [f64]) {
+        match &self.factored {
+            Some(factored) => factored.residual(u, r),
+            None => self.matrix.residual_of(&self.load, u, r),
+        }
     }
     /// Whether every number is finite. A bound at infinity is not: leave it out instead.
     pub fn is_finite(&self) -> bool {

@@ -75,6 +75,14 @@ impl<T: Real> SparseMatrix<T> {
             .enumerate()
             .for_each(|(i, r)| *r = b[i].to_f64() - self.row_dot_f64(i, x));
     }
+    /// The same of an `x` that is not stored in the scalar.
+    pub fn residual_of(&self, b: &[T], x: &(dyn Fn(usize) -> f64 + Sync), r: &mut [f64]) {
+        r.par_iter_mut().with_min_len(4096).enumerate().for_each(|(i, r)| {
+            let (columns, values) = self.row(i);
+            let product = |s: f64, (&j, a): (&u32, &T)| s + a.to_f64() * x(j as usize);
+            *r = b[i].to_f64() - columns.iter().zip(values).fold(0.0, product);
+        });
+    }
     /// `b - A x`.
     pub fn residual(&self, b: &[T], x: &[T]) -> Vec<T> {
         let mut r = vec![T::lit(0.0); b.len()];

@@ -2,8 +2,10 @@
 //!
 //! Nothing here knows a mesh, a dimension or a scheme.
 
+mod factored;
 mod inequality;
 mod matrix;
 
+pub use factored::{Factored, Term};
 pub use inequality::{Bound, Contact, Inequality, Place, Start};
 pub use matrix::SparseMatrix;

@@ -17,7 +17,7 @@ use crate::quadrature::{OrthonormalPolynomials, Rule, insert};
 use crate::real::{Point, Real, point_f64};
 
 /// A cell, one of its facets and the moments of the Dirichlet datum on it.
-type FacetDatum = (usize, (usize, Vec<f64>));
+pub(super) type FacetDatum = (usize, (usize, Vec<f64>));
 
 /// What is added to a cell's part of the load.
 type OfCell<'w, T> = &'w (dyn Fn(usize, &mut [T]) -> Result<(), Error> + Sync);
@@ -179,17 +179,30 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         form: &dyn AnyForm<T, D>,
         metrics: &dyn Fn() -> &'m Metrics<T>,
     ) -> Result<Vec<T>, Error> {
-        let mut by_cell = self.load_by_cell()?;
-        if self.has_weak_data() {
-            let lifted = self.add_dirichlet(form, &mut by_cell)?;
-            if !lifted.is_empty() {
-                self.add_lifted(form, metrics(), &lifted, &mut by_cell);
-            }
-        }
-        Ok(self.gather_load(by_cell))
+        Ok(self.load_and_data(form, metrics, &mut |_| {})?.0)
     }
 
-    /// Dirichlet data as the trial trace of the facet form; returns those whose jumps are lifted.
+    /// The load of all unknowns and the Dirichlet data that the facet form imposes; `before` sees
+    /// the load of cells without them, empty if there is none.
+    pub fn load_and_data<'m>(
+        &self,
+        form: &dyn AnyForm<T, D>,
+        metrics: &dyn Fn() -> &'m Metrics<T>,
+        before: &mut dyn FnMut(&[T]),
+    ) -> Result<(Vec<T>, Vec<FacetDatum>), Error> {
+        let mut by_cell = self.load_by_cell()?;
+        before(&by_cell);
+        let mut data = Vec::new();
+        if self.has_weak_data() {
+            data = self.add_dirichlet(form, &mut by_cell)?;
+            if form.is_lifted() {
+                self.add_lifted(form, metrics(), &data, &mut by_cell);
+            }
+        }
+        Ok((self.gather_load(by_cell), data))
+    }
+
+    /// Dirichlet data as the trial trace of the facet form; returns their moments.
     fn add_dirichlet(
         &self,
         form: &dyn AnyForm<T, D>,
@@ -199,7 +212,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         let degree = form.moments(self.degree);
         let table = self.facet_table(degree);
         let moments = FacetMoments::new(D, degree, self.quadrature.facet);
-        let mut lifted = Vec::new();
+        let mut data = Vec::new();
         for (cell, local) in self.facets_of(BoundaryPart::Dirichlet) {
             let metric = self.metric(cell);
             let here = self.side(cell, local, &metric);
@@ -215,11 +228,9 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
                     *out += facet.measure * form.integrand(v, datum, penalty);
                 }
             }
-            if form.is_lifted() {
-                lifted.push((cell, (local, values)));
-            }
+            data.push((cell, (local, values)));
         }
-        Ok(lifted)
+        Ok(data)
     }
 
     /// What the products of lifts make of Dirichlet data.

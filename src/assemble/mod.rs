@@ -11,6 +11,7 @@ mod contact;
 pub(crate) mod count;
 mod data;
 mod dofs;
+mod factored;
 mod fields;
 mod gather;
 mod lifted;
@@ -148,9 +149,13 @@ impl<'a, T: Real, const D: usize, S: Scheme<T, D>> Discretisation<'a, T, D, S> {
     /// # Errors
     /// [`Error::DataNotFinite`], [`Error::EmptyConstraint`].
     pub fn inequality(&self) -> Result<Inequality<T>, Error> {
-        let load = self.load()?;
+        let (load, own_load, data) = self.loads()?;
         let bounds = self.bounds()?;
         let matrix = self.matrix();
+        let factored = own_load.map(|own_load| {
+            let (metrics, weights) = self.prepared();
+            factored::factored(&self.space, &self.form, (metrics, weights), own_load, data)
+        });
         // the loops that fill the matrix cannot fail: whoever is to blame is sought afterwards
         if let Some(reaction) = data::ReactionTerm::new(&self.space)
             && !matrix.values.iter().all(|v| v.to_f64().is_finite())
@@ -164,7 +169,18 @@ impl<'a, T: Real, const D: usize, S: Scheme<T, D>> Discretisation<'a, T, D, S> {
             bounds,
             places: self.places(),
             start: Start::Cold,
+            factored,
         })
+    }
+    /// The load; if the matrix is kept factored too, the load without Dirichlet data, and these.
+    fn loads(&self) -> Result<factored::Loads<T>, Error> {
+        let is_factored = Self::OWNS_ROWS && factored::applies::<T, D, _>(&self.form);
+        let mut own = None;
+        let (load, data) =
+            self.space.load_and_data(&self.form, &|| &self.prepared().0, &mut |by_cell| {
+                own = is_factored.then(|| by_cell.to_vec());
+            })?;
+        Ok((load, own, data))
     }
     /// The bounds of all unknowns.
     ///

@@ -84,11 +84,12 @@ pub trait FacetForm<T: Real, const D: usize>: Send + Sync {
         let _ = facet;
         None
     }
-    /// The length of an edge below which rounding in the assembled matrix, with this rounding unit
-    /// and on a domain of this diameter, may outweigh the discretisation error.
+    /// The length of an edge below which rounding, with this rounding unit and on a domain of this
+    /// diameter, may outweigh the discretisation error.
     ///
     /// By default for a condition number of `(h / length)^-2` against an error of
-    /// `(h / length)^2`; the factor of one half is measured.
+    /// `(h / length)^2`; the factor of one half is measured. A penalty does not enter: interior penalty
+    /// has one of the size of the stiffness, an over-penalty is kept apart from it.
     fn rounding_limit(&self, epsilon: f64, length: f64) -> f64 {
         0.5 * length * epsilon.powf(0.25)
     }

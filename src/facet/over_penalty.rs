@@ -62,14 +62,6 @@ impl<T: Real, const D: usize> FacetForm<T, D> for OverPenalty {
             }
         }
     }
-    /// With lengths in units of the domain's diameter the condition number grows like
-    /// `eta h^-(2k+2)` and the discretisation error falls like `h^(k+1)`: they meet where `h` is
-    /// `epsilon eta` to the power `1 / (3k+3)`.
-    fn rounding_limit(&self, epsilon: f64, length: f64) -> f64 {
-        let k = self.degree as i32;
-        let eta = self.eta / length.powi(2 * k);
-        0.5 * length * (epsilon * eta).powf(1.0 / f64::from(3 * k + 3))
-    }
     fn parameters(&self) -> PenaltyParameters {
         let k = self.degree;
         let rule = match self.rule {

@@ -284,8 +284,8 @@ impl ActiveSet {
         if !matches!(outcome, Outcome::IterationLimit | Outcome::Cycling) {
             return outcome;
         }
-        let best = iterate.best_values();
-        let (certificate, unit) = certify_with_noise(iterate.inequality, best);
+        let (best, forces) = iterate.best_values();
+        let (certificate, unit) = certify_with_noise(iterate.inequality, best, forces);
         let rounding = 8.0 * self.band * T::EPSILON * unit.max(1.0);
         if certificate.largest() > rounding {
             outcome
@@ -300,7 +300,8 @@ impl ActiveSet {
     /// The active set rests: whether the complementarity conditions hold indeed, by the
     /// certificate, which knows nothing of it.
     fn confirm<T: Real>(&self, iterate: &Iterate<'_, T>, band: f64) -> Result<Outcome, Outcome> {
-        let (certificate, unit) = certify_with_noise(iterate.inequality, &iterate.values);
+        let (certificate, unit) =
+            certify_with_noise(iterate.inequality, &iterate.values, &iterate.forces);
         let rounding = 8.0 * band * T::EPSILON;
         // rounding may excuse much for a large penalty, but not that the answer is worthless
         let largest = (rounding * unit.max(1.0)).min(T::CERTIFICATE_LIMIT);

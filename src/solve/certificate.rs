@@ -36,7 +36,8 @@ pub struct Certificate {
     /// Energy norm with the diagonal, over `E`, of the smaller of gap and step where both are
     /// positive.
     pub complementarity: f64,
-    /// Dual norm over `E` of the residual off contact.
+    /// Dual norm over `E` of the residual off contact; if larger, the largest difference, over `U`,
+    /// of a jump and what its force makes of it ([`certify_with_forces`]).
     pub residual: f64,
     /// Guaranteed relative bound on the energy-norm distance to the discrete solution.
     pub algebraic_bound: Option<f64>,
@@ -60,7 +61,19 @@ impl Certificate {
 
 /// Certifies `u` as a solution of the inequality; see [`Certificate`].
 pub fn certify<T: Real>(inequality: &Inequality<T>, u: &[T]) -> Certificate {
-    certify_with_noise(inequality, u).0
+    certify_with_forces(inequality, u, &[])
+}
+
+/// The same with the forces `p` of the jumps of a [`Factored`](crate::algebra::Factored) matrix,
+/// where they are known besides the values: forces are then `c - K u - M^T p`, without the rounding
+/// that differences of values have, and what jumps and `p / s` differ by is measured as a
+/// displacement. No forces (or not as many as jumps): those that the values have.
+pub fn certify_with_forces<T: Real>(
+    inequality: &Inequality<T>,
+    u: &[T],
+    forces: &[T],
+) -> Certificate {
+    certify_with_noise(inequality, u, forces).0
 }
 
 /// The certificate, and the size its forces have if every entry of `A u` is wrong by one unit of
@@ -68,14 +81,15 @@ pub fn certify<T: Real>(inequality: &Inequality<T>, u: &[T]) -> Certificate {
 pub(super) fn certify_with_noise<T: Real>(
     inequality: &Inequality<T>,
     u: &[T],
+    forces: &[T],
 ) -> (Certificate, f64) {
     let n = inequality.size();
     if !inequality.is_well_formed() || u.len() != n {
         return (Certificate::WORTHLESS, 0.0);
     }
-    let Inequality { matrix, load, bounds, .. } = inequality;
+    let Inequality { load, bounds, .. } = inequality;
     let mut deficit = vec![0.0; n];
-    matrix.residual_f64(load, u, &mut deficit);
+    let mismatch = residual_with_forces(inequality, u, forces, &mut deficit);
 
     let mut displacement = 0.0_f64;
     let [mut work, mut energy, mut diagonal_energy, mut load_energy, mut stiffness] = [0.0; 5];
@@ -96,7 +110,7 @@ pub(super) fn certify_with_noise<T: Real>(
         complementarity += d * local.complementarity.powi(2);
         residual += d * local.residual.powi(2);
     }
-    if ![displacement, work, load_energy, wrong, residual].iter().all(|x| x.is_finite()) {
+    if ![displacement, work, load_energy, wrong, residual, mismatch].iter().all(|x| x.is_finite()) {
         return (Certificate::WORTHLESS, 0.0);
     }
     let displacement = if displacement > 0.0 { displacement } else { 1.0 };
@@ -108,10 +122,33 @@ pub(super) fn certify_with_noise<T: Real>(
         feasibility: violation / displacement,
         multiplier: norm(wrong),
         complementarity: norm(complementarity),
-        residual: norm(residual),
+        residual: norm(residual).max(mismatch / displacement),
         algebraic_bound: None,
     };
     (certificate, displacement * norm(stiffness))
+}
+
+/// `b - A u` with the forces of jumps if they are given; returns the largest difference of jumps.
+fn residual_with_forces<T: Real>(
+    inequality: &Inequality<T>,
+    u: &[T],
+    forces: &[T],
+    deficit: &mut [f64],
+) -> f64 {
+    let value = |i: usize| u[i].to_f64();
+    match &inequality.factored {
+        Some(factored) if forces.len() == factored.n_jumps() => {
+            let force = |jump: usize| forces[jump].to_f64();
+            factored.residual_with_forces(value, force, deficit);
+            let mismatch = |jump| factored.mismatch(jump, value, force(jump)).abs();
+            // written so that a number that is not finite stays
+            (0..forces.len()).map(mismatch).fold(0.0, |m, x| if x <= m { m } else { x })
+        }
+        _ => {
+            inequality.residual_f64(u, deficit);
+            0.0
+        }
+    }
 }
 
 /// The diagonal entry as a scale: if it is not positive, the largest entry of the row, or one.

@@ -58,7 +58,7 @@ pub(super) fn resolve<T: Real>(
 
     // The constant: the residual with the members at zero and the inner unknowns in balance.
     let mut deficit = vec![0.0; n];
-    matrix.residual_f64(&inequality.load, &values, &mut deficit);
+    inequality.residual_f64(&values, &mut deficit);
     let mut x: Vec<T> = inner.iter().map(|&i| T::lit(deficit[i as usize])).collect();
     factors.solve_in_place(&mut x, 1);
     for (&i, &x) in inner.iter().zip(&x) {

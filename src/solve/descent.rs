@@ -64,7 +64,7 @@ impl<T: Real> Place<T> {
     fn of(iterate: &Iterate<'_, T>) -> Self {
         let values = iterate.values.clone();
         let mut force = vec![0.0; values.len()];
-        iterate.inequality.matrix.residual_f64(&iterate.inequality.load, &values, &mut force);
+        iterate.inequality.residual_f64(&values, &mut force);
         Self { values, force }
     }
 

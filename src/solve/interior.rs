@@ -187,13 +187,7 @@ impl<'a, T: Real> InteriorPoint<'a, T> {
 
     /// `b - A u` and the forces of all bounds; returns the energy.
     fn deficit(&self, deficit: &mut [f64]) -> f64 {
-        let Inequality { matrix, load, .. } = self.inequality;
-        for i in 0..deficit.len() {
-            let (columns, entries) = matrix.row(i);
-            let terms = columns.iter().zip(entries);
-            let product: f64 = terms.map(|(&j, a)| a.to_f64() * self.values[j as usize]).sum();
-            deficit[i] = load[i].to_f64() - product;
-        }
+        self.inequality.residual_of(&|i| self.values[i], deficit);
         let energy = self.energy();
         for wall in &self.walls {
             deficit[wall.unknown] += wall.side * wall.force;

@@ -2,6 +2,7 @@
 
 use super::certificate::positive_diagonal;
 use super::cycles::History;
+use super::hybrid::Hybrid;
 use super::interior::InteriorPoint;
 use super::linear::{FactorError, Factors};
 use super::{Outcome, Solution};
@@ -22,7 +23,16 @@ pub(super) struct Iterate<'a, T> {
     best: Best<T>,
     free: Vec<u32>,
     correction: Vec<T>,
+    /// Forces of jumps where the matrix is kept factored; else empty.
+    pub forces: Vec<T>,
+    hybrid: Option<Hybrid<'a, T>>,
 }
+
+/// Most corrections where the matrix is kept factored.
+const MOST_CORRECTIONS: usize = 12;
+
+/// Corrections below this many units of rounding are not repeated.
+const CORRECTED: f64 = 16.0;
 
 /// The iterate whose projected Jacobi step is smallest.
 struct Best<T> {
@@ -30,6 +40,7 @@ struct Best<T> {
     outer: usize,
     values: Vec<T>,
     state: Vec<Contact>,
+    forces: Vec<T>,
 }
 
 impl<'a, T: Real> Iterate<'a, T> {
@@ -46,6 +57,9 @@ impl<'a, T: Real> Iterate<'a, T> {
             .enumerate()
             .map(|(i, bound)| rest(bound, guess.get(i).copied().unwrap_or_default()))
             .collect();
+        // what is malformed is refused before anything is solved
+        let factored = inequality.factored.as_ref().filter(|_| inequality.is_well_formed());
+        let forces = vec![T::lit(0.0); factored.map_or(0, |factored| factored.n_jumps())];
         Self {
             inequality,
             outer: 0,
@@ -56,20 +70,23 @@ impl<'a, T: Real> Iterate<'a, T> {
                 outer: 0,
                 values: values.clone(),
                 state: state.clone(),
+                forces: forces.clone(),
             },
             values,
             state,
             free: Vec::new(),
             correction: Vec::new(),
+            forces,
+            hybrid: factored.map(Hybrid::new),
         }
     }
 
     /// The current iterate if it converged, else the best one.
     pub fn into_solution(self, outcome: Outcome) -> Solution<T> {
-        let (values, contact) = if outcome == Outcome::Converged {
-            (self.values, self.state)
+        let (values, contact, forces) = if outcome == Outcome::Converged {
+            (self.values, self.state, self.forces)
         } else {
-            (self.best.values, self.best.state)
+            (self.best.values, self.best.state, self.best.forces)
         };
         Solution {
             values,
@@ -79,6 +96,7 @@ impl<'a, T: Real> Iterate<'a, T> {
             linear: 0,
             linear_solver: "direct",
             algebraic_bound: None,
+            forces,
         }
     }
 
@@ -105,6 +123,11 @@ impl<'a, T: Real> Iterate<'a, T> {
         let states = bounds.iter().zip(&self.state).enumerate();
         let free = states.filter(|(_, (bound, state))| known_value(bound, **state).is_none());
         self.free.extend(free.map(|(i, _)| i as u32));
+        if let Some(hybrid) = self.hybrid.take() {
+            let solved = self.solve_factored(&hybrid, refinements);
+            self.hybrid = Some(hybrid);
+            return solved;
+        }
         let factors = Factors::new(matrix, *symmetric, &self.free)?;
         for _ in 0..=refinements {
             matrix.residual_f64(load, &self.values, &mut self.deficit);
@@ -117,6 +140,56 @@ impl<'a, T: Real> Iterate<'a, T> {
         }
         matrix.residual_f64(load, &self.values, &mut self.deficit);
         Ok(())
+    }
+
+    /// The same where the matrix is kept factored: values and forces of jumps are corrected together,
+    /// until corrections no longer get smaller. If they are not small then, the matrix is singular as
+    /// far as this scalar can tell.
+    fn solve_factored(
+        &mut self,
+        hybrid: &Hybrid<'a, T>,
+        refinements: usize,
+    ) -> Result<(), FactorError> {
+        let Some(factored) = &self.inequality.factored else { return Ok(()) };
+        let mut is_free = vec![false; self.values.len()];
+        self.free.iter().for_each(|&i| is_free[i as usize] = true);
+        let factors = hybrid.factor(&is_free)?;
+        let mut mismatch = vec![0.0; self.forces.len()];
+        let mut least = f64::INFINITY;
+        let mut is_lost = false;
+        for correction in 0..MOST_CORRECTIONS {
+            let (values, forces) = (&self.values, &self.forces);
+            let value = |i: usize| values[i].to_f64();
+            for (jump, out) in mismatch.iter_mut().enumerate() {
+                *out = factored.mismatch(jump, value, forces[jump].to_f64());
+            }
+            factored.residual_with_forces(value, |f| forces[f].to_f64(), &mut self.deficit);
+            let work = hybrid.solve(&factors, &is_free, &mut self.deficit, &mut mismatch);
+            let (mut size, mut scale) = (0.0_f64, 0.0_f64);
+            for (value, change) in self.values.iter_mut().zip(&self.deficit) {
+                *value += T::lit(*change);
+                size = size.max(change.abs());
+                scale = scale.max(value.to_f64().abs());
+            }
+            for (force, change) in self.forces.iter_mut().zip(&mismatch) {
+                *force += T::lit(*change);
+            }
+            let is_small = size <= CORRECTED * T::EPSILON * scale;
+            // by a quarter of the digits; in energy, because single unknowns of thin cells may be lost
+            let (values, forces) = (&self.values, &self.forces);
+            let energy = factored.energy(|i| values[i].to_f64(), |f| forces[f].to_f64());
+            is_lost = work.abs() > T::EPSILON.sqrt() * energy;
+            // numbers that are not finite do not get smaller either
+            let goes_on = size <= 0.5 * least && !is_small;
+            if correction >= refinements && !goes_on {
+                break;
+            }
+            least = size;
+        }
+        let (values, forces) = (&self.values, &self.forces);
+        let force = |jump: usize| forces[jump].to_f64();
+        factored.residual_with_forces(|i| values[i].to_f64(), force, &mut self.deficit);
+        if is_lost { Err(FactorError::Singular) } else { Ok(()) }
     }
 
     /// Finds the scale and keeps the iterate if it is the best; false if it is not finite.
@@ -143,6 +216,7 @@ impl<'a, T: Real> Iterate<'a, T> {
             self.best.outer = self.outer;
             self.best.values.copy_from_slice(&self.values);
             self.best.state.copy_from_slice(&self.state);
+            self.best.forces.copy_from_slice(&self.forces);
         }
         true
     }
@@ -220,15 +294,16 @@ impl<'a, T: Real> Iterate<'a, T> {
         self.values.iter().zip(&self.inequality.bounds).map(off).all(|off| off <= noise)
     }
 
-    /// The best values.
-    pub fn best_values(&self) -> &[T] {
-        &self.best.values
+    /// The best values, and the forces of jumps.
+    pub fn best_values(&self) -> (&[T], &[T]) {
+        (&self.best.values, &self.best.forces)
     }
 
     /// Goes back to the best iterate.
     pub fn return_to_best(&mut self) {
         self.values.copy_from_slice(&self.best.values);
         self.state.copy_from_slice(&self.best.state);
+        self.forces.copy_from_slice(&self.best.forces);
     }
 
     /// Puts every unknown on a bound, the lower one if it has two; false if none was off it.
@@ -256,6 +331,14 @@ impl<'a, T: Real> Iterate<'a, T> {
     /// largest force the diagonal could exert.
     pub fn force_noise(&self, i: usize, band: f64, spread: f64) -> f64 {
         let Inequality { matrix, load, bounds, .. } = self.inequality;
+        let global = positive_diagonal(self.inequality, i) * self.scale;
+        let spread = spread * T::EPSILON * global;
+        if let Some(hybrid) = &self.hybrid {
+            let value = |j: usize| self.values[j].to_f64();
+            let is_known = |j: usize| known_value(&bounds[j], self.state[j]).is_some();
+            let (free, known) = hybrid.force_sizes(i, &value, &self.forces, &is_known);
+            return band * (T::EPSILON * free + f64::EPSILON * known) + spread;
+        }
         let (columns, entries) = matrix.row(i);
         let mut free = 0.0;
         let mut known = load[i].to_f64().abs();
@@ -267,8 +350,7 @@ impl<'a, T: Real> Iterate<'a, T> {
                 None => free += force,
             }
         }
-        let global = positive_diagonal(self.inequality, i) * self.scale;
-        band * (T::EPSILON * free + f64::EPSILON * known) + spread * T::EPSILON * global
+        band * (T::EPSILON * free + f64::EPSILON * known) + spread
     }
 }
 

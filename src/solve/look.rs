@@ -38,11 +38,13 @@ impl<T: Real> Inexact<'_, T> {
     pub fn look(&mut self, band: f64) -> Look {
         let Inequality { matrix, load, .. } = self.inequality;
         let values = &self.values;
+        let exact = self.exact_residual();
         let sizes = map_mut(&mut self.residual, |range, r| {
             let (mut energy, mut scale) = (0.0, 0.0_f64);
             for (i, r) in range.zip(r) {
                 let (x, b) = (values[i].to_f64(), load[i].to_f64());
-                let residual = b - matrix.row_dot_f64(i, values);
+                let residual =
+                    exact.as_ref().map_or_else(|| b - matrix.row_dot_f64(i, values), |r| r[i]);
                 *r = T::lit(residual);
                 energy += x * (b - residual);
                 scale = scale.max(x.abs());

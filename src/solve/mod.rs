@@ -11,6 +11,7 @@ mod descent;
 mod facet_pairs;
 mod facet_split;
 mod hierarchy;
+mod hybrid;
 mod inexact;
 mod interior;
 mod iterate;
@@ -28,7 +29,7 @@ mod smoother;
 mod transfer;
 
 pub use active_set::{ActiveSet, LastResort};
-pub use certificate::{Certificate, active, certify};
+pub use certificate::{Certificate, active, certify, certify_with_forces};
 pub use hierarchy::{Coarser, VertexLevel};
 pub use kernels::SparseKernels;
 pub use linear::{FactorError, Factors, is_positive_definite};
@@ -107,6 +108,9 @@ pub struct Solution<T> {
     pub linear_solver: &'static str,
     /// Bound on the energy norm of the error over that of the solution, where the solver knows one.
     pub algebraic_bound: Option<f64>,
+    /// The forces of jumps where the matrix is kept [`Factored`](crate::algebra::Factored) and the
+    /// solver knows them better than the values tell; else empty.
+    pub forces: Vec<T>,
 }
 
 /// A solver of the algebraic inequality.

@@ -14,7 +14,9 @@ use crate::mesh::Mesh;
 use crate::problem::Problem;
 use crate::real::Real;
 use crate::scheme::{Scheme, Setting};
-use crate::solve::{InequalitySolver, Nearby, Outcome, Solution, certify, is_positive_definite};
+use crate::solve::{
+    InequalitySolver, Nearby, Outcome, Solution, certify_with_forces, is_positive_definite,
+};
 
 /// What a scheme is asked to solve.
 pub struct Task<'a, T: Real, const D: usize> {
@@ -237,7 +239,7 @@ fn solve<T: Real, const D: usize>(
     let (limit, shortest) = (space.rounding_limit(), task.mesh.shortest_edge());
     if shortest < limit {
         warnings.push(format!(
-            "edges of length {shortest:.1e} are below {limit:.1e}, where rounding of the assembled matrix in {} may outweigh the discretisation error",
+            "edges of length {shortest:.1e} are below {limit:.1e}, where rounding in {} may outweigh the discretisation error",
             T::NAME
         ));
     }
@@ -272,9 +274,10 @@ fn solve<T: Real, const D: usize>(
         linear: solution.linear,
         linear_solver: solution.linear_solver,
         certificate: match usable {
-            true => {
-                Certificate { algebraic_bound: solution.algebraic_bound, ..certify(&inequality, u) }
-            }
+            true => Certificate {
+                algebraic_bound: solution.algebraic_bound,
+                ..certify_with_forces(&inequality, u, &solution.forces)
+            },
             false => Certificate::WORTHLESS,
         },
         assemble_seconds,
@@ -308,6 +311,7 @@ fn run<T: Real, const D: usize>(
             linear: 0,
             linear_solver: "direct",
             algebraic_bound: None,
+            forces: Vec::new(),
         };
         return (solution, clock.elapsed().as_secs_f64());
     }

@@ -42,7 +42,15 @@ pub fn inequality<T: Real>(
     bounds: Vec<Bound<T>>,
 ) -> Inequality<T> {
     let load = load.iter().map(|&b| T::lit(b)).collect();
-    Inequality { matrix, symmetric: true, load, bounds, places: vec![], start: Start::Cold }
+    Inequality {
+        matrix,
+        symmetric: true,
+        load,
+        bounds,
+        places: vec![],
+        start: Start::Cold,
+        factored: None,
+    }
 }
 
 /// The five-point matrix of minus the Laplacian times `h^2` on `n x m` nodes.
