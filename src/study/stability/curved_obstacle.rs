@@ -1,0 +1,144 @@
+//! Curved obstacles, on which an over-penalty with bounds at vertices lifts off in a pattern.
+
+use super::Plan;
+use super::Sink;
+use super::choice::{Choice, Penalty, compared_and};
+use super::claim::{Claim, figures, fitted_order, listed, of};
+use super::runs::{row, solved, solver, solver_with};
+use crate::algebra::{Contact, Inequality};
+use crate::assemble::DataQuadrature;
+use crate::error::Error;
+use crate::mesh::Mesh;
+use crate::real::{Point, Real};
+use crate::scenes::{self, Scene};
+use crate::solve::{InequalitySolver, LastResort, Outcome, Solution};
+
+/// An obstacle touched in a disc around the origin, with its radius.
+type Touched = (fn() -> Scene<2>, f64);
+
+const PROBLEMS: [Touched; 2] =
+    [(scenes::ball_2d, 0.697_965_148_223_373_6), (scenes::cone::<2>, 0.5)];
+
+pub(super) fn plan(plan: &mut Plan<'_>) {
+    let levels: &[usize] = plan.pick(&[8, 16, 32], &[8, 16, 32, 64]);
+    let further = [
+        Choice::new("wopsip", Penalty::Eta(1.0)),
+        Choice::new("wopsip", Penalty::Eta(100.0)),
+        Choice::new("wopsip:facet-means", Penalty::Eta(1.0)),
+        Choice::new("wopsip:facet-means", Penalty::Eta(100.0)),
+    ];
+    for choice in compared_and(&further) {
+        for touched in PROBLEMS {
+            plan.add("curved-obstacle", choice, &touched.0().name, move |c, sink| {
+                sweep(touched, c, levels, sink)
+            });
+        }
+    }
+}
+
+fn sweep(touched: Touched, choice: &Choice, levels: &[usize], sink: Sink<'_>) -> Result<(), Error> {
+    let mut multipliers = Vec::new();
+    for &level in levels {
+        let error = single(touched, choice, level, sink)?;
+        multipliers.extend(error.map(|e| (level, e)));
+    }
+    let scene = touched.0();
+    let claim = Claim::new("multiplier-order", choice)
+        .on(&scene.name)
+        .quantity("order of the multiplier in L1, fitted");
+    // the multiplier of the cone is not bounded
+    let claim = if scene.name == "ball-2d" { claim.at_least(0.9) } else { claim };
+    let order = (multipliers.len() == levels.len()).then(|| fitted_order(&multipliers)).flatten();
+    sink(claim.detail(format!("L1 error {}", listed(&multipliers))).measured(order));
+    Ok(())
+}
+
+/// All rows of a level; the error of the multiplier.
+fn single(
+    (make, radius): Touched,
+    choice: &Choice,
+    level: usize,
+    sink: Sink<'_>,
+) -> Result<Option<f64>, Error> {
+    let scene = make();
+    let mesh = scene.domain.mesh::<f64>(level)?;
+    let size = scene.domain.length() / level as f64;
+    let claim = |name| Claim::new(name, choice).on(&scene.name).level(level).at("h", size);
+    let found = row::<f64, 2>(make(), choice, level)?;
+    sink(
+        claim("certificate")
+            .quantity("largest violation of the conditions")
+            .at_most(1e-9)
+            .detail(figures(&found))
+            .measured(of(&found, |r| Some(r.certificate.largest()))),
+    );
+    let strip = 2.0 * size * 2.0 * std::f64::consts::PI * radius;
+    sink(
+        claim("contact-set")
+            .quantity("area of the difference over that of the strip")
+            .at_most(1.0)
+            .measured(of(&found, |r| r.contact.contact_area_error.map(|a| a / strip))),
+    );
+    let is_ragged = choice.scheme == "wopsip";
+    let share = share_inside(&scene, &mesh, choice, radius - 1.5 * size)?;
+    sink(
+        claim("contact-set")
+            .quantity("share of single unknowns in contact, inside")
+            .at_least(1.0)
+            .to_fail(is_ragged)
+            .measured(share),
+    );
+    let mut silent = 0;
+    let mut outcomes = Vec::new();
+    for resort in [LastResort::Never, LastResort::WhenUnsettled] {
+        let (_, solved) = solved(&scene, choice, level, &solver_with(resort), true)?;
+        let is_wrong = !(solved.certificate.largest() <= f64::CERTIFICATE_LIMIT);
+        silent += usize::from(solved.outcome == Outcome::Converged && is_wrong);
+        outcomes.push(format!("{} after {}", solved.outcome, solved.outer.unwrap_or(0)));
+        if resort == LastResort::Never {
+            let sets = solved.outer.filter(|_| solved.outcome == Outcome::Converged);
+            sink(
+                claim("iterations")
+                    .quantity("active sets tried, no last resort")
+                    .at_most(10.0)
+                    .to_fail(is_ragged && level >= 32)
+                    .detail(outcomes[0].clone())
+                    .measured(sets.map(|n| n as f64)),
+            );
+        }
+    }
+    sink(
+        claim("no-silent-failure")
+            .quantity("wrong iterates returned as converged")
+            .at_most(0.0)
+            .detail(format!("bare method: {}; with last resort: {}", outcomes[0], outcomes[1]))
+            .measured(Some(silent as f64)),
+    );
+    Ok(of(&found, |r| r.contact.multiplier_l1))
+}
+
+/// Among the bounded unknowns with nodes within a radius, the share in contact.
+fn share_inside(
+    scene: &Scene<2>,
+    mesh: &Mesh<f64, 2>,
+    choice: &Choice,
+    radius: f64,
+) -> Result<Option<f64>, Error> {
+    let scheme = choice.make::<f64, 2>();
+    let inequality: Inequality<f64> =
+        scheme.inequality(&scene.problem, mesh, DataQuadrature::default())?;
+    let solution: Solution<f64> = solver().solve(&inequality);
+    if solution.outcome != Outcome::Converged {
+        return Ok(None);
+    }
+    let (mut inside, mut touching) = (0_u32, 0_u32);
+    for (k, place) in inequality.places.iter().enumerate() {
+        let around = place.vertices();
+        let sum: Point<f64, 2> = around.iter().map(|&v| mesh.vertices()[v as usize]).sum();
+        if inequality.bounds[k].is_inequality() && (sum / around.len() as f64).norm() < radius {
+            inside += 1;
+            touching += u32::from(solution.contact[k] != Contact::Open);
+        }
+    }
+    Ok((inside > 0).then(|| f64::from(touching) / f64::from(inside)))
+}
