@@ -11,15 +11,18 @@ use crate::solve::{LastResort, Outcome};
 use crate::study::Row;
 
 pub(super) fn plan(plan: &mut Plan<'_>) {
-    let levels: &[usize] = plan.pick(&[8, 16, 32], &[8, 16, 32, 64]);
+    let levels: &[usize] = plan.pick_of(&[4, 8], &[8, 16, 32], &[8, 16, 32, 64]);
     let plane: &[fn() -> Scene<2>] = plan.pick(
         &[scenes::biactive_half_2d],
-        &[scenes::biactive_half_2d, scenes::biactive_ring_2d, || scenes::degenerate(4), || {
-            scenes::lshape_2d()
-        }],
+        &[
+            scenes::biactive_half_2d,
+            scenes::biactive_ring_2d,
+            || scenes::degenerate(4),
+            || scenes::lshape_2d(),
+        ],
     );
     let strings: &[usize] = plan.pick(&[64, 128, 256], &[64, 128, 256, 512]);
-    let finest = plan.pick(16, 32);
+    let finest = plan.pick_of(8, 16, 32);
     for choice in compared() {
         for make in plane {
             plan.add("biactive", choice, &make().name, move |c, sink| {
@@ -32,9 +35,7 @@ pub(super) fn plan(plan: &mut Plan<'_>) {
             orders(&string, c, strings, sink)?;
             steps(&string, c, strings[0], sink)
         });
-        plan.add("biactive", choice, "free boundary", move |c, sink| {
-            distances(c, finest, sink)
-        });
+        plan.add("biactive", choice, "free boundary", move |c, sink| distances(c, finest, sink));
     }
 }
 

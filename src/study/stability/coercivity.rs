@@ -43,9 +43,11 @@ fn inertia(choice: &Choice, level: usize) -> Result<super::StabilityRow, Error> 
         .quantity("negative eigenvalues")
         .at_most(0.0)
         .to_fail(is_weak)
-        .detail(least.map_or(String::new(), |l| {
-            format!("smallest eigenvalue {l:.3e} of {}", matrix.size())
-        }))
+        .detail(
+            least.map_or(String::new(), |l| {
+                format!("smallest eigenvalue {l:.3e} of {}", matrix.size())
+            }),
+        )
         .measured(Some(negative as f64)))
 }
 

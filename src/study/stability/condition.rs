@@ -1,10 +1,10 @@
 //! Condition numbers, by the method of Lanczos.
 
 use super::Plan;
+use super::Sink;
 use super::choice::{Choice, Penalty};
 use super::claim::Claim;
 use super::runs::{free_matrix, sines};
-use super::Sink;
 use crate::algebra::SparseMatrix;
 use crate::error::Error;
 use crate::kit::spectrum::{Diagonal, Factored, Lanczos, Positive};
@@ -77,8 +77,11 @@ fn factors(choice: &Choice, exponent: i32, level: usize, sink: Sink<'_>) -> Resu
 fn meshes(choice: &Choice, finest: usize, sink: Sink<'_>) -> Result<(), Error> {
     let levels = [finest / 2, finest];
     let [coarse, fine] = [both(choice, levels[0])?, both(choice, levels[1])?];
-    let parts: &[&str] =
-        if choice.is_over_penalised() { &["plain", "diagonal of means and jumps"] } else { &["plain"] };
+    let parts: &[&str] = if choice.is_over_penalised() {
+        &["plain", "diagonal of means and jumps"]
+    } else {
+        &["plain"]
+    };
     for (k, what) in parts.iter().enumerate() {
         let pair = coarse[k].zip(fine[k]);
         let order = pair.and_then(|(a, b)| {

@@ -22,7 +22,7 @@ const PROBLEMS: [Ended; 3] = [
 ];
 
 pub(super) fn plan(plan: &mut Plan<'_>) {
-    let levels: &[usize] = plan.pick(&[16, 32], &[16, 32, 64, 128]);
+    let levels: &[usize] = plan.pick_of(&[4, 8], &[16, 32], &[16, 32, 64, 128]);
     for choice in compared() {
         for ended in PROBLEMS {
             plan.add("contact-ends", choice, &ended.0().name, move |c, sink| {
@@ -33,7 +33,12 @@ pub(super) fn plan(plan: &mut Plan<'_>) {
     }
 }
 
-fn sweep((make, end): Ended, choice: &Choice, levels: &[usize], sink: Sink<'_>) -> Result<(), Error> {
+fn sweep(
+    (make, end): Ended,
+    choice: &Choice,
+    levels: &[usize],
+    sink: Sink<'_>,
+) -> Result<(), Error> {
     let found = rows::<f64, 2>(make(), choice, levels)?;
     let errors: Vec<(usize, f64)> =
         found.iter().filter_map(|r| Some((r.level, of(r, |r| r.error.h1)?))).collect();
@@ -86,7 +91,8 @@ fn largest_on_contact(
             .filter(|&k| k != local)
             .map(|k| (mesh.vertices()[mesh.cell(cell)[k] as usize][0], fields.u[3 * cell + k]))
             .collect();
-        let ([(a, u), (b, v)], t) = ([ends[0], ends[1]], (end - ends[0].0) / (ends[1].0 - ends[0].0));
+        let ([(a, u), (b, v)], t) =
+            ([ends[0], ends[1]], (end - ends[0].0) / (ends[1].0 - ends[0].0));
         let at_end = (0.0..=1.0).contains(&t).then_some((end, u + t * (v - u)));
         for (x, value) in [(a, u), (b, v)].into_iter().chain(at_end) {
             if x <= end {

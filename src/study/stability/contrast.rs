@@ -15,9 +15,8 @@ use crate::study::Row;
 const MOST_SETS: f64 = 25.0;
 
 pub(super) fn plan(plan: &mut Plan<'_>) {
-    let level = plan.pick(16, 32);
-    let exponents: &[i32] =
-        plan.pick(&[-8, -4, 4, 8], &[-8, -6, -4, -2, 2, 4, 6, 8]);
+    let level = plan.pick_of(8, 16, 32);
+    let exponents: &[i32] = plan.pick(&[-8, -4, 4, 8], &[-8, -6, -4, -2, 2, 4, 6, 8]);
     let further = [
         Choice::new("wopsip", Penalty::Blind),
         Choice::new("wopsip:facet-means", Penalty::Blind),
@@ -28,10 +27,11 @@ pub(super) fn plan(plan: &mut Plan<'_>) {
             aligned(c, level, exponents, sink)
         });
     }
+    let middle = plan.pick_of(8, 32, 32);
     for choice in compared() {
-        plan.add("contrast", choice, "two materials", move |c, sink| across(c, level, sink));
+        plan.add("contrast", choice, "two materials", move |c, sink| across(c, middle, sink));
     }
-    let levels: &[usize] = plan.pick(&[8, 16, 32], &[8, 16, 32, 64]);
+    let levels: &[usize] = plan.pick_of(&[4, 8], &[8, 16, 32], &[8, 16, 32, 64]);
     for choice in compared() {
         plan.add("contrast", choice, "disc of another material", move |c, sink| {
             inside_cells(c, levels, sink)
@@ -47,12 +47,7 @@ fn norm(scene: &Scene<2>, level: usize) -> Result<Option<f64>, Error> {
     Ok(space.errors(&vec![0.0; space.unknowns()])?.energy)
 }
 
-fn aligned(
-    choice: &Choice,
-    level: usize,
-    exponents: &[i32],
-    sink: Sink<'_>,
-) -> Result<(), Error> {
+fn aligned(choice: &Choice, level: usize, exponents: &[i32], sink: Sink<'_>) -> Result<(), Error> {
     let relative = |contrast: f64| -> Result<(Row, Option<f64>), Error> {
         let scene = scenes::signorini_layers_2d(contrast);
         let norm = norm(&scene, level)?;
@@ -76,7 +71,8 @@ fn aligned(
             claim("error-over-contrast")
                 .quantity("relative energy error over that at contrast 1")
                 .at_most(1.5)
-                .to_fail(choice.penalty == Penalty::Blind)
+                // below one it is larger than it need be, which harms less
+                .to_fail(choice.penalty == Penalty::Blind && contrast > 1.0)
                 .measured(quotient(error, at_one)),
         );
         let sets = of(&row, |r| r.iterations.outer.map(|n| n as f64));

@@ -1,16 +1,16 @@
 //! Graded meshes: cells of very different sizes beside each other.
 
 use super::Plan;
+use super::Sink;
 use super::choice::{Choice, Penalty, compared_and};
 use super::claim::{Claim, figures, of, quotient};
 use super::meshes::graded;
 use super::runs::row_on;
-use super::Sink;
 use crate::error::Error;
 use crate::scenes;
 
 pub(super) fn plan(plan: &mut Plan<'_>) {
-    let n = plan.pick(16, 32);
+    let n = plan.pick_of(8, 16, 32);
     let further = [
         Choice::new("wopsip", Penalty::ByHeights),
         Choice::new("wopsip:facet-means", Penalty::ByHeights),
@@ -46,8 +46,6 @@ fn compare(choice: &Choice, n: usize, power: i32, sink: Sink<'_>) -> Result<(), 
     let ours = row_on(scene(), mesh.clone(), choice)?;
     let means = row_on(scene(), mesh, &Choice::default("cr"))?;
     let ratio = quotient(of(&ours, |r| r.error.h1), of(&means, |r| r.error.h1));
-    sink(
-        claim.detail(format!("shortest edge {shortest:.1e}, {}", figures(&ours))).measured(ratio),
-    );
+    sink(claim.detail(format!("shortest edge {shortest:.1e}, {}", figures(&ours))).measured(ratio));
     Ok(())
 }

@@ -108,8 +108,7 @@ mod tests {
         for flatness in [1.0, 1e-3] {
             let mesh = slivers(1.0, 4, flatness).unwrap();
             assert_eq!(mesh.n_cells(), 5 * 64 + 16);
-            let volumes: Vec<f64> =
-                (0..mesh.n_cells()).map(|c| mesh.geometry(c).volume).collect();
+            let volumes: Vec<f64> = (0..mesh.n_cells()).map(|c| mesh.geometry(c).volume).collect();
             let total: f64 = volumes.iter().sum();
             assert!((total - 8.0).abs() < 1e-12, "{total}");
             let least = volumes.iter().copied().fold(f64::INFINITY, f64::min);

@@ -36,11 +36,13 @@ use crate::mesh::Mesh;
 use choice::Choice;
 
 /// How long finished rows may wait to be written.
-const PATIENCE: Duration = Duration::from_secs(2);
+const PATIENCE: Duration = Duration::from_millis(500);
 
 /// How much is run.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Effort {
+    /// The coarsest meshes: figures mean little, but every criterion has its rows.
+    Trial,
     /// Coarse meshes and few places of each sweep; every criterion has its rows.
     #[default]
     Quick,
@@ -105,6 +107,10 @@ impl<'p> Plan<'p> {
     fn pick<T>(&self, quick: T, full: T) -> T {
         if self.is_full() { full } else { quick }
     }
+    /// The same with something smaller for a trial.
+    fn pick_of<T>(&self, trial: T, quick: T, full: T) -> T {
+        if self.effort == Effort::Trial { trial } else { self.pick(quick, full) }
+    }
     /// Adds work on a scheme, if that scheme is wanted.
     fn add(
         &mut self,
@@ -148,8 +154,7 @@ impl<'a> Stability<'a> {
         self.given.push((name.to_owned(), mesh));
         self
     }
-    /// Writes the report to this directory when a piece of work ends, every few seconds at most, and
-    /// at the end.
+    /// Writes the report to this directory as rows come, twice a second at most, and at the end.
     pub fn write_to(mut self, directory: impl Into<PathBuf>) -> Self {
         self.directory = Some(directory.into());
         self
@@ -169,15 +174,16 @@ impl<'a> Stability<'a> {
     /// [`Error::Parameter`] for the name of a case or scheme that does not exist, before anything
     /// runs; [`Error::Write`]. What goes wrong within a case is told by its rows.
     pub fn run(&self) -> Result<StabilityReport, Error> {
-        let check = |parameter, names: &[String], known: &[&str]| {
-            match names.iter().find(|name| !known.contains(&name.as_str())) {
-                None => Ok(()),
-                Some(name) => Err(Error::Parameter {
-                    parameter,
-                    value: name.clone(),
-                    allowed: format!("there are: {}", known.join(", ")),
-                }),
-            }
+        let check = |parameter, names: &[String], known: &[&str]| match names
+            .iter()
+            .find(|name| !known.contains(&name.as_str()))
+        {
+            None => Ok(()),
+            Some(name) => Err(Error::Parameter {
+                parameter,
+                value: name.clone(),
+                allowed: format!("there are: {}", known.join(", ")),
+            }),
         };
         check("case", &self.cases, &STABILITY_CASES)?;
         check("scheme", &self.schemes, &Self::SCHEMES)?;
@@ -187,18 +193,21 @@ impl<'a> Stability<'a> {
         let mut written = Instant::now();
         for job in &plan.jobs {
             (self.observer)(StabilityProgress::Started(job.case, &job.label));
+            let mut saved = Ok(());
             let mut take = |row: StabilityRow| {
                 (self.observer)(StabilityProgress::Row(&row));
                 report.rows.push(row);
+                // whoever interrupts the study keeps the rows that are there
+                if written.elapsed() > PATIENCE && saved.is_ok() {
+                    saved = self.save(&report);
+                    written = Instant::now();
+                }
             };
             if let Err(why) = (job.run)(&mut take) {
                 report.failures.push(format!("{}, {}: {why}", job.case, job.label));
             }
+            saved?;
             (self.observer)(StabilityProgress::Finished);
-            if written.elapsed() > PATIENCE {
-                self.save(&report)?;
-                written = Instant::now();
-            }
         }
         report.provenance.complete = true;
         self.save(&report)?;

@@ -14,7 +14,7 @@ type Norm = (&'static str, Option<f64>, fn(&Row) -> Option<f64>);
 
 const OVER_PENALTY: [Norm; 3] = [
     ("L2", Some(1.9), |r| r.error.l2),
-    ("H1", Some(0.95), |r| r.error.h1),
+    ("H1", Some(0.97), |r| r.error.h1),
     ("jumps", Some(0.9), jump),
 ];
 
@@ -31,7 +31,7 @@ const PLANE: [fn() -> Scene<2>; 8] = [
 ];
 
 pub(super) fn plan(plan: &mut Plan<'_>) {
-    let levels: &[usize] = plan.pick(&[16, 32, 64], &[32, 64, 128]);
+    let levels: &[usize] = plan.pick_of(&[8, 16], &[16, 32, 64], &[32, 64, 128]);
     let plane = if plan.is_full() { &PLANE[..] } else { &PLANE[..1] };
     let strings: &[usize] = &[32, 64, 128, 256];
     for scheme in ["wopsip", "wopsip:facet-means"] {
@@ -60,7 +60,7 @@ pub(super) fn plan(plan: &mut Plan<'_>) {
             fit("strings", scenes::icelike_1d(), c, &levels, norms, sink)
         });
     }
-    let boxes: &[usize] = plan.pick(&[4], &[4, 8, 12]);
+    let boxes: &[usize] = plan.pick_of(&[2], &[4], &[4, 8, 12]);
     for choice in [Choice::new("wopsip", Penalty::Eta(1.0)), Choice::default("wopsip")] {
         plan.add("orders", choice, "radial-3d", move |c, sink| in_space(c, boxes, sink));
     }
@@ -92,8 +92,7 @@ fn fit<const D: usize>(
 
 /// Jumps in L2 over facets: the penalty's part of the norm weighs them with `1/h`.
 fn interior_penalty(choice: &Choice, levels: &[usize], sink: Sink<'_>) -> Result<(), Error> {
-    let jumps: [Norm; 1] =
-        [("jumps", Some(1.4), |r| jump(r).map(|j| j / (r.level as f64).sqrt()))];
+    let jumps: [Norm; 1] = [("jumps", Some(1.4), |r| jump(r).map(|j| j / (r.level as f64).sqrt()))];
     fit("jumps-of-interior-penalty", sines::<2>(), choice, levels, &jumps, sink)?;
     if choice.scheme == "nipg" {
         let l2: [Norm; 1] = [("L2", None, |r| r.error.l2)];

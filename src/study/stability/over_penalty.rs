@@ -1,17 +1,17 @@
 //! The over-penalty factor over fourteen powers of ten.
 
 use super::Plan;
+use super::Sink;
 use super::choice::{Choice, Penalty};
 use super::claim::{Claim, figures, jump, of, quotient};
 use super::runs::{definite, row};
-use super::Sink;
 use crate::error::Error;
 use crate::scenes::{self, Scene};
 
 pub(super) fn plan(plan: &mut Plan<'_>) {
-    let level = plan.pick(16, 32);
+    let level = plan.pick_of(8, 32, 32);
     let all: Vec<i32> = (-4..=10).collect();
-    let exponents: Vec<i32> = if plan.is_full() { all } else { vec![-4, 0, 2, 6, 10] };
+    let exponents: Vec<i32> = plan.pick_of(vec![-4, 2], vec![-4, 0, 2, 6, 10], all);
     let problems: [fn() -> Scene<2>; 2] = [scenes::polynomial::<2>, scenes::signorini_2d];
     for scheme in ["wopsip", "wopsip:facet-means"] {
         for make in problems {
@@ -57,7 +57,7 @@ fn factor(
         .quantity("jump part times eta^(1/2), over the same at 100")
         .at_least(1.0 / 1.5)
         .at_most(1.5)
-        .detail(of(&ours, jump).map_or(String::new(), |j| format!("jump part {j:.2e}")));
+        .detail(of(&ours, jump).map_or_else(|| figures(&ours), |j| format!("jump part {j:.2e}")));
     let jumps = if exponent < 1 { jumps.only_reported() } else { jumps };
     sink(jumps.measured(scaled));
     Ok(())

@@ -13,6 +13,13 @@ use crate::study::csv;
 use crate::study::work_precision::{Cell, latex, markdown, replace};
 use crate::study::{Program, Provenance, Table};
 
+/// What a reader needs to know before the tables.
+const READING: [&str; 3] = [
+    "Every row has a figure, the limits it should keep, and the verdict that follows from the two. A row that fails as expected shows a choice of which theory or experience says that it is not enough there; a row that is missed is a failure that nobody announced. What is reported only has no limits. Several pages of rows follow the summary: one table for each case, the criteria in words below it.",
+    "Schemes: p1 and p2, conforming linear and quadratic elements with bounds at nodes; cr, Crouzeix-Raviart elements with bounds on facet means; sipg and nipg, symmetric and non-symmetric interior penalty on broken linears; wopsip, the weakly over-penalised method on broken linears with bounds at vertices, wopsip:facet-means the same with bounds on facet means.",
+    "Penalties: h_F is the diameter of a facet, l_F the height of its cells over it, h the mesh size, diam the diameter of the domain, and the proven bound the least interior penalty that is provably enough on each cell. All but what ignores it carry the coefficient of the problem. L2 and H1 are norms of the error (H1 broken and without values), energy is the scheme's own norm, with its penalty. Problems are those of the catalogue of scenes; sines-Dd is Poisson's equation solved by the product of sin(pi x_k).",
+];
+
 /// All rows, in the order run.
 #[derive(Clone, Debug, PartialEq)]
 pub struct StabilityReport {
@@ -56,17 +63,35 @@ impl StabilityReport {
     pub fn tables(&self) -> Vec<Table> {
         let mut tables = vec![by_scheme(&self.rows), by_criterion(&self.rows)];
         tables.extend(missed(&self.rows));
-        let cases = STABILITY_CASES.iter().filter(|case| self.rows.iter().any(|r| r.case == **case));
+        let cases =
+            STABILITY_CASES.iter().filter(|case| self.rows.iter().any(|r| r.case == **case));
         tables.extend(cases.map(|case| self.case_table(case)));
         tables
+    }
+
+    /// Verdicts, what was missed and which choices are robust, for a terminal: the report without
+    /// its rows.
+    pub fn summary(&self) -> String {
+        let mut text = format!("{}\n", self.heading());
+        for sentence in self.robust_choices() {
+            text += &format!("{sentence}\n");
+        }
+        for failure in &self.failures {
+            text += &format!("Not run to the end: {failure}.\n");
+        }
+        let counted = [by_scheme(&self.rows), by_criterion(&self.rows)];
+        for table in counted.into_iter().chain(missed(&self.rows)) {
+            text += &format!("\n{}", table.to_text());
+        }
+        text
     }
 
     fn case_table(&self, case: &str) -> Table {
         let rows: Vec<&StabilityRow> = self.rows.iter().filter(|r| r.case == case).collect();
         let line = |row: &&StabilityRow| {
-            let sweep = row.value.map_or(String::new(), |value| {
-                format!("{} {}", row.parameter, short(value))
-            });
+            let sweep = row
+                .value
+                .map_or(String::new(), |value| format!("{} {}", row.parameter, short(value)));
             vec![
                 Cell::Words(row.criterion.clone()),
                 Cell::Words(row.scheme.clone()),
@@ -85,8 +110,17 @@ impl StabilityReport {
         Table {
             title: format!("Case {case}"),
             columns: [
-                "criterion", "scheme", "penalty", "problem", "n", "at", "quantity", "expected",
-                "measured", "verdict", "further figures",
+                "criterion",
+                "scheme",
+                "penalty",
+                "problem",
+                "n",
+                "at",
+                "quantity",
+                "expected",
+                "measured",
+                "verdict",
+                "further figures",
             ]
             .map(str::to_owned)
             .into(),
@@ -127,16 +161,16 @@ impl StabilityReport {
 
     /// The same in LaTeX, for `\input`; it needs the package `booktabs`.
     pub fn to_latex(&self) -> String {
-        let text = self
-            .document(Table::to_latex, |line| format!("\\noindent {}\\par\n", latex(line)));
+        let text =
+            self.document(Table::to_latex, |line| format!("\\noindent {}\\par\n", latex(line)));
         format!("% needs \\usepackage{{booktabs}}\n{text}")
     }
 
     fn document(&self, table: fn(&Table) -> String, line: impl Fn(&str) -> String) -> String {
         let mut text = line(&self.heading());
-        text += &line(
-            "Every row has a figure, the limits it should keep and the verdict that follows from the two. A row that fails as expected is a choice shown because theory or experience says that it is not enough there; one that is missed is not.",
-        );
+        for explained in READING {
+            text += &line(explained);
+        }
         for sentence in self.robust_choices() {
             text += &line(&sentence);
         }
@@ -155,7 +189,11 @@ impl StabilityReport {
         let Program { name, version, threads, precision, target_cpu, .. } = &self.program;
         let Provenance { date, processor, complete, .. } = &self.provenance;
         let known = |text: &Option<String>| text.clone().unwrap_or_else(|| "unknown".to_owned());
-        let effort = if self.effort == Effort::Full { "full" } else { "quick" };
+        let effort = match self.effort {
+            Effort::Trial => "trial",
+            Effort::Quick => "quick",
+            Effort::Full => "full",
+        };
         let end = if *complete { "" } else { " (interrupted or still running)" };
         let counts: Vec<String> = Verdict::ALL
             .into_iter()

@@ -1,10 +1,10 @@
 //! Over-penalty and rounding: Poisson on meshes fine enough for it to show.
 
 use super::Plan;
+use super::Sink;
 use super::choice::{Choice, Penalty, compared_and};
 use super::claim::{Claim, figures, of, quotient};
 use super::runs::{rows, sines};
-use super::Sink;
 use crate::error::Error;
 use crate::real::Real;
 use crate::study::Row;
@@ -15,7 +15,7 @@ const HALVING: f64 = 0.3;
 pub(super) fn plan(plan: &mut Plan<'_>) {
     let one = Penalty::Eta(1.0);
     let further = [Choice::new("wopsip", one), Choice::new("wopsip:facet-means", one)];
-    let (strings, squares) = (plan.pick(10, 15), plan.pick(5, 7));
+    let (strings, squares) = (plan.pick_of(7, 10, 15), plan.pick_of(4, 5, 7));
     for choice in compared_and(&further) {
         plan.add("round-off", choice, "string f64", move |c, sink| {
             sweep::<f64, 1>(c, strings, sink)
@@ -32,15 +32,14 @@ pub(super) fn plan(plan: &mut Plan<'_>) {
     }
 }
 
-/// Halves the mesh size from four subdivisions on: the error in the maximum over nodes on a string, in
-/// L2 on a square.
+/// Halves the mesh size from four subdivisions on.
 fn sweep<T: Real, const D: usize>(
     choice: &Choice,
     finest: u32,
     sink: Sink<'_>,
 ) -> Result<(), Error> {
     let levels: Vec<usize> = (2..=finest).map(|k| 2_usize.pow(k)).collect();
-    let error = |row: &Row| if D == 1 { row.error.max } else { row.error.l2 };
+    let error = |row: &Row| row.error.l2;
     let rounding = 0.5 * T::EPSILON;
     let barrier = 4.0 * rounding.powf(1.0 / 6.0);
     let floor = rounding.powf(0.25);
@@ -50,18 +49,19 @@ fn sweep<T: Real, const D: usize>(
         let size = 1.0 / level as f64;
         if let Some(before) = &coarser {
             let ratio = quotient(of(&row, error), of(before, error));
-            let norm = if D == 1 { "max" } else { "L2" };
             let claim = |name| {
                 Claim::new(name, choice)
                     .on(&row.scene)
                     .precision(T::NAME)
                     .level(level)
                     .at("h", size)
-                    .quantity(&format!("{norm} error over that on twice h"))
-                    .detail(detail(&row, error, norm))
+                    .quantity("L2 error over that on twice h")
+                    .detail(figures(&row))
                     .at_most(HALVING)
             };
-            if choice.penalty == Penalty::Eta(1.0) && choice.scheme == "wopsip" && 2.0 * size >= barrier
+            if choice.penalty == Penalty::Eta(1.0)
+                && choice.scheme == "wopsip"
+                && 2.0 * size >= barrier
             {
                 sink(claim("halving-above-barrier").measured(ratio));
             }
@@ -73,11 +73,4 @@ fn sweep<T: Real, const D: usize>(
         coarser = Some(row);
     }
     Ok(())
-}
-
-fn detail(row: &Row, error: impl Fn(&Row) -> Option<f64>, norm: &str) -> String {
-    match error(row) {
-        Some(e) if row.converged() => format!("{norm} {e:.2e}"),
-        _ => figures(row),
-    }
 }

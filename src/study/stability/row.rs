@@ -65,7 +65,13 @@ pub(super) fn short(x: f64) -> String {
             }
         }
         a => {
-            let places = if a >= 100.0 { 1 } else if a >= 10.0 { 2 } else { 3 };
+            let places = if a >= 100.0 {
+                1
+            } else if a >= 10.0 {
+                2
+            } else {
+                3
+            };
             let text = format!("{x:.places$}");
             text.trim_end_matches('0').trim_end_matches('.').to_owned()
         }

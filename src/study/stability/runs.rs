@@ -19,7 +19,7 @@ pub(super) fn solver() -> ActiveSet {
 
 /// The same with another last resort, and sets enough for long ways.
 pub(super) fn solver_with(last_resort: LastResort) -> ActiveSet {
-    ActiveSet { last_resort, max_outer: 1000, ..solver() }
+    ActiveSet { last_resort, max_outer: 400, ..solver() }
 }
 
 /// The rows of a scheme on levels of a scene.

@@ -10,7 +10,7 @@ use crate::error::Error;
 use crate::scenes;
 
 pub(super) fn plan(plan: &mut Plan<'_>) {
-    let n = plan.pick(4, 6);
+    let n = plan.pick_of(2, 4, 6);
     let heights: &[f64] = plan.pick(&[1.0, 1e-3], &[1.0, 1e-1, 1e-2, 1e-3, 1e-4, 1e-6]);
     let further = [
         Choice::new("wopsip", Penalty::ByHeights),
@@ -23,7 +23,8 @@ pub(super) fn plan(plan: &mut Plan<'_>) {
         plan.add("slivers", choice, "meshes given", move |c, sink| {
             for (name, mesh) in given {
                 let mesh = clamped(mesh.vertices().to_vec(), mesh.cells().to_vec())?;
-                let claim = Claim::new("given-meshes", c).on(name).quantity("has a Cholesky factor");
+                let claim =
+                    Claim::new("given-meshes", c).on(name).quantity("has a Cholesky factor");
                 let error = row_on(sines(), mesh.clone(), c)?;
                 let claim = claim.detail(figures(&error)).at_least(1.0);
                 sink(claim.measured(definite(&sines::<3>().problem, &mesh, c)?));

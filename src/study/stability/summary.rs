@@ -67,7 +67,14 @@ pub(super) fn missed(rows: &[StabilityRow]) -> Option<Table> {
     };
     let rows: Vec<_> = rows.iter().filter(|r| r.verdict == Verdict::Missed).map(line).collect();
     let columns = [
-        "criterion", "scheme", "problem", "n", "at", "expected", "measured", "factor",
+        "criterion",
+        "scheme",
+        "problem",
+        "n",
+        "at",
+        "expected",
+        "measured",
+        "factor",
         "further figures",
     ];
     (!rows.is_empty()).then(|| Table {
@@ -102,7 +109,11 @@ pub(super) fn robust(rows: &[StabilityRow]) -> Vec<String> {
         }
         let list = |wanted: bool| {
             let chosen = counts.iter().filter(|(_, kept, all)| (kept == all) == wanted);
-            chosen.map(|(c, kept, all)| format!("{c} ({kept} of {all} rows)")).collect::<Vec<_>>()
+            let words = |(c, kept, all): &(String, usize, usize)| {
+                let name = if c.is_empty() { "default" } else { c };
+                if wanted { name.to_owned() } else { format!("{name} ({kept} of {all} rows)") }
+            };
+            chosen.map(words).collect::<Vec<_>>()
         };
         let (robust, others) = (list(true), list(false));
         let text = match (robust.is_empty(), others.is_empty()) {
