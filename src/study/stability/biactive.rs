@@ -78,7 +78,7 @@ fn steps<const D: usize>(
         ("interior-point-steps", "linear systems, cold", LastResort::AtOnce, 40.0),
     ];
     for (criterion, quantity, resort, most) in kinds {
-        let (_, found) = solved(&scene, choice, level, &solver_with(resort), false)?;
+        let (_, found) = solved(&scene, choice, level, &solver_with(resort, 4 * level), false)?;
         let steps = found.outer.filter(|_| found.outcome == Outcome::Converged);
         sink(
             Claim::new(criterion, choice)

@@ -30,6 +30,12 @@ impl Claim {
             missed_by: None,
         })
     }
+    /// What else was chosen.
+    pub fn with(mut self, what: &str) -> Self {
+        let comma = if self.0.choice.is_empty() { "" } else { ", " };
+        self.0.choice += &format!("{comma}{what}");
+        self
+    }
     /// On which problem.
     pub fn on(mut self, problem: &str) -> Self {
         self.0.problem = problem.to_owned();

@@ -12,6 +12,9 @@ use crate::mesh::Mesh;
 use crate::solve::MeanJump;
 use crate::study::observed_order;
 
+/// What a condition number is that of.
+const PARTS: [&str; 2] = ["not preconditioned", "diagonal of means and jumps"];
+
 pub(super) fn plan(plan: &mut Plan<'_>) {
     let level = plan.pick(8, 16);
     let exponents: &[i32] = plan.pick(&[2], &[-4, -2, 2, 4, 6]);
@@ -59,12 +62,13 @@ fn both(choice: &Choice, level: usize) -> Result<[Option<f64>; 2], Error> {
 fn factors(choice: &Choice, exponent: i32, level: usize, sink: Sink<'_>) -> Result<(), Error> {
     let here = both(choice, level)?;
     let at_one = both(&Choice::new(choice.scheme, Penalty::Eta(1.0)), level)?;
-    for (k, what) in ["plain", "diagonal of means and jumps"].into_iter().enumerate() {
+    for (k, what) in PARTS.into_iter().enumerate() {
         let claim = Claim::new("condition-over-factors", choice)
+            .with(what)
             .on("sines-2d")
             .level(level)
             .at("eta", 10.0_f64.powi(exponent))
-            .quantity(&format!("condition number over that at eta = 1, {what}"))
+            .quantity("condition number over that at eta = 1")
             .at_most(2.0)
             .to_fail(k == 0)
             .detail(here[k].map_or(String::new(), |c| format!("condition number {c:.3e}")));
@@ -77,11 +81,7 @@ fn factors(choice: &Choice, exponent: i32, level: usize, sink: Sink<'_>) -> Resu
 fn meshes(choice: &Choice, finest: usize, sink: Sink<'_>) -> Result<(), Error> {
     let levels = [finest / 2, finest];
     let [coarse, fine] = [both(choice, levels[0])?, both(choice, levels[1])?];
-    let parts: &[&str] = if choice.is_over_penalised() {
-        &["plain", "diagonal of means and jumps"]
-    } else {
-        &["plain"]
-    };
+    let parts: &[&str] = if choice.is_over_penalised() { &PARTS } else { &PARTS[..1] };
     for (k, what) in parts.iter().enumerate() {
         let pair = coarse[k].zip(fine[k]);
         let order = pair.and_then(|(a, b)| {
@@ -90,9 +90,10 @@ fn meshes(choice: &Choice, finest: usize, sink: Sink<'_>) -> Result<(), Error> {
         });
         sink(
             Claim::new("condition-over-meshes", choice)
+                .with(what)
                 .on("sines-2d")
                 .level(finest)
-                .quantity(&format!("order of growth, {what}"))
+                .quantity("order of growth")
                 .at_most(2.1)
                 .to_fail(choice.is_over_penalised() && k == 0)
                 .detail(fine[k].map_or(String::new(), |c| format!("condition number {c:.3e}")))

@@ -4,12 +4,11 @@ use super::Plan;
 use super::Sink;
 use super::choice::{Choice, compared};
 use super::claim::{Claim, figures, fitted_order, listed, of};
-use super::runs::{rows, solved, solver, solver_with};
+use super::runs::{rows, solved, solver};
 use crate::error::Error;
 use crate::mesh::{BoundaryPart, Mesh};
 use crate::real::Point;
 use crate::scenes::{self, BoxDomain, Scene};
-use crate::solve::LastResort;
 use crate::study::Study;
 
 /// A Signorini problem with contact for `x <= c`, and `c`.
@@ -110,7 +109,7 @@ fn junction(choice: &Choice, sink: Sink<'_>) -> Result<(), Error> {
     let domain = BoxDomain { lower, ..BoxDomain::above_contact() };
     let mesh: Mesh<f64, 2> = Mesh::kuhn_box(&domain, [20, 10])?;
     let study = Study::<f64, 2>::new(scenes::signorini_2d()).on_mesh(mesh);
-    let study = study.boxed_scheme(choice.make()).solver(solver_with(LastResort::default()));
+    let study = study.boxed_scheme(choice.make()).solver(solver());
     let (told, how) = match study.levels([0]).run() {
         Err(why) => (true, why.to_string()),
         Ok(report) => {

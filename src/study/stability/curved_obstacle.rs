@@ -19,6 +19,9 @@ type Touched = (fn() -> Scene<2>, f64);
 const PROBLEMS: [Touched; 2] =
     [(scenes::ball_2d, 0.697_965_148_223_373_6), (scenes::cone::<2>, 0.5)];
 
+/// After so many sets the method wanders.
+const MOST_SETS: usize = 100;
+
 /// Levels to which the order of the multiplier is fitted.
 const FITTED: [usize; 3] = [16, 32, 64];
 
@@ -99,7 +102,7 @@ fn single(
     let mut silent = 0;
     let mut outcomes = Vec::new();
     for resort in [LastResort::Never, LastResort::WhenUnsettled] {
-        let (_, solved) = solved(&scene, choice, level, &solver_with(resort), true)?;
+        let (_, solved) = solved(&scene, choice, level, &solver_with(resort, MOST_SETS), true)?;
         let is_wrong = !(solved.certificate.largest() <= f64::CERTIFICATE_LIMIT);
         silent += usize::from(solved.outcome == Outcome::Converged && is_wrong);
         outcomes.push(format!("{} after {}", solved.outcome, solved.outer.unwrap_or(0)));

@@ -17,9 +17,9 @@ pub(super) fn solver() -> ActiveSet {
     ActiveSet { linear: Linear::Direct, ..ActiveSet::default() }
 }
 
-/// The same with another last resort, and sets enough for long ways.
-pub(super) fn solver_with(last_resort: LastResort) -> ActiveSet {
-    ActiveSet { last_resort, max_outer: 400, ..solver() }
+/// The same with another last resort and another number of sets.
+pub(super) fn solver_with(last_resort: LastResort, max_outer: usize) -> ActiveSet {
+    ActiveSet { last_resort, max_outer, ..solver() }
 }
 
 /// The rows of a scheme on levels of a scene.

@@ -10,11 +10,21 @@ fn count<'r>(rows: impl Iterator<Item = &'r StabilityRow>, verdict: Verdict) -> 
     rows.filter(|row| row.verdict == verdict).count()
 }
 
+/// A choice without the power of ten of a factor that is swept.
+fn kind(choice: &str) -> String {
+    match choice.split_once("/h_F^3") {
+        Some((factor, rest)) if factor != "1" && factor.parse::<f64>().is_ok() => {
+            format!("other factors/h_F^3{rest}")
+        }
+        _ => choice.to_owned(),
+    }
+}
+
 /// Verdicts of every scheme and choice.
 pub(super) fn by_scheme(rows: &[StabilityRow]) -> Table {
-    let choices = distinct(rows.iter().map(|r| (r.scheme.clone(), r.choice.clone())));
+    let choices = distinct(rows.iter().map(|r| (r.scheme.clone(), kind(&r.choice))));
     let line = |(scheme, choice): (String, String)| {
-        let mine = || rows.iter().filter(|r| r.scheme == scheme && r.choice == choice);
+        let mine = || rows.iter().filter(|r| r.scheme == scheme && kind(&r.choice) == choice);
         let counts = Verdict::ALL.map(|verdict| Cell::whole(Some(count(mine(), verdict))));
         let mut cells = vec![Cell::Words(scheme.clone()), Cell::Words(choice.clone())];
         cells.extend(counts);
