@@ -11,6 +11,7 @@
 
 use std::fs;
 use std::io::{ErrorKind, IsTerminal, Write};
+use std::path::Path;
 use std::process::ExitCode;
 use std::time::Duration;
 
@@ -43,6 +44,11 @@ fn print(text: &str) -> Result<(), String> {
     }
 }
 
+/// The name of a file without its directory.
+fn name_of(path: &Path) -> String {
+    path.file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned())
+}
+
 /// Whether all went as asked.
 fn run(options: &Options) -> Result<bool, String> {
     if let Some(threads) = options.threads {
@@ -61,15 +67,21 @@ fn run(options: &Options) -> Result<bool, String> {
             StabilityProgress::Finished => bar.inc(1),
         });
     for path in &options.meshes {
-        let name = path.file_name().map_or_else(String::new, |n| n.to_string_lossy().into_owned());
         let mesh = gmsh::read::<f64, 3>(path).map_err(|e| format!("{}: {e}", path.display()))?;
-        study = study.mesh(&name, mesh.mesh);
+        study = study.mesh(&name_of(path), mesh.mesh);
     }
     let report = study.run().map_err(|e| e.to_string())?;
     bar.finish_and_clear();
     if let Some(path) = &options.markdown {
-        let made = "# Stability\n\nMade by `cargo run --release --example stability -- --markdown FILE`.\n";
-        let text = report.to_markdown().replacen("# Stability\n", made, 1);
+        let named: Vec<String> = options.meshes.iter().map(|path| name_of(path)).collect();
+        let meshes = match named.is_empty() {
+            true => String::new(),
+            false => format!(" --mesh {}", named.join(",")),
+        };
+        let title = "# Stability\n";
+        let command = format!("cargo run --release --example stability -- --markdown FILE{meshes}");
+        let text =
+            report.to_markdown().replacen(title, &format!("{title}\nMade by `{command}`.\n"), 1);
         fs::write(path, text).map_err(|e| format!("cannot write {}: {e}", path.display()))?;
     }
     if !options.quiet {
