@@ -52,7 +52,7 @@ impl Choice {
             Penalty::Default if self.scheme == "sipg" => "1.5 times proven bound".into(),
             Penalty::Default if self.scheme == "nipg" => "1/h_F".into(),
             Penalty::Default => String::new(),
-            Penalty::Eta(eta) if eta == 1.0 => "1/h_F^3".into(),
+            Penalty::Eta(1.0) => "1/h_F^3".into(),
             Penalty::Eta(eta) => format!("{eta:e}/h_F^3"),
             Penalty::Sigma(sigma) => format!("{sigma}/h_F"),
             Penalty::ByHeights => "eta = diam^2, eta/(h^2 l_F)".into(),

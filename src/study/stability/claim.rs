@@ -71,7 +71,7 @@ impl Claim {
         self
     }
     /// Whether this is shown because it does not get there.
-    pub fn to_fail(mut self, to_fail: bool) -> Self {
+    pub fn known_to_fail(mut self, to_fail: bool) -> Self {
         self.0.expected.to_fail = to_fail;
         self
     }

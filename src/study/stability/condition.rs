@@ -70,7 +70,7 @@ fn factors(choice: &Choice, exponent: i32, level: usize, sink: Sink<'_>) -> Resu
             .at("eta", 10.0_f64.powi(exponent))
             .quantity("condition number over that at eta = 1")
             .at_most(2.0)
-            .to_fail(k == 0)
+            .known_to_fail(k == 0)
             .detail(here[k].map_or(String::new(), |c| format!("condition number {c:.3e}")));
         let claim = if exponent < 0 { claim.only_reported() } else { claim };
         sink(claim.measured(here[k].zip(at_one[k]).map(|(a, b)| a / b)));
@@ -95,7 +95,7 @@ fn meshes(choice: &Choice, finest: usize, sink: Sink<'_>) -> Result<(), Error> {
                 .level(finest)
                 .quantity("order of growth")
                 .at_most(2.1)
-                .to_fail(choice.is_over_penalised() && k == 0)
+                .known_to_fail(choice.is_over_penalised() && k == 0)
                 .detail(fine[k].map_or(String::new(), |c| format!("condition number {c:.3e}")))
                 .measured(order),
         );

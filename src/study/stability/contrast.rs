@@ -72,7 +72,7 @@ fn aligned(choice: &Choice, level: usize, exponents: &[i32], sink: Sink<'_>) -> 
                 .quantity("relative energy error over that at contrast 1")
                 .at_most(1.5)
                 // below one it is larger than it need be, which harms less
-                .to_fail(choice.penalty == Penalty::Blind && contrast > 1.0)
+                .known_to_fail(choice.penalty == Penalty::Blind && contrast > 1.0)
                 .measured(quotient(error, at_one)),
         );
         let sets = of(&row, |r| r.iterations.outer.map(|n| n as f64));

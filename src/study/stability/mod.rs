@@ -84,11 +84,14 @@ pub struct Stability<'a> {
 /// Takes rows as they are made.
 type Sink<'s> = &'s mut dyn FnMut(StabilityRow);
 
+/// Makes rows.
+type Run<'p> = Box<dyn Fn(Sink<'_>) -> Result<(), Error> + 'p>;
+
 /// A piece of work: its rows do not depend on any other's.
 struct Job<'p> {
     case: &'static str,
     label: String,
-    run: Box<dyn Fn(Sink<'_>) -> Result<(), Error> + 'p>,
+    run: Run<'p>,
 }
 
 /// What will be run.

