@@ -22,7 +22,7 @@ use clap::Parser;
 use indicatif::{ProgressBar, ProgressStyle};
 use options::Options;
 use unilateral::mesh::gmsh;
-use unilateral::study::{Stability, StabilityProgress, Verdict};
+use unilateral::study::{Effort, Stability, StabilityProgress, Verdict};
 
 fn main() -> ExitCode {
     let options = Options::parse();
@@ -79,7 +79,9 @@ fn run(options: &Options) -> Result<bool, String> {
             false => format!(" --mesh {}", named.join(",")),
         };
         let title = "# Stability\n";
-        let command = format!("cargo run --release --example stability -- --markdown FILE{meshes}");
+        let quick = if options.effort() == Effort::Full { "" } else { " --quick" };
+        let command =
+            format!("cargo run --release --example stability --{quick} --markdown FILE{meshes}");
         let text =
             report.to_markdown().replacen(title, &format!("{title}\nMade by `{command}`.\n"), 1);
         fs::write(path, text).map_err(|e| format!("cannot write {}: {e}", path.display()))?;
