@@ -68,7 +68,7 @@ fn stretched_cells_ask_for_weights_by_heights() {
     });
     let said = report.robust_choices();
     assert!(
-        said.iter().any(|s| s.contains("wopsip: robust: eta = diam^2, eta/(h^2 l_F)")),
+        said.iter().any(|s| s.contains("wopsip: robust: \"eta = diam^2, eta/(h^2 l_F)\"")),
         "{said:?}"
     );
 }

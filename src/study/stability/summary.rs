@@ -121,7 +121,11 @@ pub(super) fn robust(rows: &[StabilityRow]) -> Vec<String> {
             let chosen = counts.iter().filter(|(_, kept, all)| (kept == all) == wanted);
             let words = |(c, kept, all): &(String, usize, usize)| {
                 let name = if c.is_empty() { "default" } else { c };
-                if wanted { name.to_owned() } else { format!("{name} ({kept} of {all} rows)") }
+                if wanted {
+                    format!("\"{name}\"")
+                } else {
+                    format!("\"{name}\" ({kept} of {all} rows)")
+                }
             };
             chosen.map(words).collect::<Vec<_>>()
         };
