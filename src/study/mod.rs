@@ -15,6 +15,7 @@ mod registry;
 mod report;
 mod row;
 mod run;
+mod stability;
 mod table;
 mod vtu;
 mod work_precision;
@@ -37,6 +38,10 @@ pub use row::{
     ContactErrors, Errors, ExpectedOrders, Iterations, Orders, PenaltyParameters, Row, Seconds,
 };
 pub use run::{Progress, Study};
+pub use stability::{
+    CRITERIA, Criterion, Effort, Expected, STABILITY_CASES, Stability, StabilityProgress,
+    StabilityReport, StabilityRow, Verdict,
+};
 pub use table::write_tables;
 pub use vtu::{CellFields, write_vtu};
 pub use work_precision::{

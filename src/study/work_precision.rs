@@ -17,7 +17,9 @@ pub use measured::{Case, Failure, Measured, Phases, Variant};
 pub use provenance::Provenance;
 pub use reach::{ErrorNorm, Reach, WorkPoint, work_at};
 pub use report::WorkReport;
+pub(super) use report::replace;
 pub use table::Table;
+pub(super) use table::{Cell, latex, markdown};
 
 use std::path::PathBuf;
 use std::time::{Duration, Instant};

@@ -205,7 +205,10 @@ impl WorkReport {
 }
 
 /// Writes a file beside its place and moves it there when it is whole.
-fn replace(path: &Path, write: impl FnOnce(&Path) -> Result<(), String>) -> Result<PathBuf, Error> {
+pub(in crate::study) fn replace(
+    path: &Path,
+    write: impl FnOnce(&Path) -> Result<(), String>,
+) -> Result<PathBuf, Error> {
     let directory = path.parent().unwrap_or(Path::new("."));
     fs::create_dir_all(directory).map_err(|e| write_error(directory, e))?;
     // the ending stays, for it tells writers of pictures the format

@@ -2,7 +2,7 @@
 
 /// A cell.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) enum Cell {
+pub(in crate::study) enum Cell {
     /// Words.
     Words(String),
     /// A number, perhaps with a power of ten as in `1.37e-2`, and a remark in parentheses.
@@ -14,18 +14,18 @@ pub(super) enum Cell {
 /// A table with a title and remarks below it. Words stand left, numbers right.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Table {
-    pub(super) title: String,
-    pub(super) columns: Vec<String>,
-    pub(super) rows: Vec<Vec<Cell>>,
-    pub(super) remarks: Vec<String>,
+    pub(in crate::study) title: String,
+    pub(in crate::study) columns: Vec<String>,
+    pub(in crate::study) rows: Vec<Vec<Cell>>,
+    pub(in crate::study) remarks: Vec<String>,
 }
 
 impl Cell {
-    pub(super) fn whole(x: Option<usize>) -> Self {
+    pub(in crate::study) fn whole(x: Option<usize>) -> Self {
         x.map_or(Cell::Nothing, |x| Cell::Number(x.to_string(), None))
     }
     /// Three digits.
-    pub(super) fn scientific(x: Option<f64>) -> Self {
+    pub(in crate::study) fn scientific(x: Option<f64>) -> Self {
         x.map_or(Cell::Nothing, |x| Cell::Number(format!("{x:.2e}"), None))
     }
 
@@ -119,7 +119,7 @@ impl Table {
 }
 
 /// Words in LaTeX: its special characters as they look.
-pub(super) fn latex(text: &str) -> String {
+pub(in crate::study) fn latex(text: &str) -> String {
     let mut escaped = String::new();
     for c in text.chars() {
         match c {
@@ -140,7 +140,7 @@ pub(super) fn latex(text: &str) -> String {
 }
 
 /// Words in Markdown: characters that would be markup as they look.
-pub(super) fn markdown(text: &str) -> String {
+pub(in crate::study) fn markdown(text: &str) -> String {
     let mut escaped = String::new();
     for c in text.chars() {
         if matches!(c, '|' | '*' | '_' | '`' | '\\' | '<' | '[' | ']') {

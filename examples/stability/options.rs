@@ -1,0 +1,45 @@
+//! What the command line asks for.
+
+use std::path::PathBuf;
+
+use clap::Parser;
+use unilateral::study::{Effort, STABILITY_CASES, Stability};
+
+/// Runs the hard cases of variational inequalities and judges schemes by their criteria.
+#[derive(Parser, Debug)]
+#[command(name = "stability", version, about)]
+pub struct Options {
+    /// Cases by name; all by default
+    #[arg(long = "case", value_delimiter = ',', value_name = "A[,B...]", value_parser = STABILITY_CASES)]
+    pub cases: Vec<String>,
+    /// Schemes by name, with the placement of bounds after a colon; all by default
+    #[arg(long = "scheme", value_delimiter = ',', value_name = "A[:PLACE][,B...]", value_parser = Stability::SCHEMES)]
+    pub schemes: Vec<String>,
+    /// Gmsh files of tetrahedra for the case of slivers
+    #[arg(long = "mesh", value_delimiter = ',', value_name = "FILE[,FILE...]")]
+    pub meshes: Vec<PathBuf>,
+    /// Coarse meshes and few places of each sweep: within a minute
+    #[arg(long)]
+    quick: bool,
+    /// Number of threads; all cores by default
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    pub threads: Option<u16>,
+    /// Where the report goes
+    #[arg(long, value_name = "DIR", default_value = "target/stability")]
+    pub out: PathBuf,
+    /// Also write the report in Markdown to this file
+    #[arg(long, value_name = "FILE")]
+    pub markdown: Option<PathBuf>,
+    /// No progress, no summary
+    #[arg(long)]
+    pub quiet: bool,
+    /// Exit with 1 if a criterion is missed
+    #[arg(long)]
+    pub strict: bool,
+}
+
+impl Options {
+    pub fn effort(&self) -> Effort {
+        if self.quick { Effort::Quick } else { Effort::Full }
+    }
+}
