@@ -11,6 +11,12 @@ const SHARE: f64 = 0.995;
 /// Complementarity over energy below which contact and gap are told apart.
 const CLOSE: f64 = 1e-18;
 
+/// Complementarity over energy to start with.
+const START: f64 = 1e-2;
+
+/// The same below which contact is believed if it was the same a step before.
+const NEAR: f64 = 1e-9;
+
 /// Most steps.
 const MOST: usize = 60;
 
@@ -62,7 +68,7 @@ pub(super) struct InteriorPoint<'a, T> {
 }
 
 impl<'a, T: Real> InteriorPoint<'a, T> {
-    /// Starts near given values, on the central path as far as bounds are concerned.
+    /// Starts on the central path near given values.
     pub fn new(inequality: &'a Inequality<T>, near: &[T]) -> Self {
         let bounds = &inequality.bounds;
         let n = inequality.size();
@@ -71,32 +77,42 @@ impl<'a, T: Real> InteriorPoint<'a, T> {
         let free: Vec<u32> =
             (0..n).filter(|&i| bounds[i].only_value().is_none()).map(|i| i as u32).collect();
         let diagonal: Vec<f64> = (0..n).map(|i| positive_diagonal(inequality, i)).collect();
-        let scale = values.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
-        let scale = if scale > 0.0 { scale } else { 1.0 };
         let mut point = Self { inequality, free, values, diagonal, walls: Vec::new(), steps: 0 };
+        let mut deficit = vec![0.0; n];
+        let energy = point.deficit(&mut deficit);
+        let count = |i: &u32| bounds[*i as usize].is_inequality();
+        let product = START * energy / point.free.iter().filter(|i| count(i)).count().max(1) as f64;
         for k in 0..point.free.len() {
-            let i = point.free[k] as usize;
-            let (lower, upper) = (bounds[i].lower(), bounds[i].upper());
-            let width = match (lower, upper) {
-                (Some(l), Some(u)) => u.to_f64() - l.to_f64(),
-                _ => f64::INFINITY,
-            };
-            let least = (1e-2 * scale).min(0.25 * width);
-            for (bound, side) in [(lower, 1.0), (upper, -1.0)] {
-                if let Some(bound) = bound {
-                    let gap = (side * (point.values[i] - bound.to_f64())).max(least);
-                    let wall =
-                        Wall { unknown: i, side, gap, force: 0.0, gap_step: 0.0, force_step: 0.0 };
-                    point.walls.push(wall);
-                    if width.is_infinite() {
-                        point.values[i] = bound.to_f64() + side * gap;
-                    }
-                }
+            point.wall(point.free[k] as usize, &deficit, product);
+        }
+        point
+    }
+
+    /// Moves an unknown to where gap and force have a given product, both as near as may be to what
+    /// they are: without neighbours the step of Jacobi's method ends at `along` from the bound, and
+    /// on the central path `gap - product / (diagonal gap)` is that number.
+    fn wall(&mut self, i: usize, deficit: &[f64], product: f64) {
+        let bound = &self.inequality.bounds[i];
+        let (lower, upper) = (bound.lower().map(T::to_f64), bound.upper().map(T::to_f64));
+        let jacobi = self.values[i] + deficit[i] / self.diagonal[i];
+        let noise = product / self.diagonal[i];
+        let off = |along: f64| 0.5 * along.hypot(2.0 * noise.sqrt()) + 0.5 * along;
+        self.values[i] = match (lower, upper) {
+            (Some(l), Some(u)) => {
+                let margin = off(0.0).min(0.25 * (u - l));
+                jacobi.clamp(l + margin, u - margin)
+            }
+            (Some(l), None) => l + off(jacobi - l),
+            (None, Some(u)) => u - off(u - jacobi),
+            (None, None) => return,
+        };
+        for (bound, side) in [(lower, 1.0), (upper, -1.0)] {
+            if let Some(bound) = bound {
+                let gap = side * (self.values[i] - bound);
+                let force = product / gap;
+                self.walls.push(Wall { unknown: i, side, gap, force, gap_step: 0.0, force_step: 0.0 });
             }
         }
-        let mean = point.energy() / point.walls.len().max(1) as f64;
-        point.walls.iter_mut().for_each(|wall| wall.force = mean / wall.gap);
-        point
     }
 
     /// Approaches the solution; the contact states found, or `None` if a matrix has no factors or
@@ -104,6 +120,7 @@ impl<'a, T: Real> InteriorPoint<'a, T> {
     pub fn run(&mut self) -> Option<Vec<Contact>> {
         let mut deficit = vec![0.0; self.values.len()];
         let (mut least, mut idle) = (f64::INFINITY, 0);
+        let mut before = Vec::new();
         while self.steps < MOST {
             let energy = self.deficit(&mut deficit);
             let mean = self.mean_product();
@@ -112,7 +129,12 @@ impl<'a, T: Real> InteriorPoint<'a, T> {
             }
             idle = if mean < 0.5 * least { 0 } else { idle + 1 };
             least = if idle == 0 { mean } else { least };
-            if mean * self.walls.len() as f64 <= CLOSE * energy || idle > PATIENCE {
+            let share = mean * self.walls.len() as f64 / energy;
+            let contact = self.contact();
+            let is_steady = share <= NEAR && contact == before;
+            if std::env::var("DBG").is_ok() { eprintln!("    ip {} share {share:.1e} contact {} moved {}", self.steps, contact.iter().filter(|c| **c != Contact::Open).count(), contact.iter().zip(&before).filter(|(a, b)| a != b).count()); }
+            before = contact;
+            if is_steady || share <= CLOSE || idle > PATIENCE {
                 break;
             }
             self.step(&deficit, mean)?;

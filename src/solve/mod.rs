@@ -23,6 +23,7 @@ mod nearby;
 mod pieces;
 mod preconditioners;
 mod restrict;
+mod search;
 mod small;
 mod smoother;
 mod transfer;
