@@ -78,7 +78,8 @@ fn reach() {
             let eta = choice.1.map_or("default".into(), |eta| format!("{eta:e}"));
             let label = format!("{} | {} | {eta}", choice.0, choice.2);
             for row in &found {
-                if !row.converged() || row.iterations.outer.unwrap_or(0) > MANY {
+                let is_good = row.converged() && row.certificate.largest() <= 1e-8;
+                if !is_good || row.iterations.outer.unwrap_or(0) > MANY {
                     println!(
                         "| {} | {label} | {} | {} | {} | {:.1e} |",
                         row.scene,

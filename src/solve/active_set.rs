@@ -1,12 +1,12 @@
 //! The primal-dual active set method.
 
-use super::inexact::Inexact;
+use super::inexact::{InVain, Inexact};
 use super::iterate::Iterate;
 use super::linear::{FactorError, is_positive_definite};
 use super::nearby::{Functions, Linear, Nearby};
 use super::search::Search;
 use super::{InequalitySolver, Outcome, Solution};
-use crate::algebra::{Inequality, Start};
+use crate::algebra::{Contact, Inequality, Start};
 use crate::real::Real;
 
 /// The primal-dual active set method, which is a semismooth Newton method (Hintermueller, Ito,
@@ -90,7 +90,7 @@ impl Default for ActiveSet {
             max_outer: 200,
             band: 16.0,
             refinements: 1,
-            hesitation: 6,
+            hesitation: 3,
             patience: 20,
             max_condensations: 10,
             max_condensed: 500,
@@ -121,15 +121,15 @@ impl<T: Real> InequalitySolver<T> for ActiveSet {
         {
             match self.solve_inexactly(inequality, nearby) {
                 Ok(solution) => return solution,
-                Err((outer, linear)) => {
-                    let mut solution = self.solve_directly(inequality);
-                    solution.outer += outer;
-                    solution.linear += linear;
+                Err(in_vain) => {
+                    let mut solution = self.solve_directly(inequality, in_vain.unsettled);
+                    solution.outer += in_vain.outer;
+                    solution.linear += in_vain.linear;
                     return solution;
                 }
             }
         }
-        self.solve_directly(inequality)
+        self.solve_directly(inequality, None)
     }
 
     fn uses_nearby(&self, unknowns: usize) -> bool {
@@ -142,26 +142,32 @@ impl<T: Real> InequalitySolver<T> for ActiveSet {
 }
 
 impl ActiveSet {
-    /// Without factors of the matrix. The error is how many outer and inner iterations were made in
-    /// vain.
+    /// Without factors of the matrix. The error is what was done in vain.
     fn solve_inexactly<T: Real>(
         &self,
         inequality: &Inequality<T>,
         nearby: &Nearby<T>,
-    ) -> Result<Solution<T>, (usize, usize)> {
+    ) -> Result<Solution<T>, InVain> {
         if self.check_definite && check_definite(inequality).is_err() {
-            return Err((0, 0));
+            return Err(InVain::default());
         }
-        Inexact::new(inequality, nearby)
-            .run(self, nearby)
-            .map_err(|in_vain| (in_vain.outer, in_vain.linear))
+        Inexact::new(inequality, nearby).run(self, nearby)
     }
 
-    fn solve_directly<T: Real>(&self, inequality: &Inequality<T>) -> Solution<T> {
+    /// With factors, from contact that did not settle if there is such.
+    fn solve_directly<T: Real>(
+        &self,
+        inequality: &Inequality<T>,
+        unsettled: Option<Vec<Contact>>,
+    ) -> Solution<T> {
         let mut iterate = Iterate::new(inequality);
-        let outcome = match self.check(inequality) {
-            Ok(()) => Search::new(self, &mut iterate).run(),
-            Err(outcome) => outcome,
+        let outcome = match (self.check(inequality), unsettled) {
+            (Ok(()), None) => Search::new(self, &mut iterate).run(),
+            (Ok(()), Some(contact)) => {
+                iterate.state = contact;
+                Search::new(self, &mut iterate).impatient().run()
+            }
+            (Err(outcome), _) => outcome,
         };
         iterate.into_solution(outcome)
     }

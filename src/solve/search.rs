@@ -29,6 +29,8 @@ pub(super) struct Search<'s, 'a, T> {
     progress: usize,
     settling: usize,
     fewest: usize,
+    /// See [`ActiveSet::hesitation`].
+    hesitation: usize,
     /// Whether the interior point method may still be asked.
     is_untried: bool,
 }
@@ -47,8 +49,15 @@ impl<'s, 'a, T: Real> Search<'s, 'a, T> {
             progress: 0,
             settling: 0,
             fewest: usize::MAX,
+            hesitation: settings.hesitation,
             is_untried: settings.last_resort == LastResort::WhenUnsettled,
         }
+    }
+
+    /// The same where the active set is known not to settle by itself from there.
+    pub fn impatient(mut self) -> Self {
+        self.hesitation = 0;
+        self
     }
 
     /// Runs until the active set rests or nothing is left to be tried.
@@ -82,7 +91,6 @@ impl<'s, 'a, T: Real> Search<'s, 'a, T> {
                 return self.confirm();
             }
             let outer = self.iterate.outer;
-            if std::env::var("DBG").is_ok() { eprintln!("  {outer} cert {:.1e} flips {} best {} cond {}", { let v: Vec<T> = self.iterate.values.iter().zip(&self.iterate.inequality.bounds).map(|(x, b)| b.nearest(*x)).collect(); certify_with_noise(self.iterate.inequality, &v).0.largest() }, self.history.moving(), self.iterate.best_outer(), self.condensations); }
             if 2 * self.history.moving() <= self.fewest {
                 self.fewest = self.history.moving();
                 self.settling = outer;
@@ -93,7 +101,7 @@ impl<'s, 'a, T: Real> Search<'s, 'a, T> {
                 if let Some(outcome) = self.resolve(true)? {
                     return Ok(outcome);
                 }
-            } else if self.is_untried && outer - self.settling >= self.settings.hesitation {
+            } else if self.is_untried && outer - self.settling >= self.hesitation {
                 self.approach();
             } else if outer - self.progress.max(self.iterate.best_outer()) >= self.settings.patience
             {
@@ -162,9 +170,7 @@ impl<'s, 'a, T: Real> Search<'s, 'a, T> {
     /// Starts anew from where the interior point method gets.
     fn approach(&mut self) {
         self.is_untried = false;
-        let dbg = self.iterate.outer;
         self.iterate.approach();
-        if std::env::var("DBG").is_ok() { eprintln!("  interior {}", self.iterate.outer - dbg); }
         self.forget();
         self.cycle.fill(false);
         self.progress = self.iterate.outer;
