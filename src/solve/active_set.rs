@@ -185,7 +185,7 @@ impl ActiveSet {
     }
 }
 
-fn check_input<T: Real>(inequality: &Inequality<T>) -> Result<(), Outcome> {
+pub(super) fn check_input<T: Real>(inequality: &Inequality<T>) -> Result<(), Outcome> {
     if !inequality.is_well_formed() {
         Err(Outcome::Malformed)
     } else if !inequality.is_finite() {

@@ -18,6 +18,7 @@ mod kernels;
 mod linear;
 mod look;
 mod mean_jump;
+mod monotone_multigrid;
 mod multigrid;
 mod nearby;
 mod pieces;
@@ -34,6 +35,7 @@ pub use hierarchy::{Coarser, VertexLevel};
 pub use kernels::SparseKernels;
 pub use linear::{FactorError, Factors, is_positive_definite};
 pub use mean_jump::MeanJump;
+pub use monotone_multigrid::MonotoneMultigrid;
 pub use nearby::{Functions, Linear, Nearby};
 pub use transfer::Transfer;
 
