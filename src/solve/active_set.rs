@@ -3,6 +3,7 @@
 use super::inexact::{InVain, Inexact};
 use super::iterate::Iterate;
 use super::linear::{FactorError, is_positive_definite};
+use super::monotone_multigrid::MonotoneMultigrid;
 use super::nearby::{Functions, Linear, Nearby};
 use super::search::Search;
 use super::{InequalitySolver, Outcome, Solution};
@@ -119,15 +120,10 @@ impl<T: Real> InequalitySolver<T> for ActiveSet {
             && inequality.symmetric
             && check_input(inequality).is_ok()
         {
-            match self.solve_inexactly(inequality, nearby) {
-                Ok(solution) => return solution,
-                Err(in_vain) => {
-                    let mut solution = self.solve_directly(inequality, in_vain.unsettled);
-                    solution.outer += in_vain.outer;
-                    solution.linear += in_vain.linear;
-                    return solution;
-                }
-            }
+            return match self.solve_inexactly(inequality, nearby) {
+                Ok(solution) => solution,
+                Err(in_vain) => self.take_over(inequality, nearby, in_vain),
+            };
         }
         self.solve_directly(inequality, None)
     }
@@ -152,6 +148,30 @@ impl ActiveSet {
             return Err(InVain::default());
         }
         Inexact::new(inequality, nearby).run(self, nearby)
+    }
+
+    /// What is done where the iterative solver did not arrive: where it did not settle on nested
+    /// meshes of conforming linears, multigrid that has no need to; elsewhere factors.
+    fn take_over<T: Real>(
+        &self,
+        inequality: &Inequality<T>,
+        nearby: &Nearby<T>,
+        in_vain: InVain,
+    ) -> Solution<T> {
+        let InVain { mut outer, mut linear, unsettled } = in_vain;
+        let mut found = None;
+        if unsettled.is_some() && matches!(nearby.functions, Functions::Coarser(_)) {
+            let solution = MonotoneMultigrid::default().solve_near(inequality, nearby);
+            if solution.outcome == Outcome::Converged {
+                found = Some(solution);
+            } else {
+                (outer, linear) = (outer + solution.outer, linear + solution.linear);
+            }
+        }
+        let mut solution = found.unwrap_or_else(|| self.solve_directly(inequality, unsettled));
+        solution.outer += outer;
+        solution.linear += linear;
+        solution
     }
 
     /// With factors, from contact that did not settle if there is such.

@@ -17,7 +17,7 @@ const START: f64 = 1e-2;
 /// The same below which contact is believed where it is plain and was the same a step before.
 const NEAR: f64 = 1e-9;
 
-/// The same above which slow progress is not due to rounding.
+/// The same above which slow progress is due to the start, not to rounding.
 const FAR: f64 = 1e-8;
 
 /// How far the shares that a step leaves of gap and force are apart where contact is plain to see.
@@ -26,8 +26,9 @@ const CLEAR: f64 = 0.5;
 /// Most steps.
 const MOST: usize = 60;
 
-/// Where so many steps do not halve the products of gaps and forces, rounding rules.
-const PATIENCE: usize = 5;
+/// Where so many steps do not halve the products of gaps and forces, rounding rules, or the start
+/// was bad.
+const PATIENCE: usize = 3;
 
 /// One bound of one unknown: `side` times the unknown is above `side` times the bound by `gap`. Both
 /// gap and force are about to move along parabolas.
@@ -99,14 +100,22 @@ impl<'a, T: Real> InteriorPoint<'a, T> {
             (0..n).filter(|&i| bounds[i].only_value().is_none()).map(|i| i as u32).collect();
         let diagonal: Vec<f64> = (0..n).map(|i| positive_diagonal(inequality, i)).collect();
         let mut point = Self { inequality, free, values, diagonal, walls: Vec::new(), steps: 0 };
-        let mut deficit = vec![0.0; n];
-        let energy = point.deficit(&mut deficit);
-        let count = |i: &u32| bounds[*i as usize].is_inequality();
-        let product = START * energy / point.free.iter().filter(|i| count(i)).count().max(1) as f64;
-        for k in 0..point.free.len() {
-            point.wall(point.free[k] as usize, &deficit, product);
-        }
+        point.start(START);
         point
+    }
+
+    /// Goes to the central path near the values as they are, where complementarity over energy is a
+    /// given number.
+    fn start(&mut self, share: f64) {
+        self.walls.clear();
+        let mut deficit = vec![0.0; self.values.len()];
+        let energy = self.deficit(&mut deficit);
+        let bounds = &self.inequality.bounds;
+        let bounded = self.free.iter().filter(|&&i| bounds[i as usize].is_inequality()).count();
+        let product = share * energy / bounded.max(1) as f64;
+        for k in 0..self.free.len() {
+            self.wall(self.free[k] as usize, &deficit, product);
+        }
     }
 
     /// Moves an unknown to where gap and force have a given product, both as near as may be to what
@@ -142,19 +151,26 @@ impl<'a, T: Real> InteriorPoint<'a, T> {
         let mut deficit = vec![0.0; self.values.len()];
         let (mut least, mut idle) = (f64::INFINITY, 0);
         let mut before = Vec::new();
+        let mut is_restarted = false;
         while self.steps < MOST {
             let energy = self.deficit(&mut deficit);
             let mean = self.mean_product();
             if !mean.is_finite() || !energy.is_finite() {
                 return None;
             }
-            idle = if mean < 0.5 * least || mean * self.walls.len() as f64 > FAR * energy { 0 } else { idle + 1 };
-            least = if idle == 0 { mean } else { least };
             let share = mean * self.walls.len() as f64 / energy;
+            idle = if share < 0.5 * least { 0 } else { idle + 1 };
+            least = if idle == 0 { share } else { least };
             let contact = self.contact();
             let is_steady = share <= NEAR && self.is_clear() && contact == before;
             before = contact;
-            if is_steady || share <= CLOSE || idle > PATIENCE {
+            if share > FAR && idle > PATIENCE && !is_restarted {
+                // a start too close to bounds is stuck there
+                (is_restarted, idle, least) = (true, 0, f64::INFINITY);
+                self.start(1.0);
+                continue;
+            }
+            if is_steady || share <= CLOSE || share <= FAR && idle > PATIENCE {
                 break;
             }
             self.step(&deficit, mean)?;

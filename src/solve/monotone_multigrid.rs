@@ -26,13 +26,15 @@ use crate::real::Real;
 pub struct MonotoneMultigrid {
     /// Most steps.
     pub max_cycles: usize,
+    /// Sweeps before each linear correction.
+    pub sweeps: usize,
     /// Energy norm of the last correction over that of the solution; `f32` stops at its rounding.
     pub tolerance: f64,
 }
 
 impl Default for MonotoneMultigrid {
     fn default() -> Self {
-        Self { max_cycles: 200, tolerance: 1e-11 }
+        Self { max_cycles: 200, sweeps: 2, tolerance: 1e-10 }
     }
 }
 
@@ -115,7 +117,10 @@ impl<'a, T: Real> Descent<'a, T> {
         let limit = if nearby.accuracy.is_some() { f64::INFINITY } else { T::CERTIFICATE_LIMIT };
         while self.cycles < settings.max_cycles {
             self.cycles += 1;
-            let swept = self.sweep()?;
+            let mut swept = 0.0;
+            for _ in 0..settings.sweeps {
+                swept += self.sweep()?;
+            }
             let corrected = self.correct(&mut multigrid)?;
             let energy = self.energy();
             if !(energy.is_finite() && swept.is_finite()) {
