@@ -236,7 +236,9 @@ impl<'a, T: Real> Inexact<'a, T> {
                     return Some(Outcome::Stalled);
                 }
             }
+            // from a cold start contact spreads layer by layer, which is slow but cheap
             if settings.last_resort == LastResort::WhenUnsettled
+                && self.inequality.start != Start::Cold
                 && course.hesitates(look.flips.len(), settings.hesitation)
             {
                 self.is_unsettled = true;

@@ -140,7 +140,15 @@ impl<'a, T: Real> InteriorPoint<'a, T> {
             if let Some(bound) = bound {
                 let gap = side * (self.values[i] - bound);
                 let force = product / gap;
-                self.walls.push(Wall { unknown: i, side, gap, force, gap_step: [0.0; 2], force_step: [0.0; 2], left: [1.0; 2] });
+                self.walls.push(Wall {
+                    unknown: i,
+                    side,
+                    gap,
+                    force,
+                    gap_step: [0.0; 2],
+                    force_step: [0.0; 2],
+                    left: [1.0; 2],
+                });
             }
         }
     }
@@ -170,7 +178,7 @@ impl<'a, T: Real> InteriorPoint<'a, T> {
                 self.start(1.0);
                 continue;
             }
-            if is_steady || share <= CLOSE || share <= FAR && idle > PATIENCE {
+            if is_steady || share <= CLOSE || idle > PATIENCE {
                 break;
             }
             self.step(&deficit, mean)?;
@@ -203,8 +211,7 @@ impl<'a, T: Real> InteriorPoint<'a, T> {
         let longest = self.longest();
         let length = if longest < 1.0 { SHARE * longest } else { 1.0 };
         for (k, &i) in self.free.iter().enumerate() {
-            self.values[i as usize] +=
-                length * (slope[k].to_f64() + length * bend[k].to_f64());
+            self.values[i as usize] += length * (slope[k].to_f64() + length * bend[k].to_f64());
         }
         for wall in &mut self.walls {
             let (gap, force) = wall.at(length);

@@ -224,8 +224,7 @@ impl<'s, 'a, T: Real> Search<'s, 'a, T> {
     /// The active set rests: whether the complementarity conditions hold indeed, by the
     /// certificate, which knows nothing of it.
     fn confirm(&self) -> Result<Outcome, Outcome> {
-        let (certificate, unit) =
-            certify_with_noise(self.iterate.inequality, &self.iterate.values);
+        let (certificate, unit) = certify_with_noise(self.iterate.inequality, &self.iterate.values);
         let rounding = 8.0 * self.band * T::EPSILON;
         // rounding may excuse much for a large penalty, but not that the answer is worthless
         let largest = (rounding * unit.max(1.0)).min(T::CERTIFICATE_LIMIT);
