@@ -24,7 +24,7 @@ const FAR: f64 = 1e-8;
 const CLEAR: f64 = 0.5;
 
 /// Most steps.
-const MOST: usize = 60;
+pub(super) const MOST: usize = 60;
 
 /// Where so many steps do not halve the products of gaps and forces, rounding rules, or the start
 /// was bad.

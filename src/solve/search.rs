@@ -6,6 +6,7 @@ use super::certificate::certify_with_noise;
 use super::condensed::{Noise, resolve};
 use super::cycles::History;
 use super::descent::descend;
+use super::interior;
 use super::iterate::Iterate;
 use super::linear::FactorError;
 use crate::real::Real;
@@ -101,7 +102,10 @@ impl<'s, 'a, T: Real> Search<'s, 'a, T> {
                 if let Some(outcome) = self.resolve(true)? {
                     return Ok(outcome);
                 }
-            } else if self.is_untried && outer - self.settling >= self.hesitation {
+            } else if self.is_untried
+                && outer - self.settling >= self.hesitation
+                && outer + interior::MOST <= self.settings.max_outer
+            {
                 self.approach();
             } else if outer - self.progress.max(self.iterate.best_outer()) >= self.settings.patience
             {
