@@ -10,7 +10,9 @@ use unilateral::algebra::{Bound, Contact, Inequality, Start};
 use unilateral::assemble::{DataQuadrature, Discretisation};
 use unilateral::prelude::*;
 use unilateral::scenes::Scene;
-use unilateral::solve::{ActiveSet, InequalitySolver, LastResort, Linear, Outcome, certify};
+use unilateral::solve::{
+    ActiveSet, InequalitySolver, LastResort, Linear, MonotoneMultigrid, Outcome, certify,
+};
 
 /// Every solver there is for symmetric matrices, by what forces it.
 fn agree(what: &str, problem: &Inequality<f64>) {
@@ -24,6 +26,7 @@ fn agree(what: &str, problem: &Inequality<f64>) {
         ("iterative", iterative),
         ("interior", interior.solve(problem)),
         ("monotone", monotone.solve(problem)),
+        ("multigrid", MonotoneMultigrid::default().solve(problem)),
     ];
     for (name, solution) in others {
         assert_eq!(solution.outcome, Outcome::Converged, "{what}: {name}");

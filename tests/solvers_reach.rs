@@ -9,6 +9,9 @@ use unilateral::study::{Placement, Row, SCHEMES, SchemeOptions, scheme_by_name};
 /// Over-penalties from almost none to where rounding rules.
 const ETAS: [f64; 5] = [1e-2, 1.0, 10.0, 1e4, 1e8];
 
+/// More steps than this are named, like failures.
+const MANY: usize = 25;
+
 /// A scheme by name, its penalty if not the default, and a placement.
 type Choice = (&'static str, Option<f64>, &'static str);
 
@@ -41,12 +44,15 @@ fn rows<const D: usize>(scene: Scene<D>, choice: Choice, levels: &[usize]) -> Ve
     study.run().map(|report| report.rows).unwrap_or_default()
 }
 
-/// Three small levels of each dimension.
-fn levels(dimension: usize) -> [usize; 3] {
+/// Three small levels of each dimension, or those that a variable of the environment names.
+fn levels(dimension: usize) -> Vec<usize> {
+    if let Ok(asked) = std::env::var("LEVELS") {
+        return asked.split(',').filter_map(|level| level.parse().ok()).collect();
+    }
     match dimension {
-        1 => [8, 32, 128],
-        2 => [8, 16, 32],
-        _ => [1, 2, 4],
+        1 => vec![8, 32, 128],
+        2 => vec![8, 16, 32],
+        _ => vec![1, 2, 4],
     }
 }
 
@@ -72,7 +78,8 @@ fn reach() {
             let eta = choice.1.map_or("default".into(), |eta| format!("{eta:e}"));
             let label = format!("{} | {} | {eta}", choice.0, choice.2);
             for row in &found {
-                if !row.converged() {
+                let is_good = row.converged() && row.certificate.largest() <= 1e-8;
+                if !is_good || row.iterations.outer.unwrap_or(0) > MANY {
                     println!(
                         "| {} | {label} | {} | {} | {} | {:.1e} |",
                         row.scene,

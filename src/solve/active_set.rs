@@ -1,15 +1,13 @@
 //! The primal-dual active set method.
 
-use super::certificate::certify_with_noise;
-use super::condensed::{Noise, resolve};
-use super::cycles::History;
-use super::descent::descend;
-use super::inexact::Inexact;
+use super::inexact::{InVain, Inexact};
 use super::iterate::Iterate;
 use super::linear::{FactorError, is_positive_definite};
+use super::monotone_multigrid::MonotoneMultigrid;
 use super::nearby::{Functions, Linear, Nearby};
+use super::search::Search;
 use super::{InequalitySolver, Outcome, Solution};
-use crate::algebra::{Inequality, Start};
+use crate::algebra::{Contact, Inequality, Start};
 use crate::real::Real;
 
 /// The primal-dual active set method, which is a semismooth Newton method (Hintermueller, Ito,
@@ -47,6 +45,9 @@ pub struct ActiveSet {
     /// iterate before and so corrects it anyway; one more matters where a single step suffices
     /// (a warm start), in `f32` by two digits and more.
     pub refinements: usize,
+    /// Linear systems within which the number of changes of state must fall to a half, or the
+    /// interior point method is asked.
+    pub hesitation: usize,
     /// Linear systems without a better iterate after which the unknowns that moved are condensed.
     pub patience: usize,
     /// Largest number of condensed problems.
@@ -84,16 +85,13 @@ pub enum LastResort {
 /// Unknowns above which the iterative solver is faster where nested meshes are known.
 const CROSSOVER: usize = 10_000;
 
-/// How much the band may widen: a thousand units of rounding in all leave a certificate below 1e-9
-/// in `f64` and about 1e-4 in `f32`.
-const WIDEST: f64 = 64.0;
-
 impl Default for ActiveSet {
     fn default() -> Self {
         Self {
             max_outer: 200,
             band: 16.0,
             refinements: 1,
+            hesitation: 3,
             patience: 20,
             max_condensations: 10,
             max_condensed: 500,
@@ -122,17 +120,12 @@ impl<T: Real> InequalitySolver<T> for ActiveSet {
             && inequality.symmetric
             && check_input(inequality).is_ok()
         {
-            match self.solve_inexactly(inequality, nearby) {
-                Ok(solution) => return solution,
-                Err((outer, linear)) => {
-                    let mut solution = self.solve_directly(inequality);
-                    solution.outer += outer;
-                    solution.linear += linear;
-                    return solution;
-                }
-            }
+            return match self.solve_inexactly(inequality, nearby) {
+                Ok(solution) => solution,
+                Err(in_vain) => self.take_over(inequality, nearby, in_vain),
+            };
         }
-        self.solve_directly(inequality)
+        self.solve_directly(inequality, None)
     }
 
     fn uses_nearby(&self, unknowns: usize) -> bool {
@@ -145,175 +138,74 @@ impl<T: Real> InequalitySolver<T> for ActiveSet {
 }
 
 impl ActiveSet {
-    /// Without factors of the matrix. The error is how many outer and inner iterations were made in
-    /// vain.
+    /// Without factors of the matrix. The error is what was done in vain.
     fn solve_inexactly<T: Real>(
         &self,
         inequality: &Inequality<T>,
         nearby: &Nearby<T>,
-    ) -> Result<Solution<T>, (usize, usize)> {
+    ) -> Result<Solution<T>, InVain> {
         if self.check_definite && check_definite(inequality).is_err() {
-            return Err((0, 0));
+            return Err(InVain::default());
         }
-        Inexact::new(inequality, nearby)
-            .run(self, nearby)
-            .map_err(|in_vain| (in_vain.outer, in_vain.linear))
+        Inexact::new(inequality, nearby).run(self, nearby)
     }
 
-    fn solve_directly<T: Real>(&self, inequality: &Inequality<T>) -> Solution<T> {
+    /// What is done where the iterative solver did not arrive: where it did not settle on nested
+    /// meshes of conforming linears, multigrid that has no need to; elsewhere factors.
+    fn take_over<T: Real>(
+        &self,
+        inequality: &Inequality<T>,
+        nearby: &Nearby<T>,
+        in_vain: InVain,
+    ) -> Solution<T> {
+        let InVain { mut outer, mut linear, unsettled } = in_vain;
+        let mut found = None;
+        if unsettled.is_some() && matches!(nearby.functions, Functions::Coarser(_)) {
+            let solution = MonotoneMultigrid::default().solve_near(inequality, nearby);
+            if solution.outcome == Outcome::Converged {
+                found = Some(solution);
+            } else {
+                (outer, linear) = (outer + solution.outer, linear + solution.linear);
+            }
+        }
+        let mut solution = found.unwrap_or_else(|| self.solve_directly(inequality, unsettled));
+        solution.outer += outer;
+        solution.linear += linear;
+        solution
+    }
+
+    /// With factors, from contact that did not settle if there is such.
+    fn solve_directly<T: Real>(
+        &self,
+        inequality: &Inequality<T>,
+        unsettled: Option<Vec<Contact>>,
+    ) -> Solution<T> {
         let mut iterate = Iterate::new(inequality);
-        let outcome =
-            self.run(&mut iterate).unwrap_or_else(|outcome| self.settle(&mut iterate, outcome));
+        let outcome = match (self.check(inequality), unsettled) {
+            (Ok(()), None) => Search::new(self, &mut iterate).run(),
+            (Ok(()), Some(contact)) => {
+                iterate.state = contact;
+                Search::new(self, &mut iterate).impatient().run()
+            }
+            (Err(outcome), _) => outcome,
+        };
         iterate.into_solution(outcome)
     }
 }
 
 impl ActiveSet {
-    /// Runs until the active set rests; the error is the reason why it does not.
-    fn run<T: Real>(&self, iterate: &mut Iterate<'_, T>) -> Result<Outcome, Outcome> {
-        let inequality = iterate.inequality;
+    /// What can be said before anything is solved.
+    fn check<T: Real>(&self, inequality: &Inequality<T>) -> Result<(), Outcome> {
         check_input(inequality)?;
-        let cold = inequality.start == Start::Cold;
-        let cold_checks = cold && inequality.symmetric;
-        if self.check_definite && !cold_checks {
+        let is_checked_by_factors = inequality.start == Start::Cold && inequality.symmetric;
+        if self.check_definite && !is_checked_by_factors {
             check_definite(inequality)?;
-        }
-        let mut is_untried = self.last_resort == LastResort::WhenUnsettled;
-        match self.last_resort {
-            LastResort::Monotone if inequality.symmetric => return self.descend(iterate),
-            LastResort::AtOnce => iterate.approach(),
-            _ => {}
-        }
-        let mut cycle = vec![false; inequality.size()];
-        let mut history = History::new(inequality.size());
-        history.record(&iterate.state, &mut cycle);
-        let mut condensations = 0;
-        let mut progress = 0;
-        let mut band = self.band;
-        loop {
-            if iterate.outer >= self.max_outer {
-                return Err(Outcome::IterationLimit);
-            }
-            match iterate.solve_linear(self.refinements) {
-                Ok(()) => {}
-                Err(FactorError::Singular) if iterate.outer == 1 => {
-                    if self.check_definite {
-                        return Err(Outcome::NotCoercive);
-                    }
-                    if !iterate.close(&mut history) {
-                        return Err(Outcome::Singular);
-                    }
-                    history = History::new(inequality.size());
-                    history.record(&iterate.state, &mut cycle);
-                    continue;
-                }
-                Err(error) => return Err(error.into()),
-            }
-            if !iterate.assess() {
-                return Err(Outcome::NotFinite);
-            }
-            if !iterate.change_state(band, band - self.band, &mut history) {
-                return self.confirm(iterate, band);
-            }
-            let returned = history.record(&iterate.state, &mut cycle);
-            let wanders = iterate.outer - progress.max(iterate.best_outer()) >= self.patience;
-            if !returned && !wanders {
-                continue;
-            }
-            if !returned {
-                history.mark_recent(self.patience, &mut cycle);
-            }
-            progress = iterate.outer;
-            let members: Vec<u32> =
-                (0..cycle.len()).filter(|&i| cycle[i]).map(|i| i as u32).collect();
-            if condensations == self.max_condensations || members.len() > self.max_condensed {
-                if is_untried {
-                    is_untried = false;
-                    iterate.approach();
-                    history = History::new(inequality.size());
-                    history.record(&iterate.state, &mut cycle);
-                    (progress, condensations) = (iterate.outer, 0);
-                } else if self.last_resort != LastResort::Never && inequality.symmetric {
-                    iterate.return_to_best();
-                    return self.descend(iterate);
-                } else if returned {
-                    return Err(Outcome::Cycling);
-                }
-                // It may still come to rest by itself, or wander among fewer unknowns.
-                cycle.fill(false);
-                continue;
-            }
-            condensations += 1;
-            self.condense(iterate, &members, band, &mut history)?;
-            history.restart(&iterate.state);
-            band = (4.0 * band).min(WIDEST * self.band);
-        }
-    }
-
-    /// The method that must end, from the iterate as it is.
-    fn descend<T: Real>(&self, iterate: &mut Iterate<'_, T>) -> Result<Outcome, Outcome> {
-        descend(iterate, self)?;
-        self.confirm(iterate, self.band)
-    }
-
-    /// Sets the states of some unknowns to those that solve the problem condensed on them.
-    fn condense<T: Real>(
-        &self,
-        iterate: &mut Iterate<'_, T>,
-        members: &[u32],
-        band: f64,
-        history: &mut History,
-    ) -> Result<(), Outcome> {
-        iterate.outer += 1;
-        iterate.rest_on_bounds();
-        let noise = Noise {
-            gap: iterate.gap_noise(band),
-            force: &|i| iterate.force_noise(i, band, band - self.band),
-        };
-        let states = resolve(iterate.inequality, &iterate.values, &iterate.state, members, &noise)?
-            .ok_or(Outcome::Cycling)?;
-        for (&i, &contact) in members.iter().zip(&states) {
-            iterate.set_state(i as usize, contact, history);
         }
         Ok(())
     }
-
-    /// What to call the best iterate where the active set does not rest: it may be a solution, or as
-    /// near to one as rounding allows.
-    fn settle<T: Real>(&self, iterate: &mut Iterate<'_, T>, outcome: Outcome) -> Outcome {
-        if !matches!(outcome, Outcome::IterationLimit | Outcome::Cycling) {
-            return outcome;
-        }
-        let (best, forces) = iterate.best_values();
-        let (certificate, unit) = certify_with_noise(iterate.inequality, best, forces);
-        let rounding = 8.0 * self.band * T::EPSILON * unit.max(1.0);
-        if certificate.largest() > rounding {
-            outcome
-        } else if certificate.largest() <= T::CERTIFICATE_LIMIT {
-            iterate.return_to_best();
-            Outcome::Converged
-        } else {
-            Outcome::Stalled
-        }
-    }
-
-    /// The active set rests: whether the complementarity conditions hold indeed, by the
-    /// certificate, which knows nothing of it.
-    fn confirm<T: Real>(&self, iterate: &Iterate<'_, T>, band: f64) -> Result<Outcome, Outcome> {
-        let (certificate, unit) =
-            certify_with_noise(iterate.inequality, &iterate.values, &iterate.forces);
-        let rounding = 8.0 * band * T::EPSILON;
-        // rounding may excuse much for a large penalty, but not that the answer is worthless
-        let largest = (rounding * unit.max(1.0)).min(T::CERTIFICATE_LIMIT);
-        if certificate.feasibility <= rounding && certificate.largest() <= largest {
-            Ok(Outcome::Converged)
-        } else {
-            Err(Outcome::Stalled)
-        }
-    }
 }
 
-fn check_input<T: Real>(inequality: &Inequality<T>) -> Result<(), Outcome> {
+pub(super) fn check_input<T: Real>(inequality: &Inequality<T>) -> Result<(), Outcome> {
     if !inequality.is_well_formed() {
         Err(Outcome::Malformed)
     } else if !inequality.is_finite() {

@@ -11,6 +11,7 @@ pub(super) struct History {
     seen: Vec<(u128, u32)>,
     last_move: Vec<u32>,
     step: u32,
+    moving: usize,
     /// The step at which the states before were forgotten, if they were.
     forgotten: Option<u32>,
 }
@@ -18,12 +19,18 @@ pub(super) struct History {
 impl History {
     /// No state seen yet.
     pub fn new(unknowns: usize) -> Self {
-        Self { seen: Vec::new(), last_move: vec![0; unknowns], step: 0, forgotten: None }
+        Self { seen: Vec::new(), last_move: vec![0; unknowns], step: 0, moving: 0, forgotten: None }
     }
 
     /// Notes that unknown `i` moves into the state to be recorded next.
     pub fn moved(&mut self, i: usize) {
         self.last_move[i] = self.step + 1;
+        self.moving += 1;
+    }
+
+    /// How many unknowns move into the state to be recorded next.
+    pub fn moving(&self) -> usize {
+        self.moving
     }
 
     /// Records a state. If it has been seen, marks in `cycle` every unknown that has moved since,
@@ -34,6 +41,7 @@ impl History {
     /// for ever.
     pub fn record(&mut self, state: &[Contact], cycle: &mut [bool]) -> bool {
         self.step += 1;
+        self.moving = 0;
         let fingerprint = fingerprint(state);
         let Some(&(_, first)) = self.seen.iter().find(|(seen, _)| *seen == fingerprint) else {
             self.seen.push((fingerprint, self.step));

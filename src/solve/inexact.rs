@@ -1,6 +1,6 @@
 //! The active set method with inexact linear solutions: no factors of the matrix.
 
-use super::active_set::ActiveSet;
+use super::active_set::{ActiveSet, LastResort};
 use super::conjugate_gradients::{ConjugateGradients, End, Preconditioner, Run, Stop, dot};
 use super::cycles::key_of;
 use super::iterate::{known_value, rest};
@@ -43,6 +43,8 @@ pub(super) struct Inexact<'a, T> {
     seen: Vec<u128>,
     pub outer: usize,
     pub linear: usize,
+    /// Whether the active set did not settle.
+    is_unsettled: bool,
     /// Smallest Ritz value so far.
     lowest: f64,
     /// Energy norm of the iterate.
@@ -52,9 +54,12 @@ pub(super) struct Inexact<'a, T> {
 }
 
 /// What was done before factors were asked to take over.
+#[derive(Default)]
 pub(super) struct InVain {
     pub outer: usize,
     pub linear: usize,
+    /// Contact, where it did not settle.
+    pub unsettled: Option<Vec<Contact>>,
 }
 
 /// How the active set fares.
@@ -67,16 +72,31 @@ struct Course {
     best: f64,
     idle: usize,
     repeats: usize,
+    /// Fewest changes of state, and systems since they were half of what they had been.
+    fewest: usize,
+    hesitant: usize,
 }
 
 impl Course {
     fn new(settled: bool) -> Self {
         let best = f64::INFINITY;
-        Self { has_moved: true, settled, careful: false, best, idle: 0, repeats: 0 }
+        let fewest = usize::MAX;
+        let has_moved = true;
+        Self { has_moved, settled, careful: false, best, idle: 0, repeats: 0, fewest, hesitant: 0 }
     }
 
     fn is_careful(&self) -> bool {
         self.settled || self.careful
+    }
+
+    /// Whether changes of state become fewer so slowly that something else is quicker.
+    fn hesitates(&mut self, flips: usize, hesitation: usize) -> bool {
+        if 2 * flips <= self.fewest {
+            (self.fewest, self.hesitant) = (flips, 0);
+        } else if flips > 0 {
+            self.hesitant += 1;
+        }
+        self.hesitant > hesitation
     }
 
     /// Whether it may still arrive.
@@ -126,6 +146,7 @@ impl<'a, T: Real> Inexact<'a, T> {
             seen: vec![fingerprint],
             outer: 0,
             linear: 0,
+            is_unsettled: false,
             lowest: 1.0,
             energy: 1.0,
             norm: f64::INFINITY,
@@ -144,12 +165,16 @@ impl<'a, T: Real> Inexact<'a, T> {
         };
         match self.iterate(settings, nearby, &mut preconditioner) {
             Some(outcome) => Ok(self.into_solution(outcome, &mut preconditioner)),
+            None if self.is_unsettled => {
+                let unsettled = Some(std::mem::take(&mut self.state));
+                Err(InVain { unsettled, ..self.in_vain() })
+            }
             None => Err(self.in_vain()),
         }
     }
 
     fn in_vain(&self) -> InVain {
-        InVain { outer: self.outer, linear: self.linear }
+        InVain { outer: self.outer, linear: self.linear, unsettled: None }
     }
 
     /// `None` if it does not get anywhere.
@@ -214,6 +239,14 @@ impl<'a, T: Real> Inexact<'a, T> {
                     }
                     return Some(Outcome::Stalled);
                 }
+            }
+            // from a cold start contact spreads layer by layer, which is slow but cheap
+            if settings.last_resort == LastResort::WhenUnsettled
+                && self.inequality.start != Start::Cold
+                && course.hesitates(look.flips.len(), settings.hesitation)
+            {
+                self.is_unsettled = true;
+                return None;
             }
             let returned = self.has_returned(&look.flips);
             if !course.goes_on(&look, returned, settings.patience) {

@@ -11,34 +11,62 @@ const SHARE: f64 = 0.995;
 /// Complementarity over energy below which contact and gap are told apart.
 const CLOSE: f64 = 1e-18;
 
+/// Complementarity over energy to start with.
+const START: f64 = 1e-2;
+
+/// The same below which contact is believed where it is plain and was the same a step before.
+const NEAR: f64 = 1e-9;
+
+/// The same above which slow progress is due to the start, not to rounding.
+const FAR: f64 = 1e-8;
+
+/// How far the shares that a step leaves of gap and force are apart where contact is plain to see.
+const CLEAR: f64 = 0.5;
+
 /// Most steps.
-const MOST: usize = 60;
+pub(super) const MOST: usize = 60;
 
-/// Where so many steps do not halve the products of gaps and forces, rounding rules.
-const PATIENCE: usize = 5;
+/// Where so many steps do not halve the products of gaps and forces, rounding rules, or the start
+/// was bad.
+const PATIENCE: usize = 3;
 
-/// One bound of one unknown: `side` times the unknown is above `side` times the bound by `gap`.
+/// One bound of one unknown: `side` times the unknown is above `side` times the bound by `gap`. Both
+/// gap and force are about to move along parabolas.
 struct Wall {
     unknown: usize,
     side: f64,
     gap: f64,
     force: f64,
-    gap_step: f64,
-    force_step: f64,
+    gap_step: [f64; 2],
+    force_step: [f64; 2],
+    /// What share of themselves the last step left of gap and force.
+    left: [f64; 2],
 }
 
 impl Wall {
-    /// The steps of gap and force where the unknown moves by `step` and their product is to become
-    /// `target`.
-    fn follow(&mut self, step: f64, target: f64) {
-        self.gap_step = self.side * step;
-        self.force_step = (target - self.force * self.gap_step) / self.gap - self.force;
+    /// Gap and force after a step of this length.
+    fn at(&self, length: f64) -> (f64, f64) {
+        let along = |[slope, bend]: [f64; 2]| length * (slope + length * bend);
+        (self.gap + along(self.gap_step), self.force + along(self.force_step))
     }
+
     /// The longest step, at most one, that leaves gap and force positive.
     fn longest(&self) -> f64 {
-        let reach = |value: f64, step: f64| if step < 0.0 { -value / step } else { f64::INFINITY };
-        reach(self.gap, self.gap_step).min(reach(self.force, self.force_step)).min(1.0)
+        first_zero(self.gap, self.gap_step).min(first_zero(self.force, self.force_step)).min(1.0)
     }
+}
+
+/// The least positive zero of `value + slope t + bend t^2`, infinity if there is none; the value is
+/// positive.
+fn first_zero(value: f64, [slope, bend]: [f64; 2]) -> f64 {
+    let discriminant = slope * slope - 4.0 * bend * value;
+    if discriminant < 0.0 {
+        return f64::INFINITY;
+    }
+    // the form of the formula in which nothing cancels
+    let root = discriminant.sqrt();
+    let zero = 2.0 * value / (root - slope);
+    if zero > 0.0 { zero } else { f64::INFINITY }
 }
 
 /// The predictor-corrector method of Mehrotra (SIAM J. Optim. 2 (1992) 575-601) for
@@ -62,7 +90,7 @@ pub(super) struct InteriorPoint<'a, T> {
 }
 
 impl<'a, T: Real> InteriorPoint<'a, T> {
-    /// Starts near given values, on the central path as far as bounds are concerned.
+    /// Starts on the central path near given values.
     pub fn new(inequality: &'a Inequality<T>, near: &[T]) -> Self {
         let bounds = &inequality.bounds;
         let n = inequality.size();
@@ -71,32 +99,58 @@ impl<'a, T: Real> InteriorPoint<'a, T> {
         let free: Vec<u32> =
             (0..n).filter(|&i| bounds[i].only_value().is_none()).map(|i| i as u32).collect();
         let diagonal: Vec<f64> = (0..n).map(|i| positive_diagonal(inequality, i)).collect();
-        let scale = values.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
-        let scale = if scale > 0.0 { scale } else { 1.0 };
         let mut point = Self { inequality, free, values, diagonal, walls: Vec::new(), steps: 0 };
-        for k in 0..point.free.len() {
-            let i = point.free[k] as usize;
-            let (lower, upper) = (bounds[i].lower(), bounds[i].upper());
-            let width = match (lower, upper) {
-                (Some(l), Some(u)) => u.to_f64() - l.to_f64(),
-                _ => f64::INFINITY,
-            };
-            let least = (1e-2 * scale).min(0.25 * width);
-            for (bound, side) in [(lower, 1.0), (upper, -1.0)] {
-                if let Some(bound) = bound {
-                    let gap = (side * (point.values[i] - bound.to_f64())).max(least);
-                    let wall =
-                        Wall { unknown: i, side, gap, force: 0.0, gap_step: 0.0, force_step: 0.0 };
-                    point.walls.push(wall);
-                    if width.is_infinite() {
-                        point.values[i] = bound.to_f64() + side * gap;
-                    }
-                }
+        point.start(START);
+        point
+    }
+
+    /// Goes to the central path near the values as they are, where complementarity over energy is a
+    /// given number.
+    fn start(&mut self, share: f64) {
+        self.walls.clear();
+        let mut deficit = vec![0.0; self.values.len()];
+        let energy = self.deficit(&mut deficit);
+        let bounds = &self.inequality.bounds;
+        let bounded = self.free.iter().filter(|&&i| bounds[i as usize].is_inequality()).count();
+        let product = share * energy / bounded.max(1) as f64;
+        for k in 0..self.free.len() {
+            self.wall(self.free[k] as usize, &deficit, product);
+        }
+    }
+
+    /// Moves an unknown to where gap and force have a given product, both as near as may be to what
+    /// they are: without neighbours the step of Jacobi's method ends at `along` from the bound, and
+    /// on the central path `gap - product / (diagonal gap)` is that number.
+    fn wall(&mut self, i: usize, deficit: &[f64], product: f64) {
+        let bound = &self.inequality.bounds[i];
+        let (lower, upper) = (bound.lower().map(T::to_f64), bound.upper().map(T::to_f64));
+        let jacobi = self.values[i] + deficit[i] / self.diagonal[i];
+        let noise = product / self.diagonal[i];
+        let off = |along: f64| 0.5 * along.hypot(2.0 * noise.sqrt()) + 0.5 * along;
+        self.values[i] = match (lower, upper) {
+            (Some(l), Some(u)) => {
+                let margin = off(0.0).min(0.25 * (u - l));
+                jacobi.clamp(l + margin, u - margin)
+            }
+            (Some(l), None) => l + off(jacobi - l),
+            (None, Some(u)) => u - off(u - jacobi),
+            (None, None) => return,
+        };
+        for (bound, side) in [(lower, 1.0), (upper, -1.0)] {
+            if let Some(bound) = bound {
+                let gap = side * (self.values[i] - bound);
+                let force = product / gap;
+                self.walls.push(Wall {
+                    unknown: i,
+                    side,
+                    gap,
+                    force,
+                    gap_step: [0.0; 2],
+                    force_step: [0.0; 2],
+                    left: [1.0; 2],
+                });
             }
         }
-        let mean = point.energy() / point.walls.len().max(1) as f64;
-        point.walls.iter_mut().for_each(|wall| wall.force = mean / wall.gap);
-        point
     }
 
     /// Approaches the solution; the contact states found, or `None` if a matrix has no factors or
@@ -104,15 +158,27 @@ impl<'a, T: Real> InteriorPoint<'a, T> {
     pub fn run(&mut self) -> Option<Vec<Contact>> {
         let mut deficit = vec![0.0; self.values.len()];
         let (mut least, mut idle) = (f64::INFINITY, 0);
+        let mut before = Vec::new();
+        let mut is_restarted = false;
         while self.steps < MOST {
             let energy = self.deficit(&mut deficit);
             let mean = self.mean_product();
             if !mean.is_finite() || !energy.is_finite() {
                 return None;
             }
-            idle = if mean < 0.5 * least { 0 } else { idle + 1 };
-            least = if idle == 0 { mean } else { least };
-            if mean * self.walls.len() as f64 <= CLOSE * energy || idle > PATIENCE {
+            let share = mean * self.walls.len() as f64 / energy;
+            idle = if share < 0.5 * least { 0 } else { idle + 1 };
+            least = if idle == 0 { share } else { least };
+            let contact = self.contact();
+            let is_steady = share <= NEAR && self.is_clear() && contact == before;
+            before = contact;
+            if share > FAR && idle > PATIENCE && !is_restarted {
+                // a start too close to bounds is stuck there
+                (is_restarted, idle, least) = (true, 0, f64::INFINITY);
+                self.start(1.0);
+                continue;
+            }
+            if is_steady || share <= CLOSE || idle > PATIENCE {
                 break;
             }
             self.step(&deficit, mean)?;
@@ -137,48 +203,81 @@ impl<'a, T: Real> InteriorPoint<'a, T> {
             matrix.values[start + place] += T::lit(wall.force / wall.gap);
         }
         let factors = Factors::new(&matrix, self.inequality.symmetric, &self.free).ok()?;
-        // the predictor heads for zero, the corrector for what the predictor's length suggests
-        let zero = vec![0.0; self.walls.len()];
-        self.direct(&factors, deficit, &zero);
-        let length = self.longest();
-        let products = |w: &Wall| (w.gap + length * w.gap_step) * (w.force + length * w.force_step);
-        let reached = self.walls.iter().map(products).sum::<f64>() / self.walls.len().max(1) as f64;
-        let centre = mean * (reached / mean).powi(3);
-        let targets: Vec<f64> =
-            self.walls.iter().map(|w| centre - w.gap_step * w.force_step).collect();
-        let step = self.direct(&factors, deficit, &targets);
+        // the first curve ends at zero, the second at what the length of the first suggests
+        self.curve(&factors, deficit, 0.0);
+        let reached = self.products_at(self.longest());
+        let centre = mean * (reached / mean).clamp(0.0, 1.0).powi(3);
+        let [slope, bend] = self.curve(&factors, deficit, centre);
         let longest = self.longest();
         let length = if longest < 1.0 { SHARE * longest } else { 1.0 };
-        for (&i, step) in self.free.iter().zip(&step) {
-            self.values[i as usize] += length * step.to_f64();
+        for (k, &i) in self.free.iter().enumerate() {
+            self.values[i as usize] += length * (slope[k].to_f64() + length * bend[k].to_f64());
         }
         for wall in &mut self.walls {
-            wall.gap += length * wall.gap_step;
-            wall.force += length * wall.force_step;
+            let (gap, force) = wall.at(length);
+            wall.left = [gap / wall.gap, force / wall.force];
+            (wall.gap, wall.force) = (gap, force);
         }
         Some(())
     }
 
-    /// The Newton step for given products of gaps and forces.
-    fn direct(&mut self, factors: &Factors<T>, deficit: &[f64], targets: &[f64]) -> Vec<T> {
-        let mut right = deficit.to_vec();
-        for (wall, target) in self.walls.iter().zip(targets) {
-            // the force after the step if the unknown did not move
-            right[wall.unknown] += wall.side * (target / wall.gap - wall.force);
+    /// The parabola that follows the path on which deficit and products, these less `centre`, fall
+    /// like `(1 - t)^2`: its slope and its bend at all free unknowns.
+    fn curve(&mut self, factors: &Factors<T>, deficit: &[f64], centre: f64) -> [Vec<T>; 2] {
+        let excess = |wall: &Wall| wall.gap * wall.force - centre;
+        let rates: Vec<f64> = self.walls.iter().map(|wall| -2.0 * excess(wall)).collect();
+        let slope = self.direct(factors, deficit, 2.0, &rates);
+        for (wall, rate) in self.walls.iter_mut().zip(&rates) {
+            wall.gap_step[0] = wall.gap_step[1];
+            wall.force_step[0] = (rate - wall.force * wall.gap_step[0]) / wall.gap;
+        }
+        let rates: Vec<f64> = self
+            .walls
+            .iter()
+            .map(|wall| excess(wall) - wall.gap_step[0] * wall.force_step[0])
+            .collect();
+        let bend = self.direct(factors, deficit, -1.0, &rates);
+        for (wall, rate) in self.walls.iter_mut().zip(&rates) {
+            wall.force_step[1] = (rate - wall.force * wall.gap_step[1]) / wall.gap;
+        }
+        [slope, bend]
+    }
+
+    /// The direction in which the deficit falls at a multiple of itself, products change at given
+    /// rates; that of every gap goes into the second place.
+    fn direct(
+        &mut self,
+        factors: &Factors<T>,
+        deficit: &[f64],
+        share: f64,
+        rates: &[f64],
+    ) -> Vec<T> {
+        let mut right: Vec<f64> = deficit.iter().map(|r| share * r).collect();
+        for (wall, rate) in self.walls.iter().zip(rates) {
+            right[wall.unknown] += wall.side * rate / wall.gap;
         }
         let mut step: Vec<T> = self.free.iter().map(|&i| T::lit(right[i as usize])).collect();
         factors.solve_in_place(&mut step, 1);
         for (&i, step) in self.free.iter().zip(&step) {
             right[i as usize] = step.to_f64();
         }
-        for (wall, target) in self.walls.iter_mut().zip(targets) {
-            wall.follow(right[wall.unknown], *target);
+        for wall in &mut self.walls {
+            wall.gap_step[1] = wall.side * right[wall.unknown];
         }
         step
     }
 
     fn longest(&self) -> f64 {
         self.walls.iter().map(Wall::longest).fold(1.0, f64::min)
+    }
+
+    /// The mean product that a step of this length leaves.
+    fn products_at(&self, length: f64) -> f64 {
+        let product = |wall: &Wall| {
+            let (gap, force) = wall.at(length);
+            gap * force
+        };
+        self.walls.iter().map(product).sum::<f64>() / self.walls.len().max(1) as f64
     }
 
     fn mean_product(&self) -> f64 {
@@ -203,14 +302,17 @@ impl<'a, T: Real> InteriorPoint<'a, T> {
         if load > 0.0 { load } else { 1.0 }
     }
 
-    /// Contact where the force is larger than what the diagonal makes of the gap.
+    /// Whether contact is plain to see at every bound: one of gap and force keeps what it has and
+    /// the other loses it (El-Bakry, Tapia, Zhang, SIAM Rev. 36 (1994) 45-72).
+    fn is_clear(&self) -> bool {
+        self.walls.iter().all(|wall| (wall.left[0] - wall.left[1]).abs() > CLEAR)
+    }
+
+    /// Contact where more is left of the force than of the gap.
     fn contact(&self) -> Vec<Contact> {
         let mut contact = vec![Contact::Open; self.values.len()];
-        for wall in &self.walls {
-            if wall.force > self.diagonal[wall.unknown] * wall.gap {
-                let side = if wall.side > 0.0 { Contact::Lower } else { Contact::Upper };
-                contact[wall.unknown] = side;
-            }
+        for wall in self.walls.iter().filter(|wall| wall.left[1] > wall.left[0]) {
+            contact[wall.unknown] = if wall.side > 0.0 { Contact::Lower } else { Contact::Upper };
         }
         contact
     }

@@ -1,0 +1,66 @@
+//! The monotone multigrid method: counts that do not depend on strict complementarity nor on the
+//! mesh, and the solutions of the active set.
+
+use unilateral::prelude::*;
+use unilateral::scenes::Scene;
+use unilateral::solve::{ActiveSet, InequalitySolver, MonotoneMultigrid};
+use unilateral::study::Row;
+
+fn rows<const D: usize>(
+    scene: Scene<D>,
+    levels: &[usize],
+    solver: impl InequalitySolver<f64> + 'static,
+) -> Vec<Row> {
+    let study = Study::<f64, D>::new(scene).scheme(ConformingP1).solver(solver);
+    study.levels(levels.iter().copied()).run().unwrap().rows
+}
+
+fn scenes_without_strictness() -> Vec<fn() -> Scene<2>> {
+    vec![
+        scenes::biactive_half_2d,
+        scenes::biactive_ring_2d,
+        || scenes::degenerate(2),
+        || scenes::degenerate(4),
+        scenes::spiral_2d,
+        || scenes::radial(1.0),
+        scenes::ball_2d,
+    ]
+}
+
+/// Prints cycles next to active sets; returns the cycles.
+fn compare(scene: fn() -> Scene<2>, levels: &[usize]) -> Vec<usize> {
+    let found = rows(scene(), levels, MonotoneMultigrid::default());
+    let exact = rows(scene(), levels, ActiveSet::default());
+    for (row, exact) in found.iter().zip(&exact) {
+        let what = format!("{} {}", row.scene, row.level);
+        assert_eq!(row.status, "converged", "{what}");
+        assert!(row.certificate.largest() < 1e-9, "{what}: {:?}", row.certificate);
+        let (a, b) = (row.objective.unwrap(), exact.objective.unwrap());
+        assert!((a - b).abs() <= 1e-8 * b.abs(), "{what}: objective {a} and {b}");
+        println!(
+            "| {} | {} | {} | {} |",
+            row.scene,
+            row.level,
+            row.iterations.outer.unwrap(),
+            exact.iterations.outer.unwrap()
+        );
+    }
+    found.iter().map(|row| row.iterations.outer.unwrap()).collect()
+}
+
+#[test]
+fn cycles_do_not_grow() {
+    for scene in scenes_without_strictness() {
+        let cycles = compare(scene, &[16, 32, 64]);
+        assert!(cycles.iter().all(|&cycles| cycles <= 25), "{cycles:?}");
+    }
+}
+
+#[test]
+#[ignore = "takes a minute: prints the table of docs/solvers.md"]
+fn cycles_do_not_grow_on_fine_meshes() {
+    for scene in scenes_without_strictness() {
+        let cycles = compare(scene, &[32, 64, 128, 256]);
+        assert!(cycles.iter().all(|&cycles| cycles <= 25), "{cycles:?}");
+    }
+}
