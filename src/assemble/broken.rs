@@ -7,6 +7,7 @@
 //! A form is bilinear in moments, so on each facet it comes down to a few numbers: the products of
 //! jumps are those of the reference cell, and fluxes of one moment make a matrix of rank one.
 
+mod linear;
 mod rows;
 
 use std::convert::Infallible;
@@ -156,7 +157,7 @@ struct Filling<'s, 'a, T: Real, const D: usize> {
     /// By what the penalty is multiplied for each moment that has a flux.
     flux_moments: Vec<T>,
     /// If the gradient of basis function `i` is `c` times that of barycentric coordinate `i`: `c`.
-    gradient: T,
+    gradient: Option<T>,
     lifted: bool,
 }
 
@@ -170,7 +171,6 @@ pub(super) fn fill<T: Real, const D: usize>(
 ) {
     let facets = space.facet_table(form.moments(space.degree));
     let of_degree = |k| form.moment_weight(k);
-    let gradient = space.gradient_factor();
     let has_flux = |k: &&usize| form.uses_flux() && **k < space.degree;
     let filling = Filling {
         space,
@@ -181,21 +181,21 @@ pub(super) fn fill<T: Real, const D: usize>(
         jumps: JumpProducts::new::<D>(&facets, of_degree),
         flux_moments: facets.degrees.iter().filter(has_flux).map(|&k| of_degree(k)).collect(),
         facets,
-        gradient: gradient.unwrap_or_else(|| T::lit(0.0)),
+        gradient: space.gradient_factor(),
         lifted: form.is_lifted(),
     };
     let SparseMatrix { row_starts, values, .. } = matrix;
-    let linear_fluxes = gradient.map(|_| filling.flux_moments.len());
-    match (D, linear_fluxes, space.per_cell()) {
-        (1, Some(0), _) => filling.fill::<2, 0, true>(row_starts, values),
-        (1, Some(1), _) => filling.fill::<2, 1, true>(row_starts, values),
-        (2, Some(0), _) => filling.fill::<3, 0, true>(row_starts, values),
-        (2, Some(1), _) => filling.fill::<3, 1, true>(row_starts, values),
-        (3, Some(0), _) => filling.fill::<4, 0, true>(row_starts, values),
-        (3, Some(1), _) => filling.fill::<4, 1, true>(row_starts, values),
-        (1, _, 3) => filling.fill::<3, 1, false>(row_starts, values),
-        (2, _, 6) => filling.fill::<6, 2, false>(row_starts, values),
-        _ => filling.fill::<MAX_BASIS, MAX_FLUX_MOMENTS, false>(row_starts, values),
+    let has_flux = !filling.flux_moments.is_empty();
+    match (D, space.per_cell(), filling.is_linear()) {
+        (1, 2, true) if has_flux => filling.fill_linear::<2, true>(row_starts, values),
+        (1, 2, true) => filling.fill_linear::<2, false>(row_starts, values),
+        (2, 3, true) if has_flux => filling.fill_linear::<3, true>(row_starts, values),
+        (2, 3, true) => filling.fill_linear::<3, false>(row_starts, values),
+        (3, 4, true) if has_flux => filling.fill_linear::<4, true>(row_starts, values),
+        (3, 4, true) => filling.fill_linear::<4, false>(row_starts, values),
+        (1, 3, _) => filling.fill::<3, 1>(row_starts, values),
+        (2, 6, _) => filling.fill::<6, 2>(row_starts, values),
+        _ => filling.fill::<MAX_BASIS, MAX_FLUX_MOMENTS>(row_starts, values),
     }
     if form.is_lifted() {
         let table = LiftTable::new(space);

@@ -20,24 +20,37 @@ pub(crate) struct CellMetric<T, const D: usize> {
 }
 
 impl<T: Real, const D: usize> CellMetric<T, D> {
-    /// Numbers kept of a cell: volume, facet measures, all products by rows. Those above the diagonal
-    /// would do, but whole rows are read as they are, by this cell and by its neighbours.
-    const KEPT: usize = 1 + (D + 1) + (D + 1) * (D + 1);
+    /// Numbers kept of a cell: volume, facet measures, products above the diagonal.
+    const KEPT: usize = 1 + (D + 1) + D * (D + 1) / 2;
 
     /// The metric of one cell.
     #[inline(always)]
     pub fn of(mesh: &Mesh<T, D>, cell: usize) -> Self {
         let (volume, products) = shape(mesh, cell, T::lit(1.0));
         let mut measures = [T::lit(0.0); 4];
-        for (measure, (i, row)) in measures.iter_mut().zip(products.iter().enumerate()).take(D + 1)
-        {
-            // |F| = D |K| |grad lambda|; one in one dimension
-            *measure = T::lit(D as f64) * nalgebra::ComplexField::sqrt(volume * row[i]);
+        for i in 1..=D {
+            // |F| = D |K| |grad lambda|
+            let square = volume * products[i][i];
+            measures[i] = T::lit(D as f64) * nalgebra::ComplexField::sqrt(square);
         }
+        // the first product is a sum of the others, in which thin cells lose all digits
+        measures[0] = first_facet(mesh, cell);
         if D == 1 {
-            measures[..2].fill(T::lit(1.0));
+            measures[1] = T::lit(1.0);
         }
         Self { volume, measures, products }
+    }
+    #[inline(always)]
+    fn zero(volume: T) -> Self {
+        Self { volume, measures: [T::lit(0.0); 4], products: [[T::lit(0.0); 4]; 4] }
+    }
+    /// Sets an entry above the diagonal, with what follows for the others: rows sum to zero.
+    #[inline(always)]
+    fn set(&mut self, i: usize, j: usize, product: T) {
+        self.products[i][j] = product;
+        self.products[j][i] = product;
+        self.products[i][i] -= product;
+        self.products[j][j] -= product;
     }
     /// The measure of the whole boundary.
     #[inline(always)]
@@ -48,17 +61,24 @@ impl<T: Real, const D: usize> CellMetric<T, D> {
     fn write(&self, out: &mut [T]) {
         out[0] = self.volume;
         out[1..D + 2].copy_from_slice(&self.measures[..=D]);
-        for (row, out) in self.products.iter().zip(out[D + 2..].chunks_exact_mut(D + 1)) {
-            out.copy_from_slice(&row[..=D]);
+        let mut k = D + 2;
+        for i in 0..D {
+            for j in i + 1..=D {
+                out[k] = self.products[i][j];
+                k += 1;
+            }
         }
     }
     #[inline(always)]
     fn read(kept: &[T]) -> Self {
-        let zero = T::lit(0.0);
-        let mut metric = Self { volume: kept[0], measures: [zero; 4], products: [[zero; 4]; 4] };
+        let mut metric = Self::zero(kept[0]);
         metric.measures[..=D].copy_from_slice(&kept[1..D + 2]);
-        for (row, kept) in metric.products.iter_mut().zip(kept[D + 2..].chunks_exact(D + 1)) {
-            row[..=D].copy_from_slice(kept);
+        let mut k = D + 2;
+        for i in 0..D {
+            for j in i + 1..=D {
+                metric.set(i, j, kept[k]);
+                k += 1;
+            }
         }
         metric
     }
@@ -112,6 +132,52 @@ pub(crate) fn shape<T: Real, const D: usize>(
     (size / T::lit(FACTORIAL[D]), products)
 }
 
+/// For each number zeros at its own place and ones at the others.
+const OTHERS: [[f64; 4]; 4] =
+    [[0.0, 1.0, 1.0, 1.0], [1.0, 0.0, 1.0, 1.0], [1.0, 1.0, 0.0, 1.0], [1.0, 1.0, 1.0, 0.0]];
+
+/// The place of a pair of gradients among those above the diagonal, by rows, in each dimension; zero
+/// on the diagonal.
+const PAIR: [[[usize; 4]; 4]; 4] = {
+    let mut pairs = [[[0; 4]; 4]; 4];
+    let mut dimension = 1;
+    while dimension <= 3 {
+        let (mut i, mut k) = (0, 0);
+        while i < dimension {
+            let mut j = i + 1;
+            while j <= dimension {
+                pairs[dimension][i][j] = k;
+                pairs[dimension][j][i] = k;
+                k += 1;
+                j += 1;
+            }
+            i += 1;
+        }
+        dimension += 1;
+    }
+    pairs
+};
+
+/// The measure of the facet opposite the first vertex of a cell.
+#[inline(always)]
+fn first_facet<T: Real, const D: usize>(mesh: &Mesh<T, D>, cell: usize) -> T {
+    let corners = mesh.cell(cell);
+    let edge = |k: usize| {
+        let mut edge = [T::lit(0.0); 3];
+        let ends = [corners[1], corners[k.min(D)]].map(|v| &mesh.vertices()[v as usize]);
+        for axis in 0..D {
+            edge[axis] = ends[1][axis] - ends[0][axis];
+        }
+        edge
+    };
+    let length = |a: [T; 3]| nalgebra::ComplexField::sqrt(dot::<T, 3>(a, a));
+    match D {
+        1 => T::lit(1.0),
+        2 => length(edge(2)),
+        _ => T::lit(0.5) * length(cross(edge(2), edge(3))),
+    }
+}
+
 const FACTORIAL: [f64; 4] = [1.0, 1.0, 2.0, 6.0];
 
 #[inline(always)]
@@ -153,9 +219,40 @@ impl<T: Real> Metrics<T> {
     #[inline(always)]
     pub fn products_of<const D: usize>(&self, cell: usize, local: usize) -> [T; 4] {
         let n = CellMetric::<T, D>::KEPT;
-        let start = cell * n + D + 2 + local * (D + 1);
+        let kept = &self.kept[cell * n + D + 2..(cell + 1) * n];
+        // by products with zeros and ones: facets come in no order that branches could foresee
+        let (places, others) = (&PAIR[D][local & 3], &OTHERS[local & 3]);
         let mut row = [T::lit(0.0); 4];
-        row[..=D].copy_from_slice(&self.kept[start..=start + D]);
+        let mut sum = T::lit(0.0);
+        for k in 0..=D {
+            row[k] = T::lit(others[k]) * kept[places[k]];
+            sum -= row[k];
+        }
+        for k in 0..=D {
+            row[k] += (T::lit(1.0) - T::lit(others[k])) * sum;
+        }
         row
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::mesh::{BoundaryPart, TaggedFacet};
+    use crate::real::Point;
+
+    #[test]
+    fn the_shortest_facet_of_a_thin_cell_keeps_its_digits() {
+        for short in [1e-3, 1e-6, 1e-9] {
+            let vertices = [[0.0, 0.0], [1.0, 0.0], [1.0, short]].map(Point::<f64, 2>::from);
+            let sides = [[0, 1], [0, 2], [1, 2]]
+                .map(|vertices| TaggedFacet { vertices, part: BoundaryPart::Dirichlet });
+            let mesh = Mesh::new(vertices.to_vec(), vec![0, 1, 2], &sides).expect("one cell");
+            let metric: CellMetric<f64, 2> = CellMetric::of(&mesh, 0);
+            let exact = [short, (1.0 + short * short).sqrt(), 1.0];
+            for (measure, exact) in metric.measures.iter().zip(exact) {
+                assert!((measure / exact - 1.0).abs() < 4.0 * f64::EPSILON, "{short}");
+            }
+        }
     }
 }

@@ -4,7 +4,7 @@
 
 use super::{Coupled, Filling, for_each_cell};
 use crate::assemble::count;
-use crate::assemble::local::{CellSide, Local};
+use crate::assemble::local::CellSide;
 use crate::assemble::tables::BasisAt;
 use crate::assemble::weights::FacetWeight;
 use crate::element::MAX_BASIS;
@@ -22,24 +22,34 @@ type Block<T, const N: usize> = [[T; N]; N];
 type Moments<T, const N: usize, const M: usize> = [[T; N]; M];
 
 /// The `n` rows of a cell.
-struct Rows<'r, T> {
+pub(super) struct Rows<'r, T> {
     n: usize,
     /// Entries of each.
     length: usize,
     entries: &'r mut [T],
     /// The place among the coupled cells of those across each facet, and of the cell itself.
-    across: [usize; 4],
-    own: usize,
+    pub across: [usize; 4],
+    pub own: usize,
 }
 
-impl<T: Real> Rows<'_, T> {
-    /// Writes row `i` of the block of the coupled cell at a place.
+impl<'r, T: Real> Rows<'r, T> {
+    #[inline(always)]
+    pub fn new(n: usize, entries: &'r mut [T], (across, own): ([usize; 4], usize)) -> Self {
+        Self { n, length: entries.len() / n, entries, across, own }
+    }
+    /// Row `i` of the block of the coupled cell at a place, for a cell of `N` functions.
+    #[inline(always)]
+    pub fn block<const N: usize>(&mut self, place: usize, i: usize) -> &mut [T] {
+        let start = i * self.length + place * N;
+        &mut self.entries[start..start + N]
+    }
+    /// Writes row `i` of the block of the coupled cell at a place, as much of it as there is.
     #[inline(always)]
     fn write<const N: usize>(&mut self, place: usize, i: usize, row: &[T; N]) {
-        let start = i * self.length + place * self.n;
         if self.n == N {
-            self.entries[start..start + N].copy_from_slice(row);
+            self.block::<N>(place, i).copy_from_slice(row);
         } else if i < self.n {
+            let start = i * self.length + place * self.n;
             self.entries[start..start + self.n].copy_from_slice(&row[..self.n]);
         }
     }
@@ -62,10 +72,7 @@ struct OnFacet<'f, T, const D: usize, const N: usize, const M: usize> {
 impl<T: Real, const D: usize> Filling<'_, '_, T, D> {
     /// The rows of all cells, for elements of `N` functions, or of fewer for the largest `N`, with at
     /// most `M` moments of fluxes on a facet.
-    ///
-    /// `LINEAR`: gradients of basis functions are those of barycentric coordinates times a factor,
-    /// and `M` moments have a flux.
-    pub(super) fn fill<const N: usize, const M: usize, const LINEAR: bool>(
+    pub(super) fn fill<const N: usize, const M: usize>(
         &self,
         row_starts: &[u32],
         values: &mut [T],
@@ -75,15 +82,14 @@ impl<T: Real, const D: usize> Filling<'_, '_, T, D> {
             if self.lifted {
                 entries.fill(T::lit(0.0));
             }
-            let (across, own) = self.places(cell);
-            let rows = Rows { n, length: entries.len() / n, entries, across, own };
-            self.write_cell::<N, M, LINEAR>(cell, rows);
+            let rows = Rows::new(n, entries, self.places(cell));
+            self.write_cell::<N, M>(cell, rows);
         });
     }
 
     /// The places of the cells across each facet among those coupled to a cell, and its own.
     #[inline(always)]
-    fn places(&self, cell: usize) -> ([usize; 4], usize) {
+    pub(super) fn places(&self, cell: usize) -> ([usize; 4], usize) {
         let across = |local| match self.neighbours.across(cell, local) {
             Neighbour::Cell { cell, .. } => cell,
             Neighbour::Boundary(_) => u32::MAX,
@@ -106,19 +112,11 @@ impl<T: Real, const D: usize> Filling<'_, '_, T, D> {
 
     /// Writes the rows of a cell: its stiffness and the form on its facets.
     #[inline(always)]
-    fn write_cell<const N: usize, const M: usize, const LINEAR: bool>(
-        &self,
-        cell: usize,
-        mut rows: Rows<'_, T>,
-    ) {
+    fn write_cell<const N: usize, const M: usize>(&self, cell: usize, mut rows: Rows<'_, T>) {
         let metric = self.metrics.at(cell);
         let coefficient = self.space.alpha(cell);
-        let mut own: Block<T, N> = if LINEAR {
-            let scale = coefficient * self.gradient * self.gradient;
-            block(|i, j| scale * metric.products[i][j])
-        } else {
-            block(|i, j| coefficient * self.stiffness.entry::<D>(&metric, i, j))
-        };
+        let mut own: Block<T, N> =
+            block(|i, j| coefficient * self.stiffness.entry::<D>(&metric, i, j));
         for local in 0..=D {
             let me = CellSide { cell, local, metric: &metric, coefficient };
             match self.neighbours.across(cell, local) {
@@ -127,12 +125,12 @@ impl<T: Real, const D: usize> Filling<'_, '_, T, D> {
                     let from_here = cell < there.0;
                     let here = if from_here { (cell, local) } else { there };
                     let weight = self.weights.at::<D>(here, from_here);
-                    let facet = self.add_facet::<N, M, LINEAR>(me, weight, &mut own);
-                    self.write_across::<N, M, LINEAR>(&facet, there, &mut rows);
+                    let facet = self.add_facet::<N, M>(me, weight, &mut own);
+                    self.write_across::<N, M>(&facet, there, &mut rows);
                 }
                 Neighbour::Boundary(BoundaryPart::Dirichlet) if !self.space.pins => {
                     let weight = self.weights.at::<D>((cell, local), true);
-                    self.add_facet::<N, M, LINEAR>(me, weight, &mut own);
+                    self.add_facet::<N, M>(me, weight, &mut own);
                 }
                 Neighbour::Boundary(_) => {}
             }
@@ -144,7 +142,7 @@ impl<T: Real, const D: usize> Filling<'_, '_, T, D> {
 
     /// Adds what the form makes of a facet to the columns of the cell whose rows these are.
     #[inline(always)]
-    fn add_facet<'f, const N: usize, const M: usize, const LINEAR: bool>(
+    fn add_facet<'f, const N: usize, const M: usize>(
         &self,
         me: CellSide<'f, T, D>,
         weight: FacetWeight<T>,
@@ -158,13 +156,13 @@ impl<T: Real, const D: usize> Filling<'_, '_, T, D> {
         let mut facet = OnFacet { me, weight, jump_jump, by_flux: zero, by_jump: zero };
         let mut flux = zero;
         let moments = self.facets.on(me.local);
-        for k in 0..self.n_fluxes::<M, LINEAR>() {
+        for k in 0..self.n_fluxes::<M>() {
             let penalty = weight.penalty * self.flux_moments[k];
             let flux_flux = form.flux_flux.at(penalty) / measure;
             let (jump_flux, flux_jump) = (form.jump_flux.at(penalty), form.flux_jump.at(penalty));
             let mine = &moments[k];
             let products = &me.metric.products[me.local];
-            flux[k] = self.flux::<N, LINEAR>(mine, products, weight.own_share);
+            flux[k] = self.flux::<N>(mine, products, weight.own_share);
             facet.by_flux[k] =
                 std::array::from_fn(|i| jump_flux * mine.values[i] + flux_flux * flux[k][i]);
             facet.by_jump[k] = flux[k].map(|flux| flux_jump * flux);
@@ -172,10 +170,13 @@ impl<T: Real, const D: usize> Filling<'_, '_, T, D> {
         let products = self.jumps.own(me.local);
         for i in 0..N {
             let mut row: [T; N] = std::array::from_fn(|j| jump_jump * products[0][i][j]);
-            if products.len() > 1 {
-                self.add_classes(&facet, products, i, T::lit(1.0), &mut row);
+            for class in 1..products.len() {
+                let scale = self.jump_scale(&me, &weight, self.jumps.weights[class]);
+                for j in 0..N {
+                    row[j] += scale * products[class][i][j];
+                }
             }
-            for k in 0..self.n_fluxes::<M, LINEAR>() {
+            for k in 0..self.n_fluxes::<M>() {
                 let (by_flux, by_jump) = (facet.by_flux[k][i], facet.by_jump[k][i]);
                 let values = &moments[k].values;
                 for j in 0..N {
@@ -192,7 +193,7 @@ impl<T: Real, const D: usize> Filling<'_, '_, T, D> {
     /// Writes what the form makes of a facet to the columns of the cell across, which has the facet
     /// under another number.
     #[inline(always)]
-    fn write_across<const N: usize, const M: usize, const LINEAR: bool>(
+    fn write_across<const N: usize, const M: usize>(
         &self,
         facet: &OnFacet<'_, T, D, N, M>,
         (other, other_local): (usize, usize),
@@ -201,20 +202,23 @@ impl<T: Real, const D: usize> Filling<'_, '_, T, D> {
         let local = facet.me.local;
         let mut flux = [[T::lit(0.0); N]; M];
         let moments = self.facets.on(other_local);
-        if self.n_fluxes::<M, LINEAR>() > 0 {
+        if self.n_fluxes::<M>() > 0 {
             let of_theirs = self.metrics.products_of::<D>(other, other_local);
-            for k in 0..self.n_fluxes::<M, LINEAR>() {
+            for k in 0..self.n_fluxes::<M>() {
                 let share = -facet.weight.other_share;
-                flux[k] = self.flux::<N, LINEAR>(&moments[k], &of_theirs, share);
+                flux[k] = self.flux::<N>(&moments[k], &of_theirs, share);
             }
         }
         let products = self.jumps.across(local, other_local);
         for i in 0..N {
             let mut row: [T; N] = std::array::from_fn(|j| -facet.jump_jump * products[0][i][j]);
-            if products.len() > 1 {
-                self.add_classes(facet, products, i, T::lit(-1.0), &mut row);
+            for class in 1..products.len() {
+                let scale = self.jump_scale(&facet.me, &facet.weight, self.jumps.weights[class]);
+                for j in 0..N {
+                    row[j] -= scale * products[class][i][j];
+                }
             }
-            for k in 0..self.n_fluxes::<M, LINEAR>() {
+            for k in 0..self.n_fluxes::<M>() {
                 let (by_flux, by_jump) = (facet.by_flux[k][i], facet.by_jump[k][i]);
                 let values = &moments[k].values;
                 for j in 0..N {
@@ -227,8 +231,8 @@ impl<T: Real, const D: usize> Filling<'_, '_, T, D> {
 
     /// How many moments have a flux.
     #[inline(always)]
-    fn n_fluxes<const M: usize, const LINEAR: bool>(&self) -> usize {
-        if LINEAR { M } else { self.flux_moments.len().min(M) }
+    fn n_fluxes<const M: usize>(&self) -> usize {
+        self.flux_moments.len().min(M)
     }
 
     /// What multiplies the products of jumps of a class.
@@ -238,41 +242,13 @@ impl<T: Real, const D: usize> Filling<'_, '_, T, D> {
             * self.weights.coefficients.jump_jump.at(weight.penalty * class)
     }
 
-    /// Adds to row `i` of a block the products of jumps of all classes but the first: few forms have
-    /// more than one.
-    #[inline(never)]
-    fn add_classes<const N: usize, const M: usize>(
-        &self,
-        facet: &OnFacet<'_, T, D, N, M>,
-        products: &[Local<T>],
-        i: usize,
-        sign: T,
-        row: &mut [T; N],
-    ) {
-        for (products, &class) in products.iter().zip(&self.jumps.weights).skip(1) {
-            let scale = sign * self.jump_scale(&facet.me, &facet.weight, class);
-            for j in 0..N {
-                row[j] += scale * products[i][j];
-            }
-        }
-    }
-
     /// The fluxes of the basis functions of a cell through one of its facets, of one moment: their
     /// derivatives along the outward normal times the measure of the facet and a factor.
     /// `products`: those of the gradient opposite the facet with all gradients.
     #[inline(always)]
-    fn flux<const N: usize, const LINEAR: bool>(
-        &self,
-        basis: &BasisAt<T>,
-        products: &[T; 4],
-        factor: T,
-    ) -> [T; N] {
+    fn flux<const N: usize>(&self, basis: &BasisAt<T>, products: &[T; 4], factor: T) -> [T; N] {
         count::normal_derivatives(N);
         let scale = T::lit(-(D as f64)) * factor;
-        if LINEAR {
-            let scale = scale * self.gradient;
-            return std::array::from_fn(|i| scale * products[i]);
-        }
         std::array::from_fn(|i| {
             let sum = |sum, k: usize| sum + basis.derivatives[i][k] * products[k];
             scale * (1..=D).fold(basis.derivatives[i][0] * products[0], sum)
