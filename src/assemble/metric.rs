@@ -36,12 +36,6 @@ impl<T: Real, const D: usize> CellMetric<T, D> {
         }
         if D == 1 {
             measures[..2].fill(T::lit(1.0));
-        } else {
-            // the first is the root of a difference, which has no digits left if it is small
-            let largest = (1..=D).fold(T::lit(0.0), |m: T, i| m.max(products[i][i]));
-            if products[0][0] < T::lit(T::EPSILON.sqrt()) * largest {
-                measures[0] = mesh.geometry(cell).facet_measure(0);
-            }
         }
         Self { volume, measures, products }
     }
