@@ -49,6 +49,11 @@ fn name_of(path: &Path) -> String {
     path.file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned())
 }
 
+/// A path as it was given; of an absolute one, which says nothing elsewhere, its last part.
+fn shown(path: &Path) -> String {
+    if path.is_relative() { path.display().to_string() } else { name_of(path) }
+}
+
 /// Whether all went as asked.
 fn run(options: &Options) -> Result<bool, String> {
     if let Some(threads) = options.threads {
@@ -73,7 +78,7 @@ fn run(options: &Options) -> Result<bool, String> {
     let report = study.run().map_err(|e| e.to_string())?;
     bar.finish_and_clear();
     if let Some(path) = &options.markdown {
-        let named: Vec<String> = options.meshes.iter().map(|path| name_of(path)).collect();
+        let named: Vec<String> = options.meshes.iter().map(|path| shown(path)).collect();
         let meshes = match named.is_empty() {
             true => String::new(),
             false => format!(" --mesh {}", named.join(",")),

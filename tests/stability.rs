@@ -73,6 +73,12 @@ fn stretched_cells_ask_for_weights_by_heights() {
     );
 }
 
+/// Cells of edges of 2e-10 beside ones of size one: the measures of their facets must not vanish.
+#[test]
+fn interior_penalty_stands_graded_meshes() {
+    keeps(&quick(&["graded-meshes"], &["p1", "sipg"]));
+}
+
 #[test]
 fn units_do_not_matter() {
     let report = quick(&["scaling"], &["p1", "cr", "sipg", "wopsip"]);

@@ -190,7 +190,9 @@ fn hertz_contact_in_space_on_the_finest_mesh() {
     );
 }
 
-/// A string with reaction, both ends of which may touch.
+/// A string with reaction, both ends of which may touch. The last L2 error is not the table's 5.2818e-6:
+/// there stiffness and penalty are added up, which rounds by 7e-4 of it; so added, errors at 512 and 1024
+/// cells are 1.379e-6 and 1.562e-6, kept apart 1.3174e-6 and 3.291e-7, which fall by four.
 #[test]
 fn signorini_on_an_interval() {
     compare(
@@ -200,7 +202,7 @@ fn signorini_on_an_interval() {
             &[
                 (16, "1.4063e-3 / 2.1873e-2 / 3.1604e-2"),
                 (64, "8.5214e-5 / 5.4628e-3 / 8.0318e-3"),
-                (256, "5.2818e-6 / 1.3656e-3 / 2.0157e-3"),
+                (256, "5.2779e-6 / 1.3656e-3 / 2.0157e-3"),
             ],
         )],
     );

@@ -227,8 +227,9 @@ impl Checks {
         }
     }
     /// The figure is what is printed, to this many units of the last printed digit; half a unit is
-    /// what rounding to that digit allows.
+    /// what rounding to that digit allows. Shows both with `--nocapture`.
     pub fn printed(&mut self, what: &str, ours: f64, printed: &str, units: f64) {
+        println!("{what}: {ours:.6e}, in print {printed}");
         let (theirs, unit) = figure(printed);
         let off = (ours - theirs) / unit;
         self.that(off.abs() <= units * (1.0 + 1e-9), || {
@@ -237,6 +238,7 @@ impl Checks {
     }
     /// The figure is what is printed but for this much and half a unit of the last digit.
     pub fn printed_within(&mut self, what: &str, ours: f64, printed: &str, tolerance: f64) {
+        println!("{what}: {ours:.6e}, in print {printed}");
         let (theirs, unit) = figure(printed);
         self.close(what, ours, theirs, tolerance + 0.5 * unit);
     }

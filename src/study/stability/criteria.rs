@@ -27,7 +27,7 @@ pub const CRITERIA: &[Criterion] = &[
     of(
         "round-off",
         "halving-to-floor",
-        "Poisson: errors fall like h^2, by 0.3 or better at each halving, down to h = epsilon^(1/4). Conforming elements do so; the over-penalty does if the penalty is kept apart from the stiffness (means and jumps, or a saddle-point form) and does not if the two are added.",
+        "Poisson: errors fall like h^2, by 0.3 or better at each halving, down to h = epsilon^(1/4). Conforming elements do so; an over-penalty does not where it is added to the stiffness, and does where the two are kept apart, as they are here.",
     ),
     of(
         "round-off",
