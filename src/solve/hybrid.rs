@@ -149,11 +149,23 @@ impl<'a, T: Real> Hybrid<'a, T> {
     /// # Errors
     /// See [`FactorError`].
     pub fn factor(&self, is_free: &[bool]) -> Result<HybridFactors<T>, FactorError> {
+        self.factor_shifted(is_free, &[])
+    }
+
+    /// The same with a nonnegative diagonal added to `K`, if there is any.
+    ///
+    /// # Errors
+    /// See [`FactorError`].
+    pub fn factor_shifted(
+        &self,
+        is_free: &[bool],
+        shift: &[f64],
+    ) -> Result<HybridFactors<T>, FactorError> {
         let mut matrix = self.pattern.clone();
         let (mut inverses, mut starts) = (Vec::new(), vec![0]);
         let mut local = Vec::new();
         for block in 0..self.starts.len() - 1 {
-            let first_side = self.invert(block, is_free, &mut local)?;
+            let first_side = self.invert(block, is_free, shift, &mut local)?;
             let sides = self.sides(block);
             let n = first_side + sides.len();
             for (i, row) in sides.iter().enumerate().filter(|(_, s)| s.mean != NONE) {
@@ -179,6 +191,7 @@ impl<'a, T: Real> Hybrid<'a, T> {
         &self,
         block: usize,
         is_free: &[bool],
+        shift: &[f64],
         out: &mut Vec<f64>,
     ) -> Result<usize, FactorError> {
         let (size, sides) = (self.factored.block, self.sides(block));
@@ -190,11 +203,18 @@ impl<'a, T: Real> Hybrid<'a, T> {
         let largest = diagonal().fold(0.0, f64::max);
         let least = diagonal().filter(|&d| d > 0.0).fold(largest, f64::min);
         let unit = if largest > 0.0 { largest } else { 1.0 };
+        // a shift that hides the stiffness fixes an unknown
+        let hidden = least * KEPT / T::EPSILON;
+        let mut n_moving = n_free;
         out.clear();
         out.resize(n * n, 0.0);
         for (k, i) in self.free(block, is_free).enumerate() {
             for (l, j) in self.free(block, is_free).enumerate() {
                 out[k * n + l] = stiffness(i, j) / unit;
+            }
+            if let Some(&shift) = shift.get(i) {
+                out[k * n + k] += shift.min(hidden) / unit;
+                n_moving -= usize::from(shift > hidden);
             }
             for (l, side) in (n_free..).zip(sides) {
                 let weight = self.in_mean(side, i);
@@ -202,12 +222,10 @@ impl<'a, T: Real> Hybrid<'a, T> {
                 out[l * n + k] = weight;
             }
         }
-        // a block with fewer free unknowns than jumps is tied to what is across in more ways than it
-        // can move: there weights hide its stiffness
-        let most = match n_free > 0 && n_free < sides.len() {
-            true => least * KEPT / T::EPSILON,
-            false => f64::INFINITY,
-        };
+        // a block with fewer moving unknowns than jumps is tied to what is across in more ways than
+        // it can move: there weights hide its stiffness
+        let is_tied = n_free > 0 && n_moving < sides.len();
+        let most = if is_tied { hidden } else { f64::INFINITY };
         for (l, side) in (n_free..).zip(sides) {
             out[l * n + l] = -unit / self.weight(side).min(most);
         }

@@ -270,13 +270,15 @@ impl<'a, T: Real> Iterate<'a, T> {
     /// Moves to where an interior point method gets from the best iterate; stays if it does not get
     /// anywhere.
     pub fn approach(&mut self) {
-        let mut point = InteriorPoint::new(self.inequality, &self.best.values);
+        let Best { values, forces, .. } = &self.best;
+        let mut point = InteriorPoint::new(self.inequality, self.hybrid.as_ref(), values, forces);
         let contact = point.run();
         self.outer += point.steps;
         if let Some(contact) = contact {
             let states = contact.iter().zip(&self.inequality.bounds);
             self.state = states.map(|(&contact, bound)| rest(bound, contact)).collect();
             self.values = point.values();
+            self.forces = point.forces();
         }
     }
 

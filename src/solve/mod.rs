@@ -26,6 +26,7 @@ mod pieces;
 mod preconditioners;
 mod restrict;
 mod search;
+mod shifted;
 mod small;
 mod smoother;
 mod transfer;
