@@ -144,6 +144,28 @@ impl<'a, T: Real> Hybrid<'a, T> {
         if side.mean == NONE { weight } else { 2.0 * weight }
     }
 
+    /// In how many ways a block can move its means with the unknowns that may.
+    fn rank(&self, block: usize, may_move: impl Fn(usize) -> bool) -> usize {
+        let (n, sides) = (self.factored.block, self.sides(block));
+        let moving = (block * n..(block + 1) * n).filter(|&i| may_move(i));
+        let mut rows: Vec<Vec<f64>> =
+            moving.map(|i| sides.iter().map(|side| self.in_mean(side, i)).collect()).collect();
+        let mut rank = 0;
+        for column in 0..sides.len() {
+            let size = |row: &usize| rows[*row][column].abs();
+            let pivot = (rank..rows.len()).max_by(|a, b| size(a).total_cmp(&size(b)));
+            let Some(pivot) = pivot.filter(|row| size(row) > T::EPSILON.sqrt()) else { continue };
+            rows.swap(rank, pivot);
+            let (done, rest) = rows.split_at_mut(rank + 1);
+            for row in rest {
+                let factor = row[column] / done[rank][column];
+                row.iter_mut().zip(&done[rank]).for_each(|(a, b)| *a -= factor * b);
+            }
+            rank += 1;
+        }
+        rank
+    }
+
     /// Eliminates blocks and factors what is left.
     ///
     /// # Errors
@@ -205,7 +227,7 @@ impl<'a, T: Real> Hybrid<'a, T> {
         let unit = if largest > 0.0 { largest } else { 1.0 };
         // a shift that hides the stiffness fixes an unknown
         let hidden = least * KEPT / T::EPSILON;
-        let mut n_moving = n_free;
+        let is_stiff = |i: usize| shift.get(i).is_some_and(|&shift| shift > hidden);
         out.clear();
         out.resize(n * n, 0.0);
         for (k, i) in self.free(block, is_free).enumerate() {
@@ -213,8 +235,7 @@ impl<'a, T: Real> Hybrid<'a, T> {
                 out[k * n + l] = stiffness(i, j) / unit;
             }
             if let Some(&shift) = shift.get(i) {
-                out[k * n + k] += shift.min(hidden) / unit;
-                n_moving -= usize::from(shift > hidden);
+                out[k * n + k] += shift / unit;
             }
             for (l, side) in (n_free..).zip(sides) {
                 let weight = self.in_mean(side, i);
@@ -222,9 +243,10 @@ impl<'a, T: Real> Hybrid<'a, T> {
                 out[l * n + k] = weight;
             }
         }
-        // a block with fewer moving unknowns than jumps is tied to what is across in more ways than
-        // it can move: there weights hide its stiffness
-        let is_tied = n_free > 0 && n_moving < sides.len();
+        // a block that can move in fewer ways than it has jumps is tied to what is across more than
+        // once: there weights hide its stiffness
+        let is_heavy = n_free > 0 && sides.iter().any(|side| self.weight(side) > hidden);
+        let is_tied = is_heavy && self.rank(block, |i| is_free[i] && !is_stiff(i)) < sides.len();
         let most = if is_tied { hidden } else { f64::INFINITY };
         for (l, side) in (n_free..).zip(sides) {
             out[l * n + l] = -unit / self.weight(side).min(most);

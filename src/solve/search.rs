@@ -92,6 +92,7 @@ impl<'s, 'a, T: Real> Search<'s, 'a, T> {
                 return self.confirm();
             }
             let outer = self.iterate.outer;
+            if std::env::var("DBG").is_ok() { eprintln!("DBG outer {outer} moving {} best {}", self.history.moving(), self.iterate.best_outer()); }
             if 2 * self.history.moving() <= self.fewest {
                 self.fewest = self.history.moving();
                 self.settling = outer;
@@ -151,10 +152,13 @@ impl<'s, 'a, T: Real> Search<'s, 'a, T> {
             && members.len() <= self.settings.max_condensed
         {
             self.condensations += 1;
-            self.condense(&members)?;
-            self.history.restart(&self.iterate.state);
-            self.band = (4.0 * self.band).min(WIDEST * self.settings.band);
-            return Ok(None);
+            if std::env::var("DBG").is_ok() { eprintln!("DBG condense {} at outer {}", members.len(), self.iterate.outer); }
+            if self.condense(&members) {
+                if std::env::var("DBG").is_ok() { eprintln!("DBG condensed"); }
+                self.history.restart(&self.iterate.state);
+                self.band = (4.0 * self.band).min(WIDEST * self.settings.band);
+                return Ok(None);
+            }
         }
         if self.is_untried {
             self.approach();
@@ -174,7 +178,9 @@ impl<'s, 'a, T: Real> Search<'s, 'a, T> {
     /// Starts anew from where the interior point method gets.
     fn approach(&mut self) {
         self.is_untried = false;
+        if std::env::var("DBG").is_ok() { eprintln!("DBG approach at outer {}", self.iterate.outer); }
         self.iterate.approach();
+        if std::env::var("DBG").is_ok() { eprintln!("DBG approached: outer {}", self.iterate.outer); }
         self.forget();
         self.cycle.fill(false);
         self.progress = self.iterate.outer;
@@ -183,13 +189,15 @@ impl<'s, 'a, T: Real> Search<'s, 'a, T> {
 
     /// The method that must end, from the iterate as it is.
     fn descend(&mut self) -> Result<Outcome, Outcome> {
+        if std::env::var("DBG").is_ok() { eprintln!("DBG descend at outer {}", self.iterate.outer); }
         descend(self.iterate, self.settings)?;
         self.band = self.settings.band;
         self.confirm()
     }
 
-    /// Sets the states of some unknowns to those that solve the problem condensed on them.
-    fn condense(&mut self, members: &[u32]) -> Result<(), Outcome> {
+    /// Sets the states of some unknowns to those that solve the problem condensed on them; false if
+    /// that has no solution that could be found.
+    fn condense(&mut self, members: &[u32]) -> bool {
         let (band, spread) = (self.band, self.band - self.settings.band);
         let iterate = &mut *self.iterate;
         iterate.outer += 1;
@@ -198,12 +206,14 @@ impl<'s, 'a, T: Real> Search<'s, 'a, T> {
             gap: iterate.gap_noise(band),
             force: &|i| iterate.force_noise(i, band, spread),
         };
-        let states = resolve(iterate.inequality, &iterate.values, &iterate.state, members, &noise)?
-            .ok_or(Outcome::Cycling)?;
+        let (values, state) = (&iterate.values, &iterate.state);
+        let Ok(Some(states)) = resolve(iterate.inequality, values, state, members, &noise) else {
+            return false;
+        };
         for (&i, &contact) in members.iter().zip(&states) {
             iterate.set_state(i as usize, contact, &mut self.history);
         }
-        Ok(())
+        true
     }
 
     /// What to call the best iterate where the active set does not rest: it may be a solution, or as
