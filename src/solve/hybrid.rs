@@ -11,20 +11,21 @@
 //! [ M  -1/w ] [ p ] = [ a + t ]
 //! ```
 //!
-//! in which no weight meets a stiffness. Only where some unknowns of a block are fixed and there are
-//! fewer free ones than jumps, weights remain beside stiffnesses; there they are cut down, and
-//! refinement restores them.
+//! in which no weight meets a stiffness. Only where a block can move in fewer ways than it has jumps
+//! (some unknowns are fixed; quadratic functions that vanish at both Gauss points of every edge),
+//! weights remain beside stiffnesses; there they are cut down, and refinement restores them.
 //!
 //! Source of the elimination: static condensation of hybrid methods, B. Cockburn,
 //! J. Gopalakrishnan, R. Lazarov, SIAM J. Numer. Anal. 47 (2009), 1319-1365.
 
+use super::dense::{invert_in_place, rank};
 use super::linear::{FactorError, Factors};
 use crate::algebra::{Factored, SparseMatrix, Term};
 use crate::real::Real;
 
-/// Weights that hide a stiffness are cut down to this part of what hides it entirely; refinement
-/// restores them.
-const KEPT: f64 = 1e-3;
+/// Weights of tied blocks are cut down to this times the root of what hides a stiffness entirely:
+/// half the digits are left for the stiffness, and every refinement restores as many of the weights.
+const KEPT: f64 = 4.0;
 
 /// No mean: the jump has one side only.
 const NONE: u32 = u32::MAX;
@@ -145,25 +146,11 @@ impl<'a, T: Real> Hybrid<'a, T> {
     }
 
     /// In how many ways a block can move its means with the unknowns that may.
-    fn rank(&self, block: usize, may_move: impl Fn(usize) -> bool) -> usize {
+    fn freedom(&self, block: usize, may_move: impl Fn(usize) -> bool) -> usize {
         let (n, sides) = (self.factored.block, self.sides(block));
         let moving = (block * n..(block + 1) * n).filter(|&i| may_move(i));
-        let mut rows: Vec<Vec<f64>> =
-            moving.map(|i| sides.iter().map(|side| self.in_mean(side, i)).collect()).collect();
-        let mut rank = 0;
-        for column in 0..sides.len() {
-            let size = |row: &usize| rows[*row][column].abs();
-            let pivot = (rank..rows.len()).max_by(|a, b| size(a).total_cmp(&size(b)));
-            let Some(pivot) = pivot.filter(|row| size(row) > T::EPSILON.sqrt()) else { continue };
-            rows.swap(rank, pivot);
-            let (done, rest) = rows.split_at_mut(rank + 1);
-            for row in rest {
-                let factor = row[column] / done[rank][column];
-                row.iter_mut().zip(&done[rank]).for_each(|(a, b)| *a -= factor * b);
-            }
-            rank += 1;
-        }
-        rank
+        let means = |i: usize| sides.iter().map(|side| self.in_mean(side, i)).collect();
+        rank(moving.map(means).collect(), T::EPSILON.sqrt())
     }
 
     /// Eliminates blocks and factors what is left.
@@ -226,7 +213,7 @@ impl<'a, T: Real> Hybrid<'a, T> {
         let least = diagonal().filter(|&d| d > 0.0).fold(largest, f64::min);
         let unit = if largest > 0.0 { largest } else { 1.0 };
         // a shift that hides the stiffness fixes an unknown
-        let hidden = least * KEPT / T::EPSILON;
+        let hidden = least * KEPT / T::EPSILON.sqrt();
         let is_stiff = |i: usize| shift.get(i).is_some_and(|&shift| shift > hidden);
         out.clear();
         out.resize(n * n, 0.0);
@@ -246,7 +233,7 @@ impl<'a, T: Real> Hybrid<'a, T> {
         // a block that can move in fewer ways than it has jumps is tied to what is across more than
         // once: there weights hide its stiffness
         let is_heavy = n_free > 0 && sides.iter().any(|side| self.weight(side) > hidden);
-        let is_tied = is_heavy && self.rank(block, |i| is_free[i] && !is_stiff(i)) < sides.len();
+        let is_tied = is_heavy && self.freedom(block, |i| is_free[i] && !is_stiff(i)) < sides.len();
         let most = if is_tied { hidden } else { f64::INFINITY };
         for (l, side) in (n_free..).zip(sides) {
             out[l * n + l] = -unit / self.weight(side).min(most);
@@ -366,46 +353,4 @@ impl<T> HybridFactors<T> {
 
 fn empty<T>() -> SparseMatrix<T> {
     SparseMatrix { row_starts: vec![0], columns: Vec::new(), values: Vec::new() }
-}
-
-/// Inverts a dense matrix by rows in place (Gauss, Jordan, partial pivoting); whether its determinant
-/// is positive, nothing if it is singular.
-fn invert_in_place(a: &mut [f64], n: usize) -> Option<bool> {
-    let mut is_positive = true;
-    let mut exchanges = Vec::with_capacity(n);
-    for k in 0..n {
-        let size = |i: &usize| a[i * n + k].abs();
-        let pivot = (k..n).max_by(|i, j| size(i).total_cmp(&size(j)))?;
-        let value = a[pivot * n + k];
-        if !(value.is_finite() && value != 0.0) {
-            return None;
-        }
-        is_positive ^= value < 0.0;
-        if pivot != k {
-            is_positive ^= true;
-            for j in 0..n {
-                a.swap(pivot * n + j, k * n + j);
-            }
-        }
-        exchanges.push(pivot);
-        a[k * n + k] = 1.0;
-        for j in 0..n {
-            a[k * n + j] /= value;
-        }
-        for i in (0..n).filter(|&i| i != k) {
-            let factor = a[i * n + k];
-            a[i * n + k] = 0.0;
-            for j in 0..n {
-                a[i * n + j] -= factor * a[k * n + j];
-            }
-        }
-    }
-    for (k, &pivot) in exchanges.iter().enumerate().rev() {
-        if pivot != k {
-            for i in 0..n {
-                a.swap(i * n + pivot, i * n + k);
-            }
-        }
-    }
-    Some(is_positive)
 }

@@ -108,7 +108,7 @@ impl<'h, 'a, T: Real> InteriorPoint<'h, 'a, T> {
         let diagonal = (0..inequality.size()).map(|i| matrix.stiffness(i)).collect();
         let at = Pair { values, forces };
         let mut point = Self { inequality, matrix, at, diagonal, walls: Vec::new(), steps: 0 };
-        point.start(std::env::var("START").map_or(START, |s| s.parse().unwrap()));
+        point.start(START);
         point
     }
 
@@ -179,13 +179,12 @@ impl<'h, 'a, T: Real> InteriorPoint<'h, 'a, T> {
             idle = if share < 0.5 * least { 0 } else { idle + 1 };
             least = if idle == 0 { share } else { least };
             let contact = self.contact();
-            if std::env::var("DBG").is_ok() { eprintln!("DBG interior {} share {share:e} energy {energy:e} changed {}", self.steps, contact.iter().zip(&before).filter(|(a, b)| a != b).count()); }
             let is_steady = share <= NEAR && self.is_clear() && contact == before;
             before = contact;
             if share > FAR && idle > PATIENCE && !is_restarted {
                 // a start too close to bounds is stuck there
                 (is_restarted, idle, least) = (true, 0, f64::INFINITY);
-                self.start(std::env::var("AGAIN").map_or(1.0, |s| s.parse().unwrap()));
+                self.start(1.0);
                 continue;
             }
             if is_steady || share <= CLOSE || idle > PATIENCE {

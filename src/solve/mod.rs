@@ -7,6 +7,7 @@ mod certificate;
 mod condensed;
 mod conjugate_gradients;
 mod cycles;
+mod dense;
 mod descent;
 mod facet_pairs;
 mod facet_split;

@@ -92,7 +92,6 @@ impl<'s, 'a, T: Real> Search<'s, 'a, T> {
                 return self.confirm();
             }
             let outer = self.iterate.outer;
-            if std::env::var("DBG").is_ok() { eprintln!("DBG outer {outer} moving {} best {}", self.history.moving(), self.iterate.best_outer()); }
             if 2 * self.history.moving() <= self.fewest {
                 self.fewest = self.history.moving();
                 self.settling = outer;
@@ -152,9 +151,7 @@ impl<'s, 'a, T: Real> Search<'s, 'a, T> {
             && members.len() <= self.settings.max_condensed
         {
             self.condensations += 1;
-            if std::env::var("DBG").is_ok() { eprintln!("DBG condense {} at outer {}", members.len(), self.iterate.outer); }
             if self.condense(&members) {
-                if std::env::var("DBG").is_ok() { eprintln!("DBG condensed"); }
                 self.history.restart(&self.iterate.state);
                 self.band = (4.0 * self.band).min(WIDEST * self.settings.band);
                 return Ok(None);
@@ -178,9 +175,7 @@ impl<'s, 'a, T: Real> Search<'s, 'a, T> {
     /// Starts anew from where the interior point method gets.
     fn approach(&mut self) {
         self.is_untried = false;
-        if std::env::var("DBG").is_ok() { eprintln!("DBG approach at outer {}", self.iterate.outer); }
         self.iterate.approach();
-        if std::env::var("DBG").is_ok() { eprintln!("DBG approached: outer {}", self.iterate.outer); }
         self.forget();
         self.cycle.fill(false);
         self.progress = self.iterate.outer;
@@ -189,7 +184,6 @@ impl<'s, 'a, T: Real> Search<'s, 'a, T> {
 
     /// The method that must end, from the iterate as it is.
     fn descend(&mut self) -> Result<Outcome, Outcome> {
-        if std::env::var("DBG").is_ok() { eprintln!("DBG descend at outer {}", self.iterate.outer); }
         descend(self.iterate, self.settings)?;
         self.band = self.settings.band;
         self.confirm()
