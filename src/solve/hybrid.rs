@@ -23,9 +23,14 @@ use super::linear::{FactorError, Factors};
 use crate::algebra::{Factored, SparseMatrix, Term};
 use crate::real::Real;
 
-/// Weights of tied blocks are cut down to this times the root of what hides a stiffness entirely:
-/// half the digits are left for the stiffness, and every refinement restores as many of the weights.
-const KEPT: f64 = 4.0;
+/// Weights that hide a stiffness are cut down to this part of what hides it entirely, where fixed
+/// unknowns tie a block; refinement restores them.
+const KEPT: f64 = 1e-3;
+
+/// The same where a block is tied as it is, times the root of what hides it: there are many of them,
+/// so that half the digits are left for stiffnesses. Forces are in balance with stiffnesses there,
+/// and every refinement restores as many digits of them.
+const KEPT_BY_ROOT: f64 = 4.0;
 
 /// No mean: the jump has one side only.
 const NONE: u32 = u32::MAX;
@@ -213,8 +218,10 @@ impl<'a, T: Real> Hybrid<'a, T> {
         let least = diagonal().filter(|&d| d > 0.0).fold(largest, f64::min);
         let unit = if largest > 0.0 { largest } else { 1.0 };
         // a shift that hides the stiffness fixes an unknown
-        let hidden = least * KEPT / T::EPSILON.sqrt();
-        let is_stiff = |i: usize| shift.get(i).is_some_and(|&shift| shift > hidden);
+        let by_root = least * KEPT_BY_ROOT / T::EPSILON.sqrt();
+        let may_move = |i: usize| is_free[i] && shift.get(i).is_none_or(|&shift| shift <= by_root);
+        let moves = (block * size..(block + 1) * size).all(may_move);
+        let hidden = if moves { by_root } else { least * KEPT / T::EPSILON };
         out.clear();
         out.resize(n * n, 0.0);
         for (k, i) in self.free(block, is_free).enumerate() {
@@ -233,7 +240,7 @@ impl<'a, T: Real> Hybrid<'a, T> {
         // a block that can move in fewer ways than it has jumps is tied to what is across more than
         // once: there weights hide its stiffness
         let is_heavy = n_free > 0 && sides.iter().any(|side| self.weight(side) > hidden);
-        let is_tied = is_heavy && self.freedom(block, |i| is_free[i] && !is_stiff(i)) < sides.len();
+        let is_tied = is_heavy && self.freedom(block, may_move) < sides.len();
         let most = if is_tied { hidden } else { f64::INFINITY };
         for (l, side) in (n_free..).zip(sides) {
             out[l * n + l] = -unit / self.weight(side).min(most);
