@@ -13,7 +13,7 @@ use unilateral::scenes::Scene;
 use unilateral::solve::{
     ActiveSet, InequalitySolver, LastResort, Linear, MonotoneMultigrid, Outcome, certify,
 };
-use unilateral::study::{AnyScheme, Placement, SCHEMES, SchemeOptions, scheme_by_name};
+use unilateral::study::{Placement, SCHEMES, SchemeOptions, scheme_by_name};
 
 /// Every solver there is for symmetric matrices, by what forces it.
 fn agree(what: &str, problem: &Inequality<f64>) {
