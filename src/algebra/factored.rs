@@ -110,6 +110,11 @@ impl<T: Real> Factored<T> {
         row.iter().enumerate().fold(0.0, |s, (j, a)| s + a.to_f64() * u(first + j))
     }
 
+    /// `K`, one entry of its diagonal.
+    pub fn diagonal(&self, i: usize) -> f64 {
+        self.blocks[i * self.block + i % self.block].to_f64()
+    }
+
     /// `S (M u - g)`.
     pub fn forces(&self, u: impl Fn(usize) -> f64 + Sync) -> Vec<f64> {
         let force =

@@ -1,5 +1,6 @@
 //! The primal-dual active set method.
 
+use super::hybrid::Hybrid;
 use super::inexact::{InVain, Inexact};
 use super::iterate::Iterate;
 use super::linear::{FactorError, is_positive_definite};
@@ -218,6 +219,12 @@ pub(super) fn check_input<T: Real>(inequality: &Inequality<T>) -> Result<(), Out
 }
 
 fn check_definite<T: Real>(inequality: &Inequality<T>) -> Result<(), Outcome> {
+    if let Some(factored) = &inequality.factored {
+        let not_given: Vec<bool> =
+            inequality.bounds.iter().map(|bound| bound.only_value().is_none()).collect();
+        Hybrid::new(factored).factor(&not_given)?;
+        return Ok(());
+    }
     let not_given: Vec<u32> = (0..inequality.size())
         .filter(|&i| inequality.bounds[i].only_value().is_none())
         .map(|i| i as u32)

@@ -11,20 +11,26 @@
 //! [ M  -1/w ] [ p ] = [ a + t ]
 //! ```
 //!
-//! in which no weight meets a stiffness. Only where some unknowns of a block are fixed and there are
-//! fewer free ones than jumps, weights remain beside stiffnesses; there they are cut down, and
-//! refinement restores them.
+//! in which no weight meets a stiffness. Only where a block can move in fewer ways than it has jumps
+//! (some unknowns are fixed; quadratic functions that vanish at both Gauss points of every edge),
+//! weights remain beside stiffnesses; there they are cut down, and refinement restores them.
 //!
 //! Source of the elimination: static condensation of hybrid methods, B. Cockburn,
 //! J. Gopalakrishnan, R. Lazarov, SIAM J. Numer. Anal. 47 (2009), 1319-1365.
 
+use super::dense::{invert_in_place, rank};
 use super::linear::{FactorError, Factors};
 use crate::algebra::{Factored, SparseMatrix, Term};
 use crate::real::Real;
 
-/// Weights that hide a stiffness are cut down to this part of what hides it entirely; refinement
-/// restores them.
+/// Weights that hide a stiffness are cut down to this part of what hides it entirely, where fixed
+/// unknowns tie a block; refinement restores them.
 const KEPT: f64 = 1e-3;
+
+/// The same where a block is tied as it is, times the root of what hides it: there are many of them,
+/// so that half the digits are left for stiffnesses. Forces are in balance with stiffnesses there,
+/// and every refinement restores as many digits of them.
+const KEPT_BY_ROOT: f64 = 4.0;
 
 /// No mean: the jump has one side only.
 const NONE: u32 = u32::MAX;
@@ -144,16 +150,36 @@ impl<'a, T: Real> Hybrid<'a, T> {
         if side.mean == NONE { weight } else { 2.0 * weight }
     }
 
+    /// In how many ways a block can move its means with the unknowns that may.
+    fn freedom(&self, block: usize, may_move: impl Fn(usize) -> bool) -> usize {
+        let (n, sides) = (self.factored.block, self.sides(block));
+        let moving = (block * n..(block + 1) * n).filter(|&i| may_move(i));
+        let means = |i: usize| sides.iter().map(|side| self.in_mean(side, i)).collect();
+        rank(moving.map(means).collect(), T::EPSILON.sqrt())
+    }
+
     /// Eliminates blocks and factors what is left.
     ///
     /// # Errors
     /// See [`FactorError`].
     pub fn factor(&self, is_free: &[bool]) -> Result<HybridFactors<T>, FactorError> {
+        self.factor_shifted(is_free, &[])
+    }
+
+    /// The same with a nonnegative diagonal added to `K`, if there is any.
+    ///
+    /// # Errors
+    /// See [`FactorError`].
+    pub fn factor_shifted(
+        &self,
+        is_free: &[bool],
+        shift: &[f64],
+    ) -> Result<HybridFactors<T>, FactorError> {
         let mut matrix = self.pattern.clone();
         let (mut inverses, mut starts) = (Vec::new(), vec![0]);
         let mut local = Vec::new();
         for block in 0..self.starts.len() - 1 {
-            let first_side = self.invert(block, is_free, &mut local)?;
+            let first_side = self.invert(block, is_free, shift, &mut local)?;
             let sides = self.sides(block);
             let n = first_side + sides.len();
             for (i, row) in sides.iter().enumerate().filter(|(_, s)| s.mean != NONE) {
@@ -179,6 +205,7 @@ impl<'a, T: Real> Hybrid<'a, T> {
         &self,
         block: usize,
         is_free: &[bool],
+        shift: &[f64],
         out: &mut Vec<f64>,
     ) -> Result<usize, FactorError> {
         let (size, sides) = (self.factored.block, self.sides(block));
@@ -190,11 +217,19 @@ impl<'a, T: Real> Hybrid<'a, T> {
         let largest = diagonal().fold(0.0, f64::max);
         let least = diagonal().filter(|&d| d > 0.0).fold(largest, f64::min);
         let unit = if largest > 0.0 { largest } else { 1.0 };
+        // a shift that hides the stiffness fixes an unknown
+        let by_root = least * KEPT_BY_ROOT / T::EPSILON.sqrt();
+        let may_move = |i: usize| is_free[i] && shift.get(i).is_none_or(|&shift| shift <= by_root);
+        let moves = (block * size..(block + 1) * size).all(may_move);
+        let hidden = if moves { by_root } else { least * KEPT / T::EPSILON };
         out.clear();
         out.resize(n * n, 0.0);
         for (k, i) in self.free(block, is_free).enumerate() {
             for (l, j) in self.free(block, is_free).enumerate() {
                 out[k * n + l] = stiffness(i, j) / unit;
+            }
+            if let Some(&shift) = shift.get(i) {
+                out[k * n + k] += shift / unit;
             }
             for (l, side) in (n_free..).zip(sides) {
                 let weight = self.in_mean(side, i);
@@ -202,12 +237,11 @@ impl<'a, T: Real> Hybrid<'a, T> {
                 out[l * n + k] = weight;
             }
         }
-        // a block with fewer free unknowns than jumps is tied to what is across in more ways than it
-        // can move: there weights hide its stiffness
-        let most = match n_free > 0 && n_free < sides.len() {
-            true => least * KEPT / T::EPSILON,
-            false => f64::INFINITY,
-        };
+        // a block that can move in fewer ways than it has jumps is tied to what is across more than
+        // once: there weights hide its stiffness
+        let is_heavy = n_free > 0 && sides.iter().any(|side| self.weight(side) > hidden);
+        let is_tied = is_heavy && self.freedom(block, may_move) < sides.len();
+        let most = if is_tied { hidden } else { f64::INFINITY };
         for (l, side) in (n_free..).zip(sides) {
             out[l * n + l] = -unit / self.weight(side).min(most);
         }
@@ -326,46 +360,4 @@ impl<T> HybridFactors<T> {
 
 fn empty<T>() -> SparseMatrix<T> {
     SparseMatrix { row_starts: vec![0], columns: Vec::new(), values: Vec::new() }
-}
-
-/// Inverts a dense matrix by rows in place (Gauss, Jordan, partial pivoting); whether its determinant
-/// is positive, nothing if it is singular.
-fn invert_in_place(a: &mut [f64], n: usize) -> Option<bool> {
-    let mut is_positive = true;
-    let mut exchanges = Vec::with_capacity(n);
-    for k in 0..n {
-        let size = |i: &usize| a[i * n + k].abs();
-        let pivot = (k..n).max_by(|i, j| size(i).total_cmp(&size(j)))?;
-        let value = a[pivot * n + k];
-        if !(value.is_finite() && value != 0.0) {
-            return None;
-        }
-        is_positive ^= value < 0.0;
-        if pivot != k {
-            is_positive ^= true;
-            for j in 0..n {
-                a.swap(pivot * n + j, k * n + j);
-            }
-        }
-        exchanges.push(pivot);
-        a[k * n + k] = 1.0;
-        for j in 0..n {
-            a[k * n + j] /= value;
-        }
-        for i in (0..n).filter(|&i| i != k) {
-            let factor = a[i * n + k];
-            a[i * n + k] = 0.0;
-            for j in 0..n {
-                a[i * n + j] -= factor * a[k * n + j];
-            }
-        }
-    }
-    for (k, &pivot) in exchanges.iter().enumerate().rev() {
-        if pivot != k {
-            for i in 0..n {
-                a.swap(i * n + pivot, i * n + k);
-            }
-        }
-    }
-    Some(is_positive)
 }

@@ -316,14 +316,6 @@ impl<'a, T: Real> Inexact<'a, T> {
         }
     }
 
-    /// The residual where the matrix is kept factored.
-    pub(super) fn exact_residual(&self) -> Option<Vec<f64>> {
-        let factored = self.inequality.factored.as_ref()?;
-        let mut residual = vec![0.0; self.values.len()];
-        factored.residual(|i| self.values[i].to_f64(), &mut residual);
-        Some(residual)
-    }
-
     fn rest_on_bounds(&mut self) {
         for (i, bound) in self.inequality.bounds.iter().enumerate() {
             let known = known_value(bound, self.state[i]);

@@ -1,7 +1,7 @@
 //! A primal-dual interior point method: where to start when the active set does not settle.
 
-use super::certificate::positive_diagonal;
-use super::linear::Factors;
+use super::hybrid::Hybrid;
+use super::shifted::{Pair, Shifted, ShiftedFactors};
 use crate::algebra::{Contact, Inequality};
 use crate::real::Real;
 
@@ -79,27 +79,35 @@ fn first_zero(value: f64, [slope, bend]: [f64; 2]) -> f64 {
 /// SIAM 1997, proves a number that grows with the root of the unknowns at most). What it finds is
 /// known up to rounding in energy only; contact is where the force exceeds the gap times the
 /// diagonal.
-pub(super) struct InteriorPoint<'a, T> {
+///
+/// Where the matrix is kept factored the forces of jumps are unknowns too, and what they and jumps
+/// disagree by falls with the deficit: no weight meets a stiffness, and a start that is moved off
+/// its bounds does not set loose the forces of its penalties.
+pub(super) struct InteriorPoint<'h, 'a, T> {
     inequality: &'a Inequality<T>,
-    free: Vec<u32>,
-    values: Vec<f64>,
+    matrix: Shifted<'h, 'a, T>,
+    at: Pair,
     diagonal: Vec<f64>,
     walls: Vec<Wall>,
     /// Linear systems solved.
     pub steps: usize,
 }
 
-impl<'a, T: Real> InteriorPoint<'a, T> {
-    /// Starts on the central path near given values.
-    pub fn new(inequality: &'a Inequality<T>, near: &[T]) -> Self {
-        let bounds = &inequality.bounds;
-        let n = inequality.size();
-        let values: Vec<f64> =
-            (0..n).map(|i| bounds[i].only_value().unwrap_or(near[i]).to_f64()).collect();
-        let free: Vec<u32> =
-            (0..n).filter(|&i| bounds[i].only_value().is_none()).map(|i| i as u32).collect();
-        let diagonal: Vec<f64> = (0..n).map(|i| positive_diagonal(inequality, i)).collect();
-        let mut point = Self { inequality, free, values, diagonal, walls: Vec::new(), steps: 0 };
+impl<'h, 'a, T: Real> InteriorPoint<'h, 'a, T> {
+    /// Starts on the central path near given values and forces of jumps.
+    pub fn new(
+        inequality: &'a Inequality<T>,
+        hybrid: Option<&'h Hybrid<'a, T>>,
+        near: &[T],
+        forces: &[T],
+    ) -> Self {
+        let bounds = inequality.bounds.iter().zip(near);
+        let values = bounds.map(|(bound, &x)| bound.only_value().unwrap_or(x).to_f64()).collect();
+        let forces = forces.iter().map(|force| force.to_f64()).collect();
+        let matrix = Shifted::new(inequality, hybrid);
+        let diagonal = (0..inequality.size()).map(|i| matrix.stiffness(i)).collect();
+        let at = Pair { values, forces };
+        let mut point = Self { inequality, matrix, at, diagonal, walls: Vec::new(), steps: 0 };
         point.start(START);
         point
     }
@@ -108,13 +116,14 @@ impl<'a, T: Real> InteriorPoint<'a, T> {
     /// given number.
     fn start(&mut self, share: f64) {
         self.walls.clear();
-        let mut deficit = vec![0.0; self.values.len()];
+        let mut deficit = self.at.clone();
         let energy = self.deficit(&mut deficit);
         let bounds = &self.inequality.bounds;
-        let bounded = self.free.iter().filter(|&&i| bounds[i as usize].is_inequality()).count();
+        let free = self.matrix.free();
+        let bounded = free.iter().filter(|&&i| bounds[i as usize].is_inequality()).count();
         let product = share * energy / bounded.max(1) as f64;
-        for k in 0..self.free.len() {
-            self.wall(self.free[k] as usize, &deficit, product);
+        for k in 0..free.len() {
+            self.wall(self.matrix.free()[k] as usize, &deficit.values, product);
         }
     }
 
@@ -124,10 +133,10 @@ impl<'a, T: Real> InteriorPoint<'a, T> {
     fn wall(&mut self, i: usize, deficit: &[f64], product: f64) {
         let bound = &self.inequality.bounds[i];
         let (lower, upper) = (bound.lower().map(T::to_f64), bound.upper().map(T::to_f64));
-        let jacobi = self.values[i] + deficit[i] / self.diagonal[i];
+        let jacobi = self.at.values[i] + deficit[i] / self.diagonal[i];
         let noise = product / self.diagonal[i];
         let off = |along: f64| 0.5 * along.hypot(2.0 * noise.sqrt()) + 0.5 * along;
-        self.values[i] = match (lower, upper) {
+        self.at.values[i] = match (lower, upper) {
             (Some(l), Some(u)) => {
                 let margin = off(0.0).min(0.25 * (u - l));
                 jacobi.clamp(l + margin, u - margin)
@@ -138,7 +147,7 @@ impl<'a, T: Real> InteriorPoint<'a, T> {
         };
         for (bound, side) in [(lower, 1.0), (upper, -1.0)] {
             if let Some(bound) = bound {
-                let gap = side * (self.values[i] - bound);
+                let gap = side * (self.at.values[i] - bound);
                 let force = product / gap;
                 self.walls.push(Wall {
                     unknown: i,
@@ -156,7 +165,7 @@ impl<'a, T: Real> InteriorPoint<'a, T> {
     /// Approaches the solution; the contact states found, or `None` if a matrix has no factors or
     /// a number is not finite.
     pub fn run(&mut self) -> Option<Vec<Contact>> {
-        let mut deficit = vec![0.0; self.values.len()];
+        let mut deficit = self.at.clone();
         let (mut least, mut idle) = (f64::INFINITY, 0);
         let mut before = Vec::new();
         let mut is_restarted = false;
@@ -186,23 +195,25 @@ impl<'a, T: Real> InteriorPoint<'a, T> {
         Some(self.contact())
     }
 
+    /// The forces of jumps.
+    pub fn forces(&self) -> Vec<T> {
+        self.at.forces.iter().map(|&force| T::lit(force)).collect()
+    }
+
     /// The values, inside their bounds.
     pub fn values(&self) -> Vec<T> {
         let nearest = |(x, bound): (&f64, &crate::algebra::Bound<T>)| bound.nearest(T::lit(*x));
-        self.values.iter().zip(&self.inequality.bounds).map(nearest).collect()
+        self.at.values.iter().zip(&self.inequality.bounds).map(nearest).collect()
     }
 
     /// One step; `None` without factors.
-    fn step(&mut self, deficit: &[f64], mean: f64) -> Option<()> {
+    fn step(&mut self, deficit: &Pair, mean: f64) -> Option<()> {
         self.steps += 1;
-        let mut matrix = self.inequality.matrix.clone();
+        let mut shift = vec![0.0; self.at.values.len()];
         for wall in &self.walls {
-            let i = wall.unknown;
-            let start = matrix.row_starts[i] as usize;
-            let place = matrix.row(i).0.binary_search(&(i as u32)).ok()?;
-            matrix.values[start + place] += T::lit(wall.force / wall.gap);
+            shift[wall.unknown] += wall.force / wall.gap;
         }
-        let factors = Factors::new(&matrix, self.inequality.symmetric, &self.free).ok()?;
+        let factors = self.matrix.factor(&shift).ok()?;
         // the first curve ends at zero, the second at what the length of the first suggests
         self.curve(&factors, deficit, 0.0);
         let reached = self.products_at(self.longest());
@@ -210,9 +221,13 @@ impl<'a, T: Real> InteriorPoint<'a, T> {
         let [slope, bend] = self.curve(&factors, deficit, centre);
         let longest = self.longest();
         let length = if longest < 1.0 { SHARE * longest } else { 1.0 };
-        for (k, &i) in self.free.iter().enumerate() {
-            self.values[i as usize] += length * (slope[k].to_f64() + length * bend[k].to_f64());
-        }
+        let go = |at: &mut [f64], slope: &[f64], bend: &[f64]| {
+            for (x, (slope, bend)) in at.iter_mut().zip(slope.iter().zip(bend)) {
+                *x += length * (slope + length * bend);
+            }
+        };
+        go(&mut self.at.values, &slope.values, &bend.values);
+        go(&mut self.at.forces, &slope.forces, &bend.forces);
         for wall in &mut self.walls {
             let (gap, force) = wall.at(length);
             wall.left = [gap / wall.gap, force / wall.force];
@@ -222,8 +237,8 @@ impl<'a, T: Real> InteriorPoint<'a, T> {
     }
 
     /// The parabola that follows the path on which deficit and products, these less `centre`, fall
-    /// like `(1 - t)^2`: its slope and its bend at all free unknowns.
-    fn curve(&mut self, factors: &Factors<T>, deficit: &[f64], centre: f64) -> [Vec<T>; 2] {
+    /// like `(1 - t)^2`: its slope and its bend.
+    fn curve(&mut self, factors: &ShiftedFactors<T>, deficit: &Pair, centre: f64) -> [Pair; 2] {
         let excess = |wall: &Wall| wall.gap * wall.force - centre;
         let rates: Vec<f64> = self.walls.iter().map(|wall| -2.0 * excess(wall)).collect();
         let slope = self.direct(factors, deficit, 2.0, &rates);
@@ -247,22 +262,19 @@ impl<'a, T: Real> InteriorPoint<'a, T> {
     /// rates; that of every gap goes into the second place.
     fn direct(
         &mut self,
-        factors: &Factors<T>,
-        deficit: &[f64],
+        factors: &ShiftedFactors<T>,
+        deficit: &Pair,
         share: f64,
         rates: &[f64],
-    ) -> Vec<T> {
-        let mut right: Vec<f64> = deficit.iter().map(|r| share * r).collect();
+    ) -> Pair {
+        let mut step = deficit.clone();
+        step.values.iter_mut().chain(&mut step.forces).for_each(|r| *r *= share);
         for (wall, rate) in self.walls.iter().zip(rates) {
-            right[wall.unknown] += wall.side * rate / wall.gap;
+            step.values[wall.unknown] += wall.side * rate / wall.gap;
         }
-        let mut step: Vec<T> = self.free.iter().map(|&i| T::lit(right[i as usize])).collect();
-        factors.solve_in_place(&mut step, 1);
-        for (&i, step) in self.free.iter().zip(&step) {
-            right[i as usize] = step.to_f64();
-        }
+        self.matrix.solve(factors, &mut step);
         for wall in &mut self.walls {
-            wall.gap_step[1] = wall.side * right[wall.unknown];
+            wall.gap_step[1] = wall.side * step.values[wall.unknown];
         }
         step
     }
@@ -284,22 +296,13 @@ impl<'a, T: Real> InteriorPoint<'a, T> {
         self.walls.iter().map(|w| w.gap * w.force).sum::<f64>() / self.walls.len().max(1) as f64
     }
 
-    /// `b - A u` and the forces of all bounds; returns the energy.
-    fn deficit(&self, deficit: &mut [f64]) -> f64 {
-        self.inequality.residual_of(&|i| self.values[i], deficit);
-        let energy = self.energy();
+    /// `b - A u` and the forces of all bounds; returns the size of energies.
+    fn deficit(&self, deficit: &mut Pair) -> f64 {
+        let energy = self.matrix.deficit(&self.at, deficit);
         for wall in &self.walls {
-            deficit[wall.unknown] += wall.side * wall.force;
+            deficit.values[wall.unknown] += wall.side * wall.force;
         }
         energy
-    }
-
-    /// The size of energies in this problem.
-    fn energy(&self) -> f64 {
-        let terms = self.values.iter().zip(&self.inequality.load).zip(&self.diagonal);
-        let load: f64 =
-            terms.map(|((x, b), d)| (x * b.to_f64()).abs() + b.to_f64().powi(2) / d).sum();
-        if load > 0.0 { load } else { 1.0 }
     }
 
     /// Whether contact is plain to see at every bound: one of gap and force keeps what it has and
@@ -310,7 +313,7 @@ impl<'a, T: Real> InteriorPoint<'a, T> {
 
     /// Contact where more is left of the force than of the gap.
     fn contact(&self) -> Vec<Contact> {
-        let mut contact = vec![Contact::Open; self.values.len()];
+        let mut contact = vec![Contact::Open; self.at.values.len()];
         for wall in self.walls.iter().filter(|wall| wall.left[1] > wall.left[0]) {
             contact[wall.unknown] = if wall.side > 0.0 { Contact::Lower } else { Contact::Upper };
         }

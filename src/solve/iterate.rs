@@ -157,6 +157,7 @@ impl<'a, T: Real> Iterate<'a, T> {
         let mut mismatch = vec![0.0; self.forces.len()];
         let mut least = f64::INFINITY;
         let mut is_lost = false;
+        let floor = (CORRECTED * T::EPSILON).powi(2);
         for correction in 0..MOST_CORRECTIONS {
             let (values, forces) = (&self.values, &self.forces);
             let value = |i: usize| values[i].to_f64();
@@ -165,11 +166,12 @@ impl<'a, T: Real> Iterate<'a, T> {
             }
             factored.residual_with_forces(value, |f| forces[f].to_f64(), &mut self.deficit);
             let work = hybrid.solve(&factors, &is_free, &mut self.deficit, &mut mismatch);
-            let (mut size, mut scale) = (0.0_f64, 0.0_f64);
-            for (value, change) in self.values.iter_mut().zip(&self.deficit) {
+            let (mut size, mut scale, mut sum) = (0.0_f64, 0.0_f64, 0.0);
+            for (i, (value, change)) in self.values.iter_mut().zip(&self.deficit).enumerate() {
                 *value += T::lit(*change);
                 size = size.max(change.abs());
                 scale = scale.max(value.to_f64().abs());
+                sum += factored.diagonal(i) * value.to_f64().powi(2);
             }
             for (force, change) in self.forces.iter_mut().zip(&mismatch) {
                 *force += T::lit(*change);
@@ -178,7 +180,8 @@ impl<'a, T: Real> Iterate<'a, T> {
             // by a quarter of the digits; in energy, because single unknowns of thin cells may be lost
             let (values, forces) = (&self.values, &self.forces);
             let energy = factored.energy(|i| values[i].to_f64(), |f| forces[f].to_f64());
-            is_lost = work.abs() > T::EPSILON.sqrt() * energy;
+            // and beyond rounding, because constants have none
+            is_lost = work.abs() > T::EPSILON.sqrt() * energy + floor * sum;
             // numbers that are not finite do not get smaller either
             let goes_on = size <= 0.5 * least && !is_small;
             if correction >= refinements && !goes_on {
@@ -270,13 +273,15 @@ impl<'a, T: Real> Iterate<'a, T> {
     /// Moves to where an interior point method gets from the best iterate; stays if it does not get
     /// anywhere.
     pub fn approach(&mut self) {
-        let mut point = InteriorPoint::new(self.inequality, &self.best.values);
+        let Best { values, forces, .. } = &self.best;
+        let mut point = InteriorPoint::new(self.inequality, self.hybrid.as_ref(), values, forces);
         let contact = point.run();
         self.outer += point.steps;
         if let Some(contact) = contact {
             let states = contact.iter().zip(&self.inequality.bounds);
             self.state = states.map(|(&contact, bound)| rest(bound, contact)).collect();
             self.values = point.values();
+            self.forces = point.forces();
         }
     }
 

@@ -75,6 +75,14 @@ impl<T: Real> Inexact<'_, T> {
         look
     }
 
+    /// The residual where the matrix is kept factored.
+    pub(super) fn exact_residual(&self) -> Option<Vec<f64>> {
+        let factored = self.inequality.factored.as_ref()?;
+        let mut residual = vec![0.0; self.values.len()];
+        factored.residual(|i| self.values[i].to_f64(), &mut residual);
+        Some(residual)
+    }
+
     /// Adds what one unknown contributes.
     #[inline(always)]
     fn judge(&self, i: usize, noise: f64, band: f64, look: &mut Look) {

@@ -151,10 +151,11 @@ impl<'s, 'a, T: Real> Search<'s, 'a, T> {
             && members.len() <= self.settings.max_condensed
         {
             self.condensations += 1;
-            self.condense(&members)?;
-            self.history.restart(&self.iterate.state);
-            self.band = (4.0 * self.band).min(WIDEST * self.settings.band);
-            return Ok(None);
+            if self.condense(&members) {
+                self.history.restart(&self.iterate.state);
+                self.band = (4.0 * self.band).min(WIDEST * self.settings.band);
+                return Ok(None);
+            }
         }
         if self.is_untried {
             self.approach();
@@ -188,8 +189,9 @@ impl<'s, 'a, T: Real> Search<'s, 'a, T> {
         self.confirm()
     }
 
-    /// Sets the states of some unknowns to those that solve the problem condensed on them.
-    fn condense(&mut self, members: &[u32]) -> Result<(), Outcome> {
+    /// Sets the states of some unknowns to those that solve the problem condensed on them; false if
+    /// that has no solution that could be found.
+    fn condense(&mut self, members: &[u32]) -> bool {
         let (band, spread) = (self.band, self.band - self.settings.band);
         let iterate = &mut *self.iterate;
         iterate.outer += 1;
@@ -198,12 +200,14 @@ impl<'s, 'a, T: Real> Search<'s, 'a, T> {
             gap: iterate.gap_noise(band),
             force: &|i| iterate.force_noise(i, band, spread),
         };
-        let states = resolve(iterate.inequality, &iterate.values, &iterate.state, members, &noise)?
-            .ok_or(Outcome::Cycling)?;
+        let (values, state) = (&iterate.values, &iterate.state);
+        let Ok(Some(states)) = resolve(iterate.inequality, values, state, members, &noise) else {
+            return false;
+        };
         for (&i, &contact) in members.iter().zip(&states) {
             iterate.set_state(i as usize, contact, &mut self.history);
         }
-        Ok(())
+        true
     }
 
     /// What to call the best iterate where the active set does not rest: it may be a solution, or as
