@@ -27,7 +27,7 @@ mod preconditioners;
 mod restrict;
 mod search;
 mod small;
-mod smoother;
+mod sweeps;
 mod transfer;
 
 pub use active_set::{ActiveSet, LastResort};

@@ -23,9 +23,10 @@ impl<T: Real> Rows<T> {
     }
 
     #[inline(always)]
-    fn dot(&self, i: usize, x: &[T]) -> T {
+    fn dot<S: Real>(&self, i: usize, x: &[S]) -> S {
         let (columns, values) = self.row(i);
-        columns.iter().zip(values).fold(T::lit(0.0), |s, (&j, &a)| s + a * x[j as usize])
+        let product = |s, (&j, a): (&u32, &T)| s + S::lit(a.to_f64()) * x[j as usize];
+        columns.iter().zip(values).fold(S::lit(0.0), product)
     }
 
     /// The transpose, which has `n_columns` rows.
@@ -117,14 +118,14 @@ impl<T: Real> Transfer<T> {
         }
     }
 
-    /// Fine forces to coarse ones.
-    pub(super) fn restrict(&self, fine_force: &[T], coarse_force: &mut [T]) {
-        let half = T::lit(0.5);
+    /// Fine forces to coarse ones, in any precision.
+    pub(super) fn restrict<S: Real>(&self, fine_force: &[S], coarse_force: &mut [S]) {
+        let half = S::lit(0.5);
         each_mut(coarse_force, |range, piece| match &self.kind {
             Kind::Midpoints { starts, children, own, .. } => {
                 for (j, out) in range.zip(piece) {
                     let list = &children[starts[j] as usize..starts[j + 1] as usize];
-                    let sum = list.iter().fold(T::lit(0.0), |s, &i| s + fine_force[i as usize]);
+                    let sum = list.iter().fold(S::lit(0.0), |s, &i| s + fine_force[i as usize]);
                     *out = fine_force[own[j] as usize] + half * sum;
                 }
             }
@@ -137,8 +138,13 @@ impl<T: Real> Transfer<T> {
     }
 
     /// Adds a coarse function to the fine unknowns that are free: those whose `mask` is not zero.
-    pub(super) fn prolongate(&self, coarse_values: &[T], mask: &[T], fine_values: &mut [T]) {
-        let (zero, half) = (T::lit(0.0), T::lit(0.5));
+    pub(super) fn prolongate<S: Real>(
+        &self,
+        coarse_values: &[S],
+        mask: &[S],
+        fine_values: &mut [S],
+    ) {
+        let (zero, half) = (S::lit(0.0), S::lit(0.5));
         each_mut(fine_values, |range, piece| match &self.kind {
             Kind::Midpoints { parents, .. } => {
                 let lists = parents[range.clone()].iter().zip(&mask[range]);
