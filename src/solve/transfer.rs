@@ -1,6 +1,7 @@
 //! From coarse to fine functions and back.
 
-use super::pieces::each_mut;
+use super::pieces::{each_mut, zeros};
+use crate::memory::in_large_pages;
 use crate::real::Real;
 
 /// A rectangular sparse matrix by rows.
@@ -39,8 +40,8 @@ impl<T: Real> Rows<T> {
             starts[j + 1] += starts[j];
         }
         let mut next = starts.clone();
-        let mut columns = vec![0; self.columns.len()];
-        let mut values = vec![T::lit(0.0); self.columns.len()];
+        let mut columns = in_large_pages(vec![0; self.columns.len()]);
+        let mut values = zeros(self.columns.len());
         for i in 0..self.len() {
             let (js, row) = self.row(i);
             for (&j, &a) in js.iter().zip(row) {
@@ -88,7 +89,7 @@ impl<T: Real> Transfer<T> {
             starts[j + 1] += starts[j];
         }
         let mut next = starts.clone();
-        let mut children = vec![0_u32; starts[n_coarse] as usize];
+        let mut children = in_large_pages(vec![0_u32; starts[n_coarse] as usize]);
         for (i, &[a, b]) in parents.iter().enumerate().filter(|(_, [a, b])| a != b) {
             for parent in [a, b] {
                 let at = &mut next[parent as usize];
@@ -166,7 +167,7 @@ impl<T: Real> Transfer<T> {
 
     /// A coarse function at the fine unknowns.
     pub fn values(&self, coarse_values: &[T]) -> Vec<T> {
-        let mut fine = vec![T::lit(0.0); self.n_fine()];
+        let mut fine = zeros(self.n_fine());
         let mask = vec![T::lit(1.0); self.n_fine()];
         self.prolongate(coarse_values, &mask, &mut fine);
         fine
