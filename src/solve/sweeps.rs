@@ -195,7 +195,8 @@ mod tests {
             let (mut x, mut r) = (vec![9.0; n], vec![9.0; n]);
             sweeps.forward(b, &mut x, &mut r);
             let residual = |i: usize| {
-                let product = |s: f64, (&j, a): (&u32, &f64)| s - a / 2.0 * f64::from(x[j as usize]);
+                let product =
+                    |s: f64, (&j, a): (&u32, &f64)| s - a / 2.0 * f64::from(x[j as usize]);
                 let (columns, values) = matrix.row(i);
                 columns.iter().zip(values).fold(f64::from(b[i]), product)
             };
