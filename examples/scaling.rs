@@ -4,7 +4,7 @@
 //! peak of memory is that of a process, one round after the other, and keeps the smallest times;
 //! `-- --rounds 5` sets how many, `-- --linear direct` the linear solver, `-- --threads 2` the
 //! threads, and further words pick the cases whose names contain one of them. `-- --mesh disc.msh`
-//! adds a mesh of the unit disc from a file of Gmsh, refined to about a million unknowns.
+//! adds a mesh of a disc around the origin from a file of Gmsh, refined to about a million unknowns.
 
 use std::path::Path;
 use std::process::{Command, ExitCode};
@@ -74,11 +74,11 @@ fn run<const D: usize>(
     report.rows.into_iter().next().ok_or_else(|| "no row".into())
 }
 
-/// Conforming linears on refinements of a mesh of the unit disc.
+/// Conforming linears on refinements of a mesh of a disc.
 fn run_on_mesh(path: &str, linear: Linear) -> Result<Row, Failure> {
     let mesh = gmsh::read::<f64, 2>(Path::new(path))?.mesh;
     let times = (1e6 / mesh.vertices().len() as f64).log2() / 2.0;
-    let report = Study::<f64, 2>::new(scenes::disc_2d())
+    let report = Study::<f64, 2>::new(scenes::radial::<2>(1.0))
         .scheme(ConformingP1)
         .solver(ActiveSet { linear, ..ActiveSet::default() })
         .on_mesh(mesh)
