@@ -3,10 +3,13 @@
 //! `cargo run --release --example scaling` runs every case in a process of its own, because the
 //! peak of memory is that of a process, one round after the other, and keeps the smallest times;
 //! `-- --rounds 5` sets how many, `-- --linear direct` the linear solver, `-- --threads 2` the
-//! threads, and further words pick the cases whose names contain one of them.
+//! threads, and further words pick the cases whose names contain one of them. `-- --mesh disc.msh`
+//! adds a mesh of a disc around the origin from a file of Gmsh, refined to about a million unknowns.
 
+use std::path::Path;
 use std::process::{Command, ExitCode};
 
+use unilateral::mesh::gmsh;
 use unilateral::prelude::*;
 use unilateral::solve::{ActiveSet, Linear};
 use unilateral::study::Row;
@@ -39,6 +42,9 @@ const CASES: &[Case] = &[
     ("3d-wopsip-16", 3, false, "wopsip", 16),
 ];
 
+/// The case on a mesh from a file.
+const ON_MESH: Case = ("2d-p1-gmsh", 2, false, "p1", 0);
+
 /// What one process tells another.
 type Failure = Box<dyn std::error::Error>;
 
@@ -68,21 +74,42 @@ fn run<const D: usize>(
     report.rows.into_iter().next().ok_or_else(|| "no row".into())
 }
 
+/// Conforming linears on refinements of a mesh of a disc.
+fn run_on_mesh(path: &str, linear: Linear) -> Result<Row, Failure> {
+    let mesh = gmsh::read::<f64, 2>(Path::new(path))?.mesh;
+    let times = (1e6 / mesh.vertices().len() as f64).log2() / 2.0;
+    let report = Study::<f64, 2>::new(scenes::radial::<2>(1.0))
+        .scheme(ConformingP1)
+        .solver(ActiveSet { linear, ..ActiveSet::default() })
+        .on_mesh(mesh)
+        .levels([times.round().max(0.0) as usize])
+        .run()?;
+    report.rows.into_iter().next().ok_or_else(|| "no row".into())
+}
+
 /// Runs one case and prints its row.
-fn child(name: &str, linear: Linear) -> Result<(), Failure> {
-    let case = CASES.iter().find(|c| c.0 == name).ok_or("no such case")?;
-    let row = match case.1 {
-        2 => run(scenes::radial::<2>(1.0), linear, case)?,
-        _ => run(scenes::radial::<3>(1.0), linear, case)?,
+fn child(name: &str, linear: Linear, mesh: Option<&str>) -> Result<(), Failure> {
+    let case = CASES.iter().chain([&ON_MESH]).find(|c| c.0 == name).ok_or("no such case")?;
+    let row = match (case.1, mesh) {
+        (_, Some(path)) => run_on_mesh(path, linear)?,
+        (2, None) => run(scenes::radial::<2>(1.0), linear, case)?,
+        (_, None) => run(scenes::radial::<3>(1.0), linear, case)?,
     };
     println!("{}", serde_json::to_string(&row)?);
     Ok(())
 }
 
 /// The row of a case, run in a process of its own.
-fn measure(name: &str, linear: &str, threads: &str) -> Result<serde_json::Value, Failure> {
+fn measure(
+    name: &str,
+    linear: &str,
+    threads: &str,
+    mesh: Option<&str>,
+) -> Result<serde_json::Value, Failure> {
+    let mesh = mesh.filter(|_| name == ON_MESH.0);
     let output = Command::new(std::env::current_exe()?)
         .args(["--case", name, "--linear", linear])
+        .args(mesh.into_iter().flat_map(|path| ["--mesh", path]))
         .env("RAYON_NUM_THREADS", threads)
         .output()?;
     if !output.status.success() {
@@ -98,8 +125,9 @@ fn all() -> Result<(), Failure> {
     };
     let linear_name = option("--linear").unwrap_or("by-size");
     let linear = Linear::NAMES.iter().find(|l| l.0 == linear_name).ok_or("unknown solver")?.1;
+    let mesh = option("--mesh");
     if let Some(name) = option("--case") {
-        return child(name, linear);
+        return child(name, linear, mesh);
     }
     let rounds: usize = option("--rounds").unwrap_or("3").parse()?;
     let threads = option("--threads").unwrap_or("1");
@@ -110,12 +138,13 @@ fn all() -> Result<(), Failure> {
         .collect();
     let chosen: Vec<&Case> = CASES
         .iter()
+        .chain(mesh.map(|_| &ON_MESH))
         .filter(|c| filters.is_empty() || filters.iter().any(|f| c.0.contains(f.as_str())))
         .collect();
     let mut best: Vec<Option<serde_json::Value>> = vec![None; chosen.len()];
     for _ in 0..rounds {
         for (case, best) in chosen.iter().zip(&mut best) {
-            let row = measure(case.0, linear_name, threads)?;
+            let row = measure(case.0, linear_name, threads, mesh)?;
             if best.as_ref().is_none_or(|b| seconds(&row) < seconds(b)) {
                 *best = Some(row);
             }

@@ -3,12 +3,15 @@
 //! Source: J. Xu, Computing 56 (1996), 215-235 (auxiliary space); for discontinuous functions
 //! B. Ayuso de Dios, L. Zikatanov, J. Sci. Comput. 40 (2009), 4-36.
 
+use std::sync::atomic::{AtomicBool, Ordering};
+
 use super::conjugate_gradients::Preconditioner;
 use super::linear::FactorError;
 use super::multigrid::Multigrid;
-use super::pieces::{each_mut, each_mut_of};
+use super::pieces::{each_mut, each_mut_of, zeros};
 use super::transfer::Rows;
 use crate::algebra::{Place, SparseMatrix};
+use crate::memory::in_large_pages;
 use crate::real::Real;
 
 /// Largest number of unknowns of a cell.
@@ -17,14 +20,14 @@ const LARGEST: usize = 16;
 /// The inverse blocks of the cells plus a multigrid cycle on the vertices that no fixed unknown
 /// touches.
 pub(super) struct AuxiliarySpace<'a, T: Real> {
-    blocks: Blocks<T>,
+    blocks: Blocks<'a, T>,
     vertices: Vertices<'a, T>,
 }
 
 impl<'a, T: Real> AuxiliarySpace<'a, T> {
     /// For a matrix whose unknowns live at `places`; `None` where they do not say enough.
     pub fn new(
-        matrix: &SparseMatrix<T>,
+        matrix: &'a SparseMatrix<T>,
         places: &[Place],
         vertices: Vertices<'a, T>,
     ) -> Option<Self> {
@@ -82,7 +85,13 @@ impl<'a, T: Real> Vertices<'a, T> {
     /// `None` if some vertex does not exist.
     pub fn new(multigrid: Multigrid<'a, T>, given: &'a [bool], places: &[Place]) -> Option<Self> {
         let n = given.len();
-        let mut of = Rows { starts: vec![0], columns: Vec::new(), values: Vec::new() };
+        let total = places.iter().map(|place| place.vertices().len()).sum();
+        let mut of = Rows {
+            starts: in_large_pages(Vec::with_capacity(places.len() + 1)),
+            columns: in_large_pages(Vec::with_capacity(total)),
+            values: in_large_pages(Vec::with_capacity(total)),
+        };
+        of.starts.push(0);
         for place in places {
             let around = place.vertices();
             if around.is_empty() || around.iter().any(|&v| v as usize >= n) {
@@ -94,8 +103,7 @@ impl<'a, T: Real> Vertices<'a, T> {
             of.starts.push(of.columns.len() as u32);
         }
         let around = of.transpose(n);
-        let zeros = || vec![T::lit(0.0); n];
-        let (force, values) = (zeros(), zeros());
+        let (force, values) = (zeros(n), zeros(n));
         Some(Self { multigrid, given, around, of, fixed: vec![false; n], force, values })
     }
 
@@ -135,53 +143,33 @@ fn product<T: Real>((columns, weights): (&[u32], &[T]), x: &[T]) -> T {
 }
 
 /// The inverses of the diagonal blocks of all cells, on the unknowns that are free.
-struct Blocks<T> {
+struct Blocks<'a, T> {
+    matrix: &'a SparseMatrix<T>,
     size: usize,
-    blocks: Vec<T>,
     inverse: Vec<T>,
 }
 
-impl<T: Real> Blocks<T> {
-    fn new(matrix: &SparseMatrix<T>, size: usize) -> Option<Self> {
+impl<'a, T: Real> Blocks<'a, T> {
+    fn new(matrix: &'a SparseMatrix<T>, size: usize) -> Option<Self> {
         let n = matrix.size();
-        let zero = T::lit(0.0);
-        if !n.is_multiple_of(size) {
-            return None;
-        }
-        let mut blocks = vec![zero; n * size];
-        each_mut_of(&mut blocks, size, |range, piece| {
-            for (i, out) in (range.start / size..).zip(piece.chunks_exact_mut(size)) {
-                let first = (i / size * size) as u32;
-                let (columns, values) = matrix.row(i);
-                let from = columns.partition_point(|&j| j < first);
-                for (&j, &a) in columns[from..].iter().zip(&values[from..]) {
-                    if j >= first + size as u32 {
-                        break;
-                    }
-                    out[(j - first) as usize] = a;
-                }
-            }
-        });
-        Some(Self { size, inverse: vec![zero; n * size], blocks })
+        n.is_multiple_of(size).then(|| Self { matrix, size, inverse: zeros(n * size) })
     }
 
     fn fix(&mut self, fixed: &[bool]) -> Result<(), FactorError> {
-        let (size, zero) = (self.size, T::lit(0.0));
-        let square = size * size;
-        let cells = self.blocks.chunks_exact(square).zip(self.inverse.chunks_exact_mut(square));
-        for ((block, inverse), fixed) in cells.zip(fixed.chunks_exact(size)) {
-            inverse.copy_from_slice(block);
-            for k in (0..size).filter(|&k| fixed[k]) {
-                for j in 0..size {
-                    inverse[k * size + j] = zero;
-                    inverse[j * size + k] = zero;
+        let Self { matrix, size, ref mut inverse } = *self;
+        let is_positive = AtomicBool::new(true);
+        each_mut_of(inverse, size * size, |range, piece| {
+            let cells = range.start / (size * size)..;
+            for (cell, block) in cells.zip(piece.chunks_exact_mut(size * size)) {
+                let first = cell * size;
+                let fixed = &fixed[first..first + size];
+                block_of(matrix, first, fixed, block);
+                if !invert(block, size, fixed) {
+                    is_positive.store(false, Ordering::Relaxed);
                 }
             }
-            if !invert(inverse, size, fixed) {
-                return Err(FactorError::NotPositive);
-            }
-        }
-        Ok(())
+        });
+        if is_positive.into_inner() { Ok(()) } else { Err(FactorError::NotPositive) }
     }
 
     fn apply(&self, r: &[T], z: &mut [T]) {
@@ -195,6 +183,23 @@ impl<T: Real> Blocks<T> {
                 }
             }
         });
+    }
+}
+
+/// The diagonal block that begins with an unknown, zero where fixed.
+fn block_of<T: Real>(matrix: &SparseMatrix<T>, first: usize, fixed: &[bool], block: &mut [T]) {
+    let size = fixed.len();
+    block.fill(T::lit(0.0));
+    for (k, row) in block.chunks_exact_mut(size).enumerate().filter(|&(k, _)| !fixed[k]) {
+        let (columns, values) = matrix.row(first + k);
+        let from = columns.partition_point(|&j| (j as usize) < first);
+        for (&j, &a) in columns[from..].iter().zip(&values[from..]) {
+            match fixed.get(j as usize - first) {
+                Some(true) => {}
+                Some(false) => row[j as usize - first] = a,
+                None => break,
+            }
+        }
     }
 }
 

@@ -1,6 +1,6 @@
 //! Preconditioned conjugate gradients on the unknowns that are free.
 
-use super::pieces::{each_mut, sum_mut, sum_mut2};
+use super::pieces::{each_mut, sum_mut, sum_mut2, zeros};
 use crate::algebra::SparseMatrix;
 use crate::real::Real;
 
@@ -57,8 +57,7 @@ pub(super) struct ConjugateGradients<T> {
 
 impl<T: Real> ConjugateGradients<T> {
     pub fn new(size: usize) -> Self {
-        let zeros = || vec![T::lit(0.0); size];
-        Self { z: zeros(), p: zeros(), q: zeros() }
+        Self { z: zeros(size), p: zeros(size), q: zeros(size) }
     }
 
     /// Corrects `x`, whose residual is `r` where free and zero where fixed; `r` is kept up to date.

@@ -7,7 +7,7 @@ use super::iterate::{known_value, rest};
 use super::linear::FactorError;
 use super::look::Look;
 use super::nearby::Nearby;
-use super::pieces::each_mut;
+use super::pieces::{each_mut, zeros};
 use super::preconditioners::Preconditioners;
 use super::{Outcome, Solution};
 use crate::algebra::{Bound, Contact, Inequality, Start};
@@ -141,7 +141,7 @@ impl<'a, T: Real> Inexact<'a, T> {
             state,
             fixed: vec![false; n],
             diagonal: matrix.diagonal(),
-            residual: vec![T::lit(0.0); n],
+            residual: zeros(n),
             fingerprint,
             seen: vec![fingerprint],
             outer: 0,

@@ -29,7 +29,7 @@ mod restrict;
 mod search;
 mod shifted;
 mod small;
-mod smoother;
+mod sweeps;
 mod transfer;
 
 pub use active_set::{ActiveSet, LastResort};

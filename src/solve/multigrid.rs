@@ -1,10 +1,9 @@
 //! One multigrid cycle for conforming linear functions that vanish on given vertices.
 
-use std::borrow::Cow;
-
 use super::hierarchy::Coarser;
 use super::linear::{FactorError, Factors};
-use super::smoother::{backward, forward, invert_diagonal, residual};
+use super::pieces::{each_mut, map, zeros};
+use super::sweeps::Sweeps;
 use super::transfer::Transfer;
 use crate::algebra::SparseMatrix;
 use crate::real::Real;
@@ -15,31 +14,39 @@ use crate::real::Real;
 /// Coarse functions are cut off at the fixed fine vertices: R. Kornhuber, Numer. Math. 69 (1994),
 /// 167-184. The form on each level is that of its own mesh except for the functions that lost
 /// something, for which it is computed from the finer form: few, near the fixed vertices.
+///
+/// All but the coarsest grid works in single precision, on forces over the largest of them and
+/// matrices over their largest entry: a preconditioner need not be exact, and half the bytes are
+/// twice the speed. What it is asked for is told in the scalar's own precision.
 pub(super) struct Multigrid<'a, T: Real> {
     grids: Vec<Grid<'a, T>>,
     coarsest: Coarsest<T>,
+    /// What the matrices are divided by.
+    scale: f64,
+    force: Vec<f32>,
+    values: Vec<f32>,
 }
 
 struct Grid<'a, T: Real> {
-    original: &'a SparseMatrix<T>,
-    matrix: Cow<'a, SparseMatrix<T>>,
-    /// Rows of the matrix that are not those of the original.
+    matrix: &'a SparseMatrix<T>,
+    /// Rows that are not those of the matrix, ascending, and their values, one row after the other.
     cut: Vec<u32>,
+    cut_starts: Vec<usize>,
+    cut_values: Vec<T>,
     transfer: Option<&'a Transfer<T>>,
     given: &'a [bool],
-    diagonal: Vec<T>,
-    inverse: Vec<T>,
+    sweeps: Option<Sweeps>,
     fixed: Vec<bool>,
-    force: Vec<T>,
-    values: Vec<T>,
-    residual: Vec<T>,
-    old: Vec<T>,
+    force: Vec<f32>,
+    values: Vec<f32>,
+    residual: Vec<f32>,
 }
 
 struct Coarsest<T> {
     free: Vec<u32>,
     factors: Option<Factors<T>>,
     values: Vec<T>,
+    scale: f64,
 }
 
 impl<'a, T: Real> Grid<'a, T> {
@@ -47,33 +54,51 @@ impl<'a, T: Real> Grid<'a, T> {
         matrix: &'a SparseMatrix<T>,
         given: &'a [bool],
         coarser: Option<&'a Coarser<T>>,
+        is_finest: bool,
     ) -> Self {
         let n = matrix.size();
-        let zeros = || vec![T::lit(0.0); n];
+        let inner = if is_finest { 0 } else { n };
         Self {
-            original: matrix,
-            matrix: Cow::Borrowed(matrix),
+            matrix,
             cut: Vec::new(),
+            cut_starts: vec![0],
+            cut_values: Vec::new(),
             transfer: coarser.map(|c| &*c.transfer),
             given,
-            diagonal: matrix.diagonal(),
-            inverse: zeros(),
+            sweeps: None,
             fixed: vec![false; n],
-            force: zeros(),
-            values: zeros(),
-            residual: zeros(),
-            old: if n > super::pieces::PIECE { zeros() } else { Vec::new() },
+            force: zeros(inner),
+            values: zeros(inner),
+            residual: zeros(n),
         }
     }
 }
 
 impl<T: Real> Grid<'_, T> {
+    /// A row as it is after functions were cut off.
+    fn row(&self, i: usize) -> (&[u32], &[T]) {
+        let (columns, values) = self.matrix.row(i);
+        match self.cut.binary_search(&(i as u32)) {
+            Ok(k) if !self.cut.is_empty() => {
+                (columns, &self.cut_values[self.cut_starts[k]..self.cut_starts[k + 1]])
+            }
+            _ => (columns, values),
+        }
+    }
+
     /// Factors the form on some functions. Those that were cut off may have become dependent, which
     /// a slightly larger diagonal mends.
     fn factor(&self, free: &[u32]) -> Result<Factors<T>, FactorError> {
-        match Factors::new(&self.matrix, true, free) {
-            Err(FactorError::NotPositive | FactorError::Singular) if !self.cut.is_empty() => {
-                let mut matrix = self.matrix.clone().into_owned();
+        if self.cut.is_empty() {
+            return Factors::new(self.matrix, true, free);
+        }
+        let mut matrix = self.matrix.clone();
+        for &j in &self.cut {
+            let range = row_range(&matrix, j);
+            matrix.values[range].copy_from_slice(self.row(j as usize).1);
+        }
+        match Factors::new(&matrix, true, free) {
+            Err(FactorError::NotPositive | FactorError::Singular) => {
                 for j in 0..matrix.size() as u32 {
                     let range = row_range(&matrix, j);
                     if let Ok(k) = matrix.columns[range.clone()].binary_search(&j) {
@@ -97,30 +122,35 @@ impl<T: Real> Grid<'_, T> {
         let fixed = &self.fixed;
         let is_cut = |j: usize| !fixed[j] && transfer.any_child(j, |i| near[i]);
         let cut: Vec<u32> = (0..fixed.len()).filter(|&j| is_cut(j)).map(|j| j as u32).collect();
-        let before = std::mem::replace(&mut self.cut, cut);
-        if before.is_empty() && self.cut.is_empty() {
-            return;
+        if !(self.cut.is_empty() && cut.is_empty()) {
+            self.sweeps = None;
         }
-        let matrix = self.matrix.to_mut();
-        for &j in &before {
-            let range = row_range(matrix, j);
-            matrix.values[range.clone()].copy_from_slice(&self.original.values[range]);
-            self.diagonal[j as usize] = self.original.get(j as usize, j as usize);
-        }
+        self.cut = cut;
+        self.cut_values.clear();
+        self.cut_starts.truncate(1);
         for &j in &self.cut {
-            let range = row_range(matrix, j);
-            let columns = &matrix.columns[range.clone()];
-            let values = &mut matrix.values[range];
-            values.fill(T::lit(0.0));
+            let columns = self.matrix.row(j as usize).0;
+            let start = self.cut_values.len();
+            self.cut_values.resize(start + columns.len(), T::lit(0.0));
+            let values = &mut self.cut_values[start..];
             transfer.children(j as usize, |i, weight| {
                 if !finer.fixed[i] {
-                    add_row(&finer.matrix, &finer.fixed, transfer, (i, weight), (columns, values));
+                    add_row(finer.row(i), &finer.fixed, transfer, weight, (columns, values));
                 }
             });
-            if let Ok(k) = columns.binary_search(&j) {
-                self.diagonal[j as usize] = values[k];
-            }
+            self.cut_starts.push(self.cut_values.len());
         }
+    }
+
+    /// Makes the sweeps fit matrix and fixed unknowns.
+    fn prepare(&mut self, scale: f64) {
+        let mut sweeps = match self.sweeps.take() {
+            Some(sweeps) => sweeps,
+            None if self.cut.is_empty() => Sweeps::new(self.matrix, |i| self.matrix.row(i), scale),
+            None => Sweeps::new(self.matrix, |i| self.row(i), scale),
+        };
+        sweeps.fix(&self.fixed);
+        self.sweeps = Some(sweeps);
     }
 }
 
@@ -131,13 +161,12 @@ fn row_range<T>(matrix: &SparseMatrix<T>, j: u32) -> std::ops::Range<usize> {
 
 /// Adds a fine row, times a weight, to a coarse one.
 fn add_row<T: Real>(
-    matrix: &SparseMatrix<T>,
+    (neighbours, entries): (&[u32], &[T]),
     fixed: &[bool],
     transfer: &Transfer<T>,
-    (i, weight): (usize, T),
+    weight: T,
     (columns, values): (&[u32], &mut [T]),
 ) {
-    let (neighbours, entries) = matrix.row(i);
     for (&k, &a) in neighbours.iter().zip(entries) {
         if fixed[k as usize] {
             continue;
@@ -153,14 +182,18 @@ fn add_row<T: Real>(
 impl<'a, T: Real> Multigrid<'a, T> {
     /// The cycle for a matrix with its coarser levels; call [`Multigrid::fix`] before use.
     pub fn new(matrix: &'a SparseMatrix<T>, coarser: Option<&'a Coarser<T>>) -> Self {
-        let mut grids = vec![Grid::new(matrix, &[], coarser)];
+        let mut grids = vec![Grid::new(matrix, &[], coarser, true)];
         let mut next = coarser;
         while let Some(Coarser { level, .. }) = next {
             next = level.coarser.as_ref();
-            grids.push(Grid::new(&level.matrix, &level.fixed, next));
+            grids.push(Grid::new(&level.matrix, &level.fixed, next, false));
         }
-        let coarsest = Coarsest { free: Vec::new(), factors: None, values: Vec::new() };
-        Self { grids, coarsest }
+        // an entry of a positive matrix is at most as large as the largest on the diagonal
+        let largest = matrix.values.iter().fold(0.0, |m: f64, a| m.max(a.to_f64().abs()));
+        let scale = if largest > 0.0 { largest } else { 1.0 };
+        let coarsest = Coarsest { free: Vec::new(), factors: None, values: Vec::new(), scale };
+        let n = matrix.size();
+        Self { grids, coarsest, scale, force: zeros(n), values: zeros(n) }
     }
 
     /// Sets which unknowns are fixed.
@@ -179,7 +212,7 @@ impl<'a, T: Real> Multigrid<'a, T> {
                     grid.cut_off(finer, transfer);
                 }
             }
-            invert_diagonal(&grid.diagonal, &grid.fixed, &mut grid.inverse);
+            grid.prepare(self.scale);
         }
         let Some(last) = self.grids.last() else { return Ok(()) };
         let free = (0..last.fixed.len() as u32).filter(|&i| !last.fixed[i as usize]);
@@ -198,39 +231,58 @@ impl<'a, T: Real> Multigrid<'a, T> {
 
     /// An approximate solution for a force.
     pub fn apply(&mut self, force: &[T], values: &mut [T]) {
-        cycle(&mut self.grids, &mut self.coarsest, force, values);
+        let largest = |range: std::ops::Range<usize>| {
+            force[range].iter().fold(0.0, |m: f64, f| m.max(f.to_f64().abs()))
+        };
+        // a number that is not finite stays one, whatever it is divided by
+        let largest = map(force.len(), largest).into_iter().fold(0.0, f64::max);
+        let unit = if largest > 0.0 { largest } else { 1.0 };
+        each_mut(&mut self.force, |range, single| {
+            single.iter_mut().zip(&force[range]).for_each(|(s, f)| *s = (f.to_f64() / unit) as f32);
+        });
+        cycle(&mut self.grids, &mut self.coarsest, &self.force, &mut self.values);
+        let (single, unit) = (&self.values, unit / self.scale);
+        each_mut(values, |range, values| {
+            let pairs = values.iter_mut().zip(&single[range]);
+            pairs.for_each(|(v, &s)| *v = T::lit(f64::from(s) * unit));
+        });
     }
 }
 
-fn cycle<T: Real>(grids: &mut [Grid<'_, T>], coarsest: &mut Coarsest<T>, force: &[T], x: &mut [T]) {
+fn cycle<T: Real>(
+    grids: &mut [Grid<'_, T>],
+    coarsest: &mut Coarsest<T>,
+    force: &[f32],
+    x: &mut [f32],
+) {
     let Some((grid, rest)) = grids.split_first_mut() else { return };
     if rest.is_empty() && coarsest.factors.is_some() {
         coarsest.solve(force, x);
         return;
     }
-    forward(&grid.matrix, &grid.inverse, force, x);
+    let Some(sweeps) = &grid.sweeps else { return };
+    sweeps.forward(force, x, &mut grid.residual);
     if let (Some(transfer), Some(coarse)) = (grid.transfer, rest.first_mut()) {
-        residual(&grid.matrix, &grid.inverse, force, x, &mut grid.residual);
         let mut coarse_force = std::mem::take(&mut coarse.force);
         let mut coarse_values = std::mem::take(&mut coarse.values);
         transfer.restrict(&grid.residual, &mut coarse_force);
         cycle(rest, coarsest, &coarse_force, &mut coarse_values);
-        transfer.prolongate(&coarse_values, &grid.inverse, x);
+        transfer.prolongate(&coarse_values, sweeps.inverse(), x);
         rest[0].force = coarse_force;
         rest[0].values = coarse_values;
     }
-    backward(&grid.matrix, &grid.inverse, force, x, &mut grid.old);
+    sweeps.backward(force, x, &mut grid.residual);
 }
 
 impl<T: Real> Coarsest<T> {
-    fn solve(&mut self, force: &[T], x: &mut [T]) {
+    fn solve(&mut self, force: &[f32], x: &mut [f32]) {
         let Some(factors) = &self.factors else { return };
         self.values.clear();
-        self.values.extend(self.free.iter().map(|&i| force[i as usize]));
+        self.values.extend(self.free.iter().map(|&i| T::lit(f64::from(force[i as usize]))));
         factors.solve_in_place(&mut self.values, 1);
-        x.fill(T::lit(0.0));
-        for (&i, &value) in self.free.iter().zip(&self.values) {
-            x[i as usize] = value;
+        x.fill(0.0);
+        for (&i, value) in self.free.iter().zip(&self.values) {
+            x[i as usize] = (value.to_f64() * self.scale) as f32;
         }
     }
 }

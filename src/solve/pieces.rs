@@ -5,9 +5,17 @@ use std::ops::Range;
 
 use rayon::prelude::*;
 
+use crate::memory::in_large_pages;
+use crate::real::Real;
+
 /// Numbers in a piece: enough to outweigh handing it over, and for a smoother to hardly notice the
 /// cuts.
 pub(super) const PIECE: usize = 1 << 14;
+
+/// A vector of zeros in fresh memory.
+pub(super) fn zeros<T: Real>(n: usize) -> Vec<T> {
+    in_large_pages(vec![T::lit(0.0); n])
+}
 
 /// The numbers of a piece.
 fn range(piece: usize, n: usize) -> Range<usize> {

@@ -1,6 +1,7 @@
 //! From coarse to fine functions and back.
 
-use super::pieces::each_mut;
+use super::pieces::{each_mut, zeros};
+use crate::memory::in_large_pages;
 use crate::real::Real;
 
 /// A rectangular sparse matrix by rows.
@@ -23,9 +24,10 @@ impl<T: Real> Rows<T> {
     }
 
     #[inline(always)]
-    fn dot(&self, i: usize, x: &[T]) -> T {
+    fn dot<S: Real>(&self, i: usize, x: &[S]) -> S {
         let (columns, values) = self.row(i);
-        columns.iter().zip(values).fold(T::lit(0.0), |s, (&j, &a)| s + a * x[j as usize])
+        let product = |s, (&j, a): (&u32, &T)| s + S::lit(a.to_f64()) * x[j as usize];
+        columns.iter().zip(values).fold(S::lit(0.0), product)
     }
 
     /// The transpose, which has `n_columns` rows.
@@ -38,8 +40,8 @@ impl<T: Real> Rows<T> {
             starts[j + 1] += starts[j];
         }
         let mut next = starts.clone();
-        let mut columns = vec![0; self.columns.len()];
-        let mut values = vec![T::lit(0.0); self.columns.len()];
+        let mut columns = in_large_pages(vec![0; self.columns.len()]);
+        let mut values = zeros(self.columns.len());
         for i in 0..self.len() {
             let (js, row) = self.row(i);
             for (&j, &a) in js.iter().zip(row) {
@@ -87,7 +89,7 @@ impl<T: Real> Transfer<T> {
             starts[j + 1] += starts[j];
         }
         let mut next = starts.clone();
-        let mut children = vec![0_u32; starts[n_coarse] as usize];
+        let mut children = in_large_pages(vec![0_u32; starts[n_coarse] as usize]);
         for (i, &[a, b]) in parents.iter().enumerate().filter(|(_, [a, b])| a != b) {
             for parent in [a, b] {
                 let at = &mut next[parent as usize];
@@ -117,14 +119,14 @@ impl<T: Real> Transfer<T> {
         }
     }
 
-    /// Fine forces to coarse ones.
-    pub(super) fn restrict(&self, fine_force: &[T], coarse_force: &mut [T]) {
-        let half = T::lit(0.5);
+    /// Fine forces to coarse ones, in any precision.
+    pub(super) fn restrict<S: Real>(&self, fine_force: &[S], coarse_force: &mut [S]) {
+        let half = S::lit(0.5);
         each_mut(coarse_force, |range, piece| match &self.kind {
             Kind::Midpoints { starts, children, own, .. } => {
                 for (j, out) in range.zip(piece) {
                     let list = &children[starts[j] as usize..starts[j + 1] as usize];
-                    let sum = list.iter().fold(T::lit(0.0), |s, &i| s + fine_force[i as usize]);
+                    let sum = list.iter().fold(S::lit(0.0), |s, &i| s + fine_force[i as usize]);
                     *out = fine_force[own[j] as usize] + half * sum;
                 }
             }
@@ -137,8 +139,13 @@ impl<T: Real> Transfer<T> {
     }
 
     /// Adds a coarse function to the fine unknowns that are free: those whose `mask` is not zero.
-    pub(super) fn prolongate(&self, coarse_values: &[T], mask: &[T], fine_values: &mut [T]) {
-        let (zero, half) = (T::lit(0.0), T::lit(0.5));
+    pub(super) fn prolongate<S: Real>(
+        &self,
+        coarse_values: &[S],
+        mask: &[S],
+        fine_values: &mut [S],
+    ) {
+        let (zero, half) = (S::lit(0.0), S::lit(0.5));
         each_mut(fine_values, |range, piece| match &self.kind {
             Kind::Midpoints { parents, .. } => {
                 let lists = parents[range.clone()].iter().zip(&mask[range]);
@@ -160,7 +167,7 @@ impl<T: Real> Transfer<T> {
 
     /// A coarse function at the fine unknowns.
     pub fn values(&self, coarse_values: &[T]) -> Vec<T> {
-        let mut fine = vec![T::lit(0.0); self.n_fine()];
+        let mut fine = zeros(self.n_fine());
         let mask = vec![T::lit(1.0); self.n_fine()];
         self.prolongate(coarse_values, &mask, &mut fine);
         fine
