@@ -1,6 +1,6 @@
 """Time per cell of the same matrices assembled by DOLFINx 0.5, for comparison.
 
-    OMP_NUM_THREADS=1 python3 benches/assembly/dolfinx.py
+    OMP_NUM_THREADS=1 python3 benches/assembly/measure_dolfinx.py
 
 Debian has it as python3-dolfinx. Times are processor seconds, the least of five (from nothing: two)
 runs; compiling the forms is not counted. From nothing means pattern and values.
