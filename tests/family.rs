@@ -149,20 +149,17 @@ fn quadratics_without_inequalities_in_space() {
 }
 
 /// The missing consistency of the over-penalised method is of a higher order, but on coarse meshes
-/// larger: orders fall to two and three from above, on an interval 2.006 and 3.620 with 32 cells,
-/// in the plane 1.989 and 3.139, in space 3.394 and 4.060 with six cells along a side, where it is
-/// all of the error. The weight of order `h^-5` leaves no room for finer meshes in one dimension:
-/// rounding outweighs the error with 128 cells, of which a warning tells.
+/// larger: orders fall to two and three from above. The weight of order `h^-5` is nothing that
+/// rounding could be felt in: orders hold on an interval of 256 cells, where a matrix multiplied out
+/// has lost all digits.
 #[test]
 fn over_penalised_quadratics_without_inequalities() {
     let mut checks = Checks::default();
     let (c, schemes) = (&mut checks, &["wopsip-p2"]);
-    smooth_quadratics::<1>(c, schemes, [16, 32], 1.95..2.05, 2.95..3.7);
+    smooth_quadratics::<1>(c, schemes, [16, 32], 1.95..2.05, 2.95..4.0);
+    smooth_quadratics::<1>(c, schemes, [128, 256], 1.95..2.05, 2.95..3.2);
     smooth_quadratics::<2>(c, schemes, [16, 32], 1.95..2.05, 2.95..3.2);
     smooth_quadratics::<3>(c, schemes, [3, 6], 1.95..3.5, 2.95..4.2);
-    let fine = rows(smooth::<1>(), vec![named("wopsip-p2")], [64, 128]);
-    c.that(fine[1].error.h1 > fine[0].error.h1, || "rounding does not show".to_owned());
-    c.that(!fine[1].warnings.is_empty(), || "no warning of rounding".to_owned());
     checks.finish();
 }
 

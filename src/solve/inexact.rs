@@ -243,7 +243,7 @@ impl<'a, T: Real> Inexact<'a, T> {
             // from a cold start contact spreads layer by layer, which is slow but cheap
             if settings.last_resort == LastResort::WhenUnsettled
                 && self.inequality.start != Start::Cold
-                && course.hesitates(look.flips.len(), nearby.patience(settings.hesitation))
+                && course.hesitates(look.flips.len(), self.patience(settings, nearby))
             {
                 self.is_unsettled = true;
                 return None;

@@ -1,6 +1,8 @@
 //! A look at an inexact iterate: what should change, and how far it is from a solution.
 
+use super::active_set::ActiveSet;
 use super::inexact::Inexact;
+use super::nearby::{Functions, Nearby};
 use super::pieces::{map, map_mut};
 use crate::algebra::{Bound, Contact, Inequality};
 use crate::real::Real;
@@ -33,7 +35,18 @@ impl Look {
     }
 }
 
+/// Systems solved inexactly that may pass for each with factors, which costs several times as much.
+const FACTORS_OVER_INEXACT: usize = 4;
+
 impl<T: Real> Inexact<'_, T> {
+    /// How many systems may pass without progress where `hesitation` exact ones may: longer where
+    /// what would take over is neither multigrid nor an elimination that halves the unknowns.
+    pub fn patience(&self, settings: &ActiveSet, nearby: &Nearby<T>) -> usize {
+        let is_nested = matches!(nearby.functions, Functions::Coarser(_));
+        let is_cheap = is_nested || self.inequality.factored.is_some();
+        settings.hesitation * if is_cheap { 1 } else { FACTORS_OVER_INEXACT }
+    }
+
     /// Computes the residual anew and judges every unknown.
     pub fn look(&mut self, band: f64) -> Look {
         let Inequality { matrix, load, .. } = self.inequality;

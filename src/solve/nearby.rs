@@ -53,15 +53,3 @@ impl<T> Default for Nearby<T> {
         Self { functions: Functions::Unknown, values: None, accuracy: None }
     }
 }
-
-impl<T> Nearby<T> {
-    /// How many inexact systems may pass without progress where `hesitation` exact ones may: what
-    /// would take over is a multigrid method on nested vertex values, else one that factors matrices.
-    pub(super) fn patience(&self, hesitation: usize) -> usize {
-        let is_nested = matches!(self.functions, Functions::Coarser(_));
-        hesitation * if is_nested { 1 } else { FACTORS_OVER_INEXACT }
-    }
-}
-
-/// Systems solved inexactly that may pass for each with factors, which costs several times as much.
-const FACTORS_OVER_INEXACT: usize = 4;
