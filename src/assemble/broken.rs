@@ -194,7 +194,7 @@ pub(super) fn fill<T: Real, const D: usize>(
         (3, 4, true) if has_flux => filling.fill_linear::<4, true>(row_starts, values),
         (3, 4, true) => filling.fill_linear::<4, false>(row_starts, values),
         (1, 3, _) => filling.fill::<3, 1>(row_starts, values),
-        (2, 6, _) => filling.fill::<6, 2>(row_starts, values),
+        (2, 6, _) if filling.flux_moments.len() <= 2 => filling.fill::<6, 2>(row_starts, values),
         _ => filling.fill::<MAX_BASIS, MAX_FLUX_MOMENTS>(row_starts, values),
     }
     if form.is_lifted() {

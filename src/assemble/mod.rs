@@ -123,6 +123,10 @@ impl<'a, T: Real, const D: usize, S: Scheme<T, D>> Discretisation<'a, T, D, S> {
                 !S::Facet::LIFTED || (Self::OWNS_ROWS && S::Element::DEGREE <= 2),
                 "lifts of jumps are made for broken elements of degree one and two"
             );
+            assert!(
+                !Self::OWNS_ROWS || !S::Facet::USES_FLUX || S::Element::DEGREE <= [9, 9, 3, 2][D],
+                "fluxes have more moments than rows are made for"
+            );
         }
         if Self::OWNS_ROWS {
             let (metrics, weights) = self.prepared();
