@@ -53,7 +53,7 @@ pub(super) fn factored<T: Real, const D: usize>(
     let of_degree: Vec<T> = table.degrees.iter().map(|&k| form.moment_weight(k)).collect();
     let neighbours = space.coupled_neighbours();
     for cell in 0..space.mesh.n_cells() {
-        let geometry = space.mesh.geometry(cell);
+        let metric = metrics.at::<D>(cell);
         for local in 0..=D {
             let (other, template) = match neighbours.across(cell, local) {
                 Neighbour::Cell { cell: other, local: there } if cell < other as usize => {
@@ -71,8 +71,7 @@ pub(super) fn factored<T: Real, const D: usize>(
                 None => out.data.extend(zeros),
             }
             let penalty = weights.at::<D>((cell, local), true).penalty;
-            // that of the metric, a difference, has no digits left on cells stretched much
-            let measure = geometry.facet_measure(local);
+            let measure = metric.measures[local];
             for (terms, &factor) in template.iter().zip(&of_degree) {
                 out.terms.extend(terms.iter().map(|t| t.between(cell, other, out.block)));
                 out.starts.push(out.terms.len() as u32);

@@ -15,6 +15,8 @@ use crate::real::Real;
 
 /// Constants of the reference cell, of which dimension `D` uses the first `D + 1` facets.
 struct Reference<T, const N: usize> {
+    /// Gradients of basis functions are those of barycentric coordinates times this.
+    gradient: T,
     /// By facet: products of jumps.
     own: [[[T; N]; N]; 4],
     /// By facet and by the number that the cell across has for it.
@@ -57,6 +59,7 @@ impl<T: Real, const D: usize> Filling<'_, '_, T, D> {
         let of = |m: &[[T; _]; _]| std::array::from_fn(|i| std::array::from_fn(|j| m[i][j]));
         let facet = |local: usize| local.min(D);
         Reference {
+            gradient: self.gradient.unwrap_or_else(|| T::lit(1.0)),
             own: std::array::from_fn(|l| of(&self.jumps.own(facet(l))[0])),
             across: std::array::from_fn(|l| {
                 std::array::from_fn(|m| of(&self.jumps.across(facet(l), facet(m))[0]))
@@ -76,7 +79,7 @@ impl<T: Real, const D: usize> Filling<'_, '_, T, D> {
         mut rows: Rows<'_, T>,
     ) {
         let metric = self.metrics.at::<D>(cell);
-        let gradient = self.gradient.unwrap_or_else(|| T::lit(1.0));
+        let gradient = reference.gradient;
         let scale = self.space.alpha(cell) * gradient * gradient;
         let mut own = [[T::lit(0.0); N]; N];
         for i in 0..N {
@@ -155,8 +158,7 @@ impl<T: Real, const D: usize> Filling<'_, '_, T, D> {
         }
         count::normal_derivatives(N);
         let means = &reference.means[local];
-        let gradient = self.gradient.unwrap_or_else(|| T::lit(1.0));
-        let scale = T::lit(-(D as f64)) * gradient * weight.own_share;
+        let scale = T::lit(-(D as f64)) * reference.gradient * weight.own_share;
         let flux: [T; N] = std::array::from_fn(|i| scale * metric.products[local][i]);
         let (jump_flux, flux_jump) = (form.jump_flux.at(penalty), form.flux_jump.at(penalty));
         let flux_flux = form.flux_flux.at(penalty) / measure;
