@@ -119,9 +119,10 @@ impl Place {
     ///
     /// # Panics
     /// If there are more than four.
+    #[inline(always)]
     pub fn new(cell: Option<u32>, vertices: &[u32]) -> Self {
         let mut v = [Self::NONE; 4];
-        v[..vertices.len()].copy_from_slice(vertices);
+        vertices.iter().enumerate().for_each(|(k, &vertex)| v[k] = vertex);
         Self { cell: cell.unwrap_or(Self::NONE), vertices: v }
     }
     /// The cell that owns the unknown, `None` if cells share it.

@@ -11,6 +11,7 @@ use super::{DataQuadrature, count, data};
 use crate::algebra::Place;
 use crate::element::{MAX_BASIS, Node, ReferenceElement};
 use crate::error::Error;
+use crate::memory::in_large_pages;
 use crate::mesh::{BoundaryFacet, BoundaryPart, Mesh, Neighbours, edge_vertices};
 use crate::problem::Problem;
 use crate::quadrature::{Rule, insert};
@@ -202,25 +203,43 @@ impl<'a, T: Real, const D: usize> Space<'a, T, D> {
     }
     /// Where each unknown lives.
     pub fn places(&self) -> Vec<Place> {
-        let mut places = vec![Place::new(None, &[]); self.dofs.size()];
+        let (n, per_cell) = (self.dofs.size(), self.nodes.len());
+        if self.broken {
+            let mut places = in_large_pages(Vec::with_capacity(n));
+            for cell in 0..self.mesh.n_cells() {
+                let owner = Some(cell as u32);
+                places.extend(self.nodes.iter().map(|&node| self.place(owner, cell, node)));
+            }
+            return places;
+        }
+        if self.nodes.iter().all(|node| matches!(node, Node::Vertex(_))) {
+            // unknowns are numbered like the vertices that own them
+            let mut places = in_large_pages(Vec::with_capacity(n));
+            places.extend((0..n as u32).map(|vertex| Place::new(None, &[vertex])));
+            return places;
+        }
+        let mut places = in_large_pages(vec![Place::new(None, &[]); n]);
         for cell in 0..self.mesh.n_cells() {
-            let owner = self.broken.then_some(cell as u32);
-            let vertices = self.mesh.cell(cell);
-            for (i, node) in self.nodes.iter().enumerate() {
-                places[self.dofs.of(cell, i)] = match *node {
-                    Node::Vertex(k) => Place::new(owner, &[vertices[k]]),
-                    Node::Edge(k) => Place::new(owner, &edge_vertices(D)[k].map(|v| vertices[v])),
-                    Node::CellMean => Place::new(owner, vertices),
-                    Node::FacetMean(k) => {
-                        let mut vertices = [0; D];
-                        let facet = self.mesh.facet_vertices(cell, k);
-                        vertices.iter_mut().zip(facet).for_each(|(v, w)| *v = w);
-                        Place::new(owner, &vertices)
-                    }
-                };
+            for i in 0..per_cell {
+                places[self.dofs.of(cell, i)] = self.place(None, cell, self.nodes[i]);
             }
         }
         places
+    }
+    #[inline(always)]
+    fn place(&self, owner: Option<u32>, cell: usize, node: Node) -> Place {
+        let vertices = self.mesh.cell(cell);
+        match node {
+            Node::Vertex(k) => Place::new(owner, &[vertices[k]]),
+            Node::Edge(k) => Place::new(owner, &edge_vertices(D)[k].map(|v| vertices[v])),
+            Node::CellMean => Place::new(owner, vertices),
+            Node::FacetMean(k) => {
+                let mut own = [0; D];
+                let facet = self.mesh.facet_vertices(cell, k);
+                own.iter_mut().zip(facet).for_each(|(v, w)| *v = w);
+                Place::new(owner, &own)
+            }
+        }
     }
     /// A discrete function at the vertices of each cell, `D + 1` values for each.
     pub fn vertex_values(&self, u: &[T]) -> Vec<f64> {

@@ -33,6 +33,8 @@ struct Grid<'a, T: Real> {
     cut: Vec<u32>,
     cut_starts: Vec<usize>,
     cut_values: Vec<T>,
+    /// Rows that are not what the sweeps think they are, ascending.
+    stale: Vec<u32>,
     transfer: Option<&'a Transfer<T>>,
     given: &'a [bool],
     sweeps: Option<Sweeps>,
@@ -63,6 +65,7 @@ impl<'a, T: Real> Grid<'a, T> {
             cut: Vec::new(),
             cut_starts: vec![0],
             cut_values: Vec::new(),
+            stale: Vec::new(),
             transfer: coarser.map(|c| &*c.transfer),
             given,
             sweeps: None,
@@ -122,9 +125,7 @@ impl<T: Real> Grid<'_, T> {
         let fixed = &self.fixed;
         let is_cut = |j: usize| !fixed[j] && transfer.any_child(j, |i| near[i]);
         let cut: Vec<u32> = (0..fixed.len()).filter(|&j| is_cut(j)).map(|j| j as u32).collect();
-        if !(self.cut.is_empty() && cut.is_empty()) {
-            self.sweeps = None;
-        }
+        self.stale = union(&self.cut, &cut);
         self.cut = cut;
         self.cut_values.clear();
         self.cut_starts.truncate(1);
@@ -144,14 +145,30 @@ impl<T: Real> Grid<'_, T> {
 
     /// Makes the sweeps fit matrix and fixed unknowns.
     fn prepare(&mut self, scale: f64) {
+        let few = self.matrix.size() / MANY_STALE;
         let mut sweeps = match self.sweeps.take() {
-            Some(sweeps) => sweeps,
-            None if self.cut.is_empty() => Sweeps::new(self.matrix, |i| self.matrix.row(i), scale),
-            None => Sweeps::new(self.matrix, |i| self.row(i), scale),
+            Some(mut sweeps) if self.stale.len() <= few => {
+                sweeps.replace(&self.stale, |i| self.row(i), scale);
+                sweeps
+            }
+            _ if self.cut.is_empty() => Sweeps::new(self.matrix, |i| self.matrix.row(i), scale),
+            _ => Sweeps::new(self.matrix, |i| self.row(i), scale),
         };
+        self.stale.clear();
         sweeps.fix(&self.fixed);
         self.sweeps = Some(sweeps);
     }
+}
+
+/// One in so many rows that have changed makes it quicker to read all anew.
+const MANY_STALE: usize = 8;
+
+/// The numbers that are in one of two ascending lists, ascending.
+fn union(one: &[u32], other: &[u32]) -> Vec<u32> {
+    let mut all = [one, other].concat();
+    all.sort_unstable();
+    all.dedup();
+    all
 }
 
 fn row_range<T>(matrix: &SparseMatrix<T>, j: u32) -> std::ops::Range<usize> {

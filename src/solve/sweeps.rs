@@ -30,6 +30,11 @@ struct Piece {
     outside: Vec<(u16, u32, f32)>,
 }
 
+#[inline(always)]
+fn single<T: Real>(a: T, scale: f64) -> f32 {
+    (a.to_f64() / scale) as f32
+}
+
 impl Piece {
     fn new<'m, T: Real>(
         matrix: &SparseMatrix<T>,
@@ -46,7 +51,7 @@ impl Piece {
             values: Vec::with_capacity(stored / 2),
             outside: Vec::new(),
         };
-        let single = |a: T| (a.to_f64() / scale) as f32;
+        let single = |a: T| single(a, scale);
         piece.starts.push(0);
         for i in range.clone() {
             let (columns, values) = row(i);
@@ -73,6 +78,14 @@ impl Piece {
         piece
     }
 
+    /// Sets an entry outside.
+    fn replace_outside(&mut self, k: u16, column: u32, value: f32) {
+        let first = self.outside.partition_point(|entry| entry.0 < k);
+        if let Some(entry) = self.outside[first..].iter_mut().find(|entry| entry.1 == column) {
+            entry.2 = value;
+        }
+    }
+
     #[inline(always)]
     fn row(&self, k: usize) -> impl Iterator<Item = (usize, f32)> {
         let range = self.starts[k] as usize..self.starts[k + 1] as usize;
@@ -91,6 +104,35 @@ impl Sweeps {
         let n = matrix.size();
         let pieces = map(n, |range| Piece::new(matrix, &row, scale, range));
         Self { pieces, inverse: zeros(n) }
+    }
+
+    /// Takes over rows that have changed. As in [`Sweeps::new`] an entry is that of the lower of its
+    /// two rows, so that the outcome is the same to the bit.
+    pub fn replace<'m, T: Real>(
+        &mut self,
+        rows: &[u32],
+        row: impl Fn(usize) -> (&'m [u32], &'m [T]),
+        scale: f64,
+    ) {
+        for &i in rows {
+            let own = i as usize / PIECE;
+            let k = i as usize % PIECE;
+            let (columns, values) = row(i as usize);
+            let mut at = self.pieces[own].starts[k] as usize;
+            for (&j, &a) in columns.iter().zip(values).take_while(|(j, _)| **j <= i) {
+                let a = single(a, scale);
+                if j == i {
+                    self.pieces[own].diagonal[k] = a;
+                } else if j as usize / PIECE == own {
+                    self.pieces[own].values[at] = a;
+                    at += 1;
+                } else {
+                    self.pieces[own].replace_outside(k as u16, j, a);
+                    let other = &mut self.pieces[j as usize / PIECE];
+                    other.replace_outside((j as usize % PIECE) as u16, i, a);
+                }
+            }
+        }
     }
 
     /// Sets which unknowns are fixed.
@@ -178,6 +220,34 @@ mod tests {
             matrix.row_starts.push(matrix.columns.len() as u32);
         }
         matrix
+    }
+
+    #[test]
+    fn rows_replaced_are_as_good_as_new() {
+        let n = 2 * PIECE + 1000;
+        let before = matrix(n);
+        let mut after = before.clone();
+        for i in 0..n {
+            let range = after.row_starts[i] as usize..after.row_starts[i + 1] as usize;
+            for (j, a) in after.columns[range.clone()].iter().zip(&mut after.values[range]) {
+                if i % 5 == 1 || *j as usize % 5 == 1 {
+                    *a *= 1.0 + 1e-3 * (i + *j as usize) as f64;
+                }
+            }
+        }
+        let rows: Vec<u32> = (0..n as u32)
+            .filter(|&i| before.row(i as usize).1 != after.row(i as usize).1)
+            .collect();
+        assert!(rows.len() > n / 5 && rows.len() < n);
+        let mut replaced = Sweeps::new(&before, |i| before.row(i), 2.0);
+        replaced.replace(&rows, |i| after.row(i), 2.0);
+        let new = Sweeps::new(&after, |i| after.row(i), 2.0);
+        for (one, other) in replaced.pieces.iter().zip(&new.pieces) {
+            assert!(!one.outside.is_empty());
+            assert_eq!(one.diagonal, other.diagonal);
+            assert_eq!(one.values, other.values);
+            assert_eq!(one.outside, other.outside);
+        }
     }
 
     #[test]
