@@ -24,6 +24,9 @@ const fn error_degree(dimension: usize) -> usize {
     }
 }
 
+/// Degree of the rule for means over facets.
+const MEAN_DEGREE: usize = 5;
+
 /// Squares of the norms of the error.
 #[derive(Clone, Copy, Debug, Default)]
 struct SquaredErrors {
@@ -50,11 +53,12 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
     /// Squares of the errors over all cells.
     fn cell_errors(&self, exact: &Exact<D>, u: &[T]) -> Result<SquaredErrors, Error> {
         let table = self.cell_table(error_degree(D));
+        let means = Rule::of_degree(D - 1, MEAN_DEGREE);
         // partial sums are added in order, so the result does not depend on threads
         let parts = parallel::map(self.mesh.n_cells(), &|cells: Range<usize>| {
             let mut sum = SquaredErrors::default();
             for cell in cells {
-                sum.add(&self.cell_error(exact, &table, cell, u)?);
+                sum.add(&self.cell_error(exact, (&table, &means), cell, u)?);
             }
             Ok::<_, Error>(sum)
         });
@@ -68,7 +72,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
     fn cell_error(
         &self,
         exact: &Exact<D>,
-        table: &CellTable<f64>,
+        (table, means): (&CellTable<f64>, &Rule),
         cell: usize,
         u: &[T],
     ) -> Result<SquaredErrors, Error> {
@@ -93,10 +97,9 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
             sum.h1 += weight * volume * square;
             sum.energy += weight * volume * (alpha * square + reaction * difference * difference);
         }
-        let mean_rule = Rule::of_degree(D - 1, 5);
         for (node, value) in self.nodes.iter().zip(&local) {
             let exact_value: f64 = match *node {
-                Node::FacetMean(k) => mean_rule
+                Node::FacetMean(k) => means
                     .iter()
                     .map(|(point, w)| w * (exact.value)(&self.facet_point(point, cell, k)))
                     .sum(),

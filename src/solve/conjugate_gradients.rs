@@ -1,6 +1,7 @@
 //! Preconditioned conjugate gradients on the unknowns that are free.
 
-use super::pieces::{each_mut, sum_mut, sum_mut2, zeros};
+use super::lower::Lower;
+use super::pieces::{sum_mut, sum_mut2, zeros};
 use crate::algebra::SparseMatrix;
 use crate::real::Real;
 
@@ -48,35 +49,38 @@ pub(super) struct Run {
     pub ritz: Option<(f64, f64)>,
 }
 
-/// The vectors of the iteration, kept from one use to the next.
+/// The matrix, ready for products, and the vectors of the iteration, kept from one use to the next.
 pub(super) struct ConjugateGradients<T> {
+    matrix: Lower<T>,
     z: Vec<T>,
     p: Vec<T>,
     q: Vec<T>,
 }
 
 impl<T: Real> ConjugateGradients<T> {
-    pub fn new(size: usize) -> Self {
-        Self { z: zeros(size), p: zeros(size), q: zeros(size) }
+    /// For a symmetric matrix.
+    pub fn new(matrix: &SparseMatrix<T>) -> Self {
+        let n = matrix.size();
+        let matrix = Lower::new(matrix, |i| matrix.row(i), |a| a);
+        Self { matrix, z: zeros(n), p: zeros(n), q: zeros(n) }
     }
 
     /// Corrects `x`, whose residual is `r` where free and zero where fixed; `r` is kept up to date.
     pub fn solve(
         &mut self,
-        matrix: &SparseMatrix<T>,
         fixed: &[bool],
         preconditioner: &mut dyn Preconditioner<T>,
         (x, r): (&mut [T], &mut [T]),
         stop: Stop,
     ) -> Run {
-        let zero = T::lit(0.0);
         let mut lanczos = Lanczos::default();
         let mut run = Run { iterations: 0, end: End::Reached, first: 0.0, last: 0.0, ritz: None };
         preconditioner.apply(r, &mut self.z);
         let mut rz = dot(r, &mut self.z);
         run.first = rz.max(0.0).sqrt();
         let target = stop.norm.max(stop.share * run.first);
-        self.p.copy_from_slice(&self.z);
+        self.p.fill(T::lit(0.0));
+        let mut beta = 0.0;
         loop {
             run.last = rz.max(0.0).sqrt();
             run.end = match () {
@@ -85,15 +89,8 @@ impl<T: Real> ConjugateGradients<T> {
                 () if rz < 0.0 => End::NotPositive,
                 () if run.iterations >= stop.iterations => End::Limit,
                 () => {
-                    let p = &self.p;
-                    let pq = sum_mut(&mut self.q, |range, q| {
-                        let mut sum = 0.0;
-                        for (i, q) in range.zip(q) {
-                            *q = if fixed[i] { zero } else { matrix.row_dot(i, p) };
-                            sum += p[i].to_f64() * q.to_f64();
-                        }
-                        sum
-                    });
+                    let Self { matrix, z, p, q } = self;
+                    let pq = matrix.turn_and_multiply(z, T::lit(beta), fixed, p, q);
                     if !pq.is_finite() {
                         run.end = End::NotFinite;
                         break;
@@ -107,9 +104,8 @@ impl<T: Real> ConjugateGradients<T> {
                     preconditioner.apply(r, &mut self.z);
                     let before = rz;
                     rz = dot(r, &mut self.z);
-                    let beta = rz / before;
+                    beta = rz / before;
                     lanczos.push(alpha, beta);
-                    self.turn(T::lit(beta));
                     run.iterations += 1;
                     continue;
                 }
@@ -129,15 +125,6 @@ impl<T: Real> ConjugateGradients<T> {
                 *r -= alpha * q;
             }
             0.0
-        });
-    }
-
-    fn turn(&mut self, beta: T) {
-        let z = &self.z;
-        each_mut(&mut self.p, |range, p| {
-            for (p, &z) in p.iter_mut().zip(&z[range]) {
-                *p = z + beta * *p;
-            }
         });
     }
 }
@@ -231,8 +218,7 @@ mod tests {
         let mut r = vec![1.0, 0.3, -0.2, 0.7, 0.4];
         let b = r.clone();
         let stop = Stop { norm: 1e-13, share: 0.0, iterations: 20 };
-        let run = ConjugateGradients::new(5).solve(
-            &matrix,
+        let run = ConjugateGradients::new(&matrix).solve(
             &[false; 5],
             &mut Identity,
             (&mut x, &mut r),

@@ -187,7 +187,7 @@ impl<'a, T: Real> Inexact<'a, T> {
         let tolerance = nearby.accuracy.unwrap_or(0.0).max(0.1 * T::CERTIFICATE_LIMIT);
         // a residual by itself says little: where the answer need not be good it is not asked for
         let limit = if nearby.accuracy.is_some() { f64::INFINITY } else { T::CERTIFICATE_LIMIT };
-        let mut gradients = ConjugateGradients::new(self.inequality.size());
+        let mut gradients = ConjugateGradients::new(&self.inequality.matrix);
         self.energy = self.look(settings.band).energy;
         let is_linear = !self.inequality.bounds.iter().any(Bound::is_inequality);
         let mut course = Course::new(is_linear);
@@ -272,8 +272,7 @@ impl<'a, T: Real> Inexact<'a, T> {
             }
         });
         let iterate = (&mut self.values[..], &mut self.residual[..]);
-        let run =
-            gradients.solve(&self.inequality.matrix, &self.fixed, preconditioner, iterate, stop);
+        let run = gradients.solve(&self.fixed, preconditioner, iterate, stop);
         self.linear += run.iterations;
         if let Some((low, _)) = run.ritz {
             self.lowest = self.lowest.min(low);

@@ -19,6 +19,7 @@ mod iterate;
 mod kernels;
 mod linear;
 mod look;
+mod lower;
 mod mean_jump;
 mod monotone_multigrid;
 mod multigrid;

@@ -27,8 +27,11 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
     ) -> Result<Option<[f64; 2]>, Error> {
         let mut weights = vec![0.0; self.mesh.vertices().len()];
         let mut forces = self.vertex_forces(inequality, solution);
+        // for facets and for cells
+        let rules = [D - 1, D].map(|d| DEGREES.map(|degree| Rule::of_degree(d, degree)));
         for &carrier in carriers {
-            self.subtract_exact(multiplier, set, carrier, &mut weights, &mut forces)?;
+            let rules = &rules[usize::from(carrier.dimension::<D>() == D)];
+            self.subtract_exact((multiplier, set), carrier, rules, &mut weights, &mut forces)?;
         }
         let given = self.on_dirichlet_part();
         let counted = |v: &usize| weights[*v] > 0.0 && !given[*v];
@@ -45,7 +48,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         solution: &Solution<T>,
     ) -> Vec<f64> {
         let mut deficit = vec![0.0; inequality.size()];
-        inequality.matrix.residual_f64(&inequality.load, &solution.values, &mut deficit);
+        inequality.residual_f64(&solution.values, &mut deficit);
         let mut forces = vec![0.0; self.mesh.vertices().len()];
         for (unknown, &deficit) in deficit.iter().enumerate() {
             let touches = solution.contact[unknown] != Contact::Open;
@@ -62,14 +65,13 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
     /// integrals to the weights.
     fn subtract_exact(
         &self,
-        multiplier: &Field<D>,
-        set: Option<&ContactSet<D>>,
+        (multiplier, set): (&Field<D>, Option<&ContactSet<D>>),
         carrier: Carrier,
+        rules: &[Rule; 2],
         weights: &mut [f64],
         forces: &mut [f64],
     ) -> Result<(), Error> {
         let dimension = carrier.dimension::<D>();
-        let rules = DEGREES.map(|degree| Rule::of_degree(dimension, degree));
         let corners = self.corner_points(carrier);
         let mut tested = [0.0; 4];
         let mut failure = None;
