@@ -1,7 +1,7 @@
 //! Preconditioned conjugate gradients on the unknowns that are free.
 
 use super::lower::Lower;
-use super::pieces::{sum_mut, sum_mut2, zeros};
+use super::pieces::{each_mut, sum_mut, sum_mut2, zeros};
 use crate::algebra::SparseMatrix;
 use crate::real::Real;
 
@@ -113,7 +113,18 @@ impl<T: Real> ConjugateGradients<T> {
             break;
         }
         run.ritz = lanczos.extremes();
+        if let (End::Reached, true, Some((_, high))) = (run.end, run.last > stop.norm, run.ritz) {
+            self.relax(T::lit(1.0 / high), x);
+        }
         run
+    }
+
+    /// A step of Richardson's iteration with what the preconditioner made of the last residual; where
+    /// the system was not to be solved well this is for nothing, because the residual is not asked.
+    fn relax(&self, omega: T, x: &mut [T]) {
+        each_mut(x, |range, x| {
+            x.iter_mut().zip(&self.z[range]).for_each(|(x, &z)| *x += omega * z);
+        });
     }
 
     fn step(&mut self, alpha: T, x: &mut [T], r: &mut [T]) {
