@@ -92,4 +92,80 @@ impl<T: Real> SparseMatrix<T> {
             .for_each(|(i, r)| *r = b[i] - self.row_dot(i, x));
         r
     }
+    /// The transpose.
+    pub fn transpose(&self) -> Self {
+        let n = self.size();
+        let mut row_starts = vec![0_u32; n + 1];
+        for &j in &self.columns {
+            row_starts[j as usize + 1] += 1;
+        }
+        for i in 0..n {
+            row_starts[i + 1] += row_starts[i];
+        }
+        let mut next = row_starts.clone();
+        let mut columns = vec![0; self.nonzeros()];
+        let mut values = vec![T::lit(0.0); self.nonzeros()];
+        // rows are met in order, so that columns of the transpose ascend
+        for i in 0..n {
+            let (js, row) = self.row(i);
+            for (&j, &a) in js.iter().zip(row) {
+                let place = next[j as usize] as usize;
+                next[j as usize] += 1;
+                columns[place] = i as u32;
+                values[place] = a;
+            }
+        }
+        Self { row_starts, columns, values }
+    }
+    /// `(A + A^T) / 2`, symmetric to the last bit, with an entry wherever the matrix or its
+    /// transpose stores one.
+    pub fn symmetric_part(&self) -> Self {
+        let transpose = self.transpose();
+        let half = T::lit(0.5);
+        let mut part = Self {
+            row_starts: Vec::with_capacity(self.row_starts.len()),
+            columns: Vec::with_capacity(self.nonzeros()),
+            values: Vec::with_capacity(self.nonzeros()),
+        };
+        part.row_starts.push(0);
+        for i in 0..self.size() {
+            let ((here, ours), (there, theirs)) = (self.row(i), transpose.row(i));
+            let (mut k, mut l) = (0, 0);
+            while let Some(&j) = [here.get(k), there.get(l)].into_iter().flatten().min() {
+                let mut sum = T::lit(0.0);
+                if here.get(k) == Some(&j) {
+                    sum += half * ours[k];
+                    k += 1;
+                }
+                if there.get(l) == Some(&j) {
+                    sum += half * theirs[l];
+                    l += 1;
+                }
+                part.columns.push(j);
+                part.values.push(sum);
+            }
+            part.row_starts.push(part.columns.len() as u32);
+        }
+        part
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_symmetric_part_has_the_entries_of_both_sides() {
+        // [[1, 2, 0], [0, 3, 4], [6, 2, 0]], the last diagonal entry not stored
+        let matrix = SparseMatrix::<f64> {
+            row_starts: vec![0, 2, 4, 6],
+            columns: vec![0, 1, 1, 2, 0, 1],
+            values: vec![1.0, 2.0, 3.0, 4.0, 6.0, 2.0],
+        };
+        let part = matrix.symmetric_part();
+        assert!(part.is_well_formed() && part.transpose() == part);
+        assert_eq!(part.columns, [0, 1, 2, 0, 1, 2, 0, 1]);
+        assert_eq!(part.values, [1.0, 1.0, 3.0, 1.0, 3.0, 3.0, 3.0, 3.0]);
+        assert_eq!(matrix.transpose().transpose(), matrix);
+    }
 }

@@ -116,11 +116,7 @@ impl<T: Real> InequalitySolver<T> for ActiveSet {
         let is_iterative = <Self as InequalitySolver<T>>::uses_nearby(self, inequality.size());
         let is_known = !matches!(nearby.functions, Functions::Unknown);
         let is_asked = self.linear == Linear::Iterative;
-        if is_iterative
-            && (is_known || is_asked)
-            && inequality.symmetric
-            && check_input(inequality).is_ok()
-        {
+        if is_iterative && (is_known || is_asked) && check_input(inequality).is_ok() {
             return match self.solve_inexactly(inequality, nearby) {
                 Ok(solution) => solution,
                 Err(in_vain) => self.take_over(inequality, nearby, in_vain),
@@ -161,7 +157,9 @@ impl ActiveSet {
     ) -> Solution<T> {
         let InVain { mut outer, mut linear, unsettled } = in_vain;
         let mut found = None;
-        if unsettled.is_some() && matches!(nearby.functions, Functions::Coarser(_)) {
+        let is_symmetric = inequality.symmetric;
+        if unsettled.is_some() && is_symmetric && matches!(nearby.functions, Functions::Coarser(_))
+        {
             let solution = MonotoneMultigrid::default().solve_near(inequality, nearby);
             if solution.outcome == Outcome::Converged {
                 found = Some(solution);
@@ -218,7 +216,7 @@ pub(super) fn check_input<T: Real>(inequality: &Inequality<T>) -> Result<(), Out
     }
 }
 
-fn check_definite<T: Real>(inequality: &Inequality<T>) -> Result<(), Outcome> {
+pub(super) fn check_definite<T: Real>(inequality: &Inequality<T>) -> Result<(), Outcome> {
     if let Some(factored) = &inequality.factored {
         let not_given: Vec<bool> =
             inequality.bounds.iter().map(|bound| bound.only_value().is_none()).collect();

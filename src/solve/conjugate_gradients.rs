@@ -65,7 +65,8 @@ impl<T: Real> ConjugateGradients<T> {
         Self { matrix, z: zeros(n), p: zeros(n), q: zeros(n) }
     }
 
-    /// Corrects `x`, whose residual is `r` where free and zero where fixed; `r` is kept up to date.
+    /// Corrects `x`, whose residual is `r` where free and zero where fixed. Where the norm fell to that
+    /// of `stop` `r` is the residual of what `x` has become.
     pub fn solve(
         &mut self,
         fixed: &[bool],

@@ -1,9 +1,10 @@
 //! The active set method with inexact linear solutions: no factors of the matrix.
 
-use super::active_set::{ActiveSet, LastResort};
-use super::conjugate_gradients::{ConjugateGradients, End, Preconditioner, Run, Stop, dot};
+use super::active_set::{ActiveSet, LastResort, check_definite};
+use super::conjugate_gradients::{End, Preconditioner, Run, Stop};
 use super::cycles::key_of;
 use super::iterate::{known_value, rest};
+use super::krylov::{Krylov, symmetric_part};
 use super::linear::FactorError;
 use super::look::Look;
 use super::nearby::Nearby;
@@ -18,7 +19,7 @@ use crate::real::Real;
 const WORST_CONDITION: f64 = 1e4;
 
 /// Most iterations for one linear system.
-const MOST_ITERATIONS: usize = 500;
+pub(super) const MOST_ITERATIONS: usize = 500;
 
 /// Fewer changes of state than this hardly change the error: the next system is solved well.
 const FEW: usize = 16;
@@ -26,16 +27,13 @@ const FEW: usize = 16;
 /// Most times a system is solved again because of rounding.
 const MOST_REPEATS: usize = 3;
 
-/// The smallest Ritz value is this much larger, at most, than the smallest eigenvalue.
-const RITZ: f64 = 0.9;
-
 /// The current iterate.
 pub(super) struct Inexact<'a, T> {
     pub inequality: &'a Inequality<T>,
     pub values: Vec<T>,
     pub state: Vec<Contact>,
     /// Whether an unknown has a known value: a Dirichlet datum or a bound it rests on.
-    fixed: Vec<bool>,
+    pub(super) fixed: Vec<bool>,
     pub diagonal: Vec<T>,
     /// `b - A u`, zero where fixed while linear systems are solved.
     pub residual: Vec<T>,
@@ -46,11 +44,11 @@ pub(super) struct Inexact<'a, T> {
     /// Whether the active set did not settle.
     is_unsettled: bool,
     /// Smallest Ritz value so far.
-    lowest: f64,
+    pub(super) lowest: f64,
     /// Energy norm of the iterate.
-    energy: f64,
+    pub(super) energy: f64,
     /// Preconditioned norm of the residual after the last linear system.
-    norm: f64,
+    pub(super) norm: f64,
 }
 
 /// What was done before factors were asked to take over.
@@ -157,13 +155,25 @@ impl<'a, T: Real> Inexact<'a, T> {
 
     /// Solves; an error where the method does not apply or did not get far enough, and factors may.
     pub fn run(mut self, settings: &ActiveSet, nearby: &Nearby<T>) -> Result<Solution<T>, InVain> {
-        let Some(functions) = Preconditioners::functions(self.inequality, nearby) else {
+        let inequality = self.inequality;
+        let matrix = symmetric_part(inequality);
+        let Some(functions) = Preconditioners::functions(&matrix, inequality, nearby) else {
             return Err(self.in_vain());
         };
-        let Some(mut preconditioner) = Preconditioners::new(self.inequality, &functions) else {
+        let Some(mut preconditioner) =
+            Preconditioners::new(&matrix, &inequality.places, &functions, inequality.symmetric)
+        else {
             return Err(self.in_vain());
         };
-        match self.iterate(settings, nearby, &mut preconditioner) {
+        let mut ended = self.iterate(settings, nearby, &mut preconditioner);
+        if ended == Some(Outcome::Converged) && !inequality.symmetric {
+            ended = self.sound(&matrix, &mut preconditioner);
+        }
+        if ended == Some(Outcome::NotCoercive) && !inequality.symmetric {
+            // rounding may be why; factors that take over do not see the symmetric part
+            ended = check_definite(inequality).err();
+        }
+        match ended {
             Some(outcome) => Ok(self.into_solution(outcome, &mut preconditioner)),
             None if self.is_unsettled => {
                 let unsettled = Some(std::mem::take(&mut self.state));
@@ -187,7 +197,7 @@ impl<'a, T: Real> Inexact<'a, T> {
         let tolerance = nearby.accuracy.unwrap_or(0.0).max(0.1 * T::CERTIFICATE_LIMIT);
         // a residual by itself says little: where the answer need not be good it is not asked for
         let limit = if nearby.accuracy.is_some() { f64::INFINITY } else { T::CERTIFICATE_LIMIT };
-        let mut gradients = ConjugateGradients::new(&self.inequality.matrix);
+        let mut krylov = Krylov::new(self.inequality);
         self.energy = self.look(settings.band).energy;
         let is_linear = !self.inequality.bounds.iter().any(Bound::is_inequality);
         let mut course = Course::new(is_linear);
@@ -200,6 +210,9 @@ impl<'a, T: Real> Inexact<'a, T> {
                 match preconditioner.fix(&self.fixed) {
                     Ok(()) => {}
                     Err(FactorError::OutOfMemory) => return Some(Outcome::OutOfMemory),
+                    Err(FactorError::NotPositive) if !self.inequality.symmetric => {
+                        return Some(Outcome::NotCoercive);
+                    }
                     // factors of the whole matrix tell why
                     Err(_) => return None,
                 }
@@ -209,15 +222,10 @@ impl<'a, T: Real> Inexact<'a, T> {
                 share: if course.is_careful() { 0.0 } else { preconditioner.share() },
                 iterations: MOST_ITERATIONS,
             };
-            let run = self.solve_linear(&mut gradients, preconditioner, stop);
-            match run.end {
-                _ if run.ritz.is_some_and(|(low, high)| high > WORST_CONDITION * low) => {
-                    return None;
-                }
-                End::Reached => {}
-                End::NotPositive => return Some(Outcome::NotCoercive),
-                End::NotFinite => return Some(Outcome::NotFinite),
-                End::Limit => return None,
+            let run = self.solve_linear(&mut krylov, preconditioner, stop);
+            match self.judge_run(&run)? {
+                Outcome::Converged => {}
+                other => return Some(other),
             }
             let look = self.look(settings.band);
             if !(look.energy.is_finite() && look.scale.is_finite()) {
@@ -259,7 +267,7 @@ impl<'a, T: Real> Inexact<'a, T> {
     /// One linear system, from the iterate as it is.
     fn solve_linear(
         &mut self,
-        gradients: &mut ConjugateGradients<T>,
+        krylov: &mut Krylov<'_, T>,
         preconditioner: &mut dyn Preconditioner<T>,
         stop: Stop,
     ) -> Run {
@@ -272,12 +280,25 @@ impl<'a, T: Real> Inexact<'a, T> {
             }
         });
         let iterate = (&mut self.values[..], &mut self.residual[..]);
-        let run = gradients.solve(&self.fixed, preconditioner, iterate, stop);
+        let run = krylov.solve(&self.fixed, preconditioner, iterate, stop);
         self.linear += run.iterations;
-        if let Some((low, _)) = run.ritz {
-            self.lowest = self.lowest.min(low);
-        }
         run
+    }
+
+    /// How a linear system ended; `None` if the preconditioner does not fit.
+    pub(super) fn judge_run(&mut self, run: &Run) -> Option<Outcome> {
+        let is_symmetric = self.inequality.symmetric;
+        let (low, high) = run.ritz.unwrap_or((1.0, 1.0));
+        self.lowest = self.lowest.min(low);
+        match run.end {
+            // whether it is so is asked again
+            End::NotPositive if !is_symmetric => Some(Outcome::NotCoercive),
+            _ if high > WORST_CONDITION * low => None,
+            End::Reached => Some(Outcome::Converged),
+            End::NotPositive => Some(Outcome::NotCoercive),
+            End::NotFinite => Some(Outcome::NotFinite),
+            End::Limit => None,
+        }
     }
 
     /// Whether the active set after these flips has been there before.
@@ -323,77 +344,5 @@ impl<'a, T: Real> Inexact<'a, T> {
                 self.values[i] = value;
             }
         }
-    }
-
-    /// The solution, with a bound on its energy error if it converged.
-    fn into_solution(
-        mut self,
-        outcome: Outcome,
-        preconditioner: &mut Preconditioners<'_, T>,
-    ) -> Solution<T> {
-        let is_good = outcome == Outcome::Converged;
-        let bound = is_good.then(|| self.error_bound(preconditioner)).flatten();
-        Solution {
-            values: self.values,
-            contact: self.state,
-            outcome,
-            outer: self.outer,
-            linear: self.linear,
-            linear_solver: preconditioner.name(),
-            algebraic_bound: bound,
-            forces: Vec::new(),
-        }
-    }
-
-    /// A bound on the energy norm of the error over that of the solution, after moving every value
-    /// into its bounds.
-    ///
-    /// For admissible `u` and multipliers `m` of the right sign that vanish off contact, half the
-    /// square of the energy error is at most half of `r . inv(A) r`, `r = b + m - A u`. Wrong
-    /// multipliers go into `r`. The inverse is at most the preconditioner over the smallest
-    /// eigenvalue of the preconditioned matrix, for which stands the smallest Ritz value.
-    fn error_bound(&mut self, preconditioner: &mut Preconditioners<'_, T>) -> Option<f64> {
-        let bounds = &self.inequality.bounds;
-        let mut is_moved = false;
-        for (value, bound) in self.values.iter_mut().zip(bounds) {
-            let nearest = bound.nearest(*value);
-            is_moved |= nearest != *value;
-            *value = nearest;
-        }
-        if is_moved {
-            let exact = self.exact_residual();
-            let values = &self.values;
-            let Inequality { matrix, load, .. } = self.inequality;
-            each_mut(&mut self.residual, |range, r| {
-                for (i, r) in range.zip(r) {
-                    let assembled = || load[i].to_f64() - matrix.row_dot_f64(i, values);
-                    *r = T::lit(exact.as_ref().map_or_else(assembled, |exact| exact[i]));
-                }
-            });
-        }
-        let mut is_wrong = false;
-        for (i, bound) in bounds.iter().enumerate() {
-            let pull = match self.state[i] {
-                Contact::Open => continue,
-                Contact::Lower => self.residual[i].to_f64(),
-                Contact::Upper => -self.residual[i].to_f64(),
-            };
-            if pull > 0.0 && bound.only_value().is_none() {
-                self.fixed[i] = false;
-                is_wrong = true;
-            }
-        }
-        if is_moved || is_wrong {
-            for (r, &fixed) in self.residual.iter_mut().zip(&self.fixed) {
-                if fixed {
-                    *r = T::lit(0.0);
-                }
-            }
-            let mut z = vec![T::lit(0.0); self.values.len()];
-            preconditioner.fix(&self.fixed).ok()?;
-            preconditioner.apply(&self.residual, &mut z);
-            self.norm = dot(&self.residual, &mut z).max(0.0).sqrt();
-        }
-        Some(self.norm / (RITZ * self.lowest).sqrt() / self.energy)
     }
 }

@@ -9,11 +9,11 @@ use super::hierarchy::{Coarser, VertexLevel};
 pub enum Linear {
     /// Sparse factors, exact to rounding.
     Direct,
-    /// Conjugate gradients with multigrid on conforming linear functions. Symmetric matrices only:
-    /// others are solved directly.
+    /// Conjugate gradients with multigrid on conforming linear functions; for matrices that are not
+    /// symmetric minimal residuals with the same for their symmetric part
+    /// ([`Outcome::NotCoercive`](super::Outcome::NotCoercive) if it is not positive definite).
     Iterative,
-    /// Whichever is faster: iterative for symmetric matrices above a size measured, if nested
-    /// meshes are known.
+    /// Whichever is faster: iterative above a size measured, if nested meshes are known.
     #[default]
     BySize,
 }

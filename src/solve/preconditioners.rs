@@ -11,7 +11,7 @@ use super::linear::FactorError;
 use super::multigrid::Multigrid;
 use super::nearby::{Functions, Nearby};
 use super::transfer::Rows;
-use crate::algebra::{Bound, Inequality, Place};
+use crate::algebra::{Bound, Inequality, Place, SparseMatrix};
 use crate::real::Real;
 
 /// A preconditioner for the unknowns that are free.
@@ -22,9 +22,14 @@ pub(super) enum Preconditioners<'a, T: Real> {
 }
 
 impl<'a, T: Real> Preconditioners<'a, T> {
-    /// The conforming linear functions: those known, or what matrix and places tell of them.
-    pub fn functions(inequality: &Inequality<T>, nearby: &Nearby<T>) -> Option<Functions<T>> {
-        let Inequality { matrix, bounds, places, .. } = inequality;
+    /// The conforming linear functions: those known, or what a symmetric matrix and places tell of
+    /// them.
+    pub fn functions(
+        matrix: &SparseMatrix<T>,
+        inequality: &Inequality<T>,
+        nearby: &Nearby<T>,
+    ) -> Option<Functions<T>> {
+        let Inequality { bounds, places, .. } = inequality;
         if places.len() != inequality.size() || places.is_empty() {
             return None;
         }
@@ -39,15 +44,21 @@ impl<'a, T: Real> Preconditioners<'a, T> {
                 None => Functions::Unknown,
             }),
             _ => {
-                let level = conforming(inequality, &fixed)?;
+                let level = conforming(matrix, places, &fixed)?;
                 Some(Functions::Same(Arc::new(level)))
             }
         }
     }
 
-    /// What fits the unknowns; `None` if nothing does.
-    pub fn new(inequality: &'a Inequality<T>, functions: &'a Functions<T>) -> Option<Self> {
-        let Inequality { matrix, places, .. } = inequality;
+    /// What fits the unknowns of a symmetric matrix that live at `places`; `None` if nothing does.
+    /// `may_split` tells whether cells without fluxes between them are tied by a large penalty: in
+    /// the symmetric part of a matrix fluxes may have cancelled, and the penalty need not be large.
+    pub fn new(
+        matrix: &'a SparseMatrix<T>,
+        places: &[Place],
+        functions: &'a Functions<T>,
+        may_split: bool,
+    ) -> Option<Self> {
         match functions {
             Functions::Unknown => Some(Self::Multigrid(Box::new(Multigrid::new(matrix, None)))),
             Functions::Coarser(coarser) => {
@@ -58,7 +69,11 @@ impl<'a, T: Real> Preconditioners<'a, T> {
                     let multigrid = Multigrid::new(&level.matrix, level.coarser.as_ref());
                     Vertices::new(multigrid, &level.fixed, places)
                 };
-                if let Some(split) = FacetSplit::new(matrix, places, vertices) {
+                let split = match may_split {
+                    true => FacetSplit::new(matrix, places, vertices),
+                    false => None,
+                };
+                if let Some(split) = split {
                     return Some(Self::FacetSplit(Box::new(split)));
                 }
                 let space = AuxiliarySpace::new(matrix, places, vertices()?)?;
@@ -117,8 +132,11 @@ fn are_vertices(places: &[Place]) -> bool {
 }
 
 /// The form on conforming linear functions, each written as its values at the unknowns' places.
-fn conforming<T: Real>(inequality: &Inequality<T>, fixed: &[bool]) -> Option<VertexLevel<T>> {
-    let Inequality { matrix, places, .. } = inequality;
+fn conforming<T: Real>(
+    matrix: &SparseMatrix<T>,
+    places: &[Place],
+    fixed: &[bool],
+) -> Option<VertexLevel<T>> {
     let last = places.iter().flat_map(|p| p.vertices()).max()?;
     let n = *last as usize + 1;
     let mut rows = Rows { starts: vec![0], columns: Vec::new(), values: Vec::new() };

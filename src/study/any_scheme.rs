@@ -300,7 +300,7 @@ fn run<T: Real, const D: usize>(
         .filter(|&i| !matches!(inequality.bounds[i as usize], Bound::Fixed(_)))
         .collect();
     let definite = || is_positive_definite(&inequality.matrix, inequality.symmetric, &free);
-    if in_doubt && inequality.symmetric && definite() == Ok(false) {
+    if in_doubt && definite() == Ok(false) {
         let values = vec![T::lit(0.0); inequality.size()];
         let contact = vec![Contact::Open; inequality.size()];
         let solution = Solution {

@@ -1,0 +1,114 @@
+//! A bound on the error of an inexact iterate, and the solution made of it.
+
+use super::conjugate_gradients::{ConjugateGradients, Preconditioner, Stop, dot};
+use super::inexact::{Inexact, MOST_ITERATIONS};
+use super::pieces::{each_mut, zeros};
+use super::preconditioners::Preconditioners;
+use super::{Outcome, Solution};
+use crate::algebra::{Contact, Inequality, SparseMatrix};
+use crate::real::Real;
+
+/// The smallest Ritz value is this much larger, at most, than the smallest eigenvalue.
+const RITZ: f64 = 0.9;
+
+/// The share of an error to which a system is solved for the smallest Ritz value alone.
+const SOUNDED: f64 = 1e-6;
+
+impl<T: Real> Inexact<'_, T> {
+    /// Finds the smallest eigenvalue of the preconditioned symmetric part of a matrix that is not
+    /// symmetric, on which the bound on the error rests: by conjugate gradients, which come near it
+    /// where minimal residuals do not. `None` if the preconditioner does not fit, another outcome if
+    /// the part is not positive definite.
+    pub(super) fn sound(
+        &mut self,
+        part: &SparseMatrix<T>,
+        preconditioner: &mut Preconditioners<'_, T>,
+    ) -> Option<Outcome> {
+        let n = self.values.len();
+        let mut force = zeros(n);
+        // forces without structure, so that no direction is left out
+        let mut sign = 1_u64;
+        for (i, force) in force.iter_mut().enumerate().filter(|&(i, _)| !self.fixed[i]) {
+            sign = sign.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695);
+            *force = if sign >> 63 == 0 { self.diagonal[i] } else { -self.diagonal[i] };
+        }
+        let stop = Stop { norm: 0.0, share: SOUNDED, iterations: MOST_ITERATIONS };
+        let iterate = (&mut zeros(n)[..], &mut force[..]);
+        let run = ConjugateGradients::new(part).solve(&self.fixed, preconditioner, iterate, stop);
+        self.linear += run.iterations;
+        self.judge_run(&run)
+    }
+
+    /// The solution, with a bound on its energy error if it converged.
+    pub(super) fn into_solution(
+        mut self,
+        outcome: Outcome,
+        preconditioner: &mut Preconditioners<'_, T>,
+    ) -> Solution<T> {
+        let is_good = outcome == Outcome::Converged;
+        let bound = is_good.then(|| self.error_bound(preconditioner)).flatten();
+        Solution {
+            values: self.values,
+            contact: self.state,
+            outcome,
+            outer: self.outer,
+            linear: self.linear,
+            linear_solver: preconditioner.name(),
+            algebraic_bound: bound,
+            forces: Vec::new(),
+        }
+    }
+
+    /// A bound on the energy norm of the error over that of the solution, after moving every value
+    /// into its bounds.
+    ///
+    /// For admissible `u` and multipliers `m` of the right sign that vanish off contact, the square
+    /// of the energy error `e` is `e . A e <= e . r`, `r = b + m - A u`, and so at most
+    /// `r . inv(S) r`, `S` the symmetric part of `A`. Wrong multipliers go into `r`. The inverse is at
+    /// most the preconditioner over the smallest eigenvalue of the preconditioned `S`, for which
+    /// stands the smallest Ritz value.
+    fn error_bound(&mut self, preconditioner: &mut Preconditioners<'_, T>) -> Option<f64> {
+        let bounds = &self.inequality.bounds;
+        let mut is_moved = false;
+        for (value, bound) in self.values.iter_mut().zip(bounds) {
+            let nearest = bound.nearest(*value);
+            is_moved |= nearest != *value;
+            *value = nearest;
+        }
+        if is_moved {
+            let exact = self.exact_residual();
+            let values = &self.values;
+            let Inequality { matrix, load, .. } = self.inequality;
+            each_mut(&mut self.residual, |range, r| {
+                for (i, r) in range.zip(r) {
+                    let assembled = || load[i].to_f64() - matrix.row_dot_f64(i, values);
+                    *r = T::lit(exact.as_ref().map_or_else(assembled, |exact| exact[i]));
+                }
+            });
+        }
+        let mut is_wrong = false;
+        for (i, bound) in bounds.iter().enumerate() {
+            let pull = match self.state[i] {
+                Contact::Open => continue,
+                Contact::Lower => self.residual[i].to_f64(),
+                Contact::Upper => -self.residual[i].to_f64(),
+            };
+            if pull > 0.0 && bound.only_value().is_none() {
+                self.fixed[i] = false;
+                is_wrong = true;
+            }
+        }
+        if is_moved || is_wrong {
+            for (r, &fixed) in self.residual.iter_mut().zip(&self.fixed) {
+                if fixed {
+                    *r = T::lit(0.0);
+                }
+            }
+            let mut z = vec![T::lit(0.0); self.values.len()];
+            preconditioner.fix(&self.fixed).ok()?;
+            preconditioner.apply(&self.residual, &mut z);
+            self.norm = dot(&self.residual, &mut z).max(0.0).sqrt();
+        }
+        Some(self.norm / (RITZ * self.lowest).sqrt() / self.energy)
+    }
+}

@@ -1,0 +1,52 @@
+//! Which iteration solves the linear systems of an inequality, and what its preconditioner is of.
+
+use std::borrow::Cow;
+
+use super::conjugate_gradients::{ConjugateGradients, Preconditioner, Run, Stop};
+use super::gmres::MinimalResiduals;
+use crate::algebra::{Inequality, SparseMatrix};
+use crate::real::Real;
+
+/// The symmetric part of the matrix: the matrix itself where it is symmetric.
+pub(super) fn symmetric_part<T: Real>(inequality: &Inequality<T>) -> Cow<'_, SparseMatrix<T>> {
+    match inequality.symmetric {
+        true => Cow::Borrowed(&inequality.matrix),
+        false => Cow::Owned(inequality.matrix.symmetric_part()),
+    }
+}
+
+/// Iterations for one matrix with one preconditioner, symmetric and positive definite.
+pub(super) enum Krylov<'m, T> {
+    /// For symmetric matrices.
+    ConjugateGradients(ConjugateGradients<T>),
+    /// For all others.
+    MinimalResiduals(&'m SparseMatrix<T>, MinimalResiduals<T>),
+}
+
+impl<'m, T: Real> Krylov<'m, T> {
+    /// What fits the matrix.
+    pub fn new(inequality: &'m Inequality<T>) -> Self {
+        let matrix = &inequality.matrix;
+        match inequality.symmetric {
+            true => Self::ConjugateGradients(ConjugateGradients::new(matrix)),
+            false => Self::MinimalResiduals(matrix, MinimalResiduals::new(matrix.size())),
+        }
+    }
+
+    /// Corrects `x`, whose residual is `r` where free and zero where fixed. Where the system was
+    /// solved well `r` is kept up to date.
+    pub fn solve(
+        &mut self,
+        fixed: &[bool],
+        preconditioner: &mut dyn Preconditioner<T>,
+        iterate: (&mut [T], &mut [T]),
+        stop: Stop,
+    ) -> Run {
+        match self {
+            Self::ConjugateGradients(method) => method.solve(fixed, preconditioner, iterate, stop),
+            Self::MinimalResiduals(matrix, method) => {
+                method.solve(matrix, fixed, preconditioner, iterate, stop)
+            }
+        }
+    }
+}
