@@ -148,7 +148,7 @@ impl<'a, T: Real, const D: usize, S: Scheme<T, D>> Discretisation<'a, T, D, S> {
         self.fill(&mut matrix);
         matrix
     }
-    /// The inequality: matrix, load, bounds, places.
+    /// The inequality: matrix, load, bounds, places, points.
     ///
     /// # Errors
     /// [`Error::DataNotFinite`], [`Error::EmptyConstraint`].
@@ -172,6 +172,7 @@ impl<'a, T: Real, const D: usize, S: Scheme<T, D>> Discretisation<'a, T, D, S> {
             load,
             bounds,
             places: self.places(),
+            points: self.space.vertex_points(),
             start: Start::Cold,
             factored,
         })

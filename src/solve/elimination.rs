@@ -1,0 +1,103 @@
+//! In which order the unknowns of a symmetric matrix are eliminated.
+
+use faer::dyn_stack::{MemBuffer, MemStack};
+use faer::sparse::linalg::amd;
+
+use super::linear::{FactorError, columns};
+use super::nested_dissection::Cloud;
+use super::restrict::Restricted;
+use crate::algebra::{Inequality, SparseMatrix};
+use crate::real::Real;
+
+/// No place.
+const NONE: u32 = u32::MAX;
+
+/// Unknowns from which dissection pays.
+const DISSECTED: usize = 2_000;
+
+/// An order in which to eliminate the unknowns of a symmetric matrix: one for all sets of free
+/// unknowns.
+///
+/// The order matters for the size of Cholesky factors and the time they take. It is found once and
+/// kept while an active set moves.
+#[derive(Clone, Debug)]
+pub struct EliminationOrder {
+    unknowns: Vec<u32>,
+}
+
+impl EliminationOrder {
+    /// The order that is expected to be best for the unknowns `kept` (ascending) of a matrix, whose
+    /// rows live at `points` if these are known.
+    ///
+    /// Of the matrix only entries on and left of the diagonal are read.
+    ///
+    /// # Errors
+    /// [`FactorError::OutOfMemory`].
+    ///
+    /// # Panics
+    /// If there are fewer points than rows.
+    pub fn new<T: Real>(
+        matrix: &SparseMatrix<T>,
+        kept: &[u32],
+        points: Option<&[[f32; 3]]>,
+    ) -> Result<Self, FactorError> {
+        if let Some(points) = points.filter(|_| kept.len() >= DISSECTED) {
+            let cloud = Cloud::new(matrix, kept, points);
+            if cloud.axes().len() == 3 || 2 * cloud.different() <= kept.len() {
+                return Ok(Self { unknowns: cloud.order() });
+            }
+        }
+        Self::by_degree(matrix, kept)
+    }
+
+    /// Nested dissection of points of space.
+    ///
+    /// # Panics
+    /// If there are fewer points than rows.
+    pub fn by_dissection<T>(matrix: &SparseMatrix<T>, kept: &[u32], points: &[[f32; 3]]) -> Self {
+        Self { unknowns: Cloud::new(matrix, kept, points).order() }
+    }
+
+    /// Approximate minimum degree (P. R. Amestoy, T. A. Davis, I. S. Duff, SIAM J. Matrix Anal. Appl.
+    /// 17 (1996), 886-905).
+    ///
+    /// # Errors
+    /// [`FactorError::OutOfMemory`].
+    pub fn by_degree<T: Real>(matrix: &SparseMatrix<T>, kept: &[u32]) -> Result<Self, FactorError> {
+        let restricted = Restricted::left_of_diagonal(matrix, kept);
+        let pattern = columns(&restricted);
+        let n = kept.len();
+        let (mut order, mut inverse) = (vec![0_u32; n], vec![0_u32; n]);
+        let scratch = amd::order_scratch::<u32>(n, restricted.columns.len());
+        let mut memory = MemBuffer::try_new(scratch).map_err(|_| FactorError::OutOfMemory)?;
+        let (stack, control) = (MemStack::new(&mut memory), amd::Control::default());
+        amd::order(&mut order, &mut inverse, pattern.symbolic(), control, stack)?;
+        Ok(Self { unknowns: order.into_iter().map(|k| kept[k as usize]).collect() })
+    }
+
+    /// The order for all unknowns of an inequality that are not given.
+    ///
+    /// # Errors
+    /// [`FactorError::OutOfMemory`].
+    pub(super) fn of<T: Real>(inequality: &Inequality<T>) -> Result<Self, FactorError> {
+        let is_open = |&i: &u32| inequality.bounds[i as usize].only_value().is_none();
+        let kept: Vec<u32> = (0..inequality.size() as u32).filter(is_open).collect();
+        let points = inequality.points_of_unknowns();
+        Self::new(&inequality.matrix, &kept, points.as_deref())
+    }
+
+    /// The unknowns, first eliminated first.
+    pub fn unknowns(&self) -> &[u32] {
+        &self.unknowns
+    }
+
+    /// The same order among the unknowns `free` of a matrix of some size, as places in that list.
+    /// Unknowns that the order does not know come last.
+    pub(super) fn among(&self, free: &[u32], size: usize) -> Vec<u32> {
+        let mut places = vec![NONE; size];
+        free.iter().enumerate().for_each(|(k, &i)| places[i as usize] = k as u32);
+        let take = |&i: &u32| Some(std::mem::replace(&mut places[i as usize], NONE));
+        let all = self.unknowns.iter().chain(free).filter_map(take);
+        all.filter(|&k| k != NONE).collect()
+    }
+}
