@@ -1,7 +1,10 @@
 //! Orders of elimination: permutations of whatever they are given, and of less fill than minimum
 //! degree where they are chosen.
 
-mod support;
+// other tests use the rest
+#[allow(dead_code)]
+#[path = "support/inequalities.rs"]
+mod inequalities;
 
 use std::time::Instant;
 
@@ -11,7 +14,7 @@ use unilateral::assemble::{DataQuadrature, Discretisation};
 use unilateral::prelude::*;
 use unilateral::solve::{ActiveSet, EliminationOrder, Factors, InequalitySolver, Linear};
 
-use support::inequalities::{Random, laplacian, sparse};
+use inequalities::{Random, laplacian, sparse};
 
 fn assembled<const D: usize, S: Scheme<f64, D>>(scheme: &S, n: usize) -> Inequality<f64> {
     let scene = scenes::radial::<D>(1.0);

@@ -1,12 +1,14 @@
 //! In which order the unknowns of a symmetric matrix are eliminated.
 
+use std::sync::OnceLock;
+
 use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::sparse::linalg::amd;
 
-use super::linear::{FactorError, columns};
+use super::linear::{Analysis, FactorError, Factors, columns};
 use super::nested_dissection::Cloud;
 use super::restrict::Restricted;
-use crate::algebra::{Inequality, SparseMatrix};
+use crate::algebra::{Factored, Inequality, SparseMatrix};
 use crate::real::Real;
 
 /// No place.
@@ -100,4 +102,53 @@ impl EliminationOrder {
         let all = self.unknowns.iter().chain(free).filter_map(take);
         all.filter(|&k| k != NONE).collect()
     }
+}
+
+/// What is known of the factors of matrices with one pattern: it is analysed once.
+#[derive(Default)]
+pub(super) struct KnownPattern {
+    points: Option<Vec<[f32; 3]>>,
+    analysis: OnceLock<Analysis>,
+}
+
+impl KnownPattern {
+    /// For matrices with a row for each jump with two sides, at the mean of the points of its
+    /// unknowns, if these are known.
+    pub fn of_jumps<T: Real>(factored: &Factored<T>, points: Option<&[[f32; 3]]>) -> Self {
+        let centres = |points: &[[f32; 3]]| {
+            let shared = |&jump: &usize| factored.sides(jump).iter().all(Option::is_some);
+            let jumps = (0..factored.n_jumps()).filter(shared);
+            jumps.map(|jump| centre(factored, jump, points)).collect()
+        };
+        Self { points: points.map(centres), analysis: OnceLock::new() }
+    }
+
+    /// Factors a matrix with the pattern, of which the entries on and left of the diagonal are given.
+    ///
+    /// # Errors
+    /// See [`FactorError`].
+    pub fn factor<T: Real>(&self, matrix: SparseMatrix<T>) -> Result<Factors<T>, FactorError> {
+        let analysis = match self.analysis.get() {
+            Some(analysis) => analysis,
+            None => {
+                let all: Vec<u32> = (0..matrix.size() as u32).collect();
+                let order = EliminationOrder::new(&matrix, &all, self.points.as_deref())?.unknowns;
+                let analysis = Analysis::new(&Restricted::from(matrix.clone()), Some(order))?;
+                self.analysis.get_or_init(|| analysis)
+            }
+        };
+        Factors::definite(&mut Restricted::from(matrix), analysis)
+    }
+}
+
+/// The mean of the points of the unknowns of a jump.
+fn centre<T: Real>(factored: &Factored<T>, jump: usize, points: &[[f32; 3]]) -> [f32; 3] {
+    let (mut sum, mut n) = ([0.0; 3], 0.0);
+    for unknown in factored.terms_of(jump).iter().flat_map(|term| [term.here, term.there]) {
+        if let Some(point) = points.get(unknown as usize) {
+            sum.iter_mut().zip(point).for_each(|(sum, x)| *sum += x);
+            n += 1.0;
+        }
+    }
+    sum.map(|x| x / n)
 }

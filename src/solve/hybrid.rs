@@ -18,12 +18,9 @@
 //! Source of the elimination: static condensation of hybrid methods, B. Cockburn,
 //! J. Gopalakrishnan, R. Lazarov, SIAM J. Numer. Anal. 47 (2009), 1319-1365.
 
-use std::sync::OnceLock;
-
 use super::dense::{invert_in_place, rank};
-use super::elimination::EliminationOrder;
-use super::linear::{Analysis, FactorError, Factors};
-use super::restrict::Restricted;
+use super::elimination::KnownPattern;
+use super::linear::{FactorError, Factors};
 use crate::algebra::{Factored, SparseMatrix, Term};
 use crate::real::Real;
 
@@ -56,10 +53,8 @@ pub(super) struct Hybrid<'a, T> {
     sides: Vec<Side>,
     /// The pattern of the matrix on means, on and left of the diagonal.
     pattern: SparseMatrix<T>,
-    /// Where means are, if that is known.
-    points: Option<Vec<[f32; 3]>>,
-    /// What is known of factors from the pattern alone, once it has been needed.
-    analysis: OnceLock<Analysis>,
+    /// What is known of its factors, whatever the active set.
+    known: KnownPattern,
 }
 
 /// What has been eliminated, and the factors of what is left.
@@ -99,50 +94,17 @@ impl<'a, T: Real> Hybrid<'a, T> {
             }
             n_means += u32::from(is_shared);
         }
-        let (points, analysis) = (None, OnceLock::new());
-        let mut hybrid = Self { factored, starts, sides, pattern: empty(), points, analysis };
+        let known = KnownPattern::default();
+        let mut hybrid = Self { factored, starts, sides, pattern: empty(), known };
         hybrid.pattern = hybrid.find_pattern(n_means as usize);
         hybrid
     }
 
-    /// The same with the points of unknowns, if these are known, from which an order of elimination
-    /// is derived.
+    /// The same with the points of unknowns, if these are known.
     #[must_use]
     pub fn at(mut self, points: Option<&[[f32; 3]]>) -> Self {
-        self.points = points.map(|points| {
-            let mut centres = Vec::with_capacity(self.pattern.size());
-            for jump in 0..self.factored.n_jumps() {
-                if self.factored.sides(jump).iter().all(Option::is_some) {
-                    centres.push(self.centre(jump, points));
-                }
-            }
-            centres
-        });
+        self.known = KnownPattern::of_jumps(self.factored, points);
         self
-    }
-
-    /// The mean of the points that a jump is made of.
-    fn centre(&self, jump: usize, points: &[[f32; 3]]) -> [f32; 3] {
-        let (mut sum, mut n) = ([0.0; 3], 0.0);
-        for unknown in self.factored.terms_of(jump).iter().flat_map(|t| [t.here, t.there]) {
-            if let Some(point) = points.get(unknown as usize) {
-                sum.iter_mut().zip(point).for_each(|(sum, x)| *sum += x);
-                n += 1.0;
-            }
-        }
-        sum.map(|x| x / n)
-    }
-
-    /// What is known of factors from the pattern alone, which no active set changes.
-    fn analysis(&self) -> Result<&Analysis, FactorError> {
-        if let Some(analysis) = self.analysis.get() {
-            return Ok(analysis);
-        }
-        let all: Vec<u32> = (0..self.pattern.size() as u32).collect();
-        let order = EliminationOrder::new(&self.pattern, &all, self.points.as_deref())?;
-        let order = order.among(&all, all.len());
-        let analysis = Analysis::new(&Restricted::from(self.pattern.clone()), Some(order))?;
-        Ok(self.analysis.get_or_init(|| analysis))
     }
 
     /// The means of both blocks of a mean up to itself, ascending.
@@ -244,7 +206,7 @@ impl<'a, T: Real> Hybrid<'a, T> {
             inverses.extend_from_slice(&local);
             starts.push(inverses.len());
         }
-        let means = Factors::definite(&mut Restricted::from(matrix), self.analysis()?)?;
+        let means = self.known.factor(matrix)?;
         Ok(HybridFactors { inverses, starts, means })
     }
 

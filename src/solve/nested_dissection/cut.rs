@@ -240,3 +240,69 @@ impl Cutter<'_> {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::algebra::SparseMatrix;
+
+    /// A square of nodes, joined to those within reach along rows and columns, and both diagonals.
+    fn lattice(n: usize, reach: usize) -> Graph {
+        let near = |a: usize, b: usize| a.abs_diff(b) <= reach;
+        let mut matrix = SparseMatrix { row_starts: vec![0], columns: vec![], values: vec![] };
+        for i in 0..n * n {
+            let met = (0..n * n).filter(|&j| near(i / n, j / n) && near(i % n, j % n));
+            matrix.columns.extend(met.map(|j| j as u32));
+            matrix.row_starts.push(matrix.columns.len() as u32);
+        }
+        matrix.values = vec![1.0; matrix.columns.len()];
+        Graph::new(&matrix, &(0..(n * n) as u32).collect::<Vec<_>>())
+    }
+
+    /// Nothing meets across a separator, which is a line of nodes for each step that edges reach, and
+    /// the sides are even.
+    #[test]
+    fn separators_separate() {
+        for (n, reach) in [(12, 1), (13, 1), (12, 2), (15, 3)] {
+            let graph = lattice(n, reach);
+            let size = (n * n) as u32;
+            let rows: Vec<u32> = (0..size).collect();
+            let side = n as u32;
+            let columns: Vec<u32> = (0..size).map(|k| k % side * side + k / side).collect();
+            let mut cutter = Cutter::new(&graph);
+            let cut = cutter.best(&[&rows, &columns], 0).unwrap();
+            let nodes = if cut.axis == 0 { &rows } else { &columns };
+            cutter.divide(nodes, cut, [1, 2]);
+            let count = |part| rows.iter().filter(|&&node| cutter.part(node) == part).count();
+            assert_eq!(count(SEPARATOR), n * reach);
+            assert_eq!(count(1) + count(2) + count(SEPARATOR), n * n);
+            assert!(count(1).min(count(2)) >= 3 * n * n / 10, "{} {}", count(1), count(2));
+            for &node in rows.iter().filter(|&&node| cutter.part(node) == 1) {
+                assert!(graph.neighbours(node).iter().all(|&other| cutter.part(other) != 2));
+            }
+        }
+    }
+
+    /// Two hubs, each joined to all nodes across: they separate the sides, either rim is larger.
+    #[test]
+    fn separators_are_least() {
+        let n = 20_u32;
+        let mut matrix = SparseMatrix { row_starts: vec![0], columns: vec![], values: vec![] };
+        for i in 0..n {
+            let hub = |k: u32| k == 0 || k == n - 1;
+            let met =
+                (0..n).filter(|&j| i == j || ((hub(i) || hub(j)) && (i < n / 2) != (j < n / 2)));
+            matrix.columns.extend(met);
+            matrix.row_starts.push(matrix.columns.len() as u32);
+        }
+        matrix.values = vec![1.0; matrix.columns.len()];
+        let all: Vec<u32> = (0..n).collect();
+        let graph = Graph::new(&matrix, &all);
+        let mut cutter = Cutter::new(&graph);
+        let cut = cutter.best(&[&all], 0).unwrap();
+        cutter.divide(&all, cut, [1, 2]);
+        let separator: Vec<u32> =
+            all.iter().copied().filter(|&node| cutter.part(node) == SEPARATOR).collect();
+        assert_eq!(separator, [0, n - 1]);
+    }
+}
