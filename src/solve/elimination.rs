@@ -14,22 +14,36 @@ use crate::real::Real;
 /// No place.
 const NONE: u32 = u32::MAX;
 
-/// Unknowns from which dissection pays.
+/// Unknowns from which dissection pays: below, the two orders differ by a tenth of a millisecond.
 const DISSECTED: usize = 2_000;
 
 /// An order in which to eliminate the unknowns of a symmetric matrix: one for all sets of free
 /// unknowns.
 ///
 /// The order matters for the size of Cholesky factors and the time they take. It is found once and
-/// kept while an active set moves.
+/// kept while an active set moves, which saves a tenth to a third of each step in the plane.
+///
+/// | milliseconds, one thread | unknowns | order: degree | dissection | step: degree anew | degree kept | dissection kept |
+/// |---|---|---|---|---|---|---|
+/// | P1, `2 * 256^2` triangles | 65 025 | 6.4 | 26 | 40 | 34 | 31 |
+/// | the same in contact | 41 956 | | | 27 | 18 | 16 |
+/// | SIPG, `2 * 128^2` triangles | 98 304 | 8 | 22 | 92 | 85 | 78 |
+/// | P1, `6 * 32^3` tetrahedra | 29 791 | 9 | 25 | 295 | 287 | 146 |
+/// | the same in contact | 24 264 | | | 140 | 132 | 72 |
+/// | Crouzeix-Raviart, `6 * 12^3` tetrahedra | 19 872 | 3 | 17 | 25 | 22 | 12 |
+/// | SIPG, `6 * 12^3` tetrahedra | 41 472 | 6 | 9 | 240 | 234 | 206 |
+///
+/// Dissection stores 36 % fewer numbers in space with conforming linears, 4 % fewer in the plane: there
+/// it pays only from the fourth or so step on, except for broken elements, whose cells are ordered
+/// instead of their unknowns.
 #[derive(Clone, Debug)]
 pub struct EliminationOrder {
     unknowns: Vec<u32>,
 }
 
 impl EliminationOrder {
-    /// The order that is expected to be best for the unknowns `kept` (ascending) of a matrix, whose
-    /// rows live at `points` if these are known.
+    /// The order for the unknowns `kept` (ascending) of a matrix, whose rows live at `points` if these
+    /// are known: dissection of many unknowns in space, or where cells own them; else by degree.
     ///
     /// Of the matrix only entries on and left of the diagonal are read.
     ///
