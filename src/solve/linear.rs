@@ -69,7 +69,7 @@ pub struct Factors<T> {
 enum Kind<T> {
     Empty,
     Cholesky { symbolic: Arc<SymbolicCholesky<u32>>, values: Vec<T> },
-    Lu { symbolic: SymbolicLu<u32>, numeric: NumericLu<u32, T> },
+    Lu { symbolic: Box<SymbolicLu<u32>>, numeric: Box<NumericLu<u32, T>> },
 }
 
 /// Where the entries of the Cholesky factor of a pattern are.
@@ -230,7 +230,8 @@ impl<T: Real> Factors<T> {
                 LuError::Generic(error) => error.into(),
             },
         )?;
-        let factors = Self { size: restricted.size(), kind: Kind::Lu { symbolic, numeric } };
+        let kind = Kind::Lu { symbolic: Box::new(symbolic), numeric: Box::new(numeric) };
+        let factors = Self { size: restricted.size(), kind };
         if factors.condition_holds(restricted) { Ok(factors) } else { Err(FactorError::Singular) }
     }
 
