@@ -21,17 +21,23 @@ const DISSECTED: usize = 2_000;
 /// unknowns.
 ///
 /// The order matters for the size of Cholesky factors and the time they take. It is found once and
-/// kept while an active set moves, which saves a tenth to a third of each step in the plane.
+/// kept while an active set moves. Analysis and factors of a step then take, in milliseconds of one
+/// thread:
 ///
-/// | milliseconds, one thread | unknowns | order: degree | dissection | step: degree anew | degree kept | dissection kept |
+/// | | unknowns | order: degree | dissection | step: degree anew | degree kept | dissection kept |
 /// |---|---|---|---|---|---|---|
-/// | P1, `2 * 256^2` triangles | 65 025 | 6.4 | 26 | 40 | 34 | 31 |
-/// | the same in contact | 41 956 | | | 27 | 18 | 16 |
-/// | SIPG, `2 * 128^2` triangles | 98 304 | 8 | 22 | 92 | 85 | 78 |
-/// | P1, `6 * 32^3` tetrahedra | 29 791 | 9 | 25 | 295 | 287 | 146 |
-/// | the same in contact | 24 264 | | | 140 | 132 | 72 |
+/// | P1, `2 * 128^2` triangles | 16 129 | 1.6 | 5.7 | 15 | 13 | 13 |
+/// | the same in contact | 10 308 | | | 7.6 | 5.0 | 4.7 |
+/// | P1, `2 * 256^2` triangles | 65 025 | 6.5 | 27 | 39 | 33 | 31 |
+/// | the same in contact | 41 956 | | | 27 | 36 | 32 |
+/// | SIPG, `2 * 128^2` triangles | 98 304 | 8 | 22 | 93 | 87 | 80 |
+/// | P1, `6 * 32^3` tetrahedra | 29 791 | 9 | 24 | 287 | 275 | 139 |
+/// | the same in contact | 24 264 | | | 132 | 125 | 68 |
 /// | Crouzeix-Raviart, `6 * 12^3` tetrahedra | 19 872 | 3 | 17 | 25 | 22 | 12 |
-/// | SIPG, `6 * 12^3` tetrahedra | 41 472 | 6 | 9 | 240 | 234 | 206 |
+/// | SIPG, `6 * 12^3` tetrahedra | 41 472 | 6 | 9 | 238 | 234 | 205 |
+///
+/// (36 instead of 27: fewer entries, so few that faer eliminates them column by column and not in
+/// blocks.)
 ///
 /// Dissection stores 36 % fewer numbers in space with conforming linears, 4 % fewer in the plane: there
 /// it pays only from the fourth or so step on, except for broken elements, whose cells are ordered

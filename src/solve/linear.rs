@@ -6,12 +6,12 @@ use std::sync::Arc;
 use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::linalg::cholesky::llt::factor::LltError;
 use faer::perm::Perm;
+use faer::sparse::linalg::LuError;
 use faer::sparse::linalg::cholesky::{
     CholeskySymbolicParams, SymbolicCholesky, SymbolicCholeskyRaw, SymmetricOrdering,
     factorize_symbolic_cholesky, supernodal::SupernodalLltRef,
 };
 use faer::sparse::linalg::lu::{LuSymbolicParams, NumericLu, SymbolicLu, factorize_symbolic_lu};
-use faer::sparse::linalg::{LuError, SupernodalThreshold};
 use faer::sparse::{FaerError, SparseColMatRef};
 use faer::{MatMut, Side};
 
@@ -24,11 +24,6 @@ use crate::real::Real;
 /// A pivot below this many units of rounding of the diagonal entry it came from has lost every
 /// digit to cancellation: the matrix is singular as far as this scalar can tell.
 const LOST_PIVOT: f64 = 16.0;
-
-/// Operations per entry from which columns are eliminated in blocks, in units of the choice that
-/// faer makes by itself, which is late: conforming linears on a square of `2 * 128^2` triangles take
-/// 13 ms column by column and 6 ms in blocks, SIPG in contact on `2 * 64^2` 11 and 5.
-const SUPERNODAL: SupernodalThreshold = SupernodalThreshold(0.5);
 
 /// Why a matrix could not be factored.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
@@ -97,10 +92,7 @@ impl Analysis {
         };
         // Row i on and left of the diagonal is column i on and above it.
         let pattern = columns(restricted);
-        let params = CholeskySymbolicParams {
-            supernodal_flop_ratio_threshold: SUPERNODAL,
-            ..CholeskySymbolicParams::default()
-        };
+        let params = CholeskySymbolicParams::default();
         let symbolic =
             factorize_symbolic_cholesky(pattern.symbolic(), Side::Upper, ordering, params)?;
         Ok(Self(Arc::new(symbolic)))
