@@ -152,6 +152,9 @@ pub struct Inequality<T> {
     pub bounds: Vec<Bound<T>>,
     /// Where each unknown lives.
     pub places: Vec<Place>,
+    /// Where each vertex of the mesh is, missing coordinates zero; empty if that is not known. Direct
+    /// solvers derive an order of elimination from it, and nothing else.
+    pub points: Vec<[f32; 3]>,
     /// What a solver starts from.
     pub start: Start,
     /// Matrix and load once more, not multiplied out, where that is more exact.
@@ -170,12 +173,26 @@ impl<T: Real> Inequality<T> {
         self.load.len()
     }
     /// Whether matrix, load and bounds belong together: equal sizes, a matrix as its type
-    /// promises it. Places are not looked at; no solver needs them.
+    /// promises it. Places and points are not looked at; no solver needs them.
     pub fn is_well_formed(&self) -> bool {
         self.matrix.size() == self.size()
             && self.bounds.len() == self.size()
             && self.matrix.is_well_formed()
             && self.factored.as_ref().is_none_or(|f| f.is_well_formed(self.size()))
+    }
+    /// The point of each unknown, the barycentre of the vertices of its place; `None` if some are not
+    /// known.
+    pub(crate) fn points_of_unknowns(&self) -> Option<Vec<[f32; 3]>> {
+        let point = |place: &Place| {
+            let mut sum = [0.0; 3];
+            for &vertex in place.vertices() {
+                let point = self.points.get(vertex as usize)?;
+                sum.iter_mut().zip(point).for_each(|(sum, x)| *sum += x);
+            }
+            Some(sum.map(|x| x / place.vertices().len() as f32))
+        };
+        let is_known = self.places.len() == self.size() && !self.points.is_empty();
+        is_known.then(|| self.places.iter().map(point).collect()).flatten()
     }
     /// `r = b - A u` in `f64`, of the matrix as exact as it is known.
     ///

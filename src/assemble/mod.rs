@@ -148,7 +148,7 @@ impl<'a, T: Real, const D: usize, S: Scheme<T, D>> Discretisation<'a, T, D, S> {
         self.fill(&mut matrix);
         matrix
     }
-    /// The inequality: matrix, load, bounds, places.
+    /// The inequality: matrix, load, bounds, places, points.
     ///
     /// # Errors
     /// [`Error::DataNotFinite`], [`Error::EmptyConstraint`].
@@ -172,6 +172,12 @@ impl<'a, T: Real, const D: usize, S: Scheme<T, D>> Discretisation<'a, T, D, S> {
             load,
             bounds,
             places: self.places(),
+            // in the plane an order found in space is no better for unknowns that cells share
+            points: if D == 3 || Self::OWNS_ROWS {
+                self.space.vertex_points()
+            } else {
+                Vec::new()
+            },
             start: Start::Cold,
             factored,
         })

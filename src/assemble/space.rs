@@ -241,6 +241,12 @@ impl<'a, T: Real, const D: usize> Space<'a, T, D> {
             }
         }
     }
+    /// Where each vertex is, to single precision, missing coordinates zero.
+    pub fn vertex_points(&self) -> Vec<[f32; 3]> {
+        let coordinate = |x: Option<&T>| x.map_or(0.0, |x| x.to_f64() as f32);
+        let point = |x: &Point<T, D>| [0, 1, 2].map(|k| coordinate(x.get(k)));
+        self.mesh.vertices().iter().map(point).collect()
+    }
     /// A discrete function at the vertices of each cell, `D + 1` values for each.
     pub fn vertex_values(&self, u: &[T]) -> Vec<f64> {
         let corners: Vec<BasisAt<f64>> = (0..=D)

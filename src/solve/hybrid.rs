@@ -19,6 +19,7 @@
 //! J. Gopalakrishnan, R. Lazarov, SIAM J. Numer. Anal. 47 (2009), 1319-1365.
 
 use super::dense::{invert_in_place, rank};
+use super::elimination::KnownPattern;
 use super::linear::{FactorError, Factors};
 use crate::algebra::{Factored, SparseMatrix, Term};
 use crate::real::Real;
@@ -52,6 +53,8 @@ pub(super) struct Hybrid<'a, T> {
     sides: Vec<Side>,
     /// The pattern of the matrix on means, on and left of the diagonal.
     pattern: SparseMatrix<T>,
+    /// What is known of its factors, whatever the active set.
+    known: KnownPattern,
 }
 
 /// What has been eliminated, and the factors of what is left.
@@ -91,9 +94,17 @@ impl<'a, T: Real> Hybrid<'a, T> {
             }
             n_means += u32::from(is_shared);
         }
-        let mut hybrid = Self { factored, starts, sides, pattern: empty() };
+        let known = KnownPattern::default();
+        let mut hybrid = Self { factored, starts, sides, pattern: empty(), known };
         hybrid.pattern = hybrid.find_pattern(n_means as usize);
         hybrid
+    }
+
+    /// The same with the points of unknowns, if these are known.
+    #[must_use]
+    pub fn at(mut self, points: Option<&[[f32; 3]]>) -> Self {
+        self.known = KnownPattern::of_jumps(self.factored, points);
+        self
     }
 
     /// The means of both blocks of a mean up to itself, ascending.
@@ -195,8 +206,7 @@ impl<'a, T: Real> Hybrid<'a, T> {
             inverses.extend_from_slice(&local);
             starts.push(inverses.len());
         }
-        let all: Vec<u32> = (0..matrix.size() as u32).collect();
-        let means = Factors::new(&matrix, true, &all)?;
+        let means = self.known.factor(matrix)?;
         Ok(HybridFactors { inverses, starts, means })
     }
 

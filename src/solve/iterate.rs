@@ -2,6 +2,7 @@
 
 use super::certificate::positive_diagonal;
 use super::cycles::History;
+use super::elimination::EliminationOrder;
 use super::hybrid::Hybrid;
 use super::interior::InteriorPoint;
 use super::linear::{FactorError, Factors};
@@ -26,6 +27,8 @@ pub(super) struct Iterate<'a, T> {
     /// Forces of jumps where the matrix is kept factored; else empty.
     pub forces: Vec<T>,
     hybrid: Option<Hybrid<'a, T>>,
+    /// The order of elimination, once it has been needed: the same for all active sets.
+    order: Option<EliminationOrder>,
 }
 
 /// Most corrections where the matrix is kept factored.
@@ -77,7 +80,10 @@ impl<'a, T: Real> Iterate<'a, T> {
             free: Vec::new(),
             correction: Vec::new(),
             forces,
-            hybrid: factored.map(Hybrid::new),
+            hybrid: factored.map(|factored| {
+                Hybrid::new(factored).at(inequality.points_of_unknowns().as_deref())
+            }),
+            order: None,
         }
     }
 
@@ -128,7 +134,16 @@ impl<'a, T: Real> Iterate<'a, T> {
             self.hybrid = Some(hybrid);
             return solved;
         }
-        let factors = Factors::new(matrix, *symmetric, &self.free)?;
+        let factors = if *symmetric {
+            let order = match self.order.take() {
+                Some(order) => order,
+                None => EliminationOrder::of(self.inequality)?,
+            };
+            let order = self.order.insert(order);
+            Factors::in_order(matrix, &self.free, order)?
+        } else {
+            Factors::new(matrix, false, &self.free)?
+        };
         for _ in 0..=refinements {
             matrix.residual_f64(load, &self.values, &mut self.deficit);
             self.correction.clear();

@@ -1,8 +1,11 @@
 //! Direct solvers of linear systems. This file and [`kernels`](super::kernels) alone name the
-//! factorisations of faer.
+//! factorisations of faer, [`elimination`](super::elimination) its orders.
+
+use std::sync::Arc;
 
 use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::linalg::cholesky::llt::factor::LltError;
+use faer::perm::Perm;
 use faer::sparse::linalg::LuError;
 use faer::sparse::linalg::cholesky::{
     CholeskySymbolicParams, SymbolicCholesky, SymbolicCholeskyRaw, SymmetricOrdering,
@@ -12,6 +15,7 @@ use faer::sparse::linalg::lu::{LuSymbolicParams, NumericLu, SymbolicLu, factoriz
 use faer::sparse::{FaerError, SparseColMatRef};
 use faer::{MatMut, Side};
 
+use super::elimination::EliminationOrder;
 use super::kernels::PAR;
 use super::restrict::Restricted;
 use crate::algebra::SparseMatrix;
@@ -46,7 +50,8 @@ impl From<FaerError> for FactorError {
 
 /// The factors of a matrix restricted to some of its rows and columns.
 ///
-/// Symmetric: sparse Cholesky, approximate minimum degree ordering, supernodal where that pays.
+/// Symmetric: sparse Cholesky in an [`EliminationOrder`] or that of approximate minimum degree,
+/// supernodal where that pays.
 /// Otherwise: sparse LU with partial pivoting of the transpose, which is what rows are to a
 /// factorisation by columns; a matrix dominant by rows is then eliminated without exchanges.
 #[derive(Debug)]
@@ -58,8 +63,40 @@ pub struct Factors<T> {
 #[derive(Debug)]
 enum Kind<T> {
     Empty,
-    Cholesky { symbolic: SymbolicCholesky<u32>, values: Vec<T> },
-    Lu { symbolic: SymbolicLu<u32>, numeric: NumericLu<u32, T> },
+    Cholesky { symbolic: Arc<SymbolicCholesky<u32>>, values: Vec<T> },
+    Lu { symbolic: Box<SymbolicLu<u32>>, numeric: Box<NumericLu<u32, T>> },
+}
+
+/// Where the entries of the Cholesky factor of a pattern are.
+#[derive(Clone, Debug)]
+pub(super) struct Analysis(Arc<SymbolicCholesky<u32>>);
+
+impl Analysis {
+    /// Of the entries on and left of the diagonal, for an order of elimination; without one, by
+    /// approximate minimum degree.
+    ///
+    /// # Errors
+    /// [`FactorError::OutOfMemory`].
+    pub fn new<T: Real>(
+        restricted: &Restricted<T>,
+        order: Option<Vec<u32>>,
+    ) -> Result<Self, FactorError> {
+        let order = order.map(|order| {
+            let mut inverse = vec![0; order.len()];
+            order.iter().enumerate().for_each(|(k, &i)| inverse[i as usize] = k as u32);
+            Perm::new_checked(order.into(), inverse.into(), restricted.size())
+        });
+        let ordering = match &order {
+            Some(order) => SymmetricOrdering::Custom(order.as_ref()),
+            None => SymmetricOrdering::Amd,
+        };
+        // Row i on and left of the diagonal is column i on and above it.
+        let pattern = columns(restricted);
+        let params = CholeskySymbolicParams::default();
+        let symbolic =
+            factorize_symbolic_cholesky(pattern.symbolic(), Side::Upper, ordering, params)?;
+        Ok(Self(Arc::new(symbolic)))
+    }
 }
 
 impl<T: Real> Factors<T> {
@@ -80,12 +117,51 @@ impl<T: Real> Factors<T> {
         }
         if symmetric {
             let mut restricted = Restricted::left_of_diagonal(matrix, free);
-            Self::cholesky(&restricted).map_err(|error| match error {
-                FactorError::NotPositive => why_not_positive(&mut restricted),
-                other => other,
-            })
+            let analysis = Analysis::new(&restricted, None)?;
+            Self::definite(&mut restricted, &analysis)
         } else {
             Self::lu(&Restricted::new(matrix, free))
+        }
+    }
+
+    /// Factors the rows and columns `free` (ascending) of a symmetric matrix, whose unknowns are
+    /// eliminated in an order that is known.
+    ///
+    /// # Errors
+    /// See [`Factors::new`].
+    pub fn in_order(
+        matrix: &SparseMatrix<T>,
+        free: &[u32],
+        order: &EliminationOrder,
+    ) -> Result<Self, FactorError> {
+        let mut restricted = Restricted::left_of_diagonal(matrix, free);
+        let analysis = Analysis::new(&restricted, Some(order.among(free, matrix.size())))?;
+        Self::definite(&mut restricted, &analysis)
+    }
+
+    /// Factors a symmetric matrix of which the entries on and left of the diagonal are given, with
+    /// the pattern that was analysed.
+    ///
+    /// # Errors
+    /// See [`Factors::new`].
+    pub(super) fn definite(
+        restricted: &mut Restricted<T>,
+        analysis: &Analysis,
+    ) -> Result<Self, FactorError> {
+        if restricted.size() == 0 {
+            return Ok(Self { size: 0, kind: Kind::Empty });
+        }
+        Self::cholesky(restricted, analysis).map_err(|error| match error {
+            FactorError::NotPositive => why_not_positive(restricted, analysis),
+            other => other,
+        })
+    }
+
+    /// How many numbers of a Cholesky factor are stored, zeros inside blocks among them.
+    pub fn entries(&self) -> usize {
+        match &self.kind {
+            Kind::Cholesky { values, .. } => values.len(),
+            Kind::Empty | Kind::Lu { .. } => 0,
         }
     }
 
@@ -118,15 +194,8 @@ impl<T: Real> Factors<T> {
         }
     }
 
-    fn cholesky(restricted: &Restricted<T>) -> Result<Self, FactorError> {
-        // Row i on and left of the diagonal is column i on and above it.
-        let a = columns(restricted);
-        let symbolic = factorize_symbolic_cholesky(
-            a.symbolic(),
-            Side::Upper,
-            SymmetricOrdering::Amd,
-            CholeskySymbolicParams::default(),
-        )?;
+    fn cholesky(restricted: &Restricted<T>, analysis: &Analysis) -> Result<Self, FactorError> {
+        let (a, symbolic) = (columns(restricted), analysis.0.clone());
         let mut values = Vec::new();
         values.try_reserve_exact(symbolic.len_val()).map_err(|_| FactorError::OutOfMemory)?;
         values.resize(symbolic.len_val(), T::lit(0.0));
@@ -153,7 +222,8 @@ impl<T: Real> Factors<T> {
                 LuError::Generic(error) => error.into(),
             },
         )?;
-        let factors = Self { size: restricted.size(), kind: Kind::Lu { symbolic, numeric } };
+        let kind = Kind::Lu { symbolic: Box::new(symbolic), numeric: Box::new(numeric) };
+        let factors = Self { size: restricted.size(), kind };
         if factors.condition_holds(restricted) { Ok(factors) } else { Err(FactorError::Singular) }
     }
 
@@ -195,7 +265,7 @@ pub fn is_positive_definite<T: Real>(
         if part.size() == 0 {
             return Ok(true);
         } else {
-            Factors::cholesky(&part)
+            Factors::cholesky(&part, &Analysis::new(&part, None)?)
         }
     };
     match factors {
@@ -206,7 +276,7 @@ pub fn is_positive_definite<T: Real>(
 }
 
 /// The rows of a restricted matrix as the columns of its transpose.
-fn columns<T>(restricted: &Restricted<T>) -> SparseColMatRef<'_, u32, T> {
+pub(super) fn columns<T>(restricted: &Restricted<T>) -> SparseColMatRef<'_, u32, T> {
     let n = restricted.size();
     let pattern = faer::sparse::SymbolicSparseColMatRef::new_checked(
         n,
@@ -221,7 +291,7 @@ fn columns<T>(restricted: &Restricted<T>) -> SparseColMatRef<'_, u32, T> {
 /// Tells a singular matrix from an indefinite one after a pivot has failed: the former becomes
 /// definite if its diagonal grows by the root of the rounding unit, which is far above rounding
 /// and far below any curvature that a too small penalty leaves behind.
-fn why_not_positive<T: Real>(restricted: &mut Restricted<T>) -> FactorError {
+fn why_not_positive<T: Real>(restricted: &mut Restricted<T>, analysis: &Analysis) -> FactorError {
     for i in 0..restricted.size() {
         let (columns, values) = restricted.row_mut(i);
         match (columns.last(), values.last_mut()) {
@@ -233,7 +303,7 @@ fn why_not_positive<T: Real>(restricted: &mut Restricted<T>) -> FactorError {
             _ => return FactorError::NotPositive,
         }
     }
-    match Factors::cholesky(restricted) {
+    match Factors::cholesky(restricted, analysis) {
         Ok(_) => FactorError::Singular,
         Err(error) => error,
     }

@@ -120,6 +120,14 @@ impl<T: Real> Restricted<T> {
     }
 }
 
+/// All rows and columns.
+impl<T> From<SparseMatrix<T>> for Restricted<T> {
+    fn from(matrix: SparseMatrix<T>) -> Self {
+        let SparseMatrix { row_starts, columns, values } = matrix;
+        Self { row_starts, columns, values }
+    }
+}
+
 impl<T> Restricted<T> {
     /// Number of rows.
     pub fn size(&self) -> usize {

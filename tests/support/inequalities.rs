@@ -48,6 +48,7 @@ pub fn inequality<T: Real>(
         load,
         bounds,
         places: vec![],
+        points: vec![],
         start: Start::Cold,
         factored: None,
     }
