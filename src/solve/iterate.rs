@@ -3,7 +3,7 @@
 use super::certificate::positive_diagonal;
 use super::cycles::History;
 use super::hybrid::Hybrid;
-use super::interior::InteriorPoint;
+use super::interior::{InteriorPoint, Path};
 use super::linear::{FactorError, Factors};
 use super::{Outcome, Solution};
 use crate::algebra::{Bound, Contact, Inequality, Start};
@@ -26,6 +26,8 @@ pub(super) struct Iterate<'a, T> {
     /// Forces of jumps where the matrix is kept factored; else empty.
     pub forces: Vec<T>,
     hybrid: Option<Hybrid<'a, T>>,
+    /// Where the interior point method can go on.
+    path: Option<Path>,
 }
 
 /// Most corrections where the matrix is kept factored.
@@ -78,6 +80,7 @@ impl<'a, T: Real> Iterate<'a, T> {
             correction: Vec::new(),
             forces,
             hybrid: factored.map(Hybrid::new),
+            path: None,
         }
     }
 
@@ -270,11 +273,15 @@ impl<'a, T: Real> Iterate<'a, T> {
         }
     }
 
-    /// Moves to where an interior point method gets from the best iterate; stays if it does not get
-    /// anywhere.
+    /// Moves to where an interior point method gets from the best iterate, or from where it stopped
+    /// before; stays if it does not get anywhere.
     pub fn approach(&mut self) {
         let Best { values, forces, .. } = &self.best;
-        let mut point = InteriorPoint::new(self.inequality, self.hybrid.as_ref(), values, forces);
+        let hybrid = self.hybrid.as_ref();
+        let mut point = match self.path.take() {
+            Some(path) => InteriorPoint::resume(self.inequality, hybrid, path),
+            None => InteriorPoint::new(self.inequality, hybrid, values, forces),
+        };
         let contact = point.run();
         self.outer += point.steps;
         if let Some(contact) = contact {
@@ -282,7 +289,13 @@ impl<'a, T: Real> Iterate<'a, T> {
             self.state = states.map(|(&contact, bound)| rest(bound, contact)).collect();
             self.values = point.values();
             self.forces = point.forces();
+            self.path = point.into_path();
         }
+    }
+
+    /// Whether the interior point method believed in contact that it can still look at more closely.
+    pub fn can_resume(&self) -> bool {
+        self.path.is_some()
     }
 
     /// Moves every value into its bounds.
