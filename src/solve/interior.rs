@@ -36,7 +36,10 @@ const FIRST_POWERS: usize = 2;
 
 /// What another power must leave of the products that a step leaves without, to be worth a solution
 /// with the factors there are.
-const WORTHWHILE: f64 = 0.9;
+const WORTHWHILE: f64 = 0.95;
+
+/// Powers in vain after which no more are asked for.
+const IN_VAIN: usize = 3;
 
 /// Where the interior point method stopped because contact was plain.
 pub(super) struct Path {
@@ -241,7 +244,7 @@ impl<'h, 'a, T: Real> InteriorPoint<'h, 'a, T> {
         for k in 0..most {
             beyond.push(self.power(factors, deficit, centre, k));
             let powers = k + 1;
-            // one alone may go nowhere, and two in vain are enough
+            // one alone may go nowhere
             if powers < FIRST_POWERS {
                 continue;
             }
@@ -250,7 +253,7 @@ impl<'h, 'a, T: Real> InteriorPoint<'h, 'a, T> {
             if left < WORTHWHILE * best.left {
                 (best.length, best.left) = (length, left);
                 best.powers.append(&mut beyond);
-            } else if beyond.len() >= 2 {
+            } else if beyond.len() >= IN_VAIN {
                 break;
             }
         }
