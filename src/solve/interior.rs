@@ -63,7 +63,7 @@ struct Way {
 /// 191-214): every power costs a solution with the factors of the step, which is less than they do.
 ///
 /// Every step solves with `A` plus a positive diagonal, so that it works for every matrix whose
-/// symmetric part is positive semidefinite, and knows no combinatorics: two dozen steps do whatever
+/// symmetric part is positive semidefinite, and knows no combinatorics: a dozen steps or two do whatever
 /// the matrix, the penalty and the number of unknowns (Wright, Primal-Dual Interior-Point Methods,
 /// SIAM 1997, proves a number that grows with the root of the unknowns at most). What it finds is
 /// known up to rounding in energy only; contact is where the force exceeds the gap times the
