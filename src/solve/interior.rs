@@ -48,7 +48,8 @@ pub(super) struct Path {
     near: f64,
 }
 
-/// A way to go: powers of the length for values and forces, how far, and what that leaves of products.
+/// A way to go: powers of the length for values and forces, how far, and what that leaves of
+/// products.
 struct Way {
     powers: Vec<Pair>,
     length: f64,
@@ -59,13 +60,14 @@ struct Way {
 /// `A u - b = z_lower - z_upper`, gaps and forces `z` positive, products of both equal to a number
 /// that falls to zero.
 ///
-/// The path is followed along its power series (Monteiro, Adler, Resende, Math. Oper. Res. 15 (1990)
-/// 191-214): every power costs a solution with the factors of the step, which is less than they do.
+/// The path is followed along its power series (Monteiro, Adler, Resende, Math. Oper. Res. 15
+/// (1990) 191-214): every power costs a solution with the factors of the step, which is less than
+/// they do.
 ///
 /// Every step solves with `A` plus a positive diagonal, so that it works for every matrix whose
-/// symmetric part is positive semidefinite, and knows no combinatorics: a dozen steps or two do whatever
-/// the matrix, the penalty and the number of unknowns (Wright, Primal-Dual Interior-Point Methods,
-/// SIAM 1997, proves a number that grows with the root of the unknowns at most). What it finds is
+/// symmetric part is positive semidefinite, and knows no combinatorics: a dozen steps or two do
+/// whatever the matrix, the penalty and the number of unknowns (Wright, Primal-Dual Interior-Point
+/// Methods, SIAM 1997, proves a number that grows with the root of the unknowns at most). What it finds is
 /// known up to rounding in energy only; contact is where the force exceeds the gap times the
 /// diagonal.
 ///
@@ -230,8 +232,8 @@ impl<'h, 'a, T: Real> InteriorPoint<'h, 'a, T> {
         Some(())
     }
 
-    /// The curve that follows the path on which deficit and products, these less `centre`, fall like
-    /// `(1 - t)^2`; as many powers of it as make the way longer.
+    /// The curve that follows the path on which deficit and products, these less `centre`, fall
+    /// like `(1 - t)^2`; as many powers of it as make the way longer.
     fn curve(
         &mut self,
         factors: &ShiftedFactors<T>,
