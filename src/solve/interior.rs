@@ -67,9 +67,9 @@ struct Way {
 /// Every step solves with `A` plus a positive diagonal, so that it works for every matrix whose
 /// symmetric part is positive semidefinite, and knows no combinatorics: a dozen steps or two do
 /// whatever the matrix, the penalty and the number of unknowns (Wright, Primal-Dual Interior-Point
-/// Methods, SIAM 1997, proves a number that grows with the root of the unknowns at most). What it finds is
-/// known up to rounding in energy only; contact is where the force exceeds the gap times the
-/// diagonal.
+/// Methods, SIAM 1997, proves a number that grows with the root of the unknowns at most). What it
+/// finds is known up to rounding in energy only; contact is where the force exceeds the gap times
+/// the diagonal.
 ///
 /// Where the matrix is kept factored the forces of jumps are unknowns too, and what they and jumps
 /// disagree by falls with the deficit: no weight meets a stiffness, and a start that is moved off
