@@ -12,6 +12,7 @@ use proptest::prelude::*;
 use unilateral::algebra::{Inequality, SparseMatrix};
 use unilateral::assemble::{DataQuadrature, Discretisation};
 use unilateral::prelude::*;
+use unilateral::real::Point;
 use unilateral::solve::{ActiveSet, EliminationOrder, Factors, InequalitySolver, Linear};
 
 use inequalities::{Random, laplacian, sparse};
@@ -20,7 +21,11 @@ fn assembled<const D: usize, S: Scheme<f64, D>>(scheme: &S, n: usize) -> Inequal
     let scene = scenes::radial::<D>(1.0);
     let mesh = scene.domain.mesh::<f64>(n).unwrap();
     let quadrature = DataQuadrature::default();
-    Discretisation::new(scheme, &scene.problem, &mesh, quadrature).unwrap().inequality().unwrap()
+    let space = Discretisation::new(scheme, &scene.problem, &mesh, quadrature).unwrap();
+    // all have points here, also those that have no use for them
+    let point = |x: &Point<f64, D>| [0, 1, 2].map(|k| x.get(k).map_or(0.0, |&x| x as f32));
+    let points = mesh.vertices().iter().map(point).collect();
+    Inequality { points, ..space.inequality().unwrap() }
 }
 
 /// The unknowns that are not given.

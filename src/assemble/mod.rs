@@ -173,11 +173,7 @@ impl<'a, T: Real, const D: usize, S: Scheme<T, D>> Discretisation<'a, T, D, S> {
             bounds,
             places: self.places(),
             // in the plane an order found in space is no better for unknowns that cells share
-            points: if D == 3 || Self::OWNS_ROWS {
-                self.space.vertex_points()
-            } else {
-                Vec::new()
-            },
+            points: if D == 3 || Self::OWNS_ROWS { self.space.vertex_points() } else { Vec::new() },
             start: Start::Cold,
             factored,
         })

@@ -2,20 +2,21 @@
 
 use super::hybrid::Hybrid;
 use super::shifted::{Pair, Shifted, ShiftedFactors};
+use super::walls::{MOST_POWERS, Wall, longest_step, mean_product};
 use crate::algebra::{Contact, Inequality};
 use crate::real::Real;
-
-/// Share of the way to the nearest bound that a step goes.
-const SHARE: f64 = 0.995;
 
 /// Complementarity over energy below which contact and gap are told apart.
 const CLOSE: f64 = 1e-18;
 
 /// Complementarity over energy to start with.
-const START: f64 = 1e-2;
+const START: f64 = 0.1;
 
 /// The same below which contact is believed where it is plain and was the same a step before.
-const NEAR: f64 = 1e-9;
+const NEAR: f64 = 1e-10;
+
+/// By how much that is lowered where contact was believed too early.
+const NEARER: f64 = 1e-2;
 
 /// The same above which slow progress is due to the start, not to rounding.
 const FAR: f64 = 1e-8;
@@ -30,55 +31,45 @@ pub(super) const MOST: usize = 60;
 /// was bad.
 const PATIENCE: usize = 3;
 
-/// One bound of one unknown: `side` times the unknown is above `side` times the bound by `gap`. Both
-/// gap and force are about to move along parabolas.
-struct Wall {
-    unknown: usize,
-    side: f64,
-    gap: f64,
-    force: f64,
-    gap_step: [f64; 2],
-    force_step: [f64; 2],
-    /// What share of themselves the last step left of gap and force.
-    left: [f64; 2],
+/// Powers of the first curve of a step, which only tells how far the second may aim.
+const FIRST_POWERS: usize = 2;
+
+/// What another power must leave of the products that a step leaves without, to be worth a solution
+/// with the factors there are.
+const WORTHWHILE: f64 = 0.95;
+
+/// Powers in vain after which no more are asked for.
+const IN_VAIN: usize = 3;
+
+/// Where the interior point method stopped because contact was plain.
+pub(super) struct Path {
+    at: Pair,
+    walls: Vec<Wall>,
+    near: f64,
 }
 
-impl Wall {
-    /// Gap and force after a step of this length.
-    fn at(&self, length: f64) -> (f64, f64) {
-        let along = |[slope, bend]: [f64; 2]| length * (slope + length * bend);
-        (self.gap + along(self.gap_step), self.force + along(self.force_step))
-    }
-
-    /// The longest step, at most one, that leaves gap and force positive.
-    fn longest(&self) -> f64 {
-        first_zero(self.gap, self.gap_step).min(first_zero(self.force, self.force_step)).min(1.0)
-    }
-}
-
-/// The least positive zero of `value + slope t + bend t^2`, infinity if there is none; the value is
-/// positive.
-fn first_zero(value: f64, [slope, bend]: [f64; 2]) -> f64 {
-    let discriminant = slope * slope - 4.0 * bend * value;
-    if discriminant < 0.0 {
-        return f64::INFINITY;
-    }
-    // the form of the formula in which nothing cancels
-    let root = discriminant.sqrt();
-    let zero = 2.0 * value / (root - slope);
-    if zero > 0.0 { zero } else { f64::INFINITY }
+/// A way to go: powers of the length for values and forces, how far, and what that leaves of
+/// products.
+struct Way {
+    powers: Vec<Pair>,
+    length: f64,
+    left: f64,
 }
 
 /// The predictor-corrector method of Mehrotra (SIAM J. Optim. 2 (1992) 575-601) for
 /// `A u - b = z_lower - z_upper`, gaps and forces `z` positive, products of both equal to a number
 /// that falls to zero.
 ///
+/// The path is followed along its power series (Monteiro, Adler, Resende, Math. Oper. Res. 15
+/// (1990) 191-214): every power costs a solution with the factors of the step, which is less than
+/// they do.
+///
 /// Every step solves with `A` plus a positive diagonal, so that it works for every matrix whose
-/// symmetric part is positive semidefinite, and knows no combinatorics: two dozen steps do whatever
-/// the matrix, the penalty and the number of unknowns (Wright, Primal-Dual Interior-Point Methods,
-/// SIAM 1997, proves a number that grows with the root of the unknowns at most). What it finds is
-/// known up to rounding in energy only; contact is where the force exceeds the gap times the
-/// diagonal.
+/// symmetric part is positive semidefinite, and knows no combinatorics: a dozen steps or two do
+/// whatever the matrix, the penalty and the number of unknowns (Wright, Primal-Dual Interior-Point
+/// Methods, SIAM 1997, proves a number that grows with the root of the unknowns at most). What it
+/// finds is known up to rounding in energy only; contact is where the force exceeds the gap times
+/// the diagonal.
 ///
 /// Where the matrix is kept factored the forces of jumps are unknowns too, and what they and jumps
 /// disagree by falls with the deficit: no weight meets a stiffness, and a start that is moved off
@@ -91,6 +82,10 @@ pub(super) struct InteriorPoint<'h, 'a, T> {
     walls: Vec<Wall>,
     /// Linear systems solved.
     pub steps: usize,
+    /// See [`NEAR`].
+    near: f64,
+    /// Whether there is nowhere to go from here.
+    is_done: bool,
 }
 
 impl<'h, 'a, T: Real> InteriorPoint<'h, 'a, T> {
@@ -104,12 +99,28 @@ impl<'h, 'a, T: Real> InteriorPoint<'h, 'a, T> {
         let bounds = inequality.bounds.iter().zip(near);
         let values = bounds.map(|(bound, &x)| bound.only_value().unwrap_or(x).to_f64()).collect();
         let forces = forces.iter().map(|force| force.to_f64()).collect();
-        let matrix = Shifted::new(inequality, hybrid);
-        let diagonal = (0..inequality.size()).map(|i| matrix.stiffness(i)).collect();
-        let at = Pair { values, forces };
-        let mut point = Self { inequality, matrix, at, diagonal, walls: Vec::new(), steps: 0 };
+        let path = Path { at: Pair { values, forces }, walls: Vec::new(), near: NEAR };
+        let mut point = Self::resume(inequality, hybrid, path);
         point.start(START);
         point
+    }
+
+    /// Starts where it stopped before.
+    pub fn resume(
+        inequality: &'a Inequality<T>,
+        hybrid: Option<&'h Hybrid<'a, T>>,
+        path: Path,
+    ) -> Self {
+        let Path { at, walls, near } = path;
+        let matrix = Shifted::new(inequality, hybrid);
+        let diagonal = (0..inequality.size()).map(|i| matrix.stiffness(i)).collect();
+        Self { inequality, matrix, at, diagonal, walls, steps: 0, near, is_done: false }
+    }
+
+    /// What is needed to go on if contact was believed too early, where there is any way to go.
+    pub fn into_path(self) -> Option<Path> {
+        let near = NEARER * self.near;
+        (!self.is_done).then_some(Path { at: self.at, walls: self.walls, near })
     }
 
     /// Goes to the central path near the values as they are, where complementarity over energy is a
@@ -148,16 +159,7 @@ impl<'h, 'a, T: Real> InteriorPoint<'h, 'a, T> {
         for (bound, side) in [(lower, 1.0), (upper, -1.0)] {
             if let Some(bound) = bound {
                 let gap = side * (self.at.values[i] - bound);
-                let force = product / gap;
-                self.walls.push(Wall {
-                    unknown: i,
-                    side,
-                    gap,
-                    force,
-                    gap_step: [0.0; 2],
-                    force_step: [0.0; 2],
-                    left: [1.0; 2],
-                });
+                self.walls.push(Wall::new(i, side, gap, product / gap));
             }
         }
     }
@@ -171,7 +173,7 @@ impl<'h, 'a, T: Real> InteriorPoint<'h, 'a, T> {
         let mut is_restarted = false;
         while self.steps < MOST {
             let energy = self.deficit(&mut deficit);
-            let mean = self.mean_product();
+            let mean = mean_product(&self.walls, 0.0, 0);
             if !mean.is_finite() || !energy.is_finite() {
                 return None;
             }
@@ -179,7 +181,7 @@ impl<'h, 'a, T: Real> InteriorPoint<'h, 'a, T> {
             idle = if share < 0.5 * least { 0 } else { idle + 1 };
             least = if idle == 0 { share } else { least };
             let contact = self.contact();
-            let is_steady = share <= NEAR && self.is_clear() && contact == before;
+            let is_steady = share <= self.near && self.is_clear() && contact == before;
             before = contact;
             if share > FAR && idle > PATIENCE && !is_restarted {
                 // a start too close to bounds is stuck there
@@ -187,7 +189,8 @@ impl<'h, 'a, T: Real> InteriorPoint<'h, 'a, T> {
                 self.start(1.0);
                 continue;
             }
-            if is_steady || share <= CLOSE || idle > PATIENCE {
+            self.is_done = share <= CLOSE || idle > PATIENCE;
+            if is_steady || self.is_done {
                 break;
             }
             self.step(&deficit, mean)?;
@@ -215,53 +218,73 @@ impl<'h, 'a, T: Real> InteriorPoint<'h, 'a, T> {
         }
         let factors = self.matrix.factor(&shift).ok()?;
         // the first curve ends at zero, the second at what the length of the first suggests
-        self.curve(&factors, deficit, 0.0);
-        let reached = self.products_at(self.longest());
+        let reached = self.curve(&factors, deficit, 0.0, FIRST_POWERS).left;
         let centre = mean * (reached / mean).clamp(0.0, 1.0).powi(3);
-        let [slope, bend] = self.curve(&factors, deficit, centre);
-        let longest = self.longest();
-        let length = if longest < 1.0 { SHARE * longest } else { 1.0 };
-        let go = |at: &mut [f64], slope: &[f64], bend: &[f64]| {
-            for (x, (slope, bend)) in at.iter_mut().zip(slope.iter().zip(bend)) {
-                *x += length * (slope + length * bend);
+        let Way { powers, length, .. } = self.curve(&factors, deficit, centre, MOST_POWERS);
+        let go = |at: &mut [f64], powers: Vec<&[f64]>| {
+            for (i, x) in at.iter_mut().enumerate() {
+                *x += powers.iter().rev().fold(0.0, |sum, power| length * (sum + power[i]));
             }
         };
-        go(&mut self.at.values, &slope.values, &bend.values);
-        go(&mut self.at.forces, &slope.forces, &bend.forces);
-        for wall in &mut self.walls {
-            let (gap, force) = wall.at(length);
-            wall.left = [gap / wall.gap, force / wall.force];
-            (wall.gap, wall.force) = (gap, force);
-        }
+        go(&mut self.at.values, powers.iter().map(|power| &power.values[..]).collect());
+        go(&mut self.at.forces, powers.iter().map(|power| &power.forces[..]).collect());
+        self.walls.iter_mut().for_each(|wall| wall.go(length, powers.len()));
         Some(())
     }
 
-    /// The parabola that follows the path on which deficit and products, these less `centre`, fall
-    /// like `(1 - t)^2`: its slope and its bend.
-    fn curve(&mut self, factors: &ShiftedFactors<T>, deficit: &Pair, centre: f64) -> [Pair; 2] {
-        let excess = |wall: &Wall| wall.gap * wall.force - centre;
-        let rates: Vec<f64> = self.walls.iter().map(|wall| -2.0 * excess(wall)).collect();
-        let slope = self.direct(factors, deficit, 2.0, &rates);
-        for (wall, rate) in self.walls.iter_mut().zip(&rates) {
-            wall.gap_step[0] = wall.gap_step[1];
-            wall.force_step[0] = (rate - wall.force * wall.gap_step[0]) / wall.gap;
+    /// The curve that follows the path on which deficit and products, these less `centre`, fall
+    /// like `(1 - t)^2`; as many powers of it as make the way longer.
+    fn curve(
+        &mut self,
+        factors: &ShiftedFactors<T>,
+        deficit: &Pair,
+        centre: f64,
+        most: usize,
+    ) -> Way {
+        let mut best = Way { powers: Vec::new(), length: 0.0, left: f64::INFINITY };
+        let mut beyond = Vec::new();
+        for k in 0..most {
+            beyond.push(self.power(factors, deficit, centre, k));
+            let powers = k + 1;
+            // one alone may go nowhere
+            if powers < FIRST_POWERS {
+                continue;
+            }
+            let length = longest_step(&self.walls, powers);
+            let left = mean_product(&self.walls, length, powers);
+            if left < WORTHWHILE * best.left {
+                (best.length, best.left) = (length, left);
+                best.powers.append(&mut beyond);
+            } else if beyond.len() >= IN_VAIN {
+                break;
+            }
         }
-        let rates: Vec<f64> = self
-            .walls
-            .iter()
-            .map(|wall| excess(wall) - wall.gap_step[0] * wall.force_step[0])
-            .collect();
-        let bend = self.direct(factors, deficit, -1.0, &rates);
-        for (wall, rate) in self.walls.iter_mut().zip(&rates) {
-            wall.force_step[1] = (rate - wall.force * wall.gap_step[1]) / wall.gap;
+        best
+    }
+
+    /// The coefficient of power `k + 1` of the curve, all lower ones being known.
+    fn power(
+        &mut self,
+        factors: &ShiftedFactors<T>,
+        deficit: &Pair,
+        centre: f64,
+        k: usize,
+    ) -> Pair {
+        // 1 - (1 - t)^2
+        let share = [2.0, -1.0].get(k).copied().unwrap_or(0.0);
+        let rate = |wall: &Wall| share * (centre - wall.product()) - wall.mixed(k);
+        let rates: Vec<f64> = self.walls.iter().map(rate).collect();
+        let step = self.direct(factors, deficit, share, &rates);
+        for (wall, rate) in self.walls.iter_mut().zip(rates) {
+            wall.set_power(k, wall.side * step.values[wall.unknown], rate);
         }
-        [slope, bend]
+        step
     }
 
     /// The direction in which the deficit falls at a multiple of itself, products change at given
-    /// rates; that of every gap goes into the second place.
+    /// rates.
     fn direct(
-        &mut self,
+        &self,
         factors: &ShiftedFactors<T>,
         deficit: &Pair,
         share: f64,
@@ -273,27 +296,7 @@ impl<'h, 'a, T: Real> InteriorPoint<'h, 'a, T> {
             step.values[wall.unknown] += wall.side * rate / wall.gap;
         }
         self.matrix.solve(factors, &mut step);
-        for wall in &mut self.walls {
-            wall.gap_step[1] = wall.side * step.values[wall.unknown];
-        }
         step
-    }
-
-    fn longest(&self) -> f64 {
-        self.walls.iter().map(Wall::longest).fold(1.0, f64::min)
-    }
-
-    /// The mean product that a step of this length leaves.
-    fn products_at(&self, length: f64) -> f64 {
-        let product = |wall: &Wall| {
-            let (gap, force) = wall.at(length);
-            gap * force
-        };
-        self.walls.iter().map(product).sum::<f64>() / self.walls.len().max(1) as f64
-    }
-
-    fn mean_product(&self) -> f64 {
-        self.walls.iter().map(|w| w.gap * w.force).sum::<f64>() / self.walls.len().max(1) as f64
     }
 
     /// `b - A u` and the forces of all bounds; returns the size of energies.

@@ -4,7 +4,7 @@ use super::certificate::positive_diagonal;
 use super::cycles::History;
 use super::elimination::EliminationOrder;
 use super::hybrid::Hybrid;
-use super::interior::InteriorPoint;
+use super::interior::{InteriorPoint, Path};
 use super::linear::{FactorError, Factors};
 use super::{Outcome, Solution};
 use crate::algebra::{Bound, Contact, Inequality, Start};
@@ -29,6 +29,8 @@ pub(super) struct Iterate<'a, T> {
     hybrid: Option<Hybrid<'a, T>>,
     /// The order of elimination, once it has been needed: the same for all active sets.
     order: Option<EliminationOrder>,
+    /// Where the interior point method can go on.
+    path: Option<Path>,
 }
 
 /// Most corrections where the matrix is kept factored.
@@ -84,6 +86,7 @@ impl<'a, T: Real> Iterate<'a, T> {
                 Hybrid::new(factored).at(inequality.points_of_unknowns().as_deref())
             }),
             order: None,
+            path: None,
         }
     }
 
@@ -285,11 +288,15 @@ impl<'a, T: Real> Iterate<'a, T> {
         }
     }
 
-    /// Moves to where an interior point method gets from the best iterate; stays if it does not get
-    /// anywhere.
+    /// Moves to where an interior point method gets from the best iterate, or from where it stopped
+    /// before; stays if it does not get anywhere.
     pub fn approach(&mut self) {
         let Best { values, forces, .. } = &self.best;
-        let mut point = InteriorPoint::new(self.inequality, self.hybrid.as_ref(), values, forces);
+        let hybrid = self.hybrid.as_ref();
+        let mut point = match self.path.take() {
+            Some(path) => InteriorPoint::resume(self.inequality, hybrid, path),
+            None => InteriorPoint::new(self.inequality, hybrid, values, forces),
+        };
         let contact = point.run();
         self.outer += point.steps;
         if let Some(contact) = contact {
@@ -297,7 +304,13 @@ impl<'a, T: Real> Iterate<'a, T> {
             self.state = states.map(|(&contact, bound)| rest(bound, contact)).collect();
             self.values = point.values();
             self.forces = point.forces();
+            self.path = point.into_path();
         }
+    }
+
+    /// Whether the interior point method believed in contact that it can still look at more closely.
+    pub fn can_resume(&self) -> bool {
+        self.path.is_some()
     }
 
     /// Moves every value into its bounds.

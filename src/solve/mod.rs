@@ -37,6 +37,7 @@ mod shifted;
 mod small;
 mod sweeps;
 mod transfer;
+mod walls;
 
 pub use active_set::{ActiveSet, LastResort};
 pub use certificate::{Certificate, active, certify, certify_with_forces};

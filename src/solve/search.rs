@@ -34,6 +34,9 @@ pub(super) struct Search<'s, 'a, T> {
     hesitation: usize,
     /// Whether the interior point method may still be asked.
     is_untried: bool,
+    /// Changes of state before the last linear system, if the interior point method was not asked in
+    /// between.
+    moved: Option<usize>,
 }
 
 impl<'s, 'a, T: Real> Search<'s, 'a, T> {
@@ -51,6 +54,7 @@ impl<'s, 'a, T: Real> Search<'s, 'a, T> {
             settling: 0,
             fewest: usize::MAX,
             hesitation: settings.hesitation,
+            moved: None,
             is_untried: settings.last_resort == LastResort::WhenUnsettled,
         }
     }
@@ -92,6 +96,10 @@ impl<'s, 'a, T: Real> Search<'s, 'a, T> {
                 return self.confirm();
             }
             let outer = self.iterate.outer;
+            if self.was_believed_too_early() && outer + interior::MOST <= self.settings.max_outer {
+                self.approach();
+                continue;
+            }
             if 2 * self.history.moving() <= self.fewest {
                 self.fewest = self.history.moving();
                 self.settling = outer;
@@ -116,6 +124,13 @@ impl<'s, 'a, T: Real> Search<'s, 'a, T> {
                 }
             }
         }
+    }
+
+    /// Whether the active set does not settle at once where the interior point method stopped.
+    fn was_believed_too_early(&mut self) -> bool {
+        let moving = self.history.moving();
+        let before = self.moved.replace(moving);
+        self.iterate.can_resume() && before.is_some_and(|before| 2 * moving > before)
     }
 
     /// Forgets all states but the present one.
@@ -175,6 +190,7 @@ impl<'s, 'a, T: Real> Search<'s, 'a, T> {
     /// Starts anew from where the interior point method gets.
     fn approach(&mut self) {
         self.is_untried = false;
+        self.moved = None;
         self.iterate.approach();
         self.forget();
         self.cycle.fill(false);
