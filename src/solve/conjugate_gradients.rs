@@ -1,6 +1,5 @@
 //! Preconditioned conjugate gradients on the unknowns that are free.
 
-use super::lower::Lower;
 use super::pieces::{each_mut, sum_mut, sum_mut2, zeros};
 use crate::algebra::SparseMatrix;
 use crate::real::Real;
@@ -49,19 +48,18 @@ pub(super) struct Run {
     pub ritz: Option<(f64, f64)>,
 }
 
-/// The matrix, ready for products, and the vectors of the iteration, kept from one use to the next.
-pub(super) struct ConjugateGradients<T> {
-    matrix: Lower<T>,
+/// The matrix and the vectors of the iteration, kept from one use to the next.
+pub(super) struct ConjugateGradients<'m, T> {
+    matrix: &'m SparseMatrix<T>,
     z: Vec<T>,
     p: Vec<T>,
     q: Vec<T>,
 }
 
-impl<T: Real> ConjugateGradients<T> {
+impl<'m, T: Real> ConjugateGradients<'m, T> {
     /// For a symmetric matrix.
-    pub fn new(matrix: &SparseMatrix<T>) -> Self {
+    pub fn new(matrix: &'m SparseMatrix<T>) -> Self {
         let n = matrix.size();
-        let matrix = Lower::new(matrix, |i| matrix.row(i), |a| a);
         Self { matrix, z: zeros(n), p: zeros(n), q: zeros(n) }
     }
 
@@ -80,8 +78,7 @@ impl<T: Real> ConjugateGradients<T> {
         let mut rz = dot(r, &mut self.z);
         run.first = rz.max(0.0).sqrt();
         let target = stop.norm.max(stop.share * run.first);
-        self.p.fill(T::lit(0.0));
-        let mut beta = 0.0;
+        self.p.copy_from_slice(&self.z);
         loop {
             run.last = rz.max(0.0).sqrt();
             run.end = match () {
@@ -90,8 +87,7 @@ impl<T: Real> ConjugateGradients<T> {
                 () if rz < 0.0 => End::NotPositive,
                 () if run.iterations >= stop.iterations => End::Limit,
                 () => {
-                    let Self { matrix, z, p, q } = self;
-                    let pq = matrix.turn_and_multiply(z, T::lit(beta), fixed, p, q);
+                    let pq = self.multiply(fixed);
                     if !pq.is_finite() {
                         run.end = End::NotFinite;
                         break;
@@ -105,8 +101,9 @@ impl<T: Real> ConjugateGradients<T> {
                     preconditioner.apply(r, &mut self.z);
                     let before = rz;
                     rz = dot(r, &mut self.z);
-                    beta = rz / before;
+                    let beta = rz / before;
                     lanczos.push(alpha, beta);
+                    self.turn(T::lit(beta));
                     run.iterations += 1;
                     continue;
                 }
@@ -118,6 +115,28 @@ impl<T: Real> ConjugateGradients<T> {
             self.relax(T::lit(1.0 / high), x);
         }
         run
+    }
+
+    /// `q` becomes the product of the matrix with `p` where free and zero where fixed; returns `p . q`.
+    fn multiply(&mut self, fixed: &[bool]) -> f64 {
+        let (matrix, p) = (self.matrix, &self.p);
+        sum_mut(&mut self.q, |range, q| {
+            let mut sum = 0.0;
+            for (i, q) in range.zip(q) {
+                *q = if fixed[i] { T::lit(0.0) } else { matrix.row_dot(i, p) };
+                sum += p[i].to_f64() * q.to_f64();
+            }
+            sum
+        })
+    }
+
+    fn turn(&mut self, beta: T) {
+        let z = &self.z;
+        each_mut(&mut self.p, |range, p| {
+            for (p, &z) in p.iter_mut().zip(&z[range]) {
+                *p = z + beta * *p;
+            }
+        });
     }
 
     /// A step of Richardson's iteration with what the preconditioner made of the last residual; where

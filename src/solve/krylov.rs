@@ -18,7 +18,7 @@ pub(super) fn symmetric_part<T: Real>(inequality: &Inequality<T>) -> Cow<'_, Spa
 /// Iterations for one matrix with one preconditioner, symmetric and positive definite.
 pub(super) enum Krylov<'m, T> {
     /// For symmetric matrices.
-    ConjugateGradients(ConjugateGradients<T>),
+    ConjugateGradients(ConjugateGradients<'m, T>),
     /// For all others.
     MinimalResiduals(&'m SparseMatrix<T>, MinimalResiduals<T>),
 }

@@ -23,7 +23,6 @@ mod kernels;
 mod krylov;
 mod linear;
 mod look;
-mod lower;
 mod mean_jump;
 mod monotone_multigrid;
 mod multigrid;
