@@ -108,7 +108,10 @@ fn counts_in_three_dimensions_stay_small() {
 }
 
 fn inequality<S: Scheme<f64, 2>>(scheme: &S, level: usize) -> Inequality<f64> {
-    let scene = scenes::radial::<2>(1.0);
+    on(&scenes::radial(1.0), scheme, level)
+}
+
+fn on<S: Scheme<f64, 2>>(scene: &Scene<2>, scheme: &S, level: usize) -> Inequality<f64> {
     let mesh = scene.domain.mesh(level).unwrap();
     let space =
         Discretisation::new(scheme, &scene.problem, &mesh, DataQuadrature::default()).unwrap();
@@ -185,17 +188,25 @@ fn what_cannot_be_solved_is_named() {
 
 #[test]
 fn the_bound_on_the_error_is_one() {
-    let inequality = inequality(&ConformingP1, 48);
-    let exact = with(Linear::Direct).solve(&inequality).values;
-    let solution = with(Linear::Iterative).solve(&inequality);
-    let energy = |u: &[f64]| {
-        let zero = vec![0.0; u.len()];
-        let r = inequality.matrix.residual(&zero, u);
-        -u.iter().zip(&r).map(|(u, r)| u * r).sum::<f64>()
-    };
-    let difference: Vec<f64> = exact.iter().zip(&solution.values).map(|(a, b)| a - b).collect();
-    let error = (energy(&difference) / energy(&exact)).sqrt();
-    let bound = solution.algebraic_bound.unwrap();
-    assert!(error <= bound * 1.01 + 1e-13, "{error} and {bound}");
-    assert!(bound <= 1e-9, "{bound}");
+    fn check<S: Scheme<f64, 2>>(scene: &Scene<2>, scheme: &S) {
+        let inequality = on(scene, scheme, 48);
+        let exact = with(Linear::Direct).solve(&inequality).values;
+        let solution = with(Linear::Iterative).solve(&inequality);
+        let energy = |u: &[f64]| {
+            let zero = vec![0.0; u.len()];
+            let r = inequality.matrix.residual(&zero, u);
+            -u.iter().zip(&r).map(|(u, r)| u * r).sum::<f64>()
+        };
+        let difference: Vec<f64> = exact.iter().zip(&solution.values).map(|(a, b)| a - b).collect();
+        let error = (energy(&difference) / energy(&exact)).sqrt();
+        let bound = solution.algebraic_bound.unwrap();
+        let name = (&scene.name, scheme.name());
+        assert!(error <= bound, "{name:?}: {error} and {bound}");
+        assert!(bound <= 1e-9, "{name:?}: {bound}");
+    }
+    // contact of the last two has no multiplier, so that any of it may come loose
+    for scene in [scenes::radial(1.0), scenes::biactive_half_2d(), scenes::degenerate(2)] {
+        check(&scene, &ConformingP1);
+        check(&scene, &Sipg::default());
+    }
 }

@@ -54,13 +54,15 @@ pub(super) struct ConjugateGradients<'m, T> {
     z: Vec<T>,
     p: Vec<T>,
     q: Vec<T>,
+    /// Largest Ritz value so far, at least one.
+    highest: f64,
 }
 
 impl<'m, T: Real> ConjugateGradients<'m, T> {
     /// For a symmetric matrix.
     pub fn new(matrix: &'m SparseMatrix<T>) -> Self {
         let n = matrix.size();
-        Self { matrix, z: zeros(n), p: zeros(n), q: zeros(n) }
+        Self { matrix, z: zeros(n), p: zeros(n), q: zeros(n), highest: 1.0 }
     }
 
     /// Corrects `x`, whose residual is `r` where free and zero where fixed. Where the norm fell to that
@@ -111,8 +113,11 @@ impl<'m, T: Real> ConjugateGradients<'m, T> {
             break;
         }
         run.ritz = lanczos.extremes();
-        if let (End::Reached, true, Some((_, high))) = (run.end, run.last > stop.norm, run.ritz) {
-            self.relax(T::lit(1.0 / high), x);
+        if let Some((_, high)) = run.ritz {
+            self.highest = self.highest.max(high);
+        }
+        if run.end == End::Reached && run.last > stop.norm {
+            self.relax(T::lit(1.0 / self.highest), x);
         }
         run
     }
@@ -139,8 +144,9 @@ impl<'m, T: Real> ConjugateGradients<'m, T> {
         });
     }
 
-    /// A step of Richardson's iteration with what the preconditioner made of the last residual; where
-    /// the system was not to be solved well this is for nothing, because the residual is not asked.
+    /// A step of Richardson's iteration with what the preconditioner made of the last residual. It
+    /// costs no product where the residual is not asked for afterwards. A step shorter than two over
+    /// the largest eigenvalue makes no error larger; those of multigrid are at most one.
     fn relax(&self, omega: T, x: &mut [T]) {
         each_mut(x, |range, x| {
             x.iter_mut().zip(&self.z[range]).for_each(|(x, &z)| *x += omega * z);

@@ -8,8 +8,12 @@ use super::{Outcome, Solution};
 use crate::algebra::{Contact, Inequality, SparseMatrix};
 use crate::real::Real;
 
-/// The smallest Ritz value is this much larger, at most, than the smallest eigenvalue.
+/// The smallest eigenvalue is taken to be at least this share of the smallest Ritz value, which lies
+/// above it and has come down to it after a few iterations.
 const RITZ: f64 = 0.9;
+
+/// How many times the norm of the last linear system the error may be for contact to be held.
+const HELD: f64 = 10.0;
 
 /// The share of an error to which a system is solved for the smallest Ritz value alone.
 const SOUNDED: f64 = 1e-6;
@@ -64,9 +68,16 @@ impl<T: Real> Inexact<'_, T> {
     ///
     /// For admissible `u` and multipliers `m` of the right sign that vanish off contact, the square
     /// of the energy error `e` is `e . A e <= e . r`, `r = b + m - A u`, and so at most
-    /// `r . inv(S) r`, `S` the symmetric part of `A`. Wrong multipliers go into `r`. The inverse is at
-    /// most the preconditioner over the smallest eigenvalue of the preconditioned `S`, for which
-    /// stands the smallest Ritz value.
+    /// `r . inv(S) r`, `S` the symmetric part of `A`. Wrong multipliers go into `r`.
+    ///
+    /// The inverse is that on the unknowns where `e` need not vanish. Let those in contact whose
+    /// multiplier exceeds a number `M` times the root of their diagonal entry be held. If the bound for
+    /// the problem with these held is at most `M`, none of their multipliers changes its sign between
+    /// `u` and the solution of that problem, which is then the solution. Else none is held.
+    ///
+    /// The inverse is at most the preconditioner over the smallest eigenvalue of the preconditioned
+    /// `S`. For that stands nine tenths of the smallest Ritz value met on the way: the one part that is
+    /// an estimate.
     fn error_bound(&mut self, preconditioner: &mut Preconditioners<'_, T>) -> Option<f64> {
         let bounds = &self.inequality.bounds;
         let mut is_moved = false;
@@ -76,39 +87,56 @@ impl<T: Real> Inexact<'_, T> {
             *value = nearest;
         }
         if is_moved {
-            let exact = self.exact_residual();
-            let values = &self.values;
-            let Inequality { matrix, load, .. } = self.inequality;
-            each_mut(&mut self.residual, |range, r| {
-                for (i, r) in range.zip(r) {
-                    let assembled = || load[i].to_f64() - matrix.row_dot_f64(i, values);
-                    *r = T::lit(exact.as_ref().map_or_else(assembled, |exact| exact[i]));
-                }
-            });
+            self.renew_residual();
         }
-        let mut is_wrong = false;
-        for (i, bound) in bounds.iter().enumerate() {
-            let pull = match self.state[i] {
-                Contact::Open => continue,
-                Contact::Lower => self.residual[i].to_f64(),
-                Contact::Upper => -self.residual[i].to_f64(),
+        let share = (RITZ * self.lowest).sqrt();
+        let most = HELD * self.norm / share;
+        let held = self.norm_with(most, preconditioner)? / share;
+        let error = if held <= most {
+            held
+        } else {
+            self.norm_with(f64::INFINITY, preconditioner)? / share
+        };
+        Some(error / self.energy)
+    }
+
+    /// The preconditioned norm of what no multiplier explains, where those unknowns in contact are
+    /// held whose multiplier exceeds a number times the root of their diagonal entry.
+    fn norm_with(&mut self, held: f64, preconditioner: &mut Preconditioners<'_, T>) -> Option<f64> {
+        let mut unexplained = self.residual.clone();
+        let mut is_changed = false;
+        for (i, bound) in self.inequality.bounds.iter().enumerate() {
+            let multiplier = match self.state[i] {
+                Contact::Open => f64::NEG_INFINITY,
+                Contact::Lower => -self.residual[i].to_f64(),
+                Contact::Upper => self.residual[i].to_f64(),
             };
-            if pull > 0.0 && bound.only_value().is_none() {
-                self.fixed[i] = false;
-                is_wrong = true;
+            let is_given = bound.only_value().is_some();
+            if is_given || multiplier >= 0.0 {
+                unexplained[i] = T::lit(0.0);
             }
+            let is_held = is_given || multiplier > held * self.diagonal[i].to_f64().sqrt();
+            is_changed |= self.fixed[i] != is_held;
+            self.fixed[i] = is_held;
         }
-        if is_moved || is_wrong {
-            for (r, &fixed) in self.residual.iter_mut().zip(&self.fixed) {
-                if fixed {
-                    *r = T::lit(0.0);
-                }
-            }
-            let mut z = vec![T::lit(0.0); self.values.len()];
+        if is_changed {
             preconditioner.fix(&self.fixed).ok()?;
-            preconditioner.apply(&self.residual, &mut z);
-            self.norm = dot(&self.residual, &mut z).max(0.0).sqrt();
         }
-        Some(self.norm / (RITZ * self.lowest).sqrt() / self.energy)
+        let mut z = zeros(self.values.len());
+        preconditioner.apply(&unexplained, &mut z);
+        Some(dot(&unexplained, &mut z).max(0.0).sqrt())
+    }
+
+    /// Computes the residual anew.
+    pub(super) fn renew_residual(&mut self) {
+        let exact = self.exact_residual();
+        let values = &self.values;
+        let Inequality { matrix, load, .. } = self.inequality;
+        each_mut(&mut self.residual, |range, r| {
+            for (i, r) in range.zip(r) {
+                let assembled = || load[i].to_f64() - matrix.row_dot_f64(i, values);
+                *r = T::lit(exact.as_ref().map_or_else(assembled, |exact| exact[i]));
+            }
+        });
     }
 }

@@ -233,7 +233,7 @@ impl<'a, T: Real> Inexact<'a, T> {
             }
             self.energy = look.energy;
             self.norm = run.last;
-            let is_exact = run.last <= 1.01 * tolerance * self.energy;
+            let is_exact = run.last <= stop.norm.min(1.01 * tolerance * self.energy);
             if is_exact && (look.flips.is_empty() || look.holds_to(tolerance)) {
                 if look.off_contact <= limit * self.energy {
                     return Some(Outcome::Converged);
@@ -328,11 +328,18 @@ impl<'a, T: Real> Inexact<'a, T> {
             if let Some(value) = known {
                 let change = value - self.values[i];
                 self.values[i] = value;
+                // a row stands for the column
+                if !self.inequality.symmetric {
+                    continue;
+                }
                 let (columns, entries) = self.inequality.matrix.row(i);
                 for (&j, &a) in columns.iter().zip(entries) {
                     self.residual[j as usize] -= a * change;
                 }
             }
+        }
+        if !self.inequality.symmetric {
+            self.renew_residual();
         }
     }
 

@@ -33,8 +33,8 @@ impl<'m, T: Real> Krylov<'m, T> {
         }
     }
 
-    /// Corrects `x`, whose residual is `r` where free and zero where fixed. Where the system was
-    /// solved well `r` is kept up to date.
+    /// Corrects `x`, whose residual is `r` where free and zero where fixed. `r` becomes the residual of
+    /// the new `x` if the norm fell to that of `stop`; else it may lack the last correction.
     pub fn solve(
         &mut self,
         fixed: &[bool],
