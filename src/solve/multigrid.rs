@@ -47,6 +47,8 @@ struct Grid<'a, T: Real> {
 struct Coarsest<T> {
     free: Vec<u32>,
     factors: Option<Factors<T>>,
+    /// Whether they are of a form of which functions were cut off.
+    was_cut: bool,
     values: Vec<T>,
     scale: f64,
 }
@@ -208,7 +210,8 @@ impl<'a, T: Real> Multigrid<'a, T> {
         // an entry of a positive matrix is at most as large as the largest on the diagonal
         let largest = matrix.values.iter().fold(0.0, |m: f64, a| m.max(a.to_f64().abs()));
         let scale = if largest > 0.0 { largest } else { 1.0 };
-        let coarsest = Coarsest { free: Vec::new(), factors: None, values: Vec::new(), scale };
+        let (free, values) = (Vec::new(), Vec::new());
+        let coarsest = Coarsest { free, factors: None, was_cut: false, values, scale };
         let n = matrix.size();
         Self { grids, coarsest, scale, force: zeros(n), values: zeros(n) }
     }
@@ -229,19 +232,33 @@ impl<'a, T: Real> Multigrid<'a, T> {
                     grid.cut_off(finer, transfer);
                 }
             }
-            grid.prepare(self.scale);
+            // how the coarsest is solved is decided below
+            if rest.len() > 1 {
+                rest[0].prepare(self.scale);
+            }
         }
-        let Some(last) = self.grids.last() else { return Ok(()) };
+        self.fix_coarsest()
+    }
+
+    fn fix_coarsest(&mut self) -> Result<(), FactorError> {
+        let Some(last) = self.grids.last_mut() else { return Ok(()) };
         let free = (0..last.fixed.len() as u32).filter(|&i| !last.fixed[i as usize]);
         let free: Vec<u32> = free.collect();
         if free.len() > super::hierarchy::LARGEST_FACTORED {
             // a level that could not be coarsened any further is smoothed only
             self.coarsest.factors = None;
+            last.prepare(self.scale);
             return Ok(());
         }
-        if self.coarsest.factors.is_none() || free != self.coarsest.free || !last.cut.is_empty() {
-            self.coarsest.factors = Some(last.factor(&free)?);
-            self.coarsest.free = free;
+        // they would not know what became stale while there are factors
+        last.sweeps = None;
+        let is_cut = !last.cut.is_empty();
+        let coarsest = &mut self.coarsest;
+        let is_known = coarsest.factors.is_some() && free == coarsest.free;
+        if !is_known || is_cut || coarsest.was_cut {
+            coarsest.factors = None;
+            coarsest.factors = Some(last.factor(&free)?);
+            (coarsest.free, coarsest.was_cut) = (free, is_cut);
         }
         Ok(())
     }
@@ -301,5 +318,63 @@ impl<T: Real> Coarsest<T> {
         for (&i, value) in self.free.iter().zip(&self.values) {
             x[i as usize] = (value.to_f64() * self.scale) as f32;
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::sync::Arc;
+
+    use super::super::hierarchy::VertexLevel;
+    use super::*;
+
+    /// Conforming linear functions on an interval cut into `n`: `u'' = u` without boundary values.
+    fn level(n: usize) -> VertexLevel<f64> {
+        let h = 1.0 / n as f64;
+        let (diagonal, beside) = (1.0 / h + h / 3.0, -1.0 / h + h / 6.0);
+        let mut matrix = SparseMatrix { row_starts: vec![0], columns: vec![], values: vec![] };
+        for i in 0..=n {
+            for j in i.saturating_sub(1)..=(i + 1).min(n) {
+                let cells = if i == 0 || i == n { 1.0 } else { 2.0 };
+                matrix.columns.push(j as u32);
+                matrix.values.push(if i == j { cells * diagonal } else { beside });
+            }
+            matrix.row_starts.push(matrix.columns.len() as u32);
+        }
+        let parents = (0..=n as u32).map(|i| [i / 2, i.div_ceil(2)]).collect();
+        let coarser = (n > 4).then(|| {
+            let transfer = Transfer::midpoints(parents, n / 2 + 1);
+            Coarser::new(Arc::new(level(n / 2)), Arc::new(transfer))
+        });
+        VertexLevel::new(matrix, vec![false; n + 1], coarser.flatten())
+    }
+
+    /// A cycle does not remember what was fixed before.
+    #[test]
+    fn what_was_fixed_before_leaves_no_trace() {
+        let finest = level(64);
+        let new = || Multigrid::new(&finest.matrix, finest.coarser.as_ref());
+        let force: Vec<f64> = (0..65).map(|i| f64::from(i * i % 23) - 9.0).collect();
+        let sets = [&[][..], &[40], &[31, 33], &[0, 1, 2, 3, 4, 5, 6, 7, 8, 9], &[16, 17, 48]];
+        let sets = sets.map(|set| (0..65).map(|i| set.contains(&i)).collect::<Vec<_>>());
+        let mut answers = Vec::new();
+        for (k, after) in sets.iter().enumerate() {
+            let mut fresh = new();
+            assert_eq!(fresh.grids.len(), 5);
+            fresh.fix(after).unwrap();
+            let mut expected = vec![0.0; 65];
+            fresh.apply(&force, &mut expected);
+            assert!(expected.iter().zip(after).all(|(x, &fixed)| fixed == (*x == 0.0)));
+            for before in &sets {
+                let mut used = new();
+                used.fix(before).unwrap();
+                used.fix(after).unwrap();
+                let mut values = vec![0.0; 65];
+                used.apply(&force, &mut values);
+                assert_eq!(values, expected, "{k}");
+            }
+            answers.push(expected);
+        }
+        assert_ne!(answers[0], answers[1]);
     }
 }
