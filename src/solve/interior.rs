@@ -2,7 +2,7 @@
 
 use super::hybrid::Hybrid;
 use super::shifted::{Pair, Shifted, ShiftedFactors};
-use super::walls::{MOST_POWERS, Wall, longest_step, mean_product};
+use super::walls::{MOST_POWERS, Rest, Wall, longest_step, mean_product};
 use crate::algebra::{Contact, Inequality};
 use crate::real::Real;
 
@@ -44,7 +44,7 @@ const IN_VAIN: usize = 3;
 /// Where the interior point method stopped because contact was plain.
 pub(super) struct Path {
     at: Pair,
-    walls: Vec<Wall>,
+    walls: Vec<Rest>,
     near: f64,
 }
 
@@ -68,8 +68,8 @@ struct Way {
 /// symmetric part is positive semidefinite, and knows no combinatorics: a dozen steps or two do
 /// whatever the matrix, the penalty and the number of unknowns (Wright, Primal-Dual Interior-Point
 /// Methods, SIAM 1997, proves a number that grows with the root of the unknowns at most). What it
-/// finds is known up to rounding in energy only; contact is where the force exceeds the gap times
-/// the diagonal.
+/// finds is known up to rounding in energy only; contact is where the last step left more of the
+/// force than of the gap.
 ///
 /// Where the matrix is kept factored the forces of jumps are unknowns too, and what they and jumps
 /// disagree by falls with the deficit: no weight meets a stiffness, and a start that is moved off
@@ -112,6 +112,7 @@ impl<'h, 'a, T: Real> InteriorPoint<'h, 'a, T> {
         path: Path,
     ) -> Self {
         let Path { at, walls, near } = path;
+        let walls = walls.into_iter().map(Wall::from).collect();
         let matrix = Shifted::new(inequality, hybrid);
         let diagonal = (0..inequality.size()).map(|i| matrix.stiffness(i)).collect();
         Self { inequality, matrix, at, diagonal, walls, steps: 0, near, is_done: false }
@@ -120,7 +121,8 @@ impl<'h, 'a, T: Real> InteriorPoint<'h, 'a, T> {
     /// What is needed to go on if contact was believed too early, where there is any way to go.
     pub fn into_path(self) -> Option<Path> {
         let near = NEARER * self.near;
-        (!self.is_done).then_some(Path { at: self.at, walls: self.walls, near })
+        let walls = self.walls.into_iter().map(Rest::from);
+        (!self.is_done).then(|| Path { at: self.at, walls: walls.collect(), near })
     }
 
     /// Goes to the central path near the values as they are, where complementarity over energy is a
@@ -164,13 +166,16 @@ impl<'h, 'a, T: Real> InteriorPoint<'h, 'a, T> {
         }
     }
 
-    /// Approaches the solution; the contact states found, or `None` if a matrix has no factors or
-    /// a number is not finite.
+    /// Approaches the solution; the contact states found, or `None` if a matrix has no factors, a
+    /// number is not finite, or no step led anywhere.
     pub fn run(&mut self) -> Option<Vec<Contact>> {
         let mut deficit = self.at.clone();
         let (mut least, mut idle) = (f64::INFINITY, 0);
         let mut before = Vec::new();
         let mut is_restarted = false;
+        // a path that is resumed had steps before
+        let has_moved = self.walls.iter().any(|wall| wall.left != [1.0; 2]);
+        let mut last = has_moved.then(|| self.contact());
         while self.steps < MOST {
             let energy = self.deficit(&mut deficit);
             let mean = mean_product(&self.walls, 0.0, 0);
@@ -193,7 +198,11 @@ impl<'h, 'a, T: Real> InteriorPoint<'h, 'a, T> {
             if is_steady || self.is_done {
                 break;
             }
-            self.step(&deficit, mean)?;
+            if !self.step(&deficit, mean)? {
+                self.is_done = true;
+                return last;
+            }
+            last = Some(self.contact());
         }
         Some(self.contact())
     }
@@ -209,8 +218,8 @@ impl<'h, 'a, T: Real> InteriorPoint<'h, 'a, T> {
         self.at.values.iter().zip(&self.inequality.bounds).map(nearest).collect()
     }
 
-    /// One step; `None` without factors.
-    fn step(&mut self, deficit: &Pair, mean: f64) -> Option<()> {
+    /// One step, unless it leads nowhere: whether it was made; `None` without factors.
+    fn step(&mut self, deficit: &Pair, mean: f64) -> Option<bool> {
         self.steps += 1;
         let mut shift = vec![0.0; self.at.values.len()];
         for wall in &self.walls {
@@ -221,6 +230,10 @@ impl<'h, 'a, T: Real> InteriorPoint<'h, 'a, T> {
         let reached = self.curve(&factors, deficit, 0.0, FIRST_POWERS).left;
         let centre = mean * (reached / mean).clamp(0.0, 1.0).powi(3);
         let Way { powers, length, .. } = self.curve(&factors, deficit, centre, MOST_POWERS);
+        // no power at all if directions are no numbers
+        if powers.is_empty() || length <= 0.0 {
+            return Some(false);
+        }
         let go = |at: &mut [f64], powers: Vec<&[f64]>| {
             for (i, x) in at.iter_mut().enumerate() {
                 *x += powers.iter().rev().fold(0.0, |sum, power| length * (sum + power[i]));
@@ -229,7 +242,7 @@ impl<'h, 'a, T: Real> InteriorPoint<'h, 'a, T> {
         go(&mut self.at.values, powers.iter().map(|power| &power.values[..]).collect());
         go(&mut self.at.forces, powers.iter().map(|power| &power.forces[..]).collect());
         self.walls.iter_mut().for_each(|wall| wall.go(length, powers.len()));
-        Some(())
+        Some(true)
     }
 
     /// The curve that follows the path on which deficit and products, these less `centre`, fall
@@ -321,5 +334,55 @@ impl<'h, 'a, T: Real> InteriorPoint<'h, 'a, T> {
             contact[wall.unknown] = if wall.side > 0.0 { Contact::Lower } else { Contact::Upper };
         }
         contact
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::algebra::{Bound, SparseMatrix, Start};
+
+    /// Two unknowns above zero that pull at each other, and a load.
+    fn above_zero(load: [f32; 2]) -> Inequality<f32> {
+        let (row_starts, columns) = (vec![0, 2, 4], vec![0, 1, 0, 1]);
+        Inequality {
+            matrix: SparseMatrix { row_starts, columns, values: vec![1.0, -0.9, -0.9, 1.0] },
+            symmetric: true,
+            bounds: vec![Bound::Lower(0.0); 2],
+            load: load.to_vec(),
+            places: vec![],
+            points: vec![],
+            start: Start::Cold,
+            factored: None,
+        }
+    }
+
+    /// Twice as much is no number of the scalar, so that no direction is one.
+    const HUGE: [f32; 2] = [3e38; 2];
+
+    #[test]
+    fn a_step_that_leads_nowhere_says_nothing() {
+        let inequality = above_zero(HUGE);
+        let mut point = InteriorPoint::new(&inequality, None, &[0.0; 2], &[]);
+        let before = point.at.values.clone();
+        assert_eq!(point.run(), None);
+        assert_eq!((point.at.values.clone(), point.steps), (before, 1));
+        assert!(point.into_path().is_none());
+    }
+
+    /// What the steps before it said stands.
+    #[test]
+    fn a_step_that_leads_nowhere_unsays_nothing() {
+        let inequality = above_zero([-2.0, 1.0]);
+        let mut point = InteriorPoint::new(&inequality, None, &[0.0; 2], &[]);
+        let contact = point.run().unwrap();
+        assert_eq!(contact, [Contact::Lower, Contact::Open]);
+        let path = point.into_path().unwrap();
+        let inequality = above_zero(HUGE);
+        let mut point = InteriorPoint::resume(&inequality, None, path);
+        let before = point.at.values.clone();
+        assert_eq!(point.run(), Some(contact));
+        assert_eq!(point.at.values, before);
+        assert!(point.into_path().is_none());
     }
 }

@@ -25,8 +25,29 @@ pub(super) struct Wall {
     pub force: f64,
     gap_powers: Powers,
     force_powers: Powers,
-    /// What share of themselves the last step left of gap and force.
+    /// What share of themselves the last step left of gap and force; one before the first.
     pub left: [f64; 2],
+}
+
+/// What is left of a wall between two steps.
+pub(super) struct Rest {
+    unknown: usize,
+    side: f64,
+    gap: f64,
+    force: f64,
+    left: [f64; 2],
+}
+
+impl From<Wall> for Rest {
+    fn from(Wall { unknown, side, gap, force, left, .. }: Wall) -> Self {
+        Self { unknown, side, gap, force, left }
+    }
+}
+
+impl From<Rest> for Wall {
+    fn from(Rest { unknown, side, gap, force, left }: Rest) -> Self {
+        Self { left, ..Self::new(unknown, side, gap, force) }
+    }
 }
 
 impl Wall {
