@@ -22,7 +22,8 @@ const DISSECTED: usize = 2_000;
 ///
 /// The order matters for the size of Cholesky factors and the time they take. It is found once and
 /// kept while an active set moves. Analysis and factors of a step then take, in milliseconds of one
-/// thread:
+/// thread (two hyperthreads of an AMD EPYC shared with other work, November 2026;
+/// `cargo test --release --test ordering -- --ignored --nocapture`):
 ///
 /// | | unknowns | order: degree | dissection | step: degree anew | degree kept | dissection kept |
 /// |---|---|---|---|---|---|---|
@@ -48,22 +49,27 @@ pub struct EliminationOrder {
 }
 
 impl EliminationOrder {
-    /// The order for the unknowns `kept` (ascending) of a matrix, whose rows live at `points` if these
-    /// are known: dissection of many unknowns in space, or where cells own them; else by degree.
+    /// The order for the unknowns `kept` of a matrix, whose rows live at `points` if these are known:
+    /// dissection of many unknowns in space, or where cells own them; else by degree. Fewer points
+    /// than rows are as good as none.
     ///
-    /// Of the matrix only entries on and left of the diagonal are read.
+    /// Of the matrix only entries on and left of the diagonal are read, except that cells are told by
+    /// rows with the same entries.
     ///
     /// # Errors
     /// [`FactorError::OutOfMemory`].
     ///
     /// # Panics
-    /// If there are fewer points than rows.
+    /// If `kept` names a row that the matrix does not have. It is to be ascending, each unknown once;
+    /// of other lists the order may be no permutation.
     pub fn new<T: Real>(
         matrix: &SparseMatrix<T>,
         kept: &[u32],
         points: Option<&[[f32; 3]]>,
     ) -> Result<Self, FactorError> {
-        if let Some(points) = points.filter(|_| kept.len() >= DISSECTED) {
+        if let Some(points) =
+            points.filter(|points| kept.len() >= DISSECTED && points.len() >= matrix.size())
+        {
             let cloud = Cloud::new(matrix, kept, points);
             if cloud.axes().len() == 3 || 2 * cloud.different() <= kept.len() {
                 return Ok(Self { unknowns: cloud.order() });
@@ -72,19 +78,22 @@ impl EliminationOrder {
         Self::by_degree(matrix, kept)
     }
 
-    /// Nested dissection of points of space.
+    /// Nested dissection of points of space, for `kept` as in [`EliminationOrder::new`].
     ///
     /// # Panics
-    /// If there are fewer points than rows.
+    /// If there are fewer points than rows, or as [`EliminationOrder::new`].
     pub fn by_dissection<T>(matrix: &SparseMatrix<T>, kept: &[u32], points: &[[f32; 3]]) -> Self {
         Self { unknowns: Cloud::new(matrix, kept, points).order() }
     }
 
     /// Approximate minimum degree (P. R. Amestoy, T. A. Davis, I. S. Duff, SIAM J. Matrix Anal. Appl.
-    /// 17 (1996), 886-905).
+    /// 17 (1996), 886-905), for `kept` as in [`EliminationOrder::new`].
     ///
     /// # Errors
     /// [`FactorError::OutOfMemory`].
+    ///
+    /// # Panics
+    /// As [`EliminationOrder::new`].
     pub fn by_degree<T: Real>(matrix: &SparseMatrix<T>, kept: &[u32]) -> Result<Self, FactorError> {
         let restricted = Restricted::left_of_diagonal(matrix, kept);
         let pattern = columns(&restricted);
@@ -118,7 +127,8 @@ impl EliminationOrder {
     pub(super) fn among(&self, free: &[u32], size: usize) -> Vec<u32> {
         let mut places = vec![NONE; size];
         free.iter().enumerate().for_each(|(k, &i)| places[i as usize] = k as u32);
-        let take = |&i: &u32| Some(std::mem::replace(&mut places[i as usize], NONE));
+        let take =
+            |&i: &u32| places.get_mut(i as usize).map(|place| std::mem::replace(place, NONE));
         let all = self.unknowns.iter().chain(free).filter_map(take);
         all.filter(|&k| k != NONE).collect()
     }

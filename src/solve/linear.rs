@@ -111,10 +111,6 @@ impl<T: Real> Factors<T> {
         symmetric: bool,
         free: &[u32],
     ) -> Result<Self, FactorError> {
-        let size = free.len();
-        if size == 0 {
-            return Ok(Self { size, kind: Kind::Empty });
-        }
         if symmetric {
             let mut restricted = Restricted::left_of_diagonal(matrix, free);
             let analysis = Analysis::new(&restricted, None)?;
@@ -125,7 +121,8 @@ impl<T: Real> Factors<T> {
     }
 
     /// Factors the rows and columns `free` (ascending) of a symmetric matrix, whose unknowns are
-    /// eliminated in an order that is known.
+    /// eliminated in an order that is known. Unknowns of the order that are not free, or that the
+    /// matrix does not have, are passed over; free ones that the order does not have come last.
     ///
     /// # Errors
     /// See [`Factors::new`].
@@ -210,7 +207,14 @@ impl<T: Real> Factors<T> {
         }
     }
 
-    fn lu(restricted: &Restricted<T>) -> Result<Self, FactorError> {
+    /// Factors any matrix.
+    ///
+    /// # Errors
+    /// See [`Factors::new`].
+    pub(super) fn lu(restricted: &Restricted<T>) -> Result<Self, FactorError> {
+        if restricted.size() == 0 {
+            return Ok(Self { size: 0, kind: Kind::Empty });
+        }
         let a = columns(restricted);
         let symbolic = factorize_symbolic_lu(a.symbolic(), LuSymbolicParams::default())?;
         let mut numeric = NumericLu::new();
@@ -258,17 +262,8 @@ pub fn is_positive_definite<T: Real>(
     symmetric: bool,
     free: &[u32],
 ) -> Result<bool, FactorError> {
-    let factors = if symmetric {
-        Factors::new(matrix, true, free)
-    } else {
-        let part = Restricted::new(matrix, free).symmetric_part();
-        if part.size() == 0 {
-            return Ok(true);
-        } else {
-            Factors::cholesky(&part, &Analysis::new(&part, None)?)
-        }
-    };
-    match factors {
+    let part = (!symmetric).then(|| matrix.symmetric_part());
+    match Factors::new(part.as_ref().unwrap_or(matrix), true, free) {
         Ok(_) => Ok(true),
         Err(FactorError::OutOfMemory) => Err(FactorError::OutOfMemory),
         Err(_) => Ok(false),

@@ -7,7 +7,7 @@ use crate::real::Real;
 const OUT: u32 = u32::MAX;
 
 /// Some rows and columns of a matrix, renumbered in their order.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub(super) struct Restricted<T> {
     /// Start of each row, and the number of entries at the end.
     pub row_starts: Vec<u32>,
@@ -55,59 +55,6 @@ impl<T: Real> Restricted<T> {
             restricted.row_starts.push(restricted.columns.len() as u32);
         }
         restricted
-    }
-
-    /// Half the sum of the matrix and its transpose, on and left of the diagonal.
-    pub fn symmetric_part(&self) -> Self {
-        let n = self.size();
-        let transpose = self.transpose();
-        let half = T::lit(0.5);
-        let mut part = Self { row_starts: vec![0], columns: Vec::new(), values: Vec::new() };
-        for i in 0..n {
-            let mut entries: [_; 2] = [self.row(i), transpose.row(i)];
-            loop {
-                let next = entries.iter().filter_map(|(columns, _)| columns.first()).min();
-                let Some(&j) = next.filter(|&&j| j as usize <= i) else {
-                    break;
-                };
-                let mut sum = T::lit(0.0);
-                for (columns, values) in &mut entries {
-                    if columns.first() == Some(&j) {
-                        sum += values[0] * half;
-                        *columns = &columns[1..];
-                        *values = &values[1..];
-                    }
-                }
-                part.columns.push(j);
-                part.values.push(sum);
-            }
-            part.row_starts.push(part.columns.len() as u32);
-        }
-        part
-    }
-
-    fn transpose(&self) -> Self {
-        let n = self.size();
-        let mut row_starts = vec![0_u32; n + 1];
-        for &j in &self.columns {
-            row_starts[j as usize + 1] += 1;
-        }
-        for i in 0..n {
-            row_starts[i + 1] += row_starts[i];
-        }
-        let mut next = row_starts.clone();
-        let mut columns = vec![0; self.columns.len()];
-        let mut values = vec![T::lit(0.0); self.columns.len()];
-        for i in 0..n {
-            let (js, row) = self.row(i);
-            for (&j, &a) in js.iter().zip(row) {
-                let place = &mut next[j as usize];
-                columns[*place as usize] = i as u32;
-                values[*place as usize] = a;
-                *place += 1;
-            }
-        }
-        Self { row_starts, columns, values }
     }
 
     /// The diagonal, zero where none is stored.

@@ -1,8 +1,10 @@
 //! Linear systems with a matrix plus a nonnegative diagonal, multiplied out or factored.
 
 use super::certificate::positive_diagonal;
+use super::elimination::EliminationOrder;
 use super::hybrid::{Hybrid, HybridFactors};
-use super::linear::{FactorError, Factors};
+use super::linear::{Analysis, FactorError, Factors};
+use super::restrict::Restricted;
 use crate::algebra::Inequality;
 use crate::real::Real;
 
@@ -19,6 +21,23 @@ pub(super) struct Shifted<'h, 'a, T> {
     hybrid: Option<&'h Hybrid<'a, T>>,
     free: Vec<u32>,
     is_free: Vec<bool>,
+    half: Option<Half<T>>,
+}
+
+/// What is on and left of the diagonal of a symmetric matrix on its free unknowns, and where its
+/// factors are: the same for every shift.
+struct Half<T> {
+    matrix: Restricted<T>,
+    analysis: Analysis,
+}
+
+impl<T: Real> Half<T> {
+    fn new(inequality: &Inequality<T>, free: &[u32]) -> Result<Self, FactorError> {
+        let matrix = Restricted::left_of_diagonal(&inequality.matrix, free);
+        let order = EliminationOrder::of(inequality)?.among(free, inequality.size());
+        let analysis = Analysis::new(&matrix, Some(order))?;
+        Ok(Self { matrix, analysis })
+    }
 }
 
 /// The factors of the matrix with a shift.
@@ -33,7 +52,7 @@ impl<'h, 'a, T: Real> Shifted<'h, 'a, T> {
         let is_free: Vec<bool> =
             inequality.bounds.iter().map(|bound| bound.only_value().is_none()).collect();
         let free = (0..is_free.len()).filter(|&i| is_free[i]).map(|i| i as u32).collect();
-        Self { inequality, hybrid, free, is_free }
+        Self { inequality, hybrid, free, is_free, half: None }
     }
 
     /// The unknowns that are not given.
@@ -51,21 +70,23 @@ impl<'h, 'a, T: Real> Shifted<'h, 'a, T> {
     ///
     /// # Errors
     /// See [`FactorError`].
-    pub fn factor(&self, shift: &[f64]) -> Result<ShiftedFactors<T>, FactorError> {
+    pub fn factor(&mut self, shift: &[f64]) -> Result<ShiftedFactors<T>, FactorError> {
         if let Some(hybrid) = self.hybrid {
             return hybrid.factor_shifted(&self.is_free, shift).map(ShiftedFactors::Hybrid);
         }
-        let mut matrix = self.inequality.matrix.clone();
-        for &i in &self.free {
-            let i = i as usize;
-            let start = matrix.row_starts[i] as usize;
-            if shift[i] > 0.0 {
-                let place = matrix.row(i).0.binary_search(&(i as u32));
-                let place = place.map_err(|_| FactorError::NotPositive)?;
-                matrix.values[start + place] += T::lit(shift[i]);
-            }
-        }
-        let factors = Factors::new(&matrix, self.inequality.symmetric, &self.free)?;
+        let factors = if self.inequality.symmetric {
+            let half = match &mut self.half {
+                Some(half) => half,
+                none => none.insert(Half::new(self.inequality, &self.free)?),
+            };
+            let mut matrix = half.matrix.clone();
+            add_diagonal(&mut matrix, &self.free, shift)?;
+            Factors::definite(&mut matrix, &half.analysis)?
+        } else {
+            let mut matrix = Restricted::new(&self.inequality.matrix, &self.free);
+            add_diagonal(&mut matrix, &self.free, shift)?;
+            Factors::lu(&matrix)?
+        };
         Ok(ShiftedFactors::Assembled(factors))
     }
 
@@ -110,4 +131,18 @@ impl<'h, 'a, T: Real> Shifted<'h, 'a, T> {
         let own: f64 = loads.map(|(i, b)| b.to_f64().powi(2) / self.stiffness(i)).sum();
         if energy + own > 0.0 { energy + own } else { 1.0 }
     }
+}
+
+/// Adds the shift of each free unknown to its diagonal entry; an error if there is none to add to.
+fn add_diagonal<T: Real>(
+    matrix: &mut Restricted<T>,
+    free: &[u32],
+    shift: &[f64],
+) -> Result<(), FactorError> {
+    for (k, &i) in free.iter().enumerate().filter(|(_, i)| shift[**i as usize] > 0.0) {
+        let (columns, values) = matrix.row_mut(k);
+        let place = columns.binary_search(&(k as u32)).map_err(|_| FactorError::NotPositive)?;
+        values[place] += T::lit(shift[i as usize]);
+    }
+    Ok(())
 }
