@@ -1,8 +1,7 @@
 //! Orders of elimination: permutations of whatever they are given, and of less fill than minimum
 //! degree where they are chosen.
 
-// other tests use the rest
-#[allow(dead_code)]
+#[allow(dead_code, reason = "other tests use the rest")]
 #[path = "support/inequalities.rs"]
 mod inequalities;
 
@@ -17,15 +16,23 @@ use unilateral::solve::{ActiveSet, EliminationOrder, Factors, InequalitySolver, 
 
 use inequalities::{Random, laplacian, sparse};
 
-fn assembled<const D: usize, S: Scheme<f64, D>>(scheme: &S, n: usize) -> Inequality<f64> {
+/// The inequality as it is assembled, and the points of all vertices.
+fn with_vertices<const D: usize, S: Scheme<f64, D>>(
+    scheme: &S,
+    n: usize,
+) -> (Inequality<f64>, Vec<[f32; 3]>) {
     let scene = scenes::radial::<D>(1.0);
     let mesh = scene.domain.mesh::<f64>(n).unwrap();
     let quadrature = DataQuadrature::default();
     let space = Discretisation::new(scheme, &scene.problem, &mesh, quadrature).unwrap();
-    // all have points here, also those that have no use for them
     let point = |x: &Point<f64, D>| [0, 1, 2].map(|k| x.get(k).map_or(0.0, |&x| x as f32));
-    let points = mesh.vertices().iter().map(point).collect();
-    Inequality { points, ..space.inequality().unwrap() }
+    (space.inequality().unwrap(), mesh.vertices().iter().map(point).collect())
+}
+
+/// An inequality that has points, also where it has no use for them.
+fn assembled<const D: usize, S: Scheme<f64, D>>(scheme: &S, n: usize) -> Inequality<f64> {
+    let (inequality, points) = with_vertices::<D, _>(scheme, n);
+    Inequality { points, ..inequality }
 }
 
 /// The unknowns that are not given.
@@ -200,6 +207,35 @@ fn fill_is_less_in_space() {
     assert!(dissection as f64 <= 0.85 * degree as f64, "{dissection} {degree}");
 }
 
+/// Points are there where an order is found by them.
+#[test]
+fn points_are_assembled_where_they_are_used() {
+    let (in_space, vertices) = with_vertices::<3, _>(&ConformingP1, 3);
+    assert_eq!(in_space.points, vertices);
+    let (broken, vertices) = with_vertices::<2, _>(&Sipg::default(), 3);
+    assert_eq!(broken.points, vertices);
+    assert!(with_vertices::<2, _>(&ConformingP1, 3).0.points.is_empty());
+}
+
+/// What an order knows of a larger matrix is passed over, and too few points are none.
+#[test]
+fn orders_and_points_of_other_matrices() {
+    let [large, small] = [60, 50].map(|m| laplacian::<f64>(50, m, 4.0));
+    let [all, some] = [3000, 2500].map(|n| (0..n).collect::<Vec<u32>>());
+    let order = EliminationOrder::by_degree(&large, &all).unwrap();
+    let x = solve(&Factors::in_order(&small, &some, &order).unwrap());
+    let y = solve(&Factors::new(&small, true, &some).unwrap());
+    let scale = y.iter().fold(0.0, |s: f64, y| s.max(y.abs()));
+    for (x, y) in x.iter().zip(&y) {
+        assert!((x - y).abs() <= 1e-12 * scale, "{x} {y}");
+    }
+    // depth that tells nothing of the matrix makes it one in space
+    let points: Vec<_> = (0..2500).map(|i| [i % 50, i / 50, i % 7].map(|x| x as f32)).collect();
+    let order = |points| EliminationOrder::new(&small, &some, points).unwrap().unknowns().to_vec();
+    assert_eq!(order(Some(&points[1..])), order(None));
+    assert_ne!(order(Some(&points)), order(None));
+}
+
 /// Dissection is chosen in space and for broken spaces, for systems large enough and with points.
 #[test]
 fn the_choice() {
@@ -224,7 +260,11 @@ fn the_choice() {
 #[test]
 fn the_same_solution_in_any_order() {
     fn compare<const D: usize, S: Scheme<f64, D>>(scheme: &S, n: usize) {
-        let inequality = assembled::<D, _>(scheme, n);
+        let (inequality, _) = with_vertices::<D, _>(scheme, n);
+        let (matrix, kept) = (&inequality.matrix, kept(&inequality));
+        let order = |points| EliminationOrder::new(matrix, &kept, points).unwrap();
+        let points = points(&inequality);
+        assert_ne!(order(Some(&points)).unknowns(), order(None).unknowns());
         let solver = ActiveSet { linear: Linear::Direct, ..ActiveSet::default() };
         let solution = solver.solve(&inequality);
         assert_eq!(solution.values, solver.solve(&inequality).values);
