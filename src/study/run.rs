@@ -6,7 +6,7 @@ use std::sync::Arc;
 use super::any_scheme::{AnyScheme, Solved, Task};
 use super::fit::{check_domain, check_fit};
 use super::levels::{Levels, VertexContact};
-use super::memory::estimate;
+use super::memory::{estimate, estimate_without_factors, unknowns_about};
 use super::{
     CellFields, ExpectedOrders, Iterations, MemoryEstimate, Orders, Program, Report, Row, Seconds,
     fill_orders, peak_memory_bytes, write_vtu,
@@ -151,15 +151,22 @@ impl<'a, T: Real, const D: usize> Study<'a, T, D> {
         }
     }
 
-    /// What the largest run will need of memory with the direct solver, about; nothing for a study
-    /// without schemes or levels.
+    /// What the largest run will need of memory, about, with factors where the solver makes them from
+    /// the start; nothing for a study without schemes or levels.
     pub fn memory_estimate(&self) -> Option<MemoryEstimate> {
         let levels = Levels::new(&self.scene, self.mesh.as_ref());
         let level = self.levels.iter().copied().max()?;
         let cells = levels.cells(level);
         let obstacle = self.scene.problem.has_obstacle();
+        let bytes = |layout: Layout| {
+            let is_iterative = self.solver.uses_nearby(unknowns_about(D, layout, cells) as usize);
+            match is_iterative && D > 1 {
+                true => estimate_without_factors(D, layout, cells, size_of::<T>()),
+                false => estimate(D, layout, cells, obstacle, size_of::<T>()),
+            }
+        };
         let of = |scheme: &dyn AnyScheme<T, D>| MemoryEstimate {
-            bytes: estimate(D, scheme.layout(), cells, obstacle, size_of::<T>()),
+            bytes: bytes(scheme.layout()),
             scheme: scheme.name().to_owned(),
             level,
         };

@@ -96,7 +96,7 @@ fn places_that_cannot_be_written_are_refused_before_the_work() {
 #[test]
 fn more_than_the_memory_is_refused() {
     let Some(memory) = unilateral::study::available_memory_bytes() else { return };
-    let needed = 250e9;
+    let needed = 150e9;
     if memory as f64 > needed {
         return;
     }
