@@ -39,7 +39,8 @@ pub struct Certificate {
     /// Dual norm over `E` of the residual off contact; if larger, the largest difference, over `U`,
     /// of a jump and what its force makes of it ([`certify_with_forces`]).
     pub residual: f64,
-    /// Guaranteed relative bound on the energy-norm distance to the discrete solution.
+    /// Relative bound on the energy-norm distance to the discrete solution, where the solver knows
+    /// one. It rests on one estimate, of the smallest eigenvalue of the preconditioned matrix.
     pub algebraic_bound: Option<f64>,
 }
 

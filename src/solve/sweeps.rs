@@ -5,8 +5,8 @@
 //!
 //! A sweep is bound by memory. Only what is left of the diagonal is kept, because a symmetric matrix
 //! has its right part there too: once an unknown is known its share goes to those before it, while
-//! the row is at hand. So the forward sweep returns the residual for nothing, and with columns of two
-//! bytes and values of four it reads a seventh of what the matrix takes.
+//! the row is at hand. So the forward sweep returns the residual at no cost, and with columns of two
+//! bytes and values of four both together read a seventh of what the matrix takes twice.
 
 use super::pieces::{PIECE, each_mut, map, sum_mut2, zeros};
 use crate::algebra::SparseMatrix;
