@@ -4,7 +4,8 @@
 //! peak of memory is that of a process, one round after the other, and keeps the smallest times;
 //! `-- --rounds 5` sets how many, `-- --linear direct` the linear solver, `-- --threads 2` the
 //! threads, and further words pick the cases whose names contain one of them. `-- --mesh disc.msh`
-//! adds a mesh of a disc around the origin from a file of Gmsh, refined to about a million unknowns.
+//! adds a mesh of a disc around the origin from a file of Gmsh, refined to about a million unknowns;
+//! `-- --large` runs cases of up to 17 million unknowns instead, which takes minutes and 9 GB.
 
 use std::path::Path;
 use std::process::{Command, ExitCode};
@@ -24,6 +25,8 @@ const CASES: &[Case] = &[
     ("2d-p1-linear-512", 2, true, "p1", 512),
     ("2d-p1-linear-1024", 2, true, "p1", 1024),
     ("2d-cr-256", 2, false, "cr", 256),
+    ("2d-nipg-256", 2, false, "nipg", 256),
+    ("2d-nipg-linear-256", 2, true, "nipg", 256),
     ("2d-sipg-128", 2, false, "sipg", 128),
     ("2d-sipg-256", 2, false, "sipg", 256),
     ("2d-sipg-linear-256", 2, true, "sipg", 256),
@@ -42,6 +45,26 @@ const CASES: &[Case] = &[
     ("3d-wopsip-16", 3, false, "wopsip", 16),
 ];
 
+const LARGE: &[Case] = &[
+    ("2d-p1-1024", 2, false, "p1", 1024),
+    ("2d-p1-2048", 2, false, "p1", 2048),
+    ("2d-p1-4096", 2, false, "p1", 4096),
+    ("2d-sipg-256", 2, false, "sipg", 256),
+    ("2d-sipg-512", 2, false, "sipg", 512),
+    ("2d-sipg-1024", 2, false, "sipg", 1024),
+    ("2d-wopsip-means-256", 2, false, "wopsip-means", 256),
+    ("2d-wopsip-means-512", 2, false, "wopsip-means", 512),
+    ("2d-wopsip-means-1024", 2, false, "wopsip-means", 1024),
+    ("2d-wopsip-256", 2, false, "wopsip", 256),
+    ("2d-wopsip-512", 2, false, "wopsip", 512),
+    ("2d-wopsip-1024", 2, false, "wopsip", 1024),
+    ("3d-p1-64", 3, false, "p1", 64),
+    ("3d-p1-128", 3, false, "p1", 128),
+    ("3d-sipg-20", 3, false, "sipg", 20),
+    ("3d-sipg-40", 3, false, "sipg", 40),
+    ("3d-wopsip-32", 3, false, "wopsip", 32),
+];
+
 /// The case on a mesh from a file.
 const ON_MESH: Case = ("2d-p1-gmsh", 2, false, "p1", 0);
 
@@ -53,6 +76,7 @@ fn scheme<const D: usize>(name: &str) -> Box<dyn AnyScheme<f64, D>> {
         "p1" => Box::new(ConformingP1),
         "cr" => Box::new(CrouzeixRaviartScheme),
         "sipg" => Box::new(Sipg::default()),
+        "nipg" => Box::new(Nipg::default()),
         "wopsip" => Box::new(Wopsip::default()),
         _ => Box::new(FacetMeans(Wopsip::default())),
     }
@@ -89,7 +113,8 @@ fn run_on_mesh(path: &str, linear: Linear) -> Result<Row, Failure> {
 
 /// Runs one case and prints its row.
 fn child(name: &str, linear: Linear, mesh: Option<&str>) -> Result<(), Failure> {
-    let case = CASES.iter().chain([&ON_MESH]).find(|c| c.0 == name).ok_or("no such case")?;
+    let case =
+        CASES.iter().chain(LARGE).chain([&ON_MESH]).find(|c| c.0 == name).ok_or("no such case")?;
     let row = match (case.1, mesh) {
         (_, Some(path)) => run_on_mesh(path, linear)?,
         (2, None) => run(scenes::radial::<2>(1.0), linear, case)?,
@@ -131,12 +156,14 @@ fn all() -> Result<(), Failure> {
     }
     let rounds: usize = option("--rounds").unwrap_or("3").parse()?;
     let threads = option("--threads").unwrap_or("1");
-    let is_value = |k: usize| k > 0 && words[k - 1].starts_with("--");
+    let is_value = |k: usize| k > 0 && words[k - 1].starts_with("--") && words[k - 1] != "--large";
     let filters: Vec<&String> = (0..words.len())
         .filter(|&k| !words[k].starts_with("--") && !is_value(k))
         .map(|k| &words[k])
         .collect();
-    let chosen: Vec<&Case> = CASES
+    let is_large = words.iter().any(|w| w == "--large");
+    let cases = if is_large { LARGE } else { CASES };
+    let chosen: Vec<&Case> = cases
         .iter()
         .chain(mesh.map(|_| &ON_MESH))
         .filter(|c| filters.is_empty() || filters.iter().any(|f| c.0.contains(f.as_str())))
