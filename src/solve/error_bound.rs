@@ -12,8 +12,11 @@ use crate::real::Real;
 /// above it and has come down to it after a few iterations.
 const RITZ: f64 = 0.9;
 
-/// How many times the norm of the last linear system the error may be for contact to be held.
-const HELD: f64 = 10.0;
+/// How many times what the error seems to be it may be for contact to be held.
+const HELD: f64 = 4.0;
+
+/// Numbers that are tried before no contact is held.
+const TRIALS: usize = 3;
 
 /// The share of an error to which a system is solved for the smallest Ritz value alone.
 const SOUNDED: f64 = 1e-6;
@@ -73,7 +76,8 @@ impl<T: Real> Inexact<'_, T> {
     /// The inverse is that on the unknowns where `e` need not vanish. Let those in contact whose
     /// multiplier exceeds a number `M` times the root of their diagonal entry be held. If the bound for
     /// the problem with these held is at most `M`, none of their multipliers changes its sign between
-    /// `u` and the solution of that problem, which is then the solution. Else none is held.
+    /// `u` and the solution of that problem, which is then the solution. Else `M` is raised, and in the
+    /// end none is held.
     ///
     /// The inverse is at most the preconditioner over the smallest eigenvalue of the preconditioned
     /// `S`. For that stands nine tenths of the smallest Ritz value met on the way: the one part that is
@@ -90,14 +94,15 @@ impl<T: Real> Inexact<'_, T> {
             self.renew_residual();
         }
         let share = (RITZ * self.lowest).sqrt();
-        let most = HELD * self.norm / share;
-        let held = self.norm_with(most, preconditioner)? / share;
-        let error = if held <= most {
-            held
-        } else {
-            self.norm_with(f64::INFINITY, preconditioner)? / share
-        };
-        Some(error / self.energy)
+        let mut most = HELD * self.norm / share;
+        for _ in 0..TRIALS {
+            let error = self.norm_with(most, preconditioner)? / share;
+            if error <= most {
+                return Some(error / self.energy);
+            }
+            most = HELD * error;
+        }
+        Some(self.norm_with(f64::INFINITY, preconditioner)? / share / self.energy)
     }
 
     /// The preconditioned norm of what no multiplier explains, where those unknowns in contact are
