@@ -136,6 +136,16 @@ impl Place {
     }
 }
 
+/// The mean of points.
+pub(crate) fn barycentre(points: impl Iterator<Item = [f32; 3]>) -> [f32; 3] {
+    let (mut sum, mut n) = ([0.0; 3], 0.0);
+    for point in points {
+        sum.iter_mut().zip(point).for_each(|(sum, x)| *sum += x);
+        n += 1.0;
+    }
+    sum.map(|x| x / n)
+}
+
 /// Find `u` within the bounds with `(A u - b) . (v - u) >= 0` for all `v` within the bounds.
 ///
 /// If `A` is symmetric positive definite this is the minimum of `u.A u / 2 - b.u` over the bounds.
@@ -172,6 +182,11 @@ impl<T: Real> Inequality<T> {
     pub fn size(&self) -> usize {
         self.load.len()
     }
+    /// The unknowns that have more than one admissible value, ascending.
+    pub(crate) fn not_given(&self) -> Vec<u32> {
+        let is_open = |&i: &u32| self.bounds[i as usize].only_value().is_none();
+        (0..self.bounds.len() as u32).filter(is_open).collect()
+    }
     /// Whether matrix, load and bounds belong together: equal sizes, a matrix as its type
     /// promises it. Places and points are not looked at; no solver needs them.
     pub fn is_well_formed(&self) -> bool {
@@ -184,12 +199,8 @@ impl<T: Real> Inequality<T> {
     /// known.
     pub(crate) fn points_of_unknowns(&self) -> Option<Vec<[f32; 3]>> {
         let point = |place: &Place| {
-            let mut sum = [0.0; 3];
-            for &vertex in place.vertices() {
-                let point = self.points.get(vertex as usize)?;
-                sum.iter_mut().zip(point).for_each(|(sum, x)| *sum += x);
-            }
-            Some(sum.map(|x| x / place.vertices().len() as f32))
+            let known = place.vertices().iter().filter_map(|&v| self.points.get(v as usize));
+            (known.clone().count() == place.vertices().len()).then(|| barycentre(known.copied()))
         };
         let is_known = self.places.len() == self.size() && !self.points.is_empty();
         is_known.then(|| self.places.iter().map(point).collect()).flatten()

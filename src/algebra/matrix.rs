@@ -2,6 +2,7 @@
 
 use rayon::prelude::*;
 
+use crate::memory::in_large_pages;
 use crate::real::Real;
 
 /// A square sparse matrix by rows: columns ascending in each row, no column twice.
@@ -94,27 +95,8 @@ impl<T: Real> SparseMatrix<T> {
     }
     /// The transpose.
     pub fn transpose(&self) -> Self {
-        let n = self.size();
-        let mut row_starts = vec![0_u32; n + 1];
-        for &j in &self.columns {
-            row_starts[j as usize + 1] += 1;
-        }
-        for i in 0..n {
-            row_starts[i + 1] += row_starts[i];
-        }
-        let mut next = row_starts.clone();
-        let mut columns = vec![0; self.nonzeros()];
-        let mut values = vec![T::lit(0.0); self.nonzeros()];
-        // rows are met in order, so that columns of the transpose ascend
-        for i in 0..n {
-            let (js, row) = self.row(i);
-            for (&j, &a) in js.iter().zip(row) {
-                let place = next[j as usize] as usize;
-                next[j as usize] += 1;
-                columns[place] = i as u32;
-                values[place] = a;
-            }
-        }
+        let (row_starts, columns, values) =
+            transpose((&self.row_starts, &self.columns, &self.values), self.size());
         Self { row_starts, columns, values }
     }
     /// `(A + A^T) / 2`, symmetric to the last bit, with an entry wherever the matrix or its
@@ -148,6 +130,34 @@ impl<T: Real> SparseMatrix<T> {
         }
         part
     }
+}
+
+/// The transpose of rows given by starts, columns and values, which has `n_columns` rows.
+pub(crate) fn transpose<T: Real>(
+    (starts, columns, values): (&[u32], &[u32], &[T]),
+    n_columns: usize,
+) -> (Vec<u32>, Vec<u32>, Vec<T>) {
+    let mut new_starts = vec![0_u32; n_columns + 1];
+    for &j in columns {
+        new_starts[j as usize + 1] += 1;
+    }
+    for j in 0..n_columns {
+        new_starts[j + 1] += new_starts[j];
+    }
+    let mut next = new_starts.clone();
+    let mut new_columns = in_large_pages(vec![0; columns.len()]);
+    let mut new_values = in_large_pages(vec![T::lit(0.0); columns.len()]);
+    // rows are met in order, so that columns of the transpose ascend
+    for (i, ends) in starts.windows(2).enumerate() {
+        let range = ends[0] as usize..ends[1] as usize;
+        for (&j, &a) in columns[range.clone()].iter().zip(&values[range]) {
+            let at = &mut next[j as usize];
+            new_columns[*at as usize] = i as u32;
+            new_values[*at as usize] = a;
+            *at += 1;
+        }
+    }
+    (new_starts, new_columns, new_values)
 }
 
 #[cfg(test)]

@@ -7,5 +7,7 @@ mod inequality;
 mod matrix;
 
 pub use factored::{Factored, Term};
+pub(crate) use inequality::barycentre;
 pub use inequality::{Bound, Contact, Inequality, Place, Start};
 pub use matrix::SparseMatrix;
+pub(crate) use matrix::transpose;

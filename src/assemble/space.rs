@@ -203,7 +203,7 @@ impl<'a, T: Real, const D: usize> Space<'a, T, D> {
     }
     /// Where each unknown lives.
     pub fn places(&self) -> Vec<Place> {
-        let (n, per_cell) = (self.dofs.size(), self.nodes.len());
+        let n = self.dofs.size();
         if self.broken {
             let mut places = in_large_pages(Vec::with_capacity(n));
             for cell in 0..self.mesh.n_cells() {
@@ -220,8 +220,8 @@ impl<'a, T: Real, const D: usize> Space<'a, T, D> {
         }
         let mut places = in_large_pages(vec![Place::new(None, &[]); n]);
         for cell in 0..self.mesh.n_cells() {
-            for i in 0..per_cell {
-                places[self.dofs.of(cell, i)] = self.place(None, cell, self.nodes[i]);
+            for (i, &node) in self.nodes.iter().enumerate() {
+                places[self.dofs.of(cell, i)] = self.place(None, cell, node);
             }
         }
         places

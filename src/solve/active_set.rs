@@ -223,11 +223,8 @@ pub(super) fn check_definite<T: Real>(inequality: &Inequality<T>) -> Result<(), 
         Hybrid::new(factored).factor(&not_given)?;
         return Ok(());
     }
-    let not_given: Vec<u32> = (0..inequality.size())
-        .filter(|&i| inequality.bounds[i].only_value().is_none())
-        .map(|i| i as u32)
-        .collect();
-    if is_positive_definite(&inequality.matrix, inequality.symmetric, &not_given)? {
+    let Inequality { matrix, symmetric, .. } = inequality;
+    if is_positive_definite(matrix, *symmetric, &inequality.not_given())? {
         Ok(())
     } else {
         Err(Outcome::NotCoercive)

@@ -8,7 +8,7 @@ use faer::sparse::linalg::amd;
 use super::linear::{Analysis, FactorError, Factors, columns};
 use super::nested_dissection::Cloud;
 use super::restrict::Restricted;
-use crate::algebra::{Factored, Inequality, SparseMatrix};
+use crate::algebra::{Factored, Inequality, SparseMatrix, barycentre};
 use crate::real::Real;
 
 /// No place.
@@ -111,10 +111,8 @@ impl EliminationOrder {
     /// # Errors
     /// [`FactorError::OutOfMemory`].
     pub(super) fn of<T: Real>(inequality: &Inequality<T>) -> Result<Self, FactorError> {
-        let is_open = |&i: &u32| inequality.bounds[i as usize].only_value().is_none();
-        let kept: Vec<u32> = (0..inequality.size() as u32).filter(is_open).collect();
         let points = inequality.points_of_unknowns();
-        Self::new(&inequality.matrix, &kept, points.as_deref())
+        Self::new(&inequality.matrix, &inequality.not_given(), points.as_deref())
     }
 
     /// The unknowns, first eliminated first.
@@ -158,27 +156,19 @@ impl KnownPattern {
     /// # Errors
     /// See [`FactorError`].
     pub fn factor<T: Real>(&self, matrix: SparseMatrix<T>) -> Result<Factors<T>, FactorError> {
-        let analysis = match self.analysis.get() {
-            Some(analysis) => analysis,
-            None => {
-                let all: Vec<u32> = (0..matrix.size() as u32).collect();
-                let order = EliminationOrder::new(&matrix, &all, self.points.as_deref())?.unknowns;
-                let analysis = Analysis::new(&Restricted::from(matrix.clone()), Some(order))?;
-                self.analysis.get_or_init(|| analysis)
-            }
-        };
-        Factors::definite(&mut Restricted::from(matrix), analysis)
+        if let Some(analysis) = self.analysis.get() {
+            return Factors::definite(&mut Restricted::from(matrix), analysis);
+        }
+        let all: Vec<u32> = (0..matrix.size() as u32).collect();
+        let order = EliminationOrder::new(&matrix, &all, self.points.as_deref())?.unknowns;
+        let mut matrix = Restricted::from(matrix);
+        let analysis = Analysis::new(&matrix, Some(order))?;
+        Factors::definite(&mut matrix, self.analysis.get_or_init(|| analysis))
     }
 }
 
 /// The mean of the points of the unknowns of a jump.
 fn centre<T: Real>(factored: &Factored<T>, jump: usize, points: &[[f32; 3]]) -> [f32; 3] {
-    let (mut sum, mut n) = ([0.0; 3], 0.0);
-    for unknown in factored.terms_of(jump).iter().flat_map(|term| [term.here, term.there]) {
-        if let Some(point) = points.get(unknown as usize) {
-            sum.iter_mut().zip(point).for_each(|(sum, x)| *sum += x);
-            n += 1.0;
-        }
-    }
-    sum.map(|x| x / n)
+    let unknowns = factored.terms_of(jump).iter().flat_map(|term| [term.here, term.there]);
+    barycentre(unknowns.filter_map(|unknown| points.get(unknown as usize).copied()))
 }

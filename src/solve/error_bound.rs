@@ -2,10 +2,10 @@
 
 use super::conjugate_gradients::{ConjugateGradients, Preconditioner, Stop, dot};
 use super::inexact::{Inexact, MOST_ITERATIONS};
-use super::pieces::{each_mut, zeros};
+use super::pieces::{signs, zeros};
 use super::preconditioners::Preconditioners;
 use super::{Outcome, Solution};
-use crate::algebra::{Contact, Inequality, SparseMatrix};
+use crate::algebra::{Contact, SparseMatrix};
 use crate::real::Real;
 
 /// The smallest eigenvalue is taken to be at least this share of the smallest Ritz value, which lies
@@ -34,10 +34,9 @@ impl<T: Real> Inexact<'_, T> {
         let n = self.values.len();
         let mut force = zeros(n);
         // forces without structure, so that no direction is left out
-        let mut sign = 1_u64;
-        for (i, force) in force.iter_mut().enumerate().filter(|&(i, _)| !self.fixed[i]) {
-            sign = sign.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695);
-            *force = if sign >> 63 == 0 { self.diagonal[i] } else { -self.diagonal[i] };
+        let free = (0..n).filter(|&i| !self.fixed[i]);
+        for (i, is_positive) in free.zip(signs()) {
+            force[i] = if is_positive { self.diagonal[i] } else { -self.diagonal[i] };
         }
         let stop = Stop { norm: 0.0, share: SOUNDED, iterations: MOST_ITERATIONS };
         let iterate = (&mut zeros(n)[..], &mut force[..]);
@@ -130,18 +129,5 @@ impl<T: Real> Inexact<'_, T> {
         let mut z = zeros(self.values.len());
         preconditioner.apply(&unexplained, &mut z);
         Some(dot(&unexplained, &mut z).max(0.0).sqrt())
-    }
-
-    /// Computes the residual anew.
-    pub(super) fn renew_residual(&mut self) {
-        let exact = self.exact_residual();
-        let values = &self.values;
-        let Inequality { matrix, load, .. } = self.inequality;
-        each_mut(&mut self.residual, |range, r| {
-            for (i, r) in range.zip(r) {
-                let assembled = || load[i].to_f64() - matrix.row_dot_f64(i, values);
-                *r = T::lit(exact.as_ref().map_or_else(assembled, |exact| exact[i]));
-            }
-        });
     }
 }

@@ -17,6 +17,7 @@ use faer::{MatMut, Side};
 
 use super::elimination::EliminationOrder;
 use super::kernels::PAR;
+use super::pieces::signs;
 use super::restrict::Restricted;
 use crate::algebra::SparseMatrix;
 use crate::real::Real;
@@ -237,12 +238,11 @@ impl<T: Real> Factors<T> {
     /// right-hand side without structure is dominated by the least singular direction; the size
     /// of its solution bounds the condition number from below, and so raises no false alarm.
     fn condition_holds(&self, restricted: &Restricted<T>) -> bool {
-        let mut sign = 1_u64;
         let mut x: Vec<T> = (0..self.size)
-            .map(|i| {
-                sign = sign.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695);
+            .zip(signs())
+            .map(|(i, is_positive)| {
                 let norm: f64 = restricted.row(i).1.iter().map(|a| a.to_f64().abs()).sum();
-                T::lit(if sign >> 63 == 0 { norm } else { -norm })
+                T::lit(if is_positive { norm } else { -norm })
             })
             .collect();
         self.solve_in_place(&mut x, 1);

@@ -3,7 +3,7 @@
 use super::active_set::ActiveSet;
 use super::inexact::Inexact;
 use super::nearby::{Functions, Nearby};
-use super::pieces::{map, map_mut};
+use super::pieces::{each_mut, map, map_mut};
 use crate::algebra::{Bound, Contact, Inequality};
 use crate::real::Real;
 
@@ -38,6 +38,19 @@ impl Look {
 /// Systems solved inexactly that may pass for each with factors, which costs several times as much.
 const FACTORS_OVER_INEXACT: usize = 4;
 
+/// The residual of an unknown, in `f64`: what is more exact than the matrix, if there is such.
+fn residual_at<'v, T: Real>(
+    inequality: &'v Inequality<T>,
+    values: &'v [T],
+    exact: Option<&'v [f64]>,
+) -> impl Fn(usize) -> f64 + Sync + 'v {
+    let Inequality { matrix, load, .. } = inequality;
+    move |i| match exact {
+        Some(exact) => exact[i],
+        None => load[i].to_f64() - matrix.row_dot_f64(i, values),
+    }
+}
+
 impl<T: Real> Inexact<'_, T> {
     /// How many systems may pass without progress where `hesitation` exact ones may: longer where
     /// what would take over is neither multigrid nor an elimination that halves the unknowns.
@@ -49,15 +62,15 @@ impl<T: Real> Inexact<'_, T> {
 
     /// Computes the residual anew and judges every unknown.
     pub fn look(&mut self, band: f64) -> Look {
-        let Inequality { matrix, load, .. } = self.inequality;
+        let load = &self.inequality.load;
         let values = &self.values;
         let exact = self.exact_residual();
+        let residual_at = residual_at(self.inequality, values, exact.as_deref());
         let sizes = map_mut(&mut self.residual, |range, r| {
             let (mut energy, mut scale) = (0.0, 0.0_f64);
             for (i, r) in range.zip(r) {
                 let (x, b) = (values[i].to_f64(), load[i].to_f64());
-                let residual =
-                    exact.as_ref().map_or_else(|| b - matrix.row_dot_f64(i, values), |r| r[i]);
+                let residual = residual_at(i);
                 *r = T::lit(residual);
                 energy += x * (b - residual);
                 scale = scale.max(x.abs());
@@ -88,8 +101,17 @@ impl<T: Real> Inexact<'_, T> {
         look
     }
 
+    /// Computes the residual anew.
+    pub(super) fn renew_residual(&mut self) {
+        let exact = self.exact_residual();
+        let residual_at = residual_at(self.inequality, &self.values, exact.as_deref());
+        each_mut(&mut self.residual, |range, r| {
+            range.zip(r).for_each(|(i, r)| *r = T::lit(residual_at(i)));
+        });
+    }
+
     /// The residual where the matrix is kept factored.
-    pub(super) fn exact_residual(&self) -> Option<Vec<f64>> {
+    fn exact_residual(&self) -> Option<Vec<f64>> {
         let factored = self.inequality.factored.as_ref()?;
         let mut residual = vec![0.0; self.values.len()];
         factored.residual(|i| self.values[i].to_f64(), &mut residual);

@@ -13,7 +13,7 @@ mod leaf;
 use std::cmp::Ordering;
 use std::ops::Range;
 
-use crate::algebra::SparseMatrix;
+use crate::algebra::{SparseMatrix, barycentre};
 use cut::{Cutter, SEPARATOR};
 use graph::Graph;
 use leaf::Leaf;
@@ -40,7 +40,7 @@ impl<'k> Cloud<'k> {
     /// rows.
     pub fn new<T>(matrix: &SparseMatrix<T>, kept: &'k [u32], points: &[[f32; 3]]) -> Self {
         let graph = Graph::new(matrix, kept);
-        let point = |node: u32| mean(graph.unknowns(node).map(|k| points[kept[k] as usize]));
+        let point = |node: u32| barycentre(graph.unknowns(node).map(|k| points[kept[k] as usize]));
         let points = (0..graph.size() as u32).map(point).collect();
         Self { kept, graph, points }
     }
@@ -77,13 +77,6 @@ impl<'k> Cloud<'k> {
         });
         nodes
     }
-}
-
-fn mean(points: impl ExactSizeIterator<Item = [f32; 3]>) -> [f32; 3] {
-    let n = points.len() as f32;
-    let mut sum = [0.0; 3];
-    points.for_each(|point| sum.iter_mut().zip(point).for_each(|(sum, x)| *sum += x));
-    sum.map(|x| x / n)
 }
 
 /// Orders nodes that are given in their order along each axis.

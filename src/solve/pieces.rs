@@ -17,6 +17,15 @@ pub(super) fn zeros<T: Real>(n: usize) -> Vec<T> {
     in_large_pages(vec![T::lit(0.0); n])
 }
 
+/// Signs without structure, the same every time: plus for true.
+pub(super) fn signs() -> impl Iterator<Item = bool> {
+    let mut state = 1_u64;
+    std::iter::repeat_with(move || {
+        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695);
+        state >> 63 == 0
+    })
+}
+
 /// The numbers of a piece.
 fn range(piece: usize, n: usize) -> Range<usize> {
     piece * PIECE..((piece + 1) * PIECE).min(n)

@@ -49,9 +49,9 @@ pub(super) enum ShiftedFactors<T> {
 impl<'h, 'a, T: Real> Shifted<'h, 'a, T> {
     /// The matrix on all unknowns that are not given.
     pub fn new(inequality: &'a Inequality<T>, hybrid: Option<&'h Hybrid<'a, T>>) -> Self {
-        let is_free: Vec<bool> =
-            inequality.bounds.iter().map(|bound| bound.only_value().is_none()).collect();
-        let free = (0..is_free.len()).filter(|&i| is_free[i]).map(|i| i as u32).collect();
+        let free = inequality.not_given();
+        let mut is_free = vec![false; inequality.size()];
+        free.iter().for_each(|&i| is_free[i as usize] = true);
         Self { inequality, hybrid, free, is_free, half: None }
     }
 

@@ -1,6 +1,7 @@
 //! From coarse to fine functions and back.
 
 use super::pieces::{each_mut, zeros};
+use crate::algebra::transpose;
 use crate::memory::in_large_pages;
 use crate::real::Real;
 
@@ -32,25 +33,8 @@ impl<T: Real> Rows<T> {
 
     /// The transpose, which has `n_columns` rows.
     pub fn transpose(&self, n_columns: usize) -> Self {
-        let mut starts = vec![0_u32; n_columns + 1];
-        for &j in &self.columns {
-            starts[j as usize + 1] += 1;
-        }
-        for j in 0..n_columns {
-            starts[j + 1] += starts[j];
-        }
-        let mut next = starts.clone();
-        let mut columns = in_large_pages(vec![0; self.columns.len()]);
-        let mut values = zeros(self.columns.len());
-        for i in 0..self.len() {
-            let (js, row) = self.row(i);
-            for (&j, &a) in js.iter().zip(row) {
-                let at = &mut next[j as usize];
-                columns[*at as usize] = i as u32;
-                values[*at as usize] = a;
-                *at += 1;
-            }
-        }
+        let rows = (&self.starts[..], &self.columns[..], &self.values[..]);
+        let (starts, columns, values) = transpose(rows, n_columns);
         Self { starts, columns, values }
     }
 }

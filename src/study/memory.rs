@@ -127,12 +127,13 @@ mod tests {
     use super::{estimate, estimate_without_factors, peak_of_status};
     use crate::element::Layout;
 
+    const P1: Layout = Layout { vertex: 1, edge: 0, facet: 0, cell: 0 };
+    const P2: Layout = Layout { vertex: 1, edge: 1, facet: 0, cell: 0 };
+    const CR: Layout = Layout { vertex: 0, edge: 0, facet: 1, cell: 0 };
+
     #[test]
     fn the_estimate_meets_peaks_that_were_measured() {
-        let broken = |cell| Layout::in_cells(cell);
-        let p1 = Layout { vertex: 1, edge: 0, facet: 0, cell: 0 };
-        let p2 = Layout { vertex: 1, edge: 1, facet: 0, cell: 0 };
-        let cr = Layout { vertex: 0, edge: 0, facet: 1, cell: 0 };
+        let (broken, p1, p2, cr) = (Layout::in_cells, P1, P2, CR);
         for (dimension, layout, cells, obstacle, scalar_bytes, peak) in [
             (1, broken(2), 1_000_000, true, 8, 740.6e6),
             (1, p1, 1_000_000, true, 8, 319.4e6),
@@ -167,10 +168,7 @@ mod tests {
 
     #[test]
     fn the_estimate_without_factors_meets_peaks_that_were_measured() {
-        let broken = |cell| Layout::in_cells(cell);
-        let p1 = Layout { vertex: 1, edge: 0, facet: 0, cell: 0 };
-        let p2 = Layout { vertex: 1, edge: 1, facet: 0, cell: 0 };
-        let cr = Layout { vertex: 0, edge: 0, facet: 1, cell: 0 };
+        let (broken, p1, p2, cr) = (Layout::in_cells, P1, P2, CR);
         for (dimension, layout, cells, scalar_bytes, peak) in [
             (2, p1, 2_097_152, 8, 541e6),
             (2, p1, 262_144, 8, 89.8e6),
