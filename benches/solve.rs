@@ -8,8 +8,9 @@ use std::hint::black_box;
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
 use unilateral::algebra::{Bound, Inequality};
 use unilateral::assemble::{DataQuadrature, Discretisation};
+use unilateral::inequality::{ActiveSet, InequalitySolver, Outcome};
+use unilateral::linear::Linear;
 use unilateral::prelude::*;
-use unilateral::solve::{ActiveSet, InequalitySolver, Linear, Outcome};
 
 /// One scheme on one mesh: the linear system, without inequalities.
 fn scheme<const D: usize, S: Scheme<f64, D>>(c: &mut Criterion, scheme: &S, subdivisions: usize) {

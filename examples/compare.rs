@@ -20,12 +20,14 @@ use penalties::{check_penalties, scheme_options};
 use watcher::Watcher;
 
 use unilateral::error::Error;
+use unilateral::inequality::ActiveSet;
+use unilateral::linear::Linear;
 use unilateral::mesh::{Mesh, gmsh};
 use unilateral::real::Real;
 use unilateral::scenes::{self, AnyScene, Parameters, Scene, Takes};
-use unilateral::solve::{ActiveSet, Linear};
+use unilateral::study::orders_table;
 use unilateral::study::{
-    Program, Report, Row, SCHEMES, Study, available_memory_bytes, orders_table, scheme_by_name,
+    Program, Report, Row, SCHEMES, Study, available_memory_bytes, scheme_by_name,
 };
 
 /// How far an observed order may fall below a promised one that counts as kept.

@@ -12,13 +12,14 @@ use std::process::ExitCode;
 
 use clap::Parser;
 use unilateral::error::Error;
+use unilateral::inequality::Outcome;
+use unilateral::measure::Fields;
 use unilateral::mesh::Mesh;
+use unilateral::nested::{AnyScheme, Solved};
+use unilateral::paraview::{CellFields, write_pvd, write_vtu};
+use unilateral::plot::{Picture, Slice, solve_level};
 use unilateral::scenes::{self, AnyScene, Parameters, Scene};
-use unilateral::solve::Outcome;
-use unilateral::study::{
-    AnyScheme, CellFields, Fields, Picture, Placement, SCHEMES, SchemeOptions, Slice, Solved,
-    scheme_by_name, solve_level, write_pvd, write_vtu,
-};
+use unilateral::study::{Placement, SCHEMES, SchemeOptions, scheme_by_name};
 
 /// A wrong request, as a message.
 type Request<T> = Result<T, String>;

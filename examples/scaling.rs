@@ -10,9 +10,10 @@
 use std::path::Path;
 use std::process::{Command, ExitCode};
 
+use unilateral::inequality::ActiveSet;
+use unilateral::linear::Linear;
 use unilateral::mesh::gmsh;
 use unilateral::prelude::*;
-use unilateral::solve::{ActiveSet, Linear};
 use unilateral::study::Row;
 
 /// A case: its name, dimension, whether the bounds are left away, scheme and level.

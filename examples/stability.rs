@@ -22,7 +22,7 @@ use clap::Parser;
 use indicatif::{ProgressBar, ProgressStyle};
 use options::Options;
 use unilateral::mesh::gmsh;
-use unilateral::study::{Effort, Stability, StabilityProgress, Verdict};
+use unilateral::stability::{Effort, Stability, StabilityProgress, Verdict};
 
 fn main() -> ExitCode {
     let options = Options::parse();

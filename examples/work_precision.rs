@@ -15,12 +15,13 @@ mod options;
 use clap::Parser;
 use indicatif::{ProgressBar, ProgressStyle};
 use options::{Options, Request};
+use unilateral::inequality::ActiveSet;
+use unilateral::linear::Linear;
 use unilateral::real::Real;
 use unilateral::scenes::{self, AnyScene, Parameters, Scene};
-use unilateral::solve::{ActiveSet, Linear};
-use unilateral::study::{
-    Case, Named, Precision, Study, WorkPrecision, WorkProgress, WorkReport, changes,
-    peak_memory_bytes, scheme_by_name,
+use unilateral::study::{Study, peak_memory_bytes, scheme_by_name};
+use unilateral::work_precision::{
+    Case, Named, Precision, WorkPrecision, WorkProgress, WorkReport, changes,
 };
 
 fn main() -> ExitCode {

@@ -1,6 +1,6 @@
 //! Everything that can be wrong with what a caller hands in.
 //!
-//! A numerical outcome (iteration limit, cycling) is not an error: see [`crate::solve::Outcome`].
+//! A numerical outcome (iteration limit, cycling) is not an error: see [`crate::inequality::Outcome`].
 
 use crate::mesh::MeshError;
 use crate::mesh::gmsh::GmshError;
@@ -85,4 +85,9 @@ pub enum Error {
         /// The system's reason.
         why: String,
     },
+}
+
+/// What could not be written, and why.
+pub(crate) fn write_error(path: &std::path::Path, why: impl std::fmt::Display) -> Error {
+    Error::Write { path: path.display().to_string(), why: why.to_string() }
 }

@@ -4,6 +4,7 @@ pub use crate::element::{Broken, CrouzeixRaviart, P1, P2, ReferenceElement};
 pub use crate::error::Error;
 pub use crate::facet::{FacetForm, FacetView, NoFacets, PenaltyRule, Trace, WeightRule};
 pub use crate::mesh::{BoundaryPart, Mesh};
+pub use crate::nested::AnyScheme;
 pub use crate::problem::Problem;
 pub use crate::real::{Point, Real};
 pub use crate::scenes;
@@ -11,4 +12,4 @@ pub use crate::scheme::{
     Bmmpr, Br2, CellMeans, ConformingP1, ConformingP2, CrouzeixRaviartScheme, DirichletBy, Eta,
     FacetMeans, Iipg, Ldg, Midpoints, Nipg, Scheme, Sipg, Wopsip,
 };
-pub use crate::study::{AnyScheme, Report, Study};
+pub use crate::study::{Report, Study};

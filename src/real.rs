@@ -10,7 +10,7 @@
 pub trait Real:
     nalgebra::RealField
     + faer::traits::RealField
-    + crate::solve::SparseKernels
+    + crate::linear::SparseKernels
     + crate::study::RegisteredSchemes
     + Copy
 {

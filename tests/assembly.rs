@@ -411,7 +411,7 @@ fn forms_do_not_depend_on_numbering_or_orientation() {
 #[test]
 fn a_form_is_invariant_under_reversing_the_axes() {
     // the map x -> 1 - x reverses every facet's orientation in one dimension
-    let domain = unilateral::scenes::BoxDomain::dirichlet(Point::zeros(), Point::repeat(1.0));
+    let domain = unilateral::mesh::BoxDomain::dirichlet(Point::zeros(), Point::repeat(1.0));
     let raw = Raw::<1>::jittered(&domain, 6, 0.5, &mut Random(5));
     let mut mirrored = Raw {
         vertices: raw.vertices.clone(),
@@ -492,9 +492,9 @@ fn refilling_a_pattern_gives_the_same_matrix() {
 #[test]
 fn continuous_functions_have_no_jump_and_constants_no_energy() {
     // pure Neumann and contact boundary: the form of a constant vanishes for every scheme
-    let domain = unilateral::scenes::BoxDomain::<2> {
+    let domain = unilateral::mesh::BoxDomain::<2> {
         sides: [[BoundaryPart::Neumann; 2], [BoundaryPart::Contact, BoundaryPart::Neumann]],
-        ..unilateral::scenes::BoxDomain::dirichlet(Point::zeros(), Point::repeat(1.0))
+        ..unilateral::mesh::BoxDomain::dirichlet(Point::zeros(), Point::repeat(1.0))
     };
     let mesh = Raw::<2>::jittered(&domain, 4, 0.4, &mut Random(9)).mesh::<f64>();
     let problem = Problem::<2>::new();

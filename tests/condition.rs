@@ -5,11 +5,12 @@ mod support;
 
 use support::accuracy::{Checks, sipg, wopsip};
 use unilateral::algebra::{Inequality, SparseMatrix};
+use unilateral::kit::spectrum::MeanJump;
 use unilateral::kit::spectrum::{Diagonal, Factored, Lanczos, Positive};
+use unilateral::linear::is_positive_definite;
+use unilateral::mesh::BoxDomain;
 use unilateral::mesh::Mesh;
 use unilateral::prelude::*;
-use unilateral::scenes::BoxDomain;
-use unilateral::solve::{MeanJump, is_positive_definite};
 
 /// The unit cube, Dirichlet everywhere.
 fn cube<const D: usize>(counts: [usize; D]) -> Mesh<f64, D> {

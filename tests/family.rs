@@ -4,11 +4,12 @@ mod support;
 
 use std::ops::Range;
 use support::accuracy::{Boxed, Checks, label, own_scene, rows, solve_as_tables};
+use unilateral::inequality::Outcome;
+use unilateral::mesh::BoxDomain;
 use unilateral::mesh::Mesh;
 use unilateral::prelude::*;
 use unilateral::quadrature::Rule;
-use unilateral::scenes::{BoxDomain, Scene};
-use unilateral::solve::Outcome;
+use unilateral::scenes::Scene;
 use unilateral::study::{SchemeOptions, scheme_by_name};
 
 /// The scheme of this name with its default penalty.

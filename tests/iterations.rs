@@ -195,7 +195,7 @@ fn a_huge_penalty_is_solved_like_a_moderate_one() {
 #[test]
 fn a_body_held_at_one_point_is_not_singular() {
     let sides = [[BoundaryPart::Neumann; 2], [BoundaryPart::Contact, BoundaryPart::Neumann]];
-    let domain = scenes::BoxDomain {
+    let domain = unilateral::mesh::BoxDomain {
         lower: Point::from([-1.0, 0.0]),
         upper: Point::from([1.0, 1.0]),
         sides,
@@ -207,7 +207,7 @@ fn a_body_held_at_one_point_is_not_singular() {
         problem: Problem::new()
             .constant_source(-1.0)
             .signorini(|x: &Point<f64, 2>| -1000.0 * x[0] * x[0]),
-        regularity: scenes::Regularity { sobolev: 2.5, strictly_complementary: true },
+        regularity: unilateral::scheme::Regularity { sobolev: 2.5, strictly_complementary: true },
     };
     let report = Study::<f64, 2>::new(scene())
         .scheme(ConformingP1)
@@ -229,9 +229,9 @@ fn a_curved_obstacle_may_touch_the_datum() {
     let scene = scenes::Scene::<2> {
         name: "bump-2d".into(),
         summary: "a curved obstacle that touches the boundary",
-        domain: scenes::BoxDomain::dirichlet(Point::zeros(), Point::repeat(1.0)).into(),
+        domain: unilateral::mesh::BoxDomain::dirichlet(Point::zeros(), Point::repeat(1.0)).into(),
         problem: Problem::new().constant_source(-3.0).dirichlet(bump).obstacle_below(bump),
-        regularity: scenes::Regularity { sobolev: 2.5, strictly_complementary: true },
+        regularity: unilateral::scheme::Regularity { sobolev: 2.5, strictly_complementary: true },
     };
     let report =
         Study::<f64, 2>::new(scene).scheme(CrouzeixRaviartScheme).levels([4, 8]).run().unwrap();

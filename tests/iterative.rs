@@ -3,9 +3,10 @@
 
 use unilateral::algebra::{Bound, Inequality, SparseMatrix};
 use unilateral::assemble::{DataQuadrature, Discretisation};
+use unilateral::inequality::{ActiveSet, InequalitySolver, Outcome};
+use unilateral::linear::Linear;
 use unilateral::prelude::*;
 use unilateral::scenes::Scene;
-use unilateral::solve::{ActiveSet, InequalitySolver, Linear, Outcome};
 use unilateral::study::Row;
 
 fn with(linear: Linear) -> ActiveSet {

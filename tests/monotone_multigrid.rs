@@ -1,9 +1,9 @@
 //! The monotone multigrid method: counts that do not depend on strict complementarity nor on the
 //! mesh, and the solutions of the active set.
 
+use unilateral::inequality::{ActiveSet, InequalitySolver, MonotoneMultigrid};
 use unilateral::prelude::*;
 use unilateral::scenes::Scene;
-use unilateral::solve::{ActiveSet, InequalitySolver, MonotoneMultigrid};
 use unilateral::study::Row;
 
 fn rows<const D: usize>(

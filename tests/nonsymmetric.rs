@@ -3,11 +3,10 @@
 
 use unilateral::algebra::{Bound, Inequality};
 use unilateral::assemble::{DataQuadrature, Discretisation};
+use unilateral::inequality::{ActiveSet, InequalitySolver, Outcome, Solution};
+use unilateral::linear::{Linear, is_positive_definite};
 use unilateral::prelude::*;
 use unilateral::scenes::Scene;
-use unilateral::solve::{
-    ActiveSet, InequalitySolver, Linear, Outcome, Solution, is_positive_definite,
-};
 use unilateral::study::Row;
 
 fn solve<T: Real>(inequality: &Inequality<T>, linear: Linear) -> Solution<T> {

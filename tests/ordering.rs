@@ -10,9 +10,10 @@ use std::time::Instant;
 use proptest::prelude::*;
 use unilateral::algebra::{Inequality, SparseMatrix};
 use unilateral::assemble::{DataQuadrature, Discretisation};
+use unilateral::inequality::{ActiveSet, InequalitySolver};
+use unilateral::linear::{EliminationOrder, Factors, Linear};
 use unilateral::prelude::*;
 use unilateral::real::Point;
-use unilateral::solve::{ActiveSet, EliminationOrder, Factors, InequalitySolver, Linear};
 
 use inequalities::{Random, laplacian, sparse};
 

@@ -5,8 +5,9 @@ mod support;
 use std::f64::consts::PI;
 use support::accuracy::{Checks, all_schemes, label, own_scene, rows};
 use unilateral::mesh::BoundaryPart;
+use unilateral::mesh::BoxDomain;
 use unilateral::prelude::*;
-use unilateral::scenes::{BoxDomain, Scene};
+use unilateral::scenes::Scene;
 use unilateral::study::Row;
 
 /// Where observed orders may lie.

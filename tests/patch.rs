@@ -7,9 +7,9 @@ use support::accuracy::{
     Checks, consistent_schemes, jump_norm, shared_mesh, small_mesh, solve, wopsip,
 };
 use support::{Random, Raw, mixed_box};
+use unilateral::mesh::BoxDomain;
 use unilateral::mesh::{BoundaryPart, Mesh};
 use unilateral::prelude::*;
-use unilateral::scenes::BoxDomain;
 
 fn unit_box<const D: usize>() -> BoxDomain<D> {
     BoxDomain::dirichlet(Point::zeros(), Point::repeat(1.0))

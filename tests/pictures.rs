@@ -2,12 +2,13 @@
 
 use std::path::PathBuf;
 
+use unilateral::measure::{Fields, FoundContact};
+use unilateral::mesh::BoxDomain;
 use unilateral::mesh::{BoundaryPart, Mesh, edge_vertices};
+use unilateral::paraview::{CellFields, write_pvd, write_vtu};
+use unilateral::plot::{Picture, Slice, solve_level};
 use unilateral::prelude::*;
-use unilateral::scenes::{BoxDomain, Scene};
-use unilateral::study::{
-    CellFields, Fields, FoundContact, Picture, Slice, solve_level, write_pvd, write_vtu,
-};
+use unilateral::scenes::Scene;
 
 /// The fill of areas in contact.
 const CONTACT: &str = "#96BEDE";

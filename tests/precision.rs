@@ -7,10 +7,11 @@ use support::accuracy::{
     Checks, all_schemes, jump_norm, label, norms_as_tables, own_scene, rows, solve,
     solve_as_tables, wopsip,
 };
+use unilateral::inequality::Outcome;
+use unilateral::mesh::BoxDomain;
 use unilateral::mesh::Mesh;
 use unilateral::prelude::*;
-use unilateral::scenes::{BoxDomain, Scene};
-use unilateral::solve::Outcome;
+use unilateral::scenes::Scene;
 
 /// In single precision errors are those of double precision, for the over-penalised scheme too.
 #[test]

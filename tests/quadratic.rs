@@ -8,13 +8,15 @@ use support::accuracy::{Boxed, Checks, label, own_scene, rows, small_mesh, solve
 use support::{Random, Raw, mixed_box};
 use unilateral::algebra::{Contact, Start};
 use unilateral::assemble::{DataQuadrature, Discretisation};
+use unilateral::inequality::{ActiveSet, InequalitySolver, Outcome};
+use unilateral::mesh::BoxDomain;
 use unilateral::mesh::{BoundaryPart, Edges, Mesh, TaggedFacet};
+use unilateral::nested::Levels;
 use unilateral::prelude::*;
 use unilateral::problem::Datum;
 use unilateral::quadrature::Rule;
-use unilateral::scenes::{BoxDomain, Scene};
-use unilateral::solve::{ActiveSet, InequalitySolver, Outcome};
-use unilateral::study::{Levels, SchemeOptions, scheme_by_name};
+use unilateral::scenes::Scene;
+use unilateral::study::{SchemeOptions, scheme_by_name};
 
 /// Symmetric interior penalty on broken quadratics.
 fn broken() -> Sipg<P2> {
@@ -43,7 +45,7 @@ fn h1_as_tables<S: Scheme<f64, 2, Element = P2>>(
     level: usize,
 ) -> f64 {
     let (solver, quadrature) = (ActiveSet::default(), DataQuadrature::default());
-    let mut levels = Levels::new(scene, None);
+    let mut levels = Levels::new(&scene.problem, &scene.domain, None);
     levels.make(level).unwrap();
     let start = levels.contact(level, &solver, quadrature, 1).unwrap().contact.clone();
     let mesh = levels.mesh(level).unwrap().0;

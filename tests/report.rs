@@ -8,7 +8,9 @@ use keys::ROW_KEYS;
 use rows::{report, row, rows};
 use serde_json::Value;
 use std::path::{Path, PathBuf};
-use unilateral::study::{Errors, PenaltyParameters, peak_memory_bytes};
+use unilateral::facet::PenaltyParameters;
+use unilateral::measure::Errors;
+use unilateral::study::peak_memory_bytes;
 
 /// A directory of its own for a test, gone when the test is over.
 struct Scratch(PathBuf);

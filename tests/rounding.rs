@@ -6,10 +6,12 @@ use std::f64::consts::PI;
 use support::accuracy::{Checks, own_scene, solve, wopsip};
 use unilateral::algebra::Inequality;
 use unilateral::assemble::Discretisation;
+use unilateral::inequality::{ActiveSet, InequalitySolver, Outcome, Solution};
+use unilateral::linear::Linear;
+use unilateral::mesh::BoxDomain;
 use unilateral::mesh::{Mesh, TaggedFacet};
 use unilateral::prelude::*;
-use unilateral::scenes::{BoxDomain, Scene};
-use unilateral::solve::{ActiveSet, InequalitySolver, Linear, Outcome, Solution};
+use unilateral::scenes::Scene;
 
 /// The unit cube, Dirichlet data but on one side.
 fn cube<T: Real, const D: usize>(n: usize) -> Mesh<T, D> {

@@ -5,10 +5,11 @@ mod inequalities;
 
 use inequalities::*;
 use unilateral::algebra::{Bound, Contact, Inequality, Start};
-use unilateral::real::Real;
-use unilateral::solve::{
-    ActiveSet, Factors, InequalitySolver, LastResort, Outcome, Solution, active, certify,
+use unilateral::inequality::{
+    ActiveSet, InequalitySolver, LastResort, Outcome, Solution, active, certify,
 };
+use unilateral::linear::Factors;
+use unilateral::real::Real;
 
 fn cold<T: Real>(inequality: &Inequality<T>) -> Solution<T> {
     ActiveSet::default().solve(inequality)

@@ -7,10 +7,9 @@ mod inequalities;
 
 use inequalities::*;
 use unilateral::algebra::{Bound, Contact, Inequality, Start};
+use unilateral::inequality::{ActiveSet, InequalitySolver, Outcome, Solution, certify};
+use unilateral::linear::is_positive_definite;
 use unilateral::real::Real;
-use unilateral::solve::{
-    ActiveSet, InequalitySolver, Outcome, Solution, certify, is_positive_definite,
-};
 
 fn cold<T: Real>(inequality: &Inequality<T>) -> Solution<T> {
     ActiveSet::default().solve(inequality)

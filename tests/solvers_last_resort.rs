@@ -8,11 +8,12 @@ mod inequalities;
 use inequalities::*;
 use unilateral::algebra::{Bound, Contact, Inequality, Start};
 use unilateral::assemble::{DataQuadrature, Discretisation};
+use unilateral::inequality::{
+    ActiveSet, InequalitySolver, LastResort, MonotoneMultigrid, Outcome, certify,
+};
+use unilateral::linear::Linear;
 use unilateral::prelude::*;
 use unilateral::scenes::Scene;
-use unilateral::solve::{
-    ActiveSet, InequalitySolver, LastResort, Linear, MonotoneMultigrid, Outcome, certify,
-};
 use unilateral::study::{Placement, SCHEMES, SchemeOptions, scheme_by_name};
 
 /// Every solver there is for symmetric matrices, by what forces it.

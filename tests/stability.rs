@@ -5,7 +5,7 @@ use std::path::PathBuf;
 
 use serde_json::Value;
 use unilateral::error::Error;
-use unilateral::study::{
+use unilateral::stability::{
     CRITERIA, Effort, STABILITY_CASES, Stability, StabilityReport, StabilityRow, Verdict,
 };
 

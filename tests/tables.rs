@@ -3,9 +3,10 @@
 mod rows;
 
 use rows::{report, row};
-use unilateral::study::{
-    Errors, ExpectedOrders, Norm, OrderMissed, Row, fill_orders, observed_order, orders_table,
-};
+use unilateral::measure::{Errors, observed_order};
+use unilateral::scheme::ExpectedOrders;
+use unilateral::study::orders_table;
+use unilateral::study::{Norm, OrderMissed, Row, fill_orders};
 
 #[test]
 fn orders_are_of_the_ratio_of_mesh_sizes() {

@@ -4,10 +4,10 @@ use std::path::PathBuf;
 
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
+use unilateral::mesh::BoxDomain;
 use unilateral::mesh::{BoundaryPart, Mesh};
+use unilateral::paraview::{CellFields, write_vtu};
 use unilateral::real::{Point, Real};
-use unilateral::scenes::BoxDomain;
-use unilateral::study::{CellFields, write_vtu};
 
 /// Where a test writes; kept if `UNILATERAL_KEEP` names a directory, to look at it with other tools.
 fn path(name: &str) -> PathBuf {

@@ -8,7 +8,7 @@ use std::cell::RefCell;
 
 use serde_json::Value;
 use unilateral::prelude::*;
-use unilateral::study::{
+use unilateral::work_precision::{
     ErrorNorm, Phases, Precision, WorkPoint, WorkPrecision, WorkProgress, work_at,
 };
 use work::{Scratch, measured, synthetic};
@@ -125,7 +125,7 @@ fn an_interrupted_study_leaves_a_readable_report_of_what_is_finished() {
 fn a_tiny_study_measures_every_variant_alike() {
     let report = tiny()
         .scheme(FacetMeans(Wopsip::default()))
-        .linear([unilateral::solve::Linear::Direct, unilateral::solve::Linear::Iterative])
+        .linear([unilateral::linear::Linear::Direct, unilateral::linear::Linear::Iterative])
         .precisions([Precision::Double, Precision::Single])
         .levels([8, 4])
         .rounds(3)
@@ -157,8 +157,8 @@ fn a_tiny_study_measures_every_variant_alike() {
     }
     let alone = Study::<f64, 2>::new(scenes::radial(1.0))
         .scheme(ConformingP1)
-        .solver(unilateral::solve::ActiveSet {
-            linear: unilateral::solve::Linear::Direct,
+        .solver(unilateral::inequality::ActiveSet {
+            linear: unilateral::linear::Linear::Direct,
             ..Default::default()
         })
         .levels([4, 8])
@@ -178,7 +178,8 @@ fn wrong_requests_are_refused_before_anything_runs() {
     assert!(message(tiny()).contains("needs a scheme"));
     assert!(message(tiny().levels([0, 4])).contains("at least one subdivision"));
     assert!(message(tiny().scheme(ConformingP1).levels([4])).contains("must have its own name"));
-    let named = unilateral::study::Named { name: "nothing".into(), options: Default::default() };
+    let named =
+        unilateral::work_precision::Named { name: "nothing".into(), options: Default::default() };
     assert!(message(tiny().scheme(named).levels([4])).contains("no scheme of this name"));
 }
 

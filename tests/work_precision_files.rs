@@ -6,7 +6,7 @@ mod work;
 
 use std::process::Command;
 
-use unilateral::study::changes;
+use unilateral::work_precision::changes;
 use work::{Scratch, measured, synthetic};
 
 /// Cells of a line without quoted commas.

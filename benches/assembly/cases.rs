@@ -4,9 +4,9 @@ use std::hint::black_box;
 use std::sync::OnceLock;
 
 use unilateral::assemble::{DataQuadrature, Discretisation};
+use unilateral::mesh::BoxDomain;
 use unilateral::mesh::{Edges, Neighbours};
 use unilateral::prelude::*;
-use unilateral::scenes::BoxDomain;
 use unilateral::scheme::ConformingP2;
 
 /// Work on one mesh, in several jobs.

@@ -1,9 +1,10 @@
 //! Penalty factors: which schemes take them.
 
+use unilateral::facet::PenaltyParameters;
+use unilateral::mesh::BoxDomain;
 use unilateral::mesh::Mesh;
 use unilateral::real::Point;
-use unilateral::scenes::BoxDomain;
-use unilateral::study::{PenaltyParameters, Placement, SchemeOptions, scheme_by_name};
+use unilateral::study::{Placement, SchemeOptions, scheme_by_name};
 
 use super::Request;
 use super::options::Options;

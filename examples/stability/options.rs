@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use clap::Parser;
-use unilateral::study::{Effort, STABILITY_CASES, Stability};
+use unilateral::stability::{Effort, STABILITY_CASES, Stability};
 
 /// Runs the hard cases of variational inequalities and judges schemes by their criteria.
 #[derive(Parser, Debug)]

@@ -3,9 +3,10 @@
 use std::path::PathBuf;
 
 use clap::Parser;
+use unilateral::linear::Linear;
 use unilateral::scenes;
-use unilateral::solve::Linear;
-use unilateral::study::{Placement, Precision, SCHEMES, SchemeOptions};
+use unilateral::study::{Placement, SCHEMES, SchemeOptions};
+use unilateral::work_precision::Precision;
 
 /// A wrong request, as a message.
 pub type Request<T> = Result<T, String>;

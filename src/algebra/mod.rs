@@ -2,12 +2,14 @@
 //!
 //! Nothing here knows a mesh, a dimension or a scheme.
 
-mod factored;
+pub(crate) mod dense;
 mod inequality;
 mod matrix;
+mod penalised_matrix;
+pub(crate) mod submatrix;
 
-pub use factored::{Factored, Term};
 pub(crate) use inequality::barycentre;
 pub use inequality::{Bound, Contact, Inequality, Place, Start};
 pub use matrix::SparseMatrix;
 pub(crate) use matrix::transpose;
+pub use penalised_matrix::{Factored, Term};

@@ -53,10 +53,9 @@ mod tests {
 
     use super::take;
     use crate::assemble::{DataQuadrature, Discretisation};
-    use crate::mesh::{BoundaryPart, Mesh};
+    use crate::mesh::{BoundaryPart, BoxDomain, Mesh};
     use crate::problem::Problem;
     use crate::real::Point;
-    use crate::scenes::BoxDomain;
     use crate::scheme::{ConformingP1, CrouzeixRaviartScheme, FacetMeans, Scheme, Sipg, Wopsip};
 
     /// What assembling an inequality counts, on one thread.

@@ -4,20 +4,21 @@
 
 use std::ops::Range;
 
-use super::lifted::{LiftTable, Lifting};
+use super::count;
 use super::local::{traces, view};
-use super::metric::Metrics;
-use super::space::Space;
-use super::{count, data, parallel};
+use super::owned_rows::lifted::{LiftTable, Lifting};
+use super::space::metric::Metrics;
+use super::space::{Space, data};
 use crate::error::Error;
 use crate::facet::{AnyForm, Trace};
 use crate::mesh::BoundaryPart;
+use crate::parallel::cells;
 use crate::problem::{Datum, Field};
 use crate::quadrature::{OrthonormalPolynomials, Rule, insert};
 use crate::real::{Point, Real, point_f64};
 
 /// A cell, one of its facets and the moments of the Dirichlet datum on it.
-pub(super) type FacetDatum = (usize, (usize, Vec<f64>));
+pub(crate) type FacetDatum = (usize, (usize, Vec<f64>));
 
 /// What is added to a cell's part of the load.
 type OfCell<'w, T> = &'w (dyn Fn(usize, &mut [T]) -> Result<(), Error> + Sync);
@@ -105,7 +106,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
                 None => Ok(()),
             })
         };
-        parallel::for_each(self.mesh.n_cells(), &|c| c * n, load, &piece)
+        cells::for_each(self.mesh.n_cells(), &|c| c * n, load, &piece)
     }
 
     fn add_neumann(&self, load: &mut [T]) -> Result<(), Error> {
@@ -157,7 +158,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
 }
 
 /// What moments of data on facets are computed with.
-pub(super) struct FacetMoments {
+pub(crate) struct FacetMoments {
     polynomials: OrthonormalPolynomials,
     rule: Rule,
 }

@@ -1,7 +1,7 @@
 //! What one cell and one facet contribute.
 
-use super::metric::CellMetric;
-use super::tables::{BasisAt, CellTable};
+use super::space::metric::CellMetric;
+use super::space::tables::{BasisAt, CellTable};
 use crate::element::MAX_BASIS;
 use crate::facet::{AnyForm, FacetView, Side, Trace};
 use crate::mesh::Mesh;

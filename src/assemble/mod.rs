@@ -5,43 +5,31 @@
 //! which writes them in place; rows of a space that shares unknowns are gathered from local
 //! matrices. Both are parallel, without locks, and give the same bits for any number of threads.
 
-mod bounds;
-mod broken;
-mod contact;
+mod coercivity_margin;
 pub(crate) mod count;
-mod data;
-mod dofs;
-mod factored;
-mod fields;
-mod gather;
-mod lifted;
-mod load;
-mod local;
-mod metric;
-mod norms;
-mod parallel;
-mod products;
-mod shortfall;
-mod space;
-pub(crate) mod tables;
-mod weights;
+mod facet_coefficients;
+mod jump_products;
+pub(crate) mod load;
+pub(crate) mod local;
+mod owned_rows;
+mod penalised;
+mod shared_rows;
+pub(crate) mod space;
 
 use std::sync::OnceLock;
 
 use crate::algebra::{Bound, Inequality, Place, SparseMatrix, Start};
 use crate::element::ReferenceElement;
 use crate::error::Error;
-use crate::facet::{AnyForm, FacetForm};
+use crate::facet::FacetForm;
 use crate::mesh::Mesh;
 use crate::problem::Problem;
 use crate::real::Real;
 use crate::scheme::{DirichletBy, Scheme};
-use crate::solve::Solution;
-use crate::study::{Errors, Fields};
-use metric::Metrics;
-pub use shortfall::PenaltyShortfall;
+pub use coercivity_margin::PenaltyShortfall;
+use facet_coefficients::FacetWeights;
 use space::Space;
-use weights::FacetWeights;
+use space::metric::Metrics;
 
 /// Degrees of the quadrature rules for data, beyond what the forms need.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -63,15 +51,15 @@ impl Default for DataQuadrature {
 
 /// A scheme applied to a problem on a mesh.
 pub struct Discretisation<'a, T: Real, const D: usize, S: Scheme<T, D>> {
-    space: Space<'a, T, D>,
-    form: S::Facet,
+    pub(crate) space: Space<'a, T, D>,
+    pub(crate) form: S::Facet,
     /// What facet forms need of cells and facets, computed when first needed.
     prepared: OnceLock<(Metrics<T>, FacetWeights<T>)>,
 }
 
 impl<'a, T: Real, const D: usize, S: Scheme<T, D>> Discretisation<'a, T, D, S> {
     const N: usize = <S::Element as ReferenceElement<T, D>>::N;
-    const COUPLES: bool = <S::Facet as FacetForm<T, D>>::COUPLES;
+    pub(crate) const COUPLES: bool = <S::Facet as FacetForm<T, D>>::COUPLES;
     /// Whether each row belongs to one cell, which then writes it in place.
     const OWNS_ROWS: bool =
         Self::COUPLES && <S::Element as ReferenceElement<T, D>>::LAYOUT.is_broken();
@@ -108,9 +96,9 @@ impl<'a, T: Real, const D: usize, S: Scheme<T, D>> Discretisation<'a, T, D, S> {
     /// The pattern of the matrix, with values zero.
     pub fn pattern(&self) -> SparseMatrix<T> {
         if Self::OWNS_ROWS {
-            broken::pattern(&self.space, S::Facet::LIFTED)
+            owned_rows::pattern(&self.space, S::Facet::LIFTED)
         } else {
-            gather::pattern(self)
+            shared_rows::pattern(self)
         }
     }
     /// Overwrites the values of a matrix that has this discretisation's pattern.
@@ -130,9 +118,9 @@ impl<'a, T: Real, const D: usize, S: Scheme<T, D>> Discretisation<'a, T, D, S> {
         }
         if Self::OWNS_ROWS {
             let (metrics, weights) = self.prepared();
-            broken::fill(&self.space, &self.form, metrics, weights, matrix);
+            owned_rows::fill(&self.space, &self.form, metrics, weights, matrix);
         } else {
-            gather::fill(self, matrix);
+            shared_rows::fill(self, matrix);
         }
     }
     fn prepared(&self) -> &(Metrics<T>, FacetWeights<T>) {
@@ -158,10 +146,10 @@ impl<'a, T: Real, const D: usize, S: Scheme<T, D>> Discretisation<'a, T, D, S> {
         let matrix = self.matrix();
         let factored = own_load.map(|own_load| {
             let (metrics, weights) = self.prepared();
-            factored::factored(&self.space, &self.form, (metrics, weights), own_load, data)
+            penalised::factored(&self.space, &self.form, (metrics, weights), own_load, data)
         });
         // the loops that fill the matrix cannot fail: whoever is to blame is sought afterwards
-        if let Some(reaction) = data::ReactionTerm::new(&self.space)
+        if let Some(reaction) = space::data::ReactionTerm::new(&self.space)
             && !matrix.values.iter().all(|v| v.to_f64().is_finite())
         {
             reaction.check(self.mesh())?;
@@ -179,8 +167,8 @@ impl<'a, T: Real, const D: usize, S: Scheme<T, D>> Discretisation<'a, T, D, S> {
         })
     }
     /// The load; if the matrix is kept factored too, the load without Dirichlet data, and these.
-    fn loads(&self) -> Result<factored::Loads<T>, Error> {
-        let is_factored = Self::OWNS_ROWS && factored::applies::<T, D, _>(&self.form);
+    fn loads(&self) -> Result<penalised::Loads<T>, Error> {
+        let is_factored = Self::OWNS_ROWS && penalised::applies::<T, D, _>(&self.form);
         let mut own = None;
         let (load, data) =
             self.space.load_and_data(&self.form, &|| &self.prepared().0, &mut |by_cell| {
@@ -212,15 +200,6 @@ impl<'a, T: Real, const D: usize, S: Scheme<T, D>> Discretisation<'a, T, D, S> {
     pub fn vertex_values(&self, u: &[T]) -> Vec<f64> {
         self.space.vertex_values(u)
     }
-    /// Solution, obstacle, multiplier and contact set on cells, for pictures.
-    ///
-    /// The multiplier of an unknown is a force; over the measure that belongs to the unknown it is
-    /// a density, of volume for obstacles and of the contact boundary for Signorini. A cell shows
-    /// the mean over its unknowns that have such a measure.
-    pub fn fields(&self, inequality: &Inequality<T>, solution: &Solution<T>) -> Fields {
-        self.space.fields(inequality, solution)
-    }
-
     /// Facets whose weight lies below what the form needs to be provably coercive: how many, and
     /// the one that misses by the largest factor. Nothing if the form promises none.
     pub fn penalty_shortfall(&self) -> Option<PenaltyShortfall> {
@@ -232,22 +211,5 @@ impl<'a, T: Real, const D: usize, S: Scheme<T, D>> Discretisation<'a, T, D, S> {
     /// [`Error::DataNotFinite`].
     pub fn load(&self) -> Result<Vec<T>, Error> {
         self.space.load(&self.form, &|| &self.prepared().0)
-    }
-    /// Errors of a vector of unknowns against the exact solution; none where there is no exact
-    /// solution.
-    ///
-    /// The energy norm is the broken seminorm weighted with the coefficient, plus the reaction
-    /// term, plus the facet form at jumps without flux and without products of lifts, of Dirichlet
-    /// data as far as the form sees them: for interior penalty the usual norm `|.|_1^2 + sum sigma_F ||[.]||^2`, for WOPSIP the
-    /// square root of the form itself.
-    ///
-    /// # Errors
-    /// [`Error::DataNotFinite`].
-    ///
-    /// # Panics
-    /// If `u` is shorter than the number of unknowns.
-    pub fn errors(&self, u: &[T]) -> Result<Errors, Error> {
-        let form: &dyn AnyForm<T, D> = &self.form;
-        self.space.errors(Self::COUPLES.then_some(form), u)
     }
 }

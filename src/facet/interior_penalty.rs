@@ -1,8 +1,7 @@
 //! Interior penalty.
 
-use super::{FacetForm, FacetView, Trace, proven_bound};
+use super::{FacetForm, FacetView, PenaltyParameters, Trace, proven_bound};
 use crate::real::Real;
-use crate::study::PenaltyParameters;
 
 /// How an interior penalty gets its weight.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -1,8 +1,7 @@
 //! Forms made of lifts of jumps.
 
-use super::{FacetForm, FacetView, Trace};
+use super::{FacetForm, FacetView, PenaltyParameters, Trace};
 use crate::real::Real;
-use crate::study::PenaltyParameters;
 
 /// `eta sum_F int alpha r_F(u) . r_F(v)` with the consistency terms of the symmetric interior
 /// penalty: the lifts of single facets as a penalty.

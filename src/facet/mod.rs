@@ -21,6 +21,7 @@ mod interior_penalty;
 mod lifting;
 mod none;
 mod over_penalty;
+mod parameters;
 mod proven;
 mod view;
 
@@ -29,11 +30,11 @@ pub use interior_penalty::{InteriorPenalty, PenaltyRule, Symmetry};
 pub use lifting::{FacetLifts, Lifted};
 pub use none::NoFacets;
 pub use over_penalty::{OverPenalty, WeightRule};
+pub use parameters::PenaltyParameters;
 pub use proven::proven_bound;
 pub use view::{FacetView, Side};
 
 use crate::real::Real;
-use crate::study::PenaltyParameters;
 
 /// A moment of the jump and of the mean normal flux of a function on a facet.
 #[derive(Clone, Copy, Debug)]

@@ -1,8 +1,7 @@
 //! The weak over-penalty.
 
-use super::{FacetForm, FacetView, Trace};
+use super::{FacetForm, FacetView, PenaltyParameters, Trace};
 use crate::real::Real;
-use crate::study::PenaltyParameters;
 
 /// How the over-penalty gets its weight.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -4,14 +4,14 @@ use nalgebra::DMatrix;
 
 use super::error::{KitError, Law};
 use super::matrix::Assembled;
-use super::meshes::{self, Sample};
-use super::problems;
+use super::meshes::Sample;
 use super::report::CoercivityReport;
 use super::spectrum::{Diagonal, Factored, Lanczos};
 use super::tested::{Tested, assemble};
+use super::{meshes, problems};
 use crate::algebra::SparseMatrix;
+use crate::linear::FactorError;
 use crate::real::Real;
-use crate::solve::FactorError;
 
 pub(super) fn check<T: Real, const D: usize>(
     scheme: &dyn Tested<T, D>,

@@ -1,10 +1,10 @@
 //! The patch test.
 
 use super::error::{KitError, Law};
-use super::meshes::{self, Sample};
-use super::problems;
+use super::meshes::Sample;
 use super::report::ConsistencyReport;
 use super::tested::{Judged, Tested, solve_and_judge};
+use super::{meshes, problems};
 use crate::mesh::describe_point;
 use crate::problem::Problem;
 use crate::real::{Real, point_f64};

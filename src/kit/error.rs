@@ -4,7 +4,8 @@ use std::fmt;
 
 use super::spectrum::SpectrumError;
 use crate::error::Error;
-use crate::solve::{FactorError, Outcome};
+use crate::inequality::Outcome;
+use crate::linear::FactorError;
 
 /// A law of the kit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]

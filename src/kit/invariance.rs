@@ -4,10 +4,10 @@ use std::collections::HashMap;
 
 use super::error::{KitError, Law};
 use super::matrix::{Assembled, row_sizes};
-use super::meshes::{self, Renumbered, Sample};
-use super::problems;
+use super::meshes::{Renumbered, Sample};
 use super::report::InvarianceReport;
 use super::tested::{Tested, assemble, solve};
+use super::{meshes, problems};
 use crate::algebra::Place;
 use crate::real::Real;
 

@@ -2,9 +2,8 @@
 
 use super::error::{KitError, Law};
 use super::random::Random;
-use crate::mesh::{BoundaryPart, Mesh, TaggedFacet};
+use crate::mesh::{BoundaryPart, BoxDomain, Mesh, TaggedFacet};
 use crate::real::{Point, Real, point_f64};
-use crate::scenes::BoxDomain;
 
 /// How far a vertex may move, in units of the distance to the next one.
 const SHIFT: f64 = 0.2;
@@ -49,7 +48,7 @@ pub(super) fn regular<T: Real, const D: usize>(
     domain: &BoxDomain<D>,
     n: usize,
 ) -> Result<Sample<T, D>, KitError> {
-    let mesh = Mesh::kuhn_box(domain, [n; D]).map_err(|why| KitError::NotAssembled { law, why })?;
+    let mesh = Mesh::kuhn_box(domain, [n; D]).map_err(|why| KitError::NotAssembled { law, why: why.into() })?;
     Ok(Sample { name: "a regular box", mesh })
 }
 

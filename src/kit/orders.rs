@@ -4,8 +4,8 @@ use super::error::{KitError, Law};
 use super::report::OrdersReport;
 use super::tested::{Tested, solve_and_judge};
 use super::{meshes, problems};
+use crate::measure::observed_order;
 use crate::real::Real;
-use crate::study::observed_order;
 
 /// How far orders of two small meshes may stay below those of theory.
 const SLACK: f64 = 0.25;

@@ -7,13 +7,12 @@ use crate::assemble::{DataQuadrature, Discretisation};
 use crate::element::ReferenceElement;
 use crate::error::Error;
 use crate::facet::FacetForm;
-use crate::mesh::Mesh;
+use crate::inequality::{ActiveSet, InequalitySolver, Outcome};
+use crate::measure::Errors;
+use crate::mesh::{BoxDomain, Mesh};
 use crate::problem::Problem;
 use crate::real::{Point, Real};
-use crate::scenes::{BoxDomain, Regularity};
-use crate::scheme::{Scheme, Setting};
-use crate::solve::{ActiveSet, InequalitySolver, Outcome};
-use crate::study::{Errors, ExpectedOrders};
+use crate::scheme::{ExpectedOrders, Regularity, Scheme, Setting};
 
 /// A discrete solution against the exact one.
 pub(super) struct Judged {

@@ -178,9 +178,8 @@ mod tests {
     use std::collections::BTreeSet;
 
     use super::{Edges, edge_vertices};
-    use crate::mesh::{Facets, Mesh, Neighbours};
+    use crate::mesh::{BoxDomain, Facets, Mesh, Neighbours};
     use crate::real::Point;
-    use crate::scenes::BoxDomain;
 
     fn check<const D: usize>(counts: [usize; D]) -> usize {
         let domain = BoxDomain::dirichlet(Point::zeros(), Point::repeat(1.0));

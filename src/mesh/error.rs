@@ -6,6 +6,16 @@
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum MeshError {
+    /// A parameter of a built-in mesh is out of its range.
+    #[error("{parameter} = {value}: {allowed}")]
+    Parameter {
+        /// Name of the parameter.
+        parameter: &'static str,
+        /// The value given, as text.
+        value: String,
+        /// What is allowed.
+        allowed: String,
+    },
     /// Nothing to mesh.
     #[error("the mesh has no cells of dimension {dimension}")]
     NoCells {

@@ -10,18 +10,17 @@
 //!   facet is a vertex and its measure is one.
 //! * A mesh is immutable once made, and what [`Mesh::new`] accepts carries a finite element space.
 
-mod boxes;
-mod disc;
+mod domain;
 mod edges;
 mod error;
 mod facets;
 mod geometry;
 pub mod gmsh;
-mod lshape;
 mod refine;
 mod sweep;
 mod validate;
 
+pub use domain::{BoxDomain, Domain};
 pub use edges::{EDGE_VERTICES, Edges, edge_vertices};
 pub use error::MeshError;
 pub use facets::{Facets, Neighbour, Neighbours};

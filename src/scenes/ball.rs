@@ -1,8 +1,10 @@
 //! A membrane over a ball.
 
+use super::{Scene, free_boundary};
+use crate::mesh::{BoxDomain, Domain};
 use crate::problem::{Exact, Problem};
 use crate::real::Point;
-use crate::scenes::{BoxDomain, Domain, Regularity, Scene, free_boundary};
+use crate::scheme::Regularity;
 
 /// Radius of the contact disc: the root in `(0, 1)` of `a^2 ln(2/a) = 1 - a^2`.
 const A_IN_PLANE: f64 = 0.697_965_148_223_373_6;

@@ -1,9 +1,11 @@
 //! Contact without force on a set of positive measure.
 
+use super::Scene;
+use super::differential::positive_power;
+use crate::mesh::BoxDomain;
 use crate::problem::{Exact, Problem};
 use crate::real::Point;
-use crate::scenes::jet::positive_power;
-use crate::scenes::{BoxDomain, Regularity, Scene};
+use crate::scheme::Regularity;
 
 /// The first example of B. Keith, T. M. Surowiec, *Found. Comput. Math.* (2024), "Proximal
 /// Galerkin": on `(-1, 1)^2` with `psi = 0` the solution is `u = max(x, 0)^4`, the load

@@ -2,9 +2,11 @@
 
 use std::f64::consts::{FRAC_PI_4, PI, SQRT_2};
 
+use super::Scene;
+use crate::mesh::BoxDomain;
 use crate::problem::{Exact, Problem};
 use crate::real::Point;
-use crate::scenes::{BoxDomain, Regularity, Scene};
+use crate::scheme::Regularity;
 
 /// Distance of floor and ceiling from the middle.
 const M: f64 = SQRT_2 / 2.0 * (1.0 - FRAC_PI_4);

@@ -17,7 +17,7 @@ mod stated;
 
 use std::fmt;
 
-use crate::scenes::Scene;
+use super::Scene;
 use probe::Probe;
 
 /// What a scene must fulfil.

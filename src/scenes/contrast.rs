@@ -1,8 +1,10 @@
 //! Membranes of two materials.
 
+use super::{Scene, free_boundary};
+use crate::mesh::BoxDomain;
 use crate::problem::{Exact, Problem};
 use crate::real::Point;
-use crate::scenes::{BoxDomain, Regularity, Scene, free_boundary};
+use crate::scheme::Regularity;
 
 /// A membrane on `(0, 1)^D`, pressed by `f = -1` onto `psi = 0`, with the coefficient `alpha` =
 /// `contrast` for `x < 1/2` and one beyond: an interface that meshes of even level resolve. Contact

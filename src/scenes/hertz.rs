@@ -2,9 +2,11 @@
 
 use nalgebra::Complex;
 
+use super::{Scene, halfplane};
+use crate::mesh::BoxDomain;
 use crate::problem::{Exact, Problem};
 use crate::real::Point;
-use crate::scenes::{BoxDomain, Regularity, Scene, halfplane};
+use crate::scheme::Regularity;
 
 /// Half width of the contact segment.
 const A: f64 = 0.5;

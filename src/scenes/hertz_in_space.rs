@@ -2,9 +2,11 @@
 
 use std::f64::consts::PI;
 
+use super::{Scene, free_boundary};
+use crate::mesh::BoxDomain;
 use crate::problem::{Exact, Problem};
 use crate::real::Point;
-use crate::scenes::{BoxDomain, Regularity, Scene, free_boundary};
+use crate::scheme::Regularity;
 
 /// Radius of the contact disc.
 const A: f64 = 0.5;

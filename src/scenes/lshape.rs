@@ -2,9 +2,11 @@
 
 use std::f64::consts::{FRAC_PI_2, FRAC_PI_4};
 
+use super::Scene;
+use crate::mesh::Domain;
 use crate::problem::{Exact, Problem};
 use crate::real::Point;
-use crate::scenes::{Domain, Regularity, Scene};
+use crate::scheme::Regularity;
 
 /// The L-shaped membrane of S. Bartels, C. Carstensen, *Numer. Math.* 99 (2004): `(-2, 2)^2`
 /// without `[0, 2] x [-2, 0]`, `psi = 0`, zero Dirichlet data.

@@ -8,20 +8,19 @@
 mod ball;
 mod biactive;
 mod bilateral;
+mod catalogue;
 pub mod check;
 mod cone;
 mod contrast;
-mod domain;
+mod differential;
 mod free_boundary;
 mod halfplane;
 mod hertz;
 mod hertz_in_space;
-mod jet;
 mod lshape;
 mod oscillating;
 mod polynomial;
 mod radial;
-mod registry;
 mod ridge;
 mod signorini;
 mod signorini_harmonic;
@@ -29,22 +28,21 @@ mod signorini_layers;
 mod signorini_smooth;
 mod signorini_string;
 mod strings;
-mod unknown;
+mod without_solution;
 
 pub use ball::{ball_2d, ball_3d, disc_2d};
 pub use biactive::{biactive_half_2d, biactive_ring_2d};
 pub use bilateral::bilateral_1d;
+pub use catalogue::{AnyScene, Entry, Takes, by_name, catalogue};
 pub use check::check_scene;
 pub use cone::cone;
 pub use contrast::{contrast, contrast_disc_2d};
-pub use domain::{BoxDomain, Domain};
 pub use hertz::hertz_2d;
 pub use hertz_in_space::hertz_3d;
 pub use lshape::lshape_2d;
 pub use oscillating::oscillating_1d;
 pub use polynomial::{degenerate, polynomial};
 pub use radial::{radial, radial_quarter_2d};
-pub use registry::{AnyScene, Entry, Takes, by_name, catalogue};
 pub use ridge::{pyramid_full_2d, ridge};
 pub use signorini::{
     signorini_2d, signorini_irrational_2d, signorini_line_3d, signorini_shifted_2d,
@@ -57,18 +55,11 @@ pub use signorini_string::{
     signorini_closed_1d, signorini_grazing_1d, signorini_open_1d, signorini_reaction_1d,
 };
 pub use strings::{icelike_1d, parabola_1d};
-pub use unknown::{pyramid_2d, signorini_sine_2d, spiral_2d, torsion_2d};
+pub use without_solution::{pyramid_2d, signorini_sine_2d, spiral_2d, torsion_2d};
 
+use crate::mesh::Domain;
 use crate::problem::Problem;
-
-/// Regularity of the exact solution, from which theory predicts orders.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Regularity {
-    /// The solution lies in `H^s` for every `s` below this number.
-    pub sobolev: f64,
-    /// Gap and multiplier do not vanish together on a set of positive measure.
-    pub strictly_complementary: bool,
-}
+use crate::scheme::Regularity;
 
 /// A named inequality on a domain.
 pub struct Scene<const D: usize> {

@@ -2,9 +2,11 @@
 
 use std::f64::consts::PI;
 
+use super::Scene;
+use crate::mesh::BoxDomain;
 use crate::problem::{Exact, Problem};
 use crate::real::Point;
-use crate::scenes::{BoxDomain, Regularity, Scene};
+use crate::scheme::Regularity;
 
 /// Wave number of the load.
 const K: f64 = 10.0 * PI;

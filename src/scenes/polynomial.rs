@@ -1,9 +1,11 @@
 //! Powers of `r^2 - r0^2` over a plane obstacle, with and without force on the contact ball.
 
+use super::differential::{Jet, positive_power};
+use super::{Scene, free_boundary};
+use crate::mesh::BoxDomain;
 use crate::problem::{Exact, Problem};
 use crate::real::Point;
-use crate::scenes::jet::{Jet, positive_power};
-use crate::scenes::{BoxDomain, Regularity, Scene, free_boundary};
+use crate::scheme::Regularity;
 
 /// Radius of the contact ball.
 const R0: f64 = 0.7;

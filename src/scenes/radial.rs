@@ -1,9 +1,10 @@
 //! A membrane pulled onto a plane.
 
-use crate::mesh::BoundaryPart;
+use super::{Scene, free_boundary};
+use crate::mesh::{BoundaryPart, BoxDomain};
 use crate::problem::{Exact, Problem};
 use crate::real::Point;
-use crate::scenes::{BoxDomain, Regularity, Scene, free_boundary};
+use crate::scheme::Regularity;
 
 /// A constant load presses the membrane onto the plane `psi = 0`; contact is the ball `|x| <= L`.
 /// The domain is `L (-3/2, 3/2)^D`, `D` = 1, 2 or 3, the load `f = -2/L^2`, `L` is `scale`.

@@ -1,8 +1,10 @@
 //! Obstacles with a sharp edge: the multiplier is a force on a line or surface.
 
+use super::Scene;
+use crate::mesh::BoxDomain;
 use crate::problem::{Exact, Problem};
 use crate::real::Point;
-use crate::scenes::{BoxDomain, Regularity, Scene};
+use crate::scheme::Regularity;
 
 /// A membrane without load on `(-1, 1)^D` over the ridge `psi = 1/2 - |x_1|`; contact on the plane
 /// `x_1 = 0` alone.

@@ -3,10 +3,12 @@
 
 use std::f64::consts::SQRT_2;
 
+use super::differential::Jet;
+use super::{Scene, free_boundary};
+use crate::mesh::BoxDomain;
 use crate::problem::{Exact, Problem};
 use crate::real::Point;
-use crate::scenes::jet::Jet;
-use crate::scenes::{BoxDomain, Regularity, Scene, free_boundary};
+use crate::scheme::Regularity;
 
 /// Signorini problem with zero Dirichlet data and zero gap on `(-1, 1) x (0, 1)`; contact changes
 /// at the origin, a vertex of every mesh with an even number of cells along the contact side.

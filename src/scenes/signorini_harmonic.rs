@@ -1,8 +1,10 @@
 //! The generic singularity of a Signorini problem, without load.
 
+use super::{Scene, free_boundary, halfplane};
+use crate::mesh::BoxDomain;
 use crate::problem::{Exact, Problem};
 use crate::real::Point;
-use crate::scenes::{BoxDomain, Regularity, Scene, free_boundary, halfplane};
+use crate::scheme::Regularity;
 
 /// Signorini problem without load on `(-1, 1)^(D-1) x (0, 1)`, `D` = 2 or 3, zero gap; contact
 /// changes at the origin (2D) or along the line where first and last coordinate vanish (3D).

@@ -1,9 +1,11 @@
 //! Signorini conditions on a layer of another material.
 
+use super::Scene;
+use super::differential::positive_power;
+use crate::mesh::BoxDomain;
 use crate::problem::{Exact, Problem};
 use crate::real::Point;
-use crate::scenes::jet::positive_power;
-use crate::scenes::{BoxDomain, Regularity, Scene};
+use crate::scheme::Regularity;
 
 /// Signorini problem on `(-1, 1) x (0, 1)` with zero gap and the coefficient `alpha` = `contrast`
 /// for `y < 1/2` and one above: an interface that meshes of even level resolve. A penalty that

@@ -1,9 +1,11 @@
 //! Signorini conditions with solutions as smooth as one likes, whose contact is left slowly.
 
+use super::differential::{Jet, positive_power};
+use super::{Scene, free_boundary};
+use crate::mesh::BoxDomain;
 use crate::problem::{Exact, Problem};
 use crate::real::Point;
-use crate::scenes::jet::{Jet, positive_power};
-use crate::scenes::{BoxDomain, Regularity, Scene, free_boundary};
+use crate::scheme::Regularity;
 
 /// `signorini-smooth2-2d`, `-smooth3-2d`, `-smooth4-2d`: gap and pressure both vanish with order
 /// `k` where contact changes, at the origin.

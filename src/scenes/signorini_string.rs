@@ -1,9 +1,10 @@
 //! Signorini conditions at the ends of a string.
 
-use crate::mesh::BoundaryPart;
+use super::Scene;
+use crate::mesh::{BoundaryPart, BoxDomain};
 use crate::problem::{Exact, Problem};
 use crate::real::Point;
-use crate::scenes::{BoxDomain, Regularity, Scene};
+use crate::scheme::Regularity;
 
 /// Coefficients of `exp(x)` and `exp(-x)` in [`signorini_reaction_1d`].
 const C1: f64 = -0.077_025_104_449_637_6;

@@ -1,8 +1,10 @@
 //! Strings over parabolas: solutions made of parabolas.
 
+use super::Scene;
+use crate::mesh::BoxDomain;
 use crate::problem::{Exact, Problem};
 use crate::real::Point;
-use crate::scenes::{BoxDomain, Regularity, Scene};
+use crate::scheme::Regularity;
 
 /// A parabola up to some point: that point, and `[a, b, c]` of `a + b x + c x^2`.
 type Piece = (f64, [f64; 3]);

@@ -1,11 +1,12 @@
 //! The method of Brezzi, Manzini, Marini, Pietra and Russo.
 
-use super::{DirichletBy, Scheme, Setting, broken_energy_order, name_by_degree, with_duality};
+use super::{
+    DirichletBy, ExpectedOrders, Scheme, Setting, broken_energy_order, name_by_degree, with_duality,
+};
 use crate::element::{Broken, P1, ReferenceElement};
 use crate::facet::{FacetLifts, Lifted};
 use crate::mesh::Mesh;
 use crate::real::Real;
-use crate::study::ExpectedOrders;
 
 /// `int alpha (grad u + r(u)) . (grad v + r(v))` with a penalty by the lifts of single facets, on
 /// broken elements: coercive for every positive factor.

@@ -1,11 +1,12 @@
 //! The second method of Bassi and Rebay.
 
-use super::{DirichletBy, Scheme, Setting, broken_energy_order, name_by_degree, with_duality};
+use super::{
+    DirichletBy, ExpectedOrders, Scheme, Setting, broken_energy_order, name_by_degree, with_duality,
+};
 use crate::element::{Broken, P1, ReferenceElement};
 use crate::facet::FacetLifts;
 use crate::mesh::Mesh;
 use crate::real::Real;
-use crate::study::ExpectedOrders;
 
 /// Penalty by the lifts of single facets, on broken elements.
 ///

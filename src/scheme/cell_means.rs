@@ -1,10 +1,9 @@
 //! The same scheme with its bounds on cell means.
 
-use super::{BoundedNodes, DirichletBy, Scheme, Setting};
+use super::{BoundedNodes, DirichletBy, ExpectedOrders, Scheme, Setting};
 use crate::element::{Broken, P2, QuadraticCellMean};
 use crate::mesh::Mesh;
 use crate::real::Real;
-use crate::study::ExpectedOrders;
 
 /// A scheme on broken quadratics, written in a basis that has the mean over the cell among its
 /// unknowns, so that a bound on the mean binds a single one; no other is bound. A mean must not pass

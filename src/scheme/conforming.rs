@@ -1,11 +1,10 @@
 //! Conforming linear elements.
 
-use super::{DirichletBy, Scheme, Setting, energy_order, with_duality};
+use super::{DirichletBy, ExpectedOrders, Scheme, Setting, energy_order, with_duality};
 use crate::element::P1;
 use crate::facet::NoFacets;
 use crate::mesh::Mesh;
 use crate::real::Real;
-use crate::study::ExpectedOrders;
 
 /// Continuous piecewise linears, bounds at vertices, Dirichlet values pinned.
 ///

@@ -1,11 +1,10 @@
 //! Conforming quadratic elements.
 
-use super::{DirichletBy, Scheme, Setting, energy_order, with_duality};
+use super::{DirichletBy, ExpectedOrders, Scheme, Setting, energy_order, with_duality};
 use crate::element::P2;
 use crate::facet::NoFacets;
 use crate::mesh::Mesh;
 use crate::real::Real;
-use crate::study::ExpectedOrders;
 
 /// Continuous piecewise quadratics, bounds at all nodes, Dirichlet values pinned.
 ///

@@ -1,11 +1,10 @@
 //! Non-conforming linear elements.
 
-use super::{DirichletBy, Scheme, Setting, broken_energy_order, with_duality};
+use super::{DirichletBy, ExpectedOrders, Scheme, Setting, broken_energy_order, with_duality};
 use crate::element::CrouzeixRaviart;
 use crate::facet::NoFacets;
 use crate::mesh::Mesh;
 use crate::real::Real;
-use crate::study::ExpectedOrders;
 
 /// Piecewise linears with continuous facet means, bounds on those means, Dirichlet means pinned.
 ///

@@ -1,10 +1,9 @@
 //! The same scheme with its bounds on facet means.
 
-use super::{DirichletBy, Scheme, Setting};
+use super::{DirichletBy, ExpectedOrders, Scheme, Setting};
 use crate::element::{Broken, CrouzeixRaviart, P1};
 use crate::mesh::Mesh;
 use crate::real::Real;
-use crate::study::ExpectedOrders;
 
 /// A scheme on broken linears, written in the basis of facet means, so that bounds on these means
 /// bind single unknowns.

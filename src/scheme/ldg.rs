@@ -1,11 +1,12 @@
 //! The local discontinuous Galerkin method.
 
-use super::{DirichletBy, Scheme, Setting, broken_energy_order, name_by_degree, with_duality};
+use super::{
+    DirichletBy, ExpectedOrders, Scheme, Setting, broken_energy_order, name_by_degree, with_duality,
+};
 use crate::element::{Broken, P1, ReferenceElement};
-use crate::facet::{FacetForm, FacetView, Lifted, Trace};
+use crate::facet::{FacetForm, FacetView, Lifted, PenaltyParameters, Trace};
 use crate::mesh::Mesh;
 use crate::real::{Real, point_f64};
-use crate::study::{ExpectedOrders, PenaltyParameters};
 
 /// `int alpha (grad u + r(u)) . (grad v + r(v)) + eta alpha_F / h_F [u][v]` on broken elements:
 /// coercive for every positive factor.

@@ -1,9 +1,8 @@
 //! The same scheme with its bounds at midpoints of edges.
 
-use super::{BoundedNodes, DirichletBy, Scheme, Setting};
+use super::{BoundedNodes, DirichletBy, ExpectedOrders, Scheme, Setting};
 use crate::mesh::Mesh;
 use crate::real::Real;
-use crate::study::ExpectedOrders;
 
 /// A scheme on quadratics that imposes an obstacle at the midpoints of edges only, and a Signorini
 /// condition at the nodes that carry the mean over a facet: midpoints in three dimensions, vertices

@@ -8,13 +8,14 @@ mod cell_means;
 mod conforming;
 mod conforming_p2;
 mod crouzeix_raviart;
+mod energy_order;
 mod facet_means;
 mod iipg;
 mod ldg;
 mod midpoints;
 mod nipg;
-mod orders;
 mod sipg;
+mod theory;
 mod wopsip;
 
 pub use bmmpr::Bmmpr;
@@ -31,15 +32,14 @@ pub use midpoints::Midpoints;
 pub(crate) use midpoints::midpoint_orders;
 pub use nipg::Nipg;
 pub use sipg::Sipg;
+pub use theory::{ExpectedOrders, Regularity, Setting};
 pub use wopsip::{Eta, Wopsip};
 
 use crate::element::ReferenceElement;
 use crate::facet::FacetForm;
 use crate::mesh::Mesh;
 use crate::real::Real;
-use crate::scenes::Regularity;
-use crate::study::ExpectedOrders;
-use orders::{broken_energy_order, energy_order, with_duality};
+use energy_order::{broken_energy_order, energy_order, with_duality};
 
 /// How a scheme imposes Dirichlet data.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -48,29 +48,6 @@ pub enum DirichletBy {
     Pinning,
     /// The facet form acts on Dirichlet facets, with the data in place of the other side.
     FacetForm,
-}
-
-/// What a promise of orders may depend on.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Setting {
-    /// Dimension of space.
-    pub dimension: usize,
-    /// Whether an obstacle binds in the domain.
-    pub obstacle: bool,
-    /// Whether a Signorini condition binds on the boundary.
-    pub contact: bool,
-    /// What is known of the solution.
-    pub regularity: Regularity,
-    /// Whether the dual of the linear problem has solutions in `H^2`: with a coefficient that does
-    /// not vary, on intervals and on convex domains with Dirichlet data on the whole boundary.
-    pub regular_dual: bool,
-}
-
-impl Setting {
-    /// Whether no inequality binds.
-    pub fn is_linear(&self) -> bool {
-        !self.obstacle && !self.contact
-    }
 }
 
 /// A discretisation of the bilinear form and of Dirichlet data.

@@ -1,11 +1,10 @@
 //! The non-symmetric interior penalty method.
 
-use super::{DirichletBy, Scheme, Setting, broken_energy_order, name_by_degree};
+use super::{DirichletBy, ExpectedOrders, Scheme, Setting, broken_energy_order, name_by_degree};
 use crate::element::{Broken, P1, ReferenceElement};
 use crate::facet::{InteriorPenalty, PenaltyRule, Symmetry};
 use crate::mesh::Mesh;
 use crate::real::Real;
-use crate::study::ExpectedOrders;
 
 /// Non-symmetric interior penalty on broken elements: coercive for every positive penalty.
 ///

@@ -1,11 +1,12 @@
 //! The symmetric interior penalty method.
 
-use super::{DirichletBy, Scheme, Setting, broken_energy_order, name_by_degree, with_duality};
+use super::{
+    DirichletBy, ExpectedOrders, Scheme, Setting, broken_energy_order, name_by_degree, with_duality,
+};
 use crate::element::{Broken, P1, ReferenceElement};
 use crate::facet::{InteriorPenalty, PenaltyRule, Symmetry};
 use crate::mesh::Mesh;
 use crate::real::Real;
-use crate::study::ExpectedOrders;
 
 /// Symmetric interior penalty on broken elements.
 ///

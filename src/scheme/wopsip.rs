@@ -1,11 +1,12 @@
 //! The weakly over-penalised symmetric interior penalty method.
 
-use super::{DirichletBy, Scheme, Setting, broken_energy_order, name_by_degree, with_duality};
+use super::{
+    DirichletBy, ExpectedOrders, Scheme, Setting, broken_energy_order, name_by_degree, with_duality,
+};
 use crate::element::{Broken, P1, ReferenceElement};
 use crate::facet::{OverPenalty, WeightRule};
 use crate::mesh::Mesh;
 use crate::real::Real;
-use crate::study::ExpectedOrders;
 
 /// How the factor of the over-penalty is chosen.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use super::promises::{Norm, ObservedOrders};
+use crate::study::order_check::{Norm, ObservedOrders};
 
 /// What a cell shows where there is no number.
 const NONE: &str = "-";

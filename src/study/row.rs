@@ -2,34 +2,10 @@
 
 use serde::Serialize;
 
-use super::Certificate;
-
-/// Errors against the exact solution.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
-pub struct Errors {
-    /// L2 norm.
-    pub l2: Option<f64>,
-    /// Broken H1 seminorm.
-    pub h1: Option<f64>,
-    /// The scheme's own norm, penalty included.
-    pub energy: Option<f64>,
-    /// Maximum over nodes.
-    pub max: Option<f64>,
-}
-
-/// Distances of multiplier and contact set from the exact ones, comparable across schemes; see
-/// [`Discretisation::contact_errors`](crate::assemble::Discretisation::contact_errors).
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
-pub struct ContactErrors {
-    /// Error of the multiplier as a density at vertices, in L1.
-    pub multiplier_l1: Option<f64>,
-    /// The same in the lumped L2 norm.
-    pub multiplier_l2: Option<f64>,
-    /// Measure of the symmetric difference of the contact sets.
-    pub contact_area_error: Option<f64>,
-    /// Hausdorff distance of the free boundaries.
-    pub free_boundary_distance: Option<f64>,
-}
+use crate::facet::PenaltyParameters;
+use crate::inequality::Certificate;
+use crate::measure::{ContactErrors, Errors};
+use crate::scheme::ExpectedOrders;
 
 /// Observed orders.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
@@ -46,26 +22,6 @@ pub struct Orders {
     pub multiplier_l1: Option<f64>,
     /// Of the multiplier in L2.
     pub multiplier_l2: Option<f64>,
-}
-
-/// Orders that theory promises.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
-pub struct ExpectedOrders {
-    /// In L2.
-    pub l2: Option<f64>,
-    /// In the broken H1 seminorm.
-    pub h1: Option<f64>,
-}
-
-/// Penalty factors in force.
-#[derive(Clone, Debug, Default, PartialEq, Serialize)]
-pub struct PenaltyParameters {
-    /// Interior penalty factor.
-    pub sigma: Option<f64>,
-    /// WOPSIP factor.
-    pub eta: Option<f64>,
-    /// The rule that turns the factor into a weight.
-    pub rule: Option<String>,
 }
 
 /// Iteration counts.

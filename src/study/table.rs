@@ -1,7 +1,7 @@
 //! Reports as text for a terminal: one table for each scene.
 
-use super::report::Report;
-use super::row::Row;
+use crate::study::report::Report;
+use crate::study::row::Row;
 use std::fmt;
 
 /// What a table shows in place of a number that does not apply.
@@ -208,7 +208,7 @@ fn seconds(x: f64) -> String {
 }
 
 /// Each item once, in order of first occurrence.
-pub(super) fn distinct<T: PartialEq>(items: impl Iterator<Item = T>) -> Vec<T> {
+pub(crate) fn distinct<T: PartialEq>(items: impl Iterator<Item = T>) -> Vec<T> {
     let mut once = Vec::new();
     for item in items {
         if !once.contains(&item) {

@@ -1,12 +1,12 @@
 //! What the kit measures, where it is known.
 
 use unilateral::algebra::SparseMatrix;
+use unilateral::kit::spectrum::MeanJump;
 use unilateral::kit::spectrum::{Diagonal, Factored, Lanczos, SpectrumError};
 use unilateral::kit::{check_consistency, check_orders, check_scheme, check_symmetry};
+use unilateral::mesh::BoxDomain;
 use unilateral::mesh::Mesh;
 use unilateral::prelude::*;
-use unilateral::scenes::BoxDomain;
-use unilateral::solve::MeanJump;
 
 /// Duality promises one order more in L2 to consistent symmetric forms and to no others.
 #[test]

@@ -1,8 +1,10 @@
 //! Data that no problem can have.
 
+use unilateral::mesh::BoxDomain;
 use unilateral::prelude::*;
 use unilateral::problem::Datum;
-use unilateral::scenes::{BoxDomain, Regularity, Scene};
+use unilateral::scenes::Scene;
+use unilateral::scheme::Regularity;
 use unilateral::study::Row;
 
 /// A scene on the unit square with these data, held on its sides.

@@ -3,8 +3,8 @@
 use crate::support::accuracy::Checks;
 use unilateral::algebra::Contact;
 use unilateral::assemble::DataQuadrature;
+use unilateral::inequality::{ActiveSet, InequalitySolver, Outcome};
 use unilateral::prelude::*;
-use unilateral::solve::{ActiveSet, InequalitySolver, Outcome};
 
 /// The obstacle problem of PETSc's `snes/tutorials/ex9` (Bueler, *PETSc for Partial Differential
 /// Equations*, chapter 12): five-point differences on `N x N` points, which are conforming linear

@@ -1,11 +1,11 @@
 //! Tables of an independent implementation, compared figure by figure.
 
 use crate::support::accuracy::{Boxed, Checks, norms_by_rule, sipg, solve_by_rule, wopsip};
+use unilateral::inequality::Outcome;
+use unilateral::measure::Errors;
 use unilateral::prelude::*;
 use unilateral::problem::Datum;
 use unilateral::scenes::Scene;
-use unilateral::solve::Outcome;
-use unilateral::study::Errors;
 
 /// Rows of a table: subdivisions of the longest side, then for each scheme L2, H1 and, where
 /// printed, the norm of the jumps.

@@ -4,10 +4,10 @@ use super::compare::column;
 use crate::support::accuracy::{
     Checks, jump_norm, norms_by_rule, rows, solve_as_tables, solve_by_rule,
 };
+use unilateral::inequality::Outcome;
 use unilateral::prelude::*;
 use unilateral::quadrature::Rule;
 use unilateral::scenes::Scene;
-use unilateral::solve::Outcome;
 
 /// The halves beside the median to the longest side, which joins the first vertex to the last:
 /// their corners in barycentric coordinates. In squares on the diagonal that is no line of the

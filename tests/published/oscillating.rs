@@ -1,8 +1,8 @@
 //! A string below a ceiling under a load of high frequency: a table of a paper.
 
 use crate::support::accuracy::{Checks, norms_by_rule, solve_by_rule};
+use unilateral::inequality::Outcome;
 use unilateral::prelude::*;
-use unilateral::solve::Outcome;
 
 /// A row: unknowns, which the ends are not; the norm in the paper and the relative distance within
 /// which ours agrees, where it does; the norm by an independent program.

@@ -4,9 +4,9 @@
 use crate::support::accuracy::Checks;
 use unilateral::algebra::Inequality;
 use unilateral::assemble::{DataQuadrature, Discretisation};
+use unilateral::inequality::{ActiveSet, InequalitySolver, Outcome};
 use unilateral::mesh::Mesh;
 use unilateral::prelude::*;
-use unilateral::solve::{ActiveSet, InequalitySolver, Outcome};
 
 /// Mesh size as a power of one half, then largest error, full H1 and L2 norm.
 type Rows<'a> = &'a [(i32, [&'a str; 3])];

@@ -2,10 +2,10 @@
 
 use crate::support::accuracy::Checks;
 use unilateral::algebra::{Bound, Contact, Start};
+use unilateral::inequality::{ActiveSet, InequalitySolver, Outcome};
 use unilateral::mesh::Mesh;
 use unilateral::prelude::*;
 use unilateral::scenes::Scene;
-use unilateral::solve::{ActiveSet, InequalitySolver, Outcome};
 
 /// Contact of the nodes of the mesh with twice as many cells: a new node touches if both its
 /// neighbours do.

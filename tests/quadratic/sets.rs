@@ -4,9 +4,9 @@ use super::support::mixed_box;
 use super::{broken, conforming};
 use unilateral::algebra::Bound;
 use unilateral::assemble::{DataQuadrature, Discretisation};
+use unilateral::mesh::BoxDomain;
 use unilateral::mesh::Mesh;
 use unilateral::prelude::*;
-use unilateral::scenes::BoxDomain;
 
 fn bounds<const D: usize, S: Scheme<f64, D>>(
     scheme: &S,

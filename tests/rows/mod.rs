@@ -1,9 +1,10 @@
 //! Rows to report, for the tests of reports.
 
-use unilateral::study::{
-    Certificate, ContactErrors, Errors, ExpectedOrders, Iterations, Orders, PenaltyParameters,
-    Program, Report, Row, Seconds, fill_orders,
-};
+use unilateral::facet::PenaltyParameters;
+use unilateral::inequality::Certificate;
+use unilateral::measure::{ContactErrors, Errors};
+use unilateral::scheme::ExpectedOrders;
+use unilateral::study::{Iterations, Orders, Program, Report, Row, Seconds, fill_orders};
 
 /// A row with errors of order 2 and 1.
 pub fn row(scene: &str, scheme: &str, level: usize) -> Row {

@@ -4,8 +4,9 @@ use std::collections::HashSet;
 
 use unilateral::error::Error;
 use unilateral::mesh::{BoundaryPart, Mesh, MeshError};
+use unilateral::mesh::{BoxDomain, Domain};
 use unilateral::real::Point;
-use unilateral::scenes::{BoxDomain, Domain, disc_2d, lshape_2d, radial, spiral_2d};
+use unilateral::scenes::{disc_2d, lshape_2d, radial, spiral_2d};
 use unilateral::scheme::ConformingP1;
 use unilateral::study::Study;
 
@@ -89,7 +90,7 @@ fn shapes_of_the_plane_refuse_what_they_cannot_be() {
     for (shape, name) in
         [(Domain::<3>::Disc { radius: 1.0 }, "disc"), (Domain::LShape { half: 1.0 }, "L-shape")]
     {
-        let Err(Error::Parameter { parameter, allowed, .. }) = shape.mesh::<f64>(2) else {
+        let Err(MeshError::Parameter { parameter, allowed, .. }) = shape.mesh::<f64>(2) else {
             panic!("a {name} in space")
         };
         assert_eq!(parameter, "dimension");
@@ -98,12 +99,14 @@ fn shapes_of_the_plane_refuse_what_they_cannot_be() {
     for (half, n, wrong) in [(1.0, 0, "subdivisions"), (-1.0, 2, "length"), (f64::NAN, 2, "length")]
     {
         for made in [Mesh::<f64, 2>::disc(half, n), Mesh::<f64, 2>::l_shape(half, n)] {
-            let Err(Error::Parameter { parameter, .. }) = made else { panic!("made {half}, {n}") };
+            let Err(MeshError::Parameter { parameter, .. }) = made else {
+                panic!("made {half}, {n}")
+            };
             assert_eq!(parameter, wrong);
         }
     }
     let huge = Mesh::<f64, 2>::disc(1.0, 1 << 20);
-    assert!(matches!(huge, Err(Error::Mesh(MeshError::TooLarge { .. }))));
+    assert!(matches!(huge, Err(MeshError::TooLarge { .. })));
 }
 
 /// Nested starts pass through the curved refinement: the finer level begins from the coarser one.

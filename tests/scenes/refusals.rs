@@ -1,13 +1,15 @@
 //! The check says no.
 
 use unilateral::mesh::BoundaryPart;
+use unilateral::mesh::BoxDomain;
 use unilateral::problem::{Exact, Problem};
 use unilateral::real::Point;
 use unilateral::scenes::check::Condition;
 use unilateral::scenes::{
-    BoxDomain, Regularity, Scene, ball_2d, check_scene, contrast, hertz_2d, lshape_2d, radial,
-    signorini_2d, signorini_harmonic,
+    Scene, ball_2d, check_scene, contrast, hertz_2d, lshape_2d, radial, signorini_2d,
+    signorini_harmonic,
 };
+use unilateral::scheme::Regularity;
 
 fn refused<const D: usize>(scene: &Scene<D>) -> Condition {
     check_scene(scene, 300).expect_err("a wrong scene passed").condition

@@ -2,12 +2,15 @@
 
 use std::path::{Path, PathBuf};
 use unilateral::assemble::DataQuadrature;
+use unilateral::inequality::ActiveSet;
+use unilateral::mesh::BoxDomain;
 use unilateral::mesh::{Mesh, gmsh};
+use unilateral::nested::{Levels, Solved, Task};
 use unilateral::prelude::*;
 use unilateral::quadrature::Rule;
-use unilateral::scenes::{BoxDomain, Regularity, Scene};
-use unilateral::solve::ActiveSet;
-use unilateral::study::{Levels, Row, Solved, Task};
+use unilateral::scenes::Scene;
+use unilateral::scheme::Regularity;
+use unilateral::study::Row;
 
 /// A scheme chosen at run time.
 pub type Boxed<T, const D: usize> = Box<dyn AnyScheme<T, D>>;
@@ -116,7 +119,7 @@ pub fn solve_by_rule<const D: usize>(
 ) -> (Mesh<f64, D>, Solved) {
     let quadrature = DataQuadrature { cell: degree, facet: degree };
     let solver = ActiveSet::default();
-    let mut levels = Levels::new(scene, None);
+    let mut levels = Levels::new(&scene.problem, &scene.domain, None);
     levels.make(level).unwrap();
     let start = levels.contact(level, &solver, quadrature, 1).unwrap();
     let mesh = levels.mesh(level).unwrap().0.clone();

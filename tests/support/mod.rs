@@ -3,9 +3,9 @@
 
 pub mod accuracy;
 
+use unilateral::mesh::BoxDomain;
 use unilateral::mesh::{BoundaryPart, Mesh, TaggedFacet};
 use unilateral::prelude::*;
-use unilateral::scenes::BoxDomain;
 
 /// A small generator of pseudo-random numbers, so that a failure can be repeated.
 pub struct Random(pub u64);

@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use unilateral::study::{Case, Measured, Phases, Variant, WorkReport};
+use unilateral::work_precision::{Case, Measured, Phases, Variant, WorkReport};
 
 use super::rows::row;
 

@@ -18,7 +18,9 @@
 //! ```
 
 mod lanczos;
+mod mean_jump;
 mod positive;
 
 pub use lanczos::{Extremes, Lanczos, SpectrumError};
+pub use mean_jump::MeanJump;
 pub use positive::{Diagonal, Factored, Positive};

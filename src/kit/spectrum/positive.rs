@@ -1,7 +1,7 @@
 //! Symmetric positive definite matrices, known by what they do.
 
 use crate::algebra::SparseMatrix;
-use crate::solve::{FactorError, Factors};
+use crate::linear::{FactorError, Factors};
 
 /// A symmetric positive definite matrix that can be applied and solved with.
 pub trait Positive {

@@ -1,7 +1,7 @@
 //! Numbers of a binary file.
 
 use super::error::GmshError;
-use super::place::Place;
+use super::position::Place;
 use super::source::{Encoding, Source};
 
 impl Source<'_> {

@@ -2,7 +2,7 @@
 
 use super::error::GmshError;
 use super::kinds::{Kind, Shape};
-use super::place::{ElementPlace, Place};
+use super::position::{ElementPlace, Place};
 use super::source::Source;
 use std::collections::{BTreeMap, HashMap};
 

@@ -1,6 +1,6 @@
 //! What can be wrong with a mesh file, and what is only worth saying.
 
-use super::place::{ElementPlace, Place};
+use super::position::{ElementPlace, Place};
 use crate::mesh::MeshError;
 use std::path::PathBuf;
 

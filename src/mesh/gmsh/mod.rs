@@ -56,7 +56,7 @@ mod contents;
 mod error;
 mod kinds;
 mod node_index;
-mod place;
+mod position;
 mod sections;
 mod source;
 mod text;
@@ -64,7 +64,7 @@ mod version_four;
 mod version_two;
 
 pub use error::{GmshError, GmshWarning};
-pub use place::{ElementPlace, Place};
+pub use position::{ElementPlace, Place};
 
 use super::Mesh;
 use crate::real::Real;

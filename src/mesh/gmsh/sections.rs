@@ -2,7 +2,7 @@
 
 use super::contents::{Contents, Group};
 use super::error::GmshError;
-use super::place::Place;
+use super::position::Place;
 use super::source::Source;
 use super::text::excerpt;
 use super::{version_four, version_two};

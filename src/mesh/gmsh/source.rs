@@ -4,7 +4,7 @@
 //! on its own line, not wherever the numbers that follow cease to make sense.
 
 use super::error::GmshError;
-use super::place::Place;
+use super::position::Place;
 use super::text::excerpt;
 
 /// How numbers are written.

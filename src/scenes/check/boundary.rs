@@ -2,8 +2,7 @@
 
 use super::probe::Probe;
 use super::samples::{BoundaryPoint, boundary};
-use super::stated;
-use super::{Condition, Violation};
+use super::{Condition, Violation, stated};
 use crate::mesh::BoundaryPart;
 
 /// Error allowed in boundary conditions, relative to the scales of value and flux.

@@ -2,8 +2,7 @@
 
 use super::differences::settled_derivative;
 use super::probe::Probe;
-use super::stated;
-use super::{Condition, Violation};
+use super::{Condition, Violation, stated};
 use crate::real::Point;
 
 /// Error allowed in a derivative by differences, relative to its scale.

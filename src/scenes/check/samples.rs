@@ -1,8 +1,7 @@
 //! Points to test a scene at.
 
-use crate::mesh::BoundaryPart;
+use crate::mesh::{BoundaryPart, BoxDomain, Domain};
 use crate::real::Point;
-use crate::scenes::{BoxDomain, Domain};
 
 /// Quasi-random points of a box: the additive recurrence `x_n = 1/2 + n theta mod 1`, where
 /// `theta_k = 1/phi^k` and `phi` is the positive root of `phi^(D+1) = phi + 1`.

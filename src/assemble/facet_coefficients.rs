@@ -1,0 +1,136 @@
+//! What a facet form comes down to: a few numbers for all facets, a few for each.
+
+use std::convert::Infallible;
+use std::ops::Range;
+
+use super::local::{CellSide, flux_share, view};
+use super::space::Space;
+use super::space::metric::Metrics;
+use crate::facet::{FacetForm, Trace};
+use crate::memory::in_large_pages;
+use crate::mesh::{BoundaryPart, Neighbour};
+use crate::parallel::cells;
+use crate::real::Real;
+
+/// A coefficient of the form, at most linear in the penalty weight.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Coefficient<T> {
+    constant: T,
+    by_penalty: T,
+}
+
+impl<T: Real> Coefficient<T> {
+    #[inline(always)]
+    pub fn at(&self, penalty: T) -> T {
+        self.constant + self.by_penalty * penalty
+    }
+}
+
+/// The coefficients of a form in moments of traces: of `[v][u]`, `[v] flux(u)`, `flux(v) [u]` and
+/// `flux(v) flux(u)`.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Coefficients<T> {
+    pub jump_jump: Coefficient<T>,
+    pub jump_flux: Coefficient<T>,
+    pub flux_jump: Coefficient<T>,
+    pub flux_flux: Coefficient<T>,
+}
+
+impl<T: Real> Coefficients<T> {
+    fn of<const D: usize, F: FacetForm<T, D>>(form: &F) -> Self {
+        // a form that reads fluxes it did not ask for shall fail its first test
+        let none = T::lit(if F::USES_FLUX { 0.0 } else { f64::NAN });
+        let jump = Trace { jump: T::lit(1.0), flux: none };
+        let flux = Trace { jump: T::lit(0.0), flux: T::lit(1.0) };
+        let read = |v, u| {
+            let constant = form.integrand(v, u, T::lit(0.0));
+            Coefficient { constant, by_penalty: form.integrand(v, u, T::lit(1.0)) - constant }
+        };
+        Self {
+            jump_jump: read(jump, jump),
+            jump_flux: read(jump, flux),
+            flux_jump: read(flux, jump),
+            flux_flux: read(flux, flux),
+        }
+    }
+}
+
+/// The penalty weight of every facet that carries the form and, where the form uses fluxes, the
+/// shares of its two cells in the flux. Kept with the cell here, so that each is computed once.
+pub(crate) struct FacetWeights<T> {
+    pub coefficients: Coefficients<T>,
+    entries: Vec<T>,
+    /// Numbers for each facet of each cell.
+    stride: usize,
+}
+
+/// The numbers of one facet.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct FacetWeight<T> {
+    pub penalty: T,
+    /// Of the cell that asks.
+    pub own_share: T,
+    /// Of the cell across.
+    pub other_share: T,
+}
+
+impl<T: Real> FacetWeights<T> {
+    /// The weights of a form, in parallel.
+    pub fn of<const D: usize, F: FacetForm<T, D>>(
+        space: &Space<'_, T, D>,
+        form: &F,
+        metrics: &Metrics<T>,
+    ) -> Self {
+        let neighbours = space.coupled_neighbours();
+        let stride = if F::USES_FLUX { 3 } else { 1 };
+        let per_cell = stride * (D + 1);
+        let n_cells = space.mesh.n_cells();
+        let mut entries = in_large_pages(vec![T::lit(0.0); per_cell * n_cells]);
+        let fill = |cells: Range<usize>, piece: &mut [T]| {
+            for (cell, out) in cells.zip(piece.chunks_exact_mut(per_cell)) {
+                let metric = metrics.at(cell);
+                for (local, out) in out.chunks_exact_mut(stride).enumerate() {
+                    let here =
+                        CellSide { cell, local, metric: &metric, coefficient: space.alpha(cell) };
+                    let facet = match neighbours.across(cell, local) {
+                        Neighbour::Cell { cell: other, .. } if (other as usize) < cell => continue,
+                        Neighbour::Cell { cell: other, local } => {
+                            let (cell, local) = (other as usize, local as usize);
+                            let metric = metrics.at(cell);
+                            let coefficient = space.alpha(cell);
+                            let there = CellSide { cell, local, metric: &metric, coefficient };
+                            view(space.mesh, &here, Some(&there))
+                        }
+                        Neighbour::Boundary(BoundaryPart::Dirichlet) if !space.pins => {
+                            view(space.mesh, &here, None)
+                        }
+                        Neighbour::Boundary(_) => continue,
+                    };
+                    out[0] = form.penalty(&facet);
+                    if F::USES_FLUX {
+                        let share = form.share(&facet);
+                        out[1] = flux_share(&facet, share, true);
+                        out[2] = flux_share(&facet, share, false);
+                    }
+                }
+            }
+            Ok::<(), Infallible>(())
+        };
+        let Ok(()) = cells::for_each(n_cells, &|c| c * per_cell, &mut entries, &fill);
+        Self { coefficients: Coefficients::of(form), entries, stride }
+    }
+
+    /// The numbers of a facet, kept at facet `local` of the cell here, as asked for from that cell
+    /// or from the one across.
+    #[inline(always)]
+    pub fn at<const D: usize>(&self, here: (usize, usize), from_here: bool) -> FacetWeight<T> {
+        let start = (here.0 * (D + 1) + here.1) * self.stride;
+        let kept = &self.entries[start..start + self.stride];
+        if self.stride == 1 {
+            let zero = T::lit(0.0);
+            return FacetWeight { penalty: kept[0], own_share: zero, other_share: zero };
+        }
+        let (own, other) = if from_here { (kept[1], kept[2]) } else { (kept[2], kept[1]) };
+        FacetWeight { penalty: kept[0], own_share: own, other_share: other }
+    }
+}

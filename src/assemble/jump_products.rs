@@ -1,0 +1,67 @@
+//! Products of jumps on the facets of the reference cell.
+
+use super::local::{Local, zero_local};
+use super::space::tables::FacetTable;
+use crate::element::MAX_BASIS;
+use crate::real::Real;
+
+/// For each pair of facets the sums over moments of the products of basis functions: what the
+/// integral of `[v][u]` over a facet is, per unit measure. Moments whose penalty weights differ
+/// make classes of their own.
+pub(crate) struct JumpProducts<T> {
+    /// By what each class multiplies the penalty weight.
+    pub weights: Vec<T>,
+    /// By facet of this cell, then by class.
+    own: Vec<Local<T>>,
+    /// By facet of this cell, facet of the other cell, then by class.
+    across: Vec<Local<T>>,
+    facets: usize,
+}
+
+impl<T: Real> JumpProducts<T> {
+    /// The products of the moments in a table, with the weight of each degree.
+    pub fn new<const D: usize>(table: &FacetTable<T>, weight: impl Fn(usize) -> T) -> Self {
+        let of_degree: Vec<T> = table.degrees.iter().map(|&k| weight(k)).collect();
+        let mut weights: Vec<T> = Vec::new();
+        for &w in &of_degree {
+            if !weights.contains(&w) {
+                weights.push(w);
+            }
+        }
+        let sum = |local: usize, other: usize, class: T| {
+            let mut sum = zero_local();
+            let moments = table.on(local).iter().zip(table.on(other)).zip(&of_degree);
+            for ((mine, theirs), _) in moments.filter(|(_, w)| **w == class) {
+                for i in 0..MAX_BASIS {
+                    for j in 0..MAX_BASIS {
+                        sum[i][j] += mine.values[i] * theirs.values[j];
+                    }
+                }
+            }
+            sum
+        };
+        let classes = || weights.iter().copied();
+        let own = (0..=D).flat_map(|l| classes().map(move |c| (l, l, c)));
+        let across =
+            (0..=D).flat_map(|l| (0..=D).flat_map(move |m| classes().map(move |c| (l, m, c))));
+        Self {
+            own: own.map(|(l, m, c)| sum(l, m, c)).collect(),
+            across: across.map(|(l, m, c)| sum(l, m, c)).collect(),
+            weights,
+            facets: D + 1,
+        }
+    }
+    /// This cell with itself, by class.
+    #[inline(always)]
+    pub fn own(&self, local: usize) -> &[Local<T>] {
+        let n = self.weights.len();
+        &self.own[local * n..(local + 1) * n]
+    }
+    /// This cell with the other, by class.
+    #[inline(always)]
+    pub fn across(&self, local: usize, other: usize) -> &[Local<T>] {
+        let n = self.weights.len();
+        let pair = local * self.facets + other;
+        &self.across[pair * n..(pair + 1) * n]
+    }
+}

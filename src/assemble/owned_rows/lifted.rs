@@ -1,0 +1,258 @@
+//! Products of lifts: `int alpha r(v) . r(u)`.
+//!
+//! The lift on a cell, the *centre*, is made of the jumps on all its facets, so it couples all the
+//! neighbours of the centre with each other. The rows of a cell get contributions from the cell
+//! itself and from its neighbours as centres.
+//!
+//! On a centre `K` the jump `m` on facet `F` lifts to `-w/alpha n s`, `w` the flux share of `K` and
+//! `s` of degree `p - 1` with `int_K s q = int_F m q`. With `|F||F'| n.n' = D^2 |K| int grad lambda
+//! . grad lambda'` the product of two lifts is `D^2 w w'/alpha` times that integral times a number
+//! of the reference cell.
+
+use super::Coupled;
+use crate::assemble::local::{CellSide, flux_share, view};
+use crate::assemble::space::Space;
+use crate::assemble::space::metric::{CellMetric, Metrics};
+use crate::assemble::space::tables::{BasisAt, FacetTable};
+use crate::element::MAX_BASIS;
+use crate::facet::AnyForm;
+use crate::mesh::{BoundaryPart, Neighbour, Neighbours};
+use crate::quadrature::{OrthonormalPolynomials, Rule, insert};
+use crate::real::Real;
+
+/// Most moments a lift is made of: linears on a triangle.
+const MAX_MOMENTS: usize = 3;
+
+type Moments<T> = [[T; MAX_MOMENTS]; MAX_BASIS];
+type Product<T> = [[T; MAX_MOMENTS]; MAX_MOMENTS];
+
+/// Lifts on the reference cell.
+pub(crate) struct LiftTable<T> {
+    /// Moments of the basis, of degree up to that of lifts.
+    pub facets: FacetTable<T>,
+    /// For two facets, the products of the lifts of their moments, per measures and volume.
+    products: [[Product<T>; 4]; 4],
+}
+
+impl<T: Real> LiftTable<T> {
+    /// The lifts of a space of degree one or two.
+    pub fn new<const D: usize>(space: &Space<'_, T, D>) -> Self {
+        let degree = space.degree - 1;
+        let mut products = [[[[T::lit(0.0); MAX_MOMENTS]; MAX_MOMENTS]; 4]; 4];
+        let tests: Vec<Vec<Vec<f64>>> = (0..=D).map(|l| tests(D, degree, l)).collect();
+        for l in 0..=D {
+            for k in 0..=D {
+                for (m, a) in tests[l].iter().enumerate() {
+                    for (n, b) in tests[k].iter().enumerate() {
+                        // tests are against an orthonormal basis of the cell
+                        let product = a.iter().zip(b).map(|(a, b)| a * b).sum();
+                        products[l][k][m][n] = T::lit(product);
+                    }
+                }
+            }
+        }
+        Self { facets: space.facet_table(degree), products }
+    }
+}
+
+/// By moment on facet `local`, its means with the orthonormal polynomials of the cell.
+fn tests(dimension: usize, degree: usize, local: usize) -> Vec<Vec<f64>> {
+    let on_facet = OrthonormalPolynomials::new(dimension - 1, degree);
+    let in_cell = OrthonormalPolynomials::new(dimension, degree);
+    let rule = Rule::of_degree(dimension - 1, 2 * degree);
+    let mean = |m: usize, q: usize| {
+        let term = |(point, w): (&[f64; 4], f64)| {
+            w * on_facet.value(m, point) * in_cell.value(q, &insert(point, local))
+        };
+        rule.iter().map(term).sum()
+    };
+    (0..on_facet.len()).map(|m| (0..in_cell.len()).map(|q| mean(m, q)).collect()).collect()
+}
+
+/// The lifts of a discretisation.
+pub(crate) struct Lifting<'s, 'a, T: Real, const D: usize> {
+    pub space: &'s Space<'a, T, D>,
+    pub form: &'s dyn AnyForm<T, D>,
+    pub metrics: &'s Metrics<T>,
+    pub table: &'s LiftTable<T>,
+}
+
+/// A facet of a centre that carries jumps.
+struct Carrier<T> {
+    local: usize,
+    /// The cell across and the facet's number in it; none on the boundary.
+    across: Option<(usize, usize)>,
+    /// The flux share of the centre.
+    share: T,
+}
+
+impl<T: Real, const D: usize> Lifting<'_, '_, T, D> {
+    /// Adds the products to the rows of a cell.
+    pub fn add(&self, neighbours: &Neighbours, cell: usize, coupled: &Coupled, rows: &mut [T]) {
+        self.add_centre(neighbours, cell, None, coupled, rows);
+        for local in 0..=D {
+            if let Neighbour::Cell { cell: other, local: other_local } =
+                neighbours.across(cell, local)
+            {
+                let seen = Some((other_local as usize, local));
+                self.add_centre(neighbours, other as usize, seen, coupled, rows);
+            }
+        }
+    }
+
+    /// Adds what one centre contributes to the rows of a cell: the cell itself, or a neighbour that
+    /// sees the cell across one facet, with its number there and here.
+    fn add_centre(
+        &self,
+        neighbours: &Neighbours,
+        centre: usize,
+        seen: Option<(usize, usize)>,
+        coupled: &Coupled,
+        rows: &mut [T],
+    ) {
+        let metric = self.metrics.at::<D>(centre);
+        let carriers: [Option<Carrier<T>>; 4] = std::array::from_fn(|l| {
+            if l <= D { self.carrier(neighbours, centre, &metric, l) } else { None }
+        });
+        let n = self.space.per_cell();
+        let row = rows.len() / n;
+        for test in carriers.iter().flatten() {
+            let (sign, local) = match seen {
+                None => (T::lit(1.0), test.local),
+                Some((there, here)) if there == test.local => (T::lit(-1.0), here),
+                Some(_) => continue,
+            };
+            let tested = self.moments(local);
+            for trial in carriers.iter().flatten() {
+                let scale = sign * self.scale(centre, &metric, test, trial);
+                let weighted = self.weighted(&tested, test.local, trial.local, scale);
+                let columns = self.moments(trial.local);
+                let start = coupled.position(centre) * n;
+                self.add_block(&weighted, &columns, T::lit(1.0), start, row, rows);
+                if let Some((other, other_local)) = trial.across {
+                    let columns = self.moments(other_local);
+                    let start = coupled.position(other) * n;
+                    self.add_block(&weighted, &columns, T::lit(-1.0), start, row, rows);
+                }
+            }
+        }
+    }
+
+    /// `D^2 w w' / alpha int grad lambda . grad lambda'`.
+    fn scale(
+        &self,
+        centre: usize,
+        metric: &CellMetric<T, D>,
+        test: &Carrier<T>,
+        trial: &Carrier<T>,
+    ) -> T {
+        let product = metric.products[test.local][trial.local];
+        T::lit((D * D) as f64) * test.share * trial.share * product / self.space.alpha(centre)
+    }
+
+    /// The facet of a centre as a carrier of jumps, if a form acts on it.
+    fn carrier(
+        &self,
+        neighbours: &Neighbours,
+        centre: usize,
+        metric: &CellMetric<T, D>,
+        local: usize,
+    ) -> Option<Carrier<T>> {
+        let mesh = self.space.mesh;
+        let coefficient = self.space.alpha(centre);
+        let me = CellSide { cell: centre, local, metric, coefficient };
+        match neighbours.across(centre, local) {
+            Neighbour::Cell { cell, local: other_local } => {
+                let (cell, other_local) = (cell as usize, other_local as usize);
+                let (metric, coefficient) = (self.metrics.at(cell), self.space.alpha(cell));
+                let other = CellSide { cell, local: other_local, metric: &metric, coefficient };
+                let is_here = centre < cell;
+                let (here, there) = if is_here { (&me, &other) } else { (&other, &me) };
+                let facet = view(mesh, here, Some(there));
+                let share = flux_share(&facet, self.form.share(&facet), is_here);
+                Some(Carrier { local, across: Some((cell, other_local)), share })
+            }
+            Neighbour::Boundary(BoundaryPart::Dirichlet) => {
+                Some(Carrier { local, across: None, share: coefficient })
+            }
+            Neighbour::Boundary(_) => None,
+        }
+    }
+
+    fn moments(&self, local: usize) -> Moments<T> {
+        let mut moments = [[T::lit(0.0); MAX_MOMENTS]; MAX_BASIS];
+        for (m, basis) in self.table.facets.on(local).iter().enumerate() {
+            let basis: &BasisAt<T> = basis;
+            for i in 0..self.space.per_cell() {
+                moments[i][m] = basis.values[i];
+            }
+        }
+        moments
+    }
+
+    /// The moments of test functions times the products with the moments of another facet.
+    fn weighted(&self, tested: &Moments<T>, test: usize, trial: usize, scale: T) -> Moments<T> {
+        let products = &self.table.products[test][trial];
+        let mut weighted = [[T::lit(0.0); MAX_MOMENTS]; MAX_BASIS];
+        for i in 0..self.space.per_cell() {
+            for n in 0..MAX_MOMENTS {
+                for m in 0..MAX_MOMENTS {
+                    weighted[i][n] += scale * tested[i][m] * products[m][n];
+                }
+            }
+        }
+        weighted
+    }
+
+    fn add_block(
+        &self,
+        tests: &Moments<T>,
+        trials: &Moments<T>,
+        sign: T,
+        start: usize,
+        row: usize,
+        rows: &mut [T],
+    ) {
+        let n = self.space.per_cell();
+        for i in 0..n {
+            let out = &mut rows[i * row + start..i * row + start + n];
+            for j in 0..n {
+                for m in 0..MAX_MOMENTS {
+                    out[j] += sign * tests[i][m] * trials[j][m];
+                }
+            }
+        }
+    }
+
+    /// Adds to the load what a Dirichlet datum on a facet of the centre lifts to: the number of the
+    /// facet and the moments of the datum, of which lifts take the first.
+    pub fn add_load(
+        &self,
+        neighbours: &Neighbours,
+        centre: usize,
+        (datum_local, moments): &(usize, Vec<f64>),
+        load: &mut [T],
+    ) {
+        let metric = self.metrics.at::<D>(centre);
+        let datum = Carrier { local: *datum_local, across: None, share: self.space.alpha(centre) };
+        for local in 0..=D {
+            let Some(test) = self.carrier(neighbours, centre, &metric, local) else { continue };
+            let scale = self.scale(centre, &metric, &test, &datum);
+            let mut add = |cell: usize, local: usize, sign: T| {
+                let tested = self.moments(local);
+                let weighted = self.weighted(&tested, test.local, *datum_local, scale);
+                let n = self.space.per_cell();
+                let out = &mut load[cell * n..(cell + 1) * n];
+                for (out, weighted) in out.iter_mut().zip(&weighted) {
+                    for (w, &moment) in weighted.iter().zip(moments) {
+                        *out += sign * *w * T::lit(moment);
+                    }
+                }
+            };
+            add(centre, local, T::lit(1.0));
+            if let Some((other, other_local)) = test.across {
+                add(other, other_local, T::lit(-1.0));
+            }
+        }
+    }
+}

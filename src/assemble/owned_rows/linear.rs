@@ -1,0 +1,175 @@
+//! The rows of one cell of linear elements, in closed form.
+//!
+//! Where gradients of basis functions are those of barycentric coordinates times a factor, and the
+//! form has one weight for all jumps and one moment of fluxes or none, a facet comes down to four
+//! numbers and a few constants of the reference cell. What [`rows`](crate::assemble::owned_rows::rows) does in loops over
+//! moments is then one expression for each entry, which stays in registers.
+
+use super::rows::Rows;
+use super::{Filling, for_each_cell};
+use crate::assemble::count;
+use crate::assemble::facet_coefficients::FacetWeight;
+use crate::assemble::space::metric::CellMetric;
+use crate::mesh::{BoundaryPart, Neighbour};
+use crate::real::Real;
+
+/// Constants of the reference cell, of which dimension `D` uses the first `D + 1` facets.
+struct Reference<T, const N: usize> {
+    /// Gradients of basis functions are those of barycentric coordinates times this.
+    gradient: T,
+    /// By facet: products of jumps.
+    own: [[[T; N]; N]; 4],
+    /// By facet and by the number that the cell across has for it.
+    across: [[[[T; N]; N]; 4]; 4],
+    /// By facet: means of the basis functions.
+    means: [[T; N]; 4],
+}
+
+/// One facet of a cell: what multiplies products of jumps, and for each test function what multiplies
+/// fluxes and means of trial functions.
+struct OnFacet<T, const N: usize> {
+    jump_jump: T,
+    by_flux: [T; N],
+    by_jump: [T; N],
+}
+
+impl<T: Real, const D: usize> Filling<'_, '_, T, D> {
+    /// Whether [`Filling::fill_linear`] gives all that the form has.
+    pub(crate) fn is_linear(&self) -> bool {
+        self.gradient.is_some() && self.jumps.weights.len() == 1 && self.flux_moments.len() < 2
+    }
+
+    /// The rows of all cells, for elements of `N = D + 1` functions; `FLUX`: the form has fluxes.
+    pub(crate) fn fill_linear<const N: usize, const FLUX: bool>(
+        &self,
+        row_starts: &[u32],
+        values: &mut [T],
+    ) {
+        let reference = self.reference::<N>();
+        for_each_cell(row_starts, N, values, |cell, entries| {
+            if self.lifted {
+                entries.fill(T::lit(0.0));
+            }
+            let rows = Rows::new(N, entries, self.places(cell));
+            self.write_linear::<N, FLUX>(&reference, cell, rows);
+        });
+    }
+
+    fn reference<const N: usize>(&self) -> Reference<T, N> {
+        let of = |m: &[[T; _]; _]| std::array::from_fn(|i| std::array::from_fn(|j| m[i][j]));
+        let facet = |local: usize| local.min(D);
+        Reference {
+            gradient: self.gradient.unwrap_or_else(|| T::lit(1.0)),
+            own: std::array::from_fn(|l| of(&self.jumps.own(facet(l))[0])),
+            across: std::array::from_fn(|l| {
+                std::array::from_fn(|m| of(&self.jumps.across(facet(l), facet(m))[0]))
+            }),
+            means: std::array::from_fn(|l| {
+                std::array::from_fn(|i| self.facets.on(facet(l))[0].values[i])
+            }),
+        }
+    }
+
+    /// Writes the rows of a cell: its stiffness and the form on its facets.
+    #[inline(always)]
+    fn write_linear<const N: usize, const FLUX: bool>(
+        &self,
+        reference: &Reference<T, N>,
+        cell: usize,
+        mut rows: Rows<'_, T>,
+    ) {
+        let metric = self.metrics.at::<D>(cell);
+        let gradient = reference.gradient;
+        let scale = self.space.alpha(cell) * gradient * gradient;
+        let mut own = [[T::lit(0.0); N]; N];
+        for i in 0..N {
+            for j in 0..N {
+                own[i][j] = scale * metric.products[i][j];
+            }
+        }
+        for local in 0..=D {
+            match self.neighbours.across(cell, local) {
+                Neighbour::Cell { cell: other, local: other_local } => {
+                    let (other, other_local) = (other as usize, other_local as usize);
+                    let from_here = cell < other;
+                    let here = if from_here { (cell, local) } else { (other, other_local) };
+                    let weight = self.weights.at::<D>(here, from_here);
+                    let facet =
+                        self.add_linear::<N, FLUX>(reference, &metric, local, &weight, &mut own);
+                    let products = &reference.across[local][other_local & 3];
+                    let means = &reference.means[other_local & 3];
+                    let mut flux = [T::lit(0.0); N];
+                    if FLUX {
+                        count::normal_derivatives(N);
+                        let scale = T::lit(D as f64) * gradient * weight.other_share;
+                        let row = self.metrics.products_of::<D>(other, other_local);
+                        flux = std::array::from_fn(|i| scale * row[i]);
+                    }
+                    for i in 0..N {
+                        let out = rows.block::<N>(rows.across[local], i);
+                        for j in 0..N {
+                            let jumps = facet.jump_jump * products[i][j];
+                            out[j] = if FLUX {
+                                facet.by_flux[i] * flux[j] - facet.by_jump[i] * means[j] - jumps
+                            } else {
+                                -jumps
+                            };
+                        }
+                    }
+                }
+                Neighbour::Boundary(BoundaryPart::Dirichlet) if !self.space.pins => {
+                    let weight = self.weights.at::<D>((cell, local), true);
+                    self.add_linear::<N, FLUX>(reference, &metric, local, &weight, &mut own);
+                }
+                Neighbour::Boundary(_) => {}
+            }
+        }
+        for (i, row) in own.iter().enumerate() {
+            rows.block::<N>(rows.own, i).copy_from_slice(row);
+        }
+    }
+
+    /// Adds what the form makes of a facet to the columns of the cell whose rows these are; normals
+    /// point out of it.
+    #[inline(always)]
+    fn add_linear<const N: usize, const FLUX: bool>(
+        &self,
+        reference: &Reference<T, N>,
+        metric: &CellMetric<T, D>,
+        local: usize,
+        weight: &FacetWeight<T>,
+        own: &mut [[T; N]; N],
+    ) -> OnFacet<T, N> {
+        count::facets(1);
+        let form = &self.weights.coefficients;
+        let measure = metric.measures[local];
+        let penalty = weight.penalty * self.jumps.weights[0];
+        let jump_jump = measure * form.jump_jump.at(penalty);
+        let products = &reference.own[local];
+        let zero = [T::lit(0.0); N];
+        let mut facet = OnFacet { jump_jump, by_flux: zero, by_jump: zero };
+        if !FLUX {
+            for i in 0..N {
+                for j in 0..N {
+                    own[i][j] += jump_jump * products[i][j];
+                }
+            }
+            return facet;
+        }
+        count::normal_derivatives(N);
+        let means = &reference.means[local];
+        let scale = T::lit(-(D as f64)) * reference.gradient * weight.own_share;
+        let flux: [T; N] = std::array::from_fn(|i| scale * metric.products[local][i]);
+        let (jump_flux, flux_jump) = (form.jump_flux.at(penalty), form.flux_jump.at(penalty));
+        let flux_flux = form.flux_flux.at(penalty) / measure;
+        facet.by_flux = std::array::from_fn(|i| jump_flux * means[i] + flux_flux * flux[i]);
+        facet.by_jump = flux.map(|flux| flux_jump * flux);
+        for i in 0..N {
+            for j in 0..N {
+                own[i][j] += jump_jump * products[i][j]
+                    + (facet.by_flux[i] * flux[j] + facet.by_jump[i] * means[j]);
+            }
+        }
+        facet
+    }
+}

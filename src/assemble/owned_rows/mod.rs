@@ -1,0 +1,233 @@
+//! Rows of broken spaces: each cell writes its own, once, in place.
+//!
+//! The rows of a cell consist of dense blocks, one for the cell and one for each cell coupled to
+//! it, in ascending order of cells. A facet's form is evaluated from each of its two sides for the
+//! rows of that side, so no local matrix is ever stored and no two cells write to the same place.
+//!
+//! A form is bilinear in moments, so on each facet it comes down to a few numbers: the products of
+//! jumps are those of the reference cell, and fluxes of one moment make a matrix of rank one.
+
+pub(crate) mod lifted;
+mod linear;
+mod rows;
+
+use std::convert::Infallible;
+
+use super::facet_coefficients::FacetWeights;
+use super::jump_products::JumpProducts;
+use super::local::{StiffnessTable, zero_local};
+use super::space::metric::Metrics;
+use super::space::tables::FacetTable;
+use super::space::{Space, data};
+use crate::algebra::SparseMatrix;
+use crate::element::MAX_BASIS;
+use crate::facet::AnyForm;
+use crate::memory::in_large_pages;
+use crate::mesh::{Neighbour, Neighbours};
+use crate::parallel::cells;
+use crate::real::Real;
+use lifted::{LiftTable, Lifting};
+use rows::MAX_FLUX_MOMENTS;
+
+/// The cells coupled to a cell, itself included, ascending.
+pub(crate) struct Coupled {
+    /// At most the cell, its neighbours and theirs.
+    cells: [u32; 17],
+    n: usize,
+}
+
+impl Coupled {
+    /// The cell with its neighbours and, where jumps are lifted, the neighbours of these.
+    #[inline(always)]
+    fn of<const D: usize>(neighbours: &Neighbours, cell: usize, lifted: bool) -> Self {
+        let mut found = Self { cells: [u32::MAX; 17], n: 1 };
+        found.cells[0] = cell as u32;
+        for local in 0..=D {
+            if let Neighbour::Cell { cell: other, .. } = neighbours.across(cell, local) {
+                if !lifted {
+                    found.insert(other);
+                    continue;
+                }
+                // around a vertex or an edge of three cells each is the neighbour of the others
+                found.insert_new(other);
+                for local in 0..=D {
+                    if let Neighbour::Cell { cell, .. } = neighbours.across(other as usize, local) {
+                        found.insert_new(cell);
+                    }
+                }
+            }
+        }
+        found
+    }
+    /// How many they are.
+    #[inline(always)]
+    fn count<const D: usize>(neighbours: &Neighbours, cell: usize, lifted: bool) -> usize {
+        let is_cell =
+            |local: &usize| matches!(neighbours.across(cell, *local), Neighbour::Cell { .. });
+        if lifted {
+            Self::of::<D>(neighbours, cell, true).n
+        } else {
+            1 + (0..=D).filter(is_cell).count()
+        }
+    }
+    #[inline(always)]
+    fn insert(&mut self, other: u32) {
+        let mut k = self.n;
+        while k > 0 && self.cells[k - 1] > other {
+            self.cells[k] = self.cells[k - 1];
+            k -= 1;
+        }
+        self.cells[k] = other;
+        self.n += 1;
+    }
+    fn insert_new(&mut self, other: u32) {
+        if !self.cells[..self.n].contains(&other) {
+            self.insert(other);
+        }
+    }
+    /// The place of a coupled cell among them.
+    #[inline(always)]
+    pub fn position(&self, cell: usize) -> usize {
+        self.cells[..self.n].iter().position(|&c| c == cell as u32).unwrap_or(0)
+    }
+}
+
+/// The pattern, with values zero.
+pub(crate) fn pattern<T: Real, const D: usize>(
+    space: &Space<'_, T, D>,
+    lifted: bool,
+) -> SparseMatrix<T> {
+    let neighbours = space.coupled_neighbours();
+    let n = space.per_cell();
+    let n_cells = space.mesh.n_cells();
+    let mut row_starts = in_large_pages(Vec::with_capacity(n * n_cells + 1));
+    row_starts.push(0_u32);
+    let mut end = 0;
+    for cell in 0..n_cells {
+        let length = Coupled::count::<D>(neighbours, cell, lifted) * n;
+        for _ in 0..n {
+            end += length as u32;
+            row_starts.push(end);
+        }
+    }
+    let mut columns = in_large_pages(vec![0_u32; end as usize]);
+    for_each_cell(&row_starts, n, &mut columns, |cell, rows| {
+        let coupled = Coupled::of::<D>(neighbours, cell, lifted);
+        let (first, others) = rows.split_at_mut(coupled.n * n);
+        for (block, &other) in first.chunks_exact_mut(n).zip(&coupled.cells) {
+            for (j, column) in block.iter_mut().enumerate() {
+                *column = other * n as u32 + j as u32;
+            }
+        }
+        for row in others.chunks_exact_mut(first.len()) {
+            row.copy_from_slice(first);
+        }
+    });
+    let values = in_large_pages(vec![T::lit(0.0); end as usize]);
+    SparseMatrix { row_starts, columns, values }
+}
+
+/// Calls a function with each cell and the entries of its rows, in parallel.
+fn for_each_cell<V: Send>(
+    row_starts: &[u32],
+    n: usize,
+    entries: &mut [V],
+    work: impl Fn(usize, &mut [V]) + Sync,
+) {
+    let end = |cell: usize| row_starts[cell * n] as usize;
+    let piece = |cells: std::ops::Range<usize>, mut piece: &mut [V]| {
+        for cell in cells {
+            let (rows, tail) = piece.split_at_mut(end(cell + 1) - end(cell));
+            work(cell, rows);
+            piece = tail;
+        }
+        Ok::<(), Infallible>(())
+    };
+    let Ok(()) = cells::for_each((row_starts.len() - 1) / n, &end, entries, &piece);
+}
+
+/// All that the loop over cells reads.
+struct Filling<'s, 'a, T: Real, const D: usize> {
+    space: &'s Space<'a, T, D>,
+    neighbours: &'s Neighbours,
+    metrics: &'s Metrics<T>,
+    weights: &'s FacetWeights<T>,
+    stiffness: StiffnessTable<T>,
+    facets: FacetTable<T>,
+    jumps: JumpProducts<T>,
+    /// By what the penalty is multiplied for each moment that has a flux.
+    flux_moments: Vec<T>,
+    /// If the gradient of basis function `i` is `c` times that of barycentric coordinate `i`: `c`.
+    gradient: Option<T>,
+    lifted: bool,
+}
+
+/// The values, on a known pattern.
+pub(crate) fn fill<T: Real, const D: usize>(
+    space: &Space<'_, T, D>,
+    form: &dyn AnyForm<T, D>,
+    metrics: &Metrics<T>,
+    weights: &FacetWeights<T>,
+    matrix: &mut SparseMatrix<T>,
+) {
+    let facets = space.facet_table(form.moments(space.degree));
+    let of_degree = |k| form.moment_weight(k);
+    let has_flux = |k: &&usize| form.uses_flux() && **k < space.degree;
+    let filling = Filling {
+        space,
+        neighbours: space.coupled_neighbours(),
+        metrics,
+        weights,
+        stiffness: space.stiffness_table(),
+        jumps: JumpProducts::new::<D>(&facets, of_degree),
+        flux_moments: facets.degrees.iter().filter(has_flux).map(|&k| of_degree(k)).collect(),
+        facets,
+        gradient: space.gradient_factor(),
+        lifted: form.is_lifted(),
+    };
+    let SparseMatrix { row_starts, values, .. } = matrix;
+    let has_flux = !filling.flux_moments.is_empty();
+    match (D, space.per_cell(), filling.is_linear()) {
+        (1, 2, true) if has_flux => filling.fill_linear::<2, true>(row_starts, values),
+        (1, 2, true) => filling.fill_linear::<2, false>(row_starts, values),
+        (2, 3, true) if has_flux => filling.fill_linear::<3, true>(row_starts, values),
+        (2, 3, true) => filling.fill_linear::<3, false>(row_starts, values),
+        (3, 4, true) if has_flux => filling.fill_linear::<4, true>(row_starts, values),
+        (3, 4, true) => filling.fill_linear::<4, false>(row_starts, values),
+        (1, 3, _) => filling.fill::<3, 1>(row_starts, values),
+        (2, 6, _) if filling.flux_moments.len() <= 2 => filling.fill::<6, 2>(row_starts, values),
+        _ => filling.fill::<MAX_BASIS, MAX_FLUX_MOMENTS>(row_starts, values),
+    }
+    if form.is_lifted() {
+        let table = LiftTable::new(space);
+        let lifting = Lifting { space, form, metrics, table: &table };
+        filling.add_to_cells(row_starts, values, &|cell, coupled, rows| {
+            lifting.add(filling.neighbours, cell, coupled, rows);
+        });
+    }
+    if let Some(reaction) = data::ReactionTerm::new(space) {
+        let n = space.per_cell();
+        filling.add_to_cells(row_starts, values, &|cell, coupled, rows| {
+            let mut own = zero_local();
+            reaction.add(space.mesh, cell, metrics.at::<D>(cell).volume, &mut own);
+            let block = coupled.position(cell) * n;
+            for (row, values) in rows.chunks_exact_mut(coupled.n * n).zip(&own) {
+                for (entry, value) in row[block..].iter_mut().zip(&values[..n]) {
+                    *entry += *value;
+                }
+            }
+        });
+    }
+}
+
+/// What adds to the rows of a cell.
+type AddToCell<'w, T> = &'w (dyn Fn(usize, &Coupled, &mut [T]) + Sync);
+
+impl<T: Real, const D: usize> Filling<'_, '_, T, D> {
+    /// Calls a function with each cell and its rows.
+    fn add_to_cells(&self, row_starts: &[u32], values: &mut [T], add: AddToCell<'_, T>) {
+        for_each_cell(row_starts, self.space.per_cell(), values, |cell, rows| {
+            add(cell, &Coupled::of::<D>(self.neighbours, cell, self.lifted), rows);
+        });
+    }
+}

@@ -1,0 +1,262 @@
+//! The rows of one cell: its stiffness, and on each facet the products of moments.
+//!
+//! Sums are made a row of a block at a time, in registers, and each entry is written once.
+
+use super::{Coupled, Filling, for_each_cell};
+use crate::assemble::count;
+use crate::assemble::facet_coefficients::FacetWeight;
+use crate::assemble::local::CellSide;
+use crate::assemble::space::tables::BasisAt;
+use crate::element::MAX_BASIS;
+use crate::mesh::{BoundaryPart, Neighbour};
+use crate::real::Real;
+
+/// Most moments of fluxes on a facet: polynomials of a degree below that of an element of at most
+/// [`MAX_BASIS`] functions.
+pub(crate) const MAX_FLUX_MOMENTS: usize = 3;
+
+/// A dense block of the rows of a cell, of which small elements use the upper left corner.
+type Block<T, const N: usize> = [[T; N]; N];
+
+/// Moments on a facet, of `N` functions each.
+type Moments<T, const N: usize, const M: usize> = [[T; N]; M];
+
+/// The `n` rows of a cell.
+pub(crate) struct Rows<'r, T> {
+    n: usize,
+    /// Entries of each.
+    length: usize,
+    entries: &'r mut [T],
+    /// The place among the coupled cells of those across each facet, and of the cell itself.
+    pub across: [usize; 4],
+    pub own: usize,
+}
+
+impl<'r, T: Real> Rows<'r, T> {
+    #[inline(always)]
+    pub fn new(n: usize, entries: &'r mut [T], (across, own): ([usize; 4], usize)) -> Self {
+        Self { n, length: entries.len() / n, entries, across, own }
+    }
+    /// Row `i` of the block of the coupled cell at a place, for a cell of `N` functions.
+    #[inline(always)]
+    pub fn block<const N: usize>(&mut self, place: usize, i: usize) -> &mut [T] {
+        let start = i * self.length + place * N;
+        &mut self.entries[start..start + N]
+    }
+    /// Writes row `i` of the block of the coupled cell at a place, as much of it as there is.
+    #[inline(always)]
+    fn write<const N: usize>(&mut self, place: usize, i: usize, row: &[T; N]) {
+        if self.n == N {
+            self.block::<N>(place, i).copy_from_slice(row);
+        } else if i < self.n {
+            let start = i * self.length + place * self.n;
+            self.entries[start..start + self.n].copy_from_slice(&row[..self.n]);
+        }
+    }
+}
+
+/// One facet of a cell, as it enters the rows of that cell: normals point out of it.
+///
+/// Jumps and fluxes both flip their sign with the direction of the normal, so their products do not.
+struct OnFacet<'f, T, const D: usize, const N: usize, const M: usize> {
+    me: CellSide<'f, T, D>,
+    weight: FacetWeight<T>,
+    /// What multiplies the products of jumps of the first class.
+    jump_jump: T,
+    /// By moment what multiplies fluxes of trial functions, for each test function.
+    by_flux: Moments<T, N, M>,
+    /// By moment what multiplies jumps of trial functions besides, for each test function.
+    by_jump: Moments<T, N, M>,
+}
+
+impl<T: Real, const D: usize> Filling<'_, '_, T, D> {
+    /// The rows of all cells, for elements of `N` functions, or of fewer for the largest `N`, with at
+    /// most `M` moments of fluxes on a facet.
+    pub(crate) fn fill<const N: usize, const M: usize>(
+        &self,
+        row_starts: &[u32],
+        values: &mut [T],
+    ) {
+        let n = if N == MAX_BASIS { self.space.per_cell() } else { N };
+        for_each_cell(row_starts, n, values, |cell, entries| {
+            if self.lifted {
+                entries.fill(T::lit(0.0));
+            }
+            let rows = Rows::new(n, entries, self.places(cell));
+            self.write_cell::<N, M>(cell, rows);
+        });
+    }
+
+    /// The places of the cells across each facet among those coupled to a cell, and its own.
+    #[inline(always)]
+    pub(crate) fn places(&self, cell: usize) -> ([usize; 4], usize) {
+        let across = |local| match self.neighbours.across(cell, local) {
+            Neighbour::Cell { cell, .. } => cell,
+            Neighbour::Boundary(_) => u32::MAX,
+        };
+        let mut cells = [u32::MAX; 4];
+        for local in 0..=D {
+            cells[local] = across(local);
+        }
+        if self.lifted {
+            let coupled = Coupled::of::<D>(self.neighbours, cell, true);
+            return (cells.map(|other| coupled.position(other as usize)), coupled.position(cell));
+        }
+        // ranks by comparison of all pairs, without branches
+        let me = cell as u32;
+        let below = |than: u32| {
+            (0..=D).fold(usize::from(me < than), |n, k| n + usize::from(cells[k] < than))
+        };
+        (cells.map(below), below(me))
+    }
+
+    /// Writes the rows of a cell: its stiffness and the form on its facets.
+    #[inline(always)]
+    fn write_cell<const N: usize, const M: usize>(&self, cell: usize, mut rows: Rows<'_, T>) {
+        let metric = self.metrics.at(cell);
+        let coefficient = self.space.alpha(cell);
+        let mut own: Block<T, N> =
+            block(|i, j| coefficient * self.stiffness.entry::<D>(&metric, i, j));
+        for local in 0..=D {
+            let me = CellSide { cell, local, metric: &metric, coefficient };
+            match self.neighbours.across(cell, local) {
+                Neighbour::Cell { cell: other, local: other_local } => {
+                    let there = (other as usize, other_local as usize);
+                    let from_here = cell < there.0;
+                    let here = if from_here { (cell, local) } else { there };
+                    let weight = self.weights.at::<D>(here, from_here);
+                    let facet = self.add_facet::<N, M>(me, weight, &mut own);
+                    self.write_across::<N, M>(&facet, there, &mut rows);
+                }
+                Neighbour::Boundary(BoundaryPart::Dirichlet) if !self.space.pins => {
+                    let weight = self.weights.at::<D>((cell, local), true);
+                    self.add_facet::<N, M>(me, weight, &mut own);
+                }
+                Neighbour::Boundary(_) => {}
+            }
+        }
+        for (i, row) in own.iter().enumerate() {
+            rows.write(rows.own, i, row);
+        }
+    }
+
+    /// Adds what the form makes of a facet to the columns of the cell whose rows these are.
+    #[inline(always)]
+    fn add_facet<'f, const N: usize, const M: usize>(
+        &self,
+        me: CellSide<'f, T, D>,
+        weight: FacetWeight<T>,
+        own: &mut Block<T, N>,
+    ) -> OnFacet<'f, T, D, N, M> {
+        count::facets(1);
+        let form = &self.weights.coefficients;
+        let measure = me.metric.measures[me.local];
+        let jump_jump = self.jump_scale(&me, &weight, self.jumps.weights[0]);
+        let zero = [[T::lit(0.0); N]; M];
+        let mut facet = OnFacet { me, weight, jump_jump, by_flux: zero, by_jump: zero };
+        let mut flux = zero;
+        let moments = self.facets.on(me.local);
+        for k in 0..self.n_fluxes::<M>() {
+            let penalty = weight.penalty * self.flux_moments[k];
+            let flux_flux = form.flux_flux.at(penalty) / measure;
+            let (jump_flux, flux_jump) = (form.jump_flux.at(penalty), form.flux_jump.at(penalty));
+            let mine = &moments[k];
+            let products = &me.metric.products[me.local];
+            flux[k] = self.flux::<N>(mine, products, weight.own_share);
+            facet.by_flux[k] =
+                std::array::from_fn(|i| jump_flux * mine.values[i] + flux_flux * flux[k][i]);
+            facet.by_jump[k] = flux[k].map(|flux| flux_jump * flux);
+        }
+        let products = self.jumps.own(me.local);
+        for i in 0..N {
+            let mut row: [T; N] = std::array::from_fn(|j| jump_jump * products[0][i][j]);
+            for class in 1..products.len() {
+                let scale = self.jump_scale(&me, &weight, self.jumps.weights[class]);
+                for j in 0..N {
+                    row[j] += scale * products[class][i][j];
+                }
+            }
+            for k in 0..self.n_fluxes::<M>() {
+                let (by_flux, by_jump) = (facet.by_flux[k][i], facet.by_jump[k][i]);
+                let values = &moments[k].values;
+                for j in 0..N {
+                    row[j] += by_flux * flux[k][j] + by_jump * values[j];
+                }
+            }
+            for j in 0..N {
+                own[i][j] += row[j];
+            }
+        }
+        facet
+    }
+
+    /// Writes what the form makes of a facet to the columns of the cell across, which has the facet
+    /// under another number.
+    #[inline(always)]
+    fn write_across<const N: usize, const M: usize>(
+        &self,
+        facet: &OnFacet<'_, T, D, N, M>,
+        (other, other_local): (usize, usize),
+        rows: &mut Rows<'_, T>,
+    ) {
+        let local = facet.me.local;
+        let mut flux = [[T::lit(0.0); N]; M];
+        let moments = self.facets.on(other_local);
+        if self.n_fluxes::<M>() > 0 {
+            let of_theirs = self.metrics.products_of::<D>(other, other_local);
+            for k in 0..self.n_fluxes::<M>() {
+                let share = -facet.weight.other_share;
+                flux[k] = self.flux::<N>(&moments[k], &of_theirs, share);
+            }
+        }
+        let products = self.jumps.across(local, other_local);
+        for i in 0..N {
+            let mut row: [T; N] = std::array::from_fn(|j| -facet.jump_jump * products[0][i][j]);
+            for class in 1..products.len() {
+                let scale = self.jump_scale(&facet.me, &facet.weight, self.jumps.weights[class]);
+                for j in 0..N {
+                    row[j] -= scale * products[class][i][j];
+                }
+            }
+            for k in 0..self.n_fluxes::<M>() {
+                let (by_flux, by_jump) = (facet.by_flux[k][i], facet.by_jump[k][i]);
+                let values = &moments[k].values;
+                for j in 0..N {
+                    row[j] += by_flux * flux[k][j] - by_jump * values[j];
+                }
+            }
+            rows.write(rows.across[local], i, &row);
+        }
+    }
+
+    /// How many moments have a flux.
+    #[inline(always)]
+    fn n_fluxes<const M: usize>(&self) -> usize {
+        self.flux_moments.len().min(M)
+    }
+
+    /// What multiplies the products of jumps of a class.
+    #[inline(always)]
+    fn jump_scale(&self, me: &CellSide<'_, T, D>, weight: &FacetWeight<T>, class: T) -> T {
+        me.metric.measures[me.local]
+            * self.weights.coefficients.jump_jump.at(weight.penalty * class)
+    }
+
+    /// The fluxes of the basis functions of a cell through one of its facets, of one moment: their
+    /// derivatives along the outward normal times the measure of the facet and a factor.
+    /// `products`: those of the gradient opposite the facet with all gradients.
+    #[inline(always)]
+    fn flux<const N: usize>(&self, basis: &BasisAt<T>, products: &[T; 4], factor: T) -> [T; N] {
+        count::normal_derivatives(N);
+        let scale = T::lit(-(D as f64)) * factor;
+        std::array::from_fn(|i| {
+            let sum = |sum, k: usize| sum + basis.derivatives[i][k] * products[k];
+            scale * (1..=D).fold(basis.derivatives[i][0] * products[0], sum)
+        })
+    }
+}
+
+#[inline(always)]
+fn block<T, const N: usize>(entry: impl Fn(usize, usize) -> T) -> Block<T, N> {
+    std::array::from_fn(|i| std::array::from_fn(|j| entry(i, j)))
+}

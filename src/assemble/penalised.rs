@@ -1,0 +1,210 @@
+//! The matrix of a form that ties cells by jumps alone, not multiplied out.
+
+use std::convert::Infallible;
+
+use super::facet_coefficients::FacetWeights;
+use super::load::FacetDatum;
+use super::local::zero_local;
+use super::space::metric::Metrics;
+use super::space::tables::FacetTable;
+use super::space::{Space, data};
+use crate::algebra::{Factored, Term};
+use crate::element::{MAX_BASIS, Node};
+use crate::facet::{AnyForm, FacetForm};
+use crate::mesh::{BoundaryPart, Neighbour, edge_vertices};
+use crate::parallel::cells;
+use crate::real::Real;
+
+/// The load, that without Dirichlet data where the matrix is kept factored, and Dirichlet data.
+pub(crate) type Loads<T> = (Vec<T>, Option<Vec<T>>, Vec<FacetDatum>);
+
+/// Moments up to this share of the largest are what quadrature leaves of zero, and differences up to
+/// this share are none.
+const ROUNDING: f64 = 1e-12;
+
+/// Whether all there is of a form is a sum of products of jumps.
+pub(crate) fn applies<T: Real, const D: usize, F: FacetForm<T, D>>(form: &F) -> bool {
+    !F::USES_FLUX && !F::LIFTED && form.is_symmetric()
+}
+
+/// The parts: stiffness and reaction by cells, jumps of moments over facets with their weights, the
+/// load without Dirichlet data by cells (empty for none), Dirichlet data.
+pub(crate) fn factored<T: Real, const D: usize>(
+    space: &Space<'_, T, D>,
+    form: &dyn AnyForm<T, D>,
+    (metrics, weights): (&Metrics<T>, &FacetWeights<T>),
+    mut load: Vec<T>,
+    mut dirichlet: Vec<FacetDatum>,
+) -> Factored<T> {
+    load.resize(space.dofs.size(), T::lit(0.0));
+    dirichlet.sort_by_key(|(cell, (local, _))| (*cell, *local));
+    let mut dirichlet = dirichlet.into_iter().peekable();
+    let mut out = Factored {
+        block: space.per_cell(),
+        blocks: blocks(space, metrics),
+        load,
+        starts: vec![0],
+        terms: Vec::new(),
+        weights: Vec::new(),
+        data: Vec::new(),
+    };
+    let table = space.facet_table(form.moments(space.degree));
+    let templates = Templates::<T>::new::<D>(space, &table);
+    let of_degree: Vec<T> = table.degrees.iter().map(|&k| form.moment_weight(k)).collect();
+    let neighbours = space.coupled_neighbours();
+    for cell in 0..space.mesh.n_cells() {
+        let metric = metrics.at::<D>(cell);
+        for local in 0..=D {
+            let (other, template) = match neighbours.across(cell, local) {
+                Neighbour::Cell { cell: other, local: there } if cell < other as usize => {
+                    (other as usize, templates.between(local, there as usize))
+                }
+                Neighbour::Boundary(BoundaryPart::Dirichlet) if !space.pins => {
+                    (cell, templates.on_boundary(local))
+                }
+                _ => continue,
+            };
+            let datum = dirichlet.next_if(|(c, (l, _))| (*c, *l) == (cell, local));
+            let zeros = of_degree.iter().map(|_| T::lit(0.0));
+            match &datum {
+                Some((_, (_, values))) => out.data.extend(values.iter().map(|&v| T::lit(v))),
+                None => out.data.extend(zeros),
+            }
+            let penalty = weights.at::<D>((cell, local), true).penalty;
+            let measure = metric.measures[local];
+            for (terms, &factor) in template.iter().zip(&of_degree) {
+                out.terms.extend(terms.iter().map(|t| t.between(cell, other, out.block)));
+                out.starts.push(out.terms.len() as u32);
+                let jump_jump = weights.coefficients.jump_jump.at(penalty * factor);
+                out.weights.push(measure * jump_jump);
+            }
+        }
+    }
+    out
+}
+
+/// Stiffness and reaction of all cells.
+fn blocks<T: Real, const D: usize>(space: &Space<'_, T, D>, metrics: &Metrics<T>) -> Vec<T> {
+    let n = space.per_cell();
+    let stiffness = space.stiffness_table();
+    let reaction = data::ReactionTerm::new(space);
+    let mut blocks = vec![T::lit(0.0); n * n * space.mesh.n_cells()];
+    let fill = |cells: std::ops::Range<usize>, piece: &mut [T]| {
+        for (cell, out) in cells.zip(piece.chunks_exact_mut(n * n)) {
+            let metric = metrics.at::<D>(cell);
+            let coefficient = space.alpha(cell);
+            for (k, out) in out.iter_mut().enumerate() {
+                *out = coefficient * stiffness.entry::<D>(&metric, k / n, k % n);
+            }
+            if let Some(reaction) = &reaction {
+                let mut own = zero_local();
+                reaction.add(space.mesh, cell, metric.volume, &mut own);
+                for (k, out) in out.iter_mut().enumerate() {
+                    *out += own[k / n][k % n];
+                }
+            }
+        }
+        Ok::<(), Infallible>(())
+    };
+    let Ok(()) = cells::for_each(space.mesh.n_cells(), &|c| c * n * n, &mut blocks, &fill);
+    blocks
+}
+
+/// A term by the numbers of unknowns in their cells.
+struct LocalTerm<T> {
+    here: Option<usize>,
+    there: Option<usize>,
+    weight: T,
+}
+
+impl<T: Real> LocalTerm<T> {
+    fn between(&self, cell: usize, other: usize, n: usize) -> Term<T> {
+        let unknown =
+            |cell: usize, i: Option<usize>| i.map_or(Term::<T>::NONE, |i| (cell * n + i) as u32);
+        Term {
+            here: unknown(cell, self.here),
+            there: unknown(other, self.there),
+            weight: self.weight,
+        }
+    }
+}
+
+/// The terms of each moment, for each pair of facet numbers and for facets without a cell there.
+struct Templates<T> {
+    facets: usize,
+    pairs: Vec<Vec<Vec<LocalTerm<T>>>>,
+}
+
+impl<T: Real> Templates<T> {
+    fn new<const D: usize>(space: &Space<'_, T, D>, table: &FacetTable<T>) -> Self {
+        let terms = |here: usize, there: Option<usize>| {
+            let moments = 0..table.degrees.len();
+            let there = |k: usize| there.map(|l| (l, &table.on(l)[k].values));
+            moments
+                .map(|k| moment::<T, D>(&space.nodes, (here, &table.on(here)[k].values), there(k)))
+                .collect()
+        };
+        let pair = |k: usize| terms(k / (D + 1), Some(k % (D + 1)));
+        let alone = |k: usize| terms(k, None);
+        Self {
+            facets: D + 1,
+            pairs: (0..(D + 1) * (D + 1)).map(pair).chain((0..=D).map(alone)).collect(),
+        }
+    }
+    fn between(&self, here: usize, there: usize) -> &[Vec<LocalTerm<T>>] {
+        &self.pairs[here * self.facets + there]
+    }
+    fn on_boundary(&self, here: usize) -> &[Vec<LocalTerm<T>>] {
+        &self.pairs[self.facets * self.facets + here]
+    }
+}
+
+/// A facet of a cell and the moments of the cell's functions on it.
+type SideValues<'t, T> = (usize, &'t [T; MAX_BASIS]);
+
+/// The terms of one moment: unknowns at the same node make one, if they weigh the same.
+fn moment<T: Real, const D: usize>(
+    nodes: &[Node],
+    (facet, here): SideValues<'_, T>,
+    there: Option<SideValues<'_, T>>,
+) -> Vec<LocalTerm<T>> {
+    let largest = here.iter().map(|v| v.to_f64().abs()).fold(0.0, f64::max);
+    let is_zero = |v: T| v.to_f64().abs() <= ROUNDING.max(T::EPSILON) * largest;
+    let mut terms = Vec::new();
+    let mut is_paired = [false; MAX_BASIS];
+    for (i, node) in nodes.iter().enumerate().filter(|(i, _)| !is_zero(here[*i])) {
+        let partner = there.and_then(|(other, values)| {
+            let node = across::<D>(*node, facet, other)?;
+            let j = nodes.iter().position(|n| *n == node)?;
+            is_zero(values[j] - here[i]).then_some(j)
+        });
+        if let Some(j) = partner {
+            is_paired[j] = true;
+        }
+        terms.push(LocalTerm { here: Some(i), there: partner, weight: here[i] });
+    }
+    if let Some((_, values)) = there {
+        let left = (0..nodes.len()).filter(|&j| !is_paired[j] && !is_zero(values[j]));
+        terms.extend(left.map(|j| LocalTerm { here: None, there: Some(j), weight: values[j] }));
+    }
+    terms
+}
+
+/// The node of the cell there that is a node of the cell here, on their common facet, whose vertices
+/// both cells have in the same order.
+fn across<const D: usize>(node: Node, facet: usize, other: usize) -> Option<Node> {
+    let vertex = |k: usize| {
+        let place = (k != facet).then(|| k - usize::from(k > facet))?;
+        Some(place + usize::from(place >= other))
+    };
+    match node {
+        Node::Vertex(k) => vertex(k).map(Node::Vertex),
+        Node::Edge(k) => {
+            let [i, j] = edge_vertices(D)[k].map(vertex);
+            let ends = [i?, j?];
+            edge_vertices(D).iter().position(|e| *e == ends).map(Node::Edge)
+        }
+        Node::FacetMean(k) => (k == facet).then_some(Node::FacetMean(other)),
+        Node::CellMean => None,
+    }
+}

@@ -1,0 +1,164 @@
+//! The matrix of one cell, as a list.
+
+use std::marker::PhantomData;
+
+use crate::assemble::local::zero_local;
+use crate::assemble::space::Space;
+use crate::assemble::space::data::ReactionTerm;
+use crate::assemble::space::metric::{CellMetric, shape};
+use crate::element::{MAX_BASIS, ReferenceElement};
+use crate::real::Real;
+
+/// The upper triangle of a cell's matrix, by rows; a power of two holds the largest.
+type Triangle<T> = [T; 64];
+const _: () = assert!(MAX_BASIS * (MAX_BASIS + 1) / 2 <= 64);
+
+/// Pairs of barycentric coordinates of a tetrahedron.
+const PAIRS: usize = 6;
+
+/// Matrices of cells, one after the other.
+pub(crate) trait CellMatrix<T> {
+    /// Computes that of a cell.
+    fn of_cell(&mut self, cell: usize);
+    /// An entry of it.
+    fn entry(&self, i: usize, j: usize) -> T;
+}
+
+/// What cells contribute, tabulated.
+pub(crate) struct CellMatrices<'s, 'a, T: Real, const D: usize> {
+    space: &'s Space<'a, T, D>,
+    /// For each pair `k < l` of barycentric coordinates what their product of gradients adds.
+    pairs: [Triangle<T>; PAIRS],
+    /// For entry `(i, j)`, at `N i + j`, where it is in the triangle.
+    places: [u8; MAX_BASIS * MAX_BASIS],
+    reaction: Option<ReactionTerm<'a, T, D>>,
+    /// If basis function `i` is `c` times barycentric coordinate `i` but for a constant: `c^2`.
+    square: Option<T>,
+}
+
+impl<'s, 'a, T: Real, const D: usize> CellMatrices<'s, 'a, T, D> {
+    pub fn new<E: ReferenceElement<T, D>>(space: &'s Space<'a, T, D>) -> Self {
+        let zero = T::lit(0.0);
+        let table = space.stiffness_table();
+        let unit = |k, l| CellMetric { products: unit(k, l), volume: zero, measures: [zero; 4] };
+        let linear = E::DEGREE == 1 && E::N == D + 1;
+        let mut square = linear.then(|| table.entry::<D>(&unit(0, 1), 0, 1));
+        let mut pairs = [[zero; 64]; PAIRS];
+        let mut places = [0; MAX_BASIS * MAX_BASIS];
+        for (pair, (k, l)) in pairs_of::<D>().enumerate() {
+            let mut place = 0;
+            for i in 0..E::N {
+                for j in i..E::N {
+                    let entry = table.entry::<D>(&unit(k, l), i, j);
+                    pairs[pair][place] = entry;
+                    places[i * E::N + j] = place as u8;
+                    places[j * E::N + i] = place as u8;
+                    place += 1;
+                    let alone = if (i, j) == (k, l) { square } else { Some(zero) };
+                    if i != j && Some(entry) != alone {
+                        square = None;
+                    }
+                }
+            }
+        }
+        Self { space, pairs, places, reaction: ReactionTerm::new(space), square }
+    }
+
+    /// The square by which products of gradients make the whole matrix, if they do.
+    pub fn only_gradients(&self) -> Option<T> {
+        self.square.filter(|_| self.reaction.is_none())
+    }
+
+    /// Writes the matrix of a cell.
+    #[inline(always)]
+    fn write<E: ReferenceElement<T, D>>(&self, cell: usize, out: &mut Triangle<T>) {
+        let (volume, shape) = shape(self.space.mesh, cell, self.space.alpha(cell));
+        let mut products = [T::lit(0.0); PAIRS];
+        for (product, (k, l)) in products.iter_mut().zip(pairs_of::<D>()) {
+            *product = shape[k][l];
+        }
+        for place in 0..E::N * (E::N + 1) / 2 {
+            let mut sum = products[0] * self.pairs[0][place];
+            for pair in 1..D * (D + 1) / 2 {
+                sum += products[pair] * self.pairs[pair][place];
+            }
+            out[place] = sum;
+        }
+        if let Some(reaction) = &self.reaction {
+            let mut local = zero_local();
+            reaction.add(self.space.mesh, cell, volume, &mut local);
+            let mut place = 0;
+            for i in 0..E::N {
+                for j in i..E::N {
+                    out[place] += local[i][j];
+                    place += 1;
+                }
+            }
+        }
+    }
+}
+
+/// The pairs `k < l` of barycentric coordinates.
+#[inline(always)]
+fn pairs_of<const D: usize>() -> impl Iterator<Item = (usize, usize)> {
+    (0..D).flat_map(|k| (k + 1..=D).map(move |l| (k, l)))
+}
+
+/// Matrices that are products of gradients times a square: they stay in registers.
+pub(crate) struct Gradients<'c, 's, 'a, T: Real, const D: usize> {
+    cells: &'c CellMatrices<'s, 'a, T, D>,
+    square: T,
+    products: [[T; 4]; 4],
+}
+
+impl<'c, 's, 'a, T: Real, const D: usize> Gradients<'c, 's, 'a, T, D> {
+    pub fn new(cells: &'c CellMatrices<'s, 'a, T, D>, square: T) -> Self {
+        Self { cells, square, products: [[T::lit(0.0); 4]; 4] }
+    }
+}
+
+impl<T: Real, const D: usize> CellMatrix<T> for Gradients<'_, '_, '_, T, D> {
+    #[inline(always)]
+    fn of_cell(&mut self, cell: usize) {
+        let space = self.cells.space;
+        self.products = shape(space.mesh, cell, self.square * space.alpha(cell)).1;
+    }
+    #[inline(always)]
+    fn entry(&self, i: usize, j: usize) -> T {
+        self.products[i][j]
+    }
+}
+
+/// Matrices of any kind.
+pub(crate) struct General<'c, 's, 'a, E, T: Real, const D: usize> {
+    cells: &'c CellMatrices<'s, 'a, T, D>,
+    triangle: Triangle<T>,
+    element: PhantomData<E>,
+}
+
+impl<'c, 's, 'a, E, T: Real, const D: usize> General<'c, 's, 'a, E, T, D> {
+    pub fn new(cells: &'c CellMatrices<'s, 'a, T, D>) -> Self {
+        Self { cells, triangle: [T::lit(0.0); 64], element: PhantomData }
+    }
+}
+
+impl<E: ReferenceElement<T, D>, T: Real, const D: usize> CellMatrix<T>
+    for General<'_, '_, '_, E, T, D>
+{
+    #[inline(always)]
+    fn of_cell(&mut self, cell: usize) {
+        self.cells.write::<E>(cell, &mut self.triangle);
+    }
+    #[inline(always)]
+    fn entry(&self, i: usize, j: usize) -> T {
+        self.triangle[self.cells.places[i * E::N + j] as usize % 64]
+    }
+}
+
+/// Products of gradients of which only those of one pair are not zero.
+fn unit<T: Real>(k: usize, l: usize) -> [[T; 4]; 4] {
+    let mut products = [[T::lit(0.0); 4]; 4];
+    products[k][l] = T::lit(1.0);
+    products[l][k] = T::lit(1.0);
+    products
+}

@@ -1,0 +1,186 @@
+//! The values of a known pattern: each cell adds its matrix to the places noted for it.
+
+use std::ops::Range;
+use std::sync::atomic::Ordering;
+
+use rayon::prelude::*;
+
+use super::cells::{CellMatrices, CellMatrix, General, Gradients};
+use super::partition::{Lies, Rows, pieces};
+use super::pattern::{LONGEST, Places, pattern};
+use crate::algebra::SparseMatrix;
+use crate::assemble::space::Space;
+use crate::assemble::space::dofs::{Dofs, KINDS, kind_of};
+use crate::element::ReferenceElement;
+use crate::real::Real;
+
+/// The rows of one kind that a piece fills.
+struct Target<'v, T> {
+    rows: Range<u32>,
+    /// Where the first of them starts.
+    base: usize,
+    values: &'v mut [T],
+    /// How many of the values are no longer those from before.
+    cleared: usize,
+}
+
+/// The values, on a known pattern.
+pub(crate) fn fill<T: Real, const D: usize, E: ReferenceElement<T, D>>(
+    space: &Space<'_, T, D>,
+    matrix: &mut SparseMatrix<T>,
+) {
+    let dofs = &space.dofs;
+    let places = dofs.places.get().unwrap_or_else(|| {
+        pattern::<T, D, E>(dofs);
+        dofs.places.get().expect("places are made with the pattern")
+    });
+    let SparseMatrix { row_starts, columns, values } = matrix;
+    let same = row_starts.len() == dofs.size() + 1 && values.len() == places.nonzeros;
+    assert!(same, "the matrix has the pattern of another discretisation");
+    let cells = CellMatrices::new::<E>(space);
+    let filling = Filling { dofs, row_starts, columns, places, cells };
+    let cut = pieces(dofs);
+    let targets = targets(&cut, row_starts, values);
+    cut.par_iter().zip(targets).for_each(|(rows, targets)| filling.piece::<E>(rows, targets));
+}
+
+/// Cuts the values so that each piece has those of its rows.
+fn targets<'v, T>(
+    cut: &[Rows],
+    row_starts: &[u32],
+    values: &'v mut [T],
+) -> Vec<[Target<'v, T>; KINDS]> {
+    let mut rest = values;
+    let mut by_kind = [const { Vec::new() }; KINDS];
+    for (kind, targets) in by_kind.iter_mut().enumerate() {
+        for rows in cut {
+            let rows = rows[kind].clone();
+            let base = row_starts[rows.start as usize] as usize;
+            let (values, tail) = rest.split_at_mut(row_starts[rows.end as usize] as usize - base);
+            targets.push(Target { rows, base, values, cleared: 0 });
+            rest = tail;
+        }
+    }
+    let mut by_kind = by_kind.map(Vec::into_iter);
+    let next = |_| by_kind.each_mut().map(|targets| targets.next());
+    let pieces = (0..cut.len()).map(next);
+    pieces.map(|piece| piece.map(|target| target.expect("a target for every piece"))).collect()
+}
+
+impl<T: Real> Target<'_, T> {
+    /// Sets the values before a row to zero, just before they are needed: they are then at hand.
+    #[inline(always)]
+    fn clear_before(&mut self, row: u32, row_starts: &[u32]) {
+        let row = row.min(self.rows.end);
+        if row > self.rows.start {
+            let end = row_starts[row as usize] as usize - self.base;
+            if end > self.cleared {
+                self.values[self.cleared..end].fill(T::lit(0.0));
+                self.cleared = end;
+            }
+        }
+    }
+}
+
+/// All that the loop over cells reads.
+struct Filling<'f, 's, 'a, T: Real, const D: usize> {
+    dofs: &'f Dofs<'a>,
+    row_starts: &'f [u32],
+    columns: &'f [u32],
+    places: &'f Places,
+    cells: CellMatrices<'s, 'a, T, D>,
+}
+
+impl<T: Real, const D: usize> Filling<'_, '_, '_, T, D> {
+    fn piece<E: ReferenceElement<T, D>>(&self, rows: &Rows, mut targets: [Target<'_, T>; KINDS]) {
+        for (cells, lies, hull) in self.places.blocks.of(rows) {
+            for (target, hull) in targets.iter_mut().zip(hull) {
+                target.clear_before(hull.end, self.row_starts);
+            }
+            match self.cells.only_gradients() {
+                Some(square) => {
+                    let matrices = Gradients::new(&self.cells, square);
+                    self.block::<E, _>(cells, lies, &mut targets, matrices);
+                }
+                None => {
+                    let matrices = General::<E, T, D>::new(&self.cells);
+                    self.block::<E, _>(cells, lies, &mut targets, matrices);
+                }
+            }
+        }
+        for target in &mut targets {
+            target.clear_before(target.rows.end, self.row_starts);
+        }
+    }
+
+    #[inline(always)]
+    fn block<E: ReferenceElement<T, D>, M: CellMatrix<T>>(
+        &self,
+        cells: Range<usize>,
+        lies: Lies,
+        targets: &mut [Target<'_, T>; KINDS],
+        matrices: M,
+    ) {
+        if lies == Lies::Inside {
+            self.add::<E, M, true>(cells, targets, matrices);
+        } else {
+            self.add::<E, M, false>(cells, targets, matrices);
+        }
+    }
+
+    /// Adds the matrices of the cells of a block to those of their rows that the targets have.
+    #[inline(always)]
+    fn add<E: ReferenceElement<T, D>, M: CellMatrix<T>, const INSIDE: bool>(
+        &self,
+        cells: Range<usize>,
+        targets: &mut [Target<'_, T>; KINDS],
+        mut matrix: M,
+    ) {
+        let mut numbers = Vec::new();
+        let square = E::N * E::N;
+        let places = &self.places.places[cells.start * square..cells.end * square];
+        let unknowns = self.dofs.of_cells(cells.clone(), &mut numbers);
+        let each = unknowns.chunks_exact(E::N).zip(places.chunks_exact(square)).zip(cells);
+        for ((unknowns, places), cell) in each {
+            let has = |i: usize| targets[kind_of(E::LAYOUT, D, i)].rows.contains(&unknowns[i]);
+            if !INSIDE && !(0..E::N).any(has) {
+                continue;
+            }
+            matrix.of_cell(cell);
+            for i in 0..E::N {
+                let target = &mut targets[kind_of(E::LAYOUT, D, i)];
+                if INSIDE || target.rows.contains(&unknowns[i]) {
+                    let row = unknowns[i] as usize;
+                    let start = self.row_starts[row] as usize - target.base;
+                    let end = self.row_starts[row + 1] as usize - target.base;
+                    let out = &mut target.values[start..end];
+                    if out.len() <= LONGEST {
+                        for j in 0..E::N {
+                            let place = places[i * E::N + j].load(Ordering::Relaxed);
+                            out[place as usize] += matrix.entry(i, j);
+                        }
+                    } else {
+                        let columns = &self.columns[start + target.base..end + target.base];
+                        add_by_search(out, columns, unknowns, |j| matrix.entry(i, j));
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// Adds to a row so long that the places noted for it are not its own.
+#[cold]
+#[inline(never)]
+fn add_by_search<T: Real>(
+    out: &mut [T],
+    columns: &[u32],
+    unknowns: &[u32],
+    entry: impl Fn(usize) -> T,
+) {
+    for (j, unknown) in unknowns.iter().enumerate() {
+        if let Ok(at) = columns.binary_search(unknown) {
+            out[at] += entry(j);
+        }
+    }
+}

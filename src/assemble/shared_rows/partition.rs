@@ -1,0 +1,117 @@
+//! How rows are shared out among threads.
+//!
+//! Rows are cut into pieces, and a piece visits every cell that has one of its rows, in ascending
+//! order, and adds to its own rows only. So no two threads write to one place, and every row sums
+//! its cells in the same order wherever the cuts are: the bits do not depend on the number of
+//! threads. Cells at a cut are visited more than once; where neighbours have near numbers these
+//! are few.
+
+use std::ops::Range;
+
+use rayon::prelude::*;
+
+use crate::assemble::space::dofs::{Dofs, KINDS};
+
+/// Cells of one block, of which only the range of their unknowns is known.
+const BLOCK: usize = 256;
+
+/// Fewest rows worth a piece of their own.
+const LEAST_ROWS: usize = 256;
+
+/// Rows by kind of owner: a range for each kind.
+pub(crate) type Rows = [Range<u32>; KINDS];
+
+/// The rows of each thread's pieces.
+pub(crate) fn pieces(dofs: &Dofs<'_>) -> Vec<Rows> {
+    let threads = rayon::current_num_threads();
+    let most = if threads == 1 { 1 } else { 2 * threads };
+    parts(dofs.kinds(), most.min(dofs.size() / LEAST_ROWS))
+}
+
+/// Cuts rows into this many pieces of the same share of each kind, so that rows of vertices come
+/// with those of the edges beside them.
+fn parts(rows: &Rows, n: usize) -> Vec<Rows> {
+    let n = n.max(1);
+    let share = |rows: &Range<u32>, piece: usize| {
+        rows.start + (rows.len() as u64 * piece as u64 / n as u64) as u32
+    };
+    let piece = |p| rows.each_ref().map(|rows| share(rows, p)..share(rows, p + 1));
+    (0..n).map(piece).collect()
+}
+
+/// Rows after which scratch memory is used again, and the most parts that this makes of a piece.
+const PART_ROWS: usize = 1 << 14;
+const MOST_PARTS: usize = 16;
+
+/// Blocks of consecutive cells with the unknowns they have.
+pub(crate) struct Blocks {
+    /// For each block the hull of its unknowns of each kind; empty for kinds it has not.
+    hulls: Vec<Rows>,
+    n_cells: usize,
+}
+
+/// How a block lies to a piece.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Lies {
+    Outside,
+    Across,
+    Inside,
+}
+
+impl Blocks {
+    /// The blocks of a numbering whose unknown `i` of a cell is of kind `kind(i)`.
+    pub fn new(dofs: &Dofs<'_>, kind: impl Fn(usize) -> usize + Sync) -> Self {
+        let n_cells = dofs.n_cells();
+        let hull = |block: usize| {
+            let mut numbers = Vec::new();
+            let mut hull = [const { Range { start: u32::MAX, end: 0 } }; KINDS];
+            let cells = Self::cells(block, n_cells);
+            for unknowns in dofs.of_cells(cells, &mut numbers).chunks_exact(dofs.per_cell()) {
+                for (i, &unknown) in unknowns.iter().enumerate() {
+                    let rows = &mut hull[kind(i)];
+                    *rows = rows.start.min(unknown)..rows.end.max(unknown + 1);
+                }
+            }
+            hull
+        };
+        let hulls = (0..n_cells.div_ceil(BLOCK)).into_par_iter().with_min_len(16).map(hull);
+        Self { hulls: hulls.collect(), n_cells }
+    }
+    /// The cells of a block.
+    fn cells(block: usize, n_cells: usize) -> Range<usize> {
+        block * BLOCK..((block + 1) * BLOCK).min(n_cells)
+    }
+    /// Cuts a piece into parts that one thread takes one after the other: as many as help, unless
+    /// cells have so distant numbers that many belong to several parts.
+    pub fn parts_of(&self, piece: &Rows) -> Vec<Rows> {
+        let rows: usize = piece.iter().map(|rows| rows.len()).sum();
+        let mut n = (rows / PART_ROWS).clamp(1, MOST_PARTS);
+        let most = self.of(piece).count() * 5 / 4;
+        loop {
+            let parts = parts(piece, n);
+            if n == 1 || parts.iter().map(|part| self.of(part).count()).sum::<usize>() <= most {
+                return parts;
+            }
+            n /= 2;
+        }
+    }
+    /// The blocks that may have rows of a piece: their cells, how they lie to it, their hulls.
+    pub fn of<'b>(
+        &'b self,
+        piece: &'b Rows,
+    ) -> impl Iterator<Item = (Range<usize>, Lies, &'b Rows)> {
+        let lies = move |hull: &Rows| {
+            let pairs = || hull.iter().zip(piece).filter(|(hull, _)| !hull.is_empty());
+            if pairs().all(|(hull, rows)| rows.start <= hull.start && hull.end <= rows.end) {
+                Lies::Inside
+            } else if pairs().any(|(hull, rows)| hull.start < rows.end && rows.start < hull.end) {
+                Lies::Across
+            } else {
+                Lies::Outside
+            }
+        };
+        let all = self.hulls.iter().enumerate();
+        all.map(move |(block, hull)| (Self::cells(block, self.n_cells), lies(hull), hull))
+            .filter(|(_, lies, _)| *lies != Lies::Outside)
+    }
+}

@@ -1,0 +1,250 @@
+//! Rows of spaces that share unknowns and have a form on facets: local matrices first, then every
+//! row gathers its own entries.
+//!
+//! A patch is a cell, or an interior or Dirichlet facet with its cells. Each patch fills a small
+//! dense matrix in parallel; then each row adds up what its patches hold, in the order of patches,
+//! so the sum does not depend on how the work was split.
+
+use std::convert::Infallible;
+use std::ops::Range;
+
+use crate::algebra::SparseMatrix;
+use crate::assemble::local::{traces, view, zero_local};
+use crate::assemble::space::tables::FacetTable;
+use crate::assemble::space::{Space, data};
+use crate::assemble::{Discretisation, count};
+use crate::element::{MAX_BASIS, ReferenceElement};
+use crate::facet::{FacetForm, Trace};
+use crate::mesh::{BoundaryPart, Facets};
+use crate::parallel::cells;
+use crate::real::Real;
+use crate::scheme::{DirichletBy, Scheme};
+
+/// The patches of a discretisation and the unknowns of each.
+struct Patches<'s, 'a, T: Real, const D: usize, S: Scheme<T, D>> {
+    discretisation: &'s Discretisation<'a, T, D, S>,
+    space: &'s Space<'a, T, D>,
+    facets: Option<Facets>,
+    coupled: usize,
+}
+
+impl<'s, 'a, T: Real, const D: usize, S: Scheme<T, D>> Patches<'s, 'a, T, D, S> {
+    const N: usize = Discretisation::<T, D, S>::N;
+
+    fn new(discretisation: &'s Discretisation<'a, T, D, S>) -> Self {
+        let space = &discretisation.space;
+        let facets = space
+            .neighbours
+            .as_ref()
+            .filter(|_| Discretisation::<T, D, S>::COUPLES)
+            .map(|neighbours| Facets::of(space.mesh, neighbours));
+        let coupled = facets.as_ref().map_or(0, |f| match S::DIRICHLET {
+            DirichletBy::FacetForm => f.part(BoundaryPart::Dirichlet).end,
+            DirichletBy::Pinning => f.interior().end,
+        });
+        Self { discretisation, space, facets, coupled }
+    }
+    fn n_cells(&self) -> usize {
+        self.space.mesh.n_cells()
+    }
+    /// Number of patches.
+    fn len(&self) -> usize {
+        self.n_cells() + self.coupled
+    }
+    /// Number of unknowns of a patch; those of a facet's two cells count twice where shared.
+    #[inline(always)]
+    fn size(&self, patch: usize) -> usize {
+        if patch < self.n_cells() { Self::N } else { 2 * Self::N }
+    }
+    /// Where a patch's local matrix starts.
+    #[inline(always)]
+    fn start(&self, patch: usize) -> usize {
+        let cells = patch.min(self.n_cells());
+        Self::N * Self::N * (cells + 4 * (patch - cells))
+    }
+    /// Unknown `k` of a patch.
+    #[inline(always)]
+    fn unknown(&self, patch: usize, k: usize) -> u32 {
+        let cell = match &self.facets {
+            Some(facets) if patch >= self.n_cells() => {
+                let facet = patch - self.n_cells();
+                if k < Self::N { facets.here(facet).0 } else { facets.there(facet).0 }
+            }
+            _ => patch,
+        };
+        self.space.dofs.of(cell, k % Self::N) as u32
+    }
+    /// For each unknown, the places (patch, position in it) at which it occurs, in order.
+    fn incidence(&self) -> (Vec<u32>, Vec<(u32, u32)>) {
+        let size = self.space.dofs.size();
+        let mut starts = vec![0_u32; size + 1];
+        for patch in 0..self.len() {
+            for k in 0..self.size(patch) {
+                starts[self.unknown(patch, k) as usize + 1] += 1;
+            }
+        }
+        for i in 0..size {
+            starts[i + 1] += starts[i];
+        }
+        let mut fill = starts.clone();
+        let mut places = vec![(0_u32, 0_u32); starts[size] as usize];
+        for patch in 0..self.len() {
+            for k in 0..self.size(patch) {
+                let at = &mut fill[self.unknown(patch, k) as usize];
+                places[*at as usize] = (patch as u32, k as u32);
+                *at += 1;
+            }
+        }
+        (starts, places)
+    }
+}
+
+/// The pattern, with values zero.
+pub(crate) fn pattern<T: Real, const D: usize, S: Scheme<T, D>>(
+    discretisation: &Discretisation<'_, T, D, S>,
+) -> SparseMatrix<T> {
+    let patches = Patches::new(discretisation);
+    let (starts, places) = patches.incidence();
+    let size = discretisation.unknowns();
+    let rows_of = |rows: Range<usize>| {
+        let mut columns: Vec<u32> = Vec::new();
+        let mut lengths = Vec::with_capacity(rows.len());
+        let mut row = Vec::new();
+        for i in rows {
+            row.clear();
+            for &(patch, _) in &places[starts[i] as usize..starts[i + 1] as usize] {
+                let patch = patch as usize;
+                row.extend((0..patches.size(patch)).map(|k| patches.unknown(patch, k)));
+            }
+            row.sort_unstable();
+            row.dedup();
+            columns.extend_from_slice(&row);
+            lengths.push(row.len() as u32);
+        }
+        (columns, lengths)
+    };
+    let pieces = cells::map(size, &rows_of);
+    let mut row_starts = Vec::with_capacity(size + 1);
+    row_starts.push(0);
+    let mut columns = Vec::with_capacity(pieces.iter().map(|p| p.0.len()).sum());
+    let mut end = 0;
+    for (piece, lengths) in pieces {
+        columns.extend_from_slice(&piece);
+        row_starts.extend(lengths.into_iter().map(|length| {
+            end += length;
+            end
+        }));
+    }
+    let values = vec![T::lit(0.0); columns.len()];
+    SparseMatrix { row_starts, columns, values }
+}
+
+/// The values, on a known pattern.
+pub(crate) fn fill<T: Real, const D: usize, S: Scheme<T, D>>(
+    discretisation: &Discretisation<'_, T, D, S>,
+    matrix: &mut SparseMatrix<T>,
+) {
+    let patches = Patches::new(discretisation);
+    let locals = local_matrices(&patches);
+    let (starts, places) = patches.incidence();
+    let SparseMatrix { row_starts, columns, values } = matrix;
+    let gather = |rows: Range<usize>, piece: &mut [T]| {
+        piece.fill(T::lit(0.0));
+        let offset = row_starts[rows.start] as usize;
+        for i in rows {
+            let range = row_starts[i] as usize..row_starts[i + 1] as usize;
+            let row_columns = &columns[range.clone()];
+            let row = &mut piece[range.start - offset..range.end - offset];
+            for &(patch, k) in &places[starts[i] as usize..starts[i + 1] as usize] {
+                let patch = patch as usize;
+                let n = patches.size(patch);
+                let start = patches.start(patch) + k as usize * n;
+                for (j, &entry) in locals[start..start + n].iter().enumerate() {
+                    let column = patches.unknown(patch, j);
+                    if let Some(at) = row_columns.iter().position(|&c| c == column) {
+                        row[at] += entry;
+                    }
+                }
+            }
+        }
+        Ok::<(), Infallible>(())
+    };
+    let end = |row: usize| row_starts[row] as usize;
+    let Ok(()) = cells::for_each(row_starts.len() - 1, &end, values, &gather);
+}
+
+fn local_matrices<T: Real, const D: usize, S: Scheme<T, D>>(
+    patches: &Patches<'_, '_, T, D, S>,
+) -> Vec<T> {
+    let n = Discretisation::<T, D, S>::N;
+    let space = patches.space;
+    let degree = <S::Element as ReferenceElement<T, D>>::DEGREE;
+    let stiffness = space.stiffness_table();
+    let reaction = data::ReactionTerm::new(space);
+    let mut locals = vec![T::lit(0.0); patches.start(patches.len())];
+    let (cells, facets) = locals.split_at_mut(patches.start(patches.n_cells()));
+    let of_cells = |range: Range<usize>, entries: &mut [T]| {
+        for (cell, out) in range.zip(entries.chunks_exact_mut(n * n)) {
+            let metric = space.metric(cell);
+            let mut local = zero_local();
+            stiffness.add::<D>(n, &metric, space.alpha(cell), &mut local);
+            if let Some(reaction) = &reaction {
+                reaction.add(space.mesh, cell, metric.volume, &mut local);
+            }
+            for (row, values) in out.chunks_exact_mut(n).zip(&local) {
+                row.copy_from_slice(&values[..n]);
+            }
+        }
+        Ok::<(), Infallible>(())
+    };
+    let Ok(()) = cells::for_each(patches.n_cells(), &|c| c * n * n, cells, &of_cells);
+    if let Some(all) = &patches.facets {
+        let table = space.facet_table(S::Facet::moments(degree));
+        let of_facets = |range: Range<usize>, entries: &mut [T]| {
+            for (facet, out) in range.zip(entries.chunks_exact_mut(4 * n * n)) {
+                facet_matrix(patches.discretisation, all, &table, facet, out);
+            }
+            Ok::<(), Infallible>(())
+        };
+        let end = |f: usize| f * 4 * n * n;
+        let Ok(()) = cells::for_each(patches.coupled, &end, facets, &of_facets);
+    }
+    locals
+}
+
+/// The form on one facet, for the unknowns of here and then there; on the boundary those of there
+/// stay zero.
+fn facet_matrix<T: Real, const D: usize, S: Scheme<T, D>>(
+    discretisation: &Discretisation<'_, T, D, S>,
+    facets: &Facets,
+    table: &FacetTable<T>,
+    facet: usize,
+    out: &mut [T],
+) {
+    count::facets(1);
+    let space = &discretisation.space;
+    let n = Discretisation::<T, D, S>::N;
+    let interior = facets.interior().contains(&facet);
+    let ((here, i), (there, j)) = (facets.here(facet), facets.there(facet));
+    let (m_here, m_there) = (space.metric(here), space.metric(there));
+    let (side_here, side_there) = (space.side(here, i, &m_here), space.side(there, j, &m_there));
+    let view = view(space.mesh, &side_here, interior.then_some(&side_there));
+    let form = &discretisation.form;
+    let penalty = form.penalty(&view);
+    let moments = table.on(i).iter().zip(table.on(j)).zip(&table.degrees);
+    for ((b_here, b_there), &degree) in moments {
+        let mut all = [Trace { jump: T::lit(0.0), flux: T::lit(0.0) }; 2 * MAX_BASIS];
+        all[..n].copy_from_slice(&traces(form, &view, &side_here, true, b_here, n)[..n]);
+        if interior {
+            all[n..2 * n]
+                .copy_from_slice(&traces(form, &view, &side_there, false, b_there, n)[..n]);
+        }
+        let penalty = penalty * T::lit(form.moment_weight(degree));
+        let size = if interior { 2 * n } else { n };
+        for v in 0..size {
+            for u in 0..size {
+                out[v * 2 * n + u] += view.measure * form.integrand(all[v], all[u], penalty);
+            }
+        }
+    }
+}

@@ -1,0 +1,306 @@
+//! The pattern of a space that shares unknowns, and where in it each cell adds its matrix.
+
+use std::ops::Range;
+use std::sync::atomic::{AtomicU8, Ordering};
+
+use rayon::prelude::*;
+
+use super::partition::{Blocks, Rows, pieces};
+use crate::algebra::SparseMatrix;
+use crate::assemble::space::dofs::{Dofs, KINDS, kind_of};
+use crate::element::ReferenceElement;
+use crate::memory::in_large_pages;
+use crate::real::Real;
+
+/// Where each cell adds its matrix: made with the pattern, kept for every filling of it.
+pub(crate) struct Places {
+    /// For each cell, its unknown `i` and its unknown `j`: the place of column `j` in row `i`.
+    ///
+    /// Of rows with more than 256 entries the places are wrong, and are searched for instead.
+    /// Atomic because the rows of one cell may be made by two threads, each its own places.
+    pub places: Vec<AtomicU8>,
+    /// The cells in blocks.
+    pub blocks: Blocks,
+    /// Entries of the pattern.
+    pub nonzeros: usize,
+}
+
+/// Longest row whose places a byte can name.
+pub(crate) const LONGEST: usize = 256;
+
+/// Rows of a piece by kind: their columns and lengths.
+type Made = [MadeRows; KINDS];
+
+#[derive(Default)]
+struct MadeRows {
+    columns: Vec<u32>,
+    lengths: Vec<u32>,
+}
+
+/// The pattern, with values zero; the places are left with the numbering.
+pub(crate) fn pattern<T: Real, const D: usize, E: ReferenceElement<T, D>>(
+    dofs: &Dofs<'_>,
+) -> SparseMatrix<T> {
+    let blocks = Blocks::new(dofs, |i| kind_of(E::LAYOUT, D, i));
+    let places = zeros(dofs.n_cells() * E::N * E::N);
+    let cut = pieces(dofs);
+    let make = |rows: &Rows| Maker { dofs, blocks: &blocks, places: &places }.rows::<T, E, D>(rows);
+    let mut made: Vec<Made> = cut.par_iter().map(make).collect();
+    let row_starts = row_starts(dofs.size(), &made);
+    let columns = match &mut made[..] {
+        [only] => {
+            let mut columns = std::mem::take(only).map(|rows| rows.columns).into_iter();
+            let mut all = columns.find(|columns| !columns.is_empty()).unwrap_or_default();
+            columns.for_each(|more| all.extend(more));
+            all
+        }
+        _ => join(&row_starts, &made),
+    };
+    let nonzeros = columns.len();
+    // a numbering has one pattern: what another thread may have left here is the same
+    let _ = dofs.places.set(Places { places, blocks, nonzeros });
+    SparseMatrix { row_starts, columns, values: in_large_pages(vec![T::lit(0.0); nonzeros]) }
+}
+
+fn zeros(n: usize) -> Vec<AtomicU8> {
+    // bytes that the system hands out as zeros, taken for what they are in place
+    in_large_pages(vec![0_u8; n]).into_iter().map(AtomicU8::new).collect()
+}
+
+/// Where rows start, from their lengths.
+fn row_starts(size: usize, made: &[Made]) -> Vec<u32> {
+    let mut starts = in_large_pages(Vec::with_capacity(size + 1));
+    starts.push(0);
+    let mut end = 0;
+    for kind in 0..KINDS {
+        for piece in made {
+            starts.extend(piece[kind].lengths.iter().map(|length| {
+                end += length;
+                end
+            }));
+        }
+    }
+    starts
+}
+
+/// The columns of all pieces in the order of rows.
+fn join(row_starts: &[u32], made: &[Made]) -> Vec<u32> {
+    let mut columns = in_large_pages(vec![0; row_starts[row_starts.len() - 1] as usize]);
+    let mut copies = Vec::new();
+    let mut rest = &mut columns[..];
+    for kind in 0..KINDS {
+        for piece in made {
+            let from = &piece[kind].columns;
+            let (out, tail) = rest.split_at_mut(from.len());
+            copies.push((out, from));
+            rest = tail;
+        }
+    }
+    copies.into_par_iter().for_each(|(out, from)| out.copy_from_slice(from));
+    columns
+}
+
+/// What the rows of a piece are made from.
+struct Maker<'m> {
+    dofs: &'m Dofs<'m>,
+    blocks: &'m Blocks,
+    places: &'m [AtomicU8],
+}
+
+impl Maker<'_> {
+    /// The rows of a piece, in parts, so that scratch memory is small and used again.
+    fn rows<T: Real, E: ReferenceElement<T, D>, const D: usize>(&self, piece: &Rows) -> Made {
+        let mut around = Around::default();
+        let mut row = Row { seen: in_large_pages(vec![0; self.dofs.size()]), ..Row::default() };
+        // about as many entries as the cells' matrices have: what is not used is never touched
+        let entries = |rows: &Range<u32>| self.places.len() / self.dofs.size() * rows.len();
+        let mut made = piece.each_ref().map(|rows| MadeRows {
+            columns: in_large_pages(Vec::with_capacity(entries(rows))),
+            lengths: in_large_pages(Vec::with_capacity(rows.len())),
+        });
+        for part in self.blocks.parts_of(piece) {
+            self.find_around::<T, E, D>(&part, &mut around);
+            let mut k = 0;
+            for (rows, made) in part.iter().zip(&mut made) {
+                for _ in rows.clone() {
+                    self.row::<T, E, D>(around.row(k), &mut row, made);
+                    k += 1;
+                }
+            }
+        }
+        made.iter_mut().for_each(|rows| rows.columns.shrink_to_fit());
+        made
+    }
+
+    /// Finds the cells around each row of a part: a counting sort.
+    #[inline(always)]
+    fn find_around<T: Real, E: ReferenceElement<T, D>, const D: usize>(
+        &self,
+        part: &Rows,
+        around: &mut Around,
+    ) {
+        let mut n_rows = 0;
+        let offsets = part.each_ref().map(|rows| {
+            n_rows += rows.len();
+            n_rows - rows.len()
+        });
+        let Around { starts, slots } = around;
+        // counts two places on become, summed, starts one place on, which filling makes starts
+        starts.clear();
+        starts.resize(n_rows + 2, 0);
+        self.visit::<T, E, D>(part, &offsets, |row, _| starts[row + 2] += 1);
+        for row in 0..n_rows {
+            starts[row + 2] += starts[row + 1];
+        }
+        slots.clear();
+        slots.resize(starts[n_rows + 1] as usize, 0);
+        self.visit::<T, E, D>(part, &offsets, |row, slot| {
+            let at = &mut starts[row + 1];
+            slots[*at as usize] = slot as u32;
+            *at += 1;
+        });
+    }
+
+    /// Calls a function with each row of a part and each cell that has it: the cell times `N` plus
+    /// the number of the unknown in it.
+    #[inline(always)]
+    fn visit<T: Real, E: ReferenceElement<T, D>, const D: usize>(
+        &self,
+        part: &Rows,
+        offsets: &[usize; KINDS],
+        mut visit: impl FnMut(usize, usize),
+    ) {
+        let mut numbers = Vec::new();
+        for (cells, ..) in self.blocks.of(part) {
+            let first = cells.start;
+            let unknowns = self.dofs.of_cells(cells, &mut numbers);
+            for (c, unknowns) in unknowns.chunks_exact(E::N).enumerate() {
+                for i in 0..E::N {
+                    let kind = kind_of(E::LAYOUT, D, i);
+                    let row = unknowns[i].wrapping_sub(part[kind].start);
+                    if (row as usize) < part[kind].len() {
+                        visit(offsets[kind] + row as usize, (first + c) * E::N + i);
+                    }
+                }
+            }
+        }
+    }
+
+    /// Makes a row from the cells around it, and their places in it.
+    #[inline(always)]
+    fn row<T: Real, E: ReferenceElement<T, D>, const D: usize>(
+        &self,
+        around: &[u32],
+        row: &mut Row,
+        made: &mut MadeRows,
+    ) {
+        row.make_room(around.len() * E::N);
+        let Row { seen, columns, met, ranks, base } = row;
+        let table = self.dofs.table();
+        let mut n = 0_u32;
+        for (&slot, met) in around.iter().zip(met.chunks_exact_mut(E::N)) {
+            let first = slot as usize / E::N * E::N;
+            let unknowns = table.map(|t| &t[first..first + E::N]);
+            for j in 0..E::N {
+                let column = unknowns.map_or((first + j) as u32, |u| u[j]);
+                let seen = &mut seen[column as usize];
+                let is_new = *seen <= *base;
+                let number = if is_new { n } else { *seen - *base - 1 };
+                *seen = *base + number + 1;
+                met[j] = number;
+                columns[n as usize] = column;
+                n += u32::from(is_new);
+            }
+        }
+        *base += n;
+        let n = n as usize;
+        rank(&mut columns[..n.next_multiple_of(LANES)], n, ranks);
+        let start = made.columns.len();
+        made.columns.resize(start + n, 0);
+        let out = &mut made.columns[start..];
+        for (&rank, &column) in ranks[..n].iter().zip(&columns[..n]) {
+            out[rank as usize] = column;
+        }
+        made.lengths.push(n as u32);
+        for (&slot, met) in around.iter().zip(met.chunks_exact(E::N)) {
+            let places = &self.places[slot as usize * E::N..][..E::N];
+            for (place, &number) in places.iter().zip(met) {
+                place.store(ranks[number as usize] as u8, Ordering::Relaxed);
+            }
+        }
+    }
+}
+
+/// The cells around rows.
+#[derive(Default)]
+struct Around {
+    starts: Vec<u32>,
+    /// Each cell times `N` plus the number of the row's unknown in it.
+    slots: Vec<u32>,
+}
+
+impl Around {
+    #[inline(always)]
+    fn row(&self, k: usize) -> &[u32] {
+        &self.slots[self.starts[k] as usize..self.starts[k + 1] as usize]
+    }
+}
+
+/// A row in the making.
+#[derive(Default)]
+struct Row {
+    /// For each column one more than the running number at which it was last met first.
+    seen: Vec<u32>,
+    /// Running number of the first column of this row.
+    base: u32,
+    /// The columns in the order in which they are met.
+    columns: Vec<u32>,
+    /// For each unknown of each cell the number of its column.
+    met: Vec<u32>,
+    /// The place in the row of each column.
+    ranks: Vec<u32>,
+}
+
+impl Row {
+    #[inline(always)]
+    fn make_room(&mut self, most: usize) {
+        if self.met.len() < most {
+            self.columns.resize(most + LANES, 0);
+            self.ranks.resize(most + LANES, 0);
+            self.met.resize(most, 0);
+        }
+    }
+}
+
+/// Columns compared at once.
+const LANES: usize = 8;
+
+/// Longest row ranked by comparing all pairs, which vectorises; longer ones are sorted.
+const ALL_PAIRS: usize = 128;
+
+/// The place of each of the first `n` columns in their sorted order; the others are overwritten.
+#[inline(always)]
+fn rank(columns: &mut [u32], n: usize, ranks: &mut [u32]) {
+    if n > ALL_PAIRS {
+        return sort(&columns[..n], ranks);
+    }
+    columns[n..].fill(u32::MAX);
+    for (ranks, own) in ranks.chunks_exact_mut(LANES).zip(columns.chunks_exact(LANES)) {
+        let mut below = [0_u32; LANES];
+        for &other in &columns[..n] {
+            for k in 0..LANES {
+                below[k] += u32::from(other < own[k]);
+            }
+        }
+        ranks.copy_from_slice(&below);
+    }
+}
+
+#[cold]
+fn sort(columns: &[u32], ranks: &mut [u32]) {
+    let mut order: Vec<u32> = (0..columns.len() as u32).collect();
+    order.sort_unstable_by_key(|&k| columns[k as usize]);
+    for (rank, k) in order.into_iter().enumerate() {
+        ranks[k as usize] = rank as u32;
+    }
+}

@@ -1,0 +1,213 @@
+//! What each unknown may be: Dirichlet values, obstacles, the Signorini condition.
+
+use super::{Space, data};
+use crate::algebra::Bound;
+use crate::assemble::{DataQuadrature, count};
+use crate::element::Node;
+use crate::error::Error;
+use crate::mesh::{BoundaryPart, describe_point};
+use crate::problem::Field;
+use crate::quadrature::Rule;
+use crate::real::{Point, Real};
+
+/// Two bounds contradict each other if they do so by more than this share of their size: less is
+/// rounding in the data.
+const RELATIVE_SLACK: f64 = 1e-9;
+
+impl<T: Real, const D: usize> Space<'_, T, D> {
+    /// The bounds of all unknowns; see `Discretisation::bounds`.
+    pub fn bounds(&self) -> Result<Vec<Bound<T>>, Error> {
+        let mut bounds = vec![Bound::Free; self.dofs.size()];
+        let mut conflicts = Vec::new();
+        if self.problem.has_obstacle() {
+            self.bound_by_obstacles(&mut bounds, &mut conflicts)?;
+        }
+        if let Some(gap) = &self.problem.gap {
+            self.bound_by_contact(gap, &mut bounds, &mut conflicts)?;
+        }
+        if self.pins {
+            self.pin(&mut bounds, &mut conflicts)?;
+        }
+        judge::<T, D>(&bounds, conflicts)?;
+        Ok(bounds)
+    }
+
+    fn bound_by_obstacles(
+        &self,
+        bounds: &mut [Bound<T>],
+        conflicts: &mut Vec<Conflict<D>>,
+    ) -> Result<(), Error> {
+        let bounded: Vec<usize> = self.bounded_nodes().collect();
+        let rules = self.mean_rules();
+        for cell in 0..self.mesh.n_cells() {
+            for &i in &bounded {
+                let unknown = self.dofs.of(cell, i);
+                if bounds[unknown] != Bound::Free {
+                    continue;
+                }
+                count::bounds(1);
+                let node = self.nodes[i];
+                let x = self.node_point(cell, node);
+                let at = |psi: &Option<Field<D>>| match (psi, node) {
+                    (Some(psi), Node::CellMean) => {
+                        self.at_node(&rules, cell, node, "obstacle", psi).map(Some)
+                    }
+                    (Some(psi), _) => data::finite(psi(&x), "obstacle", &x, cell).map(Some),
+                    (None, _) => Ok(None),
+                };
+                let (lower, upper) = (at(&self.problem.lower)?, at(&self.problem.upper)?);
+                bounds[unknown] = between(lower, upper, unknown, x, conflicts);
+            }
+        }
+        Ok(())
+    }
+
+    fn bound_by_contact(
+        &self,
+        gap: &Field<D>,
+        bounds: &mut [Bound<T>],
+        conflicts: &mut Vec<Conflict<D>>,
+    ) -> Result<(), Error> {
+        let rules = self.mean_rules();
+        for (cell, local) in self.facets_of(BoundaryPart::Contact) {
+            for i in self.bounded_nodes_on(local) {
+                count::bounds(1);
+                let node = self.nodes[i];
+                let value = self.at_node(&rules, cell, node, "gap", gap)?;
+                let unknown = self.dofs.of(cell, i);
+                let old = bounds[unknown];
+                let lower = old.lower().map_or(value, |l| l.to_f64().max(value));
+                let upper = old.upper().map(Real::to_f64);
+                let x = self.node_point(cell, node);
+                bounds[unknown] = between(Some(lower), upper, unknown, x, conflicts);
+            }
+        }
+        Ok(())
+    }
+
+    fn pin(&self, bounds: &mut [Bound<T>], conflicts: &mut Vec<Conflict<D>>) -> Result<(), Error> {
+        let rules = self.mean_rules();
+        let zero = !self.problem.has_dirichlet_data();
+        let datum = |x: &Point<f64, D>| self.problem.dirichlet_at(x);
+        for (cell, local) in self.facets_of(BoundaryPart::Dirichlet) {
+            for i in self.nodes_on(local) {
+                let unknown = self.dofs.of(cell, i);
+                if let Bound::Fixed(_) = bounds[unknown] {
+                    continue;
+                }
+                let node = self.nodes[i];
+                let at = |name, datum: Datum<'_, D>| self.at_node(&rules, cell, node, name, datum);
+                let value = if zero { 0.0 } else { at("dirichlet", &datum)? };
+                let x = self.node_point(cell, node);
+                // obstacles must leave room for the datum; a mean is compared with a mean: over a
+                // curved obstacle the value at the barycentre may lie above the mean of a datum
+                // that touches it
+                if let Some(psi) = &self.problem.lower {
+                    note(at("obstacle", psi)?, value, unknown, x, conflicts);
+                }
+                if let Some(psi) = &self.problem.upper {
+                    note(value, at("obstacle", psi)?, unknown, x, conflicts);
+                }
+                bounds[unknown] = Bound::Fixed(T::lit(value));
+            }
+        }
+        Ok(())
+    }
+
+    /// The rules for means over facets and cells.
+    fn mean_rules(&self) -> [Rule; 2] {
+        let DataQuadrature { facet, cell } = self.quadrature;
+        [Rule::of_degree(D - 1, facet), Rule::of_degree(D, cell)]
+    }
+
+    /// What an unknown is of a datum: its value at a point, its mean over a facet or cell.
+    fn at_node(
+        &self,
+        [facet_rule, cell_rule]: &[Rule; 2],
+        cell: usize,
+        node: Node,
+        name: &'static str,
+        datum: Datum<'_, D>,
+    ) -> Result<f64, Error> {
+        let at = |x: Point<f64, D>| {
+            if name == "dirichlet" {
+                count::dirichlet(1);
+            }
+            data::finite(datum(&x), name, &x, cell)
+        };
+        match node {
+            Node::Vertex(_) | Node::Edge(_) => at(self.node_point(cell, node)),
+            Node::FacetMean(local) => facet_rule
+                .iter()
+                .map(|(point, weight)| Ok(weight * at(self.facet_point(point, cell, local))?))
+                .sum(),
+            Node::CellMean => cell_rule
+                .iter()
+                .map(|(point, weight)| Ok(weight * at(self.cell_point(point, cell))?))
+                .sum(),
+        }
+    }
+}
+
+/// A function of space.
+type Datum<'f, const D: usize> = &'f dyn Fn(&Point<f64, D>) -> f64;
+
+/// A lower bound above an upper one: the unknown, its node, the two values.
+type Conflict<const D: usize> = (usize, Point<f64, D>, f64, f64);
+
+/// Notes two values of which the first must not exceed the second.
+fn note<const D: usize>(
+    lower: f64,
+    upper: f64,
+    unknown: usize,
+    x: Point<f64, D>,
+    conflicts: &mut Vec<Conflict<D>>,
+) {
+    if lower > upper {
+        conflicts.push((unknown, x, lower, upper));
+    }
+}
+
+/// The bound between two values, of which each may be absent.
+fn between<T: Real, const D: usize>(
+    lower: Option<f64>,
+    upper: Option<f64>,
+    unknown: usize,
+    x: Point<f64, D>,
+    conflicts: &mut Vec<Conflict<D>>,
+) -> Bound<T> {
+    match (lower, upper) {
+        (None, None) => Bound::Free,
+        (Some(l), None) => Bound::Lower(T::lit(l)),
+        (None, Some(u)) => Bound::Upper(T::lit(u)),
+        (Some(l), Some(u)) => {
+            note(l, u, unknown, x, conflicts);
+            Bound::Both(T::lit(l), T::lit(l.max(u)))
+        }
+    }
+}
+
+/// Tells contradictions from rounding. Two values that are equal but for rounding may be zero but
+/// for rounding, so only the size of all data can tell.
+fn judge<T: Real, const D: usize>(
+    bounds: &[Bound<T>],
+    conflicts: Vec<Conflict<D>>,
+) -> Result<(), Error> {
+    if conflicts.is_empty() {
+        return Ok(());
+    }
+    let values = |b: &Bound<T>| match *b {
+        Bound::Free => [None, None],
+        Bound::Fixed(a) | Bound::Lower(a) | Bound::Upper(a) => [Some(a), None],
+        Bound::Both(a, b) => [Some(a), Some(b)],
+    };
+    let sizes = bounds.iter().flat_map(values).flatten().map(|x| x.to_f64().abs());
+    let size = conflicts.iter().map(|c| c.2.abs().max(c.3.abs())).chain(sizes).fold(0.0, f64::max);
+    let slack = RELATIVE_SLACK.max(16.0 * T::EPSILON) * size;
+    match conflicts.into_iter().find(|(_, _, lower, upper)| lower - upper > slack) {
+        Some((unknown, x, lower, upper)) => {
+            Err(Error::EmptyConstraint { unknown, at: describe_point(&x), lower, upper })
+        }
+        None => Ok(()),
+    }
+}

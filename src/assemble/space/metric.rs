@@ -1,0 +1,258 @@
+//! What forms need of the geometry of cells: numbers without direction.
+
+use std::convert::Infallible;
+
+use crate::memory::in_large_pages;
+use crate::mesh::Mesh;
+use crate::parallel::cells;
+use crate::real::Real;
+
+/// Products of gradients of a cell's barycentric coordinates, and its measures: all that enters the
+/// matrix, since only scalar products of normals and gradients do.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct CellMetric<T, const D: usize> {
+    /// Its volume.
+    pub volume: T,
+    /// Measures of its facets.
+    pub measures: [T; 4],
+    /// `int grad lambda_i . grad lambda_j` over the cell.
+    pub products: [[T; 4]; 4],
+}
+
+impl<T: Real, const D: usize> CellMetric<T, D> {
+    /// Numbers kept of a cell: volume, facet measures, products above the diagonal.
+    const KEPT: usize = 1 + (D + 1) + D * (D + 1) / 2;
+
+    /// The metric of one cell.
+    #[inline(always)]
+    pub fn of(mesh: &Mesh<T, D>, cell: usize) -> Self {
+        let (volume, products) = shape(mesh, cell, T::lit(1.0));
+        let mut measures = [T::lit(0.0); 4];
+        for i in 1..=D {
+            // |F| = D |K| |grad lambda|
+            let square = volume * products[i][i];
+            measures[i] = T::lit(D as f64) * nalgebra::ComplexField::sqrt(square);
+        }
+        // the first product is a sum of the others, in which thin cells lose all digits
+        measures[0] = first_facet(mesh, cell);
+        if D == 1 {
+            measures[1] = T::lit(1.0);
+        }
+        Self { volume, measures, products }
+    }
+    #[inline(always)]
+    fn zero(volume: T) -> Self {
+        Self { volume, measures: [T::lit(0.0); 4], products: [[T::lit(0.0); 4]; 4] }
+    }
+    /// Sets an entry above the diagonal, with what follows for the others: rows sum to zero.
+    #[inline(always)]
+    fn set(&mut self, i: usize, j: usize, product: T) {
+        self.products[i][j] = product;
+        self.products[j][i] = product;
+        self.products[i][i] -= product;
+        self.products[j][j] -= product;
+    }
+    /// The measure of the whole boundary.
+    #[inline(always)]
+    pub fn surface(&self) -> T {
+        (0..=D).fold(T::lit(0.0), |s, i| s + self.measures[i])
+    }
+    #[inline(always)]
+    fn write(&self, out: &mut [T]) {
+        out[0] = self.volume;
+        out[1..D + 2].copy_from_slice(&self.measures[..=D]);
+        let mut k = D + 2;
+        for i in 0..D {
+            for j in i + 1..=D {
+                out[k] = self.products[i][j];
+                k += 1;
+            }
+        }
+    }
+    #[inline(always)]
+    fn read(kept: &[T]) -> Self {
+        let mut metric = Self::zero(kept[0]);
+        metric.measures[..=D].copy_from_slice(&kept[1..D + 2]);
+        let mut k = D + 2;
+        for i in 0..D {
+            for j in i + 1..=D {
+                metric.set(i, j, kept[k]);
+                k += 1;
+            }
+        }
+        metric
+    }
+}
+
+/// The volume of a cell and `int scale grad lambda_i . grad lambda_j` over it, made without a detour
+/// through memory: with `n_k` the gradients times the determinant `d` of the edges the products are
+/// `scale n_i . n_j / (D! |d|)`.
+#[inline(always)]
+pub(crate) fn shape<T: Real, const D: usize>(
+    mesh: &Mesh<T, D>,
+    cell: usize,
+    scale: T,
+) -> (T, [[T; 4]; 4]) {
+    let zero = T::lit(0.0);
+    let corners = mesh.cell(cell);
+    let mut edges = [[zero; 3]; 3];
+    let origin = &mesh.vertices()[corners[0] as usize];
+    for k in 0..D {
+        let corner = &mesh.vertices()[corners[k + 1] as usize];
+        for axis in 0..D {
+            edges[k][axis] = corner[axis] - origin[axis];
+        }
+    }
+    let [a, b, c] = edges;
+    let normals = match D {
+        1 => [[T::lit(1.0), zero, zero], [zero; 3], [zero; 3]],
+        2 => [[b[1], -b[0], zero], [-a[1], a[0], zero], [zero; 3]],
+        _ => [cross(b, c), cross(c, a), cross(a, b)],
+    };
+    let determinant = dot::<T, D>(a, normals[0]);
+    let size = if determinant < zero { -determinant } else { determinant };
+    let scale = if size == zero { zero } else { scale / (size * T::lit(FACTORIAL[D])) };
+    let mut products = [[zero; 4]; 4];
+    for i in 1..=D {
+        // rows sum to zero
+        for j in 1..=D {
+            products[i][j] = if i <= j {
+                scale * dot::<T, D>(normals[i - 1], normals[j - 1])
+            } else {
+                products[j][i]
+            };
+        }
+    }
+    for i in 1..=D {
+        let sum = (1..=D).fold(zero, |sum, j| sum - products[i][j]);
+        products[i][0] = sum;
+        products[0][i] = sum;
+        products[0][0] -= sum;
+    }
+    (size / T::lit(FACTORIAL[D]), products)
+}
+
+/// For each number zeros at its own place and ones at the others.
+const OTHERS: [[f64; 4]; 4] =
+    [[0.0, 1.0, 1.0, 1.0], [1.0, 0.0, 1.0, 1.0], [1.0, 1.0, 0.0, 1.0], [1.0, 1.0, 1.0, 0.0]];
+
+/// The place of a pair of gradients among those above the diagonal, by rows, in each dimension; zero
+/// on the diagonal.
+const PAIR: [[[usize; 4]; 4]; 4] = {
+    let mut pairs = [[[0; 4]; 4]; 4];
+    let mut dimension = 1;
+    while dimension <= 3 {
+        let (mut i, mut k) = (0, 0);
+        while i < dimension {
+            let mut j = i + 1;
+            while j <= dimension {
+                pairs[dimension][i][j] = k;
+                pairs[dimension][j][i] = k;
+                k += 1;
+                j += 1;
+            }
+            i += 1;
+        }
+        dimension += 1;
+    }
+    pairs
+};
+
+/// The measure of the facet opposite the first vertex of a cell.
+#[inline(always)]
+fn first_facet<T: Real, const D: usize>(mesh: &Mesh<T, D>, cell: usize) -> T {
+    let corners = mesh.cell(cell);
+    let edge = |k: usize| {
+        let mut edge = [T::lit(0.0); 3];
+        let ends = [corners[1], corners[k.min(D)]].map(|v| &mesh.vertices()[v as usize]);
+        for axis in 0..D {
+            edge[axis] = ends[1][axis] - ends[0][axis];
+        }
+        edge
+    };
+    let length = |a: [T; 3]| nalgebra::ComplexField::sqrt(dot::<T, 3>(a, a));
+    match D {
+        1 => T::lit(1.0),
+        2 => length(edge(2)),
+        _ => T::lit(0.5) * length(cross(edge(2), edge(3))),
+    }
+}
+
+const FACTORIAL: [f64; 4] = [1.0, 1.0, 2.0, 6.0];
+
+#[inline(always)]
+fn dot<T: Real, const D: usize>(a: [T; 3], b: [T; 3]) -> T {
+    (1..D).fold(a[0] * b[0], |sum, k| sum + a[k] * b[k])
+}
+
+#[inline(always)]
+fn cross<T: Real>(a: [T; 3], b: [T; 3]) -> [T; 3] {
+    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
+}
+
+/// The metrics of all cells, computed once: each is read by the cell and by its neighbours.
+pub(crate) struct Metrics<T> {
+    kept: Vec<T>,
+}
+
+impl<T: Real> Metrics<T> {
+    /// The metrics of a mesh, in parallel.
+    pub fn of<const D: usize>(mesh: &Mesh<T, D>) -> Self {
+        let n = CellMetric::<T, D>::KEPT;
+        let mut kept = in_large_pages(vec![T::lit(0.0); n * mesh.n_cells()]);
+        let fill = |cells: std::ops::Range<usize>, piece: &mut [T]| {
+            for (cell, out) in cells.zip(piece.chunks_exact_mut(n)) {
+                CellMetric::of(mesh, cell).write(out);
+            }
+            Ok::<(), Infallible>(())
+        };
+        let Ok(()) = cells::for_each(mesh.n_cells(), &|c| c * n, &mut kept, &fill);
+        Self { kept }
+    }
+    /// The metric of a cell.
+    #[inline(always)]
+    pub fn at<const D: usize>(&self, cell: usize) -> CellMetric<T, D> {
+        let n = CellMetric::<T, D>::KEPT;
+        CellMetric::read(&self.kept[cell * n..(cell + 1) * n])
+    }
+    /// The products of the gradient opposite facet `local` of a cell with all of its gradients.
+    #[inline(always)]
+    pub fn products_of<const D: usize>(&self, cell: usize, local: usize) -> [T; 4] {
+        let n = CellMetric::<T, D>::KEPT;
+        let kept = &self.kept[cell * n + D + 2..(cell + 1) * n];
+        // by products with zeros and ones: facets come in no order that branches could foresee
+        let (places, others) = (&PAIR[D][local & 3], &OTHERS[local & 3]);
+        let mut row = [T::lit(0.0); 4];
+        let mut sum = T::lit(0.0);
+        for k in 0..=D {
+            row[k] = T::lit(others[k]) * kept[places[k]];
+            sum -= row[k];
+        }
+        for k in 0..=D {
+            row[k] += (T::lit(1.0) - T::lit(others[k])) * sum;
+        }
+        row
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::mesh::{BoundaryPart, TaggedFacet};
+    use crate::real::Point;
+
+    #[test]
+    fn the_shortest_facet_of_a_thin_cell_keeps_its_digits() {
+        for short in [1e-3, 1e-6, 1e-9] {
+            let vertices = [[0.0, 0.0], [1.0, 0.0], [1.0, short]].map(Point::<f64, 2>::from);
+            let sides = [[0, 1], [0, 2], [1, 2]]
+                .map(|vertices| TaggedFacet { vertices, part: BoundaryPart::Dirichlet });
+            let mesh = Mesh::new(vertices.to_vec(), vec![0, 1, 2], &sides).expect("one cell");
+            let metric: CellMetric<f64, 2> = CellMetric::of(&mesh, 0);
+            let exact = [short, (1.0 + short * short).sqrt(), 1.0];
+            for (measure, exact) in metric.measures.iter().zip(exact) {
+                assert!((measure / exact - 1.0).abs() < 4.0 * f64::EPSILON, "{short}");
+            }
+        }
+    }
+}

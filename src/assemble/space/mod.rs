@@ -1,0 +1,272 @@
+//! The discrete space on a mesh: all that does not depend on the facet form.
+//!
+//! Nothing here is generic in the scheme, so it is compiled once for each scalar and dimension: the
+//! element enters as numbers and one function.
+
+mod bounds;
+pub(crate) mod data;
+pub(crate) mod dofs;
+pub(crate) mod metric;
+pub(crate) mod tables;
+
+use super::local::{CellSide, StiffnessTable};
+use super::{DataQuadrature, count};
+use crate::algebra::Place;
+use crate::element::{MAX_BASIS, Node, ReferenceElement};
+use crate::error::Error;
+use crate::memory::in_large_pages;
+use crate::mesh::{BoundaryFacet, BoundaryPart, Mesh, Neighbours, edge_vertices};
+use crate::problem::Problem;
+use crate::quadrature::{Rule, insert};
+use crate::real::{Point, Real, point_f64};
+use crate::scheme::BoundedNodes;
+use dofs::Dofs;
+use metric::CellMetric;
+use tables::{BasisAt, CellTable, FacetTable};
+
+/// A finite element space with the problem posed on it.
+pub(crate) struct Space<'a, T: Real, const D: usize> {
+    pub problem: &'a Problem<D>,
+    pub mesh: &'a Mesh<T, D>,
+    pub quadrature: DataQuadrature,
+    pub neighbours: Option<Neighbours>,
+    pub dofs: Dofs<'a>,
+    pub coefficients: Option<Vec<T>>,
+    /// What each of a cell's unknowns is the value of.
+    pub nodes: Vec<Node>,
+    /// Degree of the element.
+    pub degree: usize,
+    /// Whether cells share no unknowns.
+    pub broken: bool,
+    /// Whether Dirichlet data are pinned; else the facet form imposes them.
+    pub pins: bool,
+    /// Which nodes an inequality binds.
+    pub bounded: BoundedNodes,
+    basis: fn(&[f64; 4]) -> BasisAt<f64>,
+}
+
+impl<'a, T: Real, const D: usize> Space<'a, T, D> {
+    /// The space of an element; facets are built only if asked for or numbered.
+    pub fn new<E: ReferenceElement<T, D>>(
+        problem: &'a Problem<D>,
+        mesh: &'a Mesh<T, D>,
+        quadrature: DataQuadrature,
+        with_facets: bool,
+        pins: bool,
+        bounded: BoundedNodes,
+    ) -> Result<Self, Error> {
+        let neighbours = (with_facets || E::LAYOUT.facet > 0).then(|| {
+            count::facet_topologies(1);
+            Neighbours::of(mesh)
+        });
+        let dofs = Dofs::new(E::LAYOUT, mesh, neighbours.as_ref());
+        let space = Self {
+            problem,
+            mesh,
+            quadrature,
+            neighbours,
+            dofs,
+            coefficients: data::coefficients(problem, mesh)?,
+            nodes: (0..E::N).map(E::node).collect(),
+            degree: E::DEGREE,
+            broken: E::LAYOUT.is_broken(),
+            pins,
+            bounded,
+            basis: BasisAt::new_in_f64::<T, E, D>,
+        };
+        space.check_constraint_set()?;
+        Ok(space)
+    }
+
+    /// Refuses an inequality that would bind nothing at all.
+    fn check_constraint_set(&self) -> Result<(), Error> {
+        let constraint = self.bounded.name(self.degree, self.nodes[0]);
+        let refuse =
+            |condition, allowed| Err(Error::NothingToBound { constraint, condition, allowed });
+        if self.problem.is_constrained() && self.bounded_nodes().next().is_none() {
+            return refuse("an inequality", "the scheme's element has no such values");
+        }
+        if self.problem.gap.is_some() && self.bounded_nodes_on(0).next().is_none() {
+            return refuse(
+                "a Signorini condition",
+                "only bounds on values or means that belong to the facets of a cell can, as those \
+                 at nodes, vertices or midpoints or on facet means",
+            );
+        }
+        Ok(())
+    }
+
+    /// The neighbours, in a space that was made with facets.
+    pub fn coupled_neighbours(&self) -> &Neighbours {
+        self.neighbours.as_ref().expect("facets are built for every form that couples cells")
+    }
+    /// Unknowns of a cell.
+    pub fn per_cell(&self) -> usize {
+        self.nodes.len()
+    }
+    /// The diffusion coefficient of a cell.
+    #[inline(always)]
+    pub fn alpha(&self, cell: usize) -> T {
+        self.coefficients.as_ref().map_or_else(|| T::lit(1.0), |a| a[cell])
+    }
+    /// A cell seen from one of its facets.
+    #[inline(always)]
+    pub fn side<'g>(
+        &self,
+        cell: usize,
+        local: usize,
+        metric: &'g CellMetric<T, D>,
+    ) -> CellSide<'g, T, D> {
+        CellSide { cell, local, metric, coefficient: self.alpha(cell) }
+    }
+    /// The basis at a point of the cell.
+    pub fn basis_at(&self, point: &[f64; 4]) -> BasisAt<f64> {
+        (self.basis)(point)
+    }
+    /// The factor `c` if the gradient of each basis function `i` is `c` times that of barycentric
+    /// coordinate `i`, so that products of gradients make the whole stiffness.
+    pub fn gradient_factor(&self) -> Option<T> {
+        let derivatives = self.basis_at(&[1.0 / (D + 1) as f64; 4]).derivatives;
+        let factor = derivatives[0][0];
+        let is_one = |i: usize, k: usize| derivatives[i][k] == if i == k { factor } else { 0.0 };
+        let all = self.degree == 1
+            && self.per_cell() == D + 1
+            && (0..=D).all(|i| (0..=D).all(|k| is_one(i, k)));
+        all.then(|| T::lit(factor))
+    }
+    /// The stiffness of the reference element.
+    pub fn stiffness_table(&self) -> StiffnessTable<T> {
+        StiffnessTable::new(D, &self.cell_table(2 * (self.degree - 1)))
+    }
+    /// Moments of the basis on facets, up to a degree.
+    pub fn facet_table(&self, degree: usize) -> FacetTable<T> {
+        FacetTable::new(D, self.degree, self.basis, degree)
+    }
+    /// The basis at the points of a cell rule.
+    pub fn cell_table(&self, degree: usize) -> CellTable<f64> {
+        let rule = Rule::of_degree(D, degree);
+        CellTable {
+            basis: rule.points.iter().map(self.basis).collect(),
+            points: rule.points,
+            weights: rule.weights,
+        }
+    }
+    /// The unknowns of a cell in `f64`.
+    pub fn local_values(&self, cell: usize, u: &[T]) -> [f64; MAX_BASIS] {
+        let mut local = [0.0; MAX_BASIS];
+        for (i, value) in local.iter_mut().enumerate().take(self.per_cell()) {
+            *value = u[self.dofs.of(cell, i)].to_f64();
+        }
+        local
+    }
+    /// The boundary facets of a part: cell and number in the cell.
+    pub fn facets_of(&self, part: BoundaryPart) -> impl Iterator<Item = (usize, usize)> {
+        let of_part = move |f: &&BoundaryFacet| f.part == part;
+        self.mesh.boundary().iter().filter(of_part).map(|f| (f.cell as usize, f.local as usize))
+    }
+    /// The metric of a cell, computed.
+    pub fn metric(&self, cell: usize) -> CellMetric<T, D> {
+        CellMetric::of(self.mesh, cell)
+    }
+    /// A point of a facet in space.
+    pub fn facet_point(&self, point: &[f64; 4], cell: usize, local: usize) -> Point<f64, D> {
+        let inserted = insert(point, local).map(T::lit);
+        point_f64(&self.mesh.point(cell, &inserted[..=D]))
+    }
+    /// A point of a cell in space.
+    pub fn cell_point(&self, point: &[f64; 4], cell: usize) -> Point<f64, D> {
+        point_f64(&self.mesh.point(cell, &point.map(T::lit)[..=D]))
+    }
+    /// The basis functions whose nodes lie on facet `local`.
+    pub fn nodes_on(&self, local: usize) -> impl Iterator<Item = usize> {
+        (0..self.per_cell()).filter(move |&i| match self.nodes[i] {
+            Node::Vertex(k) => k != local,
+            Node::Edge(k) => !edge_vertices(D)[k].contains(&local),
+            Node::FacetMean(k) => k == local,
+            Node::CellMean => false,
+        })
+    }
+    /// The basis functions whose unknowns an obstacle binds.
+    pub fn bounded_nodes(&self) -> impl Iterator<Item = usize> {
+        (0..self.per_cell()).filter(|&i| self.bounded.in_domain(self.nodes[i]))
+    }
+    /// The basis functions whose unknowns a Signorini condition on facet `local` binds.
+    pub fn bounded_nodes_on(&self, local: usize) -> impl Iterator<Item = usize> {
+        self.nodes_on(local).filter(|&i| self.bounded.on_contact(self.nodes[i], D))
+    }
+    /// The point at which a node sits.
+    pub fn node_point(&self, cell: usize, node: Node) -> Point<f64, D> {
+        let vertex = |k: usize| self.mesh.vertices()[self.mesh.cell(cell)[k] as usize];
+        point_f64(&match node {
+            Node::Vertex(k) => vertex(k),
+            Node::Edge(k) => {
+                let [i, j] = edge_vertices(D)[k];
+                (vertex(i) + vertex(j)) * T::lit(0.5)
+            }
+            Node::FacetMean(k) => self.mesh.facet_barycentre(cell, k),
+            Node::CellMean => self.mesh.barycentre(cell),
+        })
+    }
+    /// Where each unknown lives.
+    pub fn places(&self) -> Vec<Place> {
+        let n = self.dofs.size();
+        if self.broken {
+            let mut places = in_large_pages(Vec::with_capacity(n));
+            for cell in 0..self.mesh.n_cells() {
+                let owner = Some(cell as u32);
+                places.extend(self.nodes.iter().map(|&node| self.place(owner, cell, node)));
+            }
+            return places;
+        }
+        if self.nodes.iter().all(|node| matches!(node, Node::Vertex(_))) {
+            // unknowns are numbered like the vertices that own them
+            let mut places = in_large_pages(Vec::with_capacity(n));
+            places.extend((0..n as u32).map(|vertex| Place::new(None, &[vertex])));
+            return places;
+        }
+        let mut places = in_large_pages(vec![Place::new(None, &[]); n]);
+        for cell in 0..self.mesh.n_cells() {
+            for (i, &node) in self.nodes.iter().enumerate() {
+                places[self.dofs.of(cell, i)] = self.place(None, cell, node);
+            }
+        }
+        places
+    }
+    #[inline(always)]
+    fn place(&self, owner: Option<u32>, cell: usize, node: Node) -> Place {
+        let vertices = self.mesh.cell(cell);
+        match node {
+            Node::Vertex(k) => Place::new(owner, &[vertices[k]]),
+            Node::Edge(k) => Place::new(owner, &edge_vertices(D)[k].map(|v| vertices[v])),
+            Node::CellMean => Place::new(owner, vertices),
+            Node::FacetMean(k) => {
+                let mut own = [0; D];
+                let facet = self.mesh.facet_vertices(cell, k);
+                own.iter_mut().zip(facet).for_each(|(v, w)| *v = w);
+                Place::new(owner, &own)
+            }
+        }
+    }
+    /// Where each vertex is, to single precision, missing coordinates zero.
+    pub fn vertex_points(&self) -> Vec<[f32; 3]> {
+        let coordinate = |x: Option<&T>| x.map_or(0.0, |x| x.to_f64() as f32);
+        let point = |x: &Point<T, D>| [0, 1, 2].map(|k| coordinate(x.get(k)));
+        self.mesh.vertices().iter().map(point).collect()
+    }
+    /// A discrete function at the vertices of each cell, `D + 1` values for each.
+    pub fn vertex_values(&self, u: &[T]) -> Vec<f64> {
+        let corners: Vec<BasisAt<f64>> = (0..=D)
+            .map(|k| {
+                let mut point = [0.0; 4];
+                point[k] = 1.0;
+                self.basis_at(&point)
+            })
+            .collect();
+        let mut out = Vec::with_capacity(self.mesh.n_cells() * (D + 1));
+        for cell in 0..self.mesh.n_cells() {
+            let local = self.local_values(cell, u);
+            out.extend(corners.iter().map(|basis| basis.value(&local)));
+        }
+        out
+    }
+}

@@ -1,0 +1,134 @@
+//! The free boundary of a discrete solution and its distance from the exact one.
+
+use rayon::prelude::*;
+
+use super::Carrier;
+use super::clipped_simplices::in_space;
+use crate::assemble::space::Space;
+use crate::problem::ContactSet;
+use crate::real::{Point, Real, point_f64};
+
+/// A facet of the discrete free boundary is sampled by the points whose barycentric coordinates are
+/// multiples of one over this.
+const SAMPLES: usize = 4;
+
+impl<T: Real, const D: usize> Space<'_, T, D> {
+    /// The Hausdorff distance of the two free boundaries within the mesh; none if either is empty.
+    pub(super) fn free_boundary_distance(
+        &self,
+        set: &ContactSet<D>,
+        carriers: &[Carrier],
+        touching: &[bool],
+    ) -> Option<f64> {
+        let discrete = self.discrete_free_boundary(carriers, touching);
+        let exact = self.within_mesh(set, carriers);
+        if discrete.is_empty() || exact.is_empty() {
+            return None;
+        }
+        Some(one_sided(&discrete, &exact).max(one_sided(&exact, &discrete)))
+    }
+
+    /// Points on the facets between carriers in contact and carriers that are not.
+    fn discrete_free_boundary(
+        &self,
+        carriers: &[Carrier],
+        touching: &[bool],
+    ) -> Vec<Point<f64, D>> {
+        let Some(dimension) = carriers.first().map(|c| c.dimension::<D>()) else {
+            return Vec::new();
+        };
+        // every facet of every carrier, named by its vertices, in the order of these names
+        let mut facets: Vec<([u32; 3], bool)> = Vec::new();
+        for (carrier, &touches) in carriers.iter().zip(touching) {
+            let cell = self.mesh.cell(carrier.cell);
+            for opposite in carrier.corners::<D>().filter(|_| dimension > 0) {
+                let mut name = [u32::MAX; 3];
+                let others = carrier.corners::<D>().filter(|&k| k != opposite);
+                name.iter_mut().zip(others).for_each(|(v, k)| *v = cell[k]);
+                facets.push((name, touches));
+            }
+        }
+        facets.sort_unstable();
+        let lattice = lattice(dimension.saturating_sub(1));
+        let mut points = Vec::new();
+        // a name that occurs twice in a row with different states
+        for pair in facets.windows(2).filter(|p| p[0].0 == p[1].0 && p[0].1 != p[1].1) {
+            let mut corners = [Point::zeros(); 4];
+            for (corner, &v) in corners.iter_mut().zip(&pair[0].0[..dimension]) {
+                *corner = point_f64(&self.mesh.vertices()[v as usize]);
+            }
+            points.extend(lattice.iter().map(|barycentric| in_space(barycentric, &corners)));
+        }
+        points
+    }
+
+    /// The points of the exact free boundary that lie on some carrier: a mesh from a file need not
+    /// cover the domain of the scene.
+    fn within_mesh(&self, set: &ContactSet<D>, carriers: &[Carrier]) -> Vec<Point<f64, D>> {
+        // in the order of their first coordinates, so that few are tried on each carrier
+        let mut points = set.free_boundary.clone();
+        points.sort_unstable_by(|x, y| x[0].total_cmp(&y[0]));
+        let mut found = vec![false; points.len()];
+        for carrier in carriers {
+            let corners = self.corner_points(*carrier);
+            let corners = &corners[..=carrier.dimension::<D>()];
+            let fold = |f: fn(f64, f64) -> f64| {
+                corners[1..].iter().fold(corners[0], |x, y| x.zip_map(y, f))
+            };
+            let (low, high) = (fold(f64::min), fold(f64::max));
+            let slack = SLACK * (high - low).norm().max(f64::MIN_POSITIVE);
+            let first = points.partition_point(|x| x[0] < low[0] - slack);
+            let near = points[first..].iter().take_while(|x| x[0] <= high[0] + slack);
+            for (found, x) in found[first..].iter_mut().zip(near) {
+                if *found || (1..D).any(|k| x[k] < low[k] - slack || x[k] > high[k] + slack) {
+                    continue;
+                }
+                *found = self.covers(*carrier, x);
+            }
+        }
+        points.iter().zip(found).filter(|(_, found)| *found).map(|(x, _)| *x).collect()
+    }
+
+    /// Whether a point lies on a carrier.
+    fn covers(&self, carrier: Carrier, x: &Point<f64, D>) -> bool {
+        let geometry = self.mesh.geometry(carrier.cell);
+        let cell = self.mesh.cell(carrier.cell);
+        (0..=D).all(|k| {
+            // coordinate k vanishes at any other corner of the cell
+            let zero = point_f64(&self.mesh.vertices()[cell[usize::from(k == 0)] as usize]);
+            let coordinate = point_f64(geometry.gradient(k)).dot(&(x - zero));
+            let slack = SLACK.max(16.0 * T::EPSILON);
+            coordinate >= -slack && (carrier.facet != Some(k) || coordinate <= slack)
+        })
+    }
+}
+
+/// Points this much outside a simplex, in units of its size, still count as on it.
+const SLACK: f64 = 1e-9;
+
+/// The largest distance of a point of the first set from the second.
+fn one_sided<const D: usize>(from: &[Point<f64, D>], to: &[Point<f64, D>]) -> f64 {
+    let nearest =
+        |x: &Point<f64, D>| to.iter().map(|y| (x - y).norm_squared()).fold(f64::INFINITY, f64::min);
+    from.par_iter().map(nearest).reduce(|| 0.0, f64::max).sqrt()
+}
+
+/// Barycentric coordinates of evenly spaced points on the simplex of some dimension.
+fn lattice(dimension: usize) -> Vec<[f64; 4]> {
+    let mut points = vec![([0.0; 4], SAMPLES)];
+    for k in 0..dimension {
+        let choose = |(point, left): ([f64; 4], usize)| {
+            (0..=left).map(move |taken| {
+                let mut point = point;
+                point[k] = taken as f64 / SAMPLES as f64;
+                (point, left - taken)
+            })
+        };
+        points = points.into_iter().flat_map(choose).collect();
+    }
+    let close = |(mut point, left): ([f64; 4], usize)| {
+        point[dimension] = left as f64 / SAMPLES as f64;
+        point
+    };
+    points.into_iter().map(close).collect()
+}

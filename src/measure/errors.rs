@@ -1,0 +1,30 @@
+//! Errors of a discrete solution, as plain numbers.
+
+use serde::Serialize;
+
+/// Errors against the exact solution.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct Errors {
+    /// L2 norm.
+    pub l2: Option<f64>,
+    /// Broken H1 seminorm.
+    pub h1: Option<f64>,
+    /// The scheme's own norm, penalty included.
+    pub energy: Option<f64>,
+    /// Maximum over nodes.
+    pub max: Option<f64>,
+}
+
+/// Distances of multiplier and contact set from the exact ones, comparable across schemes; see
+/// [`Discretisation::contact_errors`](crate::assemble::Discretisation::contact_errors).
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct ContactErrors {
+    /// Error of the multiplier as a density at vertices, in L1.
+    pub multiplier_l1: Option<f64>,
+    /// The same in the lumped L2 norm.
+    pub multiplier_l2: Option<f64>,
+    /// Measure of the symmetric difference of the contact sets.
+    pub contact_area_error: Option<f64>,
+    /// Hausdorff distance of the free boundaries.
+    pub free_boundary_distance: Option<f64>,
+}

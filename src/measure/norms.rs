@@ -1,0 +1,201 @@
+//! Errors against the exact solution.
+
+use std::ops::Range;
+
+use super::Errors;
+use crate::assemble::Discretisation;
+use crate::assemble::load::FacetMoments;
+use crate::assemble::space::tables::{BasisAt, CellTable};
+use crate::assemble::space::{Space, data};
+use crate::element::{MAX_BASIS, Node};
+use crate::error::Error;
+use crate::facet::{AnyForm, Trace};
+use crate::mesh::{BoundaryPart, Neighbour, Neighbours};
+use crate::parallel::cells;
+use crate::problem::Exact;
+use crate::quadrature::Rule;
+use crate::real::{Real, point_f64};
+use crate::scheme::Scheme;
+
+/// Degree of the rule for error norms: the exact solution is not polynomial, and the rule must not
+/// limit what it measures.
+const fn error_degree(dimension: usize) -> usize {
+    match dimension {
+        1 | 2 => 19,
+        _ => 9,
+    }
+}
+
+/// Degree of the rule for means over facets.
+const MEAN_DEGREE: usize = 5;
+
+/// Squares of the norms of the error.
+#[derive(Clone, Copy, Debug, Default)]
+struct SquaredErrors {
+    /// Square of the L2 norm.
+    l2: f64,
+    /// Square of the broken H1 seminorm.
+    h1: f64,
+    /// Square of the energy norm.
+    energy: f64,
+    /// Maximum over nodes.
+    max: f64,
+}
+
+impl SquaredErrors {
+    fn add(&mut self, other: &Self) {
+        self.l2 += other.l2;
+        self.h1 += other.h1;
+        self.energy += other.energy;
+        self.max = self.max.max(other.max);
+    }
+}
+
+impl<T: Real, const D: usize, S: Scheme<T, D>> Discretisation<'_, T, D, S> {
+    /// Errors of a vector of unknowns against the exact solution; none where there is no exact
+    /// solution.
+    ///
+    /// The energy norm is the broken seminorm weighted with the coefficient, plus the reaction
+    /// term, plus the facet form at jumps without flux and without products of lifts, of Dirichlet
+    /// data as far as the form sees them: for interior penalty the usual norm `|.|_1^2 + sum sigma_F ||[.]||^2`, for WOPSIP the
+    /// square root of the form itself.
+    ///
+    /// # Errors
+    /// [`Error::DataNotFinite`].
+    ///
+    /// # Panics
+    /// If `u` is shorter than the number of unknowns.
+    pub fn errors(&self, u: &[T]) -> Result<Errors, Error> {
+        let form: &dyn AnyForm<T, D> = &self.form;
+        self.space.errors(Self::COUPLES.then_some(form), u)
+    }
+}
+
+impl<T: Real, const D: usize> Space<'_, T, D> {
+    /// Squares of the errors over all cells.
+    fn cell_errors(&self, exact: &Exact<D>, u: &[T]) -> Result<SquaredErrors, Error> {
+        let table = self.cell_table(error_degree(D));
+        let means = Rule::of_degree(D - 1, MEAN_DEGREE);
+        // partial sums are added in order, so the result does not depend on threads
+        let parts = cells::map(self.mesh.n_cells(), &|cells: Range<usize>| {
+            let mut sum = SquaredErrors::default();
+            for cell in cells {
+                sum.add(&self.cell_error(exact, (&table, &means), cell, u)?);
+            }
+            Ok::<_, Error>(sum)
+        });
+        let mut total = SquaredErrors::default();
+        for part in parts {
+            total.add(&part?);
+        }
+        Ok(total)
+    }
+
+    fn cell_error(
+        &self,
+        exact: &Exact<D>,
+        (table, means): (&CellTable<f64>, &Rule),
+        cell: usize,
+        u: &[T],
+    ) -> Result<SquaredErrors, Error> {
+        let geometry = self.mesh.geometry(cell);
+        let volume = geometry.volume.to_f64();
+        let alpha = self.alpha(cell).to_f64();
+        let local = self.local_values(cell, u);
+        let n = self.per_cell();
+        let mut sum = SquaredErrors::default();
+        for ((point, basis), &weight) in table.points.iter().zip(&table.basis).zip(&table.weights) {
+            let x = self.cell_point(point, cell);
+            let mut error = -(exact.gradient)(&x);
+            for k in 0..=D {
+                let slope: f64 = (0..n).map(|i| local[i] * basis.derivatives[i][k]).sum();
+                error += point_f64(geometry.gradient(k)) * slope;
+            }
+            let value = data::finite((exact.value)(&x), "exact solution", &x, cell)?;
+            let difference = basis.value(&local) - value;
+            let square = data::finite(error.norm_squared(), "exact gradient", &x, cell)?;
+            let reaction = self.problem.reaction.as_ref().map_or(0.0, |c| c.at(&x));
+            sum.l2 += weight * volume * difference * difference;
+            sum.h1 += weight * volume * square;
+            sum.energy += weight * volume * (alpha * square + reaction * difference * difference);
+        }
+        for (node, value) in self.nodes.iter().zip(&local) {
+            let exact_value: f64 = match *node {
+                Node::FacetMean(k) => means
+                    .iter()
+                    .map(|(point, w)| w * (exact.value)(&self.facet_point(point, cell, k)))
+                    .sum(),
+                Node::CellMean => {
+                    let samples = table.points.iter().zip(&table.weights);
+                    samples.map(|(p, w)| w * (exact.value)(&self.cell_point(p, cell))).sum()
+                }
+                Node::Vertex(_) | Node::Edge(_) => (exact.value)(&self.node_point(cell, *node)),
+            };
+            let x = self.node_point(cell, *node);
+            let exact_value = data::finite(exact_value, "exact solution", &x, cell)?;
+            sum.max = sum.max.max((value - exact_value).abs());
+        }
+        Ok(sum)
+    }
+}
+
+impl<T: Real, const D: usize> Space<'_, T, D> {
+    /// Errors of a vector of unknowns; see `Discretisation::errors`.
+    pub fn errors(&self, form: Option<&dyn AnyForm<T, D>>, u: &[T]) -> Result<Errors, Error> {
+        let Some(exact) = &self.problem.exact else { return Ok(Errors::default()) };
+        let mut total = self.cell_errors(exact, u)?;
+        if let (Some(neighbours), Some(form)) = (&self.neighbours, form) {
+            total.energy += self.facet_error(form, neighbours, u)?;
+        }
+        Ok(Errors {
+            l2: Some(total.l2.sqrt()),
+            h1: Some(total.h1.sqrt()),
+            energy: Some(total.energy.sqrt()),
+            max: Some(total.max),
+        })
+    }
+
+    /// The facet form at the jumps of the error.
+    fn facet_error(
+        &self,
+        form: &dyn AnyForm<T, D>,
+        neighbours: &Neighbours,
+        u: &[T],
+    ) -> Result<f64, Error> {
+        let degree = form.moments(self.degree);
+        let table = self.facet_table(degree);
+        let moments = FacetMoments::new(D, degree, self.quadrature.facet);
+        let value = |basis: &BasisAt<T>, local: &[f64; MAX_BASIS]| -> f64 {
+            local.iter().zip(&basis.values).map(|(c, v)| c * v.to_f64()).sum()
+        };
+        let mut total = 0.0;
+        for cell in 0..self.mesh.n_cells() {
+            let mine = self.local_values(cell, u);
+            for local in 0..=D {
+                let across = neighbours.across(cell, local);
+                let jumps: Vec<f64> = match across {
+                    Neighbour::Cell { cell: other, .. } if (other as usize) < cell => continue,
+                    Neighbour::Cell { cell: other, local: other_local } => {
+                        let theirs = self.local_values(other as usize, u);
+                        let sides = table.on(local).iter().zip(table.on(other_local as usize));
+                        sides.map(|(a, b)| value(a, &mine) - value(b, &theirs)).collect()
+                    }
+                    Neighbour::Boundary(BoundaryPart::Dirichlet) if !self.pins => {
+                        let data = self.dirichlet_moments(&moments, cell, local)?;
+                        let sides = table.on(local).iter().zip(data);
+                        sides.map(|(basis, g)| value(basis, &mine) - g).collect()
+                    }
+                    Neighbour::Boundary(_) => continue,
+                };
+                let Some(view) = self.facet_view(neighbours, cell, local) else { continue };
+                let penalty = form.penalty(&view);
+                for (jump, &degree) in jumps.into_iter().zip(&table.degrees) {
+                    let trace = Trace { jump: T::lit(jump), flux: T::lit(0.0) };
+                    let penalty = penalty * form.moment_weight(degree);
+                    total += (view.measure * form.integrand(trace, trace, penalty)).to_f64();
+                }
+            }
+        }
+        Ok(total)
+    }
+}

@@ -1,0 +1,123 @@
+//! Kuhn triangulations of boxes.
+
+use crate::mesh::validate::check_size;
+use crate::mesh::{BoundaryFacet, BoxDomain, Mesh, MeshError};
+use crate::real::{Point, Real};
+
+/// Orders in which a path steps along the axes from the lowest to the highest corner of a box; each
+/// makes one simplex.
+fn paths<const D: usize>() -> Vec<[usize; D]> {
+    let mut paths: Vec<Vec<usize>> = vec![Vec::new()];
+    for _ in 0..D {
+        paths = paths
+            .into_iter()
+            .flat_map(|p| {
+                (0..D)
+                    .filter(|k| !p.contains(k))
+                    .map(|k| [&p[..], &[k]].concat())
+                    .collect::<Vec<_>>()
+            })
+            .collect();
+    }
+    paths.into_iter().map(|p| std::array::from_fn(|k| p[k])).collect()
+}
+
+impl<const D: usize> BoxDomain<D> {
+    /// Subdivisions along each axis when the shortest side has `level` of them and all small boxes
+    /// are as close to cubes as whole numbers allow.
+    pub fn counts(&self, level: usize) -> [usize; D] {
+        let side = |k: usize| self.upper[k] - self.lower[k];
+        let shortest = (0..D).map(side).fold(f64::INFINITY, f64::min);
+        std::array::from_fn(|k| (side(k) / shortest * level as f64).round() as usize)
+    }
+}
+
+impl<T: Real, const D: usize> Mesh<T, D> {
+    /// A box cut into `counts[k]` small boxes along axis `k`, each cut into `D!` simplices around
+    /// its diagonal from the lowest to the highest corner (Kuhn).
+    ///
+    /// # Errors
+    /// [`MeshError::Parameter`] for a count of zero or a box without volume, [`MeshError::TooLarge`].
+    pub fn kuhn_box(domain: &BoxDomain<D>, counts: [usize; D]) -> Result<Self, MeshError> {
+        let wrong = |parameter, value: String, allowed: &str| MeshError::Parameter {
+            parameter,
+            value,
+            allowed: allowed.to_owned(),
+        };
+        if counts.contains(&0) {
+            return Err(wrong(
+                "subdivisions",
+                format!("{counts:?}"),
+                "at least one along each axis",
+            ));
+        }
+        for k in 0..D {
+            let side = domain.upper[k] - domain.lower[k];
+            if !(side > 0.0 && side.is_finite()) {
+                return Err(wrong("side of the box", side.to_string(), "positive and finite"));
+            }
+        }
+        let paths = paths::<D>();
+        let product = |add: usize| {
+            counts.iter().try_fold(1_usize, |n, &c| n.checked_mul(c.checked_add(add)?))
+        };
+        let n_boxes = product(0).and_then(|n| n.checked_mul(paths.len())).unwrap_or(usize::MAX);
+        let n_vertices = product(1).unwrap_or(usize::MAX);
+        check_size(n_boxes, n_vertices)?;
+
+        let mut strides = [1; D];
+        for k in 1..D {
+            strides[k] = strides[k - 1] * (counts[k - 1] + 1);
+        }
+        let coordinate = |k: usize, i: usize| {
+            let t = i as f64 / counts[k] as f64;
+            domain.lower[k] * (1.0 - t) + domain.upper[k] * t
+        };
+        let vertices = (0..n_vertices)
+            .map(|v| Point::from_fn(|k, _| T::lit(coordinate(k, v / strides[k] % (counts[k] + 1)))))
+            .collect();
+        let (cells, boundary) = cells_and_boundary(domain, counts, strides, &paths);
+        Ok(Self { vertices, cells, boundary })
+    }
+}
+
+fn cells_and_boundary<const D: usize>(
+    domain: &BoxDomain<D>,
+    counts: [usize; D],
+    strides: [usize; D],
+    paths: &[[usize; D]],
+) -> (Vec<u32>, Vec<BoundaryFacet>) {
+    let n_boxes: usize = counts.iter().product();
+    let mut cells = Vec::with_capacity(n_boxes * paths.len() * (D + 1));
+    let mut boundary = Vec::new();
+    let mut index = [0; D];
+    for _ in 0..n_boxes {
+        let lowest: usize = (0..D).map(|k| index[k] * strides[k]).sum();
+        for path in paths {
+            let cell = (cells.len() / (D + 1)) as u32;
+            let mut vertex = lowest;
+            cells.push(vertex as u32);
+            for &axis in path {
+                vertex += strides[axis];
+                cells.push(vertex as u32);
+            }
+            // all vertices but the first are on the upper side of the first axis of the path,
+            // all but the last on the lower side of the last axis
+            let (first, last) = (path[0], path[D - 1]);
+            if index[first] + 1 == counts[first] {
+                boundary.push(BoundaryFacet { cell, local: 0, part: domain.sides[first][1] });
+            }
+            if index[last] == 0 {
+                boundary.push(BoundaryFacet { cell, local: D as u8, part: domain.sides[last][0] });
+            }
+        }
+        for k in 0..D {
+            index[k] += 1;
+            if index[k] < counts[k] {
+                break;
+            }
+            index[k] = 0;
+        }
+    }
+    (cells, boundary)
+}

@@ -1,0 +1,121 @@
+//! The disc: a hexagon bent round.
+
+use std::f64::consts::FRAC_PI_3;
+
+use crate::mesh::validate::check_size;
+use crate::mesh::{BoundaryPart, Mesh, MeshError, Refinement, TaggedFacet};
+use crate::real::{Point, Real, point_f64};
+
+impl<T: Real, const D: usize> Mesh<T, D> {
+    /// The disc of this radius around the origin: a centre, and rings `k = 1..=n` of `6k` vertices
+    /// each, evenly spread. All the boundary is Dirichlet; its vertices lie on the circle.
+    ///
+    /// A regular hexagon cut into `6 n^2` equilateral triangles has the same rings; bending each of
+    /// its sides into an arc moves one mesh to the other. Angles stay between 30 and 90 degrees.
+    ///
+    /// # Errors
+    /// [`MeshError::Parameter`] for `n = 0`, a radius that is not positive and finite and a dimension
+    /// other than two; [`MeshError::TooLarge`].
+    pub fn disc(radius: f64, n: usize) -> Result<Self, MeshError> {
+        check_shape::<D>("disc", radius, n)?;
+        let number = |ring: usize, place: usize| match ring {
+            0 => 0,
+            k => (1 + 3 * k * (k - 1) + place % (6 * k)) as u32,
+        };
+        let mut vertices = vec![Point::zeros()];
+        let mut cells = Vec::with_capacity(18 * n * n);
+        for k in 1..=n {
+            vertices.extend((0..6 * k).map(|place| {
+                let angle = FRAC_PI_3 * place as f64 / k as f64;
+                polar(radius * (k as f64 / n as f64), angle)
+            }));
+            for (sector, j) in (0..6).flat_map(|sector| (0..k).map(move |j| (sector, j))) {
+                let (outer, inner) = (sector * k + j, sector * (k - 1) + j);
+                let (next, foot) = (number(k, outer + 1), number(k - 1, inner));
+                cells.extend([number(k, outer), next, foot]);
+                if j + 1 < k {
+                    cells.extend([foot, number(k - 1, inner + 1), next]);
+                }
+            }
+        }
+        let boundary: Vec<_> = (0..6 * n)
+            .map(|j| TaggedFacet {
+                vertices: std::array::from_fn(|end| number(n, j + end)),
+                part: BoundaryPart::Dirichlet,
+            })
+            .collect();
+        Ok(Self::new(vertices, cells, &boundary)?)
+    }
+
+    /// The uniform refinement of a mesh of a disc, with new vertices where [`Mesh::disc`] has them:
+    /// in the middle of arcs, not of chords.
+    ///
+    /// # Errors
+    /// [`MeshError::TooLarge`].
+    pub(crate) fn refine_disc(&self) -> Result<(Self, Refinement), MeshError> {
+        let (mut fine, refinement) = self.refine()?;
+        let hexagon: Vec<_> = self.vertices.iter().map(|x| to_hexagon(&point_f64(x))).collect();
+        for (x, &[a, b]) in fine.vertices.iter_mut().zip(&refinement.parents) {
+            if a != b {
+                let middle = (hexagon[a as usize] + hexagon[b as usize]) / 2.0;
+                *x = to_disc(&middle).map(T::lit);
+            }
+        }
+        Ok((fine, refinement))
+    }
+}
+
+/// Refuses shapes of the plane in other dimensions, without extent and without subdivisions.
+pub(crate) fn check_shape<const D: usize>(
+    shape: &'static str,
+    length: f64,
+    n: usize,
+) -> Result<(), MeshError> {
+    let wrong = |parameter, value: String, allowed: &str| {
+        Err(MeshError::Parameter { parameter, value, allowed: allowed.to_owned() })
+    };
+    if D != 2 {
+        return wrong("dimension", D.to_string(), &format!("a mesh of the {shape} needs two"));
+    }
+    if n == 0 {
+        return wrong("subdivisions", n.to_string(), "at least one");
+    }
+    if !(length > 0.0 && length.is_finite()) {
+        return wrong("length", length.to_string(), "positive and finite");
+    }
+    let n_cells = n.saturating_mul(n).saturating_mul(6);
+    // the L-shape is cut out of a square with four vertices to a small square
+    check_size(n_cells, n_cells)?;
+    Ok(())
+}
+
+fn polar<const D: usize>(r: f64, angle: f64) -> Point<f64, D> {
+    Point::from_fn(|k, _| r * if k == 0 { angle.cos() } else { angle.sin() })
+}
+
+/// Sector of 60 degrees around an angle, and how far the angle is into it, from zero to one.
+fn sector(angle: f64) -> (f64, f64) {
+    let turns = angle / FRAC_PI_3;
+    (turns.floor(), turns - turns.floor())
+}
+
+/// The point of the hexagon with corners on the circle that bending moves to `x`.
+fn to_hexagon<const D: usize>(x: &Point<f64, D>) -> Point<f64, D> {
+    let r = x.norm();
+    let (k, t) = sector(x[1].atan2(x[0]));
+    polar::<D>(r * (1.0 - t), k * FRAC_PI_3) + polar::<D>(r * t, (k + 1.0) * FRAC_PI_3)
+}
+
+/// Bends the hexagon: the side of a smaller concentric one through `x` becomes an arc, lengths
+/// along it become angles.
+fn to_disc<const D: usize>(x: &Point<f64, D>) -> Point<f64, D> {
+    let (k, _) = sector(x[1].atan2(x[0]));
+    // coordinates along the two rays that bound the sector
+    let (a, b): (Point<f64, D>, Point<f64, D>) =
+        (polar(1.0, k * FRAC_PI_3), polar(1.0, (k + 1.0) * FRAC_PI_3));
+    let area = a[0] * b[1] - a[1] * b[0];
+    let along_a = (x[0] * b[1] - x[1] * b[0]) / area;
+    let along_b = (a[0] * x[1] - a[1] * x[0]) / area;
+    let r = along_a + along_b;
+    if r <= 0.0 { Point::zeros() } else { polar(r, (k + along_b / r) * FRAC_PI_3) }
+}

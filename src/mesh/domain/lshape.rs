@@ -1,0 +1,45 @@
+//! The L-shaped domain.
+
+use super::disc::check_shape;
+use crate::mesh::{BoundaryPart, Mesh, MeshError, TaggedFacet};
+use crate::real::{Point, Real};
+
+impl<T: Real, const D: usize> Mesh<T, D> {
+    /// The square `(-half, half)^2` without its quadrant `x >= 0`, `y <= 0`, its shortest sides cut
+    /// into `n`, each small square into two triangles along the diagonal from its lowest to its
+    /// highest corner. The re-entrant corner is a vertex. All the boundary is Dirichlet.
+    ///
+    /// # Errors
+    /// [`MeshError::Parameter`] for `n = 0`, a length that is not positive and finite and a dimension
+    /// other than two; [`MeshError::TooLarge`].
+    pub fn l_shape(half: f64, n: usize) -> Result<Self, MeshError> {
+        check_shape::<D>("L-shape", half, n)?;
+        let across = 2 * n + 1;
+        let vertex = |i: usize, j: usize| (i + j * across) as u32;
+        let at = |i: usize| half * (i as f64 / n as f64 - 1.0);
+        let vertices = (0..across * across)
+            .map(|v| Point::from_fn(|k, _| at(if k == 0 { v % across } else { v / across })))
+            .collect();
+        let mut cells = Vec::with_capacity(18 * n * n);
+        for (j, i) in (0..2 * n).flat_map(|j| (0..2 * n).map(move |i| (j, i))) {
+            if i < n || j >= n {
+                let (low, high) = (vertex(i, j), vertex(i + 1, j + 1));
+                cells.extend([low, vertex(i + 1, j), high, low, vertex(i, j + 1), high]);
+            }
+        }
+        let mut boundary = Vec::with_capacity(8 * n);
+        let mut side = |a: u32, b: u32| {
+            let vertices = std::array::from_fn(|k| if k == 0 { a } else { b });
+            boundary.push(TaggedFacet { vertices, part: BoundaryPart::Dirichlet });
+        };
+        for k in 0..2 * n {
+            // the level at which a side facing right or down stands back to let the quadrant out
+            let (right, bottom) = if k < n { (n, 0) } else { (2 * n, n) };
+            side(vertex(0, k), vertex(0, k + 1));
+            side(vertex(right, k), vertex(right, k + 1));
+            side(vertex(k, 2 * n), vertex(k + 1, 2 * n));
+            side(vertex(k, bottom), vertex(k + 1, bottom));
+        }
+        Ok(Self::new(vertices, cells, &boundary)?)
+    }
+}

@@ -1,0 +1,342 @@
+//! The one dynamic layer: schemes of different types in one list.
+
+use crate::measure::Fields;
+use std::time::Instant;
+
+use super::hierarchy::VertexContact;
+use crate::algebra::{Bound, Contact, Inequality, Place, Start};
+use crate::assemble::{DataQuadrature, Discretisation, PenaltyShortfall};
+use crate::element::{Layout, ReferenceElement};
+use crate::error::Error;
+use crate::facet::{FacetForm, PenaltyParameters};
+use crate::inequality::{
+    Certificate, InequalitySolver, Nearby, Outcome, Solution, certify_with_forces,
+};
+use crate::linear::is_positive_definite;
+use crate::measure::{ContactErrors, Errors};
+use crate::mesh::Mesh;
+use crate::problem::Problem;
+use crate::real::Real;
+use crate::scheme::{ExpectedOrders, Scheme, Setting};
+
+/// What a scheme is asked to solve.
+pub struct Task<'a, T: Real, const D: usize> {
+    /// The data.
+    pub problem: &'a Problem<D>,
+    /// The mesh.
+    pub mesh: &'a Mesh<T, D>,
+    /// Contact and value of every vertex to start from; none for a cold start.
+    pub start: Option<&'a VertexContact<T>>,
+    /// The solver.
+    pub solver: &'a dyn InequalitySolver<T>,
+    /// Quadrature of data.
+    pub quadrature: DataQuadrature,
+    /// Whether the exact solution holds on this mesh, so that errors mean something.
+    pub with_errors: bool,
+    /// Times are the smallest of this many runs.
+    pub repeat: usize,
+    /// Whether fields for pictures are wanted.
+    pub with_fields: bool,
+}
+
+/// What a scheme found.
+pub struct Solved {
+    /// Penalty factors in force.
+    pub parameters: PenaltyParameters,
+    /// Number of unknowns, Dirichlet ones included.
+    pub unknowns: usize,
+    /// Stored entries of the matrix.
+    pub nonzeros: usize,
+    /// How the solve ended.
+    pub outcome: Outcome,
+    /// Errors against the exact solution.
+    pub error: Errors,
+    /// Distances of multiplier and contact set from the exact ones.
+    pub contact: ContactErrors,
+    /// The objective, for symmetric schemes.
+    pub objective: Option<f64>,
+    /// Constrained unknowns in contact.
+    pub active: Option<usize>,
+    /// Outer iterations.
+    pub outer: Option<usize>,
+    /// Inner iterations.
+    pub linear: usize,
+    /// The linear solver used.
+    pub linear_solver: &'static str,
+    /// The certificate.
+    pub certificate: Certificate,
+    /// Seconds of assembly.
+    pub assemble_seconds: f64,
+    /// Seconds of the solve on this mesh.
+    pub solve_seconds: f64,
+    /// Fields for pictures.
+    pub fields: Option<Fields>,
+    /// Warnings.
+    pub warnings: Vec<String>,
+}
+
+/// Object-safe face of every scheme: one virtual call per solve, none per cell.
+pub trait AnyScheme<T: Real, const D: usize>: Send + Sync {
+    /// The scheme's name.
+    fn name(&self) -> &str;
+    /// Where it imposes bounds.
+    fn constraint(&self) -> &'static str;
+    /// Orders theory proves.
+    fn expected_orders(&self, setting: &Setting) -> ExpectedOrders;
+    /// Who owns its unknowns.
+    fn layout(&self) -> Layout;
+    /// Whether its unknowns are those of conforming P1, so that it starts from a coarser level and
+    /// not from P1 on the same one.
+    fn is_conforming_linear(&self) -> bool;
+    /// Penalty factors in force on a mesh.
+    fn parameters(&self, mesh: &Mesh<T, D>) -> PenaltyParameters;
+    /// Assembles and solves.
+    ///
+    /// # Errors
+    /// Those of assembly: bad data. Numerical outcomes are in [`Solved::outcome`].
+    fn solve(&self, task: &Task<'_, T, D>) -> Result<Solved, Error>;
+    /// The algebraic inequality alone, for other solvers and exporters.
+    ///
+    /// # Errors
+    /// Those of assembly.
+    fn inequality(
+        &self,
+        problem: &Problem<D>,
+        mesh: &Mesh<T, D>,
+        quadrature: DataQuadrature,
+    ) -> Result<Inequality<T>, Error>;
+}
+
+#[diagnostic::do_not_recommend]
+impl<T: Real, const D: usize, S: Scheme<T, D>> AnyScheme<T, D> for S {
+    fn name(&self) -> &str {
+        Scheme::name(self)
+    }
+    fn constraint(&self) -> &'static str {
+        self.bounded_nodes().name(S::Element::DEGREE, S::Element::node(0))
+    }
+    fn expected_orders(&self, setting: &Setting) -> ExpectedOrders {
+        Scheme::expected_orders(self, setting)
+    }
+    fn layout(&self) -> Layout {
+        S::Element::LAYOUT
+    }
+    fn is_conforming_linear(&self) -> bool {
+        let layout = S::Element::LAYOUT;
+        layout.vertex == 1 && layout.edge + layout.facet + layout.cell == 0 && !S::Facet::COUPLES
+    }
+    fn parameters(&self, mesh: &Mesh<T, D>) -> PenaltyParameters {
+        self.facet(mesh).parameters()
+    }
+    fn solve(&self, task: &Task<'_, T, D>) -> Result<Solved, Error> {
+        solve(task, &|| {
+            let Task { problem, mesh, quadrature, .. } = *task;
+            Ok(Box::new(Discretisation::new(self, problem, mesh, quadrature)?))
+        })
+    }
+    fn inequality(
+        &self,
+        problem: &Problem<D>,
+        mesh: &Mesh<T, D>,
+        quadrature: DataQuadrature,
+    ) -> Result<Inequality<T>, Error> {
+        Discretisation::new(self, problem, mesh, quadrature)?.inequality()
+    }
+}
+
+/// What a solve needs of a discretisation, whatever its scheme.
+trait Discrete<T: Real> {
+    fn inequality(&self) -> Result<Inequality<T>, Error>;
+    fn penalty_shortfall(&self) -> Option<PenaltyShortfall>;
+    fn parameters(&self) -> PenaltyParameters;
+    fn rounding_limit(&self) -> f64;
+    fn errors(&self, u: &[T]) -> Result<Errors, Error>;
+    fn contact_errors(
+        &self,
+        inequality: &Inequality<T>,
+        solution: &Solution<T>,
+    ) -> Result<ContactErrors, Error>;
+    fn fields(&self, inequality: &Inequality<T>, solution: &Solution<T>) -> Fields;
+}
+
+impl<T: Real, const D: usize, S: Scheme<T, D>> Discrete<T> for Discretisation<'_, T, D, S> {
+    fn inequality(&self) -> Result<Inequality<T>, Error> {
+        self.inequality()
+    }
+    fn penalty_shortfall(&self) -> Option<PenaltyShortfall> {
+        self.penalty_shortfall()
+    }
+    fn parameters(&self) -> PenaltyParameters {
+        self.form().parameters()
+    }
+    fn rounding_limit(&self) -> f64 {
+        self.form().rounding_limit(T::EPSILON, self.mesh().domain_diameter())
+    }
+    fn errors(&self, u: &[T]) -> Result<Errors, Error> {
+        self.errors(u)
+    }
+    fn contact_errors(
+        &self,
+        inequality: &Inequality<T>,
+        solution: &Solution<T>,
+    ) -> Result<ContactErrors, Error> {
+        self.contact_errors(inequality, solution)
+    }
+    fn fields(&self, inequality: &Inequality<T>, solution: &Solution<T>) -> Fields {
+        self.fields(inequality, solution)
+    }
+}
+
+/// Makes a discretisation.
+type Make<'f, T> = &'f dyn Fn() -> Result<Box<dyn Discrete<T> + 'f>, Error>;
+
+fn solve<T: Real, const D: usize>(
+    task: &Task<'_, T, D>,
+    make: Make<'_, T>,
+) -> Result<Solved, Error> {
+    let clock = Instant::now();
+    let space = make()?;
+    let mut inequality = space.inequality()?;
+    let mut assemble_seconds = clock.elapsed().as_secs_f64();
+    for _ in 1..task.repeat {
+        let clock = Instant::now();
+        drop(make()?.inequality()?);
+        assemble_seconds = assemble_seconds.min(clock.elapsed().as_secs_f64());
+    }
+    let mut nearby = Nearby::default();
+    if let Some(start) = task.start {
+        // contact nowhere is no knowledge: such a start must be free to find that nothing else
+        // holds the body
+        if start.contact.iter().any(|&c| c != Contact::Open) {
+            inequality.start = Start::Contact(transfer(&start.contact, &inequality.places));
+        }
+        nearby.functions = start.functions.clone();
+        nearby.values =
+            (!start.values.is_empty()).then(|| means(&start.values, &inequality.places));
+    }
+    let shortfall = space.penalty_shortfall();
+    let mut warnings = Vec::new();
+    if let Some(s) = shortfall {
+        warnings.push(s.to_string());
+    }
+    let (limit, shortest) = (space.rounding_limit(), task.mesh.shortest_edge());
+    if shortest < limit {
+        warnings.push(format!(
+            "edges of length {shortest:.1e} are below {limit:.1e}, where rounding in {} may outweigh the discretisation error",
+            T::NAME
+        ));
+    }
+    let (solution, solve_seconds) = run(task, &inequality, &nearby, shortfall.is_some());
+    let u = &solution.values;
+    // without a factorisation there is no iterate, and no number that says anything about one
+    let nothing = matches!(
+        solution.outcome,
+        Outcome::NotCoercive
+            | Outcome::Singular
+            | Outcome::NotFinite
+            | Outcome::OutOfMemory
+            | Outcome::Malformed
+    );
+    let usable = !nothing && u.iter().all(|v| v.to_f64().is_finite());
+    let (error, contact) = if task.with_errors && usable {
+        (space.errors(u)?, space.contact_errors(&inequality, &solution)?)
+    } else {
+        Default::default()
+    };
+    let fields = (task.with_fields && usable).then(|| space.fields(&inequality, &solution));
+    Ok(Solved {
+        parameters: space.parameters(),
+        unknowns: inequality.size(),
+        nonzeros: inequality.matrix.nonzeros(),
+        outcome: solution.outcome,
+        error,
+        contact,
+        objective: (inequality.symmetric && usable).then(|| inequality.objective(u)),
+        active: usable.then(|| crate::inequality::active(&inequality, &solution.contact)),
+        outer: usable.then_some(solution.outer),
+        linear: solution.linear,
+        linear_solver: solution.linear_solver,
+        certificate: match usable {
+            true => Certificate {
+                algebraic_bound: solution.algebraic_bound,
+                ..certify_with_forces(&inequality, u, &solution.forces)
+            },
+            false => Certificate::WORTHLESS,
+        },
+        assemble_seconds,
+        solve_seconds,
+        fields,
+        warnings,
+    })
+}
+
+/// Solves as often as asked and keeps the smallest time. A penalty below its proven bound may still
+/// do, but the size of an error does not tell: the matrix is tested for definiteness first, in time
+/// that counts.
+fn run<T: Real, const D: usize>(
+    task: &Task<'_, T, D>,
+    inequality: &Inequality<T>,
+    nearby: &Nearby<T>,
+    in_doubt: bool,
+) -> (Solution<T>, f64) {
+    let clock = Instant::now();
+    let definite = || {
+        let free: Vec<u32> = (0..inequality.size() as u32)
+            .filter(|&i| !matches!(inequality.bounds[i as usize], Bound::Fixed(_)))
+            .collect();
+        is_positive_definite(&inequality.matrix, inequality.symmetric, &free)
+    };
+    if in_doubt && definite() == Ok(false) {
+        let values = vec![T::lit(0.0); inequality.size()];
+        let contact = vec![Contact::Open; inequality.size()];
+        let solution = Solution {
+            values,
+            contact,
+            outcome: Outcome::NotCoercive,
+            outer: 0,
+            linear: 0,
+            linear_solver: "direct",
+            algebraic_bound: None,
+            forces: Vec::new(),
+        };
+        return (solution, clock.elapsed().as_secs_f64());
+    }
+    let in_test = clock.elapsed().as_secs_f64();
+    let mut seconds = f64::INFINITY;
+    let mut last = None;
+    for _ in 0..task.repeat.max(1) {
+        let clock = Instant::now();
+        last = Some(task.solver.solve_near(inequality, nearby));
+        seconds = seconds.min(clock.elapsed().as_secs_f64());
+    }
+    match last {
+        Some(solution) => (solution, in_test + seconds),
+        None => unreachable!("at least one run"),
+    }
+}
+
+/// Contact of vertices carried to unknowns: an unknown starts in contact if more than half of the
+/// vertices around its node are.
+fn transfer(vertices: &[Contact], places: &[Place]) -> Vec<Contact> {
+    let state = |place: &Place| {
+        let around = place.vertices();
+        [Contact::Lower, Contact::Upper]
+            .into_iter()
+            .find(|&side| {
+                let on = around.iter().filter(|&&v| vertices[v as usize] == side).count();
+                2 * on > around.len()
+            })
+            .unwrap_or(Contact::Open)
+    };
+    places.iter().map(state).collect()
+}
+
+/// Values at vertices carried to unknowns: the mean over the vertices around each node.
+fn means<T: Real>(vertices: &[T], places: &[Place]) -> Vec<T> {
+    let mean = |place: &Place| {
+        let around = place.vertices();
+        let sum = around.iter().fold(T::lit(0.0), |s, &v| s + vertices[v as usize]);
+        sum / T::lit(around.len().max(1) as f64)
+    };
+    places.iter().map(mean).collect()
+}

@@ -1,0 +1,71 @@
+//! A report as comma-separated values.
+
+use crate::study::row::Row;
+use serde::Serialize;
+use serde_json::Value;
+
+/// One line a row, the keys of the row joined by dots (`error.l2`, `iterations.outer`), header
+/// first. What does not apply is empty; several warnings are separated by `"; "`.
+///
+/// Lines are made from the same serialisation as the JSON report, so that the two agree in keys,
+/// order and digits. Without rows there are no keys, and the text is empty.
+pub fn to_csv(rows: &[Row]) -> String {
+    lines(rows)
+}
+
+/// The same for anything that is written as one object a line.
+pub(crate) fn lines<R: Serialize>(rows: &[R]) -> String {
+    let mut text = String::new();
+    for (i, row) in rows.iter().enumerate() {
+        let mut columns = Vec::new();
+        // A row is plain data with string keys: its serialisation cannot fail, and should it ever,
+        // the line would be missing and the reader's count of rows tell.
+        flatten("", &serde_json::to_value(row).unwrap_or(Value::Null), &mut columns);
+        if i == 0 {
+            push_line(&mut text, columns.iter().map(|(key, _)| key.as_str()));
+        }
+        push_line(&mut text, columns.iter().map(|(_, cell)| cell.as_str()));
+    }
+    text
+}
+
+/// Keys and cells of a value, depth first.
+fn flatten(prefix: &str, value: &Value, columns: &mut Vec<(String, String)>) {
+    if let Value::Object(map) = value {
+        for (key, inner) in map {
+            let joined = if prefix.is_empty() { key.clone() } else { format!("{prefix}.{key}") };
+            flatten(&joined, inner, columns);
+        }
+    } else {
+        columns.push((prefix.to_owned(), cell(value)));
+    }
+}
+
+/// The text of a value that is not an object.
+fn cell(value: &Value) -> String {
+    match value {
+        Value::Null => String::new(),
+        Value::String(s) => s.clone(),
+        Value::Array(items) => items.iter().map(cell).collect::<Vec<_>>().join("; "),
+        // Numbers are the shortest digits that read back to the same bits.
+        other => other.to_string(),
+    }
+}
+
+/// A line of cells, quoted where a reader would otherwise see more cells or lines than there are.
+fn push_line<'a>(text: &mut String, cells: impl Iterator<Item = &'a str>) {
+    for (i, cell) in cells.enumerate() {
+        if i > 0 {
+            text.push(',');
+        }
+        let outer_space = cell.trim().len() != cell.len();
+        if outer_space || cell.contains(['"', ',', '\n', '\r']) {
+            text.push('"');
+            text.push_str(&cell.replace('"', "\"\""));
+            text.push('"');
+        } else {
+            text.push_str(cell);
+        }
+    }
+    text.push('\n');
+}

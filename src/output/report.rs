@@ -1,0 +1,52 @@
+//! A report of a study as files.
+
+use std::path::{Path, PathBuf};
+
+use super::csv;
+use crate::error::{Error, write_error};
+use crate::plot::{convergence, work_precision};
+use crate::study::Report;
+
+impl Report {
+    /// The report as JSON. Numbers that do not apply, and numbers that are not finite, are null.
+    pub fn to_json(&self) -> String {
+        // `serde_json` writes every NaN and infinity as null: JSON has no other way. The value is
+        // plain data with string keys, which is all it takes for the serialisation to succeed.
+        let mut text = serde_json::to_string_pretty(self).unwrap_or_else(|_| "null".to_owned());
+        text.push('\n');
+        text
+    }
+
+    /// The rows as comma-separated values: see [`to_csv`](super::to_csv).
+    pub fn to_csv(&self) -> String {
+        csv::to_csv(&self.rows)
+    }
+
+    /// Writes `report.json`, `report.csv` and the plots `convergence` and `work_precision`, each as
+    /// `.svg` and `.png`, into a directory, which is made if need be. Returns the files in order.
+    ///
+    /// # Errors
+    /// [`Error::Write`] at the first file that cannot be written.
+    pub fn write(&self, directory: impl AsRef<Path>) -> Result<Vec<PathBuf>, Error> {
+        let directory = directory.as_ref();
+        std::fs::create_dir_all(directory).map_err(|e| write_error(directory, e))?;
+        let mut written = Vec::new();
+        let mut put = |name: &str, file: &dyn Fn(&Path) -> Result<(), String>| {
+            let path = directory.join(name);
+            file(&path).map_err(|why| write_error(&path, why))?;
+            written.push(path);
+            Ok::<(), Error>(())
+        };
+        let text =
+            |path: &Path, text: String| std::fs::write(path, text).map_err(|e| e.to_string());
+        put("report.json", &|path| text(path, self.to_json()))?;
+        put("report.csv", &|path| text(path, self.to_csv()))?;
+        let errors = convergence(&self.rows);
+        put("convergence.svg", &|path| text(path, errors.to_svg()?))?;
+        put("convergence.png", &|path| errors.write_png(path))?;
+        let times = work_precision(&self.rows);
+        put("work_precision.svg", &|path| text(path, times.to_svg()?))?;
+        put("work_precision.png", &|path| times.write_png(path))?;
+        Ok(written)
+    }
+}

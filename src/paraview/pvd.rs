@@ -1,0 +1,48 @@
+//! A series of VTK files in one, as ParaView opens it.
+
+use std::fmt::Write;
+use std::path::{Path, PathBuf};
+
+use crate::error::Error;
+use crate::error::write_error;
+
+/// Writes a `.pvd` file that lists files of fields, each with its level where the format has a
+/// time, so that a slider goes from coarse to fine. Files in its own directory are named relative
+/// to it, so that the directory can be moved.
+///
+/// # Errors
+/// [`Error::Write`].
+pub fn write_pvd(path: &Path, series: &[(f64, PathBuf)]) -> Result<(), Error> {
+    let mut text = String::from(
+        "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"0.1\" \
+         byte_order=\"LittleEndian\">\n<Collection>\n",
+    );
+    let directory = path.parent().unwrap_or(Path::new(""));
+    for (level, file) in series {
+        let name = file.strip_prefix(directory).unwrap_or(file).display().to_string();
+        // writing to a text does not fail
+        let _ = writeln!(
+            text,
+            "<DataSet timestep=\"{level}\" group=\"\" part=\"0\" file=\"{}\"/>",
+            escape(&name)
+        );
+    }
+    text += "</Collection>\n</VTKFile>\n";
+    std::fs::write(path, text).map_err(|e| write_error(path, e))
+}
+
+/// A text as the value of an attribute.
+fn escape(text: &str) -> String {
+    let text = text.replace('&', "&amp;").replace('<', "&lt;");
+    text.replace('>', "&gt;").replace('"', "&quot;")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::escape;
+
+    #[test]
+    fn names_of_files_are_valid_in_attributes() {
+        assert_eq!(escape("a<b>\"c\"&d"), "a&lt;b&gt;&quot;c&quot;&amp;d");
+    }
+}

@@ -1,0 +1,114 @@
+//! Logarithmic axes and their ticks.
+
+/// A logarithmic axis: exponents of ten at its ends.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct LogAxis {
+    pub low: f64,
+    pub high: f64,
+}
+
+/// A tick: a digit times a power of ten.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Tick {
+    pub digit: u32,
+    pub exponent: i32,
+    /// Whether its value is written.
+    pub labelled: bool,
+}
+
+impl Tick {
+    /// Its place on a logarithmic axis.
+    pub fn log(self) -> f64 {
+        f64::from(self.digit).log10() + f64::from(self.exponent)
+    }
+
+    /// Its label, as a base and an exponent that stands higher.
+    pub fn label(self) -> (String, String) {
+        match (self.digit, self.exponent) {
+            (d, 0) => (d.to_string(), String::new()),
+            (1, 1) => ("10".to_owned(), String::new()),
+            (d, e) => {
+                let factor = if d == 1 { String::new() } else { format!("{d}·") };
+                (format!("{factor}10"), e.to_string().replace('-', "\u{2212}"))
+            }
+        }
+    }
+}
+
+impl LogAxis {
+    /// An axis that shows positive values with some room around them, over a decade at least.
+    pub fn over(values: &[f64]) -> Self {
+        let logs = values.iter().map(|v| v.log10());
+        let (low, high) =
+            logs.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| (l.min(v), h.max(v)));
+        if low > high {
+            return LogAxis { low: -1.0, high: 0.0 };
+        }
+        let room = (0.07 * (high - low)).max((1.0 - (high - low)) / 2.0);
+        LogAxis { low: low - room, high: high + room }
+    }
+
+    /// Where a value stands: 0 at the low end, 1 at the high end.
+    pub fn position(&self, log: f64) -> f64 {
+        (log - self.low) / (self.high - self.low)
+    }
+
+    /// Ticks within the axis: powers of ten, labelled as far as `most` labels go; between them the
+    /// digits, of which 2 and 5 are labelled where there are fewer than two powers.
+    pub fn ticks(&self, most: usize) -> Vec<Tick> {
+        let (first, last) = (self.low.ceil() as i32, self.high.floor() as i32);
+        let powers = usize::try_from(last - first + 1).unwrap_or(0);
+        let step = powers.div_ceil(most.max(1)).max(1) as i32;
+        let mut ticks = Vec::new();
+        for exponent in first - 1..=last {
+            for digit in 1..=9 {
+                let labelled = match digit {
+                    1 => exponent.rem_euclid(step) == 0,
+                    2 | 5 => powers < 2,
+                    _ => false,
+                };
+                let tick = Tick { digit, exponent, labelled };
+                let inside = (self.low..=self.high).contains(&tick.log());
+                // Digits between powers would be a grey bar where powers stand close.
+                if inside && (digit == 1 || powers <= 6) {
+                    ticks.push(tick);
+                }
+            }
+        }
+        ticks
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{LogAxis, Tick};
+
+    fn labels(axis: LogAxis, most: usize) -> Vec<String> {
+        let labelled = axis.ticks(most).into_iter().filter(|t| t.labelled);
+        labelled.map(Tick::label).map(|(base, exponent)| base + &exponent).collect()
+    }
+
+    #[test]
+    fn powers_of_ten_are_labelled_and_thinned_out() {
+        assert_eq!(
+            labels(LogAxis { low: -3.2, high: 1.1 }, 8),
+            ["10−3", "10−2", "10−1", "1", "10"]
+        );
+        assert_eq!(
+            labels(LogAxis { low: -16.0, high: 0.0 }, 5),
+            ["10−16", "10−12", "10−8", "10−4", "1"]
+        );
+    }
+
+    #[test]
+    fn a_short_axis_labels_digits_too() {
+        assert_eq!(labels(LogAxis { low: -1.4, high: -0.5 }, 8), ["5·10−2", "10−1", "2·10−1"]);
+    }
+
+    #[test]
+    fn a_single_value_gets_a_decade_around_it() {
+        let axis = LogAxis::over(&[0.1]);
+        assert!((axis.position(-1.0) - 0.5).abs() < 1e-12 && axis.high - axis.low >= 1.0);
+        assert_eq!(LogAxis::over(&[]), LogAxis { low: -1.0, high: 0.0 });
+    }
+}

@@ -1,0 +1,65 @@
+//! Errors against what they cost: one column of panels, as wide as a column of text.
+
+use super::Figure;
+use super::series::{Curve, Key, Panel, Point, Quantity};
+use crate::study::row::Row;
+
+/// What an error costs.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Cost {
+    Seconds,
+    Unknowns,
+    Memory,
+}
+
+impl Cost {
+    /// Its name in names of files.
+    pub fn name(self) -> &'static str {
+        match self {
+            Cost::Seconds => "time",
+            Cost::Unknowns => "unknowns",
+            Cost::Memory => "memory",
+        }
+    }
+
+    fn quantity(self) -> Quantity {
+        match self {
+            Cost::Seconds => Quantity::Seconds,
+            Cost::Unknowns => Quantity::Unknowns,
+            Cost::Memory => Quantity::Memory,
+        }
+    }
+}
+
+/// A curve with its entry in the legend; rows from coarse to fine.
+pub(crate) struct NamedCurve<'a> {
+    pub label: String,
+    pub rows: Vec<&'a Row>,
+}
+
+/// The panels of a scene, one for each norm in which there are errors, below each other.
+pub(crate) fn cost_figure(scene: &str, named: &[NamedCurve<'_>], cost: Cost) -> Figure {
+    let x = cost.quantity();
+    let panel = |y: Quantity| {
+        let curves = named.iter().enumerate().map(|(key, curve)| Curve {
+            key,
+            points: curve.rows.iter().filter_map(|row| Point::of(row, x, y)).collect(),
+        });
+        let curves = curves.filter(|c| !c.points.is_empty()).collect();
+        let rows = || named.iter().flat_map(|c| &c.rows).copied();
+        // an order in the mesh size is that order over the dimension in the number of unknowns
+        let dimension = rows().next().map(|r| r.dimension as u32);
+        let falls_over = dimension.filter(|_| cost == Cost::Unknowns);
+        let slopes = if falls_over.is_some() { y.slopes(rows()) } else { Vec::new() };
+        Panel { title: scene.to_owned(), x, y, curves, slopes, falls_over }
+    };
+    let mut panels: Vec<Panel> = [Quantity::L2, Quantity::H1, Quantity::Energy].map(panel).into();
+    // one panel says that there are no errors; it need not be said three times
+    let any = panels.iter().any(Panel::has_errors);
+    let mut seen = 0;
+    panels.retain(|p| {
+        seen += 1;
+        p.has_errors() || (!any && seen == 1)
+    });
+    Figure { panels, keys: named.iter().map(|c| Key::labelled(&c.label)).collect(), columns: 1 }
+}

@@ -1,0 +1,100 @@
+//! Where panels and legend stand.
+
+use super::pen::{Align, Drawn, Pen, Place, text_width};
+use super::series::Key;
+use super::style::{INK, draw_failed, draw_mark, segment};
+use plotters::prelude::DrawingBackend;
+
+/// Width and height of a panel with its labels.
+pub(crate) const PANEL: (f64, f64) = (380.0, 300.0);
+
+const MARGIN: f64 = 10.0;
+const LINE: f64 = 22.0;
+const SYMBOL: f64 = 34.0;
+const GAP: f64 = 22.0;
+const TEXT: f64 = 15.0;
+
+/// An entry of the legend.
+#[derive(Clone, Debug, PartialEq)]
+enum Entry {
+    Curve(usize, String),
+    Failed,
+}
+
+impl Entry {
+    fn label(&self) -> &str {
+        match self {
+            Entry::Curve(_, label) => label,
+            Entry::Failed => "did not converge",
+        }
+    }
+    fn width(&self) -> f64 {
+        SYMBOL + 6.0 + text_width(self.label(), TEXT)
+    }
+}
+
+/// Places of panels and legend.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Layout {
+    /// Width and height of it all.
+    pub size: (f64, f64),
+    /// Upper left corners of the panels.
+    pub panels: Vec<Place>,
+    legend: Vec<(Place, Entry)>,
+}
+
+impl Layout {
+    /// Panels in a grid, the legend below them in as many lines as it takes.
+    pub fn new(panels: usize, columns: usize, keys: &[Key], failures: bool) -> Self {
+        let rows = panels.max(1).div_ceil(columns);
+        let width = 2.0 * MARGIN + columns as f64 * PANEL.0;
+        let places = (0..panels).map(|i| {
+            (MARGIN + (i % columns) as f64 * PANEL.0, MARGIN + (i / columns) as f64 * PANEL.1)
+        });
+
+        let mut entries: Vec<Entry> =
+            keys.iter().enumerate().map(|(k, key)| Entry::Curve(k, key.label.clone())).collect();
+        if failures {
+            entries.push(Entry::Failed);
+        }
+        let mut lines: Vec<Vec<Entry>> = vec![Vec::new()];
+        let room = width - 4.0 * MARGIN;
+        let line_width = |line: &[Entry]| line.iter().map(|e| e.width() + GAP).sum::<f64>() - GAP;
+        for entry in entries {
+            let last = lines.len() - 1;
+            if !lines[last].is_empty() && line_width(&lines[last]) + GAP + entry.width() > room {
+                lines.push(vec![entry]);
+            } else {
+                lines[last].push(entry);
+            }
+        }
+        let mut legend = Vec::new();
+        let mut y = MARGIN + rows as f64 * PANEL.1 + LINE / 2.0;
+        for line in lines {
+            let mut x = (width - line_width(&line)) / 2.0;
+            for entry in line {
+                let step = entry.width() + GAP;
+                legend.push(((x, y), entry));
+                x += step;
+            }
+            y += LINE;
+        }
+        Layout { size: (width, y - LINE / 2.0 + MARGIN), panels: places.collect(), legend }
+    }
+
+    /// Draws the legend.
+    pub fn draw_legend<DB: DrawingBackend>(&self, pen: &Pen<DB>) -> Drawn {
+        for ((x, y), entry) in &self.legend {
+            let middle = (x + SYMBOL / 2.0, *y);
+            match entry {
+                Entry::Curve(key, _) => {
+                    segment(pen, *key, (*x, *y), (x + SYMBOL, *y))?;
+                    draw_mark(pen, *key, middle, 1.0)?;
+                }
+                Entry::Failed => draw_failed(pen, middle)?,
+            }
+            pen.text(entry.label(), (x + SYMBOL + 6.0, *y), TEXT, INK, Align::Left)?;
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,216 @@
+//! One panel: frame, ticks, curves, marks.
+
+use super::axis::{LogAxis, Tick};
+use super::layout::PANEL;
+use super::pen::{Align, Drawn, Pen, Place, text_width};
+use super::series::{Panel, Point};
+use super::slopes::Slopes;
+use super::style::{GRID, INK, draw_failed, draw_mark, segment};
+use plotters::prelude::DrawingBackend;
+
+/// Room around the data for title, labels and ticks.
+const LEFT: f64 = 70.0;
+const RIGHT: f64 = 16.0;
+const TOP: f64 = 30.0;
+const BOTTOM: f64 = 48.0;
+/// Width and height of the area of the data.
+const SIZE: (f64, f64) = (PANEL.0 - LEFT - RIGHT, PANEL.1 - TOP - BOTTOM);
+
+/// Width of a failure's cross, and the distance of its middle from an edge it stands at.
+const CROSS: f64 = 17.0;
+const EDGE: f64 = 10.0;
+
+const TITLE: f64 = 16.0;
+const LABEL: f64 = 15.0;
+const TICK: f64 = 14.0;
+
+/// A panel with its axes.
+struct Frame<'a> {
+    panel: &'a Panel,
+    x: LogAxis,
+    y: LogAxis,
+    slopes: Option<Slopes>,
+}
+
+impl<'a> Frame<'a> {
+    /// Axes around the data, with room for the reference slopes.
+    fn new(panel: &'a Panel) -> Self {
+        let x = LogAxis::over(&panel.points().map(|p| p.x).collect::<Vec<_>>());
+        let y = LogAxis::over(&panel.errors());
+        let mut frame = Frame { panel, x, y, slopes: None };
+        if panel.has_errors() && !panel.slopes.is_empty() {
+            for _ in 0..8 {
+                let axes = (&frame.x, &frame.y);
+                let slopes = (&panel.slopes[..], panel.falls_over);
+                frame.slopes = Slopes::place(slopes, axes, SIZE, &frame.occupied());
+                if frame.slopes.is_some() {
+                    return frame;
+                }
+                frame.y.low -= 0.08 * (frame.y.high - frame.y.low);
+            }
+            // Nowhere to put them: better none than on top of the data.
+            frame.y = y;
+        }
+        frame
+    }
+
+    /// A point relative to the upper left corner of the area. One with an error beyond the axis
+    /// stands at the edge it is beyond, one without an error at the upper edge, where failures are
+    /// looked for.
+    fn place(&self, point: &Point) -> Place {
+        let x = self.x.position(point.x.log10()) * SIZE.0;
+        let y = match point.y.map(|y| (1.0 - self.y.position(y.log10())) * SIZE.1) {
+            Some(y) if y > SIZE.1 => SIZE.1 - EDGE,
+            Some(y) if y >= 0.0 => y,
+            _ => EDGE,
+        };
+        (x, y)
+    }
+
+    /// Places of all points, curve by curve. Failures without an error are moved down until they do
+    /// not hide another failure.
+    fn places(&self) -> Vec<Vec<Place>> {
+        let failed = |p: &Point| !p.converged && p.y.is_some();
+        let mut taken: Vec<Place> =
+            self.panel.points().filter(failed).map(|p| self.place(&p)).collect();
+        let mut place = |point: &Point| {
+            let (x, mut y) = self.place(point);
+            if point.y.is_none() {
+                let hides = |t: &Place, y: f64| (t.0 - x).abs() < CROSS && (t.1 - y).abs() < CROSS;
+                while y < SIZE.1 - EDGE && taken.iter().any(|t| hides(t, y)) {
+                    y += 1.0;
+                }
+                taken.push((x, y));
+            }
+            (x, y)
+        };
+        self.panel.curves.iter().map(|c| c.points.iter().map(&mut place).collect()).collect()
+    }
+
+    /// Pixels that marks and lines occupy.
+    fn occupied(&self) -> Vec<Place> {
+        let mut occupied = Vec::new();
+        for places in self.places() {
+            occupied.extend(&places);
+            for pair in places.windows(2) {
+                occupied.extend((1..16).map(|i| {
+                    let t = f64::from(i) / 16.0;
+                    (
+                        pair[0].0 + t * (pair[1].0 - pair[0].0),
+                        pair[0].1 + t * (pair[1].1 - pair[0].1),
+                    )
+                }));
+            }
+        }
+        occupied
+    }
+}
+
+/// Draws a panel with its upper left corner at a place.
+pub(crate) fn draw_panel<DB: DrawingBackend>(pen: &Pen<DB>, panel: &Panel, at: Place) -> Drawn {
+    let frame = Frame::new(panel);
+    let origin = (at.0 + LEFT, at.1 + TOP);
+    let middle = (origin.0 + SIZE.0 / 2.0, origin.1 + SIZE.1 / 2.0);
+    pen.text(&panel.title, (middle.0, at.1 + TOP / 2.0 + 1.0), TITLE, INK, Align::Centre)?;
+    pen.text(panel.x.label(), (middle.0, at.1 + PANEL.1 - 14.0), LABEL, INK, Align::Centre)?;
+    pen.text(panel.y.label(), (at.0 + 12.0, middle.1), LABEL, INK, Align::Upwards)?;
+    draw_ticks(pen, &frame, origin)?;
+    if let Some(slopes) = &frame.slopes {
+        slopes.draw(pen, origin)?;
+    }
+    draw_curves(pen, &frame, origin)?;
+    if !panel.has_errors() {
+        pen.text("no exact solution: no errors", middle, LABEL, INK, Align::Centre)?;
+    }
+    let (right, bottom) = (origin.0 + SIZE.0, origin.1 + SIZE.1);
+    pen.outline(&[origin, (right, origin.1), (right, bottom), (origin.0, bottom)], 1.0, INK)
+}
+
+/// Lines behind the data, ticks and their labels.
+fn draw_ticks<DB: DrawingBackend>(pen: &Pen<DB>, frame: &Frame, (left, top): Place) -> Drawn {
+    let (right, bottom) = (left + SIZE.0, top + SIZE.1);
+    let length = |tick: Tick| if tick.digit == 1 { 5.0 } else { 2.5 };
+    if !frame.panel.curves.is_empty() {
+        for tick in frame.x.ticks(6) {
+            let x = left + SIZE.0 * frame.x.position(tick.log());
+            if tick.digit == 1 {
+                pen.line((x, top), (x, bottom), 0.8, GRID)?;
+            }
+            pen.line((x, bottom), (x, bottom - length(tick)), 0.8, INK)?;
+            if tick.labelled {
+                let (base, exponent) = tick.label();
+                let half = (text_width(&base, TICK) + text_width(&exponent, 0.75 * TICK)) / 2.0;
+                let at = (x - half + text_width(&base, TICK), bottom + 12.0);
+                draw_label(pen, &base, &exponent, at)?;
+            }
+        }
+    }
+    if frame.panel.has_errors() {
+        for tick in frame.y.ticks(8) {
+            let y = bottom - SIZE.1 * frame.y.position(tick.log());
+            if tick.digit == 1 {
+                pen.line((left, y), (right, y), 0.8, GRID)?;
+            }
+            pen.line((left, y), (left + length(tick), y), 0.8, INK)?;
+            if tick.labelled {
+                let (base, exponent) = tick.label();
+                draw_label(
+                    pen,
+                    &base,
+                    &exponent,
+                    (left - 6.0 - text_width(&exponent, 0.75 * TICK), y),
+                )?;
+            }
+        }
+    }
+    Ok(())
+}
+
+/// A power, its base ending and its exponent beginning at a place.
+fn draw_label<DB: DrawingBackend>(
+    pen: &Pen<DB>,
+    base: &str,
+    exponent: &str,
+    (x, y): Place,
+) -> Drawn {
+    pen.text(base, (x, y), TICK, INK, Align::Right)?;
+    if exponent.is_empty() {
+        return Ok(());
+    }
+    pen.text(exponent, (x + 0.5, y - 5.0), 0.75 * TICK, INK, Align::Left)
+}
+
+/// Lines first, then marks, then failures: what matters most is on top. A line ends where a run
+/// did not converge.
+fn draw_curves<DB: DrawingBackend>(pen: &Pen<DB>, frame: &Frame, origin: Place) -> Drawn {
+    let places: Vec<Vec<Place>> = frame
+        .places()
+        .into_iter()
+        .map(|c| c.into_iter().map(|(x, y)| (origin.0 + x, origin.1 + y)).collect())
+        .collect();
+    let curves = || frame.panel.curves.iter().zip(&places);
+    for (curve, places) in curves() {
+        for (points, ends) in curve.points.windows(2).zip(places.windows(2)) {
+            if points[0].converged && points[1].converged {
+                segment(pen, curve.key, ends[0], ends[1])?;
+            }
+        }
+    }
+    for converged in [true, false] {
+        for (curve, places) in curves() {
+            for (point, &at) in curve.points.iter().zip(places) {
+                if point.converged != converged {
+                    continue;
+                }
+                if converged {
+                    draw_mark(pen, curve.key, at, 1.0)?;
+                } else {
+                    // The cross says that it failed, the small mark on it which scheme did.
+                    draw_failed(pen, at)?;
+                    draw_mark(pen, curve.key, at, 0.7)?;
+                }
+            }
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,123 @@
+//! Lines, areas and text on any backend, in units that do not depend on its resolution.
+
+use plotters::coord::Shift;
+use plotters::prelude::*;
+use plotters::style::text_anchor::{HPos, Pos, VPos};
+
+/// Why a drawing failed, as text: backends differ in their errors.
+pub(crate) type Drawn = Result<(), String>;
+
+/// A place on the drawing, to the right and down.
+pub(crate) type Place = (f64, f64);
+
+/// The typeface. PNG files are drawn with the one of this name that [`crate::plot::render`] embeds; an
+/// SVG file names it, and viewers that lack it take the next.
+pub(crate) const FAMILY: &str = "Ubuntu, DejaVu Sans, Arial, sans-serif";
+
+/// A typeface's width of a text.
+pub(crate) fn text_width(text: &str, size: f64) -> f64 {
+    // Measured large, since the answer is in whole pixels.
+    let measured = (FAMILY, 10.0 * size).into_font().box_size(text);
+    measured.map_or(0.6 * size * text.len() as f64, |(w, _)| f64::from(w) / 10.0)
+}
+
+/// How a text stands at its place.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Align {
+    /// Starts there.
+    Left,
+    /// Centred.
+    Centre,
+    /// Ends there.
+    Right,
+    /// Centred, and read upwards.
+    Upwards,
+}
+
+/// Draws on a backend with `scale` pixels to the unit.
+pub(crate) struct Pen<'a, DB: DrawingBackend> {
+    pub area: &'a DrawingArea<DB, Shift>,
+    pub scale: f64,
+    /// How much too high the backend puts text that is to be centred, in parts of its size.
+    pub lift: f64,
+}
+
+impl<DB: DrawingBackend> Pen<'_, DB> {
+    fn pixel(&self, (x, y): Place) -> (i32, i32) {
+        ((x * self.scale).round() as i32, (y * self.scale).round() as i32)
+    }
+
+    /// One straight line. Lines of several parts are drawn part by part: backends disagree on the
+    /// corners of wide ones.
+    pub fn line(&self, from: Place, to: Place, width: f64, colour: RGBColor) -> Drawn {
+        let (from, to) = (self.pixel(from), self.pixel(to));
+        if from == to {
+            return Ok(());
+        }
+        let width = (width * self.scale).round().max(1.0) as u32;
+        let line = PathElement::new(vec![from, to], colour.stroke_width(width));
+        self.area.draw(&line).map_err(|e| e.to_string())
+    }
+
+    /// A line of dashes and gaps of these lengths.
+    pub fn dashes(
+        &self,
+        from: Place,
+        to: Place,
+        width: f64,
+        colour: RGBColor,
+        (dash, gap): (f64, f64),
+    ) -> Drawn {
+        let (dx, dy) = (to.0 - from.0, to.1 - from.1);
+        let length = dx.hypot(dy);
+        let at = |s: f64| (from.0 + dx * s / length, from.1 + dy * s / length);
+        let mut start = 0.0;
+        while start < length {
+            self.line(at(start), at((start + dash).min(length)), width, colour)?;
+            start += dash + gap;
+        }
+        Ok(())
+    }
+
+    /// A closed outline.
+    pub fn outline(&self, corners: &[Place], width: f64, colour: RGBColor) -> Drawn {
+        for (i, &from) in corners.iter().enumerate() {
+            let to = corners[(i + 1) % corners.len()];
+            // Longer by half a width at both ends, so that corners close.
+            let (dx, dy) = (to.0 - from.0, to.1 - from.1);
+            let s = 0.4 * width / dx.hypot(dy).max(1e-9);
+            self.line(
+                (from.0 - s * dx, from.1 - s * dy),
+                (to.0 + s * dx, to.1 + s * dy),
+                width,
+                colour,
+            )?;
+        }
+        Ok(())
+    }
+
+    /// A filled area.
+    pub fn fill(&self, corners: &[Place], colour: RGBColor) -> Drawn {
+        let corners: Vec<_> = corners.iter().map(|&c| self.pixel(c)).collect();
+        self.area.draw(&Polygon::new(corners, colour)).map_err(|e| e.to_string())
+    }
+
+    /// Text, its middle at the height of its place.
+    pub fn text(&self, text: &str, at: Place, size: f64, colour: RGBColor, align: Align) -> Drawn {
+        let horizontal = match align {
+            Align::Left => HPos::Left,
+            Align::Centre | Align::Upwards => HPos::Center,
+            Align::Right => HPos::Right,
+        };
+        let mut font = (FAMILY, size * self.scale).into_font();
+        let mut at = at;
+        if align == Align::Upwards {
+            font = font.transform(FontTransform::Rotate270);
+            at.0 += self.lift * size;
+        } else {
+            at.1 += self.lift * size;
+        }
+        let style = font.color(&colour).pos(Pos::new(horizontal, VPos::Center));
+        self.area.draw_text(text, &style, self.pixel(at)).map_err(|e| e.to_string())
+    }
+}

@@ -1,0 +1,171 @@
+//! Frame, ticks and labels of linear axes, and the lines of a legend.
+
+use plotters::prelude::{DrawingBackend, RGBColor};
+
+use super::colour::labels;
+use super::section::Spot;
+use crate::plot::{Align, Drawn, INK, PAPER, Pen, Place, colour, text_width};
+
+/// Sizes of text.
+pub(crate) const TITLE: f64 = 17.0;
+pub(crate) const LABEL: f64 = 16.5;
+pub(crate) const TICK: f64 = 15.5;
+
+/// Room for ticks and labels beside and below the data.
+pub(crate) const LEFT: f64 = 58.0;
+pub(crate) const RIGHT: f64 = 14.0;
+pub(crate) const TOP: f64 = 26.0;
+pub(crate) const BOTTOM: f64 = 44.0;
+/// Height of a line of the legend.
+pub(crate) const LINE: f64 = 21.0;
+
+/// The contact set found.
+pub(crate) const CONTACT: RGBColor = RGBColor(150, 190, 222);
+/// What is exact.
+pub(crate) const EXACT: RGBColor = RGBColor(213, 94, 0);
+/// What has no number to show.
+pub(crate) const FAINT: RGBColor = RGBColor(205, 205, 205);
+
+/// How a line is drawn.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Stroke {
+    /// An edge of the mesh.
+    Mesh,
+    /// In a colour and width.
+    Coloured(RGBColor, f64),
+    /// Found by the scheme.
+    Found,
+    /// A part of the boundary in contact.
+    Touching,
+    /// Exact.
+    Exact,
+    /// A function that is given.
+    Given,
+    /// The discrete solution in a graph.
+    Solution,
+}
+
+impl Stroke {
+    /// Draws a segment.
+    pub fn draw<DB: DrawingBackend>(self, pen: &Pen<DB>, from: Place, to: Place) -> Drawn {
+        match self {
+            Stroke::Mesh => pen.line(from, to, 0.5, FAINT),
+            Stroke::Coloured(colour, width) => pen.line(from, to, width, colour),
+            Stroke::Found => pen.line(from, to, 2.0, INK),
+            Stroke::Touching => pen.line(from, to, 7.0, CONTACT),
+            Stroke::Exact => pen.line(from, to, 1.8, EXACT),
+            Stroke::Given => pen.line(from, to, 4.0, FAINT),
+            Stroke::Solution => pen.line(from, to, 1.6, colour(0)),
+        }
+    }
+
+    /// What keeps it apart from lines below it.
+    pub fn draw_casing<DB: DrawingBackend>(self, pen: &Pen<DB>, from: Place, to: Place) -> Drawn {
+        match self {
+            Stroke::Exact => pen.line(from, to, 4.0, PAPER),
+            _ => Ok(()),
+        }
+    }
+}
+
+/// What stands before an entry of the legend.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Symbol {
+    Area(RGBColor),
+    Line(Stroke),
+    Mark,
+}
+
+/// The mark of a point of the exact free boundary: a diamond.
+pub(crate) fn draw_mark<DB: DrawingBackend>(pen: &Pen<DB>, (x, y): Place) -> Drawn {
+    let diamond = |r: f64| [(x + r, y), (x, y + r), (x - r, y), (x, y - r)];
+    pen.fill(&diamond(7.0), PAPER)?;
+    pen.fill(&diamond(5.0), EXACT)
+}
+
+/// The lines of a legend, the first one's upper left corner at a place.
+pub(crate) fn draw_legend<DB: DrawingBackend>(
+    pen: &Pen<DB>,
+    entries: &[(Symbol, String)],
+    (x, y): Place,
+) -> Drawn {
+    const WIDTH: f64 = 26.0;
+    for (k, (symbol, label)) in entries.iter().enumerate() {
+        let middle = y + (k as f64 + 0.5) * LINE;
+        match *symbol {
+            Symbol::Area(colour) => {
+                let (top, bottom) = (middle - 6.0, middle + 6.0);
+                let corners = [(x, top), (x + WIDTH, top), (x + WIDTH, bottom), (x, bottom)];
+                pen.fill(&corners, colour)?;
+            }
+            Symbol::Line(stroke) => stroke.draw(pen, (x, middle), (x + WIDTH, middle))?,
+            Symbol::Mark => draw_mark(pen, (x + WIDTH / 2.0, middle))?,
+        }
+        pen.text(label, (x + WIDTH + 7.0, middle), LABEL, INK, Align::Left)?;
+    }
+    Ok(())
+}
+
+/// A quantity, divided by a power of ten if there is one, its middle at a place.
+pub(crate) fn draw_quantity<DB: DrawingBackend>(
+    pen: &Pen<DB>,
+    name: &str,
+    power: i32,
+    (x, y): Place,
+) -> Drawn {
+    if power == 0 {
+        return pen.text(name, (x, y), LABEL, INK, Align::Centre);
+    }
+    let base = format!("{name} / 10");
+    let exponent = power.to_string().replace('-', "\u{2212}");
+    let half = 0.5 * (text_width(&base, LABEL) + text_width(&exponent, 0.75 * LABEL));
+    let end = x - half + text_width(&base, LABEL);
+    pen.text(&base, (end, y), LABEL, INK, Align::Right)?;
+    pen.text(&exponent, (end + 0.5, y - 5.0), 0.75 * LABEL, INK, Align::Left)
+}
+
+/// The area of the data: where it stands, and what its ends are.
+pub(crate) struct Frame {
+    /// Upper left corner.
+    pub origin: Place,
+    /// Width and height.
+    pub size: (f64, f64),
+    pub low: Spot,
+    pub high: Spot,
+}
+
+impl Frame {
+    /// Where a point of the data stands.
+    pub fn place(&self, at: Spot) -> Place {
+        let share = |k: usize| (at[k] - self.low[k]) / (self.high[k] - self.low[k]);
+        let (width, height) = self.size;
+        (self.origin.0 + share(0) * width, self.origin.1 + (1.0 - share(1)) * height)
+    }
+
+    /// Draws outline, ticks, their labels and the names of the axes.
+    pub fn draw<DB: DrawingBackend>(&self, pen: &Pen<DB>, names: [&str; 2]) -> Drawn {
+        let (left, top) = self.origin;
+        let (right, bottom) = (left + self.size.0, top + self.size.1);
+        let (ticks, power) = labels(self.low[0], self.high[0], 5);
+        for (value, text) in ticks {
+            let (x, _) = self.place([value, self.low[1]]);
+            pen.line((x, bottom), (x, bottom - 4.0), 0.8, INK)?;
+            pen.text(&text, (x, bottom + 11.0), TICK, INK, Align::Centre)?;
+        }
+        let middle = 0.5 * (left + right);
+        draw_quantity(pen, names[0], power, (middle, bottom + 30.0))?;
+        let most = if self.size.1 < 120.0 { 3 } else { 5 };
+        let (ticks, power) = labels(self.low[1], self.high[1], most);
+        for (value, text) in ticks {
+            let (_, y) = self.place([self.low[0], value]);
+            pen.line((left, y), (left + 4.0, y), 0.8, INK)?;
+            pen.text(&text, (left - 5.0, y), TICK, INK, Align::Right)?;
+        }
+        let name = match power {
+            0 => names[1].to_owned(),
+            p => format!("{} / 1e{}", names[1], p.to_string().replace('-', "\u{2212}")),
+        };
+        pen.text(&name, (left - LEFT + 10.0, 0.5 * (top + bottom)), LABEL, INK, Align::Upwards)?;
+        pen.outline(&[(left, top), (right, top), (right, bottom), (left, bottom)], 0.8, INK)
+    }
+}

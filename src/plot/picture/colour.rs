@@ -1,0 +1,179 @@
+//! Colours of numbers, and the numbers that are written beside them.
+
+use plotters::prelude::RGBColor;
+
+/// A colour for a number from 0 to 1: from dark blue over green to pale rose, its lightness growing
+/// evenly, so that the picture reads the same in grey.
+///
+/// This is the scheme of D. A. Green, Bull. Astr. Soc. India 39 (2011), 289-295: a helix around the
+/// diagonal of the cube of colours, here of one turn, without the darkest and the lightest part.
+pub(crate) fn colour(share: f64) -> RGBColor {
+    const START: f64 = 0.4;
+    const TURNS: f64 = -0.9;
+    const HUE: f64 = 1.1;
+    let lightness = 0.12 + 0.82 * share.clamp(0.0, 1.0);
+    let angle = std::f64::consts::TAU * (START / 3.0 + 1.0 + TURNS * lightness);
+    let amplitude = HUE * lightness * (1.0 - lightness) / 2.0;
+    let (sin, cos) = angle.sin_cos();
+    let channel = |a: f64, b: f64| {
+        let part = lightness + amplitude * (a * cos + b * sin);
+        (255.0 * part.clamp(0.0, 1.0)).round() as u8
+    };
+    RGBColor(channel(-0.14861, 1.78277), channel(-0.29227, -0.90649), channel(1.97294, 0.0))
+}
+
+/// A scale of colours: bands between levels.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Scale {
+    /// What it measures.
+    pub name: String,
+    /// The ends of the bands, ascending; in a logarithmic scale exponents of ten.
+    pub levels: Vec<f64>,
+    /// Whether the levels are exponents of ten.
+    pub logarithmic: bool,
+}
+
+/// Fewest bands of a scale, and decades that a logarithmic one shows at most.
+const BANDS: f64 = 10.0;
+const DECADES: f64 = 6.0;
+
+impl Scale {
+    /// A linear scale over these numbers; none if there are none.
+    pub fn linear(name: &str, values: impl Iterator<Item = f64>) -> Option<Self> {
+        let (low, high) = range(values)?;
+        let step = round_step((high - low) / BANDS);
+        let levels = if high - low <= 1e-12 * high.abs().max(low.abs()) {
+            let half = 0.5 * high.abs().max(f64::MIN_POSITIVE);
+            vec![low - half, high + half]
+        } else {
+            let first = (low / step + 1e-9).floor();
+            let last = (high / step - 1e-9).ceil();
+            (0..=(last - first) as i32).map(|k| (first + f64::from(k)) * step).collect()
+        };
+        Some(Scale { name: name.to_owned(), levels, logarithmic: false })
+    }
+
+    /// A logarithmic scale over the numbers above a floor; none if there are none.
+    pub fn logarithmic(name: &str, values: impl Iterator<Item = f64>, floor: f64) -> Option<Self> {
+        let (low, high) = range(values.filter(|v| *v > floor).map(f64::log10))?;
+        let (low, high) = (low.max(high - DECADES), high);
+        let per_decade = if high - low > 3.0 { 2.0 } else { 5.0 };
+        let first = (low * per_decade).floor();
+        let last = (high * per_decade).ceil().max(first + 1.0);
+        let levels =
+            (0..=(last - first) as i32).map(|k| (first + f64::from(k)) / per_decade).collect();
+        Some(Scale { name: name.to_owned(), levels, logarithmic: true })
+    }
+
+    /// Number of bands.
+    pub fn bands(&self) -> usize {
+        self.levels.len() - 1
+    }
+
+    /// The band of a number; what is beyond the ends belongs to the last band before them.
+    pub fn band(&self, value: f64) -> usize {
+        let value = if self.logarithmic { value.log10() } else { value };
+        self.levels[1..self.bands()].partition_point(|level| *level <= value)
+    }
+
+    /// The colour of a band.
+    pub fn colour(&self, band: usize) -> RGBColor {
+        colour((band as f64 + 0.5) / self.bands() as f64)
+    }
+
+    /// Where a level stands on the bar: from 0 to 1.
+    pub fn position(&self, level: f64) -> f64 {
+        let (low, high) = (self.levels[0], self.levels[self.bands()]);
+        (level - low) / (high - low)
+    }
+}
+
+/// The smallest and the largest number.
+fn range(values: impl Iterator<Item = f64>) -> Option<(f64, f64)> {
+    let finite = values.filter(|v| v.is_finite());
+    finite.fold(None, |known, v| match known {
+        None => Some((v, v)),
+        Some((low, high)) => Some((low.min(v), high.max(v))),
+    })
+}
+
+/// The largest of 1, 2 and 5 times a power of ten that is not above a length.
+pub(crate) fn round_step(length: f64) -> f64 {
+    if !(length > 0.0 && length.is_finite()) {
+        return 1.0;
+    }
+    let power = 10.0_f64.powi(length.log10().floor() as i32);
+    let digit = [5.0, 2.0].into_iter().find(|d| d * power <= length * (1.0 + 1e-9));
+    digit.unwrap_or(1.0) * power
+}
+
+/// Numbers to be written on a linear axis: their places, their texts, and the power of ten by
+/// which all are divided.
+pub(crate) fn labels(low: f64, high: f64, most: usize) -> (Vec<(f64, String)>, i32) {
+    let mut step = round_step((high - low) / most as f64);
+    while ((high / step).floor() - (low / step).ceil()) as usize + 1 > most {
+        step = round_step(2.5 * step);
+    }
+    let largest = low.abs().max(high.abs());
+    let magnitude = largest.log10().floor() as i32;
+    let power = if (-2..4).contains(&magnitude) { 0 } else { magnitude };
+    let unit = 10.0_f64.powi(power);
+    let decimals = (-(step / unit).log10().floor()).max(0.0) as usize;
+    let (first, last) = ((low / step - 1e-9).ceil() as i64, (high / step + 1e-9).floor() as i64);
+    let text = |k: i64| {
+        let value = k as f64 * step;
+        (value, format!("{:.decimals$}", value / unit + 0.0).replace('-', "\u{2212}"))
+    };
+    ((first..=last).map(text).collect(), power)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Scale, colour, labels};
+
+    #[test]
+    fn lightness_grows_evenly() {
+        // the weights of channels of which the helix keeps the sum
+        let grey = |k: u32| {
+            let c = colour(f64::from(k) / 50.0);
+            (0.30 * f64::from(c.0) + 0.59 * f64::from(c.1) + 0.11 * f64::from(c.2)) / 255.0
+        };
+        for k in 0..50 {
+            let step = grey(k + 1) - grey(k);
+            assert!((step - 0.82 / 50.0).abs() < 0.006, "{k}: {step}");
+        }
+    }
+
+    #[test]
+    fn bands_end_at_round_numbers_and_hold_all_values() {
+        let scale = Scale::linear("u", [0.013, 0.97].into_iter()).unwrap();
+        assert_eq!((scale.levels[0], scale.bands()), (0.0, 20));
+        assert!((scale.levels[20] - 1.0).abs() < 1e-12);
+        assert_eq!((scale.band(-1.0), scale.band(0.06), scale.band(2.0)), (0, 1, 19));
+        let flat = Scale::linear("u", [2.0, 2.0].into_iter()).unwrap();
+        assert_eq!(flat.levels, [1.0, 3.0]);
+        assert_eq!(Scale::linear("u", std::iter::empty()), None);
+    }
+
+    #[test]
+    fn a_logarithmic_scale_ends_at_its_floor_and_shows_six_decades_at_most() {
+        let values = [0.0, 1e-30, 1e-9, 2e-3, 0.1];
+        let scale = Scale::logarithmic("jump", values.into_iter(), 1e-20).unwrap();
+        assert_eq!(scale.levels.first(), Some(&-7.0));
+        assert_eq!(scale.levels.last(), Some(&-1.0));
+        assert_eq!(scale.band(1e-9), 0);
+        assert_eq!(Scale::logarithmic("jump", [1e-30].into_iter(), 1e-20), None);
+    }
+
+    #[test]
+    fn numbers_are_written_short_and_share_a_power() {
+        let texts = |low, high, most| {
+            let (labels, power) = labels(low, high, most);
+            (labels.into_iter().map(|l| l.1).collect::<Vec<_>>(), power)
+        };
+        assert_eq!(texts(0.0, 1.0, 6).0, ["0.0", "0.2", "0.4", "0.6", "0.8", "1.0"]);
+        assert_eq!(texts(-1.5, 1.5, 5).0, ["\u{2212}1", "0", "1"]);
+        let (small, power) = texts(0.0, 4.2e-5, 5);
+        assert_eq!((small.join(" ").as_str(), power), ("0 1 2 3 4", -5));
+    }
+}

@@ -1,0 +1,114 @@
+//! The line on which a function changes sign.
+
+use super::section::{Corner, Section, Spot};
+
+/// Sections are cut into parts no longer than this share of the picture.
+const FINEST: f64 = 1.0 / 120.0;
+/// Most often that a section is cut.
+const MOST: u32 = 6;
+/// Bisections of an edge on which the sign changes: the function may as well be a step.
+const BISECTIONS: usize = 24;
+
+/// Segments of the line on which the sign of a function changes within sections, in a picture of
+/// this size. `inside` tells the sign at a point of a cell.
+pub(crate) fn level_line(
+    sections: &[Section],
+    size: f64,
+    inside: &dyn Fn(usize, &[f64; 4]) -> bool,
+) -> Vec<[Spot; 2]> {
+    let mut segments = Vec::new();
+    for section in sections {
+        let longest = section
+            .corners
+            .iter()
+            .flat_map(|a| section.corners.iter().map(|b| distance(a.at, b.at)))
+            .fold(0.0, f64::max);
+        let cuts = (longest / (FINEST * size)).log2().ceil().clamp(0.0, f64::from(MOST)) as u32;
+        let c = &section.corners;
+        for k in 2..c.len() {
+            follow(section.cell, [c[0], c[k - 1], c[k]], cuts, inside, &mut segments);
+        }
+    }
+    segments
+}
+
+fn follow(
+    cell: usize,
+    corners: [Corner; 3],
+    cuts: u32,
+    inside: &dyn Fn(usize, &[f64; 4]) -> bool,
+    segments: &mut Vec<[Spot; 2]>,
+) {
+    let [a, b, c] = corners;
+    if cuts > 0 {
+        let (ab, bc, ca) = (between(a, b, 0.5), between(b, c, 0.5), between(c, a, 0.5));
+        for part in [[a, ab, ca], [ab, b, bc], [ca, bc, c], [ab, bc, ca]] {
+            follow(cell, part, cuts - 1, inside, segments);
+        }
+        return;
+    }
+    let signs = corners.map(|corner| inside(cell, &corner.barycentric));
+    let mut ends = Vec::new();
+    for k in 0..3 {
+        let next = (k + 1) % 3;
+        if signs[k] != signs[next] {
+            ends.push(change(cell, corners[k], corners[next], signs[k], inside));
+        }
+    }
+    if let [from, to] = ends[..] {
+        segments.push([from, to]);
+    }
+}
+
+/// Where the sign changes between two points.
+fn change(
+    cell: usize,
+    from: Corner,
+    to: Corner,
+    sign: bool,
+    inside: &dyn Fn(usize, &[f64; 4]) -> bool,
+) -> Spot {
+    let (mut low, mut high) = (0.0, 1.0);
+    for _ in 0..BISECTIONS {
+        let middle = 0.5 * (low + high);
+        if inside(cell, &between(from, to, middle).barycentric) == sign {
+            low = middle;
+        } else {
+            high = middle;
+        }
+    }
+    between(from, to, 0.5 * (low + high)).at
+}
+
+fn between(a: Corner, b: Corner, share: f64) -> Corner {
+    let mix = |x: f64, y: f64| (1.0 - share) * x + share * y;
+    Corner {
+        at: std::array::from_fn(|k| mix(a.at[k], b.at[k])),
+        barycentric: std::array::from_fn(|k| mix(a.barycentric[k], b.barycentric[k])),
+    }
+}
+
+pub(crate) fn distance(a: Spot, b: Spot) -> f64 {
+    (a[0] - b[0]).hypot(a[1] - b[1])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{distance, level_line};
+    use crate::plot::picture::section::{Corner, Section};
+
+    #[test]
+    fn a_circle_is_found_from_its_inside_alone() {
+        let corners = [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]];
+        let corner =
+            |at: [f64; 2]| Corner { at, barycentric: [1.0 - at[0] - at[1], at[0], at[1], 0.0] };
+        let section = Section { cell: 0, corners: corners.map(corner).to_vec() };
+        let inside = |_: usize, b: &[f64; 4]| b[1].hypot(b[2]) < 0.5;
+        let segments = level_line(&[section], 1.0, &inside);
+        let length: f64 = segments.iter().map(|s| distance(s[0], s[1])).sum();
+        assert!((length - std::f64::consts::PI / 4.0).abs() < 1e-4, "{length}");
+        for end in segments.as_flattened() {
+            assert!((end[0].hypot(end[1]) - 0.5).abs() < 1e-6, "{end:?}");
+        }
+    }
+}

@@ -1,0 +1,153 @@
+//! The panels of a picture in one dimension: functions over the line.
+
+use super::axes::{CONTACT, Stroke, Symbol};
+use super::graph::Graph;
+use crate::measure::Fields;
+use crate::mesh::Mesh;
+use crate::problem::{Field, Problem};
+use crate::real::{Point, Real, point_f64};
+
+/// Parts of a cell on which given functions are drawn as linear.
+const PARTS: usize = 6;
+
+/// All that the panels are made of.
+pub(crate) struct Line<'a, T: Real, const D: usize> {
+    problem: &'a Problem<D>,
+    mesh: &'a Mesh<T, D>,
+    fields: &'a Fields,
+}
+
+impl<'a, T: Real, const D: usize> Line<'a, T, D> {
+    pub fn new(problem: &'a Problem<D>, mesh: &'a Mesh<T, D>, fields: &'a Fields) -> Self {
+        Line { problem, mesh, fields }
+    }
+
+    /// The solution, and below it the multiplier if it is a density.
+    pub fn panels(&self) -> Vec<Graph> {
+        let mut panels = vec![self.solution()];
+        let is_density = self.problem.has_obstacle() && !self.fields.found.density.is_empty();
+        panels.extend(is_density.then(|| self.multiplier()));
+        panels
+    }
+
+    /// Length of all that is in contact.
+    pub fn contact_length(&self) -> f64 {
+        self.contact().iter().map(|c| c[1] - c[0]).sum()
+    }
+
+    /// The ends of a cell.
+    fn ends(&self, cell: usize) -> [f64; 2] {
+        let cell = self.mesh.cell(cell);
+        [0, 1].map(|k| point_f64(&self.mesh.vertices()[cell[k] as usize])[0])
+    }
+
+    /// Cells in contact, and points.
+    fn contact(&self) -> Vec<[f64; 2]> {
+        let cells = self.fields.found.cells.iter().map(|&cell| {
+            let [a, b] = self.ends(cell);
+            [a.min(b), a.max(b)]
+        });
+        let points = self.fields.found.facets.iter().map(|&(cell, local)| {
+            let x = self.ends(cell)[1 - local];
+            [x, x]
+        });
+        cells.chain(points).collect()
+    }
+
+    /// Segments of a function that is given.
+    fn given(&self, function: &Field<D>, stroke: Stroke) -> Vec<(Stroke, [[f64; 2]; 2])> {
+        let mut lines = Vec::new();
+        for cell in 0..self.mesh.n_cells() {
+            let [a, b] = self.ends(cell);
+            let at = |k: usize| {
+                let x = a + (b - a) * k as f64 / PARTS as f64;
+                [x, function(&Point::repeat(x))]
+            };
+            lines.extend((0..PARTS).map(|k| (stroke, [at(k), at(k + 1)])));
+        }
+        lines
+    }
+
+    fn mark_contact(&self, graph: &mut Graph) {
+        graph.contact = self.contact();
+        if !graph.contact.is_empty() {
+            graph.legend.push((Symbol::Area(CONTACT), "in contact".to_owned()));
+        }
+        let exact = self.problem.exact.as_ref().and_then(|e| e.contact.as_ref());
+        graph.marks = exact.iter().flat_map(|set| &set.free_boundary).map(|x| x[0]).collect();
+        if !graph.marks.is_empty() {
+            graph.legend.push((Symbol::Mark, "free boundary, exact".to_owned()));
+        }
+    }
+
+    fn solution(&self) -> Graph {
+        let mut graph = Graph {
+            title: "solution".to_owned(),
+            axes: ["x".to_owned(), "u".to_owned()],
+            legend: vec![(Symbol::Line(Stroke::Solution), "u".to_owned())],
+            ..Graph::default()
+        };
+        let obstacles = [&self.problem.lower, &self.problem.upper];
+        for obstacle in obstacles.into_iter().flatten() {
+            graph.lines.extend(self.given(obstacle, Stroke::Given));
+        }
+        if self.problem.has_obstacle() {
+            graph.legend.push((Symbol::Line(Stroke::Given), "obstacle".to_owned()));
+        }
+        for cell in 0..self.mesh.n_cells() {
+            let [a, b] = self.ends(cell);
+            let u = [0, 1].map(|k| self.fields.u[2 * cell + k]);
+            match self.fields.midpoints.get(cell) {
+                None => graph.lines.push((Stroke::Solution, [[a, u[0]], [b, u[1]]])),
+                Some(&middle) => {
+                    let at = |k: usize| {
+                        let t = k as f64 / PARTS as f64;
+                        let value = u[0] * (1.0 - t) * (1.0 - 2.0 * t)
+                            + u[1] * t * (2.0 * t - 1.0)
+                            + 4.0 * middle * t * (1.0 - t);
+                        [a + (b - a) * t, value]
+                    };
+                    graph.lines.extend((0..PARTS).map(|k| (Stroke::Solution, [at(k), at(k + 1)])));
+                }
+            }
+        }
+        self.mark_contact(&mut graph);
+        self.tell_reactions(&mut graph);
+        graph
+    }
+
+    /// A multiplier on the contact boundary is a force at a point: a number, not a curve.
+    fn tell_reactions(&self, graph: &mut Graph) {
+        for &(cell, local) in &self.fields.found.facets {
+            let vertex = self.mesh.cell(cell)[1 - local] as usize;
+            if let Some(Some(force)) = self.fields.found.density.get(vertex) {
+                let x = self.ends(cell)[1 - local];
+                graph.legend.push((Symbol::Area(CONTACT), format!("force {force:.4} at x = {x}")));
+            }
+        }
+    }
+
+    fn multiplier(&self) -> Graph {
+        let mut graph = Graph {
+            title: "multiplier".to_owned(),
+            axes: ["x".to_owned(), "density".to_owned()],
+            legend: vec![(Symbol::Line(Stroke::Solution), "density found".to_owned())],
+            ..Graph::default()
+        };
+        for cell in 0..self.mesh.n_cells() {
+            let x = self.ends(cell);
+            let vertices = self.mesh.cell(cell);
+            let density = [0, 1].map(|k| self.fields.found.density[vertices[k] as usize]);
+            if let [Some(a), Some(b)] = density {
+                graph.lines.push((Stroke::Solution, [[x[0], a], [x[1], b]]));
+            }
+        }
+        let exact = self.problem.exact.as_ref();
+        if let Some(multiplier) = exact.and_then(|e| e.multiplier.as_ref()) {
+            graph.lines.extend(self.given(multiplier, Stroke::Exact));
+            graph.legend.push((Symbol::Line(Stroke::Exact), "exact density".to_owned()));
+        }
+        self.mark_contact(&mut graph);
+        graph
+    }
+}

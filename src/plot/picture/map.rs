@@ -1,0 +1,131 @@
+//! A panel that shows the domain, or a section of it, with equal axes.
+
+use plotters::prelude::{DrawingBackend, RGBColor};
+
+use super::axes::{
+    BOTTOM, Frame, LEFT, LINE, RIGHT, Stroke, Symbol, TICK, TITLE, TOP, draw_legend, draw_mark,
+    draw_quantity,
+};
+use super::colour::{Scale, labels};
+use super::section::Spot;
+use crate::plot::{Align, Drawn, INK, Pen, Place};
+
+/// Largest height of the data over their width on paper.
+const TALLEST: f64 = 1.4;
+/// Height of the bar of colours, and of it with its labels.
+const BAR: f64 = 12.0;
+const BAR_ROOM: f64 = 62.0;
+
+/// A panel with equal axes.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Map {
+    pub title: String,
+    pub low: Spot,
+    pub high: Spot,
+    pub axes: [&'static str; 2],
+    /// Areas of one colour each, those of the same colour together.
+    pub fills: Vec<(RGBColor, Vec<Spot>)>,
+    /// Lines, drawn in this order.
+    pub lines: Vec<(Stroke, [Spot; 2])>,
+    /// Points of the exact free boundary.
+    pub marks: Vec<Spot>,
+    pub scale: Option<Scale>,
+    pub legend: Vec<(Symbol, String)>,
+    /// What is said instead of a scale.
+    pub note: Option<&'static str>,
+}
+
+impl Map {
+    /// Width and height of the data on paper where they may be this wide.
+    fn data_size(&self, width: f64) -> (f64, f64) {
+        let ratio = (self.high[1] - self.low[1]) / (self.high[0] - self.low[0]);
+        let height = (width * ratio).min(TALLEST * width);
+        (height / ratio, height)
+    }
+
+    /// Height of the panel.
+    pub fn height(&self, width: f64) -> f64 {
+        let below = match (&self.scale, &self.note) {
+            (None, None) => 0.0,
+            _ => BAR_ROOM,
+        };
+        let below = below.max(self.legend.len() as f64 * LINE + 8.0);
+        TOP + self.data_size(width - LEFT - RIGHT).1 + BOTTOM + below
+    }
+
+    pub fn draw<DB: DrawingBackend>(&self, pen: &Pen<DB>, at: Place, width: f64) -> Drawn {
+        let room = width - LEFT - RIGHT;
+        let size = self.data_size(room);
+        let left = at.0 + LEFT + 0.5 * (room - size.0);
+        let frame = Frame { origin: (left, at.1 + TOP), size, low: self.low, high: self.high };
+        let middle = left + 0.5 * size.0;
+        pen.text(&self.title, (middle, at.1 + TOP / 2.0), TITLE, INK, Align::Centre)?;
+        for (colour, corners) in &self.fills {
+            let corners: Vec<Place> = corners.iter().map(|&c| frame.place(c)).collect();
+            pen.fill(&corners, *colour)?;
+        }
+        // below the lines, some of which run along it
+        frame.draw(pen, self.axes)?;
+        let ends = |ends: &[Spot; 2]| (frame.place(ends[0]), frame.place(ends[1]));
+        for (stroke, segment) in &self.lines {
+            let (from, to) = ends(segment);
+            stroke.draw_casing(pen, from, to)?;
+        }
+        for (stroke, segment) in &self.lines {
+            let (from, to) = ends(segment);
+            stroke.draw(pen, from, to)?;
+        }
+        for &mark in &self.marks {
+            draw_mark(pen, frame.place(mark))?;
+        }
+        let below = at.1 + TOP + size.1 + BOTTOM;
+        if let Some(scale) = &self.scale {
+            draw_bar(pen, scale, (at.0 + LEFT, below + 6.0), room)?;
+        }
+        if let Some(note) = self.note {
+            pen.text(note, (at.0 + LEFT + 0.5 * room, below + 16.0), TICK, INK, Align::Centre)?;
+        }
+        draw_legend(pen, &self.legend, (at.0 + LEFT, below + 4.0))
+    }
+}
+
+/// The bar of colours with its numbers and what they measure.
+fn draw_bar<DB: DrawingBackend>(
+    pen: &Pen<DB>,
+    scale: &Scale,
+    (left, top): Place,
+    width: f64,
+) -> Drawn {
+    let bottom = top + BAR;
+    let at = |share: f64| left + share * width;
+    for band in 0..scale.bands() {
+        let ends = [band, band + 1].map(|k| at(scale.position(scale.levels[k])));
+        let [a, b] = ends;
+        pen.fill(&[(a, top), (b, top), (b, bottom), (a, bottom)], scale.colour(band))?;
+    }
+    let right = at(1.0);
+    pen.outline(&[(left, top), (right, top), (right, bottom), (left, bottom)], 0.8, INK)?;
+    let (low, high) = (scale.levels[0], scale.levels[scale.bands()]);
+    let most = if width < 300.0 { 4 } else { 8 };
+    let mut power = 0;
+    if scale.logarithmic {
+        let (first, last) = (low.ceil() as i32, high.floor() as i32);
+        let step = ((last - first + 1).max(1) as usize).div_ceil(most).max(1);
+        for exponent in (first..=last).step_by(step) {
+            let x = at(scale.position(f64::from(exponent)));
+            pen.line((x, bottom), (x, bottom + 3.0), 0.8, INK)?;
+            let text = exponent.to_string().replace('-', "\u{2212}");
+            pen.text("10", (x + 3.0, bottom + 13.0), TICK, INK, Align::Right)?;
+            pen.text(&text, (x + 3.5, bottom + 8.0), 0.75 * TICK, INK, Align::Left)?;
+        }
+    } else {
+        let (ticks, common) = labels(low, high, most);
+        power = common;
+        for (value, text) in ticks {
+            let x = at(scale.position(value));
+            pen.line((x, bottom), (x, bottom + 3.0), 0.8, INK)?;
+            pen.text(&text, (x, bottom + 12.0), TICK, INK, Align::Centre)?;
+        }
+    }
+    draw_quantity(pen, &scale.name, power, (left + 0.5 * width, bottom + 33.0))
+}

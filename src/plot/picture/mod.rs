@@ -1,0 +1,264 @@
+//! Pictures of a solution: in the plane four panels with the function, the contact set found against
+//! the exact free boundary, the jumps across facets and the multiplier; on the line curves; in space
+//! the panels of a slice.
+//!
+//! A discontinuous function is drawn cell by cell as it is. The bands of a colour are cut exactly
+//! along the levels of the function on each cell, of a quadratic one on the parts between vertices and
+//! midpoints, where it is drawn as linear.
+
+mod axes;
+mod bands;
+mod colour;
+mod edges;
+mod graph;
+mod level_line;
+mod line;
+mod map;
+mod plane;
+mod run;
+mod section;
+mod svg;
+mod trace;
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use plotters::prelude::DrawingBackend;
+
+use super::{Align, Drawing, Drawn, INK, Pen, Place, draw_png, draw_svg};
+use crate::error::Error;
+use crate::error::write_error;
+use crate::measure::Fields;
+use crate::mesh::{Mesh, edge_vertices};
+use crate::problem::Problem;
+use crate::real::Real;
+use graph::Graph;
+use line::Line;
+use map::Map;
+use plane::{Plane, default_slice};
+pub use run::solve_level;
+pub use section::Slice;
+
+/// Most lines and areas of an SVG file; with more it would be large and slow to show.
+const MOST_SHAPES: usize = 150_000;
+
+/// Widths of panels that stand alone in a row and of those that stand in two columns.
+const WIDE: f64 = 430.0;
+const NARROW: f64 = 276.0;
+/// A domain this much wider than high gets a row to itself.
+const ELONGATED: f64 = 3.0;
+const MARGIN: f64 = 8.0;
+const HEADING: f64 = 28.0;
+const GAP: f64 = 10.0;
+
+/// One panel.
+#[derive(Clone, Debug)]
+enum Panel {
+    Map(Map),
+    Graph(Graph),
+}
+
+impl Panel {
+    fn height(&self, width: f64) -> f64 {
+        match self {
+            Panel::Map(map) => map.height(width),
+            Panel::Graph(graph) => graph.height(width),
+        }
+    }
+
+    fn shapes(&self) -> usize {
+        match self {
+            Panel::Map(map) => map.fills.len() + map.lines.len(),
+            Panel::Graph(graph) => graph.lines.len(),
+        }
+    }
+}
+
+/// Where the panels stand.
+struct Layout<'a> {
+    /// With their upper left corners.
+    panels: Vec<(&'a Panel, Place)>,
+    width: f64,
+    /// Width and height of it all.
+    size: (f64, f64),
+}
+
+/// A picture of a solution.
+///
+/// ```
+/// use unilateral::prelude::*;
+/// use unilateral::plot::{solve_level, Picture};
+/// # fn main() -> Result<(), unilateral::error::Error> {
+/// let scene = scenes::radial::<2>(1.0);
+/// let (mesh, solved) = solve_level::<f64, 2>(&scene, &Wopsip::default(), 8)?;
+/// if let Some(fields) = &solved.fields {
+///     let picture = Picture::of("radial-2d, wopsip", &scene.problem, &mesh, fields, None)?;
+///     assert!(picture.to_svg()?.starts_with("<svg"));
+/// }
+/// # Ok(())
+/// # }
+/// ```
+#[derive(Clone, Debug)]
+pub struct Picture {
+    title: String,
+    panels: Vec<Panel>,
+    measure: f64,
+    contact_measure: f64,
+}
+
+impl Picture {
+    /// The picture of a function on a mesh, that of a scheme for this problem. In space it shows a
+    /// slice, by default along the contact boundary if that is a coordinate plane, otherwise through
+    /// the middle across the last coordinate.
+    ///
+    /// # Errors
+    /// [`Error::Parameter`] if the fields are not those of the mesh, and for a slice that is not
+    /// through a mesh in space.
+    pub fn of<T: Real, const D: usize>(
+        title: &str,
+        problem: &Problem<D>,
+        mesh: &Mesh<T, D>,
+        fields: &Fields,
+        slice: Option<Slice>,
+    ) -> Result<Self, Error> {
+        check_fields(mesh, fields)?;
+        if let Some(slice) = slice.filter(|s| D != 3 || s.axis > 2 || !s.at.is_finite()) {
+            return Err(wrong_slice(
+                slice,
+                "a slice is through a mesh in space, across axis 0, 1 or 2",
+            ));
+        }
+        let title = title.to_owned();
+        if D == 1 {
+            let line = Line::new(problem, mesh, fields);
+            let measure = (0..mesh.n_cells()).map(|c| mesh.geometry(c).volume.to_f64()).sum();
+            let panels = line.panels().into_iter().map(Panel::Graph).collect();
+            return Ok(Picture { title, panels, measure, contact_measure: line.contact_length() });
+        }
+        let slice = (D == 3).then(|| slice.unwrap_or_else(|| default_slice(problem, mesh)));
+        let plane = Plane::new(problem, mesh, fields, slice);
+        if let (Some(slice), true) = (slice, plane.sections.is_empty()) {
+            return Err(wrong_slice(slice, "the plane misses the mesh"));
+        }
+        let measure = plane.sections.iter().map(section::Section::area).sum();
+        let contact_measure = plane.contact_area();
+        let where_cut = slice.map(|s| format!(", {} = {}", ["x", "y", "z"][s.axis], s.at));
+        let title = title + &where_cut.unwrap_or_default();
+        Ok(Picture { title, panels: plane.panels(), measure, contact_measure })
+    }
+
+    /// Length of the line or area of the domain or slice that is shown.
+    pub fn measure(&self) -> f64 {
+        self.measure
+    }
+
+    /// Length or area that is painted as in contact; that of facets seen as lines does not count.
+    pub fn contact_measure(&self) -> f64 {
+        self.contact_measure
+    }
+
+    /// The picture as the text of an SVG file.
+    ///
+    /// # Errors
+    /// [`Error::Parameter`] if it has more shapes than such a file should, [`Error::Write`] with the
+    /// reason of the backend.
+    pub fn to_svg(&self) -> Result<String, Error> {
+        let shapes: usize = self.panels.iter().map(Panel::shapes).sum();
+        if shapes > MOST_SHAPES {
+            return Err(Error::Parameter {
+                parameter: "shapes",
+                value: shapes.to_string(),
+                allowed: format!(
+                    "an SVG file of more than {MOST_SHAPES} would be large and slow to show; choose a coarser level, or PNG"
+                ),
+            });
+        }
+        let text = draw_svg(self).map_err(|why| write_error(Path::new("SVG"), why))?;
+        Ok(svg::merge_shapes(&text))
+    }
+
+    /// Writes the picture as a PNG file.
+    ///
+    /// # Errors
+    /// [`Error::Write`].
+    pub fn write_png(&self, path: &Path) -> Result<(), Error> {
+        draw_png(self, path).map_err(|why| write_error(path, why))
+    }
+
+    /// Writes `NAME.png` and `NAME.svg` to a directory, which is made if need be.
+    ///
+    /// # Errors
+    /// [`Error::Write`], and those of [`Self::to_svg`] after the PNG file is written.
+    pub fn write(&self, directory: &Path, name: &str) -> Result<[PathBuf; 2], Error> {
+        fs::create_dir_all(directory).map_err(|e| write_error(directory, e))?;
+        let [png, svg] = ["png", "svg"].map(|end| directory.join(format!("{name}.{end}")));
+        self.write_png(&png)?;
+        fs::write(&svg, self.to_svg()?).map_err(|e| write_error(&svg, e))?;
+        Ok([png, svg])
+    }
+
+    /// Panels row by row.
+    fn layout(&self) -> Layout<'_> {
+        let alone = self.panels.first().is_some_and(|panel| match panel {
+            Panel::Map(map) => map.high[0] - map.low[0] > ELONGATED * (map.high[1] - map.low[1]),
+            Panel::Graph(_) => true,
+        });
+        let (columns, width) = if alone { (1, WIDE) } else { (2, NARROW) };
+        let mut placed = Vec::new();
+        let mut y = MARGIN + HEADING;
+        for row in self.panels.chunks(columns) {
+            for (k, panel) in row.iter().enumerate() {
+                placed.push((panel, (MARGIN + k as f64 * width, y)));
+            }
+            y += row.iter().map(|p| p.height(width)).fold(0.0, f64::max) + GAP;
+        }
+        let size = (2.0 * MARGIN + columns as f64 * width, y);
+        Layout { panels: placed, width, size }
+    }
+}
+
+impl Drawing for Picture {
+    fn size(&self) -> (f64, f64) {
+        self.layout().size
+    }
+
+    fn draw<DB: DrawingBackend>(&self, pen: &Pen<DB>) -> Drawn {
+        let Layout { panels, width, size } = self.layout();
+        let heading = (0.5 * size.0, MARGIN + 0.4 * HEADING);
+        pen.text(&self.title, heading, axes::TITLE + 1.0, INK, Align::Centre)?;
+        for (panel, at) in panels {
+            match panel {
+                Panel::Map(map) => map.draw(pen, at, width)?,
+                Panel::Graph(graph) => graph.draw(pen, at, width)?,
+            }
+        }
+        Ok(())
+    }
+}
+
+/// Refuses fields that would be read beyond their ends.
+fn check_fields<T: Real, const D: usize>(mesh: &Mesh<T, D>, fields: &Fields) -> Result<(), Error> {
+    let n = mesh.n_cells();
+    let found = &fields.found;
+    let fits = fields.u.len() == n * (D + 1)
+        && [0, n * edge_vertices(D).len()].contains(&fields.midpoints.len())
+        && [0, mesh.vertices().len()].contains(&found.density.len())
+        && found.cells.iter().all(|&cell| cell < n)
+        && found.facets.iter().all(|&(cell, local)| cell < n && local <= D);
+    match fits {
+        true => Ok(()),
+        false => Err(Error::Parameter {
+            parameter: "fields",
+            value: format!("{} values", fields.u.len()),
+            allowed: format!("must be those of a scheme on this mesh of {n} cells"),
+        }),
+    }
+}
+
+fn wrong_slice(slice: Slice, allowed: &str) -> Error {
+    Error::Parameter {
+        parameter: "slice",
+        value: format!("axis {} at {}", slice.axis, slice.at),
+        allowed: allowed.to_owned(),
+    }
+}

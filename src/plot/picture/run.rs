@@ -1,0 +1,50 @@
+//! One scheme on one level, with what a picture needs.
+
+use crate::assemble::DataQuadrature;
+use crate::error::Error;
+use crate::inequality::ActiveSet;
+use crate::mesh::Mesh;
+use crate::nested::{AnyScheme, Levels, Solved, Task};
+use crate::real::Real;
+use crate::scenes::Scene;
+
+/// Solves a scene with a scheme on one level, with fields for pictures, the start from coarser
+/// levels as in a study. The outcome is for the caller to look at: without a solution there are no
+/// fields.
+///
+/// # Errors
+/// [`Error::Parameter`] for a level of zero or one too large, and those of assembly.
+pub fn solve_level<T: Real, const D: usize>(
+    scene: &Scene<D>,
+    scheme: &dyn AnyScheme<T, D>,
+    level: usize,
+) -> Result<(Mesh<T, D>, Solved), Error> {
+    if level == 0 {
+        return Err(Error::Parameter {
+            parameter: "level",
+            value: "0".to_owned(),
+            allowed: "a built-in mesh has at least one subdivision".to_owned(),
+        });
+    }
+    let solver = ActiveSet::default();
+    let quadrature = DataQuadrature::default();
+    let mut levels = Levels::new(&scene.problem, &scene.domain, None);
+    levels.make(level)?;
+    let start = if scheme.is_conforming_linear() {
+        levels.start_from_coarser(level, &solver, quadrature, 1)?
+    } else {
+        Some(levels.contact(level, &solver, quadrature, 1)?)
+    };
+    let Some((mesh, _)) = levels.mesh(level) else { unreachable!("made above") };
+    let solved = scheme.solve(&Task {
+        problem: &scene.problem,
+        mesh,
+        start: start.as_deref(),
+        solver: &solver,
+        quadrature,
+        with_errors: false,
+        repeat: 1,
+        with_fields: true,
+    })?;
+    Ok((mesh.clone(), solved))
+}

@@ -1,0 +1,242 @@
+//! The part of the plane that a picture shows: cells of a mesh in the plane, or the sections of
+//! cells in space by a coordinate plane.
+
+use crate::measure::Fields;
+use crate::mesh::{Mesh, edge_vertices};
+use crate::real::{Point, Real, point_f64};
+
+/// A coordinate plane through a mesh in space.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Slice {
+    /// The coordinate that is fixed: 0, 1 or 2.
+    pub axis: usize,
+    /// Its value.
+    pub at: f64,
+}
+
+/// A place of the picture, two coordinates.
+pub(crate) type Spot = [f64; 2];
+
+/// A corner of what is drawn of a cell.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Corner {
+    pub at: Spot,
+    /// The same by barycentric coordinates in the cell.
+    pub barycentric: [f64; 4],
+}
+
+/// What is drawn of a cell: a convex polygon.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Section {
+    pub cell: usize,
+    pub corners: Vec<Corner>,
+}
+
+/// Sections smaller than this in units of the whole, squared, are points and lines.
+const FLAT: f64 = 1e-14;
+
+/// How space is seen: the coordinates that stand to the right and up, and the one that is cut.
+pub(crate) struct View<'a, T: Real, const D: usize> {
+    pub mesh: &'a Mesh<T, D>,
+    pub fields: &'a Fields,
+    pub axes: [usize; 2],
+    slice: Option<Slice>,
+    /// Whether points on the plane count as below it: on the lower end of the mesh nothing else is.
+    on_is_below: bool,
+    smallest: f64,
+}
+
+impl<'a, T: Real, const D: usize> View<'a, T, D> {
+    /// A mesh in the plane as it is, one in space cut by a plane.
+    pub fn new(mesh: &'a Mesh<T, D>, fields: &'a Fields, slice: Option<Slice>) -> Self {
+        let slice = slice.filter(|_| D == 3);
+        let axes = match slice.map(|s| s.axis) {
+            Some(0) => [1, 2],
+            Some(1) => [0, 2],
+            _ => [0, 1],
+        };
+        let lowest = |axis: usize| {
+            mesh.vertices().iter().map(|x| x[axis].to_f64()).fold(f64::INFINITY, f64::min)
+        };
+        let on_is_below = slice.is_some_and(|s| s.at <= lowest(s.axis));
+        let smallest = FLAT * mesh.domain_diameter().powi(2);
+        View { mesh, fields, axes, slice, on_is_below, smallest }
+    }
+
+    /// A corner of a cell in space.
+    pub fn vertex(&self, cell: usize, k: usize) -> Point<f64, D> {
+        point_f64(&self.mesh.vertices()[self.mesh.cell(cell)[k] as usize])
+    }
+
+    /// A point of a cell in space.
+    pub fn point(&self, cell: usize, barycentric: &[f64; 4]) -> Point<f64, D> {
+        (0..=D).fold(Point::zeros(), |x, k| x + self.vertex(cell, k) * barycentric[k])
+    }
+
+    fn spot(&self, x: &Point<f64, D>) -> Spot {
+        // minus zero is the same place as zero
+        self.axes.map(|k| x[k] + 0.0)
+    }
+
+    /// The sections of all cells.
+    pub fn sections(&self) -> Vec<Section> {
+        let whole = unit_corners::<D>();
+        (0..self.mesh.n_cells()).filter_map(|cell| self.section(cell, &whole)).collect()
+    }
+
+    /// Triangles on which the function of a cell is drawn as linear: of a quadratic one those
+    /// between its vertices and midpoints.
+    pub fn pieces(&self) -> Vec<Section> {
+        let parts = parts::<D>(!self.fields.midpoints.is_empty());
+        let of_cell = |cell| parts.iter().filter_map(move |part| self.section(cell, part));
+        (0..self.mesh.n_cells()).flat_map(of_cell).flat_map(triangles).collect()
+    }
+
+    /// The section of a simplex in a cell, given by barycentric coordinates of its corners.
+    fn section(&self, cell: usize, simplex: &[[f64; 4]]) -> Option<Section> {
+        let points: Vec<Point<f64, D>> = simplex.iter().map(|b| self.point(cell, b)).collect();
+        let corners = match self.slice {
+            None => {
+                let corner = |(b, x): (&[f64; 4], &Point<f64, D>)| Corner {
+                    at: self.spot(x),
+                    barycentric: *b,
+                };
+                simplex.iter().zip(&points).map(corner).collect()
+            }
+            Some(slice) => self.cut(slice, simplex, &points),
+        };
+        let section = Section { cell, corners };
+        (section.area() > self.smallest).then_some(section)
+    }
+
+    /// Where the plane crosses the edges of a simplex, in order around the section.
+    fn cut(&self, slice: Slice, simplex: &[[f64; 4]], points: &[Point<f64, D>]) -> Vec<Corner> {
+        let height = |k: usize| points[k][slice.axis] - slice.at;
+        let is_above =
+            |k: &usize| if self.on_is_below { height(*k) > 0.0 } else { height(*k) >= 0.0 };
+        let (above, below): (Vec<usize>, Vec<usize>) = (0..points.len()).partition(is_above);
+        let mut edges: Vec<[usize; 2]> = Vec::new();
+        for (turn, &a) in above.iter().enumerate() {
+            let ends = below.iter().map(|&b| [a.min(b), a.max(b)]);
+            // there and back, so that neighbours in the list share a face
+            if turn % 2 == 0 { edges.extend(ends) } else { edges.extend(ends.rev()) }
+        }
+        let corner = |&[i, j]: &[usize; 2]| {
+            let share = height(i) / (height(i) - height(j));
+            let mut barycentric = [0.0; 4];
+            for k in 0..4 {
+                barycentric[k] = (1.0 - share) * simplex[i][k] + share * simplex[j][k];
+            }
+            Corner { at: self.spot(&(points[i] + (points[j] - points[i]) * share)), barycentric }
+        };
+        edges.iter().map(corner).collect()
+    }
+
+    /// Where a facet is seen: the whole of it in the plane, in space its section if it crosses the
+    /// plane.
+    pub fn facet(&self, cell: usize, local: usize) -> Option<[Spot; 2]> {
+        let whole = unit_corners::<D>();
+        let corners: Vec<[f64; 4]> =
+            whole.iter().enumerate().filter(|(k, _)| *k != local).map(|(_, b)| *b).collect();
+        let points: Vec<Point<f64, D>> = corners.iter().map(|b| self.point(cell, b)).collect();
+        let ends: Vec<Spot> = match self.slice {
+            None => points.iter().map(|x| self.spot(x)).collect(),
+            Some(slice) => self.cut(slice, &corners, &points).iter().map(|c| c.at).collect(),
+        };
+        <[Spot; 2]>::try_from(ends).ok()
+    }
+
+    /// Whether a facet lies in the plane of the slice.
+    pub fn lies_in_slice(&self, cell: usize, local: usize) -> bool {
+        let corners = || (0..=D).filter(|k| *k != local);
+        self.slice.is_some_and(|s| corners().all(|k| self.vertex(cell, k)[s.axis] == s.at))
+    }
+
+    /// The function of a cell at a point of it.
+    pub fn value(&self, cell: usize, barycentric: &[f64; 4]) -> f64 {
+        let b = barycentric;
+        let corners = &self.fields.u[cell * (D + 1)..(cell + 1) * (D + 1)];
+        let edges = edge_vertices(D);
+        let Some(middles) = self.fields.midpoints.get(cell * edges.len()..(cell + 1) * edges.len())
+        else {
+            return corners.iter().zip(b).map(|(u, b)| u * b).sum();
+        };
+        let at_corners: f64 = corners.iter().zip(b).map(|(u, b)| u * b * (2.0 * b - 1.0)).sum();
+        let at_middles = edges.iter().zip(middles).map(|(&[i, j], u)| 4.0 * u * b[i] * b[j]);
+        at_corners + at_middles.sum::<f64>()
+    }
+
+    /// The density of the multiplier at a point of a cell. A Dirichlet vertex has none of its own:
+    /// there it counts as zero in a cell that is not in contact and has none elsewhere, and is not
+    /// known otherwise.
+    pub fn density(&self, cell: usize, touches: bool, barycentric: &[f64; 4]) -> Option<f64> {
+        let known = &self.fields.found.density;
+        let at = |k: usize| known.get(self.mesh.cell(cell)[k] as usize).copied().flatten();
+        let free = !touches && (0..=D).all(|k| at(k).is_none_or(|density| density == 0.0));
+        let mut sum = 0.0;
+        for k in (0..=D).filter(|k| barycentric[*k] != 0.0) {
+            match at(k) {
+                Some(density) => sum += density * barycentric[k],
+                None if free => {}
+                None => return None,
+            }
+        }
+        Some(sum)
+    }
+}
+
+impl Section {
+    /// Its area.
+    pub fn area(&self) -> f64 {
+        area(&self.corners.iter().map(|c| c.at).collect::<Vec<_>>())
+    }
+}
+
+/// The area of a polygon, by the formula of the shoelace.
+pub(crate) fn area(corners: &[Spot]) -> f64 {
+    let Some(&first) = corners.first() else { return 0.0 };
+    // relative to a corner, so that little is lost far from the origin
+    let at = |k: usize| [corners[k][0] - first[0], corners[k][1] - first[1]];
+    let n = corners.len();
+    let twice: f64 = (0..n)
+        .map(|k| {
+            let (a, b) = (at(k), at((k + 1) % n));
+            a[0] * b[1] - a[1] * b[0]
+        })
+        .sum();
+    0.5 * twice.abs()
+}
+
+/// A convex polygon cut into triangles.
+fn triangles(section: Section) -> impl Iterator<Item = Section> {
+    let Section { cell, corners } = section;
+    (2..corners.len())
+        .map(move |k| Section { cell, corners: vec![corners[0], corners[k - 1], corners[k]] })
+}
+
+fn unit_corners<const D: usize>() -> Vec<[f64; 4]> {
+    (0..=D).map(|k| std::array::from_fn(|i| f64::from(u8::from(i == k)))).collect()
+}
+
+/// The simplex, or the parts between its vertices and the midpoints of its edges.
+fn parts<const D: usize>(quadratic: bool) -> Vec<Vec<[f64; 4]>> {
+    let v = unit_corners::<D>();
+    if !quadratic {
+        return vec![v];
+    }
+    let middle = |i: usize, j: usize| std::array::from_fn(|k| 0.5 * (v[i][k] + v[j][k]));
+    let mut parts: Vec<Vec<[f64; 4]>> = (0..=D)
+        .map(|i| (0..=D).map(|j| if i == j { v[i] } else { middle(i, j) }).collect())
+        .collect();
+    if D == 2 {
+        parts.push(vec![middle(0, 1), middle(0, 2), middle(1, 2)]);
+    }
+    if D == 3 {
+        // the octahedron within, in four around one of its diagonals
+        let around = [middle(0, 1), middle(0, 2), middle(2, 3), middle(1, 3)];
+        for k in 0..4 {
+            parts.push(vec![middle(0, 3), middle(1, 2), around[k], around[(k + 1) % 4]]);
+        }
+    }
+    parts
+}

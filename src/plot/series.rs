@@ -1,0 +1,189 @@
+//! What is drawn: curves of points, taken from rows.
+
+use crate::study::row::Row;
+use crate::study::table::distinct;
+
+/// A number of a row that an axis shows.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Quantity {
+    /// Largest cell diameter.
+    MeshSize,
+    /// Seconds altogether.
+    Seconds,
+    /// Number of unknowns.
+    Unknowns,
+    /// Peak of memory in megabytes.
+    Memory,
+    /// L2 error.
+    L2,
+    /// Error in the broken H1 seminorm.
+    H1,
+    /// Error in the scheme's own norm.
+    Energy,
+}
+
+impl Quantity {
+    /// The label of its axis.
+    pub fn label(self) -> &'static str {
+        match self {
+            Quantity::MeshSize => "mesh size h",
+            Quantity::Seconds => "time in s",
+            Quantity::Unknowns => "number of unknowns",
+            Quantity::Memory => "peak memory in MB",
+            Quantity::L2 => "L2 error",
+            Quantity::H1 => "broken H1 error",
+            Quantity::Energy => "error in the scheme's own norm",
+        }
+    }
+
+    /// Its value, if it can stand on a logarithmic axis.
+    fn of(self, row: &Row) -> Option<f64> {
+        let value = match self {
+            Quantity::MeshSize => Some(row.mesh_size),
+            // No clock is finer: what looks like less is a time that was not taken.
+            Quantity::Seconds => Some(row.seconds.total.max(1e-6)),
+            Quantity::Unknowns => Some(row.unknowns as f64),
+            Quantity::Memory => row.peak_memory_bytes.map(|bytes| bytes as f64 / 1e6),
+            Quantity::L2 => row.error.l2,
+            Quantity::H1 => row.error.h1,
+            Quantity::Energy => row.error.energy,
+        };
+        value.filter(|x| x.is_finite() && *x > 0.0)
+    }
+
+    /// The order that theory promises in it.
+    fn expected(self, row: &Row) -> Option<f64> {
+        match self {
+            Quantity::L2 => row.expected_order.l2,
+            Quantity::H1 => row.expected_order.h1,
+            _ => None,
+        }
+    }
+
+    /// Orders worth comparing with.
+    pub fn slopes<'a>(self, rows: impl Iterator<Item = &'a Row>) -> Vec<u32> {
+        let promised = rows.filter_map(|r| self.expected(r)).fold(0.0, f64::max);
+        if promised > 2.0 { vec![1, 2, 3] } else { vec![1, 2] }
+    }
+}
+
+/// A curve's name: one colour and one mark in all panels.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Key {
+    scheme: String,
+    constraint: String,
+    /// What the legend says.
+    pub label: String,
+}
+
+impl Key {
+    /// A key that is known by its label alone.
+    pub fn labelled(label: &str) -> Self {
+        Key { scheme: label.to_owned(), constraint: String::new(), label: label.to_owned() }
+    }
+}
+
+/// The curves of a report, in the order in which they first occur. The place of the constraint is
+/// named where a scheme was run with more than one.
+pub(crate) fn keys(rows: &[Row]) -> Vec<Key> {
+    let pairs = distinct(rows.iter().map(|r| (r.scheme.as_str(), r.constraint.as_str())));
+    pairs
+        .iter()
+        .map(|&(scheme, constraint)| {
+            let ambiguous = pairs.iter().filter(|(s, _)| *s == scheme).count() > 1;
+            let label =
+                if ambiguous { format!("{scheme}, {constraint}") } else { scheme.to_owned() };
+            Key { scheme: scheme.to_owned(), constraint: constraint.to_owned(), label }
+        })
+        .collect()
+}
+
+/// The scenes of a report, in the order in which they first occur.
+pub(crate) fn scenes(rows: &[Row]) -> Vec<&str> {
+    distinct(rows.iter().map(|r| r.scene.as_str()))
+}
+
+/// One run.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Point {
+    pub x: f64,
+    /// None: there is no error, or none that can be shown.
+    pub y: Option<f64>,
+    pub converged: bool,
+}
+
+impl Point {
+    /// The point of a row, if it has a place. A converged run without an error has none; one that
+    /// failed must be seen.
+    pub fn of(row: &Row, x: Quantity, y: Quantity) -> Option<Self> {
+        let point = Point { x: x.of(row)?, y: y.of(row), converged: row.converged() };
+        (point.y.is_some() || !point.converged).then_some(point)
+    }
+}
+
+/// The runs of one scheme.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Curve {
+    /// Index of its key.
+    pub key: usize,
+    /// From coarse to fine.
+    pub points: Vec<Point>,
+}
+
+/// One panel: a scene, and two numbers against each other.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Panel {
+    pub title: String,
+    pub x: Quantity,
+    pub y: Quantity,
+    pub curves: Vec<Curve>,
+    /// Slopes to compare with.
+    pub slopes: Vec<u32>,
+    /// Whether these slopes fall, each over this dimension.
+    pub falls_over: Option<u32>,
+}
+
+impl Panel {
+    /// The panel of a scene.
+    pub fn new(rows: &[Row], keys: &[Key], scene: &str, x: Quantity, y: Quantity) -> Self {
+        let mut curves = Vec::new();
+        for (k, key) in keys.iter().enumerate() {
+            let mut runs: Vec<&Row> = rows
+                .iter()
+                .filter(|r| r.scene == scene)
+                .filter(|r| r.scheme == key.scheme && r.constraint == key.constraint)
+                .collect();
+            runs.sort_by_key(|r| r.level);
+            let points: Vec<Point> = runs.iter().filter_map(|r| Point::of(r, x, y)).collect();
+            if !points.is_empty() {
+                curves.push(Curve { key: k, points });
+            }
+        }
+        let of_scene = rows.iter().filter(|r| r.scene == scene);
+        let slopes = if x == Quantity::MeshSize { y.slopes(of_scene) } else { Vec::new() };
+        Panel { title: scene.to_owned(), x, y, curves, slopes, falls_over: None }
+    }
+
+    /// Whether some run has an error.
+    pub fn has_errors(&self) -> bool {
+        self.points().any(|p| p.y.is_some())
+    }
+
+    /// All runs.
+    pub fn points(&self) -> impl Iterator<Item = Point> + '_ {
+        self.curves.iter().flat_map(|c| c.points.iter().copied())
+    }
+
+    /// The errors the axis has to show. A run that failed may have any error at all: one far off
+    /// would squeeze the others into a line, and goes to the edge instead.
+    pub fn errors(&self) -> Vec<f64> {
+        let converged = || self.points().filter(|p| p.converged).filter_map(|p| p.y);
+        let low = converged().fold(f64::INFINITY, f64::min) / 100.0;
+        let high = converged().fold(0.0, f64::max) * 100.0;
+        let none_converged = converged().next().is_none();
+        self.points()
+            .filter_map(|p| p.y)
+            .filter(|y| none_converged || (low..=high).contains(y))
+            .collect()
+    }
+}

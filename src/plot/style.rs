@@ -1,0 +1,114 @@
+//! Colours and marks of curves. Each differs from the others in both, so that it is told apart in
+//! grey as well; marks are partly open, so that curves on top of each other are both seen.
+
+use super::pen::{Drawn, Pen, Place};
+use plotters::prelude::{DrawingBackend, RGBColor};
+
+/// Text and frames.
+pub(crate) const INK: RGBColor = RGBColor(30, 30, 30);
+/// Reference slopes.
+pub(crate) const GREY: RGBColor = RGBColor(120, 120, 120);
+/// Lines behind the data.
+pub(crate) const GRID: RGBColor = RGBColor(226, 226, 226);
+/// Runs that did not converge.
+pub(crate) const FAILED: RGBColor = RGBColor(214, 0, 0);
+/// Paper.
+pub(crate) const PAPER: RGBColor = RGBColor(255, 255, 255);
+
+/// Colours that remain distinct to colour-blind readers (Okabe and Ito), without yellow, which is
+/// faint on white.
+const COLOURS: [RGBColor; 7] = [
+    RGBColor(0, 114, 178),
+    RGBColor(213, 94, 0),
+    RGBColor(0, 158, 115),
+    RGBColor(204, 121, 167),
+    RGBColor(0, 0, 0),
+    RGBColor(86, 180, 233),
+    RGBColor(230, 159, 0),
+];
+
+/// A mark: corners on a circle around its place.
+struct Mark {
+    corners: usize,
+    /// Where the first corner stands, in parts of a full turn; 0 is to the right, then clockwise.
+    turn: f64,
+    radius: f64,
+    filled: bool,
+}
+
+const fn mark(corners: usize, turn: f64, radius: f64, filled: bool) -> Mark {
+    Mark { corners, turn, radius, filled }
+}
+
+/// Small filled ones fit into large open ones.
+const MARKS: [Mark; 10] = [
+    mark(24, 0.0, 2.8, true),
+    mark(4, 0.125, 5.6, false),
+    mark(3, 0.75, 4.0, true),
+    mark(4, 0.0, 5.6, false),
+    mark(3, 0.25, 5.8, false),
+    mark(4, 0.125, 3.2, true),
+    mark(24, 0.0, 4.8, false),
+    mark(3, 0.25, 4.0, true),
+    mark(3, 0.75, 5.8, false),
+    mark(4, 0.0, 3.6, true),
+];
+
+/// The colour of a curve.
+pub(crate) fn colour(key: usize) -> RGBColor {
+    COLOURS[key % COLOURS.len()]
+}
+
+/// The part of a curve between two marks: full for the first seven curves, whose colours differ,
+/// then dashed, then dotted.
+pub(crate) fn segment<DB: DrawingBackend>(
+    pen: &Pen<DB>,
+    key: usize,
+    from: Place,
+    to: Place,
+) -> Drawn {
+    match key / COLOURS.len() {
+        0 => pen.line(from, to, 1.4, colour(key)),
+        1 => pen.dashes(from, to, 1.4, colour(key), (6.0, 3.0)),
+        _ => pen.dashes(from, to, 1.4, colour(key), (1.6, 2.6)),
+    }
+}
+
+/// The mark of a curve, `size` times its usual size.
+pub(crate) fn draw_mark<DB: DrawingBackend>(
+    pen: &Pen<DB>,
+    key: usize,
+    at: Place,
+    size: f64,
+) -> Drawn {
+    let mark = &MARKS[key % MARKS.len()];
+    let radius = size * mark.radius;
+    let corners: Vec<Place> = (0..mark.corners)
+        .map(|i| {
+            let angle = std::f64::consts::TAU * (mark.turn + i as f64 / mark.corners as f64);
+            (at.0 + radius * angle.cos(), at.1 + radius * angle.sin())
+        })
+        .collect();
+    if mark.filled {
+        pen.fill(&corners, colour(key))
+    } else {
+        pen.outline(&corners, 1.3, colour(key))
+    }
+}
+
+/// The mark of a run that did not converge: a hollow cross.
+pub(crate) fn draw_failed<DB: DrawingBackend>(pen: &Pen<DB>, at: Place) -> Drawn {
+    // Reach and half width of its arms.
+    const R: f64 = 9.0;
+    const W: f64 = 2.2;
+    // The arm to the right of an upright cross, to be turned by an eighth and then by quarters.
+    let arm = [(W, W), (R, W), (R, -W)];
+    let corners: Vec<Place> = (0..4)
+        .flat_map(|quarter| {
+            let (sin, cos) = (std::f64::consts::FRAC_PI_4 * f64::from(1 - 2 * quarter)).sin_cos();
+            arm.map(|(x, y)| (at.0 + x * cos - y * sin, at.1 + x * sin + y * cos))
+        })
+        .collect();
+    pen.fill(&corners, PAPER)?;
+    pen.outline(&corners, 1.2, FAILED)
+}

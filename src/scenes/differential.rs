@@ -1,0 +1,79 @@
+//! Functions with their gradient and Laplacian at a point, and the product rule.
+
+use std::ops::{Add, Mul, Sub};
+
+use super::halfplane;
+use crate::real::Point;
+
+/// Value, gradient and Laplacian of a function at a point.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Jet<const D: usize> {
+    pub value: f64,
+    pub gradient: Point<f64, D>,
+    pub laplacian: f64,
+}
+
+impl<const D: usize> Jet<D> {
+    /// A function of one coordinate, from its value and its first two derivatives.
+    pub fn along(axis: usize, [value, first, second]: [f64; 3]) -> Self {
+        let gradient = Point::from_fn(|k, _| if k == axis { first } else { 0.0 });
+        Self { value, gradient, laplacian: second }
+    }
+    /// `prod_k (1 - x_k^2)`, which vanishes on the boundary of `(-1, 1)^D`.
+    pub fn bubble(x: &Point<f64, D>) -> Self {
+        (0..D)
+            .map(|k| Self::along(k, [1.0 - x[k] * x[k], -2.0 * x[k], -2.0]))
+            .fold(Self::along(0, [1.0, 0.0, 0.0]), |product, factor| product * factor)
+    }
+    /// The harmonic `Re (s (x - c) + iy)^{3/2}` for the first coordinate `x` and the last one `y`;
+    /// `s` is `facing`, 1 for a function that vanishes on `y = 0`, `x < c` and -1 for its mirror
+    /// image.
+    pub fn three_halves(x: &Point<f64, D>, c: f64, facing: f64) -> Self {
+        let z = halfplane::point(facing * (x[0] - c), x[D - 1]);
+        let (value, [along, across]) = halfplane::three_halves(z);
+        let mut gradient = Point::zeros();
+        gradient[0] = facing * along;
+        gradient[D - 1] = across;
+        Self { value, gradient, laplacian: 0.0 }
+    }
+}
+
+impl<const D: usize> Add for Jet<D> {
+    type Output = Self;
+    fn add(self, other: Self) -> Self {
+        Self {
+            value: self.value + other.value,
+            gradient: self.gradient + other.gradient,
+            laplacian: self.laplacian + other.laplacian,
+        }
+    }
+}
+
+impl<const D: usize> Sub for Jet<D> {
+    type Output = Self;
+    fn sub(self, other: Self) -> Self {
+        self + other * Self::along(0, [-1.0, 0.0, 0.0])
+    }
+}
+
+impl<const D: usize> Mul for Jet<D> {
+    type Output = Self;
+    fn mul(self, other: Self) -> Self {
+        Self {
+            value: self.value * other.value,
+            gradient: self.gradient * other.value + other.gradient * self.value,
+            laplacian: self.laplacian * other.value
+                + 2.0 * self.gradient.dot(&other.gradient)
+                + other.laplacian * self.value,
+        }
+    }
+}
+
+/// `max(s, 0)^k` and its first two derivatives, each zero for `s <= 0`; `k >= 2`.
+pub(crate) fn positive_power(s: f64, k: i32) -> [f64; 3] {
+    if s <= 0.0 {
+        return [0.0; 3];
+    }
+    let order = f64::from(k);
+    [s.powi(k), order * s.powi(k - 1), order * (order - 1.0) * s.powi(k - 2)]
+}

@@ -1,0 +1,44 @@
+//! What theory promises of a scheme, and on what a promise may depend.
+
+use serde::Serialize;
+
+/// Orders that theory promises.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct ExpectedOrders {
+    /// In L2.
+    pub l2: Option<f64>,
+    /// In the broken H1 seminorm.
+    pub h1: Option<f64>,
+}
+
+/// Regularity of the exact solution, from which theory predicts orders.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Regularity {
+    /// The solution lies in `H^s` for every `s` below this number.
+    pub sobolev: f64,
+    /// Gap and multiplier do not vanish together on a set of positive measure.
+    pub strictly_complementary: bool,
+}
+
+/// What a promise of orders may depend on.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Setting {
+    /// Dimension of space.
+    pub dimension: usize,
+    /// Whether an obstacle binds in the domain.
+    pub obstacle: bool,
+    /// Whether a Signorini condition binds on the boundary.
+    pub contact: bool,
+    /// What is known of the solution.
+    pub regularity: Regularity,
+    /// Whether the dual of the linear problem has solutions in `H^2`: with a coefficient that does
+    /// not vary, on intervals and on convex domains with Dirichlet data on the whole boundary.
+    pub regular_dual: bool,
+}
+
+impl Setting {
+    /// Whether no inequality binds.
+    pub fn is_linear(&self) -> bool {
+        !self.obstacle && !self.contact
+    }
+}

@@ -1,0 +1,110 @@
+//! No strict complementarity: gap and multiplier vanish together.
+
+use crate::error::Error;
+use crate::inequality::{LastResort, Outcome};
+use crate::scenes;
+use crate::scenes::Scene;
+use crate::stability::choice::{Choice, compared};
+use crate::stability::claim::{Claim, figures, fitted_order, listed, of};
+use crate::stability::runs::{row, rows, solved, solver_with};
+use crate::stability::{Plan, Sink};
+use crate::study::Row;
+
+pub(crate) fn plan(plan: &mut Plan<'_>) {
+    let levels: &[usize] = plan.pick_of(&[4, 8], &[8, 16, 32], &[8, 16, 32, 64]);
+    let plane: &[fn() -> Scene<2>] = plan.pick(
+        &[scenes::biactive_half_2d],
+        &[
+            scenes::biactive_half_2d,
+            scenes::biactive_ring_2d,
+            || scenes::degenerate(4),
+            || scenes::lshape_2d(),
+        ],
+    );
+    let strings: &[usize] = plan.pick(&[64, 128, 256], &[64, 128, 256, 512]);
+    let finest = plan.pick_of(8, 16, 32);
+    for choice in compared() {
+        for make in plane {
+            plan.add("biactive", choice, &make().name, move |c, sink| {
+                orders(make, c, levels, sink)?;
+                levels.iter().try_for_each(|&level| steps(make, c, level, sink))
+            });
+        }
+        let string: fn() -> Scene<1> = scenes::oscillating_1d;
+        plan.add("biactive", choice, "oscillating-1d", move |c, sink| {
+            orders(&string, c, strings, sink)?;
+            steps(&string, c, strings[0], sink)
+        });
+        plan.add("biactive", choice, "free boundary", move |c, sink| distances(c, finest, sink));
+    }
+}
+
+fn orders<const D: usize>(
+    make: &fn() -> Scene<D>,
+    choice: &Choice,
+    levels: &[usize],
+    sink: Sink<'_>,
+) -> Result<(), Error> {
+    let rows = rows::<f64, D>(make(), choice, levels)?;
+    let name = make().name;
+    type Norm = (&'static str, f64, fn(&Row) -> Option<f64>);
+    let norms: [Norm; 2] = [("L2", 1.8, |r| r.error.l2), ("H1", 0.9, |r| r.error.h1)];
+    for (norm, least, error) in norms {
+        let errors: Vec<(usize, f64)> =
+            rows.iter().filter_map(|r| Some((r.level, of(r, error)?))).collect();
+        let order = (errors.len() == levels.len()).then(|| fitted_order(&errors)).flatten();
+        let claim = Claim::new("orders-on-biactive-sets", choice)
+            .on(&name)
+            .quantity(&format!("order in {norm}, fitted"))
+            .at_least(least)
+            .detail(format!("{norm} error {}", listed(&errors)));
+        // a re-entrant corner limits the orders whatever the contact
+        let claim = if name == "lshape-2d" { claim.only_reported() } else { claim };
+        sink(claim.measured(order));
+    }
+    Ok(())
+}
+
+/// Active sets and steps of the interior point method from a cold start.
+fn steps<const D: usize>(
+    make: &fn() -> Scene<D>,
+    choice: &Choice,
+    level: usize,
+    sink: Sink<'_>,
+) -> Result<(), Error> {
+    let scene = make();
+    let kinds = [
+        ("active-sets-tried", "active sets tried, cold", LastResort::Never, 2.0 * level as f64),
+        ("interior-point-steps", "linear systems, cold", LastResort::AtOnce, 40.0),
+    ];
+    for (criterion, quantity, resort, most) in kinds {
+        let (_, found) = solved(&scene, choice, level, &solver_with(resort, 4 * level), false)?;
+        let steps = found.outer.filter(|_| found.outcome == Outcome::Converged);
+        sink(
+            Claim::new(criterion, choice)
+                .on(&scene.name)
+                .level(level)
+                .quantity(quantity)
+                .at_most(most)
+                .detail(format!("{} after {}", found.outcome, found.outer.unwrap_or(0)))
+                .measured(steps.map(|n| n as f64)),
+        );
+    }
+    Ok(())
+}
+
+fn distances(choice: &Choice, level: usize, sink: Sink<'_>) -> Result<(), Error> {
+    let scene = scenes::polynomial::<2>();
+    let size = scene.domain.length() / level as f64;
+    let claim = |name: &str| {
+        Claim::new("free-boundary", choice).on(name).level(level).quantity("distance over h")
+    };
+    let name = scene.name.clone();
+    let found = row::<f64, 2>(scene, choice, level)?;
+    let distance = |row: &Row| row.contact.free_boundary_distance.map(|d| d / size);
+    sink(claim(&name).at_most(2.0).detail(figures(&found)).measured(of(&found, distance)));
+    let found = row::<f64, 2>(scenes::biactive_half_2d(), choice, level)?;
+    let why = "gap and multiplier vanish together: the contact set is no datum";
+    sink(claim(&found.scene).not_applicable(why));
+    Ok(())
+}

@@ -1,0 +1,129 @@
+//! The end of contact at a vertex and off all vertices.
+
+use crate::error::Error;
+use crate::mesh::{BoundaryPart, BoxDomain, Mesh};
+use crate::real::Point;
+use crate::scenes;
+use crate::scenes::Scene;
+use crate::stability::choice::{Choice, compared};
+use crate::stability::claim::{Claim, figures, fitted_order, listed, of};
+use crate::stability::runs::{rows, solved, solver};
+use crate::stability::{Plan, Sink};
+use crate::study::Study;
+
+/// A Signorini problem with contact for `x <= c`, and `c`.
+type Ended = (fn() -> Scene<2>, f64);
+
+const PROBLEMS: [Ended; 3] = [
+    (scenes::signorini_2d, 0.0),
+    (scenes::signorini_shifted_2d, 0.3),
+    (scenes::signorini_irrational_2d, std::f64::consts::SQRT_2 / 10.0),
+];
+
+pub(crate) fn plan(plan: &mut Plan<'_>) {
+    let levels: &[usize] = plan.pick_of(&[4, 8], &[16, 32], &[16, 32, 64, 128]);
+    for choice in compared() {
+        for ended in PROBLEMS {
+            plan.add("contact-ends", choice, &ended.0().name, move |c, sink| {
+                sweep(ended, c, levels, sink)
+            });
+        }
+        plan.add("contact-ends", choice, "junction inside a facet", junction);
+    }
+}
+
+fn sweep(
+    (make, end): Ended,
+    choice: &Choice,
+    levels: &[usize],
+    sink: Sink<'_>,
+) -> Result<(), Error> {
+    let found = rows::<f64, 2>(make(), choice, levels)?;
+    let errors: Vec<(usize, f64)> =
+        found.iter().filter_map(|r| Some((r.level, of(r, |r| r.error.h1)?))).collect();
+    let order = (errors.len() == levels.len()).then(|| fitted_order(&errors)).flatten();
+    let name = make().name;
+    let claim = Claim::new("order-with-ends-off-mesh", choice)
+        .on(&name)
+        .at("c", end)
+        .quantity("order in H1, fitted")
+        .at_least(0.95)
+        .detail(format!("H1 error {}", listed(&errors)));
+    sink(claim.measured(order));
+    for row in &found {
+        let size = 1.0 / row.level as f64;
+        let claim = |name| {
+            Claim::new(name, choice).on(&row.scene).level(row.level).at("c", end).at_most(1.0)
+        };
+        let distance = of(row, |r| r.contact.free_boundary_distance);
+        sink(
+            claim("end-of-contact")
+                .quantity("distance of the ends over 2h")
+                .detail(figures(row))
+                .measured(distance.map(|d| d / (2.0 * size))),
+        );
+        let largest = largest_on_contact(&make(), choice, row.level, end)?;
+        sink(
+            claim("values-on-contact-set")
+                .quantity("largest value over (2h)^(3/2)")
+                .detail(largest.map_or(String::new(), |u| format!("value {u:.2e}")))
+                .measured(largest.map(|u| u / (2.0 * size).powf(1.5))),
+        );
+    }
+    Ok(())
+}
+
+/// The largest size of a solution at the contact boundary up to the end of exact contact, linear
+/// between vertices.
+fn largest_on_contact(
+    scene: &Scene<2>,
+    choice: &Choice,
+    level: usize,
+    end: f64,
+) -> Result<Option<f64>, Error> {
+    let (mesh, found) = solved(scene, choice, level, &solver(), true)?;
+    let Some(fields) = found.fields else { return Ok(None) };
+    let mut largest = 0.0_f64;
+    for facet in mesh.boundary().iter().filter(|f| f.part == BoundaryPart::Contact) {
+        let (cell, local) = (facet.cell as usize, facet.local as usize);
+        let ends: Vec<(f64, f64)> = (0..3)
+            .filter(|&k| k != local)
+            .map(|k| (mesh.vertices()[mesh.cell(cell)[k] as usize][0], fields.u[3 * cell + k]))
+            .collect();
+        let ([(a, u), (b, v)], t) =
+            ([ends[0], ends[1]], (end - ends[0].0) / (ends[1].0 - ends[0].0));
+        let at_end = (0.0..=1.0).contains(&t).then_some((end, u + t * (v - u)));
+        for (x, value) in [(a, u), (b, v)].into_iter().chain(at_end) {
+            if x <= end {
+                largest = largest.max(value.abs());
+            }
+        }
+    }
+    Ok(Some(largest))
+}
+
+/// A mesh that reaches beyond the domain on the left: the corner of the domain, where Dirichlet and
+/// contact part meet, lies inside a contact facet.
+fn junction(choice: &Choice, sink: Sink<'_>) -> Result<(), Error> {
+    let lower = Point::<f64, 2>::new(-1.1, 0.0);
+    let domain = BoxDomain { lower, ..BoxDomain::above_contact() };
+    let mesh: Mesh<f64, 2> = Mesh::kuhn_box(&domain, [20, 10])?;
+    let study = Study::<f64, 2>::new(scenes::signorini_2d()).on_mesh(mesh);
+    let study = study.boxed_scheme(choice.make()).solver(solver());
+    let (told, how) = match study.levels([0]).run() {
+        Err(why) => (true, why.to_string()),
+        Ok(report) => {
+            let row = &report.rows[0];
+            (row.error.h1.is_none() && !row.warnings.is_empty(), row.warnings.join("; "))
+        }
+    };
+    sink(
+        Claim::new("junction-inside-facet", choice)
+            .on("signorini-2d")
+            .quantity("refused, or errors withheld")
+            .at_least(1.0)
+            .detail(how)
+            .measured(Some(f64::from(u8::from(told)))),
+    );
+    Ok(())
+}

@@ -1,0 +1,156 @@
+//! Curved obstacles, on which an over-penalty with bounds at vertices lifts off in a pattern.
+
+use crate::algebra::{Contact, Inequality};
+use crate::assemble::DataQuadrature;
+use crate::error::Error;
+use crate::inequality::{InequalitySolver, LastResort, Outcome, Solution};
+use crate::mesh::Mesh;
+use crate::real::{Point, Real};
+use crate::scenes;
+use crate::scenes::Scene;
+use crate::stability::choice::{Choice, Penalty, compared_and};
+use crate::stability::claim::{Claim, figures, fitted_order, listed, of};
+use crate::stability::runs::{row, rows, solved, solver, solver_with};
+use crate::stability::{Plan, Sink};
+
+/// An obstacle touched in a disc around the origin, with its radius.
+type Touched = (fn() -> Scene<2>, f64);
+
+const PROBLEMS: [Touched; 2] =
+    [(scenes::ball_2d, 0.697_965_148_223_373_6), (scenes::cone::<2>, 0.5)];
+
+/// After so many sets the method wanders.
+const MOST_SETS: usize = 100;
+
+/// Levels to which the order of the multiplier is fitted.
+const FITTED: [usize; 3] = [16, 32, 64];
+
+pub(crate) fn plan(plan: &mut Plan<'_>) {
+    let levels: &[usize] = plan.pick_of(&[8], &[8, 16, 32], &[8, 16, 32, 64]);
+    let further = [
+        Choice::new("wopsip", Penalty::Eta(1.0)),
+        Choice::new("wopsip", Penalty::Eta(100.0)),
+        Choice::new("wopsip:facet-means", Penalty::Eta(1.0)),
+        Choice::new("wopsip:facet-means", Penalty::Eta(100.0)),
+    ];
+    let fitted: &[usize] = plan.pick_of(&[4, 8], &FITTED, &FITTED);
+    for choice in compared_and(&further) {
+        for touched in PROBLEMS {
+            plan.add("curved-obstacle", choice, &touched.0().name, move |c, sink| {
+                sweep(touched, c, levels, fitted, sink)
+            });
+        }
+    }
+}
+
+fn sweep(
+    touched: Touched,
+    choice: &Choice,
+    levels: &[usize],
+    fitted: &[usize],
+    sink: Sink<'_>,
+) -> Result<(), Error> {
+    levels.iter().try_for_each(|&level| single(touched, choice, level, sink))?;
+    let scene = touched.0();
+    let name = scene.name.clone();
+    let found = rows::<f64, 2>(scene, choice, fitted)?;
+    let errors: Vec<(usize, f64)> =
+        found.iter().filter_map(|r| Some((r.level, of(r, |r| r.contact.multiplier_l1)?))).collect();
+    let order = (errors.len() == fitted.len()).then(|| fitted_order(&errors)).flatten();
+    let claim = Claim::new("multiplier-order", choice)
+        .on(&name)
+        .quantity("order of the multiplier in L1, fitted")
+        .detail(format!("L1 error {}", listed(&errors)));
+    // the multiplier of the cone is not bounded
+    let claim = if name == "ball-2d" { claim.at_least(0.9) } else { claim };
+    sink(claim.measured(order));
+    Ok(())
+}
+
+/// All rows of a level.
+fn single(
+    (make, radius): Touched,
+    choice: &Choice,
+    level: usize,
+    sink: Sink<'_>,
+) -> Result<(), Error> {
+    let scene = make();
+    let mesh = scene.domain.mesh::<f64>(level)?;
+    let size = scene.domain.length() / level as f64;
+    let claim = |name| Claim::new(name, choice).on(&scene.name).level(level).at("h", size);
+    let found = row::<f64, 2>(make(), choice, level)?;
+    sink(
+        claim("certificate")
+            .quantity("largest violation of the conditions")
+            .at_most(1e-9)
+            .detail(figures(&found))
+            .measured(of(&found, |r| Some(r.certificate.largest()))),
+    );
+    let strip = 2.0 * size * 2.0 * std::f64::consts::PI * radius;
+    sink(
+        claim("contact-set")
+            .quantity("area of the difference over that of the strip")
+            .at_most(1.0)
+            .measured(of(&found, |r| r.contact.contact_area_error.map(|a| a / strip))),
+    );
+    let share = share_inside(&scene, &mesh, choice, radius - 1.5 * size)?;
+    sink(
+        claim("contact-set")
+            .quantity("share of single unknowns in contact, inside")
+            .measured(share),
+    );
+    let mut silent = 0;
+    let mut outcomes = Vec::new();
+    for resort in [LastResort::Never, LastResort::WhenUnsettled] {
+        let (_, solved) = solved(&scene, choice, level, &solver_with(resort, MOST_SETS), true)?;
+        let largest = solved.certificate.largest();
+        let is_wrong = largest.is_nan() || largest > f64::CERTIFICATE_LIMIT;
+        silent += usize::from(solved.outcome == Outcome::Converged && is_wrong);
+        outcomes.push(format!("{} after {}", solved.outcome, solved.outer.unwrap_or(0)));
+        if resort == LastResort::Never {
+            let sets = solved.outer.filter(|_| solved.outcome == Outcome::Converged);
+            sink(
+                claim("iterations")
+                    .quantity("active sets tried, no last resort")
+                    .at_most(10.0)
+                    .known_to_fail(choice.scheme == "wopsip")
+                    .detail(outcomes[0].clone())
+                    .measured(sets.map(|n| n as f64)),
+            );
+        }
+    }
+    sink(
+        claim("no-silent-failure")
+            .quantity("wrong iterates returned as converged")
+            .at_most(0.0)
+            .detail(format!("bare method: {}; with last resort: {}", outcomes[0], outcomes[1]))
+            .measured(Some(silent as f64)),
+    );
+    Ok(())
+}
+
+/// Among the bounded unknowns with nodes within a radius, the share in contact.
+fn share_inside(
+    scene: &Scene<2>,
+    mesh: &Mesh<f64, 2>,
+    choice: &Choice,
+    radius: f64,
+) -> Result<Option<f64>, Error> {
+    let scheme = choice.make::<f64, 2>();
+    let inequality: Inequality<f64> =
+        scheme.inequality(&scene.problem, mesh, DataQuadrature::default())?;
+    let solution: Solution<f64> = solver().solve(&inequality);
+    if solution.outcome != Outcome::Converged {
+        return Ok(None);
+    }
+    let (mut inside, mut touching) = (0_u32, 0_u32);
+    for (k, place) in inequality.places.iter().enumerate() {
+        let around = place.vertices();
+        let sum: Point<f64, 2> = around.iter().map(|&v| mesh.vertices()[v as usize]).sum();
+        if inequality.bounds[k].is_inequality() && (sum / around.len() as f64).norm() < radius {
+            inside += 1;
+            touching += u32::from(solution.contact[k] != Contact::Open);
+        }
+    }
+    Ok((inside > 0).then(|| f64::from(touching) / f64::from(inside)))
+}

@@ -1,0 +1,64 @@
+//! The over-penalty factor over fourteen powers of ten.
+
+use crate::error::Error;
+use crate::scenes;
+use crate::scenes::Scene;
+use crate::stability::choice::{Choice, Penalty};
+use crate::stability::claim::{Claim, figures, jump, of, quotient};
+use crate::stability::runs::{definite, row};
+use crate::stability::{Plan, Sink};
+
+pub(crate) fn plan(plan: &mut Plan<'_>) {
+    let level = plan.pick_of(8, 32, 32);
+    let all: Vec<i32> = (-4..=10).collect();
+    let exponents: Vec<i32> = plan.pick_of(vec![-4, 2], vec![-4, 0, 2, 6, 10], all);
+    let problems: [fn() -> Scene<2>; 2] = [scenes::polynomial::<2>, scenes::signorini_2d];
+    for scheme in ["wopsip", "wopsip:facet-means"] {
+        for make in problems {
+            for &exponent in &exponents {
+                let choice = Choice::new(scheme, Penalty::Eta(10.0_f64.powi(exponent)));
+                plan.add("penalty-factor", choice, &make().name, move |c, sink| {
+                    factor(make, c, exponent, level, sink)
+                });
+            }
+        }
+    }
+}
+
+fn factor(
+    make: fn() -> Scene<2>,
+    choice: &Choice,
+    exponent: i32,
+    level: usize,
+    sink: Sink<'_>,
+) -> Result<(), Error> {
+    let eta = 10.0_f64.powi(exponent);
+    let scene = make();
+    let claim = |name| Claim::new(name, choice).on(&scene.name).level(level).at("eta", eta);
+    let mesh = scene.domain.mesh::<f64>(level)?;
+    sink(
+        claim("definite-for-every-factor")
+            .quantity("has a Cholesky factor")
+            .at_least(1.0)
+            .measured(definite(&scene.problem, &mesh, choice)?),
+    );
+    let ours = row::<f64, 2>(make(), choice, level)?;
+    let means = row::<f64, 2>(make(), &Choice::default("cr"), level)?;
+    let error = claim("error-of-large-factors")
+        .quantity("H1 error over that of cr")
+        .at_most(1.05)
+        .detail(figures(&ours));
+    let error = if exponent < 0 { error.only_reported() } else { error };
+    sink(error.measured(quotient(of(&ours, |r| r.error.h1), of(&means, |r| r.error.h1))));
+    let middle = Choice::new(choice.scheme, Penalty::Eta(100.0));
+    let middle = row::<f64, 2>(make(), &middle, level)?;
+    let scaled = quotient(of(&ours, jump), of(&middle, jump)).map(|r| r * (eta / 100.0).sqrt());
+    let jumps = claim("jumps-of-large-factors")
+        .quantity("jump part times eta^(1/2), over the same at 100")
+        .at_least(1.0 / 1.5)
+        .at_most(1.5)
+        .detail(of(&ours, jump).map_or_else(|| figures(&ours), |j| format!("jump part {j:.2e}")));
+    let jumps = if exponent < 1 { jumps.only_reported() } else { jumps };
+    sink(jumps.measured(scaled));
+    Ok(())
+}

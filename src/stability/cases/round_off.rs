@@ -1,0 +1,75 @@
+//! Over-penalty and rounding: Poisson on meshes fine enough for it to show.
+
+use crate::error::Error;
+use crate::real::Real;
+use crate::stability::choice::{Choice, Penalty, compared_and};
+use crate::stability::claim::{Claim, figures, of, quotient};
+use crate::stability::runs::{rows, sines};
+use crate::stability::{Plan, Sink};
+use crate::study::Row;
+
+/// The largest factor between errors of a mesh and of the coarser one.
+const HALVING: f64 = 0.3;
+
+pub(crate) fn plan(plan: &mut Plan<'_>) {
+    let one = Penalty::Eta(1.0);
+    let further = [Choice::new("wopsip", one), Choice::new("wopsip:facet-means", one)];
+    let (strings, squares) = (plan.pick_of(7, 10, 15), plan.pick_of(4, 5, 7));
+    for choice in compared_and(&further) {
+        plan.add("round-off", choice, "string f64", move |c, sink| {
+            sweep::<f64, 1>(c, strings, sink)
+        });
+        plan.add("round-off", choice, "string f32", move |c, sink| {
+            sweep::<f32, 1>(c, strings.min(12), sink)
+        });
+        plan.add("round-off", choice, "square f32", move |c, sink| {
+            sweep::<f32, 2>(c, squares, sink)
+        });
+        plan.add("round-off", choice, "square f64", move |c, sink| {
+            sweep::<f64, 2>(c, squares, sink)
+        });
+    }
+}
+
+/// Halves the mesh size from four subdivisions on.
+fn sweep<T: Real, const D: usize>(
+    choice: &Choice,
+    finest: u32,
+    sink: Sink<'_>,
+) -> Result<(), Error> {
+    let levels: Vec<usize> = (2..=finest).map(|k| 2_usize.pow(k)).collect();
+    let error = |row: &Row| row.error.l2;
+    let rounding = 0.5 * T::EPSILON;
+    let barrier = 4.0 * rounding.powf(1.0 / 6.0);
+    let floor = rounding.powf(0.25);
+    let mut coarser: Option<Row> = None;
+    for &level in &levels {
+        let row = rows::<T, D>(sines(), choice, &[level])?.swap_remove(0);
+        let size = 1.0 / level as f64;
+        if let Some(before) = &coarser {
+            let ratio = quotient(of(&row, error), of(before, error));
+            let claim = |name| {
+                Claim::new(name, choice)
+                    .on(&row.scene)
+                    .precision(T::NAME)
+                    .level(level)
+                    .at("h", size)
+                    .quantity("L2 error over that on twice h")
+                    .detail(figures(&row))
+                    .at_most(HALVING)
+            };
+            if choice.penalty == Penalty::Eta(1.0)
+                && choice.scheme == "wopsip"
+                && 2.0 * size >= barrier
+            {
+                sink(claim("halving-above-barrier").measured(ratio));
+            }
+            let claim = claim("halving-to-floor");
+            // quadratics reach the floor of rounding with their higher order long before
+            let is_judged = size >= floor && !choice.scheme.starts_with("p2");
+            sink(if is_judged { claim } else { claim.only_reported() }.measured(ratio));
+        }
+        coarser = Some(row);
+    }
+    Ok(())
+}

@@ -1,0 +1,123 @@
+//! Meshes that make it hard: stretched, graded, with slivers.
+
+use std::collections::HashMap;
+
+use crate::error::Error;
+use crate::mesh::{BoundaryPart, BoxDomain, Mesh, TaggedFacet};
+use crate::real::Point;
+
+/// The unit square in `n` times `n ratio` rectangles, each cut in two.
+pub(crate) fn stretched(n: usize, ratio: usize) -> Result<Mesh<f64, 2>, Error> {
+    let square = BoxDomain::dirichlet(Point::zeros(), Point::repeat(1.0));
+    Ok(Mesh::kuhn_box(&square, [n, n * ratio])?)
+}
+
+/// The same mesh with every vertex moved and every facet of the boundary in the same part.
+pub(crate) fn moved<const D: usize>(
+    mesh: &Mesh<f64, D>,
+    to: impl Fn(&Point<f64, D>) -> Point<f64, D>,
+) -> Result<Mesh<f64, D>, Error> {
+    let tagged = |f: &crate::mesh::BoundaryFacet| {
+        let mut vertices = [0; D];
+        let around = mesh.facet_vertices(f.cell as usize, f.local as usize);
+        vertices.iter_mut().zip(around).for_each(|(place, v)| *place = v);
+        TaggedFacet { vertices, part: f.part }
+    };
+    let boundary: Vec<TaggedFacet<D>> = mesh.boundary().iter().map(tagged).collect();
+    let vertices = mesh.vertices().iter().map(to).collect();
+    Ok(Mesh::new(vertices, mesh.cells().to_vec(), &boundary)?)
+}
+
+/// `(-1, 1) x (0, 1)` in `n` squares for each unit, graded to the origin by `t^power`; contact below.
+pub(crate) fn graded(n: usize, power: i32) -> Result<Mesh<f64, 2>, Error> {
+    let mesh = Mesh::kuhn_box(&BoxDomain::above_contact(), [2 * n, n])?;
+    moved(&mesh, |x| x.map(|t| t.signum() * t.abs().powi(power)))
+}
+
+/// The same mesh with Dirichlet data on the whole boundary.
+pub(crate) fn clamped(
+    vertices: Vec<Point<f64, 3>>,
+    cells: Vec<u32>,
+) -> Result<Mesh<f64, 3>, Error> {
+    let mut seen: HashMap<[u32; 3], usize> = HashMap::new();
+    let facets = |cell: &[u32]| {
+        let mut sorted = [cell[0], cell[1], cell[2], cell[3]];
+        sorted.sort_unstable();
+        let [a, b, c, d] = sorted;
+        [[b, c, d], [a, c, d], [a, b, d], [a, b, c]]
+    };
+    for cell in cells.chunks_exact(4) {
+        facets(cell).into_iter().for_each(|f| *seen.entry(f).or_default() += 1);
+    }
+    let mut boundary: Vec<TaggedFacet<3>> = seen
+        .into_iter()
+        .filter(|&(_, count)| count == 1)
+        .map(|(vertices, _)| TaggedFacet { vertices, part: BoundaryPart::Dirichlet })
+        .collect();
+    boundary.sort_unstable_by_key(|f| f.vertices);
+    Ok(Mesh::new(vertices, cells, &boundary)?)
+}
+
+/// The cube `(-half, half)^3` in `n^3` smaller ones, `n` even, each cut into five tetrahedra, with a layer of
+/// slivers in the middle: tetrahedra on the four corners of a square that rise and fall by turns,
+/// of height `flatness` times the side of the small cubes.
+///
+/// Cut into five, a cube has diagonals between every other corner. Below the layer these are the
+/// corners that fall, above it those that rise: so the slivers fill the gap, and every sliver shares
+/// its four facets with tetrahedra above and below. All other tetrahedra stay as they were up to a
+/// shift of corners by half of that height.
+pub(crate) fn slivers(half: f64, n: usize, flatness: f64) -> Result<Mesh<f64, 3>, Error> {
+    let (side, stride, middle) = (2.0 * half / n as f64, n + 1, n / 2);
+    let number = |i: [usize; 3]| (i[0] + stride * (i[1] + stride * i[2])) as u32;
+    let is_even = |i: [usize; 3]| i.iter().sum::<usize>().is_multiple_of(2);
+    let mut vertices = Vec::new();
+    for v in 0..stride.pow(3) {
+        let i = [v % stride, v / stride % stride, v / (stride * stride)];
+        let mut x = Point::from_fn(|k, _| side * i[k] as f64 - half);
+        if i[2] == middle {
+            x[2] += if is_even(i) { -0.5 } else { 0.5 } * flatness * side;
+        }
+        vertices.push(x);
+    }
+    let mut cells = Vec::new();
+    for c in 0..n.pow(3) {
+        let at = [c % n, c / n % n, c / (n * n)];
+        let corner = |k: usize| [at[0] + k % 2, at[1] + k / 2 % 2, at[2] + k / 4];
+        // diagonals join the even corners below the layer, the odd ones above it
+        let joins = |k: usize| is_even(corner(k)) == (at[2] < middle);
+        let joined: Vec<usize> = (0..8).filter(|&k| joins(k)).collect();
+        cells.extend(joined.iter().map(|&k| number(corner(k))));
+        for k in (0..8).filter(|&k| !joins(k)) {
+            cells.push(number(corner(k)));
+            cells.extend([1, 2, 4].map(|bit| number(corner(k ^ bit))));
+        }
+        if at[2] == middle {
+            cells.extend((0..4).map(|k| number(corner(k))));
+        }
+    }
+    clamped(vertices, cells)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{graded, slivers};
+
+    #[test]
+    fn slivers_fill_the_cube() {
+        let flatness = 1e-3;
+        let mesh = slivers(1.0, 4, flatness).unwrap();
+        assert_eq!(mesh.n_cells(), 5 * 64 + 16);
+        let volumes: Vec<f64> = (0..mesh.n_cells()).map(|c| mesh.geometry(c).volume).collect();
+        let total: f64 = volumes.iter().sum();
+        assert!((total - 8.0).abs() < 1e-12, "{total}");
+        let least = volumes.iter().copied().fold(f64::INFINITY, f64::min);
+        // a third of the height times the square of the side, which is 1/2
+        assert!((least / (flatness / 24.0) - 1.0).abs() < 1e-9, "{least}");
+    }
+
+    #[test]
+    fn graded_meshes_reach_their_smallest_side() {
+        let mesh = graded(8, 4).unwrap();
+        assert!((mesh.shortest_edge() / 8.0_f64.powi(-4) - 1.0).abs() < 1e-9);
+    }
+}

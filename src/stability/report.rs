@@ -1,0 +1,230 @@
+//! The report of a stability study and the files it is written to.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use serde_json::json;
+
+use super::row::{StabilityRow, Verdict, short};
+use super::summary::{by_criterion, by_scheme, missed, robust};
+use super::{CRITERIA, Effort, STABILITY_CASES};
+use crate::error::Error;
+use crate::output::csv;
+use crate::study::Program;
+use crate::work_precision::{Cell, latex, markdown, replace};
+use crate::work_precision::{Provenance, Table};
+
+/// What a reader needs to know before the tables.
+const READING: [&str; 3] = [
+    "Every row has a figure, the limits it should keep, and the verdict that follows from the two. A row that fails as expected shows a choice of which theory or experience says that it is not enough there; a row that is missed is a failure that nobody announced. What is reported only has no limits. Several pages of rows follow the summary: one table for each case, the criteria in words below it.",
+    "Schemes: p1 and p2, conforming linear and quadratic elements with bounds at nodes; cr, Crouzeix-Raviart elements with bounds on facet means; sipg and nipg, symmetric and non-symmetric interior penalty on broken linears; wopsip, the weakly over-penalised method on broken linears with bounds at vertices, wopsip:facet-means the same with bounds on facet means.",
+    "Penalties: h_F is the diameter of a facet, l_F the height of its cells over it, h the mesh size, diam the diameter of the domain, and the proven bound the least interior penalty that is provably enough on each cell. All but what ignores it carry the coefficient of the problem. L2 and H1 are norms of the error (H1 broken and without values), energy is the scheme's own norm, with its penalty. Problems are those of the catalogue of scenes; sines-Dd is Poisson's equation solved by the product of sin(pi x_k).",
+];
+
+/// All rows, in the order run.
+#[derive(Clone, Debug, PartialEq)]
+pub struct StabilityReport {
+    /// The program.
+    pub program: Program,
+    /// Where and when.
+    pub provenance: Provenance,
+    /// How much was run.
+    pub effort: Effort,
+    /// One row for every figure.
+    pub rows: Vec<StabilityRow>,
+    /// Pieces of work that ended in an error, and why.
+    pub failures: Vec<String>,
+}
+
+impl StabilityReport {
+    /// A report without rows.
+    pub fn new(effort: Effort) -> Self {
+        Self {
+            program: Program::new("stability", "f64, f32", rayon::current_num_threads(), 1),
+            provenance: Provenance::now(1),
+            effort,
+            rows: Vec::new(),
+            failures: Vec::new(),
+        }
+    }
+
+    /// How many rows have this verdict.
+    pub fn count(&self, verdict: Verdict) -> usize {
+        self.rows.iter().filter(|row| row.verdict == verdict).count()
+    }
+
+    /// For every case in which a scheme is shown with several penalties, which of them keeps what
+    /// is asked: a sentence each, made from the verdicts.
+    pub fn robust_choices(&self) -> Vec<String> {
+        robust(&self.rows)
+    }
+
+    /// All tables: verdicts by scheme and by criterion, what was missed, then the rows case by
+    /// case.
+    pub fn tables(&self) -> Vec<Table> {
+        let mut tables = vec![by_scheme(&self.rows), by_criterion(&self.rows)];
+        tables.extend(missed(&self.rows));
+        let cases =
+            STABILITY_CASES.iter().filter(|case| self.rows.iter().any(|r| r.case == **case));
+        tables.extend(cases.map(|case| self.case_table(case)));
+        tables
+    }
+
+    /// Verdicts, what was missed and which choices are robust, for a terminal: the report without
+    /// its rows.
+    pub fn summary(&self) -> String {
+        let mut text = format!("{}\n", self.heading());
+        for sentence in self.robust_choices() {
+            text += &format!("{sentence}\n");
+        }
+        for failure in &self.failures {
+            text += &format!("Not run to the end: {failure}.\n");
+        }
+        let counted = [by_scheme(&self.rows), by_criterion(&self.rows)];
+        for table in counted.into_iter().chain(missed(&self.rows)) {
+            text += &format!("\n{}", table.to_text());
+        }
+        text
+    }
+
+    fn case_table(&self, case: &str) -> Table {
+        let rows: Vec<&StabilityRow> = self.rows.iter().filter(|r| r.case == case).collect();
+        let line = |row: &&StabilityRow| {
+            let sweep = row
+                .value
+                .map_or(String::new(), |value| format!("{} {}", row.parameter, short(value)));
+            vec![
+                Cell::Words(row.criterion.clone()),
+                Cell::Words(row.scheme.clone()),
+                Cell::Words(row.choice.clone()),
+                Cell::Words(format!("{} {}", row.problem, row.precision)),
+                Cell::whole(row.level),
+                Cell::Words(sweep),
+                Cell::Words(row.quantity.clone()),
+                Cell::Words(row.expected.words()),
+                row.measured.map_or(Cell::Nothing, |x| Cell::Number(short(x), None)),
+                Cell::Words(row.verdict_words()),
+                Cell::Words(row.detail.clone()),
+            ]
+        };
+        let asked = CRITERIA.iter().filter(|c| rows.iter().any(|r| r.criterion == c.name));
+        Table {
+            title: format!("Case {case}"),
+            columns: [
+                "criterion",
+                "scheme",
+                "penalty",
+                "problem",
+                "n",
+                "at",
+                "quantity",
+                "expected",
+                "measured",
+                "verdict",
+                "further figures",
+            ]
+            .map(str::to_owned)
+            .into(),
+            rows: rows.iter().map(line).collect(),
+            remarks: asked.map(|c| format!("{}: {}", c.name, c.sentence)).collect(),
+        }
+    }
+
+    /// The report as JSON: `program`, `provenance`, `criteria`, `rows`, `failures` and
+    /// `robust_choices`. What does not apply is null.
+    pub fn to_json(&self) -> String {
+        let value = json!({
+            "program": self.program,
+            "provenance": self.provenance,
+            "criteria": CRITERIA,
+            "rows": self.rows,
+            "failures": self.failures,
+            "robust_choices": self.robust_choices(),
+        });
+        format!("{value:#}\n")
+    }
+
+    /// The rows as comma-separated values, the keys of JSON joined by dots.
+    pub fn to_csv(&self) -> String {
+        csv::lines(&self.rows)
+    }
+
+    /// Tables for a terminal.
+    pub fn to_text(&self) -> String {
+        self.document(Table::to_text, |line| format!("{line}\n"))
+    }
+
+    /// The same in Markdown.
+    pub fn to_markdown(&self) -> String {
+        let text = self.document(Table::to_markdown, |line| format!("{}\n\n", markdown(line)));
+        format!("# Stability\n\n{text}")
+    }
+
+    /// The same in LaTeX, for `\input`; it needs the package `booktabs`.
+    pub fn to_latex(&self) -> String {
+        let text =
+            self.document(Table::to_latex, |line| format!("\\noindent {}\\par\n", latex(line)));
+        format!("% needs \\usepackage{{booktabs}}\n{text}")
+    }
+
+    fn document(&self, table: fn(&Table) -> String, line: impl Fn(&str) -> String) -> String {
+        let mut text = line(&self.heading());
+        for explained in READING {
+            text += &line(explained);
+        }
+        for sentence in self.robust_choices() {
+            text += &line(&sentence);
+        }
+        for failure in &self.failures {
+            text += &line(&format!("Not run to the end: {failure}."));
+        }
+        for t in self.tables() {
+            text += "\n";
+            text += &table(&t);
+        }
+        text
+    }
+
+    /// Program, provenance and the count of verdicts in one line.
+    fn heading(&self) -> String {
+        let Program { name, version, threads, precision, target_cpu, .. } = &self.program;
+        let Provenance { date, processor, complete, .. } = &self.provenance;
+        let known = |text: &Option<String>| text.clone().unwrap_or_else(|| "unknown".to_owned());
+        let effort = match self.effort {
+            Effort::Trial => "trial",
+            Effort::Quick => "quick",
+            Effort::Full => "full",
+        };
+        let end = if *complete { "" } else { " (interrupted or still running)" };
+        let counts: Vec<String> = Verdict::ALL
+            .into_iter()
+            .map(|verdict| format!("{} {}", self.count(verdict), verdict.name()))
+            .collect();
+        format!(
+            "{name} {version}, {}; {target_cpu}, {}; {threads} threads; {precision}; {effort} run{end}; {} rows: {}.",
+            known(date),
+            known(processor),
+            self.rows.len(),
+            counts.join(", "),
+        )
+    }
+
+    /// Writes `stability.json`, `.csv`, `.txt`, `.md` and `.tex` into a directory, which is made if
+    /// need be. Each file takes the place of an earlier one only when it is whole.
+    ///
+    /// # Errors
+    /// [`Error::Write`] at the first file that cannot be written.
+    pub fn write(&self, directory: &Path) -> Result<Vec<PathBuf>, Error> {
+        let files = [
+            ("stability.json", self.to_json()),
+            ("stability.csv", self.to_csv()),
+            ("stability.txt", self.to_text()),
+            ("stability.md", self.to_markdown()),
+            ("stability.tex", self.to_latex()),
+        ];
+        let put = |(name, text): (&str, String)| {
+            replace(&directory.join(name), |path| fs::write(path, text).map_err(|e| e.to_string()))
+        };
+        files.into_iter().map(put).collect()
+    }
+}

@@ -1,0 +1,223 @@
+//! A row: one figure against one expectation, and the verdict that follows.
+
+use serde::Serialize;
+
+/// Where a figure should lie. Without either limit it is reported and not judged.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct Expected {
+    /// The smallest figure allowed.
+    pub at_least: Option<f64>,
+    /// The largest figure allowed.
+    pub at_most: Option<f64>,
+    /// Whether this choice is shown because it is known not to get there.
+    pub to_fail: bool,
+}
+
+impl Expected {
+    /// Whether a figure lies where it should; one that is not a number does not.
+    pub fn holds(&self, figure: f64) -> bool {
+        figure.is_finite()
+            && self.at_least.is_none_or(|least| figure >= least)
+            && self.at_most.is_none_or(|most| figure <= most)
+    }
+
+    /// By what factor a figure misses; none where no factor tells it: a limit of zero, a figure that
+    /// is not positive or not a number.
+    pub fn missed_by(&self, figure: f64) -> Option<f64> {
+        if self.holds(figure) || figure.is_nan() {
+            return None;
+        }
+        let factor = match (self.at_least, self.at_most) {
+            (Some(least), _) if figure < least => least / figure,
+            (_, Some(most)) => figure / most,
+            _ => return None,
+        };
+        (factor.is_finite() && factor > 0.0).then_some(factor)
+    }
+
+    fn is_judged(&self) -> bool {
+        self.at_least.is_some() || self.at_most.is_some()
+    }
+
+    /// The limits in a few characters.
+    pub fn words(&self) -> String {
+        match (self.at_least, self.at_most) {
+            (Some(least), Some(most)) => format!("{} to {}", short(least), short(most)),
+            (Some(least), None) => format!("at least {}", short(least)),
+            (None, Some(most)) => format!("at most {}", short(most)),
+            (None, None) => "-".to_owned(),
+        }
+    }
+}
+
+/// A number in three digits, without a power of ten where it needs none.
+pub(crate) fn short(x: f64) -> String {
+    match x.abs() {
+        0.0 => "0".to_owned(),
+        a if !(1e-2..1e4).contains(&a) => {
+            let text = format!("{x:.2e}");
+            match text.split_once('e') {
+                Some((digits, power)) => {
+                    let digits = digits.trim_end_matches('0').trim_end_matches('.');
+                    format!("{digits}e{power}")
+                }
+                None => text,
+            }
+        }
+        a => {
+            let places = if a >= 100.0 {
+                1
+            } else if a >= 10.0 {
+                2
+            } else {
+                3
+            };
+            let text = format!("{x:.places$}");
+            text.trim_end_matches('0').trim_end_matches('.').to_owned()
+        }
+    }
+}
+
+/// What follows from figure and expectation.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Verdict {
+    /// The figure lies where it should.
+    Met,
+    /// It does not, or there is none because nothing was solved.
+    Missed,
+    /// It does not, and was known not to.
+    FailsAsExpected,
+    /// It does, though it was not expected to.
+    BetterThanExpected,
+    /// Nothing is expected here: the figure is for the reader.
+    Reported,
+    /// The criterion does not apply, or what it needs is absent.
+    NotApplicable,
+}
+
+impl Verdict {
+    /// All, in the order of summaries.
+    pub const ALL: [Self; 6] = [
+        Self::Met,
+        Self::Missed,
+        Self::FailsAsExpected,
+        Self::BetterThanExpected,
+        Self::Reported,
+        Self::NotApplicable,
+    ];
+
+    /// The words of reports.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Met => "met",
+            Self::Missed => "missed",
+            Self::FailsAsExpected => "fails as expected",
+            Self::BetterThanExpected => "better than expected",
+            Self::Reported => "reported",
+            Self::NotApplicable => "not applicable",
+        }
+    }
+
+    /// The verdict on a figure, or on its absence after a failed solve.
+    fn on(expected: &Expected, measured: Option<f64>) -> Self {
+        if !expected.is_judged() {
+            return Self::Reported;
+        }
+        match (measured.is_some_and(|figure| expected.holds(figure)), expected.to_fail) {
+            (true, false) => Self::Met,
+            (true, true) => Self::BetterThanExpected,
+            (false, false) => Self::Missed,
+            (false, true) => Self::FailsAsExpected,
+        }
+    }
+}
+
+/// One figure of one scheme at one place of a sweep.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct StabilityRow {
+    /// Name of the case.
+    pub case: String,
+    /// Name of the criterion; see [`CRITERIA`](crate::stability::CRITERIA).
+    pub criterion: String,
+    /// The scheme, with the placement of its bounds after a colon if it is not the default.
+    pub scheme: String,
+    /// What was chosen about its penalty.
+    pub choice: String,
+    /// Scalar of assembly and solve.
+    pub precision: String,
+    /// Scene or problem.
+    pub problem: String,
+    /// Subdivisions of the shortest side, where the mesh has such a number.
+    pub level: Option<usize>,
+    /// Name of what is swept.
+    pub parameter: String,
+    /// Its value here.
+    pub value: Option<f64>,
+    /// What was measured.
+    pub quantity: String,
+    /// Where it should lie.
+    pub expected: Expected,
+    /// The figure; none if nothing was solved.
+    pub measured: Option<f64>,
+    /// Further figures, or why there is none.
+    pub detail: String,
+    /// What follows.
+    pub verdict: Verdict,
+    /// By what factor a limit is missed, where a factor tells it.
+    pub missed_by: Option<f64>,
+}
+
+impl StabilityRow {
+    /// The verdict in words, with the factor by which a limit is missed.
+    pub fn verdict_words(&self) -> String {
+        match (self.verdict, self.missed_by, self.measured) {
+            (Verdict::Missed | Verdict::FailsAsExpected, Some(factor), _) => {
+                format!("{} (factor {})", self.verdict.name(), short(factor))
+            }
+            (Verdict::Missed | Verdict::FailsAsExpected, None, None) => {
+                format!("{} (no figure)", self.verdict.name())
+            }
+            _ => self.verdict.name().to_owned(),
+        }
+    }
+
+    /// Draws the verdict from the figures.
+    pub(crate) fn judged(mut self) -> Self {
+        self.measured = self.measured.filter(|figure| figure.is_finite());
+        self.verdict = Verdict::on(&self.expected, self.measured);
+        self.missed_by = self.measured.and_then(|figure| self.expected.missed_by(figure));
+        self
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Expected, Verdict, short};
+
+    #[test]
+    fn verdicts_follow_from_figures() {
+        let most = Expected { at_most: Some(1.5), ..Expected::default() };
+        assert_eq!(Verdict::on(&most, Some(1.5)), Verdict::Met);
+        assert_eq!(Verdict::on(&most, Some(3.0)), Verdict::Missed);
+        assert_eq!(Verdict::on(&most, None), Verdict::Missed);
+        assert_eq!(most.missed_by(3.0), Some(2.0));
+        let fail = Expected { to_fail: true, ..most };
+        assert_eq!(Verdict::on(&fail, Some(3.0)), Verdict::FailsAsExpected);
+        assert_eq!(Verdict::on(&fail, Some(1.0)), Verdict::BetterThanExpected);
+        assert_eq!(Verdict::on(&Expected::default(), Some(1.0)), Verdict::Reported);
+        let least = Expected { at_least: Some(0.9), ..Expected::default() };
+        assert_eq!(least.missed_by(0.45), Some(2.0));
+        assert_eq!(least.missed_by(-0.1), None);
+        assert!(!least.holds(f64::NAN));
+    }
+
+    #[test]
+    fn numbers_are_short() {
+        assert_eq!(short(1.5), "1.5");
+        assert_eq!(short(1e-10), "1e-10");
+        assert_eq!(short(0.0), "0");
+        assert_eq!(short(120.0), "120");
+        assert_eq!(short(2.341e7), "2.34e7");
+    }
+}

@@ -1,0 +1,150 @@
+//! Runs: a scheme on a scene or on a mesh, and what its matrix is like.
+
+use super::choice::Choice;
+use crate::algebra::{Bound, SparseMatrix};
+use crate::assemble::DataQuadrature;
+use crate::error::Error;
+use crate::inequality::{ActiveSet, LastResort};
+use crate::linear::{Linear, is_positive_definite};
+use crate::mesh::{BoxDomain, Mesh};
+use crate::nested::{Levels, Solved, Task};
+use crate::problem::Problem;
+use crate::real::{Point, Real};
+use crate::scenes::Scene;
+use crate::scheme::Regularity;
+use crate::study::{Row, Study};
+
+/// The solver of the study: the library's own, with factors on every level, so that no tolerance of
+/// an iterative solver enters.
+pub(crate) fn solver() -> ActiveSet {
+    ActiveSet { linear: Linear::Direct, ..ActiveSet::default() }
+}
+
+/// The same with another last resort and another number of sets.
+pub(crate) fn solver_with(last_resort: LastResort, max_outer: usize) -> ActiveSet {
+    ActiveSet { last_resort, max_outer, ..solver() }
+}
+
+/// The rows of a scheme on levels of a scene.
+pub(crate) fn rows<T: Real, const D: usize>(
+    scene: Scene<D>,
+    choice: &Choice,
+    levels: &[usize],
+) -> Result<Vec<Row>, Error> {
+    let study = Study::<T, D>::new(scene).boxed_scheme(choice.make()).solver(solver());
+    Ok(study.levels(levels.iter().copied()).run()?.rows)
+}
+
+/// The row of a scheme on one level.
+pub(crate) fn row<T: Real, const D: usize>(
+    scene: Scene<D>,
+    choice: &Choice,
+    level: usize,
+) -> Result<Row, Error> {
+    Ok(rows::<T, D>(scene, choice, &[level])?.swap_remove(0))
+}
+
+/// The row of a scheme on a mesh.
+pub(crate) fn row_on<const D: usize>(
+    scene: Scene<D>,
+    mesh: Mesh<f64, D>,
+    choice: &Choice,
+) -> Result<Row, Error> {
+    let study = Study::<f64, D>::new(scene).on_mesh(mesh).boxed_scheme(choice.make());
+    Ok(study.solver(solver()).levels([0]).run()?.rows.swap_remove(0))
+}
+
+/// A scheme's solution on a level, with fields; started from conforming elements if asked for.
+pub(crate) fn solved<const D: usize>(
+    scene: &Scene<D>,
+    choice: &Choice,
+    level: usize,
+    solver: &ActiveSet,
+    is_warm: bool,
+) -> Result<(Mesh<f64, D>, Solved), Error> {
+    let quadrature = DataQuadrature::default();
+    let mut levels = Levels::<f64, D>::new(&scene.problem, &scene.domain, None);
+    levels.make(level)?;
+    let start = if is_warm { Some(levels.contact(level, solver, quadrature, 1)?) } else { None };
+    let Some((mesh, _)) = levels.mesh(level) else { unreachable!("made above") };
+    let scheme = choice.make::<f64, D>();
+    let solved = scheme.solve(&Task {
+        problem: &scene.problem,
+        mesh,
+        start: start.as_deref(),
+        solver,
+        quadrature,
+        with_errors: true,
+        repeat: 1,
+        with_fields: true,
+    })?;
+    Ok((mesh.clone(), solved))
+}
+
+/// Whether a scheme's matrix is symmetric positive definite on a mesh: 1 or 0; none if it is not
+/// meant to be symmetric or the question could not be answered.
+pub(crate) fn definite<const D: usize>(
+    problem: &Problem<D>,
+    mesh: &Mesh<f64, D>,
+    choice: &Choice,
+) -> Result<Option<f64>, Error> {
+    let inequality =
+        choice.make::<f64, D>().inequality(problem, mesh, DataQuadrature::default())?;
+    let free: Vec<u32> = (0..inequality.size() as u32)
+        .filter(|&i| !matches!(inequality.bounds[i as usize], Bound::Fixed(_)))
+        .collect();
+    if !inequality.symmetric {
+        return Ok(None);
+    }
+    let answer = is_positive_definite(&inequality.matrix, true, &free).ok();
+    Ok(answer.map(|is| f64::from(u8::from(is))))
+}
+
+/// The rows and columns of a scheme's matrix that belong to unknowns which are not given.
+pub(crate) fn free_matrix<const D: usize>(
+    problem: &Problem<D>,
+    mesh: &Mesh<f64, D>,
+    choice: &Choice,
+) -> Result<SparseMatrix<f64>, Error> {
+    let inequality =
+        choice.make::<f64, D>().inequality(problem, mesh, DataQuadrature::default())?;
+    let is_free = |i: usize| inequality.bounds[i].only_value().is_none();
+    let mut number = vec![u32::MAX; inequality.size()];
+    let free: Vec<usize> = (0..inequality.size()).filter(|&i| is_free(i)).collect();
+    free.iter().enumerate().for_each(|(k, &i)| number[i] = k as u32);
+    let mut part = SparseMatrix { row_starts: vec![0], columns: Vec::new(), values: Vec::new() };
+    for &i in &free {
+        let (columns, values) = inequality.matrix.row(i);
+        for (&j, &a) in columns.iter().zip(values) {
+            if number[j as usize] != u32::MAX {
+                part.columns.push(number[j as usize]);
+                part.values.push(a);
+            }
+        }
+        part.row_starts.push(part.columns.len() as u32);
+    }
+    Ok(part)
+}
+
+/// `-Laplace u = f` in the unit box with `u` the product of `sin(pi x_k)`.
+pub(crate) fn sines<const D: usize>() -> Scene<D> {
+    use std::f64::consts::PI;
+    let value = |x: &Point<f64, D>| x.iter().map(|x| (PI * x).sin()).product::<f64>();
+    let gradient = |x: &Point<f64, D>| {
+        Point::from_fn(|k, _| {
+            let factor = |(j, x): (usize, &f64)| {
+                if j == k { PI * (PI * x).cos() } else { (PI * x).sin() }
+            };
+            x.iter().enumerate().map(factor).product::<f64>()
+        })
+    };
+    Scene {
+        name: format!("sines-{D}d"),
+        summary: "Poisson in the unit box",
+        domain: BoxDomain::dirichlet(Point::zeros(), Point::repeat(1.0)).into(),
+        problem: Problem::new()
+            .source(move |x| D as f64 * PI * PI * value(x))
+            .exact(value, gradient),
+        regularity: Regularity { sobolev: f64::INFINITY, strictly_complementary: true },
+    }
+}

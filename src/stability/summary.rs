@@ -1,0 +1,143 @@
+//! Verdicts counted, and what they say about choices.
+
+use super::CRITERIA;
+use super::row::{StabilityRow, Verdict, short};
+use crate::study::table::distinct;
+use crate::work_precision::Cell;
+use crate::work_precision::Table;
+
+fn count<'r>(rows: impl Iterator<Item = &'r StabilityRow>, verdict: Verdict) -> usize {
+    rows.filter(|row| row.verdict == verdict).count()
+}
+
+/// A choice without the power of ten of a factor that is swept.
+fn kind(choice: &str) -> String {
+    match choice.split_once("/h_F^3") {
+        Some((factor, rest)) if factor != "1" && factor.parse::<f64>().is_ok() => {
+            format!("other factors/h_F^3{rest}")
+        }
+        _ => choice.to_owned(),
+    }
+}
+
+/// Verdicts of every scheme and choice.
+pub(crate) fn by_scheme(rows: &[StabilityRow]) -> Table {
+    let choices = distinct(rows.iter().map(|r| (r.scheme.clone(), kind(&r.choice))));
+    let line = |(scheme, choice): (String, String)| {
+        let mine = || rows.iter().filter(|r| r.scheme == scheme && kind(&r.choice) == choice);
+        let counts = Verdict::ALL.map(|verdict| Cell::whole(Some(count(mine(), verdict))));
+        let mut cells = vec![Cell::Words(scheme.clone()), Cell::Words(choice.clone())];
+        cells.extend(counts);
+        cells
+    };
+    let mut columns = vec!["scheme".to_owned(), "penalty".to_owned()];
+    columns.extend(Verdict::ALL.map(|v| v.name().to_owned()));
+    let rows = choices.into_iter().map(line).collect();
+    Table { title: "Verdicts by scheme and penalty".into(), columns, rows, remarks: Vec::new() }
+}
+
+/// Verdicts of every criterion.
+pub(crate) fn by_criterion(rows: &[StabilityRow]) -> Table {
+    let asked = CRITERIA.iter().filter(|c| rows.iter().any(|r| r.criterion == c.name));
+    let line = |c: &crate::stability::Criterion| {
+        let mine = || rows.iter().filter(|r| r.criterion == c.name);
+        let mut cells = vec![Cell::Words(c.case.to_owned()), Cell::Words(c.name.to_owned())];
+        cells.extend(Verdict::ALL.map(|verdict| Cell::whole(Some(count(mine(), verdict)))));
+        let failing = distinct(
+            mine()
+                .filter(|r| r.verdict == Verdict::Missed)
+                .map(|r| format!("{} {}", r.scheme, r.choice).trim().to_owned()),
+        );
+        cells.push(Cell::Words(failing.join("; ")));
+        cells
+    };
+    let mut columns = vec!["case".to_owned(), "criterion".to_owned()];
+    columns.extend(Verdict::ALL.map(|v| v.name().to_owned()));
+    columns.push("missed by".to_owned());
+    let rows = asked.map(line).collect();
+    Table { title: "Verdicts by criterion".into(), columns, rows, remarks: Vec::new() }
+}
+
+/// Every row that missed what it should keep, with by how much; no table if there is none.
+pub(crate) fn missed(rows: &[StabilityRow]) -> Option<Table> {
+    let line = |row: &StabilityRow| {
+        let sweep =
+            row.value.map_or(String::new(), |value| format!("{} {}", row.parameter, short(value)));
+        vec![
+            Cell::Words(row.criterion.clone()),
+            Cell::Words(format!("{} {}", row.scheme, row.choice).trim().to_owned()),
+            Cell::Words(format!("{} {}", row.problem, row.precision)),
+            Cell::whole(row.level),
+            Cell::Words(sweep),
+            Cell::Words(row.expected.words()),
+            row.measured.map_or(Cell::Nothing, |x| Cell::Number(short(x), None)),
+            row.missed_by.map_or(Cell::Nothing, |x| Cell::Number(short(x), None)),
+            Cell::Words(row.detail.clone()),
+        ]
+    };
+    let rows: Vec<_> = rows.iter().filter(|r| r.verdict == Verdict::Missed).map(line).collect();
+    let columns = [
+        "criterion",
+        "scheme",
+        "problem",
+        "n",
+        "at",
+        "expected",
+        "measured",
+        "factor",
+        "further figures",
+    ];
+    (!rows.is_empty()).then(|| Table {
+        title: "What was missed, and by what factor".into(),
+        columns: columns.map(str::to_owned).into(),
+        rows,
+        remarks: Vec::new(),
+    })
+}
+
+/// Which penalties of a scheme keep all that is asked in a case, where several are shown.
+pub(crate) fn robust(rows: &[StabilityRow]) -> Vec<String> {
+    let mut sentences = Vec::new();
+    for key in distinct(rows.iter().map(|r| (r.case.clone(), r.scheme.clone()))) {
+        let mine = || rows.iter().filter(|r| (&r.case, &r.scheme) == (&key.0, &key.1));
+        let choices = distinct(mine().map(|r| r.choice.clone()));
+        let judged = |choice: &str| {
+            let of = |v: Verdict| count(mine().filter(|r| r.choice == choice), v);
+            let kept = of(Verdict::Met) + of(Verdict::BetterThanExpected);
+            (kept, kept + of(Verdict::Missed) + of(Verdict::FailsAsExpected))
+        };
+        let counts: Vec<(String, usize, usize)> = choices
+            .into_iter()
+            .map(|c| {
+                let (kept, all) = judged(&c);
+                (c, kept, all)
+            })
+            .filter(|c| c.2 > 0)
+            .collect();
+        if counts.len() < 2 {
+            continue;
+        }
+        let list = |wanted: bool| {
+            let chosen = counts.iter().filter(|(_, kept, all)| (kept == all) == wanted);
+            let words = |(c, kept, all): &(String, usize, usize)| {
+                let name = if c.is_empty() { "default" } else { c };
+                if wanted {
+                    format!("\"{name}\"")
+                } else {
+                    format!("\"{name}\" ({kept} of {all} rows)")
+                }
+            };
+            chosen.map(words).collect::<Vec<_>>()
+        };
+        let (robust, others) = (list(true), list(false));
+        let text = match (robust.is_empty(), others.is_empty()) {
+            (false, true) => format!("every penalty shown is robust: {}", robust.join(", ")),
+            (false, false) => {
+                format!("robust: {}; not robust: {}", robust.join(", "), others.join(", "))
+            }
+            _ => format!("no penalty shown is robust: {}", others.join(", ")),
+        };
+        sentences.push(format!("{}, {}: {text}.", key.0, key.1));
+    }
+    sentences
+}

@@ -1,0 +1,109 @@
+//! Whether a mesh fits a scene.
+
+use crate::assemble::{DataQuadrature, Discretisation};
+use crate::error::Error;
+use crate::mesh::{BoundaryPart, Mesh, describe_point};
+use crate::real::{Real, point_f64};
+use crate::scenes::Scene;
+use crate::scheme::{ConformingP1, CrouzeixRaviartScheme};
+
+/// Checks that a mesh can carry a scene, and tells where the scene's exact solution fails on it: the
+/// barycentre of a facet, or none.
+///
+/// Dirichlet and Neumann data of a scene with an exact solution come from that solution wherever
+/// the mesh has such parts, so it stays the solution on any domain where it is smooth enough. Only
+/// the contact condition may fail there: it is tested on every contact facet.
+///
+/// # Errors
+/// [`Error::UnfitMesh`] if mesh and scene do not agree on having a contact part, or if the data of
+/// the scene are no data on the mesh: not finite, or without an admissible value; [`Error::Mesh`] if
+/// a component of the mesh is held by nothing.
+pub fn check_fit<T: Real, const D: usize>(
+    scene: &Scene<D>,
+    mesh: &Mesh<T, D>,
+) -> Result<Option<String>, Error> {
+    check_contact(scene, mesh.has_part(BoundaryPart::Contact))?;
+    if scene.problem.reaction.is_none() {
+        mesh.check_supported()?;
+    }
+    check_data(scene, mesh)?;
+    Ok(first_failure(scene, mesh))
+}
+
+/// A mesh may reach beyond where the data of a scene make sense. All kinds of nodes are tried before
+/// any scheme runs: vertices, facets, and the points of quadrature.
+fn check_data<T: Real, const D: usize>(scene: &Scene<D>, mesh: &Mesh<T, D>) -> Result<(), Error> {
+    let (problem, quadrature) = (&scene.problem, DataQuadrature::default());
+    let at_vertices = || {
+        let space = Discretisation::new(&ConformingP1, problem, mesh, quadrature)?;
+        space.load().and_then(|_| space.bounds()).map(|_| ())
+    };
+    let on_facets = || {
+        let space = Discretisation::new(&CrouzeixRaviartScheme, problem, mesh, quadrature)?;
+        space.bounds().map(|_| ())
+    };
+    at_vertices().and_then(|()| on_facets()).map_err(|why| match why {
+        Error::DataNotFinite { .. }
+        | Error::CoefficientNotPositive { .. }
+        | Error::EmptyConstraint { .. } => {
+            Error::UnfitMesh { scene: scene.name.clone(), why: why.to_string() }
+        }
+        other => other,
+    })
+}
+
+/// Checks that the built-in domain of a scene has the parts its problem needs.
+///
+/// # Errors
+/// [`Error::UnfitMesh`].
+pub(crate) fn check_domain<const D: usize>(scene: &Scene<D>) -> Result<(), Error> {
+    let has = |part| scene.domain.has_part(part);
+    check_contact(scene, has(BoundaryPart::Contact))?;
+    let held = has(BoundaryPart::Contact) || has(BoundaryPart::Dirichlet);
+    if !held && scene.problem.reaction.is_none() {
+        let why = "its domain has neither a dirichlet nor a contact side: the problem is singular";
+        return Err(Error::UnfitMesh { scene: scene.name.clone(), why: why.to_owned() });
+    }
+    Ok(())
+}
+
+/// A contact part without a Signorini condition, or the other way round, is a mistake.
+fn check_contact<const D: usize>(scene: &Scene<D>, contact: bool) -> Result<(), Error> {
+    let why = match (&scene.problem.gap, contact) {
+        (Some(_), false) => {
+            "the scene has a Signorini condition, but no facet of the mesh is in a group named \"contact\""
+        }
+        (None, true) => {
+            "the mesh has facets in the group \"contact\", but the scene has no Signorini condition"
+        }
+        _ => return Ok(()),
+    };
+    Err(Error::UnfitMesh { scene: scene.name.clone(), why: why.to_owned() })
+}
+
+/// The first contact facet on which the exact solution breaks the contact condition.
+fn first_failure<T: Real, const D: usize>(scene: &Scene<D>, mesh: &Mesh<T, D>) -> Option<String> {
+    let gap = scene.problem.gap.as_ref()?;
+    let exact = scene.problem.exact.as_ref()?;
+    let slack = 1e3 * T::EPSILON;
+    for facet in mesh.boundary().iter().filter(|f| f.part == BoundaryPart::Contact) {
+        let (cell, local) = (facet.cell as usize, facet.local as usize);
+        let x = point_f64(&mesh.facet_barycentre(cell, local));
+        let normal = point_f64(&mesh.geometry(cell).normal(local));
+        let alpha = scene
+            .problem
+            .coefficient
+            .as_ref()
+            .map_or(1.0, |a| a(&point_f64(&mesh.barycentre(cell))));
+        let gradient = (exact.gradient)(&x);
+        let opening = (exact.value)(&x) - gap(&x);
+        let pressure = alpha * gradient.dot(&normal);
+        let size = 1.0 + opening.abs() + alpha * gradient.norm();
+        // the smaller of two non-negative numbers must vanish
+        let violation = opening.min(pressure).abs();
+        if violation.is_nan() || violation > slack.sqrt() * size {
+            return Some(describe_point(&x));
+        }
+    }
+    None
+}

@@ -1,0 +1,366 @@
+//! A study: schemes on a scene, level by level.
+
+use std::path::PathBuf;
+use std::sync::Arc;
+
+use super::compatibility::{check_domain, check_fit};
+use super::memory::{estimate, estimate_without_factors, unknowns_about};
+use super::{
+    Iterations, MemoryEstimate, Orders, Program, Report, Row, Seconds, fill_orders,
+    peak_memory_bytes,
+};
+use crate::assemble::DataQuadrature;
+use crate::element::Layout;
+use crate::error::Error;
+use crate::inequality::{ActiveSet, InequalitySolver};
+use crate::mesh::{BoundaryPart, Domain, Mesh};
+use crate::nested::{AnyScheme, Solved, Task};
+use crate::nested::{Levels, VertexContact};
+use crate::paraview::{CellFields, write_vtu};
+use crate::real::Real;
+use crate::scenes::Scene;
+use crate::scheme::{ExpectedOrders, Setting};
+
+/// What a study tells whoever watches it.
+pub enum Progress<'a> {
+    /// A run begins: scene, scheme, level.
+    Started(&'a str, &'a str, usize),
+    /// A run ended.
+    Finished(&'a Row),
+}
+
+/// Schemes side by side on one scene.
+///
+/// ```
+/// use unilateral::prelude::*;
+/// # fn main() -> Result<(), unilateral::error::Error> {
+/// let report = Study::<f64, 2>::new(scenes::radial(1.0))
+///     .scheme(ConformingP1)
+///     .scheme(Wopsip::default())
+///     .levels([4, 8])
+///     .run()?;
+/// assert_eq!(report.rows.len(), 4);
+/// # Ok(())
+/// # }
+/// ```
+pub struct Study<'a, T: Real, const D: usize> {
+    scene: Scene<D>,
+    schemes: Vec<Box<dyn AnyScheme<T, D> + 'a>>,
+    levels: Vec<usize>,
+    mesh: Option<Mesh<T, D>>,
+    solver: Box<dyn InequalitySolver<T> + 'a>,
+    quadrature: DataQuadrature,
+    repeat: usize,
+    directory: Option<PathBuf>,
+    observer: Box<dyn Fn(Progress<'_>) + 'a>,
+}
+
+impl<'a, T: Real, const D: usize> Study<'a, T, D> {
+    /// A study of a scene, without schemes or levels yet.
+    pub fn new(scene: Scene<D>) -> Self {
+        Self {
+            scene,
+            schemes: Vec::new(),
+            levels: Vec::new(),
+            mesh: None,
+            solver: Box::new(ActiveSet::default()),
+            quadrature: DataQuadrature::default(),
+            repeat: 1,
+            directory: None,
+            observer: Box::new(|_| {}),
+        }
+    }
+    /// Adds a scheme.
+    pub fn scheme(mut self, scheme: impl AnyScheme<T, D> + 'a) -> Self {
+        self.schemes.push(Box::new(scheme));
+        self
+    }
+    /// Adds a scheme chosen at run time.
+    pub fn boxed_scheme(mut self, scheme: Box<dyn AnyScheme<T, D> + 'a>) -> Self {
+        self.schemes.push(scheme);
+        self
+    }
+    /// Sets the levels: subdivisions of the shortest side, or refinements of a given mesh.
+    pub fn levels(mut self, levels: impl IntoIterator<Item = usize>) -> Self {
+        self.levels = levels.into_iter().collect();
+        self
+    }
+    /// Runs on this mesh and refinements of it instead of the scene's own domain.
+    pub fn on_mesh(mut self, mesh: Mesh<T, D>) -> Self {
+        self.mesh = Some(mesh);
+        self
+    }
+    /// Sets the solver of the inequality.
+    pub fn solver(mut self, solver: impl InequalitySolver<T> + 'a) -> Self {
+        self.solver = Box::new(solver);
+        self
+    }
+    /// Sets the quadrature of data.
+    pub fn quadrature(mut self, quadrature: DataQuadrature) -> Self {
+        self.quadrature = quadrature;
+        self
+    }
+    /// Makes every time the smallest of this many runs.
+    pub fn repeat(mut self, times: usize) -> Self {
+        self.repeat = times.max(1);
+        self
+    }
+    /// Writes the fields of every scheme on the finest level to this directory, as
+    /// `SCENE-SCHEME.vtu`.
+    pub fn fields_to(mut self, directory: impl Into<PathBuf>) -> Self {
+        self.directory = Some(directory.into());
+        self
+    }
+    /// Sets who is told of progress.
+    pub fn observer(mut self, observer: impl Fn(Progress<'_>) + 'a) -> Self {
+        self.observer = Box::new(observer);
+        self
+    }
+
+    /// Checks what can be checked before anything is assembled.
+    ///
+    /// # Errors
+    /// [`Error::Parameter`] for an empty list of levels or schemes or a level of zero,
+    /// [`Error::UnfitMesh`], [`Error::Mesh`].
+    pub fn check(&self) -> Result<(), Error> {
+        self.where_exact_fails().map(|_| ())
+    }
+
+    /// Checks, and tells where the scene's exact solution fails on a given mesh.
+    fn where_exact_fails(&self) -> Result<Option<String>, Error> {
+        let wrong = |parameter, value: &str, allowed: &str| {
+            Err(Error::Parameter {
+                parameter,
+                value: value.to_owned(),
+                allowed: allowed.to_owned(),
+            })
+        };
+        if self.schemes.is_empty() {
+            return wrong("schemes", "none", "a study needs at least one scheme");
+        }
+        if self.levels.is_empty() {
+            return wrong("levels", "none", "a study needs at least one level");
+        }
+        if self.mesh.is_none() && self.levels.contains(&0) {
+            return wrong("level", "0", "a built-in mesh has at least one subdivision");
+        }
+        let levels = Levels::new(&self.scene.problem, &self.scene.domain, self.mesh.as_ref());
+        self.levels.iter().try_for_each(|&level| levels.check_size(level))?;
+        match &self.mesh {
+            Some(mesh) => check_fit(&self.scene, mesh),
+            None => check_domain(&self.scene).map(|()| None),
+        }
+    }
+
+    /// What the largest run will need of memory, about, with factors where the solver makes them from
+    /// the start; nothing for a study without schemes or levels.
+    pub fn memory_estimate(&self) -> Option<MemoryEstimate> {
+        let levels = Levels::new(&self.scene.problem, &self.scene.domain, self.mesh.as_ref());
+        let level = self.levels.iter().copied().max()?;
+        let cells = levels.cells(level);
+        let obstacle = self.scene.problem.has_obstacle();
+        let bytes = |layout: Layout| {
+            let is_iterative = self.solver.uses_nearby(unknowns_about(D, layout, cells) as usize);
+            match is_iterative && D > 1 {
+                true => estimate_without_factors(D, layout, cells, size_of::<T>()),
+                false => estimate(D, layout, cells, obstacle, size_of::<T>()),
+            }
+        };
+        let of = |scheme: &dyn AnyScheme<T, D>| MemoryEstimate {
+            bytes: bytes(scheme.layout()),
+            scheme: scheme.name().to_owned(),
+            level,
+        };
+        self.schemes.iter().map(|s| of(&**s)).max_by(|a, b| a.bytes.total_cmp(&b.bytes))
+    }
+
+    /// Runs every scheme on every level.
+    ///
+    /// # Errors
+    /// Whatever is wrong with scene, mesh or parameters. A solve that does not converge is no
+    /// error: its row says why.
+    pub fn run(&self) -> Result<Report, Error> {
+        let failure = self.where_exact_fails()?;
+        let failure = failure.as_deref();
+        let mut levels = Levels::new(&self.scene.problem, &self.scene.domain, self.mesh.as_ref());
+        let finest = self.levels.iter().copied().max();
+        let mut rows = Vec::new();
+        for scheme in &self.schemes {
+            for &level in &self.levels {
+                (self.observer)(Progress::Started(&self.scene.name, scheme.name(), level));
+                let with_fields = self.directory.is_some() && Some(level) == finest;
+                let (row, _) = self.row(&mut levels, &**scheme, level, failure, with_fields)?;
+                (self.observer)(Progress::Finished(&row));
+                rows.push(row);
+            }
+        }
+        fill_orders(&mut rows);
+        let program = Program::new("study", T::NAME, rayon::current_num_threads(), self.repeat);
+        Ok(Report { program, rows })
+    }
+
+    /// Runs the first scheme on the first level alone, with levels of its own, so that all its work is
+    /// done now. Returns the row and the seconds of its solve that the start from coarser levels took.
+    pub(crate) fn run_alone(&self) -> Result<(Row, f64), Error> {
+        let failure = self.where_exact_fails()?;
+        let (Some(scheme), Some(&level)) = (self.schemes.first(), self.levels.first()) else {
+            unreachable!("checked above")
+        };
+        let mut levels = Levels::new(&self.scene.problem, &self.scene.domain, self.mesh.as_ref());
+        self.row(&mut levels, &**scheme, level, failure.as_deref(), false)
+    }
+
+    /// A row, and the seconds of its start from coarser levels.
+    fn row(
+        &self,
+        levels: &mut Levels<'_, T, D>,
+        scheme: &dyn AnyScheme<T, D>,
+        level: usize,
+        failure: Option<&str>,
+        with_fields: bool,
+    ) -> Result<(Row, f64), Error> {
+        levels.make(level)?;
+        let start = self.start(levels, scheme, level)?;
+        let Some((mesh, mesh_seconds)) = levels.mesh(level) else { unreachable!("made above") };
+        let solved = scheme.solve(&Task {
+            problem: &self.scene.problem,
+            mesh,
+            start: start.as_deref(),
+            solver: &*self.solver,
+            quadrature: self.quadrature,
+            with_errors: failure.is_none(),
+            repeat: self.repeat,
+            with_fields,
+        })?;
+        if let (Some(directory), Some(_)) = (&self.directory, &solved.fields) {
+            self.write_fields(directory, scheme, mesh, &solved)?;
+        }
+        let mut warnings = solved.warnings.clone();
+        if let Some(at) = failure {
+            warnings.push(format!(
+                "the scene's solution breaks the contact condition of this mesh at {at}: no errors"
+            ));
+        }
+        let coarser = start.as_ref().map_or(0, |s| s.levels);
+        let start_seconds = start.as_ref().map_or(0.0, |s| s.seconds);
+        let solve = solved.solve_seconds + start_seconds;
+        let seconds = Seconds {
+            mesh: mesh_seconds,
+            assemble: solved.assemble_seconds,
+            solve,
+            total: mesh_seconds + solved.assemble_seconds + solve,
+        };
+        let row = Row {
+            scene: self.scene.name.clone(),
+            dimension: D,
+            scheme: scheme.name().to_owned(),
+            constraint: scheme.constraint().to_owned(),
+            level,
+            parameters: solved.parameters,
+            solver: self.solver.name().to_owned(),
+            linear: solved.linear_solver.to_owned(),
+            cells: mesh.n_cells(),
+            unknowns: solved.unknowns,
+            nonzeros: solved.nonzeros,
+            mesh_size: mesh.mesh_size(),
+            status: solved.outcome.name().to_owned(),
+            error: solved.error,
+            contact: solved.contact,
+            order: Orders::default(),
+            expected_order: match failure {
+                // without an exact solution there is no error that could keep a promise
+                None if self.scene.problem.exact.is_some() => {
+                    scheme.expected_orders(&self.setting())
+                }
+                _ => ExpectedOrders::default(),
+            },
+            objective: solved.objective,
+            active: solved.active,
+            iterations: Iterations {
+                outer: solved.outer,
+                linear: solved.linear,
+                levels: coarser.saturating_sub(usize::from(!scheme.is_conforming_linear())),
+            },
+            certificate: solved.certificate,
+            seconds,
+            peak_memory_bytes: peak_memory_bytes(),
+            warnings,
+        };
+        Ok((row, start_seconds))
+    }
+
+    /// What a scheme starts from: P1 on the coarser level for P1 itself, P1 on the same level for
+    /// all others.
+    fn start(
+        &self,
+        levels: &mut Levels<'_, T, D>,
+        scheme: &dyn AnyScheme<T, D>,
+        level: usize,
+    ) -> Result<Option<Arc<VertexContact<T>>>, Error> {
+        let (solver, quadrature) = (&*self.solver, self.quadrature);
+        let unknowns = levels.mesh(level).map_or(0, |(mesh, _)| unknowns(mesh, scheme.layout()));
+        if !self.scene.problem.is_constrained() && !solver.uses_nearby(unknowns) {
+            Ok(None)
+        } else if scheme.is_conforming_linear() {
+            levels.start_from_coarser(level, solver, quadrature, self.repeat)
+        } else {
+            levels.contact(level, solver, quadrature, self.repeat).map(Some)
+        }
+    }
+
+    /// What promises of orders may depend on.
+    fn setting(&self) -> Setting {
+        let problem = &self.scene.problem;
+        let domain = &self.scene.domain;
+        let is_convex = !matches!(domain, Domain::LShape { .. });
+        let all_dirichlet =
+            ![BoundaryPart::Neumann, BoundaryPart::Contact].iter().any(|&p| domain.has_part(p));
+        Setting {
+            dimension: D,
+            obstacle: problem.has_obstacle(),
+            contact: problem.gap.is_some(),
+            regularity: self.scene.regularity,
+            regular_dual: problem.coefficient.is_none()
+                && (D == 1 || self.mesh.is_none() && is_convex && all_dirichlet),
+        }
+    }
+
+    fn write_fields(
+        &self,
+        directory: &std::path::Path,
+        scheme: &dyn AnyScheme<T, D>,
+        mesh: &Mesh<T, D>,
+        solved: &Solved,
+    ) -> Result<(), Error> {
+        let Some(fields) = &solved.fields else { return Ok(()) };
+        std::fs::create_dir_all(directory).map_err(|e| Error::Write {
+            path: directory.display().to_string(),
+            why: e.to_string(),
+        })?;
+        let path = directory.join(format!("{}-{}.vtu", self.scene.name, scheme.name()));
+        let constrained = self.scene.problem.is_constrained();
+        write_vtu(
+            &path,
+            mesh,
+            &CellFields {
+                u: &fields.u,
+                obstacle: fields.obstacle.as_deref(),
+                multiplier: constrained.then_some(&fields.multiplier[..]),
+                contact: &fields.contact,
+            },
+        )
+    }
+}
+
+/// Number of unknowns of a layout on a mesh.
+fn unknowns<T: Real, const D: usize>(mesh: &Mesh<T, D>, layout: Layout) -> usize {
+    let facets = ((D + 1) * mesh.n_cells() + mesh.boundary().len()) / 2;
+    let (vertices, cells) = (mesh.vertices().len(), mesh.n_cells());
+    // in space by Euler's formula for a ball: near enough elsewhere
+    let edges = match D {
+        1 => cells,
+        2 => facets,
+        _ => (vertices + facets).saturating_sub(cells + 1),
+    };
+    layout.vertex * vertices + layout.edge * edges + layout.facet * facets + layout.cell * cells
+}

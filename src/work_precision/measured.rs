@@ -1,0 +1,160 @@
+//! What was measured: rows with the times of several runs, and what could not be run.
+
+use serde::Serialize;
+
+use crate::study::{Row, Seconds};
+
+/// A scheme on a scene with everything it runs with: one curve of a plot.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct Variant {
+    /// Name of the scene.
+    pub scene: String,
+    /// Name of the scheme.
+    pub scheme: String,
+    /// Where the inequality is imposed.
+    pub constraint: String,
+    /// The linear solver asked for: `direct`, `iterative` or `by-size`.
+    pub linear_asked: String,
+    /// Scalar of assembly and solve: `f64` or `f32`.
+    pub precision: String,
+}
+
+/// A variant on a level: what is run as a whole.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct Case {
+    /// The variant.
+    #[serde(flatten)]
+    pub variant: Variant,
+    /// Subdivisions of the shortest side.
+    pub level: usize,
+}
+
+/// Wall times of one run in seconds. They add up to the total.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct Phases {
+    /// Making the mesh and all coarser ones it is refined from.
+    pub mesh: f64,
+    /// Assembly of matrix, load and bounds.
+    pub assemble: f64,
+    /// The start: conforming P1 on coarser levels and, for other schemes, on this one.
+    pub coarse: f64,
+    /// The solve on this level.
+    pub solve: f64,
+    /// The sum.
+    pub total: f64,
+}
+
+impl Phases {
+    /// The phases of a row whose start took these seconds.
+    pub(crate) fn new(seconds: &Seconds, coarse: f64) -> Self {
+        let Seconds { mesh, assemble, solve, total } = *seconds;
+        Phases { mesh, assemble, coarse, solve: solve - coarse, total }
+    }
+
+    /// The same as a row states them, where the start counts as part of the solve.
+    fn seconds(&self) -> Seconds {
+        let Phases { mesh, assemble, coarse, solve, total } = *self;
+        Seconds { mesh, assemble, solve: solve + coarse, total }
+    }
+}
+
+/// A row with the times of all its runs. Its `seconds` are those of the fastest run.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Measured {
+    /// Counts, errors and certificate. `peak_memory_bytes` is that of this case.
+    #[serde(flatten)]
+    pub row: Row,
+    /// Scalar of assembly and solve.
+    pub precision: String,
+    /// The linear solver asked for; `linear` is the one that was used.
+    pub linear_asked: String,
+    /// How many runs there were so far.
+    pub runs: usize,
+    /// The run with the smallest total.
+    pub smallest: Phases,
+    /// The run whose total is in the middle, of two in the middle the slower.
+    pub median: Phases,
+    #[serde(skip)]
+    all: Vec<Phases>,
+}
+
+impl Measured {
+    /// What a first run found.
+    pub fn new(row: Row, phases: Phases, case: &Case) -> Self {
+        Measured {
+            row,
+            precision: case.variant.precision.clone(),
+            linear_asked: case.variant.linear_asked.clone(),
+            runs: 1,
+            smallest: phases,
+            median: phases,
+            all: vec![phases],
+        }
+    }
+
+    /// Adds a further run. Times may differ, counts may not: if they do, a warning says so.
+    pub fn add(&mut self, again: &Row, phases: Phases) {
+        let counts = |r: &Row| (r.status.clone(), r.unknowns, r.nonzeros, r.iterations, r.active);
+        if counts(again) != counts(&self.row) {
+            let warning = "status or counts differ between runs";
+            if !self.row.warnings.iter().any(|w| w == warning) {
+                self.row.warnings.push(warning.to_owned());
+            }
+        }
+        let at = self.all.partition_point(|p| p.total <= phases.total);
+        self.all.insert(at, phases);
+        self.runs = self.all.len();
+        self.smallest = self.all[0];
+        self.median = self.all[self.runs / 2];
+        self.row.seconds = self.smallest.seconds();
+        if let Some(peak) = again.peak_memory_bytes {
+            self.row.peak_memory_bytes =
+                Some(self.row.peak_memory_bytes.map_or(peak, |p| p.min(peak)));
+        }
+    }
+
+    /// The variant it belongs to.
+    pub fn variant(&self) -> Variant {
+        Variant {
+            scene: self.row.scene.clone(),
+            scheme: self.row.scheme.clone(),
+            constraint: self.row.constraint.clone(),
+            linear_asked: self.linear_asked.clone(),
+            precision: self.precision.clone(),
+        }
+    }
+
+    /// Variant and level.
+    pub fn case(&self) -> Case {
+        Case { variant: self.variant(), level: self.row.level }
+    }
+}
+
+/// A case that gave no solution, and why.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct Failure {
+    /// The case.
+    #[serde(flatten)]
+    pub case: Case,
+    /// The status of its row, or why it was not run at all.
+    pub why: String,
+}
+
+impl Variant {
+    /// What tells it from the others of a report: the scheme and whatever else varies among them.
+    pub fn label(&self, all: &[Variant]) -> String {
+        let varies = |part: fn(&Variant) -> &str| all.iter().any(|v| part(v) != part(self));
+        let mut label = self.scheme.clone();
+        let same_scheme = all.iter().filter(|v| v.scheme == self.scheme);
+        if same_scheme.into_iter().any(|v| v.constraint != self.constraint) {
+            label += &format!(", {}", self.constraint);
+        }
+        if varies(|v| &v.linear_asked) {
+            label += &format!(", {}", self.linear_asked);
+        }
+        if varies(|v| &v.precision) {
+            label += &format!(", {}", self.precision);
+        }
+        label
+    }
+}

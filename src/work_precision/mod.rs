@@ -1,0 +1,386 @@
+//! Work against precision: schemes, linear solvers, scalars and levels under one clock.
+
+mod baseline;
+mod case;
+mod figures;
+mod measured;
+mod provenance;
+mod reach;
+mod report;
+mod table;
+mod tables;
+mod verdict;
+
+pub use baseline::{Changes, changes};
+pub use case::{Candidate, Named, Precision};
+pub use measured::{Case, Failure, Measured, Phases, Variant};
+pub use provenance::Provenance;
+pub use reach::{ErrorNorm, Reach, WorkPoint, work_at};
+pub use report::WorkReport;
+pub(crate) use report::replace;
+pub use table::Table;
+pub(crate) use table::{Cell, latex, markdown};
+
+use std::path::PathBuf;
+use std::time::{Duration, Instant};
+
+use crate::error::Error;
+use crate::inequality::ActiveSet;
+use crate::linear::Linear;
+use crate::nested::AnyScheme;
+use crate::real::Real;
+use crate::scenes::Scene;
+use crate::study::{Study, available_memory_bytes};
+use case::Single;
+
+/// How long finished rows of a round may wait to be written.
+const PATIENCE: Duration = Duration::from_secs(1);
+
+/// What a study tells whoever watches it.
+pub enum WorkProgress<'a> {
+    /// This many runs will follow, unless some turn out to take too long.
+    Planned(usize),
+    /// A run begins, in this round from 0.
+    Started(&'a Case, usize),
+    /// It ended, or was not needed.
+    Finished,
+}
+
+/// A study of work against precision on one scene.
+///
+/// In every round each case runs once, with nothing known from other runs: what its mesh and its
+/// start from coarser levels cost is its own. Rounds go forth and back through the cases, so that
+/// drift of the machine hits all alike. Before the first one every variant runs once unmeasured.
+///
+/// ```
+/// use unilateral::prelude::*;
+/// use unilateral::work_precision::WorkPrecision;
+/// # fn main() -> Result<(), unilateral::error::Error> {
+/// let report = WorkPrecision::<2>::new(|| scenes::radial(1.0))
+///     .scheme(ConformingP1)
+///     .scheme(Wopsip::default())
+///     .levels([4, 8])
+///     .rounds(2)
+///     .run()?;
+/// assert_eq!(report.rows.len(), 4);
+/// print!("{}", report.to_text());
+/// # Ok(())
+/// # }
+/// ```
+pub struct WorkPrecision<'a, const D: usize> {
+    scene: Box<dyn Fn() -> Scene<D> + 'a>,
+    candidates: Vec<Box<dyn Candidate<D> + 'a>>,
+    linear: Vec<Linear>,
+    precisions: Vec<Precision>,
+    levels: Vec<usize>,
+    rounds: usize,
+    limit: f64,
+    subject: String,
+    directory: Option<PathBuf>,
+    memory: Option<MemoryOf<'a>>,
+    observer: Box<dyn Fn(WorkProgress<'_>) + 'a>,
+}
+
+/// Tells the peak of memory of a case.
+type MemoryOf<'a> = Box<dyn Fn(&Case) -> Option<u64> + 'a>;
+
+/// A case, what runs it, and what it gave so far.
+struct Slot<'s> {
+    case: Case,
+    single: Box<dyn Single + 's>,
+    /// The case one level coarser, by its place in the list.
+    coarser: Option<usize>,
+    measured: Option<Measured>,
+    failure: Option<Failure>,
+}
+
+impl<'a, const D: usize> WorkPrecision<'a, D> {
+    /// A study of the scene this makes, without schemes or levels yet.
+    pub fn new(scene: impl Fn() -> Scene<D> + 'a) -> Self {
+        Self {
+            scene: Box::new(scene),
+            candidates: Vec::new(),
+            linear: vec![Linear::BySize],
+            precisions: vec![Precision::Double],
+            levels: Vec::new(),
+            rounds: 3,
+            limit: f64::INFINITY,
+            subject: String::new(),
+            directory: None,
+            memory: None,
+            observer: Box::new(|_| {}),
+        }
+    }
+    /// Adds a scheme, or a registered one as [`Named`].
+    pub fn scheme(mut self, scheme: impl Candidate<D> + 'a) -> Self {
+        self.candidates.push(Box::new(scheme));
+        self
+    }
+    /// Sets the linear solvers inside the active-set method; one chosen by size otherwise.
+    pub fn linear(mut self, linear: impl IntoIterator<Item = Linear>) -> Self {
+        self.linear = linear.into_iter().collect();
+        self
+    }
+    /// Sets the scalars; `f64` otherwise.
+    pub fn precisions(mut self, precisions: impl IntoIterator<Item = Precision>) -> Self {
+        self.precisions = precisions.into_iter().collect();
+        self
+    }
+    /// Sets the levels: subdivisions of the shortest side.
+    pub fn levels(mut self, levels: impl IntoIterator<Item = usize>) -> Self {
+        self.levels = levels.into_iter().collect();
+        self.levels.sort_unstable();
+        self.levels.dedup();
+        self
+    }
+    /// Sets how often each case runs, at least once; three times otherwise.
+    pub fn rounds(mut self, rounds: usize) -> Self {
+        self.rounds = rounds.max(1);
+        self
+    }
+    /// A run that took longer than this many seconds is not repeated, and no finer level of its
+    /// variant is tried: that is listed among the failures.
+    pub fn limit(mut self, seconds: f64) -> Self {
+        self.limit = seconds;
+        self
+    }
+    /// Names the scheme of which the verdict speaks; the fastest otherwise.
+    pub fn subject(mut self, scheme: &str) -> Self {
+        self.subject = scheme.to_owned();
+        self
+    }
+    /// Writes the report to this directory after every round, and within one every second.
+    pub fn write_to(mut self, directory: impl Into<PathBuf>) -> Self {
+        self.directory = Some(directory.into());
+        self
+    }
+    /// Sets who tells the peak of memory of a case, asked once for each. Otherwise it is that of
+    /// this process while the case ran, with all that the process holds besides.
+    pub fn memory(mut self, memory: impl Fn(&Case) -> Option<u64> + 'a) -> Self {
+        self.memory = Some(Box::new(memory));
+        self
+    }
+    /// Sets who is told of progress.
+    pub fn observer(mut self, observer: impl Fn(WorkProgress<'_>) + 'a) -> Self {
+        self.observer = Box::new(observer);
+        self
+    }
+
+    /// Runs everything.
+    ///
+    /// # Errors
+    /// What is wrong with the request, before anything runs: see [`Study::check`]; besides
+    /// [`Error::Parameter`] for an unknown scheme and for two that cannot be told apart. An
+    /// [`Error::Write`] ends the study. A case that fails is no error: it is listed.
+    pub fn run(&self) -> Result<WorkReport, Error> {
+        let mut report = WorkReport::new("work-precision", self.rounds);
+        self.run_into(&mut report)?;
+        report.provenance.complete = true;
+        if let Some(directory) = &self.directory {
+            report.write_data(directory)?;
+        }
+        Ok(report)
+    }
+
+    /// Runs everything, adds it to a report of other scenes and draws its figures. That the report is complete is for
+    /// the caller to say.
+    ///
+    /// # Errors
+    /// Those of [`Self::run`].
+    pub fn run_into(&self, report: &mut WorkReport) -> Result<(), Error> {
+        let mut slots = self.slots()?;
+        report.subject.clone_from(&self.subject);
+        for precision in self.precisions.iter().map(|p| p.name()) {
+            if !report.program.precision.split(", ").any(|p| p == precision) {
+                let comma = if report.program.precision.is_empty() { "" } else { ", " };
+                report.program.precision += &format!("{comma}{precision}");
+            }
+        }
+        let before = (report.rows.len(), report.refused.len());
+        (self.observer)(WorkProgress::Planned(slots.len() * self.rounds));
+        // threads, pages and instructions are there when the clock starts
+        for slot in slots.iter().filter(|s| s.coarser.is_none()) {
+            drop(slot.single.run());
+        }
+        let mut written = Instant::now();
+        for round in 0..self.rounds {
+            // by level, so that a level that takes too long is known before the next
+            let mut order: Vec<usize> = (0..slots.len()).collect();
+            order.sort_by_key(|&k| slots[k].case.level);
+            if round % 2 == 1 {
+                order.reverse();
+            }
+            for k in order {
+                (self.observer)(WorkProgress::Started(&slots[k].case, round));
+                self.run_slot(&mut slots, k, round);
+                (self.observer)(WorkProgress::Finished);
+                if written.elapsed() > PATIENCE {
+                    self.save(report, before, &slots)?;
+                    written = Instant::now();
+                }
+            }
+            self.save(report, before, &slots)?;
+        }
+        match (&self.directory, slots.first()) {
+            (Some(directory), Some(slot)) => {
+                report.write_figures(directory, &slot.case.variant.scene).map(|_| ())
+            }
+            _ => Ok(()),
+        }
+    }
+
+    /// Runs a case, unless it has failed, takes too long or would not fit.
+    fn run_slot(&self, slots: &mut [Slot<'_>], k: usize, round: usize) {
+        if let Some(measured) = &slots[k].measured {
+            let is_slow = measured.smallest.total > self.limit;
+            if is_slow || !measured.row.converged() {
+                return;
+            }
+        } else if round > 0 {
+            return;
+        }
+        if round == 0
+            && let Some(why) = self.obstacle_to(slots, k)
+        {
+            slots[k].failure = Some(Failure { case: slots[k].case.clone(), why });
+            return;
+        }
+        let slot = &mut slots[k];
+        match slot.single.run() {
+            Err(e) => {
+                slot.failure = Some(Failure { case: slot.case.clone(), why: e.to_string() });
+            }
+            Ok((mut row, phases)) => {
+                if let Some(memory) = &self.memory {
+                    let known = slot.measured.as_ref().map(|m| m.row.peak_memory_bytes);
+                    row.peak_memory_bytes = known.unwrap_or_else(|| memory(&slot.case));
+                }
+                match &mut slot.measured {
+                    Some(measured) => measured.add(&row, phases),
+                    None => slot.measured = Some(Measured::new(row, phases, &slot.case)),
+                }
+            }
+        }
+    }
+
+    /// Why a case is not worth trying.
+    fn obstacle_to(&self, slots: &[Slot<'_>], k: usize) -> Option<String> {
+        if let Some(coarser) = slots[k].coarser.map(|c| &slots[c]) {
+            let level = coarser.case.level;
+            let Some(measured) = &coarser.measured else {
+                return Some(format!("not run: level {level} was not, either"));
+            };
+            let seconds = measured.smallest.total;
+            if seconds > self.limit {
+                return Some(format!("not run: level {level} took {seconds:.1} s"));
+            }
+        }
+        let (need, free) = (slots[k].single.memory_estimate()?, available_memory_bytes()?);
+        (need.bytes > free as f64).then(|| {
+            let (need, free) = (need.bytes / 1e9, free as f64 / 1e9);
+            format!("not run: would need about {need:.1} GB of memory, {free:.1} GB are available")
+        })
+    }
+
+    /// Puts what there is into the report, behind the rows of other scenes, and writes it.
+    fn save(
+        &self,
+        report: &mut WorkReport,
+        (rows, refused): (usize, usize),
+        slots: &[Slot<'_>],
+    ) -> Result<(), Error> {
+        report.rows.truncate(rows);
+        report.rows.extend(slots.iter().filter_map(|s| s.measured.clone()));
+        report.refused.truncate(refused);
+        report.refused.extend(slots.iter().filter_map(|s| s.failure.clone()));
+        fill_orders(&mut report.rows[rows..]);
+        match &self.directory {
+            Some(directory) => report.write_data(directory).map(|_| ()),
+            None => Ok(()),
+        }
+    }
+
+    /// All cases, variant by variant, each checked.
+    fn slots(&self) -> Result<Vec<Slot<'_>>, Error> {
+        let mut slots: Vec<Slot<'_>> = Vec::new();
+        for candidate in &self.candidates {
+            for &linear in &self.linear {
+                for &precision in &self.precisions {
+                    let mut coarser = None;
+                    for &level in &self.levels {
+                        let slot = self.slot(&**candidate, linear, precision, level)?;
+                        slot.single.check()?;
+                        if slots.iter().any(|s| s.case == slot.case) {
+                            let variant = &slot.case.variant;
+                            let name = format!("{} on {}", variant.scheme, variant.constraint);
+                            return Err(wrong("schemes", name, "each must have its own name"));
+                        }
+                        slots.push(Slot { coarser, ..slot });
+                        coarser = Some(slots.len() - 1);
+                    }
+                }
+            }
+        }
+        if slots.is_empty() {
+            let needs = "a study needs a scheme, a linear solver, a scalar and a level";
+            return Err(wrong("cases", "none".to_owned(), needs));
+        }
+        Ok(slots)
+    }
+
+    fn slot<'s>(
+        &'s self,
+        candidate: &'s (dyn Candidate<D> + 'a),
+        linear: Linear,
+        precision: Precision,
+        level: usize,
+    ) -> Result<Slot<'s>, Error> {
+        let made = match precision {
+            Precision::Double => candidate.double().map(|s| self.single(s, linear, level)),
+            Precision::Single => candidate.single().map(|s| self.single(s, linear, level)),
+        };
+        let allowed = "there is no scheme of this name in this dimension";
+        let (case, single) = made.ok_or_else(|| wrong("scheme", "unknown".to_owned(), allowed))?;
+        Ok(Slot { case, single, coarser: None, measured: None, failure: None })
+    }
+
+    fn single<'s, T: Real>(
+        &'s self,
+        scheme: Box<dyn AnyScheme<T, D> + 's>,
+        linear: Linear,
+        level: usize,
+    ) -> (Case, Box<dyn Single + 's>) {
+        let scene = (self.scene)();
+        let name = Linear::NAMES.iter().find(|l| l.1 == linear).map_or("", |l| l.0);
+        let variant = Variant {
+            scene: scene.name.clone(),
+            scheme: scheme.name().to_owned(),
+            constraint: scheme.constraint().to_owned(),
+            linear_asked: name.to_owned(),
+            precision: T::NAME.to_owned(),
+        };
+        let study = Study::<T, D>::new(scene)
+            .solver(ActiveSet { linear, ..ActiveSet::default() })
+            .boxed_scheme(scheme)
+            .levels([level]);
+        (Case { variant, level }, Box::new(study))
+    }
+}
+
+/// A request that makes no sense.
+fn wrong(parameter: &'static str, value: String, allowed: &str) -> Error {
+    Error::Parameter { parameter, value, allowed: allowed.to_owned() }
+}
+
+/// Observed orders, variant by variant.
+fn fill_orders(rows: &mut [Measured]) {
+    for variant in crate::study::table::distinct(rows.iter().map(Measured::variant)) {
+        let mut own: Vec<&mut Measured> =
+            rows.iter_mut().filter(|m| m.variant() == variant).collect();
+        let mut plain: Vec<_> = own.iter().map(|m| m.row.clone()).collect();
+        crate::study::fill_orders(&mut plain);
+        for (measured, row) in own.iter_mut().zip(plain) {
+            measured.row.order = row.order;
+        }
+    }
+}

@@ -1,0 +1,51 @@
+//! One sentence for a scene, made from the figures.
+
+use super::measured::Variant;
+use super::reach::{ErrorNorm, Reach};
+
+/// What the figures say of a scene: at the smallest error in L2 that the most variants reach, how
+/// many times the time of each other one the subject takes. The subject is the first variant of
+/// the named scheme that gets there, otherwise the fastest. Nothing without errors in L2.
+pub(crate) fn verdict(reach: &[Reach], scene: &str, subject: &str) -> Option<String> {
+    let of_scene: Vec<&Reach> =
+        reach.iter().filter(|r| r.variant.scene == scene && r.norm == ErrorNorm::L2).collect();
+    let variants: Vec<Variant> = of_scene.iter().map(|r| r.variant.clone()).collect();
+    let reached =
+        |error: f64| of_scene.iter().filter(|r| r.error == error && r.seconds.is_some()).count();
+    let most = of_scene.iter().map(|r| reached(r.error)).max()?;
+    let errors = of_scene.iter().map(|r| r.error).filter(|&e| reached(e) == most);
+    let error = errors.fold(f64::INFINITY, f64::min);
+    let here: Vec<&Reach> = of_scene.into_iter().filter(|r| r.error == error).collect();
+    let (there, missing): (Vec<&Reach>, Vec<&Reach>) =
+        here.into_iter().partition(|r| r.seconds.is_some());
+    let fastest = || there.iter().find(|r| r.ratio == Some(1.0));
+    let named = there.iter().find(|r| r.variant.scheme == subject);
+    let chosen = *named.or_else(fastest)?;
+    let others = there.iter().filter(|r| r.variant != chosen.variant).map(|r| {
+        let ratio = chosen.seconds.unwrap_or(f64::NAN) / r.seconds.unwrap_or(f64::NAN);
+        (two_digits(ratio), r.variant.label(&variants))
+    });
+    let name = chosen.variant.label(&variants);
+    let seconds = chosen.seconds.unwrap_or(f64::NAN);
+    let mut text = format!("{scene}: at an L2 error of {error:e} {name} takes {seconds:.2e} s");
+    for (k, (ratio, other)) in others.enumerate() {
+        let comma = if k == 0 { ", " } else { "; " };
+        let time = if k == 0 { "the time" } else { "that" };
+        text += &format!("{comma}{ratio} times {time} of {other}");
+    }
+    if !missing.is_empty() {
+        let names: Vec<String> = missing.iter().map(|r| r.variant.label(&variants)).collect();
+        text += &format!("; outside the range measured of {}", names.join(", "));
+    }
+    Some(text + ".")
+}
+
+/// Two digits, which is what a time is good for.
+fn two_digits(ratio: f64) -> String {
+    match ratio {
+        r if r >= 9.95 => format!("{r:.0}"),
+        r if r >= 0.995 => format!("{r:.1}"),
+        r if r >= 0.0995 => format!("{r:.2}"),
+        r => format!("{r:.1e}"),
+    }
+}
