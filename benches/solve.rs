@@ -9,7 +9,7 @@ use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_m
 use unilateral::algebra::{Bound, Inequality};
 use unilateral::assemble::{DataQuadrature, Discretisation};
 use unilateral::inequality::{ActiveSet, InequalitySolver, Outcome};
-use unilateral::linear::Linear;
+use unilateral::linear::LinearMethod;
 use unilateral::prelude::*;
 
 /// One scheme on one mesh: the linear system, without inequalities.
@@ -26,9 +26,9 @@ fn scheme<const D: usize, S: Scheme<f64, D>>(c: &mut Criterion, scheme: &S, subd
     let mut group = c.benchmark_group(&name);
     group.throughput(Throughput::Elements(inequality.size() as u64)).sample_size(10);
     for (name, linear, threads) in [
-        ("direct", Linear::Direct, 1),
-        ("iterative", Linear::Iterative, 1),
-        ("iterative", Linear::Iterative, 2),
+        ("direct", LinearMethod::Direct, 1),
+        ("iterative", LinearMethod::Iterative, 1),
+        ("iterative", LinearMethod::Iterative, 2),
     ] {
         let Ok(pool) = rayon::ThreadPoolBuilder::new().num_threads(threads).build() else { return };
         group.bench_function(BenchmarkId::new(name, threads), |b| {
@@ -38,7 +38,7 @@ fn scheme<const D: usize, S: Scheme<f64, D>>(c: &mut Criterion, scheme: &S, subd
     group.finish();
 }
 
-fn solve(inequality: &Inequality<f64>, linear: Linear) -> Outcome {
+fn solve(inequality: &Inequality<f64>, linear: LinearMethod) -> Outcome {
     ActiveSet { linear, ..ActiveSet::default() }.solve(inequality).outcome
 }
 

@@ -21,7 +21,7 @@ use watcher::Watcher;
 
 use unilateral::error::Error;
 use unilateral::inequality::ActiveSet;
-use unilateral::linear::Linear;
+use unilateral::linear::LinearMethod;
 use unilateral::mesh::{Mesh, gmsh};
 use unilateral::real::Real;
 use unilateral::scenes::{self, AnyScene, Parameters, Scene, Takes};
@@ -193,9 +193,9 @@ fn prepare<'a, T: Real, const D: usize>(
     };
     let n_runs = levels.len() * schemes.len();
     let linear = match options.linear.as_deref() {
-        Some("direct") => Linear::Direct,
-        Some(_) => Linear::Iterative,
-        None => Linear::BySize,
+        Some("direct") => LinearMethod::Direct,
+        Some(_) => LinearMethod::Iterative,
+        None => LinearMethod::BySize,
     };
     let mut study = Study::<T, D>::new(scene)
         .solver(ActiveSet { linear, ..ActiveSet::default() })

@@ -11,7 +11,7 @@ use std::path::Path;
 use std::process::{Command, ExitCode};
 
 use unilateral::inequality::ActiveSet;
-use unilateral::linear::Linear;
+use unilateral::linear::LinearMethod;
 use unilateral::mesh::gmsh;
 use unilateral::prelude::*;
 use unilateral::study::Row;
@@ -75,7 +75,7 @@ type Failure = Box<dyn std::error::Error>;
 fn scheme<const D: usize>(name: &str) -> Box<dyn AnyScheme<f64, D>> {
     match name {
         "p1" => Box::new(ConformingP1),
-        "cr" => Box::new(CrouzeixRaviartScheme),
+        "cr" => Box::new(NonconformingP1),
         "sipg" => Box::new(Sipg::default()),
         "nipg" => Box::new(Nipg::default()),
         "wopsip" => Box::new(Wopsip::default()),
@@ -85,7 +85,7 @@ fn scheme<const D: usize>(name: &str) -> Box<dyn AnyScheme<f64, D>> {
 
 fn run<const D: usize>(
     mut scene: scenes::Scene<D>,
-    linear: Linear,
+    linear: LinearMethod,
     &(_, _, is_linear, name, level): &Case,
 ) -> Result<Row, Failure> {
     if is_linear {
@@ -100,7 +100,7 @@ fn run<const D: usize>(
 }
 
 /// Conforming linears on refinements of a mesh of a disc.
-fn run_on_mesh(path: &str, linear: Linear) -> Result<Row, Failure> {
+fn run_on_mesh(path: &str, linear: LinearMethod) -> Result<Row, Failure> {
     let mesh = gmsh::read::<f64, 2>(Path::new(path))?.mesh;
     let times = (1e6 / mesh.vertices().len() as f64).log2() / 2.0;
     let report = Study::<f64, 2>::new(scenes::radial::<2>(1.0))
@@ -113,7 +113,7 @@ fn run_on_mesh(path: &str, linear: Linear) -> Result<Row, Failure> {
 }
 
 /// Runs one case and prints its row.
-fn child(name: &str, linear: Linear, mesh: Option<&str>) -> Result<(), Failure> {
+fn child(name: &str, linear: LinearMethod, mesh: Option<&str>) -> Result<(), Failure> {
     let case =
         CASES.iter().chain(LARGE).chain([&ON_MESH]).find(|c| c.0 == name).ok_or("no such case")?;
     let row = match (case.1, mesh) {
@@ -150,7 +150,7 @@ fn all() -> Result<(), Failure> {
         words.iter().position(|w| w == name).and_then(|k| words.get(k + 1)).map(String::as_str)
     };
     let linear_name = option("--linear").unwrap_or("by-size");
-    let linear = Linear::NAMES.iter().find(|l| l.0 == linear_name).ok_or("unknown solver")?.1;
+    let linear = LinearMethod::NAMES.iter().find(|l| l.0 == linear_name).ok_or("unknown solver")?.1;
     let mesh = option("--mesh");
     if let Some(name) = option("--case") {
         return child(name, linear, mesh);

@@ -16,7 +16,7 @@ use clap::Parser;
 use indicatif::{ProgressBar, ProgressStyle};
 use options::{Options, Request};
 use unilateral::inequality::ActiveSet;
-use unilateral::linear::Linear;
+use unilateral::linear::LinearMethod;
 use unilateral::real::Real;
 use unilateral::scenes::{self, AnyScene, Parameters, Scene};
 use unilateral::study::{Study, peak_memory_bytes, scheme_by_name};
@@ -231,7 +231,7 @@ fn peak(options: &Options) -> Request<bool> {
 }
 
 fn once<T: Real, const D: usize>(options: &Options, scene: Scene<D>) -> Request<()> {
-    let linear = options.linear().first().copied().unwrap_or(Linear::BySize);
+    let linear = options.linear().first().copied().unwrap_or(LinearMethod::BySize);
     let mut study = Study::<T, D>::new(scene)
         .levels(options.levels(D))
         .solver(ActiveSet { linear, ..ActiveSet::default() });

@@ -9,7 +9,7 @@ pub use crate::problem::Problem;
 pub use crate::real::{Point, Real};
 pub use crate::scenes;
 pub use crate::scheme::{
-    Bmmpr, Br2, CellMeans, ConformingP1, ConformingP2, CrouzeixRaviartScheme, DirichletBy, Eta,
-    FacetMeans, Iipg, Ldg, Midpoints, Nipg, Scheme, Sipg, Wopsip,
+    Bmmpr, Br2, CellMeans, ConformingP1, ConformingP2, DirichletBy, Eta, FacetMeans, Iipg, Ldg,
+    Midpoints, Nipg, NonconformingP1, Scheme, Sipg, Wopsip,
 };
 pub use crate::study::{Report, Study};

@@ -38,7 +38,7 @@ macro_rules! schemes {
 
 schemes! {
     conforming: ConformingP1;
-    crouzeix_raviart: CrouzeixRaviartScheme;
+    crouzeix_raviart: NonconformingP1;
     sipg: Sipg::default();
     sipg_by_diameter: Sipg { penalty: PenaltyRule::Diameter(10.0), ..Sipg::default() };
     sipg_on_means: FacetMeans(Sipg::default());

@@ -56,7 +56,7 @@ fn on_refined(mesh: &Mesh<f64, 3>, build: fn() -> Scene<3>, schemes: fn() -> Vec
 
 /// The schemes with few unknowns.
 fn conforming_and_not() -> Vec<Boxed<f64, 3>> {
-    vec![Box::new(ConformingP1), Box::new(CrouzeixRaviartScheme)]
+    vec![Box::new(ConformingP1), Box::new(NonconformingP1)]
 }
 
 /// Certificates of every scheme on a mesh as it is.

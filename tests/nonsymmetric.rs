@@ -4,12 +4,12 @@
 use unilateral::algebra::{Bound, Inequality};
 use unilateral::assemble::{DataQuadrature, Discretisation};
 use unilateral::inequality::{ActiveSet, InequalitySolver, Outcome, Solution};
-use unilateral::linear::{Linear, is_positive_definite};
+use unilateral::linear::{LinearMethod, is_positive_definite};
 use unilateral::prelude::*;
 use unilateral::scenes::Scene;
 use unilateral::study::Row;
 
-fn solve<T: Real>(inequality: &Inequality<T>, linear: Linear) -> Solution<T> {
+fn solve<T: Real>(inequality: &Inequality<T>, linear: LinearMethod) -> Solution<T> {
     ActiveSet { linear, ..ActiveSet::default() }.solve(inequality)
 }
 
@@ -31,8 +31,8 @@ fn energy(inequality: &Inequality<f64>, u: &[f64]) -> f64 {
 
 /// Solves iteratively and with factors, and compares; returns the inner iterations.
 fn agree(inequality: &Inequality<f64>, what: &str) -> usize {
-    let found = solve(inequality, Linear::Iterative);
-    let exact = solve(inequality, Linear::Direct);
+    let found = solve(inequality, LinearMethod::Iterative);
+    let exact = solve(inequality, LinearMethod::Direct);
     assert_eq!((found.outcome, exact.outcome), (Outcome::Converged, Outcome::Converged), "{what}");
     assert_eq!((found.linear_solver, exact.linear_solver), ("auxiliary-space", "direct"), "{what}");
     let difference: Vec<f64> = found.values.iter().zip(&exact.values).map(|(a, b)| a - b).collect();
@@ -77,7 +77,7 @@ fn rows<const D: usize>(
     scene: fn(f64) -> Scene<D>,
     scheme: impl AnyScheme<f64, D>,
     levels: &[usize],
-    linear: Linear,
+    linear: LinearMethod,
 ) -> Vec<Row> {
     let solver = ActiveSet { linear, ..ActiveSet::default() };
     let study = Study::<f64, D>::new(scene(1.0)).scheme(scheme).solver(solver);
@@ -107,7 +107,7 @@ fn level_counts<const D: usize>(
     levels: &[usize],
     most: usize,
 ) -> Vec<Row> {
-    let found = rows(scenes::radial, scheme, levels, Linear::Iterative);
+    let found = rows(scenes::radial, scheme, levels, LinearMethod::Iterative);
     for row in &found {
         assert_eq!((&*row.status, &*row.linear), ("converged", "auxiliary-space"));
         assert!(row.certificate.largest() <= 1e-9, "{:?}", row.certificate);
@@ -122,7 +122,7 @@ fn level_counts<const D: usize>(
 fn counts_do_not_grow() {
     let nipg = level_counts::<2>(Nipg::default(), &[16, 32, 64, 128], 68);
     level_counts::<2>(Iipg::default(), &[16, 32, 64, 128], 56);
-    let exact = rows::<2>(scenes::radial, Nipg::default(), &[64], Linear::Direct).remove(0);
+    let exact = rows::<2>(scenes::radial, Nipg::default(), &[64], LinearMethod::Direct).remove(0);
     // errors differ by no more than solutions do, whose size is one
     let (a, b) = (nipg[2].error.l2.unwrap(), exact.error.l2.unwrap());
     assert!((a - b).abs() <= 1e-8, "error {a} and {b}");
@@ -139,7 +139,7 @@ fn threads_do_not_change_a_bit() {
     let inequality = inequality::<f64, 2>(&scenes::radial(1.0), &Nipg::default(), 64);
     let solve = |threads| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-        pool.install(|| solve(&inequality, Linear::Iterative))
+        pool.install(|| solve(&inequality, LinearMethod::Iterative))
     };
     let (one, two) = (solve(1), solve(2));
     assert_eq!((one.outcome, one.linear_solver), (Outcome::Converged, "auxiliary-space"));
@@ -152,8 +152,8 @@ fn single_precision_converges() {
         inequality::<f32, 2>(&scenes::radial(1.0), &Nipg::default(), 32),
         inequality::<f32, 2>(&scenes::radial(1.0), &Iipg::default(), 32),
     ] {
-        let found = solve(&inequality, Linear::Iterative);
-        let exact = solve(&inequality, Linear::Direct);
+        let found = solve(&inequality, LinearMethod::Iterative);
+        let exact = solve(&inequality, LinearMethod::Direct);
         assert_eq!((found.outcome, found.linear_solver), (Outcome::Converged, "auxiliary-space"));
         for (a, b) in found.values.iter().zip(&exact.values) {
             assert!((a - b).abs() <= 1e-4, "{a} and {b}");
@@ -175,8 +175,8 @@ fn values_at_vertices_may_be_transported() {
                 matrix.values[k] += strength * (j as f64 - i as f64).signum() * f64::from(i != j);
             }
         }
-        let found = solve(&inequality, Linear::Iterative);
-        let exact = solve(&inequality, Linear::Direct);
+        let found = solve(&inequality, LinearMethod::Iterative);
+        let exact = solve(&inequality, LinearMethod::Direct);
         assert_eq!((found.outcome, found.linear_solver), (Outcome::Converged, "multigrid"));
         for (a, b) in found.values.iter().zip(&exact.values) {
             assert!((a - b).abs() <= 1e-8, "{a} and {b}");
@@ -192,7 +192,7 @@ fn without_coercivity_there_is_a_reason() {
     let named = |inequality: &Inequality<f64>, what: &str| {
         let free: Vec<u32> = (0..inequality.size() as u32).collect();
         assert_eq!(is_positive_definite(&inequality.matrix, false, &free), Ok(false), "{what}");
-        let solution = solve(inequality, Linear::Iterative);
+        let solution = solve(inequality, LinearMethod::Iterative);
         eprintln!("{what}: {} after {}", solution.outcome, solution.linear);
         assert_eq!(solution.outcome, Outcome::NotCoercive, "{what}");
         assert!(solution.algebraic_bound.is_none() && solution.linear <= 30, "{what}");
@@ -209,7 +209,7 @@ fn without_coercivity_there_is_a_reason() {
 #[test]
 #[ignore = "a measurement of three minutes"]
 fn seconds() {
-    for linear in [Linear::Iterative, Linear::Direct] {
+    for linear in [LinearMethod::Iterative, LinearMethod::Direct] {
         for level in [64, 128, 256] {
             rows::<2>(scenes::radial, Nipg::default(), &[level], linear);
             rows::<2>(scenes::radial, Iipg::default(), &[level], linear);

@@ -11,7 +11,7 @@ use proptest::prelude::*;
 use unilateral::algebra::{Inequality, SparseMatrix};
 use unilateral::assemble::{DataQuadrature, Discretisation};
 use unilateral::inequality::{ActiveSet, InequalitySolver};
-use unilateral::linear::{EliminationOrder, Factors, Linear};
+use unilateral::linear::{EliminationOrder, Factors, LinearMethod};
 use unilateral::prelude::*;
 use unilateral::real::Point;
 
@@ -42,13 +42,13 @@ fn kept(inequality: &Inequality<f64>) -> Vec<u32> {
     (0..inequality.size() as u32).filter(is_open).collect()
 }
 
-/// The barycentres of places.
+/// The barycentres of supports.
 fn points(inequality: &Inequality<f64>) -> Vec<[f32; 3]> {
     let mean = |vertices: &[u32]| {
         let sum = |k| vertices.iter().map(|&v| inequality.points[v as usize][k]).sum::<f32>();
         [0, 1, 2].map(|k| sum(k) / vertices.len() as f32)
     };
-    inequality.places.iter().map(|place| mean(place.vertices())).collect()
+    inequality.supports.iter().map(|place| mean(place.vertices())).collect()
 }
 
 /// A matrix with a heavy diagonal and the edges given, both ways.
@@ -266,7 +266,7 @@ fn the_same_solution_in_any_order() {
         let order = |points| EliminationOrder::new(matrix, &kept, points).unwrap();
         let points = points(&inequality);
         assert_ne!(order(Some(&points)).unknowns(), order(None).unknowns());
-        let solver = ActiveSet { linear: Linear::Direct, ..ActiveSet::default() };
+        let solver = ActiveSet { linear: LinearMethod::Direct, ..ActiveSet::default() };
         let solution = solver.solve(&inequality);
         assert_eq!(solution.values, solver.solve(&inequality).values);
         let other = solver.solve(&Inequality { points: vec![], ..inequality });
@@ -289,10 +289,10 @@ fn the_same_solution_in_any_order() {
 fn times() {
     println!("order once, factors in every step (ms); stored numbers");
     table::<2, _>(&ConformingP1, &[32, 64, 128, 256]);
-    table::<2, _>(&CrouzeixRaviartScheme, &[64, 128]);
+    table::<2, _>(&NonconformingP1, &[64, 128]);
     table::<2, _>(&Sipg::default(), &[16, 64, 128]);
     table::<3, _>(&ConformingP1, &[8, 16, 32]);
-    table::<3, _>(&CrouzeixRaviartScheme, &[8, 12]);
+    table::<3, _>(&NonconformingP1, &[8, 12]);
     table::<3, _>(&Sipg::default(), &[4, 8, 12]);
 }
 

@@ -11,7 +11,7 @@ use unilateral::assemble::{DataQuadrature, Discretisation};
 use unilateral::inequality::{ActiveSet, InequalitySolver, Outcome};
 use unilateral::mesh::BoxDomain;
 use unilateral::mesh::{BoundaryPart, Edges, Mesh, TaggedFacet};
-use unilateral::nested::Levels;
+use unilateral::nested::Hierarchy;
 use unilateral::prelude::*;
 use unilateral::problem::Datum;
 use unilateral::quadrature::Rule;
@@ -45,15 +45,15 @@ fn h1_as_tables<S: Scheme<f64, 2, Element = P2>>(
     level: usize,
 ) -> f64 {
     let (solver, quadrature) = (ActiveSet::default(), DataQuadrature::default());
-    let mut levels = Levels::new(&scene.problem, &scene.domain, None);
+    let mut levels = Hierarchy::new(&scene.problem, &scene.domain, None);
     levels.make(level).unwrap();
     let start = levels.contact(level, &solver, quadrature, 1).unwrap().contact.clone();
     let mesh = levels.mesh(level).unwrap().0;
     let space = Discretisation::new(scheme, &scene.problem, mesh, quadrature).unwrap();
     let mut inequality = space.inequality().unwrap();
     let in_contact = |&v: &u32| start[v as usize] == Contact::Lower;
-    let states = inequality.places.iter().map(|place| {
-        if place.vertices().iter().all(in_contact) { Contact::Lower } else { Contact::Open }
+    let states = inequality.supports.iter().map(|place| {
+        if place.vertices().iter().all(in_contact) { Contact::Lower } else { Contact::Inactive }
     });
     inequality.start = Start::Contact(states.collect());
     let solution = solver.solve(&inequality);
@@ -270,7 +270,7 @@ fn numbering_does_not_matter() {
                     vertices.iter().map(|&v| mesh.vertices()[v as usize]).sum::<Point<_, 2>>();
                 sum / vertices.len() as f64
             };
-            let keys = inequality.places.iter().zip(&solution.values).map(|(place, &u)| {
+            let keys = inequality.supports.iter().zip(&solution.values).map(|(place, &u)| {
                 let cell = place.cell().map_or(Point::zeros(), |c| mesh.barycentre(c as usize));
                 let key = [cell, barycentre(place.vertices())];
                 (key.map(|x| [x[0], x[1]].map(|t| (t * 1e9).round() as i64)), u)

@@ -31,7 +31,7 @@ fn scheme(reference: &Value) -> Option<Box<dyn AnyScheme<f64, 2>>> {
     let eta = || Eta::Absolute(reference["eta"].as_f64().unwrap());
     Some(match reference["scheme"].as_str()? {
         "p1" => Box::new(ConformingP1),
-        "cr" => Box::new(CrouzeixRaviartScheme),
+        "cr" => Box::new(NonconformingP1),
         "sipg" => {
             let sigma = reference["sigma"].as_f64().unwrap();
             Box::new(Sipg { penalty: PenaltyRule::Diameter(sigma), ..Sipg::default() })

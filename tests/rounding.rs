@@ -7,7 +7,7 @@ use support::accuracy::{Checks, own_scene, solve, wopsip};
 use unilateral::algebra::Inequality;
 use unilateral::assemble::Discretisation;
 use unilateral::inequality::{ActiveSet, InequalitySolver, Outcome, Solution};
-use unilateral::linear::Linear;
+use unilateral::linear::LinearMethod;
 use unilateral::mesh::BoxDomain;
 use unilateral::mesh::{Mesh, TaggedFacet};
 use unilateral::prelude::*;
@@ -73,7 +73,7 @@ fn solution<T: Real>(inequality: &Inequality<T>, is_old: bool) -> Solution<T> {
     if is_old {
         inequality.factored = None;
     }
-    ActiveSet { linear: Linear::Direct, ..ActiveSet::default() }.solve(&inequality)
+    ActiveSet { linear: LinearMethod::Direct, ..ActiveSet::default() }.solve(&inequality)
 }
 
 /// The largest error at nodes for `-u'' = pi^2 sin(pi x)` on `2^level` cells, over-penalty with
@@ -83,7 +83,7 @@ fn sine_on_a_line<T: Real>(level: u32, is_old: bool) -> (Outcome, f64) {
     let mesh = cube::<T, 1>(1 << level);
     let inequality = assemble(&wopsip(1.0), &problem, &mesh);
     let solution = solution(&inequality, is_old);
-    let at = |k: usize| mesh.vertices()[inequality.places[k].vertices()[0] as usize][0].to_f64();
+    let at = |k: usize| mesh.vertices()[inequality.supports[k].vertices()[0] as usize][0].to_f64();
     let error = |k: usize| (solution.values[k].to_f64() - (PI * at(k)).sin()).abs();
     (solution.outcome, (0..inequality.size()).map(error).fold(0.0, f64::max))
 }
@@ -234,7 +234,7 @@ fn graded_meshes() {
     for (scene, level) in [(scenes::signorini_2d(), 32), (sines_in_units(1.0), 32)] {
         for power in [1, 2, 4, 8] {
             let mesh = graded(&scene, level, power);
-            let cr = solve(&CrouzeixRaviartScheme, &scene.problem, &mesh).error;
+            let cr = solve(&NonconformingP1, &scene.problem, &mesh).error;
             for scheme in [wopsip(1.0), Wopsip::default()] {
                 let ours = solve(&scheme, &scene.problem, &mesh);
                 let what = format!("{}, power {power}, {:?}", scene.name, scheme.eta);

@@ -48,7 +48,7 @@ fn assert_solved(inequality: &Inequality<f64>, solution: &Solution<f64>) {
         inequality.bounds.iter().zip(&solution.contact).zip(&solution.values)
     {
         match contact {
-            Contact::Open => {}
+            Contact::Inactive => {}
             Contact::Lower => assert_eq!(bound.lower(), Some(*u)),
             Contact::Upper => assert_eq!(bound.upper(), Some(*u)),
         }
@@ -131,7 +131,7 @@ fn cycle_of_a_matrix_without_symmetry_is_resolved() {
     let mut problem = inequality(sparse(&matrix), &[1.0; 3], vec![Bound::Lower(0.0); 3]);
     problem.symmetric = false;
     for first in [[1, 0, 0], [0, 1, 0], [0, 0, 1], [1, 1, 0]] {
-        let start = first.map(|c| if c == 1 { Contact::Lower } else { Contact::Open });
+        let start = first.map(|c| if c == 1 { Contact::Lower } else { Contact::Inactive });
         let start = Start::Contact(start.to_vec());
         let plain = without_resort();
         assert_eq!(

@@ -137,7 +137,7 @@ fn iteration_limit_comes_with_the_best_iterate() {
 fn certificate_sees_every_violation() {
     let problem = membrane::<f64>(20, 10.0, |_, _| -0.3);
     let solution = cold(&problem);
-    let open = solution.contact.iter().position(|c| *c == Contact::Open).unwrap();
+    let open = solution.contact.iter().position(|c| *c == Contact::Inactive).unwrap();
     let closed = solution.contact.iter().position(|c| *c == Contact::Lower).unwrap();
     let moved = |i: usize, by: f64| {
         let mut u = solution.values.clone();

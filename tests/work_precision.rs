@@ -125,7 +125,10 @@ fn an_interrupted_study_leaves_a_readable_report_of_what_is_finished() {
 fn a_tiny_study_measures_every_variant_alike() {
     let report = tiny()
         .scheme(FacetMeans(Wopsip::default()))
-        .linear([unilateral::linear::Linear::Direct, unilateral::linear::Linear::Iterative])
+        .linear([
+            unilateral::linear::LinearMethod::Direct,
+            unilateral::linear::LinearMethod::Iterative,
+        ])
         .precisions([Precision::Double, Precision::Single])
         .levels([8, 4])
         .rounds(3)
@@ -158,7 +161,7 @@ fn a_tiny_study_measures_every_variant_alike() {
     let alone = Study::<f64, 2>::new(scenes::radial(1.0))
         .scheme(ConformingP1)
         .solver(unilateral::inequality::ActiveSet {
-            linear: unilateral::linear::Linear::Direct,
+            linear: unilateral::linear::LinearMethod::Direct,
             ..Default::default()
         })
         .levels([4, 8])

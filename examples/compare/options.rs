@@ -48,7 +48,7 @@ pub struct Options {
     /// Solver of the inequality
     #[arg(long, value_name = "NAME")]
     pub solver: Option<String>,
-    /// Linear solver inside it: direct or iterative; by default whichever is faster
+    /// LinearMethod solver inside it: direct or iterative; by default whichever is faster
     #[arg(long, value_name = "NAME")]
     pub linear: Option<String>,
     /// Scalar of assembly and solve

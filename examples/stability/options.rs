@@ -18,7 +18,7 @@ pub struct Options {
     /// Gmsh files of tetrahedra for the case of slivers
     #[arg(long = "mesh", value_delimiter = ',', value_name = "FILE[,FILE...]")]
     pub meshes: Vec<PathBuf>,
-    /// Coarse meshes and few places of each sweep: within a minute
+    /// Coarse meshes and few supports of each sweep: within a minute
     #[arg(long)]
     quick: bool,
     /// Number of threads; all cores by default

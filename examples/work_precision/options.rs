@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use clap::Parser;
-use unilateral::linear::Linear;
+use unilateral::linear::LinearMethod;
 use unilateral::scenes;
 use unilateral::study::{Placement, SCHEMES, SchemeOptions};
 use unilateral::work_precision::Precision;
@@ -24,8 +24,8 @@ pub struct Options {
     /// Schemes by name, with a placement of the bounds after a colon, as in wopsip:facet-means
     #[arg(long = "scheme", value_delimiter = ',', value_name = "A[:PLACE][,B...]")]
     schemes: Vec<String>,
-    /// Linear solvers: direct, iterative, by-size
-    #[arg(long, value_delimiter = ',', value_parser = Linear::NAMES.map(|l| l.0), default_value = "by-size")]
+    /// LinearMethod solvers: direct, iterative, by-size
+    #[arg(long, value_delimiter = ',', value_parser = LinearMethod::NAMES.map(|l| l.0), default_value = "by-size")]
     linear: Vec<String>,
     /// Scalars
     #[arg(long, value_delimiter = ',', value_parser = Precision::NAMES.map(|p| p.0), default_value = "f64")]
@@ -116,8 +116,8 @@ impl Options {
         self.asked().into_iter().map(of).collect()
     }
 
-    pub fn linear(&self) -> Vec<Linear> {
-        let of = |name: &String| Linear::NAMES.iter().find(|l| l.0 == name).map(|l| l.1);
+    pub fn linear(&self) -> Vec<LinearMethod> {
+        let of = |name: &String| LinearMethod::NAMES.iter().find(|l| l.0 == name).map(|l| l.1);
         self.linear.iter().filter_map(of).collect()
     }
 

@@ -1,6 +1,6 @@
 //! The algebraic variational inequality.
 
-use super::{Factored, SparseMatrix};
+use super::{PenalisedMatrix, SparseMatrix};
 use crate::real::Real;
 
 /// What an unknown may be. Absent bounds are absent: there is no large number that means none.
@@ -82,7 +82,7 @@ impl<T: Real> Bound<T> {
 pub enum Contact {
     /// None: inactive.
     #[default]
-    Open,
+    Inactive,
     /// The lower bound is active.
     Lower,
     /// The upper bound is active.
@@ -107,12 +107,12 @@ pub enum Start {
 /// a facet. `D + 1`: the mean over the cell. In a dimension in which two of these coincide, so do the
 /// nodes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Place {
+pub struct Support {
     cell: u32,
     vertices: [u32; 4],
 }
 
-impl Place {
+impl Support {
     const NONE: u32 = u32::MAX;
 
     /// A place at one to four vertices, owned by a cell or shared.
@@ -161,14 +161,14 @@ pub struct Inequality<T> {
     /// What each unknown may be.
     pub bounds: Vec<Bound<T>>,
     /// Where each unknown lives.
-    pub places: Vec<Place>,
+    pub supports: Vec<Support>,
     /// Where each vertex of the mesh is, missing coordinates zero; empty if that is not known. Direct
     /// solvers derive an order of elimination from it, and nothing else.
     pub points: Vec<[f32; 3]>,
     /// What a solver starts from.
     pub start: Start,
     /// Matrix and load once more, not multiplied out, where that is more exact.
-    pub factored: Option<Factored<T>>,
+    pub factored: Option<PenalisedMatrix<T>>,
 }
 
 impl<T: Real> Inequality<T> {
@@ -198,12 +198,12 @@ impl<T: Real> Inequality<T> {
     /// The point of each unknown, the barycentre of the vertices of its place; `None` if some are not
     /// known.
     pub(crate) fn points_of_unknowns(&self) -> Option<Vec<[f32; 3]>> {
-        let point = |place: &Place| {
+        let point = |place: &Support| {
             let known = place.vertices().iter().filter_map(|&v| self.points.get(v as usize));
             (known.clone().count() == place.vertices().len()).then(|| barycentre(known.copied()))
         };
-        let is_known = self.places.len() == self.size() && !self.points.is_empty();
-        is_known.then(|| self.places.iter().map(point).collect()).flatten()
+        let is_known = self.supports.len() == self.size() && !self.points.is_empty();
+        is_known.then(|| self.supports.iter().map(point).collect()).flatten()
     }
     /// `r = b - A u` in `f64`, of the matrix as exact as it is known.
     ///

@@ -9,7 +9,7 @@ mod penalised_matrix;
 pub(crate) mod submatrix;
 
 pub(crate) use inequality::barycentre;
-pub use inequality::{Bound, Contact, Inequality, Place, Start};
+pub use inequality::{Bound, Contact, Inequality, Start, Support};
 pub use matrix::SparseMatrix;
 pub(crate) use matrix::transpose;
-pub use penalised_matrix::{Factored, Term};
+pub use penalised_matrix::{PenalisedMatrix, Term};

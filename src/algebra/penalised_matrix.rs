@@ -16,7 +16,7 @@ use crate::real::Real;
 /// The *forces* of jumps are `p = S (M u - g)`. Where they are kept besides the values they are known
 /// to all digits, which jumps, differences of values, are not.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Factored<T> {
+pub struct PenalisedMatrix<T> {
     /// Unknowns of a block.
     pub block: usize,
     /// `K`: its blocks one after the other, each by rows, positive semidefinite.
@@ -53,7 +53,7 @@ impl<T> Term<T> {
 /// Items for which another thread pays.
 const CHUNK: usize = 4096;
 
-impl<T: Real> Factored<T> {
+impl<T: Real> PenalisedMatrix<T> {
     /// Number of jumps.
     pub fn n_jumps(&self) -> usize {
         self.weights.len()

@@ -8,7 +8,7 @@ const OUT: u32 = u32::MAX;
 
 /// Some rows and columns of a matrix, renumbered in their order.
 #[derive(Clone, Debug)]
-pub(crate) struct Restricted<T> {
+pub(crate) struct Submatrix<T> {
     /// Start of each row, and the number of entries at the end.
     pub row_starts: Vec<u32>,
     /// Column of each entry in the new numbering, ascending in each row.
@@ -17,7 +17,7 @@ pub(crate) struct Restricted<T> {
     pub values: Vec<T>,
 }
 
-impl<T: Real> Restricted<T> {
+impl<T: Real> Submatrix<T> {
     /// The rows and columns `free`, ascending.
     pub fn new(matrix: &SparseMatrix<T>, free: &[u32]) -> Self {
         Self::restrict(matrix, free, false)
@@ -68,14 +68,14 @@ impl<T: Real> Restricted<T> {
 }
 
 /// All rows and columns.
-impl<T> From<SparseMatrix<T>> for Restricted<T> {
+impl<T> From<SparseMatrix<T>> for Submatrix<T> {
     fn from(matrix: SparseMatrix<T>) -> Self {
         let SparseMatrix { row_starts, columns, values } = matrix;
         Self { row_starts, columns, values }
     }
 }
 
-impl<T> Restricted<T> {
+impl<T> Submatrix<T> {
     /// Number of rows.
     pub fn size(&self) -> usize {
         self.row_starts.len() - 1

@@ -7,10 +7,10 @@ use crate::mesh::{BoundaryPart, Neighbour, Neighbours};
 use crate::real::Real;
 
 impl<'a, T: Real, const D: usize> Space<'a, T, D> {
-    /// See `Discretisation::penalty_shortfall`.
-    pub fn penalty_shortfall(&self, form: &dyn AnyForm<T, D>) -> Option<PenaltyShortfall> {
+    /// See `Discretisation::coercivity_margin`.
+    pub fn coercivity_margin(&self, form: &dyn AnyForm<T, D>) -> Option<CoercivityMargin> {
         let neighbours = self.neighbours.as_ref()?;
-        let mut worst: Option<PenaltyShortfall> = None;
+        let mut worst: Option<CoercivityMargin> = None;
         for cell in 0..self.mesh.n_cells() {
             for local in 0..=D {
                 if let Neighbour::Cell { cell: other, .. } = neighbours.across(cell, local)
@@ -28,10 +28,10 @@ impl<'a, T: Real, const D: usize> Space<'a, T, D> {
                     continue;
                 }
                 let facets = worst.map_or(0, |w| w.facets) + 1;
-                let here = PenaltyShortfall { facets, cell, local, weight, needed };
+                let here = CoercivityMargin { facets, cell, local, weight, needed };
                 worst = match worst {
                     Some(w) if w.weight / w.needed <= weight / needed => {
-                        Some(PenaltyShortfall { facets, ..w })
+                        Some(CoercivityMargin { facets, ..w })
                     }
                     _ => Some(here),
                 };
@@ -68,7 +68,7 @@ impl<'a, T: Real, const D: usize> Space<'a, T, D> {
 #[error(
     "the penalty of {facets} facets lies below the bound that proves coercivity; worst at facet {local} of cell {cell}: {weight:.3e} where {needed:.3e} is enough"
 )]
-pub struct PenaltyShortfall {
+pub struct CoercivityMargin {
     /// How many facets lie below.
     pub facets: usize,
     /// Cell of the facet that misses by the largest factor.

@@ -57,7 +57,7 @@ impl<T: Real> Coefficients<T> {
 
 /// The penalty weight of every facet that carries the form and, where the form uses fluxes, the
 /// shares of its two cells in the flux. Kept with the cell here, so that each is computed once.
-pub(crate) struct FacetWeights<T> {
+pub(crate) struct FacetCoefficients<T> {
     pub coefficients: Coefficients<T>,
     entries: Vec<T>,
     /// Numbers for each facet of each cell.
@@ -74,7 +74,7 @@ pub(crate) struct FacetWeight<T> {
     pub other_share: T,
 }
 
-impl<T: Real> FacetWeights<T> {
+impl<T: Real> FacetCoefficients<T> {
     /// The weights of a form, in parallel.
     pub fn of<const D: usize, F: FacetForm<T, D>>(
         space: &Space<'_, T, D>,

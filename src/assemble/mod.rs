@@ -18,7 +18,7 @@ pub(crate) mod space;
 
 use std::sync::OnceLock;
 
-use crate::algebra::{Bound, Inequality, Place, SparseMatrix, Start};
+use crate::algebra::{Bound, Inequality, SparseMatrix, Start, Support};
 use crate::element::ReferenceElement;
 use crate::error::Error;
 use crate::facet::FacetForm;
@@ -26,8 +26,8 @@ use crate::mesh::Mesh;
 use crate::problem::Problem;
 use crate::real::Real;
 use crate::scheme::{DirichletBy, Scheme};
-pub use coercivity_margin::PenaltyShortfall;
-use facet_coefficients::FacetWeights;
+pub use coercivity_margin::CoercivityMargin;
+use facet_coefficients::FacetCoefficients;
 use space::Space;
 use space::metric::Metrics;
 
@@ -54,7 +54,7 @@ pub struct Discretisation<'a, T: Real, const D: usize, S: Scheme<T, D>> {
     pub(crate) space: Space<'a, T, D>,
     pub(crate) form: S::Facet,
     /// What facet forms need of cells and facets, computed when first needed.
-    prepared: OnceLock<(Metrics<T>, FacetWeights<T>)>,
+    prepared: OnceLock<(Metrics<T>, FacetCoefficients<T>)>,
 }
 
 impl<'a, T: Real, const D: usize, S: Scheme<T, D>> Discretisation<'a, T, D, S> {
@@ -123,10 +123,10 @@ impl<'a, T: Real, const D: usize, S: Scheme<T, D>> Discretisation<'a, T, D, S> {
             shared_rows::fill(self, matrix);
         }
     }
-    fn prepared(&self) -> &(Metrics<T>, FacetWeights<T>) {
+    fn prepared(&self) -> &(Metrics<T>, FacetCoefficients<T>) {
         self.prepared.get_or_init(|| {
             let metrics = Metrics::of(self.space.mesh);
-            let weights = FacetWeights::of(&self.space, &self.form, &metrics);
+            let weights = FacetCoefficients::of(&self.space, &self.form, &metrics);
             (metrics, weights)
         })
     }
@@ -136,7 +136,7 @@ impl<'a, T: Real, const D: usize, S: Scheme<T, D>> Discretisation<'a, T, D, S> {
         self.fill(&mut matrix);
         matrix
     }
-    /// The inequality: matrix, load, bounds, places, points.
+    /// The inequality: matrix, load, bounds, supports, points.
     ///
     /// # Errors
     /// [`Error::DataNotFinite`], [`Error::EmptyConstraint`].
@@ -159,7 +159,7 @@ impl<'a, T: Real, const D: usize, S: Scheme<T, D>> Discretisation<'a, T, D, S> {
             symmetric: self.form.is_symmetric(),
             load,
             bounds,
-            places: self.places(),
+            supports: self.supports(),
             // in the plane an order found in space is no better for unknowns that cells share
             points: if D == 3 || Self::OWNS_ROWS { self.space.vertex_points() } else { Vec::new() },
             start: Start::Cold,
@@ -190,8 +190,8 @@ impl<'a, T: Real, const D: usize, S: Scheme<T, D>> Discretisation<'a, T, D, S> {
         self.space.bounds()
     }
     /// Where each unknown lives.
-    pub fn places(&self) -> Vec<Place> {
-        self.space.places()
+    pub fn supports(&self) -> Vec<Support> {
+        self.space.supports()
     }
     /// The discrete function at the vertices of each cell, `D + 1` values for each.
     ///
@@ -202,8 +202,8 @@ impl<'a, T: Real, const D: usize, S: Scheme<T, D>> Discretisation<'a, T, D, S> {
     }
     /// Facets whose weight lies below what the form needs to be provably coercive: how many, and
     /// the one that misses by the largest factor. Nothing if the form promises none.
-    pub fn penalty_shortfall(&self) -> Option<PenaltyShortfall> {
-        self.space.penalty_shortfall(&self.form)
+    pub fn coercivity_margin(&self) -> Option<CoercivityMargin> {
+        self.space.coercivity_margin(&self.form)
     }
     /// The load of all unknowns.
     ///

@@ -2,13 +2,13 @@
 
 use std::convert::Infallible;
 
-use super::facet_coefficients::FacetWeights;
+use super::facet_coefficients::FacetCoefficients;
 use super::load::FacetDatum;
 use super::local::zero_local;
 use super::space::metric::Metrics;
 use super::space::tables::FacetTable;
 use super::space::{Space, data};
-use crate::algebra::{Factored, Term};
+use crate::algebra::{PenalisedMatrix, Term};
 use crate::element::{MAX_BASIS, Node};
 use crate::facet::{AnyForm, FacetForm};
 use crate::mesh::{BoundaryPart, Neighbour, edge_vertices};
@@ -32,14 +32,14 @@ pub(crate) fn applies<T: Real, const D: usize, F: FacetForm<T, D>>(form: &F) -> 
 pub(crate) fn factored<T: Real, const D: usize>(
     space: &Space<'_, T, D>,
     form: &dyn AnyForm<T, D>,
-    (metrics, weights): (&Metrics<T>, &FacetWeights<T>),
+    (metrics, weights): (&Metrics<T>, &FacetCoefficients<T>),
     mut load: Vec<T>,
     mut dirichlet: Vec<FacetDatum>,
-) -> Factored<T> {
+) -> PenalisedMatrix<T> {
     load.resize(space.dofs.size(), T::lit(0.0));
     dirichlet.sort_by_key(|(cell, (local, _))| (*cell, *local));
     let mut dirichlet = dirichlet.into_iter().peekable();
-    let mut out = Factored {
+    let mut out = PenalisedMatrix {
         block: space.per_cell(),
         blocks: blocks(space, metrics),
         load,

@@ -111,7 +111,7 @@ impl<T: Real> Inexact<'_, T> {
         let mut is_changed = false;
         for (i, bound) in self.inequality.bounds.iter().enumerate() {
             let multiplier = match self.state[i] {
-                Contact::Open => f64::NEG_INFINITY,
+                Contact::Inactive => f64::NEG_INFINITY,
                 Contact::Lower => -self.residual[i].to_f64(),
                 Contact::Upper => self.residual[i].to_f64(),
             };

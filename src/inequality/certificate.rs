@@ -37,7 +37,7 @@ pub struct Certificate {
     /// positive.
     pub complementarity: f64,
     /// Dual norm over `E` of the residual off contact; if larger, the largest difference, over `U`,
-    /// of a jump and what its force makes of it ([`certify_with_forces`]).
+    /// of a jump and what its force makes of it ([`certify_with_jump_multipliers`]).
     pub residual: f64,
     /// Relative bound on the energy-norm distance to the discrete solution, where the solver knows
     /// one. It rests on one estimate, of the smallest eigenvalue of the preconditioned matrix.
@@ -62,14 +62,14 @@ impl Certificate {
 
 /// Certifies `u` as a solution of the inequality; see [`Certificate`].
 pub fn certify<T: Real>(inequality: &Inequality<T>, u: &[T]) -> Certificate {
-    certify_with_forces(inequality, u, &[])
+    certify_with_jump_multipliers(inequality, u, &[])
 }
 
-/// The same with the forces `p` of the jumps of a [`Factored`](crate::algebra::Factored) matrix,
+/// The same with the forces `p` of the jumps of a [`PenalisedMatrix`](crate::algebra::PenalisedMatrix) matrix,
 /// where they are known besides the values: forces are then `c - K u - M^T p`, without the rounding
 /// that differences of values have, and what jumps and `p / s` differ by is measured as a
 /// displacement. No forces (or not as many as jumps): those that the values have.
-pub fn certify_with_forces<T: Real>(
+pub fn certify_with_jump_multipliers<T: Real>(
     inequality: &Inequality<T>,
     u: &[T],
     forces: &[T],
@@ -202,6 +202,6 @@ pub fn active<T: Real>(inequality: &Inequality<T>, contact: &[Contact]) -> usize
         .bounds
         .iter()
         .zip(contact)
-        .filter(|(bound, state)| bound.is_inequality() && **state != Contact::Open)
+        .filter(|(bound, state)| bound.is_inequality() && **state != Contact::Inactive)
         .count()
 }

@@ -11,8 +11,8 @@ mod projected_newton;
 mod solution;
 
 pub use active_set::{ActiveSet, LastResort};
-pub use certificate::{Certificate, active, certify, certify_with_forces};
-pub use initial_guess::Nearby;
+pub use certificate::{Certificate, active, certify, certify_with_jump_multipliers};
+pub use initial_guess::InitialGuess;
 pub use monotone_multigrid::MonotoneMultigrid;
 pub use outcome::Outcome;
 pub use solution::Solution;
@@ -27,13 +27,13 @@ pub trait InequalitySolver<T: Real>: Sync {
     /// Solves; never fails silently: see [`Outcome`].
     fn solve(&self, inequality: &Inequality<T>) -> Solution<T>;
     /// The same with knowledge of what is nearby; a solver that has no use for it ignores it.
-    fn solve_near(&self, inequality: &Inequality<T>, nearby: &Nearby<T>) -> Solution<T> {
+    fn solve_from(&self, inequality: &Inequality<T>, nearby: &InitialGuess<T>) -> Solution<T> {
         let _ = nearby;
         self.solve(inequality)
     }
     /// Whether it has use for nested meshes where no bound asks for a start from them, for a system
     /// of this many unknowns.
-    fn uses_nearby(&self, unknowns: usize) -> bool {
+    fn uses_coarse_spaces(&self, unknowns: usize) -> bool {
         let _ = unknowns;
         false
     }

@@ -1,12 +1,12 @@
 //! Truncated nonsmooth Newton multigrid: monotone, and indifferent to strict complementarity.
 
 use super::certificate::certify;
-use super::initial_guess::Nearby;
+use super::initial_guess::InitialGuess;
 use super::{ActiveSet, InequalitySolver, Outcome, Solution, active_set};
 use crate::algebra::{Contact, Inequality};
-use crate::linear::Functions;
+use crate::linear::CoarseSpaces;
 use crate::linear::direct::factors::FactorError;
-use crate::linear::precondition::coarse_level::Coarser;
+use crate::linear::precondition::coarse_level::CoarseLevel;
 use crate::linear::precondition::multigrid::Multigrid;
 use crate::real::Real;
 
@@ -20,7 +20,7 @@ use crate::real::Real;
 /// sweep). Coarse functions are cut off at the bounds. No step depends on which of gap and
 /// multiplier vanish, and the number of steps hardly on the mesh as long as the start is near.
 ///
-/// The coarser functions are those of [`Nearby`], or made from the matrix by aggregation: the
+/// The coarser functions are those of [`InitialGuess`], or made from the matrix by aggregation: the
 /// matrix should be that of conforming linear functions. For others it converges all the same,
 /// slowly; matrices that are not symmetric go to [`ActiveSet`].
 #[derive(Clone, Debug, PartialEq)]
@@ -45,12 +45,12 @@ impl<T: Real> InequalitySolver<T> for MonotoneMultigrid {
     }
 
     fn solve(&self, inequality: &Inequality<T>) -> Solution<T> {
-        self.solve_near(inequality, &Nearby::default())
+        self.solve_from(inequality, &InitialGuess::default())
     }
 
-    fn solve_near(&self, inequality: &Inequality<T>, nearby: &Nearby<T>) -> Solution<T> {
+    fn solve_from(&self, inequality: &Inequality<T>, nearby: &InitialGuess<T>) -> Solution<T> {
         if !inequality.symmetric {
-            return ActiveSet::default().solve_near(inequality, nearby);
+            return ActiveSet::default().solve_from(inequality, nearby);
         }
         let mut descent = Descent::new(inequality, nearby);
         let outcome = match active_set::check_input(inequality) {
@@ -60,7 +60,7 @@ impl<T: Real> InequalitySolver<T> for MonotoneMultigrid {
         descent.into_solution(outcome)
     }
 
-    fn uses_nearby(&self, _unknowns: usize) -> bool {
+    fn uses_coarse_spaces(&self, _unknowns: usize) -> bool {
         true
     }
 }
@@ -77,7 +77,7 @@ struct Descent<'a, T> {
 }
 
 impl<'a, T: Real> Descent<'a, T> {
-    fn new(inequality: &'a Inequality<T>, nearby: &Nearby<T>) -> Self {
+    fn new(inequality: &'a Inequality<T>, nearby: &InitialGuess<T>) -> Self {
         let n = inequality.bounds.len();
         let near = nearby.values.as_deref().filter(|values| values.len() == n);
         let start = |i: usize| near.map_or(T::lit(0.0), |values| values[i]);
@@ -98,18 +98,18 @@ impl<'a, T: Real> Descent<'a, T> {
     fn run(
         &mut self,
         settings: &MonotoneMultigrid,
-        nearby: &Nearby<T>,
+        nearby: &InitialGuess<T>,
     ) -> Result<Outcome, Outcome> {
         let Inequality { matrix, bounds, .. } = self.inequality;
         let made = match nearby.functions {
-            Functions::Coarser(_) => None,
+            CoarseSpaces::CoarseLevel(_) => None,
             _ => {
                 let given: Vec<bool> = bounds.iter().map(|b| b.only_value().is_some()).collect();
-                Coarser::aggregated(matrix, &given)
+                CoarseLevel::aggregated(matrix, &given)
             }
         };
         let coarser = match &nearby.functions {
-            Functions::Coarser(coarser) => Some(coarser),
+            CoarseSpaces::CoarseLevel(coarser) => Some(coarser),
             _ => made.as_ref(),
         };
         let mut multigrid = Multigrid::new(matrix, coarser);
@@ -237,7 +237,7 @@ impl<'a, T: Real> Descent<'a, T> {
             .map(|(bound, x)| match (bound.lower(), bound.upper()) {
                 (Some(l), _) if *x <= l => Contact::Lower,
                 (_, Some(u)) if *x >= u => Contact::Upper,
-                _ => Contact::Open,
+                _ => Contact::Inactive,
             })
             .collect();
         Solution {

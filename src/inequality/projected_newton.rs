@@ -116,7 +116,7 @@ impl<T: Real> Place<T> {
     /// The bounds met on the way to `goal`, and after which share of it.
     fn walls(&self, iterate: &Iterate<'_, T>, goal: &[T]) -> Vec<(usize, f64, Contact)> {
         let bounds = &iterate.inequality.bounds;
-        let open = (0..goal.len()).filter(|&i| iterate.state[i] == Contact::Open);
+        let open = (0..goal.len()).filter(|&i| iterate.state[i] == Contact::Inactive);
         let wall = |i: usize| {
             let (from, to) = (self.values[i].to_f64(), goal[i].to_f64());
             let (wall, contact) = match (bounds[i].lower(), bounds[i].upper()) {

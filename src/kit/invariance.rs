@@ -8,7 +8,7 @@ use super::meshes::{Renumbered, Sample};
 use super::report::InvarianceReport;
 use super::tested::{Tested, assemble, solve};
 use super::{meshes, problems};
-use crate::algebra::Place;
+use crate::algebra::Support;
 use crate::real::Real;
 
 /// Rounding units by which entries of matrix and load may change.
@@ -56,7 +56,7 @@ struct Numbered {
 /// The cell and the vertices of a place, in the numbers of the first mesh.
 type Key = (Option<u32>, Vec<u32>);
 
-fn key(place: &Place, vertex: impl Fn(u32) -> u32, cell: impl Fn(u32) -> u32) -> Key {
+fn key(place: &Support, vertex: impl Fn(u32) -> u32, cell: impl Fn(u32) -> u32) -> Key {
     let mut vertices: Vec<u32> = place.vertices().iter().map(|&v| vertex(v)).collect();
     vertices.sort_unstable();
     (place.cell().map(cell), vertices)
@@ -70,23 +70,23 @@ impl Numbered {
         vertices: &[u32],
         cells: &[u32],
     ) -> Result<Vec<usize>, KitError> {
-        let places = &self.assembled.places;
-        let mut here = HashMap::with_capacity(places.len());
-        for (second, place) in places.iter().enumerate() {
+        let supports = &self.assembled.supports;
+        let mut here = HashMap::with_capacity(supports.len());
+        for (second, place) in supports.iter().enumerate() {
             let key = key(place, |v| vertices[v as usize], |c| cells[c as usize]);
             if let Some(first) = here.insert(key, second) {
                 let place = self.assembled.describe(second);
                 return Err(KitError::UnknownsNotTold { first, second, place });
             }
         }
-        // both meshes have the same places, so that one that is not found is one that is there twice
-        let find = |(first, place): (usize, &Place)| {
+        // both meshes have the same supports, so that one that is not found is one that is there twice
+        let find = |(first, place): (usize, &Support)| {
             here.remove(&key(place, |v| v, |c| c)).ok_or_else(|| {
                 let place = there.assembled.describe(first);
                 KitError::UnknownsNotTold { first, second: first, place }
             })
         };
-        there.assembled.places.iter().enumerate().map(find).collect()
+        there.assembled.supports.iter().enumerate().map(find).collect()
     }
 
     fn load(&self, after: &Self, new: &[usize], tolerance: f64) -> Result<f64, KitError> {

@@ -1,14 +1,14 @@
 //! What the laws need of a matrix, in `f64`.
 
-use crate::algebra::{Inequality, Place, SparseMatrix};
+use crate::algebra::{Inequality, SparseMatrix, Support};
 use crate::real::Real;
 
-/// Matrix, load and places in `f64`: exactly those of the scalar they were assembled in.
+/// Matrix, load and supports in `f64`: exactly those of the scalar they were assembled in.
 pub(super) struct Assembled {
     pub matrix: SparseMatrix<f64>,
     pub symmetric: bool,
     pub load: Vec<f64>,
-    pub places: Vec<Place>,
+    pub supports: Vec<Support>,
     /// The unknowns that are not given.
     pub free: Vec<u32>,
 }
@@ -25,14 +25,14 @@ impl Assembled {
             },
             symmetric: inequality.symmetric,
             load: inequality.load.iter().map(|b| b.to_f64()).collect(),
-            places: inequality.places.clone(),
+            supports: inequality.supports.clone(),
             free: (0..inequality.size()).filter(given).map(|i| i as u32).collect(),
         }
     }
 
     /// Where an unknown lives, in words.
     pub fn describe(&self, unknown: usize) -> String {
-        let place = &self.places[unknown];
+        let place = &self.supports[unknown];
         let cell = place.cell().map_or_else(String::new, |cell| format!("cell {cell}, "));
         match place.vertices() {
             [] => format!("{cell}inside"),

@@ -48,7 +48,8 @@ pub(super) fn regular<T: Real, const D: usize>(
     domain: &BoxDomain<D>,
     n: usize,
 ) -> Result<Sample<T, D>, KitError> {
-    let mesh = Mesh::kuhn_box(domain, [n; D]).map_err(|why| KitError::NotAssembled { law, why: why.into() })?;
+    let mesh = Mesh::kuhn_box(domain, [n; D])
+        .map_err(|why| KitError::NotAssembled { law, why: why.into() })?;
     Ok(Sample { name: "a regular box", mesh })
 }
 

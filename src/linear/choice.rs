@@ -2,7 +2,7 @@
 
 /// Which linear solver works inside.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Linear {
+pub enum LinearMethod {
     /// Sparse factors, exact to rounding.
     Direct,
     /// Conjugate gradients with multigrid on conforming linear functions; for matrices that are not
@@ -14,8 +14,11 @@ pub enum Linear {
     BySize,
 }
 
-impl Linear {
+impl LinearMethod {
     /// All of them by the names users type.
-    pub const NAMES: [(&'static str, Linear); 3] =
-        [("direct", Linear::Direct), ("iterative", Linear::Iterative), ("by-size", Linear::BySize)];
+    pub const NAMES: [(&'static str, LinearMethod); 3] = [
+        ("direct", LinearMethod::Direct),
+        ("iterative", LinearMethod::Iterative),
+        ("by-size", LinearMethod::BySize),
+    ];
 }

@@ -1,14 +1,14 @@
-//! Linear systems: sparse factors, Krylov methods, preconditioners.
+//! LinearMethod systems: sparse factors, Krylov methods, preconditioners.
 
 mod choice;
 pub(crate) mod direct;
 pub(crate) mod krylov;
 pub(crate) mod precondition;
 
-pub use choice::Linear;
+pub use choice::LinearMethod;
 pub use direct::elimination::EliminationOrder;
 pub use direct::factors::{FactorError, Factors, is_positive_definite};
 pub use direct::kernels::SparseKernels;
-pub use precondition::coarse_level::{Coarser, VertexLevel};
-pub use precondition::coarse_spaces::Functions;
-pub use precondition::prolongation::Transfer;
+pub use precondition::coarse_level::{CoarseLevel, P1Level};
+pub use precondition::coarse_spaces::CoarseSpaces;
+pub use precondition::prolongation::Prolongation;

@@ -54,7 +54,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
                 let k = self.dofs.of(cell, i);
                 if measures[k] > 0.0 && inequality.bounds[k].is_inequality() {
                     let reaction = inequality.matrix.row_dot(k, u) - inequality.load[k];
-                    let in_contact = solution.contact[k] != Contact::Open;
+                    let in_contact = solution.contact[k] != Contact::Inactive;
                     if in_contact {
                         force += reaction.to_f64() / measures[k];
                     }

@@ -25,7 +25,7 @@ pub use edges::{EDGE_VERTICES, Edges, edge_vertices};
 pub use error::MeshError;
 pub use facets::{Facets, Neighbour, Neighbours};
 pub use geometry::CellGeometry;
-pub use refine::{Hierarchy, Refinement};
+pub use refine::Refinement;
 pub use validate::TaggedFacet;
 pub(crate) use validate::describe_point;
 

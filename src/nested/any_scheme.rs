@@ -3,14 +3,14 @@
 use crate::measure::Fields;
 use std::time::Instant;
 
-use super::hierarchy::VertexContact;
-use crate::algebra::{Bound, Contact, Inequality, Place, Start};
-use crate::assemble::{DataQuadrature, Discretisation, PenaltyShortfall};
+use super::hierarchy::P1Solution;
+use crate::algebra::{Bound, Contact, Inequality, Start, Support};
+use crate::assemble::{CoercivityMargin, DataQuadrature, Discretisation};
 use crate::element::{Layout, ReferenceElement};
 use crate::error::Error;
 use crate::facet::{FacetForm, PenaltyParameters};
 use crate::inequality::{
-    Certificate, InequalitySolver, Nearby, Outcome, Solution, certify_with_forces,
+    Certificate, InequalitySolver, InitialGuess, Outcome, Solution, certify_with_jump_multipliers,
 };
 use crate::linear::is_positive_definite;
 use crate::measure::{ContactErrors, Errors};
@@ -26,7 +26,7 @@ pub struct Task<'a, T: Real, const D: usize> {
     /// The mesh.
     pub mesh: &'a Mesh<T, D>,
     /// Contact and value of every vertex to start from; none for a cold start.
-    pub start: Option<&'a VertexContact<T>>,
+    pub start: Option<&'a P1Solution<T>>,
     /// The solver.
     pub solver: &'a dyn InequalitySolver<T>,
     /// Quadrature of data.
@@ -147,7 +147,7 @@ impl<T: Real, const D: usize, S: Scheme<T, D>> AnyScheme<T, D> for S {
 /// What a solve needs of a discretisation, whatever its scheme.
 trait Discrete<T: Real> {
     fn inequality(&self) -> Result<Inequality<T>, Error>;
-    fn penalty_shortfall(&self) -> Option<PenaltyShortfall>;
+    fn coercivity_margin(&self) -> Option<CoercivityMargin>;
     fn parameters(&self) -> PenaltyParameters;
     fn rounding_limit(&self) -> f64;
     fn errors(&self, u: &[T]) -> Result<Errors, Error>;
@@ -163,8 +163,8 @@ impl<T: Real, const D: usize, S: Scheme<T, D>> Discrete<T> for Discretisation<'_
     fn inequality(&self) -> Result<Inequality<T>, Error> {
         self.inequality()
     }
-    fn penalty_shortfall(&self) -> Option<PenaltyShortfall> {
-        self.penalty_shortfall()
+    fn coercivity_margin(&self) -> Option<CoercivityMargin> {
+        self.coercivity_margin()
     }
     fn parameters(&self) -> PenaltyParameters {
         self.form().parameters()
@@ -203,18 +203,18 @@ fn solve<T: Real, const D: usize>(
         drop(make()?.inequality()?);
         assemble_seconds = assemble_seconds.min(clock.elapsed().as_secs_f64());
     }
-    let mut nearby = Nearby::default();
+    let mut nearby = InitialGuess::default();
     if let Some(start) = task.start {
         // contact nowhere is no knowledge: such a start must be free to find that nothing else
         // holds the body
-        if start.contact.iter().any(|&c| c != Contact::Open) {
-            inequality.start = Start::Contact(transfer(&start.contact, &inequality.places));
+        if start.contact.iter().any(|&c| c != Contact::Inactive) {
+            inequality.start = Start::Contact(transfer(&start.contact, &inequality.supports));
         }
         nearby.functions = start.functions.clone();
         nearby.values =
-            (!start.values.is_empty()).then(|| means(&start.values, &inequality.places));
+            (!start.values.is_empty()).then(|| means(&start.values, &inequality.supports));
     }
-    let shortfall = space.penalty_shortfall();
+    let shortfall = space.coercivity_margin();
     let mut warnings = Vec::new();
     if let Some(s) = shortfall {
         warnings.push(s.to_string());
@@ -259,7 +259,7 @@ fn solve<T: Real, const D: usize>(
         certificate: match usable {
             true => Certificate {
                 algebraic_bound: solution.algebraic_bound,
-                ..certify_with_forces(&inequality, u, &solution.forces)
+                ..certify_with_jump_multipliers(&inequality, u, &solution.forces)
             },
             false => Certificate::WORTHLESS,
         },
@@ -276,7 +276,7 @@ fn solve<T: Real, const D: usize>(
 fn run<T: Real, const D: usize>(
     task: &Task<'_, T, D>,
     inequality: &Inequality<T>,
-    nearby: &Nearby<T>,
+    nearby: &InitialGuess<T>,
     in_doubt: bool,
 ) -> (Solution<T>, f64) {
     let clock = Instant::now();
@@ -288,7 +288,7 @@ fn run<T: Real, const D: usize>(
     };
     if in_doubt && definite() == Ok(false) {
         let values = vec![T::lit(0.0); inequality.size()];
-        let contact = vec![Contact::Open; inequality.size()];
+        let contact = vec![Contact::Inactive; inequality.size()];
         let solution = Solution {
             values,
             contact,
@@ -306,7 +306,7 @@ fn run<T: Real, const D: usize>(
     let mut last = None;
     for _ in 0..task.repeat.max(1) {
         let clock = Instant::now();
-        last = Some(task.solver.solve_near(inequality, nearby));
+        last = Some(task.solver.solve_from(inequality, nearby));
         seconds = seconds.min(clock.elapsed().as_secs_f64());
     }
     match last {
@@ -317,8 +317,8 @@ fn run<T: Real, const D: usize>(
 
 /// Contact of vertices carried to unknowns: an unknown starts in contact if more than half of the
 /// vertices around its node are.
-fn transfer(vertices: &[Contact], places: &[Place]) -> Vec<Contact> {
-    let state = |place: &Place| {
+fn transfer(vertices: &[Contact], supports: &[Support]) -> Vec<Contact> {
+    let state = |place: &Support| {
         let around = place.vertices();
         [Contact::Lower, Contact::Upper]
             .into_iter()
@@ -326,17 +326,17 @@ fn transfer(vertices: &[Contact], places: &[Place]) -> Vec<Contact> {
                 let on = around.iter().filter(|&&v| vertices[v as usize] == side).count();
                 2 * on > around.len()
             })
-            .unwrap_or(Contact::Open)
+            .unwrap_or(Contact::Inactive)
     };
-    places.iter().map(state).collect()
+    supports.iter().map(state).collect()
 }
 
 /// Values at vertices carried to unknowns: the mean over the vertices around each node.
-fn means<T: Real>(vertices: &[T], places: &[Place]) -> Vec<T> {
-    let mean = |place: &Place| {
+fn means<T: Real>(vertices: &[T], supports: &[Support]) -> Vec<T> {
+    let mean = |place: &Support| {
         let around = place.vertices();
         let sum = around.iter().fold(T::lit(0.0), |s, &v| s + vertices[v as usize]);
         sum / T::lit(around.len().max(1) as f64)
     };
-    places.iter().map(mean).collect()
+    supports.iter().map(mean).collect()
 }

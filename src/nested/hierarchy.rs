@@ -8,8 +8,8 @@ use std::time::Instant;
 use crate::algebra::{Bound, Contact, Start};
 use crate::assemble::{DataQuadrature, Discretisation};
 use crate::error::Error;
-use crate::inequality::{InequalitySolver, Nearby, Outcome};
-use crate::linear::{Coarser, Functions, Transfer, VertexLevel};
+use crate::inequality::{InequalitySolver, InitialGuess, Outcome};
+use crate::linear::{CoarseLevel, CoarseSpaces, P1Level, Prolongation};
 use crate::mesh::{Domain, Mesh, Refinement};
 use crate::problem::Problem;
 use crate::real::Real;
@@ -17,13 +17,13 @@ use crate::scheme::ConformingP1;
 
 /// Contact and value of every vertex, found by conforming P1, with what it cost.
 #[derive(Clone, Debug)]
-pub struct VertexContact<T> {
+pub struct P1Solution<T> {
     /// The state of every vertex.
     pub contact: Vec<Contact>,
     /// The value at every vertex; empty if no solution was found.
     pub values: Vec<T>,
     /// The conforming linear functions of this and coarser levels.
-    pub functions: Functions<T>,
+    pub functions: CoarseSpaces<T>,
     /// Seconds spent on this level and all coarser ones.
     pub seconds: f64,
     /// How many levels were solved.
@@ -35,9 +35,9 @@ struct Level<T, const D: usize> {
     /// The coarser level, and how this one came from it.
     from: Option<(usize, Refinement)>,
     /// How functions of the coarser level are written on this one.
-    transfer: Option<Arc<Transfer<T>>>,
+    transfer: Option<Arc<Prolongation<T>>>,
     seconds: f64,
-    contact: Option<Arc<VertexContact<T>>>,
+    contact: Option<Arc<P1Solution<T>>>,
 }
 
 /// The levels of a problem, made when asked for and kept.
@@ -45,7 +45,7 @@ struct Level<T, const D: usize> {
 /// Level `n` of a built-in domain has `n` subdivisions of its shortest side and is the refinement of
 /// level `n / 2` as long as that is whole and not tiny. Level `k` of a given mesh is its `k`-th uniform
 /// refinement.
-pub struct Levels<'a, T, const D: usize> {
+pub struct Hierarchy<'a, T, const D: usize> {
     problem: &'a Problem<D>,
     domain: &'a Domain<D>,
     given: Option<&'a Mesh<T, D>>,
@@ -59,8 +59,8 @@ const COARSEST: usize = 4;
 /// energy, below the discretisation error of all meshes that fit into memory.
 const START_ACCURACY: f64 = 1e-4;
 
-impl<'a, T: Real, const D: usize> Levels<'a, T, D> {
-    /// Levels of a problem on a built-in domain, or on a mesh given instead.
+impl<'a, T: Real, const D: usize> Hierarchy<'a, T, D> {
+    /// Hierarchy of a problem on a built-in domain, or on a mesh given instead.
     pub fn new(
         problem: &'a Problem<D>,
         domain: &'a Domain<D>,
@@ -179,7 +179,7 @@ impl<'a, T: Real, const D: usize> Levels<'a, T, D> {
         solver: &dyn InequalitySolver<T>,
         quadrature: DataQuadrature,
         repeat: usize,
-    ) -> Result<Option<Arc<VertexContact<T>>>, Error> {
+    ) -> Result<Option<Arc<P1Solution<T>>>, Error> {
         let Some((coarser, _)) = self.levels.get(&level).and_then(|l| l.from.as_ref()) else {
             return Ok(None);
         };
@@ -193,23 +193,23 @@ impl<'a, T: Real, const D: usize> Levels<'a, T, D> {
             .iter()
             .map(|&[a, b]| match (coarse.contact[a as usize], coarse.contact[b as usize]) {
                 (one, other) if one == other => one,
-                _ => Contact::Open,
+                _ => Contact::Inactive,
             })
             .collect();
-        let make = || Arc::new(Transfer::midpoints(parents.clone(), coarse.contact.len()));
+        let make = || Arc::new(Prolongation::midpoints(parents.clone(), coarse.contact.len()));
         let transfer = entry.transfer.get_or_insert_with(make);
         let values = match coarse.values.len() == coarse.contact.len() {
             true => transfer.values(&coarse.values),
             false => Vec::new(),
         };
         let functions = match &coarse.functions {
-            Functions::Same(same) => Coarser::new(same.clone(), transfer.clone()),
+            CoarseSpaces::Same(same) => CoarseLevel::new(same.clone(), transfer.clone()),
             _ => None,
         };
         let seconds = coarse.seconds + clock.elapsed().as_secs_f64();
-        let functions = functions.map_or(Functions::Unknown, Functions::Coarser);
+        let functions = functions.map_or(CoarseSpaces::Unknown, CoarseSpaces::CoarseLevel);
         let levels = coarse.levels;
-        Ok(Some(Arc::new(VertexContact { contact, values, functions, seconds, levels })))
+        Ok(Some(Arc::new(P1Solution { contact, values, functions, seconds, levels })))
     }
 
     /// The contact set of conforming P1 on a level that was made.
@@ -222,7 +222,7 @@ impl<'a, T: Real, const D: usize> Levels<'a, T, D> {
         solver: &dyn InequalitySolver<T>,
         quadrature: DataQuadrature,
         repeat: usize,
-    ) -> Result<Arc<VertexContact<T>>, Error> {
+    ) -> Result<Arc<P1Solution<T>>, Error> {
         if let Some(known) = self.levels.get(&level).and_then(|l| l.contact.clone()) {
             return Ok(known);
         }
@@ -239,11 +239,11 @@ impl<'a, T: Real, const D: usize> Levels<'a, T, D> {
 fn solve_p1<T: Real, const D: usize>(
     problem: &Problem<D>,
     mesh: &Mesh<T, D>,
-    start: Option<Arc<VertexContact<T>>>,
+    start: Option<Arc<P1Solution<T>>>,
     solver: &dyn InequalitySolver<T>,
     quadrature: DataQuadrature,
     repeat: usize,
-) -> Result<VertexContact<T>, Error> {
+) -> Result<P1Solution<T>, Error> {
     let (spent, levels) = start.as_ref().map_or((0.0, 0), |s| (s.seconds, s.levels));
     let mut seconds = f64::INFINITY;
     let mut last = None;
@@ -251,13 +251,13 @@ fn solve_p1<T: Real, const D: usize>(
         let clock = Instant::now();
         let space = Discretisation::new(&ConformingP1, problem, mesh, quadrature)?;
         let mut inequality = space.inequality()?;
-        let mut nearby = Nearby { accuracy: Some(START_ACCURACY), ..Nearby::default() };
+        let mut nearby = InitialGuess { accuracy: Some(START_ACCURACY), ..InitialGuess::default() };
         if let Some(start) = &start {
             inequality.start = Start::Contact(start.contact.clone());
             nearby.values = Some(start.values.clone());
             nearby.functions = start.functions.clone();
         }
-        let solution = solver.solve_near(&inequality, &nearby);
+        let solution = solver.solve_from(&inequality, &nearby);
         seconds = seconds.min(clock.elapsed().as_secs_f64());
         last = Some((inequality, solution));
     }
@@ -266,19 +266,19 @@ fn solve_p1<T: Real, const D: usize>(
     // a start need not be right; all open, one that failed is as good as none
     let (contact, values) = match solution.outcome {
         Outcome::Converged => (solution.contact, solution.values),
-        _ => (vec![Contact::Open; inequality.size()], Vec::new()),
+        _ => (vec![Contact::Inactive; inequality.size()], Vec::new()),
     };
     // in one dimension factors are as sparse as the matrix
     let functions = if D == 1 {
-        Functions::Unknown
+        CoarseSpaces::Unknown
     } else {
         let fixed = inequality.bounds.iter().map(|b| matches!(b, Bound::Fixed(_))).collect();
         let coarser = start.and_then(|start| match &start.functions {
-            Functions::Coarser(coarser) => Some(coarser.clone()),
+            CoarseSpaces::CoarseLevel(coarser) => Some(coarser.clone()),
             _ => None,
         });
-        Functions::Same(Arc::new(VertexLevel::new(inequality.matrix, fixed, coarser)))
+        CoarseSpaces::Same(Arc::new(P1Level::new(inequality.matrix, fixed, coarser)))
     };
     let seconds = spent + seconds + clock.elapsed().as_secs_f64();
-    Ok(VertexContact { contact, values, functions, seconds, levels: levels + 1 })
+    Ok(P1Solution { contact, values, functions, seconds, levels: levels + 1 })
 }

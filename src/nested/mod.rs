@@ -4,4 +4,4 @@ mod any_scheme;
 mod hierarchy;
 
 pub use any_scheme::{AnyScheme, Solved, Task};
-pub use hierarchy::{Levels, VertexContact};
+pub use hierarchy::{Hierarchy, P1Solution};

@@ -1,4 +1,4 @@
-//! Functions with their gradient and Laplacian at a point, and the product rule.
+//! CoarseSpaces with their gradient and Laplacian at a point, and the product rule.
 
 use std::ops::{Add, Mul, Sub};
 

@@ -11,9 +11,9 @@ use crate::real::Real;
 /// Orders: L.-H. Wang, J. Comput. Math. 21 (2003), 481-490 for obstacles; D. Y. Hua, L. H. Wang,
 /// J. Comput. Math. 17 (1999), 15-24 for Signorini.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct CrouzeixRaviartScheme;
+pub struct NonconformingP1;
 
-impl<T: Real, const D: usize> Scheme<T, D> for CrouzeixRaviartScheme {
+impl<T: Real, const D: usize> Scheme<T, D> for NonconformingP1 {
     type Element = CrouzeixRaviart;
     type Facet = NoFacets;
     const DIRICHLET: DirichletBy = DirichletBy::Pinning;

@@ -24,7 +24,7 @@ pub use br2::Br2;
 pub use cell_means::CellMeans;
 pub use conforming::ConformingP1;
 pub use conforming_p2::ConformingP2;
-pub use crouzeix_raviart::CrouzeixRaviartScheme;
+pub use crouzeix_raviart::NonconformingP1;
 pub use facet_means::FacetMeans;
 pub use iipg::Iipg;
 pub use ldg::{Ldg, LocalFluxes};

@@ -5,9 +5,9 @@ use crate::algebra::{Bound, SparseMatrix};
 use crate::assemble::DataQuadrature;
 use crate::error::Error;
 use crate::inequality::{ActiveSet, LastResort};
-use crate::linear::{Linear, is_positive_definite};
+use crate::linear::{LinearMethod, is_positive_definite};
 use crate::mesh::{BoxDomain, Mesh};
-use crate::nested::{Levels, Solved, Task};
+use crate::nested::{Hierarchy, Solved, Task};
 use crate::problem::Problem;
 use crate::real::{Point, Real};
 use crate::scenes::Scene;
@@ -17,7 +17,7 @@ use crate::study::{Row, Study};
 /// The solver of the study: the library's own, with factors on every level, so that no tolerance of
 /// an iterative solver enters.
 pub(crate) fn solver() -> ActiveSet {
-    ActiveSet { linear: Linear::Direct, ..ActiveSet::default() }
+    ActiveSet { linear: LinearMethod::Direct, ..ActiveSet::default() }
 }
 
 /// The same with another last resort and another number of sets.
@@ -63,7 +63,7 @@ pub(crate) fn solved<const D: usize>(
     is_warm: bool,
 ) -> Result<(Mesh<f64, D>, Solved), Error> {
     let quadrature = DataQuadrature::default();
-    let mut levels = Levels::<f64, D>::new(&scene.problem, &scene.domain, None);
+    let mut levels = Hierarchy::<f64, D>::new(&scene.problem, &scene.domain, None);
     levels.make(level)?;
     let start = if is_warm { Some(levels.contact(level, solver, quadrature, 1)?) } else { None };
     let Some((mesh, _)) = levels.mesh(level) else { unreachable!("made above") };

@@ -5,7 +5,7 @@ use crate::error::Error;
 use crate::mesh::{BoundaryPart, Mesh, describe_point};
 use crate::real::{Real, point_f64};
 use crate::scenes::Scene;
-use crate::scheme::{ConformingP1, CrouzeixRaviartScheme};
+use crate::scheme::{ConformingP1, NonconformingP1};
 
 /// Checks that a mesh can carry a scene, and tells where the scene's exact solution fails on it: the
 /// barycentre of a facet, or none.
@@ -39,7 +39,7 @@ fn check_data<T: Real, const D: usize>(scene: &Scene<D>, mesh: &Mesh<T, D>) -> R
         space.load().and_then(|_| space.bounds()).map(|_| ())
     };
     let on_facets = || {
-        let space = Discretisation::new(&CrouzeixRaviartScheme, problem, mesh, quadrature)?;
+        let space = Discretisation::new(&NonconformingP1, problem, mesh, quadrature)?;
         space.bounds().map(|_| ())
     };
     at_vertices().and_then(|()| on_facets()).map_err(|why| match why {

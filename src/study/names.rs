@@ -8,8 +8,8 @@ use crate::mesh::Mesh;
 use crate::nested::AnyScheme;
 use crate::real::Real;
 use crate::scheme::{
-    Bmmpr, BoundedNodes, Br2, CellMeans, ConformingP1, ConformingP2, CrouzeixRaviartScheme,
-    DirichletBy, Eta, ExpectedOrders, FacetMeans, Iipg, Ldg, Nipg, Scheme, Setting, Sipg, Wopsip,
+    Bmmpr, BoundedNodes, Br2, CellMeans, ConformingP1, ConformingP2, DirichletBy, Eta,
+    ExpectedOrders, FacetMeans, Iipg, Ldg, Nipg, NonconformingP1, Scheme, Setting, Sipg, Wopsip,
     midpoint_orders,
 };
 
@@ -171,7 +171,7 @@ fn made<T: Real, const D: usize>(
     Some(match name {
         "p1" => Box::new(ConformingP1),
         "p2" => Box::new(Quadratic { scheme: ConformingP2, at }),
-        "cr" => Box::new(CrouzeixRaviartScheme),
+        "cr" => Box::new(NonconformingP1),
         "sipg" => linear(options.sipg(), at),
         "nipg" => linear(options.nipg(), at),
         "iipg" => linear(options.iipg(), at),

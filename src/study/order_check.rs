@@ -11,7 +11,7 @@ const ROUNDING: f64 = 1e-8;
 
 /// What was observed of one scheme on one scene, on its two finest levels that converged.
 ///
-/// Coarser levels do not count: promises hold in the limit. Nor does a level whose solve did not
+/// CoarseLevel levels do not count: promises hold in the limit. Nor does a level whose solve did not
 /// converge: what it left is no discrete solution.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ObservedOrders {
@@ -30,7 +30,7 @@ pub struct ObservedOrders {
     /// Norms in which the error on the finer level is rounding: the scheme has the exact solution
     /// in its space, and there is no order to observe.
     pub exact: Vec<Norm>,
-    /// Levels that did not converge, with the typed reason.
+    /// Hierarchy that did not converge, with the typed reason.
     pub failures: Vec<(usize, String)>,
 }
 

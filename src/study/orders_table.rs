@@ -11,7 +11,7 @@ const NONE: &str = "-";
 /// promised order in L2 and H1, and whether the promises were kept.
 ///
 /// The verdict is `kept` or, by norm, `missed`; `exact` where errors are rounding; `nothing promised` where nothing is proven, and
-/// `unobserved` where fewer than two levels converged. Levels that did not converge follow with the
+/// `unobserved` where fewer than two levels converged. Hierarchy that did not converge follow with the
 /// typed reason.
 pub fn orders_table(orders: &[ObservedOrders], tolerance: f64) -> String {
     let mut text = format!(

@@ -15,7 +15,7 @@ use crate::error::Error;
 use crate::inequality::{ActiveSet, InequalitySolver};
 use crate::mesh::{BoundaryPart, Domain, Mesh};
 use crate::nested::{AnyScheme, Solved, Task};
-use crate::nested::{Levels, VertexContact};
+use crate::nested::{Hierarchy, P1Solution};
 use crate::paraview::{CellFields, write_vtu};
 use crate::real::Real;
 use crate::scenes::Scene;
@@ -144,7 +144,7 @@ impl<'a, T: Real, const D: usize> Study<'a, T, D> {
         if self.mesh.is_none() && self.levels.contains(&0) {
             return wrong("level", "0", "a built-in mesh has at least one subdivision");
         }
-        let levels = Levels::new(&self.scene.problem, &self.scene.domain, self.mesh.as_ref());
+        let levels = Hierarchy::new(&self.scene.problem, &self.scene.domain, self.mesh.as_ref());
         self.levels.iter().try_for_each(|&level| levels.check_size(level))?;
         match &self.mesh {
             Some(mesh) => check_fit(&self.scene, mesh),
@@ -155,12 +155,13 @@ impl<'a, T: Real, const D: usize> Study<'a, T, D> {
     /// What the largest run will need of memory, about, with factors where the solver makes them from
     /// the start; nothing for a study without schemes or levels.
     pub fn memory_estimate(&self) -> Option<MemoryEstimate> {
-        let levels = Levels::new(&self.scene.problem, &self.scene.domain, self.mesh.as_ref());
+        let levels = Hierarchy::new(&self.scene.problem, &self.scene.domain, self.mesh.as_ref());
         let level = self.levels.iter().copied().max()?;
         let cells = levels.cells(level);
         let obstacle = self.scene.problem.has_obstacle();
         let bytes = |layout: Layout| {
-            let is_iterative = self.solver.uses_nearby(unknowns_about(D, layout, cells) as usize);
+            let is_iterative =
+                self.solver.uses_coarse_spaces(unknowns_about(D, layout, cells) as usize);
             match is_iterative && D > 1 {
                 true => estimate_without_factors(D, layout, cells, size_of::<T>()),
                 false => estimate(D, layout, cells, obstacle, size_of::<T>()),
@@ -182,7 +183,8 @@ impl<'a, T: Real, const D: usize> Study<'a, T, D> {
     pub fn run(&self) -> Result<Report, Error> {
         let failure = self.where_exact_fails()?;
         let failure = failure.as_deref();
-        let mut levels = Levels::new(&self.scene.problem, &self.scene.domain, self.mesh.as_ref());
+        let mut levels =
+            Hierarchy::new(&self.scene.problem, &self.scene.domain, self.mesh.as_ref());
         let finest = self.levels.iter().copied().max();
         let mut rows = Vec::new();
         for scheme in &self.schemes {
@@ -206,14 +208,15 @@ impl<'a, T: Real, const D: usize> Study<'a, T, D> {
         let (Some(scheme), Some(&level)) = (self.schemes.first(), self.levels.first()) else {
             unreachable!("checked above")
         };
-        let mut levels = Levels::new(&self.scene.problem, &self.scene.domain, self.mesh.as_ref());
+        let mut levels =
+            Hierarchy::new(&self.scene.problem, &self.scene.domain, self.mesh.as_ref());
         self.row(&mut levels, &**scheme, level, failure.as_deref(), false)
     }
 
     /// A row, and the seconds of its start from coarser levels.
     fn row(
         &self,
-        levels: &mut Levels<'_, T, D>,
+        levels: &mut Hierarchy<'_, T, D>,
         scheme: &dyn AnyScheme<T, D>,
         level: usize,
         failure: Option<&str>,
@@ -293,13 +296,13 @@ impl<'a, T: Real, const D: usize> Study<'a, T, D> {
     /// all others.
     fn start(
         &self,
-        levels: &mut Levels<'_, T, D>,
+        levels: &mut Hierarchy<'_, T, D>,
         scheme: &dyn AnyScheme<T, D>,
         level: usize,
-    ) -> Result<Option<Arc<VertexContact<T>>>, Error> {
+    ) -> Result<Option<Arc<P1Solution<T>>>, Error> {
         let (solver, quadrature) = (&*self.solver, self.quadrature);
         let unknowns = levels.mesh(level).map_or(0, |(mesh, _)| unknowns(mesh, scheme.layout()));
-        if !self.scene.problem.is_constrained() && !solver.uses_nearby(unknowns) {
+        if !self.scene.problem.is_constrained() && !solver.uses_coarse_spaces(unknowns) {
             Ok(None)
         } else if scheme.is_conforming_linear() {
             levels.start_from_coarser(level, solver, quadrature, self.repeat)

@@ -26,7 +26,7 @@ use std::time::{Duration, Instant};
 
 use crate::error::Error;
 use crate::inequality::ActiveSet;
-use crate::linear::Linear;
+use crate::linear::LinearMethod;
 use crate::nested::AnyScheme;
 use crate::real::Real;
 use crate::scenes::Scene;
@@ -70,7 +70,7 @@ pub enum WorkProgress<'a> {
 pub struct WorkPrecision<'a, const D: usize> {
     scene: Box<dyn Fn() -> Scene<D> + 'a>,
     candidates: Vec<Box<dyn Candidate<D> + 'a>>,
-    linear: Vec<Linear>,
+    linear: Vec<LinearMethod>,
     precisions: Vec<Precision>,
     levels: Vec<usize>,
     rounds: usize,
@@ -100,7 +100,7 @@ impl<'a, const D: usize> WorkPrecision<'a, D> {
         Self {
             scene: Box::new(scene),
             candidates: Vec::new(),
-            linear: vec![Linear::BySize],
+            linear: vec![LinearMethod::BySize],
             precisions: vec![Precision::Double],
             levels: Vec::new(),
             rounds: 3,
@@ -117,7 +117,7 @@ impl<'a, const D: usize> WorkPrecision<'a, D> {
         self
     }
     /// Sets the linear solvers inside the active-set method; one chosen by size otherwise.
-    pub fn linear(mut self, linear: impl IntoIterator<Item = Linear>) -> Self {
+    pub fn linear(mut self, linear: impl IntoIterator<Item = LinearMethod>) -> Self {
         self.linear = linear.into_iter().collect();
         self
     }
@@ -331,7 +331,7 @@ impl<'a, const D: usize> WorkPrecision<'a, D> {
     fn slot<'s>(
         &'s self,
         candidate: &'s (dyn Candidate<D> + 'a),
-        linear: Linear,
+        linear: LinearMethod,
         precision: Precision,
         level: usize,
     ) -> Result<Slot<'s>, Error> {
@@ -347,11 +347,11 @@ impl<'a, const D: usize> WorkPrecision<'a, D> {
     fn single<'s, T: Real>(
         &'s self,
         scheme: Box<dyn AnyScheme<T, D> + 's>,
-        linear: Linear,
+        linear: LinearMethod,
         level: usize,
     ) -> (Case, Box<dyn Single + 's>) {
         let scene = (self.scene)();
-        let name = Linear::NAMES.iter().find(|l| l.1 == linear).map_or("", |l| l.0);
+        let name = LinearMethod::NAMES.iter().find(|l| l.1 == linear).map_or("", |l| l.0);
         let variant = Variant {
             scene: scene.name.clone(),
             scheme: scheme.name().to_owned(),

@@ -52,7 +52,7 @@ pub struct WorkPoint {
 }
 
 /// The work at which a given error is reached, on straight lines between neighbouring levels in
-/// logarithmic scales. Levels stand in order. Nothing where no two neighbours that both converged
+/// logarithmic scales. Hierarchy stand in order. Nothing where no two neighbours that both converged
 /// have the error between them: nothing is extrapolated, and no level that failed is bridged.
 ///
 /// ```

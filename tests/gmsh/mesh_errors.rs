@@ -2,7 +2,7 @@
 
 use crate::errors::{FOUR, TWO, change, fail, says};
 use unilateral::mesh::MeshError;
-use unilateral::mesh::gmsh::{GmshError, Place};
+use unilateral::mesh::gmsh::{FilePosition, GmshError};
 
 #[test]
 fn a_triangle_without_area() {
@@ -13,7 +13,7 @@ fn a_triangle_without_area() {
     else {
         panic!("{error}")
     };
-    assert_eq!((elements[0].element, elements[0].place), (6, Place::Line(line)));
+    assert_eq!((elements[0].element, elements[0].place), (6, FilePosition::Line(line)));
     says(&error, &["degenerate", "element 6", &format!("line {line}"), "nodes 2, 2, 5"]);
 }
 

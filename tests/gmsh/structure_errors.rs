@@ -3,7 +3,7 @@
 use crate::errors::{FOUR, TWO, change, fail, says};
 use crate::writer::{Form, square};
 use std::path::Path;
-use unilateral::mesh::gmsh::{self, GmshError, Place};
+use unilateral::mesh::gmsh::{self, FilePosition, GmshError};
 
 #[test]
 fn unreadable() {
@@ -27,13 +27,13 @@ fn unsupported_version() {
         let text = format!("$MeshFormat\n{version} 0 8\n$EndMeshFormat\n");
         let error = fail::<2>(text.as_bytes());
         assert!(
-            matches!(&error, GmshError::UnsupportedVersion { place: Place::Line(2), version: v } if v == version)
+            matches!(&error, GmshError::UnsupportedVersion { place: FilePosition::Line(2), version: v } if v == version)
         );
         says(&error, &["line 2", version, "4.1 and 2.2", "msh41"]);
     }
     assert!(matches!(
         fail::<2>(b"$NOD\n3\n"),
-        GmshError::UnsupportedVersion { place: Place::Line(1), .. }
+        GmshError::UnsupportedVersion { place: FilePosition::Line(1), .. }
     ));
 }
 
@@ -43,7 +43,7 @@ fn unsupported_data_size() {
     let error = fail::<2>(text.as_bytes());
     assert!(matches!(
         error,
-        GmshError::UnsupportedDataSize { place: Place::Line(2), data_size: 4 }
+        GmshError::UnsupportedDataSize { place: FilePosition::Line(2), data_size: 4 }
     ));
     says(&error, &["line 2", "4 bytes", "only of 8", "save again"]);
 }
@@ -54,7 +54,10 @@ fn byte_order() {
     bytes[20] = 13;
     let error = fail::<2>(&bytes);
     assert!(
-        matches!(error, GmshError::ByteOrder { place: Place::Byte(20), found: [13, 0, 0, 0] }),
+        matches!(
+            error,
+            GmshError::ByteOrder { place: FilePosition::Byte(20), found: [13, 0, 0, 0] }
+        ),
         "{error}"
     );
     says(&error, &["byte 20", "[13, 0, 0, 0]", "copy it again"]);
@@ -65,7 +68,7 @@ fn truncated() {
     let cut = FOUR.find("2 1 1 1").unwrap();
     let error = fail::<2>(&FOUR.as_bytes()[..cut]);
     assert!(
-        matches!(&error, GmshError::Truncated { place: Place::Line(40), section } if section == "$Nodes"),
+        matches!(&error, GmshError::Truncated { place: FilePosition::Line(40), section } if section == "$Nodes"),
         "{error}"
     );
     says(&error, &["line 40", "$Nodes", "incomplete"]);
@@ -73,7 +76,7 @@ fn truncated() {
         let cut = bytes.len() - 40;
         let error = fail::<2>(&bytes[..cut]);
         assert!(
-            matches!(&error, GmshError::Truncated { place: Place::Byte(b), section } if *b == cut && section == "$Elements"),
+            matches!(&error, GmshError::Truncated { place: FilePosition::Byte(b), section } if *b == cut && section == "$Elements"),
             "{error}"
         );
     }
@@ -95,7 +98,7 @@ fn missing_section() {
 fn partitioned() {
     let text = FOUR.replace("$Nodes", "$PartitionedEntities\n2\n$EndPartitionedEntities\n$Nodes");
     let error = fail::<2>(text.as_bytes());
-    assert!(matches!(error, GmshError::Partitioned { place: Place::Line(28) }), "{error}");
+    assert!(matches!(error, GmshError::Partitioned { place: FilePosition::Line(28) }), "{error}");
     says(&error, &["line 28", "unpartitioned"]);
 }
 
@@ -104,7 +107,7 @@ fn not_a_number() {
     let (text, line) = change(TWO, "4 0 1 0", "4 0 one 0");
     let error = fail::<2>(text.as_bytes());
     assert!(
-        matches!(&error, GmshError::NotANumber { place: Place::Line(l), word, .. } if *l == line && word == "one")
+        matches!(&error, GmshError::NotANumber { place: FilePosition::Line(l), word, .. } if *l == line && word == "one")
     );
     says(&error, &[&format!("line {line}"), "$Nodes", "coordinate y", "`one`"]);
     let (text, line) = change(FOUR, "103 30 40 90000000000", "103 30 -40 90000000000");
@@ -118,7 +121,7 @@ fn unexpected() {
     let (text, line) = change(TWO, "4 0 1 0", "4 0 1");
     let error = fail::<2>(text.as_bytes());
     assert!(
-        matches!(&error, GmshError::Unexpected { place: Place::Line(l), .. } if *l == line),
+        matches!(&error, GmshError::Unexpected { place: FilePosition::Line(l), .. } if *l == line),
         "{error}"
     );
     says(&error, &[&format!("line {line}"), "coordinate z", "the end of the line"]);
@@ -144,14 +147,14 @@ fn counts() {
     let (text, _) = change(TWO, "5", "6");
     let error = fail::<2>(text.as_bytes());
     assert!(
-        matches!(&error, GmshError::Count { place: Place::Line(18), announced: 6, found, .. } if found == "5"),
+        matches!(&error, GmshError::Count { place: FilePosition::Line(18), announced: 6, found, .. } if found == "5"),
         "{error}"
     );
     says(&error, &["line 18", "$Nodes", "6 nodes", "5 found", "damaged"]);
     let (text, _) = change(TWO, "5", "4");
     let error = fail::<2>(text.as_bytes());
     assert!(
-        matches!(&error, GmshError::Count { place: Place::Line(17), announced: 4, .. }),
+        matches!(&error, GmshError::Count { place: FilePosition::Line(17), announced: 4, .. }),
         "{error}"
     );
     // The blocks do not add up.
@@ -177,7 +180,7 @@ fn absurd_counts_take_no_memory() {
     let at = bytes.windows(7).position(|w| w == b"$Nodes\n").unwrap() + 7 + 8;
     bytes[at..at + 8].copy_from_slice(&1_000_000_000_000_000_000u64.to_le_bytes());
     let error = fail::<2>(&bytes);
-    let place = Place::Byte(at + 24);
+    let place = FilePosition::Byte(at + 24);
     assert!(
         matches!(error, GmshError::Count { place: p, announced: 1_000_000_000_000_000_000, .. } if p <= place),
         "{error}"

@@ -15,7 +15,7 @@ pub type Table<'a> = &'a [(&'a str, &'a [(usize, &'a str)])];
 pub fn column<const D: usize>(name: &str) -> Boxed<f64, D> {
     match name {
         "p1" => Box::new(ConformingP1),
-        "cr" => Box::new(CrouzeixRaviartScheme),
+        "cr" => Box::new(NonconformingP1),
         "wopsip 1" => Box::new(wopsip(1.0)),
         "wopsip 10" => Box::new(wopsip(10.0)),
         "sipg 4" => Box::new(sipg(4.0)),

@@ -10,10 +10,10 @@ use unilateral::scenes::Scene;
 /// Contact of the nodes of the mesh with twice as many cells: a new node touches if both its
 /// neighbours do.
 fn refined(coarse: &[Contact]) -> Vec<Contact> {
-    let mut fine = vec![Contact::Open; 2 * coarse.len() - 1];
+    let mut fine = vec![Contact::Inactive; 2 * coarse.len() - 1];
     for (k, pair) in coarse.windows(2).enumerate() {
         fine[2 * k] = pair[0];
-        fine[2 * k + 1] = if pair[0] == pair[1] { pair[0] } else { Contact::Open };
+        fine[2 * k + 1] = if pair[0] == pair[1] { pair[0] } else { Contact::Inactive };
     }
     fine
 }

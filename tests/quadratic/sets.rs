@@ -14,8 +14,8 @@ fn bounds<const D: usize, S: Scheme<f64, D>>(
     mesh: &Mesh<f64, D>,
 ) -> Result<Vec<(usize, Bound<f64>)>, Error> {
     let space = Discretisation::new(scheme, problem, mesh, DataQuadrature::default())?;
-    let places = space.places();
-    Ok(places.iter().map(|p| p.vertices().len()).zip(space.bounds()?).collect())
+    let supports = space.supports();
+    Ok(supports.iter().map(|p| p.vertices().len()).zip(space.bounds()?).collect())
 }
 
 /// Which unknowns are bound, by the number of vertices of their place.

@@ -16,7 +16,7 @@ fn area(mesh: &Mesh<f64, 2>) -> f64 {
 }
 
 /// Vertices up to rounding, whatever their order.
-fn places(mesh: &Mesh<f64, 2>) -> HashSet<[i64; 2]> {
+fn supports(mesh: &Mesh<f64, 2>) -> HashSet<[i64; 2]> {
     mesh.vertices().iter().map(|x| [x[0], x[1]].map(|t| (t * 1e9).round() as i64)).collect()
 }
 
@@ -77,7 +77,7 @@ fn refined_levels_are_the_finer_meshes() {
             let (fine, refinement) = domain.refine(&coarse).unwrap();
             let direct = domain.mesh::<f64>(2 * n).unwrap();
             assert_eq!(fine.n_cells(), direct.n_cells());
-            assert_eq!(places(&fine), places(&direct), "{domain:?}, n = {n}");
+            assert_eq!(supports(&fine), supports(&direct), "{domain:?}, n = {n}");
             assert_eq!(refinement.parents.len(), fine.vertices().len());
             assert!((area(&fine) - area(&direct)).abs() < 1e-12);
             assert_eq!(domain.cells(2 * n), direct.n_cells() as f64);

@@ -5,7 +5,7 @@ use unilateral::assemble::DataQuadrature;
 use unilateral::inequality::ActiveSet;
 use unilateral::mesh::BoxDomain;
 use unilateral::mesh::{Mesh, gmsh};
-use unilateral::nested::{Levels, Solved, Task};
+use unilateral::nested::{Hierarchy, Solved, Task};
 use unilateral::prelude::*;
 use unilateral::quadrature::Rule;
 use unilateral::scenes::Scene;
@@ -29,7 +29,7 @@ pub fn wopsip(eta: f64) -> Wopsip {
 pub fn consistent_schemes<T: Real, const D: usize>() -> Vec<Boxed<T, D>> {
     vec![
         Box::new(ConformingP1),
-        Box::new(CrouzeixRaviartScheme),
+        Box::new(NonconformingP1),
         Box::new(Sipg::default()),
         Box::new(FacetMeans(Sipg::default())),
     ]
@@ -119,7 +119,7 @@ pub fn solve_by_rule<const D: usize>(
 ) -> (Mesh<f64, D>, Solved) {
     let quadrature = DataQuadrature { cell: degree, facet: degree };
     let solver = ActiveSet::default();
-    let mut levels = Levels::new(&scene.problem, &scene.domain, None);
+    let mut levels = Hierarchy::new(&scene.problem, &scene.domain, None);
     levels.make(level).unwrap();
     let start = levels.contact(level, &solver, quadrature, 1).unwrap();
     let mesh = levels.mesh(level).unwrap().0.clone();

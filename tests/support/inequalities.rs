@@ -47,7 +47,7 @@ pub fn inequality<T: Real>(
         symmetric: true,
         load,
         bounds,
-        places: vec![],
+        supports: vec![],
         points: vec![],
         start: Start::Cold,
         factored: None,
@@ -199,10 +199,10 @@ fn eliminate(mut a: Vec<Vec<f64>>, mut b: Vec<f64>) -> Vec<f64> {
 /// Whether the textbook active set method, `u >= 0`, cold, returns to a state it has left.
 pub fn textbook_cycles(a: &[Vec<f64>], b: &[f64]) -> bool {
     let n = b.len();
-    let mut state = vec![Contact::Open; n];
+    let mut state = vec![Contact::Inactive; n];
     let mut seen = vec![state.clone()];
     loop {
-        let open: Vec<usize> = (0..n).filter(|&i| state[i] == Contact::Open).collect();
+        let open: Vec<usize> = (0..n).filter(|&i| state[i] == Contact::Inactive).collect();
         let block = open.iter().map(|&i| open.iter().map(|&j| a[i][j]).collect()).collect();
         let solution = eliminate(block, open.iter().map(|&i| b[i]).collect());
         let mut u = vec![0.0; n];
@@ -210,10 +210,10 @@ pub fn textbook_cycles(a: &[Vec<f64>], b: &[f64]) -> bool {
         let next: Vec<Contact> = (0..n)
             .map(|i| {
                 let force: f64 = (0..n).map(|j| a[i][j] * u[j]).sum::<f64>() - b[i];
-                if if state[i] == Contact::Open { u[i] < 0.0 } else { force >= 0.0 } {
+                if if state[i] == Contact::Inactive { u[i] < 0.0 } else { force >= 0.0 } {
                     Contact::Lower
                 } else {
-                    Contact::Open
+                    Contact::Inactive
                 }
             })
             .collect();

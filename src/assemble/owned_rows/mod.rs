@@ -13,7 +13,7 @@ mod rows;
 
 use std::convert::Infallible;
 
-use super::facet_coefficients::FacetWeights;
+use super::facet_coefficients::FacetCoefficients;
 use super::jump_products::JumpProducts;
 use super::local::{StiffnessTable, zero_local};
 use super::space::metric::Metrics;
@@ -151,7 +151,7 @@ struct Filling<'s, 'a, T: Real, const D: usize> {
     space: &'s Space<'a, T, D>,
     neighbours: &'s Neighbours,
     metrics: &'s Metrics<T>,
-    weights: &'s FacetWeights<T>,
+    weights: &'s FacetCoefficients<T>,
     stiffness: StiffnessTable<T>,
     facets: FacetTable<T>,
     jumps: JumpProducts<T>,
@@ -167,7 +167,7 @@ pub(crate) fn fill<T: Real, const D: usize>(
     space: &Space<'_, T, D>,
     form: &dyn AnyForm<T, D>,
     metrics: &Metrics<T>,
-    weights: &FacetWeights<T>,
+    weights: &FacetCoefficients<T>,
     matrix: &mut SparseMatrix<T>,
 ) {
     let facets = space.facet_table(form.moments(space.degree));

@@ -82,14 +82,14 @@ impl<T: Real, const D: usize> Filling<'_, '_, T, D> {
             if self.lifted {
                 entries.fill(T::lit(0.0));
             }
-            let rows = Rows::new(n, entries, self.places(cell));
+            let rows = Rows::new(n, entries, self.supports(cell));
             self.write_cell::<N, M>(cell, rows);
         });
     }
 
-    /// The places of the cells across each facet among those coupled to a cell, and its own.
+    /// The supports of the cells across each facet among those coupled to a cell, and its own.
     #[inline(always)]
-    pub(crate) fn places(&self, cell: usize) -> ([usize; 4], usize) {
+    pub(crate) fn supports(&self, cell: usize) -> ([usize; 4], usize) {
         let across = |local| match self.neighbours.across(cell, local) {
             Neighbour::Cell { cell, .. } => cell,
             Neighbour::Boundary(_) => u32::MAX,

@@ -221,11 +221,11 @@ impl<T: Real> Metrics<T> {
         let n = CellMetric::<T, D>::KEPT;
         let kept = &self.kept[cell * n + D + 2..(cell + 1) * n];
         // by products with zeros and ones: facets come in no order that branches could foresee
-        let (places, others) = (&PAIR[D][local & 3], &OTHERS[local & 3]);
+        let (supports, others) = (&PAIR[D][local & 3], &OTHERS[local & 3]);
         let mut row = [T::lit(0.0); 4];
         let mut sum = T::lit(0.0);
         for k in 0..=D {
-            row[k] = T::lit(others[k]) * kept[places[k]];
+            row[k] = T::lit(others[k]) * kept[supports[k]];
             sum -= row[k];
         }
         for k in 0..=D {

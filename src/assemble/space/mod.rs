@@ -11,7 +11,7 @@ pub(crate) mod tables;
 
 use super::local::{CellSide, StiffnessTable};
 use super::{DataQuadrature, count};
-use crate::algebra::Place;
+use crate::algebra::Support;
 use crate::element::{MAX_BASIS, Node, ReferenceElement};
 use crate::error::Error;
 use crate::memory::in_large_pages;
@@ -208,42 +208,42 @@ impl<'a, T: Real, const D: usize> Space<'a, T, D> {
         })
     }
     /// Where each unknown lives.
-    pub fn places(&self) -> Vec<Place> {
+    pub fn supports(&self) -> Vec<Support> {
         let n = self.dofs.size();
         if self.broken {
-            let mut places = in_large_pages(Vec::with_capacity(n));
+            let mut supports = in_large_pages(Vec::with_capacity(n));
             for cell in 0..self.mesh.n_cells() {
                 let owner = Some(cell as u32);
-                places.extend(self.nodes.iter().map(|&node| self.place(owner, cell, node)));
+                supports.extend(self.nodes.iter().map(|&node| self.place(owner, cell, node)));
             }
-            return places;
+            return supports;
         }
         if self.nodes.iter().all(|node| matches!(node, Node::Vertex(_))) {
             // unknowns are numbered like the vertices that own them
-            let mut places = in_large_pages(Vec::with_capacity(n));
-            places.extend((0..n as u32).map(|vertex| Place::new(None, &[vertex])));
-            return places;
+            let mut supports = in_large_pages(Vec::with_capacity(n));
+            supports.extend((0..n as u32).map(|vertex| Support::new(None, &[vertex])));
+            return supports;
         }
-        let mut places = in_large_pages(vec![Place::new(None, &[]); n]);
+        let mut supports = in_large_pages(vec![Support::new(None, &[]); n]);
         for cell in 0..self.mesh.n_cells() {
             for (i, &node) in self.nodes.iter().enumerate() {
-                places[self.dofs.of(cell, i)] = self.place(None, cell, node);
+                supports[self.dofs.of(cell, i)] = self.place(None, cell, node);
             }
         }
-        places
+        supports
     }
     #[inline(always)]
-    fn place(&self, owner: Option<u32>, cell: usize, node: Node) -> Place {
+    fn place(&self, owner: Option<u32>, cell: usize, node: Node) -> Support {
         let vertices = self.mesh.cell(cell);
         match node {
-            Node::Vertex(k) => Place::new(owner, &[vertices[k]]),
-            Node::Edge(k) => Place::new(owner, &edge_vertices(D)[k].map(|v| vertices[v])),
-            Node::CellMean => Place::new(owner, vertices),
+            Node::Vertex(k) => Support::new(owner, &[vertices[k]]),
+            Node::Edge(k) => Support::new(owner, &edge_vertices(D)[k].map(|v| vertices[v])),
+            Node::CellMean => Support::new(owner, vertices),
             Node::FacetMean(k) => {
                 let mut own = [0; D];
                 let facet = self.mesh.facet_vertices(cell, k);
                 own.iter_mut().zip(facet).for_each(|(v, w)| *v = w);
-                Place::new(owner, &own)
+                Support::new(owner, &own)
             }
         }
     }

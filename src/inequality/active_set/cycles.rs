@@ -83,7 +83,7 @@ fn fingerprint(state: &[Contact]) -> u128 {
 /// What one unknown contributes to a fingerprint.
 pub(crate) fn key_of(i: usize, contact: Contact) -> u128 {
     let side = match contact {
-        Contact::Open => return 0,
+        Contact::Inactive => return 0,
         Contact::Lower => 0,
         Contact::Upper => 1,
     };

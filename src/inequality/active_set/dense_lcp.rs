@@ -80,12 +80,12 @@ impl SmallProblem {
                     }
                 };
                 match state[i] {
-                    Contact::Open => {
+                    Contact::Inactive => {
                         meet(z[i] - self.lower[i] + self.gap_noise, dz[i], Contact::Lower);
                         meet(self.upper[i] - z[i] + self.gap_noise, -dz[i], Contact::Upper);
                     }
-                    Contact::Lower => meet(w[i] + self.force_noise[i], dw[i], Contact::Open),
-                    Contact::Upper => meet(-w[i] + self.force_noise[i], -dw[i], Contact::Open),
+                    Contact::Lower => meet(w[i] + self.force_noise[i], dw[i], Contact::Inactive),
+                    Contact::Upper => meet(-w[i] + self.force_noise[i], -dw[i], Contact::Inactive),
                 }
             }
             let (at, Some((i, next))) = event else {
@@ -99,10 +99,10 @@ impl SmallProblem {
     /// The state an unknown should change to, its own if it is feasible.
     fn next(&self, i: usize, state: Contact, z: f64, w: f64) -> Contact {
         match state {
-            Contact::Open if z < self.lower[i] - self.gap_noise => Contact::Lower,
-            Contact::Open if z > self.upper[i] + self.gap_noise => Contact::Upper,
-            Contact::Lower if w < -self.force_noise[i] => Contact::Open,
-            Contact::Upper if w > self.force_noise[i] => Contact::Open,
+            Contact::Inactive if z < self.lower[i] - self.gap_noise => Contact::Lower,
+            Contact::Inactive if z > self.upper[i] + self.gap_noise => Contact::Upper,
+            Contact::Lower if w < -self.force_noise[i] => Contact::Inactive,
+            Contact::Upper if w > self.force_noise[i] => Contact::Inactive,
             _ => state,
         }
     }
@@ -117,10 +117,10 @@ impl SmallProblem {
             let share = 0.25 + 0.5 * (i as f64 * 0.618_033_988_75).fract();
             let (lower, upper) = (self.lower[i], self.upper[i]);
             match state[i] {
-                Contact::Open if z[i] < lower => {
+                Contact::Inactive if z[i] < lower => {
                     z[i] = lower + share * (lower - z[i]).min(upper - lower);
                 }
-                Contact::Open if z[i] > upper => {
+                Contact::Inactive if z[i] > upper => {
                     z[i] = upper - share * (z[i] - upper).min(upper - lower);
                 }
                 Contact::Lower if w[i] < 0.0 => w[i] *= -share,
@@ -138,12 +138,13 @@ impl SmallProblem {
         state: &[Contact],
         constants: &[DVector<f64>],
     ) -> Option<(DMatrix<f64>, DMatrix<f64>)> {
-        let open: Vec<usize> = (0..state.len()).filter(|&i| state[i] == Contact::Open).collect();
+        let open: Vec<usize> =
+            (0..state.len()).filter(|&i| state[i] == Contact::Inactive).collect();
         let constants = DMatrix::from_columns(constants);
         let mut z = DMatrix::zeros(state.len(), constants.ncols());
         for (i, contact) in state.iter().enumerate() {
             z[(i, 0)] = match contact {
-                Contact::Open => 0.0,
+                Contact::Inactive => 0.0,
                 Contact::Lower => self.lower[i],
                 Contact::Upper => self.upper[i],
             };

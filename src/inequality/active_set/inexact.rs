@@ -5,7 +5,7 @@ use super::iterate::{known_value, rest};
 use super::kkt_evaluation::Look;
 use super::{ActiveSet, LastResort, check_definite};
 use crate::algebra::{Bound, Contact, Inequality, Start};
-use crate::inequality::initial_guess::Nearby;
+use crate::inequality::initial_guess::InitialGuess;
 use crate::inequality::{Outcome, Solution};
 use crate::linear::direct::factors::FactorError;
 use crate::linear::krylov::conjugate_gradients::{End, Preconditioner, Run, Stop};
@@ -119,7 +119,7 @@ impl Course {
 }
 
 impl<'a, T: Real> Inexact<'a, T> {
-    pub fn new(inequality: &'a Inequality<T>, nearby: &Nearby<T>) -> Self {
+    pub fn new(inequality: &'a Inequality<T>, nearby: &InitialGuess<T>) -> Self {
         let Inequality { bounds, matrix, start, .. } = inequality;
         let n = inequality.size();
         let guess = match start {
@@ -154,7 +154,11 @@ impl<'a, T: Real> Inexact<'a, T> {
     }
 
     /// Solves; an error where the method does not apply or did not get far enough, and factors may.
-    pub fn run(mut self, settings: &ActiveSet, nearby: &Nearby<T>) -> Result<Solution<T>, InVain> {
+    pub fn run(
+        mut self,
+        settings: &ActiveSet,
+        nearby: &InitialGuess<T>,
+    ) -> Result<Solution<T>, InVain> {
         let inequality = self.inequality;
         let matrix = symmetric_part(inequality);
         let Some(functions) = Preconditioners::functions(&matrix, inequality, &nearby.functions)
@@ -162,7 +166,7 @@ impl<'a, T: Real> Inexact<'a, T> {
             return Err(self.in_vain());
         };
         let Some(mut preconditioner) =
-            Preconditioners::new(&matrix, &inequality.places, &functions, inequality.symmetric)
+            Preconditioners::new(&matrix, &inequality.supports, &functions, inequality.symmetric)
         else {
             return Err(self.in_vain());
         };
@@ -192,7 +196,7 @@ impl<'a, T: Real> Inexact<'a, T> {
     fn iterate(
         &mut self,
         settings: &ActiveSet,
-        nearby: &Nearby<T>,
+        nearby: &InitialGuess<T>,
         preconditioner: &mut Preconditioners<'_, T>,
     ) -> Option<Outcome> {
         let tolerance = nearby.accuracy.unwrap_or(0.0).max(0.1 * T::CERTIFICATE_LIMIT);

@@ -7,7 +7,7 @@ use crate::inequality::interior_point::{InteriorPoint, Path};
 use crate::inequality::{Outcome, Solution};
 use crate::linear::direct::elimination::EliminationOrder;
 use crate::linear::direct::factors::{FactorError, Factors};
-use crate::linear::direct::static_condensation::Hybrid;
+use crate::linear::direct::static_condensation::StaticCondensation;
 use crate::real::Real;
 
 /// The current unknowns and states, and the best unknowns so far.
@@ -15,7 +15,7 @@ pub(crate) struct Iterate<'a, T> {
     pub inequality: &'a Inequality<T>,
     pub values: Vec<T>,
     pub state: Vec<Contact>,
-    /// Linear systems with a new active set so far.
+    /// LinearMethod systems with a new active set so far.
     pub outer: usize,
     /// `b - A u`.
     deficit: Vec<f64>,
@@ -26,7 +26,7 @@ pub(crate) struct Iterate<'a, T> {
     correction: Vec<T>,
     /// Forces of jumps where the matrix is kept factored; else empty.
     pub forces: Vec<T>,
-    hybrid: Option<Hybrid<'a, T>>,
+    hybrid: Option<StaticCondensation<'a, T>>,
     /// The order of elimination, once it has been needed: the same for all active sets.
     order: Option<EliminationOrder>,
     /// Where the interior point method can go on.
@@ -83,7 +83,7 @@ impl<'a, T: Real> Iterate<'a, T> {
             correction: Vec::new(),
             forces,
             hybrid: factored.map(|factored| {
-                Hybrid::new(factored).at(inequality.points_of_unknowns().as_deref())
+                StaticCondensation::new(factored).at(inequality.points_of_unknowns().as_deref())
             }),
             order: None,
             path: None,
@@ -165,7 +165,7 @@ impl<'a, T: Real> Iterate<'a, T> {
     /// far as this scalar can tell.
     fn solve_factored(
         &mut self,
-        hybrid: &Hybrid<'a, T>,
+        hybrid: &StaticCondensation<'a, T>,
         refinements: usize,
     ) -> Result<(), FactorError> {
         let Some(factored) = &self.inequality.factored else { return Ok(()) };
@@ -259,18 +259,18 @@ impl<'a, T: Real> Iterate<'a, T> {
                 // Positive where the bound would have to pull.
                 let pull = match self.state[i] {
                     _ if bound.only_value().is_some() => return None,
-                    Contact::Open if bound.lower().is_some_and(|l| l.to_f64() - x > noise) => {
+                    Contact::Inactive if bound.lower().is_some_and(|l| l.to_f64() - x > noise) => {
                         return Some((i as u32, Contact::Lower));
                     }
-                    Contact::Open if bound.upper().is_some_and(|u| x - u.to_f64() > noise) => {
+                    Contact::Inactive if bound.upper().is_some_and(|u| x - u.to_f64() > noise) => {
                         return Some((i as u32, Contact::Upper));
                     }
-                    Contact::Open => return None,
+                    Contact::Inactive => return None,
                     Contact::Lower => self.deficit[i],
                     Contact::Upper => -self.deficit[i],
                 };
                 (pull > 0.0 && pull > self.force_noise(i, band, spread))
-                    .then_some((i as u32, Contact::Open))
+                    .then_some((i as u32, Contact::Inactive))
             })
             .collect();
         for (i, contact) in next {
@@ -346,7 +346,7 @@ impl<'a, T: Real> Iterate<'a, T> {
             let contact = match (bound.lower(), bound.upper()) {
                 (Some(_), _) => Contact::Lower,
                 (None, Some(_)) => Contact::Upper,
-                (None, None) => Contact::Open,
+                (None, None) => Contact::Inactive,
             };
             changed |= contact != self.state[i];
             self.set_state(i, contact, history);
@@ -394,14 +394,14 @@ pub(crate) fn rest<T: Real>(bound: &Bound<T>, contact: Contact) -> Contact {
         _ if bound.is_inequality() && bound.only_value().is_some() => Contact::Lower,
         Contact::Lower if bound.lower().is_some() => Contact::Lower,
         Contact::Upper if bound.upper().is_some() => Contact::Upper,
-        _ => Contact::Open,
+        _ => Contact::Inactive,
     }
 }
 
 /// The value an unknown has without solving for it.
 pub(crate) fn known_value<T: Real>(bound: &Bound<T>, state: Contact) -> Option<T> {
     bound.only_value().or(match state {
-        Contact::Open => None,
+        Contact::Inactive => None,
         Contact::Lower => bound.lower(),
         Contact::Upper => bound.upper(),
     })

@@ -3,8 +3,8 @@
 use super::ActiveSet;
 use super::inexact::Inexact;
 use crate::algebra::{Bound, Contact, Inequality};
-use crate::inequality::initial_guess::Nearby;
-use crate::linear::Functions;
+use crate::inequality::initial_guess::InitialGuess;
+use crate::linear::CoarseSpaces;
 use crate::parallel::vectors::{each_mut, map, map_mut};
 use crate::real::Real;
 
@@ -55,8 +55,8 @@ fn residual_at<'v, T: Real>(
 impl<T: Real> Inexact<'_, T> {
     /// How many systems may pass without progress where `hesitation` exact ones may: longer where
     /// what would take over is neither multigrid nor an elimination that halves the unknowns.
-    pub fn patience(&self, settings: &ActiveSet, nearby: &Nearby<T>) -> usize {
-        let is_nested = matches!(nearby.functions, Functions::Coarser(_));
+    pub fn patience(&self, settings: &ActiveSet, nearby: &InitialGuess<T>) -> usize {
+        let is_nested = matches!(nearby.functions, CoarseSpaces::CoarseLevel(_));
         let is_cheap = is_nested || self.inequality.factored.is_some();
         settings.hesitation * if is_cheap { 1 } else { FACTORS_OVER_INEXACT }
     }
@@ -129,7 +129,7 @@ impl<T: Real> Inexact<'_, T> {
         let (x, r) = (self.values[i].to_f64(), self.residual[i].to_f64());
         let d = self.diagonal[i].to_f64();
         let pull = match self.state[i] {
-            Contact::Open => {
+            Contact::Inactive => {
                 look.off_contact += r * r / d;
                 let below = bound.lower().map_or(0.0, |l| l.to_f64() - x);
                 let above = bound.upper().map_or(0.0, |u| x - u.to_f64());
@@ -149,7 +149,7 @@ impl<T: Real> Inexact<'_, T> {
         if pull > 0.0 {
             look.wrong += pull * pull / d;
             if pull > self.force_noise(i, band) {
-                look.flips.push((i as u32, Contact::Open));
+                look.flips.push((i as u32, Contact::Inactive));
             }
         }
     }

@@ -8,13 +8,13 @@ pub(crate) mod inexact;
 pub(crate) mod iterate;
 mod kkt_evaluation;
 
-use super::initial_guess::Nearby;
+use super::initial_guess::InitialGuess;
 use super::monotone_multigrid::MonotoneMultigrid;
 use super::{InequalitySolver, Outcome, Solution};
 use crate::algebra::{Contact, Inequality, Start};
 use crate::linear::direct::factors::{FactorError, is_positive_definite};
-use crate::linear::direct::static_condensation::Hybrid;
-use crate::linear::{Functions, Linear};
+use crate::linear::direct::static_condensation::StaticCondensation;
+use crate::linear::{CoarseSpaces, LinearMethod};
 use crate::real::Real;
 use driver::Search;
 use inexact::{InVain, Inexact};
@@ -55,10 +55,10 @@ pub struct ActiveSet {
     /// iterate before and so corrects it anyway; one more matters where a single step suffices
     /// (a warm start), in `f32` by two digits and more.
     pub refinements: usize,
-    /// Linear systems within which the number of changes of state must fall to a half, or the
+    /// LinearMethod systems within which the number of changes of state must fall to a half, or the
     /// interior point method is asked.
     pub hesitation: usize,
-    /// Linear systems without a better iterate after which the unknowns that moved are condensed.
+    /// LinearMethod systems without a better iterate after which the unknowns that moved are condensed.
     pub patience: usize,
     /// Largest number of condensed problems.
     pub max_condensations: usize,
@@ -71,7 +71,7 @@ pub struct ActiveSet {
     /// loss of coercivity. Free of cost for a cold start with a symmetric matrix.
     pub check_definite: bool,
     /// The linear solver inside.
-    pub linear: Linear,
+    pub linear: LinearMethod,
 }
 
 /// What is done where the active set does not settle.
@@ -107,7 +107,7 @@ impl Default for ActiveSet {
             max_condensed: 500,
             last_resort: LastResort::default(),
             check_definite: false,
-            linear: Linear::default(),
+            linear: LinearMethod::default(),
         }
     }
 }
@@ -118,13 +118,14 @@ impl<T: Real> InequalitySolver<T> for ActiveSet {
     }
 
     fn solve(&self, inequality: &Inequality<T>) -> Solution<T> {
-        self.solve_near(inequality, &Nearby::default())
+        self.solve_from(inequality, &InitialGuess::default())
     }
 
-    fn solve_near(&self, inequality: &Inequality<T>, nearby: &Nearby<T>) -> Solution<T> {
-        let is_iterative = <Self as InequalitySolver<T>>::uses_nearby(self, inequality.size());
-        let is_known = !matches!(nearby.functions, Functions::Unknown);
-        let is_asked = self.linear == Linear::Iterative;
+    fn solve_from(&self, inequality: &Inequality<T>, nearby: &InitialGuess<T>) -> Solution<T> {
+        let is_iterative =
+            <Self as InequalitySolver<T>>::uses_coarse_spaces(self, inequality.size());
+        let is_known = !matches!(nearby.functions, CoarseSpaces::Unknown);
+        let is_asked = self.linear == LinearMethod::Iterative;
         if is_iterative && (is_known || is_asked) && check_input(inequality).is_ok() {
             return match self.solve_inexactly(inequality, nearby) {
                 Ok(solution) => solution,
@@ -134,11 +135,11 @@ impl<T: Real> InequalitySolver<T> for ActiveSet {
         self.solve_directly(inequality, None)
     }
 
-    fn uses_nearby(&self, unknowns: usize) -> bool {
+    fn uses_coarse_spaces(&self, unknowns: usize) -> bool {
         match self.linear {
-            Linear::Direct => false,
-            Linear::Iterative => true,
-            Linear::BySize => unknowns >= CROSSOVER,
+            LinearMethod::Direct => false,
+            LinearMethod::Iterative => true,
+            LinearMethod::BySize => unknowns >= CROSSOVER,
         }
     }
 }
@@ -148,7 +149,7 @@ impl ActiveSet {
     fn solve_inexactly<T: Real>(
         &self,
         inequality: &Inequality<T>,
-        nearby: &Nearby<T>,
+        nearby: &InitialGuess<T>,
     ) -> Result<Solution<T>, InVain> {
         if self.check_definite && check_definite(inequality).is_err() {
             return Err(InVain::default());
@@ -161,15 +162,17 @@ impl ActiveSet {
     fn take_over<T: Real>(
         &self,
         inequality: &Inequality<T>,
-        nearby: &Nearby<T>,
+        nearby: &InitialGuess<T>,
         in_vain: InVain,
     ) -> Solution<T> {
         let InVain { mut outer, mut linear, unsettled } = in_vain;
         let mut found = None;
         let is_symmetric = inequality.symmetric;
-        if unsettled.is_some() && is_symmetric && matches!(nearby.functions, Functions::Coarser(_))
+        if unsettled.is_some()
+            && is_symmetric
+            && matches!(nearby.functions, CoarseSpaces::CoarseLevel(_))
         {
-            let solution = MonotoneMultigrid::default().solve_near(inequality, nearby);
+            let solution = MonotoneMultigrid::default().solve_from(inequality, nearby);
             if solution.outcome == Outcome::Converged {
                 found = Some(solution);
             } else {
@@ -229,7 +232,7 @@ pub(crate) fn check_definite<T: Real>(inequality: &Inequality<T>) -> Result<(), 
     if let Some(factored) = &inequality.factored {
         let not_given: Vec<bool> =
             inequality.bounds.iter().map(|bound| bound.only_value().is_none()).collect();
-        Hybrid::new(factored).factor(&not_given)?;
+        StaticCondensation::new(factored).factor(&not_given)?;
         return Ok(());
     }
     let Inequality { matrix, symmetric, .. } = inequality;

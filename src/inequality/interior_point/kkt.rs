@@ -1,11 +1,11 @@
-//! Linear systems with a matrix plus a nonnegative diagonal, multiplied out or factored.
+//! LinearMethod systems with a matrix plus a nonnegative diagonal, multiplied out or factored.
 
 use crate::algebra::Inequality;
-use crate::algebra::submatrix::Restricted;
+use crate::algebra::submatrix::Submatrix;
 use crate::inequality::certificate::positive_diagonal;
 use crate::linear::direct::elimination::EliminationOrder;
 use crate::linear::direct::factors::{Analysis, FactorError, Factors};
-use crate::linear::direct::static_condensation::{Hybrid, HybridFactors};
+use crate::linear::direct::static_condensation::{CondensedFactors, StaticCondensation};
 use crate::real::Real;
 
 /// Values, and the forces of jumps where the matrix is kept factored (else none).
@@ -18,7 +18,7 @@ pub(crate) struct Pair {
 /// The matrix of an inequality, to be shifted.
 pub(crate) struct Shifted<'h, 'a, T> {
     inequality: &'a Inequality<T>,
-    hybrid: Option<&'h Hybrid<'a, T>>,
+    hybrid: Option<&'h StaticCondensation<'a, T>>,
     free: Vec<u32>,
     is_free: Vec<bool>,
     half: Option<Half<T>>,
@@ -27,13 +27,13 @@ pub(crate) struct Shifted<'h, 'a, T> {
 /// What is on and left of the diagonal of a symmetric matrix on its free unknowns, and where its
 /// factors are: the same for every shift.
 struct Half<T> {
-    matrix: Restricted<T>,
+    matrix: Submatrix<T>,
     analysis: Analysis,
 }
 
 impl<T: Real> Half<T> {
     fn new(inequality: &Inequality<T>, free: &[u32]) -> Result<Self, FactorError> {
-        let matrix = Restricted::left_of_diagonal(&inequality.matrix, free);
+        let matrix = Submatrix::left_of_diagonal(&inequality.matrix, free);
         let order = EliminationOrder::of(inequality)?.among(free, inequality.size());
         let analysis = Analysis::new(&matrix, Some(order))?;
         Ok(Self { matrix, analysis })
@@ -43,12 +43,15 @@ impl<T: Real> Half<T> {
 /// The factors of the matrix with a shift.
 pub(crate) enum ShiftedFactors<T> {
     Assembled(Factors<T>),
-    Hybrid(HybridFactors<T>),
+    StaticCondensation(CondensedFactors<T>),
 }
 
 impl<'h, 'a, T: Real> Shifted<'h, 'a, T> {
     /// The matrix on all unknowns that are not given.
-    pub fn new(inequality: &'a Inequality<T>, hybrid: Option<&'h Hybrid<'a, T>>) -> Self {
+    pub fn new(
+        inequality: &'a Inequality<T>,
+        hybrid: Option<&'h StaticCondensation<'a, T>>,
+    ) -> Self {
         let free = inequality.not_given();
         let mut is_free = vec![false; inequality.size()];
         free.iter().for_each(|&i| is_free[i as usize] = true);
@@ -72,7 +75,9 @@ impl<'h, 'a, T: Real> Shifted<'h, 'a, T> {
     /// See [`FactorError`].
     pub fn factor(&mut self, shift: &[f64]) -> Result<ShiftedFactors<T>, FactorError> {
         if let Some(hybrid) = self.hybrid {
-            return hybrid.factor_shifted(&self.is_free, shift).map(ShiftedFactors::Hybrid);
+            return hybrid
+                .factor_shifted(&self.is_free, shift)
+                .map(ShiftedFactors::StaticCondensation);
         }
         let factors = if self.inequality.symmetric {
             let half = match &mut self.half {
@@ -83,7 +88,7 @@ impl<'h, 'a, T: Real> Shifted<'h, 'a, T> {
             add_diagonal(&mut matrix, &self.free, shift)?;
             Factors::definite(&mut matrix, &half.analysis)?
         } else {
-            let mut matrix = Restricted::new(&self.inequality.matrix, &self.free);
+            let mut matrix = Submatrix::new(&self.inequality.matrix, &self.free);
             add_diagonal(&mut matrix, &self.free, shift)?;
             Factors::lu(&matrix)?
         };
@@ -93,7 +98,7 @@ impl<'h, 'a, T: Real> Shifted<'h, 'a, T> {
     /// Solves in place; zero where unknowns are given.
     pub fn solve(&self, factors: &ShiftedFactors<T>, right: &mut Pair) {
         match (factors, self.hybrid) {
-            (ShiftedFactors::Hybrid(factors), Some(hybrid)) => {
+            (ShiftedFactors::StaticCondensation(factors), Some(hybrid)) => {
                 hybrid.solve(factors, &self.is_free, &mut right.values, &mut right.forces);
             }
             (ShiftedFactors::Assembled(factors), _) => {
@@ -103,7 +108,7 @@ impl<'h, 'a, T: Real> Shifted<'h, 'a, T> {
                 right.values.fill(0.0);
                 free().zip(x).for_each(|(i, x)| right.values[i] = x.to_f64());
             }
-            (ShiftedFactors::Hybrid(_), None) => unreachable!("made by this matrix"),
+            (ShiftedFactors::StaticCondensation(_), None) => unreachable!("made by this matrix"),
         }
     }
 
@@ -135,7 +140,7 @@ impl<'h, 'a, T: Real> Shifted<'h, 'a, T> {
 
 /// Adds the shift of each free unknown to its diagonal entry; an error if there is none to add to.
 fn add_diagonal<T: Real>(
-    matrix: &mut Restricted<T>,
+    matrix: &mut Submatrix<T>,
     free: &[u32],
     shift: &[f64],
 ) -> Result<(), FactorError> {

@@ -4,7 +4,7 @@ mod barrier;
 mod kkt;
 
 use crate::algebra::{Contact, Inequality};
-use crate::linear::direct::static_condensation::Hybrid;
+use crate::linear::direct::static_condensation::StaticCondensation;
 use crate::real::Real;
 use barrier::{MOST_POWERS, Rest, Wall, longest_step, mean_product};
 use kkt::{Pair, Shifted, ShiftedFactors};
@@ -83,7 +83,7 @@ pub(crate) struct InteriorPoint<'h, 'a, T> {
     at: Pair,
     diagonal: Vec<f64>,
     walls: Vec<Wall>,
-    /// Linear systems solved.
+    /// LinearMethod systems solved.
     pub steps: usize,
     /// See [`NEAR`].
     near: f64,
@@ -95,7 +95,7 @@ impl<'h, 'a, T: Real> InteriorPoint<'h, 'a, T> {
     /// Starts on the central path near given values and forces of jumps.
     pub fn new(
         inequality: &'a Inequality<T>,
-        hybrid: Option<&'h Hybrid<'a, T>>,
+        hybrid: Option<&'h StaticCondensation<'a, T>>,
         near: &[T],
         forces: &[T],
     ) -> Self {
@@ -111,7 +111,7 @@ impl<'h, 'a, T: Real> InteriorPoint<'h, 'a, T> {
     /// Starts where it stopped before.
     pub fn resume(
         inequality: &'a Inequality<T>,
-        hybrid: Option<&'h Hybrid<'a, T>>,
+        hybrid: Option<&'h StaticCondensation<'a, T>>,
         path: Path,
     ) -> Self {
         let Path { at, walls, near } = path;
@@ -332,7 +332,7 @@ impl<'h, 'a, T: Real> InteriorPoint<'h, 'a, T> {
 
     /// Contact where more is left of the force than of the gap.
     fn contact(&self) -> Vec<Contact> {
-        let mut contact = vec![Contact::Open; self.at.values.len()];
+        let mut contact = vec![Contact::Inactive; self.at.values.len()];
         for wall in self.walls.iter().filter(|wall| wall.left[1] > wall.left[0]) {
             contact[wall.unknown] = if wall.side > 0.0 { Contact::Lower } else { Contact::Upper };
         }
@@ -354,7 +354,7 @@ mod tests {
             symmetric: true,
             bounds: vec![Bound::Lower(0.0); 2],
             load: vec![3e38; 2],
-            places: vec![],
+            supports: vec![],
             points: vec![],
             start: Start::Cold,
             factored: None,
@@ -381,7 +381,7 @@ mod tests {
         let path = point.into_path().unwrap();
         let mut point = InteriorPoint::resume(&inequality, None, path);
         let before = point.at.values.clone();
-        assert_eq!(point.run(), Some(vec![Contact::Lower, Contact::Open]));
+        assert_eq!(point.run(), Some(vec![Contact::Lower, Contact::Inactive]));
         assert_eq!(point.steps, 1);
         assert_eq!(point.at.values, before);
         assert!(point.into_path().is_none());

@@ -7,8 +7,8 @@ use faer::sparse::linalg::amd;
 
 use super::factors::{Analysis, FactorError, Factors, columns};
 use super::nested_dissection::Cloud;
-use crate::algebra::submatrix::Restricted;
-use crate::algebra::{Factored, Inequality, SparseMatrix, barycentre};
+use crate::algebra::submatrix::Submatrix;
+use crate::algebra::{Inequality, PenalisedMatrix, SparseMatrix, barycentre};
 use crate::real::Real;
 
 /// No place.
@@ -95,7 +95,7 @@ impl EliminationOrder {
     /// # Panics
     /// As [`EliminationOrder::new`].
     pub fn by_degree<T: Real>(matrix: &SparseMatrix<T>, kept: &[u32]) -> Result<Self, FactorError> {
-        let restricted = Restricted::left_of_diagonal(matrix, kept);
+        let restricted = Submatrix::left_of_diagonal(matrix, kept);
         let pattern = columns(&restricted);
         let n = kept.len();
         let (mut order, mut inverse) = (vec![0_u32; n], vec![0_u32; n]);
@@ -142,7 +142,7 @@ pub(crate) struct KnownPattern {
 impl KnownPattern {
     /// For matrices with a row for each jump with two sides, at the mean of the points of its
     /// unknowns, if these are known.
-    pub fn of_jumps<T: Real>(factored: &Factored<T>, points: Option<&[[f32; 3]]>) -> Self {
+    pub fn of_jumps<T: Real>(factored: &PenalisedMatrix<T>, points: Option<&[[f32; 3]]>) -> Self {
         let centres = |points: &[[f32; 3]]| {
             let shared = |&jump: &usize| factored.sides(jump).iter().all(Option::is_some);
             let jumps = (0..factored.n_jumps()).filter(shared);
@@ -157,18 +157,18 @@ impl KnownPattern {
     /// See [`FactorError`].
     pub fn factor<T: Real>(&self, matrix: SparseMatrix<T>) -> Result<Factors<T>, FactorError> {
         if let Some(analysis) = self.analysis.get() {
-            return Factors::definite(&mut Restricted::from(matrix), analysis);
+            return Factors::definite(&mut Submatrix::from(matrix), analysis);
         }
         let all: Vec<u32> = (0..matrix.size() as u32).collect();
         let order = EliminationOrder::new(&matrix, &all, self.points.as_deref())?.unknowns;
-        let mut matrix = Restricted::from(matrix);
+        let mut matrix = Submatrix::from(matrix);
         let analysis = Analysis::new(&matrix, Some(order))?;
         Factors::definite(&mut matrix, self.analysis.get_or_init(|| analysis))
     }
 }
 
 /// The mean of the points of the unknowns of a jump.
-fn centre<T: Real>(factored: &Factored<T>, jump: usize, points: &[[f32; 3]]) -> [f32; 3] {
+fn centre<T: Real>(factored: &PenalisedMatrix<T>, jump: usize, points: &[[f32; 3]]) -> [f32; 3] {
     let unknowns = factored.terms_of(jump).iter().flat_map(|term| [term.here, term.there]);
     barycentre(unknowns.filter_map(|unknown| points.get(unknown as usize).copied()))
 }

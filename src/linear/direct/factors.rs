@@ -18,7 +18,7 @@ use faer::{MatMut, Side};
 use super::elimination::EliminationOrder;
 use super::kernels::PAR;
 use crate::algebra::SparseMatrix;
-use crate::algebra::submatrix::Restricted;
+use crate::algebra::submatrix::Submatrix;
 use crate::parallel::vectors::signs;
 use crate::real::Real;
 
@@ -79,7 +79,7 @@ impl Analysis {
     /// # Errors
     /// [`FactorError::OutOfMemory`].
     pub fn new<T: Real>(
-        restricted: &Restricted<T>,
+        restricted: &Submatrix<T>,
         order: Option<Vec<u32>>,
     ) -> Result<Self, FactorError> {
         let order = order.map(|order| {
@@ -113,11 +113,11 @@ impl<T: Real> Factors<T> {
         free: &[u32],
     ) -> Result<Self, FactorError> {
         if symmetric {
-            let mut restricted = Restricted::left_of_diagonal(matrix, free);
+            let mut restricted = Submatrix::left_of_diagonal(matrix, free);
             let analysis = Analysis::new(&restricted, None)?;
             Self::definite(&mut restricted, &analysis)
         } else {
-            Self::lu(&Restricted::new(matrix, free))
+            Self::lu(&Submatrix::new(matrix, free))
         }
     }
 
@@ -132,7 +132,7 @@ impl<T: Real> Factors<T> {
         free: &[u32],
         order: &EliminationOrder,
     ) -> Result<Self, FactorError> {
-        let mut restricted = Restricted::left_of_diagonal(matrix, free);
+        let mut restricted = Submatrix::left_of_diagonal(matrix, free);
         let analysis = Analysis::new(&restricted, Some(order.among(free, matrix.size())))?;
         Self::definite(&mut restricted, &analysis)
     }
@@ -143,7 +143,7 @@ impl<T: Real> Factors<T> {
     /// # Errors
     /// See [`Factors::new`].
     pub(crate) fn definite(
-        restricted: &mut Restricted<T>,
+        restricted: &mut Submatrix<T>,
         analysis: &Analysis,
     ) -> Result<Self, FactorError> {
         if restricted.size() == 0 {
@@ -192,7 +192,7 @@ impl<T: Real> Factors<T> {
         }
     }
 
-    fn cholesky(restricted: &Restricted<T>, analysis: &Analysis) -> Result<Self, FactorError> {
+    fn cholesky(restricted: &Submatrix<T>, analysis: &Analysis) -> Result<Self, FactorError> {
         let (a, symbolic) = (columns(restricted), analysis.0.clone());
         let mut values = Vec::new();
         values.try_reserve_exact(symbolic.len_val()).map_err(|_| FactorError::OutOfMemory)?;
@@ -212,7 +212,7 @@ impl<T: Real> Factors<T> {
     ///
     /// # Errors
     /// See [`Factors::new`].
-    pub(crate) fn lu(restricted: &Restricted<T>) -> Result<Self, FactorError> {
+    pub(crate) fn lu(restricted: &Submatrix<T>) -> Result<Self, FactorError> {
         if restricted.size() == 0 {
             return Ok(Self { size: 0, kind: Kind::Empty });
         }
@@ -237,7 +237,7 @@ impl<T: Real> Factors<T> {
     /// Partial pivoting divides by whatever pivot is left, so success alone proves nothing. A
     /// right-hand side without structure is dominated by the least singular direction; the size
     /// of its solution bounds the condition number from below, and so raises no false alarm.
-    fn condition_holds(&self, restricted: &Restricted<T>) -> bool {
+    fn condition_holds(&self, restricted: &Submatrix<T>) -> bool {
         let mut x: Vec<T> = (0..self.size)
             .zip(signs())
             .map(|(i, is_positive)| {
@@ -271,7 +271,7 @@ pub fn is_positive_definite<T: Real>(
 }
 
 /// The rows of a restricted matrix as the columns of its transpose.
-pub(crate) fn columns<T>(restricted: &Restricted<T>) -> SparseColMatRef<'_, u32, T> {
+pub(crate) fn columns<T>(restricted: &Submatrix<T>) -> SparseColMatRef<'_, u32, T> {
     let n = restricted.size();
     let pattern = faer::sparse::SymbolicSparseColMatRef::new_checked(
         n,
@@ -286,7 +286,7 @@ pub(crate) fn columns<T>(restricted: &Restricted<T>) -> SparseColMatRef<'_, u32,
 /// Tells a singular matrix from an indefinite one after a pivot has failed: the former becomes
 /// definite if its diagonal grows by the root of the rounding unit, which is far above rounding
 /// and far below any curvature that a too small penalty leaves behind.
-fn why_not_positive<T: Real>(restricted: &mut Restricted<T>, analysis: &Analysis) -> FactorError {
+fn why_not_positive<T: Real>(restricted: &mut Submatrix<T>, analysis: &Analysis) -> FactorError {
     for i in 0..restricted.size() {
         let (columns, values) = restricted.row_mut(i);
         match (columns.last(), values.last_mut()) {

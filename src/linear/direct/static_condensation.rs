@@ -21,7 +21,7 @@
 use super::elimination::KnownPattern;
 use super::factors::{FactorError, Factors};
 use crate::algebra::dense::{invert_in_place, rank};
-use crate::algebra::{Factored, SparseMatrix, Term};
+use crate::algebra::{PenalisedMatrix, SparseMatrix, Term};
 use crate::real::Real;
 
 /// Weights that hide a stiffness are cut down to this part of what hides it entirely, where fixed
@@ -46,8 +46,8 @@ struct Side {
 }
 
 /// Which blocks meet in which jumps: the same for all sets of fixed unknowns.
-pub(crate) struct Hybrid<'a, T> {
-    factored: &'a Factored<T>,
+pub(crate) struct StaticCondensation<'a, T> {
+    factored: &'a PenalisedMatrix<T>,
     /// Start of each block's sides, and their number at the end.
     starts: Vec<usize>,
     sides: Vec<Side>,
@@ -58,7 +58,7 @@ pub(crate) struct Hybrid<'a, T> {
 }
 
 /// What has been eliminated, and the factors of what is left.
-pub(crate) struct HybridFactors<T> {
+pub(crate) struct CondensedFactors<T> {
     /// The inverses of all blocks with their jumps, by rows: free unknowns, then forces.
     inverses: Vec<f64>,
     /// Start of each block's inverse.
@@ -66,8 +66,8 @@ pub(crate) struct HybridFactors<T> {
     means: Factors<T>,
 }
 
-impl<'a, T: Real> Hybrid<'a, T> {
-    pub fn new(factored: &'a Factored<T>) -> Self {
+impl<'a, T: Real> StaticCondensation<'a, T> {
+    pub fn new(factored: &'a PenalisedMatrix<T>) -> Self {
         let n_blocks = factored.load.len() / factored.block;
         let between: Vec<[Option<u32>; 2]> =
             (0..factored.n_jumps()).map(|jump| factored.sides(jump)).collect();
@@ -173,7 +173,7 @@ impl<'a, T: Real> Hybrid<'a, T> {
     ///
     /// # Errors
     /// See [`FactorError`].
-    pub fn factor(&self, is_free: &[bool]) -> Result<HybridFactors<T>, FactorError> {
+    pub fn factor(&self, is_free: &[bool]) -> Result<CondensedFactors<T>, FactorError> {
         self.factor_shifted(is_free, &[])
     }
 
@@ -185,7 +185,7 @@ impl<'a, T: Real> Hybrid<'a, T> {
         &self,
         is_free: &[bool],
         shift: &[f64],
-    ) -> Result<HybridFactors<T>, FactorError> {
+    ) -> Result<CondensedFactors<T>, FactorError> {
         let mut matrix = self.pattern.clone();
         let (mut inverses, mut starts) = (Vec::new(), vec![0]);
         let mut local = Vec::new();
@@ -207,7 +207,7 @@ impl<'a, T: Real> Hybrid<'a, T> {
             starts.push(inverses.len());
         }
         let means = self.known.factor(matrix)?;
-        Ok(HybridFactors { inverses, starts, means })
+        Ok(CondensedFactors { inverses, starts, means })
     }
 
     /// The inverse of a block with its jumps; returns the number of free unknowns.
@@ -276,7 +276,7 @@ impl<'a, T: Real> Hybrid<'a, T> {
     /// fixed, and `t` becomes `p`. Returns the energy `u.K u + p.p / s = u.r - p.t`.
     pub fn solve(
         &self,
-        factors: &HybridFactors<T>,
+        factors: &CondensedFactors<T>,
         is_free: &[bool],
         r: &mut [f64],
         t: &mut [f64],
@@ -360,7 +360,7 @@ impl<'a, T: Real> Hybrid<'a, T> {
     }
 }
 
-impl<T> HybridFactors<T> {
+impl<T> CondensedFactors<T> {
     /// A row of a block's inverse times a vector.
     fn row(&self, block: usize, k: usize, x: &[f64]) -> f64 {
         let row = &self.inverses[self.starts[block] + k * x.len()..][..x.len()];

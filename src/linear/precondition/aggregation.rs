@@ -1,8 +1,8 @@
-//! Coarser functions from a matrix alone: smoothed aggregation.
+//! CoarseLevel functions from a matrix alone: smoothed aggregation.
 //!
 //! Source: P. Vanek, J. Mandel, M. Brezina, Computing 56 (1996), 179-196.
 
-use super::prolongation::{Rows, Transfer};
+use super::prolongation::{Prolongation, RectangularMatrix};
 use crate::algebra::SparseMatrix;
 use crate::real::Real;
 
@@ -18,11 +18,11 @@ const NEGLIGIBLE: f64 = 1e-4;
 /// The damping of the smoothed functions, over the largest eigenvalue of the scaled matrix.
 const DAMPING: f64 = 4.0 / 3.0;
 
-/// Coarser functions and the form on them; `None` if there would be hardly fewer.
+/// CoarseLevel functions and the form on them; `None` if there would be hardly fewer.
 pub(crate) fn aggregate<T: Real>(
     matrix: &SparseMatrix<T>,
     fixed: &[bool],
-) -> Option<(Transfer<T>, SparseMatrix<T>)> {
+) -> Option<(Prolongation<T>, SparseMatrix<T>)> {
     let diagonal: Vec<f64> = matrix.diagonal().iter().map(|d| d.to_f64()).collect();
     let strong = |i: usize, j: usize, a: T| {
         i != j && !fixed[j] && a.to_f64().powi(2) > STRONG * STRONG * diagonal[i] * diagonal[j]
@@ -33,7 +33,7 @@ pub(crate) fn aggregate<T: Real>(
     }
     let functions = smoothed(matrix, fixed, &diagonal, &owner);
     let coarse = galerkin(matrix, &functions, n_coarse);
-    Some((Transfer::weights(functions, n_coarse), coarse))
+    Some((Prolongation::weights(functions, n_coarse), coarse))
 }
 
 /// The aggregate of every unknown, and how many there are: neighbourhoods that do not overlap, and
@@ -91,7 +91,7 @@ fn smoothed<T: Real>(
     fixed: &[bool],
     diagonal: &[f64],
     owner: &[u32],
-) -> Rows<T> {
+) -> RectangularMatrix<T> {
     let n = matrix.size();
     // the largest row sum bounds the largest eigenvalue
     let row_sum = |i: usize| {
@@ -100,7 +100,7 @@ fn smoothed<T: Real>(
     };
     let largest = (0..n).filter(|&i| !fixed[i]).map(row_sum).fold(1.0, f64::max);
     let damping = DAMPING / largest;
-    let mut rows = Rows { starts: vec![0], columns: Vec::new(), values: Vec::new() };
+    let mut rows = RectangularMatrix { starts: vec![0], columns: Vec::new(), values: Vec::new() };
     let mut row: Vec<(u32, f64)> = Vec::new();
     for i in 0..n {
         row.clear();
@@ -132,7 +132,7 @@ fn smoothed<T: Real>(
 /// `P^T A P`.
 pub(crate) fn galerkin<T: Real>(
     matrix: &SparseMatrix<T>,
-    functions: &Rows<T>,
+    functions: &RectangularMatrix<T>,
     n_coarse: usize,
 ) -> SparseMatrix<T> {
     let transpose = functions.transpose(n_coarse);

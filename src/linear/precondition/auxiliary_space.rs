@@ -6,8 +6,8 @@
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use super::multigrid::Multigrid;
-use super::prolongation::Rows;
-use crate::algebra::{Place, SparseMatrix};
+use super::prolongation::RectangularMatrix;
+use crate::algebra::{SparseMatrix, Support};
 use crate::linear::direct::factors::FactorError;
 use crate::linear::krylov::conjugate_gradients::Preconditioner;
 use crate::memory::in_large_pages;
@@ -25,13 +25,13 @@ pub(crate) struct AuxiliarySpace<'a, T: Real> {
 }
 
 impl<'a, T: Real> AuxiliarySpace<'a, T> {
-    /// For a matrix whose unknowns live at `places`; `None` where they do not say enough.
+    /// For a matrix whose unknowns live at `supports`; `None` where they do not say enough.
     pub fn new(
         matrix: &'a SparseMatrix<T>,
-        places: &[Place],
+        supports: &[Support],
         vertices: Vertices<'a, T>,
     ) -> Option<Self> {
-        Some(Self { blocks: Blocks::new(matrix, cell_size(places)?)?, vertices })
+        Some(Self { blocks: Blocks::new(matrix, cell_size(supports)?)?, vertices })
     }
 
     /// Sets which unknowns are fixed.
@@ -53,18 +53,18 @@ impl<T: Real> Preconditioner<T> for AuxiliarySpace<'_, T> {
 
 /// How many unknowns a cell owns, one if cells share them: consecutive ones, the same number for
 /// all.
-pub(crate) fn cell_size(places: &[Place]) -> Option<usize> {
-    let first = places.first()?.cell();
+pub(crate) fn cell_size(supports: &[Support]) -> Option<usize> {
+    let first = supports.first()?.cell();
     if first.is_none() {
-        return places.iter().all(|p| p.cell().is_none()).then_some(1);
+        return supports.iter().all(|p| p.cell().is_none()).then_some(1);
     }
-    let size = places.iter().take_while(|p| p.cell() == first).count();
-    let whole = |cell: &[Place]| {
+    let size = supports.iter().take_while(|p| p.cell() == first).count();
+    let whole = |cell: &[Support]| {
         cell.len() == size
             && cell[0].cell().is_some()
             && cell.iter().all(|p| p.cell() == cell[0].cell())
     };
-    (size <= LARGEST && places.chunks(size).all(whole)).then_some(size)
+    (size <= LARGEST && supports.chunks(size).all(whole)).then_some(size)
 }
 
 /// Conforming linear functions inside another space, through multigrid.
@@ -72,9 +72,9 @@ pub(crate) struct Vertices<'a, T: Real> {
     multigrid: Multigrid<'a, T>,
     given: &'a [bool],
     /// The unknowns around each vertex, with weights.
-    around: Rows<T>,
+    around: RectangularMatrix<T>,
     /// The vertices around each unknown, with weights.
-    of: Rows<T>,
+    of: RectangularMatrix<T>,
     fixed: Vec<bool>,
     force: Vec<T>,
     values: Vec<T>,
@@ -83,17 +83,21 @@ pub(crate) struct Vertices<'a, T: Real> {
 impl<'a, T: Real> Vertices<'a, T> {
     /// The functions that vanish on `given` vertices. Each unknown is a mean of vertex values;
     /// `None` if some vertex does not exist.
-    pub fn new(multigrid: Multigrid<'a, T>, given: &'a [bool], places: &[Place]) -> Option<Self> {
+    pub fn new(
+        multigrid: Multigrid<'a, T>,
+        given: &'a [bool],
+        supports: &[Support],
+    ) -> Option<Self> {
         let n = given.len();
-        let total = places.iter().map(|place| place.vertices().len()).sum();
-        let mut of = Rows {
-            starts: in_large_pages(Vec::with_capacity(places.len() + 1)),
+        let total = supports.iter().map(|support| support.vertices().len()).sum();
+        let mut of = RectangularMatrix {
+            starts: in_large_pages(Vec::with_capacity(supports.len() + 1)),
             columns: in_large_pages(Vec::with_capacity(total)),
             values: in_large_pages(Vec::with_capacity(total)),
         };
         of.starts.push(0);
-        for place in places {
-            let around = place.vertices();
+        for support in supports {
+            let around = support.vertices();
             if around.is_empty() || around.iter().any(|&v| v as usize >= n) {
                 return None;
             }
@@ -203,7 +207,7 @@ fn block_of<T: Real>(matrix: &SparseMatrix<T>, first: usize, fixed: &[bool], blo
     }
 }
 
-/// Inverts a symmetric positive definite block in place on what is not fixed, by exchange steps;
+/// Inverts a symmetric positive definite block in support on what is not fixed, by exchange steps;
 /// false if a pivot is not positive.
 fn invert<T: Real>(a: &mut [T], size: usize, fixed: &[bool]) -> bool {
     let one = T::lit(1.0);

@@ -4,12 +4,12 @@ use std::sync::Arc;
 
 use super::aggregation::galerkin;
 use super::auxiliary_space::{AuxiliarySpace, Vertices};
-use super::coarse_level::{Coarser, VertexLevel};
+use super::coarse_level::{CoarseLevel, P1Level};
 use super::mean_jump_split::FacetSplit;
 use super::multigrid::Multigrid;
-use super::prolongation::Rows;
-use crate::algebra::{Bound, Inequality, Place, SparseMatrix};
-use crate::linear::Functions;
+use super::prolongation::RectangularMatrix;
+use crate::algebra::{Bound, Inequality, SparseMatrix, Support};
+use crate::linear::CoarseSpaces;
 use crate::linear::direct::factors::FactorError;
 use crate::linear::krylov::conjugate_gradients::Preconditioner;
 use crate::real::Real;
@@ -22,61 +22,61 @@ pub(crate) enum Preconditioners<'a, T: Real> {
 }
 
 impl<'a, T: Real> Preconditioners<'a, T> {
-    /// The conforming linear functions: those known, or what a symmetric matrix and places tell of
+    /// The conforming linear functions: those known, or what a symmetric matrix and supports tell of
     /// them.
     pub fn functions(
         matrix: &SparseMatrix<T>,
         inequality: &Inequality<T>,
-        known: &Functions<T>,
-    ) -> Option<Functions<T>> {
-        let Inequality { bounds, places, .. } = inequality;
-        if places.len() != inequality.size() || places.is_empty() {
+        known: &CoarseSpaces<T>,
+    ) -> Option<CoarseSpaces<T>> {
+        let Inequality { bounds, supports, .. } = inequality;
+        if supports.len() != inequality.size() || supports.is_empty() {
             return None;
         }
         let fixed: Vec<bool> = bounds.iter().map(|b| matches!(b, Bound::Fixed(_))).collect();
         match known {
-            Functions::Coarser(coarser) if coarser.transfer.n_fine() == matrix.size() => {
+            CoarseSpaces::CoarseLevel(coarser) if coarser.transfer.n_fine() == matrix.size() => {
                 Some(known.clone())
             }
-            Functions::Same(_) => Some(known.clone()),
-            _ if are_vertices(places) => Some(match Coarser::aggregated(matrix, &fixed) {
-                Some(coarser) => Functions::Coarser(coarser),
-                None => Functions::Unknown,
+            CoarseSpaces::Same(_) => Some(known.clone()),
+            _ if are_vertices(supports) => Some(match CoarseLevel::aggregated(matrix, &fixed) {
+                Some(coarser) => CoarseSpaces::CoarseLevel(coarser),
+                None => CoarseSpaces::Unknown,
             }),
             _ => {
-                let level = conforming(matrix, places, &fixed)?;
-                Some(Functions::Same(Arc::new(level)))
+                let level = conforming(matrix, supports, &fixed)?;
+                Some(CoarseSpaces::Same(Arc::new(level)))
             }
         }
     }
 
-    /// What fits the unknowns of a symmetric matrix that live at `places`; `None` if nothing does.
+    /// What fits the unknowns of a symmetric matrix that live at `supports`; `None` if nothing does.
     /// `may_split` tells whether cells without fluxes between them are tied by a large penalty: in
     /// the symmetric part of a matrix fluxes may have cancelled, and the penalty need not be large.
     pub fn new(
         matrix: &'a SparseMatrix<T>,
-        places: &[Place],
-        functions: &'a Functions<T>,
+        supports: &[Support],
+        functions: &'a CoarseSpaces<T>,
         may_split: bool,
     ) -> Option<Self> {
         match functions {
-            Functions::Unknown => Some(Self::Multigrid(Box::new(Multigrid::new(matrix, None)))),
-            Functions::Coarser(coarser) => {
+            CoarseSpaces::Unknown => Some(Self::Multigrid(Box::new(Multigrid::new(matrix, None)))),
+            CoarseSpaces::CoarseLevel(coarser) => {
                 Some(Self::Multigrid(Box::new(Multigrid::new(matrix, Some(coarser)))))
             }
-            Functions::Same(level) => {
+            CoarseSpaces::Same(level) => {
                 let vertices = || {
                     let multigrid = Multigrid::new(&level.matrix, level.coarser.as_ref());
-                    Vertices::new(multigrid, &level.fixed, places)
+                    Vertices::new(multigrid, &level.fixed, supports)
                 };
                 let split = match may_split {
-                    true => FacetSplit::new(matrix, places, vertices),
+                    true => FacetSplit::new(matrix, supports, vertices),
                     false => None,
                 };
                 if let Some(split) = split {
                     return Some(Self::FacetSplit(Box::new(split)));
                 }
-                let space = AuxiliarySpace::new(matrix, places, vertices()?)?;
+                let space = AuxiliarySpace::new(matrix, supports, vertices()?)?;
                 Some(Self::AuxiliarySpace(Box::new(space)))
             }
         }
@@ -125,24 +125,25 @@ impl<T: Real> Preconditioner<T> for Preconditioners<'_, T> {
 }
 
 /// Whether unknown `i` is the value at vertex `i`.
-fn are_vertices(places: &[Place]) -> bool {
-    let is_vertex =
-        |(i, place): (usize, &Place)| place.cell().is_none() && place.vertices() == [i as u32];
-    places.iter().enumerate().all(is_vertex)
+fn are_vertices(supports: &[Support]) -> bool {
+    let is_vertex = |(i, support): (usize, &Support)| {
+        support.cell().is_none() && support.vertices() == [i as u32]
+    };
+    supports.iter().enumerate().all(is_vertex)
 }
 
-/// The form on conforming linear functions, each written as its values at the unknowns' places.
+/// The form on conforming linear functions, each written as its values at the unknowns' supports.
 fn conforming<T: Real>(
     matrix: &SparseMatrix<T>,
-    places: &[Place],
+    supports: &[Support],
     fixed: &[bool],
-) -> Option<VertexLevel<T>> {
-    let last = places.iter().flat_map(|p| p.vertices()).max()?;
+) -> Option<P1Level<T>> {
+    let last = supports.iter().flat_map(|p| p.vertices()).max()?;
     let n = *last as usize + 1;
-    let mut rows = Rows { starts: vec![0], columns: Vec::new(), values: Vec::new() };
+    let mut rows = RectangularMatrix { starts: vec![0], columns: Vec::new(), values: Vec::new() };
     let mut given = vec![false; n];
-    for (place, &fixed) in places.iter().zip(fixed) {
-        let around = place.vertices();
+    for (support, &fixed) in supports.iter().zip(fixed) {
+        let around = support.vertices();
         let weight = T::lit(1.0 / around.len().max(1) as f64);
         rows.columns.extend(around);
         rows.values.extend(around.iter().map(|_| weight));
@@ -155,5 +156,5 @@ fn conforming<T: Real>(
     for (v, given) in given.iter_mut().enumerate() {
         *given |= form.get(v, v) <= T::lit(0.0);
     }
-    Some(VertexLevel::new(form, given, None))
+    Some(P1Level::new(form, given, None))
 }

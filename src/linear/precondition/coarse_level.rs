@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use super::aggregation::aggregate;
-use super::prolongation::Transfer;
+use super::prolongation::Prolongation;
 use crate::algebra::SparseMatrix;
 use crate::real::Real;
 
@@ -15,17 +15,17 @@ pub(crate) const LARGEST_FACTORED: usize = 20_000;
 
 /// The conforming linear functions on a mesh: the form on its vertices, and coarser functions.
 #[derive(Debug)]
-pub struct VertexLevel<T> {
+pub struct P1Level<T> {
     pub(crate) matrix: SparseMatrix<T>,
     pub(crate) fixed: Vec<bool>,
-    pub(crate) coarser: Option<Coarser<T>>,
+    pub(crate) coarser: Option<CoarseLevel<T>>,
 }
 
-impl<T: Real> VertexLevel<T> {
+impl<T: Real> P1Level<T> {
     /// A level with the form on all vertices, those of Dirichlet data included, and which of them
     /// these are. A level without a coarser one makes its own by aggregation where that pays.
-    pub fn new(matrix: SparseMatrix<T>, fixed: Vec<bool>, coarser: Option<Coarser<T>>) -> Self {
-        let coarser = coarser.or_else(|| Coarser::aggregated(&matrix, &fixed));
+    pub fn new(matrix: SparseMatrix<T>, fixed: Vec<bool>, coarser: Option<CoarseLevel<T>>) -> Self {
+        let coarser = coarser.or_else(|| CoarseLevel::aggregated(&matrix, &fixed));
         Self { matrix, fixed, coarser }
     }
 
@@ -37,14 +37,14 @@ impl<T: Real> VertexLevel<T> {
 
 /// A coarser level, and how its functions are written in the finer basis.
 #[derive(Clone, Debug)]
-pub struct Coarser<T> {
-    pub(crate) level: Arc<VertexLevel<T>>,
-    pub(crate) transfer: Arc<Transfer<T>>,
+pub struct CoarseLevel<T> {
+    pub(crate) level: Arc<P1Level<T>>,
+    pub(crate) transfer: Arc<Prolongation<T>>,
 }
 
-impl<T: Real> Coarser<T> {
+impl<T: Real> CoarseLevel<T> {
     /// A coarser level; `None` if the transfer is to a level of another size.
-    pub fn new(level: Arc<VertexLevel<T>>, transfer: Arc<Transfer<T>>) -> Option<Self> {
+    pub fn new(level: Arc<P1Level<T>>, transfer: Arc<Prolongation<T>>) -> Option<Self> {
         (level.size() == transfer.n_coarse()).then_some(Self { level, transfer })
     }
 
@@ -56,7 +56,7 @@ impl<T: Real> Coarser<T> {
         }
         let (transfer, coarse) = aggregate(matrix, fixed)?;
         let size = coarse.size();
-        let level = VertexLevel::new(coarse, vec![false; size], None);
+        let level = P1Level::new(coarse, vec![false; size], None);
         Some(Self { level: Arc::new(level), transfer: Arc::new(transfer) })
     }
 }

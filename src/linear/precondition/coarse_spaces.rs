@@ -2,16 +2,16 @@
 
 use std::sync::Arc;
 
-use super::coarse_level::{Coarser, VertexLevel};
+use super::coarse_level::{CoarseLevel, P1Level};
 
 /// The conforming linear functions near an inequality.
 #[derive(Clone, Debug, Default)]
-pub enum Functions<T> {
-    /// None known; they are then made from the matrix and the places of its unknowns alone.
+pub enum CoarseSpaces<T> {
+    /// None known; they are then made from the matrix and the supports of its unknowns alone.
     #[default]
     Unknown,
     /// The unknowns are themselves the vertex values; these are coarser ones.
-    Coarser(Coarser<T>),
+    CoarseLevel(CoarseLevel<T>),
     /// Those on the same mesh.
-    Same(Arc<VertexLevel<T>>),
+    Same(Arc<P1Level<T>>),
 }

@@ -1,6 +1,6 @@
 //! Which means over the two sides of a facet belong together, and what a matrix says of them.
 
-use crate::algebra::{Place, SparseMatrix};
+use crate::algebra::{SparseMatrix, Support};
 use crate::real::Real;
 
 /// No side across.
@@ -33,14 +33,14 @@ pub(crate) fn bump<T: Real>(size: usize, vertex: usize, facet: usize) -> T {
 impl<T: Real> Pairs<T> {
     /// `None` if unknowns are not those of broken linear functions in two or three dimensions, or
     /// if the matrix couples cells by anything but the means over their common facet.
-    pub fn find(matrix: &SparseMatrix<T>, places: &[Place], size: usize) -> Option<Self> {
+    pub fn find(matrix: &SparseMatrix<T>, supports: &[Support], size: usize) -> Option<Self> {
         let n = matrix.size();
-        if !(3..=4).contains(&size) || places.len() != n {
+        if !(3..=4).contains(&size) || supports.len() != n {
             return None;
         }
-        let are_means = places[0].vertices().len() == size - 1;
+        let are_means = supports[0].vertices().len() == size - 1;
         let length = if are_means { size - 1 } else { 1 };
-        if places.iter().any(|p| p.cell().is_none() || p.vertices().len() != length) {
+        if supports.iter().any(|p| p.cell().is_none() || p.vertices().len() != length) {
             return None;
         }
         let zero = T::lit(0.0);
@@ -52,13 +52,18 @@ impl<T: Real> Pairs<T> {
             coupling: vec![zero; n],
         };
         for cell in 0..n / size {
-            pairs.read_cell(matrix, places, cell)?;
+            pairs.read_cell(matrix, supports, cell)?;
         }
         Some(pairs)
     }
 
     /// Reads the blocks of a cell.
-    fn read_cell(&mut self, matrix: &SparseMatrix<T>, places: &[Place], cell: usize) -> Option<()> {
+    fn read_cell(
+        &mut self,
+        matrix: &SparseMatrix<T>,
+        supports: &[Support],
+        cell: usize,
+    ) -> Option<()> {
         let size = self.size;
         let columns = matrix.row(cell * size).0;
         // blocks are dense: each row of a cell has the same columns, whole cells of them
@@ -87,7 +92,7 @@ impl<T: Real> Pairs<T> {
             if largest == 0.0 {
                 continue;
             }
-            let (here, there) = self.common_facet(places, cell, other)?;
+            let (here, there) = self.common_facet(supports, cell, other)?;
             let noise = ROUNDING * T::EPSILON * largest;
             let is_in_form = |i: usize, j: usize| match self.are_means {
                 true => i == here && j == there,
@@ -122,14 +127,20 @@ impl<T: Real> Pairs<T> {
     }
 
     /// The local numbers of the facet that two cells share.
-    fn common_facet(&self, places: &[Place], cell: usize, other: usize) -> Option<(usize, usize)> {
+    fn common_facet(
+        &self,
+        supports: &[Support],
+        cell: usize,
+        other: usize,
+    ) -> Option<(usize, usize)> {
         let size = self.size;
-        let of = |cell: usize| &places[cell * size..(cell + 1) * size];
+        let of = |cell: usize| &supports[cell * size..(cell + 1) * size];
         let (here, there) = (of(cell), of(other));
-        let shared = |p: &Place, cell: &[Place]| cell.iter().any(|q| q.vertices() == p.vertices());
+        let shared =
+            |p: &Support, cell: &[Support]| cell.iter().any(|q| q.vertices() == p.vertices());
         // means: the facet that both have; vertex values: the vertex that only one has
         let wanted = self.are_means;
-        let local = |from: &[Place], to: &[Place]| {
+        let local = |from: &[Support], to: &[Support]| {
             let mut found = (0..size).filter(|&i| shared(&from[i], to) == wanted);
             found.next().filter(|_| found.next().is_none())
         };

@@ -8,8 +8,8 @@
 use super::aggregation::galerkin;
 use super::auxiliary_space::{Vertices, cell_size};
 use super::facet_pairs::{NONE, Pairs, bump};
-use super::prolongation::Rows;
-use crate::algebra::{Place, SparseMatrix};
+use super::prolongation::RectangularMatrix;
+use crate::algebra::{SparseMatrix, Support};
 use crate::linear::direct::factors::{FactorError, Factors};
 use crate::linear::krylov::conjugate_gradients::Preconditioner;
 use crate::parallel::vectors::each_mut_of;
@@ -57,10 +57,10 @@ impl<'a, T: Real> FacetSplit<'a, T> {
     /// For a matrix on broken linear functions; `None` if cells are tied together by anything else.
     pub fn new(
         matrix: &'a SparseMatrix<T>,
-        places: &[Place],
+        supports: &[Support],
         vertices: impl FnOnce() -> Option<Vertices<'a, T>>,
     ) -> Option<Self> {
-        let pairs = Pairs::find(matrix, places, cell_size(places)?)?;
+        let pairs = Pairs::find(matrix, supports, cell_size(supports)?)?;
         let zero = T::lit(0.0);
         let n = matrix.size();
         Some(Self {
@@ -137,7 +137,8 @@ impl<T: Real> Strip<T> {
             entries.extend((0..size).map(one));
         }
         entries.sort_unstable_by_key(|&(i, k, _)| (i, k));
-        let mut rows = Rows { starts: vec![0], columns: Vec::new(), values: Vec::new() };
+        let mut rows =
+            RectangularMatrix { starts: vec![0], columns: Vec::new(), values: Vec::new() };
         let mut rest = entries.iter().peekable();
         for i in 0..matrix.size() as u32 {
             while let Some(&(_, k, value)) = rest.next_if(|entry| entry.0 == i) {

@@ -1,8 +1,8 @@
 //! One multigrid cycle for conforming linear functions that vanish on given vertices.
 
-use super::coarse_level::Coarser;
+use super::coarse_level::CoarseLevel;
 use super::gauss_seidel::Sweeps;
-use super::prolongation::Transfer;
+use super::prolongation::Prolongation;
 use crate::algebra::SparseMatrix;
 use crate::linear::direct::factors::{FactorError, Factors};
 use crate::parallel::vectors::{each_mut, map, zeros};
@@ -29,13 +29,13 @@ pub(crate) struct Multigrid<'a, T: Real> {
 
 struct Grid<'a, T: Real> {
     matrix: &'a SparseMatrix<T>,
-    /// Rows that are not those of the matrix, ascending, and their values, one row after the other.
+    /// RectangularMatrix that are not those of the matrix, ascending, and their values, one row after the other.
     cut: Vec<u32>,
     cut_starts: Vec<usize>,
     cut_values: Vec<T>,
-    /// Rows that are not what the sweeps think they are, ascending.
+    /// RectangularMatrix that are not what the sweeps think they are, ascending.
     stale: Vec<u32>,
-    transfer: Option<&'a Transfer<T>>,
+    transfer: Option<&'a Prolongation<T>>,
     given: &'a [bool],
     sweeps: Option<Sweeps>,
     fixed: Vec<bool>,
@@ -57,7 +57,7 @@ impl<'a, T: Real> Grid<'a, T> {
     fn new(
         matrix: &'a SparseMatrix<T>,
         given: &'a [bool],
-        coarser: Option<&'a Coarser<T>>,
+        coarser: Option<&'a CoarseLevel<T>>,
         is_finest: bool,
     ) -> Self {
         let n = matrix.size();
@@ -117,7 +117,7 @@ impl<T: Real> Grid<'_, T> {
     }
 
     /// Sets the rows of functions that lost fixed fine unknowns, and restores those that did before.
-    fn cut_off(&mut self, finer: &Grid<'_, T>, transfer: &Transfer<T>) {
+    fn cut_off(&mut self, finer: &Grid<'_, T>, transfer: &Prolongation<T>) {
         let mut near = vec![false; finer.fixed.len()];
         for i in (0..near.len()).filter(|&i| finer.fixed[i]) {
             near[i] = true;
@@ -182,7 +182,7 @@ fn row_range<T>(matrix: &SparseMatrix<T>, j: u32) -> std::ops::Range<usize> {
 fn add_row<T: Real>(
     (neighbours, entries): (&[u32], &[T]),
     fixed: &[bool],
-    transfer: &Transfer<T>,
+    transfer: &Prolongation<T>,
     weight: T,
     (columns, values): (&[u32], &mut [T]),
 ) {
@@ -200,10 +200,10 @@ fn add_row<T: Real>(
 
 impl<'a, T: Real> Multigrid<'a, T> {
     /// The cycle for a matrix with its coarser levels; call [`Multigrid::fix`] before use.
-    pub fn new(matrix: &'a SparseMatrix<T>, coarser: Option<&'a Coarser<T>>) -> Self {
+    pub fn new(matrix: &'a SparseMatrix<T>, coarser: Option<&'a CoarseLevel<T>>) -> Self {
         let mut grids = vec![Grid::new(matrix, &[], coarser, true)];
         let mut next = coarser;
-        while let Some(Coarser { level, .. }) = next {
+        while let Some(CoarseLevel { level, .. }) = next {
             next = level.coarser.as_ref();
             grids.push(Grid::new(&level.matrix, &level.fixed, next, false));
         }
@@ -326,10 +326,10 @@ mod tests {
     use std::sync::Arc;
 
     use super::*;
-    use crate::linear::precondition::coarse_level::VertexLevel;
+    use crate::linear::precondition::coarse_level::P1Level;
 
     /// Conforming linear functions on an interval cut into `n`: `u'' = u` without boundary values.
-    fn level(n: usize) -> VertexLevel<f64> {
+    fn level(n: usize) -> P1Level<f64> {
         let h = 1.0 / n as f64;
         let (diagonal, beside) = (1.0 / h + h / 3.0, -1.0 / h + h / 6.0);
         let mut matrix = SparseMatrix { row_starts: vec![0], columns: vec![], values: vec![] };
@@ -343,10 +343,10 @@ mod tests {
         }
         let parents = (0..=n as u32).map(|i| [i / 2, i.div_ceil(2)]).collect();
         let coarser = (n > 4).then(|| {
-            let transfer = Transfer::midpoints(parents, n / 2 + 1);
-            Coarser::new(Arc::new(level(n / 2)), Arc::new(transfer))
+            let transfer = Prolongation::midpoints(parents, n / 2 + 1);
+            CoarseLevel::new(Arc::new(level(n / 2)), Arc::new(transfer))
         });
-        VertexLevel::new(matrix, vec![false; n + 1], coarser.flatten())
+        P1Level::new(matrix, vec![false; n + 1], coarser.flatten())
     }
 
     /// A cycle does not remember what was fixed before.

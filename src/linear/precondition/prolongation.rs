@@ -7,13 +7,13 @@ use crate::real::Real;
 
 /// A rectangular sparse matrix by rows.
 #[derive(Clone, Debug)]
-pub(crate) struct Rows<T> {
+pub(crate) struct RectangularMatrix<T> {
     pub starts: Vec<u32>,
     pub columns: Vec<u32>,
     pub values: Vec<T>,
 }
 
-impl<T: Real> Rows<T> {
+impl<T: Real> RectangularMatrix<T> {
     pub fn len(&self) -> usize {
         self.starts.len() - 1
     }
@@ -41,7 +41,7 @@ impl<T: Real> Rows<T> {
 
 /// How coarse functions are written in the fine basis.
 #[derive(Clone, Debug)]
-pub struct Transfer<T> {
+pub struct Prolongation<T> {
     kind: Kind<T>,
     n_coarse: usize,
 }
@@ -52,10 +52,10 @@ enum Kind<T> {
     /// and the midpoints it is a parent of.
     Midpoints { parents: Vec<[u32; 2]>, starts: Vec<u32>, children: Vec<u32>, own: Vec<u32> },
     /// Any weights, by fine unknowns and by coarse ones.
-    Weights { fine: Rows<T>, coarse: Rows<T> },
+    Weights { fine: RectangularMatrix<T>, coarse: RectangularMatrix<T> },
 }
 
-impl<T: Real> Transfer<T> {
+impl<T: Real> Prolongation<T> {
     /// Piecewise linear functions on a uniform refinement: each fine vertex is the midpoint of two
     /// coarse ones, of twice the same if it was there before.
     pub fn midpoints(parents: Vec<[u32; 2]>, n_coarse: usize) -> Self {
@@ -85,7 +85,7 @@ impl<T: Real> Transfer<T> {
     }
 
     /// Any weights, by fine unknowns.
-    pub(crate) fn weights(fine: Rows<T>, n_coarse: usize) -> Self {
+    pub(crate) fn weights(fine: RectangularMatrix<T>, n_coarse: usize) -> Self {
         let coarse = fine.transpose(n_coarse);
         Self { kind: Kind::Weights { fine, coarse }, n_coarse }
     }

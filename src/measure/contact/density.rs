@@ -50,9 +50,9 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         inequality.residual_f64(&solution.values, &mut deficit);
         let mut forces = vec![0.0; self.mesh.vertices().len()];
         for (unknown, &deficit) in deficit.iter().enumerate() {
-            let touches = solution.contact[unknown] != Contact::Open;
+            let touches = solution.contact[unknown] != Contact::Inactive;
             if touches && inequality.bounds[unknown].is_inequality() {
-                let around = inequality.places[unknown].vertices();
+                let around = inequality.supports[unknown].vertices();
                 let share = -deficit / around.len() as f64;
                 around.iter().for_each(|&v| forces[v as usize] += share);
             }

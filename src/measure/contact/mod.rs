@@ -166,23 +166,23 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         inequality: &Inequality<T>,
         solution: &Solution<T>,
     ) -> Vec<bool> {
-        // the places where some unknown is in contact, sorted by their vertices
-        let touches = |&k: &usize| solution.contact[k] != Contact::Open;
-        let mut places: Vec<&[u32]> = (0..inequality.size())
+        // the supports where some unknown is in contact, sorted by their vertices
+        let touches = |&k: &usize| solution.contact[k] != Contact::Inactive;
+        let mut supports: Vec<&[u32]> = (0..inequality.size())
             .filter(|k| inequality.bounds[*k].is_inequality() && touches(k))
-            .map(|k| inequality.places[k].vertices())
+            .map(|k| inequality.supports[k].vertices())
             .collect();
-        places.sort_unstable();
-        places.dedup();
+        supports.sort_unstable();
+        supports.dedup();
         let given = self.on_dirichlet_part();
         let largest = solution.values.iter().map(|u| u.to_f64().abs()).fold(0.0, f64::max);
         let slack = largest * TOUCHING.max(64.0 * T::EPSILON);
         let place_touches = |unknown: usize| {
-            let place = inequality.places[unknown].vertices();
+            let place = inequality.supports[unknown].vertices();
             if place.iter().all(|&v| given[v as usize]) {
                 self.datum_touches(place, slack)
             } else {
-                places.binary_search(&place).is_ok()
+                supports.binary_search(&place).is_ok()
             }
         };
         let state = |&carrier: &Carrier| {

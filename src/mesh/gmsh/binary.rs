@@ -1,7 +1,7 @@
 //! Numbers of a binary file.
 
 use super::error::GmshError;
-use super::position::Place;
+use super::position::FilePosition;
 use super::source::{Encoding, Source};
 
 impl Source<'_> {
@@ -27,7 +27,7 @@ impl Source<'_> {
     }
     /// The byte order, from the integer one at the present position.
     pub(super) fn byte_order(&mut self) -> Result<Encoding, GmshError> {
-        let place = Place::Byte(self.at);
+        let place = FilePosition::Byte(self.at);
         match self.bytes::<4>()? {
             [1, 0, 0, 0] => Ok(Encoding::LittleEndian),
             [0, 0, 0, 1] => Ok(Encoding::BigEndian),

@@ -2,7 +2,7 @@
 
 use super::error::GmshError;
 use super::kinds::{Kind, Shape};
-use super::position::{ElementPlace, Place};
+use super::position::{ElementPosition, FilePosition};
 use super::source::Source;
 use std::collections::{BTreeMap, HashMap};
 
@@ -11,7 +11,7 @@ pub(super) struct Group {
     /// The name, without its quotes.
     pub(super) name: String,
     /// Where it stands.
-    pub(super) place: Place,
+    pub(super) place: FilePosition,
 }
 
 /// What tells the groups of an element.
@@ -135,14 +135,14 @@ impl Contents {
     pub(super) fn dimension(&self) -> Result<usize, GmshError> {
         (1..=3).rev().find(|&d| !self.simplices[d].tags.is_empty()).ok_or(GmshError::NoCells)
     }
-    pub(super) fn place_of(&self, position: usize) -> Place {
-        if self.binary { Place::Byte(position) } else { Place::Line(position) }
+    pub(super) fn place_of(&self, position: usize) -> FilePosition {
+        if self.binary { FilePosition::Byte(position) } else { FilePosition::Line(position) }
     }
     /// An element by its position in the list of its dimension.
-    pub(super) fn element(&self, dimension: usize, index: usize) -> Option<ElementPlace> {
+    pub(super) fn element(&self, dimension: usize, index: usize) -> Option<ElementPosition> {
         let simplices = &self.simplices[dimension];
         let place = self.place_of(*simplices.positions.get(index)?);
-        Some(ElementPlace { element: *simplices.tags.get(index)?, place })
+        Some(ElementPosition { element: *simplices.tags.get(index)?, place })
     }
 }
 

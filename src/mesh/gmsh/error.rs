@@ -1,6 +1,6 @@
 //! What can be wrong with a mesh file, and what is only worth saying.
 
-use super::position::{ElementPlace, Place};
+use super::position::{ElementPosition, FilePosition};
 use crate::mesh::MeshError;
 use std::path::PathBuf;
 
@@ -30,7 +30,7 @@ pub enum GmshError {
     )]
     UnsupportedVersion {
         /// Where the version stands.
-        place: Place,
+        place: FilePosition,
         /// The version found.
         version: String,
     },
@@ -40,7 +40,7 @@ pub enum GmshError {
     )]
     UnsupportedDataSize {
         /// Where the size stands.
-        place: Place,
+        place: FilePosition,
         /// The size found.
         data_size: u64,
     },
@@ -50,7 +50,7 @@ pub enum GmshError {
     )]
     ByteOrder {
         /// Where the mark stands.
-        place: Place,
+        place: FilePosition,
         /// The bytes found.
         found: [u8; 4],
     },
@@ -60,7 +60,7 @@ pub enum GmshError {
     )]
     Truncated {
         /// Where the file ends.
-        place: Place,
+        place: FilePosition,
         /// The section that was open.
         section: String,
     },
@@ -76,7 +76,7 @@ pub enum GmshError {
     )]
     Partitioned {
         /// Where the section of partitions begins.
-        place: Place,
+        place: FilePosition,
     },
     /// A word where a number is expected.
     #[error(
@@ -84,7 +84,7 @@ pub enum GmshError {
     )]
     NotANumber {
         /// Where the word stands.
-        place: Place,
+        place: FilePosition,
         /// The section.
         section: String,
         /// Which number was expected.
@@ -98,7 +98,7 @@ pub enum GmshError {
     )]
     Unexpected {
         /// Where it stands.
-        place: Place,
+        place: FilePosition,
         /// The section.
         section: String,
         /// What was expected.
@@ -112,7 +112,7 @@ pub enum GmshError {
     )]
     Count {
         /// Where the difference shows.
-        place: Place,
+        place: FilePosition,
         /// The section.
         section: String,
         /// What is counted.
@@ -128,7 +128,7 @@ pub enum GmshError {
     )]
     UnknownNode {
         /// Where the element stands.
-        place: Place,
+        place: FilePosition,
         /// Tag of the element.
         element: u64,
         /// Tag of the node.
@@ -140,9 +140,9 @@ pub enum GmshError {
     )]
     RepeatedNode {
         /// Where the second one stands.
-        place: Place,
+        place: FilePosition,
         /// Where the first one stands.
-        first: Place,
+        first: FilePosition,
         /// The tag of both.
         node: u64,
     },
@@ -152,7 +152,7 @@ pub enum GmshError {
     )]
     NotFinite {
         /// Where the node stands.
-        place: Place,
+        place: FilePosition,
         /// Tag of the node.
         node: u64,
         /// The coordinate: x, y or z.
@@ -166,7 +166,7 @@ pub enum GmshError {
     )]
     NotFlat {
         /// Where the node stands.
-        place: Place,
+        place: FilePosition,
         /// Tag of the node.
         node: u64,
         /// The coordinate that must be constant: y or z.
@@ -203,7 +203,7 @@ pub enum GmshError {
     )]
     UnknownElementType {
         /// Where the type stands.
-        place: Place,
+        place: FilePosition,
         /// The type found.
         element_type: i64,
     },
@@ -213,7 +213,7 @@ pub enum GmshError {
     )]
     NotSimplicial {
         /// Where the element stands.
-        place: Place,
+        place: FilePosition,
         /// Tag of the element.
         element: u64,
         /// Its type.
@@ -237,7 +237,7 @@ pub enum GmshError {
     )]
     UnknownGroup {
         /// Where the name stands.
-        place: Place,
+        place: FilePosition,
         /// Dimension of the group.
         dimension: usize,
         /// Its tag.
@@ -253,7 +253,7 @@ pub enum GmshError {
     )]
     UnnamedGroup {
         /// Where the element stands.
-        place: Place,
+        place: FilePosition,
         /// Tag of the element.
         element: u64,
         /// Dimension of the group.
@@ -267,14 +267,14 @@ pub enum GmshError {
         /// What is wrong, with cells and vertices counted from zero.
         source: MeshError,
         /// The elements of the file it is about.
-        elements: Vec<ElementPlace>,
+        elements: Vec<ElementPosition>,
         /// Tags of the nodes it is about.
         nodes: Vec<u64>,
     },
 }
 
 /// The end of the sentence that translates cells and vertices to elements and nodes of the file.
-fn in_file(elements: &[ElementPlace], nodes: &[u64]) -> String {
+fn in_file(elements: &[ElementPosition], nodes: &[u64]) -> String {
     let mut parts: Vec<String> = elements.iter().map(ToString::to_string).collect();
     if !nodes.is_empty() {
         let tags: Vec<String> = nodes.iter().map(ToString::to_string).collect();

@@ -64,7 +64,7 @@ mod version_four;
 mod version_two;
 
 pub use error::{GmshError, GmshWarning};
-pub use position::{ElementPlace, Place};
+pub use position::{ElementPosition, FilePosition};
 
 use super::Mesh;
 use crate::real::Real;

@@ -4,32 +4,32 @@ use std::fmt;
 
 /// A position in a mesh file: a line of a text file, an offset into a binary one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Place {
+pub enum FilePosition {
     /// Line of a text file, counted from one.
     Line(usize),
     /// Offset of a byte in a binary file, counted from zero.
     Byte(usize),
 }
 
-impl fmt::Display for Place {
+impl fmt::Display for FilePosition {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Place::Line(line) => write!(f, "line {line}"),
-            Place::Byte(offset) => write!(f, "byte {offset}"),
+            FilePosition::Line(line) => write!(f, "line {line}"),
+            FilePosition::Byte(offset) => write!(f, "byte {offset}"),
         }
     }
 }
 
 /// An element of the file that an error is about.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct ElementPlace {
+pub struct ElementPosition {
     /// The tag Gmsh gave it.
     pub element: u64,
     /// Where it stands.
-    pub place: Place,
+    pub place: FilePosition,
 }
 
-impl fmt::Display for ElementPlace {
+impl fmt::Display for ElementPosition {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "element {} ({})", self.element, self.place)
     }

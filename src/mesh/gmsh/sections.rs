@@ -2,7 +2,7 @@
 
 use super::contents::{Contents, Group};
 use super::error::GmshError;
-use super::position::Place;
+use super::position::FilePosition;
 use super::source::Source;
 use super::text::excerpt;
 use super::{version_four, version_two};
@@ -67,7 +67,9 @@ pub(super) fn read_contents(bytes: &[u8], wanted: Wanted) -> Result<Contents, Gm
 
 /// Reads the name of the next section, and where it stands, and goes to the line after it; nothing
 /// at the end of the file.
-fn open_section<'a>(source: &mut Source<'a>) -> Result<Option<(&'a [u8], Place)>, GmshError> {
+fn open_section<'a>(
+    source: &mut Source<'a>,
+) -> Result<Option<(&'a [u8], FilePosition)>, GmshError> {
     source.skip_blank_lines();
     if source.remaining() == 0 {
         return Ok(None);

@@ -4,7 +4,7 @@
 //! on its own line, not wherever the numbers that follow cease to make sense.
 
 use super::error::GmshError;
-use super::position::Place;
+use super::position::FilePosition;
 use super::text::excerpt;
 
 /// How numbers are written.
@@ -44,11 +44,11 @@ impl<'a> Source<'a> {
         if self.is_binary() { self.at } else { self.line }
     }
     /// A position in the way of this file.
-    pub(super) fn place_of(&self, position: usize) -> Place {
-        if self.is_binary() { Place::Byte(position) } else { Place::Line(position) }
+    pub(super) fn place_of(&self, position: usize) -> FilePosition {
+        if self.is_binary() { FilePosition::Byte(position) } else { FilePosition::Line(position) }
     }
     /// Where the word or number read last stands.
-    pub(super) fn place(&self) -> Place {
+    pub(super) fn place(&self) -> FilePosition {
         self.place_of(if self.is_binary() { self.last } else { self.line })
     }
     /// Number of bytes not yet read.

@@ -18,7 +18,7 @@ use crate::real::Real;
 const MOST_EDGES: usize = 1500;
 /// Jumps below this many roundings of the largest value are none.
 const ROUNDINGS: f64 = 256.0;
-/// Levels from one contour line to the next.
+/// Hierarchy from one contour line to the next.
 const STRIDE: usize = 2;
 
 /// All that the panels are made of.

@@ -4,7 +4,7 @@ use crate::assemble::DataQuadrature;
 use crate::error::Error;
 use crate::inequality::ActiveSet;
 use crate::mesh::Mesh;
-use crate::nested::{AnyScheme, Levels, Solved, Task};
+use crate::nested::{AnyScheme, Hierarchy, Solved, Task};
 use crate::real::Real;
 use crate::scenes::Scene;
 
@@ -28,7 +28,7 @@ pub fn solve_level<T: Real, const D: usize>(
     }
     let solver = ActiveSet::default();
     let quadrature = DataQuadrature::default();
-    let mut levels = Levels::new(&scene.problem, &scene.domain, None);
+    let mut levels = Hierarchy::new(&scene.problem, &scene.domain, None);
     levels.make(level)?;
     let start = if scheme.is_conforming_linear() {
         levels.start_from_coarser(level, &solver, quadrature, 1)?

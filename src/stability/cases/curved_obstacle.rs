@@ -22,7 +22,7 @@ const PROBLEMS: [Touched; 2] =
 /// After so many sets the method wanders.
 const MOST_SETS: usize = 100;
 
-/// Levels to which the order of the multiplier is fitted.
+/// Hierarchy to which the order of the multiplier is fitted.
 const FITTED: [usize; 3] = [16, 32, 64];
 
 pub(crate) fn plan(plan: &mut Plan<'_>) {
@@ -144,12 +144,12 @@ fn share_inside(
         return Ok(None);
     }
     let (mut inside, mut touching) = (0_u32, 0_u32);
-    for (k, place) in inequality.places.iter().enumerate() {
+    for (k, place) in inequality.supports.iter().enumerate() {
         let around = place.vertices();
         let sum: Point<f64, 2> = around.iter().map(|&v| mesh.vertices()[v as usize]).sum();
         if inequality.bounds[k].is_inequality() && (sum / around.len() as f64).norm() < radius {
             inside += 1;
-            touching += u32::from(solution.contact[k] != Contact::Open);
+            touching += u32::from(solution.contact[k] != Contact::Inactive);
         }
     }
     Ok((inside > 0).then(|| f64::from(touching) / f64::from(inside)))
