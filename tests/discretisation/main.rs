@@ -6,10 +6,10 @@ mod runs;
 
 #[path = "../support"]
 mod support {
-    pub mod all_schemes;
     pub mod checks;
     pub mod meshes;
     pub mod rows;
+    pub mod scheme_lists;
     pub mod schemes;
     pub mod tables;
     pub mod tolerances;

@@ -1,8 +1,8 @@
 //! Multipliers and contact sets of discrete solutions against the exact ones.
 
-use crate::support::all_schemes::all_schemes;
 use crate::support::checks::Checks;
 use crate::support::rows::{label, rows};
+use crate::support::scheme_lists::all_schemes;
 use crate::support::schemes::Boxed;
 use std::f64::consts::PI;
 use unilateral::prelude::*;

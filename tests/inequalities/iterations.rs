@@ -1,8 +1,8 @@
 //! How solves end: iteration counts, certificates, typed reasons.
 
-use crate::support::all_schemes::all_schemes;
 use crate::support::checks::Checks;
 use crate::support::rows::{label, rows};
+use crate::support::scheme_lists::all_schemes;
 use crate::support::schemes::{Boxed, sipg, wopsip};
 use unilateral::prelude::*;
 use unilateral::scenes::Scene;

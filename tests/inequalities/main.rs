@@ -11,8 +11,8 @@ mod solvers;
 
 #[path = "../support"]
 mod support {
-    pub mod all_schemes;
     pub mod checks;
     pub mod rows;
+    pub mod scheme_lists;
     pub mod schemes;
 }

@@ -2,9 +2,9 @@
 //! project, where it exists.
 
 use crate::runs::{shared_mesh, small_mesh};
-use crate::support::all_schemes::all_schemes;
 use crate::support::checks::Checks;
 use crate::support::rows::label;
+use crate::support::scheme_lists::all_schemes;
 use crate::support::schemes::Boxed;
 use unilateral::mesh::{BoundaryFacet, Mesh, TaggedFacet};
 use unilateral::prelude::*;

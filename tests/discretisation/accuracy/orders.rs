@@ -1,9 +1,9 @@
 //! Observed orders of convergence.
 
 use crate::runs::own_scene;
-use crate::support::all_schemes::all_schemes;
 use crate::support::checks::Checks;
 use crate::support::rows::{label, rows};
+use crate::support::scheme_lists::all_schemes;
 use std::f64::consts::PI;
 use unilateral::mesh::BoundaryPart;
 use unilateral::prelude::*;

@@ -2,9 +2,9 @@
 //! any data, and missed by the weakly over-penalised one by exactly as much as a closed form says.
 
 use crate::runs::{shared_mesh, small_mesh, solve};
-use crate::support::all_schemes::consistent_schemes;
 use crate::support::checks::Checks;
 use crate::support::meshes::{Random, Raw, mixed_box};
+use crate::support::scheme_lists::consistent_schemes;
 use crate::support::schemes::wopsip;
 use crate::support::tables::jump_norm;
 use unilateral::mesh::{BoundaryPart, Mesh};

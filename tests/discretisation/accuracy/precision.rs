@@ -1,9 +1,9 @@
 //! Single precision, scaling, stretched meshes, the size of the over-penalty.
 
 use crate::runs::{own_scene, solve};
-use crate::support::all_schemes::all_schemes;
 use crate::support::checks::Checks;
 use crate::support::rows::{label, rows};
+use crate::support::scheme_lists::all_schemes;
 use crate::support::schemes::wopsip;
 use crate::support::tables::{DEGREE_OF_TABLES, jump_norm, norms_by_rule, solve_as_tables};
 use std::f64::consts::PI;

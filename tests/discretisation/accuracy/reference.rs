@@ -4,6 +4,10 @@ use serde_json::Value;
 use unilateral::prelude::*;
 use unilateral::study::Row;
 
+/// Figures of the independent implementation.
+const FIGURES: &str =
+    include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/tests/data/reference.json"));
+
 fn close(what: &str, row: &Row, ours: f64, theirs: f64, tolerance: f64) {
     assert!(
         (ours - theirs).abs() <= tolerance * theirs.abs(),
@@ -44,11 +48,7 @@ fn scheme(reference: &Value) -> Option<Box<dyn AnyScheme<f64, 2>>> {
 }
 
 fn check_scene(name: &str, build: fn() -> scenes::Scene<2>) {
-    let file: Value = serde_json::from_str(include_str!(concat!(
-        env!("CARGO_MANIFEST_DIR"),
-        "/tests/data/reference.json"
-    )))
-    .unwrap();
+    let file: Value = serde_json::from_str(FIGURES).unwrap();
     let mut checked = 0;
     for reference in file["rows"].as_array().unwrap() {
         if reference["scene"] != name {

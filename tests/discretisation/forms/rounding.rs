@@ -248,7 +248,8 @@ fn graded_meshes() {
     checks.finish();
 }
 
-/// The table of errors on a line: `cargo test --test discretisation rounding::table -- --ignored --nocapture`.
+/// The table of errors on a line:
+/// `cargo test --test discretisation rounding::table -- --ignored --nocapture`.
 #[test]
 #[ignore = "a table, some seconds"]
 fn table_on_a_line() {

@@ -1,15 +1,12 @@
 //! What can go wrong in a solve has a name, and the certificate sees it.
 
+use super::cold;
 use crate::problems::*;
 use unilateral::algebra::{Bound, Contact, Inequality, Start};
 use unilateral::real::Real;
 use unilateral::solve::{
     ActiveSet, InequalitySolver, Outcome, Solution, certify, is_positive_definite,
 };
-
-fn cold<T: Real>(inequality: &Inequality<T>) -> Solution<T> {
-    ActiveSet::default().solve(inequality)
-}
 
 #[test]
 fn indefinite_matrix_is_not_coercive() {

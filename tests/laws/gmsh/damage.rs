@@ -1,5 +1,6 @@
 //! Damaged files: whatever the bytes, an error or a mesh, never a panic.
 
+use super::files::{INTERVAL, SQUARE, SQUARE_V2, TETRAHEDRON};
 use super::writer::{FORMS, Form, interval, square, tetrahedron};
 use unilateral::mesh::gmsh::{self, GmshError};
 
@@ -42,12 +43,7 @@ fn samples() -> Vec<(Form, Vec<u8>)> {
             files.push((form, sample.two(form)));
         }
     }
-    for text in [
-        include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/tests/data/square.msh")),
-        include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/tests/data/square_v2.msh")),
-        include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/tests/data/interval.msh")),
-        include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/tests/data/tetrahedron.msh")),
-    ] {
+    for text in [SQUARE, SQUARE_V2, INTERVAL, TETRAHEDRON] {
         files.push((Form::Text, text.as_bytes().to_vec()));
     }
     files

@@ -1,5 +1,6 @@
 //! One test for each error about nodes, elements and groups.
 
+use super::files::{SQUARE, SQUARE_V2};
 use super::writer::{FORMS, Form, Sample, interval, square, tetrahedron};
 use unilateral::mesh::gmsh::{self, GmshError, Place};
 
@@ -28,9 +29,8 @@ pub fn change(text: &str, from: &str, to: &str) -> (String, usize) {
     (changed.collect::<Vec<_>>().join("\n") + "\n", at + 1)
 }
 
-pub const FOUR: &str = include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/tests/data/square.msh"));
-pub const TWO: &str =
-    include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/tests/data/square_v2.msh"));
+pub const FOUR: &str = SQUARE;
+pub const TWO: &str = SQUARE_V2;
 
 #[test]
 fn unknown_node() {

@@ -1,5 +1,6 @@
 //! The same small meshes in every form of the format.
 
+use super::files::{INTERVAL, SQUARE, SQUARE_V2, TETRAHEDRON};
 use super::writer::{FORMS, Sample, interval, square, tetrahedron};
 use unilateral::mesh::gmsh::{self, GmshMesh, GmshWarning};
 use unilateral::mesh::{BoundaryPart, Mesh};
@@ -80,34 +81,21 @@ fn parametric_nodes_are_read_by_their_position() {
 
 #[test]
 fn files_made_by_hand() {
-    let square =
-        parse::<2>(include_bytes!(concat!(env!("CARGO_MANIFEST_DIR"), "/tests/data/square.msh")))
-            .mesh;
+    let square = parse::<2>(SQUARE.as_bytes()).mesh;
     assert_eq!((square.n_cells(), parts(&square), volume(&square)), (4, [1, 2, 1], 1.0));
     // The last cell of this one is listed for two groups.
-    let again = parse::<2>(include_bytes!(concat!(
-        env!("CARGO_MANIFEST_DIR"),
-        "/tests/data/square_v2.msh"
-    )))
-    .mesh;
+    let again = parse::<2>(SQUARE_V2.as_bytes()).mesh;
     assert_eq!(again.vertices(), square.vertices());
     assert_eq!((again.cells(), again.boundary()), (square.cells(), square.boundary()));
-    let interval =
-        parse::<1>(include_bytes!(concat!(env!("CARGO_MANIFEST_DIR"), "/tests/data/interval.msh")))
-            .mesh;
+    let interval = parse::<1>(INTERVAL.as_bytes()).mesh;
     assert_eq!((interval.n_cells(), parts(&interval), volume(&interval)), (3, [1, 1, 0], 2.0));
-    let body = parse::<3>(include_bytes!(concat!(
-        env!("CARGO_MANIFEST_DIR"),
-        "/tests/data/tetrahedron.msh"
-    )))
-    .mesh;
+    let body = parse::<3>(TETRAHEDRON.as_bytes()).mesh;
     assert_eq!((body.n_cells(), parts(&body)), (1, [3, 0, 1]));
 }
 
 #[test]
 fn lines_may_end_as_on_windows() {
-    let text = include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/tests/data/square.msh"))
-        .replace('\n', "\r\n");
+    let text = SQUARE.replace('\n', "\r\n");
     assert_eq!(parse::<2>(text.as_bytes()).mesh.n_cells(), 4);
     // and an editor may have put a byte order mark in front, and left out the last end of a line
     let text = format!("\u{feff}{}", text.trim_end());

@@ -4,6 +4,7 @@
 mod agreement;
 mod damage;
 mod errors;
+mod files;
 mod forms;
 mod mesh_errors;
 mod structure_errors;
