@@ -2,11 +2,8 @@
 
 use super::cold;
 use crate::problems::*;
-use unilateral::algebra::{Bound, Contact, Inequality, Start};
-use unilateral::real::Real;
-use unilateral::solve::{
-    ActiveSet, InequalitySolver, Outcome, Solution, certify, is_positive_definite,
-};
+use unilateral::algebra::{Bound, Contact, Start};
+use unilateral::solve::{ActiveSet, InequalitySolver, Outcome, certify, is_positive_definite};
 
 #[test]
 fn indefinite_matrix_is_not_coercive() {
