@@ -1,4 +1,4 @@
-//! Solvers of the algebraic inequality against slow solvers, with their iteration counts and failures.
+//! Solvers of the algebraic inequality against slow solvers, their iteration counts and failures.
 
 mod contact_sets;
 mod iterations;
