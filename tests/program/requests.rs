@@ -81,7 +81,7 @@ fn schemes_that_do_not_exist_yet_are_refused_with_the_list() {
 
 #[test]
 fn places_that_cannot_be_written_are_refused_before_the_work() {
-    let scratch = Scratch::new("supports");
+    let scratch = Scratch::new("places");
     let file = scratch.file("file", "");
     let below = scratch.path("file/report");
     refused(&scratch, &["--out", &file], &["cannot write", &file]);

@@ -3,8 +3,8 @@
 use serde_json::Value;
 use unilateral::scenes;
 
-use super::keys::ROW_KEYS;
 use super::run::{Scratch, read_json, rows, stderr, stdout};
+use crate::support::keys::ROW_KEYS;
 
 /// Keys of inner objects, and which of their values may be null in a row that converged.
 const INNER_KEYS: [(&str, &[&str], bool); 7] = [

@@ -1,6 +1,6 @@
 //! The ball obstacle: a program of PETSc.
 
-use crate::support::accuracy::Checks;
+use crate::support::checks::Checks;
 use unilateral::algebra::Contact;
 use unilateral::assemble::DataQuadrature;
 use unilateral::inequality::{ActiveSet, InequalitySolver, Outcome};

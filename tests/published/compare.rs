@@ -1,6 +1,8 @@
 //! Tables of an independent implementation, compared figure by figure.
 
-use crate::support::accuracy::{Boxed, Checks, norms_by_rule, sipg, solve_by_rule, wopsip};
+use crate::support::checks::{Checks, figure};
+use crate::support::schemes::{Boxed, sipg, wopsip};
+use crate::support::tables::{norms_by_rule, solve_by_rule};
 use unilateral::inequality::Outcome;
 use unilateral::measure::Errors;
 use unilateral::prelude::*;
@@ -63,4 +65,13 @@ pub fn compare<const D: usize>(build: impl Fn(usize) -> Scene<D>, table: Table<'
         }
     }
     checks.finish();
+}
+
+impl Checks {
+    /// The figure is what is printed but for this much and half a unit of the last digit.
+    pub fn printed_within(&mut self, what: &str, ours: f64, printed: &str, tolerance: f64) {
+        println!("{what}: {ours:.6e}, in print {printed}");
+        let (theirs, unit) = figure(printed);
+        self.close(what, ours, theirs, tolerance + 0.5 * unit);
+    }
 }

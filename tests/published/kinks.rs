@@ -1,9 +1,9 @@
 //! Solutions with kinks: those on lines of the mesh are reproduced, the errors of others are known.
 
 use super::compare::column;
-use crate::support::accuracy::{
-    Checks, jump_norm, norms_by_rule, rows, solve_as_tables, solve_by_rule,
-};
+use crate::support::checks::Checks;
+use crate::support::rows::rows;
+use crate::support::tables::{jump_norm, norms_by_rule, solve_as_tables, solve_by_rule};
 use unilateral::inequality::Outcome;
 use unilateral::prelude::*;
 use unilateral::quadrature::Rule;

@@ -1,6 +1,7 @@
 //! A string below a ceiling under a load of high frequency: a table of a paper.
 
-use crate::support::accuracy::{Checks, norms_by_rule, solve_by_rule};
+use crate::support::checks::Checks;
+use crate::support::tables::{norms_by_rule, solve_by_rule};
 use unilateral::inequality::Outcome;
 use unilateral::prelude::*;
 

@@ -1,7 +1,7 @@
 //! A string with reaction, Signorini conditions at both ends: tables of a thesis (bachelor's
 //! thesis, Technical University of Munich, on the Signorini problem in one dimension).
 
-use crate::support::accuracy::Checks;
+use crate::support::checks::Checks;
 use unilateral::algebra::Inequality;
 use unilateral::assemble::{DataQuadrature, Discretisation};
 use unilateral::inequality::{ActiveSet, InequalitySolver, Outcome};

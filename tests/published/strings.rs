@@ -1,6 +1,6 @@
 //! Strings over parabolas: the data of a paper on multilevel methods.
 
-use crate::support::accuracy::Checks;
+use crate::support::checks::Checks;
 use unilateral::algebra::{Bound, Contact, Start};
 use unilateral::inequality::{ActiveSet, InequalitySolver, Outcome};
 use unilateral::mesh::Mesh;

@@ -1,0 +1,9 @@
+//! Errors of discrete solutions: orders, figures of other programs, exact cases.
+
+mod family;
+mod meshes;
+mod orders;
+mod patch;
+mod precision;
+mod quadratic;
+mod reference;

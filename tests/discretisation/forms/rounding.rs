@@ -1,0 +1,337 @@
+//! Rounding under an over-penalty: the matrix as it is multiplied out, the matrix as the sum it is.
+
+use crate::runs::{own_scene, solve};
+use crate::support::checks::Checks;
+use crate::support::schemes::wopsip;
+use std::f64::consts::PI;
+use unilateral::algebra::Inequality;
+use unilateral::assemble::Discretisation;
+use unilateral::inequality::{ActiveSet, InequalitySolver, Outcome, Solution};
+use unilateral::linear::LinearMethod;
+use unilateral::mesh::BoxDomain;
+use unilateral::mesh::{Mesh, TaggedFacet};
+use unilateral::prelude::*;
+use unilateral::scenes::Scene;
+
+/// The unit cube, Dirichlet data but on one side.
+fn cube<T: Real, const D: usize>(n: usize) -> Mesh<T, D> {
+    Mesh::kuhn_box(&BoxDomain::dirichlet(Point::zeros(), Point::repeat(1.0)), [n; D]).unwrap()
+}
+
+fn assemble<T: Real, const D: usize, S: Scheme<T, D>>(
+    scheme: &S,
+    problem: &Problem<D>,
+    mesh: &Mesh<T, D>,
+) -> Inequality<T> {
+    Discretisation::new(scheme, problem, mesh, Default::default()).unwrap().inequality().unwrap()
+}
+
+/// The sum is the matrix and the load, in every basis and degree; no other scheme keeps it.
+#[test]
+fn the_factored_form_is_the_matrix() {
+    fn check<const D: usize, S: Scheme<f64, D>>(checks: &mut Checks, scheme: &S) {
+        let problem = Problem::new()
+            .source(|x: &Point<f64, D>| 1.0 + x[0])
+            .dirichlet(|x: &Point<f64, D>| 2.0 - x[0] * x[D - 1])
+            .coefficient(|x: &Point<f64, D>| 1.0 + x[0])
+            .reaction(3.0);
+        let inequality = assemble(scheme, &problem, &cube::<f64, D>(2));
+        let factored = inequality.factored.as_ref().unwrap();
+        let n = inequality.size();
+        let mut assembled = vec![0.0; n];
+        let mut kept = vec![0.0; n];
+        for seed in 0..3 {
+            let u: Vec<f64> = (0..n).map(|i| ((i * 37 + seed * 11) % 17) as f64 / 17.0).collect();
+            inequality.matrix.residual_f64(&inequality.load, &u, &mut assembled);
+            factored.residual(|i| u[i], &mut kept);
+            let largest = assembled.iter().fold(0.0_f64, |m, r| m.max(r.abs()));
+            let off = assembled.iter().zip(&kept).fold(0.0_f64, |m, (a, b)| m.max((a - b).abs()));
+            checks.that(off <= 1e-13 * largest, || {
+                format!("{}, {D}D: off by {off:.1e} of {largest:.1e}", scheme.name())
+            });
+        }
+    }
+    fn dimension<const D: usize>(checks: &mut Checks) {
+        check::<D, _>(checks, &wopsip(3.0));
+        check::<D, _>(checks, &FacetMeans(wopsip(3.0)));
+        check::<D, _>(checks, &wopsip(3.0).on(P2));
+        check::<D, _>(checks, &CellMeans(wopsip(3.0).on(P2)));
+        let problem = Problem::new();
+        let none = assemble(&Sipg::default(), &problem, &cube::<f64, D>(2)).factored;
+        checks.that(none.is_none(), || "interior penalty is no sum of jumps".to_owned());
+    }
+    let mut checks = Checks::default();
+    dimension::<1>(&mut checks);
+    dimension::<2>(&mut checks);
+    dimension::<3>(&mut checks);
+    checks.finish();
+}
+
+/// Direct solution with the matrix multiplied out (`is_old`), or as the sum it is.
+fn solution<T: Real>(inequality: &Inequality<T>, is_old: bool) -> Solution<T> {
+    let mut inequality = inequality.clone();
+    if is_old {
+        inequality.factored = None;
+    }
+    ActiveSet { linear: LinearMethod::Direct, ..ActiveSet::default() }.solve(&inequality)
+}
+
+/// The largest error at nodes for `-u'' = pi^2 sin(pi x)` on `2^level` cells, over-penalty with
+/// factor one.
+fn sine_on_a_line<T: Real>(level: u32, is_old: bool) -> (Outcome, f64) {
+    let problem = Problem::new().source(|x: &Point<f64, 1>| PI * PI * (PI * x[0]).sin());
+    let mesh = cube::<T, 1>(1 << level);
+    let inequality = assemble(&wopsip(1.0), &problem, &mesh);
+    let solution = solution(&inequality, is_old);
+    let at = |k: usize| mesh.vertices()[inequality.supports[k].vertices()[0] as usize][0].to_f64();
+    let error = |k: usize| (solution.values[k].to_f64() - (PI * at(k)).sin()).abs();
+    (solution.outcome, (0..inequality.size()).map(error).fold(0.0, f64::max))
+}
+
+/// On a line the error falls like `h^2` down to the root of the rounding unit, in both scalars, where
+/// the matrix multiplied out loses all digits.
+#[test]
+fn errors_on_a_line_fall_to_the_root_of_rounding() {
+    let mut checks = Checks::default();
+    let mut check = |what: &str, level: u32, (outcome, error): (Outcome, f64)| {
+        checks.that(outcome == Outcome::Converged, || format!("{what}, {level}: {outcome}"));
+        // the penalty opens gaps of h^2 pi / eta; what is left is smaller
+        let due = 1.2 * 0.25_f64.powi(level as i32);
+        checks.that(error <= due, || format!("{what}, 2^{level}: {error:.3e} above {due:.3e}"));
+    };
+    for level in 4..16 {
+        check("f64", level, sine_on_a_line::<f64>(level, false));
+    }
+    for level in 4..12 {
+        check("f32", level, sine_on_a_line::<f32>(level, false));
+    }
+    // where single precision has no digits left, nothing is called a solution
+    for level in 14..16 {
+        let (outcome, error) = sine_on_a_line::<f32>(level, false);
+        let is_told = outcome != Outcome::Converged;
+        checks.that(is_told, || format!("f32, 2^{level}: {outcome}, {error:.1e}"));
+    }
+    let old = sine_on_a_line::<f64>(12, true).1 / sine_on_a_line::<f64>(12, false).1;
+    checks.that(old > 100.0, || format!("multiplied out only {old:.1} times worse"));
+    checks.finish();
+}
+
+/// The solution at vertices and the L2 error, `None` if it did not converge.
+fn solved<T: Real, const D: usize>(
+    scheme: &dyn AnyScheme<T, D>,
+    problem: &Problem<D>,
+    mesh: &Mesh<T, D>,
+) -> Result<(Vec<f64>, f64), String> {
+    let solved = solve(scheme, problem, mesh);
+    let certificate = solved.certificate.largest();
+    match solved.outcome {
+        Outcome::Converged if certificate <= T::CERTIFICATE_LIMIT => {
+            Ok((solved.fields.unwrap().u, solved.error.l2.unwrap()))
+        }
+        outcome => Err(format!("{outcome}, certificate {certificate:.1e}")),
+    }
+}
+
+/// Solves in `f64` in two units of force, in which everything is rounded otherwise, and in `f32`:
+/// the largest difference over the root mean square of the error, in both scalars.
+fn rounding_over_error<const D: usize>(
+    schemes: (&dyn AnyScheme<f64, D>, Option<&dyn AnyScheme<f32, D>>),
+    scene: &Scene<D>,
+    in_thirds: &Scene<D>,
+    level: usize,
+) -> Result<[f64; 2], String> {
+    let mesh = scene.domain.mesh::<f64>(level).unwrap();
+    let (u, error) = solved(schemes.0, &scene.problem, &mesh)?;
+    let (v, _) = solved(schemes.0, &in_thirds.problem, &mesh)?;
+    let bounds = scene.domain.bounding_box();
+    let volume: f64 = (0..D).map(|k| bounds.upper[k] - bounds.lower[k]).product();
+    let over_error = |v: &[f64]| {
+        let off = u.iter().zip(v).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+        off * volume.sqrt() / error
+    };
+    let single = match schemes.1 {
+        Some(scheme) => {
+            let mesh = scene.domain.mesh::<f32>(level).unwrap();
+            over_error(&solved(scheme, &scene.problem, &mesh)?.0)
+        }
+        None => 0.0,
+    };
+    Ok([over_error(&v), single])
+}
+
+/// Factors over ten decades.
+const FACTORS: [f64; 6] = [1e-2, 1.0, 1e2, 1e4, 1e6, 1e8];
+
+/// Rounding stays below one hundredth of the discretisation error for all factors: Poisson's
+/// equation in both scalars, in every basis and degree.
+#[test]
+fn rounding_is_small_for_every_factor() {
+    let mut checks = Checks::default();
+    let [one, thirds] = [sines_in_units(1.0), sines_in_units(3.0)];
+    for eta in FACTORS {
+        let w = wopsip(eta);
+        type Pair<'s> = (&'s dyn AnyScheme<f64, 2>, Option<&'s dyn AnyScheme<f32, 2>>);
+        let (means, p2) = (FacetMeans(w), w.on(P2));
+        let pairs: [(Pair<'_>, usize); 3] =
+            [((&w, Some(&w)), 32), ((&means, Some(&means)), 32), ((&p2, None), 8)];
+        for (pair, level) in pairs {
+            let what = format!("{}, eta = {eta:e}", pair.0.name());
+            match rounding_over_error(pair, &one, &thirds, level) {
+                Ok(off) => checks.that(off.iter().all(|&x| x <= 0.01), || {
+                    format!("{what}: {off:?} of the error is rounding")
+                }),
+                Err(why) => checks.that(false, || format!("{what}: {why}")),
+            }
+        }
+    }
+    checks.finish();
+}
+
+/// The same under an obstacle, with bounds on vertices and on facet means.
+#[test]
+fn rounding_is_small_under_an_obstacle() {
+    let mut checks = Checks::default();
+    let thirds = |mut scene: Scene<2>| {
+        scene.problem = scene.problem.coefficient(|_| 3.0).constant_source(-6.0);
+        scene
+    };
+    let radial = || scenes::radial::<2>(1.0);
+    for eta in FACTORS {
+        let (w, means) = (wopsip(eta), FacetMeans(wopsip(eta)));
+        let schemes: [&dyn AnyScheme<f64, 2>; 2] = [&w, &means];
+        for scheme in schemes {
+            let what = format!("{} ({}), eta = {eta:e}", scheme.name(), scheme.constraint());
+            match rounding_over_error((scheme, None), &radial(), &thirds(radial()), 16) {
+                Ok([off, _]) => checks.that(off <= 0.01, || format!("{what}: {off:.1e}")),
+                Err(why) => checks.that(false, || format!("{what}: {why}")),
+            }
+        }
+    }
+    checks.finish();
+}
+
+/// The mesh of a scene with every coordinate drawn to zero by a power.
+fn graded(scene: &Scene<2>, level: usize, power: i32) -> Mesh<f64, 2> {
+    let mesh = scene.domain.mesh::<f64>(level).unwrap();
+    let vertices = mesh.vertices().iter().map(|x| x.map(|t| t.signum() * t.abs().powi(power)));
+    let boundary: Vec<TaggedFacet<2>> = mesh
+        .boundary()
+        .iter()
+        .map(|f| {
+            let mut ends = mesh.facet_vertices(f.cell as usize, f.local as usize);
+            let vertices = [ends.next().unwrap(), ends.next().unwrap()];
+            TaggedFacet { vertices, part: f.part }
+        })
+        .collect();
+    Mesh::new(vertices.collect(), mesh.cells().to_vec(), &boundary).unwrap()
+}
+
+/// On meshes graded to `1e-6` and `1e-12` of the domain the H1 error is at most twice that of
+/// Crouzeix-Raviart elements.
+#[test]
+fn graded_meshes() {
+    let mut checks = Checks::default();
+    for (scene, level) in [(scenes::signorini_2d(), 32), (sines_in_units(1.0), 32)] {
+        for power in [1, 2, 4, 8] {
+            let mesh = graded(&scene, level, power);
+            let cr = solve(&NonconformingP1, &scene.problem, &mesh).error;
+            for scheme in [wopsip(1.0), Wopsip::default()] {
+                let ours = solve(&scheme, &scene.problem, &mesh);
+                let what = format!("{}, power {power}, {:?}", scene.name, scheme.eta);
+                let converged = ours.outcome == Outcome::Converged;
+                checks.that(converged, || format!("{what}: {}", ours.outcome));
+                let [ours, cr] = [ours.error.h1, cr.h1].map(|e| e.unwrap_or(f64::NAN));
+                checks.that(ours <= 2.0 * cr, || {
+                    format!("{what}: {ours:.3e}, Crouzeix-Raviart {cr:.3e}")
+                });
+            }
+        }
+    }
+    checks.finish();
+}
+
+/// The table of errors on a line:
+/// `cargo test --test discretisation rounding::table -- --ignored --nocapture`.
+#[test]
+#[ignore = "a table, some seconds"]
+fn table_on_a_line() {
+    for level in 4..16 {
+        let [a, b] = [true, false].map(|old| sine_on_a_line::<f32>(level, old));
+        let [c, d] = [true, false].map(|old| sine_on_a_line::<f64>(level, old));
+        println!(
+            "| 2^{level} | {:.2e} {} | {:.2e} {} | {:.3e} {} | {:.3e} {} |",
+            a.1, a.0, b.1, b.0, c.1, c.0, d.1, d.0
+        );
+    }
+}
+
+/// Poisson's equation with the product of sines on the unit square, forces in some unit.
+fn sines_in_units(unit: f64) -> Scene<2> {
+    let value = |x: &Point<f64, 2>| (PI * x[0]).sin() * (PI * x[1]).sin();
+    let gradient = |x: &Point<f64, 2>| {
+        let [(s, c), (t, d)] = [(PI * x[0]).sin_cos(), (PI * x[1]).sin_cos()];
+        Point::<f64, 2>::new(PI * c * t, PI * s * d)
+    };
+    let problem = Problem::new()
+        .coefficient(move |_| unit)
+        .source(move |x| 2.0 * PI * PI * unit * value(x))
+        .exact(value, gradient);
+    own_scene("sines", BoxDomain::dirichlet(Point::zeros(), Point::repeat(1.0)), problem)
+}
+
+/// Outcome, L2 error and seconds for it.
+fn sines<T: Real>(n: usize, eta: f64, is_old: bool) -> (Outcome, f64, f64) {
+    let problem = sines_in_units(1.0).problem;
+    let mesh = cube::<T, 2>(n);
+    let scheme = wopsip(eta);
+    let space = Discretisation::new(&scheme, &problem, &mesh, Default::default()).unwrap();
+    let inequality = space.inequality().unwrap();
+    let clock = std::time::Instant::now();
+    let solution = solution(&inequality, is_old);
+    let seconds = clock.elapsed().as_secs_f64();
+    let error = space.errors(&solution.values).unwrap().l2.unwrap();
+    (solution.outcome, error, seconds)
+}
+
+/// The table of errors in the plane.
+#[test]
+#[ignore = "a table, a minute"]
+fn table_in_the_plane() {
+    for n in [32, 64, 128] {
+        for eta in [1.0, 1e4, 1e8] {
+            let [a, b] = [true, false].map(|old| sines::<f32>(n, eta, old));
+            let [c, d] = [true, false].map(|old| sines::<f64>(n, eta, old));
+            print!("| {n} | {eta:e}");
+            for (outcome, error, seconds) in [a, b, c, d] {
+                print!(" | {error:.3e} {outcome} {seconds:.3}s");
+            }
+            println!(" |");
+        }
+    }
+}
+
+/// The table of errors under an obstacle, with the seconds that the solution takes.
+#[test]
+#[ignore = "a table, a minute"]
+fn table_under_an_obstacle() {
+    let scene = scenes::radial::<2>(1.0);
+    for n in [16, 32, 64, 128] {
+        for eta in [1.0, 1e4, 1e8] {
+            let mesh = scene.domain.mesh::<f64>(n).unwrap();
+            let scheme = FacetMeans(wopsip(eta));
+            let space =
+                Discretisation::new(&scheme, &scene.problem, &mesh, Default::default()).unwrap();
+            let clock = std::time::Instant::now();
+            let inequality = space.inequality().unwrap();
+            print!("| {n} | {eta:e} | {:.3}s", clock.elapsed().as_secs_f64());
+            for is_old in [true, false] {
+                let clock = std::time::Instant::now();
+                let found = solution(&inequality, is_old);
+                let seconds = clock.elapsed().as_secs_f64();
+                let error = space.errors(&found.values).unwrap().l2.unwrap();
+                print!(" | {error:.3e} {} {} {seconds:.3}s", found.outcome, found.outer);
+            }
+            println!(" |");
+        }
+    }
+}

@@ -1,0 +1,16 @@
+//! Matrices and loads of discretisations, and the accuracy of their solutions.
+
+mod accuracy;
+mod forms;
+mod runs;
+
+#[path = "../support"]
+mod support {
+    pub mod checks;
+    pub mod meshes;
+    pub mod rows;
+    pub mod scheme_lists;
+    pub mod schemes;
+    pub mod tables;
+    pub mod tolerances;
+}

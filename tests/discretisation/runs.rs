@@ -1,0 +1,65 @@
+//! Scenes, meshes and solves of tests of discretisations.
+
+use std::path::Path;
+use unilateral::inequality::ActiveSet;
+use unilateral::mesh::BoxDomain;
+use unilateral::mesh::{Mesh, gmsh};
+use unilateral::nested::{Solved, Task};
+use unilateral::prelude::*;
+use unilateral::scenes::Scene;
+use unilateral::scheme::Regularity;
+
+/// Solves on one mesh from a cold start.
+pub fn solve<T: Real, const D: usize>(
+    scheme: &dyn AnyScheme<T, D>,
+    problem: &Problem<D>,
+    mesh: &Mesh<T, D>,
+) -> Solved {
+    let solver = ActiveSet::default();
+    let task = Task {
+        problem,
+        mesh,
+        start: None,
+        solver: &solver,
+        quadrature: Default::default(),
+        with_errors: true,
+        repeat: 1,
+        with_fields: true,
+    };
+    scheme.solve(&task).unwrap()
+}
+
+/// A scene of a test's own.
+pub fn own_scene<const D: usize>(
+    name: &str,
+    domain: BoxDomain<D>,
+    problem: Problem<D>,
+) -> Scene<D> {
+    let regularity = Regularity { sobolev: f64::INFINITY, strictly_complementary: true };
+    Scene {
+        name: name.to_owned(),
+        summary: "of a test",
+        domain: domain.into(),
+        problem,
+        regularity,
+    }
+}
+
+/// A mesh of the folder of test data.
+pub fn small_mesh<const D: usize>(name: &str) -> Mesh<f64, D> {
+    read(&Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data").join(name))
+}
+
+/// A mesh of the folder beside the project; none, with a word on it, where there is no such folder.
+pub fn shared_mesh<const D: usize>(name: &str) -> Option<Mesh<f64, D>> {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared/meshes").join(name);
+    if path.is_file() {
+        return Some(read(&path));
+    }
+    eprintln!("skipped: there is no {}", path.display());
+    None
+}
+
+fn read<const D: usize>(path: &Path) -> Mesh<f64, D> {
+    gmsh::read(path).unwrap_or_else(|e| panic!("{}: {e}", path.display())).mesh
+}

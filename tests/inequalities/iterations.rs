@@ -1,0 +1,239 @@
+//! How solves end: iteration counts, certificates, typed reasons.
+
+use crate::support::checks::Checks;
+use crate::support::rows::{label, rows};
+use crate::support::scheme_lists::all_schemes;
+use crate::support::schemes::{Boxed, sipg, wopsip};
+use unilateral::prelude::*;
+use unilateral::scenes::Scene;
+use unilateral::study::Row;
+
+/// Outer iterations on the finest level, for schemes whose matrices are close to M-matrices.
+const FEW: usize = 10;
+
+fn p1_and_sipg<const D: usize>() -> Vec<Boxed<f64, D>> {
+    vec![Box::new(ConformingP1), Box::new(Sipg::default())]
+}
+
+/// Certificates everywhere, few iterations on the finest level.
+fn few_iterations<const D: usize>(scene: Scene<D>, levels: &[usize]) {
+    assert!(scene.regularity.strictly_complementary);
+    let mut checks = Checks::default();
+    let finest = levels.iter().max().unwrap();
+    for row in &rows::<f64, D>(scene, p1_and_sipg(), levels.to_vec()) {
+        checks.certified(row, 1e-9);
+        let outer = row.iterations.outer.unwrap();
+        let holds = row.level < *finest || outer <= FEW;
+        checks.that(holds, || format!("{}: {outer} iterations", label(row)));
+    }
+    checks.finish();
+}
+
+/// Scenes in the plane whose multiplier and gap do not vanish together, with how many levels make
+/// their longest side have 16, 32, ... subdivisions.
+fn strict_scenes() -> Vec<(Scene<2>, usize)> {
+    vec![
+        (scenes::radial(1.0), 1),
+        (scenes::ball_2d(), 1),
+        (scenes::signorini_2d(), 2),
+        (scenes::signorini_harmonic(), 2),
+        (scenes::hertz_2d(), 2),
+    ]
+}
+
+#[test]
+fn strictly_complementary_scenes_need_few_iterations() {
+    for (scene, sides) in strict_scenes() {
+        few_iterations(scene, &[16, 32, 64, 128].map(|n| n / sides));
+    }
+}
+
+#[test]
+#[ignore = "takes a minute"]
+fn strictly_complementary_scenes_need_few_iterations_on_fine_meshes() {
+    for (scene, _) in strict_scenes() {
+        few_iterations(scene, &[16, 32, 64, 128, 256]);
+    }
+}
+
+#[test]
+fn strictly_complementary_scenes_need_few_iterations_in_other_dimensions() {
+    few_iterations(scenes::radial::<1>(1.0), &[16, 32, 64, 128, 256]);
+    few_iterations(scenes::radial::<3>(1.0), &[4, 8, 16]);
+    few_iterations(scenes::signorini_harmonic::<3>(), &[4, 8]);
+}
+
+/// Whatever is called converged has a certificate.
+#[test]
+fn converged_rows_are_certified() {
+    let mut checks = Checks::default();
+    for (scene, sides) in strict_scenes() {
+        for row in rows::<f64, 2>(scene, all_schemes(), [8, 16, 32].map(|n| n / sides)) {
+            if row.converged() {
+                checks.certified(&row, 1e-9);
+            } else {
+                typed_reason(&mut checks, &row);
+            }
+        }
+    }
+    checks.finish();
+}
+
+/// The solve did not converge and says why.
+fn typed_reason(checks: &mut Checks, row: &Row) {
+    let reasons = ["iteration-limit", "cycling", "stalled"];
+    checks.that(reasons.contains(&&*row.status), || format!("{}: {}", label(row), row.status));
+}
+
+/// Over a curved obstacle without load a cell cannot rest on it with all its vertices: contact is
+/// ragged, and active sets are hard to find. With bounds on facet means they are not.
+#[test]
+fn over_penalty_on_a_curved_obstacle() {
+    let vertices: Vec<Boxed<f64, 2>> = vec![Box::new(wopsip(10.0)), Box::new(Wopsip::default())];
+    let means: Vec<Boxed<f64, 2>> = vec![
+        Box::new(FacetMeans(wopsip(1.0))),
+        Box::new(FacetMeans(wopsip(100.0))),
+        Box::new(FacetMeans(Wopsip::default())),
+    ];
+    let mut checks = Checks::default();
+    for row in &rows(scenes::ball_2d(), vertices, [32, 64]) {
+        if row.converged() {
+            checks.certified(row, 1e-9);
+        } else {
+            typed_reason(&mut checks, row);
+        }
+    }
+    for row in &rows(scenes::ball_2d(), means, [16, 32, 64]) {
+        checks.certified(row, 1e-9);
+        let outer = row.iterations.outer.unwrap();
+        checks.that(outer <= 6, || format!("{}: {outer} iterations", label(row)));
+    }
+    checks.finish();
+}
+
+/// Below the threshold of coercivity, which on these triangles is `sigma = 3`, nothing is returned
+/// as a solution; between it and the proven bound there is a warning; the size of the error would
+/// not have told.
+#[test]
+fn interior_penalty_without_coercivity() {
+    let mut checks = Checks::default();
+    for (sigma, h1) in [
+        (0.5, None),
+        (1.0, None),
+        (2.0, None),
+        (2.9, None),
+        (3.1, Some("6.9e-1")),
+        (4.0, Some("2.24e-1")),
+        (10.0, Some("2.08e-1")),
+        (1e3, Some("2.26e-1")),
+    ] {
+        let row = rows::<f64, 2>(scenes::radial(1.0), vec![Box::new(sipg(sigma))], [16]).remove(0);
+        let what = format!("sigma = {sigma}");
+        // the proven bound is 1/2 |dK|/|K| = (2 + sqrt 2)/h inside, twice that on the boundary,
+        // where h_F is h on sides and sqrt 2 h on diagonals
+        let proven = sigma >= 2.0 * (2.0 + 2_f64.sqrt());
+        checks.that(row.warnings.is_empty() == proven, || format!("{what}: {:?}", row.warnings));
+        match h1 {
+            None => {
+                let nothing = row.status == "not-coercive" && row.error.h1.is_none();
+                checks.that(nothing, || format!("{what}: {}, {:?}", row.status, row.error));
+            }
+            Some(h1) => {
+                checks.certified(&row, 1e-9);
+                checks.printed(&what, row.error.h1.unwrap(), h1, 0.5);
+            }
+        }
+    }
+    checks.finish();
+}
+
+/// Large penalties cost accuracy and conditioning, not convergence.
+#[test]
+fn large_penalties() {
+    let mut checks = Checks::default();
+    for scene in [scenes::radial::<2>(1.0), scenes::signorini_2d()] {
+        let schemes: Vec<Boxed<f64, 2>> = vec![
+            Box::new(ConformingP1),
+            Box::new(sipg(1e3)),
+            Box::new(sipg(1e6)),
+            Box::new(wopsip(1e3)),
+            Box::new(FacetMeans(wopsip(1e3))),
+        ];
+        let found = rows(scene, schemes, [16]);
+        let conforming = found[0].error.h1.unwrap();
+        for row in &found {
+            if row.converged() {
+                checks.certified(row, 1e-9);
+                let ratio = row.error.h1.unwrap() / conforming;
+                checks.that((0.8..1.2).contains(&ratio), || format!("{}: {ratio}", label(row)));
+            } else {
+                checks.that(row.scheme == "wopsip", || format!("{}: {}", label(row), row.status));
+                typed_reason(&mut checks, row);
+            }
+        }
+    }
+    checks.finish();
+}
+
+/// A penalty of `1e10` on a fine mesh gives the errors of a moderate one.
+#[test]
+fn a_huge_penalty_is_solved_like_a_moderate_one() {
+    let errors = [1e4, 1e10].map(|eta| {
+        let eta = Eta::Absolute(eta);
+        let scheme = Wopsip { eta, weight: WeightRule::Isotropic, ..Wopsip::default() };
+        let study = Study::<f64, 2>::new(scenes::signorini_2d()).scheme(scheme).levels([128]);
+        let row = study.run().unwrap().rows.remove(0);
+        assert_eq!(row.status, "converged", "{eta:?}");
+        assert!(row.certificate.largest() < 1e-9, "{eta:?}: {:?}", row.certificate);
+        [row.error.l2.unwrap(), row.error.h1.unwrap()]
+    });
+    for (moderate, huge) in errors[0].into_iter().zip(errors[1]) {
+        assert!((huge / moderate - 1.0).abs() < 0.01, "{huge:e} against {moderate:e}");
+    }
+}
+
+/// A body held by contact alone, at one point: a start without contact must not end as singular.
+#[test]
+fn a_body_held_at_one_point_is_not_singular() {
+    let sides = [[BoundaryPart::Neumann; 2], [BoundaryPart::Contact, BoundaryPart::Neumann]];
+    let domain = unilateral::mesh::BoxDomain {
+        lower: Point::from([-1.0, 0.0]),
+        upper: Point::from([1.0, 1.0]),
+        sides,
+    };
+    let scene = || scenes::Scene::<2> {
+        name: "table-2d".into(),
+        summary: "a block on a peak",
+        domain: domain.clone().into(),
+        problem: Problem::new()
+            .constant_source(-1.0)
+            .signorini(|x: &Point<f64, 2>| -1000.0 * x[0] * x[0]),
+        regularity: unilateral::scheme::Regularity { sobolev: 2.5, strictly_complementary: true },
+    };
+    let report = Study::<f64, 2>::new(scene())
+        .scheme(ConformingP1)
+        .scheme(NonconformingP1)
+        .scheme(FacetMeans(Wopsip::default()))
+        .levels([4, 8, 16])
+        .run()
+        .unwrap();
+    for row in &report.rows {
+        assert_eq!(row.status, "converged", "{} level {}", row.scheme, row.level);
+        assert!(row.certificate.largest() < 1e-9);
+    }
+}
+
+/// An obstacle that touches curved Dirichlet data: means are compared with means.
+#[test]
+fn a_curved_obstacle_may_touch_the_datum() {
+    let bump = |x: &Point<f64, 2>| x[0] * (1.0 - x[0]);
+    let scene = scenes::Scene::<2> {
+        name: "bump-2d".into(),
+        summary: "a curved obstacle that touches the boundary",
+        domain: unilateral::mesh::BoxDomain::dirichlet(Point::zeros(), Point::repeat(1.0)).into(),
+        problem: Problem::new().constant_source(-3.0).dirichlet(bump).obstacle_below(bump),
+        regularity: unilateral::scheme::Regularity { sobolev: 2.5, strictly_complementary: true },
+    };
+    let report = Study::<f64, 2>::new(scene).scheme(NonconformingP1).levels([4, 8]).run().unwrap();
+    assert!(report.rows.iter().all(|row| row.converged()));
+}

@@ -1,0 +1,18 @@
+//! Solvers of the algebraic inequality against slow solvers, their iteration counts and failures.
+
+mod contact_sets;
+mod iterations;
+mod iterative;
+mod monotone_multigrid;
+mod nonsymmetric;
+mod ordering;
+mod problems;
+mod solvers;
+
+#[path = "../support"]
+mod support {
+    pub mod checks;
+    pub mod rows;
+    pub mod scheme_lists;
+    pub mod schemes;
+}

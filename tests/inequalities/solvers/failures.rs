@@ -1,0 +1,157 @@
+//! What can go wrong in a solve has a name, and the certificate sees it.
+
+use super::cold;
+use crate::problems::*;
+use unilateral::algebra::{Bound, Contact, Start};
+use unilateral::inequality::{ActiveSet, InequalitySolver, Outcome, certify};
+use unilateral::linear::is_positive_definite;
+
+#[test]
+fn indefinite_matrix_is_not_coercive() {
+    // The smallest eigenvalue of the five-point matrix is about 2 (pi h)^2 = 0.2 here.
+    for (n, diagonal) in [(9, 3.7), (60, 3.9)] {
+        let matrix = laplacian(n, n, diagonal);
+        let load = vec![-1.0; n * n];
+        let problem = inequality::<f64>(matrix, &load, vec![Bound::Lower(-1e-3); n * n]);
+        let solution = cold(&problem);
+        assert_eq!(solution.outcome, Outcome::NotCoercive);
+        assert!(solution.values.iter().all(|u| u.is_finite()));
+        // From contact everywhere nothing would be noticed without asking.
+        let start = Start::Contact(vec![Contact::Lower; n * n]);
+        let careful = ActiveSet { check_definite: true, ..ActiveSet::default() };
+        assert_eq!(
+            careful.solve(&problem.clone().with_start(start.clone())).outcome,
+            Outcome::NotCoercive
+        );
+        let mut unsymmetric = problem.clone();
+        unsymmetric.symmetric = false;
+        assert_eq!(careful.solve(&unsymmetric).outcome, Outcome::NotCoercive);
+    }
+}
+
+#[test]
+fn definiteness_is_that_of_the_symmetric_part() {
+    let free = [0, 1, 2];
+    let rotation = vec![vec![1.0, 9.0, 0.0], vec![-9.0, 1.0, 0.0], vec![0.0, 0.5, 1.0]];
+    assert_eq!(is_positive_definite(&sparse::<f64>(&rotation), false, &free), Ok(true));
+    let shear = vec![vec![1.0, 2.1, 0.0], vec![0.0, 1.0, 0.0], vec![0.0, 0.0, 1.0]];
+    assert_eq!(is_positive_definite(&sparse::<f64>(&shear), false, &free), Ok(false));
+    assert_eq!(is_positive_definite(&sparse::<f64>(&shear), false, &[0, 2]), Ok(true));
+    assert_eq!(is_positive_definite(&sparse::<f64>(&shear), true, &[]), Ok(true));
+}
+
+#[test]
+fn singular_matrix_is_singular() {
+    // Every row sums to zero: constants are free, large enough for supernodes too.
+    for n in [5, 90] {
+        let mut matrix = laplacian::<f64>(n, n, 4.0);
+        for i in 0..n * n {
+            let range = matrix.row_starts[i] as usize..matrix.row_starts[i + 1] as usize;
+            let neighbours = (range.len() - 1) as f64;
+            for k in range {
+                if matrix.columns[k] as usize == i {
+                    matrix.values[k] = neighbours;
+                }
+            }
+        }
+        let load: Vec<f64> = (0..n * n).map(|k| if k == 0 { 1.0 } else { 0.0 }).collect();
+        let mut problem = inequality(matrix, &load, vec![Bound::Free; n * n]);
+        assert_eq!(cold(&problem).outcome, Outcome::Singular);
+        problem.symmetric = false;
+        assert_eq!(cold(&problem).outcome, Outcome::Singular);
+    }
+}
+
+#[test]
+fn numbers_that_are_not_finite_are_noticed() {
+    let good = membrane::<f64>(5, 1.0, |_, _| -0.01);
+    for bad in [f64::NAN, f64::INFINITY] {
+        let mut in_matrix = good.clone();
+        in_matrix.matrix.values[7] = bad;
+        let mut in_load = good.clone();
+        in_load.load[3] = bad;
+        let mut in_bounds = good.clone();
+        in_bounds.bounds[20] = Bound::Both(-1.0, bad);
+        for problem in [in_matrix, in_load, in_bounds] {
+            let solution = cold(&problem);
+            assert_eq!((solution.outcome, solution.outer), (Outcome::NotFinite, 0));
+            assert!(solution.values.iter().all(|u| u.is_finite()));
+        }
+        let mut u = cold(&good).values;
+        u[4] = bad;
+        assert_eq!(certify(&good, &u).largest(), f64::INFINITY);
+    }
+    let mut overflow = good.clone();
+    overflow.load = vec![1e308; 25];
+    assert_eq!(cold(&overflow).outcome, Outcome::NotFinite);
+}
+
+#[test]
+fn bad_input_is_named() {
+    let good = membrane::<f64>(5, 1.0, |_, _| -0.01);
+    let mut empty = good.clone();
+    empty.bounds[3] = Bound::Both(1.0, 0.5);
+    assert_eq!(cold(&empty).outcome, Outcome::Infeasible);
+    let mut short = good.clone();
+    short.bounds.pop();
+    let mut outside = good.clone();
+    *outside.matrix.columns.last_mut().unwrap() = 25;
+    let mut descending = good.clone();
+    descending.matrix.columns.swap(0, 1);
+    for problem in [short, outside, descending] {
+        assert_eq!(cold(&problem).outcome, Outcome::Malformed);
+        assert_eq!(certify(&problem, &[0.0; 25]).largest(), f64::INFINITY);
+    }
+    let start = Start::Contact(vec![Contact::Upper; 3]);
+    let solution = ActiveSet::default().solve(&good.clone().with_start(start));
+    assert_eq!(solution.outcome, Outcome::Converged);
+    assert!(certify(&good, &solution.values).largest() < 1e-9);
+}
+
+#[test]
+fn iteration_limit_comes_with_the_best_iterate() {
+    let problem = membrane::<f64>(30, 10.0, |_, _| -0.3);
+    let exact = cold(&problem);
+    assert!(exact.outer > 5);
+    let mut before = f64::INFINITY;
+    for max_outer in [1, 3, 5] {
+        let solver = ActiveSet { max_outer, ..ActiveSet::default() };
+        let solution = solver.solve(&problem);
+        assert_eq!((solution.outcome, solution.outer), (Outcome::IterationLimit, max_outer));
+        let error = distance(&solution.values, &exact.values);
+        assert!(error < before && certify(&problem, &solution.values).largest() > 1e-9);
+        before = error;
+    }
+}
+
+#[test]
+fn certificate_sees_every_violation() {
+    let problem = membrane::<f64>(20, 10.0, |_, _| -0.3);
+    let solution = cold(&problem);
+    let open = solution.contact.iter().position(|c| *c == Contact::Inactive).unwrap();
+    let closed = solution.contact.iter().position(|c| *c == Contact::Lower).unwrap();
+    let moved = |i: usize, by: f64| {
+        let mut u = solution.values.clone();
+        u[i] += by;
+        certify(&problem, &u)
+    };
+    assert!(moved(closed, -1e-3).feasibility > 1e-3);
+    assert!(moved(closed, 1e-3).complementarity > 1e-3);
+    assert!(moved(open, -1e-3).residual > 1e-3);
+    // Held at the obstacle by hand, a membrane pulls on it.
+    let held: Vec<f64> = vec![-0.3; 400];
+    let mut up = problem.clone();
+    up.load.iter_mut().for_each(|b| *b = -*b);
+    assert!(certify(&up, &held).multiplier > 0.1);
+    // Neither does it depend on units, nor on bounds that nothing comes near.
+    let mut scaled = problem.clone();
+    scaled.matrix.values.iter_mut().for_each(|a| *a *= 1e7);
+    scaled.load.iter_mut().for_each(|b| *b *= 1e4);
+    scaled.bounds = vec![Bound::Both(-0.3e-3, 1e9); 400];
+    let mut u = solution.values.clone();
+    u[open] += 1e-3;
+    let reference = certify(&problem, &u);
+    u.iter_mut().for_each(|u| *u *= 1e-3);
+    let certificate = certify(&scaled, &u);
+    assert!((certificate.largest() / reference.largest() - 1.0).abs() < 1e-9);
+}

@@ -1,0 +1,263 @@
+//! What the solver falls back on, forced: it agrees with slow solvers that are easy to believe.
+
+use crate::problems::*;
+use unilateral::algebra::{Bound, Contact, Inequality, Start};
+use unilateral::assemble::{DataQuadrature, Discretisation};
+use unilateral::inequality::{
+    ActiveSet, InequalitySolver, LastResort, MonotoneMultigrid, Outcome, certify,
+};
+use unilateral::linear::LinearMethod;
+use unilateral::prelude::*;
+use unilateral::scenes::Scene;
+use unilateral::study::{Placement, SCHEMES, SchemeOptions, scheme_by_name};
+
+/// Every solver there is for symmetric matrices, by what forces it.
+fn agree(what: &str, problem: &Inequality<f64>) {
+    let direct = ActiveSet { linear: LinearMethod::Direct, ..ActiveSet::default() }.solve(problem);
+    let iterative =
+        ActiveSet { linear: LinearMethod::Iterative, ..ActiveSet::default() }.solve(problem);
+    let interior = ActiveSet { last_resort: LastResort::AtOnce, ..ActiveSet::default() };
+    let monotone = ActiveSet { last_resort: LastResort::Monotone, max_outer: 2000, ..interior };
+    let scale = 1.0 + distance(&direct.values, &vec![0.0; problem.size()]);
+    let others = [
+        ("direct", direct.clone()),
+        ("iterative", iterative),
+        ("interior", interior.solve(problem)),
+        ("monotone", monotone.solve(problem)),
+        ("multigrid", MonotoneMultigrid::default().solve(problem)),
+    ];
+    for (name, solution) in others {
+        assert_eq!(solution.outcome, Outcome::Converged, "{what}: {name}");
+        let certificate = certify(problem, &solution.values);
+        assert!(certificate.largest() < 1e-8, "{what}: {name}: {certificate:?}");
+        let off = distance(&solution.values, &direct.values);
+        assert!(off < 1e-8 * scale, "{what}: {name} is off by {off}");
+    }
+}
+
+#[test]
+fn all_agree_on_random_problems() {
+    for seed in 0..100 {
+        let mut random = Random::new(seed);
+        let n = 6 + seed as usize % 20;
+        let matrix = random_definite(n, n / 2, 0.003, &mut random);
+        let load: Vec<f64> = (0..n).map(|_| random.signed()).collect();
+        let problem = inequality(sparse(&matrix), &load, random_bounds(n, &mut random));
+        agree(&format!("seed {seed}"), &problem);
+    }
+}
+
+/// The inequality of a scene at a level.
+fn of<S: Scheme<f64, 2>>(scene: &Scene<2>, scheme: &S, level: usize) -> Inequality<f64> {
+    let mesh = scene.domain.mesh(level).unwrap();
+    let space =
+        Discretisation::new(scheme, &scene.problem, &mesh, DataQuadrature::default()).unwrap();
+    space.inequality().unwrap()
+}
+
+fn scenes_of_all_kinds() -> Vec<Scene<2>> {
+    vec![
+        scenes::ball_2d(),
+        scenes::cone(),
+        scenes::biactive_half_2d(),
+        scenes::degenerate(2),
+        scenes::signorini_shifted_2d(),
+        scenes::signorini_irrational_2d(),
+    ]
+}
+
+fn wopsip(eta: f64) -> Wopsip {
+    Wopsip { eta: Eta::Absolute(eta), ..Wopsip::default() }
+}
+
+#[test]
+fn all_agree_on_scenes() {
+    for scene in scenes_of_all_kinds() {
+        let name = &scene.name;
+        agree(&format!("{name} p1"), &of(&scene, &ConformingP1, 6));
+        agree(&format!("{name} cr"), &of(&scene, &NonconformingP1, 6));
+        agree(&format!("{name} sipg"), &of(&scene, &Sipg::default(), 4));
+        for eta in [1.0, 10.0, 100.0] {
+            let scheme = wopsip(eta);
+            agree(&format!("{name} wopsip {eta}"), &of(&scene, &scheme, 4));
+            agree(&format!("{name} means {eta}"), &of(&scene, &FacetMeans(scheme), 4));
+        }
+    }
+}
+
+/// What a slow solver finds on the smallest of them.
+#[test]
+fn the_oracle_agrees() {
+    for scene in scenes_of_all_kinds() {
+        for problem in [of(&scene, &wopsip(1.0), 3), of(&scene, &Sipg::default(), 3)] {
+            let expected = projected_gauss_seidel(&problem);
+            let found = ActiveSet { last_resort: LastResort::AtOnce, ..ActiveSet::default() }
+                .solve(&problem);
+            let off = distance(&found.values, &expected);
+            assert!(off < 1e-8, "{}: {off}", scene.name);
+        }
+    }
+}
+
+/// The symmetric schemes there are, with every place of the bounds that fits.
+#[test]
+fn all_schemes_agree_with_the_oracle() {
+    let mut compared = 0;
+    for scene in [scenes::ball_2d(), scenes::signorini_shifted_2d()] {
+        let mesh = scene.domain.mesh(2).unwrap();
+        for &(name, _) in SCHEMES {
+            for place in ["vertices", "facet-means", "nodes", "midpoints", "cell-means"] {
+                let placement = Placement::by_name(place).unwrap();
+                let options = SchemeOptions { placement, ..SchemeOptions::default() };
+                let Some(scheme) = scheme_by_name::<f64, 2>(name, &options) else { continue };
+                let quadrature = DataQuadrature::default();
+                let Ok(problem) = scheme.inequality(&scene.problem, &mesh, quadrature) else {
+                    continue;
+                };
+                if !problem.symmetric {
+                    continue;
+                }
+                let what = format!("{} {name} {place}", scene.name);
+                agree(&what, &problem);
+                let found = ActiveSet::default().solve(&problem);
+                let off = distance(&found.values, &projected_gauss_seidel(&problem));
+                assert!(off < 1e-8, "{what}: {off}");
+                compared += 1;
+            }
+        }
+    }
+    assert!(compared >= 40, "{compared}");
+}
+
+/// Converged, certified, and with at most so many steps.
+fn converges<const D: usize>(scene: Scene<D>, scheme: Wopsip, level: usize, most: usize) {
+    let report = Study::<f64, D>::new(scene).scheme(scheme).levels([level]).run().unwrap();
+    let row = &report.rows[0];
+    let what = format!("{} at level {level}, {:?}", row.scene, scheme.eta);
+    assert_eq!(row.status, "converged", "{what}");
+    assert!(row.certificate.largest() < 1e-9, "{what}: {:?}", row.certificate);
+    let outer = row.iterations.outer.unwrap();
+    println!("{what}: {outer} steps, {:.2} s", row.seconds.solve);
+    assert!(outer <= most, "{what}: {outer} steps");
+}
+
+/// Where contact is ragged the active set does not settle by itself.
+#[test]
+fn curved_and_kinked_obstacles_converge() {
+    converges(scenes::ball_2d(), Wopsip::default(), 64, 25);
+    converges(scenes::ball_2d(), wopsip(10.0), 64, 25);
+    converges(scenes::cone::<2>(), wopsip(1.0), 32, 25);
+    converges(scenes::cone::<2>(), wopsip(10.0), 32, 25);
+    converges(scenes::pyramid_full_2d(), Wopsip::default(), 16, 25);
+    for eta in [1.0, 10.0] {
+        converges(scenes::oscillating_1d(), wopsip(eta), 128, 25);
+    }
+}
+
+/// There contact shows in two scales: where values rest, and, by one over the penalty finer, how jumps
+/// open. The active set must not be asked before the second.
+#[test]
+fn ragged_contact_is_found_under_every_penalty() {
+    for eta in [1e4, 1e8] {
+        converges(scenes::cone::<2>(), wopsip(eta), 16, 25);
+        converges(scenes::torsion_2d(10.0), wopsip(eta), 16, 25);
+        converges(scenes::disc_2d(), wopsip(eta), 16, 25);
+    }
+}
+
+#[test]
+#[ignore = "takes half a minute: figures of docs/solvers.md"]
+fn curved_obstacles_converge_on_fine_meshes() {
+    for level in [64, 128, 256] {
+        converges(scenes::ball_2d(), wopsip(10.0), level, 25);
+        converges(scenes::ball_2d(), Wopsip::default(), level, 25);
+    }
+}
+
+/// The interior point method, and what starts from it, do not mind large penalties. Quadratics have
+/// more jumps than ways to move in every cell, and are lost to rounding at `1e8`.
+#[test]
+fn no_penalty_is_too_large() {
+    let solver = ActiveSet { last_resort: LastResort::AtOnce, ..ActiveSet::default() };
+    for name in ["wopsip", "wopsip-p2"] {
+        let most = if name == "wopsip" { 1e10 } else { 1e6 };
+        for eta in [1e-2, 1.0, 1e2, 1e4, 1e6, 1e8, 1e10].into_iter().filter(|&eta| eta <= most) {
+            let options = SchemeOptions { eta: Some(eta), ..SchemeOptions::default() };
+            let scheme = scheme_by_name::<f64, 2>(name, &options).unwrap();
+            let study = Study::<f64, 2>::new(scenes::ball_2d()).boxed_scheme(scheme);
+            let row = study.solver(solver.clone()).levels([8]).run().unwrap().rows.remove(0);
+            assert_eq!(row.status, "converged", "{name} {eta:e}");
+            assert!(row.certificate.largest() < 1e-9, "{name} {eta:e}: {:?}", row.certificate);
+            let outer = row.iterations.outer.unwrap();
+            assert!(outer <= 40, "{name} {eta:e}: {outer} steps");
+        }
+    }
+}
+
+/// A constant has no energy for rounding to be compared with.
+#[test]
+fn a_solution_without_energy_is_not_singular() {
+    let scheme = FacetMeans(wopsip(1e-2));
+    let study = Study::<f64, 3>::new(scenes::ball_3d()).scheme(scheme).levels([1]);
+    let row = study.run().unwrap().rows.remove(0);
+    assert_eq!(row.status, "converged");
+}
+
+#[test]
+fn the_monotone_method_finds_the_least_energy() {
+    let problem = of(&scenes::ball_2d(), &wopsip(10.0), 6);
+    let energy = |u: &[f64]| -> f64 {
+        let load = |i: usize| 0.5 * problem.matrix.row_dot(i, u) - problem.load[i];
+        (0..u.len()).map(|i| u[i] * load(i)).sum()
+    };
+    let solver = ActiveSet { last_resort: LastResort::Monotone, ..ActiveSet::default() };
+    let found = solver.solve(&problem);
+    assert_eq!(found.outcome, Outcome::Converged);
+    let least = energy(&found.values);
+    let oracle = energy(&cold_from_contact(&problem));
+    assert!((least - oracle).abs() <= 1e-10 * oracle.abs(), "{least} and {oracle}");
+}
+
+fn cold_from_contact(problem: &Inequality<f64>) -> Vec<f64> {
+    let start = Start::Contact(vec![Contact::Lower; problem.size()]);
+    ActiveSet::default().solve(&problem.clone().with_start(start)).values
+}
+
+/// Every solver names what is wrong, whatever it was asked to start with.
+#[test]
+fn what_has_no_solution_is_named() {
+    let good = of(&scenes::ball_2d(), &Sipg::default(), 4);
+    let mut wrong_number = good.clone();
+    wrong_number.load[3] = f64::NAN;
+    let mut no_room = good.clone();
+    no_room.bounds[5] = Bound::Both(1.0, 0.0);
+    let weak = Sipg { penalty: PenaltyRule::Diameter(0.5), ..Sipg::default() };
+    let indefinite = of(&scenes::ball_2d(), &weak, 4);
+    let mut floating =
+        inequality(sparse(&[vec![1.0, -1.0], vec![-1.0, 1.0]]), &[1.0, 1.0], vec![Bound::Free; 2]);
+    let mut malformed = good.clone();
+    malformed.bounds.pop();
+    let resorts = [LastResort::WhenUnsettled, LastResort::AtOnce, LastResort::Monotone];
+    let mut solvers: Vec<Box<dyn InequalitySolver<f64>>> =
+        vec![Box::new(MonotoneMultigrid::default())];
+    for linear in [LinearMethod::Direct, LinearMethod::Iterative] {
+        for last_resort in resorts {
+            solvers.push(Box::new(ActiveSet { linear, last_resort, ..ActiveSet::default() }));
+        }
+    }
+    for (k, solver) in solvers.iter().enumerate() {
+        let what = format!("{} {k}", solver.name());
+        let outcome = |problem: &Inequality<f64>| solver.solve(problem).outcome;
+        assert_eq!(outcome(&wrong_number), Outcome::NotFinite, "{what}");
+        assert_eq!(outcome(&no_room), Outcome::Infeasible, "{what}");
+        assert_eq!(outcome(&malformed), Outcome::Malformed, "{what}");
+        assert_eq!(outcome(&indefinite), Outcome::NotCoercive, "{what}");
+        floating.bounds = vec![Bound::Free; 2];
+        assert_eq!(outcome(&floating), Outcome::Singular, "{what}");
+        // a floor does not hold what is pulled upwards
+        floating.bounds = vec![Bound::Lower(0.0); 2];
+        let found = outcome(&floating);
+        let fails = [Outcome::Singular, Outcome::NotCoercive, Outcome::IterationLimit];
+        assert!(fails.contains(&found), "{what}: {found}");
+    }
+}

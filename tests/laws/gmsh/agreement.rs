@@ -1,0 +1,191 @@
+//! The meshes of a folder beside the project, where it exists, and another reader as an oracle.
+
+use super::forms::{parse, parts, volume};
+use super::writer::{FORMS, square, tetrahedron};
+use std::path::PathBuf;
+use unilateral::mesh::Mesh;
+use unilateral::mesh::gmsh;
+use unilateral::mesh::gmsh::GmshWarning;
+
+/// The folder of meshes, if there is one.
+fn folder() -> Option<PathBuf> {
+    // Tests run in the folder of the package.
+    let path = PathBuf::from("../shared/meshes");
+    let found = path.is_dir();
+    if !found {
+        eprintln!("skipped: there is no {}", path.display());
+    }
+    found.then_some(path)
+}
+
+fn boundary_length(mesh: &Mesh<f64, 2>) -> f64 {
+    let facet_length = |cell: u32, local: u8| {
+        let v: Vec<u32> = mesh.facet_vertices(cell as usize, local as usize).collect();
+        (mesh.vertices()[v[0] as usize] - mesh.vertices()[v[1] as usize]).norm()
+    };
+    mesh.boundary().iter().map(|f| facet_length(f.cell, f.local)).sum()
+}
+
+#[test]
+fn the_disc_is_the_same_in_every_version() {
+    let Some(folder) = folder() else { return };
+    let read = |name: &str| {
+        gmsh::read::<f64, 2>(&folder.join(name)).unwrap_or_else(|e| panic!("{name}: {e}")).mesh
+    };
+    let discs = [
+        ("disc.msh", read("disc.msh")),
+        ("disc_binary.msh", read("disc_binary.msh")),
+        ("disc_v2.msh", read("disc_v2.msh")),
+    ];
+    // A polygon of n equal sides inscribed in a circle of radius 3/2.
+    for (name, mesh) in &discs {
+        let sides = mesh.boundary().len() as f64;
+        let angle = std::f64::consts::TAU / sides;
+        let (area, length) = (1.125 * sides * angle.sin(), 3.0 * sides * (angle / 2.0).sin());
+        assert!((volume(mesh) - area).abs() < 1e-9, "{name}: area {} of {area}", volume(mesh));
+        assert!((boundary_length(mesh) - length).abs() < 1e-9, "{name}");
+        assert_eq!(parts(mesh), [mesh.boundary().len(), 0, 0], "{name}");
+        // Euler: vertices - edges + cells = 1
+        let edges = (3 * mesh.n_cells() + mesh.boundary().len()) / 2;
+        assert_eq!(mesh.vertices().len() + mesh.n_cells(), edges + 1, "{name}");
+    }
+    let [(_, text), _, (_, old)] = &discs;
+    assert_eq!((text.n_cells(), text.vertices().len()), (old.n_cells(), old.vertices().len()));
+    assert!((volume(text) - volume(old)).abs() < 1e-12);
+    assert!((boundary_length(text) - boundary_length(old)).abs() < 1e-12);
+}
+
+fn check<const D: usize>(name: &str, bytes: &[u8]) {
+    let read = parse::<D>(bytes);
+    assert!(read.mesh.n_cells() > 0, "{name}");
+    let curved = name.contains("quadratic");
+    assert_eq!(!read.warnings.is_empty(), curved, "{name}");
+    for warning in &read.warnings {
+        assert!(matches!(warning, GmshWarning::Straightened { order: 2, .. }), "{name}: {warning}");
+    }
+    eprintln!(
+        "{name}: {} cells, volume {}, parts {:?}",
+        read.mesh.n_cells(),
+        volume(&read.mesh),
+        parts(&read.mesh)
+    );
+}
+
+#[test]
+fn every_mesh_of_the_folder_reads() {
+    let Some(folder) = folder() else { return };
+    let mut files = 0;
+    for entry in std::fs::read_dir(folder).unwrap() {
+        let path = entry.unwrap().path();
+        if path.extension().is_none_or(|e| e != "msh") {
+            continue;
+        }
+        let name = path.file_name().unwrap().to_string_lossy().into_owned();
+        let bytes = std::fs::read(&path).unwrap();
+        match gmsh::dimension(&bytes).unwrap_or_else(|e| panic!("{name}: {e}")) {
+            1 => check::<1>(&name, &bytes),
+            2 => check::<2>(&name, &bytes),
+            _ => check::<3>(&name, &bytes),
+        }
+        files += 1;
+    }
+    assert!(files > 0);
+}
+
+/// Cells of dimension `D` by the coordinates of their corners, and the number of nodes, as another
+/// reader of MSH 4.1 has them.
+fn oracle<const D: usize>(bytes: &[u8]) -> (usize, Vec<Vec<[f64; D]>>) {
+    let file = mshio::parse_msh_bytes(bytes).unwrap_or_else(|e| panic!("{e}"));
+    let nodes = file.data.nodes.unwrap();
+    let mut points = std::collections::HashMap::new();
+    let mut next = nodes.min_node_tag;
+    for block in &nodes.node_blocks {
+        for (at, x) in block.nodes.iter().enumerate() {
+            let tag = match &block.node_tags {
+                Some(tags) => *tags.iter().find(|(_, k)| **k == at).unwrap().0,
+                None => next,
+            };
+            next += 1;
+            let x = [x.x, x.y, x.z];
+            points.insert(tag, std::array::from_fn(|k| x[k]));
+        }
+    }
+    let blocks = file.data.elements.unwrap().element_blocks;
+    let cells = blocks.iter().filter(|b| b.entity_dim as usize == D).flat_map(|b| &b.elements);
+    let corners = |nodes: &[u64]| nodes[..=D].iter().map(|tag| points[tag]).collect();
+    (points.len(), cells.map(|e| corners(&e.nodes)).collect())
+}
+
+fn agrees_with_oracle<const D: usize>(bytes: &[u8]) {
+    let mesh = parse::<D>(bytes).mesh;
+    let (nodes, cells) = oracle::<D>(bytes);
+    assert_eq!(mesh.n_cells(), cells.len());
+    assert!(mesh.vertices().len() <= nodes);
+    for (c, mut expected) in cells.into_iter().enumerate() {
+        let corner = |&v: &u32| std::array::from_fn(|k| mesh.vertices()[v as usize][k]);
+        let mut found: Vec<[f64; D]> = mesh.cell(c).iter().map(corner).collect();
+        // Text is rounded by two different readers.
+        let key = |a: &[f64; D], b: &[f64; D]| a.partial_cmp(b).unwrap();
+        expected.sort_by(key);
+        found.sort_by(key);
+        for (a, b) in expected.iter().flatten().zip(found.iter().flatten()) {
+            assert!((a - b).abs() < 1e-14, "cell {c}");
+        }
+    }
+}
+
+#[test]
+fn another_reader_finds_the_same_cells() {
+    for form in FORMS {
+        agrees_with_oracle::<2>(&square().four(form));
+        agrees_with_oracle::<3>(&tetrahedron().four(form));
+    }
+    let Some(folder) = folder() else { return };
+    for name in ["disc.msh", "disc_binary.msh", "plate_with_holes.msh"] {
+        agrees_with_oracle::<2>(&std::fs::read(folder.join(name)).unwrap());
+    }
+    agrees_with_oracle::<3>(&std::fs::read(folder.join("block.msh")).unwrap());
+}
+
+/// Prints the time per cell of a large mesh: run with `--ignored --nocapture`.
+#[test]
+#[ignore = "a measurement"]
+fn time_per_cell() {
+    let Some(folder) = folder() else { return };
+    for name in ["disc_fine.msh", "disc_binary.msh"] {
+        let bytes = std::fs::read(folder.join(name)).unwrap();
+        let time = |f: &dyn Fn() -> usize| {
+            let mut best = f64::INFINITY;
+            let mut cells = 0;
+            for _ in 0..20 {
+                let start = std::time::Instant::now();
+                cells = f();
+                best = best.min(start.elapsed().as_secs_f64());
+            }
+            (best, cells)
+        };
+        let (seconds, cells) = time(&|| parse::<2>(&bytes).mesh.n_cells());
+        let (scan, _) = time(&|| gmsh::dimension(&bytes).unwrap());
+        let mesh = parse::<2>(&bytes).mesh;
+        let facets: Vec<_> = mesh
+            .boundary()
+            .iter()
+            .map(|f| {
+                let v: Vec<u32> = mesh.facet_vertices(f.cell as usize, f.local as usize).collect();
+                unilateral::mesh::TaggedFacet { vertices: [v[0], v[1]], part: f.part }
+            })
+            .collect();
+        let (new, _) = time(&|| {
+            Mesh::<f64, 2>::new(mesh.vertices().to_vec(), mesh.cells().to_vec(), &facets)
+                .unwrap()
+                .n_cells()
+        });
+        let each = 1e9 / cells as f64;
+        eprintln!(
+            "{name}: {cells} cells, {:.0} ns a cell, of which Mesh::new {:.0}; dimension alone {:.0}",
+            seconds * each,
+            new * each,
+            scan * each
+        );
+    }
+}

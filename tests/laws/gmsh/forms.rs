@@ -1,0 +1,147 @@
+//! The same small meshes in every form of the format.
+
+use super::files::{INTERVAL, SQUARE, SQUARE_V2, TETRAHEDRON};
+use super::writer::{FORMS, Sample, interval, square, tetrahedron};
+use unilateral::mesh::gmsh;
+use unilateral::mesh::gmsh::{GmshMesh, GmshWarning};
+use unilateral::mesh::{BoundaryPart, Mesh};
+
+pub fn parse<const D: usize>(bytes: &[u8]) -> GmshMesh<f64, D> {
+    gmsh::parse(bytes).unwrap_or_else(|e| panic!("{e}"))
+}
+
+/// Volume by determinants, independent of the crate's geometry.
+pub fn volume<const D: usize>(mesh: &Mesh<f64, D>) -> f64 {
+    let x = mesh.vertices();
+    let of_cell = |c: usize| {
+        let cell = mesh.cell(c);
+        let e: Vec<_> = cell[1..].iter().map(|&v| x[v as usize] - x[cell[0] as usize]).collect();
+        match D {
+            1 => e[0][0].abs(),
+            2 => (e[0][0] * e[1][1] - e[0][1] * e[1][0]).abs() / 2.0,
+            _ => {
+                let minor = |i: usize, j: usize| e[1][i] * e[2][j] - e[1][j] * e[2][i];
+                (e[0][0] * minor(1, 2) - e[0][1] * minor(0, 2) + e[0][2] * minor(0, 1)).abs() / 6.0
+            }
+        }
+    };
+    (0..mesh.n_cells()).map(of_cell).sum()
+}
+
+/// Number of facets of each part: dirichlet, neumann, contact.
+pub fn parts<const D: usize>(mesh: &Mesh<f64, D>) -> [usize; 3] {
+    [BoundaryPart::Dirichlet, BoundaryPart::Neumann, BoundaryPart::Contact]
+        .map(|part| mesh.boundary().iter().filter(|f| f.part == part).count())
+}
+
+/// Every form of a sample reads to the same mesh.
+fn all_forms<const D: usize>(sample: &Sample) -> Mesh<f64, D> {
+    let first = parse::<D>(&sample.four(FORMS[0])).mesh;
+    for form in FORMS {
+        for bytes in [sample.four(form), sample.two(form)] {
+            assert_eq!(gmsh::dimension(&bytes).unwrap(), D);
+            let read = parse::<D>(&bytes);
+            assert!(read.warnings.is_empty());
+            assert_eq!(read.mesh.vertices(), first.vertices(), "{form:?}");
+            assert_eq!(read.mesh.cells(), first.cells(), "{form:?}");
+            assert_eq!(read.mesh.boundary(), first.boundary(), "{form:?}");
+        }
+    }
+    first
+}
+
+#[test]
+fn interval_in_all_forms() {
+    let mesh = all_forms::<1>(&interval());
+    assert_eq!((mesh.n_cells(), parts(&mesh)), (3, [1, 1, 0]));
+    assert!((volume(&mesh) - 2.0).abs() < 1e-15);
+}
+
+#[test]
+fn square_in_all_forms() {
+    let mesh = all_forms::<2>(&square());
+    assert_eq!((mesh.n_cells(), parts(&mesh)), (4, [1, 2, 1]));
+    assert!((volume(&mesh) - 1.0).abs() < 1e-15);
+}
+
+#[test]
+fn tetrahedron_in_all_forms() {
+    let mesh = all_forms::<3>(&tetrahedron());
+    assert_eq!((mesh.n_cells(), parts(&mesh)), (1, [3, 0, 1]));
+    assert!((volume(&mesh) - 1.0 / 6.0).abs() < 1e-15);
+}
+
+#[test]
+fn parametric_nodes_are_read_by_their_position() {
+    let plain = parse::<2>(&square().four(FORMS[0])).mesh;
+    let sample = Sample { parametric: true, ..square() };
+    for form in FORMS {
+        assert_eq!(parse::<2>(&sample.four(form)).mesh.vertices(), plain.vertices());
+    }
+}
+
+#[test]
+fn files_made_by_hand() {
+    let square = parse::<2>(SQUARE.as_bytes()).mesh;
+    assert_eq!((square.n_cells(), parts(&square), volume(&square)), (4, [1, 2, 1], 1.0));
+    // The last cell of this one is listed for two groups.
+    let again = parse::<2>(SQUARE_V2.as_bytes()).mesh;
+    assert_eq!(again.vertices(), square.vertices());
+    assert_eq!((again.cells(), again.boundary()), (square.cells(), square.boundary()));
+    let interval = parse::<1>(INTERVAL.as_bytes()).mesh;
+    assert_eq!((interval.n_cells(), parts(&interval), volume(&interval)), (3, [1, 1, 0], 2.0));
+    let body = parse::<3>(TETRAHEDRON.as_bytes()).mesh;
+    assert_eq!((body.n_cells(), parts(&body)), (1, [3, 0, 1]));
+}
+
+#[test]
+fn lines_may_end_as_on_windows() {
+    let text = SQUARE.replace('\n', "\r\n");
+    assert_eq!(parse::<2>(text.as_bytes()).mesh.n_cells(), 4);
+    // and an editor may have put a byte order mark in front, and left out the last end of a line
+    let text = format!("\u{feff}{}", text.trim_end());
+    assert_eq!(parse::<2>(text.as_bytes()).mesh.n_cells(), 4);
+}
+
+#[test]
+fn single_precision() {
+    let mesh = gmsh::parse::<f32, 2>(&square().four(FORMS[1])).unwrap().mesh;
+    assert_eq!(mesh.n_cells(), 4);
+}
+
+#[test]
+fn elements_of_higher_order_are_read_as_straight_with_a_warning() {
+    let mut sample = square();
+    sample.nodes.push((50, [0.5, -0.1, 0.0]));
+    for block in &mut sample.blocks {
+        block.element_type = if block.dimension == 1 { 8 } else { 9 };
+        let extra = if block.dimension == 1 { 1 } else { 3 };
+        for element in &mut block.elements {
+            element.1.extend(std::iter::repeat_n(50, extra));
+        }
+    }
+    let straight = parse::<2>(&square().four(FORMS[0])).mesh;
+    for form in FORMS {
+        let read = parse::<2>(&sample.four(form));
+        assert_eq!(read.mesh.vertices(), straight.vertices());
+        assert_eq!(read.mesh.cells(), straight.cells());
+        let expected = [
+            GmshWarning::Straightened { name: "triangle", order: 2, count: 4 },
+            GmshWarning::Straightened { name: "line", order: 2, count: 4 },
+        ];
+        assert_eq!(read.warnings, expected);
+        assert!(read.warnings[0].to_string().contains("4 elements of type triangle of order 2"));
+    }
+}
+
+#[test]
+fn a_plane_off_the_origin_is_flat_up_to_rounding() {
+    let mut sample = square();
+    for (k, node) in sample.nodes.iter_mut().enumerate() {
+        node.1[2] = -3.0 + 1e-16 * k as f64;
+    }
+    assert_eq!(parse::<2>(&sample.four(FORMS[0])).mesh.n_cells(), 4);
+    // A node that no cell uses may be anywhere.
+    sample.nodes.push((7, [0.0, 0.0, 100.0]));
+    assert_eq!(parse::<2>(&sample.two(FORMS[1])).mesh.vertices().len(), 5);
+}

@@ -1,0 +1,11 @@
+//! The Gmsh reader: small meshes in every form of the format, the meshes of a folder if it is
+//! there, another reader as an oracle, one test for each error, and damaged files.
+
+mod agreement;
+mod damage;
+mod errors;
+mod files;
+mod forms;
+mod mesh_errors;
+mod structure_errors;
+mod writer;

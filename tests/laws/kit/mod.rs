@@ -1,0 +1,77 @@
+//! Every scheme passes the kit, in every dimension and scalar; broken ones are caught by the law
+//! that is meant for them.
+
+mod broken_schemes;
+mod laws;
+mod quadratics;
+
+use unilateral::kit::{
+    check_coercivity, check_consistency, check_orders, check_scheme, check_symmetry,
+};
+use unilateral::prelude::*;
+
+/// A test for each line: a name, and how the scheme is made.
+macro_rules! schemes {
+    ($($name:ident: $scheme:expr;)*) => {
+        $(
+            #[test]
+            fn $name() {
+                fn on<T: Real, const D: usize, S: Scheme<T, D>>(scheme: &S) {
+                    let report = check_scheme::<T, D, S>(scheme).unwrap_or_else(|e| panic!("{e}"));
+                    assert_eq!((report.dimension, report.scalar), (D, T::NAME));
+                    println!("{report}");
+                }
+                let scheme = $scheme;
+                on::<f64, 1, _>(&scheme);
+                on::<f64, 2, _>(&scheme);
+                on::<f64, 3, _>(&scheme);
+                on::<f32, 1, _>(&scheme);
+                on::<f32, 2, _>(&scheme);
+                on::<f32, 3, _>(&scheme);
+            }
+        )*
+    };
+}
+
+schemes! {
+    conforming: ConformingP1;
+    crouzeix_raviart: NonconformingP1;
+    sipg: Sipg::default();
+    sipg_by_diameter: Sipg { penalty: PenaltyRule::Diameter(10.0), ..Sipg::default() };
+    sipg_on_means: FacetMeans(Sipg::default());
+    nipg: Nipg::default();
+    iipg: Iipg::default();
+    ldg: Ldg::default();
+    ldg_one_sided: Ldg { switch: true, ..Ldg::default() };
+    br2: Br2::default();
+    bmmpr: Bmmpr::default();
+    bmmpr_on_means: FacetMeans(Bmmpr::default());
+    wopsip: Wopsip::default();
+    wopsip_anisotropic: Wopsip { weight: WeightRule::Anisotropic, ..Wopsip::default() };
+    wopsip_on_means: FacetMeans(Wopsip::default());
+    conforming_quadratics: ConformingP2;
+    sipg_on_quadratics: Sipg::default().on(P2);
+    nipg_on_quadratics: Nipg::default().on(P2);
+    iipg_on_quadratics: Iipg::default().on(P2);
+    ldg_on_quadratics: Ldg::default().on(P2);
+    ldg_one_sided_on_quadratics: Ldg { switch: true, ..Ldg::default() }.on(P2);
+    br2_on_quadratics: Br2::default().on(P2);
+    bmmpr_on_quadratics: Bmmpr::default().on(P2);
+}
+
+/// The weight of order `h^-5` makes a condition of order `h^-6`: the law that solutions do not depend
+/// on numbering beyond rounding allows less than that. All other laws hold.
+#[test]
+fn wopsip_on_quadratics() {
+    fn on<const D: usize>() {
+        let scheme = Wopsip::default().on(P2);
+        check_symmetry::<f64, D, _>(&scheme).unwrap_or_else(|e| panic!("{e}"));
+        check_coercivity::<f64, D, _>(&scheme).unwrap_or_else(|e| panic!("{e}"));
+        let consistency = check_consistency::<f64, D, _>(&scheme);
+        assert!(!consistency.unwrap_or_else(|e| panic!("{e}")).declared);
+        check_orders::<f64, D, _>(&scheme).unwrap_or_else(|e| panic!("{e}"));
+    }
+    on::<1>();
+    on::<2>();
+    on::<3>();
+}

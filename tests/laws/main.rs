@@ -1,0 +1,11 @@
+//! Meshes, quadrature rules and the files of meshes; the laws that schemes obey.
+
+mod gmsh;
+mod kit;
+mod mesh;
+mod quadrature;
+
+#[path = "../support"]
+mod support {
+    pub mod meshes;
+}

@@ -1,0 +1,351 @@
+//! Facets, refinement, boxes, and every way a mesh can be wrong.
+
+use crate::support::meshes::{Random, Raw, mixed_box};
+use proptest::prelude::*;
+use unilateral::mesh::BoxDomain;
+use unilateral::mesh::{
+    BoundaryPart, Edges, Facets, Mesh, MeshError, Neighbour, Neighbours, TaggedFacet,
+};
+use unilateral::prelude::*;
+
+fn volume<const D: usize>(mesh: &Mesh<f64, D>) -> f64 {
+    (0..mesh.n_cells()).map(|c| mesh.geometry(c).volume).sum()
+}
+
+/// Neighbours are mutual and share vertices; the facets of all cells are counted once each.
+fn check_topology<const D: usize>(mesh: &Mesh<f64, D>) {
+    let neighbours = Neighbours::of(mesh);
+    let facets = Facets::of(mesh, &neighbours);
+    for c in 0..mesh.n_cells() {
+        assert!(mesh.cell(c).is_sorted());
+        for i in 0..=D {
+            if let Neighbour::Cell { cell, local } = neighbours.across(c, i) {
+                let back = neighbours.across(cell as usize, local as usize);
+                assert_eq!(back, Neighbour::Cell { cell: c as u32, local: i as u8 });
+                assert!(
+                    mesh.facet_vertices(c, i)
+                        .eq(mesh.facet_vertices(cell as usize, local as usize))
+                );
+                let (a, b) = (mesh.geometry(c), mesh.geometry(cell as usize));
+                assert!(
+                    (a.normal(i) + b.normal(local as usize)).norm() < 1e-12,
+                    "normals opposite"
+                );
+                assert!((a.facet_measure(i) - b.facet_measure(local as usize)).abs() < 1e-12);
+            }
+        }
+    }
+    assert_eq!(2 * facets.interior().len() + mesh.boundary().len(), mesh.cells().len());
+    for part in [BoundaryPart::Dirichlet, BoundaryPart::Neumann, BoundaryPart::Contact] {
+        assert_eq!(
+            facets.part(part).len(),
+            mesh.boundary().iter().filter(|f| f.part == part).count()
+        );
+        for f in facets.part(part) {
+            let (c, i) = facets.here(f);
+            assert_eq!(neighbours.across(c, i), Neighbour::Boundary(part));
+        }
+    }
+    let numbers = facets.numbers::<D>(mesh.n_cells());
+    for f in facets.interior() {
+        let ((c, i), (d, j)) = (facets.here(f), facets.there(f));
+        assert!(c < d);
+        assert_eq!(numbers[c * (D + 1) + i] as usize, f);
+        assert_eq!(numbers[d * (D + 1) + j] as usize, f);
+    }
+}
+
+/// The smallest ratio of volume to the cube (square) of the diameter.
+fn worst_shape<const D: usize>(mesh: &Mesh<f64, D>) -> f64 {
+    (0..mesh.n_cells())
+        .map(|c| mesh.geometry(c).volume / mesh.cell_diameter(c).powi(D as i32))
+        .fold(f64::INFINITY, f64::min)
+}
+
+fn check_refinement<const D: usize>(times: usize) {
+    let mut random = Random(7);
+    let coarse =
+        Raw::<D>::jittered(&mixed_box(), 2, 0.5, &mut random).shuffled(&mut random).mesh::<f64>();
+    let shape = worst_shape(&coarse);
+    let mut meshes = vec![coarse];
+    for _ in 0..times {
+        let before = &meshes[meshes.len() - 1];
+        let (after, refinement) = before.refine().unwrap();
+        let after = &after;
+        check_topology(after);
+        assert_eq!(after.n_cells(), before.n_cells() << D);
+        assert_eq!(after.boundary().len(), before.boundary().len() << (D - 1));
+        let rounding = f64::EPSILON * after.n_cells() as f64;
+        assert!((volume(after) - volume(before)).abs() < rounding.max(1e-14));
+        for c in 0..after.n_cells() {
+            // children have equal volumes and lie in their parents
+            let parent = before.geometry(c >> D);
+            assert!(
+                (after.geometry(c).volume * f64::from(1 << D) / parent.volume - 1.0).abs() < 1e-10
+            );
+            let corner = before.vertices()[before.cell(c >> D)[0] as usize];
+            let inside = after.barycentre(c) - corner;
+            let lambda: Vec<f64> =
+                (0..=D).map(|i| f64::from(i == 0) + parent.gradient(i).dot(&inside)).collect();
+            assert!(lambda.iter().all(|&l| l > 0.0));
+        }
+        for (v, &[a, b]) in refinement.parents.iter().enumerate() {
+            let middle = (before.vertices()[a as usize] + before.vertices()[b as usize]) * 0.5;
+            assert!((after.vertices()[v] - middle).norm() < 1e-15);
+        }
+        meshes.push(after.clone());
+    }
+    // Bey's rule keeps shapes: at most three classes of each tetrahedron
+    let floor = if D == 3 { 0.2 } else { 0.999 };
+    assert!(worst_shape(&meshes[times]) > floor * shape);
+    let last = worst_shape(&meshes[times]);
+    let before = worst_shape(&meshes[times - 1]);
+    assert!((last / before - 1.0).abs() < 1e-6, "shapes settle: {before} {last}");
+}
+
+#[test]
+fn refinement_in_one_dimension() {
+    check_refinement::<1>(4);
+}
+#[test]
+fn refinement_in_two_dimensions() {
+    check_refinement::<2>(4);
+}
+#[test]
+fn refinement_in_three_dimensions() {
+    check_refinement::<3>(4);
+}
+
+#[test]
+fn refined_boxes_are_finer_boxes() {
+    fn check<const D: usize>() {
+        let coarse = Mesh::<f64, D>::kuhn_box(&mixed_box(), [2; D]).unwrap();
+        let fine = Mesh::<f64, D>::kuhn_box(&mixed_box(), [4; D]).unwrap();
+        let key = |mesh: &Mesh<f64, D>| {
+            let mut all: Vec<Vec<i64>> = (0..mesh.n_cells())
+                .map(|c| {
+                    let mut points: Vec<Vec<i64>> = mesh
+                        .cell(c)
+                        .iter()
+                        .map(|&v| {
+                            mesh.vertices()[v as usize]
+                                .iter()
+                                .map(|x| (x * 64.0).round() as i64)
+                                .collect()
+                        })
+                        .collect();
+                    points.sort();
+                    points.concat()
+                })
+                .collect();
+            all.sort();
+            all
+        };
+        assert_eq!(key(&coarse.refine().unwrap().0), key(&fine));
+    }
+    check::<1>();
+    check::<2>();
+    check::<3>();
+}
+
+#[test]
+fn boxes_have_the_stated_cells_and_sides() {
+    let domain = BoxDomain::dirichlet(Point::from([-1.0, 0.0]), Point::from([1.0, 1.0])).side(
+        1,
+        0,
+        BoundaryPart::Contact,
+    );
+    assert_eq!(domain.counts(8), [16, 8]);
+    let mesh = Mesh::<f64, 2>::kuhn_box(&domain, domain.counts(8)).unwrap();
+    check_topology(&mesh);
+    assert_eq!((mesh.n_cells(), mesh.vertices().len()), (256, 153));
+    for f in mesh.boundary() {
+        let on_floor = mesh.facet_barycentre(f.cell as usize, f.local as usize)[1] == 0.0;
+        assert_eq!(on_floor, f.part == BoundaryPart::Contact);
+    }
+    // every diagonal runs from the lower left to the upper right corner
+    for c in 0..mesh.n_cells() {
+        let cell = mesh.cell(c);
+        let diagonal = mesh.vertices()[cell[2] as usize] - mesh.vertices()[cell[0] as usize];
+        assert!(diagonal.iter().all(|&d| (d - 0.125).abs() < 1e-15));
+    }
+}
+
+#[test]
+fn topology_does_not_depend_on_the_number_of_threads() {
+    fn check<const D: usize>(n: usize) {
+        let mut random = Random(8);
+        let raw = Raw::<D>::jittered(&mixed_box(), n, 0.3, &mut random).shuffled(&mut random);
+        let mesh = raw.mesh::<f64>();
+        let run = |threads| {
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+            pool.install(|| {
+                let (fine, refinement) = mesh.refine().unwrap();
+                let lists = (fine.cells().to_vec(), fine.boundary().to_vec(), refinement);
+                (Neighbours::of(&mesh), Edges::numbered(&mesh), lists, fine.vertices().to_vec())
+            })
+        };
+        let one = run(1);
+        check_topology(&mesh);
+        // enough vertices for several ranges
+        for threads in [2, 8] {
+            assert!(one == run(threads), "{D}-d with {threads} threads");
+        }
+    }
+    check::<1>(3000);
+    check::<2>(40);
+    check::<3>(10);
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(32))]
+    #[test]
+    fn topology_does_not_depend_on_the_order_of_lists(seed in 0_u64..1_000_000) {
+        let mut random = Random(seed);
+        let plane = Raw::<2>::jittered(&mixed_box(), 3, 0.6, &mut random).shuffled(&mut random).mesh::<f64>();
+        check_topology(&plane);
+        prop_assert!((volume(&plane) - 1.0).abs() < 1e-12);
+        let space = Raw::<3>::jittered(&mixed_box(), 2, 0.4, &mut random).shuffled(&mut random).mesh::<f64>();
+        check_topology(&space);
+        prop_assert!((volume(&space) - 1.0).abs() < 1e-12);
+    }
+}
+
+/// Two triangles of the unit square, all Dirichlet.
+fn square() -> Raw<2> {
+    Raw::jittered(&BoxDomain::dirichlet(Point::zeros(), Point::repeat(1.0)), 1, 0.0, &mut Random(0))
+}
+
+fn refused(raw: &Raw<2>) -> MeshError {
+    Mesh::<f64, 2>::new(raw.vertices.clone(), raw.cells.clone(), &raw.boundary).unwrap_err()
+}
+
+#[test]
+fn unused_vertices_are_dropped() {
+    let mut raw = square();
+    raw.vertices.insert(0, Point::from([9.0, 9.0]));
+    raw.cells.iter_mut().for_each(|v| *v += 1);
+    raw.boundary.iter_mut().for_each(|f| f.vertices = f.vertices.map(|v| v + 1));
+    let mesh = raw.mesh::<f64>();
+    assert_eq!(mesh.vertices().len(), 4);
+    assert_eq!(mesh.domain_diameter(), 2_f64.sqrt());
+}
+
+#[test]
+fn wrong_lists() {
+    let mut raw = square();
+    raw.cells.clear();
+    assert_eq!(refused(&raw), MeshError::NoCells { dimension: 2 });
+    let mut raw = square();
+    raw.cells.pop();
+    assert_eq!(refused(&raw), MeshError::IncompleteCell { entries: 5, per_cell: 3 });
+    let mut raw = square();
+    raw.cells[4] = 77;
+    assert_eq!(refused(&raw), MeshError::VertexOutOfRange { cell: 1, vertex: 77, vertices: 4 });
+    let mut raw = square();
+    raw.vertices[2][1] = f64::NAN;
+    assert!(matches!(refused(&raw), MeshError::NotFinite { vertex: 2, axis: 1, .. }));
+}
+
+#[test]
+fn wrong_cells() {
+    let mut raw = square();
+    raw.vertices[1] = (raw.vertices[0] + raw.vertices[3]) * 0.5;
+    let error = refused(&raw);
+    assert!(matches!(error, MeshError::DegenerateCell { .. }), "{error}");
+    let mut raw = square();
+    let again: Vec<u32> = raw.cells[..3].iter().rev().copied().collect();
+    raw.cells.extend(again);
+    assert!(matches!(refused(&raw), MeshError::RepeatedCell { first: 0, second: 2, .. }));
+    // a third triangle on the diagonal
+    let mut raw = square();
+    raw.vertices.push(Point::from([2.0, -1.0]));
+    raw.cells.extend([0, 3, 4]);
+    let error = refused(&raw);
+    assert!(
+        matches!(&error, MeshError::FacetOfThreeCells { vertices, cells: [0, 1, 2] } if vertices == &[0, 3])
+    );
+    assert!(error.to_string().contains("[0, 3]"));
+}
+
+#[test]
+fn wrong_boundaries() {
+    let mut raw = square();
+    let lost = raw.boundary.remove(1);
+    let error = refused(&raw);
+    assert!(
+        matches!(&error, MeshError::UntaggedFacet { vertices, .. } if vertices[..] == lost.vertices)
+    );
+    assert!(error.to_string().contains("dirichlet, neumann, contact"));
+    let mut raw = square();
+    raw.boundary.push(TaggedFacet { part: BoundaryPart::Contact, ..raw.boundary[0] });
+    assert!(matches!(
+        refused(&raw),
+        MeshError::FacetInTwoParts { first: "dirichlet", second: "contact", tag: 4, .. }
+    ));
+    let mut raw = square();
+    raw.boundary.push(TaggedFacet { vertices: [0, 3], part: BoundaryPart::Dirichlet });
+    assert!(matches!(
+        refused(&raw),
+        MeshError::NotABoundaryFacet { why: "lies between two cells", .. }
+    ));
+    let mut raw = square();
+    raw.boundary.push(TaggedFacet { vertices: [1, 2], part: BoundaryPart::Dirichlet });
+    assert!(matches!(
+        refused(&raw),
+        MeshError::NotABoundaryFacet { why: "belongs to no cell", .. }
+    ));
+    // the same facet twice in the same part is no contradiction
+    let mut raw = square();
+    raw.boundary.push(raw.boundary[0]);
+    assert_eq!(raw.mesh::<f64>().boundary().len(), 4);
+}
+
+#[test]
+fn a_component_that_nothing_holds() {
+    let mut raw = square();
+    let shift = raw.vertices.len() as u32;
+    let far: Vec<_> = raw.vertices.iter().map(|x| x + Point::from([5.0, 0.0])).collect();
+    raw.vertices.extend(far);
+    let cells: Vec<u32> = raw.cells.iter().map(|v| v + shift).collect();
+    raw.cells.extend(cells);
+    let boundary: Vec<_> = raw
+        .boundary
+        .iter()
+        .map(|f| TaggedFacet {
+            vertices: f.vertices.map(|v| v + shift),
+            part: BoundaryPart::Neumann,
+        })
+        .collect();
+    raw.boundary.extend(boundary);
+    let mut held = raw.boundary.clone();
+    let mesh = raw.mesh::<f64>();
+    assert_eq!(mesh.check_supported(), Err(MeshError::UnsupportedComponent { cell: 2, cells: 2 }));
+    held[5].part = BoundaryPart::Contact;
+    let mesh = Mesh::<f64, 2>::new(raw.vertices.clone(), raw.cells.clone(), &held).unwrap();
+    assert_eq!(mesh.check_supported(), Ok(()));
+}
+
+#[test]
+fn boxes_that_cannot_be_made() {
+    let domain = BoxDomain::dirichlet(Point::zeros(), Point::repeat(1.0));
+    assert!(matches!(Mesh::<f64, 2>::kuhn_box(&domain, [0, 3]), Err(MeshError::Parameter { .. })));
+    let huge = Mesh::<f64, 3>::kuhn_box(
+        &BoxDomain::dirichlet(Point::zeros(), Point::repeat(1.0)),
+        [1_000_000_000; 3],
+    );
+    assert!(matches!(huge, Err(MeshError::TooLarge { what: "cells", .. })));
+    let flat = BoxDomain::dirichlet(Point::zeros(), Point::from([1.0, 0.0]));
+    assert!(matches!(Mesh::<f64, 2>::kuhn_box(&flat, [2, 2]), Err(MeshError::Parameter { .. })));
+}
+
+#[test]
+fn a_cell_too_thin_for_single_precision_is_refused_there() {
+    let mut raw = square();
+    for x in &mut raw.vertices {
+        x[1] *= 1e-9;
+    }
+    assert!(Mesh::<f64, 2>::new(raw.vertices.clone(), raw.cells.clone(), &raw.boundary).is_ok());
+    let single = Mesh::<f32, 2>::new(raw.vertices.clone(), raw.cells.clone(), &raw.boundary);
+    assert!(matches!(single, Err(MeshError::DegenerateCell { .. })));
+}

@@ -1,0 +1,16 @@
+//! Studies and what they write: scenes, reports, tables, pictures, files of fields.
+
+mod pictures;
+mod report;
+mod rows;
+mod scenes;
+mod scratch;
+mod stability;
+mod tables;
+mod vtu;
+mod work_precision;
+
+#[path = "../support"]
+mod support {
+    pub mod keys;
+}

@@ -1,0 +1,22 @@
+//! Directories that tests write to.
+
+use std::path::PathBuf;
+
+/// A directory of its own for a test, gone when the test is over.
+pub struct Scratch(pub PathBuf);
+
+impl Scratch {
+    pub fn new(name: &str) -> Self {
+        let name = format!("unilateral-study-{}-{name}", std::process::id());
+        Scratch(std::env::temp_dir().join(name))
+    }
+    pub fn read(&self, name: &str) -> String {
+        std::fs::read_to_string(self.0.join(name)).unwrap()
+    }
+}
+
+impl Drop for Scratch {
+    fn drop(&mut self) {
+        let _ = std::fs::remove_dir_all(&self.0);
+    }
+}

@@ -1,0 +1,189 @@
+//! The stability study: criteria that are promised, completeness, reports that read back.
+
+use std::collections::BTreeSet;
+
+use crate::scratch::Scratch;
+use serde_json::Value;
+use unilateral::error::Error;
+use unilateral::stability::{
+    CRITERIA, Effort, STABILITY_CASES, Stability, StabilityReport, StabilityRow, Verdict,
+};
+
+fn quick(cases: &[&str], schemes: &[&str]) -> StabilityReport {
+    let study = Stability::new(Effort::Quick);
+    study.cases(cases.iter().copied()).schemes(schemes.iter().copied()).run().unwrap()
+}
+
+fn describe(row: &StabilityRow) -> String {
+    format!(
+        "{} {} {} {:?} {} {:?}: {} {:?}, expected {}: {} ({})",
+        row.criterion,
+        row.scheme,
+        row.choice,
+        row.level,
+        row.parameter,
+        row.value,
+        row.quantity,
+        row.measured,
+        row.expected.words(),
+        row.verdict_words(),
+        row.detail
+    )
+}
+
+/// The rows of a criterion, at least one.
+fn of<'r>(report: &'r StabilityReport, criterion: &str) -> Vec<&'r StabilityRow> {
+    let rows: Vec<_> = report.rows.iter().filter(|r| r.criterion == criterion).collect();
+    assert!(!rows.is_empty(), "{criterion}");
+    rows
+}
+
+/// No row of these misses what it should keep.
+fn keeps(report: &StabilityReport) {
+    assert_eq!(report.failures, Vec::<String>::new());
+    let missed: Vec<String> =
+        report.rows.iter().filter(|r| r.verdict == Verdict::Missed).map(describe).collect();
+    assert!(missed.is_empty(), "{}", missed.join("\n"));
+    assert!(report.rows.iter().any(|r| r.verdict == Verdict::Met));
+}
+
+/// Every row of a choice that is known to fail does.
+fn fails(report: &StabilityReport, criterion: &str, is_shown: impl Fn(&StabilityRow) -> bool) {
+    let shown: Vec<_> = of(report, criterion).into_iter().filter(|r| is_shown(r)).collect();
+    assert!(!shown.is_empty());
+    for row in shown {
+        assert_eq!(row.verdict, Verdict::FailsAsExpected, "{}", describe(row));
+    }
+}
+
+#[test]
+fn stretched_cells_ask_for_weights_by_heights() {
+    let report = quick(&["stretched-cells"], &["wopsip", "sipg"]);
+    keeps(&report);
+    fails(&report, "error-on-stretched-cells", |r| {
+        r.choice == "1/h_F^3" && r.value.is_some_and(|a| a > 5.0)
+    });
+    fails(&report, "definite-on-stretched-cells", |r| {
+        r.choice == "10/h_F" && r.value.is_some_and(|a| a > 5.0)
+    });
+    let said = report.robust_choices();
+    assert!(
+        said.iter().any(|s| s.contains("wopsip: robust: \"eta = diam^2, eta/(h^2 l_F)\"")),
+        "{said:?}"
+    );
+}
+
+/// Cells of edges of 2e-10 beside ones of size one: the measures of their facets must not vanish.
+#[test]
+fn interior_penalty_stands_graded_meshes() {
+    keeps(&quick(&["graded-meshes"], &["p1", "sipg"]));
+}
+
+#[test]
+fn units_do_not_matter() {
+    let report = quick(&["scaling"], &["p1", "cr", "sipg", "wopsip"]);
+    keeps(&report);
+    fails(&report, "size-of-domain", |r| r.choice == "1/h_F^3");
+    fails(&report, "size-of-coefficient", |r| r.choice.ends_with("ignored"));
+}
+
+#[test]
+fn contrast_asks_for_the_coefficient_in_the_penalty() {
+    let report = quick(&["contrast"], &["p1", "wopsip"]);
+    keeps(&report);
+    fails(&report, "error-over-contrast", |r| {
+        r.choice.ends_with("ignored") && r.value.is_some_and(|contrast| contrast > 1.0)
+    });
+}
+
+#[test]
+fn coercivity_is_told_by_inertia() {
+    let report = quick(&["coercivity"], &["sipg"]);
+    keeps(&report);
+    fails(&report, "inertia", |r| r.parameter == "sigma" && r.value.is_some_and(|s| s < 3.0));
+}
+
+#[test]
+fn slivers_leave_the_schemes_definite() {
+    let report = quick(&["slivers"], &["p1", "cr"]);
+    keeps(&report);
+    let absent = of(&report, "given-meshes");
+    assert!(absent.iter().all(|r| r.verdict == Verdict::NotApplicable), "{}", describe(absent[0]));
+}
+
+#[test]
+fn what_does_not_exist_is_refused_before_anything_runs() {
+    let study = |case: &str, scheme: &str| {
+        Stability::new(Effort::Quick).cases([case]).schemes([scheme]).run()
+    };
+    assert!(matches!(study("nothing", "p1"), Err(Error::Parameter { parameter: "case", .. })));
+    assert!(matches!(study("scaling", "p7"), Err(Error::Parameter { parameter: "scheme", .. })));
+}
+
+#[test]
+fn reports_read_back() {
+    let scratch = Scratch::new("stability");
+    let study = Stability::new(Effort::Quick).cases(["scaling"]).schemes(["p1", "wopsip"]);
+    let report = study.write_to(&scratch.0).run().unwrap();
+    let read = |name: &str| std::fs::read_to_string(scratch.0.join(name)).unwrap();
+
+    let json: Value = serde_json::from_str(&read("stability.json")).unwrap();
+    let rows = json["rows"].as_array().unwrap();
+    assert_eq!(rows.len(), report.rows.len());
+    for (read, row) in rows.iter().zip(&report.rows) {
+        assert_eq!(read["criterion"], row.criterion.as_str());
+        let verdict = serde_json::to_value(row.verdict).unwrap();
+        assert_eq!(read["verdict"], verdict);
+        assert_eq!(read["measured"].is_null(), row.measured.is_none());
+    }
+    assert_eq!(json["provenance"]["complete"], true);
+    assert_eq!(json["criteria"].as_array().unwrap().len(), CRITERIA.len());
+
+    let csv = read("stability.csv");
+    assert_eq!(csv.lines().count(), report.rows.len() + 1);
+    assert!(csv.starts_with("case,criterion,scheme,choice,precision,problem,level,"));
+    let markdown = read("stability.md");
+    assert!(markdown.starts_with("# Stability\n"));
+    assert!(markdown.contains("### Case scaling"));
+    let texts = [markdown, read("stability.txt"), read("stability.tex")];
+    for row in &report.rows {
+        assert!(texts.iter().all(|text| text.contains(row.verdict.name())), "{}", describe(row));
+    }
+    assert!(texts[2].contains("\\begin{tabular}") && texts[2].contains("\\bottomrule"));
+}
+
+#[test]
+fn every_criterion_has_its_rows() {
+    complete(Effort::Trial, &["p1", "sipg", "wopsip", "nipg"]);
+}
+
+/// In release builds: `cargo test --release --test study stability:: -- --ignored`.
+#[test]
+#[ignore = "takes long"]
+fn every_criterion_has_its_rows_in_the_quick_study() {
+    complete(Effort::Quick, &Stability::SCHEMES);
+}
+
+fn complete(effort: Effort, schemes: &[&str]) {
+    let report = Stability::new(effort).schemes(schemes.iter().copied()).run().unwrap();
+    assert_eq!(report.failures, Vec::<String>::new());
+    let asked: BTreeSet<&str> = report.rows.iter().map(|r| r.criterion.as_str()).collect();
+    let missing: Vec<&str> =
+        CRITERIA.iter().map(|c| c.name).filter(|name| !asked.contains(name)).collect();
+    assert!(missing.is_empty(), "{missing:?}");
+    for case in STABILITY_CASES {
+        for scheme in schemes.iter().filter(|s| **s != "nipg") {
+            let has = report.rows.iter().any(|r| r.case == case && r.scheme == *scheme);
+            assert!(has, "{case} has no row of {scheme}");
+        }
+    }
+    for row in &report.rows {
+        let is_judged = row.expected.at_least.is_some() || row.expected.at_most.is_some();
+        assert_eq!(
+            is_judged,
+            !matches!(row.verdict, Verdict::Reported | Verdict::NotApplicable),
+            "{}",
+            describe(row)
+        );
+    }
+}

@@ -1,0 +1,172 @@
+//! The files of a report of work against precision, read back; baselines.
+
+use std::process::Command;
+
+use super::synthetic::{measured, synthetic};
+use crate::scratch::Scratch;
+use unilateral::work_precision::changes;
+
+/// Cells of a line without quoted commas.
+fn table(csv: &str) -> Vec<Vec<&str>> {
+    csv.lines().map(|line| line.split(',').collect()).collect()
+}
+
+#[test]
+fn csv_reads_back_to_the_same_numbers() {
+    let report = synthetic();
+    let text = report.to_csv();
+    let lines = table(&text);
+    assert_eq!(lines.len(), 1 + 8);
+    for (line, measured) in lines[1..].iter().zip(&report.rows) {
+        // not read back from JSON: that reader may be wrong in the last digit
+        let row = serde_json::to_value(measured).unwrap();
+        let mut numbers = 0;
+        for (key, cell) in lines[0].iter().zip(line) {
+            let value = row.pointer(&format!("/{}", key.replace('.', "/"))).unwrap();
+            if let Some(x) = value.as_f64() {
+                assert_eq!(cell.parse::<f64>().unwrap().to_bits(), x.to_bits(), "{key}");
+                numbers += 1;
+            } else if value.is_null() {
+                assert_eq!(*cell, "", "{key}");
+            }
+        }
+        assert!(numbers > 30, "{numbers}");
+    }
+    let smallest = lines[0].iter().position(|k| *k == "smallest.total").unwrap();
+    let expected = report.rows[2].smallest.total;
+    assert_eq!(lines[3][smallest].parse::<f64>().unwrap().to_bits(), expected.to_bits());
+    let reach = report.reach_csv();
+    assert_eq!(table(&reach).len(), 1 + report.reach().len());
+    assert!(reach.starts_with("scene,scheme,constraint,linear_asked,precision,norm,error,seconds"));
+}
+
+/// Rows of each table in Markdown: bars in each.
+fn bars(markdown: &str) -> Vec<Vec<usize>> {
+    let lines = markdown.split("\n\n").map(|block| block.lines().filter(|l| l.starts_with('|')));
+    let count = |line: &str| line.replace("\\|", "").matches('|').count();
+    lines.map(|l| l.map(count).collect()).filter(|v: &Vec<usize>| !v.is_empty()).collect()
+}
+
+#[test]
+fn markdown_tables_have_as_many_cells_in_each_line() {
+    let text = synthetic().to_markdown();
+    let tables = bars(&text);
+    assert_eq!(tables.len(), 4, "{text}");
+    for lines in &tables {
+        assert!(lines.iter().all(|n| n == &lines[0]), "{lines:?}\n{text}");
+    }
+    assert_eq!(tables[0].len(), 2 + 8);
+    assert!(text.contains("### radial-2d: time to reach an error in L2"));
+}
+
+#[test]
+fn latex_tables_have_as_many_cells_as_columns_and_nothing_unescaped() {
+    let mut report = synthetic();
+    report.rows[0].row.status = "odd_status & 100%".into();
+    let text = report.to_latex();
+    let tables: Vec<&str> = text.split("\\begin{tabular}").skip(1).collect();
+    assert_eq!(tables.len(), 4);
+    for table in tables {
+        let (columns, rest) = table[1..].split_once('}').unwrap();
+        let body = rest.split("\\end{tabular}").next().unwrap();
+        let lines: Vec<&str> = body.lines().filter(|l| l.ends_with("\\\\")).collect();
+        assert!(lines.len() > 3);
+        for line in lines {
+            assert_eq!(line.matches(" & ").count() + 1, columns.len(), "{line}");
+        }
+        for rule in ["\\toprule", "\\midrule", "\\bottomrule"] {
+            assert_eq!(body.matches(rule).count(), 1);
+        }
+    }
+    assert!(text.contains("odd\\_status \\& 100\\%"), "{text}");
+    assert_eq!(text.matches("\\begin{table}").count(), text.matches("\\end{table}").count());
+}
+
+#[test]
+fn latex_compiles_where_it_is_installed() {
+    if Command::new("pdflatex").arg("--version").output().is_err() {
+        eprintln!("pdflatex is not installed: skipped");
+        return;
+    }
+    let scratch = Scratch::new("latex");
+    std::fs::create_dir_all(&scratch.0).unwrap();
+    // as wide as tables get: all errors, and a scheme told apart by where its bounds are
+    let mut report = synthetic();
+    for m in &mut report.rows {
+        m.row.error.energy = Some(1.23e-4);
+        m.row.unknowns = 123_456;
+    }
+    let mut other = report.rows.clone();
+    other.iter_mut().for_each(|m| m.row.constraint = "facet-means".to_owned());
+    report.rows.extend(other);
+    let document = format!(
+        "\\documentclass{{article}}\n\\usepackage{{booktabs}}\n\\begin{{document}}\n{}\\end{{document}}\n",
+        report.to_latex()
+    );
+    std::fs::write(scratch.0.join("report.tex"), document).unwrap();
+    let output = Command::new("pdflatex")
+        .args(["-interaction=nonstopmode", "-halt-on-error", "report.tex"])
+        .current_dir(&scratch.0)
+        .output()
+        .unwrap();
+    let log = String::from_utf8_lossy(&output.stdout);
+    assert!(output.status.success(), "{log}");
+    assert!(!log.contains("Overfull"), "wider than the text:\n{log}");
+}
+
+#[test]
+fn a_baseline_tells_changed_counts_and_errors_and_ignores_times() {
+    let baseline = synthetic().to_json();
+    let mut report = synthetic();
+    for m in &mut report.rows {
+        m.smallest.total *= 7.0;
+        m.row.seconds.solve *= 3.0;
+        m.row.peak_memory_bytes = None;
+        // a rounding error is no change
+        m.row.error.h1 = m.row.error.h1.map(|e| e * (1.0 + 1e-12));
+    }
+    let same = changes(&baseline, &report).unwrap();
+    assert_eq!(same.changed, [""; 0]);
+    assert_eq!((same.compared, same.missing.len(), same.new.len()), (8, 0, 0));
+
+    report.rows[1].row.iterations.outer = Some(4);
+    report.rows[2].row.error.l2 = report.rows[2].row.error.l2.map(|e| 1.001 * e);
+    report.rows[4].row.status = "cycling".into();
+    let dropped = report.rows.pop().unwrap();
+    report.rows.push(measured("cr", 8, 1.0));
+    let different = changes(&baseline, &report).unwrap();
+    assert_eq!(different.changed.len(), 3, "{different}");
+    let name = "radial-2d, p1, vertices, direct, f64, level 16";
+    assert_eq!(different.changed[0], format!("{name}: iterations.outer was 3, is 4"));
+    assert!(different.changed[1].contains("level 32: error.l2 was 0.0009765625, is 0.000977"));
+    assert!(different.changed[2].contains("status was \"converged\", is \"cycling\""));
+    assert_eq!(different.missing.len(), 1);
+    assert!(different.missing[0].ends_with(&format!("level {}", dropped.row.level)));
+    assert!(different.new[0].contains("cr"));
+    assert!(different.to_string().starts_with("against the baseline: 7 rows compared, 3 numbers"));
+    assert!(changes("{}", &report).is_err() && changes("no JSON", &report).is_err());
+}
+
+#[test]
+fn failures_are_listed_and_drawn() {
+    let mut report = synthetic();
+    report.rows[2].row.status = "cycling".into();
+    let failures = report.failures();
+    assert_eq!(failures.len(), 1);
+    assert_eq!((failures[0].case.level, &failures[0].why[..]), (32, "cycling"));
+    assert!(report.to_text().contains("failed: p1, level 32: cycling"));
+    let scratch = Scratch::new("drawn");
+    let written = report.write(&scratch.0).unwrap();
+    assert_eq!(written.len(), 6 + 2 * 3);
+    for plot in ["time", "unknowns", "memory"] {
+        let text = scratch.read(&format!("radial-2d-{plot}.svg"));
+        assert!(text.contains("did not converge"), "{plot}");
+        let png = std::fs::read(scratch.0.join(format!("radial-2d-{plot}.png"))).unwrap();
+        assert_eq!(png[1..4], *b"PNG");
+    }
+    assert!(scratch.read("radial-2d-memory.svg").contains("peak memory in MB"));
+    // nothing is left of what was on its way
+    let hidden = std::fs::read_dir(&scratch.0).unwrap();
+    let is_hidden = |e: std::fs::DirEntry| e.file_name().to_string_lossy().starts_with('.');
+    assert!(!hidden.map(Result::unwrap).any(is_hidden));
+}

@@ -1,0 +1,197 @@
+//! Work against precision: times to reach an error, studies, reports that end early.
+
+mod files;
+mod synthetic;
+
+use std::cell::RefCell;
+
+use crate::scratch::Scratch;
+use serde_json::Value;
+use synthetic::{measured, synthetic};
+use unilateral::prelude::*;
+use unilateral::work_precision::{
+    ErrorNorm, Phases, Precision, WorkPoint, WorkPrecision, WorkProgress, work_at,
+};
+
+fn close(a: f64, b: f64) -> bool {
+    (a - b).abs() <= 1e-12 * b.abs()
+}
+
+#[test]
+fn interpolation_is_exact_for_power_laws_and_ends_with_the_data() {
+    for (order, cost) in [(2.0, 3.0), (1.0, 2.0), (0.5, 1.1)] {
+        let point =
+            |n: f64| WorkPoint { error: Some(3.0 * n.powf(-order)), work: 7.0 * n.powf(cost) };
+        let points = [4.0, 9.0, 32.0].map(point);
+        for n in [4.0, 5.0, 9.0, 20.0, 32.0] {
+            let found = work_at(&points, point(n).error.unwrap()).unwrap();
+            assert!(close(found, point(n).work), "{order} {cost} {n}: {found}");
+        }
+        assert_eq!(work_at(&points, point(3.9).error.unwrap()), None);
+        assert_eq!(work_at(&points, point(32.1).error.unwrap()), None);
+    }
+}
+
+#[test]
+fn a_level_that_failed_is_not_bridged_and_a_plateau_is_not_crossed_backwards() {
+    let point = |error: Option<f64>, work: f64| WorkPoint { error, work };
+    let gap = [point(Some(1e-1), 1.0), point(None, 2.0), point(Some(1e-3), 4.0)];
+    assert_eq!(work_at(&gap, 1e-2), None);
+    let up = [point(Some(1e-3), 1.0), point(Some(1e-1), 2.0)];
+    assert_eq!(work_at(&up, 1e-2), None);
+    assert_eq!(work_at(&[], 1e-2), None);
+}
+
+#[test]
+fn times_to_reach_an_error_come_with_the_ratio_to_the_best() {
+    let reach = synthetic().reach();
+    let l2: Vec<_> = reach.iter().filter(|r| r.norm == ErrorNorm::L2).collect();
+    // errors from 1/64 to 1/1024, and the same three variants at each
+    let at = |error: f64| l2.iter().filter(|r| r.error == error).collect::<Vec<_>>();
+    for error in [1e-2, 5e-3, 2e-3, 1e-3] {
+        let here = at(error);
+        assert_eq!(here.len(), 3, "{error}");
+        // error n^-2 and time n^3: time error^-1.5
+        assert!(close(here[0].seconds.unwrap(), 1e-6 * error.powf(-1.5)), "{error}");
+        assert!(close(here[0].unknowns.unwrap(), 6.0 / error), "{error}");
+        assert!(close(here[1].ratio.unwrap(), 3.0), "{error}");
+        let is_reached = error >= 5e-3;
+        assert_eq!(here[2].seconds.is_some(), is_reached, "{error}");
+        assert_eq!(here[2].ratio.is_some_and(|r| close(r, 4.5)), is_reached, "{error}");
+    }
+    assert!(at(2e-2).is_empty() && at(5e-4).is_empty());
+    assert!(reach.iter().all(|r| r.norm != ErrorNorm::Energy), "rows without that error");
+}
+
+#[test]
+fn the_verdict_is_a_sentence_made_from_the_figures() {
+    let expected = "radial-2d: at an L2 error of 5e-3 wopsip takes 1.27e-2 s, 4.5 times the time of p1; 1.5 times that of sipg.";
+    assert_eq!(synthetic().verdicts(), [expected]);
+    let mut fastest = synthetic();
+    fastest.subject.clear();
+    assert!(
+        fastest.verdicts()[0].contains("p1 takes 2.83e-3 s, 0.33 times the time of sipg; 0.22")
+    );
+}
+
+#[test]
+fn smallest_and_median_are_those_of_all_runs() {
+    let mut m = measured("p1", 8, 1.0);
+    let row = m.row.clone();
+    for total in [2.0, 9.0, 4.0, 7.0] {
+        m.add(&row, Phases { solve: total, total, ..Phases::default() });
+    }
+    assert_eq!((m.runs, m.smallest.total, m.median.total), (5, 2.0, 7.0));
+    assert_eq!(m.row.seconds.total, 2.0);
+    assert!(m.row.warnings.is_empty());
+    let mut other = row.clone();
+    other.iterations.outer = Some(99);
+    m.add(&other, Phases::default());
+    assert_eq!(m.row.warnings, ["status or counts differ between runs"]);
+}
+
+fn tiny<'a>() -> WorkPrecision<'a, 2> {
+    WorkPrecision::<2>::new(|| scenes::radial(1.0)).scheme(ConformingP1).scheme(Wopsip::default())
+}
+
+#[test]
+fn an_interrupted_study_leaves_a_readable_report_of_what_is_finished() {
+    let scratch = Scratch::new("interrupted");
+    let seen = RefCell::new(Vec::new());
+    // what stands on the disc when the second round begins, before anything else is finished
+    let report = tiny()
+        .levels([4, 8])
+        .rounds(2)
+        .write_to(&scratch.0)
+        .observer(|progress| {
+            if let WorkProgress::Started(_, 1) = progress {
+                seen.borrow_mut().push(scratch.read("report.json"));
+            }
+        })
+        .run()
+        .unwrap();
+    let early: Value = serde_json::from_str(&seen.borrow()[0]).unwrap();
+    assert_eq!(early["rows"].as_array().unwrap().len(), 4);
+    assert!(early["rows"].as_array().unwrap().iter().all(|r| r["runs"] == 1));
+    assert_eq!(early["provenance"]["complete"], false);
+    assert_eq!(early["provenance"]["rounds"], 2);
+    let late: Value = serde_json::from_str(&scratch.read("report.json")).unwrap();
+    assert_eq!(late["provenance"]["complete"], true);
+    assert!(scratch.read("radial-2d-time.svg").contains("wopsip"));
+    assert!(report.rows.iter().all(|m| m.runs == 2));
+}
+
+#[test]
+fn a_tiny_study_measures_every_variant_alike() {
+    let report = tiny()
+        .scheme(FacetMeans(Wopsip::default()))
+        .linear([
+            unilateral::linear::LinearMethod::Direct,
+            unilateral::linear::LinearMethod::Iterative,
+        ])
+        .precisions([Precision::Double, Precision::Single])
+        .levels([8, 4])
+        .rounds(3)
+        .memory(|case| Some(case.level as u64))
+        .run()
+        .unwrap();
+    assert_eq!(report.rows.len(), 3 * 2 * 2 * 2);
+    assert_eq!(report.failures(), []);
+    assert_eq!(report.program.precision, "f64, f32");
+    let labels: Vec<String> =
+        report.variants().iter().map(|v| v.label(&report.variants())).collect();
+    assert_eq!(labels.len(), 12);
+    assert_eq!(labels[0], "p1, direct, f64");
+    assert_eq!(labels[11], "wopsip, facet-means, iterative, f32");
+    for m in &report.rows {
+        assert_eq!(m.runs, 3);
+        assert!(m.smallest.total > 0.0 && m.smallest.total <= m.median.total);
+        for p in [m.smallest, m.median] {
+            let sum = p.mesh + p.assemble + p.coarse + p.solve;
+            assert!((sum - p.total).abs() <= 1e-9, "{p:?}");
+            // WOPSIP starts from P1, P1 on the coarsest level from nothing
+            assert_eq!(p.coarse > 0.0, m.row.scheme != "p1" || m.row.level == 8, "{p:?}");
+        }
+        assert_eq!(m.row.peak_memory_bytes, Some(m.row.level as u64));
+        let is_single = m.precision == "f32";
+        assert!(m.row.certificate.residual < if is_single { 1e-4 } else { 1e-9 });
+        // the same counts and errors as a study of this scheme alone
+        assert_eq!(m.row.order.l2.is_some(), m.row.level == 8);
+    }
+    let alone = Study::<f64, 2>::new(scenes::radial(1.0))
+        .scheme(ConformingP1)
+        .solver(unilateral::inequality::ActiveSet {
+            linear: unilateral::linear::LinearMethod::Direct,
+            ..Default::default()
+        })
+        .levels([4, 8])
+        .run()
+        .unwrap();
+    for (a, m) in alone.rows.iter().zip(&report.rows) {
+        assert_eq!(
+            (a.error, a.nonzeros, a.iterations),
+            (m.row.error, m.row.nonzeros, m.row.iterations)
+        );
+    }
+}
+
+#[test]
+fn wrong_requests_are_refused_before_anything_runs() {
+    let message = |study: WorkPrecision<2>| study.run().unwrap_err().to_string();
+    assert!(message(tiny()).contains("needs a scheme"));
+    assert!(message(tiny().levels([0, 4])).contains("at least one subdivision"));
+    assert!(message(tiny().scheme(ConformingP1).levels([4])).contains("must have its own name"));
+    let named =
+        unilateral::work_precision::Named { name: "nothing".into(), options: Default::default() };
+    assert!(message(tiny().scheme(named).levels([4])).contains("no scheme of this name"));
+}
+
+#[test]
+fn what_takes_too_long_is_not_repeated_and_finer_levels_are_listed() {
+    let report = tiny().levels([4, 8]).rounds(2).limit(1e-12).run().unwrap();
+    assert_eq!(report.rows.len(), 2);
+    assert!(report.rows.iter().all(|m| m.runs == 1 && m.row.level == 4));
+    let failures = report.failures();
+    assert_eq!(failures.len(), 2);
+    assert!(failures.iter().all(|f| f.why.starts_with("not run: level 4 took")));
+}

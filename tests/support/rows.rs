@@ -1,0 +1,32 @@
+//! Rows of studies, and what is asserted of each.
+
+use super::checks::Checks;
+use super::schemes::Boxed;
+use unilateral::prelude::*;
+use unilateral::scenes::Scene;
+use unilateral::study::Row;
+
+/// Scheme, constraint, scene and level of a row, for messages.
+pub fn label(row: &Row) -> String {
+    format!("{} ({}) on {} at level {}", row.scheme, row.constraint, row.scene, row.level)
+}
+
+/// The rows of schemes on levels of a scene.
+pub fn rows<T: Real, const D: usize>(
+    scene: Scene<D>,
+    schemes: Vec<Boxed<T, D>>,
+    levels: impl IntoIterator<Item = usize>,
+) -> Vec<Row> {
+    let study = Study::<T, D>::new(scene).levels(levels);
+    schemes.into_iter().fold(study, Study::boxed_scheme).run().unwrap().rows
+}
+
+impl Checks {
+    /// The row converged, with a certificate that says so.
+    pub fn certified(&mut self, row: &Row, largest: f64) {
+        let (status, found) = (&row.status, row.certificate.largest());
+        self.that(row.converged() && found < largest, || {
+            format!("{}: {status}, certificate {found:e}", label(row))
+        });
+    }
+}

@@ -1,0 +1,82 @@
+//! Solutions and error norms by the rules of printed tables.
+
+use unilateral::assemble::DataQuadrature;
+use unilateral::inequality::ActiveSet;
+use unilateral::mesh::Mesh;
+use unilateral::nested::{Hierarchy, Solved, Task};
+use unilateral::prelude::*;
+use unilateral::quadrature::Rule;
+use unilateral::scenes::Scene;
+
+/// The degree of the rules for data and norms in most tables of the independent implementation:
+/// five points of Gauss in each direction.
+pub const DEGREE_OF_TABLES: usize = 9;
+
+/// A scheme's solution on a level with the rules of those tables.
+pub fn solve_as_tables<const D: usize>(
+    scene: &Scene<D>,
+    scheme: &dyn AnyScheme<f64, D>,
+    level: usize,
+) -> (Mesh<f64, D>, Solved) {
+    solve_by_rule(scene, scheme, level, DEGREE_OF_TABLES)
+}
+
+/// A scheme's solution on a level, started from that of conforming elements, with rules of this
+/// degree for data.
+pub fn solve_by_rule<const D: usize>(
+    scene: &Scene<D>,
+    scheme: &dyn AnyScheme<f64, D>,
+    level: usize,
+    degree: usize,
+) -> (Mesh<f64, D>, Solved) {
+    let quadrature = DataQuadrature { cell: degree, facet: degree };
+    let solver = ActiveSet::default();
+    let mut levels = Hierarchy::new(&scene.problem, &scene.domain, None);
+    levels.make(level).unwrap();
+    let start = levels.contact(level, &solver, quadrature, 1).unwrap();
+    let mesh = levels.mesh(level).unwrap().0.clone();
+    let task = Task {
+        problem: &scene.problem,
+        mesh: &mesh,
+        start: Some(&start),
+        solver: &solver,
+        quadrature,
+        with_errors: true,
+        repeat: 1,
+        with_fields: true,
+    };
+    let solved = scheme.solve(&task).unwrap();
+    (mesh, solved)
+}
+
+/// L2 norm and H1 seminorm of the error by a rule of this degree, which collapses a square onto
+/// each triangle, one side of it onto the triangle's first vertex. Where the error is not smooth in
+/// a cell the last digits of a table are those of its rule.
+pub fn norms_by_rule<const D: usize>(
+    scene: &Scene<D>,
+    mesh: &Mesh<f64, D>,
+    u: &[f64],
+    degree: usize,
+) -> [f64; 2] {
+    let exact = scene.problem.exact.as_ref().unwrap();
+    let rule = Rule::of_degree(D, degree);
+    let [mut l2, mut h1] = [0.0; 2];
+    for (cell, values) in u.chunks(D + 1).enumerate() {
+        let geometry = mesh.geometry(cell);
+        let sum = |s: Point<f64, D>, k: usize| s + geometry.gradient(k) * values[k];
+        let gradient = (0..=D).fold(Point::zeros(), sum);
+        for (point, weight) in rule.iter() {
+            let point: Vec<f64> = (0..=D).map(|k| point[D - k]).collect();
+            let x = mesh.point(cell, &point);
+            let value: f64 = point.iter().zip(values).map(|(b, u)| b * u).sum();
+            l2 += weight * geometry.volume * (value - (exact.value)(&x)).powi(2);
+            h1 += weight * geometry.volume * (gradient - (exact.gradient)(&x)).norm_squared();
+        }
+    }
+    [l2.sqrt(), h1.sqrt()]
+}
+
+/// The penalty part of WOPSIP's energy norm, where coefficient is one and there is no reaction.
+pub fn jump_norm(energy: f64, h1: f64) -> f64 {
+    (energy * energy - h1 * h1).sqrt()
+}
