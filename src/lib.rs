@@ -14,9 +14,12 @@ pub mod measure;
 mod memory;
 pub mod mesh;
 pub mod nested;
+#[cfg(feature = "report")]
 pub mod output;
 mod parallel;
+#[cfg(feature = "report")]
 pub mod paraview;
+#[cfg(feature = "plot")]
 pub mod plot;
 pub mod prelude;
 pub mod problem;
@@ -24,6 +27,8 @@ pub mod quadrature;
 pub mod real;
 pub mod scenes;
 pub mod scheme;
+#[cfg(feature = "report")]
 pub mod stability;
 pub mod study;
+#[cfg(feature = "report")]
 pub mod work_precision;

@@ -1,9 +1,8 @@
 //! Penalty factors as reports state them.
 
-use serde::Serialize;
-
 /// Penalty factors in force.
-#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+#[derive(Clone, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "report", derive(serde::Serialize))]
 pub struct PenaltyParameters {
     /// Interior penalty factor.
     pub sigma: Option<f64>,

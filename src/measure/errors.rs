@@ -1,9 +1,8 @@
 //! Errors of a discrete solution, as plain numbers.
 
-use serde::Serialize;
-
 /// Errors against the exact solution.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "report", derive(serde::Serialize))]
 pub struct Errors {
     /// L2 norm.
     pub l2: Option<f64>,
@@ -17,7 +16,8 @@ pub struct Errors {
 
 /// Distances of multiplier and contact set from the exact ones, comparable across schemes; see
 /// [`Discretisation::contact_errors`](crate::assemble::Discretisation::contact_errors).
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "report", derive(serde::Serialize))]
 pub struct ContactErrors {
     /// Error of the multiplier as a density at vertices, in L1.
     pub multiplier_l1: Option<f64>,

@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 
 use super::csv;
 use crate::error::{Error, write_error};
+#[cfg(feature = "plot")]
 use crate::plot::{convergence, work_precision};
 use crate::study::Report;
 
@@ -24,6 +25,7 @@ impl Report {
 
     /// Writes `report.json`, `report.csv` and the plots `convergence` and `work_precision`, each as
     /// `.svg` and `.png`, into a directory, which is made if need be. Returns the files in order.
+    /// Without the feature `plot` there are no plots.
     ///
     /// # Errors
     /// [`Error::Write`] at the first file that cannot be written.
@@ -41,12 +43,14 @@ impl Report {
             |path: &Path, text: String| std::fs::write(path, text).map_err(|e| e.to_string());
         put("report.json", &|path| text(path, self.to_json()))?;
         put("report.csv", &|path| text(path, self.to_csv()))?;
-        let errors = convergence(&self.rows);
-        put("convergence.svg", &|path| text(path, errors.to_svg()?))?;
-        put("convergence.png", &|path| errors.write_png(path))?;
-        let times = work_precision(&self.rows);
-        put("work_precision.svg", &|path| text(path, times.to_svg()?))?;
-        put("work_precision.png", &|path| times.write_png(path))?;
+        #[cfg(feature = "plot")]
+        for (name, figure) in [
+            ("convergence", convergence(&self.rows)),
+            ("work_precision", work_precision(&self.rows)),
+        ] {
+            put(&format!("{name}.svg"), &|path| text(path, figure.to_svg()?))?;
+            put(&format!("{name}.png"), &|path| figure.write_png(path))?;
+        }
         Ok(written)
     }
 }

@@ -1,9 +1,8 @@
 //! What theory promises of a scheme, and on what a promise may depend.
 
-use serde::Serialize;
-
 /// Orders that theory promises.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "report", derive(serde::Serialize))]
 pub struct ExpectedOrders {
     /// In L2.
     pub l2: Option<f64>,

@@ -1,10 +1,9 @@
 //! A report: what was run and what came out, and the files it is written to.
 
 use super::row::Row;
-use serde::Serialize;
-
 /// The program that made a report, and how it ran.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "report", derive(serde::Serialize))]
 pub struct Program {
     /// Its name.
     pub name: String,
@@ -58,7 +57,8 @@ pub fn target_cpu() -> String {
 }
 
 /// Rows in the order run, and the program that ran them.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "report", derive(serde::Serialize))]
 pub struct Report {
     /// The program.
     pub program: Program,

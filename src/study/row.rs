@@ -1,14 +1,13 @@
 //! One row of a report: plain numbers, one for every scene, scheme and level.
 
-use serde::Serialize;
-
 use crate::facet::PenaltyParameters;
 use crate::inequality::Certificate;
 use crate::measure::{ContactErrors, Errors};
 use crate::scheme::ExpectedOrders;
 
 /// Observed orders.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "report", derive(serde::Serialize))]
 pub struct Orders {
     /// Of the error in the L2 norm.
     pub l2: Option<f64>,
@@ -25,7 +24,8 @@ pub struct Orders {
 }
 
 /// Iteration counts.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "report", derive(serde::Serialize))]
 pub struct Iterations {
     /// Active sets tried on this level; none where there was nothing to iterate with.
     pub outer: Option<usize>,
@@ -36,7 +36,8 @@ pub struct Iterations {
 }
 
 /// Wall times in seconds.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "report", derive(serde::Serialize))]
 pub struct Seconds {
     /// Making the mesh.
     pub mesh: f64,
@@ -49,7 +50,8 @@ pub struct Seconds {
 }
 
 /// One row of a report. Keys are binding for scripts; a number that does not apply is null.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "report", derive(serde::Serialize))]
 pub struct Row {
     /// Name of the scene.
     pub scene: String,
@@ -81,7 +83,7 @@ pub struct Row {
     /// Errors against the exact solution.
     pub error: Errors,
     /// Distances of multiplier and contact set, keys of the row itself.
-    #[serde(flatten)]
+    #[cfg_attr(feature = "report", serde(flatten))]
     pub contact: ContactErrors,
     /// Observed order against the previous level of the same scene and scheme.
     pub order: Orders,

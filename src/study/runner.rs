@@ -14,8 +14,10 @@ use crate::element::Layout;
 use crate::error::Error;
 use crate::inequality::{ActiveSet, InequalitySolver};
 use crate::mesh::{BoundaryPart, Domain, Mesh};
-use crate::nested::{AnyScheme, Solved, Task};
-use crate::nested::{Hierarchy, P1Solution};
+#[cfg(feature = "report")]
+use crate::nested::Solved;
+use crate::nested::{AnyScheme, Hierarchy, P1Solution, Task};
+#[cfg(feature = "report")]
 use crate::paraview::{CellFields, write_vtu};
 use crate::real::Real;
 use crate::scenes::Scene;
@@ -107,6 +109,7 @@ impl<'a, T: Real, const D: usize> Study<'a, T, D> {
     }
     /// Writes the fields of every scheme on the finest level to this directory, as
     /// `SCENE-SCHEME.vtu`.
+    #[cfg(feature = "report")]
     pub fn fields_to(mut self, directory: impl Into<PathBuf>) -> Self {
         self.directory = Some(directory.into());
         self
@@ -203,6 +206,7 @@ impl<'a, T: Real, const D: usize> Study<'a, T, D> {
 
     /// Runs the first scheme on the first level alone, with levels of its own, so that all its work is
     /// done now. Returns the row and the seconds of its solve that the start from coarser levels took.
+    #[cfg(feature = "report")]
     pub(crate) fn run_alone(&self) -> Result<(Row, f64), Error> {
         let failure = self.where_exact_fails()?;
         let (Some(scheme), Some(&level)) = (self.schemes.first(), self.levels.first()) else {
@@ -235,6 +239,7 @@ impl<'a, T: Real, const D: usize> Study<'a, T, D> {
             repeat: self.repeat,
             with_fields,
         })?;
+        #[cfg(feature = "report")]
         if let (Some(directory), Some(_)) = (&self.directory, &solved.fields) {
             self.write_fields(directory, scheme, mesh, &solved)?;
         }
@@ -328,6 +333,7 @@ impl<'a, T: Real, const D: usize> Study<'a, T, D> {
         }
     }
 
+    #[cfg(feature = "report")]
     fn write_fields(
         &self,
         directory: &std::path::Path,
