@@ -2,20 +2,18 @@
 
 use std::path::PathBuf;
 
-use clap::Parser;
+use clap::Args;
 use unilateral::scenes;
 use unilateral::solve::Linear;
 use unilateral::study::{Placement, Precision, SCHEMES, SchemeOptions};
 
-/// A wrong request, as a message.
-pub type Request<T> = Result<T, String>;
+use crate::shared::{Request, split};
 
 const SCENES: [&str; 5] = ["radial-2d", "ball-2d", "signorini-2d", "hertz-2d", "radial-3d"];
 const CHOSEN: [&str; 6] = ["p1", "cr", "sipg", "wopsip", "wopsip:facet-means", "p2"];
 
-/// Measures what schemes take to reach a given error.
-#[derive(Parser, Debug)]
-#[command(name = "work_precision", version, about)]
+/// Measures what schemes take to reach a given error
+#[derive(Args, Debug)]
 pub struct Options {
     /// Scenes by name; by default radial-2d, ball-2d, signorini-2d, hertz-2d, radial-3d
     #[arg(long = "scene", value_delimiter = ',', value_name = "A[,B...]")]
@@ -141,12 +139,5 @@ impl Options {
             (_, true) => vec![8, 16, 32],
             (_, false) => vec![8, 16, 32, 64, 128],
         }
-    }
-}
-
-fn split(choice: &str) -> (&str, Option<&str>) {
-    match choice.split_once(':') {
-        Some((name, place)) => (name, Some(place)),
-        None => (choice, None),
     }
 }

@@ -5,8 +5,8 @@ use unilateral::real::Point;
 use unilateral::scenes::BoxDomain;
 use unilateral::study::{PenaltyParameters, Placement, SchemeOptions, scheme_by_name};
 
-use super::Request;
 use super::options::Options;
+use crate::shared::Request;
 
 /// What the options say of schemes.
 pub fn scheme_options(options: &Options) -> SchemeOptions {

@@ -2,12 +2,11 @@
 
 use std::path::PathBuf;
 
-use clap::Parser;
+use clap::Args;
 use unilateral::study::{Effort, STABILITY_CASES, Stability};
 
-/// Runs the hard cases of variational inequalities and judges schemes by their criteria.
-#[derive(Parser, Debug)]
-#[command(name = "stability", version, about)]
+/// Runs the hard cases of variational inequalities and judges schemes by their criteria
+#[derive(Args, Debug)]
 pub struct Options {
     /// Cases by name; all by default
     #[arg(long = "case", value_delimiter = ',', value_name = "A[,B...]", value_parser = STABILITY_CASES)]
