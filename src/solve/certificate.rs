@@ -26,7 +26,8 @@ use crate::real::Real;
 /// Where `u.A u` is not positive beyond rounding (a constant, zero), `sqrt(sum d_i u_i^2)` takes
 /// the place of `E`, then `sqrt(sum b_i^2 / d_i)`, then one. All sums are in `f64`. If anything is
 /// not finite or sizes do not match, all four are infinite.
-#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "report", derive(serde::Serialize))]
 pub struct Certificate {
     /// Largest violation of a bound or Dirichlet value, over `U`.
     pub feasibility: f64,

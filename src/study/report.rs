@@ -1,13 +1,18 @@
 //! A report: what was run and what came out, and the files it is written to.
 
+#[cfg(feature = "report")]
+use super::csv;
+#[cfg(feature = "plot")]
 use super::plot::{convergence, work_precision};
-use super::{csv, row::Row};
+use super::row::Row;
+#[cfg(feature = "report")]
 use crate::error::Error;
-use serde::Serialize;
+#[cfg(feature = "report")]
 use std::path::{Path, PathBuf};
 
 /// The program that made a report, and how it ran.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "report", derive(serde::Serialize))]
 pub struct Program {
     /// Its name.
     pub name: String,
@@ -61,7 +66,8 @@ pub fn target_cpu() -> String {
 }
 
 /// Rows in the order run, and the program that ran them.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "report", derive(serde::Serialize))]
 pub struct Report {
     /// The program.
     pub program: Program,
@@ -69,6 +75,7 @@ pub struct Report {
     pub rows: Vec<Row>,
 }
 
+#[cfg(feature = "report")]
 impl Report {
     /// The report as JSON. Numbers that do not apply, and numbers that are not finite, are null.
     pub fn to_json(&self) -> String {
@@ -86,6 +93,7 @@ impl Report {
 
     /// Writes `report.json`, `report.csv` and the plots `convergence` and `work_precision`, each as
     /// `.svg` and `.png`, into a directory, which is made if need be. Returns the files in order.
+    /// Without the feature `plot` there are no plots.
     ///
     /// # Errors
     /// [`Error::Write`] at the first file that cannot be written.
@@ -103,17 +111,20 @@ impl Report {
             |path: &Path, text: String| std::fs::write(path, text).map_err(|e| e.to_string());
         put("report.json", &|path| text(path, self.to_json()))?;
         put("report.csv", &|path| text(path, self.to_csv()))?;
-        let errors = convergence(&self.rows);
-        put("convergence.svg", &|path| text(path, errors.to_svg()?))?;
-        put("convergence.png", &|path| errors.write_png(path))?;
-        let times = work_precision(&self.rows);
-        put("work_precision.svg", &|path| text(path, times.to_svg()?))?;
-        put("work_precision.png", &|path| times.write_png(path))?;
+        #[cfg(feature = "plot")]
+        for (name, figure) in [
+            ("convergence", convergence(&self.rows)),
+            ("work_precision", work_precision(&self.rows)),
+        ] {
+            put(&format!("{name}.svg"), &|path| text(path, figure.to_svg()?))?;
+            put(&format!("{name}.png"), &|path| figure.write_png(path))?;
+        }
         Ok(written)
     }
 }
 
 /// What could not be written, and why.
+#[cfg(feature = "report")]
 pub(super) fn write_error(path: &Path, why: impl std::fmt::Display) -> Error {
     Error::Write { path: path.display().to_string(), why: why.to_string() }
 }

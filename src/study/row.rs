@@ -1,11 +1,10 @@
 //! One row of a report: plain numbers, one for every scene, scheme and level.
 
-use serde::Serialize;
-
 use super::Certificate;
 
 /// Errors against the exact solution.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "report", derive(serde::Serialize))]
 pub struct Errors {
     /// L2 norm.
     pub l2: Option<f64>,
@@ -19,7 +18,8 @@ pub struct Errors {
 
 /// Distances of multiplier and contact set from the exact ones, comparable across schemes; see
 /// [`Discretisation::contact_errors`](crate::assemble::Discretisation::contact_errors).
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "report", derive(serde::Serialize))]
 pub struct ContactErrors {
     /// Error of the multiplier as a density at vertices, in L1.
     pub multiplier_l1: Option<f64>,
@@ -32,7 +32,8 @@ pub struct ContactErrors {
 }
 
 /// Observed orders.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "report", derive(serde::Serialize))]
 pub struct Orders {
     /// Of the error in the L2 norm.
     pub l2: Option<f64>,
@@ -49,7 +50,8 @@ pub struct Orders {
 }
 
 /// Orders that theory promises.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "report", derive(serde::Serialize))]
 pub struct ExpectedOrders {
     /// In L2.
     pub l2: Option<f64>,
@@ -58,7 +60,8 @@ pub struct ExpectedOrders {
 }
 
 /// Penalty factors in force.
-#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+#[derive(Clone, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "report", derive(serde::Serialize))]
 pub struct PenaltyParameters {
     /// Interior penalty factor.
     pub sigma: Option<f64>,
@@ -69,7 +72,8 @@ pub struct PenaltyParameters {
 }
 
 /// Iteration counts.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "report", derive(serde::Serialize))]
 pub struct Iterations {
     /// Active sets tried on this level; none where there was nothing to iterate with.
     pub outer: Option<usize>,
@@ -80,7 +84,8 @@ pub struct Iterations {
 }
 
 /// Wall times in seconds.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "report", derive(serde::Serialize))]
 pub struct Seconds {
     /// Making the mesh.
     pub mesh: f64,
@@ -93,7 +98,8 @@ pub struct Seconds {
 }
 
 /// One row of a report. Keys are binding for scripts; a number that does not apply is null.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "report", derive(serde::Serialize))]
 pub struct Row {
     /// Name of the scene.
     pub scene: String,
@@ -125,7 +131,7 @@ pub struct Row {
     /// Errors against the exact solution.
     pub error: Errors,
     /// Distances of multiplier and contact set, keys of the row itself.
-    #[serde(flatten)]
+    #[cfg_attr(feature = "report", serde(flatten))]
     pub contact: ContactErrors,
     /// Observed order against the previous level of the same scene and scheme.
     pub order: Orders,

@@ -3,13 +3,17 @@
 use std::path::PathBuf;
 use std::sync::Arc;
 
-use super::any_scheme::{AnyScheme, Solved, Task};
+#[cfg(feature = "report")]
+use super::any_scheme::Solved;
+use super::any_scheme::{AnyScheme, Task};
 use super::fit::{check_domain, check_fit};
 use super::levels::{Levels, VertexContact};
 use super::memory::{estimate, estimate_without_factors, unknowns_about};
+#[cfg(feature = "report")]
+use super::{CellFields, write_vtu};
 use super::{
-    CellFields, ExpectedOrders, Iterations, MemoryEstimate, Orders, Program, Report, Row, Seconds,
-    fill_orders, peak_memory_bytes, write_vtu,
+    ExpectedOrders, Iterations, MemoryEstimate, Orders, Program, Report, Row, Seconds, fill_orders,
+    peak_memory_bytes,
 };
 use crate::assemble::DataQuadrature;
 use crate::element::Layout;
@@ -106,6 +110,7 @@ impl<'a, T: Real, const D: usize> Study<'a, T, D> {
     }
     /// Writes the fields of every scheme on the finest level to this directory, as
     /// `SCENE-SCHEME.vtu`.
+    #[cfg(feature = "report")]
     pub fn fields_to(mut self, directory: impl Into<PathBuf>) -> Self {
         self.directory = Some(directory.into());
         self
@@ -200,6 +205,7 @@ impl<'a, T: Real, const D: usize> Study<'a, T, D> {
 
     /// Runs the first scheme on the first level alone, with levels of its own, so that all its work is
     /// done now. Returns the row and the seconds of its solve that the start from coarser levels took.
+    #[cfg(feature = "report")]
     pub(super) fn run_alone(&self) -> Result<(Row, f64), Error> {
         let failure = self.where_exact_fails()?;
         let (Some(scheme), Some(&level)) = (self.schemes.first(), self.levels.first()) else {
@@ -231,6 +237,7 @@ impl<'a, T: Real, const D: usize> Study<'a, T, D> {
             repeat: self.repeat,
             with_fields,
         })?;
+        #[cfg(feature = "report")]
         if let (Some(directory), Some(_)) = (&self.directory, &solved.fields) {
             self.write_fields(directory, scheme, mesh, &solved)?;
         }
@@ -324,6 +331,7 @@ impl<'a, T: Real, const D: usize> Study<'a, T, D> {
         }
     }
 
+    #[cfg(feature = "report")]
     fn write_fields(
         &self,
         directory: &std::path::Path,

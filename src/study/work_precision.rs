@@ -2,6 +2,7 @@
 
 mod baseline;
 mod case;
+#[cfg(feature = "plot")]
 mod figures;
 mod measured;
 mod provenance;

@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 
 use serde_json::json;
 
+#[cfg(feature = "plot")]
 use super::figures::figures;
 use super::measured::{Failure, Measured, Variant};
 use super::provenance::Provenance;
@@ -178,6 +179,7 @@ impl WorkReport {
     ///
     /// # Errors
     /// [`Error::Write`] at the first file that cannot be written.
+    #[cfg(feature = "plot")]
     pub fn write_figures(&self, directory: &Path, scene: &str) -> Result<Vec<PathBuf>, Error> {
         let mut written = Vec::new();
         for (name, figure) in figures(self, scene) {
@@ -189,6 +191,12 @@ impl WorkReport {
             written.push(replace(&png, |path| figure.write_png(path))?);
         }
         Ok(written)
+    }
+
+    /// Without the feature `plot` there are no figures.
+    #[cfg(not(feature = "plot"))]
+    pub(super) fn write_figures(&self, _: &Path, _: &str) -> Result<Vec<PathBuf>, Error> {
+        Ok(Vec::new())
     }
 
     /// Writes data, and figures of all scenes.
