@@ -6,6 +6,8 @@ use super::pen::{Drawn, FAMILY, Pen};
 use super::style::PAPER;
 use plotters::prelude::*;
 use plotters::style::{FontStyle, register_font};
+use std::fs::File;
+use std::io::BufWriter;
 use std::path::Path;
 use std::sync::Once;
 
@@ -110,9 +112,21 @@ pub(in crate::study) fn draw_png(drawing: &impl Drawing, path: &Path) -> Result<
         draw(drawing, &Pen { area: &area, scale: f64::from(scale * smooth), lift: 0.14 })?;
     }
     let (size, pixels) = (drawing.pixels(scale), average(&fine, drawn, smooth));
-    let mut file = BitMapBackend::new(path, size);
-    file.blit_bitmap((0, 0), size, &pixels).map_err(|e| e.to_string())?;
-    file.present().map_err(|e| e.to_string())
+    write_pixels(path, size, &pixels).map_err(|e| e.to_string())
+}
+
+/// Writes rows of red, green and blue as a PNG file.
+fn write_pixels(
+    path: &Path,
+    (width, height): (u32, u32),
+    pixels: &[u8],
+) -> Result<(), png::EncodingError> {
+    let mut encoder = png::Encoder::new(BufWriter::new(File::create(path)?), width, height);
+    encoder.set_color(png::ColorType::Rgb);
+    encoder.set_depth(png::BitDepth::Eight);
+    let mut writer = encoder.write_header()?;
+    writer.write_image_data(pixels)?;
+    writer.finish()
 }
 
 /// Each pixel the mean of a square of finer ones.
