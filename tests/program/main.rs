@@ -1,7 +1,4 @@
 //! The program `compare` as its users and their scripts meet it: wrong requests, right requests.
-//!
-//! `cargo test` builds the program first. `cargo test --test program` does not: it runs whatever
-//! `cargo build --example compare` left.
 
 mod data;
 mod meshes;

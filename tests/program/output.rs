@@ -1,7 +1,6 @@
 //! What is printed and written where.
 
 use std::path::Path;
-use std::process::Command;
 
 use serde_json::Value;
 use unilateral::scenes;
@@ -88,11 +87,8 @@ fn a_closed_pipe_is_no_error() {
     let scratch = Scratch::new("pipe");
     let (reader, writer) = std::io::pipe().unwrap();
     drop(reader);
-    let output = Command::new(program())
-        .args(["--list", "--out", &scratch.path("out")])
-        .stdout(writer)
-        .output()
-        .unwrap();
+    let output =
+        program().args(["--list", "--out", &scratch.path("out")]).stdout(writer).output().unwrap();
     assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
     assert_eq!(stderr(&output), "");
 }

@@ -5,14 +5,11 @@ use std::process::{Command, Output};
 
 use serde_json::Value;
 
-/// The example, which cargo builds next to the tests.
-pub fn program() -> PathBuf {
-    let test = std::env::current_exe().expect("a running test has a path");
-    let target = test.parent().and_then(Path::parent).expect("tests lie in a folder of target");
-    let name = format!("compare{}", std::env::consts::EXE_SUFFIX);
-    let program = target.join("examples").join(name);
-    assert!(program.exists(), "{program:?} is missing: `cargo build --example compare` makes it");
-    program
+/// The command `compare` of the program, which cargo builds before the tests.
+pub fn program() -> Command {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_unilateral"));
+    command.arg("compare");
+    command
 }
 
 /// A directory of its own for a test, gone when the test is over.
@@ -39,7 +36,7 @@ impl Scratch {
         self.run_split(&options.split_whitespace().collect::<Vec<_>>())
     }
     pub fn run_split(&self, options: &[&str]) -> Output {
-        let mut command = Command::new(program());
+        let mut command = program();
         if !options.contains(&"--out") {
             command.args(["--out", &self.path("out")]);
         }

@@ -2,21 +2,19 @@
 
 use std::path::PathBuf;
 
-use clap::Parser;
+use clap::Args;
 use unilateral::linear::LinearMethod;
 use unilateral::scenes;
 use unilateral::study::{Placement, SCHEMES, SchemeOptions};
 use unilateral::work_precision::Precision;
 
-/// A wrong request, as a message.
-pub type Request<T> = Result<T, String>;
+use crate::shared::{Request, split};
 
 const SCENES: [&str; 5] = ["radial-2d", "ball-2d", "signorini-2d", "hertz-2d", "radial-3d"];
 const CHOSEN: [&str; 6] = ["p1", "cr", "sipg", "wopsip", "wopsip:facet-means", "p2"];
 
-/// Measures what schemes take to reach a given error.
-#[derive(Parser, Debug)]
-#[command(name = "work_precision", version, about)]
+/// Measures what schemes take to reach a given error
+#[derive(Args, Debug)]
 pub struct Options {
     /// Scenes by name; by default radial-2d, ball-2d, signorini-2d, hertz-2d, radial-3d
     #[arg(long = "scene", value_delimiter = ',', value_name = "A[,B...]")]
@@ -24,7 +22,7 @@ pub struct Options {
     /// Schemes by name, with a placement of the bounds after a colon, as in wopsip:facet-means
     #[arg(long = "scheme", value_delimiter = ',', value_name = "A[:PLACE][,B...]")]
     schemes: Vec<String>,
-    /// LinearMethod solvers: direct, iterative, by-size
+    /// Linear solvers: direct, iterative, by-size
     #[arg(long, value_delimiter = ',', value_parser = LinearMethod::NAMES.map(|l| l.0), default_value = "by-size")]
     linear: Vec<String>,
     /// Scalars
@@ -142,12 +140,5 @@ impl Options {
             (_, true) => vec![8, 16, 32],
             (_, false) => vec![8, 16, 32, 64, 128],
         }
-    }
-}
-
-fn split(choice: &str) -> (&str, Option<&str>) {
-    match choice.split_once(':') {
-        Some((name, place)) => (name, Some(place)),
-        None => (choice, None),
     }
 }

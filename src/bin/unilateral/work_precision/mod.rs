@@ -1,64 +1,35 @@
 //! Work against precision: what schemes, linear solvers and scalars take to reach a given error.
 //!
-//! `cargo run --release --example work_precision -- --help` tells the options; `-- --quick` ends
-//! within a minute. Exit codes: 0 if every run converged and nothing changed against the baseline,
-//! 1 otherwise, 2 if the request was wrong.
+//! `cargo run --release -- work-precision --help` tells the options; `--quick` ends within a minute.
+//! Exit codes: 0 if every run converged and nothing changed against the baseline, 1 otherwise, 2 if
+//! the request was wrong.
 
-use std::fs;
-use std::io::{ErrorKind, IsTerminal, Write};
-use std::process::{Command, ExitCode};
-use std::time::Duration;
-
-#[path = "work_precision/options.rs"]
 mod options;
 
-use clap::Parser;
-use indicatif::{ProgressBar, ProgressStyle};
-use options::{Options, Request};
+use std::fs;
+use std::process::Command;
+
+use indicatif::ProgressBar;
+pub use options::Options;
 use unilateral::inequality::ActiveSet;
 use unilateral::linear::LinearMethod;
 use unilateral::real::Real;
-use unilateral::scenes::{self, AnyScene, Parameters, Scene};
+use unilateral::scenes;
+use unilateral::scenes::{AnyScene, Scene};
 use unilateral::study::{Study, peak_memory_bytes, scheme_by_name};
 use unilateral::work_precision::{
     Case, Named, Precision, WorkPrecision, WorkProgress, WorkReport, changes,
 };
 
-fn main() -> ExitCode {
-    let options = Options::parse();
-    let outcome = options.check().and_then(|()| match options.peak {
-        true => peak(&options),
-        false => run(&options),
-    });
-    match outcome {
-        Ok(true) => ExitCode::SUCCESS,
-        Ok(false) => ExitCode::from(1),
-        Err(message) => {
-            let _ = writeln!(std::io::stderr(), "error: {message}");
-            ExitCode::from(2)
-        }
-    }
-}
-
-/// Prints; whoever closed the pipe wants no more.
-fn print(text: &str) -> Request<()> {
-    match std::io::stdout().write_all(text.as_bytes()) {
-        Err(e) if e.kind() != ErrorKind::BrokenPipe => Err(format!("cannot print: {e}")),
-        _ => Ok(()),
-    }
-}
-
-fn scene(name: &str) -> Request<AnyScene> {
-    let entry = scenes::by_name(name).ok_or_else(|| format!("there is no scene {name}"))?;
-    entry.make(&Parameters::default()).map_err(|e| e.to_string())
-}
+use crate::shared::{Request, bar, print, scene, tick, use_threads, write};
 
 /// Whether every run converged and nothing changed.
-fn run(options: &Options) -> Request<bool> {
-    if let Some(threads) = options.threads() {
-        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads);
-        pool.build_global().map_err(|e| format!("--threads {threads}: {e}"))?;
+pub fn run(options: &Options) -> Request<bool> {
+    options.check()?;
+    if options.peak {
+        return peak(options);
     }
+    use_threads(options.threads())?;
     // what cannot be read or written is better known before the work
     let baseline = match &options.against {
         Some(path) => Some(
@@ -70,7 +41,9 @@ fn run(options: &Options) -> Request<bool> {
     if let Some(text) = &baseline {
         changes(text, &report).map_err(|e| e.to_string())?;
     }
-    let bar = bar(options);
+    let template = "{bar:24} {pos} of {len} runs, {elapsed}, {eta} to go: {wide_msg}";
+    let bar = bar(options.quiet, planned(options), template);
+    tick(&bar);
     for name in options.scenes() {
         match scene(&name)? {
             AnyScene::One(s) => study(options, &bar, s, &mut report),
@@ -83,8 +56,7 @@ fn run(options: &Options) -> Request<bool> {
     report.write_data(&options.out).map_err(|e| e.to_string())?;
     bar.finish_and_clear();
     if let Some(path) = &options.save {
-        fs::write(path, report.to_json())
-            .map_err(|e| format!("cannot write {}: {e}", path.display()))?;
+        write(path, report.to_json())?;
     }
     if !options.quiet {
         print(&report.to_text())?;
@@ -112,20 +84,6 @@ fn planned(options: &Options) -> usize {
         levels.len()
     };
     variants * options.rounds() * options.scenes().iter().map(of_scene).sum::<usize>()
-}
-
-/// A bar on a terminal, nothing elsewhere.
-fn bar(options: &Options) -> ProgressBar {
-    if options.quiet || !std::io::stderr().is_terminal() {
-        return ProgressBar::hidden();
-    }
-    let template = "{bar:24} {pos} of {len} runs, {elapsed}, {eta} to go: {wide_msg}";
-    let bar = ProgressBar::new(planned(options) as u64);
-    bar.enable_steady_tick(Duration::from_millis(200));
-    match ProgressStyle::with_template(template) {
-        Ok(style) => bar.with_style(style),
-        Err(_) => bar,
-    }
 }
 
 /// Measures a scene and adds it to the report.
@@ -201,7 +159,7 @@ impl Pick<3> for AnyScene {
 fn memory_of(case: &Case, threads: Option<usize>) -> Option<u64> {
     let v = &case.variant;
     let mut command = Command::new(std::env::current_exe().ok()?);
-    command.args(["--peak", "--scene", &v.scene]);
+    command.args(["work-precision", "--peak", "--scene", &v.scene]);
     command.args(["--scheme", &format!("{}:{}", v.scheme, v.constraint)]);
     command.args(["--linear", &v.linear_asked, "--precision", &v.precision]);
     command.args(["--levels", &case.level.to_string()]);

@@ -6,8 +6,8 @@ use unilateral::mesh::Mesh;
 use unilateral::real::Point;
 use unilateral::study::{Placement, SchemeOptions, scheme_by_name};
 
-use super::Request;
 use super::options::Options;
+use crate::shared::Request;
 
 /// What the options say of schemes.
 pub fn scheme_options(options: &Options) -> SchemeOptions {

@@ -2,12 +2,11 @@
 
 use std::path::PathBuf;
 
-use clap::Parser;
+use clap::Args;
 use unilateral::stability::{Effort, STABILITY_CASES, Stability};
 
-/// Runs the hard cases of variational inequalities and judges schemes by their criteria.
-#[derive(Parser, Debug)]
-#[command(name = "stability", version, about)]
+/// Runs the hard cases of variational inequalities and judges schemes by their criteria
+#[derive(Args, Debug)]
 pub struct Options {
     /// Cases by name; all by default
     #[arg(long = "case", value_delimiter = ',', value_name = "A[,B...]", value_parser = STABILITY_CASES)]
@@ -18,7 +17,7 @@ pub struct Options {
     /// Gmsh files of tetrahedra for the case of slivers
     #[arg(long = "mesh", value_delimiter = ',', value_name = "FILE[,FILE...]")]
     pub meshes: Vec<PathBuf>,
-    /// Coarse meshes and few supports of each sweep: within a minute
+    /// Coarse meshes and few places of each sweep: within a minute
     #[arg(long)]
     quick: bool,
     /// Number of threads; all cores by default

@@ -1,74 +1,43 @@
 //! Schemes side by side on the same inequality: errors, observed orders, times and a certificate.
 //!
-//! `cargo run --release --example compare -- --help` tells the options. Exit codes: 0 if every row
-//! converged, 1 if some did not, 2 if the request was wrong.
+//! `cargo run --release -- compare --help` tells the options. Exit codes: 0 if every row converged,
+//! 1 if some did not, 2 if the request was wrong.
 
-use std::fs::{self, OpenOptions};
-use std::io::{ErrorKind, Write};
-use std::path::Path;
-use std::process::ExitCode;
-
-#[path = "compare/options.rs"]
 mod options;
-#[path = "compare/penalties.rs"]
 mod penalties;
-#[path = "compare/watcher.rs"]
 mod watcher;
 
-use options::{Options, check_numbers, choose, each_once, list};
+use std::fs::{self, OpenOptions};
+use std::path::Path;
+
+pub use options::{Options, list};
+use options::{check_numbers, choose};
 use penalties::{check_penalties, scheme_options};
 use watcher::Watcher;
+
+use crate::shared::{
+    ORDER_TOLERANCE, Request, cannot_write, each_once, print, print_to, read, use_threads, write,
+};
 
 use unilateral::error::Error;
 use unilateral::inequality::ActiveSet;
 use unilateral::linear::LinearMethod;
 use unilateral::mesh::{Mesh, gmsh};
 use unilateral::real::Real;
-use unilateral::scenes::{self, AnyScene, Parameters, Scene, Takes};
+use unilateral::scenes;
+use unilateral::scenes::{AnyScene, Parameters, Scene, Takes};
 use unilateral::study::orders_table;
 use unilateral::study::{
     Program, Report, Row, SCHEMES, Study, available_memory_bytes, scheme_by_name,
 };
 
-/// How far an observed order may fall below a promised one that counts as kept.
-const ORDER_TOLERANCE: f64 = 0.1;
-
-/// Wrong requests, as one message.
-type Request<T> = Result<T, String>;
-
-fn main() -> ExitCode {
-    let outcome = options::parse().and_then(|options| {
-        if options.list { print(&list(), false).map(|()| true) } else { run(&options) }
-    });
-    match outcome {
-        Ok(true) => ExitCode::SUCCESS,
-        Ok(false) => ExitCode::from(1),
-        Err(message) => {
-            let _ = writeln!(std::io::stderr(), "error: {message}");
-            ExitCode::from(2)
-        }
-    }
-}
-
-/// Prints to standard output, or to standard error; whoever closed the pipe wants no more.
-fn print(text: &str, to_error: bool) -> Request<()> {
-    let mut stream: Box<dyn Write> =
-        if to_error { Box::new(std::io::stderr()) } else { Box::new(std::io::stdout()) };
-    match stream.write_all(text.as_bytes()).and_then(|()| stream.flush()) {
-        Err(e) if e.kind() != ErrorKind::BrokenPipe => Err(format!("cannot print: {e}")),
-        _ => Ok(()),
-    }
-}
-
 /// Whether every row converged.
-fn run(options: &Options) -> Request<bool> {
-    check_numbers(options)?;
-    if let Some(threads) = options.threads {
-        rayon::ThreadPoolBuilder::new()
-            .num_threads(threads)
-            .build_global()
-            .map_err(|e| format!("--threads {threads}: {e}"))?;
+pub fn run(options: &Options) -> Request<bool> {
+    if options.list {
+        return print(&list()).map(|()| true);
     }
+    check_numbers(options)?;
+    use_threads(options.threads)?;
     let chosen = Chosen::new(options)?;
     let (precision, rows) = match &options.precision[..] {
         "f32" => (f32::NAME, chosen.run::<f32>(options)?),
@@ -76,7 +45,7 @@ fn run(options: &Options) -> Request<bool> {
     };
     let program = Program::new("compare", precision, rayon::current_num_threads(), options.repeat);
     let report = Report { program, rows };
-    write(options, &report)?;
+    write_all(options, &report)?;
     Ok(report.rows.iter().all(Row::converged))
 }
 
@@ -92,8 +61,7 @@ impl Chosen {
         let mesh = match &options.mesh {
             None => None,
             Some(path) => {
-                let bytes =
-                    fs::read(path).map_err(|e| format!("cannot read {}: {e}", path.display()))?;
+                let bytes = read(path)?;
                 let dimension =
                     gmsh::dimension(&bytes).map_err(|e| format!("{}: {e}", path.display()))?;
                 Some((dimension, bytes))
@@ -259,38 +227,43 @@ fn default_levels(dimension: usize, on_mesh: bool) -> Vec<usize> {
 /// directory is new.
 fn check_output(options: &Options) -> Request<bool> {
     let is_new = !options.out.exists();
-    let fail = |path: &Path, e| format!("cannot write {}: {e}", path.display());
     let json = options.json.as_ref().filter(|p| p.as_os_str() != "-");
     for path in json.into_iter().chain(&options.orders) {
         let file_is_new = !path.exists();
-        OpenOptions::new().append(true).create(true).open(path).map_err(|e| fail(path, e))?;
+        OpenOptions::new()
+            .append(true)
+            .create(true)
+            .open(path)
+            .map_err(|e| cannot_write(path, e))?;
         if file_is_new {
-            fs::remove_file(path).map_err(|e| fail(path, e))?;
+            fs::remove_file(path).map_err(|e| cannot_write(path, e))?;
         }
     }
-    fs::create_dir_all(&options.out).map_err(|e| fail(&options.out, e))?;
+    fs::create_dir_all(&options.out).map_err(|e| cannot_write(&options.out, e))?;
     let probe = options.out.join(format!(".compare-{}", std::process::id()));
-    fs::write(&probe, "").and_then(|()| fs::remove_file(&probe)).map_err(|e| fail(&probe, e))?;
+    fs::write(&probe, "")
+        .and_then(|()| fs::remove_file(&probe))
+        .map_err(|e| cannot_write(&probe, e))?;
     Ok(is_new)
 }
 
-fn write(options: &Options, report: &Report) -> Request<()> {
+/// Writes the report and prints its tables.
+fn write_all(options: &Options, report: &Report) -> Request<()> {
     let to_stdout = options.json.as_deref().is_some_and(|p| p.as_os_str() == "-");
     report.write(&options.out).map_err(|e| e.to_string())?;
     match &options.json {
-        Some(_) if to_stdout => print(&report.to_json(), false)?,
-        Some(path) => fs::write(path, report.to_json())
-            .map_err(|e| format!("cannot write {}: {e}", path.display()))?,
+        Some(_) if to_stdout => print(&report.to_json())?,
+        Some(path) => write(path, report.to_json())?,
         None => {}
     }
     if let Some(path) = &options.orders {
-        fs::write(path, orders_table(&report.observed_orders(), ORDER_TOLERANCE))
-            .map_err(|e| format!("cannot write {}: {e}", path.display()))?;
+        write(path, orders_table(&report.observed_orders(), ORDER_TOLERANCE))?;
     }
     if options.quiet {
         return Ok(());
     }
     let out = options.out.display();
     let end = format!("\nTimes are in seconds. Report, plots and fields are in {out}\n");
-    print(&(report.to_string() + &end), to_stdout)
+    let text = report.to_string() + &end;
+    if to_stdout { print_to(std::io::stderr(), &text) } else { print(&text) }
 }

@@ -1,11 +1,13 @@
 //! How time, iterations and memory grow with the number of unknowns.
 //!
-//! `cargo run --release --example scaling` runs every case in a process of its own, because the
-//! peak of memory is that of a process, one round after the other, and keeps the smallest times;
-//! `-- --rounds 5` sets how many, `-- --linear direct` the linear solver, `-- --threads 2` the
-//! threads, and further words pick the cases whose names contain one of them. `-- --mesh disc.msh`
-//! adds a mesh of a disc around the origin from a file of Gmsh, refined to about a million unknowns;
-//! `-- --large` runs cases of up to 17 million unknowns instead, which takes minutes and 9 GB.
+//! `cargo bench --bench scaling` runs every case in a process of its own, because the peak of memory
+//! is that of a process, one round after the other, and keeps the smallest times; `-- --rounds 5`
+//! sets how many, `-- --linear direct` the linear solver, `-- --threads 2` the threads, and further
+//! words pick the cases whose names contain one of them. `-- --mesh disc.msh` adds a mesh of a disc
+//! around the origin from a file of Gmsh, refined to about a million unknowns; `-- --large` runs
+//! cases of up to 17 million unknowns instead, which takes minutes and 9 GB.
+//!
+//! `cargo bench` adds the argument `--bench`. Without it, as in `cargo test --benches`, nothing runs.
 
 use std::path::Path;
 use std::process::{Command, ExitCode};
@@ -145,7 +147,9 @@ fn measure(
 }
 
 fn all() -> Result<(), Failure> {
-    let words: Vec<String> = std::env::args().skip(1).collect();
+    let mut words: Vec<String> = std::env::args().skip(1).collect();
+    let is_bench = words.iter().any(|w| w == "--bench");
+    words.retain(|w| w != "--bench");
     let option = |name: &str| {
         words.iter().position(|w| w == name).and_then(|k| words.get(k + 1)).map(String::as_str)
     };
@@ -154,6 +158,10 @@ fn all() -> Result<(), Failure> {
     let mesh = option("--mesh");
     if let Some(name) = option("--case") {
         return child(name, linear, mesh);
+    }
+    if !is_bench {
+        println!("nothing is measured without `--bench`, which `cargo bench` adds");
+        return Ok(());
     }
     let rounds: usize = option("--rounds").unwrap_or("3").parse()?;
     let threads = option("--threads").unwrap_or("1");

@@ -2,15 +2,14 @@
 
 use std::path::PathBuf;
 
-use clap::{CommandFactory, Parser, error::ErrorKind};
+use clap::Args;
 use unilateral::scenes;
 use unilateral::study::{Placement, SCHEMES};
 
-use super::Request;
+use crate::shared::{Request, each_once};
 
-/// Compares finite element schemes on obstacle and Signorini problems.
-#[derive(Parser, Debug)]
-#[command(name = "compare", version, about)]
+/// Compares finite element schemes on obstacle and Signorini problems
+#[derive(Args, Debug)]
 pub struct Options {
     /// Name every scene, scheme, constraint placement and solver, and end
     #[arg(long)]
@@ -48,7 +47,7 @@ pub struct Options {
     /// Solver of the inequality
     #[arg(long, value_name = "NAME")]
     pub solver: Option<String>,
-    /// LinearMethod solver inside it: direct or iterative; by default whichever is faster
+    /// Linear solver inside it: direct or iterative; by default whichever is faster
     #[arg(long, value_name = "NAME")]
     pub linear: Option<String>,
     /// Scalar of assembly and solve
@@ -99,27 +98,7 @@ fn number(text: &str) -> Request<f64> {
     text.parse().map_err(|_| "expected a number, such as 2.5 or 1e-3".to_owned())
 }
 
-/// The options. Help and version are answered here and end the program.
-pub fn parse() -> Request<Options> {
-    Options::try_parse().map_err(|e| if e.use_stderr() { one_line(&e) } else { e.exit() })
-}
-
-/// What the parser of options finds wrong, without its hints on usage.
-fn one_line(wrong: &clap::Error) -> String {
-    let text = wrong.to_string();
-    let hint = |line: &str| line.starts_with("Usage:") || line.starts_with("For more information");
-    let lines: Vec<&str> =
-        text.lines().map(str::trim).filter(|line| !line.is_empty() && !hint(line)).collect();
-    let message = lines.join("; ").replacen("error: ", "", 1);
-    if wrong.kind() != ErrorKind::UnknownArgument {
-        return message;
-    }
-    let command = Options::command();
-    let names =
-        command.get_arguments().filter_map(|a| a.get_long()).map(|name| format!("--{name}"));
-    format!("{message}; there are: {}, --help", names.collect::<Vec<_>>().join(", "))
-}
-
+/// Every scene, scheme, constraint placement and solver, with one line each.
 pub fn list() -> String {
     let scenes: Vec<(String, String)> =
         scenes::catalogue().into_iter().map(|s| (s.name, s.summary.to_owned())).collect();
@@ -162,16 +141,6 @@ pub fn choose(
     } else {
         each_once(asked)
     })
-}
-
-pub fn each_once<T: Clone + PartialEq>(items: &[T]) -> Vec<T> {
-    let mut once = Vec::new();
-    for item in items {
-        if !once.contains(item) {
-            once.push(item.clone());
-        }
-    }
-    once
 }
 
 pub fn check_numbers(options: &Options) -> Request<()> {

@@ -1,39 +1,36 @@
 //! What is shown while schemes run.
 
 use std::cell::RefCell;
-use std::io::{IsTerminal, Write};
-use std::time::Duration;
+use std::io::Write;
 
-use indicatif::{ProgressBar, ProgressStyle};
+use indicatif::ProgressBar;
 use unilateral::study::Progress;
 
 use super::options::Options;
+use crate::shared::{bar, tick};
 
 /// Shows progress on a terminal. Warnings of runs stand under the tables.
 pub struct Watcher {
-    bar: Option<ProgressBar>,
+    bar: ProgressBar,
     quiet: bool,
     warned: RefCell<Vec<String>>,
 }
 
 impl Watcher {
     pub fn new(options: &Options) -> Self {
-        let show = !options.quiet && std::io::stderr().is_terminal();
-        let style = ProgressStyle::with_template("{spinner} {pos} of {len} done, {elapsed}: {msg}");
-        let bar = style.ok().filter(|_| show).map(|style| ProgressBar::new(0).with_style(style));
+        let bar = bar(options.quiet, 0, "{spinner} {pos} of {len} done, {elapsed}: {msg}");
         Self { bar, quiet: options.quiet, warned: RefCell::default() }
     }
     pub fn expect(&self, n_runs: usize) {
-        self.bar.iter().for_each(|bar| bar.inc_length(n_runs as u64));
+        self.bar.inc_length(n_runs as u64);
     }
     pub fn tell(&self, progress: &Progress<'_>) {
-        let Some(bar) = &self.bar else { return };
         match progress {
             Progress::Started(scene, scheme, level) => {
-                bar.set_message(format!("{scene}, {scheme}, level {level}"));
-                bar.enable_steady_tick(Duration::from_millis(100));
+                self.bar.set_message(format!("{scene}, {scheme}, level {level}"));
+                tick(&self.bar);
             }
-            Progress::Finished(_) => bar.inc(1),
+            Progress::Finished(_) => self.bar.inc(1),
         }
     }
     pub fn warn_once(&self, warning: String) {
@@ -43,6 +40,6 @@ impl Watcher {
         }
     }
     pub fn clear(&self) {
-        self.bar.iter().for_each(ProgressBar::finish_and_clear);
+        self.bar.finish_and_clear();
     }
 }

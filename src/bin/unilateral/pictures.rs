@@ -1,16 +1,13 @@
 //! A solution as a picture: the function, the contact set found against the exact free boundary, the
 //! jumps across facets and the multiplier, as PNG and SVG.
 //!
-//! `cargo run --release --example pictures -- --help` tells the options. Exit codes: 0 if every
-//! solve converged, 1 if one did not (its last iterate is drawn, and said to be one), 2 if the
-//! request was wrong.
+//! `cargo run --release -- pictures --help` tells the options. Exit codes: 0 if every solve converged,
+//! 1 if one did not (its last iterate is drawn, and said to be one), 2 if the request was wrong.
 
 use std::fs;
-use std::io::{ErrorKind, Write};
 use std::path::{Path, PathBuf};
-use std::process::ExitCode;
 
-use clap::Parser;
+use clap::Args;
 use unilateral::error::Error;
 use unilateral::inequality::Outcome;
 use unilateral::measure::Fields;
@@ -18,16 +15,14 @@ use unilateral::mesh::Mesh;
 use unilateral::nested::{AnyScheme, Solved};
 use unilateral::paraview::{CellFields, write_pvd, write_vtu};
 use unilateral::plot::{Picture, Slice, solve_level};
-use unilateral::scenes::{self, AnyScene, Parameters, Scene};
+use unilateral::scenes::{AnyScene, Scene};
 use unilateral::study::{Placement, SCHEMES, SchemeOptions, scheme_by_name};
 
-/// A wrong request, as a message.
-type Request<T> = Result<T, String>;
+use crate::shared::{Request, print, scene, split};
 
-/// Draws the solution of a scheme on a scene.
-#[derive(Parser, Debug)]
-#[command(name = "pictures", version, about)]
-struct Options {
+/// Draws the solution of a scheme on a scene
+#[derive(Args, Debug)]
+pub struct Options {
     /// Scene by name
     #[arg(long, default_value = "radial-2d")]
     scene: String,
@@ -51,24 +46,9 @@ struct Options {
     out: PathBuf,
 }
 
-fn main() -> ExitCode {
-    match run(&Options::parse()) {
-        Ok(true) => ExitCode::SUCCESS,
-        Ok(false) => ExitCode::from(1),
-        Err(message) => {
-            let _ = writeln!(std::io::stderr(), "error: {message}");
-            ExitCode::from(2)
-        }
-    }
-}
-
 /// Whether every solve converged.
-fn run(options: &Options) -> Request<bool> {
-    let entry = scenes::by_name(&options.scene).ok_or_else(|| {
-        let names: Vec<String> = scenes::catalogue().into_iter().map(|e| e.name).collect();
-        format!("there is no scene {}; there are: {}", options.scene, names.join(", "))
-    })?;
-    match entry.make(&Parameters::default()).map_err(|e| e.to_string())? {
+pub fn run(options: &Options) -> Request<bool> {
+    match scene(&options.scene)? {
         AnyScene::One(scene) => draw(options, &scene),
         AnyScene::Two(scene) => draw(options, &scene),
         AnyScene::Three(scene) => draw(options, &scene),
@@ -76,10 +56,7 @@ fn run(options: &Options) -> Request<bool> {
 }
 
 fn scheme<const D: usize>(choice: &str) -> Request<Box<dyn AnyScheme<f64, D>>> {
-    let (name, place) = match choice.split_once(':') {
-        Some((name, place)) => (name, Some(place)),
-        None => (choice, None),
-    };
+    let (name, place) = split(choice);
     let placement = match place {
         None => Placement::default(),
         Some(place) => Placement::by_name(place).ok_or_else(|| {
@@ -181,12 +158,4 @@ fn file_name<const D: usize>(
     level: usize,
 ) -> String {
     format!("{}-{}-{}-{level}", scene.name, scheme.name(), scheme.constraint()).replace(' ', "-")
-}
-
-/// Prints; whoever closed the pipe wants no more.
-fn print(text: &str) -> Request<()> {
-    match std::io::stdout().write_all(text.as_bytes()) {
-        Err(e) if e.kind() != ErrorKind::BrokenPipe => Err(format!("cannot print: {e}")),
-        _ => Ok(()),
-    }
 }

@@ -1,0 +1,107 @@
+//! Finite element schemes on variational inequalities, from the command line.
+//!
+//! `cargo run --release` compares schemes with the defaults, `cargo run --release -- --help` names
+//! the other commands. Exit codes: 0 if all went as asked, 1 if some of the work did not, 2 if the
+//! request was wrong.
+
+mod compare;
+mod orders;
+mod pictures;
+mod shared;
+mod stability;
+mod work_precision;
+
+use std::ffi::OsString;
+use std::process::ExitCode;
+
+use clap::error::ErrorKind;
+use clap::{CommandFactory, Parser, Subcommand};
+use shared::{Request, complain, print};
+
+/// Finite element schemes on variational inequalities: comparisons, measurements, pictures.
+#[derive(Parser)]
+#[command(name = "unilateral", version, about, propagate_version = true)]
+#[command(after_help = "Without a command, its options are those of `compare`.")]
+struct Program {
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Subcommand)]
+enum Command {
+    Compare(Box<compare::Options>),
+    WorkPrecision(Box<work_precision::Options>),
+    Stability(stability::Options),
+    Pictures(pictures::Options),
+    Orders(orders::Options),
+    /// Names every scene, scheme, constraint placement and solver, as `compare --list` does
+    List,
+}
+
+fn main() -> ExitCode {
+    match parse().and_then(run) {
+        Ok(true) => ExitCode::SUCCESS,
+        Ok(false) => ExitCode::from(1),
+        Err(message) => {
+            complain(&message);
+            ExitCode::from(2)
+        }
+    }
+}
+
+/// Whether all went as asked.
+fn run(command: Command) -> Request<bool> {
+    match command {
+        Command::Compare(options) => compare::run(&options),
+        Command::WorkPrecision(options) => work_precision::run(&options),
+        Command::Stability(options) => stability::run(&options),
+        Command::Pictures(options) => pictures::run(&options),
+        Command::Orders(options) => orders::run(&options),
+        Command::List => print(&compare::list()).map(|()| true),
+    }
+}
+
+/// The command. Help and version are answered here and end the program.
+fn parse() -> Request<Command> {
+    let words = words(std::env::args_os().collect());
+    match Program::try_parse_from(&words) {
+        Ok(program) => Ok(program.command),
+        Err(wrong) if wrong.use_stderr() => Err(one_line(&wrong, &words)),
+        Err(answer) => answer.exit(),
+    }
+}
+
+/// The words of the command line, `compare` inserted where no command is named.
+fn words(mut words: Vec<OsString>) -> Vec<OsString> {
+    const OF_THE_PROGRAM: [&str; 4] = ["-h", "--help", "-V", "--version"];
+    let first = words.get(1).map(|word| word.to_string_lossy());
+    let is_option = |word: &str| word.starts_with('-') && !OF_THE_PROGRAM.contains(&word);
+    if first.is_none_or(|word| is_option(&word)) {
+        words.resize_with(words.len().max(1), OsString::new);
+        words.insert(1, "compare".into());
+    }
+    words
+}
+
+/// What the parser of options finds wrong, without its hints on usage.
+fn one_line(wrong: &clap::Error, words: &[OsString]) -> String {
+    let text = wrong.to_string();
+    let hint = |line: &str| line.starts_with("Usage:") || line.starts_with("For more information");
+    let lines: Vec<&str> =
+        text.lines().map(str::trim).filter(|line| !line.is_empty() && !hint(line)).collect();
+    let message = lines.join("; ").replacen("error: ", "", 1);
+    let program = Program::command();
+    let names: Vec<String> = match wrong.kind() {
+        ErrorKind::UnknownArgument => {
+            let command = words.get(1).and_then(|name| program.find_subcommand(name));
+            let arguments = command.unwrap_or(&program).get_arguments();
+            let options = arguments.filter(|a| !a.is_hide_set()).filter_map(|a| a.get_long());
+            options.chain(["help"]).map(|name| format!("--{name}")).collect()
+        }
+        ErrorKind::InvalidSubcommand => {
+            program.get_subcommands().map(|command| command.get_name().to_owned()).collect()
+        }
+        _ => return message,
+    };
+    format!("{message}; there are: {}", names.join(", "))
+}

@@ -1,0 +1,101 @@
+//! The commands share messages, printing, threads and progress.
+
+use std::fs;
+use std::io::{ErrorKind, IsTerminal, Write};
+use std::path::Path;
+use std::time::Duration;
+
+use indicatif::{ProgressBar, ProgressStyle};
+use unilateral::scenes;
+use unilateral::scenes::{AnyScene, Parameters};
+
+/// The error of a wrong request is one message.
+pub type Request<T> = Result<T, String>;
+
+/// An observed order that falls below the promised one by no more than this counts as kept.
+pub const ORDER_TOLERANCE: f64 = 0.1;
+
+/// Prints to standard output.
+pub fn print(text: &str) -> Request<()> {
+    print_to(std::io::stdout(), text)
+}
+
+/// Prints to a stream; a closed pipe is no error.
+pub fn print_to(mut stream: impl Write, text: &str) -> Request<()> {
+    match stream.write_all(text.as_bytes()).and_then(|()| stream.flush()) {
+        Err(e) if e.kind() != ErrorKind::BrokenPipe => Err(format!("cannot print: {e}")),
+        _ => Ok(()),
+    }
+}
+
+/// Prints an error to standard error.
+pub fn complain(message: &str) {
+    let _ = writeln!(std::io::stderr(), "error: {message}");
+}
+
+pub fn read(path: &Path) -> Request<Vec<u8>> {
+    fs::read(path).map_err(|e| format!("cannot read {}: {e}", path.display()))
+}
+
+pub fn write(path: &Path, text: impl AsRef<[u8]>) -> Request<()> {
+    fs::write(path, text).map_err(|e| cannot_write(path, e))
+}
+
+/// The message for a file that cannot be written.
+pub fn cannot_write(path: &Path, why: impl std::fmt::Display) -> String {
+    format!("cannot write {}: {why}", path.display())
+}
+
+/// Sets the number of threads; without one, all cores are used.
+pub fn use_threads(threads: Option<usize>) -> Request<()> {
+    let Some(threads) = threads else { return Ok(()) };
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads);
+    pool.build_global().map_err(|e| format!("--threads {threads}: {e}"))
+}
+
+/// A scene by name, with its default parameters.
+pub fn scene(name: &str) -> Request<AnyScene> {
+    let entry = scenes::by_name(name).ok_or_else(|| {
+        let names: Vec<String> = scenes::catalogue().into_iter().map(|e| e.name).collect();
+        format!("there is no scene {name}; there are: {}", names.join(", "))
+    })?;
+    entry.make(&Parameters::default()).map_err(|e| e.to_string())
+}
+
+/// The name and, if there is a colon, the placement after it: `wopsip:facet-means`.
+pub fn split(choice: &str) -> (&str, Option<&str>) {
+    match choice.split_once(':') {
+        Some((name, place)) => (name, Some(place)),
+        None => (choice, None),
+    }
+}
+
+/// Each item once, in order of first occurrence.
+pub fn each_once<T: Clone + PartialEq>(items: &[T]) -> Vec<T> {
+    let mut once = Vec::new();
+    for item in items {
+        if !once.contains(item) {
+            once.push(item.clone());
+        }
+    }
+    once
+}
+
+/// A bar on a terminal, nothing elsewhere. It does not [`tick`] yet.
+pub fn bar(quiet: bool, length: usize, template: &str) -> ProgressBar {
+    if quiet || !std::io::stderr().is_terminal() {
+        return ProgressBar::hidden();
+    }
+    let bar = ProgressBar::new(length as u64);
+    match ProgressStyle::with_template(template) {
+        Ok(style) => bar.with_style(style),
+        Err(_) => bar,
+    }
+}
+
+/// Lets a bar that is shown redraw itself five times a second.
+pub fn tick(bar: &ProgressBar) {
+    if !bar.is_hidden() {
+        bar.enable_steady_tick(Duration::from_millis(200));
+    }
+}
