@@ -25,10 +25,9 @@ use unilateral::linear::LinearMethod;
 use unilateral::mesh::{Mesh, gmsh};
 use unilateral::real::Real;
 use unilateral::scenes::{self, AnyScene, Parameters, Scene, Takes};
+use unilateral::scheme::{SCHEMES, scheme_by_name};
 use unilateral::study::orders_table;
-use unilateral::study::{
-    Program, Report, Row, SCHEMES, Study, available_memory_bytes, scheme_by_name,
-};
+use unilateral::study::{Program, Report, Row, Study, available_memory_bytes};
 
 /// How far an observed order may fall below a promised one that counts as kept.
 const ORDER_TOLERANCE: f64 = 0.1;

@@ -11,8 +11,9 @@ use std::error::Error;
 
 use unilateral::prelude::*;
 use unilateral::scenes::{AnyScene, Parameters, Scene, catalogue};
+use unilateral::scheme::{SCHEMES, SchemeOptions, scheme_by_name};
 use unilateral::study::orders_table;
-use unilateral::study::{Program, Row, SCHEMES, SchemeOptions, scheme_by_name};
+use unilateral::study::{Program, Row};
 
 /// How far an observed order may fall below a promised one that counts as kept.
 const TOLERANCE: f64 = 0.1;

@@ -15,11 +15,12 @@ use unilateral::error::Error;
 use unilateral::inequality::Outcome;
 use unilateral::measure::Fields;
 use unilateral::mesh::Mesh;
-use unilateral::nested::{AnyScheme, Solved};
+use unilateral::nested::Solved;
 use unilateral::paraview::{CellFields, write_pvd, write_vtu};
 use unilateral::plot::{Picture, Slice, solve_level};
 use unilateral::scenes::{self, AnyScene, Parameters, Scene};
-use unilateral::study::{Placement, SCHEMES, SchemeOptions, scheme_by_name};
+use unilateral::scheme::AnyScheme;
+use unilateral::scheme::{Placement, SCHEMES, SchemeOptions, scheme_by_name};
 
 /// A wrong request, as a message.
 type Request<T> = Result<T, String>;

@@ -19,9 +19,10 @@ use unilateral::inequality::ActiveSet;
 use unilateral::linear::LinearMethod;
 use unilateral::real::Real;
 use unilateral::scenes::{self, AnyScene, Parameters, Scene};
-use unilateral::study::{Study, peak_memory_bytes, scheme_by_name};
+use unilateral::scheme::scheme_by_name;
+use unilateral::study::{Study, peak_memory_bytes};
 use unilateral::work_precision::{
-    Case, Named, Precision, WorkPrecision, WorkProgress, WorkReport, changes,
+    Case, Precision, WorkPrecision, WorkProgress, WorkReport, changes,
 };
 
 fn main() -> ExitCode {
@@ -169,7 +170,7 @@ where
             }
         });
     for (name, scheme_options) in options.schemes() {
-        study = study.scheme(Named { name, options: scheme_options });
+        study = study.scheme_by_name(&name, &scheme_options);
     }
     study.run_into(report)
 }

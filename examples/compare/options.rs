@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::{CommandFactory, Parser, error::ErrorKind};
 use unilateral::scenes;
-use unilateral::study::{Placement, SCHEMES};
+use unilateral::scheme::{Placement, SCHEMES};
 
 use super::Request;
 

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::Parser;
 use unilateral::linear::LinearMethod;
 use unilateral::scenes;
-use unilateral::study::{Placement, SCHEMES, SchemeOptions};
+use unilateral::scheme::{Placement, SCHEMES, SchemeOptions};
 use unilateral::work_precision::Precision;
 
 /// A wrong request, as a message.

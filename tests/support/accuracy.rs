@@ -5,7 +5,7 @@ use unilateral::assemble::DataQuadrature;
 use unilateral::inequality::ActiveSet;
 use unilateral::mesh::BoxDomain;
 use unilateral::mesh::{Mesh, gmsh};
-use unilateral::nested::{Hierarchy, Solved, Task};
+use unilateral::nested::{self, Hierarchy, Solved, Task};
 use unilateral::prelude::*;
 use unilateral::quadrature::Rule;
 use unilateral::scenes::Scene;
@@ -93,7 +93,7 @@ pub fn solve<T: Real, const D: usize>(
         repeat: 1,
         with_fields: true,
     };
-    scheme.solve(&task).unwrap()
+    nested::solve(scheme, &task).unwrap()
 }
 
 /// The degree of the rules for data and norms in most tables of the independent implementation:
@@ -133,7 +133,7 @@ pub fn solve_by_rule<const D: usize>(
         repeat: 1,
         with_fields: true,
     };
-    let solved = scheme.solve(&task).unwrap();
+    let solved = nested::solve(scheme, &task).unwrap();
     (mesh, solved)
 }
 
