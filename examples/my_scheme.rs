@@ -10,7 +10,9 @@ use unilateral::prelude::*;
 struct Incomplete(f64);
 
 impl<T: Real, const D: usize> FacetForm<T, D> for Incomplete {
-    const USES_FLUX: bool = true;
+    fn uses_flux(&self) -> bool {
+        true
+    }
     fn is_symmetric(&self) -> bool {
         false
     }

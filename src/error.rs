@@ -59,6 +59,14 @@ pub enum Error {
         /// Which sets can.
         allowed: &'static str,
     },
+    /// A facet form asks for what the assembler does not make for the element.
+    #[error("{requested} are made for {allowed} only")]
+    UnsupportedForm {
+        /// What the form asks for.
+        requested: &'static str,
+        /// For which elements it is made.
+        allowed: &'static str,
+    },
     /// The mesh does not fit the scene.
     #[error("mesh does not fit scene {scene}: {why}")]
     UnfitMesh {

@@ -4,6 +4,7 @@
 
 pub mod algebra;
 pub mod assemble;
+pub mod constraint;
 pub mod element;
 pub mod error;
 pub mod facet;

@@ -8,11 +8,7 @@
     note = "use `f64` or `f32`"
 )]
 pub trait Real:
-    nalgebra::RealField
-    + faer::traits::RealField
-    + crate::linear::SparseKernels
-    + crate::study::RegisteredSchemes
-    + Copy
+    nalgebra::RealField + faer::traits::RealField + crate::linear::SparseKernels + Copy
 {
     /// The name users type and reports state.
     const NAME: &'static str;

@@ -2,13 +2,13 @@
 
 use super::local::view;
 use super::space::Space;
-use crate::facet::{AnyForm, FacetView};
+use crate::facet::{FacetForm, FacetView};
 use crate::mesh::{BoundaryPart, Neighbour, Neighbours};
 use crate::real::Real;
 
 impl<'a, T: Real, const D: usize> Space<'a, T, D> {
     /// See `Discretisation::coercivity_margin`.
-    pub fn coercivity_margin(&self, form: &dyn AnyForm<T, D>) -> Option<CoercivityMargin> {
+    pub fn coercivity_margin(&self, form: &dyn FacetForm<T, D>) -> Option<CoercivityMargin> {
         let neighbours = self.neighbours.as_ref()?;
         let mut worst: Option<CoercivityMargin> = None;
         for cell in 0..self.mesh.n_cells() {

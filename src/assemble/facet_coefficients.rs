@@ -3,7 +3,7 @@
 use std::convert::Infallible;
 use std::ops::Range;
 
-use super::local::{CellSide, flux_share, view};
+use super::local::{CellSide, flux_weight, view};
 use super::space::Space;
 use super::space::metric::Metrics;
 use crate::facet::{FacetForm, Trace};
@@ -37,9 +37,9 @@ pub(crate) struct Coefficients<T> {
 }
 
 impl<T: Real> Coefficients<T> {
-    fn of<const D: usize, F: FacetForm<T, D>>(form: &F) -> Self {
+    fn of<const D: usize>(form: &dyn FacetForm<T, D>) -> Self {
         // a form that reads fluxes it did not ask for shall fail its first test
-        let none = T::lit(if F::USES_FLUX { 0.0 } else { f64::NAN });
+        let none = T::lit(if form.uses_flux() { 0.0 } else { f64::NAN });
         let jump = Trace { jump: T::lit(1.0), flux: none };
         let flux = Trace { jump: T::lit(0.0), flux: T::lit(1.0) };
         let read = |v, u| {
@@ -56,7 +56,8 @@ impl<T: Real> Coefficients<T> {
 }
 
 /// The penalty weight of every facet that carries the form and, where the form uses fluxes, the
-/// shares of its two cells in the flux. Kept with the cell here, so that each is computed once.
+/// weights of the normal derivatives of its two cells in the flux. The numbers of a facet stand with
+/// the cell here, so that each is computed once.
 pub(crate) struct FacetCoefficients<T> {
     pub coefficients: Coefficients<T>,
     entries: Vec<T>,
@@ -68,21 +69,22 @@ pub(crate) struct FacetCoefficients<T> {
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct FacetWeight<T> {
     pub penalty: T,
-    /// Of the cell that asks.
-    pub own_share: T,
-    /// Of the cell across.
-    pub other_share: T,
+    /// The weight in the flux of the cell whose rows are made.
+    pub own_flux_weight: T,
+    /// The weight in the flux of the cell across.
+    pub other_flux_weight: T,
 }
 
 impl<T: Real> FacetCoefficients<T> {
     /// The weights of a form, in parallel.
-    pub fn of<const D: usize, F: FacetForm<T, D>>(
+    pub fn of<const D: usize>(
         space: &Space<'_, T, D>,
-        form: &F,
+        form: &dyn FacetForm<T, D>,
         metrics: &Metrics<T>,
     ) -> Self {
         let neighbours = space.coupled_neighbours();
-        let stride = if F::USES_FLUX { 3 } else { 1 };
+        let uses_flux = form.uses_flux();
+        let stride = if uses_flux { 3 } else { 1 };
         let per_cell = stride * (D + 1);
         let n_cells = space.mesh.n_cells();
         let mut entries = in_large_pages(vec![T::lit(0.0); per_cell * n_cells]);
@@ -107,10 +109,10 @@ impl<T: Real> FacetCoefficients<T> {
                         Neighbour::Boundary(_) => continue,
                     };
                     out[0] = form.penalty(&facet);
-                    if F::USES_FLUX {
-                        let share = form.share(&facet);
-                        out[1] = flux_share(&facet, share, true);
-                        out[2] = flux_share(&facet, share, false);
+                    if uses_flux {
+                        let average_weight = form.average_weight(&facet);
+                        out[1] = flux_weight(&facet, average_weight, true);
+                        out[2] = flux_weight(&facet, average_weight, false);
                     }
                 }
             }
@@ -128,9 +130,13 @@ impl<T: Real> FacetCoefficients<T> {
         let kept = &self.entries[start..start + self.stride];
         if self.stride == 1 {
             let zero = T::lit(0.0);
-            return FacetWeight { penalty: kept[0], own_share: zero, other_share: zero };
+            return FacetWeight {
+                penalty: kept[0],
+                own_flux_weight: zero,
+                other_flux_weight: zero,
+            };
         }
         let (own, other) = if from_here { (kept[1], kept[2]) } else { (kept[2], kept[1]) };
-        FacetWeight { penalty: kept[0], own_share: own, other_share: other }
+        FacetWeight { penalty: kept[0], own_flux_weight: own, other_flux_weight: other }
     }
 }

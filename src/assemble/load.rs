@@ -10,7 +10,7 @@ use super::owned_rows::lifted::{LiftTable, Lifting};
 use super::space::metric::Metrics;
 use super::space::{Space, data};
 use crate::error::Error;
-use crate::facet::{AnyForm, Trace};
+use crate::facet::{FacetForm, Trace};
 use crate::mesh::BoundaryPart;
 use crate::parallel::cells;
 use crate::problem::{Datum, Field};
@@ -177,7 +177,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
     /// The load of all unknowns; the metrics of all cells are asked for only where jumps are lifted.
     pub fn load<'m>(
         &self,
-        form: &dyn AnyForm<T, D>,
+        form: &dyn FacetForm<T, D>,
         metrics: &dyn Fn() -> &'m Metrics<T>,
     ) -> Result<Vec<T>, Error> {
         Ok(self.load_and_data(form, metrics, &mut |_| {})?.0)
@@ -187,7 +187,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
     /// the load of cells without them, empty if there is none.
     pub fn load_and_data<'m>(
         &self,
-        form: &dyn AnyForm<T, D>,
+        form: &dyn FacetForm<T, D>,
         metrics: &dyn Fn() -> &'m Metrics<T>,
         before: &mut dyn FnMut(&[T]),
     ) -> Result<(Vec<T>, Vec<FacetDatum>), Error> {
@@ -206,7 +206,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
     /// Dirichlet data as the trial trace of the facet form; returns their moments.
     fn add_dirichlet(
         &self,
-        form: &dyn AnyForm<T, D>,
+        form: &dyn FacetForm<T, D>,
         load: &mut [T],
     ) -> Result<Vec<FacetDatum>, Error> {
         let n = self.per_cell();
@@ -224,7 +224,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
             for (k, (basis, &value)) in table.on(local).iter().zip(&values).enumerate() {
                 let test = traces(form, &facet, &here, true, basis, n);
                 let datum = Trace { jump: T::lit(value), flux: T::lit(0.0) };
-                let penalty = penalty * form.moment_weight(table.degrees[k]);
+                let penalty = penalty * T::lit(form.moment_weight(table.degrees[k]));
                 for (out, &v) in out.iter_mut().zip(&test) {
                     *out += facet.measure * form.integrand(v, datum, penalty);
                 }
@@ -237,7 +237,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
     /// What the products of lifts make of Dirichlet data.
     fn add_lifted(
         &self,
-        form: &dyn AnyForm<T, D>,
+        form: &dyn FacetForm<T, D>,
         metrics: &Metrics<T>,
         data: &[FacetDatum],
         load: &mut [T],

@@ -3,7 +3,7 @@
 use super::space::metric::CellMetric;
 use super::space::tables::{BasisAt, CellTable};
 use crate::element::MAX_BASIS;
-use crate::facet::{AnyForm, FacetView, Side, Trace};
+use crate::facet::{FacetForm, FacetView, Side, Trace};
 use crate::mesh::Mesh;
 use crate::real::Real;
 
@@ -128,19 +128,19 @@ pub(crate) fn view<'m, T: Real, const D: usize>(
     FacetView::new(mesh, (here.cell, here.local), measure, here.seen(), there.map(CellSide::seen))
 }
 
-/// The share of a facet's flux that a cell's normal derivative has: the conductance of the facet
-/// times the share the form gives to the cell here or there.
+/// The weight of a cell's normal derivative in the flux of a facet: the conductance of the facet
+/// times the average weight that the form gives to the cell here or there.
 #[inline(always)]
-pub(crate) fn flux_share<T: Real, const D: usize>(
+pub(crate) fn flux_weight<T: Real, const D: usize>(
     facet: &FacetView<T, D>,
-    share: T,
+    average_weight: T,
     is_here: bool,
 ) -> T {
     match facet.there {
         None => facet.here.coefficient,
         Some(_) => {
-            let own = if is_here { share } else { T::lit(1.0) - share };
-            facet.conductance(share) * own
+            let own = if is_here { average_weight } else { T::lit(1.0) - average_weight };
+            facet.conductance(average_weight) * own
         }
     }
 }
@@ -150,7 +150,7 @@ pub(crate) fn flux_share<T: Real, const D: usize>(
 /// Fluxes are not numbers if the form does not use them, so that a form which reads what it did not
 /// ask for fails its first test.
 pub(crate) fn traces<T: Real, const D: usize>(
-    form: &dyn AnyForm<T, D>,
+    form: &dyn FacetForm<T, D>,
     facet: &FacetView<T, D>,
     side: &CellSide<'_, T, D>,
     is_here: bool,
@@ -163,7 +163,7 @@ pub(crate) fn traces<T: Real, const D: usize>(
         trace.jump = sign * value;
     }
     if form.uses_flux() {
-        let scale = sign * flux_share(facet, form.share(facet), is_here) / facet.measure;
+        let scale = sign * flux_weight(facet, form.average_weight(facet), is_here) / facet.measure;
         let derivatives = side.normal_derivatives(basis, n, scale);
         for (trace, derivative) in out.iter_mut().zip(derivatives).take(n) {
             trace.flux = derivative;

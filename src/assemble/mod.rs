@@ -1,6 +1,7 @@
 //! One assembler for every scheme.
 //!
-//! A [`Discretisation`] joins scheme, problem and mesh. Its matrix is made in one of two ways, which
+//! A [`Discretisation`] joins element, facet form, problem and mesh; which of these make a scheme, the
+//! room [`scheme`](crate::scheme) above knows. Its matrix is made in one of two ways, which
 //! the element's layout decides, not the scheme's name: rows of a broken space belong to one cell,
 //! which writes them in place; rows of a space that shares unknowns are gathered from local
 //! matrices. Both are parallel, without locks, and give the same bits for any number of threads.
@@ -19,17 +20,18 @@ pub(crate) mod space;
 use std::sync::OnceLock;
 
 use crate::algebra::{Bound, Inequality, SparseMatrix, Start, Support};
+use crate::constraint::BoundedNodes;
 use crate::element::ReferenceElement;
 use crate::error::Error;
-use crate::facet::FacetForm;
+use crate::facet::{DirichletBy, FacetForm};
 use crate::mesh::Mesh;
 use crate::problem::Problem;
 use crate::real::Real;
-use crate::scheme::{DirichletBy, Scheme};
 pub use coercivity_margin::CoercivityMargin;
 use facet_coefficients::FacetCoefficients;
-use space::Space;
+use shared_rows::CellLoops;
 use space::metric::Metrics;
+use space::{AnyElement, Space};
 
 /// Degrees of the quadrature rules for data, beyond what the forms need.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -50,55 +52,63 @@ impl Default for DataQuadrature {
 }
 
 /// A scheme applied to a problem on a mesh.
-pub struct Discretisation<'a, T: Real, const D: usize, S: Scheme<T, D>> {
+///
+/// The type names no scheme: element and facet form are held without their types, so that what it
+/// does is compiled once for each scalar and dimension.
+pub struct Discretisation<'a, T: Real, const D: usize> {
     pub(crate) space: Space<'a, T, D>,
-    pub(crate) form: S::Facet,
+    form: Box<dyn FacetForm<T, D>>,
+    loops: Option<CellLoops<T, D>>,
     /// What facet forms need of cells and facets, computed when first needed.
     prepared: OnceLock<(Metrics<T>, FacetCoefficients<T>)>,
 }
 
-impl<'a, T: Real, const D: usize, S: Scheme<T, D>> Discretisation<'a, T, D, S> {
-    const N: usize = <S::Element as ReferenceElement<T, D>>::N;
-    pub(crate) const COUPLES: bool = <S::Facet as FacetForm<T, D>>::COUPLES;
-    /// Whether each row belongs to one cell, which then writes it in place.
-    const OWNS_ROWS: bool =
-        Self::COUPLES && <S::Element as ReferenceElement<T, D>>::LAYOUT.is_broken();
-
-    /// Joins scheme, problem and mesh; builds facets only if the scheme needs them.
+impl<'a, T: Real, const D: usize> Discretisation<'a, T, D> {
+    /// Joins an element and a facet form with a problem and a mesh; builds facets only if they are
+    /// needed.
     ///
     /// # Errors
-    /// [`Error::CoefficientNotPositive`], [`Error::NothingToBound`].
-    pub fn new(
-        scheme: &S,
+    /// [`Error::CoefficientNotPositive`], [`Error::NothingToBound`], [`Error::UnsupportedForm`].
+    pub(crate) fn of<E: ReferenceElement<T, D>>(
+        form: Box<dyn FacetForm<T, D>>,
+        (dirichlet, bounded): (DirichletBy, BoundedNodes),
         problem: &'a Problem<D>,
         mesh: &'a Mesh<T, D>,
         quadrature: DataQuadrature,
     ) -> Result<Self, Error> {
-        let pins = matches!(S::DIRICHLET, DirichletBy::Pinning);
-        let bounded = scheme.bounded_nodes();
-        let space =
-            Space::new::<S::Element>(problem, mesh, quadrature, Self::COUPLES, pins, bounded)?;
-        Ok(Self { space, form: scheme.facet(mesh), prepared: OnceLock::new() })
+        let element = AnyElement::of::<T, E, D>();
+        check_form::<T, D>(&element, &*form)?;
+        let pins = matches!(dirichlet, DirichletBy::Pinning);
+        let space = Space::new(element, problem, mesh, quadrature, form.couples(), pins, bounded)?;
+        Ok(Self { space, form, loops: CellLoops::of::<E>(), prepared: OnceLock::new() })
     }
 
     /// Number of unknowns, Dirichlet ones included.
     pub fn unknowns(&self) -> usize {
         self.space.dofs.size()
     }
+    /// Polynomial degree of the element.
+    pub fn degree(&self) -> usize {
+        self.space.degree
+    }
     /// The facet form in force.
-    pub fn form(&self) -> &S::Facet {
-        &self.form
+    pub fn form(&self) -> &dyn FacetForm<T, D> {
+        &*self.form
     }
     /// The mesh.
     pub fn mesh(&self) -> &'a Mesh<T, D> {
         self.space.mesh
     }
+    /// Whether each row belongs to one cell, which then writes it in place.
+    fn owns_rows(&self) -> bool {
+        self.form.couples() && self.space.broken
+    }
     /// The pattern of the matrix, with values zero.
     pub fn pattern(&self) -> SparseMatrix<T> {
-        if Self::OWNS_ROWS {
-            owned_rows::pattern(&self.space, S::Facet::LIFTED)
+        if self.owns_rows() {
+            owned_rows::pattern(&self.space, self.form.is_lifted())
         } else {
-            shared_rows::pattern(self)
+            shared_rows::pattern(&self.space, self.form(), self.loops.as_ref())
         }
     }
     /// Overwrites the values of a matrix that has this discretisation's pattern.
@@ -106,27 +116,17 @@ impl<'a, T: Real, const D: usize, S: Scheme<T, D>> Discretisation<'a, T, D, S> {
     /// # Panics
     /// If it has another.
     pub fn fill(&self, matrix: &mut SparseMatrix<T>) {
-        const {
-            assert!(
-                !S::Facet::LIFTED || (Self::OWNS_ROWS && S::Element::DEGREE <= 2),
-                "lifts of jumps are made for broken elements of degree one and two"
-            );
-            assert!(
-                !Self::OWNS_ROWS || !S::Facet::USES_FLUX || S::Element::DEGREE <= [9, 9, 3, 2][D],
-                "fluxes have more moments than rows are made for"
-            );
-        }
-        if Self::OWNS_ROWS {
+        if self.owns_rows() {
             let (metrics, weights) = self.prepared();
-            owned_rows::fill(&self.space, &self.form, metrics, weights, matrix);
+            owned_rows::fill(&self.space, self.form(), metrics, weights, matrix);
         } else {
-            shared_rows::fill(self, matrix);
+            shared_rows::fill(&self.space, self.form(), self.loops.as_ref(), matrix);
         }
     }
     fn prepared(&self) -> &(Metrics<T>, FacetCoefficients<T>) {
         self.prepared.get_or_init(|| {
             let metrics = Metrics::of(self.space.mesh);
-            let weights = FacetCoefficients::of(&self.space, &self.form, &metrics);
+            let weights = FacetCoefficients::of(&self.space, self.form(), &metrics);
             (metrics, weights)
         })
     }
@@ -146,7 +146,7 @@ impl<'a, T: Real, const D: usize, S: Scheme<T, D>> Discretisation<'a, T, D, S> {
         let matrix = self.matrix();
         let factored = own_load.map(|own_load| {
             let (metrics, weights) = self.prepared();
-            penalised::factored(&self.space, &self.form, (metrics, weights), own_load, data)
+            penalised::factored(&self.space, self.form(), (metrics, weights), own_load, data)
         });
         // the loops that fill the matrix cannot fail: whoever is to blame is sought afterwards
         if let Some(reaction) = space::data::ReactionTerm::new(&self.space)
@@ -161,17 +161,21 @@ impl<'a, T: Real, const D: usize, S: Scheme<T, D>> Discretisation<'a, T, D, S> {
             bounds,
             supports: self.supports(),
             // in the plane an order found in space is no better for unknowns that cells share
-            points: if D == 3 || Self::OWNS_ROWS { self.space.vertex_points() } else { Vec::new() },
+            points: if D == 3 || self.owns_rows() {
+                self.space.vertex_points()
+            } else {
+                Vec::new()
+            },
             start: Start::Cold,
             factored,
         })
     }
     /// The load; if the matrix is kept factored too, the load without Dirichlet data, and these.
     fn loads(&self) -> Result<penalised::Loads<T>, Error> {
-        let is_factored = Self::OWNS_ROWS && penalised::applies::<T, D, _>(&self.form);
+        let is_factored = self.owns_rows() && penalised::applies(self.form());
         let mut own = None;
         let (load, data) =
-            self.space.load_and_data(&self.form, &|| &self.prepared().0, &mut |by_cell| {
+            self.space.load_and_data(self.form(), &|| &self.prepared().0, &mut |by_cell| {
                 own = is_factored.then(|| by_cell.to_vec());
             })?;
         Ok((load, own, data))
@@ -203,13 +207,41 @@ impl<'a, T: Real, const D: usize, S: Scheme<T, D>> Discretisation<'a, T, D, S> {
     /// Facets whose weight lies below what the form needs to be provably coercive: how many, and
     /// the one that misses by the largest factor. Nothing if the form promises none.
     pub fn coercivity_margin(&self) -> Option<CoercivityMargin> {
-        self.space.coercivity_margin(&self.form)
+        self.space.coercivity_margin(self.form())
     }
     /// The load of all unknowns.
     ///
     /// # Errors
     /// [`Error::DataNotFinite`].
     pub fn load(&self) -> Result<Vec<T>, Error> {
-        self.space.load(&self.form, &|| &self.prepared().0)
+        self.space.load(self.form(), &|| &self.prepared().0)
     }
+}
+
+impl<T: Real, const D: usize> std::fmt::Debug for Discretisation<'_, T, D> {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Discretisation")
+            .field("unknowns", &self.unknowns())
+            .field("degree", &self.degree())
+            .finish_non_exhaustive()
+    }
+}
+
+/// Refuses forms that the loops over owned rows have no tables for.
+fn check_form<T: Real, const D: usize>(
+    element: &AnyElement,
+    form: &dyn FacetForm<T, D>,
+) -> Result<(), Error> {
+    let refuse = |requested, allowed| Err(Error::UnsupportedForm { requested, allowed });
+    let owns_rows = form.couples() && element.layout.is_broken();
+    if form.is_lifted() && !(owns_rows && element.degree <= 2) {
+        return refuse("lifts of jumps", "broken elements of degree one and two");
+    }
+    if owns_rows && form.uses_flux() && element.degree > [9, 9, 3, 2][D] {
+        return refuse(
+            "fluxes",
+            "broken elements of degree at most 9, 3 and 2 in dimensions 1, 2, 3",
+        );
+    }
+    Ok(())
 }

@@ -10,7 +10,7 @@ use super::space::tables::FacetTable;
 use super::space::{Space, data};
 use crate::algebra::{PenalisedMatrix, Term};
 use crate::element::{MAX_BASIS, Node};
-use crate::facet::{AnyForm, FacetForm};
+use crate::facet::FacetForm;
 use crate::mesh::{BoundaryPart, Neighbour, edge_vertices};
 use crate::parallel::cells;
 use crate::real::Real;
@@ -23,15 +23,15 @@ pub(crate) type Loads<T> = (Vec<T>, Option<Vec<T>>, Vec<FacetDatum>);
 const ROUNDING: f64 = 1e-12;
 
 /// Whether all there is of a form is a sum of products of jumps.
-pub(crate) fn applies<T: Real, const D: usize, F: FacetForm<T, D>>(form: &F) -> bool {
-    !F::USES_FLUX && !F::LIFTED && form.is_symmetric()
+pub(crate) fn applies<T: Real, const D: usize>(form: &dyn FacetForm<T, D>) -> bool {
+    !form.uses_flux() && !form.is_lifted() && form.is_symmetric()
 }
 
 /// The parts: stiffness and reaction by cells, jumps of moments over facets with their weights, the
 /// load without Dirichlet data by cells (empty for none), Dirichlet data.
 pub(crate) fn factored<T: Real, const D: usize>(
     space: &Space<'_, T, D>,
-    form: &dyn AnyForm<T, D>,
+    form: &dyn FacetForm<T, D>,
     (metrics, weights): (&Metrics<T>, &FacetCoefficients<T>),
     mut load: Vec<T>,
     mut dirichlet: Vec<FacetDatum>,
@@ -50,7 +50,7 @@ pub(crate) fn factored<T: Real, const D: usize>(
     };
     let table = space.facet_table(form.moments(space.degree));
     let templates = Templates::<T>::new::<D>(space, &table);
-    let of_degree: Vec<T> = table.degrees.iter().map(|&k| form.moment_weight(k)).collect();
+    let of_degree: Vec<T> = table.degrees.iter().map(|&k| T::lit(form.moment_weight(k))).collect();
     let neighbours = space.coupled_neighbours();
     for cell in 0..space.mesh.n_cells() {
         let metric = metrics.at::<D>(cell);

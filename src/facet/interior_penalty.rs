@@ -49,8 +49,9 @@ impl InteriorPenalty {
 }
 
 impl<T: Real, const D: usize> FacetForm<T, D> for InteriorPenalty {
-    const USES_FLUX: bool = true;
-
+    fn uses_flux(&self) -> bool {
+        true
+    }
     fn is_symmetric(&self) -> bool {
         self.symmetry == Symmetry::Symmetric
     }

@@ -6,9 +6,9 @@ use crate::real::Real;
 /// `eta sum_F int alpha r_F(u) . r_F(v)` with the consistency terms of the symmetric interior
 /// penalty: the lifts of single facets as a penalty.
 ///
-/// With `w = alpha_F share` of a cell the lift of a moment `m` of the jump has the energy
-/// `w^2 / alpha |F|^2 / |K| c(m)` in each cell of the facet, where `c` depends on the degree of the
-/// moment and of the lift only. Coercive for `eta` above the number of facets of a cell, because the
+/// With `w` the coefficient `alpha_F` times the average weight of a cell, the lift of a moment `m`
+/// of the jump has the energy `w^2 / alpha |F|^2 / |K| c(m)` in each cell of the facet, where `c`
+/// depends on the degree of the moment and of the lift only. Coercive for `eta` above the number of facets of a cell, because the
 /// square of a sum of so many lifts is at most so many times the sum of their squares.
 ///
 /// Source: F. Bassi, S. Rebay, G. Mariotti, S. Pedinotti, M. Savini, 2nd European Conference on
@@ -26,17 +26,18 @@ pub struct FacetLifts {
 
 impl FacetLifts {
     fn weight<T: Real, const D: usize>(eta: f64, facet: &FacetView<T, D>) -> T {
-        let share = T::lit(if facet.there.is_some() { 0.5 } else { 1.0 });
-        let w = facet.coefficient() * share;
+        let average = T::lit(if facet.there.is_some() { 0.5 } else { 1.0 });
+        let w = facet.coefficient() * average;
         let energy = facet.sum(|side| w * w * facet.measure / (side.coefficient * side.volume));
         T::lit(eta) * energy
     }
 }
 
 impl<T: Real, const D: usize> FacetForm<T, D> for FacetLifts {
-    const USES_FLUX: bool = true;
-
-    fn moments(degree: usize) -> usize {
+    fn uses_flux(&self) -> bool {
+        true
+    }
+    fn moments(&self, degree: usize) -> usize {
         degree - 1
     }
     fn penalty(&self, facet: &FacetView<T, D>) -> T {
@@ -75,18 +76,20 @@ impl<T: Real, const D: usize> FacetForm<T, D> for FacetLifts {
 pub struct Lifted<F>(pub F);
 
 impl<T: Real, const D: usize, F: FacetForm<T, D>> FacetForm<T, D> for Lifted<F> {
-    const USES_FLUX: bool = F::USES_FLUX;
-    const LIFTED: bool = true;
-
+    fn uses_flux(&self) -> bool {
+        self.0.uses_flux()
+    }
+    fn is_lifted(&self) -> bool {
+        true
+    }
     fn is_symmetric(&self) -> bool {
         self.0.is_symmetric()
     }
-    fn moments(degree: usize) -> usize {
-        F::moments(degree)
+    fn moments(&self, degree: usize) -> usize {
+        self.0.moments(degree)
     }
-    #[inline(always)]
-    fn share(&self, facet: &FacetView<T, D>) -> T {
-        self.0.share(facet)
+    fn average_weight(&self, facet: &FacetView<T, D>) -> T {
+        self.0.average_weight(facet)
     }
     #[inline(always)]
     fn penalty(&self, facet: &FacetView<T, D>) -> T {

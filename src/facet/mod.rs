@@ -13,10 +13,10 @@
 //! and the sum over moments is the integral over the facet.
 //!
 //! The lift `r(v)` of a jump is the piecewise polynomial field of degree one less than the element
-//! with `int r(v) . tau = - sum_F int_F [v] {tau . n}`, the mean with the same shares as in the
+//! with `int r(v) . tau = - sum_F int_F [v] {tau . n}`, the mean with the average weights of the
 //! flux; `r_F(v)` is the part of one facet.
 
-mod erased;
+mod dirichlet;
 mod interior_penalty;
 mod lifting;
 mod none;
@@ -25,7 +25,7 @@ mod parameters;
 mod proven;
 mod view;
 
-pub(crate) use erased::AnyForm;
+pub use dirichlet::DirichletBy;
 pub use interior_penalty::{InteriorPenalty, PenaltyRule, Symmetry};
 pub use lifting::{FacetLifts, Lifted};
 pub use none::NoFacets;
@@ -47,28 +47,37 @@ pub struct Trace<T> {
 
 /// A facet term of a bilinear form, written as its integrand.
 ///
+/// The trait is object-safe: the assembler holds a form as `&dyn FacetForm` and calls it once a facet
+/// or less, never once a matrix entry.
+///
 /// From the one formula come the matrix, the load of Dirichlet data (which enter as the trial trace
 /// `{ jump: u_D, flux: 0 }`: wherever `[u]` stands on a Dirichlet facet, `[u] - u_D` is meant) and
 /// the penalty part of the norm (the formula at traces without flux).
-pub trait FacetForm<T: Real, const D: usize>: Send + Sync {
+pub trait FacetForm<T: Real, const D: usize>: Send + Sync + 'static {
     /// Whether there is a form at all. Without one, facets are not even built.
-    const COUPLES: bool = true;
+    fn couples(&self) -> bool {
+        true
+    }
     /// Whether the formula reads fluxes; if not, no normal derivative is computed.
-    const USES_FLUX: bool;
+    fn uses_flux(&self) -> bool {
+        false
+    }
     /// Whether `int alpha r(v) . r(u)` is added, which couples cells with the neighbours of their
-    /// neighbours. Only broken elements carry such a form.
-    const LIFTED: bool = false;
+    /// neighbours. Only broken elements of degree one or two carry such a form.
+    fn is_lifted(&self) -> bool {
+        false
+    }
     /// Whether `integrand(v, u)` equals `integrand(u, v)`.
     fn is_symmetric(&self) -> bool {
         true
     }
     /// Up to which degree the form sees moments of traces, for an element of this degree.
-    fn moments(degree: usize) -> usize {
+    fn moments(&self, degree: usize) -> usize {
         degree
     }
-    /// The share of the cell here in the mean flux; that of the cell there is what is left to one.
-    #[inline(always)]
-    fn share(&self, facet: &FacetView<T, D>) -> T {
+    /// The weight of the cell here in the mean flux; the weight of the cell there is what is left to
+    /// one.
+    fn average_weight(&self, facet: &FacetView<T, D>) -> T {
         let _ = facet;
         T::lit(0.5)
     }

@@ -8,8 +8,9 @@ use crate::real::Real;
 pub struct NoFacets;
 
 impl<T: Real, const D: usize> FacetForm<T, D> for NoFacets {
-    const COUPLES: bool = false;
-    const USES_FLUX: bool = false;
+    fn couples(&self) -> bool {
+        false
+    }
     fn penalty(&self, _: &FacetView<T, D>) -> T {
         T::lit(0.0)
     }

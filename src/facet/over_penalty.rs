@@ -17,10 +17,10 @@ pub enum WeightRule {
 
 /// `kappa_F P[u] P[v]`, `P` the projection on polynomials of degree `k - 1` on the facet, its mean
 /// for linear elements: the weak over-penalty, without consistency terms and without normal
-/// derivatives. The weight carries the coefficient's harmonic mean.
+/// derivatives. The weight contains the harmonic mean of the coefficients.
 ///
-/// Source: S. C. Brenner, L. Owens, L.-Y. Sung, ETNA 30 (2008), 107-127; for degrees above one the
-/// same, J. Comput. Appl. Math. 236 (2012), 2883-2894.
+/// Source: S. C. Brenner, L. Owens, L.-Y. Sung, ETNA 30 (2008), 107-127; for degrees above one
+/// S. C. Brenner, L. Owens, L.-Y. Sung, J. Comput. Appl. Math. 236 (2012), 2883-2894.
 #[derive(Clone, Copy, Debug)]
 pub struct OverPenalty {
     /// The factor, of the dimension of a length to the power `2k`.
@@ -34,9 +34,7 @@ pub struct OverPenalty {
 }
 
 impl<T: Real, const D: usize> FacetForm<T, D> for OverPenalty {
-    const USES_FLUX: bool = false;
-
-    fn moments(degree: usize) -> usize {
+    fn moments(&self, degree: usize) -> usize {
         degree - 1
     }
     #[inline(always)]

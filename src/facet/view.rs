@@ -18,8 +18,7 @@ pub struct Side<T> {
 
 /// A facet and its cells: what a penalty may depend on.
 ///
-/// What is a method is computed when asked for, so that a penalty which does not need it does not
-/// pay.
+/// Diameter, normal and coefficient are methods, computed only for penalties that call them.
 #[derive(Clone, Copy, Debug)]
 pub struct FacetView<'a, T: Real, const D: usize> {
     mesh: &'a Mesh<T, D>,
@@ -63,15 +62,15 @@ impl<'a, T: Real, const D: usize> FacetView<'a, T, D> {
     pub fn coefficient(&self) -> T {
         self.conductance(T::lit(0.5))
     }
-    /// The harmonic mean of the coefficients with this share of the cell here; on the boundary the
-    /// coefficient.
+    /// The harmonic mean of the coefficients with this average weight of the cell here; on the
+    /// boundary the coefficient.
     #[inline(always)]
-    pub fn conductance(&self, share: T) -> T {
+    pub fn conductance(&self, weight: T) -> T {
         match &self.there {
             None => self.here.coefficient,
             Some(there) => {
                 let (a, b) = (self.here.coefficient, there.coefficient);
-                a * b / (share * b + (T::lit(1.0) - share) * a)
+                a * b / (weight * b + (T::lit(1.0) - weight) * a)
             }
         }
     }

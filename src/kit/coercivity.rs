@@ -2,19 +2,20 @@
 
 use nalgebra::DMatrix;
 
+use super::discrete::assemble;
 use super::error::{KitError, Law};
 use super::matrix::Assembled;
 use super::meshes::Sample;
 use super::report::CoercivityReport;
 use super::spectrum::{Diagonal, Factored, Lanczos};
-use super::tested::{Tested, assemble};
 use super::{meshes, problems};
 use crate::algebra::SparseMatrix;
 use crate::linear::FactorError;
 use crate::real::Real;
+use crate::scheme::AnyScheme;
 
 pub(super) fn check<T: Real, const D: usize>(
-    scheme: &dyn Tested<T, D>,
+    scheme: &dyn AnyScheme<T, D>,
 ) -> Result<CoercivityReport, KitError> {
     let (law, domain, n) = (Law::Coercivity, meshes::clamped(), meshes::subdivisions(D));
     let mut smallest = f64::INFINITY;

@@ -1,20 +1,21 @@
 //! The patch test.
 
+use super::discrete::{Judged, solve_and_judge};
 use super::error::{KitError, Law};
 use super::meshes::Sample;
 use super::report::ConsistencyReport;
-use super::tested::{Judged, Tested, solve_and_judge};
 use super::{meshes, problems};
 use crate::mesh::describe_point;
 use crate::problem::Problem;
 use crate::real::{Real, point_f64};
+use crate::scheme::AnyScheme;
 
 /// Rounding units that the error may have: some hundreds for the condition of a small matrix,
 /// some tens for the sums of its entries.
 const UNITS: f64 = 8192.0;
 
 pub(super) fn check<T: Real, const D: usize>(
-    scheme: &dyn Tested<T, D>,
+    scheme: &dyn AnyScheme<T, D>,
 ) -> Result<ConsistencyReport, KitError> {
     let (law, domain, n) = (Law::Consistency, meshes::mixed(), meshes::subdivisions(D));
     let declared = scheme.is_consistent();

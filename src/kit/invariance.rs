@@ -2,14 +2,15 @@
 
 use std::collections::HashMap;
 
+use super::discrete::{assemble, solve};
 use super::error::{KitError, Law};
 use super::matrix::{Assembled, row_sizes};
 use super::meshes::{Renumbered, Sample};
 use super::report::InvarianceReport;
-use super::tested::{Tested, assemble, solve};
 use super::{meshes, problems};
 use crate::algebra::Support;
 use crate::real::Real;
+use crate::scheme::AnyScheme;
 
 /// Rounding units by which entries of matrix and load may change.
 const ENTRY_UNITS: f64 = 512.0;
@@ -17,7 +18,7 @@ const ENTRY_UNITS: f64 = 512.0;
 const SOLUTION_UNITS: f64 = 8192.0;
 
 pub(super) fn check<T: Real, const D: usize>(
-    scheme: &dyn Tested<T, D>,
+    scheme: &dyn AnyScheme<T, D>,
 ) -> Result<InvarianceReport, KitError> {
     let law = Law::Invariance;
     let sample = meshes::moved::<T, D>(law, &meshes::mixed(), meshes::subdivisions(D))?;

@@ -28,6 +28,7 @@
 
 mod coercivity;
 mod consistency;
+mod discrete;
 mod element;
 mod error;
 mod invariance;
@@ -39,7 +40,6 @@ mod random;
 mod report;
 pub mod spectrum;
 mod symmetry;
-mod tested;
 
 pub use element::check_element;
 pub use error::{KitError, Law};
@@ -49,8 +49,7 @@ pub use report::{
 };
 
 use crate::real::Real;
-use crate::scheme::Scheme;
-use tested::{Of, Tested};
+use crate::scheme::{AnyScheme, Scheme};
 
 /// Checks every law in turn; those that need a solution come after those that say there is one.
 ///
@@ -60,7 +59,7 @@ pub fn check_scheme<T: Real, const D: usize, S: Scheme<T, D>>(
     scheme: &S,
 ) -> Result<KitReport, KitError> {
     let element = check_element::<T, D, S::Element>()?;
-    let tested: &dyn Tested<T, D> = &Of(scheme);
+    let tested: &dyn AnyScheme<T, D> = scheme;
     Ok(KitReport {
         scheme: tested.name().to_owned(),
         dimension: D,
@@ -81,7 +80,7 @@ pub fn check_scheme<T: Real, const D: usize, S: Scheme<T, D>>(
 pub fn check_symmetry<T: Real, const D: usize, S: Scheme<T, D>>(
     scheme: &S,
 ) -> Result<SymmetryReport, KitError> {
-    symmetry::check::<T, D>(&Of(scheme))
+    symmetry::check::<T, D>(scheme)
 }
 
 /// The symmetric part of the matrix is positive definite on the unknowns that are not given.
@@ -91,7 +90,7 @@ pub fn check_symmetry<T: Real, const D: usize, S: Scheme<T, D>>(
 pub fn check_coercivity<T: Real, const D: usize, S: Scheme<T, D>>(
     scheme: &S,
 ) -> Result<CoercivityReport, KitError> {
-    coercivity::check::<T, D>(&Of(scheme))
+    coercivity::check::<T, D>(scheme)
 }
 
 /// Matrix, load and solution do not depend on the numbers of vertices and cells, nor on the order
@@ -103,7 +102,7 @@ pub fn check_coercivity<T: Real, const D: usize, S: Scheme<T, D>>(
 pub fn check_invariance<T: Real, const D: usize, S: Scheme<T, D>>(
     scheme: &S,
 ) -> Result<InvarianceReport, KitError> {
-    invariance::check::<T, D>(&Of(scheme))
+    invariance::check::<T, D>(scheme)
 }
 
 /// The patch test: a polynomial of the element's degree is reproduced to rounding if the scheme
@@ -114,7 +113,7 @@ pub fn check_invariance<T: Real, const D: usize, S: Scheme<T, D>>(
 pub fn check_consistency<T: Real, const D: usize, S: Scheme<T, D>>(
     scheme: &S,
 ) -> Result<ConsistencyReport, KitError> {
-    consistency::check::<T, D>(&Of(scheme))
+    consistency::check::<T, D>(scheme)
 }
 
 /// Errors against a smooth solution fall with the order of the element: its degree in the broken
@@ -127,5 +126,5 @@ pub fn check_consistency<T: Real, const D: usize, S: Scheme<T, D>>(
 pub fn check_orders<T: Real, const D: usize, S: Scheme<T, D>>(
     scheme: &S,
 ) -> Result<OrdersReport, KitError> {
-    orders::check::<T, D>(&Of(scheme))
+    orders::check::<T, D>(scheme)
 }

@@ -7,7 +7,6 @@ use crate::assemble::space::Space;
 use crate::inequality::Solution;
 use crate::mesh::{BoundaryPart, edge_vertices};
 use crate::real::{Real, point_f64};
-use crate::scheme::Scheme;
 
 /// Fields on the cells of the mesh, for pictures.
 #[derive(Clone, Debug, Default)]
@@ -27,7 +26,7 @@ pub struct Fields {
     pub found: FoundContact,
 }
 
-impl<T: Real, const D: usize, S: Scheme<T, D>> Discretisation<'_, T, D, S> {
+impl<T: Real, const D: usize> Discretisation<'_, T, D> {
     /// Solution, obstacle, multiplier and contact set on cells, for pictures.
     ///
     /// The multiplier of an unknown is a force; over the measure that belongs to the unknown it is

@@ -9,13 +9,12 @@ use crate::assemble::space::tables::{BasisAt, CellTable};
 use crate::assemble::space::{Space, data};
 use crate::element::{MAX_BASIS, Node};
 use crate::error::Error;
-use crate::facet::{AnyForm, Trace};
+use crate::facet::{FacetForm, Trace};
 use crate::mesh::{BoundaryPart, Neighbour, Neighbours};
 use crate::parallel::cells;
 use crate::problem::Exact;
 use crate::quadrature::Rule;
 use crate::real::{Real, point_f64};
-use crate::scheme::Scheme;
 
 /// Degree of the rule for error norms: the exact solution is not polynomial, and the rule must not
 /// limit what it measures.
@@ -51,7 +50,7 @@ impl SquaredErrors {
     }
 }
 
-impl<T: Real, const D: usize, S: Scheme<T, D>> Discretisation<'_, T, D, S> {
+impl<T: Real, const D: usize> Discretisation<'_, T, D> {
     /// Errors of a vector of unknowns against the exact solution; none where there is no exact
     /// solution.
     ///
@@ -66,8 +65,8 @@ impl<T: Real, const D: usize, S: Scheme<T, D>> Discretisation<'_, T, D, S> {
     /// # Panics
     /// If `u` is shorter than the number of unknowns.
     pub fn errors(&self, u: &[T]) -> Result<Errors, Error> {
-        let form: &dyn AnyForm<T, D> = &self.form;
-        self.space.errors(Self::COUPLES.then_some(form), u)
+        let form = self.form();
+        self.space.errors(form.couples().then_some(form), u)
     }
 }
 
@@ -141,7 +140,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
 
 impl<T: Real, const D: usize> Space<'_, T, D> {
     /// Errors of a vector of unknowns; see `Discretisation::errors`.
-    pub fn errors(&self, form: Option<&dyn AnyForm<T, D>>, u: &[T]) -> Result<Errors, Error> {
+    pub fn errors(&self, form: Option<&dyn FacetForm<T, D>>, u: &[T]) -> Result<Errors, Error> {
         let Some(exact) = &self.problem.exact else { return Ok(Errors::default()) };
         let mut total = self.cell_errors(exact, u)?;
         if let (Some(neighbours), Some(form)) = (&self.neighbours, form) {
@@ -158,7 +157,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
     /// The facet form at the jumps of the error.
     fn facet_error(
         &self,
-        form: &dyn AnyForm<T, D>,
+        form: &dyn FacetForm<T, D>,
         neighbours: &Neighbours,
         u: &[T],
     ) -> Result<f64, Error> {
@@ -191,7 +190,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
                 let penalty = form.penalty(&view);
                 for (jump, &degree) in jumps.into_iter().zip(&table.degrees) {
                     let trace = Trace { jump: T::lit(jump), flux: T::lit(0.0) };
-                    let penalty = penalty * form.moment_weight(degree);
+                    let penalty = penalty * T::lit(form.moment_weight(degree));
                     total += (view.measure * form.integrand(trace, trace, penalty)).to_f64();
                 }
             }

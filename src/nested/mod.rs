@@ -1,7 +1,7 @@
 //! Nested iteration: the hierarchy of meshes, the start from conforming P1, and one solve.
 
-mod any_scheme;
 mod hierarchy;
+mod solve;
 
-pub use any_scheme::{AnyScheme, Solved, Task};
 pub use hierarchy::{Hierarchy, P1Solution};
+pub use solve::{Solved, Task, solve};

@@ -1,4 +1,4 @@
-//! The same scheme with its bounds on cell means.
+//! A scheme with its bounds on cell means.
 
 use super::{BoundedNodes, DirichletBy, ExpectedOrders, Scheme, Setting};
 use crate::element::{Broken, P2, QuadraticCellMean};

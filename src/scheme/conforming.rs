@@ -1,7 +1,7 @@
-//! Conforming linear elements.
+//! Conforming elements.
 
 use super::{DirichletBy, ExpectedOrders, Scheme, Setting, energy_order, with_duality};
-use crate::element::P1;
+use crate::element::{P1, P2};
 use crate::facet::NoFacets;
 use crate::mesh::Mesh;
 use crate::real::Real;
@@ -27,5 +27,37 @@ impl<T: Real, const D: usize> Scheme<T, D> for ConformingP1 {
     }
     fn expected_orders(&self, setting: &Setting) -> ExpectedOrders {
         with_duality(energy_order(setting, 1), setting)
+    }
+}
+
+/// Continuous piecewise quadratics, bounds at all nodes, Dirichlet values pinned.
+///
+/// [`Midpoints`](super::Midpoints) binds midpoints of edges only. The diffusion coefficient is a
+/// constant in each cell: the order two is that of problems whose coefficient is constant in each cell.
+///
+/// Orders in the energy norm, for a solution in `H^s`: `min(s - 1, 2)` by interpolation where no
+/// inequality binds; with an obstacle `min(s - 1, 3/2)` (F. Brezzi, W. W. Hager, P.-A. Raviart,
+/// Numer. Math. 28 (1977), 431-443; L.-H. Wang, Numer. Math. 92 (2002), 771-778), for which a
+/// function that is not negative at the nodes must have no negative mean over a cell: true on
+/// segments and triangles, false on tetrahedra, where the weights of vertices are negative
+/// (S. Gaddam, T. Gudi, Comput. Methods Appl. Math. 18 (2018), 223-236, add bubbles there); with a
+/// Signorini condition `min(s - 1, 3/2)` (Z. Belhachmi, F. Ben Belgacem, Math. Comp. 72 (2003),
+/// 83-104; G. Drouet, P. Hild, SIAM J. Numer. Anal. 53 (2015), 1488-1507).
+#[derive(Clone, Copy, Debug, Default)]
+pub struct ConformingP2;
+
+impl<T: Real, const D: usize> Scheme<T, D> for ConformingP2 {
+    type Element = P2;
+    type Facet = NoFacets;
+    const DIRICHLET: DirichletBy = DirichletBy::Pinning;
+
+    fn name(&self) -> &str {
+        "p2"
+    }
+    fn facet(&self, _: &Mesh<T, D>) -> NoFacets {
+        NoFacets
+    }
+    fn expected_orders(&self, setting: &Setting) -> ExpectedOrders {
+        with_duality(energy_order(setting, 2), setting)
     }
 }

@@ -30,7 +30,7 @@ pub(crate) fn energy_order(setting: &Setting, degree: usize) -> ExpectedOrders {
     ExpectedOrders { l2: None, h1: most.filter(|_| s > 1.5).map(|most| (s - 1.0).min(most)) }
 }
 
-/// The same for schemes whose functions jump. Under an inequality their proofs ask for solutions in
+/// What [`energy_order`] says, for schemes whose functions jump. Under an inequality their proofs ask for solutions in
 /// `H^2`, and those for Signorini conditions cover linears only.
 pub(crate) fn broken_energy_order(setting: &Setting, degree: usize) -> ExpectedOrders {
     let is_smooth = setting.regularity.sobolev >= 2.0;

@@ -1,4 +1,4 @@
-//! The same scheme with its bounds on facet means.
+//! A scheme with its bounds on facet means.
 
 use super::{DirichletBy, ExpectedOrders, Scheme, Setting};
 use crate::element::{Broken, CrouzeixRaviart, P1};

@@ -1,7 +1,8 @@
 //! The local discontinuous Galerkin method.
 
 use super::{
-    DirichletBy, ExpectedOrders, Scheme, Setting, broken_energy_order, name_by_degree, with_duality,
+    DirichletBy, ExpectedOrders, Scheme, SchemeOptions, Setting, broken_energy_order,
+    name_of_degree, with_duality,
 };
 use crate::element::{Broken, P1, ReferenceElement};
 use crate::facet::{FacetForm, FacetView, Lifted, PenaltyParameters, Trace};
@@ -20,10 +21,10 @@ use crate::real::{Real, point_f64};
 pub struct Ldg<E = P1> {
     /// The factor of the penalty; by default one.
     pub eta: f64,
-    /// The switch `beta`: off for the mean flux, on for the flux of one side, that from which a
+    /// The switch `beta`: off for the mean flux, on for the flux of one side, the side from which a
     /// fixed direction points to the other.
     pub switch: bool,
-    /// The element whose broken version it is on.
+    /// The element whose broken version carries the scheme.
     pub element: E,
 }
 
@@ -33,8 +34,17 @@ impl Default for Ldg {
     }
 }
 
+impl Ldg {
+    /// The scheme by name: with the penalty factor that the options give.
+    pub(super) fn with_options(options: &SchemeOptions, switch: bool) -> Self {
+        let default = Self::default();
+        Self { eta: options.sigma.unwrap_or(default.eta), switch, ..default }
+    }
+}
+
 impl<E> Ldg<E> {
-    /// The same on the broken version of another element: `Ldg::default().on(P2)`.
+    /// The scheme on the broken version of another element: `Ldg::default().on(P2)`.
+    #[must_use]
     pub fn on<F>(self, element: F) -> Ldg<F> {
         Ldg { eta: self.eta, switch: self.switch, element }
     }
@@ -47,8 +57,8 @@ impl<T: Real, const D: usize, E: ReferenceElement<T, D>> Scheme<T, D> for Ldg<E>
 
     fn name(&self) -> &str {
         match self.switch {
-            false => name_by_degree(["ldg", "ldg-p2"], E::DEGREE),
-            true => name_by_degree(["ldg-switch", "ldg-switch-p2"], E::DEGREE),
+            false => name_of_degree!("ldg", E::DEGREE),
+            true => name_of_degree!("ldg-switch", E::DEGREE),
         }
     }
     fn facet(&self, _: &Mesh<T, D>) -> Lifted<LocalFluxes> {
@@ -70,9 +80,10 @@ pub struct LocalFluxes {
 const DIRECTION: [f64; 3] = [1.0, 0.377, 0.142];
 
 impl<T: Real, const D: usize> FacetForm<T, D> for LocalFluxes {
-    const USES_FLUX: bool = true;
-
-    fn share(&self, facet: &FacetView<T, D>) -> T {
+    fn uses_flux(&self) -> bool {
+        true
+    }
+    fn average_weight(&self, facet: &FacetView<T, D>) -> T {
         if !self.switch {
             return T::lit(0.5);
         }

@@ -1,4 +1,4 @@
-//! The same scheme with its bounds at midpoints of edges.
+//! A scheme with its bounds at midpoints of edges.
 
 use super::{BoundedNodes, DirichletBy, ExpectedOrders, Scheme, Setting};
 use crate::mesh::Mesh;
@@ -38,11 +38,8 @@ impl<T: Real, const D: usize, S: Scheme<T, D>> Scheme<T, D> for Midpoints<S> {
     }
 }
 
-/// What is left of a scheme's orders if it binds midpoints only.
-pub(crate) fn midpoint_orders(
-    setting: &Setting,
-    at_all_nodes: impl Fn() -> ExpectedOrders,
-) -> ExpectedOrders {
+/// The orders of a scheme that remain proven if it binds midpoints only.
+fn midpoint_orders(setting: &Setting, at_all_nodes: impl Fn() -> ExpectedOrders) -> ExpectedOrders {
     let obstacle = setting.obstacle && setting.dimension != 2;
     let contact = setting.contact && setting.dimension == 3;
     if obstacle || contact { ExpectedOrders::default() } else { at_all_nodes() }

@@ -1,53 +1,123 @@
 //! Schemes: an element, a facet form, a way to impose Dirichlet data and a constraint set. Nothing
 //! else.
 
-mod bmmpr;
-mod bounded_nodes;
-mod br2;
+mod any_scheme;
 mod cell_means;
 mod conforming;
-mod conforming_p2;
 mod crouzeix_raviart;
 mod energy_order;
 mod facet_means;
-mod iipg;
+mod interior_penalty;
 mod ldg;
+mod lifting;
 mod midpoints;
-mod nipg;
-mod sipg;
+mod options;
 mod theory;
 mod wopsip;
 
-pub use bmmpr::Bmmpr;
-pub use bounded_nodes::BoundedNodes;
-pub use br2::Br2;
+pub use any_scheme::AnyScheme;
 pub use cell_means::CellMeans;
-pub use conforming::ConformingP1;
-pub use conforming_p2::ConformingP2;
+pub use conforming::{ConformingP1, ConformingP2};
 pub use crouzeix_raviart::NonconformingP1;
 pub use facet_means::FacetMeans;
-pub use iipg::Iipg;
+pub use interior_penalty::{Iipg, InteriorPenaltyMethod, Nipg, Sipg};
 pub use ldg::{Ldg, LocalFluxes};
+pub use lifting::{Bmmpr, Br2};
 pub use midpoints::Midpoints;
-pub(crate) use midpoints::midpoint_orders;
-pub use nipg::Nipg;
-pub use sipg::Sipg;
+pub use options::{Placement, SchemeOptions};
 pub use theory::{ExpectedOrders, Regularity, Setting};
 pub use wopsip::{Eta, Wopsip};
 
-use crate::element::ReferenceElement;
+#[doc(no_inline)]
+pub use crate::constraint::BoundedNodes;
+#[doc(no_inline)]
+pub use crate::facet::DirichletBy;
+
+use crate::element::{P2, ReferenceElement};
 use crate::facet::FacetForm;
 use crate::mesh::Mesh;
 use crate::real::Real;
 use energy_order::{broken_energy_order, energy_order, with_duality};
 
-/// How a scheme imposes Dirichlet data.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum DirichletBy {
-    /// Unknowns on the Dirichlet part are fixed at the data.
-    Pinning,
-    /// The facet form acts on Dirichlet facets, with the data in place of the other side.
-    FacetForm,
+/// The name of a scheme on an element of this degree: the name itself for linears, with `-p2` for
+/// quadratics, and so on up to the largest degree that an element can have.
+macro_rules! name_of_degree {
+    ($name:literal, $degree:expr) => {
+        match $degree {
+            2 => concat!($name, "-p2"),
+            3 => concat!($name, "-p3"),
+            4 => concat!($name, "-p4"),
+            5 => concat!($name, "-p5"),
+            6 => concat!($name, "-p6"),
+            7 => concat!($name, "-p7"),
+            8 => concat!($name, "-p8"),
+            9 => concat!($name, "-p9"),
+            _ => $name,
+        }
+    };
+}
+use name_of_degree;
+
+/// Makes of one list the names with their summaries, and the function that finds a scheme.
+macro_rules! schemes_by_name {
+    ($options:ident: $($name:literal, $summary:literal => $scheme:expr;)*) => {
+        /// Names of the schemes, with one line each.
+        pub const SCHEMES: &[(&str, &str)] = &[$(($name, $summary)),*];
+
+        fn made<T: Real, const D: usize>(
+            name: &str,
+            $options: &SchemeOptions,
+        ) -> Option<Box<dyn AnyScheme<T, D>>> {
+            match name {
+                $($name => Some($scheme),)*
+                _ => None,
+            }
+        }
+    };
+}
+
+// A scheme gets its name by one entry here: name, summary, constructor from the options.
+schemes_by_name! { options:
+    "p1", "conforming linear elements" => options.fixed(ConformingP1);
+    "p2", "conforming quadratic elements" => options.at_nodes(ConformingP2);
+    "cr", "Crouzeix-Raviart elements, bounds on facet means" => options.fixed(NonconformingP1);
+    "sipg", "symmetric interior penalty on broken linears (takes --sigma)"
+        => options.linear(Sipg::with_options(options));
+    "nipg", "non-symmetric interior penalty on broken linears (takes --sigma)"
+        => options.linear(Nipg::with_options(options));
+    "iipg", "incomplete interior penalty on broken linears (takes --sigma)"
+        => options.linear(Iipg::with_options(options));
+    "ldg", "local discontinuous Galerkin on broken linears, mean fluxes (takes --sigma)"
+        => options.linear(Ldg::with_options(options, false));
+    "ldg-switch", "local discontinuous Galerkin on broken linears, one-sided fluxes (takes --sigma)"
+        => options.linear(Ldg::with_options(options, true));
+    "br2", "second method of Bassi and Rebay on broken linears" => options.linear(Br2::default());
+    "bmmpr", "method of Brezzi, Manzini, Marini, Pietra and Russo on broken linears"
+        => options.linear(Bmmpr::default());
+    "wopsip", "weakly over-penalised symmetric interior penalty on broken linears (takes --eta)"
+        => options.linear(Wopsip::with_options(options));
+    "sipg-p2", "sipg on broken quadratics (takes --sigma)"
+        => options.quadratic(Sipg::with_options(options).on(P2));
+    "nipg-p2", "nipg on broken quadratics (takes --sigma)"
+        => options.quadratic(Nipg::with_options(options).on(P2));
+    "iipg-p2", "iipg on broken quadratics (takes --sigma)"
+        => options.quadratic(Iipg::with_options(options).on(P2));
+    "ldg-p2", "ldg on broken quadratics (takes --sigma)"
+        => options.quadratic(Ldg::with_options(options, false).on(P2));
+    "ldg-switch-p2", "ldg-switch on broken quadratics (takes --sigma)"
+        => options.quadratic(Ldg::with_options(options, true).on(P2));
+    "br2-p2", "br2 on broken quadratics" => options.quadratic(Br2::default().on(P2));
+    "bmmpr-p2", "bmmpr on broken quadratics" => options.quadratic(Bmmpr::default().on(P2));
+    "wopsip-p2", "wopsip on broken quadratics, moments of degree one (takes --eta)"
+        => options.quadratic(Wopsip::with_options(options).on(P2));
+}
+
+/// The scheme of this name.
+pub fn scheme_by_name<T: Real, const D: usize>(
+    name: &str,
+    options: &SchemeOptions,
+) -> Option<Box<dyn AnyScheme<T, D>>> {
+    made(name, options)
 }
 
 /// A discretisation of the bilinear form and of Dirichlet data.
@@ -78,9 +148,4 @@ pub trait Scheme<T: Real, const D: usize>: Send + Sync {
         let _ = setting;
         ExpectedOrders::default()
     }
-}
-
-/// The name of a scheme on linears or on quadratics.
-fn name_by_degree(names: [&'static str; 2], degree: usize) -> &'static str {
-    names[usize::from(degree > 1)]
 }

@@ -1,7 +1,8 @@
 //! The weakly over-penalised symmetric interior penalty method.
 
 use super::{
-    DirichletBy, ExpectedOrders, Scheme, Setting, broken_energy_order, name_by_degree, with_duality,
+    DirichletBy, ExpectedOrders, Scheme, SchemeOptions, Setting, broken_energy_order,
+    name_of_degree, with_duality,
 };
 use crate::element::{Broken, P1, ReferenceElement};
 use crate::facet::{OverPenalty, WeightRule};
@@ -27,9 +28,9 @@ pub enum Eta {
 pub struct Wopsip<E = P1> {
     /// The factor.
     pub eta: Eta,
-    /// How it becomes a weight.
+    /// How the factor becomes a weight.
     pub weight: WeightRule,
-    /// The element whose broken version it is on.
+    /// The element whose broken version carries the scheme.
     pub element: E,
 }
 
@@ -40,8 +41,17 @@ impl Default for Wopsip {
     }
 }
 
+impl Wopsip {
+    /// The scheme by name: with the factor that the options give.
+    pub(super) fn with_options(options: &SchemeOptions) -> Self {
+        let default = Self::default();
+        Self { eta: options.eta.map_or(default.eta, Eta::Absolute), ..default }
+    }
+}
+
 impl<E> Wopsip<E> {
-    /// The same on the broken version of another element: `Wopsip::default().on(P2)`.
+    /// The scheme on the broken version of another element: `Wopsip::default().on(P2)`.
+    #[must_use]
     pub fn on<F>(self, element: F) -> Wopsip<F> {
         Wopsip { eta: self.eta, weight: self.weight, element }
     }
@@ -54,7 +64,7 @@ impl<T: Real, const D: usize, E: ReferenceElement<T, D>> Scheme<T, D> for Wopsip
     const CONSISTENT: bool = false;
 
     fn name(&self) -> &str {
-        name_by_degree(["wopsip", "wopsip-p2"], E::DEGREE)
+        name_of_degree!("wopsip", E::DEGREE)
     }
     fn facet(&self, mesh: &Mesh<T, D>) -> OverPenalty {
         let eta = match self.eta {

@@ -2,10 +2,8 @@
 
 use super::cases::unweighted::Blind;
 use crate::facet::WeightRule;
-use crate::nested::AnyScheme;
 use crate::real::Real;
-use crate::scheme::{FacetMeans, Wopsip};
-use crate::study::{Placement, SchemeOptions, scheme_by_name};
+use crate::scheme::{AnyScheme, FacetMeans, Placement, SchemeOptions, Wopsip, scheme_by_name};
 
 /// The schemes of the study, as users type them.
 pub(crate) const NAMES: [&str; 7] =

@@ -7,7 +7,7 @@ use crate::error::Error;
 use crate::inequality::{ActiveSet, LastResort};
 use crate::linear::{LinearMethod, is_positive_definite};
 use crate::mesh::{BoxDomain, Mesh};
-use crate::nested::{Hierarchy, Solved, Task};
+use crate::nested::{Hierarchy, Solved, Task, solve};
 use crate::problem::Problem;
 use crate::real::{Point, Real};
 use crate::scenes::Scene;
@@ -68,7 +68,7 @@ pub(crate) fn solved<const D: usize>(
     let start = if is_warm { Some(levels.contact(level, solver, quadrature, 1)?) } else { None };
     let Some((mesh, _)) = levels.mesh(level) else { unreachable!("made above") };
     let scheme = choice.make::<f64, D>();
-    let solved = scheme.solve(&Task {
+    let task = Task {
         problem: &scene.problem,
         mesh,
         start: start.as_deref(),
@@ -77,7 +77,8 @@ pub(crate) fn solved<const D: usize>(
         with_errors: true,
         repeat: 1,
         with_fields: true,
-    })?;
+    };
+    let solved = solve(&*scheme, &task)?;
     Ok((mesh.clone(), solved))
 }
 

@@ -2,7 +2,6 @@
 
 mod compatibility;
 mod memory;
-mod names;
 mod order_check;
 mod orders;
 mod orders_table;
@@ -13,7 +12,6 @@ pub(crate) mod table;
 
 pub use compatibility::check_fit;
 pub use memory::{MemoryEstimate, available_memory_bytes, peak_memory_bytes};
-pub use names::{Placement, RegisteredSchemes, SCHEMES, SchemeOptions, scheme_by_name};
 pub use order_check::{Norm, ObservedOrders, OrderMissed, OrdersMissed};
 pub use orders::fill_orders;
 pub use orders_table::orders_table;

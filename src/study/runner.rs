@@ -16,12 +16,12 @@ use crate::inequality::{ActiveSet, InequalitySolver};
 use crate::mesh::{BoundaryPart, Domain, Mesh};
 #[cfg(feature = "report")]
 use crate::nested::Solved;
-use crate::nested::{AnyScheme, Hierarchy, P1Solution, Task};
+use crate::nested::{Hierarchy, P1Solution, Task, solve};
 #[cfg(feature = "report")]
 use crate::paraview::{CellFields, write_vtu};
 use crate::real::Real;
 use crate::scenes::Scene;
-use crate::scheme::{ExpectedOrders, Setting};
+use crate::scheme::{AnyScheme, ExpectedOrders, Setting};
 
 /// What a study tells whoever watches it.
 pub enum Progress<'a> {
@@ -47,7 +47,7 @@ pub enum Progress<'a> {
 /// ```
 pub struct Study<'a, T: Real, const D: usize> {
     scene: Scene<D>,
-    schemes: Vec<Box<dyn AnyScheme<T, D> + 'a>>,
+    schemes: Vec<Arc<dyn AnyScheme<T, D> + 'a>>,
     levels: Vec<usize>,
     mesh: Option<Mesh<T, D>>,
     solver: Box<dyn InequalitySolver<T> + 'a>,
@@ -74,11 +74,16 @@ impl<'a, T: Real, const D: usize> Study<'a, T, D> {
     }
     /// Adds a scheme.
     pub fn scheme(mut self, scheme: impl AnyScheme<T, D> + 'a) -> Self {
-        self.schemes.push(Box::new(scheme));
+        self.schemes.push(Arc::new(scheme));
         self
     }
     /// Adds a scheme chosen at run time.
     pub fn boxed_scheme(mut self, scheme: Box<dyn AnyScheme<T, D> + 'a>) -> Self {
+        self.schemes.push(scheme.into());
+        self
+    }
+    /// Adds a scheme that other studies have too.
+    pub(crate) fn shared_scheme(mut self, scheme: Arc<dyn AnyScheme<T, D> + 'a>) -> Self {
         self.schemes.push(scheme);
         self
     }
@@ -229,7 +234,7 @@ impl<'a, T: Real, const D: usize> Study<'a, T, D> {
         levels.make(level)?;
         let start = self.start(levels, scheme, level)?;
         let Some((mesh, mesh_seconds)) = levels.mesh(level) else { unreachable!("made above") };
-        let solved = scheme.solve(&Task {
+        let task = Task {
             problem: &self.scene.problem,
             mesh,
             start: start.as_deref(),
@@ -238,7 +243,8 @@ impl<'a, T: Real, const D: usize> Study<'a, T, D> {
             with_errors: failure.is_none(),
             repeat: self.repeat,
             with_fields,
-        })?;
+        };
+        let solved = solve(scheme, &task)?;
         #[cfg(feature = "report")]
         if let (Some(directory), Some(_)) = (&self.directory, &solved.fields) {
             self.write_fields(directory, scheme, mesh, &solved)?;
@@ -251,12 +257,12 @@ impl<'a, T: Real, const D: usize> Study<'a, T, D> {
         }
         let coarser = start.as_ref().map_or(0, |s| s.levels);
         let start_seconds = start.as_ref().map_or(0.0, |s| s.seconds);
-        let solve = solved.solve_seconds + start_seconds;
+        let solve_seconds = solved.solve_seconds + start_seconds;
         let seconds = Seconds {
             mesh: mesh_seconds,
             assemble: solved.assemble_seconds,
-            solve,
-            total: mesh_seconds + solved.assemble_seconds + solve,
+            solve: solve_seconds,
+            total: mesh_seconds + solved.assemble_seconds + solve_seconds,
         };
         let row = Row {
             scene: self.scene.name.clone(),
@@ -287,7 +293,7 @@ impl<'a, T: Real, const D: usize> Study<'a, T, D> {
             iterations: Iterations {
                 outer: solved.outer,
                 linear: solved.linear,
-                levels: coarser.saturating_sub(usize::from(!scheme.is_conforming_linear())),
+                levels: coarser.saturating_sub(usize::from(!scheme.is_conforming_linear(mesh))),
             },
             certificate: solved.certificate,
             seconds,
@@ -306,10 +312,12 @@ impl<'a, T: Real, const D: usize> Study<'a, T, D> {
         level: usize,
     ) -> Result<Option<Arc<P1Solution<T>>>, Error> {
         let (solver, quadrature) = (&*self.solver, self.quadrature);
-        let unknowns = levels.mesh(level).map_or(0, |(mesh, _)| unknowns(mesh, scheme.layout()));
+        let Some((mesh, _)) = levels.mesh(level) else { unreachable!("made before") };
+        let unknowns = unknowns(mesh, scheme.layout());
+        let is_conforming_linear = scheme.is_conforming_linear(mesh);
         if !self.scene.problem.is_constrained() && !solver.uses_coarse_spaces(unknowns) {
             Ok(None)
-        } else if scheme.is_conforming_linear() {
+        } else if is_conforming_linear {
             levels.start_from_coarser(level, solver, quadrature, self.repeat)
         } else {
             levels.contact(level, solver, quadrature, self.repeat).map(Some)

@@ -1,9 +1,11 @@
 //! Schemes and scalars to choose from, and running one of them on one level.
 
+use std::sync::Arc;
+
 use crate::error::Error;
-use crate::nested::AnyScheme;
 use crate::real::Real;
-use crate::study::{MemoryEstimate, Row, SchemeOptions, Study, peak_memory_bytes, scheme_by_name};
+use crate::scheme::{AnyScheme, SchemeOptions, scheme_by_name};
+use crate::study::{MemoryEstimate, Row, Study, peak_memory_bytes};
 
 use super::measured::Phases;
 
@@ -30,69 +32,62 @@ impl Precision {
     }
 }
 
-/// A scheme that can be made for either scalar as often as it is needed.
-pub trait Candidate<const D: usize> {
-    /// The scheme in `f64`; none if its name is unknown.
-    fn double(&self) -> Option<Box<dyn AnyScheme<f64, D> + '_>>;
-    /// The scheme in `f32`.
-    fn single(&self) -> Option<Box<dyn AnyScheme<f32, D> + '_>>;
+/// A scheme over each scalar.
+pub(crate) struct Candidate<'a, const D: usize> {
+    pub double: Arc<dyn AnyScheme<f64, D> + 'a>,
+    pub single: Arc<dyn AnyScheme<f32, D> + 'a>,
 }
 
-impl<const D: usize, S: AnyScheme<f64, D> + AnyScheme<f32, D> + Clone> Candidate<D> for S {
-    fn double(&self) -> Option<Box<dyn AnyScheme<f64, D> + '_>> {
-        Some(Box::new(self.clone()))
+impl<'a, const D: usize> Candidate<'a, D> {
+    /// A scheme of either scalar.
+    pub fn new(scheme: impl AnyScheme<f64, D> + AnyScheme<f32, D> + 'a) -> Self {
+        let scheme = Arc::new(scheme);
+        Self { double: scheme.clone(), single: scheme }
     }
-    fn single(&self) -> Option<Box<dyn AnyScheme<f32, D> + '_>> {
-        Some(Box::new(self.clone()))
-    }
-}
-
-/// A registered scheme.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Named {
-    /// Its name.
-    pub name: String,
-    /// What was chosen about it.
-    pub options: SchemeOptions,
-}
-
-impl<const D: usize> Candidate<D> for Named {
-    fn double(&self) -> Option<Box<dyn AnyScheme<f64, D> + '_>> {
-        scheme_by_name(&self.name, &self.options)
-    }
-    fn single(&self) -> Option<Box<dyn AnyScheme<f32, D> + '_>> {
-        scheme_by_name(&self.name, &self.options)
+    /// The scheme of this name, if there is one.
+    pub fn by_name(name: &str, options: &SchemeOptions) -> Option<Self> {
+        let double = Arc::from(scheme_by_name::<f64, D>(name, options)?);
+        let single = Arc::from(scheme_by_name::<f32, D>(name, options)?);
+        Some(Self { double, single })
     }
 }
 
-/// A study of one scheme on one level, whatever its scalar.
-pub(crate) trait Single {
-    /// Checks it before anything is run.
-    fn check(&self) -> Result<(), Error>;
-    /// The memory it will need.
-    fn memory_estimate(&self) -> Option<MemoryEstimate>;
-    /// Runs it with nothing known from before: the row, and the phases of its time. The peak of
-    /// memory is that of the process while it ran, where the system tells.
-    fn run(&self) -> Result<(Row, Phases), Error>;
+/// A study of one scheme on one level, over the scalar that was asked for.
+pub(crate) enum OneStudy<'s, const D: usize> {
+    Double(Study<'s, f64, D>),
+    Single(Study<'s, f32, D>),
 }
 
-impl<T: Real, const D: usize> Single for Study<'_, T, D> {
-    fn check(&self) -> Result<(), Error> {
-        Study::check(self)
+impl<const D: usize> OneStudy<'_, D> {
+    /// Checks the study before anything is run.
+    pub fn check(&self) -> Result<(), Error> {
+        match self {
+            Self::Double(study) => study.check(),
+            Self::Single(study) => study.check(),
+        }
     }
-    fn memory_estimate(&self) -> Option<MemoryEstimate> {
-        Study::memory_estimate(self)
+    /// The memory that the study will need.
+    pub fn memory_estimate(&self) -> Option<MemoryEstimate> {
+        match self {
+            Self::Double(study) => study.memory_estimate(),
+            Self::Single(study) => study.memory_estimate(),
+        }
     }
-    fn run(&self) -> Result<(Row, Phases), Error> {
+    /// Runs the study with nothing known from before: the row, and the phases of its time. The peak
+    /// of memory is that of the process during the run, where the system tells.
+    pub fn run(&self) -> Result<(Row, Phases), Error> {
         let is_reset = reset_peak_memory();
-        let (mut row, coarse) = self.run_alone()?;
+        let (mut row, coarse) = match self {
+            Self::Double(study) => study.run_alone()?,
+            Self::Single(study) => study.run_alone()?,
+        };
         row.peak_memory_bytes = peak_memory_bytes().filter(|_| is_reset);
         let phases = Phases::new(&row.seconds, coarse);
         Ok((row, phases))
     }
 }
 
-/// Makes the kernel forget the largest resident set so far; tells whether it did. Linux only.
+/// Resets the largest resident set that the kernel has recorded; tells whether it did. Linux only.
 fn reset_peak_memory() -> bool {
     cfg!(target_os = "linux") && std::fs::write("/proc/self/clear_refs", "5").is_ok()
 }

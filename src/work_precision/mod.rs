@@ -13,7 +13,7 @@ mod tables;
 mod verdict;
 
 pub use baseline::{Changes, changes};
-pub use case::{Candidate, Named, Precision};
+pub use case::Precision;
 pub use measured::{Case, Failure, Measured, Phases, Variant};
 pub use provenance::Provenance;
 pub use reach::{ErrorNorm, Reach, WorkPoint, work_at};
@@ -23,16 +23,17 @@ pub use table::Table;
 pub(crate) use table::{Cell, latex, markdown};
 
 use std::path::PathBuf;
+use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use crate::error::Error;
 use crate::inequality::ActiveSet;
 use crate::linear::LinearMethod;
-use crate::nested::AnyScheme;
 use crate::real::Real;
 use crate::scenes::Scene;
+use crate::scheme::{AnyScheme, SchemeOptions};
 use crate::study::{Study, available_memory_bytes};
-use case::Single;
+use case::{Candidate, OneStudy};
 
 /// How long finished rows of a round may wait to be written.
 const PATIENCE: Duration = Duration::from_secs(1);
@@ -70,7 +71,8 @@ pub enum WorkProgress<'a> {
 /// ```
 pub struct WorkPrecision<'a, const D: usize> {
     scene: Box<dyn Fn() -> Scene<D> + 'a>,
-    candidates: Vec<Box<dyn Candidate<D> + 'a>>,
+    /// None stands for a name that no scheme has.
+    candidates: Vec<Option<Candidate<'a, D>>>,
     linear: Vec<LinearMethod>,
     precisions: Vec<Precision>,
     levels: Vec<usize>,
@@ -86,9 +88,9 @@ pub struct WorkPrecision<'a, const D: usize> {
 type MemoryOf<'a> = Box<dyn Fn(&Case) -> Option<u64> + 'a>;
 
 /// A case, what runs it, and what it gave so far.
-struct Slot<'s> {
+struct Slot<'s, const D: usize> {
     case: Case,
-    single: Box<dyn Single + 's>,
+    study: OneStudy<'s, D>,
     /// The case one level coarser, by its place in the list.
     coarser: Option<usize>,
     measured: Option<Measured>,
@@ -112,9 +114,14 @@ impl<'a, const D: usize> WorkPrecision<'a, D> {
             observer: Box::new(|_| {}),
         }
     }
-    /// Adds a scheme, or a registered one as [`Named`].
-    pub fn scheme(mut self, scheme: impl Candidate<D> + 'a) -> Self {
-        self.candidates.push(Box::new(scheme));
+    /// Adds a scheme.
+    pub fn scheme(mut self, scheme: impl AnyScheme<f64, D> + AnyScheme<f32, D> + 'a) -> Self {
+        self.candidates.push(Some(Candidate::new(scheme)));
+        self
+    }
+    /// Adds a scheme by its name; a name that no scheme has is an error of the run.
+    pub fn scheme_by_name(mut self, name: &str, options: &SchemeOptions) -> Self {
+        self.candidates.push(Candidate::by_name(name, options));
         self
     }
     /// Sets the linear solvers inside the active-set method; one chosen by size otherwise.
@@ -201,7 +208,7 @@ impl<'a, const D: usize> WorkPrecision<'a, D> {
         (self.observer)(WorkProgress::Planned(slots.len() * self.rounds));
         // threads, pages and instructions are there when the clock starts
         for slot in slots.iter().filter(|s| s.coarser.is_none()) {
-            drop(slot.single.run());
+            drop(slot.study.run());
         }
         let mut written = Instant::now();
         for round in 0..self.rounds {
@@ -231,7 +238,7 @@ impl<'a, const D: usize> WorkPrecision<'a, D> {
     }
 
     /// Runs a case, unless it has failed, takes too long or would not fit.
-    fn run_slot(&self, slots: &mut [Slot<'_>], k: usize, round: usize) {
+    fn run_slot(&self, slots: &mut [Slot<'_, D>], k: usize, round: usize) {
         if let Some(measured) = &slots[k].measured {
             let is_slow = measured.smallest.total > self.limit;
             if is_slow || !measured.row.converged() {
@@ -247,7 +254,7 @@ impl<'a, const D: usize> WorkPrecision<'a, D> {
             return;
         }
         let slot = &mut slots[k];
-        match slot.single.run() {
+        match slot.study.run() {
             Err(e) => {
                 slot.failure = Some(Failure { case: slot.case.clone(), why: e.to_string() });
             }
@@ -265,7 +272,7 @@ impl<'a, const D: usize> WorkPrecision<'a, D> {
     }
 
     /// Why a case is not worth trying.
-    fn obstacle_to(&self, slots: &[Slot<'_>], k: usize) -> Option<String> {
+    fn obstacle_to(&self, slots: &[Slot<'_, D>], k: usize) -> Option<String> {
         if let Some(coarser) = slots[k].coarser.map(|c| &slots[c]) {
             let level = coarser.case.level;
             let Some(measured) = &coarser.measured else {
@@ -276,7 +283,7 @@ impl<'a, const D: usize> WorkPrecision<'a, D> {
                 return Some(format!("not run: level {level} took {seconds:.1} s"));
             }
         }
-        let (need, free) = (slots[k].single.memory_estimate()?, available_memory_bytes()?);
+        let (need, free) = (slots[k].study.memory_estimate()?, available_memory_bytes()?);
         (need.bytes > free as f64).then(|| {
             let (need, free) = (need.bytes / 1e9, free as f64 / 1e9);
             format!("not run: would need about {need:.1} GB of memory, {free:.1} GB are available")
@@ -288,7 +295,7 @@ impl<'a, const D: usize> WorkPrecision<'a, D> {
         &self,
         report: &mut WorkReport,
         (rows, refused): (usize, usize),
-        slots: &[Slot<'_>],
+        slots: &[Slot<'_, D>],
     ) -> Result<(), Error> {
         report.rows.truncate(rows);
         report.rows.extend(slots.iter().filter_map(|s| s.measured.clone()));
@@ -302,15 +309,15 @@ impl<'a, const D: usize> WorkPrecision<'a, D> {
     }
 
     /// All cases, variant by variant, each checked.
-    fn slots(&self) -> Result<Vec<Slot<'_>>, Error> {
-        let mut slots: Vec<Slot<'_>> = Vec::new();
+    fn slots(&self) -> Result<Vec<Slot<'_, D>>, Error> {
+        let mut slots: Vec<Slot<'_, D>> = Vec::new();
         for candidate in &self.candidates {
             for &linear in &self.linear {
                 for &precision in &self.precisions {
                     let mut coarser = None;
                     for &level in &self.levels {
-                        let slot = self.slot(&**candidate, linear, precision, level)?;
-                        slot.single.check()?;
+                        let slot = self.slot(candidate.as_ref(), linear, precision, level)?;
+                        slot.study.check()?;
                         if slots.iter().any(|s| s.case == slot.case) {
                             let variant = &slot.case.variant;
                             let name = format!("{} on {}", variant.scheme, variant.constraint);
@@ -331,26 +338,32 @@ impl<'a, const D: usize> WorkPrecision<'a, D> {
 
     fn slot<'s>(
         &'s self,
-        candidate: &'s (dyn Candidate<D> + 'a),
+        candidate: Option<&Candidate<'s, D>>,
         linear: LinearMethod,
         precision: Precision,
         level: usize,
-    ) -> Result<Slot<'s>, Error> {
-        let made = match precision {
-            Precision::Double => candidate.double().map(|s| self.single(s, linear, level)),
-            Precision::Single => candidate.single().map(|s| self.single(s, linear, level)),
-        };
+    ) -> Result<Slot<'s, D>, Error> {
         let allowed = "there is no scheme of this name in this dimension";
-        let (case, single) = made.ok_or_else(|| wrong("scheme", "unknown".to_owned(), allowed))?;
-        Ok(Slot { case, single, coarser: None, measured: None, failure: None })
+        let candidate = candidate.ok_or_else(|| wrong("scheme", "unknown".to_owned(), allowed))?;
+        let (case, study) = match precision {
+            Precision::Double => {
+                let (case, study) = self.one_study(candidate.double.clone(), linear, level);
+                (case, OneStudy::Double(study))
+            }
+            Precision::Single => {
+                let (case, study) = self.one_study(candidate.single.clone(), linear, level);
+                (case, OneStudy::Single(study))
+            }
+        };
+        Ok(Slot { case, study, coarser: None, measured: None, failure: None })
     }
 
-    fn single<'s, T: Real>(
+    fn one_study<'s, T: Real>(
         &'s self,
-        scheme: Box<dyn AnyScheme<T, D> + 's>,
+        scheme: Arc<dyn AnyScheme<T, D> + 's>,
         linear: LinearMethod,
         level: usize,
-    ) -> (Case, Box<dyn Single + 's>) {
+    ) -> (Case, Study<'s, T, D>) {
         let scene = (self.scene)();
         let name = LinearMethod::NAMES.iter().find(|l| l.1 == linear).map_or("", |l| l.0);
         let variant = Variant {
@@ -362,9 +375,9 @@ impl<'a, const D: usize> WorkPrecision<'a, D> {
         };
         let study = Study::<T, D>::new(scene)
             .solver(ActiveSet { linear, ..ActiveSet::default() })
-            .boxed_scheme(scheme)
+            .shared_scheme(scheme)
             .levels([level]);
-        (Case { variant, level }, Box::new(study))
+        (Case { variant, level }, study)
     }
 }
 

@@ -4,7 +4,7 @@ use std::path::Path;
 use unilateral::inequality::ActiveSet;
 use unilateral::mesh::BoxDomain;
 use unilateral::mesh::{Mesh, gmsh};
-use unilateral::nested::{Solved, Task};
+use unilateral::nested::{self, Solved, Task};
 use unilateral::prelude::*;
 use unilateral::scenes::Scene;
 use unilateral::scheme::Regularity;
@@ -26,7 +26,7 @@ pub fn solve<T: Real, const D: usize>(
         repeat: 1,
         with_fields: true,
     };
-    scheme.solve(&task).unwrap()
+    nested::solve(scheme, &task).unwrap()
 }
 
 /// A scene of a test's own.

@@ -125,7 +125,7 @@ fn runs_repeat_whatever_the_threads() {
 fn every_scene_runs_with_every_scheme() {
     let scratch = Scratch::new("all");
     let report = scratch.report("--scene all --scheme all --levels 4 --quiet");
-    let schemes = unilateral::study::SCHEMES.len();
+    let schemes = unilateral::scheme::SCHEMES.len();
     assert_eq!(rows(&report).len(), scenes::catalogue().len() * schemes);
     for dimension in 1..=3 {
         assert!(rows(&report).iter().any(|row| row["dimension"] == dimension));

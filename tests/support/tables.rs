@@ -3,7 +3,7 @@
 use unilateral::assemble::DataQuadrature;
 use unilateral::inequality::ActiveSet;
 use unilateral::mesh::Mesh;
-use unilateral::nested::{Hierarchy, Solved, Task};
+use unilateral::nested::{self, Hierarchy, Solved, Task};
 use unilateral::prelude::*;
 use unilateral::quadrature::Rule;
 use unilateral::scenes::Scene;
@@ -45,7 +45,7 @@ pub fn solve_by_rule<const D: usize>(
         repeat: 1,
         with_fields: true,
     };
-    let solved = scheme.solve(&task).unwrap();
+    let solved = nested::solve(scheme, &task).unwrap();
     (mesh, solved)
 }
 

@@ -4,18 +4,18 @@
 //! neighbours of the centre with each other. The rows of a cell get contributions from the cell
 //! itself and from its neighbours as centres.
 //!
-//! On a centre `K` the jump `m` on facet `F` lifts to `-w/alpha n s`, `w` the flux share of `K` and
+//! On a centre `K` the jump `m` on facet `F` lifts to `-w/alpha n s`, `w` the weight of `K` in the flux and
 //! `s` of degree `p - 1` with `int_K s q = int_F m q`. With `|F||F'| n.n' = D^2 |K| int grad lambda
 //! . grad lambda'` the product of two lifts is `D^2 w w'/alpha` times that integral times a number
 //! of the reference cell.
 
 use super::Coupled;
-use crate::assemble::local::{CellSide, flux_share, view};
+use crate::assemble::local::{CellSide, flux_weight, view};
 use crate::assemble::space::Space;
 use crate::assemble::space::metric::{CellMetric, Metrics};
 use crate::assemble::space::tables::{BasisAt, FacetTable};
 use crate::element::MAX_BASIS;
-use crate::facet::AnyForm;
+use crate::facet::FacetForm;
 use crate::mesh::{BoundaryPart, Neighbour, Neighbours};
 use crate::quadrature::{OrthonormalPolynomials, Rule, insert};
 use crate::real::Real;
@@ -72,7 +72,7 @@ fn tests(dimension: usize, degree: usize, local: usize) -> Vec<Vec<f64>> {
 /// The lifts of a discretisation.
 pub(crate) struct Lifting<'s, 'a, T: Real, const D: usize> {
     pub space: &'s Space<'a, T, D>,
-    pub form: &'s dyn AnyForm<T, D>,
+    pub form: &'s dyn FacetForm<T, D>,
     pub metrics: &'s Metrics<T>,
     pub table: &'s LiftTable<T>,
 }
@@ -82,8 +82,8 @@ struct Carrier<T> {
     local: usize,
     /// The cell across and the facet's number in it; none on the boundary.
     across: Option<(usize, usize)>,
-    /// The flux share of the centre.
-    share: T,
+    /// The weight of the centre's normal derivative in the flux.
+    flux_weight: T,
 }
 
 impl<T: Real, const D: usize> Lifting<'_, '_, T, D> {
@@ -147,7 +147,8 @@ impl<T: Real, const D: usize> Lifting<'_, '_, T, D> {
         trial: &Carrier<T>,
     ) -> T {
         let product = metric.products[test.local][trial.local];
-        T::lit((D * D) as f64) * test.share * trial.share * product / self.space.alpha(centre)
+        T::lit((D * D) as f64) * test.flux_weight * trial.flux_weight * product
+            / self.space.alpha(centre)
     }
 
     /// The facet of a centre as a carrier of jumps, if a form acts on it.
@@ -169,11 +170,11 @@ impl<T: Real, const D: usize> Lifting<'_, '_, T, D> {
                 let is_here = centre < cell;
                 let (here, there) = if is_here { (&me, &other) } else { (&other, &me) };
                 let facet = view(mesh, here, Some(there));
-                let share = flux_share(&facet, self.form.share(&facet), is_here);
-                Some(Carrier { local, across: Some((cell, other_local)), share })
+                let flux_weight = flux_weight(&facet, self.form.average_weight(&facet), is_here);
+                Some(Carrier { local, across: Some((cell, other_local)), flux_weight })
             }
             Neighbour::Boundary(BoundaryPart::Dirichlet) => {
-                Some(Carrier { local, across: None, share: coefficient })
+                Some(Carrier { local, across: None, flux_weight: coefficient })
             }
             Neighbour::Boundary(_) => None,
         }
@@ -234,7 +235,8 @@ impl<T: Real, const D: usize> Lifting<'_, '_, T, D> {
         load: &mut [T],
     ) {
         let metric = self.metrics.at::<D>(centre);
-        let datum = Carrier { local: *datum_local, across: None, share: self.space.alpha(centre) };
+        let datum =
+            Carrier { local: *datum_local, across: None, flux_weight: self.space.alpha(centre) };
         for local in 0..=D {
             let Some(test) = self.carrier(neighbours, centre, &metric, local) else { continue };
             let scale = self.scale(centre, &metric, &test, &datum);

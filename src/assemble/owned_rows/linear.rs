@@ -101,7 +101,7 @@ impl<T: Real, const D: usize> Filling<'_, '_, T, D> {
                     let mut flux = [T::lit(0.0); N];
                     if FLUX {
                         count::normal_derivatives(N);
-                        let scale = T::lit(D as f64) * gradient * weight.other_share;
+                        let scale = T::lit(D as f64) * gradient * weight.other_flux_weight;
                         let row = self.metrics.products_of::<D>(other, other_local);
                         flux = std::array::from_fn(|i| scale * row[i]);
                     }
@@ -158,7 +158,7 @@ impl<T: Real, const D: usize> Filling<'_, '_, T, D> {
         }
         count::normal_derivatives(N);
         let means = &reference.means[local];
-        let scale = T::lit(-(D as f64)) * reference.gradient * weight.own_share;
+        let scale = T::lit(-(D as f64)) * reference.gradient * weight.own_flux_weight;
         let flux: [T; N] = std::array::from_fn(|i| scale * metric.products[local][i]);
         let (jump_flux, flux_jump) = (form.jump_flux.at(penalty), form.flux_jump.at(penalty));
         let flux_flux = form.flux_flux.at(penalty) / measure;

@@ -21,7 +21,7 @@ use super::space::tables::FacetTable;
 use super::space::{Space, data};
 use crate::algebra::SparseMatrix;
 use crate::element::MAX_BASIS;
-use crate::facet::AnyForm;
+use crate::facet::FacetForm;
 use crate::memory::in_large_pages;
 use crate::mesh::{Neighbour, Neighbours};
 use crate::parallel::cells;
@@ -165,13 +165,13 @@ struct Filling<'s, 'a, T: Real, const D: usize> {
 /// The values, on a known pattern.
 pub(crate) fn fill<T: Real, const D: usize>(
     space: &Space<'_, T, D>,
-    form: &dyn AnyForm<T, D>,
+    form: &dyn FacetForm<T, D>,
     metrics: &Metrics<T>,
     weights: &FacetCoefficients<T>,
     matrix: &mut SparseMatrix<T>,
 ) {
     let facets = space.facet_table(form.moments(space.degree));
-    let of_degree = |k| form.moment_weight(k);
+    let of_degree = |k| T::lit(form.moment_weight(k));
     let has_flux = |k: &&usize| form.uses_flux() && **k < space.degree;
     let filling = Filling {
         space,

@@ -162,7 +162,7 @@ impl<T: Real, const D: usize> Filling<'_, '_, T, D> {
             let (jump_flux, flux_jump) = (form.jump_flux.at(penalty), form.flux_jump.at(penalty));
             let mine = &moments[k];
             let products = &me.metric.products[me.local];
-            flux[k] = self.flux::<N>(mine, products, weight.own_share);
+            flux[k] = self.flux::<N>(mine, products, weight.own_flux_weight);
             facet.by_flux[k] =
                 std::array::from_fn(|i| jump_flux * mine.values[i] + flux_flux * flux[k][i]);
             facet.by_jump[k] = flux[k].map(|flux| flux_jump * flux);
@@ -205,8 +205,8 @@ impl<T: Real, const D: usize> Filling<'_, '_, T, D> {
         if self.n_fluxes::<M>() > 0 {
             let of_theirs = self.metrics.products_of::<D>(other, other_local);
             for k in 0..self.n_fluxes::<M>() {
-                let share = -facet.weight.other_share;
-                flux[k] = self.flux::<N>(&moments[k], &of_theirs, share);
+                let factor = -facet.weight.other_flux_weight;
+                flux[k] = self.flux::<N>(&moments[k], &of_theirs, factor);
             }
         }
         let products = self.jumps.across(local, other_local);

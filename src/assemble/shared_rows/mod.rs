@@ -10,31 +10,53 @@ pub(crate) mod partition;
 mod patches;
 pub(crate) mod pattern;
 
-use super::Discretisation;
+use super::space::Space;
+use super::space::dofs::Dofs;
 use crate::algebra::SparseMatrix;
+use crate::element::ReferenceElement;
+use crate::facet::FacetForm;
 use crate::real::Real;
-use crate::scheme::Scheme;
 pub(crate) use pattern::Places;
 
+/// The loops over shared rows, instantiated for an element, of which only they are generic.
+#[derive(Clone, Copy)]
+pub(crate) struct CellLoops<T: Real, const D: usize> {
+    pattern: fn(&Dofs<'_>) -> SparseMatrix<T>,
+    fill: fn(&Space<'_, T, D>, &mut SparseMatrix<T>),
+}
+
+impl<T: Real, const D: usize> CellLoops<T, D> {
+    /// The loops of an element; none for elements that share no unknowns.
+    pub fn of<E: ReferenceElement<T, D>>() -> Option<Self> {
+        if const { E::LAYOUT.is_broken() } {
+            None
+        } else {
+            Some(Self { pattern: pattern::pattern::<T, D, E>, fill: fill::fill::<T, D, E> })
+        }
+    }
+}
+
 /// The pattern, with values zero.
-pub(crate) fn pattern<T: Real, const D: usize, S: Scheme<T, D>>(
-    discretisation: &Discretisation<'_, T, D, S>,
+pub(crate) fn pattern<T: Real, const D: usize>(
+    space: &Space<'_, T, D>,
+    form: &dyn FacetForm<T, D>,
+    loops: Option<&CellLoops<T, D>>,
 ) -> SparseMatrix<T> {
-    if Discretisation::<T, D, S>::COUPLES {
-        patches::pattern(discretisation)
-    } else {
-        pattern::pattern::<T, D, S::Element>(&discretisation.space.dofs)
+    match loops {
+        Some(loops) if !form.couples() => (loops.pattern)(&space.dofs),
+        _ => patches::pattern(space, form),
     }
 }
 
 /// The values, on a known pattern.
-pub(crate) fn fill<T: Real, const D: usize, S: Scheme<T, D>>(
-    discretisation: &Discretisation<'_, T, D, S>,
+pub(crate) fn fill<T: Real, const D: usize>(
+    space: &Space<'_, T, D>,
+    form: &dyn FacetForm<T, D>,
+    loops: Option<&CellLoops<T, D>>,
     matrix: &mut SparseMatrix<T>,
 ) {
-    if Discretisation::<T, D, S>::COUPLES {
-        patches::fill(discretisation, matrix);
-    } else {
-        fill::fill::<T, D, S::Element>(&discretisation.space, matrix);
+    match loops {
+        Some(loops) if !form.couples() => (loops.fill)(space, matrix),
+        _ => patches::fill(space, form, matrix),
     }
 }

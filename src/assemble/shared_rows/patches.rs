@@ -9,40 +9,39 @@ use std::convert::Infallible;
 use std::ops::Range;
 
 use crate::algebra::SparseMatrix;
+use crate::assemble::count;
 use crate::assemble::local::{traces, view, zero_local};
 use crate::assemble::space::tables::FacetTable;
 use crate::assemble::space::{Space, data};
-use crate::assemble::{Discretisation, count};
-use crate::element::{MAX_BASIS, ReferenceElement};
+use crate::element::MAX_BASIS;
 use crate::facet::{FacetForm, Trace};
 use crate::mesh::{BoundaryPart, Facets};
 use crate::parallel::cells;
 use crate::real::Real;
-use crate::scheme::{DirichletBy, Scheme};
 
 /// The patches of a discretisation and the unknowns of each.
-struct Patches<'s, 'a, T: Real, const D: usize, S: Scheme<T, D>> {
-    discretisation: &'s Discretisation<'a, T, D, S>,
+struct Patches<'s, 'a, T: Real, const D: usize> {
     space: &'s Space<'a, T, D>,
+    form: &'s dyn FacetForm<T, D>,
     facets: Option<Facets>,
+    /// Number of facets that carry the form.
     coupled: usize,
+    /// Unknowns of a cell.
+    n: usize,
 }
 
-impl<'s, 'a, T: Real, const D: usize, S: Scheme<T, D>> Patches<'s, 'a, T, D, S> {
-    const N: usize = Discretisation::<T, D, S>::N;
-
-    fn new(discretisation: &'s Discretisation<'a, T, D, S>) -> Self {
-        let space = &discretisation.space;
+impl<'s, 'a, T: Real, const D: usize> Patches<'s, 'a, T, D> {
+    fn new(space: &'s Space<'a, T, D>, form: &'s dyn FacetForm<T, D>) -> Self {
         let facets = space
             .neighbours
             .as_ref()
-            .filter(|_| Discretisation::<T, D, S>::COUPLES)
+            .filter(|_| form.couples())
             .map(|neighbours| Facets::of(space.mesh, neighbours));
-        let coupled = facets.as_ref().map_or(0, |f| match S::DIRICHLET {
-            DirichletBy::FacetForm => f.part(BoundaryPart::Dirichlet).end,
-            DirichletBy::Pinning => f.interior().end,
+        let coupled = facets.as_ref().map_or(0, |f| match space.pins {
+            false => f.part(BoundaryPart::Dirichlet).end,
+            true => f.interior().end,
         });
-        Self { discretisation, space, facets, coupled }
+        Self { space, form, facets, coupled, n: space.per_cell() }
     }
     fn n_cells(&self) -> usize {
         self.space.mesh.n_cells()
@@ -54,13 +53,13 @@ impl<'s, 'a, T: Real, const D: usize, S: Scheme<T, D>> Patches<'s, 'a, T, D, S> 
     /// Number of unknowns of a patch; those of a facet's two cells count twice where shared.
     #[inline(always)]
     fn size(&self, patch: usize) -> usize {
-        if patch < self.n_cells() { Self::N } else { 2 * Self::N }
+        if patch < self.n_cells() { self.n } else { 2 * self.n }
     }
     /// Where a patch's local matrix starts.
     #[inline(always)]
     fn start(&self, patch: usize) -> usize {
         let cells = patch.min(self.n_cells());
-        Self::N * Self::N * (cells + 4 * (patch - cells))
+        self.n * self.n * (cells + 4 * (patch - cells))
     }
     /// Unknown `k` of a patch.
     #[inline(always)]
@@ -68,11 +67,11 @@ impl<'s, 'a, T: Real, const D: usize, S: Scheme<T, D>> Patches<'s, 'a, T, D, S> 
         let cell = match &self.facets {
             Some(facets) if patch >= self.n_cells() => {
                 let facet = patch - self.n_cells();
-                if k < Self::N { facets.here(facet).0 } else { facets.there(facet).0 }
+                if k < self.n { facets.here(facet).0 } else { facets.there(facet).0 }
             }
             _ => patch,
         };
-        self.space.dofs.of(cell, k % Self::N) as u32
+        self.space.dofs.of(cell, k % self.n) as u32
     }
     /// For each unknown, the places (patch, position in it) at which it occurs, in order.
     fn incidence(&self) -> (Vec<u32>, Vec<(u32, u32)>) {
@@ -100,12 +99,13 @@ impl<'s, 'a, T: Real, const D: usize, S: Scheme<T, D>> Patches<'s, 'a, T, D, S> 
 }
 
 /// The pattern, with values zero.
-pub(crate) fn pattern<T: Real, const D: usize, S: Scheme<T, D>>(
-    discretisation: &Discretisation<'_, T, D, S>,
+pub(crate) fn pattern<T: Real, const D: usize>(
+    space: &Space<'_, T, D>,
+    form: &dyn FacetForm<T, D>,
 ) -> SparseMatrix<T> {
-    let patches = Patches::new(discretisation);
+    let patches = Patches::new(space, form);
     let (starts, places) = patches.incidence();
-    let size = discretisation.unknowns();
+    let size = space.dofs.size();
     let rows_of = |rows: Range<usize>| {
         let mut columns: Vec<u32> = Vec::new();
         let mut lengths = Vec::with_capacity(rows.len());
@@ -140,11 +140,12 @@ pub(crate) fn pattern<T: Real, const D: usize, S: Scheme<T, D>>(
 }
 
 /// The values, on a known pattern.
-pub(crate) fn fill<T: Real, const D: usize, S: Scheme<T, D>>(
-    discretisation: &Discretisation<'_, T, D, S>,
+pub(crate) fn fill<T: Real, const D: usize>(
+    space: &Space<'_, T, D>,
+    form: &dyn FacetForm<T, D>,
     matrix: &mut SparseMatrix<T>,
 ) {
-    let patches = Patches::new(discretisation);
+    let patches = Patches::new(space, form);
     let locals = local_matrices(&patches);
     let (starts, places) = patches.incidence();
     let SparseMatrix { row_starts, columns, values } = matrix;
@@ -173,12 +174,8 @@ pub(crate) fn fill<T: Real, const D: usize, S: Scheme<T, D>>(
     let Ok(()) = cells::for_each(row_starts.len() - 1, &end, values, &gather);
 }
 
-fn local_matrices<T: Real, const D: usize, S: Scheme<T, D>>(
-    patches: &Patches<'_, '_, T, D, S>,
-) -> Vec<T> {
-    let n = Discretisation::<T, D, S>::N;
-    let space = patches.space;
-    let degree = <S::Element as ReferenceElement<T, D>>::DEGREE;
+fn local_matrices<T: Real, const D: usize>(patches: &Patches<'_, '_, T, D>) -> Vec<T> {
+    let (n, space) = (patches.n, patches.space);
     let stiffness = space.stiffness_table();
     let reaction = data::ReactionTerm::new(space);
     let mut locals = vec![T::lit(0.0); patches.start(patches.len())];
@@ -199,10 +196,10 @@ fn local_matrices<T: Real, const D: usize, S: Scheme<T, D>>(
     };
     let Ok(()) = cells::for_each(patches.n_cells(), &|c| c * n * n, cells, &of_cells);
     if let Some(all) = &patches.facets {
-        let table = space.facet_table(S::Facet::moments(degree));
+        let table = space.facet_table(patches.form.moments(space.degree));
         let of_facets = |range: Range<usize>, entries: &mut [T]| {
             for (facet, out) in range.zip(entries.chunks_exact_mut(4 * n * n)) {
-                facet_matrix(patches.discretisation, all, &table, facet, out);
+                facet_matrix(patches, all, &table, facet, out);
             }
             Ok::<(), Infallible>(())
         };
@@ -214,22 +211,20 @@ fn local_matrices<T: Real, const D: usize, S: Scheme<T, D>>(
 
 /// The form on one facet, for the unknowns of here and then there; on the boundary those of there
 /// stay zero.
-fn facet_matrix<T: Real, const D: usize, S: Scheme<T, D>>(
-    discretisation: &Discretisation<'_, T, D, S>,
+fn facet_matrix<T: Real, const D: usize>(
+    patches: &Patches<'_, '_, T, D>,
     facets: &Facets,
     table: &FacetTable<T>,
     facet: usize,
     out: &mut [T],
 ) {
     count::facets(1);
-    let space = &discretisation.space;
-    let n = Discretisation::<T, D, S>::N;
+    let (n, space, form) = (patches.n, patches.space, patches.form);
     let interior = facets.interior().contains(&facet);
     let ((here, i), (there, j)) = (facets.here(facet), facets.there(facet));
     let (m_here, m_there) = (space.metric(here), space.metric(there));
     let (side_here, side_there) = (space.side(here, i, &m_here), space.side(there, j, &m_there));
     let view = view(space.mesh, &side_here, interior.then_some(&side_there));
-    let form = &discretisation.form;
     let penalty = form.penalty(&view);
     let moments = table.on(i).iter().zip(table.on(j)).zip(&table.degrees);
     for ((b_here, b_there), &degree) in moments {

@@ -1,8 +1,9 @@
 //! The discrete space on a mesh: all that does not depend on the facet form.
 //!
-//! Nothing here is generic in the scheme, so it is compiled once for each scalar and dimension: the
-//! element enters as numbers and one function.
+//! Nothing here is generic in scheme or element, so that all is compiled once for each scalar and
+//! dimension: the element enters as an [`AnyElement`].
 
+mod any_element;
 mod bounds;
 pub(crate) mod data;
 pub(crate) mod dofs;
@@ -12,14 +13,15 @@ pub(crate) mod tables;
 use super::local::{CellSide, StiffnessTable};
 use super::{DataQuadrature, count};
 use crate::algebra::Support;
-use crate::element::{MAX_BASIS, Node, ReferenceElement};
+use crate::constraint::BoundedNodes;
+use crate::element::{MAX_BASIS, Node};
 use crate::error::Error;
 use crate::memory::in_large_pages;
 use crate::mesh::{BoundaryFacet, BoundaryPart, Mesh, Neighbours, edge_vertices};
 use crate::problem::Problem;
 use crate::quadrature::{Rule, insert};
 use crate::real::{Point, Real, point_f64};
-use crate::scheme::BoundedNodes;
+pub(crate) use any_element::AnyElement;
 use dofs::Dofs;
 use metric::CellMetric;
 use tables::{BasisAt, CellTable, FacetTable};
@@ -47,7 +49,8 @@ pub(crate) struct Space<'a, T: Real, const D: usize> {
 
 impl<'a, T: Real, const D: usize> Space<'a, T, D> {
     /// The space of an element; facets are built only if asked for or numbered.
-    pub fn new<E: ReferenceElement<T, D>>(
+    pub fn new(
+        element: AnyElement,
         problem: &'a Problem<D>,
         mesh: &'a Mesh<T, D>,
         quadrature: DataQuadrature,
@@ -55,11 +58,12 @@ impl<'a, T: Real, const D: usize> Space<'a, T, D> {
         pins: bool,
         bounded: BoundedNodes,
     ) -> Result<Self, Error> {
-        let neighbours = (with_facets || E::LAYOUT.facet > 0).then(|| {
+        let AnyElement { degree, layout, nodes, basis } = element;
+        let neighbours = (with_facets || layout.facet > 0).then(|| {
             count::facet_topologies(1);
             Neighbours::of(mesh)
         });
-        let dofs = Dofs::new(E::LAYOUT, mesh, neighbours.as_ref());
+        let dofs = Dofs::new(layout, mesh, neighbours.as_ref());
         let space = Self {
             problem,
             mesh,
@@ -67,12 +71,12 @@ impl<'a, T: Real, const D: usize> Space<'a, T, D> {
             neighbours,
             dofs,
             coefficients: data::coefficients(problem, mesh)?,
-            nodes: (0..E::N).map(E::node).collect(),
-            degree: E::DEGREE,
-            broken: E::LAYOUT.is_broken(),
+            nodes,
+            degree,
+            broken: layout.is_broken(),
             pins,
             bounded,
-            basis: BasisAt::new_in_f64::<T, E, D>,
+            basis,
         };
         space.check_constraint_set()?;
         Ok(space)

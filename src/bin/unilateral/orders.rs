@@ -14,8 +14,9 @@ use std::path::PathBuf;
 use clap::Args;
 use unilateral::prelude::{Report, Study};
 use unilateral::scenes::{AnyScene, Parameters, Scene, catalogue};
+use unilateral::scheme::{SCHEMES, SchemeOptions, scheme_by_name};
 use unilateral::study::orders_table;
-use unilateral::study::{Program, Row, SCHEMES, SchemeOptions, scheme_by_name};
+use unilateral::study::{Program, Row};
 
 use crate::shared::{ORDER_TOLERANCE, Request, complain, print, write};
 

@@ -12,11 +12,11 @@ use unilateral::error::Error;
 use unilateral::inequality::Outcome;
 use unilateral::measure::Fields;
 use unilateral::mesh::Mesh;
-use unilateral::nested::{AnyScheme, Solved};
+use unilateral::nested::Solved;
 use unilateral::paraview::{CellFields, write_pvd, write_vtu};
 use unilateral::plot::{Picture, Slice, solve_level};
 use unilateral::scenes::{AnyScene, Scene};
-use unilateral::study::{Placement, SCHEMES, SchemeOptions, scheme_by_name};
+use unilateral::scheme::{AnyScheme, Placement, SCHEMES, SchemeOptions, scheme_by_name};
 
 use crate::shared::{Request, print, scene, split};
 

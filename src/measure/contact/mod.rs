@@ -20,7 +20,6 @@ use crate::inequality::Solution;
 use crate::mesh::BoundaryPart;
 use crate::problem::ContactSet;
 use crate::real::{Point, Real, point_f64};
-use crate::scheme::Scheme;
 use clipped_simplices::Piece;
 
 /// A Dirichlet datum this close to a bound, in units of the largest unknown, touches it.
@@ -45,7 +44,7 @@ impl Carrier {
     }
 }
 
-impl<T: Real, const D: usize, S: Scheme<T, D>> Discretisation<'_, T, D, S> {
+impl<T: Real, const D: usize> Discretisation<'_, T, D> {
     /// Distances of multiplier and contact set of a solution from the exact ones; none where these
     /// are not known, or where an obstacle and a contact boundary bind at once.
     ///

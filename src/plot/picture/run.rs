@@ -4,9 +4,10 @@ use crate::assemble::DataQuadrature;
 use crate::error::Error;
 use crate::inequality::ActiveSet;
 use crate::mesh::Mesh;
-use crate::nested::{AnyScheme, Hierarchy, Solved, Task};
+use crate::nested::{Hierarchy, Solved, Task, solve};
 use crate::real::Real;
 use crate::scenes::Scene;
+use crate::scheme::AnyScheme;
 
 /// Solves a scene with a scheme on one level, with fields for pictures, the start from coarser
 /// levels as in a study. The outcome is for the caller to look at: without a solution there are no
@@ -30,13 +31,14 @@ pub fn solve_level<T: Real, const D: usize>(
     let quadrature = DataQuadrature::default();
     let mut levels = Hierarchy::new(&scene.problem, &scene.domain, None);
     levels.make(level)?;
-    let start = if scheme.is_conforming_linear() {
+    let Some((mesh, _)) = levels.mesh(level) else { unreachable!("made above") };
+    let start = if scheme.is_conforming_linear(mesh) {
         levels.start_from_coarser(level, &solver, quadrature, 1)?
     } else {
         Some(levels.contact(level, &solver, quadrature, 1)?)
     };
     let Some((mesh, _)) = levels.mesh(level) else { unreachable!("made above") };
-    let solved = scheme.solve(&Task {
+    let task = Task {
         problem: &scene.problem,
         mesh,
         start: start.as_deref(),
@@ -45,6 +47,7 @@ pub fn solve_level<T: Real, const D: usize>(
         with_errors: false,
         repeat: 1,
         with_fields: true,
-    })?;
+    };
+    let solved = solve(scheme, &task)?;
     Ok((mesh.clone(), solved))
 }

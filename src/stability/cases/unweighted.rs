@@ -16,10 +16,8 @@ pub(crate) struct Blind(pub Wopsip);
 pub(crate) struct BlindPenalty(OverPenalty);
 
 impl<T: Real, const D: usize> FacetForm<T, D> for BlindPenalty {
-    const USES_FLUX: bool = false;
-
-    fn moments(degree: usize) -> usize {
-        <OverPenalty as FacetForm<T, D>>::moments(degree)
+    fn moments(&self, degree: usize) -> usize {
+        FacetForm::<T, D>::moments(&self.0, degree)
     }
     #[inline(always)]
     fn penalty(&self, facet: &FacetView<T, D>) -> T {

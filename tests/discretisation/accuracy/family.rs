@@ -12,7 +12,7 @@ use unilateral::mesh::Mesh;
 use unilateral::prelude::*;
 use unilateral::quadrature::Rule;
 use unilateral::scenes::Scene;
-use unilateral::study::{SchemeOptions, scheme_by_name};
+use unilateral::scheme::{SchemeOptions, scheme_by_name};
 
 /// The scheme of this name with its default penalty.
 fn named<const D: usize>(name: &str) -> Boxed<f64, D> {

@@ -9,7 +9,7 @@ use unilateral::inequality::{
 use unilateral::linear::LinearMethod;
 use unilateral::prelude::*;
 use unilateral::scenes::Scene;
-use unilateral::study::{Placement, SCHEMES, SchemeOptions, scheme_by_name};
+use unilateral::scheme::{Placement, SCHEMES, SchemeOptions, scheme_by_name};
 
 /// Every solver there is for symmetric matrices, by what forces it.
 fn agree(what: &str, problem: &Inequality<f64>) {

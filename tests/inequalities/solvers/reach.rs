@@ -4,7 +4,8 @@ use std::collections::BTreeMap;
 
 use unilateral::prelude::*;
 use unilateral::scenes::{AnyScene, Parameters, Scene, catalogue};
-use unilateral::study::{Placement, Row, SCHEMES, SchemeOptions, scheme_by_name};
+use unilateral::scheme::{Placement, SCHEMES, SchemeOptions, scheme_by_name};
+use unilateral::study::Row;
 
 /// Over-penalties from almost none to where rounding rules.
 const ETAS: [f64; 5] = [1e-2, 1.0, 10.0, 1e4, 1e8];

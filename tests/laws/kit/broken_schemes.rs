@@ -31,7 +31,9 @@ impl<const SYMMETRIC: bool> Form<SYMMETRIC> {
 }
 
 impl<T: Real, const D: usize, const SYMMETRIC: bool> FacetForm<T, D> for Form<SYMMETRIC> {
-    const USES_FLUX: bool = true;
+    fn uses_flux(&self) -> bool {
+        true
+    }
     fn is_symmetric(&self) -> bool {
         SYMMETRIC
     }

@@ -79,8 +79,10 @@ fn quadratics_pass() {
 struct MeansOnly;
 
 impl<T: Real> FacetForm<T, 2> for MeansOnly {
-    const USES_FLUX: bool = true;
-    fn moments(_: usize) -> usize {
+    fn uses_flux(&self) -> bool {
+        true
+    }
+    fn moments(&self, _: usize) -> usize {
         0
     }
     fn penalty(&self, facet: &FacetView<T, 2>) -> T {

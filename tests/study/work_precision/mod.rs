@@ -181,9 +181,8 @@ fn wrong_requests_are_refused_before_anything_runs() {
     assert!(message(tiny()).contains("needs a scheme"));
     assert!(message(tiny().levels([0, 4])).contains("at least one subdivision"));
     assert!(message(tiny().scheme(ConformingP1).levels([4])).contains("must have its own name"));
-    let named =
-        unilateral::work_precision::Named { name: "nothing".into(), options: Default::default() };
-    assert!(message(tiny().scheme(named).levels([4])).contains("no scheme of this name"));
+    let unknown = tiny().scheme_by_name("nothing", &Default::default()).levels([4]);
+    assert!(message(unknown).contains("no scheme of this name"));
 }
 
 #[test]

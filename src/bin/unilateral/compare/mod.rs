@@ -26,10 +26,9 @@ use unilateral::mesh::{Mesh, gmsh};
 use unilateral::real::Real;
 use unilateral::scenes;
 use unilateral::scenes::{AnyScene, Parameters, Scene, Takes};
+use unilateral::scheme::{SCHEMES, scheme_by_name};
 use unilateral::study::orders_table;
-use unilateral::study::{
-    Program, Report, Row, SCHEMES, Study, available_memory_bytes, scheme_by_name,
-};
+use unilateral::study::{Program, Report, Row, Study, available_memory_bytes};
 
 /// Whether every row converged.
 pub fn run(options: &Options) -> Request<bool> {

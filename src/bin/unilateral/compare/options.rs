@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 use unilateral::scenes;
-use unilateral::study::{Placement, SCHEMES};
+use unilateral::scheme::{Placement, SCHEMES};
 
 use crate::shared::{Request, each_once};
 

@@ -4,7 +4,7 @@ use unilateral::facet::PenaltyParameters;
 use unilateral::mesh::BoxDomain;
 use unilateral::mesh::Mesh;
 use unilateral::real::Point;
-use unilateral::study::{Placement, SchemeOptions, scheme_by_name};
+use unilateral::scheme::{Placement, SchemeOptions, scheme_by_name};
 
 use super::options::Options;
 use crate::shared::Request;

@@ -16,9 +16,10 @@ use unilateral::linear::LinearMethod;
 use unilateral::real::Real;
 use unilateral::scenes;
 use unilateral::scenes::{AnyScene, Scene};
-use unilateral::study::{Study, peak_memory_bytes, scheme_by_name};
+use unilateral::scheme::scheme_by_name;
+use unilateral::study::{Study, peak_memory_bytes};
 use unilateral::work_precision::{
-    Case, Named, Precision, WorkPrecision, WorkProgress, WorkReport, changes,
+    Case, Precision, WorkPrecision, WorkProgress, WorkReport, changes,
 };
 
 use crate::shared::{Request, bar, print, scene, tick, use_threads, write};
@@ -127,7 +128,7 @@ where
             }
         });
     for (name, scheme_options) in options.schemes() {
-        study = study.scheme(Named { name, options: scheme_options });
+        study = study.scheme_by_name(&name, &scheme_options);
     }
     study.run_into(report)
 }

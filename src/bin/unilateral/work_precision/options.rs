@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::Args;
 use unilateral::linear::LinearMethod;
 use unilateral::scenes;
-use unilateral::study::{Placement, SCHEMES, SchemeOptions};
+use unilateral::scheme::{Placement, SCHEMES, SchemeOptions};
 use unilateral::work_precision::Precision;
 
 use crate::shared::{Request, split};

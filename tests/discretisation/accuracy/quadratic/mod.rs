@@ -16,7 +16,7 @@ use unilateral::prelude::*;
 use unilateral::problem::Datum;
 use unilateral::quadrature::Rule;
 use unilateral::scenes::Scene;
-use unilateral::study::{SchemeOptions, scheme_by_name};
+use unilateral::scheme::{SchemeOptions, scheme_by_name};
 
 /// Symmetric interior penalty on broken quadratics.
 fn broken() -> Sipg<P2> {

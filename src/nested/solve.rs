@@ -1,14 +1,13 @@
-//! The one dynamic layer: schemes of different types in one list.
+//! One solve: a scheme on a mesh, from assembly to certificate and errors.
 
 use crate::measure::Fields;
 use std::time::Instant;
 
 use super::hierarchy::P1Solution;
 use crate::algebra::{Bound, Contact, Inequality, Start, Support};
-use crate::assemble::{CoercivityMargin, DataQuadrature, Discretisation};
-use crate::element::{Layout, ReferenceElement};
+use crate::assemble::DataQuadrature;
 use crate::error::Error;
-use crate::facet::{FacetForm, PenaltyParameters};
+use crate::facet::PenaltyParameters;
 use crate::inequality::{
     Certificate, InequalitySolver, InitialGuess, Outcome, Solution, certify_with_jump_multipliers,
 };
@@ -17,7 +16,7 @@ use crate::measure::{ContactErrors, Errors};
 use crate::mesh::Mesh;
 use crate::problem::Problem;
 use crate::real::Real;
-use crate::scheme::{ExpectedOrders, Scheme, Setting};
+use crate::scheme::AnyScheme;
 
 /// What a scheme is asked to solve.
 pub struct Task<'a, T: Real, const D: usize> {
@@ -75,132 +74,22 @@ pub struct Solved {
     pub warnings: Vec<String>,
 }
 
-/// Object-safe face of every scheme: one virtual call per solve, none per cell.
-pub trait AnyScheme<T: Real, const D: usize>: Send + Sync {
-    /// The scheme's name.
-    fn name(&self) -> &str;
-    /// Where it imposes bounds.
-    fn constraint(&self) -> &'static str;
-    /// Orders theory proves.
-    fn expected_orders(&self, setting: &Setting) -> ExpectedOrders;
-    /// Who owns its unknowns.
-    fn layout(&self) -> Layout;
-    /// Whether its unknowns are those of conforming P1, so that it starts from a coarser level and
-    /// not from P1 on the same one.
-    fn is_conforming_linear(&self) -> bool;
-    /// Penalty factors in force on a mesh.
-    fn parameters(&self, mesh: &Mesh<T, D>) -> PenaltyParameters;
-    /// Assembles and solves.
-    ///
-    /// # Errors
-    /// Those of assembly: bad data. Numerical outcomes are in [`Solved::outcome`].
-    fn solve(&self, task: &Task<'_, T, D>) -> Result<Solved, Error>;
-    /// The algebraic inequality alone, for other solvers and exporters.
-    ///
-    /// # Errors
-    /// Those of assembly.
-    fn inequality(
-        &self,
-        problem: &Problem<D>,
-        mesh: &Mesh<T, D>,
-        quadrature: DataQuadrature,
-    ) -> Result<Inequality<T>, Error>;
-}
-
-#[diagnostic::do_not_recommend]
-impl<T: Real, const D: usize, S: Scheme<T, D>> AnyScheme<T, D> for S {
-    fn name(&self) -> &str {
-        Scheme::name(self)
-    }
-    fn constraint(&self) -> &'static str {
-        self.bounded_nodes().name(S::Element::DEGREE, S::Element::node(0))
-    }
-    fn expected_orders(&self, setting: &Setting) -> ExpectedOrders {
-        Scheme::expected_orders(self, setting)
-    }
-    fn layout(&self) -> Layout {
-        S::Element::LAYOUT
-    }
-    fn is_conforming_linear(&self) -> bool {
-        let layout = S::Element::LAYOUT;
-        layout.vertex == 1 && layout.edge + layout.facet + layout.cell == 0 && !S::Facet::COUPLES
-    }
-    fn parameters(&self, mesh: &Mesh<T, D>) -> PenaltyParameters {
-        self.facet(mesh).parameters()
-    }
-    fn solve(&self, task: &Task<'_, T, D>) -> Result<Solved, Error> {
-        solve(task, &|| {
-            let Task { problem, mesh, quadrature, .. } = *task;
-            Ok(Box::new(Discretisation::new(self, problem, mesh, quadrature)?))
-        })
-    }
-    fn inequality(
-        &self,
-        problem: &Problem<D>,
-        mesh: &Mesh<T, D>,
-        quadrature: DataQuadrature,
-    ) -> Result<Inequality<T>, Error> {
-        Discretisation::new(self, problem, mesh, quadrature)?.inequality()
-    }
-}
-
-/// What a solve needs of a discretisation, whatever its scheme.
-trait Discrete<T: Real> {
-    fn inequality(&self) -> Result<Inequality<T>, Error>;
-    fn coercivity_margin(&self) -> Option<CoercivityMargin>;
-    fn parameters(&self) -> PenaltyParameters;
-    fn rounding_limit(&self) -> f64;
-    fn errors(&self, u: &[T]) -> Result<Errors, Error>;
-    fn contact_errors(
-        &self,
-        inequality: &Inequality<T>,
-        solution: &Solution<T>,
-    ) -> Result<ContactErrors, Error>;
-    fn fields(&self, inequality: &Inequality<T>, solution: &Solution<T>) -> Fields;
-}
-
-impl<T: Real, const D: usize, S: Scheme<T, D>> Discrete<T> for Discretisation<'_, T, D, S> {
-    fn inequality(&self) -> Result<Inequality<T>, Error> {
-        self.inequality()
-    }
-    fn coercivity_margin(&self) -> Option<CoercivityMargin> {
-        self.coercivity_margin()
-    }
-    fn parameters(&self) -> PenaltyParameters {
-        self.form().parameters()
-    }
-    fn rounding_limit(&self) -> f64 {
-        self.form().rounding_limit(T::EPSILON, self.mesh().domain_diameter())
-    }
-    fn errors(&self, u: &[T]) -> Result<Errors, Error> {
-        self.errors(u)
-    }
-    fn contact_errors(
-        &self,
-        inequality: &Inequality<T>,
-        solution: &Solution<T>,
-    ) -> Result<ContactErrors, Error> {
-        self.contact_errors(inequality, solution)
-    }
-    fn fields(&self, inequality: &Inequality<T>, solution: &Solution<T>) -> Fields {
-        self.fields(inequality, solution)
-    }
-}
-
-/// Makes a discretisation.
-type Make<'f, T> = &'f dyn Fn() -> Result<Box<dyn Discrete<T> + 'f>, Error>;
-
-fn solve<T: Real, const D: usize>(
+/// Assembles and solves.
+///
+/// # Errors
+/// Those of assembly: bad data. Numerical outcomes are in [`Solved::outcome`].
+pub fn solve<T: Real, const D: usize>(
+    scheme: &dyn AnyScheme<T, D>,
     task: &Task<'_, T, D>,
-    make: Make<'_, T>,
 ) -> Result<Solved, Error> {
+    let discretise = || scheme.discretise(task.problem, task.mesh, task.quadrature);
     let clock = Instant::now();
-    let space = make()?;
+    let space = discretise()?;
     let mut inequality = space.inequality()?;
     let mut assemble_seconds = clock.elapsed().as_secs_f64();
     for _ in 1..task.repeat {
         let clock = Instant::now();
-        drop(make()?.inequality()?);
+        drop(discretise()?.inequality()?);
         assemble_seconds = assemble_seconds.min(clock.elapsed().as_secs_f64());
     }
     let mut nearby = InitialGuess::default();
@@ -219,7 +108,8 @@ fn solve<T: Real, const D: usize>(
     if let Some(s) = shortfall {
         warnings.push(s.to_string());
     }
-    let (limit, shortest) = (space.rounding_limit(), task.mesh.shortest_edge());
+    let limit = space.form().rounding_limit(T::EPSILON, task.mesh.domain_diameter());
+    let shortest = task.mesh.shortest_edge();
     if shortest < limit {
         warnings.push(format!(
             "edges of length {shortest:.1e} are below {limit:.1e}, where rounding in {} may outweigh the discretisation error",
@@ -245,7 +135,7 @@ fn solve<T: Real, const D: usize>(
     };
     let fields = (task.with_fields && usable).then(|| space.fields(&inequality, &solution));
     Ok(Solved {
-        parameters: space.parameters(),
+        parameters: space.form().parameters(),
         unknowns: inequality.size(),
         nonzeros: inequality.matrix.nonzeros(),
         outcome: solution.outcome,

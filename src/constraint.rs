@@ -1,4 +1,4 @@
-//! Which of an element's unknowns an inequality binds.
+//! Constraint sets: which of an element's unknowns an inequality binds.
 
 use crate::element::Node;
 

@@ -1,0 +1,88 @@
+//! The discrete inequalities and solutions that the laws ask of a scheme.
+
+use super::error::{KitError, Law};
+use super::meshes::Sample;
+use crate::algebra::Inequality;
+use crate::assemble::DataQuadrature;
+use crate::inequality::{ActiveSet, InequalitySolver, Outcome};
+use crate::measure::Errors;
+use crate::mesh::{BoxDomain, Mesh};
+use crate::problem::Problem;
+use crate::real::{Point, Real};
+use crate::scheme::{AnyScheme, ExpectedOrders, Regularity, Setting};
+
+/// A discrete solution against the exact one.
+pub(super) struct Judged {
+    pub errors: Errors,
+    /// The discrete solution at the vertices of each cell.
+    pub vertex_values: Vec<f64>,
+}
+
+/// Rules for data: what a source that belongs to a polynomial of the element's degree needs, and
+/// what keeps the quadrature of a smooth one out of the orders.
+fn quadrature(degree: usize) -> DataQuadrature {
+    let default = DataQuadrature::default();
+    DataQuadrature { cell: default.cell.max(2 * degree + 2), ..default }
+}
+
+/// Whether the form declares itself symmetric.
+pub(super) fn is_symmetric<T: Real, const D: usize>(scheme: &dyn AnyScheme<T, D>) -> bool {
+    let domain = BoxDomain::dirichlet(Point::zeros(), Point::repeat(1.0));
+    let mesh = Mesh::kuhn_box(&domain, [1; D]);
+    mesh.is_ok_and(|mesh| scheme.form(&mesh).is_symmetric())
+}
+
+/// The orders that the scheme promises for a smooth solution without inequalities.
+pub(super) fn promised<T: Real, const D: usize>(scheme: &dyn AnyScheme<T, D>) -> ExpectedOrders {
+    let regularity = Regularity { sobolev: f64::INFINITY, strictly_complementary: true };
+    scheme.expected_orders(&Setting {
+        dimension: D,
+        obstacle: false,
+        contact: false,
+        regularity,
+        regular_dual: true,
+    })
+}
+
+/// The inequality of a problem on a mesh.
+pub(super) fn assemble<T: Real, const D: usize>(
+    law: Law,
+    scheme: &dyn AnyScheme<T, D>,
+    problem: &Problem<D>,
+    mesh: &Mesh<T, D>,
+) -> Result<Inequality<T>, KitError> {
+    scheme
+        .inequality(problem, mesh, quadrature(scheme.degree()))
+        .map_err(|why| KitError::NotAssembled { law, why })
+}
+
+/// The solution of a linear problem.
+pub(super) fn solve<T: Real, const D: usize>(
+    law: Law,
+    inequality: &Inequality<T>,
+    sample: &Sample<T, D>,
+) -> Result<Vec<T>, KitError> {
+    let solution = ActiveSet::default().solve(inequality);
+    match solution.outcome {
+        Outcome::Converged => Ok(solution.values),
+        outcome => Err(KitError::NotSolved { law, mesh: sample.name.to_owned(), outcome }),
+    }
+}
+
+/// The discrete solution of a linear problem against the exact one.
+pub(super) fn solve_and_judge<T: Real, const D: usize>(
+    law: Law,
+    scheme: &dyn AnyScheme<T, D>,
+    problem: &Problem<D>,
+    sample: &Sample<T, D>,
+) -> Result<Judged, KitError> {
+    let inequality = assemble(law, scheme, problem, &sample.mesh)?;
+    let u = solve(law, &inequality, sample)?;
+    let judge = || {
+        let quadrature = quadrature(scheme.degree());
+        let discretisation = scheme.discretise(problem, &sample.mesh, quadrature)?;
+        let errors = discretisation.errors(&u)?;
+        Ok(Judged { errors, vertex_values: discretisation.vertex_values(&u) })
+    };
+    judge().map_err(|why| KitError::NotAssembled { law, why })
+}

@@ -1,0 +1,121 @@
+//! A scheme without its type.
+
+use super::{ExpectedOrders, Scheme, Setting};
+use crate::algebra::Inequality;
+use crate::assemble::{DataQuadrature, Discretisation};
+use crate::element::{Layout, ReferenceElement};
+use crate::error::Error;
+use crate::facet::{FacetForm, PenaltyParameters};
+use crate::mesh::Mesh;
+use crate::problem::Problem;
+use crate::real::Real;
+
+/// A scheme without its type, so that schemes of different types stand in one list and all that uses
+/// them is compiled once for each scalar and dimension.
+///
+/// Every [`Scheme`] is one; nobody implements this trait by hand.
+pub trait AnyScheme<T: Real, const D: usize>: Send + Sync {
+    /// The scheme's name.
+    fn name(&self) -> &str;
+    /// The name of its constraint set: where it imposes bounds.
+    fn constraint(&self) -> &'static str;
+    /// Whether the exact solution satisfies the discrete equations.
+    fn is_consistent(&self) -> bool;
+    /// Orders that theory proves in this setting.
+    fn expected_orders(&self, setting: &Setting) -> ExpectedOrders;
+    /// Polynomial degree of its element.
+    fn degree(&self) -> usize;
+    /// Who owns its unknowns.
+    fn layout(&self) -> Layout;
+    /// The facet form on a mesh, its parameters resolved.
+    fn form(&self, mesh: &Mesh<T, D>) -> Box<dyn FacetForm<T, D>>;
+    /// The scheme applied to a problem on a mesh.
+    ///
+    /// # Errors
+    /// Those of [`Discretisation::new`].
+    fn discretise<'a>(
+        &self,
+        problem: &'a Problem<D>,
+        mesh: &'a Mesh<T, D>,
+        quadrature: DataQuadrature,
+    ) -> Result<Discretisation<'a, T, D>, Error>;
+
+    /// Whether its unknowns are those of conforming P1, so that it starts from a coarser level and
+    /// not from P1 on the same level.
+    fn is_conforming_linear(&self, mesh: &Mesh<T, D>) -> bool {
+        let layout = self.layout();
+        layout.vertex == 1
+            && layout.edge + layout.facet + layout.cell == 0
+            && !self.form(mesh).couples()
+    }
+    /// Penalty factors in force on a mesh.
+    fn parameters(&self, mesh: &Mesh<T, D>) -> PenaltyParameters {
+        self.form(mesh).parameters()
+    }
+    /// The algebraic inequality alone, for other solvers and exporters.
+    ///
+    /// # Errors
+    /// Those of assembly.
+    fn inequality(
+        &self,
+        problem: &Problem<D>,
+        mesh: &Mesh<T, D>,
+        quadrature: DataQuadrature,
+    ) -> Result<Inequality<T>, Error> {
+        self.discretise(problem, mesh, quadrature)?.inequality()
+    }
+}
+
+#[diagnostic::do_not_recommend]
+impl<T: Real, const D: usize, S: Scheme<T, D>> AnyScheme<T, D> for S {
+    fn name(&self) -> &str {
+        Scheme::name(self)
+    }
+    fn constraint(&self) -> &'static str {
+        self.bounded_nodes().name(S::Element::DEGREE, S::Element::node(0))
+    }
+    fn is_consistent(&self) -> bool {
+        S::CONSISTENT
+    }
+    fn expected_orders(&self, setting: &Setting) -> ExpectedOrders {
+        Scheme::expected_orders(self, setting)
+    }
+    fn degree(&self) -> usize {
+        S::Element::DEGREE
+    }
+    fn layout(&self) -> Layout {
+        S::Element::LAYOUT
+    }
+    fn form(&self, mesh: &Mesh<T, D>) -> Box<dyn FacetForm<T, D>> {
+        Box::new(self.facet(mesh))
+    }
+    fn discretise<'a>(
+        &self,
+        problem: &'a Problem<D>,
+        mesh: &'a Mesh<T, D>,
+        quadrature: DataQuadrature,
+    ) -> Result<Discretisation<'a, T, D>, Error> {
+        Discretisation::of::<S::Element>(
+            self.form(mesh),
+            (S::DIRICHLET, self.bounded_nodes()),
+            problem,
+            mesh,
+            quadrature,
+        )
+    }
+}
+
+impl<'a, T: Real, const D: usize> Discretisation<'a, T, D> {
+    /// Joins scheme, problem and mesh; builds facets only if the scheme needs them.
+    ///
+    /// # Errors
+    /// [`Error::CoefficientNotPositive`], [`Error::NothingToBound`], [`Error::UnsupportedForm`].
+    pub fn new(
+        scheme: &(impl AnyScheme<T, D> + ?Sized),
+        problem: &'a Problem<D>,
+        mesh: &'a Mesh<T, D>,
+        quadrature: DataQuadrature,
+    ) -> Result<Self, Error> {
+        scheme.discretise(problem, mesh, quadrature)
+    }
+}
