@@ -360,7 +360,7 @@ impl<'a, const D: usize> WorkPrecision<'a, D> {
             precision: T::NAME.to_owned(),
         };
         let study = Study::<T, D>::new(scene)
-            .solver(ActiveSet { linear, ..ActiveSet::default() })
+            .solver(ActiveSet::default().linear(linear))
             .boxed_scheme(scheme)
             .levels([level]);
         (Case { variant, level }, Box::new(study))
