@@ -2,14 +2,13 @@
 //! step.
 
 use super::contact_state::{admissible_state, prescribed_value, starting_states};
+use super::inactive_system::{InactiveSystem, LinearUnknowns};
 use super::state_history::StateHistory;
-use crate::algebra::{Bound, Contact, Inequality, PenalisedMatrix};
+use crate::algebra::{Bound, Contact, Inequality};
 use crate::inequality::certificate::positive_diagonal;
 use crate::inequality::interior_point::{InteriorPoint, Restart};
 use crate::inequality::{Outcome, Solution};
-use crate::linear::direct::elimination::EliminationOrder;
-use crate::linear::direct::factors::{FactorError, Factors};
-use crate::linear::direct::static_condensation::{CondensedFactors, StaticCondensation};
+use crate::linear::direct::factors::FactorError;
 use crate::real::Real;
 
 /// The values and contact states of a step, and the best values so far.
@@ -24,23 +23,12 @@ pub(crate) struct DirectIterate<'a, T> {
     /// The largest `|u_i|` or `|v_i|`, `v_i` the admissible value nearest to `u_i`.
     displacement: f64,
     best: BestIterate<T>,
-    /// The inactive unknowns, ascending, and their last correction.
-    inactive: Vec<u32>,
-    correction: Vec<T>,
     /// The jump multipliers where the matrix is penalised; else empty.
     pub jump_multipliers: Vec<T>,
-    condensation: Option<StaticCondensation<'a, T>>,
-    /// The elimination order, which is the same for all active sets.
-    elimination_order: Option<EliminationOrder>,
+    system: InactiveSystem<'a, T>,
     /// The data from which the interior point method can continue.
     restart: Option<Restart>,
 }
-
-/// Largest number of corrections of values and jump multipliers.
-const MAX_CORRECTIONS: usize = 12;
-
-/// Units of rounding below which a correction is the last one.
-const CORRECTION_UNITS: f64 = 16.0;
 
 /// The iterate with the smallest merit; see [`DirectIterate::update_best`].
 struct BestIterate<T> {
@@ -51,25 +39,14 @@ struct BestIterate<T> {
     jump_multipliers: Vec<T>,
 }
 
-/// The sizes of a correction of values and jump multipliers.
-struct CorrectionSize {
-    /// Largest change of a value, and largest value after it.
-    change: f64,
-    value: f64,
-    /// Energy after it, and `sum K_ii u_i^2`.
-    energy: f64,
-    diagonal_energy: f64,
-}
-
 impl<'a, T: Real> DirectIterate<'a, T> {
     /// The admissible values nearest to zero, with the contact states of the inequality's start.
     pub fn new(inequality: &'a Inequality<T>) -> Self {
         let bounds = &inequality.bounds;
         let values: Vec<T> = bounds.iter().map(|bound| bound.nearest(T::lit(0.0))).collect();
         let states = starting_states(bounds, &inequality.start);
-        // a malformed inequality gets an iterate too: the outcome comes with it
-        let factored = inequality.factored.as_ref().filter(|_| inequality.is_well_formed());
-        let jump_multipliers = vec![T::lit(0.0); factored.map_or(0, |factored| factored.n_jumps())];
+        let system = InactiveSystem::new(inequality);
+        let jump_multipliers = vec![T::lit(0.0); system.n_jumps()];
         Self {
             inequality,
             outer: 0,
@@ -84,13 +61,8 @@ impl<'a, T: Real> DirectIterate<'a, T> {
             },
             values,
             states,
-            inactive: Vec::new(),
-            correction: Vec::new(),
             jump_multipliers,
-            condensation: factored.map(|factored| {
-                StaticCondensation::new(factored).at(inequality.points_of_unknowns().as_deref())
-            }),
-            elimination_order: None,
+            system,
             restart: None,
         }
     }
@@ -118,127 +90,13 @@ impl<'a, T: Real> DirectIterate<'a, T> {
         }
     }
 
-    /// Solves `A_II u_I = b_I - A_IP u_P` on the inactive unknowns `I`, `P` all others, by `refinements`
-    /// corrections after the first. The first one corrects the values of the iterate before.
+    /// Solves the linear system of the present active set; see [`InactiveSystem::solve`].
     pub fn solve_linear(&mut self, refinements: usize) -> Result<(), FactorError> {
         self.outer += 1;
         self.set_prescribed_values();
-        let Inequality { matrix, load, bounds, .. } = self.inequality;
-        self.inactive.clear();
-        let unknowns = bounds.iter().zip(&self.states).enumerate();
-        let inactive =
-            unknowns.filter(|(_, (bound, state))| prescribed_value(bound, **state).is_none());
-        self.inactive.extend(inactive.map(|(i, _)| i as u32));
-        if let Some(condensation) = self.condensation.take() {
-            let solved = self.solve_penalised(&condensation, refinements);
-            self.condensation = Some(condensation);
-            return solved;
-        }
-        let factors = self.factor()?;
-        for _ in 0..=refinements {
-            matrix.residual_f64(load, &self.values, &mut self.residual);
-            self.correction.clear();
-            self.correction
-                .extend(self.inactive.iter().map(|&i| T::lit(self.residual[i as usize])));
-            factors.solve_in_place(&mut self.correction, 1);
-            for (&i, &correction) in self.inactive.iter().zip(&self.correction) {
-                self.values[i as usize] += correction;
-            }
-        }
-        matrix.residual_f64(load, &self.values, &mut self.residual);
-        Ok(())
-    }
-
-    /// Factors of `A_II`.
-    fn factor(&mut self) -> Result<Factors<T>, FactorError> {
-        let Inequality { matrix, symmetric, .. } = self.inequality;
-        if !*symmetric {
-            return Factors::new(matrix, false, &self.inactive);
-        }
-        let order = match self.elimination_order.take() {
-            Some(order) => order,
-            None => EliminationOrder::of(self.inequality)?,
-        };
-        let order = self.elimination_order.insert(order);
-        Factors::in_order(matrix, &self.inactive, order)
-    }
-
-    /// Solves `K u + M^T p = c`, `M u - p / s = g` on the inactive unknowns for values `u` and jump
-    /// multipliers `p`, by corrections of both until they no longer halve. The matrix is singular in the
-    /// scalar's precision if the last correction is not small in energy.
-    fn solve_penalised(
-        &mut self,
-        condensation: &StaticCondensation<'a, T>,
-        refinements: usize,
-    ) -> Result<(), FactorError> {
-        let Some(factored) = &self.inequality.factored else { return Ok(()) };
-        let mut is_inactive = vec![false; self.values.len()];
-        self.inactive.iter().for_each(|&i| is_inactive[i as usize] = true);
-        let factors = condensation.factor(&is_inactive)?;
-        let mut mismatch = vec![0.0; self.jump_multipliers.len()];
-        let mut least = f64::INFINITY;
-        let mut is_singular = false;
-        let floor = (CORRECTION_UNITS * T::EPSILON).powi(2);
-        for correction in 0..MAX_CORRECTIONS {
-            let system = (condensation, &factors, &is_inactive[..]);
-            let (work, size) = self.correct_penalised(factored, system, &mut mismatch);
-            let is_small = size.change <= CORRECTION_UNITS * T::EPSILON * size.value;
-            // A quarter of the digits in the energy norm: single unknowns of thin cells may have fewer.
-            // The floor is for constants, whose energy is zero.
-            let tolerance = T::EPSILON.sqrt() * size.energy + floor * size.diagonal_energy;
-            is_singular = work.abs() > tolerance;
-            // false for numbers that are not finite
-            let halves = size.change <= 0.5 * least && !is_small;
-            if correction >= refinements && !halves {
-                break;
-            }
-            least = size.change;
-        }
-        let (values, multipliers) = (&self.values, &self.jump_multipliers);
-        let multiplier = |jump: usize| multipliers[jump].to_f64();
-        factored.residual_with_forces(|i| values[i].to_f64(), multiplier, &mut self.residual);
-        if is_singular { Err(FactorError::Singular) } else { Ok(()) }
-    }
-
-    /// One correction of values and jump multipliers by the solution for their residuals, the second of
-    /// which is computed in `mismatch`. Returns the energy of the correction and its sizes.
-    fn correct_penalised(
-        &mut self,
-        factored: &PenalisedMatrix<T>,
-        (condensation, factors, is_inactive): (
-            &StaticCondensation<'a, T>,
-            &CondensedFactors<T>,
-            &[bool],
-        ),
-        mismatch: &mut [f64],
-    ) -> (f64, CorrectionSize) {
-        let (values, multipliers) = (&self.values, &self.jump_multipliers);
-        let value = |i: usize| values[i].to_f64();
-        for (jump, out) in mismatch.iter_mut().enumerate() {
-            *out = factored.mismatch(jump, value, multipliers[jump].to_f64());
-        }
-        let multiplier = |jump: usize| multipliers[jump].to_f64();
-        factored.residual_with_forces(value, multiplier, &mut self.residual);
-        let work = condensation.solve(factors, is_inactive, &mut self.residual, mismatch);
-        let (mut largest_change, mut largest_value, mut sum) = (0.0_f64, 0.0_f64, 0.0);
-        for (i, (value, change)) in self.values.iter_mut().zip(&self.residual).enumerate() {
-            *value += T::lit(*change);
-            largest_change = largest_change.max(change.abs());
-            largest_value = largest_value.max(value.to_f64().abs());
-            sum += factored.diagonal(i) * value.to_f64().powi(2);
-        }
-        for (multiplier, change) in self.jump_multipliers.iter_mut().zip(&*mismatch) {
-            *multiplier += T::lit(*change);
-        }
-        let (values, multipliers) = (&self.values, &self.jump_multipliers);
-        let energy = factored.energy(|i| values[i].to_f64(), |jump| multipliers[jump].to_f64());
-        let size = CorrectionSize {
-            change: largest_change,
-            value: largest_value,
-            energy,
-            diagonal_energy: sum,
-        };
-        (work, size)
+        let Self { values, jump_multipliers, residual, .. } = self;
+        let unknowns = LinearUnknowns { values, jump_multipliers, residual };
+        self.system.solve(&self.states, unknowns, refinements)
     }
 
     /// Computes the largest displacement and the merit, and keeps the iterate if its merit is the
@@ -331,7 +189,7 @@ impl<'a, T: Real> DirectIterate<'a, T> {
     /// iterate or continues from its own last point. Nothing changes if it finds no active set.
     pub fn warm_start_by_interior_point(&mut self) {
         let BestIterate { values, jump_multipliers, .. } = &self.best;
-        let condensation = self.condensation.as_ref();
+        let condensation = self.system.condensation();
         let mut method = match self.restart.take() {
             Some(restart) => InteriorPoint::resume(self.inequality, condensation, restart),
             None => InteriorPoint::new(self.inequality, condensation, values, jump_multipliers),
@@ -408,7 +266,7 @@ impl<'a, T: Real> DirectIterate<'a, T> {
         let Inequality { matrix, load, bounds, .. } = self.inequality;
         let global = positive_diagonal(self.inequality, i) * self.displacement;
         let of_scale = global_band * T::EPSILON * global;
-        if let Some(condensation) = &self.condensation {
+        if let Some(condensation) = self.system.condensation() {
             let value = |j: usize| self.values[j].to_f64();
             let is_prescribed = |j: usize| prescribed_value(&bounds[j], self.states[j]).is_some();
             let (inactive, prescribed) =

@@ -5,7 +5,8 @@
 //! | `settings` | [`ActiveSet`], the settings |
 //! | `solver` | the choice between the two drivers, and the fallback from the inexact to the direct one |
 //! | `direct_driver` | the iteration with factors: active set steps, condensation, interior point, projected Newton |
-//! | `direct_iterate` | its iterate: values, contact states, the linear solve, the prediction of the active set |
+//! | `direct_iterate` | its iterate: values, contact states, merit, the prediction of the active set |
+//! | `inactive_system` | its linear system on the inactive unknowns |
 //! | `inexact_driver` | the iteration with preconditioned Krylov methods |
 //! | `inexact_iterate` | its iterate |
 //! | `kkt_evaluation` | residual, prediction of the active set and merit of an inexact iterate |
@@ -22,6 +23,7 @@ mod contact_state;
 mod dense_lcp;
 mod direct_driver;
 mod direct_iterate;
+mod inactive_system;
 mod inexact_driver;
 mod inexact_iterate;
 mod kkt_evaluation;

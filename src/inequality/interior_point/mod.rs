@@ -1,16 +1,19 @@
 //! A primal-dual interior point method, which finds a starting active set where the active set method
 //! stagnates.
 //!
-//! [`barrier`] holds slack and dual variable of every bound, [`barrier_system`] the linear systems.
+//! [`barrier`] contains slack and dual variable of every bound, [`barrier_system`] the linear systems,
+//! [`path_expansion`] the Taylor polynomials along which a step goes.
 
 mod barrier;
 mod barrier_system;
+mod path_expansion;
 
 use crate::algebra::{Bound, Contact, Inequality};
 use crate::linear::direct::static_condensation::StaticCondensation;
 use crate::real::Real;
-use barrier::{BarrierTerm, MAX_ORDER, RestartTerm, mean_complementarity, ratio_test};
-use barrier_system::{BarrierFactors, BarrierSystem, MixedVector};
+use barrier::{BarrierTerm, MAX_ORDER, RestartTerm, mean_complementarity};
+use barrier_system::{BarrierSystem, MixedVector};
+use path_expansion::{PREDICTOR_ORDER, PathExpansion};
 
 /// Relative complementarity (the sum of all complementarity products over the energy) of the starting
 /// point.
@@ -38,32 +41,12 @@ pub(crate) const MAX_STEPS: usize = 60;
 /// Steps that may pass without halving the relative complementarity before the method stagnates.
 const STAGNATION_STEPS: usize = 3;
 
-/// Order of the first expansion of a step, which determines the target of the second.
-const PREDICTOR_ORDER: usize = 2;
-
-/// A further order is kept if it reduces the complementarity after the step by this factor or more:
-/// otherwise it is not worth a solution with the factors of the step.
-const ORDER_GAIN: f64 = 0.95;
-
-/// Consecutive orders without gain after which the expansion ends.
-const MAX_ORDERS_WITHOUT_GAIN: usize = 3;
-
 /// The data from which the method continues after it has identified an active set.
 #[derive(Debug)]
 pub(crate) struct Restart {
     point: MixedVector,
     terms: Vec<RestartTerm>,
     identification_tol: f64,
-}
-
-/// The Taylor polynomial of the central path at the current point, and the step along it.
-struct PathExpansion {
-    /// The coefficients of `t, t^2, ...` of values and jump multipliers.
-    coefficients: Vec<MixedVector>,
-    /// The step length that the ratio test admits.
-    length: f64,
-    /// The mean complementarity product after the step.
-    complementarity: f64,
 }
 
 /// The predictor-corrector method of Mehrotra (SIAM J. Optim. 2 (1992) 575-601) for
@@ -257,99 +240,21 @@ impl<'h, 'a, T: Real> InteriorPoint<'h, 'a, T> {
             diagonal[term.unknown] += term.dual / term.slack;
         }
         let factors = self.system.factor(&diagonal).ok()?;
+        let mut expand = |target: f64, max_order: usize| {
+            PathExpansion::new(&self.system, &factors, &mut self.terms, residual, target, max_order)
+        };
         // Mehrotra's centring: the cube of the reduction that the predictor achieves
-        let predicted = self.expand_path(&factors, residual, 0.0, PREDICTOR_ORDER).complementarity;
+        let predicted = expand(0.0, PREDICTOR_ORDER).complementarity;
         let target = mean * (predicted / mean).clamp(0.0, 1.0).powi(3);
-        let expansion = self.expand_path(&factors, residual, target, MAX_ORDER);
-        let PathExpansion { coefficients, length, .. } = expansion;
+        let expansion = expand(target, MAX_ORDER);
         // no order is kept if the coefficients are not finite
-        if coefficients.is_empty() || length <= 0.0 {
+        if expansion.order() == 0 || expansion.length <= 0.0 {
             return Some(false);
         }
-        let advance = |point: &mut [f64], coefficients: Vec<&[f64]>| {
-            for (i, x) in point.iter_mut().enumerate() {
-                *x += coefficients.iter().rev().fold(0.0, |sum, c| length * (sum + c[i]));
-            }
-        };
-        let point = &mut self.point;
-        advance(&mut point.values, coefficients.iter().map(|c| &c.values[..]).collect());
-        advance(
-            &mut point.jump_multipliers,
-            coefficients.iter().map(|c| &c.jump_multipliers[..]).collect(),
-        );
-        self.terms.iter_mut().for_each(|term| term.advance(length, coefficients.len()));
+        expansion.advance(&mut self.point);
+        let (length, order) = (expansion.length, expansion.order());
+        self.terms.iter_mut().for_each(|term| term.advance(length, order));
         Some(true)
-    }
-
-    /// The Taylor polynomial of the curve on which the residual and the differences of all
-    /// complementarity products from `target` are `(1 - t)^2` times what they are now. The order, at
-    /// most `max_order`, increases as long as the complementarity after the step gains from it.
-    fn expand_path(
-        &mut self,
-        factors: &BarrierFactors<T>,
-        residual: &MixedVector,
-        target: f64,
-        max_order: usize,
-    ) -> PathExpansion {
-        let mut best =
-            PathExpansion { coefficients: Vec::new(), length: 0.0, complementarity: f64::INFINITY };
-        let mut without_gain = Vec::new();
-        for k in 0..max_order {
-            without_gain.push(self.path_coefficient(factors, residual, target, k));
-            let order = k + 1;
-            // the linear polynomial alone may admit no step
-            if order < PREDICTOR_ORDER {
-                continue;
-            }
-            let length = ratio_test(&self.terms, order);
-            let complementarity = mean_complementarity(&self.terms, length, order);
-            if complementarity < ORDER_GAIN * best.complementarity {
-                (best.length, best.complementarity) = (length, complementarity);
-                best.coefficients.append(&mut without_gain);
-            } else if without_gain.len() >= MAX_ORDERS_WITHOUT_GAIN {
-                break;
-            }
-        }
-        best
-    }
-
-    /// The coefficient of `t^(k+1)` of the path, given all lower ones; sets those of the barrier terms.
-    fn path_coefficient(
-        &mut self,
-        factors: &BarrierFactors<T>,
-        residual: &MixedVector,
-        target: f64,
-        k: usize,
-    ) -> MixedVector {
-        // 1 - (1 - t)^2 = 2 t - t^2
-        let fraction = [2.0, -1.0].get(k).copied().unwrap_or(0.0);
-        let rate =
-            |term: &BarrierTerm| fraction * (target - term.product()) - term.lower_order_product(k);
-        let rates: Vec<f64> = self.terms.iter().map(rate).collect();
-        let coefficient = self.newton_direction(factors, residual, fraction, &rates);
-        for (term, rate) in self.terms.iter_mut().zip(rates) {
-            term.set_coefficient(k, term.side * coefficient.values[term.unknown], rate);
-        }
-        coefficient
-    }
-
-    /// The solution of `(A + D) x = fraction residual + sum side rate / slack`: the direction along
-    /// which the residual falls by a fraction and complementarity products change at given rates.
-    fn newton_direction(
-        &self,
-        factors: &BarrierFactors<T>,
-        residual: &MixedVector,
-        fraction: f64,
-        rates: &[f64],
-    ) -> MixedVector {
-        let mut direction = residual.clone();
-        let MixedVector { values, jump_multipliers } = &mut direction;
-        values.iter_mut().chain(jump_multipliers).for_each(|r| *r *= fraction);
-        for (term, rate) in self.terms.iter().zip(rates) {
-            direction.values[term.unknown] += term.side * rate / term.slack;
-        }
-        self.system.solve(factors, &mut direction);
-        direction
     }
 
     /// Computes the residual `b - A u + z_lower - z_upper`; returns a scale of the energy.
