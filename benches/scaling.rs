@@ -95,7 +95,7 @@ fn run<const D: usize>(
     }
     let report = Study::<f64, D>::new(scene)
         .boxed_scheme(scheme(name))
-        .solver(ActiveSet { linear, ..ActiveSet::default() })
+        .solver(ActiveSet::default().linear(linear))
         .levels([level])
         .run()?;
     report.rows.into_iter().next().ok_or_else(|| "no row".into())
@@ -107,7 +107,7 @@ fn run_on_mesh(path: &str, linear: LinearMethod) -> Result<Row, Failure> {
     let times = (1e6 / mesh.vertices().len() as f64).log2() / 2.0;
     let report = Study::<f64, 2>::new(scenes::radial::<2>(1.0))
         .scheme(ConformingP1)
-        .solver(ActiveSet { linear, ..ActiveSet::default() })
+        .solver(ActiveSet::default().linear(linear))
         .on_mesh(mesh)
         .levels([times.round().max(0.0) as usize])
         .run()?;

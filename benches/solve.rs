@@ -39,7 +39,7 @@ fn scheme<const D: usize, S: Scheme<f64, D>>(c: &mut Criterion, scheme: &S, subd
 }
 
 fn solve(inequality: &Inequality<f64>, linear: LinearMethod) -> Outcome {
-    ActiveSet { linear, ..ActiveSet::default() }.solve(inequality).outcome
+    ActiveSet::default().linear(linear).solve(inequality).outcome
 }
 
 fn solvers(c: &mut Criterion) {

@@ -1,104 +1,115 @@
-//! The certificate: how well the complementarity conditions hold, from the data and `u` alone.
+//! The certificate: violations of the complementarity conditions, computed from the data and `u` alone.
 
 use crate::algebra::{Bound, Contact, Inequality};
 use crate::real::Real;
 
 /// Relative, dimensionless violations of the complementarity conditions of an [`Inequality`].
 ///
-/// Notation: `r = A u - b`; `d` the diagonal of `A`; `E` the energy norm of the solution, the root
-/// of `u.A u`; `U` the largest of all `|u_i|` and of all `|v_i|`, `v_i` the admissible value
-/// nearest to `u_i`; the gap the distance to the nearer bound; the step `s_i = r_i / d_i` (its
-/// sign turned at an upper bound), what one Gauss-Seidel correction would move. An unknown counts
-/// as in contact if its gap is not larger than `|s_i|`. No state of any solver enters.
+/// Notation: `r = A u - b`; `d` the diagonal of `A`; `E` the energy norm `(u.A u)^(1/2)` of the
+/// solution; `v_i` the admissible value nearest to `u_i`; `U` the largest of all `|u_i|` and `|v_i|`;
+/// the gap the distance of `u_i` from the nearer bound; the step `s_i = r_i / d_i`, its sign reversed at
+/// an upper bound, the length of a Gauss-Seidel correction. An unknown counts as active if its gap is at
+/// most `|s_i|`. No contact state of a solver enters.
 ///
-/// Why these scalings. *Displacements* (`feasibility`) are measured against `U`: by the comparison
-/// principle a violation of the bound by `g` shifts the solution by `g`. Bounds that nothing comes
-/// near (an obstacle at minus a million) do not enter `U`, or they would hide everything. *Forces*
-/// are measured in the dual norm `sqrt(sum r_i^2 / d_i)` against `E`: half the square of
-/// `r_i / sqrt(d_i)` is the energy that moving unknown `i` alone would still gain, so that each
-/// measure bounds a relative distance to the solution from below. The plain 2-norm of `r` against
-/// that of `b` says nothing for an over-penalised scheme: with entries of size `eta h^-2` it is
-/// ruled by the penalty rows and cannot fall below rounding times the largest entry. Sums, not
-/// maxima, because the force on one unknown shrinks like the volume of its patch: at small mesh
-/// size every single wrong force is tiny while together they move the solution by its own size.
-/// A sum is never below its largest term.
+/// Reasons for these scalings. *Displacements* (`feasibility`) are relative to `U`: by the comparison
+/// principle a violation of a bound by `g` changes the solution by `g` at most. Bounds far from the
+/// solution (an obstacle at minus a million) do not enter `U`, where they would hide everything else.
+/// *Residuals and multipliers* are relative to `E` in the dual norm `(sum r_i^2 / d_i)^(1/2)`:
+/// `r_i^2 / (2 d_i)` is the decrease of the energy by a correction of unknown `i` alone, so that each
+/// measure bounds a relative distance to the solution from below. The Euclidean norm of `r` over that
+/// of `b` is no measure for an over-penalised scheme: with entries of size `eta h^-2` it is dominated
+/// by the penalty rows and cannot fall below rounding times the largest entry. Sums, not maxima,
+/// because the multiplier of one unknown shrinks like the volume of its patch: on a fine mesh each
+/// wrong multiplier is tiny while all of them change the solution by its own size. A sum is never below
+/// its largest term.
 ///
-/// Where `u.A u` is not positive beyond rounding (a constant, zero), `sqrt(sum d_i u_i^2)` takes
-/// the place of `E`, then `sqrt(sum b_i^2 / d_i)`, then one. All sums are in `f64`. If anything is
-/// not finite or sizes do not match, all four are infinite.
+/// Where `u.A u` is not positive beyond rounding (a constant, zero), `(sum d_i u_i^2)^(1/2)` replaces
+/// `E`, then `(sum b_i^2 / d_i)^(1/2)`, then one. All sums are in `f64`. If a number is not finite or
+/// sizes do not match, all four are infinite.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "report", derive(serde::Serialize))]
+#[non_exhaustive]
 pub struct Certificate {
     /// Largest violation of a bound or Dirichlet value, over `U`.
     pub feasibility: f64,
-    /// Dual norm over `E` of the multipliers in contact that have the wrong sign, each counted up
-    /// to the distance to the opposite bound, where it would have the right one.
+    /// Dual norm over `E` of the multipliers of active unknowns with the wrong sign, each up to the
+    /// multiplier whose step reaches the opposite bound, where the sign would be right.
     pub multiplier: f64,
-    /// Energy norm with the diagonal, over `E`, of the smaller of gap and step where both are
-    /// positive.
+    /// `(sum d_i min(gap_i, s_i)^2)^(1/2)` over `E`, summed where gap and step are both positive.
     pub complementarity: f64,
-    /// Dual norm over `E` of the residual off contact; if larger, the largest difference, over `U`,
-    /// of a jump and what its force makes of it ([`certify_with_jump_multipliers`]).
+    /// Dual norm over `E` of the residual on inactive unknowns; if larger, the largest difference, over
+    /// `U`, of a jump and the jump that its multiplier determines ([`certify_with_jump_multipliers`]).
     pub residual: f64,
-    /// Relative bound on the energy-norm distance to the discrete solution, where the solver knows
-    /// one. It rests on one estimate, of the smallest eigenvalue of the preconditioned matrix.
+    /// Relative bound on the distance to the discrete solution in the energy norm, where the solver
+    /// computes one. It rests on one estimate, of the smallest eigenvalue of the preconditioned matrix.
     pub algebraic_bound: Option<f64>,
 }
 
 impl Certificate {
-    /// What cannot be judged.
-    pub const WORTHLESS: Self = Self {
-        feasibility: f64::INFINITY,
-        multiplier: f64::INFINITY,
-        complementarity: f64::INFINITY,
-        residual: f64::INFINITY,
-        algebraic_bound: None,
-    };
+    /// The certificate of values that are not finite or do not fit the inequality.
+    pub const INVALID: Self = Self::new([f64::INFINITY; 4]);
+
+    /// A certificate with the four violations in the order of the fields and without a bound on the
+    /// algebraic error.
+    #[must_use]
+    pub const fn new([feasibility, multiplier, complementarity, residual]: [f64; 4]) -> Self {
+        Self { feasibility, multiplier, complementarity, residual, algebraic_bound: None }
+    }
+
+    /// Sets the relative bound on the algebraic error.
+    #[must_use]
+    pub fn with_algebraic_bound(mut self, bound: Option<f64>) -> Self {
+        self.algebraic_bound = bound;
+        self
+    }
 
     /// The largest of the four violations.
+    #[must_use]
     pub fn largest(&self) -> f64 {
         self.feasibility.max(self.multiplier).max(self.complementarity).max(self.residual)
     }
 }
 
-/// Certifies `u` as a solution of the inequality; see [`Certificate`].
+/// The certificate of `u` as a solution of the inequality.
+#[must_use]
 pub fn certify<T: Real>(inequality: &Inequality<T>, u: &[T]) -> Certificate {
     certify_with_jump_multipliers(inequality, u, &[])
 }
 
-/// The same with the forces `p` of the jumps of a [`PenalisedMatrix`](crate::algebra::PenalisedMatrix) matrix,
-/// where they are known besides the values: forces are then `c - K u - M^T p`, without the rounding
-/// that differences of values have, and what jumps and `p / s` differ by is measured as a
-/// displacement. No forces (or not as many as jumps): those that the values have.
+/// The certificate of `u` together with the jump multipliers `p` of a
+/// [`PenalisedMatrix`](crate::algebra::PenalisedMatrix): the residual is `c - K u - M^T p`, without the
+/// rounding of differences of values, and the largest `|g - M u + p / s|` counts as a displacement.
+/// Without jump multipliers, or if their number is not that of the jumps, `p = S (M u - g)`.
+#[must_use]
 pub fn certify_with_jump_multipliers<T: Real>(
     inequality: &Inequality<T>,
     u: &[T],
-    forces: &[T],
+    jump_multipliers: &[T],
 ) -> Certificate {
-    certify_with_noise(inequality, u, forces).0
+    certify_with_rounding(inequality, u, jump_multipliers).0
 }
 
-/// The certificate, and the size its forces have if every entry of `A u` is wrong by one unit of
-/// `d_i U`: times the rounding unit, the level below which no solver can push them.
-pub(crate) fn certify_with_noise<T: Real>(
+/// The certificate, and the dual norm over `E` of errors `d_i U` in every entry of `A u`: times the
+/// rounding unit, the level below which no solver can reduce the residual.
+pub(crate) fn certify_with_rounding<T: Real>(
     inequality: &Inequality<T>,
     u: &[T],
-    forces: &[T],
+    jump_multipliers: &[T],
 ) -> (Certificate, f64) {
     let n = inequality.size();
     if !inequality.is_well_formed() || u.len() != n {
-        return (Certificate::WORTHLESS, 0.0);
+        return (Certificate::INVALID, 0.0);
     }
     let Inequality { load, bounds, .. } = inequality;
-    let mut deficit = vec![0.0; n];
-    let mismatch = residual_with_forces(inequality, u, forces, &mut deficit);
+    let mut negative_r = vec![0.0; n];
+    let mismatch = residual_and_mismatch(inequality, u, jump_multipliers, &mut negative_r);
 
     let mut displacement = 0.0_f64;
     let [mut work, mut energy, mut diagonal_energy, mut load_energy, mut stiffness] = [0.0; 5];
-    let [mut wrong, mut complementarity, mut residual] = [0.0_f64; 3];
+    let [mut multiplier, mut complementarity, mut residual] = [0.0_f64; 3];
     let mut violation = 0.0_f64;
     for i in 0..n {
-        let (x, b, r) = (u[i].to_f64(), load[i].to_f64(), -deficit[i]);
+        let (x, b, r) = (u[i].to_f64(), load[i].to_f64(), -negative_r[i]);
         let d = positive_diagonal(inequality, i);
         displacement = displacement.max(x.abs()).max(bounds[i].nearest(u[i]).to_f64().abs());
         energy += x * (b + r);
@@ -106,14 +117,17 @@ pub(crate) fn certify_with_noise<T: Real>(
         diagonal_energy += d * x * x;
         load_energy += b * b / d;
         stiffness += d;
-        let local = Local::new(&bounds[i], x, r / d);
-        violation = violation.max(local.violation);
-        wrong += d * local.wrong.powi(2);
+        let local = LocalViolation::new(&bounds[i], x, r / d);
+        violation = violation.max(local.feasibility);
+        multiplier += d * local.multiplier.powi(2);
         complementarity += d * local.complementarity.powi(2);
         residual += d * local.residual.powi(2);
     }
-    if ![displacement, work, load_energy, wrong, residual, mismatch].iter().all(|x| x.is_finite()) {
-        return (Certificate::WORTHLESS, 0.0);
+    if ![displacement, work, load_energy, multiplier, residual, mismatch]
+        .iter()
+        .all(|x| x.is_finite())
+    {
+        return (Certificate::INVALID, 0.0);
     }
     let displacement = if displacement > 0.0 { displacement } else { 1.0 };
     let candidates = [energy, diagonal_energy, load_energy, 1.0];
@@ -122,7 +136,7 @@ pub(crate) fn certify_with_noise<T: Real>(
     let norm = |sum: f64| (sum / energy).sqrt();
     let certificate = Certificate {
         feasibility: violation / displacement,
-        multiplier: norm(wrong),
+        multiplier: norm(multiplier),
         complementarity: norm(complementarity),
         residual: norm(residual).max(mismatch / displacement),
         algebraic_bound: None,
@@ -130,30 +144,31 @@ pub(crate) fn certify_with_noise<T: Real>(
     (certificate, displacement * norm(stiffness))
 }
 
-/// `b - A u` with the forces of jumps if they are given; returns the largest difference of jumps.
-fn residual_with_forces<T: Real>(
+/// Computes `b - A u`, with the jump multipliers if given; returns the largest `|g - M u + p / s|`.
+fn residual_and_mismatch<T: Real>(
     inequality: &Inequality<T>,
     u: &[T],
-    forces: &[T],
-    deficit: &mut [f64],
+    jump_multipliers: &[T],
+    residual: &mut [f64],
 ) -> f64 {
     let value = |i: usize| u[i].to_f64();
     match &inequality.factored {
-        Some(factored) if forces.len() == factored.n_jumps() => {
-            let force = |jump: usize| forces[jump].to_f64();
-            factored.residual_with_forces(value, force, deficit);
-            let mismatch = |jump| factored.mismatch(jump, value, force(jump)).abs();
-            // written so that a number that is not finite stays
-            (0..forces.len()).map(mismatch).fold(0.0, |m, x| if x <= m { m } else { x })
+        Some(factored) if jump_multipliers.len() == factored.n_jumps() => {
+            let multiplier = |jump: usize| jump_multipliers[jump].to_f64();
+            factored.residual_with_forces(value, multiplier, residual);
+            let mismatch = |jump| factored.mismatch(jump, value, multiplier(jump)).abs();
+            // unlike f64::max this keeps a number that is not finite
+            (0..jump_multipliers.len()).map(mismatch).fold(0.0, |m, x| if x <= m { m } else { x })
         }
         _ => {
-            inequality.residual_f64(u, deficit);
+            inequality.residual_f64(u, residual);
             0.0
         }
     }
 }
 
-/// The diagonal entry as a scale: if it is not positive, the largest entry of the row, or one.
+/// The diagonal entry as a positive scale: if it is not positive, the largest absolute entry of its row,
+/// or one.
 pub(crate) fn positive_diagonal<T: Real>(inequality: &Inequality<T>, i: usize) -> f64 {
     let d = inequality.matrix.get(i, i).to_f64();
     if d > 0.0 {
@@ -164,41 +179,43 @@ pub(crate) fn positive_diagonal<T: Real>(inequality: &Inequality<T>, i: usize) -
     if largest > 0.0 { largest } else { 1.0 }
 }
 
-/// What one unknown contributes, as displacements.
+/// The violations of one unknown, as displacements.
 #[derive(Default)]
-struct Local {
-    violation: f64,
-    wrong: f64,
+struct LocalViolation {
+    feasibility: f64,
+    multiplier: f64,
     complementarity: f64,
     residual: f64,
 }
 
-impl Local {
-    /// `step` is `r_i / d_i`: positive where the unknown is pressed downwards.
+impl LocalViolation {
+    /// The violations for the value `x` and `step = r_i / d_i`, which is positive where a Gauss-Seidel
+    /// correction would decrease the value.
     fn new<T: Real>(bound: &Bound<T>, x: f64, step: f64) -> Self {
         if let Some(value) = bound.only_value() {
-            return Self { violation: (x - value.to_f64()).abs(), ..Self::default() };
+            return Self { feasibility: (x - value.to_f64()).abs(), ..Self::default() };
         }
         let to_lower = bound.lower().map_or(f64::INFINITY, |l| x - l.to_f64());
         let to_upper = bound.upper().map_or(f64::INFINITY, |u| u.to_f64() - x);
-        let (gap, opposite, pressed) = if to_lower <= to_upper {
+        let (gap, to_opposite, step_to_bound) = if to_lower <= to_upper {
             (to_lower, to_upper, step)
         } else {
             (to_upper, to_lower, -step)
         };
-        let mut local = Self { violation: (-gap).max(0.0), ..Self::default() };
+        let mut local = Self { feasibility: (-gap).max(0.0), ..Self::default() };
         if gap > step.abs() {
             local.residual = step;
-        } else if pressed < 0.0 {
-            local.wrong = (-pressed).min(opposite.max(0.0));
+        } else if step_to_bound < 0.0 {
+            local.multiplier = (-step_to_bound).min(to_opposite.max(0.0));
         }
-        local.complementarity = gap.min(pressed).max(0.0);
+        local.complementarity = gap.min(step_to_bound).max(0.0);
         local
     }
 }
 
-/// Number of unknowns under an inequality that rest on a bound; Dirichlet ones do not count.
-pub fn active<T: Real>(inequality: &Inequality<T>, contact: &[Contact]) -> usize {
+/// The number of active unknowns; fixed ones do not count.
+#[must_use]
+pub fn count_active<T: Real>(inequality: &Inequality<T>, contact: &[Contact]) -> usize {
     inequality
         .bounds
         .iter()

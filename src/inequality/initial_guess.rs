@@ -1,21 +1,45 @@
-//! What is known beside an inequality and helps to solve it fast.
+//! The data beside an inequality from which an iterative solver starts.
 
 use crate::linear::CoarseSpaces;
 
-/// Meshes and a solution nearby: numbers only.
+/// Coarse spaces, starting values and accuracy of a solve. The starting active set is part of the
+/// inequality: [`Start`](crate::algebra::Start).
 #[derive(Clone, Debug)]
+#[non_exhaustive]
 pub struct InitialGuess<T> {
-    /// Conforming linear functions.
-    pub functions: CoarseSpaces<T>,
-    /// Values of all unknowns to start from.
+    /// The conforming P1 functions on the mesh and on coarser ones.
+    pub coarse_spaces: CoarseSpaces<T>,
+    /// The starting value of every unknown.
     pub values: Option<Vec<T>>,
-    /// Relative size of the energy error that will do; `None` for as small as makes sense. A
-    /// direct solver may do better.
-    pub accuracy: Option<f64>,
+    /// Tolerance on the energy norm of the error over that of the solution; `None` for the limit of the
+    /// certificate. Direct solvers ignore it.
+    pub energy_tolerance: Option<f64>,
 }
 
 impl<T> Default for InitialGuess<T> {
     fn default() -> Self {
-        Self { functions: CoarseSpaces::Unknown, values: None, accuracy: None }
+        Self { coarse_spaces: CoarseSpaces::Unknown, values: None, energy_tolerance: None }
+    }
+}
+
+/// Setters, one for each field.
+impl<T> InitialGuess<T> {
+    /// Sets the conforming P1 functions on the mesh and on coarser ones.
+    #[must_use]
+    pub fn coarse_spaces(mut self, coarse_spaces: CoarseSpaces<T>) -> Self {
+        self.coarse_spaces = coarse_spaces;
+        self
+    }
+    /// Sets the starting value of every unknown.
+    #[must_use]
+    pub fn values(mut self, values: Vec<T>) -> Self {
+        self.values = Some(values);
+        self
+    }
+    /// Sets the tolerance on the relative energy norm of the error.
+    #[must_use]
+    pub fn energy_tolerance(mut self, tolerance: f64) -> Self {
+        self.energy_tolerance = Some(tolerance);
+        self
     }
 }

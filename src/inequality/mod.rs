@@ -1,17 +1,51 @@
-//! Solvers of the algebraic inequality, and the certificate of what they return.
+//! Solvers of the algebraic variational inequality, and the certificate of their results.
+//!
+//! Find `u` within the bounds with `(A u - b) . (v - u) >= 0` for all `v` within the bounds
+//! ([`Inequality`]). A solver takes it with an [`InitialGuess`] and returns a [`Solution`], whose
+//! [`Outcome`] says whether it converged. The [`Certificate`] measures any `u` without knowledge of the
+//! solver.
+//!
+//! Words: a *fixed* unknown has a Dirichlet value (or two bounds that coincide); an *active* one has the
+//! value of a bound; an *inactive* one is solved for. The *residual* is `b - A u`, the *multiplier* of a
+//! bound `A u - b` on active unknowns, negated at an upper bound. *Jump multipliers* are the unknowns
+//! `p = S (M u - g)` of a [`PenalisedMatrix`](crate::algebra::PenalisedMatrix).
+//!
+//! | file | content |
+//! |---|---|
+//! | `validation` | checks of the input, and of definiteness where a setting requires it |
+//! | `active_set` | [`ActiveSet`]: the primal-dual active set method |
+//! | `interior_point` | the interior point method that provides a start where the active set stagnates |
+//! | `monotone_multigrid` | [`MonotoneMultigrid`]: truncated nonsmooth Newton multigrid |
+//! | `certificate` | [`Certificate`], [`certify`] |
+//! | `initial_guess`, `solution`, `outcome` | input and results of a solver |
+//!
+//! [`ActiveSet`] runs in stages, each only if the one before has not converged:
+//!
+//! 1. Small systems, and those without nested meshes, start with 3. Large ones start with the active set
+//!    method with preconditioned Krylov methods (`active_set/inexact_driver`); a bound on its algebraic
+//!    error goes with its solution.
+//! 2. If its active set stagnates on conforming P1 with a symmetric matrix: [`MonotoneMultigrid`].
+//! 3. The active set method with factors (`active_set/direct_driver`). If its active set
+//!    - returns to an earlier one: condensation on the unknowns of the cycle (`condensed_lcp`,
+//!      `dense_lcp`);
+//!    - stagnates, or condensation does not apply: a new start by the interior point method;
+//!    - cycles after that with a symmetric matrix: projected Newton (`projected_newton`), which is
+//!      finite.
+//!
+//! The certificate decides between [`Outcome::Converged`] and [`Outcome::Stalled`] after stages 2 and 3;
+//! stage 1 ends by the norm of the residual in the preconditioner.
 
 mod active_set;
-mod algebraic_bound;
 mod certificate;
 mod initial_guess;
 mod interior_point;
 mod monotone_multigrid;
 mod outcome;
-mod projected_newton;
 mod solution;
+mod validation;
 
-pub use active_set::{ActiveSet, LastResort};
-pub use certificate::{Certificate, active, certify, certify_with_jump_multipliers};
+pub use active_set::{ActiveSet, Globalisation};
+pub use certificate::{Certificate, certify, certify_with_jump_multipliers, count_active};
 pub use initial_guess::InitialGuess;
 pub use monotone_multigrid::MonotoneMultigrid;
 pub use outcome::Outcome;
@@ -20,19 +54,20 @@ pub use solution::Solution;
 use crate::algebra::Inequality;
 use crate::real::Real;
 
-/// A solver of the algebraic inequality.
+/// A solver of the algebraic variational inequality.
 pub trait InequalitySolver<T: Real>: Sync {
-    /// The name users type and reports state.
+    /// The name in reports and options.
     fn name(&self) -> &'static str;
-    /// Solves; never fails silently: see [`Outcome`].
+    /// Solves the inequality; a failure is an [`Outcome`].
     fn solve(&self, inequality: &Inequality<T>) -> Solution<T>;
-    /// The same with knowledge of what is nearby; a solver that has no use for it ignores it.
-    fn solve_from(&self, inequality: &Inequality<T>, nearby: &InitialGuess<T>) -> Solution<T> {
-        let _ = nearby;
+    /// Solves the inequality with coarse spaces, starting values and a tolerance. The default ignores
+    /// them.
+    fn solve_from(&self, inequality: &Inequality<T>, guess: &InitialGuess<T>) -> Solution<T> {
+        let _ = guess;
         self.solve(inequality)
     }
-    /// Whether it has use for nested meshes where no bound asks for a start from them, for a system
-    /// of this many unknowns.
+    /// Whether the solver uses the coarse spaces of nested meshes for this number of unknowns, so that
+    /// they are computed even if no bound requires a starting active set.
     fn uses_coarse_spaces(&self, unknowns: usize) -> bool {
         let _ = unknowns;
         false

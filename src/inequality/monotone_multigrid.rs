@@ -1,8 +1,10 @@
-//! Truncated nonsmooth Newton multigrid: monotone, and indifferent to strict complementarity.
+//! Truncated nonsmooth Newton multigrid: a descent method that does not depend on strict
+//! complementarity.
 
 use super::certificate::certify;
 use super::initial_guess::InitialGuess;
-use super::{ActiveSet, InequalitySolver, Outcome, Solution, active_set};
+use super::validation::check_input;
+use super::{ActiveSet, InequalitySolver, Outcome, Solution};
 use crate::algebra::{Contact, Inequality};
 use crate::linear::CoarseSpaces;
 use crate::linear::direct::factors::FactorError;
@@ -14,28 +16,52 @@ use crate::real::Real;
 /// 1-44; Graeser, Sack, Sander, Domain Decomposition Methods XVIII (2009) 129-136) for matrices
 /// that are symmetric and positive definite.
 ///
-/// One step is a sweep of projected Gauss-Seidel, a V-cycle for the correction of all unknowns off
-/// their bounds, and an exact search along it as far as bounds admit. The energy never rises, and
-/// the sweep alone would converge, so that the method does from any start (Glowinski 1984 for the
-/// sweep). Coarse functions are cut off at the bounds. No step depends on which of gap and
-/// multiplier vanish, and the number of steps hardly on the mesh as long as the start is near.
+/// One cycle consists of sweeps of projected Gauss-Seidel, a V-cycle for a correction of the inactive
+/// unknowns, and an exact line search along the correction projected onto the bounds. The energy never
+/// rises, and the method converges from any start because the sweeps do (Glowinski 1984). Coarse
+/// functions are truncated at the active unknowns. Neither step depends on strict complementarity, and
+/// from a close start the number of cycles hardly depends on the mesh.
 ///
-/// The coarser functions are those of [`InitialGuess`], or made from the matrix by aggregation: the
-/// matrix should be that of conforming linear functions. For others it converges all the same,
-/// slowly; matrices that are not symmetric go to [`ActiveSet`].
+/// The coarse spaces are those of [`InitialGuess`], or follow from the matrix by aggregation, which
+/// suits conforming P1. For other matrices the method converges slowly. Matrices that are not symmetric
+/// are solved by [`ActiveSet`].
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct MonotoneMultigrid {
-    /// Most steps.
+    /// Largest number of cycles.
     pub max_cycles: usize,
-    /// Sweeps before each linear correction.
+    /// Sweeps of projected Gauss-Seidel before each linear correction.
     pub sweeps: usize,
-    /// Energy norm of the last correction over that of the solution; `f32` stops at its rounding.
+    /// Tolerance on the energy norm of the changes of a cycle over that of the iterate; at least four
+    /// units of rounding count.
     pub tolerance: f64,
 }
 
 impl Default for MonotoneMultigrid {
     fn default() -> Self {
         Self { max_cycles: 200, sweeps: 2, tolerance: 1e-10 }
+    }
+}
+
+/// Setters, one for each field.
+impl MonotoneMultigrid {
+    /// Sets the largest number of cycles.
+    #[must_use]
+    pub fn max_cycles(mut self, max_cycles: usize) -> Self {
+        self.max_cycles = max_cycles;
+        self
+    }
+    /// Sets the number of sweeps before each linear correction.
+    #[must_use]
+    pub fn sweeps(mut self, sweeps: usize) -> Self {
+        self.sweeps = sweeps;
+        self
+    }
+    /// Sets the tolerance on the relative energy norm of the changes of a cycle.
+    #[must_use]
+    pub fn tolerance(mut self, tolerance: f64) -> Self {
+        self.tolerance = tolerance;
+        self
     }
 }
 
@@ -48,16 +74,16 @@ impl<T: Real> InequalitySolver<T> for MonotoneMultigrid {
         self.solve_from(inequality, &InitialGuess::default())
     }
 
-    fn solve_from(&self, inequality: &Inequality<T>, nearby: &InitialGuess<T>) -> Solution<T> {
+    fn solve_from(&self, inequality: &Inequality<T>, guess: &InitialGuess<T>) -> Solution<T> {
         if !inequality.symmetric {
-            return ActiveSet::default().solve_from(inequality, nearby);
+            return ActiveSet::default().solve_from(inequality, guess);
         }
-        let mut descent = Descent::new(inequality, nearby);
-        let outcome = match active_set::check_input(inequality) {
-            Ok(()) => descent.run(self, nearby).unwrap_or_else(|outcome| outcome),
+        let mut iterate = MultigridIterate::new(inequality, guess);
+        let outcome = match check_input(inequality) {
+            Ok(()) => iterate.run(self, guess).unwrap_or_else(|outcome| outcome),
             Err(outcome) => outcome,
         };
-        descent.into_solution(outcome)
+        iterate.into_solution(outcome)
     }
 
     fn uses_coarse_spaces(&self, _unknowns: usize) -> bool {
@@ -65,69 +91,73 @@ impl<T: Real> InequalitySolver<T> for MonotoneMultigrid {
     }
 }
 
-/// Admissible values on their way down.
-struct Descent<'a, T> {
+/// Admissible values, and the vectors of a cycle.
+struct MultigridIterate<'a, T> {
     inequality: &'a Inequality<T>,
     values: Vec<T>,
-    /// `b - A u`, zero on bounds.
-    force: Vec<T>,
-    step: Vec<T>,
-    fixed: Vec<bool>,
+    /// `b - A u`; zero on eliminated unknowns.
+    residual: Vec<T>,
+    correction: Vec<T>,
+    /// Whether an unknown is fixed or active and takes no part in the linear correction.
+    eliminated: Vec<bool>,
     cycles: usize,
 }
 
-impl<'a, T: Real> Descent<'a, T> {
-    fn new(inequality: &'a Inequality<T>, nearby: &InitialGuess<T>) -> Self {
+impl<'a, T: Real> MultigridIterate<'a, T> {
+    /// The values of the guess, or zero, projected onto the bounds.
+    fn new(inequality: &'a Inequality<T>, guess: &InitialGuess<T>) -> Self {
         let n = inequality.bounds.len();
-        let near = nearby.values.as_deref().filter(|values| values.len() == n);
-        let start = |i: usize| near.map_or(T::lit(0.0), |values| values[i]);
+        let guess = guess.values.as_deref().filter(|values| values.len() == n);
+        let start = |i: usize| guess.map_or(T::lit(0.0), |values| values[i]);
         let bounds = inequality.bounds.iter().enumerate();
         let values = bounds.map(|(i, bound)| bound.nearest(start(i))).collect();
         let zeros = vec![T::lit(0.0); n];
         Self {
             inequality,
             values,
-            force: zeros.clone(),
-            step: zeros,
-            fixed: vec![false; n],
+            residual: zeros.clone(),
+            correction: zeros,
+            eliminated: vec![false; n],
             cycles: 0,
         }
     }
 
-    /// The error is the reason why it does not arrive.
+    /// Cycles until the changes are within the tolerance and the certificate within its limit. The error
+    /// is the outcome without a solution.
     fn run(
         &mut self,
         settings: &MonotoneMultigrid,
-        nearby: &InitialGuess<T>,
+        guess: &InitialGuess<T>,
     ) -> Result<Outcome, Outcome> {
         let Inequality { matrix, bounds, .. } = self.inequality;
-        let made = match nearby.functions {
+        let aggregated = match guess.coarse_spaces {
             CoarseSpaces::CoarseLevel(_) => None,
             _ => {
-                let given: Vec<bool> = bounds.iter().map(|b| b.only_value().is_some()).collect();
-                CoarseLevel::aggregated(matrix, &given)
+                let fixed: Vec<bool> = bounds.iter().map(|b| b.only_value().is_some()).collect();
+                CoarseLevel::aggregated(matrix, &fixed)
             }
         };
-        let coarser = match &nearby.functions {
-            CoarseSpaces::CoarseLevel(coarser) => Some(coarser),
-            _ => made.as_ref(),
+        let coarse_level = match &guess.coarse_spaces {
+            CoarseSpaces::CoarseLevel(coarse_level) => Some(coarse_level),
+            _ => aggregated.as_ref(),
         };
-        let mut multigrid = Multigrid::new(matrix, coarser);
-        let least = nearby.accuracy.unwrap_or(0.0).max(4.0 * T::EPSILON);
+        let mut multigrid = Multigrid::new(matrix, coarse_level);
+        let least = guess.energy_tolerance.unwrap_or(0.0).max(4.0 * T::EPSILON);
         let tolerance = settings.tolerance.max(least);
-        let limit = if nearby.accuracy.is_some() { f64::INFINITY } else { T::CERTIFICATE_LIMIT };
+        let limit =
+            if guess.energy_tolerance.is_some() { f64::INFINITY } else { T::CERTIFICATE_LIMIT };
         while self.cycles < settings.max_cycles {
             self.cycles += 1;
-            let mut swept = 0.0;
+            let mut by_sweeps = 0.0;
             for _ in 0..settings.sweeps {
-                swept += self.sweep()?;
+                by_sweeps += self.gauss_seidel_sweep()?;
             }
-            let corrected = self.correct(&mut multigrid)?;
+            let by_correction = self.correct(&mut multigrid)?;
             let energy = self.energy();
-            if !(energy.is_finite() && swept.is_finite()) {
+            if !(energy.is_finite() && by_sweeps.is_finite()) {
                 return Err(Outcome::NotFinite);
             }
-            if (swept + corrected).sqrt() <= tolerance * energy.sqrt()
+            if (by_sweeps + by_correction).sqrt() <= tolerance * energy.sqrt()
                 && certify(self.inequality, &self.values).largest() <= limit
             {
                 return Ok(Outcome::Converged);
@@ -136,10 +166,11 @@ impl<'a, T: Real> Descent<'a, T> {
         Err(Outcome::IterationLimit)
     }
 
-    /// One sweep of projected Gauss-Seidel; the square of the energy norm it moves by, roughly.
-    fn sweep(&mut self) -> Result<f64, Outcome> {
+    /// One sweep of projected Gauss-Seidel. Returns the sum of `d_i (change of u_i)^2`, an estimate of the
+    /// square of the energy norm of the change.
+    fn gauss_seidel_sweep(&mut self) -> Result<f64, Outcome> {
         let Inequality { matrix, load, bounds, .. } = self.inequality;
-        let mut moved = 0.0;
+        let mut sum = 0.0;
         for (i, bound) in bounds.iter().enumerate() {
             if bound.only_value().is_some() {
                 continue;
@@ -148,46 +179,41 @@ impl<'a, T: Real> Descent<'a, T> {
             if d <= T::lit(0.0) {
                 return Err(Outcome::NotCoercive);
             }
-            let force = load[i] - matrix.row_dot(i, &self.values);
-            let next = bound.nearest(self.values[i] + force / d);
+            let residual = load[i] - matrix.row_dot(i, &self.values);
+            let next = bound.nearest(self.values[i] + residual / d);
             let change = (next - self.values[i]).to_f64();
-            moved += d.to_f64() * change * change;
+            sum += d.to_f64() * change * change;
             self.values[i] = next;
         }
-        Ok(moved)
+        Ok(sum)
     }
 
-    /// One linear correction off the bounds; the square of the energy norm it moves by.
+    /// One linear correction of the inactive unknowns with exact line search. Returns the square of the
+    /// energy norm of the change.
     fn correct(&mut self, multigrid: &mut Multigrid<'_, T>) -> Result<f64, Outcome> {
-        let Inequality { matrix, load, bounds, .. } = self.inequality;
-        for (i, bound) in bounds.iter().enumerate() {
-            let x = self.values[i];
-            self.fixed[i] = bound.only_value().is_some()
-                || bound.lower().is_some_and(|l| x <= l)
-                || bound.upper().is_some_and(|u| x >= u);
-            let force = load[i].to_f64() - matrix.row_dot_f64(i, &self.values);
-            self.force[i] = if self.fixed[i] { T::lit(0.0) } else { T::lit(force) };
-        }
-        match multigrid.fix(&self.fixed) {
+        let Inequality { matrix, bounds, .. } = self.inequality;
+        self.eliminate_active();
+        match multigrid.fix(&self.eliminated) {
             Ok(()) => {}
-            // nothing but bounds holds the body: the sweep alone goes on
+            // only the bounds prevent a rigid motion: the sweeps alone converge
             Err(FactorError::Singular) if bounds.iter().any(|bound| bound.is_inequality()) => {
                 return Ok(0.0);
             }
             Err(error) => return Err(error.into()),
         }
-        multigrid.apply(&self.force, &mut self.step);
-        for (i, step) in self.step.iter_mut().enumerate() {
-            *step = if self.fixed[i] {
+        multigrid.apply(&self.residual, &mut self.correction);
+        for (i, correction) in self.correction.iter_mut().enumerate() {
+            *correction = if self.eliminated[i] {
                 T::lit(0.0)
             } else {
-                bounds[i].nearest(self.values[i] + *step) - self.values[i]
+                bounds[i].nearest(self.values[i] + *correction) - self.values[i]
             };
         }
         let (mut slope, mut curvature) = (0.0, 0.0);
-        for (i, step) in self.step.iter().enumerate().filter(|(i, _)| !self.fixed[*i]) {
-            slope += self.force[i].to_f64() * step.to_f64();
-            curvature += step.to_f64() * matrix.row_dot_f64(i, &self.step);
+        let inactive = |(i, _): &(usize, &T)| !self.eliminated[*i];
+        for (i, correction) in self.correction.iter().enumerate().filter(inactive) {
+            slope += self.residual[i].to_f64() * correction.to_f64();
+            curvature += correction.to_f64() * matrix.row_dot_f64(i, &self.correction);
         }
         if slope <= 0.0 {
             return Ok(0.0);
@@ -195,28 +221,42 @@ impl<'a, T: Real> Descent<'a, T> {
         if curvature <= 0.0 {
             return Err(Outcome::NotCoercive);
         }
-        let length = T::lit((slope / curvature).min(self.room()));
-        for (value, (step, bound)) in self.values.iter_mut().zip(self.step.iter().zip(bounds)) {
-            *value = bound.nearest(*value + length * *step);
+        let length = T::lit((slope / curvature).min(self.ratio_test()));
+        let corrections = self.correction.iter().zip(bounds);
+        for (value, (correction, bound)) in self.values.iter_mut().zip(corrections) {
+            *value = bound.nearest(*value + length * *correction);
         }
         Ok(curvature * length.to_f64().powi(2))
     }
 
-    /// The longest multiple of the step that bounds admit; never less than one.
-    fn room(&self) -> f64 {
-        let mut room = f64::INFINITY;
+    /// Marks fixed and active unknowns as eliminated and computes the residual of all others.
+    fn eliminate_active(&mut self) {
+        let Inequality { matrix, load, bounds, .. } = self.inequality;
+        for (i, bound) in bounds.iter().enumerate() {
+            let x = self.values[i];
+            self.eliminated[i] = bound.only_value().is_some()
+                || bound.lower().is_some_and(|l| x <= l)
+                || bound.upper().is_some_and(|u| x >= u);
+            let residual = load[i].to_f64() - matrix.row_dot_f64(i, &self.values);
+            self.residual[i] = if self.eliminated[i] { T::lit(0.0) } else { T::lit(residual) };
+        }
+    }
+
+    /// The ratio test: the longest multiple of the correction that the bounds admit, at least one.
+    fn ratio_test(&self) -> f64 {
+        let mut longest = f64::INFINITY;
         for (i, bound) in self.inequality.bounds.iter().enumerate() {
-            let (x, step) = (self.values[i].to_f64(), self.step[i].to_f64());
+            let (x, step) = (self.values[i].to_f64(), self.correction[i].to_f64());
             match (bound.lower(), bound.upper()) {
-                (Some(l), _) if step < 0.0 => room = room.min((l.to_f64() - x) / step),
-                (_, Some(u)) if step > 0.0 => room = room.min((u.to_f64() - x) / step),
+                (Some(l), _) if step < 0.0 => longest = longest.min((l.to_f64() - x) / step),
+                (_, Some(u)) if step > 0.0 => longest = longest.min((u.to_f64() - x) / step),
                 _ => {}
             }
         }
-        room.max(1.0)
+        longest.max(1.0)
     }
 
-    /// The square of the energy norm, or that of the load where the values are zero.
+    /// The square of the energy norm; that of the load, `sum b_i^2 / d_i`, where the values are zero.
     fn energy(&self) -> f64 {
         let Inequality { matrix, load, .. } = self.inequality;
         let values = self.values.iter().enumerate();
@@ -231,6 +271,7 @@ impl<'a, T: Real> Descent<'a, T> {
         if sum > 0.0 { sum } else { 1.0 }
     }
 
+    /// The solution, with the contact states of its values.
     fn into_solution(self, outcome: Outcome) -> Solution<T> {
         let bounds = self.inequality.bounds.iter().zip(&self.values);
         let contact = bounds
@@ -240,15 +281,8 @@ impl<'a, T: Real> Descent<'a, T> {
                 _ => Contact::Inactive,
             })
             .collect();
-        Solution {
-            values: self.values,
-            contact,
-            outcome,
-            outer: self.cycles,
-            linear: self.cycles,
-            linear_solver: "multigrid",
-            algebraic_bound: None,
-            forces: Vec::new(),
-        }
+        Solution::new(self.values, contact, outcome)
+            .iterations(self.cycles, self.cycles)
+            .linear_solver("multigrid")
     }
 }

@@ -1,34 +1,37 @@
-//! How a solve ended.
+//! The outcome of a solve.
 
-/// How a solve ended. Only [`Outcome::Converged`] is a success; every other outcome comes with the
+use crate::linear::direct::factors::FactorError;
+
+/// The outcome of a solve. Only [`Outcome::Converged`] is a success; every other outcome comes with the
 /// best iterate.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum Outcome {
     /// The complementarity conditions hold to the tolerance.
     Converged,
-    /// The iteration limit was reached while the active set still moved.
+    /// The iteration limit was reached while the active set still changed.
     IterationLimit,
-    /// The active set returned to an earlier one and could not be resolved.
+    /// The active set returned to an earlier one, and no method resolved the cycle.
     Cycling,
-    /// Steps no longer change the iterate, yet the conditions do not hold.
+    /// Rounding prevents the complementarity conditions from holding to their tolerance.
     Stalled,
     /// The matrix is not positive definite on the free unknowns (penalty too small).
     NotCoercive,
     /// The matrix is singular on the free unknowns.
     Singular,
-    /// A number that is not finite appeared.
+    /// A number is not finite.
     NotFinite,
-    /// Two bounds of one unknown leave no value between them.
+    /// The lower bound of an unknown exceeds its upper one.
     Infeasible,
-    /// Sizes of matrix, load and bounds do not match, or the matrix is not what its type promises.
+    /// Sizes of matrix, load and bounds do not match, or the matrix violates an invariant of its type.
     Malformed,
-    /// The factors do not fit into memory.
+    /// The factors exceed the memory.
     OutOfMemory,
 }
 
 impl Outcome {
     /// The name in reports, in kebab-case.
+    #[must_use]
     pub fn name(self) -> &'static str {
         match self {
             Outcome::Converged => "converged",
@@ -48,5 +51,15 @@ impl Outcome {
 impl std::fmt::Display for Outcome {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         f.write_str(self.name())
+    }
+}
+
+impl From<FactorError> for Outcome {
+    fn from(error: FactorError) -> Self {
+        match error {
+            FactorError::NotPositive => Outcome::NotCoercive,
+            FactorError::Singular => Outcome::Singular,
+            FactorError::OutOfMemory => Outcome::OutOfMemory,
+        }
     }
 }

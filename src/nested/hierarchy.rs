@@ -1,5 +1,5 @@
-//! Nested levels of a problem, and the contact set of conforming P1 on each: what every scheme starts
-//! from.
+//! A hierarchy of nested meshes and the conforming P1 solution on each, which provides the initial guess
+//! of every scheme.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -15,115 +15,130 @@ use crate::problem::Problem;
 use crate::real::Real;
 use crate::scheme::ConformingP1;
 
-/// Contact and value of every vertex, found by conforming P1, with what it cost.
+/// The conforming P1 solution on a level, or its prolongation from the coarser level.
 #[derive(Clone, Debug)]
+#[non_exhaustive]
 pub struct P1Solution<T> {
-    /// The state of every vertex.
+    /// The contact state of every vertex.
     pub contact: Vec<Contact>,
-    /// The value at every vertex; empty if no solution was found.
+    /// The value at every vertex; empty if the solve did not converge.
     pub values: Vec<T>,
-    /// The conforming linear functions of this and coarser levels.
-    pub functions: CoarseSpaces<T>,
-    /// Seconds spent on this level and all coarser ones.
+    /// The conforming P1 spaces of this and all coarser levels.
+    pub coarse_spaces: CoarseSpaces<T>,
+    /// Seconds of assembly, solve and prolongation on this level and all coarser ones.
     pub seconds: f64,
-    /// How many levels were solved.
-    pub levels: usize,
+    /// Number of levels on which conforming P1 was solved.
+    pub levels_solved: usize,
 }
 
+/// A mesh and its P1 solution.
+#[derive(Debug)]
 struct Level<T, const D: usize> {
     mesh: Mesh<T, D>,
-    /// The coarser level, and how this one came from it.
-    from: Option<(usize, Refinement)>,
-    /// How functions of the coarser level are written on this one.
-    transfer: Option<Arc<Prolongation<T>>>,
-    seconds: f64,
-    contact: Option<Arc<P1Solution<T>>>,
+    /// The coarser level, and the refinement of its mesh that gives this one.
+    coarser: Option<(usize, Refinement)>,
+    /// The prolongation of P1 functions from the coarser level.
+    prolongation: Option<Arc<Prolongation<T>>>,
+    /// Seconds for the meshes of this and all coarser levels.
+    mesh_seconds: f64,
+    p1_solution: Option<Arc<P1Solution<T>>>,
 }
 
-/// The levels of a problem, made when asked for and kept.
+/// The nested meshes of a problem and their P1 solutions, computed on demand and kept.
 ///
-/// Level `n` of a built-in domain has `n` subdivisions of its shortest side and is the refinement of
-/// level `n / 2` as long as that is whole and not tiny. Level `k` of a given mesh is its `k`-th uniform
-/// refinement.
+/// Level `n` of a built-in domain has `n` subdivisions of its shortest side. It is the refinement of
+/// level `n / 2` if `n` is even and `n / 2` is at least 4. Level `k` of an input mesh is its
+/// `k`-th uniform refinement.
 pub struct Hierarchy<'a, T, const D: usize> {
     problem: &'a Problem<D>,
     domain: &'a Domain<D>,
-    given: Option<&'a Mesh<T, D>>,
+    input_mesh: Option<&'a Mesh<T, D>>,
     levels: BTreeMap<usize, Level<T, D>>,
 }
 
-/// Fewest subdivisions of a level that is worth a start of its own.
+impl<T, const D: usize> std::fmt::Debug for Hierarchy<'_, T, D> {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Hierarchy").field("levels", &self.levels.keys()).finish_non_exhaustive()
+    }
+}
+
+/// Fewest subdivisions of a level that serves as a coarser one.
 const COARSEST: usize = 4;
 
-/// How well an iterative solver solves what only something else starts from: relative to the
-/// energy, below the discretisation error of all meshes that fit into memory.
-const START_ACCURACY: f64 = 1e-4;
+/// Relative tolerance in the energy norm for iterative solvers of P1, whose solution serves as an
+/// initial guess only: below the discretisation error of all meshes that fit into memory.
+const P1_ENERGY_TOLERANCE: f64 = 1e-4;
 
 impl<'a, T: Real, const D: usize> Hierarchy<'a, T, D> {
-    /// Hierarchy of a problem on a built-in domain, or on a mesh given instead.
+    /// The empty hierarchy of a problem on an input mesh if there is one, else on a built-in domain.
+    #[must_use]
     pub fn new(
         problem: &'a Problem<D>,
         domain: &'a Domain<D>,
-        given: Option<&'a Mesh<T, D>>,
+        input_mesh: Option<&'a Mesh<T, D>>,
     ) -> Self {
-        Self { problem, domain, given, levels: BTreeMap::new() }
+        Self { problem, domain, input_mesh, levels: BTreeMap::new() }
     }
 
-    fn coarser(&self, level: usize) -> Option<usize> {
-        match self.given {
+    /// The level whose refinement is a given one.
+    fn coarser_level(&self, level: usize) -> Option<usize> {
+        match self.input_mesh {
             Some(_) => level.checked_sub(1),
             None => (level.is_multiple_of(2) && level / 2 >= COARSEST).then_some(level / 2),
         }
     }
 
-    /// Makes the mesh of a level and of all coarser ones it is refined from.
+    /// Builds the meshes of a level and of all coarser ones.
     ///
     /// # Errors
-    /// [`Error::Mesh`] if there would be more cells than can be numbered, [`Error::Parameter`] for
-    /// a level of zero on a built-in domain.
-    pub fn make(&mut self, level: usize) -> Result<(), Error> {
+    /// [`Error::Mesh`] if the cells are too many to be numbered, [`Error::Parameter`] for level zero of a
+    /// built-in domain.
+    pub fn build(&mut self, level: usize) -> Result<(), Error> {
         if self.levels.contains_key(&level) {
             return Ok(());
         }
-        let mut chain = vec![level];
-        while let Some(&last) = chain.last() {
-            match self.coarser(last) {
-                Some(coarser) if !self.levels.contains_key(&coarser) => chain.push(coarser),
+        let mut missing = vec![level];
+        while let Some(&finer) = missing.last() {
+            match self.coarser_level(finer) {
+                Some(coarser) if !self.levels.contains_key(&coarser) => missing.push(coarser),
                 _ => break,
             }
         }
         self.check_size(level)?;
-        for level in chain.into_iter().rev() {
-            let before = self.coarser(level).and_then(|c| self.levels.get(&c).map(|l| (c, l)));
-            let start = Instant::now();
-            let (mesh, from, spent) = match before {
+        for level in missing.into_iter().rev() {
+            let coarser =
+                self.coarser_level(level).and_then(|c| self.levels.get(&c).map(|l| (c, l)));
+            let clock = Instant::now();
+            let (mesh, coarser, before) = match coarser {
                 Some((coarser, entry)) => {
-                    let (mesh, refinement) = match self.given {
+                    let (mesh, refinement) = match self.input_mesh {
                         Some(_) => entry.mesh.refine()?,
                         None => self.domain.refine(&entry.mesh)?,
                     };
-                    (mesh, Some((coarser, refinement)), entry.seconds)
+                    (mesh, Some((coarser, refinement)), entry.mesh_seconds)
                 }
-                None => (self.coarsest(level)?, None, 0.0),
+                None => (self.coarsest_mesh(level)?, None, 0.0),
             };
-            let seconds = spent + start.elapsed().as_secs_f64();
-            self.levels.insert(level, Level { mesh, from, transfer: None, seconds, contact: None });
+            let mesh_seconds = before + clock.elapsed().as_secs_f64();
+            let entry =
+                Level { mesh, coarser, prolongation: None, mesh_seconds, p1_solution: None };
+            self.levels.insert(level, entry);
         }
         Ok(())
     }
 
-    /// How many cells a level has.
+    /// The number of cells of a level.
     pub(crate) fn cells(&self, level: usize) -> f64 {
-        match self.given {
+        match self.input_mesh {
             Some(mesh) => (mesh.n_cells() as f64) * 2_f64.powi(D as i32).powf(level as f64),
             None => self.domain.cells(level),
         }
     }
 
-    /// Refuses a level before any of its coarser ones is made.
+    /// Checks the number and size of the cells of a level before any mesh is built.
     pub(crate) fn check_size(&self, level: usize) -> Result<(), Error> {
         let cells = self.cells(level);
-        // beyond this a discontinuous space has more unknowns and entries than 32-bit numbers reach
+        // 32-bit indices number the unknowns and matrix entries of a discontinuous space
         let limit = f64::from(u32::MAX) / ((D + 1) * (D + 1) * (D + 2)) as f64;
         if cells > limit {
             return Err(Error::Parameter {
@@ -137,8 +152,8 @@ impl<'a, T: Real, const D: usize> Hierarchy<'a, T, D> {
         self.check_scalar(level)
     }
 
-    /// Refuses cells so small or large that their squares or volumes, or the reciprocals of these,
-    /// are out of the range of the scalar. Meshes that are given were checked when they were made.
+    /// Checks that squares and volumes of cells, and their reciprocals, are in the range of the scalar.
+    /// The constructor of an input mesh checks its cells.
     fn check_scalar(&self, level: usize) -> Result<(), Error> {
         let fits = |x: f64| {
             let error = (T::lit(x).to_f64() / x - 1.0).abs();
@@ -147,7 +162,7 @@ impl<'a, T: Real, const D: usize> Hierarchy<'a, T, D> {
         let power = D.max(2) as i32;
         let outside = |&h: &f64| !(fits(h.powi(power)) && fits(h.powi(-power)));
         let spacings = self.domain.spacings(level);
-        match spacings.into_iter().find(outside).filter(|_| self.given.is_none()) {
+        match spacings.into_iter().find(outside).filter(|_| self.input_mesh.is_none()) {
             None => Ok(()),
             Some(h) => Err(Error::Parameter {
                 parameter: "precision",
@@ -159,35 +174,40 @@ impl<'a, T: Real, const D: usize> Hierarchy<'a, T, D> {
         }
     }
 
-    fn coarsest(&self, level: usize) -> Result<Mesh<T, D>, Error> {
-        match self.given {
+    /// The mesh of a level that is no refinement.
+    fn coarsest_mesh(&self, level: usize) -> Result<Mesh<T, D>, Error> {
+        match self.input_mesh {
             Some(mesh) => Ok(mesh.clone()),
             None => Ok(self.domain.mesh(level)?),
         }
     }
 
-    /// The mesh of a level that was made, and the seconds it took with all coarser ones.
+    /// The mesh of a level that was built, and the seconds for it and all coarser ones.
+    #[must_use]
     pub fn mesh(&self, level: usize) -> Option<(&Mesh<T, D>, f64)> {
-        self.levels.get(&level).map(|l| (&l.mesh, l.seconds))
+        self.levels.get(&level).map(|l| (&l.mesh, l.mesh_seconds))
     }
 
-    /// Contact and values of the coarser level, carried to the vertices of a level that was made: a
-    /// new vertex is in contact if both its parents are.
-    pub fn start_from_coarser(
+    /// The prolongation of the coarser P1 solution to a level that was built; `None` on the coarsest
+    /// level. A new vertex is active if both ends of its edge are.
+    ///
+    /// # Errors
+    /// Those of assembly.
+    pub fn prolonged_p1_solution(
         &mut self,
         level: usize,
         solver: &dyn InequalitySolver<T>,
         quadrature: DataQuadrature,
         repeat: usize,
     ) -> Result<Option<Arc<P1Solution<T>>>, Error> {
-        let Some((coarser, _)) = self.levels.get(&level).and_then(|l| l.from.as_ref()) else {
+        let Some((coarser, _)) = self.levels.get(&level).and_then(|l| l.coarser.as_ref()) else {
             return Ok(None);
         };
         let coarser = *coarser;
-        let coarse = self.contact(coarser, solver, quadrature, repeat)?;
+        let coarse = self.p1_solution(coarser, solver, quadrature, repeat)?;
         let clock = Instant::now();
-        let Some(entry) = self.levels.get_mut(&level) else { unreachable!("made above") };
-        let Some((_, refinement)) = &entry.from else { return Ok(None) };
+        let Some(entry) = self.levels.get_mut(&level) else { unreachable!("found above") };
+        let Some((_, refinement)) = &entry.coarser else { return Ok(None) };
         let parents = &refinement.parents;
         let contact = parents
             .iter()
@@ -196,46 +216,49 @@ impl<'a, T: Real, const D: usize> Hierarchy<'a, T, D> {
                 _ => Contact::Inactive,
             })
             .collect();
-        let make = || Arc::new(Prolongation::midpoints(parents.clone(), coarse.contact.len()));
-        let transfer = entry.transfer.get_or_insert_with(make);
+        let new = || Arc::new(Prolongation::midpoints(parents.clone(), coarse.contact.len()));
+        let prolongation = entry.prolongation.get_or_insert_with(new);
         let values = match coarse.values.len() == coarse.contact.len() {
-            true => transfer.values(&coarse.values),
+            true => prolongation.values(&coarse.values),
             false => Vec::new(),
         };
-        let functions = match &coarse.functions {
-            CoarseSpaces::Same(same) => CoarseLevel::new(same.clone(), transfer.clone()),
+        let coarse_level = match &coarse.coarse_spaces {
+            CoarseSpaces::Same(same) => CoarseLevel::new(same.clone(), prolongation.clone()),
             _ => None,
         };
         let seconds = coarse.seconds + clock.elapsed().as_secs_f64();
-        let functions = functions.map_or(CoarseSpaces::Unknown, CoarseSpaces::CoarseLevel);
-        let levels = coarse.levels;
-        Ok(Some(Arc::new(P1Solution { contact, values, functions, seconds, levels })))
+        let coarse_spaces = coarse_level.map_or(CoarseSpaces::Unknown, CoarseSpaces::CoarseLevel);
+        let levels_solved = coarse.levels_solved;
+        let solution = P1Solution { contact, values, coarse_spaces, seconds, levels_solved };
+        Ok(Some(Arc::new(solution)))
     }
 
-    /// The contact set of conforming P1 on a level that was made.
+    /// The conforming P1 solution on a level, by nested iteration over all coarser levels.
     ///
     /// # Errors
-    /// Those of assembly.
-    pub fn contact(
+    /// Those of assembly and of [`Hierarchy::build`].
+    pub fn p1_solution(
         &mut self,
         level: usize,
         solver: &dyn InequalitySolver<T>,
         quadrature: DataQuadrature,
         repeat: usize,
     ) -> Result<Arc<P1Solution<T>>, Error> {
-        if let Some(known) = self.levels.get(&level).and_then(|l| l.contact.clone()) {
+        if let Some(known) = self.levels.get(&level).and_then(|l| l.p1_solution.clone()) {
             return Ok(known);
         }
-        self.make(level)?;
-        let start = self.start_from_coarser(level, solver, quadrature, repeat)?;
+        self.build(level)?;
+        let start = self.prolonged_p1_solution(level, solver, quadrature, repeat)?;
         let problem = self.problem;
-        let Some(entry) = self.levels.get_mut(&level) else { unreachable!("made above") };
+        let Some(entry) = self.levels.get_mut(&level) else { unreachable!("built above") };
         let found = Arc::new(solve_p1(problem, &entry.mesh, start, solver, quadrature, repeat)?);
-        entry.contact = Some(found.clone());
+        entry.p1_solution = Some(found.clone());
         Ok(found)
     }
 }
 
+/// Solves conforming P1 on a mesh from the prolonged solution; the seconds are the smallest of `repeat`
+/// runs.
 fn solve_p1<T: Real, const D: usize>(
     problem: &Problem<D>,
     mesh: &Mesh<T, D>,
@@ -244,41 +267,41 @@ fn solve_p1<T: Real, const D: usize>(
     quadrature: DataQuadrature,
     repeat: usize,
 ) -> Result<P1Solution<T>, Error> {
-    let (spent, levels) = start.as_ref().map_or((0.0, 0), |s| (s.seconds, s.levels));
+    let (seconds_before, levels) =
+        start.as_ref().map_or((0.0, 0), |s| (s.seconds, s.levels_solved));
     let mut seconds = f64::INFINITY;
     let mut last = None;
     for _ in 0..repeat.max(1) {
         let clock = Instant::now();
         let space = Discretisation::new(&ConformingP1, problem, mesh, quadrature)?;
         let mut inequality = space.inequality()?;
-        let mut nearby = InitialGuess { accuracy: Some(START_ACCURACY), ..InitialGuess::default() };
+        let mut guess = InitialGuess::default().energy_tolerance(P1_ENERGY_TOLERANCE);
         if let Some(start) = &start {
             inequality.start = Start::Contact(start.contact.clone());
-            nearby.values = Some(start.values.clone());
-            nearby.functions = start.functions.clone();
+            guess = guess.values(start.values.clone()).coarse_spaces(start.coarse_spaces.clone());
         }
-        let solution = solver.solve_from(&inequality, &nearby);
+        let solution = solver.solve_from(&inequality, &guess);
         seconds = seconds.min(clock.elapsed().as_secs_f64());
         last = Some((inequality, solution));
     }
     let Some((inequality, solution)) = last else { unreachable!("at least one run") };
     let clock = Instant::now();
-    // a start need not be right; all open, one that failed is as good as none
+    // an initial guess need not be right: after a failure it is inactive everywhere
     let (contact, values) = match solution.outcome {
         Outcome::Converged => (solution.contact, solution.values),
         _ => (vec![Contact::Inactive; inequality.size()], Vec::new()),
     };
-    // in one dimension factors are as sparse as the matrix
-    let functions = if D == 1 {
+    // in one dimension factors are as sparse as the matrix: no multigrid is needed
+    let coarse_spaces = if D == 1 {
         CoarseSpaces::Unknown
     } else {
         let fixed = inequality.bounds.iter().map(|b| matches!(b, Bound::Fixed(_))).collect();
-        let coarser = start.and_then(|start| match &start.functions {
+        let coarser = start.and_then(|start| match &start.coarse_spaces {
             CoarseSpaces::CoarseLevel(coarser) => Some(coarser.clone()),
             _ => None,
         });
         CoarseSpaces::Same(Arc::new(P1Level::new(inequality.matrix, fixed, coarser)))
     };
-    let seconds = spent + seconds + clock.elapsed().as_secs_f64();
-    Ok(P1Solution { contact, values, functions, seconds, levels: levels + 1 })
+    let seconds = seconds_before + seconds + clock.elapsed().as_secs_f64();
+    Ok(P1Solution { contact, values, coarse_spaces, seconds, levels_solved: levels + 1 })
 }

@@ -99,7 +99,7 @@ pub fn solve<T: Real, const D: usize>(
         if start.contact.iter().any(|&c| c != Contact::Inactive) {
             inequality.start = Start::Contact(transfer(&start.contact, &inequality.supports));
         }
-        nearby.functions = start.functions.clone();
+        nearby.coarse_spaces = start.coarse_spaces.clone();
         nearby.values =
             (!start.values.is_empty()).then(|| means(&start.values, &inequality.supports));
     }
@@ -142,16 +142,16 @@ pub fn solve<T: Real, const D: usize>(
         error,
         contact,
         objective: (inequality.symmetric && usable).then(|| inequality.objective(u)),
-        active: usable.then(|| crate::inequality::active(&inequality, &solution.contact)),
+        active: usable.then(|| crate::inequality::count_active(&inequality, &solution.contact)),
         outer: usable.then_some(solution.outer),
         linear: solution.linear,
         linear_solver: solution.linear_solver,
         certificate: match usable {
             true => Certificate {
                 algebraic_bound: solution.algebraic_bound,
-                ..certify_with_jump_multipliers(&inequality, u, &solution.forces)
+                ..certify_with_jump_multipliers(&inequality, u, &solution.jump_multipliers)
             },
-            false => Certificate::WORTHLESS,
+            false => Certificate::INVALID,
         },
         assemble_seconds,
         solve_seconds,
@@ -179,16 +179,7 @@ fn run<T: Real, const D: usize>(
     if in_doubt && definite() == Ok(false) {
         let values = vec![T::lit(0.0); inequality.size()];
         let contact = vec![Contact::Inactive; inequality.size()];
-        let solution = Solution {
-            values,
-            contact,
-            outcome: Outcome::NotCoercive,
-            outer: 0,
-            linear: 0,
-            linear_solver: "direct",
-            algebraic_bound: None,
-            forces: Vec::new(),
-        };
+        let solution = Solution::new(values, contact, Outcome::NotCoercive);
         return (solution, clock.elapsed().as_secs_f64());
     }
     let in_test = clock.elapsed().as_secs_f64();

@@ -4,7 +4,7 @@ use super::choice::Choice;
 use crate::algebra::{Bound, SparseMatrix};
 use crate::assemble::DataQuadrature;
 use crate::error::Error;
-use crate::inequality::{ActiveSet, LastResort};
+use crate::inequality::{ActiveSet, Globalisation};
 use crate::linear::{LinearMethod, is_positive_definite};
 use crate::mesh::{BoxDomain, Mesh};
 use crate::nested::{Hierarchy, Solved, Task, solve};
@@ -17,12 +17,12 @@ use crate::study::{Row, Study};
 /// The solver of the study: the library's own, with factors on every level, so that no tolerance of
 /// an iterative solver enters.
 pub(crate) fn solver() -> ActiveSet {
-    ActiveSet { linear: LinearMethod::Direct, ..ActiveSet::default() }
+    ActiveSet::default().linear(LinearMethod::Direct)
 }
 
 /// The same with another last resort and another number of sets.
-pub(crate) fn solver_with(last_resort: LastResort, max_outer: usize) -> ActiveSet {
-    ActiveSet { last_resort, max_outer, ..solver() }
+pub(crate) fn solver_with(globalisation: Globalisation, max_outer: usize) -> ActiveSet {
+    solver().globalisation(globalisation).max_outer(max_outer)
 }
 
 /// The rows of a scheme on levels of a scene.
@@ -64,8 +64,9 @@ pub(crate) fn solved<const D: usize>(
 ) -> Result<(Mesh<f64, D>, Solved), Error> {
     let quadrature = DataQuadrature::default();
     let mut levels = Hierarchy::<f64, D>::new(&scene.problem, &scene.domain, None);
-    levels.make(level)?;
-    let start = if is_warm { Some(levels.contact(level, solver, quadrature, 1)?) } else { None };
+    levels.build(level)?;
+    let start =
+        if is_warm { Some(levels.p1_solution(level, solver, quadrature, 1)?) } else { None };
     let Some((mesh, _)) = levels.mesh(level) else { unreachable!("made above") };
     let scheme = choice.make::<f64, D>();
     let task = Task {

@@ -231,7 +231,7 @@ impl<'a, T: Real, const D: usize> Study<'a, T, D> {
         failure: Option<&str>,
         with_fields: bool,
     ) -> Result<(Row, f64), Error> {
-        levels.make(level)?;
+        levels.build(level)?;
         let start = self.start(levels, scheme, level)?;
         let Some((mesh, mesh_seconds)) = levels.mesh(level) else { unreachable!("made above") };
         let task = Task {
@@ -255,7 +255,7 @@ impl<'a, T: Real, const D: usize> Study<'a, T, D> {
                 "the scene's solution breaks the contact condition of this mesh at {at}: no errors"
             ));
         }
-        let coarser = start.as_ref().map_or(0, |s| s.levels);
+        let coarser = start.as_ref().map_or(0, |s| s.levels_solved);
         let start_seconds = start.as_ref().map_or(0.0, |s| s.seconds);
         let solve_seconds = solved.solve_seconds + start_seconds;
         let seconds = Seconds {
@@ -318,9 +318,9 @@ impl<'a, T: Real, const D: usize> Study<'a, T, D> {
         if !self.scene.problem.is_constrained() && !solver.uses_coarse_spaces(unknowns) {
             Ok(None)
         } else if is_conforming_linear {
-            levels.start_from_coarser(level, solver, quadrature, self.repeat)
+            levels.prolonged_p1_solution(level, solver, quadrature, self.repeat)
         } else {
-            levels.contact(level, solver, quadrature, self.repeat).map(Some)
+            levels.p1_solution(level, solver, quadrature, self.repeat).map(Some)
         }
     }
 

@@ -374,7 +374,7 @@ impl<'a, const D: usize> WorkPrecision<'a, D> {
             precision: T::NAME.to_owned(),
         };
         let study = Study::<T, D>::new(scene)
-            .solver(ActiveSet { linear, ..ActiveSet::default() })
+            .solver(ActiveSet::default().linear(linear))
             .shared_scheme(scheme)
             .levels([level]);
         (Case { variant, level }, study)

@@ -10,7 +10,7 @@ use unilateral::scenes::Scene;
 use unilateral::study::Row;
 
 fn with(linear: LinearMethod) -> ActiveSet {
-    ActiveSet { linear, ..ActiveSet::default() }
+    ActiveSet::default().linear(linear)
 }
 
 fn rows<const D: usize>(

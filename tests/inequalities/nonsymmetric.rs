@@ -10,7 +10,7 @@ use unilateral::scenes::Scene;
 use unilateral::study::Row;
 
 fn solve<T: Real>(inequality: &Inequality<T>, linear: LinearMethod) -> Solution<T> {
-    ActiveSet { linear, ..ActiveSet::default() }.solve(inequality)
+    ActiveSet::default().linear(linear).solve(inequality)
 }
 
 fn inequality<T: Real, const D: usize>(
@@ -79,7 +79,7 @@ fn rows<const D: usize>(
     levels: &[usize],
     linear: LinearMethod,
 ) -> Vec<Row> {
-    let solver = ActiveSet { linear, ..ActiveSet::default() };
+    let solver = ActiveSet::default().linear(linear);
     let study = Study::<f64, D>::new(scene(1.0)).scheme(scheme).solver(solver);
     let rows = study.levels(levels.iter().copied()).run().unwrap().rows;
     for row in &rows {

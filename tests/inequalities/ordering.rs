@@ -262,7 +262,7 @@ fn the_same_solution_in_any_order() {
         let order = |points| EliminationOrder::new(matrix, &kept, points).unwrap();
         let points = points(&inequality);
         assert_ne!(order(Some(&points)).unknowns(), order(None).unknowns());
-        let solver = ActiveSet { linear: LinearMethod::Direct, ..ActiveSet::default() };
+        let solver = ActiveSet::default().linear(LinearMethod::Direct);
         let solution = solver.solve(&inequality);
         assert_eq!(solution.values, solver.solve(&inequality).values);
         let other = solver.solve(&Inequality { points: vec![], ..inequality });

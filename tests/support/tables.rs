@@ -32,8 +32,8 @@ pub fn solve_by_rule<const D: usize>(
     let quadrature = DataQuadrature { cell: degree, facet: degree };
     let solver = ActiveSet::default();
     let mut levels = Hierarchy::new(&scene.problem, &scene.domain, None);
-    levels.make(level).unwrap();
-    let start = levels.contact(level, &solver, quadrature, 1).unwrap();
+    levels.build(level).unwrap();
+    let start = levels.p1_solution(level, &solver, quadrature, 1).unwrap();
     let mesh = levels.mesh(level).unwrap().0.clone();
     let task = Task {
         problem: &scene.problem,

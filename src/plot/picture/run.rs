@@ -30,12 +30,12 @@ pub fn solve_level<T: Real, const D: usize>(
     let solver = ActiveSet::default();
     let quadrature = DataQuadrature::default();
     let mut levels = Hierarchy::new(&scene.problem, &scene.domain, None);
-    levels.make(level)?;
+    levels.build(level)?;
     let Some((mesh, _)) = levels.mesh(level) else { unreachable!("made above") };
     let start = if scheme.is_conforming_linear(mesh) {
-        levels.start_from_coarser(level, &solver, quadrature, 1)?
+        levels.prolonged_p1_solution(level, &solver, quadrature, 1)?
     } else {
-        Some(levels.contact(level, &solver, quadrature, 1)?)
+        Some(levels.p1_solution(level, &solver, quadrature, 1)?)
     };
     let Some((mesh, _)) = levels.mesh(level) else { unreachable!("made above") };
     let task = Task {

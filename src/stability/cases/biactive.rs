@@ -1,7 +1,7 @@
 //! No strict complementarity: gap and multiplier vanish together.
 
 use crate::error::Error;
-use crate::inequality::{LastResort, Outcome};
+use crate::inequality::{Globalisation, Outcome};
 use crate::scenes;
 use crate::scenes::Scene;
 use crate::stability::choice::{Choice, compared};
@@ -74,8 +74,8 @@ fn steps<const D: usize>(
 ) -> Result<(), Error> {
     let scene = make();
     let kinds = [
-        ("active-sets-tried", "active sets tried, cold", LastResort::Never, 2.0 * level as f64),
-        ("interior-point-steps", "linear systems, cold", LastResort::AtOnce, 40.0),
+        ("active-sets-tried", "active sets tried, cold", Globalisation::Never, 2.0 * level as f64),
+        ("interior-point-steps", "linear systems, cold", Globalisation::InteriorPointFirst, 40.0),
     ];
     for (criterion, quantity, resort, most) in kinds {
         let (_, found) = solved(&scene, choice, level, &solver_with(resort, 4 * level), false)?;

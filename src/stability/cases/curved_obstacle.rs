@@ -3,7 +3,7 @@
 use crate::algebra::{Contact, Inequality};
 use crate::assemble::DataQuadrature;
 use crate::error::Error;
-use crate::inequality::{InequalitySolver, LastResort, Outcome, Solution};
+use crate::inequality::{Globalisation, InequalitySolver, Outcome, Solution};
 use crate::mesh::Mesh;
 use crate::real::{Point, Real};
 use crate::scenes;
@@ -101,13 +101,13 @@ fn single(
     );
     let mut silent = 0;
     let mut outcomes = Vec::new();
-    for resort in [LastResort::Never, LastResort::WhenUnsettled] {
+    for resort in [Globalisation::Never, Globalisation::OnStagnation] {
         let (_, solved) = solved(&scene, choice, level, &solver_with(resort, MOST_SETS), true)?;
         let largest = solved.certificate.largest();
         let is_wrong = largest.is_nan() || largest > f64::CERTIFICATE_LIMIT;
         silent += usize::from(solved.outcome == Outcome::Converged && is_wrong);
         outcomes.push(format!("{} after {}", solved.outcome, solved.outer.unwrap_or(0)));
-        if resort == LastResort::Never {
+        if resort == Globalisation::Never {
             let sets = solved.outer.filter(|_| solved.outcome == Outcome::Converged);
             sink(
                 claim("iterations")

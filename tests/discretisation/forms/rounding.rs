@@ -73,7 +73,7 @@ fn solution<T: Real>(inequality: &Inequality<T>, is_old: bool) -> Solution<T> {
     if is_old {
         inequality.factored = None;
     }
-    ActiveSet { linear: LinearMethod::Direct, ..ActiveSet::default() }.solve(&inequality)
+    ActiveSet::default().linear(LinearMethod::Direct).solve(&inequality)
 }
 
 /// The largest error at nodes for `-u'' = pi^2 sin(pi x)` on `2^level` cells, over-penalty with

@@ -18,7 +18,7 @@ fn indefinite_matrix_is_not_coercive() {
         assert!(solution.values.iter().all(|u| u.is_finite()));
         // From contact everywhere nothing would be noticed without asking.
         let start = Start::Contact(vec![Contact::Lower; n * n]);
-        let careful = ActiveSet { check_definite: true, ..ActiveSet::default() };
+        let careful = ActiveSet::default().check_definite(true);
         assert_eq!(
             careful.solve(&problem.clone().with_start(start.clone())).outcome,
             Outcome::NotCoercive
@@ -115,7 +115,7 @@ fn iteration_limit_comes_with_the_best_iterate() {
     assert!(exact.outer > 5);
     let mut before = f64::INFINITY;
     for max_outer in [1, 3, 5] {
-        let solver = ActiveSet { max_outer, ..ActiveSet::default() };
+        let solver = ActiveSet::default().max_outer(max_outer);
         let solution = solver.solve(&problem);
         assert_eq!((solution.outcome, solution.outer), (Outcome::IterationLimit, max_outer));
         let error = distance(&solution.values, &exact.values);

@@ -4,7 +4,7 @@ use crate::problems::*;
 use unilateral::algebra::{Bound, Contact, Inequality, Start};
 use unilateral::assemble::{DataQuadrature, Discretisation};
 use unilateral::inequality::{
-    ActiveSet, InequalitySolver, LastResort, MonotoneMultigrid, Outcome, certify,
+    ActiveSet, Globalisation, InequalitySolver, MonotoneMultigrid, Outcome, certify,
 };
 use unilateral::linear::LinearMethod;
 use unilateral::prelude::*;
@@ -13,11 +13,10 @@ use unilateral::scheme::{Placement, SCHEMES, SchemeOptions, scheme_by_name};
 
 /// Every solver there is for symmetric matrices, by what forces it.
 fn agree(what: &str, problem: &Inequality<f64>) {
-    let direct = ActiveSet { linear: LinearMethod::Direct, ..ActiveSet::default() }.solve(problem);
-    let iterative =
-        ActiveSet { linear: LinearMethod::Iterative, ..ActiveSet::default() }.solve(problem);
-    let interior = ActiveSet { last_resort: LastResort::AtOnce, ..ActiveSet::default() };
-    let monotone = ActiveSet { last_resort: LastResort::Monotone, max_outer: 2000, ..interior };
+    let direct = ActiveSet::default().linear(LinearMethod::Direct).solve(problem);
+    let iterative = ActiveSet::default().linear(LinearMethod::Iterative).solve(problem);
+    let interior = ActiveSet::default().globalisation(Globalisation::InteriorPointFirst);
+    let monotone = interior.clone().globalisation(Globalisation::ProjectedNewton).max_outer(2000);
     let scale = 1.0 + distance(&direct.values, &vec![0.0; problem.size()]);
     let others = [
         ("direct", direct.clone()),
@@ -91,7 +90,8 @@ fn the_oracle_agrees() {
     for scene in scenes_of_all_kinds() {
         for problem in [of(&scene, &wopsip(1.0), 3), of(&scene, &Sipg::default(), 3)] {
             let expected = projected_gauss_seidel(&problem);
-            let found = ActiveSet { last_resort: LastResort::AtOnce, ..ActiveSet::default() }
+            let found = ActiveSet::default()
+                .globalisation(Globalisation::InteriorPointFirst)
                 .solve(&problem);
             let off = distance(&found.values, &expected);
             assert!(off < 1e-8, "{}: {off}", scene.name);
@@ -178,7 +178,7 @@ fn curved_obstacles_converge_on_fine_meshes() {
 /// more jumps than ways to move in every cell, and are lost to rounding at `1e8`.
 #[test]
 fn no_penalty_is_too_large() {
-    let solver = ActiveSet { last_resort: LastResort::AtOnce, ..ActiveSet::default() };
+    let solver = ActiveSet::default().globalisation(Globalisation::InteriorPointFirst);
     for name in ["wopsip", "wopsip-p2"] {
         let most = if name == "wopsip" { 1e10 } else { 1e6 };
         for eta in [1e-2, 1.0, 1e2, 1e4, 1e6, 1e8, 1e10].into_iter().filter(|&eta| eta <= most) {
@@ -210,7 +210,7 @@ fn the_monotone_method_finds_the_least_energy() {
         let load = |i: usize| 0.5 * problem.matrix.row_dot(i, u) - problem.load[i];
         (0..u.len()).map(|i| u[i] * load(i)).sum()
     };
-    let solver = ActiveSet { last_resort: LastResort::Monotone, ..ActiveSet::default() };
+    let solver = ActiveSet::default().globalisation(Globalisation::ProjectedNewton);
     let found = solver.solve(&problem);
     assert_eq!(found.outcome, Outcome::Converged);
     let least = energy(&found.values);
@@ -237,12 +237,17 @@ fn what_has_no_solution_is_named() {
         inequality(sparse(&[vec![1.0, -1.0], vec![-1.0, 1.0]]), &[1.0, 1.0], vec![Bound::Free; 2]);
     let mut malformed = good.clone();
     malformed.bounds.pop();
-    let resorts = [LastResort::WhenUnsettled, LastResort::AtOnce, LastResort::Monotone];
+    let resorts = [
+        Globalisation::OnStagnation,
+        Globalisation::InteriorPointFirst,
+        Globalisation::ProjectedNewton,
+    ];
     let mut solvers: Vec<Box<dyn InequalitySolver<f64>>> =
         vec![Box::new(MonotoneMultigrid::default())];
     for linear in [LinearMethod::Direct, LinearMethod::Iterative] {
-        for last_resort in resorts {
-            solvers.push(Box::new(ActiveSet { linear, last_resort, ..ActiveSet::default() }));
+        for globalisation in resorts {
+            solvers
+                .push(Box::new(ActiveSet::default().linear(linear).globalisation(globalisation)));
         }
     }
     for (k, solver) in solvers.iter().enumerate() {

@@ -7,7 +7,7 @@ mod reach;
 use crate::problems::*;
 use unilateral::algebra::{Bound, Contact, Inequality, Start};
 use unilateral::inequality::{
-    ActiveSet, InequalitySolver, LastResort, Outcome, Solution, active, certify,
+    ActiveSet, Globalisation, InequalitySolver, Outcome, Solution, certify, count_active,
 };
 use unilateral::linear::Factors;
 use unilateral::real::Real;
@@ -18,8 +18,7 @@ fn cold<T: Real>(inequality: &Inequality<T>) -> Solution<T> {
 
 /// The textbook method, which only notices that it runs in circles.
 fn without_resort() -> ActiveSet {
-    let last_resort = LastResort::Never;
-    ActiveSet { max_condensations: 0, last_resort, ..ActiveSet::default() }
+    ActiveSet::default().max_condensations(0).globalisation(Globalisation::Never)
 }
 
 /// Solves from everywhere, asserts convergence and certificate, and the same solution each time.
@@ -64,7 +63,7 @@ fn string_over_obstacle_agrees_with_oracle() {
     let problem = inequality(laplacian(n, 1, 2.0), &vec![-0.5 * h * h; n], bounds);
     let solution = solve_from_everywhere(&problem);
     assert!(distance(&solution.values, &projected_gauss_seidel(&problem)) < 1e-11);
-    let contact = active(&problem, &solution.contact);
+    let contact = count_active(&problem, &solution.contact);
     assert!(contact > 5 && contact < n);
 }
 
@@ -201,19 +200,19 @@ fn biactive_contact_does_not_cycle() {
 fn contact_everywhere() {
     let problem = membrane::<f64>(12, 1.0, |_, _| 0.5);
     let solution = solve_from_everywhere(&problem);
-    assert_eq!(active(&problem, &solution.contact), 12 * 12);
+    assert_eq!(count_active(&problem, &solution.contact), 12 * 12);
     assert!(solution.values.iter().all(|&u| u == 0.5));
     let mut pinned = problem.clone();
     pinned.bounds = vec![Bound::Fixed(2.0); 12 * 12];
     let solution = solve_from_everywhere(&pinned);
-    assert_eq!((active(&pinned, &solution.contact), solution.outer), (0, 1));
+    assert_eq!((count_active(&pinned, &solution.contact), solution.outer), (0, 1));
 }
 
 #[test]
 fn contact_nowhere() {
     let mut problem = membrane::<f64>(12, 1.0, |_, _| -9.0);
     let solution = solve_from_everywhere(&problem);
-    assert_eq!((active(&problem, &solution.contact), cold(&problem).outer), (0, 1));
+    assert_eq!((count_active(&problem, &solution.contact), cold(&problem).outer), (0, 1));
     problem.bounds = vec![Bound::Free; 12 * 12];
     assert_eq!(cold(&problem).values, solution.values);
     assert_eq!(cold(&problem).outer, 1);
@@ -232,7 +231,7 @@ fn bounds_that_coincide_cost_no_iterations() {
         problem.bounds[k] = Bound::Both(0.25, 0.25);
     }
     let solution = solve_from_everywhere(&problem);
-    assert_eq!((active(&problem, &solution.contact), solution.outer), (3, 1));
+    assert_eq!((count_active(&problem, &solution.contact), solution.outer), (3, 1));
     assert_eq!(solution.values[50], 0.25);
 }
 
@@ -258,7 +257,7 @@ fn body_held_by_the_obstacle_alone() {
     problem.load = vec![1.0; n];
     let outcome = cold(&problem).outcome;
     assert!(matches!(outcome, Outcome::Singular | Outcome::NotCoercive), "{outcome}");
-    let careful = ActiveSet { check_definite: true, ..ActiveSet::default() };
+    let careful = ActiveSet::default().check_definite(true);
     assert_eq!(careful.solve(&problem).outcome, Outcome::NotCoercive);
 }
 
@@ -292,7 +291,7 @@ fn refinement_gives_single_precision_its_digits() {
     let exact = cold(&membrane::<f64>(100, 5.0, |_, _| -0.1));
     let start = Start::Contact(exact.contact);
     let error = |refinements: usize| {
-        let solver = ActiveSet { refinements, ..ActiveSet::default() };
+        let solver = ActiveSet::default().refinements(refinements);
         let solution = solver.solve(&problem.clone().with_start(start.clone()));
         assert_eq!(solution.outcome, Outcome::Converged);
         distance(&solution.values, &exact.values)

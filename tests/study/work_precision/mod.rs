@@ -160,10 +160,10 @@ fn a_tiny_study_measures_every_variant_alike() {
     }
     let alone = Study::<f64, 2>::new(scenes::radial(1.0))
         .scheme(ConformingP1)
-        .solver(unilateral::inequality::ActiveSet {
-            linear: unilateral::linear::LinearMethod::Direct,
-            ..Default::default()
-        })
+        .solver(
+            unilateral::inequality::ActiveSet::default()
+                .linear(unilateral::linear::LinearMethod::Direct),
+        )
         .levels([4, 8])
         .run()
         .unwrap();

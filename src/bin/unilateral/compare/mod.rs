@@ -165,7 +165,7 @@ fn prepare<'a, T: Real, const D: usize>(
         None => LinearMethod::BySize,
     };
     let mut study = Study::<T, D>::new(scene)
-        .solver(ActiveSet { linear, ..ActiveSet::default() })
+        .solver(ActiveSet::default().linear(linear))
         .levels(levels)
         .repeat(options.repeat)
         .fields_to(&options.out)

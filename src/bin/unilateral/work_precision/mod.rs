@@ -193,7 +193,7 @@ fn once<T: Real, const D: usize>(options: &Options, scene: Scene<D>) -> Request<
     let linear = options.linear().first().copied().unwrap_or(LinearMethod::BySize);
     let mut study = Study::<T, D>::new(scene)
         .levels(options.levels(D))
-        .solver(ActiveSet { linear, ..ActiveSet::default() });
+        .solver(ActiveSet::default().linear(linear));
     for (name, scheme_options) in options.schemes() {
         let scheme = scheme_by_name(&name, &scheme_options);
         study = study.boxed_scheme(scheme.ok_or_else(|| format!("there is no scheme {name}"))?);

@@ -46,8 +46,8 @@ fn h1_as_tables<S: Scheme<f64, 2, Element = P2>>(
 ) -> f64 {
     let (solver, quadrature) = (ActiveSet::default(), DataQuadrature::default());
     let mut levels = Hierarchy::new(&scene.problem, &scene.domain, None);
-    levels.make(level).unwrap();
-    let start = levels.contact(level, &solver, quadrature, 1).unwrap().contact.clone();
+    levels.build(level).unwrap();
+    let start = levels.p1_solution(level, &solver, quadrature, 1).unwrap().contact.clone();
     let mesh = levels.mesh(level).unwrap().0;
     let space = Discretisation::new(scheme, &scene.problem, mesh, quadrature).unwrap();
     let mut inequality = space.inequality().unwrap();

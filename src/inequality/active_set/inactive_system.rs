@@ -1,0 +1,202 @@
+//! The linear system of an active set, `A_II u_I = b_I - A_IP u_P` on the inactive unknowns, solved with
+//! factors.
+
+use super::contact_state::prescribed_value;
+use crate::algebra::{Contact, Inequality, PenalisedMatrix};
+use crate::linear::direct::elimination::EliminationOrder;
+use crate::linear::direct::factors::{FactorError, Factors};
+use crate::linear::direct::static_condensation::{CondensedFactors, StaticCondensation};
+use crate::real::Real;
+
+/// Largest number of corrections of values and jump multipliers.
+const MAX_CORRECTIONS: usize = 12;
+
+/// Units of rounding below which a correction is the last one.
+const CORRECTION_UNITS: f64 = 16.0;
+
+/// The linear systems of an inequality for all active sets.
+pub(crate) struct InactiveSystem<'a, T> {
+    inequality: &'a Inequality<T>,
+    /// The inactive unknowns, ascending, and their last correction.
+    inactive: Vec<u32>,
+    correction: Vec<T>,
+    /// The static condensation of the penalised matrix, if the matrix is penalised.
+    condensation: Option<StaticCondensation<'a, T>>,
+    /// The elimination order, which is the same for all active sets.
+    elimination_order: Option<EliminationOrder>,
+}
+
+/// The unknowns of a linear system, and its residual.
+pub(crate) struct LinearUnknowns<'v, T> {
+    pub values: &'v mut [T],
+    /// The jump multipliers where the matrix is penalised; else empty.
+    pub jump_multipliers: &'v mut [T],
+    /// `b - A u`.
+    pub residual: &'v mut [f64],
+}
+
+/// The sizes of a correction of values and jump multipliers.
+struct CorrectionSize {
+    /// The energy of the correction.
+    work: f64,
+    /// Largest change of a value, and largest value after it.
+    change: f64,
+    value: f64,
+    /// Energy after the correction, and `sum K_ii u_i^2`.
+    energy: f64,
+    diagonal_energy: f64,
+}
+
+impl<'a, T: Real> InactiveSystem<'a, T> {
+    /// The systems of an inequality, which may be malformed as long as none is solved.
+    pub fn new(inequality: &'a Inequality<T>) -> Self {
+        let factored = inequality.factored.as_ref().filter(|_| inequality.is_well_formed());
+        let condensation = factored.map(|factored| {
+            StaticCondensation::new(factored).at(inequality.points_of_unknowns().as_deref())
+        });
+        Self {
+            inequality,
+            inactive: Vec::new(),
+            correction: Vec::new(),
+            condensation,
+            elimination_order: None,
+        }
+    }
+
+    /// The number of jump multipliers.
+    pub fn n_jumps(&self) -> usize {
+        let factored = self.inequality.factored.as_ref().filter(|_| self.condensation.is_some());
+        factored.map_or(0, |factored| factored.n_jumps())
+    }
+
+    /// The static condensation, if the matrix is penalised.
+    pub fn condensation(&self) -> Option<&StaticCondensation<'a, T>> {
+        self.condensation.as_ref()
+    }
+
+    /// Corrects the values of all inactive unknowns by the solution for the residual, and `refinements`
+    /// times more. Prescribed values are those of `unknowns`.
+    pub fn solve(
+        &mut self,
+        states: &[Contact],
+        mut unknowns: LinearUnknowns<'_, T>,
+        refinements: usize,
+    ) -> Result<(), FactorError> {
+        let Inequality { matrix, load, bounds, factored, .. } = self.inequality;
+        self.inactive.clear();
+        let all = bounds.iter().zip(states).enumerate();
+        let inactive = all.filter(|(_, (bound, state))| prescribed_value(bound, **state).is_none());
+        self.inactive.extend(inactive.map(|(i, _)| i as u32));
+        if let (Some(condensation), Some(factored)) = (&self.condensation, factored) {
+            let mut is_inactive = vec![false; unknowns.values.len()];
+            self.inactive.iter().for_each(|&i| is_inactive[i as usize] = true);
+            let factors = condensation.factor(&is_inactive)?;
+            let system = PenalisedSystem { factored, condensation, factors, is_inactive };
+            return system.solve(&mut unknowns, refinements);
+        }
+        let factors = self.factor()?;
+        let LinearUnknowns { values, residual, .. } = unknowns;
+        for _ in 0..=refinements {
+            matrix.residual_f64(load, values, residual);
+            self.correction.clear();
+            self.correction.extend(self.inactive.iter().map(|&i| T::lit(residual[i as usize])));
+            factors.solve_in_place(&mut self.correction, 1);
+            for (&i, &correction) in self.inactive.iter().zip(&self.correction) {
+                values[i as usize] += correction;
+            }
+        }
+        matrix.residual_f64(load, values, residual);
+        Ok(())
+    }
+
+    /// Factors of `A_II`.
+    fn factor(&mut self) -> Result<Factors<T>, FactorError> {
+        let Inequality { matrix, symmetric, .. } = self.inequality;
+        if !*symmetric {
+            return Factors::new(matrix, false, &self.inactive);
+        }
+        let order = match self.elimination_order.take() {
+            Some(order) => order,
+            None => EliminationOrder::of(self.inequality)?,
+        };
+        let order = self.elimination_order.insert(order);
+        Factors::in_order(matrix, &self.inactive, order)
+    }
+}
+
+/// The system `K u + M^T p = c`, `M u - p / s = g` of a penalised matrix, for values `u` of the inactive
+/// unknowns and jump multipliers `p`.
+struct PenalisedSystem<'s, 'a, T> {
+    factored: &'a PenalisedMatrix<T>,
+    condensation: &'s StaticCondensation<'a, T>,
+    factors: CondensedFactors<T>,
+    is_inactive: Vec<bool>,
+}
+
+impl<T: Real> PenalisedSystem<'_, '_, T> {
+    /// Corrects values and jump multipliers together until the corrections no longer halve. The matrix
+    /// is singular in the scalar's precision if the last correction is not small in energy.
+    fn solve(
+        &self,
+        unknowns: &mut LinearUnknowns<'_, T>,
+        refinements: usize,
+    ) -> Result<(), FactorError> {
+        let mut mismatch = vec![0.0; unknowns.jump_multipliers.len()];
+        let mut least = f64::INFINITY;
+        let mut is_singular = false;
+        let floor = (CORRECTION_UNITS * T::EPSILON).powi(2);
+        for correction in 0..MAX_CORRECTIONS {
+            let size = self.correct(unknowns, &mut mismatch);
+            let is_small = size.change <= CORRECTION_UNITS * T::EPSILON * size.value;
+            // A quarter of the digits in the energy norm: single unknowns of thin cells may have fewer.
+            // The floor is for constants, whose energy is zero.
+            let tolerance = T::EPSILON.sqrt() * size.energy + floor * size.diagonal_energy;
+            is_singular = size.work.abs() > tolerance;
+            // false for numbers that are not finite
+            let halves = size.change <= 0.5 * least && !is_small;
+            if correction >= refinements && !halves {
+                break;
+            }
+            least = size.change;
+        }
+        self.compute_residual(unknowns);
+        if is_singular { Err(FactorError::Singular) } else { Ok(()) }
+    }
+
+    /// One correction by the solution for the residuals of both equations, the second of which is
+    /// computed in `mismatch`.
+    fn correct(
+        &self,
+        unknowns: &mut LinearUnknowns<'_, T>,
+        mismatch: &mut [f64],
+    ) -> CorrectionSize {
+        let factored = self.factored;
+        for (jump, out) in mismatch.iter_mut().enumerate() {
+            let multiplier = unknowns.jump_multipliers[jump].to_f64();
+            *out = factored.mismatch(jump, |i| unknowns.values[i].to_f64(), multiplier);
+        }
+        self.compute_residual(unknowns);
+        let LinearUnknowns { values, jump_multipliers, residual } = unknowns;
+        let work = self.condensation.solve(&self.factors, &self.is_inactive, residual, mismatch);
+        let (mut change, mut value, mut diagonal_energy) = (0.0_f64, 0.0_f64, 0.0);
+        for (i, (x, correction)) in values.iter_mut().zip(residual.iter()).enumerate() {
+            *x += T::lit(*correction);
+            change = change.max(correction.abs());
+            value = value.max(x.to_f64().abs());
+            diagonal_energy += factored.diagonal(i) * x.to_f64().powi(2);
+        }
+        for (multiplier, correction) in jump_multipliers.iter_mut().zip(mismatch) {
+            *multiplier += T::lit(*correction);
+        }
+        let multiplier = |jump: usize| jump_multipliers[jump].to_f64();
+        let energy = factored.energy(|i| values[i].to_f64(), multiplier);
+        CorrectionSize { work, change, value, energy, diagonal_energy }
+    }
+
+    /// Computes `c - K u - M^T p`.
+    fn compute_residual(&self, unknowns: &mut LinearUnknowns<'_, T>) {
+        let LinearUnknowns { values, jump_multipliers, residual } = unknowns;
+        let multiplier = |jump: usize| jump_multipliers[jump].to_f64();
+        self.factored.residual_with_forces(|i| values[i].to_f64(), multiplier, residual);
+    }
+}

@@ -1,0 +1,216 @@
+//! The driver of the active set method with inexact linear solutions, without factors of the matrix.
+
+use super::inexact_iterate::{InexactIterate, MAX_ITERATIONS};
+use super::kkt_evaluation::KktEvaluation;
+use super::progress::ProgressMonitor;
+use super::{ActiveSet, Globalisation};
+use crate::algebra::{Bound, Contact, Inequality, Start};
+use crate::inequality::initial_guess::InitialGuess;
+use crate::inequality::validation::check_definite;
+use crate::inequality::{Outcome, Solution};
+use crate::linear::CoarseSpaces;
+use crate::linear::direct::factors::FactorError;
+use crate::linear::krylov::conjugate_gradients::Stop;
+use crate::linear::krylov::{Krylov, symmetric_part};
+use crate::linear::precondition::choice::Preconditioners;
+use crate::real::Real;
+
+/// The cost of a step with factors in inexact steps.
+const DIRECT_STEP_COST: usize = 4;
+
+/// A run of the inexact active set method.
+pub(crate) struct InexactDriver<'a, T> {
+    settings: &'a ActiveSet,
+    guess: &'a InitialGuess<T>,
+    iterate: InexactIterate<'a, T>,
+    has_stagnated: bool,
+}
+
+/// The iterations of a run without result, after which another method follows.
+#[derive(Default)]
+pub(crate) struct Failure {
+    pub outer: usize,
+    pub linear: usize,
+    /// The last contact states if the active set stagnated; `None` if linear systems were the reason.
+    pub last_active_set: Option<Vec<Contact>>,
+}
+
+/// How a run ends: an outcome, or `None` if the method does not apply and another one follows.
+type End = Option<Outcome>;
+
+impl<'a, T: Real> InexactDriver<'a, T> {
+    /// A run from the contact states of the inequality's start and the values of the guess.
+    pub fn new(
+        settings: &'a ActiveSet,
+        inequality: &'a Inequality<T>,
+        guess: &'a InitialGuess<T>,
+    ) -> Self {
+        let iterate = InexactIterate::new(inequality, guess);
+        Self { settings, guess, iterate, has_stagnated: false }
+    }
+
+    /// Chooses the preconditioner, finds the active set, and bounds the error of the solution.
+    pub fn run(mut self) -> Result<Solution<T>, Failure> {
+        let inequality = self.iterate.inequality;
+        let is_symmetric = inequality.symmetric;
+        let matrix = symmetric_part(inequality);
+        let known = &self.guess.coarse_spaces;
+        let Some(spaces) = Preconditioners::functions(&matrix, inequality, known) else {
+            return Err(self.into_failure());
+        };
+        let preconditioner =
+            Preconditioners::new(&matrix, &inequality.supports, &spaces, is_symmetric);
+        let Some(mut preconditioner) = preconditioner else {
+            return Err(self.into_failure());
+        };
+        let found = self.find_active_set(&mut preconditioner);
+        let mut end = found.map_or_else(|end| end, |()| Some(Outcome::Converged));
+        if end == Some(Outcome::Converged) && !is_symmetric {
+            end = self.iterate.estimate_lowest_eigenvalue(&matrix, &mut preconditioner);
+        }
+        if end == Some(Outcome::NotCoercive) && !is_symmetric {
+            // Rounding may be the reason. The direct method would not detect an indefinite symmetric
+            // part of this matrix.
+            end = check_definite(inequality).err();
+        }
+        match end {
+            Some(outcome) => Ok(self.into_solution(outcome, &mut preconditioner)),
+            None => Err(self.into_failure()),
+        }
+    }
+
+    /// The active set iteration. `Ok` if it converged, else how it ends.
+    fn find_active_set(&mut self, preconditioner: &mut Preconditioners<'_, T>) -> Result<(), End> {
+        let Self { settings, guess, .. } = *self;
+        let tolerance = guess.energy_tolerance.unwrap_or(0.0).max(0.1 * T::CERTIFICATE_LIMIT);
+        // a residual is no measure of the energy error: a start for another solve need not have a
+        // small one
+        let residual_limit =
+            if guess.energy_tolerance.is_some() { f64::INFINITY } else { T::CERTIFICATE_LIMIT };
+        let mut krylov = Krylov::new(self.iterate.inequality);
+        self.iterate.energy = self.iterate.evaluate_kkt(settings.rounding_band).energy;
+        let is_linear = !self.iterate.inequality.bounds.iter().any(Bound::is_inequality);
+        let mut progress = ProgressMonitor::new(is_linear);
+        loop {
+            if progress.active_set_changed {
+                self.begin_step(preconditioner)?;
+            }
+            let stop = Stop {
+                norm: tolerance * self.iterate.energy,
+                share: if progress.is_accurate() { 0.0 } else { preconditioner.share() },
+                iterations: MAX_ITERATIONS,
+            };
+            let evaluation = self.solve_and_evaluate(&mut krylov, preconditioner, stop)?;
+            let energy = evaluation.energy;
+            let is_accurate =
+                self.iterate.residual_norm <= stop.norm.min(1.01 * tolerance * energy);
+            let changes = &evaluation.state_changes;
+            if is_accurate && (changes.is_empty() || evaluation.holds_to(tolerance)) {
+                if evaluation.inactive_residual <= residual_limit * energy {
+                    return Ok(());
+                }
+                self.repeat_after_rounding(&mut progress)?;
+            }
+            self.check_stagnation(&mut progress, changes.len())?;
+            let has_returned = self.iterate.record(changes);
+            if !progress.improves(&evaluation, has_returned, settings.improvement_steps) {
+                return Err(None);
+            }
+            self.iterate.change_states(changes);
+        }
+    }
+
+    /// Counts a step and restricts the preconditioner to the inactive unknowns.
+    fn begin_step(&mut self, preconditioner: &mut Preconditioners<'_, T>) -> Result<(), End> {
+        if self.iterate.outer >= self.settings.max_outer {
+            return Err(Some(Outcome::IterationLimit));
+        }
+        self.iterate.outer += 1;
+        let is_symmetric = self.iterate.inequality.symmetric;
+        preconditioner.fix(&self.iterate.eliminated).map_err(|error| match error {
+            FactorError::OutOfMemory => Some(Outcome::OutOfMemory),
+            FactorError::NotPositive if !is_symmetric => Some(Outcome::NotCoercive),
+            // factors of the whole matrix give the reason
+            _ => None,
+        })
+    }
+
+    /// Solves the linear system of a step and evaluates the KKT conditions.
+    fn solve_and_evaluate(
+        &mut self,
+        krylov: &mut Krylov<'_, T>,
+        preconditioner: &mut Preconditioners<'_, T>,
+        stop: Stop,
+    ) -> Result<KktEvaluation, End> {
+        let run = self.iterate.solve_linear(krylov, preconditioner, stop);
+        match self.iterate.outcome_of(&run) {
+            Some(Outcome::Converged) => {}
+            end => return Err(end),
+        }
+        let evaluation = self.iterate.evaluate_kkt(self.settings.rounding_band);
+        if !(evaluation.energy.is_finite() && evaluation.displacement.is_finite()) {
+            return Err(Some(Outcome::NotFinite));
+        }
+        self.iterate.energy = evaluation.energy;
+        self.iterate.residual_norm = run.last;
+        Ok(evaluation)
+    }
+
+    /// Permits another solution where rounding has made the recursive residual of the Krylov method
+    /// smaller than the true one. If that happens too often the run ends; the direct method follows for
+    /// penalised matrices, since jump multipliers as unknowns reduce rounding.
+    fn repeat_after_rounding(&self, progress: &mut ProgressMonitor) -> Result<(), End> {
+        if progress.may_repeat() {
+            return Ok(());
+        }
+        let is_penalised = self.iterate.inequality.factored.is_some();
+        Err(if is_penalised { None } else { Some(Outcome::Stalled) })
+    }
+
+    /// Ends the run if the number of state changes does not halve. From a cold start it need not: the
+    /// active set then grows layer by layer, in many steps that are cheap.
+    fn check_stagnation(
+        &mut self,
+        progress: &mut ProgressMonitor,
+        changes: usize,
+    ) -> Result<(), End> {
+        if self.settings.globalisation == Globalisation::OnStagnation
+            && self.iterate.inequality.start != Start::Cold
+            && progress.stagnates(changes, self.stagnation_steps())
+        {
+            self.has_stagnated = true;
+            return Err(None);
+        }
+        Ok(())
+    }
+
+    /// The number of inexact steps within which the number of state changes must halve:
+    /// [`ActiveSet::stagnation_steps`], times [`DIRECT_STEP_COST`] unless the fallback is cheap, namely
+    /// multigrid or static condensation, which halves the unknowns.
+    fn stagnation_steps(&self) -> usize {
+        let is_nested = matches!(self.guess.coarse_spaces, CoarseSpaces::CoarseLevel(_));
+        let is_cheap = is_nested || self.iterate.inequality.factored.is_some();
+        self.settings.stagnation_steps * if is_cheap { 1 } else { DIRECT_STEP_COST }
+    }
+
+    /// The solution, with a bound on its error in the energy norm if it converged.
+    fn into_solution(
+        mut self,
+        outcome: Outcome,
+        preconditioner: &mut Preconditioners<'_, T>,
+    ) -> Solution<T> {
+        let is_converged = outcome == Outcome::Converged;
+        let bound = is_converged.then(|| self.iterate.error_bound(preconditioner)).flatten();
+        let InexactIterate { values, states, outer, linear, .. } = self.iterate;
+        Solution::new(values, states, outcome)
+            .iterations(outer, linear)
+            .linear_solver(preconditioner.name())
+            .algebraic_bound(bound)
+    }
+
+    /// The record of a run without result.
+    fn into_failure(self) -> Failure {
+        let InexactIterate { states, outer, linear, .. } = self.iterate;
+        Failure { outer, linear, last_active_set: self.has_stagnated.then_some(states) }
+    }
+}

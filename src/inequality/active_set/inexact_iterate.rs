@@ -1,0 +1,195 @@
+//! The iterate of the inexact active set method: values, contact states, residual.
+
+use super::contact_state::{prescribed_value, starting_states};
+use super::state_history::{fingerprint, state_key};
+use crate::algebra::{Contact, Inequality};
+use crate::inequality::Outcome;
+use crate::inequality::initial_guess::InitialGuess;
+use crate::linear::krylov::Krylov;
+use crate::linear::krylov::conjugate_gradients::{End, Preconditioner, Run, Stop};
+use crate::parallel::vectors::{each_mut, zeros};
+use crate::real::Real;
+
+/// Condition number of the preconditioned matrix above which the preconditioner counts as unsuitable:
+/// the preconditioned norm of a residual is then no measure of the error, and factors are better.
+const MAX_CONDITION: f64 = 1e4;
+
+/// Largest number of iterations for one linear system.
+pub(crate) const MAX_ITERATIONS: usize = 500;
+
+/// The values and contact states of a step.
+pub(crate) struct InexactIterate<'a, T> {
+    pub inequality: &'a Inequality<T>,
+    pub values: Vec<T>,
+    pub states: Vec<Contact>,
+    /// Whether an unknown is eliminated from the linear system: fixed or active.
+    pub eliminated: Vec<bool>,
+    pub diagonal: Vec<T>,
+    /// `b - A u`; zero on eliminated unknowns while a linear system is solved.
+    pub residual: Vec<T>,
+    fingerprint: u128,
+    seen: Vec<u128>,
+    /// Number of linear systems with a new active set, and of iterations of the linear solver.
+    pub outer: usize,
+    pub linear: usize,
+    /// Smallest Ritz value so far.
+    pub lowest_ritz_value: f64,
+    /// Energy norm of the iterate.
+    pub energy: f64,
+    /// Preconditioned norm of the residual after the last linear system.
+    pub residual_norm: f64,
+}
+
+impl<'a, T: Real> InexactIterate<'a, T> {
+    /// The values of the guess projected onto the bounds, with the contact states of the inequality's
+    /// start.
+    pub fn new(inequality: &'a Inequality<T>, guess: &InitialGuess<T>) -> Self {
+        let Inequality { bounds, matrix, start, .. } = inequality;
+        let n = inequality.size();
+        let states = starting_states(bounds, start);
+        let guess = guess.values.as_deref().filter(|values| values.len() == n);
+        let values =
+            (0..n).map(|i| bounds[i].nearest(guess.map_or(T::lit(0.0), |v| v[i]))).collect();
+        let fingerprint = fingerprint(&states);
+        let mut iterate = Self {
+            inequality,
+            values,
+            states,
+            eliminated: vec![false; n],
+            diagonal: matrix.diagonal(),
+            residual: zeros(n),
+            fingerprint,
+            seen: vec![fingerprint],
+            outer: 0,
+            linear: 0,
+            lowest_ritz_value: 1.0,
+            energy: 1.0,
+            residual_norm: f64::INFINITY,
+        };
+        iterate.set_prescribed_values();
+        iterate
+    }
+
+    /// Sets every fixed or active unknown to its prescribed value and marks it as eliminated.
+    fn set_prescribed_values(&mut self) {
+        for (i, bound) in self.inequality.bounds.iter().enumerate() {
+            let prescribed = prescribed_value(bound, self.states[i]);
+            self.eliminated[i] = prescribed.is_some();
+            if let Some(value) = prescribed {
+                self.values[i] = value;
+            }
+        }
+    }
+
+    /// Corrects the values by one linear system on the inactive unknowns.
+    pub fn solve_linear(
+        &mut self,
+        krylov: &mut Krylov<'_, T>,
+        preconditioner: &mut dyn Preconditioner<T>,
+        stop: Stop,
+    ) -> Run {
+        let eliminated = &self.eliminated;
+        each_mut(&mut self.residual, |range, r| {
+            for (r, &eliminated) in r.iter_mut().zip(&eliminated[range]) {
+                if eliminated {
+                    *r = T::lit(0.0);
+                }
+            }
+        });
+        let iterate = (&mut self.values[..], &mut self.residual[..]);
+        let run = krylov.solve(&self.eliminated, preconditioner, iterate, stop);
+        self.linear += run.iterations;
+        run
+    }
+
+    /// The outcome of a linear system, which updates the smallest Ritz value; `None` if the
+    /// preconditioner is unsuitable or the iterations did not suffice.
+    pub fn outcome_of(&mut self, run: &Run) -> Option<Outcome> {
+        let is_symmetric = self.inequality.symmetric;
+        let (low, high) = run.ritz.unwrap_or((1.0, 1.0));
+        self.lowest_ritz_value = self.lowest_ritz_value.min(low);
+        match run.end {
+            // the driver confirms by factors
+            End::NotPositive if !is_symmetric => Some(Outcome::NotCoercive),
+            _ if high > MAX_CONDITION * low => None,
+            End::Reached => Some(Outcome::Converged),
+            End::NotPositive => Some(Outcome::NotCoercive),
+            End::NotFinite => Some(Outcome::NotFinite),
+            End::Limit => None,
+        }
+    }
+
+    /// Records the active set after given state changes; true if it has occurred before.
+    pub fn record(&mut self, changes: &[(u32, Contact)]) -> bool {
+        if changes.is_empty() {
+            return false;
+        }
+        for &(i, contact) in changes {
+            let before = self.states[i as usize];
+            self.fingerprint = self
+                .fingerprint
+                .wrapping_sub(state_key(i as usize, before))
+                .wrapping_add(state_key(i as usize, contact));
+        }
+        let has_returned = self.seen.contains(&self.fingerprint);
+        self.seen.push(self.fingerprint);
+        has_returned
+    }
+
+    /// Changes contact states, sets the values that they prescribe and updates the residual.
+    pub fn change_states(&mut self, changes: &[(u32, Contact)]) {
+        let is_symmetric = self.inequality.symmetric;
+        for &(i, contact) in changes {
+            let i = i as usize;
+            self.states[i] = contact;
+            let prescribed = prescribed_value(&self.inequality.bounds[i], contact);
+            self.eliminated[i] = prescribed.is_some();
+            if let Some(value) = prescribed {
+                let change = value - self.values[i];
+                self.values[i] = value;
+                // the column is the row if the matrix is symmetric
+                if !is_symmetric {
+                    continue;
+                }
+                let (columns, entries) = self.inequality.matrix.row(i);
+                for (&j, &a) in columns.iter().zip(entries) {
+                    self.residual[j as usize] -= a * change;
+                }
+            }
+        }
+        if !is_symmetric {
+            self.recompute_residual();
+        }
+    }
+
+    /// Recomputes the residual from the values.
+    pub fn recompute_residual(&mut self) {
+        let penalised = self.penalised_residual();
+        let residual_at = residual_at(self.inequality, &self.values, penalised.as_deref());
+        each_mut(&mut self.residual, |range, r| {
+            range.zip(r).for_each(|(i, r)| *r = T::lit(residual_at(i)));
+        });
+    }
+
+    /// The residual `c - K u - M^T S (M u - g)` of a penalised matrix, which has less rounding than that
+    /// of the assembled one; `None` if the matrix is not penalised.
+    pub fn penalised_residual(&self) -> Option<Vec<f64>> {
+        let factored = self.inequality.factored.as_ref()?;
+        let mut residual = vec![0.0; self.values.len()];
+        factored.residual(|i| self.values[i].to_f64(), &mut residual);
+        Some(residual)
+    }
+}
+
+/// The entries of the residual in `f64`: those of the penalised matrix if given, else `b - A u`.
+pub(crate) fn residual_at<'v, T: Real>(
+    inequality: &'v Inequality<T>,
+    values: &'v [T],
+    penalised: Option<&'v [f64]>,
+) -> impl Fn(usize) -> f64 + Sync + 'v {
+    let Inequality { matrix, load, .. } = inequality;
+    move |i| match penalised {
+        Some(residual) => residual[i],
+        None => load[i].to_f64() - matrix.row_dot_f64(i, values),
+    }
+}

@@ -1,0 +1,167 @@
+//! The settings of the active set method.
+
+use crate::linear::LinearMethod;
+
+/// The primal-dual active set method, which is a semismooth Newton method (Hintermueller, Ito,
+/// Kunisch, SIAM J. Optim. 13 (2002) 865-888).
+///
+/// Every step sets the active unknowns to their bounds and the fixed ones to their Dirichlet values,
+/// solves the linear system on the inactive unknowns, and predicts a new active set: an active unknown
+/// whose multiplier has the wrong sign becomes inactive, an inactive unknown that violates a bound
+/// becomes active. For M-matrices the method ends in the solution after finitely many steps. For other
+/// matrices it may cycle or stagnate:
+///
+/// * An active set that returns, or `improvement_steps` steps without a better iterate, lead to
+///   condensation: the problem on all unknowns that changed state within the cycle is a small dense
+///   complementarity problem, which is solved exactly.
+/// * If the number of state changes has not halved within `stagnation_steps` steps, or condensation
+///   does not apply, the [`Globalisation`] provides a new start or a method that descends.
+/// * If nothing is left, the outcome is [`Outcome::Cycling`](super::super::Outcome::Cycling).
+///
+/// No difference within rounding changes a state, since ties would cycle. Two tolerances decide, both
+/// in units of `rounding_band` times the scalar's epsilon:
+///
+/// * A bound is violated beyond the unit times the largest displacement. An unknown wrongly left
+///   inactive changes the solution by its violation at most, so that a global scale is safe.
+/// * A multiplier has the wrong sign beyond the unit times the sum of the absolute terms of its residual
+///   (for terms of fixed and active unknowns the epsilon is that of `f64`). Multipliers shrink like the
+///   volume of a patch and there are many of them, so that a global scale would hide all of them on
+///   fine meshes.
+///
+/// Each condensation widens the band fourfold, to 64 times itself at most; the part beyond the first
+/// band is measured on the global scale for multipliers too.
+///
+/// A cold start begins with the solution without inequalities. If the matrix is singular on the free
+/// unknowns, because only the bounds prevent a rigid motion, it begins with every bound active.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct ActiveSet {
+    /// Largest number of linear systems with a new active set.
+    pub max_outer: usize,
+    /// Units of rounding within which no unknown changes its state.
+    pub rounding_band: f64,
+    /// Corrections of each linear solution by its residual in `f64`. Every step corrects the iterate
+    /// before it anyway; one more matters where a single step suffices (a warm start), in `f32` by
+    /// two digits and more.
+    pub refinements: usize,
+    /// Linear systems within which the number of state changes must halve; otherwise the active set
+    /// stagnates and the interior point method provides a new start.
+    pub stagnation_steps: usize,
+    /// Linear systems within which the best iterate must improve; otherwise the unknowns that changed
+    /// state in these steps are condensed.
+    pub improvement_steps: usize,
+    /// Largest number of condensed problems.
+    pub max_condensations: usize,
+    /// Largest number of unknowns of a condensed problem, whose matrix is dense.
+    pub max_condensed: usize,
+    /// The method that takes over from an active set that stagnates or cycles.
+    pub globalisation: Globalisation,
+    /// Whether to check first that the matrix is positive definite on all unknowns that are not fixed,
+    /// its symmetric part if it is not symmetric. The size of an error does not reveal a loss of
+    /// coercivity. Free of cost for a cold start with a symmetric matrix.
+    pub check_definite: bool,
+    /// The method for the linear systems.
+    pub linear: LinearMethod,
+}
+
+/// The method that finds the solution where the active set stagnates or cycles.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Globalisation {
+    /// None: the outcome is that of the active set method with condensation.
+    Never,
+    /// An interior point method (Mehrotra, SIAM J. Optim. 2 (1992) 575-601) provides a new active set
+    /// where the present one stagnates; projected Newton follows if that one cycles too and the matrix
+    /// is symmetric.
+    #[default]
+    OnStagnation,
+    /// The interior point method provides the first active set; projected Newton follows as above.
+    InteriorPointFirst,
+    /// Projected Newton from the start, for symmetric matrices: the energy is minimised on one face of
+    /// the bounds after the other and never rises. Finite for every symmetric positive definite matrix
+    /// (Bertsekas, SIAM J. Control Optim. 20 (1982) 221-246; More, Toraldo, SIAM J. Optim. 1 (1991)
+    /// 93-113) if `max_outer` is large enough. For matrices that are not symmetric the active set method
+    /// with condensation.
+    ProjectedNewton,
+}
+
+impl Default for ActiveSet {
+    fn default() -> Self {
+        Self {
+            max_outer: 200,
+            rounding_band: 16.0,
+            refinements: 1,
+            stagnation_steps: 3,
+            improvement_steps: 20,
+            max_condensations: 10,
+            max_condensed: 500,
+            globalisation: Globalisation::default(),
+            check_definite: false,
+            linear: LinearMethod::default(),
+        }
+    }
+}
+
+/// Setters, one for each field.
+impl ActiveSet {
+    /// Sets the largest number of linear systems with a new active set.
+    #[must_use]
+    pub fn max_outer(mut self, max_outer: usize) -> Self {
+        self.max_outer = max_outer;
+        self
+    }
+    /// Sets the units of rounding within which no unknown changes its state.
+    #[must_use]
+    pub fn rounding_band(mut self, rounding_band: f64) -> Self {
+        self.rounding_band = rounding_band;
+        self
+    }
+    /// Sets the number of corrections of each linear solution by its residual.
+    #[must_use]
+    pub fn refinements(mut self, refinements: usize) -> Self {
+        self.refinements = refinements;
+        self
+    }
+    /// Sets the linear systems within which the number of state changes must halve.
+    #[must_use]
+    pub fn stagnation_steps(mut self, stagnation_steps: usize) -> Self {
+        self.stagnation_steps = stagnation_steps;
+        self
+    }
+    /// Sets the linear systems within which the best iterate must improve.
+    #[must_use]
+    pub fn improvement_steps(mut self, improvement_steps: usize) -> Self {
+        self.improvement_steps = improvement_steps;
+        self
+    }
+    /// Sets the largest number of condensed problems.
+    #[must_use]
+    pub fn max_condensations(mut self, max_condensations: usize) -> Self {
+        self.max_condensations = max_condensations;
+        self
+    }
+    /// Sets the largest number of unknowns of a condensed problem.
+    #[must_use]
+    pub fn max_condensed(mut self, max_condensed: usize) -> Self {
+        self.max_condensed = max_condensed;
+        self
+    }
+    /// Sets the method that takes over from an active set that stagnates or cycles.
+    #[must_use]
+    pub fn globalisation(mut self, globalisation: Globalisation) -> Self {
+        self.globalisation = globalisation;
+        self
+    }
+    /// Sets whether to check first that the matrix is positive definite.
+    #[must_use]
+    pub fn check_definite(mut self, check_definite: bool) -> Self {
+        self.check_definite = check_definite;
+        self
+    }
+    /// Sets the method for the linear systems.
+    #[must_use]
+    pub fn linear(mut self, linear: LinearMethod) -> Self {
+        self.linear = linear;
+        self
+    }
+}

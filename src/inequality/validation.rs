@@ -1,0 +1,37 @@
+//! Checks of an inequality before it is solved.
+
+use super::Outcome;
+use crate::algebra::Inequality;
+use crate::linear::direct::factors::is_positive_definite;
+use crate::linear::direct::static_condensation::StaticCondensation;
+use crate::real::Real;
+
+/// Checks sizes, numbers and bounds; the error is the outcome of a solve.
+pub(crate) fn check_input<T: Real>(inequality: &Inequality<T>) -> Result<(), Outcome> {
+    if !inequality.is_well_formed() {
+        Err(Outcome::Malformed)
+    } else if !inequality.is_finite() {
+        Err(Outcome::NotFinite)
+    } else if !inequality.is_feasible() {
+        Err(Outcome::Infeasible)
+    } else {
+        Ok(())
+    }
+}
+
+/// Checks by factors that the matrix, or its symmetric part, is positive definite on all unknowns that
+/// are not fixed.
+pub(crate) fn check_definite<T: Real>(inequality: &Inequality<T>) -> Result<(), Outcome> {
+    if let Some(factored) = &inequality.factored {
+        let is_free: Vec<bool> =
+            inequality.bounds.iter().map(|bound| bound.only_value().is_none()).collect();
+        StaticCondensation::new(factored).factor(&is_free)?;
+        return Ok(());
+    }
+    let Inequality { matrix, symmetric, .. } = inequality;
+    if is_positive_definite(matrix, *symmetric, &inequality.not_given())? {
+        Ok(())
+    } else {
+        Err(Outcome::NotCoercive)
+    }
+}
