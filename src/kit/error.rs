@@ -6,6 +6,7 @@ use super::spectrum::SpectrumError;
 use crate::error::Error;
 use crate::inequality::Outcome;
 use crate::linear::FactorError;
+use crate::readable_debug::debug_by_display;
 
 /// A law of the kit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -38,7 +39,7 @@ impl fmt::Display for Law {
 }
 
 /// A law that does not hold. Every message starts with the law's name.
-#[derive(Debug, thiserror::Error)]
+#[derive(thiserror::Error)]
 #[non_exhaustive]
 pub enum KitError {
     /// The layout does not own as many unknowns as there are basis functions.
@@ -285,6 +286,8 @@ pub enum KitError {
         why: Error,
     },
 }
+
+debug_by_display!(KitError);
 
 impl KitError {
     /// The law that does not hold.

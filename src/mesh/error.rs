@@ -1,9 +1,12 @@
-//! What can be wrong with a mesh.
+//! Errors of meshes.
 
-/// Why a list of vertices and cells is not a mesh, and where.
+use crate::readable_debug::debug_by_display;
+
+/// The reason why lists of vertices and cells are not a mesh, with the place. `Debug` prints the
+/// message.
 ///
 /// Cells and vertices are counted from zero in the order given.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[derive(Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum MeshError {
     /// A parameter of a built-in mesh is out of its range.
@@ -141,6 +144,8 @@ pub enum MeshError {
         cells: usize,
     },
 }
+
+debug_by_display!(MeshError);
 
 impl MeshError {
     /// The cells the error names, so that a reader of files can say where they stand.

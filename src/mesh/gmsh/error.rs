@@ -1,11 +1,13 @@
-//! What can be wrong with a mesh file, and what is only worth saying.
+//! Errors and warnings of the reader.
 
 use super::position::{ElementPosition, FilePosition};
 use crate::mesh::MeshError;
+use crate::readable_debug::debug_by_display;
 use std::path::PathBuf;
 
-/// Why a Gmsh file could not be read: what, where, and what to do about it.
-#[derive(Debug, thiserror::Error)]
+/// The reason why a Gmsh file was not read: what is wrong, where, and what to do. `Debug` prints the
+/// message and its causes.
+#[derive(thiserror::Error)]
 #[non_exhaustive]
 pub enum GmshError {
     /// The system does not hand out the file.
@@ -273,7 +275,9 @@ pub enum GmshError {
     },
 }
 
-/// The end of the sentence that translates cells and vertices to elements and nodes of the file.
+debug_by_display!(GmshError);
+
+/// The end of the message that translates cells and vertices to elements and nodes of the file.
 fn in_file(elements: &[ElementPosition], nodes: &[u64]) -> String {
     let mut parts: Vec<String> = elements.iter().map(ToString::to_string).collect();
     if !nodes.is_empty() {
