@@ -32,7 +32,7 @@ fn picture<const D: usize>(
 
 fn cube<const D: usize>(n: usize) -> Mesh<f64, D> {
     let sides = [[BoundaryPart::Dirichlet; 2]; D];
-    let domain = BoxDomain { lower: Point::zeros(), upper: Point::repeat(1.0), sides };
+    let domain = BoxDomain::new(Point::zeros(), Point::repeat(1.0), sides);
     Mesh::kuhn_box(&domain, [n; D]).unwrap()
 }
 

@@ -13,7 +13,6 @@ use unilateral::mesh::BoxDomain;
 use unilateral::mesh::{BoundaryPart, Edges, Mesh, TaggedFacet};
 use unilateral::nested::Hierarchy;
 use unilateral::prelude::*;
-use unilateral::problem::Datum;
 use unilateral::quadrature::Rule;
 use unilateral::scenes::Scene;
 use unilateral::study::{SchemeOptions, scheme_by_name};
@@ -152,8 +151,11 @@ fn smooth<const D: usize>() -> Scene<D> {
     let gradient = move |x: &Point<f64, D>| Point::from_fn(|k, _| slope(k)) * value(x);
     let squares: f64 = (0..D).map(|k| slope(k) * slope(k)).sum();
     let load = move |x: &Point<f64, D>| (1.0 + x[0] - 3.0 * squares) * value(x);
-    let mut problem = Problem::new().source(load).coefficient(|_| 3.0).exact(value, gradient);
-    problem.reaction = Some(Datum::Function(Box::new(|x| 1.0 + x[0])));
+    let problem = Problem::new()
+        .source(load)
+        .coefficient(|_| 3.0)
+        .reaction(|x: &Point<f64, D>| 1.0 + x[0])
+        .exact(value, gradient);
     let mut domain = BoxDomain::dirichlet(Point::zeros(), Point::repeat(1.0));
     domain.sides = [[BoundaryPart::Neumann; 2]; D];
     own_scene("smooth", domain.side(0, 0, BoundaryPart::Dirichlet), problem)

@@ -1,6 +1,7 @@
 //! A membrane over a ball.
 
-use super::{Scene, free_boundary};
+use super::free_boundary;
+use super::scene::Scene;
 use crate::mesh::{BoxDomain, Domain};
 use crate::problem::{Exact, Problem};
 use crate::real::Point;
@@ -124,6 +125,6 @@ fn over<const D: usize>(
         problem: problem
             .obstacle_below(move |x: &Point<f64, D>| dome.height(x.norm()))
             .solved_by(exact),
-        regularity: Regularity { sobolev: 2.5, strictly_complementary: true },
+        regularity: Regularity::new(2.5),
     }
 }

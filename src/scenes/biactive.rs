@@ -1,7 +1,7 @@
 //! Contact without force on a set of positive measure.
 
-use super::Scene;
-use super::differential::positive_power;
+use super::dual_number::positive_power;
+use super::scene::Scene;
 use crate::mesh::BoxDomain;
 use crate::problem::{Exact, Problem};
 use crate::real::Point;
@@ -23,7 +23,7 @@ pub fn biactive_half_2d() -> Scene<2> {
             Exact::new(move |x| power(x)[0], move |x| Point::from([power(x)[1], 0.0]))
                 .with_multiplier(|_| 0.0),
         ),
-        regularity: Regularity { sobolev: 4.5, strictly_complementary: false },
+        regularity: Regularity::new(4.5).not_strictly_complementary(),
     }
 }
 
@@ -48,6 +48,6 @@ pub fn biactive_ring_2d() -> Scene<2> {
         summary: "a hill within a ring of contact without force within contact with force",
         domain: BoxDomain::centred(1.0).into(),
         problem: Problem::new().source(source).obstacle_below(|_| 0.0).solved_by(exact),
-        regularity: Regularity { sobolev: 4.5, strictly_complementary: false },
+        regularity: Regularity::new(4.5).not_strictly_complementary(),
     }
 }

@@ -2,7 +2,7 @@
 
 use std::f64::consts::{FRAC_PI_2, FRAC_PI_4};
 
-use super::Scene;
+use super::scene::Scene;
 use crate::mesh::Domain;
 use crate::problem::{Exact, Problem};
 use crate::real::Point;
@@ -58,7 +58,7 @@ pub fn lshape_2d() -> Scene<2> {
             .source(source)
             .obstacle_below(|_| 0.0)
             .solved_by(Exact::new(value, gradient).with_multiplier(pressed)),
-        regularity: Regularity { sobolev: 5.0 / 3.0, strictly_complementary: false },
+        regularity: Regularity::new(5.0 / 3.0).not_strictly_complementary(),
     }
 }
 

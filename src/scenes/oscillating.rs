@@ -2,7 +2,7 @@
 
 use std::f64::consts::PI;
 
-use super::Scene;
+use super::scene::Scene;
 use crate::mesh::BoxDomain;
 use crate::problem::{Exact, Problem};
 use crate::real::Point;
@@ -63,6 +63,6 @@ pub fn oscillating_1d() -> Scene<1> {
             .source(move |x| load(x[0]))
             .obstacle_above(|_| 1.0)
             .solved_by(exact),
-        regularity: Regularity { sobolev: 2.5, strictly_complementary: true },
+        regularity: Regularity::new(2.5),
     }
 }

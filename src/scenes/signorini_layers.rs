@@ -1,7 +1,7 @@
 //! Signorini conditions on a layer of another material.
 
-use super::Scene;
-use super::differential::positive_power;
+use super::dual_number::positive_power;
+use super::scene::Scene;
 use crate::mesh::BoxDomain;
 use crate::problem::{Exact, Problem};
 use crate::real::Point;
@@ -42,6 +42,6 @@ pub fn signorini_layers_2d(contrast: f64) -> Scene<2> {
             .source(source)
             .signorini(|_| 0.0)
             .solved_by(exact),
-        regularity: Regularity { sobolev: 1.5, strictly_complementary: true },
+        regularity: Regularity::new(1.5),
     }
 }

@@ -1,6 +1,6 @@
 //! Strings over parabolas: solutions made of parabolas.
 
-use super::Scene;
+use super::scene::Scene;
 use crate::mesh::BoxDomain;
 use crate::problem::{Exact, Problem};
 use crate::real::Point;
@@ -83,6 +83,6 @@ fn string(
         summary,
         domain: BoxDomain::dirichlet(Point::repeat(0.0), Point::repeat(1.0)).into(),
         problem: problem.solved_by(exact),
-        regularity: Regularity { sobolev: 2.5, strictly_complementary: true },
+        regularity: Regularity::new(2.5),
     }
 }

@@ -2,7 +2,7 @@
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
-use super::Scene;
+use super::scene::Scene;
 use crate::mesh::{BoundaryPart, BoxDomain};
 use crate::problem::Problem;
 use crate::real::Point;
@@ -28,7 +28,7 @@ pub fn spiral_2d() -> Scene<2> {
         summary: "no load, a spiral obstacle; no closed solution",
         domain: BoxDomain::centred(1.0).into(),
         problem: Problem::new().obstacle_below(obstacle).reference_energy(34.48, 0.02),
-        regularity: Regularity { sobolev: 1.0, strictly_complementary: true },
+        regularity: Regularity::new(1.0),
     }
 }
 
@@ -50,7 +50,7 @@ pub fn signorini_sine_2d() -> Scene<2> {
             .source(|x| 2.0 * PI * (2.0 * PI * x[0]).sin())
             .signorini(|_| 0.0)
             .reference_energy(-0.461_754, 1e-6),
-        regularity: Regularity { sobolev: 2.5, strictly_complementary: true },
+        regularity: Regularity::new(2.5),
     }
 }
 
@@ -72,7 +72,7 @@ pub fn torsion_2d(load: f64) -> Scene<2> {
         summary: "elastic-plastic torsion of a square bar; load is f; no closed solution",
         domain: BoxDomain::dirichlet(Point::zeros(), Point::repeat(1.0)).into(),
         problem,
-        regularity: Regularity { sobolev: 2.0, strictly_complementary: true },
+        regularity: Regularity::new(2.0),
     }
 }
 
@@ -91,7 +91,7 @@ pub fn pyramid_2d(load: f64) -> Scene<2> {
         summary: "a membrane over a pyramid; load is f; no closed solution",
         domain: BoxDomain::centred(1.0).into(),
         problem,
-        regularity: Regularity { sobolev: 1.5, strictly_complementary: true },
+        regularity: Regularity::new(1.5),
     }
 }
 

@@ -9,6 +9,7 @@ use crate::real::{Point, Real};
 
 /// An axis-parallel box and the part of the boundary each of its sides belongs to.
 #[derive(Clone, Debug)]
+#[non_exhaustive]
 pub struct BoxDomain<const D: usize> {
     /// Lowest corner.
     pub lower: Point<f64, D>,
@@ -19,15 +20,20 @@ pub struct BoxDomain<const D: usize> {
 }
 
 impl<const D: usize> BoxDomain<D> {
+    /// The box between two corners, with the part of the sides `x_k = lower_k` and `x_k = upper_k`
+    /// for each axis `k`.
+    pub fn new(lower: Point<f64, D>, upper: Point<f64, D>, sides: [[BoundaryPart; 2]; D]) -> Self {
+        Self { lower, upper, sides }
+    }
     /// The box with Dirichlet data on every side.
     pub fn dirichlet(lower: Point<f64, D>, upper: Point<f64, D>) -> Self {
-        Self { lower, upper, sides: [[BoundaryPart::Dirichlet; 2]; D] }
+        Self::new(lower, upper, [[BoundaryPart::Dirichlet; 2]; D])
     }
     /// The cube `(-half, half)^D` with Dirichlet data on every side.
     pub fn centred(half: f64) -> Self {
         Self::dirichlet(Point::repeat(-half), Point::repeat(half))
     }
-    /// The same box with another part on one side (`end` 0 for the lower, 1 for the upper one).
+    /// Sets the part of one side (`end` 0 for the lower, 1 for the upper one).
     #[must_use]
     pub fn side(mut self, axis: usize, end: usize, part: BoundaryPart) -> Self {
         self.sides[axis][end] = part;
@@ -44,6 +50,7 @@ impl<const D: usize> BoxDomain<D> {
 
 /// The domain of a scene. Where it is not a box, all its boundary is Dirichlet.
 #[derive(Clone, Debug)]
+#[non_exhaustive]
 pub enum Domain<const D: usize> {
     /// A box.
     Box(BoxDomain<D>),

@@ -1,9 +1,12 @@
 //! The quantities of a scene that its conditions are about, and their sizes.
 
-use super::{Condition, Violation};
+use super::violation::{Condition, Violation};
 use crate::problem::Exact;
 use crate::real::Point;
-use crate::scenes::Scene;
+use crate::scenes::scene::Scene;
+
+/// Distance to an obstacle that counts as contact, relative to the value.
+pub(super) const TOUCHING: f64 = 1e-8;
 
 /// Largest sizes met at the sample points; tolerances are multiples of these.
 pub(super) struct Scales {
@@ -20,29 +23,29 @@ pub(super) struct Scales {
 }
 
 /// A scene with its exact solution.
-pub(super) struct Probe<'a, const D: usize> {
+pub(super) struct Evaluator<'a, const D: usize> {
     pub scene: &'a Scene<D>,
     pub exact: &'a Exact<D>,
     pub scales: Scales,
 }
 
-impl<'a, const D: usize> Probe<'a, D> {
+impl<'a, const D: usize> Evaluator<'a, D> {
     pub fn new(scene: &'a Scene<D>, exact: &'a Exact<D>, points: &[Point<f64, D>]) -> Self {
         let length = scene.domain.length();
         let scales = Scales { length, value: 0.0, slope: 0.0, flux: 0.0, force: 0.0 };
-        let mut probe = Self { scene, exact, scales };
+        let mut evaluator = Self { scene, exact, scales };
         let largest = |size: &dyn Fn(&Point<f64, D>) -> f64| {
             points.iter().map(|x| size(x).abs()).fold(0.0, f64::max)
         };
-        let coefficient = largest(&|x| probe.coefficient(x));
-        let value = largest(&|x| probe.value(x));
-        let slope = largest(&|x| probe.gradient(x).norm()).max(value / length);
-        let flux = largest(&|x| probe.flux(x).norm()).max(coefficient * value / length);
-        let force = largest(&|x| probe.source(x))
-            .max(largest(&|x| probe.reaction(x) * probe.value(x)))
+        let coefficient = largest(&|x| evaluator.coefficient(x));
+        let value = largest(&|x| evaluator.value(x));
+        let slope = largest(&|x| evaluator.gradient(x).norm()).max(value / length);
+        let flux = largest(&|x| evaluator.flux(x).norm()).max(coefficient * value / length);
+        let force = largest(&|x| evaluator.source(x))
+            .max(largest(&|x| evaluator.reaction(x) * evaluator.value(x)))
             .max(flux / length);
-        probe.scales = Scales { length, value, slope, flux, force };
-        probe
+        evaluator.scales = Scales { length, value, slope, flux, force };
+        evaluator
     }
     pub fn value(&self, x: &Point<f64, D>) -> f64 {
         (self.exact.value)(x)
@@ -79,17 +82,10 @@ impl<'a, const D: usize> Probe<'a, D> {
         by: f64,
         allowed: f64,
     ) -> Result<(), Violation> {
-        if by <= allowed { Ok(()) } else { Err(violation(self.scene, condition, at, by, allowed)) }
+        if by <= allowed {
+            Ok(())
+        } else {
+            Err(Violation::new(self.scene, condition, at, by, allowed))
+        }
     }
-}
-
-pub(super) fn violation<const D: usize>(
-    scene: &Scene<D>,
-    condition: Condition,
-    at: &Point<f64, D>,
-    by: f64,
-    allowed: f64,
-) -> Violation {
-    let at = at.iter().copied().collect();
-    Violation { scene: scene.name.clone(), condition, at, by, allowed }
 }
