@@ -58,7 +58,7 @@ fn h1_as_tables<S: Scheme<f64, 2, Element = P2>>(
     let solution = solver.solve(&inequality);
     assert_eq!(solution.outcome, Outcome::Converged);
     let exact = scene.problem.exact.as_ref().unwrap();
-    let edges = Edges::of(mesh).numbers(mesh);
+    let edges = Edges::new(mesh).cell_edges(mesh);
     let n = mesh.vertices().len();
     let rule = Rule::of_degree(2, 9);
     let mut sum = 0.0;

@@ -1,6 +1,6 @@
 //! The affine geometry of one cell.
 
-use super::Mesh;
+use super::simplicial::Mesh;
 use crate::real::{Point, Real};
 
 /// Volume and gradients of the barycentric coordinates of a cell: all that a form on simplices

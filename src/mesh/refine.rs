@@ -2,8 +2,11 @@
 
 use rayon::prelude::*;
 
+use super::boundary::BoundaryFacet;
+use super::edges::{Edges, edge_vertices};
+use super::error::MeshError;
+use super::simplicial::Mesh;
 use super::validate::check_size;
-use super::{BoundaryFacet, Edges, Mesh, MeshError, edge_vertices};
 use crate::memory::in_large_pages;
 use crate::real::{Real, point_f64};
 
@@ -133,7 +136,7 @@ impl<T: Real, const D: usize> Mesh<T, D> {
         let n_children = 1 << D;
         let n_fine = self.n_cells().saturating_mul(n_children);
         check_size(n_fine, 0)?;
-        let (edges, numbers) = Edges::numbered(self);
+        let (edges, numbers) = Edges::with_cell_edges(self);
         let parents = parents(&edges, self.vertices.len());
         check_size(n_fine, parents.len())?;
         let half = T::lit(0.5);

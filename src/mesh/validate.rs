@@ -1,7 +1,10 @@
 //! From lists to a mesh: every check that lets later code do without.
 
-use super::facets::CELL_LIMIT;
-use super::{BoundaryFacet, BoundaryPart, CellGeometry, Mesh, MeshError, Neighbour, Neighbours};
+use super::boundary::{BoundaryFacet, BoundaryPart};
+use super::error::MeshError;
+use super::facets::{CELL_LIMIT, Neighbour, Neighbours};
+use super::geometry::CellGeometry;
+use super::simplicial::Mesh;
 use crate::real::{Point, Real, point_f64};
 
 /// A facet and the boundary part it is said to belong to: its `D` vertices in any order.
@@ -47,7 +50,7 @@ impl<T: Real, const D: usize> Mesh<T, D> {
     /// # Errors
     /// [`MeshError::UnsupportedComponent`].
     pub fn check_supported(&self) -> Result<(), MeshError> {
-        let neighbours = Neighbours::of(self);
+        let neighbours = Neighbours::new(self);
         let mut seen = vec![false; self.n_cells()];
         let mut front = Vec::new();
         for first in 0..self.n_cells() {
@@ -152,7 +155,7 @@ fn match_boundary<const D: usize>(
     };
     let sides = || (0..cells.len()).map(|k| (k / (D + 1), k % (D + 1)));
     let mut open: Vec<([u32; D], usize, usize)> = sides()
-        .filter(|&(c, local)| neighbours.is_open(c, local))
+        .filter(|&(c, local)| neighbours.is_unmatched(c, local))
         .map(|(c, local)| (facet(c, local), c, local))
         .collect();
     open.sort_unstable();

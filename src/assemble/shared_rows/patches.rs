@@ -37,7 +37,7 @@ impl<'s, 'a, T: Real, const D: usize, S: Scheme<T, D>> Patches<'s, 'a, T, D, S> 
             .neighbours
             .as_ref()
             .filter(|_| Discretisation::<T, D, S>::COUPLES)
-            .map(|neighbours| Facets::of(space.mesh, neighbours));
+            .map(|neighbours| Facets::new(space.mesh, neighbours));
         let coupled = facets.as_ref().map_or(0, |f| match S::DIRICHLET {
             DirichletBy::FacetForm => f.part(BoundaryPart::Dirichlet).end,
             DirichletBy::Pinning => f.interior().end,

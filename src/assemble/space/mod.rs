@@ -57,7 +57,7 @@ impl<'a, T: Real, const D: usize> Space<'a, T, D> {
     ) -> Result<Self, Error> {
         let neighbours = (with_facets || E::LAYOUT.facet > 0).then(|| {
             count::facet_topologies(1);
-            Neighbours::of(mesh)
+            Neighbours::new(mesh)
         });
         let dofs = Dofs::new(E::LAYOUT, mesh, neighbours.as_ref());
         let space = Self {
