@@ -27,7 +27,8 @@ pub const MAX_BASIS: usize = 10;
 pub struct Layout {
     /// Unknowns at each vertex; vertex `i` of the cell comes `i`-th.
     pub vertex: usize,
-    /// Unknowns on each edge, in the order of [`edge_vertices`](crate::mesh::edge_vertices).
+    /// Unknowns on each edge. Edges are ordered by their second vertex: `(0, 1)`, `(0, 2)`, `(1, 2)`, `(0, 3)`, `(1, 3)`, `(2, 3)`,
+    /// of which a segment has the first and a triangle the first three.
     pub edge: usize,
     /// Unknowns on each facet; the facet opposite vertex `i` comes `i`-th.
     pub facet: usize,
@@ -56,8 +57,7 @@ impl Layout {
 pub enum Node {
     /// The value at a vertex of the cell.
     Vertex(usize),
-    /// The value at the midpoint of an edge of the cell, in the order of
-    /// [`edge_vertices`](crate::mesh::edge_vertices).
+    /// The value at the midpoint of an edge of the cell, in the order of [`Layout::edge`].
     Edge(usize),
     /// The mean over the facet opposite a vertex of the cell.
     FacetMean(usize),

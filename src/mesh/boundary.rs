@@ -20,7 +20,7 @@ impl BoundaryPart {
             BoundaryPart::Contact => "contact",
         }
     }
-    /// The part a physical group names.
+    /// The part of this name.
     pub fn from_name(name: &str) -> Option<Self> {
         [Self::Dirichlet, Self::Neumann, Self::Contact].into_iter().find(|p| p.name() == name)
     }
