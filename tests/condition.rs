@@ -63,7 +63,7 @@ fn plain(matrix: &SparseMatrix<f64>) -> f64 {
 /// diagonal in means and jumps, with the block diagonal.
 fn over_penalised<const D: usize>(mesh: &Mesh<f64, D>, eta: f64) -> [f64; 3] {
     let on_vertices = assemble(&wopsip(eta), mesh).matrix;
-    let change = MeanJump::of(mesh);
+    let change = MeanJump::new(mesh);
     let matrix = change.transform(&assemble(&FacetMeans(wopsip(eta)), mesh).matrix);
     let diagonal = Diagonal(matrix.diagonal());
     let blocks = change.block_diagonal(&matrix);
@@ -155,7 +155,7 @@ fn over_factors() {
 #[test]
 fn eigenvalues_are_where_definiteness_ends() {
     fn on<const D: usize>(checks: &mut Checks, mesh: &Mesh<f64, D>, accuracy: f64) {
-        let change = MeanJump::of(mesh);
+        let change = MeanJump::new(mesh);
         let matrix = change.transform(&assemble(&FacetMeans(wopsip(1.0)), mesh).matrix);
         let blocks = change.block_diagonal(&matrix);
         let (a, b) = (Factored::new(&matrix).unwrap(), Factored::new(&blocks).unwrap());

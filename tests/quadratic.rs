@@ -60,7 +60,7 @@ fn h1_as_tables<S: Scheme<f64, 2, Element = P2>>(
     let exact = scene.problem.exact.as_ref().unwrap();
     let edges = Edges::new(mesh).cell_edges(mesh);
     let n = mesh.vertices().len();
-    let rule = Rule::of_degree(2, 9);
+    let rule = Rule::new(2, 9);
     let mut sum = 0.0;
     for (cell, edges) in edges.chunks(3).enumerate() {
         let geometry = mesh.geometry(cell);
@@ -300,7 +300,7 @@ fn the_basis_with_the_cell_mean_spans_the_quadratics() {
         };
         let (nodal, mean) = (of(&broken()), of(&CellMeans(broken())));
         let size = (D + 1) * (D + 2) / 2;
-        let simplex = Rule::of_degree(D, 2);
+        let simplex = Rule::new(D, 2);
         // the last midpoint of a function of the other basis, from the rule for its mean
         let mut means = [0.0; 10];
         for (point, weight) in simplex.iter() {

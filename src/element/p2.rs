@@ -1,6 +1,6 @@
 //! Quadratic Lagrange elements.
 
-use super::{Layout, Node, ReferenceElement};
+use super::reference_element::{Layout, Node, ReferenceElement};
 use crate::mesh::edge_vertices;
 use crate::real::Real;
 

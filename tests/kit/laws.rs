@@ -120,7 +120,7 @@ fn means_and_jumps() {
         };
         let factor = |eta: f64| FacetMeans(Wopsip { eta: Eta::Absolute(eta), ..Wopsip::default() });
         let (one, many) = (assemble(&factor(1.0)), assemble(&factor(100.0)));
-        let change = MeanJump::of(&mesh);
+        let change = MeanJump::new(&mesh);
         let [small, large] = [&one, &many].map(|matrix| change.transform(matrix));
         assert!(small.is_well_formed() && small.size() == one.size());
         // a global constant has the mean one on every facet and no jump but at the boundary

@@ -41,7 +41,7 @@ impl Row {
 
 impl MeanJump {
     /// The change of variables on a mesh.
-    pub fn of<T: Real, const D: usize>(mesh: &Mesh<T, D>) -> Self {
+    pub fn new<T: Real, const D: usize>(mesh: &Mesh<T, D>) -> Self {
         let facets = Facets::new(mesh, &Neighbours::new(mesh));
         let [dirichlet, neumann, contact] =
             [BoundaryPart::Dirichlet, BoundaryPart::Neumann, BoundaryPart::Contact]

@@ -53,7 +53,7 @@ fn both(choice: &Choice, level: usize) -> Result<[Option<f64>; 2], Error> {
     if !choice.is_over_penalised() {
         return Ok([plain, None]);
     }
-    let matrix = MeanJump::of(&mesh).transform(&free_matrix(&scene.problem, &mesh, &means)?);
+    let matrix = MeanJump::new(&mesh).transform(&free_matrix(&scene.problem, &mesh, &means)?);
     Ok([plain, condition(&matrix, &Diagonal(matrix.diagonal()))])
 }
 
