@@ -15,8 +15,8 @@ use super::{
 };
 use crate::error::Error;
 
-/// All registered scenes: obstacle problems first, those without a closed solution last among them,
-/// then Signorini problems in one, two and three dimensions. Registering a scene is one line here.
+/// All registered scenes: obstacle problems, those without a solution in closed form last, then
+/// Signorini problems in one, two and three dimensions. A line of the list registers a scene.
 pub fn catalogue() -> Vec<Entry> {
     vec![
         Entry::new(parabola_1d),
@@ -182,9 +182,9 @@ impl std::fmt::Debug for Entry {
     }
 }
 
-/// Scales whose square and cube, and the reciprocals of these, are ordinary numbers.
+/// Scales whose squares and cubes neither overflow nor underflow.
 const SCALES: RangeInclusive<f64> = 1e-100..=1e100;
-/// Contrasts that neither overflow nor vanish in the solution.
+/// Contrasts for which the solution neither overflows nor underflows.
 const CONTRASTS: RangeInclusive<f64> = 1e-100..=1e100;
 
 impl Entry {

@@ -1,9 +1,8 @@
-//! The catalogue: named inequalities, most with an exact solution.
+//! The catalogue: named variational inequalities, most of them with an exact solution.
 //!
-//! A scene is a function that returns a [`Scene`], alone in a file or with those that share its
-//! formula; the derivation of its solution stands in its doc comment, and [`check_scene`] tests
-//! that derivation numerically. It is registered by one line in [`catalogue`]; a scene that is not
-//! registered works as well, for a [`Scene`] is a plain value.
+//! A scene is a function that returns a [`Scene`]; scenes with a common formula share a file. The doc
+//! comment of the function derives the solution, and [`check_scene`] tests the derivation numerically.
+//! A scene is registered by one line in [`catalogue`]; studies also run scenes that are not registered.
 
 mod ball;
 mod biactive;

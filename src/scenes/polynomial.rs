@@ -45,7 +45,7 @@ pub fn polynomial<const D: usize>() -> Scene<D> {
 ///
 /// On `(-1, 1)^2` with `psi = 0` the solution is `u = s^k`, `s = max(r^2 - r0^2, 0)`, and the load
 /// is `f = -Laplace u = -4 k (k - 1) r^2 s^(k-2) - 4 k s^(k-1)`, zero for `r <= r0`. So the
-/// multiplier vanishes everywhere and data do not tell the contact set. `u` lies in `H^s` for
+/// multiplier vanishes everywhere and the data do not determine the contact set. `u` lies in `H^s` for
 /// `s < k + 1/2`.
 pub fn degenerate(k: i32) -> Scene<2> {
     Scene {

@@ -20,19 +20,19 @@ pub fn signorini_2d() -> Scene<2> {
     transition_at(0.0, "signorini-2d", "Signorini, zero Dirichlet data, contact changes at x = 0")
 }
 
-/// The same with the change of contact at `x = 0.3`, which is a vertex of few meshes.
+/// [`signorini_2d`] with the change of contact at `x = 0.3`, which is a vertex of few meshes.
 pub fn signorini_shifted_2d() -> Scene<2> {
     let summary = "Signorini, zero Dirichlet data, contact changes at x = 0.3";
     transition_at(0.3, "signorini-shifted-2d", summary)
 }
 
-/// The same with the change of contact at `x = sqrt(2)/10`, which is a vertex of no mesh.
+/// [`signorini_2d`] with the change of contact at `x = sqrt(2)/10`, which is a vertex of no mesh.
 pub fn signorini_irrational_2d() -> Scene<2> {
     let summary = "Signorini, zero Dirichlet data, contact changes at x = sqrt(2)/10";
     transition_at(SQRT_2 / 10.0, "signorini-irrational-2d", summary)
 }
 
-/// The same in space, on `(-1, 1)^2 x (0, 1)`; contact changes along the line `x = 1/5`.
+/// [`signorini_2d`] in space, on `(-1, 1)^2 x (0, 1)`; contact changes along the line `x = 1/5`.
 pub fn signorini_line_3d() -> Scene<3> {
     let summary = "Signorini in space, zero Dirichlet data, contact changes along x = 0.2";
     transition_at(0.2, "signorini-line-3d", summary)
@@ -88,8 +88,8 @@ const RIGHT: f64 = 0.5;
 /// open to the left of -2/5, and a polynomial step `s(x)` that rises from 0 to 1 between -1/5 and
 /// 1/5, the solution is `u = (1 - x^2)(1 - y^2)((1 - s) uL + s uR)`; the load is `-Laplace u`.
 ///
-/// *Contact side*: where `s` is neither 0 nor 1 both pieces are in contact, so that a convex
-/// combination of their pressures acts and `u = 0`; elsewhere as in [`signorini_2d`].
+/// *Contact side*: where `s` is neither 0 nor 1 both `uL` and `uR` vanish, so `u = 0` and `sigma` is a
+/// convex combination of their pressures; elsewhere the argument of [`signorini_2d`] applies.
 /// `H^s` for `s < 5/2`.
 pub fn signorini_two_2d() -> Scene<2> {
     let solution = |x: &Point<f64, 2>| {

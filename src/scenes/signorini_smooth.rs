@@ -1,4 +1,5 @@
-//! Signorini conditions with solutions as smooth as one likes, whose contact is left slowly.
+//! Signorini conditions with solutions of any smoothness: gap and pressure vanish to high order where
+//! contact changes.
 
 use super::dual_number::{DualNumber, positive_power};
 use super::free_boundary;
@@ -28,7 +29,8 @@ pub fn signorini_smooth(k: i32) -> Scene<2> {
 
 /// Contact without pressure on a segment: on `|x| <= 1/4` both gap and pressure vanish.
 ///
-/// The solution is that of `wedge` with `b = 1/4` and `k = 2`; data do not tell the contact set.
+/// The solution is that of `wedge` with `b = 1/4` and `k = 2`; the data do not determine the
+/// contact set.
 pub fn signorini_biactive_2d() -> Scene<2> {
     Scene {
         name: "signorini-biactive-2d".into(),

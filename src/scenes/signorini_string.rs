@@ -54,7 +54,7 @@ pub fn signorini_open_1d() -> Scene<1> {
     )
 }
 
-/// The same string pressed onto the support at 1 by the load `f = -1`.
+/// A string on `(0, 1)`, fixed at 0 and pressed onto the support at 1 by the load `f = -1`.
 ///
 /// `u = -x (1 - x)/2`: `u(1) = 0` and `sigma(1) = u'(1) = 1/2 > 0`.
 pub fn signorini_closed_1d() -> Scene<1> {
@@ -70,7 +70,7 @@ pub fn signorini_closed_1d() -> Scene<1> {
     )
 }
 
-/// The same string without load: `u = 0`, in contact without pressure.
+/// A string on `(0, 1)`, fixed at 0, without load: `u = 0`, in contact at 1 without pressure.
 pub fn signorini_grazing_1d() -> Scene<1> {
     let exact = Exact::new(|_| 0.0, |_| Point::zeros()).with_multiplier(|_| 0.0);
     let regularity = Regularity::smooth().not_strictly_complementary();
@@ -83,7 +83,7 @@ pub fn signorini_grazing_1d() -> Scene<1> {
     )
 }
 
-/// The string under a constant load, with zero gap at 1.
+/// A string on `(0, 1)`, fixed at 0, under a constant load, with zero gap at 1.
 fn supported(
     name: &str,
     summary: &'static str,

@@ -1,4 +1,4 @@
-//! Widely used scenes without a closed solution; minimal energies take its place.
+//! Widely used scenes without a solution in closed form, with reference values of the energy.
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
@@ -12,8 +12,8 @@ use crate::scheme::Regularity;
 /// membrane on `(-1, 1)^2`, zero on the boundary, over
 /// `psi = sin(2 pi/r + pi/2 - theta) + r (r + 1)/(r - 2) - 3 r + 3.6`, 3.6 at the centre.
 ///
-/// The obstacle oscillates without end towards the centre; of the solution no more is known than
-/// that it has finite energy.
+/// The obstacle oscillates infinitely often towards the centre; the solution is known to have finite
+/// energy.
 pub fn spiral_2d() -> Scene<2> {
     let obstacle = |x: &Point<f64, 2>| {
         let r = x.norm();

@@ -10,11 +10,11 @@ use crate::mesh::BoundaryPart;
 const EXACT: f64 = 1e-8;
 /// Distance from which the limit at the boundary is taken, relative to the shortest side.
 const CLOSE: f64 = 1e-9;
-/// Change of the gradient over that distance that counts as a jump; a branch cut exceeds it, a
-/// square root does not.
+/// Change of the gradient over that distance that counts as a jump, between that of a square root and
+/// that across a branch cut.
 const JUMP: f64 = 1e-3;
 
-/// Boundary data are those of the solution, and contact sides fulfil the Signorini conditions.
+/// Boundary data are those of the solution, and contact sides satisfy the Signorini conditions.
 pub(super) fn check<const D: usize>(
     evaluator: &Evaluator<'_, D>,
     samples: usize,

@@ -1,4 +1,4 @@
-//! The quantities of a scene that its conditions are about, and their sizes.
+//! Evaluation of the data and the exact solution of a scene, and their scales.
 
 use super::violation::{Condition, Violation};
 use crate::problem::Exact;
@@ -8,21 +8,21 @@ use crate::scenes::scene::Scene;
 /// Distance to an obstacle that counts as contact, relative to the value.
 pub(super) const TOUCHING: f64 = 1e-8;
 
-/// Largest sizes met at the sample points; tolerances are multiples of these.
+/// Largest absolute values at the sample points; tolerances are multiples of them.
 pub(super) struct Scales {
     /// Shortest side of the domain, or radius of a disc.
     pub length: f64,
-    /// Of the value.
+    /// Largest value.
     pub value: f64,
-    /// Of the gradient, or of the value over the length if that is larger.
+    /// Largest gradient, or largest value over the length if that is larger.
     pub slope: f64,
-    /// Of `alpha grad u`, likewise.
+    /// Largest `alpha grad u`, or largest coefficient times value over the length if that is larger.
     pub flux: f64,
-    /// Of the forces: load, reaction, flux over length.
+    /// The largest of load, reaction times value, and flux over length.
     pub force: f64,
 }
 
-/// A scene with its exact solution.
+/// A scene with its exact solution and scales.
 pub(super) struct Evaluator<'a, const D: usize> {
     pub scene: &'a Scene<D>,
     pub exact: &'a Exact<D>,
@@ -74,7 +74,7 @@ impl<'a, const D: usize> Evaluator<'a, D> {
     pub fn below_upper(&self, x: &Point<f64, D>) -> f64 {
         self.scene.problem.upper.as_ref().map_or(f64::INFINITY, |psi| psi(x) - self.value(x))
     }
-    /// Fails unless `by <= allowed`; not-a-number fails.
+    /// A violation unless `by <= allowed`; a violation if `by` is not a number.
     pub fn require(
         &self,
         condition: Condition,

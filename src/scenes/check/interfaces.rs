@@ -14,8 +14,8 @@ const JUMP: f64 = 1e-7;
 /// the distance of the segment's length changes it by `SHORT^{1/2} = 3e-5`.
 const KINK: f64 = 1e-3;
 
-/// No jump of the value on segments between successive points, and no kink but where an obstacle
-/// holds it.
+/// The value has no jump on segments between successive points, and no kink except where an obstacle is
+/// active.
 pub(super) fn check<const D: usize>(
     evaluator: &Evaluator<'_, D>,
     points: &[Point<f64, D>],
@@ -28,7 +28,7 @@ pub(super) fn check<const D: usize>(
     Ok(())
 }
 
-/// Follows the half in which value and gradient disagree more.
+/// Bisects towards the half in which the difference of values deviates more from the gradient.
 fn check_value<const D: usize>(
     evaluator: &Evaluator<'_, D>,
     a: Point<f64, D>,
@@ -43,12 +43,12 @@ fn check_value<const D: usize>(
     evaluator.require(Condition::Continuity, &a, jump, allowed)
 }
 
-/// Follows the half in which the flux changes more.
+/// Bisects towards the half in which the flux changes more.
 ///
-/// If the flux along the segment drops by `j` across an interface, the obstacle exerts there a
-/// force of a positive multiple of `j` per unit area: upwards from below for `j > 0`. Where the
-/// coefficient jumps, the tangential flux does too, without any force; then only the flux along the
-/// jump of the gradient counts, which is normal to the interface since the value is continuous.
+/// If the flux along the segment drops by `j` across an interface, the multiplier has there a density
+/// per unit area that is a positive multiple of `j`: for `j > 0` due to the lower obstacle. Where the
+/// coefficient jumps the tangential flux jumps without a multiplier; then only the flux along the jump
+/// of the gradient is tested, which is normal to the interface since the value is continuous.
 fn check_flux<const D: usize>(
     evaluator: &Evaluator<'_, D>,
     a: Point<f64, D>,

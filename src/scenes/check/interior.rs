@@ -8,8 +8,8 @@ use crate::real::Point;
 
 /// Error allowed in a derivative by differences, relative to its scale.
 const DERIVATIVE: f64 = 1e-6;
-/// Agreement asked of successive differences; below the error allowed, so that truncation cannot
-/// decide.
+/// Largest difference of successive differences that agree, relative to the scale of the derivative;
+/// below [`DERIVATIVE`], so that truncation errors are below the error allowed.
 const SETTLED: f64 = 1e-7;
 /// Largest differencing stencil, relative to the shortest side.
 const REACH: f64 = 2e-3;
@@ -50,8 +50,8 @@ pub(super) fn check_obstacles<const D: usize>(
     Ok(())
 }
 
-/// The multiplier vanishes off contact and has the sign of the obstacle touched; between two
-/// obstacles that meet it is free.
+/// The multiplier vanishes off contact and has the sign of the active obstacle; where both obstacles are
+/// active its sign is free.
 pub(super) fn check_multiplier<const D: usize>(
     evaluator: &Evaluator<'_, D>,
     points: &[Point<f64, D>],
@@ -77,7 +77,7 @@ pub(super) fn check_multiplier<const D: usize>(
     skipped.check(evaluator, points.len())
 }
 
-/// `-div(alpha grad u) + c u - f`, where differences of the flux settle.
+/// `-div(alpha grad u) + c u - f`; none where differences of the flux do not settle.
 fn multiplier<const D: usize>(evaluator: &Evaluator<'_, D>, x: &Point<f64, D>) -> Option<f64> {
     let tolerance = SETTLED * evaluator.scales.force;
     let reach = reach(evaluator, x);
@@ -95,12 +95,12 @@ fn shifted<const D: usize>(x: &Point<f64, D>, axis: usize, by: f64) -> Point<f64
     x
 }
 
-/// Largest stencil that stays inside the domain, where alone a scene need be defined.
+/// Largest stencil inside the domain: outside a scene may be undefined.
 fn reach<const D: usize>(evaluator: &Evaluator<'_, D>, x: &Point<f64, D>) -> f64 {
     (REACH * evaluator.scales.length).min(0.9 * evaluator.scene.domain.depth(x))
 }
 
-/// Derivatives that did not settle.
+/// Number of derivatives that did not settle, and the last point of one.
 #[derive(Default)]
 struct Skipped {
     count: usize,

@@ -1,4 +1,4 @@
-//! A numerical test of a scene's derivation, for every author of a scene.
+//! A numerical test of the derivation of a scene's solution, for authors of scenes.
 //!
 //! ```
 //! use unilateral::scenes::{check_scene, radial};
@@ -21,26 +21,26 @@ pub use violation::{Condition, Violation};
 use super::scene::Scene;
 use evaluator::Evaluator;
 
-/// Tests that data and exact solution of a scene fit together, at `samples` quasi-random points of
-/// its domain and as many of each side. The points are the same in every run.
+/// Tests data and exact solution of a scene against each other, at `samples` quasi-random points of its
+/// domain and of each side. The points are the same in every run.
 ///
 /// In this order: all data are finite (also at the corners, at the origin and on a lattice that
 /// meshes share); bounds are in order; and, where an exact solution is stated,
 ///
 /// * its gradient is that of its value, by fourth-order central differences;
-/// * value and flux have no jumps along the segments between successive points, except kinks that
-///   an obstacle holds with a force of the right sign;
-/// * it respects the obstacles, its multiplier `-div(alpha grad u) + c u - f` vanishes where none
-///   is touched and has the sign of the one that is;
-/// * it takes the boundary data, and fulfils the Signorini conditions on contact sides;
-/// * multiplier and contact set are those of the solution, where they are stated.
+/// * value and flux have no jumps along the segments between successive points, except kinks where an
+///   obstacle is active, with a multiplier of the right sign;
+/// * the solution satisfies the obstacles; the multiplier `-div(alpha grad u) + c u - f` vanishes off
+///   contact and on contact has the sign of the active obstacle;
+/// * the solution satisfies the boundary data, and the Signorini conditions on contact sides;
+/// * stated multiplier and contact set are those of the solution.
 ///
-/// Differences use steps from a thousandth of the shortest side downwards until three successive
-/// ones agree; a point where none do lies on an interface or a singularity and is passed over. If
-/// more than a quarter of the points are, that is [`Condition::Resolution`].
+/// The step of differences is reduced, from a thousandth of the shortest side, until three successive
+/// differences agree. A point where they never agree lies on an interface or at a singularity and is
+/// skipped. If more than a quarter of the points are skipped, [`Condition::Resolution`] fails.
 ///
 /// Tolerances are relative to the largest values met, `1e-6` for the multiplier and the gradient
-/// and `1e-8` for the rest. Not seen are errors confined to regions that hold no sample.
+/// and `1e-8` for the rest. Errors confined to regions without sample points are not detected.
 ///
 /// # Errors
 ///

@@ -1,4 +1,4 @@
-//! What a scene states of its multiplier and contact set.
+//! Conditions on the stated multiplier and contact set.
 
 use super::evaluator::{Evaluator, TOUCHING};
 use super::violation::{Condition, Violation};
@@ -9,8 +9,8 @@ const EXACT: f64 = 1e-8;
 /// Size of the indicator on the free boundary that counts as zero, relative to its largest value.
 const ZERO: f64 = 1e-9;
 
-/// Multiplier and contact set of obstacles at a point where the multiplier of the solution is known
-/// up to `allowed`.
+/// Conditions on multiplier and contact set at a point of the domain, where the multiplier of the
+/// solution is known up to `allowed`.
 pub(super) fn check_inside<const D: usize>(
     evaluator: &Evaluator<'_, D>,
     x: &Point<f64, D>,
@@ -30,7 +30,7 @@ pub(super) fn check_inside<const D: usize>(
     )
 }
 
-/// The same for a Signorini condition at a point of the contact part.
+/// Conditions on multiplier and contact set at a point of the contact part.
 pub(super) fn check_on_boundary<const D: usize>(
     evaluator: &Evaluator<'_, D>,
     x: &Point<f64, D>,
@@ -56,8 +56,7 @@ fn check_multiplier<const D: usize>(
     }
 }
 
-/// Inside the contact set a bound is touched; outside there is a gap, however small, and no
-/// multiplier.
+/// Inside the contact set a bound is active; outside the gap is positive and the multiplier vanishes.
 fn check_contact<const D: usize>(
     evaluator: &Evaluator<'_, D>,
     x: &Point<f64, D>,

@@ -6,13 +6,13 @@ use crate::readable_debug::debug_by_display;
 use crate::real::Point;
 use crate::scenes::scene::Scene;
 
-/// What a scene must fulfil.
+/// A condition on a scene.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Condition {
     /// The datum of this name is a finite number.
     Finite(&'static str),
-    /// The coefficient is positive, the reaction not negative; the number is the offending value.
+    /// The coefficient is positive, the reaction not negative; [`Violation::by`] is the value found.
     Ellipticity,
     /// A lower bound stays below the upper bound, and Dirichlet data lie between the bounds.
     Admissible,
@@ -22,19 +22,19 @@ pub enum Condition {
     Gradient,
     /// The value has no jump.
     Continuity,
-    /// The normal flux jumps only where an obstacle holds the kink: there the multiplier is a
-    /// measure on a line or surface.
+    /// The normal flux jumps only where an obstacle is active: there the multiplier is a measure on a
+    /// line or surface.
     Kink,
     /// `u >= psi_lower`.
     LowerObstacle,
     /// `u <= psi_upper`.
     UpperObstacle,
-    /// `-div(alpha grad u) + c u = f` where no obstacle is touched.
+    /// `-div(alpha grad u) + c u = f` where no obstacle is active.
     Equation,
-    /// `-div(alpha grad u) + c u - f` is not negative where only the lower obstacle is touched, not
-    /// positive where only the upper one is.
+    /// `-div(alpha grad u) + c u - f` is not negative where only the lower obstacle is active, not
+    /// positive where only the upper obstacle is active.
     MultiplierSign,
-    /// Enough sample points lie where the second derivatives can be told by differences.
+    /// Differences approximate second derivatives at enough sample points.
     Resolution,
     /// Value and gradient on the boundary are their limits from inside, and rounding errors of the
     /// point do not change them.
@@ -52,8 +52,8 @@ pub enum Condition {
     /// The stated multiplier is `-div(alpha grad u) + c u - f`, or `alpha du/dn` on the contact
     /// part.
     Multiplier,
-    /// A bound is touched inside the stated contact set and not outside, where there is no
-    /// multiplier either.
+    /// A bound is active inside the stated contact set; outside, no bound is active and the multiplier
+    /// vanishes.
     ContactSet,
     /// Stated points of the free boundary are zeros of the contact set's indicator.
     FreeBoundary,
@@ -87,7 +87,7 @@ impl fmt::Display for Condition {
     }
 }
 
-/// The first condition found to fail: which, where, and by how much.
+/// The first condition that fails, the point, and the amount. `Debug` prints the message.
 #[derive(Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 #[error("scene {scene}: not fulfilled: {condition}; at {at:?} off by {by:e}, allowed {allowed:e}")]
@@ -100,7 +100,7 @@ pub struct Violation {
     pub at: Vec<f64>,
     /// The amount of the violation.
     pub by: f64,
-    /// The amount that would pass for rounding and truncation.
+    /// The amount allowed for rounding and truncation errors.
     pub allowed: f64,
 }
 
