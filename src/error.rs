@@ -1,24 +1,26 @@
-//! Everything that can be wrong with what a caller hands in.
+//! Errors of input data, of files and of parameters.
 //!
 //! A numerical outcome (iteration limit, cycling) is not an error: see [`crate::inequality::Outcome`].
 
 use crate::mesh::MeshError;
 use crate::mesh::gmsh::GmshError;
+use crate::readable_debug::debug_by_display;
 
-/// What was wrong, where, and what to do about it.
-#[derive(Debug, thiserror::Error)]
+/// An error of input data, of a file or of a parameter. The message says what is wrong, where, and
+/// what to do; `Debug` prints the message and its causes.
+#[derive(thiserror::Error)]
 #[non_exhaustive]
 pub enum Error {
-    /// The mesh cannot carry a finite element space.
+    /// The mesh does not carry a finite element space.
     #[error(transparent)]
     Mesh(#[from] MeshError),
     /// A mesh file could not be read.
     #[error(transparent)]
     Gmsh(#[from] GmshError),
-    /// A datum is not a finite number where it is needed.
+    /// A datum is not a finite number at a point where it is evaluated.
     #[error("{datum} is {value} at {at} in cell {cell}: data of a scene must be finite")]
     DataNotFinite {
-        /// Which datum: "source", "dirichlet", "obstacle", ...
+        /// Name of the datum: "source", "dirichlet", "obstacle", ...
         datum: &'static str,
         /// The value found.
         value: f64,
@@ -27,7 +29,7 @@ pub enum Error {
         /// The cell in which the point lies.
         cell: u32,
     },
-    /// A diffusion coefficient must be positive.
+    /// A diffusion coefficient is not positive and finite.
     #[error("coefficient is {value} in cell {cell}: it must be positive and finite")]
     CoefficientNotPositive {
         /// The value found.
@@ -42,21 +44,21 @@ pub enum Error {
     EmptyConstraint {
         /// The unknown.
         unknown: usize,
-        /// Where it lives.
+        /// A point of the support of the unknown, as coordinates in parentheses.
         at: String,
         /// The larger lower bound.
         lower: f64,
         /// The smaller upper bound.
         upper: f64,
     },
-    /// A constraint set has nothing that an inequality could bind.
+    /// No unknown of the constraint set can carry the bounds of an inequality.
     #[error("bounds on {constraint} cannot impose {condition}: {allowed}")]
     NothingToBound {
         /// Name of the constraint set.
         constraint: &'static str,
-        /// The inequality.
+        /// The inequality: "an inequality" in general, or "a Signorini condition".
         condition: &'static str,
-        /// Which sets can.
+        /// The constraint sets that can impose it.
         allowed: &'static str,
     },
     /// A facet form asks for what the assembler does not make for the element.
@@ -67,12 +69,12 @@ pub enum Error {
         /// For which elements it is made.
         allowed: &'static str,
     },
-    /// The mesh does not fit the scene.
+    /// Mesh and scene disagree.
     #[error("mesh does not fit scene {scene}: {why}")]
     UnfitMesh {
         /// Name of the scene.
         scene: String,
-        /// What does not fit, where, and what would.
+        /// What does not fit, where, and what to do.
         why: String,
     },
     /// A parameter outside its range.
@@ -82,20 +84,70 @@ pub enum Error {
         parameter: &'static str,
         /// The value given, as text.
         value: String,
-        /// What is allowed.
+        /// The values allowed.
         allowed: String,
     },
-    /// A report could not be written.
+    /// A file could not be written.
     #[error("cannot write {path}: {why}")]
     Write {
         /// The file.
         path: String,
-        /// The system's reason.
-        why: String,
+        /// The cause: an [`std::io::Error`] where the operating system refuses, otherwise the message
+        /// of the encoder.
+        #[source]
+        why: Box<dyn std::error::Error + Send + Sync>,
     },
 }
 
-/// What could not be written, and why.
-pub(crate) fn write_error(path: &std::path::Path, why: impl std::fmt::Display) -> Error {
-    Error::Write { path: path.display().to_string(), why: why.to_string() }
+debug_by_display!(Error);
+
+/// The error of a file that could not be written: from an [`std::io::Error`] or from a message.
+pub(crate) fn write_error(
+    path: &std::path::Path,
+    why: impl Into<Box<dyn std::error::Error + Send + Sync>>,
+) -> Error {
+    Error::Write { path: path.display().to_string(), why: why.into() }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::error::Error as _;
+    use std::io;
+    use std::path::Path;
+
+    use super::{Error, write_error};
+    use crate::mesh::MeshError;
+    use crate::mesh::gmsh::GmshError;
+    use crate::readable_debug::debug_by_display;
+
+    #[test]
+    fn debug_prints_the_message() {
+        let error: Error = MeshError::NoCells { dimension: 2 }.into();
+        assert_eq!(format!("{error:?}"), "the mesh has no cells of dimension 2");
+        assert_eq!(format!("{error:?}"), error.to_string());
+        let source = MeshError::NoCells { dimension: 2 };
+        let error: Error = GmshError::Mesh { source, elements: vec![], nodes: vec![7] }.into();
+        let expected = "the mesh has no cells of dimension 2; in the file: nodes 7";
+        assert_eq!(format!("{error:?}"), expected);
+    }
+
+    #[test]
+    fn debug_prints_causes_that_the_message_leaves_out() {
+        #[derive(thiserror::Error)]
+        #[error("outer")]
+        struct Outer(#[source] io::Error);
+        debug_by_display!(Outer);
+        assert_eq!(format!("{:?}", Outer(io::Error::other("inner"))), "outer: inner");
+    }
+
+    #[test]
+    fn a_file_that_cannot_be_written_keeps_the_error_of_the_system() {
+        let why = io::Error::from(io::ErrorKind::PermissionDenied);
+        let error = write_error(Path::new("out.csv"), why);
+        assert_eq!(format!("{error:?}"), "cannot write out.csv: permission denied");
+        let source = error.source().and_then(|why| why.downcast_ref::<io::Error>());
+        assert_eq!(source.map(io::Error::kind), Some(io::ErrorKind::PermissionDenied));
+        let error = write_error(Path::new("out.png"), "no such colour".to_owned());
+        assert_eq!(error.to_string(), "cannot write out.png: no such colour");
+    }
 }

@@ -2,6 +2,10 @@
 #![deny(unsafe_code)]
 #![deny(missing_docs)]
 
+/// The linear algebra library in whose terms [`real::Point`] is an `SVector`: its version is part of
+/// the public interface of this crate.
+pub use nalgebra;
+
 pub mod algebra;
 pub mod assemble;
 pub mod constraint;
@@ -25,6 +29,7 @@ pub mod plot;
 pub mod prelude;
 pub mod problem;
 pub mod quadrature;
+mod readable_debug;
 pub mod real;
 pub mod scenes;
 pub mod scheme;

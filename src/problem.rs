@@ -10,6 +10,8 @@
 //!
 //! `n` is the outward unit normal. An absent datum is `None`, and no loop runs for it.
 
+use std::fmt;
+
 use crate::real::Point;
 
 /// A scalar function of space.
@@ -20,9 +22,10 @@ pub type VectorField<const D: usize> = Box<dyn Fn(&Point<f64, D>) -> Point<f64, 
 pub type BoundaryFlux<const D: usize> =
     Box<dyn Fn(&Point<f64, D>, &Point<f64, D>) -> f64 + Send + Sync>;
 
-/// A datum: a number, integrated exactly and without a quadrature loop, or a function.
+/// A coefficient or load: a constant, integrated exactly and without a quadrature loop, or a
+/// function.
 pub enum Datum<const D: usize> {
-    /// The same number everywhere.
+    /// A constant.
     Constant(f64),
     /// A function of space, integrated by quadrature.
     Function(Field<D>),
@@ -44,46 +47,68 @@ impl<const D: usize> From<f64> for Datum<D> {
     }
 }
 
-/// The exact solution, for error norms; also the source of Dirichlet and Neumann data where a
-/// scene gives none.
+impl<const D: usize, F> From<F> for Datum<D>
+where
+    F: Fn(&Point<f64, D>) -> f64 + Send + Sync + 'static,
+{
+    fn from(f: F) -> Self {
+        Datum::Function(Box::new(f))
+    }
+}
+
+impl<const D: usize> fmt::Debug for Datum<D> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Datum::Constant(c) => f.debug_tuple("Constant").field(c).finish(),
+            Datum::Function(_) => f.write_str("Function(..)"),
+        }
+    }
+}
+
+/// The exact solution, for error norms, and for Dirichlet and Neumann data where the problem has
+/// none.
+#[non_exhaustive]
 pub struct Exact<const D: usize> {
     /// The solution.
     pub value: Field<D>,
-    /// Its gradient.
+    /// The gradient of the solution.
     pub gradient: VectorField<D>,
-    /// Density of the multiplier. With obstacles it is `lambda = -div(alpha grad u) + c u - f` per
-    /// unit volume, everywhere in the domain; it is negative where an obstacle from above holds the
-    /// solution. With the Signorini condition it is `sigma = alpha du/dn` per unit area of the
-    /// contact part and means nothing elsewhere. None where it is not a function or not known.
+    /// Density of the multiplier: with obstacles `lambda = -div(alpha grad u) + c u - f` per unit
+    /// volume, negative where the upper obstacle is active; with the Signorini condition
+    /// `sigma = alpha du/dn` per unit area of the contact part, undefined elsewhere. None where the
+    /// multiplier is a measure without density, or unknown.
     pub multiplier: Option<Field<D>>,
-    /// The contact set; none where data and solution do not tell it.
+    /// The contact set; none where data and solution do not determine it.
     pub contact: Option<ContactSet<D>>,
 }
 
-/// The set where the exact solution is at a bound: a part of the domain with obstacles, a part of the
-/// contact boundary with the Signorini condition.
+/// The set where the exact solution equals a bound: with obstacles a subset of the domain, with the
+/// Signorini condition a subset of the contact part of the boundary.
+#[non_exhaustive]
 pub struct ContactSet<const D: usize> {
     /// Positive inside the contact set, negative outside, zero on its free boundary.
     pub indicator: Field<D>,
-    /// Points of the free boundary. In one dimension and for a Signorini condition in two these are
-    /// all there are, otherwise a sample much denser than meshes are. Empty where there is none.
+    /// Points of the free boundary: all of them in one dimension and for a Signorini condition in
+    /// two, otherwise a sample whose distances are far below mesh sizes. Empty where the free
+    /// boundary is empty.
     pub free_boundary: Vec<Point<f64, D>>,
 }
 
-/// The least value of `J(v) = a(v, v)/2 - l(v)` on the domain of a scene, where no solution is known.
+/// The minimum of the energy `J(v) = a(v, v)/2 - l(v)` of a problem without a known solution.
 ///
-/// It was extrapolated from conforming linear elements on uniform meshes with up to 256 (or 512)
-/// subdivisions, by an independent program.
+/// The energies of the catalogue were extrapolated from conforming linear elements on uniform meshes
+/// with up to 256 (or 512) subdivisions, by an independent program.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct ReferenceEnergy {
     /// The energy.
     pub value: f64,
-    /// By how much it may be wrong.
+    /// Bound on the error of the energy.
     pub uncertainty: f64,
 }
 
 impl<const D: usize> Exact<D> {
-    /// A solution and its gradient, of which no more is known.
+    /// A solution and its gradient, without multiplier and contact set.
     pub fn new(
         value: impl Fn(&Point<f64, D>) -> f64 + Send + Sync + 'static,
         gradient: impl Fn(&Point<f64, D>) -> Point<f64, D> + Send + Sync + 'static,
@@ -117,8 +142,26 @@ impl<const D: usize> Exact<D> {
     }
 }
 
+impl<const D: usize> fmt::Debug for Exact<D> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Exact")
+            .field("multiplier", &self.multiplier.is_some())
+            .field("contact", &self.contact)
+            .finish_non_exhaustive()
+    }
+}
+
+impl<const D: usize> fmt::Debug for ContactSet<D> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("ContactSet")
+            .field("free_boundary_points", &self.free_boundary.len())
+            .finish_non_exhaustive()
+    }
+}
+
 /// A variational inequality: data and, where known, its solution.
 #[derive(Default)]
+#[non_exhaustive]
 pub struct Problem<const D: usize> {
     /// The load `f` per unit volume.
     pub source: Option<Datum<D>>,
@@ -138,8 +181,51 @@ pub struct Problem<const D: usize> {
     pub gap: Option<Field<D>>,
     /// The exact solution.
     pub exact: Option<Exact<D>>,
-    /// The least energy, where it is known and the solution is not.
+    /// The minimum of the energy, where it is known and the solution is not.
     pub reference_energy: Option<ReferenceEnergy>,
+}
+
+/// Lists the data that are present.
+impl<const D: usize> fmt::Debug for Problem<D> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self {
+            source,
+            dirichlet,
+            neumann,
+            coefficient,
+            reaction,
+            lower,
+            upper,
+            gap,
+            exact,
+            reference_energy,
+        } = self;
+        let mut out = f.debug_struct("Problem");
+        for (name, datum) in [("source", source), ("reaction", reaction)] {
+            if let Some(datum) = datum {
+                out.field(name, datum);
+            }
+        }
+        for (name, is_present) in [
+            ("dirichlet", dirichlet.is_some()),
+            ("neumann", neumann.is_some()),
+            ("coefficient", coefficient.is_some()),
+            ("lower", lower.is_some()),
+            ("upper", upper.is_some()),
+            ("gap", gap.is_some()),
+        ] {
+            if is_present {
+                out.field(name, &format_args!("Function(..)"));
+            }
+        }
+        if let Some(exact) = exact {
+            out.field("exact", exact);
+        }
+        if let Some(energy) = reference_energy {
+            out.field("reference_energy", energy);
+        }
+        out.finish()
+    }
 }
 
 impl<const D: usize> Problem<D> {
@@ -148,21 +234,25 @@ impl<const D: usize> Problem<D> {
         Self::default()
     }
     /// Sets a constant load.
+    #[must_use]
     pub fn constant_source(mut self, f: f64) -> Self {
         self.source = Some(Datum::Constant(f));
         self
     }
-    /// Sets a load that varies.
+    /// Sets a load that is a function of space.
+    #[must_use]
     pub fn source(mut self, f: impl Fn(&Point<f64, D>) -> f64 + Send + Sync + 'static) -> Self {
         self.source = Some(Datum::Function(Box::new(f)));
         self
     }
     /// Sets Dirichlet data.
+    #[must_use]
     pub fn dirichlet(mut self, u: impl Fn(&Point<f64, D>) -> f64 + Send + Sync + 'static) -> Self {
         self.dirichlet = Some(Box::new(u));
         self
     }
     /// Sets Neumann data, a function of the point and the outward normal.
+    #[must_use]
     pub fn neumann(
         mut self,
         q: impl Fn(&Point<f64, D>, &Point<f64, D>) -> f64 + Send + Sync + 'static,
@@ -171,6 +261,7 @@ impl<const D: usize> Problem<D> {
         self
     }
     /// Sets the diffusion coefficient.
+    #[must_use]
     pub fn coefficient(
         mut self,
         alpha: impl Fn(&Point<f64, D>) -> f64 + Send + Sync + 'static,
@@ -178,12 +269,15 @@ impl<const D: usize> Problem<D> {
         self.coefficient = Some(Box::new(alpha));
         self
     }
-    /// Sets the reaction coefficient.
+    /// Sets the reaction coefficient: a number, or a closure whose argument is written with its
+    /// type, `|x: &Point<f64, 2>| ..`.
+    #[must_use]
     pub fn reaction(mut self, c: impl Into<Datum<D>>) -> Self {
         self.reaction = Some(c.into());
         self
     }
     /// Sets an obstacle from below.
+    #[must_use]
     pub fn obstacle_below(
         mut self,
         psi: impl Fn(&Point<f64, D>) -> f64 + Send + Sync + 'static,
@@ -192,6 +286,7 @@ impl<const D: usize> Problem<D> {
         self
     }
     /// Sets an obstacle from above.
+    #[must_use]
     pub fn obstacle_above(
         mut self,
         psi: impl Fn(&Point<f64, D>) -> f64 + Send + Sync + 'static,
@@ -200,6 +295,7 @@ impl<const D: usize> Problem<D> {
         self
     }
     /// Sets the Signorini condition `u >= g` on the contact part.
+    #[must_use]
     pub fn signorini(
         mut self,
         gap: impl Fn(&Point<f64, D>) -> f64 + Send + Sync + 'static,
@@ -209,6 +305,7 @@ impl<const D: usize> Problem<D> {
     }
     /// Sets the exact solution and its gradient, and makes it the Dirichlet datum and, times the
     /// coefficient, the Neumann datum, unless those are set.
+    #[must_use]
     pub fn exact(
         self,
         value: impl Fn(&Point<f64, D>) -> f64 + Send + Sync + 'static,
@@ -216,12 +313,15 @@ impl<const D: usize> Problem<D> {
     ) -> Self {
         self.solved_by(Exact::new(value, gradient))
     }
-    /// The same with what else is known of the solution.
+    /// Sets the exact solution as [`Problem::exact`] does, with its multiplier and contact set where
+    /// those are known.
+    #[must_use]
     pub fn solved_by(mut self, exact: Exact<D>) -> Self {
         self.exact = Some(exact);
         self
     }
-    /// Sets the least energy and its uncertainty.
+    /// Sets the minimum of the energy and its uncertainty.
+    #[must_use]
     pub fn reference_energy(mut self, value: f64, uncertainty: f64) -> Self {
         self.reference_energy = Some(ReferenceEnergy { value, uncertainty });
         self
@@ -234,20 +334,38 @@ impl<const D: usize> Problem<D> {
             (None, None) => 0.0,
         }
     }
-    /// Whether an obstacle binds in the domain.
+    /// Whether the problem has an obstacle in the domain.
     pub fn has_obstacle(&self) -> bool {
         self.lower.is_some() || self.upper.is_some()
     }
-    /// Whether any inequality binds.
+    /// Whether the problem has an inequality constraint.
     pub fn is_constrained(&self) -> bool {
         self.has_obstacle() || self.gap.is_some()
     }
-    /// Whether Dirichlet data are other than zero by default.
+    /// Whether Dirichlet data are given, by themselves or by the exact solution.
     pub fn has_dirichlet_data(&self) -> bool {
         self.dirichlet.is_some() || self.exact.is_some()
     }
-    /// Whether Neumann data are other than zero by default.
+    /// Whether Neumann data are given, by themselves or by the exact solution.
     pub fn has_neumann_data(&self) -> bool {
         self.neumann.is_some() || self.exact.is_some()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Problem;
+    use crate::real::Point;
+
+    #[test]
+    fn debug_lists_the_data_that_are_present() {
+        let problem = Problem::<2>::new()
+            .constant_source(-1.0)
+            .reaction(|x: &Point<f64, 2>| x[0])
+            .obstacle_below(|_| 0.0);
+        let expected =
+            "Problem { source: Constant(-1.0), reaction: Function(..), lower: Function(..) }";
+        assert_eq!(format!("{problem:?}"), expected);
+        assert_eq!(problem.reaction.map(|c| c.at(&Point::from([3.0, 4.0]))), Some(3.0));
     }
 }

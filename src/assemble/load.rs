@@ -14,7 +14,7 @@ use crate::facet::{FacetForm, Trace};
 use crate::mesh::BoundaryPart;
 use crate::parallel::cells;
 use crate::problem::{Datum, Field};
-use crate::quadrature::{OrthonormalPolynomials, Rule, insert};
+use crate::quadrature::{OrthonormalPolynomials, Rule, facet_to_cell};
 use crate::real::{Point, Real, point_f64};
 
 /// A cell, one of its facets and the moments of the Dirichlet datum on it.
@@ -110,7 +110,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
     }
 
     fn add_neumann(&self, load: &mut [T]) -> Result<(), Error> {
-        let rule = Rule::of_degree(D - 1, self.quadrature.facet);
+        let rule = Rule::new(D - 1, self.quadrature.facet);
         let n = self.per_cell();
         for (cell, local) in self.facets_of(BoundaryPart::Neumann) {
             let geometry = self.mesh.geometry(cell);
@@ -128,7 +128,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
                     (None, None) => 0.0,
                 };
                 let flux = weight * measure * data::finite(flux, "neumann", &x, cell)?;
-                let basis = self.basis_at(&insert(point, local));
+                let basis = self.basis_at(&facet_to_cell(point, local));
                 for (out, phi) in out.iter_mut().zip(&basis.values) {
                     *out += T::lit(flux * phi);
                 }
@@ -168,7 +168,7 @@ impl FacetMoments {
     pub fn new(dimension: usize, degree: usize, rule: usize) -> Self {
         Self {
             polynomials: OrthonormalPolynomials::new(dimension - 1, degree),
-            rule: Rule::of_degree(dimension - 1, rule),
+            rule: Rule::new(dimension - 1, rule),
         }
     }
 }

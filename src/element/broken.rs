@@ -1,12 +1,12 @@
 //! The discontinuous version of any element.
 
-use super::{Layout, Node, ReferenceElement};
+use super::reference_element::{Layout, Node, ReferenceElement};
 use crate::real::Real;
 
-/// An element whose unknowns all belong to the cell: the same basis, another layout.
+/// The basis of `E` with all unknowns inside the cells.
 ///
 /// `Broken<P1>` and `Broken<CrouzeixRaviart>` span the same space, in the bases of vertex values and
-/// of facet means; which one a scheme uses decides where it can impose bounds.
+/// of facet means; the basis determines the functionals on which a scheme can impose bounds.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Broken<E>(pub E);
 

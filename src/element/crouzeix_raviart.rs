@@ -1,6 +1,6 @@
 //! The Crouzeix-Raviart element.
 
-use super::{Layout, Node, ReferenceElement};
+use super::reference_element::{Layout, Node, ReferenceElement};
 use crate::real::Real;
 
 /// Piecewise linears with continuous means over facets.

@@ -1,6 +1,6 @@
 //! Linear Lagrange elements.
 
-use super::{Layout, Node, ReferenceElement};
+use super::reference_element::{Layout, Node, ReferenceElement};
 use crate::real::Real;
 
 /// Continuous piecewise linears: the basis functions are the barycentric coordinates.

@@ -1,11 +1,11 @@
 //! Quadratic Lagrange elements.
 
-use super::{Layout, Node, ReferenceElement};
+use super::reference_element::{Layout, Node, ReferenceElement};
 use crate::mesh::edge_vertices;
 use crate::real::Real;
 
 /// Continuous piecewise quadratics: the values at the vertices, then those at the midpoints of the
-/// edges in the order of [`edge_vertices`].
+/// edges in the order of [`Layout::edge`].
 ///
 /// Basis `l_i (2 l_i - 1)` and `4 l_i l_j`, with `l` the barycentric coordinates.
 #[derive(Clone, Copy, Debug, Default)]

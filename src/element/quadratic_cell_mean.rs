@@ -1,22 +1,23 @@
 //! Quadratics in a basis that has the mean over the cell among its unknowns.
 
-use super::{Layout, Node, P2, ReferenceElement};
+use super::p2::P2;
+use super::reference_element::{Layout, Node, ReferenceElement};
 use crate::real::Real;
 
-/// Discontinuous quadratics given by their values at the vertices and at the midpoints of all edges but the last,
-/// and by their mean over the cell in place of the last midpoint.
+/// Discontinuous quadratics with the nodes of [`P2`], except that the mean over the cell replaces the
+/// value at the midpoint of the last edge.
 ///
 /// The mean is `sum_i m_i v_i` over the nodes of [`P2`], with `m = (2 - D) / ((D + 1)(D + 2))` at
 /// vertices and `4 / ((D + 1)(D + 2))` at midpoints: Simpson's rule in one dimension, the mean of
-/// the three midpoints in two. So with the functions `phi` of [`P2`] and `e` the last edge the basis
-/// is `phi_i - m_i / m_e phi_e`, and `phi_e / m_e` for the mean. It is an edge that gives way
-/// because in two dimensions the values at vertices do not enter the mean.
+/// the three midpoints in two. With the functions `phi` of [`P2`] and `e` the last edge the basis is
+/// `phi_i - m_i / m_e phi_e`, and `phi_e / m_e` for the mean. The replaced node is a midpoint because
+/// in two dimensions `m = 0` at vertices.
 ///
-/// No unknown is shared: it spans the same space as [`Broken<P2>`](super::Broken).
+/// The space is that of [`Broken<P2>`](super::Broken).
 #[derive(Clone, Copy, Debug, Default)]
 pub struct QuadraticCellMean;
 
-/// The mean of each function of [`P2`].
+/// The mean of function `i` of [`P2`] over the cell.
 const fn mean(dimension: usize, i: usize) -> f64 {
     let numerator = if i <= dimension { 2.0 - dimension as f64 } else { 4.0 };
     numerator / ((dimension + 1) * (dimension + 2)) as f64

@@ -7,7 +7,7 @@ use super::error::{KitError, Law};
 use super::matrix::Assembled;
 use super::meshes::Sample;
 use super::report::CoercivityReport;
-use super::spectrum::{Diagonal, Factored, Lanczos};
+use super::spectrum::{CholeskyMatrix, Diagonal, Lanczos};
 use super::{meshes, problems};
 use crate::algebra::SparseMatrix;
 use crate::linear::FactorError;
@@ -34,9 +34,9 @@ pub(super) fn check<T: Real, const D: usize>(
 /// in the error.
 fn smallest_eigenvalue(part: &SparseMatrix<f64>, name: &str) -> Result<f64, KitError> {
     let mesh = name.to_owned();
-    match Factored::new(part) {
+    match CholeskyMatrix::new(part) {
         Ok(a) if part.size() > 0 => Lanczos::default()
-            .smallest(&a, &Diagonal::one(part.size()))
+            .smallest(&a, &Diagonal::identity(part.size()))
             .map_err(|why| KitError::NoEigenvalue { mesh, why }),
         Ok(_) => Ok(f64::INFINITY),
         Err(FactorError::NotPositive | FactorError::Singular) => Err(not_coercive(part, mesh)),

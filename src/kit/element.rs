@@ -4,18 +4,18 @@ use super::error::KitError;
 use super::report::ElementReport;
 use crate::element::{Layout, MAX_BASIS, Node, ReferenceElement};
 use crate::mesh::edge_vertices;
-use crate::quadrature::{Rule, insert};
+use crate::quadrature::{Rule, facet_to_cell};
 use crate::real::Real;
 
-/// Rounding units that values and derivatives may be off.
+/// Largest deviation of values and derivatives, in rounding units.
 const UNITS: f64 = 256.0;
 
-/// Step of differences; with five points they are exact for polynomials of degree four, and a
-/// power of two adds no rounding of its own.
+/// Step of differences, a power of two, so that the step itself is not rounded. With five points
+/// differences are exact for polynomials of degree four.
 const STEP: f64 = 0.125;
 
-/// An element without its type.
-struct Probe {
+/// An element without its type, and the points at which its laws are tested.
+struct ErasedElement {
     dimension: usize,
     functions: usize,
     degree: usize,
@@ -23,11 +23,12 @@ struct Probe {
     nodes: Vec<Node>,
     values: fn(&[f64; 4]) -> [f64; MAX_BASIS],
     derivatives: fn(&[f64; 4]) -> [[f64; 4]; MAX_BASIS],
+    points: Vec<[f64; 4]>,
 }
 
-/// Checks the element on its own: as many unknowns as the layout owns, nodes dual to basis
-/// functions, partition of unity, polynomials of its degree in its span, derivatives those of the
-/// values. Derivatives are compared along the simplex only, all that enters a gradient.
+/// Tests the laws of a reference element: as many functions as the layout has unknowns, nodes dual to
+/// basis functions, partition of unity, polynomials of its degree in its span, derivatives equal to
+/// those of the values. Derivatives are compared along the simplex, as they enter gradients.
 ///
 /// # Errors
 /// [`KitError::LayoutCount`], [`KitError::NotDual`], [`KitError::NotPartitionOfUnity`],
@@ -35,19 +36,10 @@ struct Probe {
 pub fn check_element<T: Real, const D: usize, E: ReferenceElement<T, D>>()
 -> Result<ElementReport, KitError> {
     if E::N > MAX_BASIS {
-        let owned = owned(E::LAYOUT, D);
+        let owned = E::LAYOUT.per_cell(D);
         return Err(KitError::LayoutCount { owned, functions: E::N, limit: MAX_BASIS });
     }
-    let probe = Probe {
-        dimension: D,
-        functions: E::N,
-        degree: E::DEGREE,
-        layout: E::LAYOUT,
-        nodes: (0..E::N).map(E::node).collect(),
-        values: values::<T, D, E>,
-        derivatives: derivatives::<T, D, E>,
-    };
-    probe.check(UNITS * T::EPSILON)
+    ErasedElement::new::<T, D, E>(Rule::new(D, 5).points).check(UNITS * T::EPSILON)
 }
 
 fn values<T: Real, const D: usize, E: ReferenceElement<T, D>>(
@@ -66,14 +58,7 @@ fn derivatives<T: Real, const D: usize, E: ReferenceElement<T, D>>(
     out.map(|row| row.map(T::to_f64))
 }
 
-/// The unknowns of a cell, its own and those it shares.
-fn owned(layout: Layout, dimension: usize) -> usize {
-    // taken apart, so that an owner that is added later cannot be forgotten here
-    let Layout { vertex, edge, facet, cell } = layout;
-    (dimension + 1) * (vertex + facet) + dimension * (dimension + 1) / 2 * edge + cell
-}
-
-/// A node as what it is: a functional.
+/// The functional of a node at a polynomial of this degree.
 fn apply(node: Node, dimension: usize, degree: usize, f: &dyn Fn(&[f64; 4]) -> f64) -> f64 {
     match node {
         Node::Vertex(k) => {
@@ -87,25 +72,38 @@ fn apply(node: Node, dimension: usize, degree: usize, f: &dyn Fn(&[f64; 4]) -> f
             f(&point)
         }
         Node::CellMean => {
-            Rule::of_degree(dimension, degree).iter().map(|(point, weight)| weight * f(point)).sum()
+            Rule::new(dimension, degree).iter().map(|(point, weight)| weight * f(point)).sum()
         }
         Node::FacetMean(k) => {
-            let rule = Rule::of_degree(dimension - 1, degree);
-            rule.iter().map(|(point, weight)| weight * f(&insert(point, k))).sum()
+            let rule = Rule::new(dimension - 1, degree);
+            rule.iter().map(|(point, weight)| weight * f(&facet_to_cell(point, k))).sum()
         }
     }
 }
 
-/// A polynomial of some degree on the simplex that no symmetry favours.
+/// A polynomial of this degree without symmetries of the simplex.
 fn polynomial(degree: usize, point: &[f64; 4]) -> f64 {
     let [a, b, c, d] = point;
     (0.9 * a - 0.7 * b + 0.4 * c - 1.1 * d).powi(degree as i32)
 }
 
-impl Probe {
+impl ErasedElement {
+    fn new<T: Real, const D: usize, E: ReferenceElement<T, D>>(points: Vec<[f64; 4]>) -> Self {
+        Self {
+            dimension: D,
+            functions: E::N,
+            degree: E::DEGREE,
+            layout: E::LAYOUT,
+            nodes: (0..E::N).map(E::node).collect(),
+            values: values::<T, D, E>,
+            derivatives: derivatives::<T, D, E>,
+            points,
+        }
+    }
+
     fn check(&self, tolerance: f64) -> Result<ElementReport, KitError> {
         let &Self { dimension, functions, degree, layout, .. } = self;
-        let owned = owned(layout, dimension);
+        let owned = layout.per_cell(dimension);
         if owned != functions {
             return Err(KitError::LayoutCount { owned, functions, limit: MAX_BASIS });
         }
@@ -135,10 +133,10 @@ impl Probe {
         Ok(largest)
     }
 
-    /// Partition of unity is the case of degree zero, and has an error of its own.
+    /// Partition of unity is the case of degree zero, with an error variant of its own.
     fn interpolation(&self, tolerance: f64) -> Result<f64, KitError> {
         let mut largest: f64 = 0.0;
-        for point in &self.points() {
+        for point in &self.points {
             let values = (self.values)(point);
             let sum: f64 = values[..self.functions].iter().sum();
             if !within(sum - 1.0, tolerance) {
@@ -146,11 +144,7 @@ impl Probe {
             }
             for degree in 0..=self.degree {
                 let f = |point: &[f64; 4]| polynomial(degree, point);
-                let nodes = self.nodes.iter().zip(&values);
-                let interpolant: f64 = nodes
-                    .map(|(&node, value)| value * apply(node, self.dimension, self.degree, &f))
-                    .sum();
-                let difference = interpolant - f(point);
+                let difference = self.interpolant(&f, &values) - f(point);
                 if !within(difference, tolerance) {
                     let (stated, at) = (self.degree, self.describe(point));
                     return Err(KitError::PolynomialMissing { degree, stated, at, difference });
@@ -161,9 +155,16 @@ impl Probe {
         Ok(largest)
     }
 
+    /// The interpolant of `f`, a polynomial of the element's degree, at a point where the basis
+    /// functions have these values.
+    fn interpolant(&self, f: &dyn Fn(&[f64; 4]) -> f64, values: &[f64; MAX_BASIS]) -> f64 {
+        let nodes = self.nodes.iter().zip(values);
+        nodes.map(|(&node, value)| value * apply(node, self.dimension, self.degree, f)).sum()
+    }
+
     fn derivatives(&self, tolerance: f64) -> Result<f64, KitError> {
         let mut largest: f64 = 0.0;
-        for point in &self.points() {
+        for point in &self.points {
             let rows = (self.derivatives)(point);
             for from in 0..=self.dimension {
                 for to in 0..from {
@@ -203,11 +204,6 @@ impl Probe {
         })
     }
 
-    /// The points at which functions are looked at.
-    fn points(&self) -> Vec<[f64; 4]> {
-        Rule::of_degree(self.dimension, 5).points
-    }
-
     fn describe(&self, point: &[f64; 4]) -> String {
         let coordinates: Vec<String> =
             point[..=self.dimension].iter().map(|b| format!("{b:.3}")).collect();
@@ -215,7 +211,99 @@ impl Probe {
     }
 }
 
-/// Written so that a number that is not finite is not within anything.
+/// Whether a difference is at most the tolerance; false for one that is not a number.
 fn within(difference: f64, tolerance: f64) -> bool {
     difference.abs() <= tolerance
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::element::{Broken, CrouzeixRaviart, P1, P2, QuadraticCellMean};
+
+    /// Points inside, the vertices, and a point outside the reference simplex; their coordinates sum
+    /// to one.
+    fn points(dimension: usize) -> Vec<[f64; 4]> {
+        let mut points = Rule::new(dimension, 7).points;
+        points.extend((0..=dimension).map(|k| std::array::from_fn(|i| f64::from(i == k))));
+        let mut outside = [1.75, -0.5, 0.25, -0.75];
+        outside[dimension] = 1.0 - outside[..dimension].iter().sum::<f64>();
+        points.push(outside);
+        points.iter_mut().for_each(|p| p[dimension + 1..].fill(0.0));
+        points
+    }
+
+    /// The polynomials `1` and `p_a p_b^(degree - 1)`, which span those of the element's degree, are
+    /// reproduced.
+    fn check_monomials(element: &ErasedElement) {
+        let power = element.degree as i32 - 1;
+        for a in 0..=element.dimension {
+            for b in 0..=element.dimension {
+                let f = |p: &[f64; 4]| if a == b { 1.0 } else { p[a] * p[b].powi(power) };
+                for point in &element.points {
+                    let found = element.interpolant(&f, &(element.values)(point));
+                    assert!((found - f(point)).abs() < 1e-13, "{a} {b} at {point:?}: {found}");
+                }
+            }
+        }
+    }
+
+    /// Derivatives are those of the values in every barycentric coordinate, taken as independent.
+    /// Central differences are exact for quadratics up to rounding.
+    fn check_partial_derivatives(element: &ErasedElement) {
+        let step = 0.25;
+        for point in &element.points {
+            let stated = (element.derivatives)(point);
+            for k in 0..=element.dimension {
+                let moved = |by: f64| {
+                    let mut moved = *point;
+                    moved[k] += by;
+                    (element.values)(&moved)
+                };
+                let (after, before) = (moved(step), moved(-step));
+                for i in 0..element.functions {
+                    let found = (after[i] - before[i]) / (2.0 * step);
+                    let difference = (found - stated[i][k]).abs();
+                    assert!(difference < 1e-13, "function {i}, coordinate {k}: {difference}");
+                }
+            }
+        }
+    }
+
+    /// The laws of [`check_element`], with finer tolerances and at more points.
+    fn check<E, const D: usize>()
+    where
+        E: ReferenceElement<f64, D> + ReferenceElement<f32, D>,
+    {
+        check_element::<f64, D, E>().unwrap();
+        check_element::<f32, D, E>().unwrap();
+        let element = ErasedElement::new::<f64, D, E>(points(D));
+        let report = element.check(1e-13).unwrap();
+        assert!(report.duality < 1e-14 && report.derivatives < 1e-13, "{report:?}");
+        check_monomials(&element);
+        check_partial_derivatives(&element);
+    }
+
+    fn check_all<const D: usize>() {
+        check::<P1, D>();
+        check::<P2, D>();
+        check::<CrouzeixRaviart, D>();
+        check::<QuadraticCellMean, D>();
+        check::<Broken<P1>, D>();
+        check::<Broken<P2>, D>();
+        check::<Broken<CrouzeixRaviart>, D>();
+    }
+
+    #[test]
+    fn elements_obey_the_laws() {
+        check_all::<1>();
+        check_all::<2>();
+        check_all::<3>();
+    }
+
+    #[test]
+    fn the_largest_elements_have_max_basis_functions() {
+        assert_eq!(<P2 as ReferenceElement<f64, 3>>::N, MAX_BASIS);
+        assert_eq!(<QuadraticCellMean as ReferenceElement<f64, 3>>::N, MAX_BASIS);
+    }
 }

@@ -1,4 +1,4 @@
-//! What is wrong with a scheme, where, and by how much.
+//! Violations of the laws.
 
 use std::fmt;
 
@@ -6,21 +6,22 @@ use super::spectrum::SpectrumError;
 use crate::error::Error;
 use crate::inequality::Outcome;
 use crate::linear::FactorError;
+use crate::readable_debug::debug_by_display;
 
 /// A law of the kit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Law {
-    /// Of the reference element.
+    /// The nodes, values and derivatives of the reference element.
     Element,
-    /// Of the matrix and its transpose.
+    /// Equality of the matrix and its transpose.
     Symmetry,
-    /// Of the sign of the form.
+    /// Positivity of the form.
     Coercivity,
-    /// Of numberings.
+    /// Independence of numberings.
     Invariance,
-    /// Of polynomials.
+    /// Reproduction of polynomials.
     Consistency,
-    /// Of convergence.
+    /// Orders of convergence.
     Orders,
 }
 
@@ -37,8 +38,9 @@ impl fmt::Display for Law {
     }
 }
 
-/// A law that does not hold. Every message starts with the law's name.
-#[derive(Debug, thiserror::Error)]
+/// A law that does not hold. Every message starts with the name of the law; `Debug` prints the
+/// message.
+#[derive(thiserror::Error)]
 #[non_exhaustive]
 pub enum KitError {
     /// The layout does not own as many unknowns as there are basis functions.
@@ -46,11 +48,11 @@ pub enum KitError {
         "element: the layout owns {owned} unknowns of a cell, there are {functions} basis functions (at most {limit})"
     )]
     LayoutCount {
-        /// Unknowns of a cell by layout.
+        /// Unknowns of a cell by its layout.
         owned: usize,
-        /// Basis functions.
+        /// Number of basis functions.
         functions: usize,
-        /// Largest number there may be.
+        /// Largest number allowed.
         limit: usize,
     },
     /// A node is not dual to the basis.
@@ -118,9 +120,9 @@ pub enum KitError {
         entry: f64,
         /// The entry with row and column exchanged.
         mirrored: f64,
-        /// Where the unknown of the row lives.
+        /// Support of the unknown of the row.
         row_place: String,
-        /// Where the unknown of the column lives.
+        /// Support of the unknown of the column.
         column_place: String,
     },
     /// The form is declared not symmetric and is.
@@ -138,9 +140,9 @@ pub enum KitError {
     NotCoercive {
         /// The mesh.
         mesh: String,
-        /// How many eigenvalues are not positive.
+        /// Number of eigenvalues that are not positive.
         not_positive: usize,
-        /// How many there are.
+        /// Number of eigenvalues.
         unknowns: usize,
         /// The smallest.
         smallest: f64,
@@ -150,7 +152,7 @@ pub enum KitError {
     NoEigenvalue {
         /// The mesh.
         mesh: String,
-        /// Why not.
+        /// The cause.
         #[source]
         why: SpectrumError,
     },
@@ -159,18 +161,18 @@ pub enum KitError {
     NotFactored {
         /// The mesh.
         mesh: String,
-        /// Why not.
+        /// The cause.
         #[source]
         why: FactorError,
     },
-    /// Two unknowns of a cell live at the same place, so that numberings cannot be compared.
+    /// Two unknowns of a cell have the same support, so that numberings cannot be compared.
     #[error("invariance: unknowns {first} and {second} live at the same place, {place}")]
     UnknownsNotTold {
         /// An unknown.
         first: usize,
         /// Another.
         second: usize,
-        /// Where they live.
+        /// Their support.
         place: String,
     },
     /// An entry of the matrix depends on numbers of vertices or cells.
@@ -184,11 +186,11 @@ pub enum KitError {
         column: usize,
         /// The entry.
         before: f64,
-        /// The same entry in the other numbering.
+        /// The entry in the other numbering.
         after: f64,
-        /// Where the unknown of the row lives.
+        /// Support of the unknown of the row.
         row_place: String,
-        /// Where the unknown of the column lives.
+        /// Support of the unknown of the column.
         column_place: String,
     },
     /// An entry of the load depends on numbers of vertices or cells.
@@ -198,7 +200,7 @@ pub enum KitError {
     LoadDependsOnNumbering {
         /// The unknown.
         unknown: usize,
-        /// Where it lives.
+        /// Its support.
         place: String,
         /// Its load.
         before: f64,
@@ -212,7 +214,7 @@ pub enum KitError {
     SolutionDependsOnNumbering {
         /// The unknown.
         unknown: usize,
-        /// Where it lives.
+        /// Its support.
         place: String,
         /// Its value.
         before: f64,
@@ -230,14 +232,14 @@ pub enum KitError {
         degree: usize,
         /// The relative error.
         error: f64,
-        /// What rounding explains.
+        /// Bound on the effect of rounding errors.
         tolerance: f64,
         /// The cell with the largest error at a vertex.
         cell: usize,
-        /// Its barycentre.
+        /// Barycentre of the cell.
         at: String,
     },
-    /// The patch test succeeds for a scheme that declares it must not.
+    /// The patch test succeeds for a scheme that is declared inconsistent.
     #[error(
         "consistency: the scheme is declared inconsistent, but on {mesh} it reproduces a polynomial of degree {degree} to {error:.3e}: declare it consistent"
     )]
@@ -249,7 +251,7 @@ pub enum KitError {
         /// The relative error.
         error: f64,
     },
-    /// Convergence is slower than it must be.
+    /// The order of convergence is below the expected one.
     #[error(
         "orders: the {norm} error falls from {coarse:.3e} to {fine:.3e}, an order of {measured:.2} where {expected} is due"
     )]
@@ -258,7 +260,7 @@ pub enum KitError {
         norm: &'static str,
         /// The order measured.
         measured: f64,
-        /// The order due.
+        /// The expected order.
         expected: f64,
         /// The error on the coarse mesh.
         coarse: f64,
@@ -272,7 +274,7 @@ pub enum KitError {
         law: Law,
         /// The mesh.
         mesh: String,
-        /// How the solve ended.
+        /// The outcome of the solver.
         outcome: Outcome,
     },
     /// Mesh, data or assembly failed.
@@ -280,11 +282,13 @@ pub enum KitError {
     NotAssembled {
         /// The law under test.
         law: Law,
-        /// Why not.
+        /// The cause.
         #[source]
         why: Error,
     },
 }
+
+debug_by_display!(KitError);
 
 impl KitError {
     /// The law that does not hold.

@@ -1,11 +1,11 @@
-//! The meshes that schemes are tried on.
+//! The meshes on which schemes are tested.
 
 use super::error::{KitError, Law};
-use super::random::Random;
+use super::split_mix::SplitMix64;
 use crate::mesh::{BoundaryPart, BoxDomain, Mesh, TaggedFacet};
 use crate::real::{Point, Real, point_f64};
 
-/// How far a vertex may move, in units of the distance to the next one.
+/// Largest displacement of a vertex along an axis, in units of the distance between neighbours.
 const SHIFT: f64 = 0.2;
 
 /// A mesh with a name for messages.
@@ -14,7 +14,7 @@ pub(super) struct Sample<T, const D: usize> {
     pub mesh: Mesh<T, D>,
 }
 
-/// A mesh with other numbers of vertices and cells, and the old ones of each.
+/// A mesh with renumbered vertices and cells, and their numbers before.
 pub(super) struct Renumbered<T, const D: usize> {
     pub mesh: Mesh<T, D>,
     /// The old number of each vertex.
@@ -23,7 +23,7 @@ pub(super) struct Renumbered<T, const D: usize> {
     pub cells: Vec<u32>,
 }
 
-/// Subdivisions of the boxes on which matrices are looked at.
+/// Subdivisions of the boxes on which matrices are tested.
 pub(super) const fn subdivisions(dimension: usize) -> usize {
     match dimension {
         1 => 6,
@@ -37,12 +37,12 @@ pub(super) fn clamped<const D: usize>() -> BoxDomain<D> {
     BoxDomain::dirichlet(Point::zeros(), Point::repeat(1.0))
 }
 
-/// The unit box with Dirichlet data but for the upper end of the first axis.
+/// The unit box with Neumann data at the upper end of the first axis, Dirichlet data elsewhere.
 pub(super) fn mixed<const D: usize>() -> BoxDomain<D> {
     clamped().side(0, 1, BoundaryPart::Neumann)
 }
 
-/// A box as it is cut.
+/// The Kuhn triangulation of a box.
 pub(super) fn regular<T: Real, const D: usize>(
     law: Law,
     domain: &BoxDomain<D>,
@@ -53,14 +53,15 @@ pub(super) fn regular<T: Real, const D: usize>(
     Ok(Sample { name: "a regular box", mesh })
 }
 
-/// The same box with vertices moved at random, those of the boundary along it only.
+/// The Kuhn triangulation of a box with pseudo-randomly moved vertices; vertices of the boundary move
+/// along the boundary.
 pub(super) fn moved<T: Real, const D: usize>(
     law: Law,
     domain: &BoxDomain<D>,
     n: usize,
 ) -> Result<Sample<T, D>, KitError> {
     let mesh = regular::<f64, D>(law, domain, n)?.mesh;
-    let mut random = Random(7);
+    let mut random = SplitMix64(7);
     let move_one = |x: &Point<f64, D>| {
         Point::from_fn(|k, _| {
             let shift = SHIFT * (2.0 * random.unit() - 1.0) / n as f64;
@@ -88,13 +89,13 @@ fn tagged<T: Real, const D: usize>(
     mesh.boundary().iter().map(tag).collect()
 }
 
-/// The same mesh with vertices and cells renumbered at random.
+/// A mesh with pseudo-randomly renumbered vertices and cells.
 pub(super) fn renumbered<T: Real, const D: usize>(
     law: Law,
     mesh: &Mesh<T, D>,
     seed: u64,
 ) -> Result<Renumbered<T, D>, KitError> {
-    let mut random = Random(seed);
+    let mut random = SplitMix64(seed);
     let vertices = random.permutation(mesh.vertices().len());
     let cells = random.permutation(mesh.n_cells());
     let mut new = vec![0; vertices.len()];

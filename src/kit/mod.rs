@@ -1,18 +1,18 @@
-//! A kit for authors of schemes: laws that every scheme obeys, each checked by one function, and
-//! all of them by [`check_scheme`].
+//! Tests for authors of schemes: laws that every scheme obeys, each tested by one function, and all
+//! of them by [`check_scheme`].
 //!
 //! | law | function | what it catches |
 //! |---|---|---|
-//! | element | [`check_element`] | a node not dual to its function, a wrong derivative, a wrong count |
+//! | element | [`check_element`] | a node not dual to its function, a wrong derivative, a wrong layout |
 //! | symmetry | [`check_symmetry`] | a form that is not as symmetric as it declares |
 //! | coercivity | [`check_coercivity`] | a penalty that is too small |
 //! | invariance | [`check_invariance`] | a form that depends on how cells and vertices are numbered |
 //! | consistency | [`check_consistency`] | a wrong sign or factor of a term on facets |
 //! | orders | [`check_orders`] | a scheme that converges slower than its element allows |
 //!
-//! They run on small boxes, as they are and with moved vertices, in the dimension and scalar of the
+//! The meshes are small boxes, regular and with moved vertices, in the dimension and scalar of the
 //! call; tolerances are multiples of the scalar's rounding unit. An error names the law, the place
-//! and the size of what is wrong.
+//! and the size of the violation.
 //!
 //! ```
 //! use unilateral::kit::check_scheme;
@@ -36,9 +36,9 @@ mod matrix;
 mod meshes;
 mod orders;
 mod problems;
-mod random;
 mod report;
 pub mod spectrum;
+mod split_mix;
 mod symmetry;
 
 pub use element::check_element;
@@ -51,7 +51,7 @@ pub use report::{
 use crate::real::Real;
 use crate::scheme::{AnyScheme, Scheme};
 
-/// Checks every law in turn; those that need a solution come after those that say there is one.
+/// Tests all laws; those on solutions follow those on which the existence of solutions depends.
 ///
 /// # Errors
 /// The first law that does not hold.
@@ -83,7 +83,7 @@ pub fn check_symmetry<T: Real, const D: usize, S: Scheme<T, D>>(
     symmetry::check::<T, D>(scheme)
 }
 
-/// The symmetric part of the matrix is positive definite on the unknowns that are not given.
+/// The symmetric part of the matrix is positive definite on the free unknowns.
 ///
 /// # Errors
 /// [`KitError::NotCoercive`].

@@ -8,11 +8,11 @@ use crate::measure::observed_order;
 use crate::real::Real;
 use crate::scheme::AnyScheme;
 
-/// How far orders of two small meshes may stay below those of theory.
+/// Largest deficit of an order observed on two small meshes.
 const SLACK: f64 = 0.25;
 
-/// Rounding units, times the largest value of the solution, by which the fine error may miss: in
-/// single precision they outweigh the discretisation error of quadratics.
+/// Rounding errors allowed in the fine error, in rounding units times the largest value of the
+/// solution: in single precision they exceed the discretisation error of quadratics.
 const UNITS: f64 = 128.0;
 
 /// Subdivisions of the coarse and of the fine box: few where there are many unknowns.
@@ -38,7 +38,7 @@ pub(super) fn check<T: Real, const D: usize>(
     };
     let [coarse_level, fine_level] = levels(D, scheme.degree());
     let (coarse, fine) = (errors(coarse_level)?, errors(fine_level)?);
-    let pair = |k: usize| Pair {
+    let pair = |k: usize| ErrorPair {
         errors: [coarse[k], fine[k]],
         sizes: [coarse_level, fine_level].map(|n| 1.0 / n as f64),
     };
@@ -57,12 +57,12 @@ pub(super) fn check<T: Real, const D: usize>(
 }
 
 /// Errors on two meshes, the coarse one first.
-struct Pair {
+struct ErrorPair {
     errors: [f64; 2],
     sizes: [f64; 2],
 }
 
-impl Pair {
+impl ErrorPair {
     /// The order measured, if it is what is expected but for slack and rounding.
     fn order(
         &self,

@@ -1,17 +1,17 @@
-//! The linear problems that schemes are tried on.
+//! The linear problems on which schemes are tested.
 
 use crate::problem::Problem;
 use crate::real::Point;
 
-/// A direction that no symmetry of the box favours, another one for each number.
+/// A direction for each number, none of them in a symmetry of the box.
 fn direction<const D: usize>(number: usize) -> Point<f64, D> {
     let entries = [0.7, -0.4, 0.5, -0.8, 0.3];
     Point::from_fn(|k, _| entries[(number + 2 * k) % entries.len()])
 }
 
-/// Data of every kind: nothing cancels by symmetry. The function named exact provides boundary
-/// data; it solves nothing. The load is linear, so that rules that favour a vertex of the cell
-/// integrate it exactly in every numbering.
+/// A problem with data of every kind and without symmetries. The function given as exact provides
+/// boundary data and is not the solution. The load is linear: quadrature rules that are not symmetric
+/// in the vertices of a cell integrate it exactly in every numbering.
 pub(super) fn rich<const D: usize>() -> Problem<D> {
     let x_along = |x: &Point<f64, D>| direction::<D>(0).dot(x);
     Problem::new()
@@ -21,7 +21,7 @@ pub(super) fn rich<const D: usize>() -> Problem<D> {
         .source(move |x| 1.0 - 2.0 * x_along(x))
 }
 
-/// A problem that a polynomial of this degree solves, a sum of powers of different linear
+/// A problem whose solution is a polynomial of this degree, a sum of powers of different linear
 /// functions.
 pub(super) fn polynomial<const D: usize>(degree: usize) -> Problem<D> {
     let alpha = 2.5;

@@ -1,9 +1,10 @@
-//! What the laws measured where they hold.
+//! Measurements of the laws that hold.
 
 use std::fmt;
 
-/// Of the element, each in the units of the basis functions.
+/// Measurements of the law of the element, in the units of the basis functions.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct ElementReport {
     /// Number of basis functions.
     pub functions: usize,
@@ -17,26 +18,29 @@ pub struct ElementReport {
     pub derivatives: f64,
 }
 
-/// Of symmetry.
+/// Measurements of the law of symmetry.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct SymmetryReport {
-    /// What the form declares.
+    /// Whether the form is declared symmetric.
     pub declared: bool,
     /// The largest difference of an entry and its mirror image, relative to the size of the rows
     /// they stand in.
     pub difference: f64,
 }
 
-/// Of coercivity.
+/// Measurements of the law of coercivity.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct CoercivityReport {
     /// The smallest eigenvalue of the symmetric part of the matrix, scaled to a diagonal of ones,
-    /// on all meshes tried.
+    /// on all test meshes.
     pub smallest: f64,
 }
 
-/// Of invariance, each relative to the size of what is compared.
+/// Measurements of the law of invariance, relative to the size of what is compared.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct InvarianceReport {
     /// Largest change of an entry of the matrix.
     pub matrix: f64,
@@ -46,10 +50,11 @@ pub struct InvarianceReport {
     pub solution: f64,
 }
 
-/// Of consistency.
+/// Measurements of the law of consistency.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct ConsistencyReport {
-    /// What the scheme declares.
+    /// Whether the scheme is declared consistent.
     pub declared: bool,
     /// The error against a polynomial, the larger of that at nodes and of mesh size times that of
     /// the gradient, relative to the polynomial: the largest of all meshes if the scheme is
@@ -57,21 +62,23 @@ pub struct ConsistencyReport {
     pub error: f64,
 }
 
-/// Of orders.
+/// Measurements of the law of orders.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct OrdersReport {
-    /// Measured in L2.
+    /// Measured order in L2.
     pub l2: f64,
-    /// What was asked for in L2, if anything.
+    /// Expected order in L2; none where no order is proven.
     pub l2_expected: Option<f64>,
-    /// Measured in the broken H1 seminorm.
+    /// Measured order in the broken H1 seminorm.
     pub h1: f64,
-    /// What was asked for in that seminorm.
+    /// Expected order in the broken H1 seminorm.
     pub h1_expected: f64,
 }
 
-/// What all laws measured.
+/// Measurements of all laws.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct KitReport {
     /// Name of the scheme.
     pub scheme: String,
@@ -79,17 +86,17 @@ pub struct KitReport {
     pub dimension: usize,
     /// Name of the scalar.
     pub scalar: &'static str,
-    /// Of the element.
+    /// The element.
     pub element: ElementReport,
-    /// Of symmetry.
+    /// Symmetry.
     pub symmetry: SymmetryReport,
-    /// Of coercivity.
+    /// Coercivity.
     pub coercivity: CoercivityReport,
-    /// Of invariance.
+    /// Invariance.
     pub invariance: InvarianceReport,
-    /// Of consistency.
+    /// Consistency.
     pub consistency: ConsistencyReport,
-    /// Of orders.
+    /// Orders.
     pub orders: OrdersReport,
 }
 

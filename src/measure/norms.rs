@@ -74,7 +74,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
     /// Squares of the errors over all cells.
     fn cell_errors(&self, exact: &Exact<D>, u: &[T]) -> Result<SquaredErrors, Error> {
         let table = self.cell_table(error_degree(D));
-        let means = Rule::of_degree(D - 1, MEAN_DEGREE);
+        let means = Rule::new(D - 1, MEAN_DEGREE);
         // partial sums are added in order, so the result does not depend on threads
         let parts = cells::map(self.mesh.n_cells(), &|cells: Range<usize>| {
             let mut sum = SquaredErrors::default();

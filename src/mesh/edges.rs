@@ -5,48 +5,44 @@ use std::sync::atomic::{AtomicU32, Ordering};
 
 use rayon::prelude::*;
 
-use super::Mesh;
-use super::sweep::{Met, Sweep};
+use super::simplicial::Mesh;
+use super::stars::{NeighbourNumbers, VertexToCells};
 use crate::memory::in_large_pages;
 use crate::real::Real;
 
-/// Vertices of the edges of a cell, by their numbers in it. A cell of dimension `D` has the first
-/// `D (D + 1) / 2` of these.
-///
-/// They are ordered by their second vertex, so that a segment, a triangle and a tetrahedron number
-/// the edges they share alike.
-pub const EDGE_VERTICES: [[usize; 2]; 6] = [[0, 1], [0, 2], [1, 2], [0, 3], [1, 3], [2, 3]];
+/// Local vertices of the edges of a cell, ordered by their second vertex. A cell of dimension `D`
+/// has the first `D (D + 1) / 2` of them.
+const EDGE_VERTICES: [[usize; 2]; 6] = [[0, 1], [0, 2], [1, 2], [0, 3], [1, 3], [2, 3]];
 
-/// Vertices of the edges of a cell of this dimension.
-pub const fn edge_vertices(dimension: usize) -> &'static [[usize; 2]] {
+/// Local vertices of the edges of a cell of this dimension.
+pub(crate) const fn edge_vertices(dimension: usize) -> &'static [[usize; 2]] {
     EDGE_VERTICES.split_at(dimension * (dimension + 1) / 2).0
 }
 
-/// All edges of a mesh, numbered by their pairs of vertices in lexicographic order.
-///
-/// In one dimension they are the cells, in two the facets, under other numbers.
+/// All edges of a mesh, numbered by their pairs of vertices in lexicographic order: in one dimension
+/// the cells, in two the facets, under other numbers.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Edges {
     /// Number of the first edge that starts at each vertex, and the number of all edges.
     starts: Vec<u32>,
-    /// The end of each edge that has the higher number.
+    /// The end of higher number of each edge.
     upper: Vec<u32>,
 }
 
 impl Edges {
     /// The edges of a mesh, in time linear in its cells.
-    pub fn of<T: Real, const D: usize>(mesh: &Mesh<T, D>) -> Self {
-        Self::found::<D>(mesh.cells(), mesh.vertices().len(), None)
+    pub fn new<T: Real, const D: usize>(mesh: &Mesh<T, D>) -> Self {
+        Self::from_cells::<D>(mesh.cells(), mesh.vertices().len(), None)
     }
-    /// The edges of a mesh, and the number of every edge of every cell in the order of
-    /// [`edge_vertices`].
-    pub fn numbered<T: Real, const D: usize>(mesh: &Mesh<T, D>) -> (Self, Vec<u32>) {
+    /// The edges of a mesh, and the number of every edge of every cell, ordered in each cell by the
+    /// second local vertex of the edge.
+    pub fn with_cell_edges<T: Real, const D: usize>(mesh: &Mesh<T, D>) -> (Self, Vec<u32>) {
         let pairs = edge_vertices(D);
-        let mut places = in_large_pages(Vec::with_capacity(pairs.len() * mesh.n_cells()));
-        places.resize_with(pairs.len() * mesh.n_cells(), AtomicU32::default);
-        let edges = Self::found::<D>(mesh.cells(), mesh.vertices().len(), Some(&places));
-        let mut numbers: Vec<u32> = places.into_iter().map(AtomicU32::into_inner).collect();
-        // so far these count from the first edge that starts at the lower vertex
+        let mut ranks = in_large_pages(Vec::with_capacity(pairs.len() * mesh.n_cells()));
+        ranks.resize_with(pairs.len() * mesh.n_cells(), AtomicU32::default);
+        let edges = Self::from_cells::<D>(mesh.cells(), mesh.vertices().len(), Some(&ranks));
+        let mut numbers: Vec<u32> = ranks.into_iter().map(AtomicU32::into_inner).collect();
+        // the number of an edge is that of the first edge with its lower vertex plus its rank
         let cells = mesh.cells().par_chunks_exact(D + 1);
         cells.zip(numbers.par_chunks_exact_mut(pairs.len())).with_min_len(4096).for_each(
             |(cell, numbers)| {
@@ -57,15 +53,16 @@ impl Edges {
         );
         (edges, numbers)
     }
-    /// The edges; at each edge of each cell its place among those of the same lower vertex.
-    fn found<const D: usize>(
+    /// The edges. In `ranks` each edge of each cell gets its rank among the edges with the same
+    /// lower vertex.
+    fn from_cells<const D: usize>(
         cells: &[u32],
         n_vertices: usize,
-        places: Option<&[AtomicU32]>,
+        ranks: Option<&[AtomicU32]>,
     ) -> Self {
-        let sweep = Sweep::<D>::new(cells, n_vertices, D);
-        let ranges = sweep.ranges();
-        let found = |vertices: &Range<u32>| upper_ends(&sweep, vertices.clone(), places);
+        let incidence = VertexToCells::<D>::new(cells, n_vertices, D);
+        let ranges = incidence.ranges();
+        let found = |vertices: &Range<u32>| upper_ends(&incidence, vertices.clone(), ranks);
         let mut found: Vec<(Vec<u32>, Vec<u32>)> = ranges.par_iter().map(found).collect();
         let mut starts = in_large_pages(Vec::with_capacity(n_vertices + 1));
         starts.push(0);
@@ -102,9 +99,8 @@ impl Edges {
     pub fn upper_ends(&self, a: u32) -> &[u32] {
         &self.upper[self.first_at(a) as usize..self.first_at(a + 1) as usize]
     }
-    /// The number of every edge of every cell of the same mesh, in the order of [`edge_vertices`];
-    /// by searches, where [`Edges::numbered`] has them as it finds the edges.
-    pub fn numbers<T: Real, const D: usize>(&self, mesh: &Mesh<T, D>) -> Vec<u32> {
+    /// The second result of [`Edges::with_cell_edges`], by a search for every edge of every cell.
+    pub fn cell_edges<T: Real, const D: usize>(&self, mesh: &Mesh<T, D>) -> Vec<u32> {
         let of_cell = |cell: &[u32], [i, j]: [usize; 2]| {
             // every pair of a cell's vertices is an edge
             self.number(cell[i], cell[j]).unwrap_or_default()
@@ -114,29 +110,30 @@ impl Edges {
     }
 }
 
-/// The higher ends of the edges of a range of lower vertices, and how many each has.
+/// The upper ends of the edges with a lower vertex in a range, and the number of edges of each of
+/// these vertices.
 fn upper_ends<const D: usize>(
-    sweep: &Sweep<'_, D>,
+    incidence: &VertexToCells<'_, D>,
     vertices: Range<u32>,
-    places: Option<&[AtomicU32]>,
+    ranks_of_cells: Option<&[AtomicU32]>,
 ) -> (Vec<u32>, Vec<u32>) {
-    let mut met = Met::new(sweep.n_vertices());
+    let mut numbers = NeighbourNumbers::new(incidence.n_vertices());
     let (mut upper, mut degrees) = (Vec::new(), Vec::with_capacity(vertices.len()));
-    // of each vertex the ends in the order in which they are met, and each edge of each cell
-    let (mut ends, mut sides, mut ranks) = (Vec::new(), Vec::new(), Vec::new());
-    for (_, cells) in sweep.around(vertices).each() {
-        met.next_vertex();
+    // of each vertex the upper ends in the order of the cells, and the edges of the cells
+    let (mut ends, mut cell_edges, mut ranks) = (Vec::new(), Vec::new(), Vec::new());
+    for (_, cells) in incidence.stars(vertices).iter() {
+        numbers.next_vertex();
         ends.clear();
-        sides.clear();
+        cell_edges.clear();
         for (c, i) in cells {
-            for (j, &end) in sweep.cell(c).iter().enumerate().skip(i + 1) {
-                let number = met.with(end).unwrap_or_else(|| {
-                    met.push(end);
+            for (j, &end) in incidence.cell(c).iter().enumerate().skip(i + 1) {
+                let number = numbers.get(end).unwrap_or_else(|| {
+                    numbers.push(end);
                     ends.push(end);
                     ends.len() as u32 - 1
                 });
-                // edge (i, j) of a cell comes after those of lower second vertices
-                sides.push((c * edge_vertices(D).len() + j * (j - 1) / 2 + i, number));
+                // edge (i, j) of a cell follows the edges of lower second vertices
+                cell_edges.push((c * edge_vertices(D).len() + j * (j - 1) / 2 + i, number));
             }
         }
         rank(&ends, &mut ranks);
@@ -146,19 +143,19 @@ fn upper_ends<const D: usize>(
             upper[start + rank as usize] = end;
         }
         degrees.push(ends.len() as u32);
-        if let Some(places) = places {
-            for &(side, number) in &sides {
-                places[side].store(ranks[number as usize], Ordering::Relaxed);
+        if let Some(ranks_of_cells) = ranks_of_cells {
+            for &(edge, number) in &cell_edges {
+                ranks_of_cells[edge].store(ranks[number as usize], Ordering::Relaxed);
             }
         }
     }
     (upper, degrees)
 }
 
-/// Longest list ranked by comparing all pairs.
+/// Length of the longest list that is ranked by comparing all pairs.
 const ALL_PAIRS: usize = 64;
 
-/// The place of each number of a list in its sorted order.
+/// The rank of each number of a list in its sorted order.
 fn rank(list: &[u32], ranks: &mut Vec<u32>) {
     ranks.clear();
     if list.len() <= ALL_PAIRS {
@@ -184,9 +181,9 @@ mod tests {
     fn check<const D: usize>(counts: [usize; D]) -> usize {
         let domain = BoxDomain::dirichlet(Point::zeros(), Point::repeat(1.0));
         let mesh = Mesh::<f64, D>::kuhn_box(&domain, counts).unwrap();
-        let (edges, numbers) = Edges::numbered(&mesh);
-        assert_eq!(edges, Edges::of(&mesh));
-        assert_eq!(numbers, edges.numbers(&mesh));
+        let (edges, numbers) = Edges::with_cell_edges(&mesh);
+        assert_eq!(edges, Edges::new(&mesh));
+        assert_eq!(numbers, edges.cell_edges(&mesh));
         let pairs = mesh.cells().chunks(D + 1).flat_map(|cell| {
             cell.iter().flat_map(|&a| cell.iter().map(move |&b| [a, b])).filter(|[a, b]| a < b)
         });
@@ -208,7 +205,7 @@ mod tests {
         }
         match D {
             1 => assert_eq!(edges.len(), mesh.n_cells()),
-            2 => assert_eq!(edges.len(), Facets::of(&mesh, &Neighbours::of(&mesh)).len()),
+            2 => assert_eq!(edges.len(), Facets::new(&mesh, &Neighbours::new(&mesh)).len()),
             _ => {}
         }
         edges.len()

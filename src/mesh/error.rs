@@ -1,9 +1,12 @@
-//! What can be wrong with a mesh.
+//! Errors of meshes.
 
-/// Why a list of vertices and cells is not a mesh, and where.
+use crate::readable_debug::debug_by_display;
+
+/// The reason why lists of vertices and cells are not a mesh, with the place. `Debug` prints the
+/// message.
 ///
 /// Cells and vertices are counted from zero in the order given.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[derive(Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum MeshError {
     /// A parameter of a built-in mesh is out of its range.
@@ -16,10 +19,10 @@ pub enum MeshError {
         /// What is allowed.
         allowed: String,
     },
-    /// Nothing to mesh.
+    /// The list of cells is empty.
     #[error("the mesh has no cells of dimension {dimension}")]
     NoCells {
-        /// Dimension asked for.
+        /// Dimension of the mesh.
         dimension: usize,
     },
     /// More cells or vertices than 32-bit numbering holds.
@@ -27,9 +30,9 @@ pub enum MeshError {
     TooLarge {
         /// "cells" or "vertices".
         what: &'static str,
-        /// How many there are.
+        /// Number of cells or vertices.
         count: usize,
-        /// How many there may be.
+        /// Largest number allowed.
         limit: usize,
     },
     /// The list of cell vertices does not divide by the vertices of a cell.
@@ -45,9 +48,9 @@ pub enum MeshError {
     VertexOutOfRange {
         /// The cell.
         cell: usize,
-        /// The vertex it names.
+        /// The vertex in the list of the cell.
         vertex: u32,
-        /// How many there are.
+        /// Number of vertices of the mesh.
         vertices: usize,
     },
     /// A coordinate is not finite.
@@ -57,21 +60,21 @@ pub enum MeshError {
         vertex: usize,
         /// The coordinate.
         axis: usize,
-        /// Its value.
+        /// Value of the coordinate.
         value: f64,
     },
-    /// A cell has no volume.
+    /// The volume of a cell is at the rounding level of its diameter.
     #[error(
         "cell {cell} is degenerate: volume {volume:e} against diameter {diameter:e} (vertices {vertices:?})"
     )]
     DegenerateCell {
         /// The cell.
         cell: usize,
-        /// Its vertices.
+        /// Vertices of the cell.
         vertices: Vec<u32>,
-        /// Its volume.
+        /// Volume of the cell.
         volume: f64,
-        /// Its diameter.
+        /// Diameter of the cell.
         diameter: f64,
     },
     /// Two cells have the same vertices.
@@ -81,7 +84,7 @@ pub enum MeshError {
         first: usize,
         /// The second.
         second: usize,
-        /// Their vertices.
+        /// Vertices of both cells.
         vertices: Vec<u32>,
     },
     /// A facet belongs to three cells.
@@ -91,7 +94,7 @@ pub enum MeshError {
     FacetOfThreeCells {
         /// Vertices of the facet.
         vertices: Vec<u32>,
-        /// The first three of its cells.
+        /// The first three cells of the facet.
         cells: [usize; 3],
     },
     /// A facet of the boundary is in no part.
@@ -101,9 +104,9 @@ pub enum MeshError {
     UntaggedFacet {
         /// Vertices of the facet.
         vertices: Vec<u32>,
-        /// Its cell.
+        /// Cell of the facet.
         cell: usize,
-        /// Its barycentre.
+        /// Barycentre of the facet, as coordinates in parentheses.
         at: String,
     },
     /// A facet is in two parts.
@@ -130,20 +133,22 @@ pub enum MeshError {
         /// Position in the list of tagged facets.
         tag: usize,
     },
-    /// A connected component that nothing holds.
+    /// A connected component has neither a Dirichlet nor a contact facet.
     #[error(
         "the component of {cells} cells around cell {cell} has neither a dirichlet nor a contact facet: the problem is singular there"
     )]
     UnsupportedComponent {
         /// A cell of the component.
         cell: usize,
-        /// How many cells it has.
+        /// Number of cells of the component.
         cells: usize,
     },
 }
 
+debug_by_display!(MeshError);
+
 impl MeshError {
-    /// The cells the error names, so that a reader of files can say where they stand.
+    /// The cells in the message.
     pub fn cells(&self) -> Vec<usize> {
         match self {
             Self::VertexOutOfRange { cell, .. }
@@ -155,7 +160,7 @@ impl MeshError {
             _ => Vec::new(),
         }
     }
-    /// The position in the list of tagged facets, if the error is about one.
+    /// The position in the list of tagged facets of the facet in the message.
     pub fn tagged_facet(&self) -> Option<usize> {
         match self {
             Self::FacetInTwoParts { tag, .. } | Self::NotABoundaryFacet { tag, .. } => Some(*tag),

@@ -1,10 +1,9 @@
 //! The affine geometry of one cell.
 
-use super::Mesh;
+use super::simplicial::Mesh;
 use crate::real::{Point, Real};
 
-/// Volume and gradients of the barycentric coordinates of a cell: all that a form on simplices
-/// needs, in every dimension.
+/// Volume of a cell and gradients of its barycentric coordinates.
 #[derive(Clone, Copy, Debug)]
 pub struct CellGeometry<T, const D: usize> {
     /// The cell's `D`-dimensional measure.
@@ -15,7 +14,7 @@ pub struct CellGeometry<T, const D: usize> {
 impl<T: Real, const D: usize> CellGeometry<T, D> {
     /// The geometry of the simplex with these `D + 1` corners.
     ///
-    /// A simplex without volume gives gradients of zero; meshes refuse such cells.
+    /// The gradients of a simplex without volume are zero; no mesh has such cells.
     #[inline(always)]
     pub fn new(corner: impl Fn(usize) -> Point<T, D>) -> Self {
         const { assert!(D >= 1 && D <= 3, "simplices of dimension 1, 2 and 3 only") }

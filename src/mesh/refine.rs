@@ -1,19 +1,21 @@
-//! Uniform refinement, with the parent relation kept.
+//! Uniform refinement, with the parents of vertices and cells.
 
 use rayon::prelude::*;
 
+use super::boundary::BoundaryFacet;
+use super::edges::{Edges, edge_vertices};
+use super::error::MeshError;
+use super::simplicial::Mesh;
 use super::validate::check_size;
-use super::{BoundaryFacet, Edges, Mesh, MeshError, edge_vertices};
 use crate::memory::in_large_pages;
 use crate::real::{Real, point_f64};
 
-/// How the vertices of a refined mesh came from those of the coarse one.
-///
-/// Fine cell `c` lies in coarse cell `c / 2^D`.
+/// The parents of the vertices of a refined mesh. The parent of fine cell `c` is coarse cell
+/// `c / 2^D`.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Refinement {
-    /// The two coarse vertices whose midpoint each fine vertex is; twice the same for a vertex that
-    /// was there before.
+    /// The two coarse vertices whose midpoint a fine vertex is; twice the same one for a vertex of the
+    /// coarse mesh.
     pub parents: Vec<[u32; 2]>,
 }
 
@@ -21,8 +23,9 @@ pub struct Refinement {
 /// local numbers.
 type Children = &'static [&'static [[usize; 2]]];
 
-/// The corner children first, then, in three dimensions, the inner octahedron cut around one of its
-/// diagonals.
+/// The children of a simplex in dimensions 1, 2, 3: those at the corners first, then the inner ones.
+/// In three dimensions the inner octahedron is cut around the diagonal between the midpoints of 02 and
+/// 13.
 ///
 /// Every list is ascending in lexicographic order.
 const CHILDREN: [Children; 3] = [
@@ -45,7 +48,8 @@ const CHILDREN: [Children; 3] = [
     ],
 ];
 
-/// The same with the octahedron cut around the diagonal between the midpoints of 01 and 23.
+/// The children of a tetrahedron whose inner octahedron is cut around the diagonal between the
+/// midpoints of 01 and 23.
 const AROUND_01_23: Children = &[
     CHILDREN[2][0],
     CHILDREN[2][1],
@@ -57,7 +61,8 @@ const AROUND_01_23: Children = &[
     &[[0, 1], [0, 2], [1, 2], [2, 3]],
 ];
 
-/// The same with the octahedron cut around the diagonal between the midpoints of 03 and 12.
+/// The children of a tetrahedron whose inner octahedron is cut around the diagonal between the
+/// midpoints of 03 and 12.
 const AROUND_03_12: Children = &[
     CHILDREN[2][0],
     CHILDREN[2][1],
@@ -69,17 +74,17 @@ const AROUND_03_12: Children = &[
     &[[0, 1], [0, 3], [1, 2], [1, 3]],
 ];
 
-/// A diagonal is chosen over the one of Bey's rule only if it is shorter by more than this share:
-/// rounding must not decide between equal ones.
+/// Relative amount by which a diagonal must be shorter than that of Bey's rule to be preferred, above
+/// rounding errors of equal diagonals.
 const SHORTER: f64 = 1e-3;
 
-/// How a cell is cut. A tetrahedron is cut around the shortest diagonal of its inner octahedron, and
-/// where that is a tie around the one from the midpoint of 02 to that of 13.
+/// The children of a cell. A tetrahedron is cut around the shortest diagonal of its inner octahedron
+/// (S. Zhang, Houston J. Math. 21 (1995), 541-556); of equal diagonals around the one between the
+/// midpoints of 02 and 13 (J. Bey, Computing 55 (1995), 355-378).
 ///
-/// Sources: the latter is the rule of J. Bey, Computing 55 (1995), 355-378, under which a tetrahedron
-/// has descendants of at most three shapes; but it depends on the order of vertices, which in a mesh
-/// from a file is arbitrary, and may begin with the longest diagonal. The former is that of
-/// S. Zhang, Houston J. Math. 21 (1995), 541-556. Boxes cut by Kuhn's rule stay such boxes.
+/// Bey's rule alone makes at most three shapes of descendants, but depends on the order of vertices,
+/// which in a mesh from a file is arbitrary, and may choose the longest diagonal. Refined Kuhn
+/// triangulations of boxes are Kuhn triangulations.
 fn children<T: Real, const D: usize>(mesh: &Mesh<T, D>, cell: usize) -> Children {
     if D < 3 {
         return CHILDREN[D - 1];
@@ -96,11 +101,10 @@ fn children<T: Real, const D: usize>(mesh: &Mesh<T, D>, cell: usize) -> Children
     best.1
 }
 
-/// The coarse vertices whose midpoints the fine ones are, numbered by their pairs in lexicographic
-/// order.
+/// The parents of the fine vertices, in lexicographic order.
 ///
-/// This order makes the children's vertices, as they are listed, ascending, and for Bey's rule they
-/// are then in the order it needs for the next step.
+/// In this order of the fine vertices the lists of [`CHILDREN`] are ascending, and stand in the order
+/// on which Bey's rule depends.
 fn parents(edges: &Edges, n_vertices: usize) -> Vec<[u32; 2]> {
     let mut parents = in_large_pages(Vec::with_capacity(n_vertices + edges.len()));
     for a in 0..n_vertices as u32 {
@@ -110,14 +114,13 @@ fn parents(edges: &Edges, n_vertices: usize) -> Vec<[u32; 2]> {
     parents
 }
 
-/// Fine vertices at the vertices and midpoints of a cell: by the pair of its vertices they lie
-/// between.
+/// The fine vertices of a coarse cell: entry `i, j` is the midpoint of its vertices `i <= j`.
 fn midpoints<const D: usize>(edges: &Edges, cell: &[u32], numbers: &[u32]) -> [[u32; 4]; 4] {
     let mut midpoints = [[0; 4]; 4];
     for (i, &a) in cell.iter().enumerate() {
         midpoints[i][i] = a + edges.first_at(a);
     }
-    // the edges before number `k` make as many vertices, those up to vertex `a` another `a + 1`
+    // before the midpoint of edge `k` with lower vertex `a` stand `k` midpoints and `a + 1` vertices
     for (&[i, j], number) in edge_vertices(D).iter().zip(numbers) {
         midpoints[i][j] = cell[i] + 1 + number;
     }
@@ -133,7 +136,7 @@ impl<T: Real, const D: usize> Mesh<T, D> {
         let n_children = 1 << D;
         let n_fine = self.n_cells().saturating_mul(n_children);
         check_size(n_fine, 0)?;
-        let (edges, numbers) = Edges::numbered(self);
+        let (edges, numbers) = Edges::with_cell_edges(self);
         let parents = parents(&edges, self.vertices.len());
         check_size(n_fine, parents.len())?;
         let half = T::lit(0.5);
@@ -160,7 +163,7 @@ impl<T: Real, const D: usize> Mesh<T, D> {
         let mut boundary = Vec::with_capacity(self.boundary.len() << (D - 1));
         for facet in &self.boundary {
             for (k, child) in children(self, facet.cell as usize).iter().enumerate() {
-                // a fine facet lies on the coarse one if no vertex of it involves the opposite one
+                // a fine facet lies on the coarse facet if no parent of its vertices is the opposite vertex
                 let off = |v: &[usize; 2]| v.contains(&(facet.local as usize));
                 for local in 0..=D {
                     if child.iter().enumerate().all(|(i, v)| i == local || !off(v)) {

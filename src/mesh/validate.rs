@@ -1,10 +1,13 @@
-//! From lists to a mesh: every check that lets later code do without.
+//! The construction of a mesh from lists of vertices, cells and boundary facets, with all checks.
 
-use super::facets::CELL_LIMIT;
-use super::{BoundaryFacet, BoundaryPart, CellGeometry, Mesh, MeshError, Neighbour, Neighbours};
+use super::boundary::{BoundaryFacet, BoundaryPart};
+use super::error::MeshError;
+use super::facets::{CELL_LIMIT, Neighbour, Neighbours};
+use super::geometry::CellGeometry;
+use super::simplicial::Mesh;
 use crate::real::{Point, Real, point_f64};
 
-/// A facet and the boundary part it is said to belong to: its `D` vertices in any order.
+/// A facet of the boundary by its `D` vertices, in any order, and its part of the boundary.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct TaggedFacet<const D: usize> {
     /// The vertices.
@@ -41,13 +44,13 @@ impl<T: Real, const D: usize> Mesh<T, D> {
         Ok(Self { vertices, cells, boundary })
     }
 
-    /// Checks that every component of the mesh that hangs together through facets has a Dirichlet
-    /// or a contact facet, without which a problem without reaction is singular.
+    /// Checks that every component of the mesh, connected through facets, has a Dirichlet or a contact
+    /// facet: otherwise a problem without reaction is singular.
     ///
     /// # Errors
     /// [`MeshError::UnsupportedComponent`].
     pub fn check_supported(&self) -> Result<(), MeshError> {
-        let neighbours = Neighbours::of(self);
+        let neighbours = Neighbours::new(self);
         let mut seen = vec![false; self.n_cells()];
         let mut front = Vec::new();
         for first in 0..self.n_cells() {
@@ -111,7 +114,7 @@ pub(super) fn check_size(cells: usize, vertices: usize) -> Result<(), MeshError>
     Ok(())
 }
 
-/// A cell whose volume is rounding compared with its diameter cannot carry gradients.
+/// Refuses cells whose volume is at the rounding level of its diameter: their gradients are lost.
 fn check_volumes<T: Real, const D: usize>(
     vertices: &[Point<T, D>],
     cells: &[u32],
@@ -126,7 +129,7 @@ fn check_volumes<T: Real, const D: usize>(
             }
         }
         let scaled = volume / diameter.powi(D as i32);
-        // a volume that overflowed or vanished to nothing is no volume either
+        // overflow and underflow count as degenerate
         if scaled.is_nan() || scaled <= 8.0 * T::EPSILON {
             return Err(MeshError::DegenerateCell {
                 cell: c,
@@ -150,18 +153,18 @@ fn match_boundary<const D: usize>(
         let cell = &cells[c * (D + 1)..(c + 1) * (D + 1)];
         std::array::from_fn(|k| cell[k + usize::from(k >= local)])
     };
-    let sides = || (0..cells.len()).map(|k| (k / (D + 1), k % (D + 1)));
-    let mut open: Vec<([u32; D], usize, usize)> = sides()
-        .filter(|&(c, local)| neighbours.is_open(c, local))
+    let half_facets = || (0..cells.len()).map(|k| (k / (D + 1), k % (D + 1)));
+    let mut unmatched: Vec<([u32; D], usize, usize)> = half_facets()
+        .filter(|&(c, local)| neighbours.is_unmatched(c, local))
         .map(|(c, local)| (facet(c, local), c, local))
         .collect();
-    open.sort_unstable();
-    let mut parts: Vec<Option<BoundaryPart>> = vec![None; open.len()];
+    unmatched.sort_unstable();
+    let mut parts: Vec<Option<BoundaryPart>> = vec![None; unmatched.len()];
     for (tag, t) in tagged.iter().enumerate() {
         let mut key = t.vertices;
         key.sort_unstable();
-        let Ok(k) = open.binary_search_by(|o| o.0.cmp(&key)) else {
-            let inside = sides().any(|(c, local)| facet(c, local) == key);
+        let Ok(k) = unmatched.binary_search_by(|o| o.0.cmp(&key)) else {
+            let inside = half_facets().any(|(c, local)| facet(c, local) == key);
             let why = if inside { "lies between two cells" } else { "belongs to no cell" };
             let (vertices, part) = (key.to_vec(), t.part.name());
             return Err(MeshError::NotABoundaryFacet { vertices, part, why, tag });
@@ -178,8 +181,8 @@ fn match_boundary<const D: usize>(
             _ => parts[k] = Some(t.part),
         }
     }
-    let mut boundary = Vec::with_capacity(open.len());
-    for (&(key, cell, local), part) in open.iter().zip(parts) {
+    let mut boundary = Vec::with_capacity(unmatched.len());
+    for (&(key, cell, local), part) in unmatched.iter().zip(parts) {
         let Some(part) = part else {
             let sum = key.iter().fold(Point::<f64, D>::zeros(), |s, &v| s + vertices[v as usize]);
             let at = describe_point(&(sum / D as f64));

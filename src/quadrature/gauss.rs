@@ -1,12 +1,12 @@
 //! Gauss-Jacobi rules on the unit interval.
 
-/// Nodes and weights of the rule with `n` points for the weight `(a + 1) (1 - t)^a` on (0, 1), whose
-/// integral is one; exact to degree `2 n - 1`.
+/// Nodes and weights of the rule with `n` points for the weight function `(a + 1) (1 - t)^a` on
+/// (0, 1), exact to degree `2 n - 1`. The weights sum to one.
 ///
-/// Newton's method on the Jacobi polynomial, divided by the roots already found, from Chebyshev
-/// points; the weights from the derivative. Source: P. J. Davis, P. Rabinowitz, Methods of Numerical
+/// The nodes are found by Newton's method from Chebyshev points, on the Jacobi polynomial divided by
+/// the roots found before; the weights follow from its derivative. Source: P. J. Davis, P. Rabinowitz, Methods of Numerical
 /// Integration, 2nd ed., 1984, sections 2.7 and 6.
-pub fn gauss_jacobi(n: usize, a: usize) -> (Vec<f64>, Vec<f64>) {
+pub(super) fn gauss_jacobi(n: usize, a: usize) -> (Vec<f64>, Vec<f64>) {
     let a = a as f64;
     let mut roots: Vec<f64> = Vec::with_capacity(n);
     for k in 0..n {
@@ -16,8 +16,8 @@ pub fn gauss_jacobi(n: usize, a: usize) -> (Vec<f64>, Vec<f64>) {
         }
         for _ in 0..100 {
             let (p, dp) = jacobi(n, a, x);
-            let pull: f64 = roots.iter().map(|r| 1.0 / (x - r)).sum();
-            let step = p / (dp - p * pull);
+            let deflation: f64 = roots.iter().map(|r| 1.0 / (x - r)).sum();
+            let step = p / (dp - p * deflation);
             x -= step;
             if step.abs() < 1e-16 {
                 break;
@@ -57,4 +57,32 @@ fn jacobi(n: usize, a: f64, x: f64) -> (f64, f64) {
         (p0, d0, p1, d1) = (p1, d1, p2, d2);
     }
     (p1, d1)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::gauss_jacobi;
+    use proptest::prelude::*;
+
+    fn factorial(n: usize) -> f64 {
+        (1..=n).map(|k| k as f64).product()
+    }
+
+    proptest! {
+        #[test]
+        fn gauss_rules_integrate_random_polynomials(
+            n in 1_usize..12,
+            a in 0_usize..4,
+            c in prop::collection::vec(-1.0_f64..1.0, 1..24),
+        ) {
+            let (nodes, weights) = gauss_jacobi(n, a);
+            let c = &c[..c.len().min(2 * n)];
+            let value = |t: f64| c.iter().rev().fold(0.0, |s, &c| s * t + c);
+            let sum: f64 = nodes.iter().zip(&weights).map(|(&t, w)| w * value(t)).sum();
+            // mean of t^k under (a + 1)(1 - t)^a
+            let mean = |k: usize| factorial(k) * factorial(a + 1) / factorial(k + a + 1);
+            let exact: f64 = c.iter().enumerate().map(|(k, c)| c * mean(k)).sum();
+            prop_assert!((sum - exact).abs() < 1e-13);
+        }
+    }
 }

@@ -1,14 +1,11 @@
 //! Orthonormal polynomials on simplices.
 
-use super::Rule;
+use super::rule::Rule;
 
-/// Polynomials on the simplex of some dimension, orthonormal in the mean: the mean of the product
-/// of two of them is one if they are the same and zero if not.
-///
-/// They are sorted by degree and each is orthogonal to all polynomials of lower degree, so the
-/// first ones span the polynomials of any lower degree. The first is the constant one.
+/// Polynomials on the simplex of some dimension, sorted by degree and orthonormal in the inner product
+/// `(p, q)` = mean of `p q`. The first polynomial is the constant one.
 #[derive(Clone, Debug)]
-pub struct OrthonormalPolynomials {
+pub(crate) struct OrthonormalPolynomials {
     /// Powers of the first barycentric coordinates, by degree.
     powers: Vec<[i32; 3]>,
     /// Row by row, the coefficients of the powers.
@@ -22,7 +19,7 @@ impl OrthonormalPolynomials {
     /// If the dimension is above three.
     pub fn new(dimension: usize, degree: usize) -> Self {
         let powers = powers(dimension, degree);
-        let rule = Rule::of_degree(dimension, 2 * degree);
+        let rule = Rule::new(dimension, 2 * degree);
         let mean = |a: &[f64], b: &[f64]| -> f64 {
             let value = |row: &[f64], point| -> f64 {
                 powers.iter().zip(row).map(|(p, c)| c * power(point, p)).sum()
@@ -45,13 +42,9 @@ impl OrthonormalPolynomials {
         }
         Self { powers, coefficients }
     }
-    /// How many there are.
+    /// Number of polynomials.
     pub fn len(&self) -> usize {
         self.powers.len()
-    }
-    /// Whether there is none; never so.
-    pub fn is_empty(&self) -> bool {
-        self.powers.is_empty()
     }
     /// The degree of polynomial `k`.
     pub fn degree(&self, k: usize) -> usize {
@@ -90,7 +83,7 @@ mod tests {
                 let basis = OrthonormalPolynomials::new(dimension, degree);
                 let count = (1..=dimension).fold(1, |c, k| c * (degree + k) / k);
                 assert_eq!(basis.len(), count);
-                let rule = Rule::of_degree(dimension, 2 * degree);
+                let rule = Rule::new(dimension, 2 * degree);
                 for i in 0..count {
                     assert!(i == 0 || basis.degree(i) >= basis.degree(i - 1));
                     for j in 0..count {

@@ -1,6 +1,7 @@
 //! A membrane over a ball.
 
-use super::{Scene, free_boundary};
+use super::free_boundary;
+use super::scene::Scene;
 use crate::mesh::{BoxDomain, Domain};
 use crate::problem::{Exact, Problem};
 use crate::real::Point;
@@ -28,8 +29,7 @@ const A_ON_DISC: f64 = 0.348_982_574_111_686_8;
 /// increases, since `-r psi'` does, on sphere and cone alike; so `u > psi` for `r > a`.
 ///
 /// The second normal derivative jumps across `r = a`: `u` lies in `C^{1,1}` and in `H^s` for
-/// `s < 5/2`. With a curved obstacle and no load, discrete contact rests on the obstacle's
-/// curvature alone.
+/// `s < 5/2`. Without a load the multiplier is due to the curvature of the obstacle alone.
 pub fn ball_2d() -> Scene<2> {
     let dome = Dome { radius: 1.0, skirt: 0.9, contact: A_IN_PLANE };
     let summary = "no load, the obstacle is a ball; contact in a disc";
@@ -37,9 +37,9 @@ pub fn ball_2d() -> Scene<2> {
     over(dome, "ball-2d", summary, BoxDomain::centred(2.0).into(), Problem::new(), outside)
 }
 
-/// The same in space: an unloaded body on `(-2, 2)^3` held up by the same obstacle.
+/// [`ball_2d`] in space: an unloaded body on `(-2, 2)^3` over the unit ball.
 ///
-/// Here `u = A (1/r - 1/2)` for `r > a`, which is harmonic. The slopes agree for
+/// The solution is `u = A (1/r - 1/2)` for `r > a`, which is harmonic. The slopes agree for
 /// `A = a^3/sqrt(1 - a^2)`, then the values do if `2a^2 - a^3/2 = 1`: `a = 0.78924`. The multiplier
 /// is `(3 - 2 r^2)/(1 - r^2)^{3/2} > 0`; `u > psi` for `r > a`, as `r^2 (u - psi)'` increases.
 pub fn ball_3d() -> Scene<3> {
@@ -49,12 +49,12 @@ pub fn ball_3d() -> Scene<3> {
     over(dome, "ball-3d", summary, BoxDomain::centred(2.0).into(), Problem::new(), outside)
 }
 
-/// The same on the unit disc, `u = 0` on the circle, over the ball of radius 1/2, its tangent cone
-/// beyond `r = 9/20`; example 36 of the library MFEM.
+/// [`ball_2d`] on the unit disc: `u = 0` on the circle, over the ball of radius 1/2 and its tangent
+/// cone beyond `r = 9/20`; example 36 of the library MFEM.
 ///
-/// Here `u = A ln(1/r)` for `r > a`. The slopes agree for `A = a^2/sqrt(1/4 - a^2)`, then the
+/// The solution is `u = A ln(1/r)` for `r > a`. The slopes agree for `A = a^2/sqrt(1/4 - a^2)`, then the
 /// values do if `a^2 ln(1/a) = 1/4 - a^2`: `a = 0.34898`. Meshes are polygons inside the disc, on
-/// whose sides the datum is zero and the solution is not; the error of that is of second order.
+/// whose sides the datum is zero and the solution is not, an error of second order.
 pub fn disc_2d() -> Scene<2> {
     let dome = Dome { radius: 0.5, skirt: 0.45, contact: A_ON_DISC };
     let summary = "circular membrane, no load, the obstacle is a ball; curved boundary";
@@ -63,7 +63,8 @@ pub fn disc_2d() -> Scene<2> {
     over(dome, "disc-2d", summary, Domain::Disc { radius: 1.0 }, problem, outside)
 }
 
-/// A sphere with its tangent cone, and the radius up to which it is touched.
+/// The obstacle of a sphere of this radius up to `r = skirt` and its tangent cone beyond, and the radius
+/// of contact.
 #[derive(Clone, Copy)]
 struct Dome {
     radius: f64,
@@ -124,6 +125,6 @@ fn over<const D: usize>(
         problem: problem
             .obstacle_below(move |x: &Point<f64, D>| dome.height(x.norm()))
             .solved_by(exact),
-        regularity: Regularity { sobolev: 2.5, strictly_complementary: true },
+        regularity: Regularity::new(2.5),
     }
 }

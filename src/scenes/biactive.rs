@@ -1,7 +1,7 @@
 //! Contact without force on a set of positive measure.
 
-use super::Scene;
-use super::differential::positive_power;
+use super::dual_number::positive_power;
+use super::scene::Scene;
 use crate::mesh::BoxDomain;
 use crate::problem::{Exact, Problem};
 use crate::real::Point;
@@ -12,7 +12,7 @@ use crate::scheme::Regularity;
 /// `f = -12 max(x, 0)^2`.
 ///
 /// `-Laplace u = f` holds everywhere, so the multiplier vanishes: the membrane touches the half
-/// `x <= 0` without force, and data do not tell the contact set. `u` lies in `H^s` for `s < 9/2`.
+/// `x <= 0` without force, and the data do not determine the contact set. `u` lies in `H^s` for `s < 9/2`.
 pub fn biactive_half_2d() -> Scene<2> {
     let power = |x: &Point<f64, 2>| positive_power(x[0], 4);
     Scene {
@@ -23,17 +23,18 @@ pub fn biactive_half_2d() -> Scene<2> {
             Exact::new(move |x| power(x)[0], move |x| Point::from([power(x)[1], 0.0]))
                 .with_multiplier(|_| 0.0),
         ),
-        regularity: Regularity { sobolev: 4.5, strictly_complementary: false },
+        regularity: Regularity::new(4.5).not_strictly_complementary(),
     }
 }
 
-/// The third example there: contact without force in a ring, with force around it.
+/// The third example of Keith and Surowiec, see [`biactive_half_2d`]: contact without force in a ring,
+/// with force around it.
 ///
 /// On `(-1, 1)^2` with `psi = 0` the solution is `u = 256 s^4`, `s = max(1/4 - r^2, 0)`. The load
 /// is `-Laplace u = -256 (48 r^2 s^2 - 16 s^3)` for `r^2 < 1/4`, zero up to `r^2 = 3/4` and -1
 /// beyond, where the multiplier is 1; elsewhere it vanishes. `u` lies in `H^s` for `s < 9/2`.
 pub fn biactive_ring_2d() -> Scene<2> {
-    // by s: with |grad s|^2 = 4 r^2 and Laplace s = -4
+    // derivatives with respect to s, where |grad s|^2 = 4 r^2 and Laplace s = -4
     let power = |x: &Point<f64, 2>| positive_power(0.25 - x.norm_squared(), 4);
     let outside = |x: &Point<f64, 2>| x.norm_squared() > 0.75;
     let source = move |x: &Point<f64, 2>| {
@@ -48,6 +49,6 @@ pub fn biactive_ring_2d() -> Scene<2> {
         summary: "a hill within a ring of contact without force within contact with force",
         domain: BoxDomain::centred(1.0).into(),
         problem: Problem::new().source(source).obstacle_below(|_| 0.0).solved_by(exact),
-        regularity: Regularity { sobolev: 4.5, strictly_complementary: false },
+        regularity: Regularity::new(4.5).not_strictly_complementary(),
     }
 }

@@ -2,7 +2,7 @@
 
 use std::f64::consts::{FRAC_PI_4, PI, SQRT_2};
 
-use super::Scene;
+use super::scene::Scene;
 use crate::mesh::BoxDomain;
 use crate::problem::{Exact, Problem};
 use crate::real::Point;
@@ -47,6 +47,6 @@ pub fn bilateral_1d() -> Scene<1> {
             .obstacle_below(|_| -M)
             .obstacle_above(|_| M)
             .solved_by(exact),
-        regularity: Regularity { sobolev: 2.5, strictly_complementary: true },
+        regularity: Regularity::new(2.5),
     }
 }

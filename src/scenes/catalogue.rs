@@ -2,9 +2,10 @@
 
 use std::ops::RangeInclusive;
 
+use super::scene::Scene;
 use super::{
-    Parameters, Scene, ball_2d, ball_3d, biactive_half_2d, biactive_ring_2d, bilateral_1d, cone,
-    contrast, contrast_disc_2d, degenerate, disc_2d, hertz_2d, hertz_3d, icelike_1d, lshape_2d,
+    ball_2d, ball_3d, biactive_half_2d, biactive_ring_2d, bilateral_1d, cone, contrast,
+    contrast_disc_2d, degenerate, disc_2d, hertz_2d, hertz_3d, icelike_1d, lshape_2d,
     oscillating_1d, parabola_1d, polynomial, pyramid_2d, pyramid_full_2d, radial,
     radial_quarter_2d, ridge, signorini_2d, signorini_biactive_2d, signorini_closed_1d,
     signorini_disc, signorini_grazing_1d, signorini_harmonic, signorini_irrational_2d,
@@ -14,63 +15,63 @@ use super::{
 };
 use crate::error::Error;
 
-/// All registered scenes: obstacle problems first, those without a closed solution last among them,
-/// then Signorini problems in one, two and three dimensions. Registering a scene is one line here.
+/// All registered scenes: obstacle problems, those without a solution in closed form last, then
+/// Signorini problems in one, two and three dimensions. A line of the list registers a scene.
 pub fn catalogue() -> Vec<Entry> {
     vec![
-        Entry::fixed(parabola_1d),
-        Entry::fixed(icelike_1d),
-        Entry::fixed(oscillating_1d),
-        Entry::fixed(bilateral_1d),
-        Entry::fixed(ridge::<1>),
-        Entry::fixed(ridge::<2>),
-        Entry::fixed(ridge::<3>),
-        Entry::scaled(radial::<1>),
-        Entry::scaled(radial::<2>),
-        Entry::scaled(radial::<3>),
-        Entry::fixed(radial_quarter_2d),
-        Entry::fixed(polynomial::<1>),
-        Entry::fixed(polynomial::<2>),
-        Entry::fixed(polynomial::<3>),
-        Entry::fixed(ball_2d),
-        Entry::fixed(ball_3d),
-        Entry::fixed(disc_2d),
-        Entry::fixed(biactive_half_2d),
-        Entry::fixed(biactive_ring_2d),
-        Entry::fixed(lshape_2d),
-        Entry::fixed(cone::<2>),
-        Entry::fixed(cone::<3>),
-        Entry::fixed(pyramid_full_2d),
-        Entry::fixed(|| degenerate(2)),
-        Entry::fixed(|| degenerate(3)),
-        Entry::fixed(|| degenerate(4)),
-        Entry::contrasted(1e6, contrast::<1>),
-        Entry::contrasted(1e6, contrast::<2>),
-        Entry::contrasted(1e6, contrast_disc_2d),
-        Entry::fixed(spiral_2d),
-        Entry::loaded(5.0, torsion_2d),
-        Entry::loaded(-4.0, pyramid_2d),
-        Entry::fixed(signorini_reaction_1d),
-        Entry::fixed(signorini_open_1d),
-        Entry::fixed(signorini_closed_1d),
-        Entry::fixed(signorini_grazing_1d),
-        Entry::fixed(signorini_harmonic::<2>),
-        Entry::fixed(signorini_2d),
-        Entry::fixed(signorini_shifted_2d),
-        Entry::fixed(signorini_irrational_2d),
-        Entry::fixed(|| signorini_smooth(2)),
-        Entry::fixed(|| signorini_smooth(3)),
-        Entry::fixed(|| signorini_smooth(4)),
-        Entry::fixed(signorini_biactive_2d),
-        Entry::fixed(hertz_2d),
-        Entry::fixed(signorini_two_2d),
-        Entry::contrasted(1e4, signorini_layers_2d),
-        Entry::fixed(signorini_sine_2d),
-        Entry::fixed(signorini_harmonic::<3>),
-        Entry::fixed(signorini_line_3d),
-        Entry::fixed(|| signorini_disc(2)),
-        Entry::fixed(|| signorini_disc(3)),
-        Entry::fixed(hertz_3d),
+        Entry::new(parabola_1d),
+        Entry::new(icelike_1d),
+        Entry::new(oscillating_1d),
+        Entry::new(bilateral_1d),
+        Entry::new(ridge::<1>),
+        Entry::new(ridge::<2>),
+        Entry::new(ridge::<3>),
+        Entry::with_scale(radial::<1>),
+        Entry::with_scale(radial::<2>),
+        Entry::with_scale(radial::<3>),
+        Entry::new(radial_quarter_2d),
+        Entry::new(polynomial::<1>),
+        Entry::new(polynomial::<2>),
+        Entry::new(polynomial::<3>),
+        Entry::new(ball_2d),
+        Entry::new(ball_3d),
+        Entry::new(disc_2d),
+        Entry::new(biactive_half_2d),
+        Entry::new(biactive_ring_2d),
+        Entry::new(lshape_2d),
+        Entry::new(cone::<2>),
+        Entry::new(cone::<3>),
+        Entry::new(pyramid_full_2d),
+        Entry::new(|| degenerate(2)),
+        Entry::new(|| degenerate(3)),
+        Entry::new(|| degenerate(4)),
+        Entry::with_contrast(1e6, contrast::<1>),
+        Entry::with_contrast(1e6, contrast::<2>),
+        Entry::with_contrast(1e6, contrast_disc_2d),
+        Entry::new(spiral_2d),
+        Entry::with_load(5.0, torsion_2d),
+        Entry::with_load(-4.0, pyramid_2d),
+        Entry::new(signorini_reaction_1d),
+        Entry::new(signorini_open_1d),
+        Entry::new(signorini_closed_1d),
+        Entry::new(signorini_grazing_1d),
+        Entry::new(signorini_harmonic::<2>),
+        Entry::new(signorini_2d),
+        Entry::new(signorini_shifted_2d),
+        Entry::new(signorini_irrational_2d),
+        Entry::new(|| signorini_smooth(2)),
+        Entry::new(|| signorini_smooth(3)),
+        Entry::new(|| signorini_smooth(4)),
+        Entry::new(signorini_biactive_2d),
+        Entry::new(hertz_2d),
+        Entry::new(signorini_two_2d),
+        Entry::with_contrast(1e4, signorini_layers_2d),
+        Entry::new(signorini_sine_2d),
+        Entry::new(signorini_harmonic::<3>),
+        Entry::new(signorini_line_3d),
+        Entry::new(|| signorini_disc(2)),
+        Entry::new(|| signorini_disc(3)),
+        Entry::new(hertz_3d),
     ]
 }
 
@@ -80,6 +81,7 @@ pub fn by_name(name: &str) -> Option<Entry> {
 }
 
 /// A scene of any dimension.
+#[derive(Debug)]
 pub enum AnyScene {
     /// In one dimension.
     One(Scene<1>),
@@ -107,9 +109,45 @@ impl From<Scene<3>> for AnyScene {
     }
 }
 
-/// Which parameters a scene takes.
+/// Parameters of a scene, each absent where the default of the scene is meant. None is ignored
+/// silently: [`Entry::make`] refuses what [`Entry::accepts`] does not list.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[non_exhaustive]
+pub struct Parameters {
+    /// Length scale of the domain.
+    pub scale: Option<f64>,
+    /// Ratio of coefficients.
+    pub contrast: Option<f64>,
+    /// Size of the load.
+    pub load: Option<f64>,
+}
+
+impl Parameters {
+    /// No parameter: every scene with its defaults.
+    pub fn new() -> Self {
+        Self::default()
+    }
+    /// Sets the length scale of the domain.
+    #[must_use]
+    pub fn with_scale(self, scale: impl Into<Option<f64>>) -> Self {
+        Self { scale: scale.into(), ..self }
+    }
+    /// Sets the ratio of coefficients.
+    #[must_use]
+    pub fn with_contrast(self, contrast: impl Into<Option<f64>>) -> Self {
+        Self { contrast: contrast.into(), ..self }
+    }
+    /// Sets the size of the load.
+    #[must_use]
+    pub fn with_load(self, load: impl Into<Option<f64>>) -> Self {
+        Self { load: load.into(), ..self }
+    }
+}
+
+/// Which parameters a scene accepts.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Takes {
+#[non_exhaustive]
+pub struct AcceptedParameters {
     /// The length scale of the domain.
     pub scale: bool,
     /// The ratio of coefficients.
@@ -118,7 +156,8 @@ pub struct Takes {
     pub load: bool,
 }
 
-/// A scene that can be listed and made.
+/// A registered scene: what lists show of it, and a function that builds it.
+#[non_exhaustive]
 pub struct Entry {
     /// The name users type.
     pub name: String,
@@ -126,89 +165,104 @@ pub struct Entry {
     pub summary: &'static str,
     /// Dimension of space.
     pub dimension: usize,
-    /// Parameters the scene takes.
-    pub takes: Takes,
+    /// Parameters the scene accepts.
+    pub accepts: AcceptedParameters,
     build: Box<dyn Fn(&Parameters) -> AnyScene + Send + Sync>,
 }
 
-/// Scales whose square and cube, and the reciprocals of these, are ordinary numbers.
+impl std::fmt::Debug for Entry {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let Self { name, summary, dimension, accepts, build: _ } = self;
+        f.debug_struct("Entry")
+            .field("name", name)
+            .field("summary", summary)
+            .field("dimension", dimension)
+            .field("accepts", accepts)
+            .finish_non_exhaustive()
+    }
+}
+
+/// Scales whose squares and cubes neither overflow nor underflow.
 const SCALES: RangeInclusive<f64> = 1e-100..=1e100;
-/// Contrasts that neither overflow nor vanish in the solution.
+/// Contrasts for which the solution neither overflows nor underflows.
 const CONTRASTS: RangeInclusive<f64> = 1e-100..=1e100;
 
 impl Entry {
     /// A scene without parameters.
-    pub fn fixed<S: Into<AnyScene>>(build: impl Fn() -> S + Send + Sync + 'static) -> Self {
-        Self::new(Takes::default(), move |_| build().into())
+    pub fn new<S: Into<AnyScene>>(build: impl Fn() -> S + Send + Sync + 'static) -> Self {
+        Self::from_parameters(AcceptedParameters::default(), move |_| build().into())
     }
-    /// A scene that takes a length scale; one where the user gives none.
-    pub fn scaled<S: Into<AnyScene>>(build: impl Fn(f64) -> S + Send + Sync + 'static) -> Self {
-        let takes = Takes { scale: true, ..Takes::default() };
-        Self::new(takes, move |p| build(p.scale.unwrap_or(1.0)).into())
+    /// A scene that accepts a length scale, one by default.
+    pub fn with_scale<S: Into<AnyScene>>(build: impl Fn(f64) -> S + Send + Sync + 'static) -> Self {
+        let accepts = AcceptedParameters { scale: true, ..AcceptedParameters::default() };
+        Self::from_parameters(accepts, move |p| build(p.scale.unwrap_or(1.0)).into())
     }
-    /// A scene that takes a ratio of coefficients, with the one for users who give none.
-    pub fn contrasted<S: Into<AnyScene>>(
+    /// A scene that accepts a ratio of coefficients, and its default.
+    pub fn with_contrast<S: Into<AnyScene>>(
         default: f64,
         build: impl Fn(f64) -> S + Send + Sync + 'static,
     ) -> Self {
-        let takes = Takes { contrast: true, ..Takes::default() };
-        Self::new(takes, move |p| build(p.contrast.unwrap_or(default)).into())
+        let accepts = AcceptedParameters { contrast: true, ..AcceptedParameters::default() };
+        Self::from_parameters(accepts, move |p| build(p.contrast.unwrap_or(default)).into())
     }
-    /// A scene that takes the size of its load, with the one for users who give none.
-    pub fn loaded<S: Into<AnyScene>>(
+    /// A scene that accepts the size of its load, and its default.
+    pub fn with_load<S: Into<AnyScene>>(
         default: f64,
         build: impl Fn(f64) -> S + Send + Sync + 'static,
     ) -> Self {
-        let takes = Takes { load: true, ..Takes::default() };
-        Self::new(takes, move |p| build(p.load.unwrap_or(default)).into())
+        let accepts = AcceptedParameters { load: true, ..AcceptedParameters::default() };
+        Self::from_parameters(accepts, move |p| build(p.load.unwrap_or(default)).into())
     }
-    /// Name, summary and dimension are read off the scene itself, so that they stand in one place.
-    fn new(takes: Takes, build: impl Fn(&Parameters) -> AnyScene + Send + Sync + 'static) -> Self {
+    /// An entry whose name, summary and dimension are those of the scene with its defaults.
+    fn from_parameters(
+        accepts: AcceptedParameters,
+        build: impl Fn(&Parameters) -> AnyScene + Send + Sync + 'static,
+    ) -> Self {
         let (name, summary, dimension) = match build(&Parameters::default()) {
             AnyScene::One(scene) => (scene.name, scene.summary, 1),
             AnyScene::Two(scene) => (scene.name, scene.summary, 2),
             AnyScene::Three(scene) => (scene.name, scene.summary, 3),
         };
-        Self { name, summary, dimension, takes, build: Box::new(build) }
+        Self { name, summary, dimension, accepts, build: Box::new(build) }
     }
 
     /// The scene with these parameters.
     ///
     /// # Errors
     ///
-    /// [`Error::Parameter`] for a parameter the scene does not take, a scale that is not positive
+    /// [`Error::Parameter`] for a parameter the scene does not accept, a scale that is not positive
     /// and finite (or so large or small that its cube is not), a contrast likewise, and a
     /// load that is not finite.
     pub fn make(&self, parameters: &Parameters) -> Result<AnyScene, Error> {
         let Parameters { scale, contrast, load } = *parameters;
-        self.admit(
+        self.check_parameter(
             "scale",
-            self.takes.scale,
+            self.accepts.scale,
             scale,
             "positive and finite, 1e-100 to 1e100",
             |x| SCALES.contains(&x),
         )?;
-        self.admit(
+        self.check_parameter(
             "contrast",
-            self.takes.contrast,
+            self.accepts.contrast,
             contrast,
             "positive and finite, 1e-100 to 1e100",
             |x| CONTRASTS.contains(&x),
         )?;
-        self.admit("load", self.takes.load, load, "finite", f64::is_finite)?;
+        self.check_parameter("load", self.accepts.load, load, "finite", f64::is_finite)?;
         Ok((self.build)(parameters))
     }
 
-    fn admit(
+    fn check_parameter(
         &self,
         parameter: &'static str,
-        taken: bool,
+        accepted: bool,
         value: Option<f64>,
         range: &str,
         is_in_range: impl Fn(f64) -> bool,
     ) -> Result<(), Error> {
         let Some(value) = value else { return Ok(()) };
-        let allowed = if !taken {
+        let allowed = if !accepted {
             format!("scene {} takes no {parameter}", self.name)
         } else if !is_in_range(value) {
             format!("must be {range}")

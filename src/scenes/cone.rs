@@ -2,7 +2,8 @@
 
 use std::f64::consts::LN_2;
 
-use super::{Scene, free_boundary};
+use super::free_boundary;
+use super::scene::Scene;
 use crate::mesh::BoxDomain;
 use crate::problem::{Exact, Problem};
 use crate::real::Point;
@@ -44,9 +45,6 @@ pub fn cone<const D: usize>() -> Scene<D> {
                 .with_multiplier(multiplier)
                 .with_contact(|x| A - x.norm(), free_boundary::sphere(A, 2.0)),
         ),
-        regularity: Regularity {
-            sobolev: if D == 2 { 2.0 } else { 2.5 },
-            strictly_complementary: true,
-        },
+        regularity: Regularity::new(if D == 2 { 2.0 } else { 2.5 }),
     }
 }

@@ -1,6 +1,7 @@
 //! Membranes of two materials.
 
-use super::{Scene, free_boundary};
+use super::free_boundary;
+use super::scene::Scene;
 use crate::mesh::BoxDomain;
 use crate::problem::{Exact, Problem};
 use crate::real::Point;
@@ -43,7 +44,7 @@ pub fn contrast<const D: usize>(contrast: f64) -> Scene<D> {
                     .with_multiplier(|x| if x[0] <= 0.25 { 1.0 } else { 0.0 })
                     .with_contact(|x| 0.25 - x[0], free_boundary),
             ),
-        regularity: Regularity { sobolev: 1.5, strictly_complementary: true },
+        regularity: Regularity::new(1.5),
     }
 }
 
@@ -84,6 +85,6 @@ pub fn contrast_disc_2d(contrast: f64) -> Scene<2> {
                     .with_multiplier(|x| if x.norm() <= A { 2.0 } else { 0.0 })
                     .with_contact(|x| A - x.norm(), free_boundary::sphere(A, 3.0)),
             ),
-        regularity: Regularity { sobolev: 1.5, strictly_complementary: true },
+        regularity: Regularity::new(1.5),
     }
 }

@@ -4,9 +4,9 @@ use std::f64::consts::{PI, TAU};
 
 use crate::real::Point;
 
-/// Distance of neighbours on a curve, relative to the side of the domain.
+/// Distance of neighbouring points on a curve, relative to the side of the domain.
 const ON_CURVES: f64 = 1.0 / 500.0;
-/// The same on a surface, of which meshes in space resolve less.
+/// Distance of neighbouring points on a surface, relative to the side of the domain.
 const ON_SURFACES: f64 = 1.0 / 100.0;
 
 /// Points of the sphere of this radius around the origin, in a domain of this side: two in one

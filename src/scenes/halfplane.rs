@@ -9,7 +9,7 @@ use nalgebra::Complex;
 
 /// The complex number `x + iy`, with `y` below zero (and minus zero) taken as zero.
 ///
-/// `f64::max` would not do: it may return either of `0.0` and `-0.0`.
+/// `f64::max` is not used because it may return either of `0.0` and `-0.0`.
 pub(super) fn point(x: f64, y: f64) -> Complex<f64> {
     Complex::new(x, if y <= 0.0 { 0.0 } else { y })
 }

@@ -2,7 +2,8 @@
 
 use nalgebra::Complex;
 
-use super::{Scene, halfplane};
+use super::halfplane;
+use super::scene::Scene;
 use crate::mesh::BoxDomain;
 use crate::problem::{Exact, Problem};
 use crate::real::Point;
@@ -49,7 +50,7 @@ pub fn hertz_2d() -> Scene<2> {
         summary: "Signorini without load, parabolic gap, contact on a segment",
         domain: BoxDomain::above_contact().into(),
         problem: Problem::new().signorini(|x| -x[0] * x[0] / 2.0).solved_by(exact),
-        regularity: Regularity { sobolev: 2.5, strictly_complementary: true },
+        regularity: Regularity::new(2.5),
     }
 }
 

@@ -2,7 +2,8 @@
 
 use std::f64::consts::PI;
 
-use super::{Scene, free_boundary};
+use super::free_boundary;
+use super::scene::Scene;
 use crate::mesh::BoxDomain;
 use crate::problem::{Exact, Problem};
 use crate::real::Point;
@@ -51,7 +52,7 @@ pub fn hertz_3d() -> Scene<3> {
         problem: Problem::new()
             .signorini(|x| A * A - (x[0] * x[0] + x[1] * x[1]) / 2.0)
             .solved_by(exact),
-        regularity: Regularity { sobolev: 2.5, strictly_complementary: true },
+        regularity: Regularity::new(2.5),
     }
 }
 

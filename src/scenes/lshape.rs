@@ -2,7 +2,7 @@
 
 use std::f64::consts::{FRAC_PI_2, FRAC_PI_4};
 
-use super::Scene;
+use super::scene::Scene;
 use crate::mesh::Domain;
 use crate::problem::{Exact, Problem};
 use crate::real::Point;
@@ -58,12 +58,12 @@ pub fn lshape_2d() -> Scene<2> {
             .source(source)
             .obstacle_below(|_| 0.0)
             .solved_by(Exact::new(value, gradient).with_multiplier(pressed)),
-        regularity: Regularity { sobolev: 5.0 / 3.0, strictly_complementary: false },
+        regularity: Regularity::new(5.0 / 3.0).not_strictly_complementary(),
     }
 }
 
-/// Distance from the corner and angle from the positive `x` axis. The angle is measured from the
-/// middle of the domain, so that its jump lies in the middle of what is cut out and not on the
+/// Distance from the corner and angle from the positive `x` axis. `atan2` is applied to the angle from
+/// the bisector of the domain: its branch cut bisects the removed quadrant and does not lie on the
 /// boundary, where rounding errors would cross it.
 fn polar(x: &Point<f64, 2>) -> (f64, f64) {
     let middle = FRAC_PI_2 + FRAC_PI_4;
@@ -82,7 +82,7 @@ fn cut_off(r: f64) -> [f64; 3] {
         return [0.0; 3];
     }
     let s = 1.0 - t;
-    // of the value the form without cancellation near t = 1
+    // this form has no cancellation near t = 1
     let value = s * s * s * (1.0 + 3.0 * t + 6.0 * t * t);
     [value, -60.0 * t * t * s * s, -240.0 * t * s * (1.0 - 2.0 * t)]
 }

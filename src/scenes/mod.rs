@@ -1,9 +1,8 @@
-//! The catalogue: named inequalities, most with an exact solution.
+//! The catalogue: named variational inequalities, most of them with an exact solution.
 //!
-//! A scene is a function that returns a [`Scene`], alone in a file or with those that share its
-//! formula; the derivation of its solution stands in its doc comment, and [`check_scene`] tests
-//! that derivation numerically. It is registered by one line in [`catalogue`]; a scene that is not
-//! registered works as well, for a [`Scene`] is a plain value.
+//! A scene is a function that returns a [`Scene`]; scenes with a common formula share a file. The doc
+//! comment of the function derives the solution, and [`check_scene`] tests the derivation numerically.
+//! A scene is registered by one line in [`catalogue`]; studies also run scenes that are not registered.
 
 mod ball;
 mod biactive;
@@ -12,7 +11,7 @@ mod catalogue;
 pub mod check;
 mod cone;
 mod contrast;
-mod differential;
+mod dual_number;
 mod free_boundary;
 mod halfplane;
 mod hertz;
@@ -22,6 +21,7 @@ mod oscillating;
 mod polynomial;
 mod radial;
 mod ridge;
+mod scene;
 mod signorini;
 mod signorini_harmonic;
 mod signorini_layers;
@@ -33,7 +33,7 @@ mod without_solution;
 pub use ball::{ball_2d, ball_3d, disc_2d};
 pub use biactive::{biactive_half_2d, biactive_ring_2d};
 pub use bilateral::bilateral_1d;
-pub use catalogue::{AnyScene, Entry, Takes, by_name, catalogue};
+pub use catalogue::{AcceptedParameters, AnyScene, Entry, Parameters, by_name, catalogue};
 pub use check::check_scene;
 pub use cone::cone;
 pub use contrast::{contrast, contrast_disc_2d};
@@ -44,6 +44,7 @@ pub use oscillating::oscillating_1d;
 pub use polynomial::{degenerate, polynomial};
 pub use radial::{radial, radial_quarter_2d};
 pub use ridge::{pyramid_full_2d, ridge};
+pub use scene::Scene;
 pub use signorini::{
     signorini_2d, signorini_irrational_2d, signorini_line_3d, signorini_shifted_2d,
     signorini_two_2d,
@@ -56,33 +57,3 @@ pub use signorini_string::{
 };
 pub use strings::{icelike_1d, parabola_1d};
 pub use without_solution::{pyramid_2d, signorini_sine_2d, spiral_2d, torsion_2d};
-
-use crate::mesh::Domain;
-use crate::problem::Problem;
-use crate::scheme::Regularity;
-
-/// A named inequality on a domain.
-pub struct Scene<const D: usize> {
-    /// The name users type.
-    pub name: String,
-    /// One line for lists.
-    pub summary: &'static str,
-    /// The built-in domain.
-    pub domain: Domain<D>,
-    /// The data.
-    pub problem: Problem<D>,
-    /// What is known of the solution's regularity.
-    pub regularity: Regularity,
-}
-
-/// Parameters a scene may take from the user. None is ignored silently: [`Entry::make`] refuses
-/// what [`Entry::takes`] does not list.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Parameters {
-    /// Length scale of the domain.
-    pub scale: Option<f64>,
-    /// Ratio of coefficients.
-    pub contrast: Option<f64>,
-    /// Size of the load.
-    pub load: Option<f64>,
-}

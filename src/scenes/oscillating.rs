@@ -2,7 +2,7 @@
 
 use std::f64::consts::PI;
 
-use super::Scene;
+use super::scene::Scene;
 use crate::mesh::BoxDomain;
 use crate::problem::{Exact, Problem};
 use crate::real::Point;
@@ -34,7 +34,7 @@ const A3: f64 = 6.743_534_077_192_142;
 /// and `x3`, `a3` are fixed by `u = 1`, `u' = 0` at `x0` and `x3`. The multiplier is `-f < 0` on
 /// the two contact intervals. *Below the ceiling*: `2 sin(kx) - 1 <= 1`. Between the intervals `u`
 /// touches the ceiling at the isolated points `0.05 + m/5` without force; these do not count as
-/// contact. There an active set may change for ever by rounding errors. `C^{1,1}`, `H^s` for
+/// contact. There rounding errors may make an active set method cycle. `C^{1,1}`, `H^s` for
 /// `s < 5/2`.
 pub fn oscillating_1d() -> Scene<1> {
     let load = |x: f64| 2.0 * K * K * (K * x).sin();
@@ -63,6 +63,6 @@ pub fn oscillating_1d() -> Scene<1> {
             .source(move |x| load(x[0]))
             .obstacle_above(|_| 1.0)
             .solved_by(exact),
-        regularity: Regularity { sobolev: 2.5, strictly_complementary: true },
+        regularity: Regularity::new(2.5),
     }
 }

@@ -1,7 +1,8 @@
 //! Powers of `r^2 - r0^2` over a plane obstacle, with and without force on the contact ball.
 
-use super::differential::{Jet, positive_power};
-use super::{Scene, free_boundary};
+use super::dual_number::{DualNumber, positive_power};
+use super::free_boundary;
+use super::scene::Scene;
 use crate::mesh::BoxDomain;
 use crate::problem::{Exact, Problem};
 use crate::real::Point;
@@ -35,7 +36,7 @@ pub fn polynomial<const D: usize>() -> Scene<D> {
         summary: "a polynomial over a plane obstacle, continuous load, contact in a ball",
         domain: BoxDomain::centred(1.0).into(),
         problem: Problem::new().source(source).obstacle_below(|_| 0.0).solved_by(exact),
-        regularity: Regularity { sobolev: 2.5, strictly_complementary: true },
+        regularity: Regularity::new(2.5),
     }
 }
 
@@ -44,7 +45,7 @@ pub fn polynomial<const D: usize>() -> Scene<D> {
 ///
 /// On `(-1, 1)^2` with `psi = 0` the solution is `u = s^k`, `s = max(r^2 - r0^2, 0)`, and the load
 /// is `f = -Laplace u = -4 k (k - 1) r^2 s^(k-2) - 4 k s^(k-1)`, zero for `r <= r0`. So the
-/// multiplier vanishes everywhere and data do not tell the contact set. `u` lies in `H^s` for
+/// multiplier vanishes everywhere and the data do not determine the contact set. `u` lies in `H^s` for
 /// `s < k + 1/2`.
 pub fn degenerate(k: i32) -> Scene<2> {
     Scene {
@@ -58,14 +59,14 @@ pub fn degenerate(k: i32) -> Scene<2> {
                 Exact::new(move |x| power(x, k).value, move |x| power(x, k).gradient)
                     .with_multiplier(|_| 0.0),
             ),
-        regularity: Regularity { sobolev: f64::from(k) + 0.5, strictly_complementary: false },
+        regularity: Regularity::new(f64::from(k) + 0.5).not_strictly_complementary(),
     }
 }
 
 /// `max(r^2 - r0^2, 0)^k`: with `s = r^2 - r0^2`, `|grad s|^2 = 4 r^2` and `Laplace s = 2 D`.
-fn power<const D: usize>(x: &Point<f64, D>, k: i32) -> Jet<D> {
+fn power<const D: usize>(x: &Point<f64, D>, k: i32) -> DualNumber<D> {
     let r_squared = x.norm_squared();
     let [value, first, second] = positive_power(r_squared - R0 * R0, k);
     let laplacian = second * 4.0 * r_squared + first * 2.0 * D as f64;
-    Jet { value, gradient: x * (2.0 * first), laplacian }
+    DualNumber { value, gradient: x * (2.0 * first), laplacian }
 }

@@ -1,6 +1,7 @@
 //! A membrane pulled onto a plane.
 
-use super::{Scene, free_boundary};
+use super::free_boundary;
+use super::scene::Scene;
 use crate::mesh::{BoundaryPart, BoxDomain};
 use crate::problem::{Exact, Problem};
 use crate::real::Point;
@@ -40,7 +41,7 @@ pub fn radial<const D: usize>(scale: f64) -> Scene<D> {
         summary: "constant load on a plane obstacle, contact in a ball; scale sets its radius",
         domain: BoxDomain::centred(1.5 * scale).into(),
         problem: Problem::new().constant_source(-load).obstacle_below(|_| 0.0).solved_by(exact),
-        regularity: Regularity { sobolev: 2.5, strictly_complementary: true },
+        regularity: Regularity::new(2.5),
     }
 }
 

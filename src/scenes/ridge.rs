@@ -1,6 +1,6 @@
 //! Obstacles with a sharp edge: the multiplier is a force on a line or surface.
 
-use super::Scene;
+use super::scene::Scene;
 use crate::mesh::BoxDomain;
 use crate::problem::{Exact, Problem};
 use crate::real::Point;
@@ -22,7 +22,7 @@ pub fn ridge<const D: usize>() -> Scene<D> {
             |x| (1.0 - x[0].abs()) / 2.0,
             |x| Point::from_fn(|k, _| if k == 0 { -x[0].signum() / 2.0 } else { 0.0 }),
         ),
-        regularity: Regularity { sobolev: 1.5, strictly_complementary: true },
+        regularity: Regularity::new(1.5),
     }
 }
 
@@ -47,6 +47,6 @@ pub fn pyramid_full_2d() -> Scene<2> {
             .constant_source(-1.0)
             .obstacle_below(height)
             .solved_by(Exact::new(height, gradient).with_contact(|_| 1.0, Vec::new())),
-        regularity: Regularity { sobolev: 1.5, strictly_complementary: true },
+        regularity: Regularity::new(1.5),
     }
 }

@@ -3,8 +3,9 @@
 
 use std::f64::consts::SQRT_2;
 
-use super::differential::Jet;
-use super::{Scene, free_boundary};
+use super::dual_number::DualNumber;
+use super::free_boundary;
+use super::scene::Scene;
 use crate::mesh::BoxDomain;
 use crate::problem::{Exact, Problem};
 use crate::real::Point;
@@ -19,19 +20,19 @@ pub fn signorini_2d() -> Scene<2> {
     transition_at(0.0, "signorini-2d", "Signorini, zero Dirichlet data, contact changes at x = 0")
 }
 
-/// The same with the change of contact at `x = 0.3`, which is a vertex of few meshes.
+/// [`signorini_2d`] with the change of contact at `x = 0.3`, which is a vertex of few meshes.
 pub fn signorini_shifted_2d() -> Scene<2> {
     let summary = "Signorini, zero Dirichlet data, contact changes at x = 0.3";
     transition_at(0.3, "signorini-shifted-2d", summary)
 }
 
-/// The same with the change of contact at `x = sqrt(2)/10`, which is a vertex of no mesh.
+/// [`signorini_2d`] with the change of contact at `x = sqrt(2)/10`, which is a vertex of no mesh.
 pub fn signorini_irrational_2d() -> Scene<2> {
     let summary = "Signorini, zero Dirichlet data, contact changes at x = sqrt(2)/10";
     transition_at(SQRT_2 / 10.0, "signorini-irrational-2d", summary)
 }
 
-/// The same in space, on `(-1, 1)^2 x (0, 1)`; contact changes along the line `x = 1/5`.
+/// [`signorini_2d`] in space, on `(-1, 1)^2 x (0, 1)`; contact changes along the line `x = 1/5`.
 pub fn signorini_line_3d() -> Scene<3> {
     let summary = "Signorini in space, zero Dirichlet data, contact changes along x = 0.2";
     transition_at(0.2, "signorini-line-3d", summary)
@@ -49,7 +50,8 @@ pub fn signorini_line_3d() -> Scene<3> {
 /// `sigma >= 0` and `u sigma = 0`. *Regularity*: `r^{3/2}` lies in `H^s` for `s < 5/2`, the best
 /// that a change of contact generically admits.
 fn transition_at<const D: usize>(c: f64, name: &str, summary: &'static str) -> Scene<D> {
-    let solution = move |x: &Point<f64, D>| Jet::bubble(x) * Jet::three_halves(x, c, 1.0);
+    let solution =
+        move |x: &Point<f64, D>| DualNumber::bubble(x) * DualNumber::three_halves(x, c, 1.0);
     let end = |y: f64| {
         Point::from_fn(|k, _| match k {
             0 => c,
@@ -62,7 +64,7 @@ fn transition_at<const D: usize>(c: f64, name: &str, summary: &'static str) -> S
         _ => free_boundary::segment(end(-1.0), end(1.0), 2.0),
     };
     let exact = Exact::new(move |x| solution(x).value, move |x| solution(x).gradient)
-        .with_multiplier(move |x| 1.5 * Jet::bubble(x).value * (c - x[0]).max(0.0).sqrt())
+        .with_multiplier(move |x| 1.5 * DualNumber::bubble(x).value * (c - x[0]).max(0.0).sqrt())
         .with_contact(move |x| c - x[0], transition);
     Scene {
         name: name.into(),
@@ -72,7 +74,7 @@ fn transition_at<const D: usize>(c: f64, name: &str, summary: &'static str) -> S
             .source(move |x| -solution(x).laplacian)
             .signorini(|_| 0.0)
             .solved_by(exact),
-        regularity: Regularity { sobolev: 2.5, strictly_complementary: true },
+        regularity: Regularity::new(2.5),
     }
 }
 
@@ -86,14 +88,14 @@ const RIGHT: f64 = 0.5;
 /// open to the left of -2/5, and a polynomial step `s(x)` that rises from 0 to 1 between -1/5 and
 /// 1/5, the solution is `u = (1 - x^2)(1 - y^2)((1 - s) uL + s uR)`; the load is `-Laplace u`.
 ///
-/// *Contact side*: where `s` is neither 0 nor 1 both pieces are in contact, so that a convex
-/// combination of their pressures acts and `u = 0`; elsewhere as in [`signorini_2d`].
+/// *Contact side*: where `s` is neither 0 nor 1 both `uL` and `uR` vanish, so `u = 0` and `sigma` is a
+/// convex combination of their pressures; elsewhere the argument of [`signorini_2d`] applies.
 /// `H^s` for `s < 5/2`.
 pub fn signorini_two_2d() -> Scene<2> {
     let solution = |x: &Point<f64, 2>| {
-        let left = Jet::three_halves(x, LEFT, -1.0);
-        let right = Jet::three_halves(x, RIGHT, 1.0);
-        Jet::bubble(x) * (left + Jet::along(0, step(x[0])) * (right - left))
+        let left = DualNumber::three_halves(x, LEFT, -1.0);
+        let right = DualNumber::three_halves(x, RIGHT, 1.0);
+        DualNumber::bubble(x) * (left + DualNumber::along(0, step(x[0])) * (right - left))
     };
     let pressure = |x: &Point<f64, 2>| {
         let [s, _, _] = step(x[0]);
@@ -114,7 +116,7 @@ pub fn signorini_two_2d() -> Scene<2> {
             .source(move |x| -solution(x).laplacian)
             .signorini(|_| 0.0)
             .solved_by(exact),
-        regularity: Regularity { sobolev: 2.5, strictly_complementary: true },
+        regularity: Regularity::new(2.5),
     }
 }
 

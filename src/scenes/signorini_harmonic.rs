@@ -1,6 +1,7 @@
 //! The generic singularity of a Signorini problem, without load.
 
-use super::{Scene, free_boundary, halfplane};
+use super::scene::Scene;
+use super::{free_boundary, halfplane};
 use crate::mesh::BoxDomain;
 use crate::problem::{Exact, Problem};
 use crate::real::Point;
@@ -41,6 +42,6 @@ pub fn signorini_harmonic<const D: usize>() -> Scene<D> {
         summary: "Signorini without load, the harmonic function r^(3/2) cos(3 theta/2)",
         domain: BoxDomain::above_contact().into(),
         problem: Problem::new().signorini(|_| 0.0).solved_by(exact),
-        regularity: Regularity { sobolev: 2.5, strictly_complementary: true },
+        regularity: Regularity::new(2.5),
     }
 }

@@ -1,7 +1,7 @@
 //! Signorini conditions on a layer of another material.
 
-use super::Scene;
-use super::differential::positive_power;
+use super::dual_number::positive_power;
+use super::scene::Scene;
 use crate::mesh::BoxDomain;
 use crate::problem::{Exact, Problem};
 use crate::real::Point;
@@ -9,7 +9,7 @@ use crate::scheme::Regularity;
 
 /// Signorini problem on `(-1, 1) x (0, 1)` with zero gap and the coefficient `alpha` = `contrast`
 /// for `y < 1/2` and one above: an interface that meshes of even level resolve. A penalty that
-/// ignores `alpha` fails here.
+/// does not depend on `alpha` fails on this scene.
 ///
 /// With `m(y) = y/contrast` up to the interface and `m(1/2) + y - 1/2` above the solution is
 /// `u = P - m N`, `P = max(x, 0)^3`, `N = max(-x, 0)^3`. As `(alpha m')' = 0`, the load is
@@ -24,8 +24,9 @@ pub fn signorini_layers_2d(contrast: f64) -> Scene<2> {
         positive_power(x[0], 3)[0] - depth(x[1]) * positive_power(-x[0], 3)[0]
     };
     let gradient = move |x: &Point<f64, 2>| {
-        let ([_, open, _], [held, steep, _]) = (positive_power(x[0], 3), positive_power(-x[0], 3));
-        Point::<f64, 2>::new(open + depth(x[1]) * steep, -held / alpha(x))
+        let ([_, open, _], [closed, steep, _]) =
+            (positive_power(x[0], 3), positive_power(-x[0], 3));
+        Point::<f64, 2>::new(open + depth(x[1]) * steep, -closed / alpha(x))
     };
     let source = move |x: &Point<f64, 2>| {
         -alpha(x) * (positive_power(x[0], 3)[2] - depth(x[1]) * positive_power(-x[0], 3)[2])
@@ -42,6 +43,6 @@ pub fn signorini_layers_2d(contrast: f64) -> Scene<2> {
             .source(source)
             .signorini(|_| 0.0)
             .solved_by(exact),
-        regularity: Regularity { sobolev: 1.5, strictly_complementary: true },
+        regularity: Regularity::new(1.5),
     }
 }

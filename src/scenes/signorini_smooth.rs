@@ -1,7 +1,9 @@
-//! Signorini conditions with solutions as smooth as one likes, whose contact is left slowly.
+//! Signorini conditions with solutions of any smoothness: gap and pressure vanish to high order where
+//! contact changes.
 
-use super::differential::{Jet, positive_power};
-use super::{Scene, free_boundary};
+use super::dual_number::{DualNumber, positive_power};
+use super::free_boundary;
+use super::scene::Scene;
 use crate::mesh::BoxDomain;
 use crate::problem::{Exact, Problem};
 use crate::real::Point;
@@ -18,26 +20,27 @@ pub fn signorini_smooth(k: i32) -> Scene<2> {
         summary: "Signorini, gap and pressure vanish with the order in the name",
         domain: BoxDomain::above_contact().into(),
         problem: Problem::new()
-            .source(move |x| -wedge_jet(x, k, 0.0).laplacian)
+            .source(move |x| -wedge_solution(x, k, 0.0).laplacian)
             .signorini(|_| 0.0)
             .solved_by(exact),
-        regularity: Regularity { sobolev: f64::from(k) + 0.5, strictly_complementary: true },
+        regularity: Regularity::new(f64::from(k) + 0.5),
     }
 }
 
 /// Contact without pressure on a segment: on `|x| <= 1/4` both gap and pressure vanish.
 ///
-/// The solution is that of `wedge` with `b = 1/4` and `k = 2`; data do not tell the contact set.
+/// The solution is that of `wedge` with `b = 1/4` and `k = 2`; the data do not determine the
+/// contact set.
 pub fn signorini_biactive_2d() -> Scene<2> {
     Scene {
         name: "signorini-biactive-2d".into(),
         summary: "Signorini, gap and pressure both vanish on a segment",
         domain: BoxDomain::above_contact().into(),
         problem: Problem::new()
-            .source(|x| -wedge_jet(x, 2, 0.25).laplacian)
+            .source(|x| -wedge_solution(x, 2, 0.25).laplacian)
             .signorini(|_| 0.0)
             .solved_by(wedge(2, 0.25)),
-        regularity: Regularity { sobolev: 2.5, strictly_complementary: false },
+        regularity: Regularity::new(2.5).not_strictly_complementary(),
     }
 }
 
@@ -47,15 +50,15 @@ pub fn signorini_biactive_2d() -> Scene<2> {
 /// *Dirichlet sides*: `q = 0`. *Contact side*: `u = (1 - x^2) P >= 0` and, as `dq/dy = 0` there,
 /// `sigma = -du/dy = (1 - x^2) N >= 0`; one of `P` and `N` vanishes.
 fn wedge(k: i32, b: f64) -> Exact<2> {
-    Exact::new(move |x| wedge_jet(x, k, b).value, move |x| wedge_jet(x, k, b).gradient)
+    Exact::new(move |x| wedge_solution(x, k, b).value, move |x| wedge_solution(x, k, b).gradient)
         .with_multiplier(move |x| (1.0 - x[0] * x[0]) * positive_power(-x[0] - b, k)[0])
 }
 
-fn wedge_jet(x: &Point<f64, 2>, k: i32, b: f64) -> Jet<2> {
+fn wedge_solution(x: &Point<f64, 2>, k: i32, b: f64) -> DualNumber<2> {
     let [value, first, second] = positive_power(-x[0] - b, k);
-    let open = Jet::along(0, positive_power(x[0] - b, k));
-    let pressed = Jet::along(0, [value, -first, second]);
-    Jet::bubble(x) * (open - Jet::along(1, [x[1], 1.0, 0.0]) * pressed)
+    let open = DualNumber::along(0, positive_power(x[0] - b, k));
+    let pressed = DualNumber::along(0, [value, -first, second]);
+    DualNumber::bubble(x) * (open - DualNumber::along(1, [x[1], 1.0, 0.0]) * pressed)
 }
 
 /// `signorini-disc2-3d` and `-disc3-3d`: contact in a disc in space, left with order `k`.
@@ -65,7 +68,7 @@ fn wedge_jet(x: &Point<f64, 2>, k: i32, b: f64) -> Jet<2> {
 /// `sigma = max(-p, 0)^k`. `u` lies in `H^s` for `s < k + 1/2`.
 pub fn signorini_disc(k: i32) -> Scene<3> {
     let solution = move |x: &Point<f64, 3>| {
-        let height = Jet::along(2, [x[2], 1.0, 0.0]);
+        let height = DualNumber::along(2, [x[2], 1.0, 0.0]);
         disc_power(x, 1.0, k) - height * disc_power(x, -1.0, k)
     };
     let exact = Exact::new(move |x| solution(x).value, move |x| solution(x).gradient)
@@ -79,7 +82,7 @@ pub fn signorini_disc(k: i32) -> Scene<3> {
             .source(move |x| -solution(x).laplacian)
             .signorini(|_| 0.0)
             .solved_by(exact),
-        regularity: Regularity { sobolev: f64::from(k) + 0.5, strictly_complementary: true },
+        regularity: Regularity::new(f64::from(k) + 0.5),
     }
 }
 
@@ -89,9 +92,9 @@ fn from_circle(x: &Point<f64, 3>) -> f64 {
 }
 
 /// `max(sign p, 0)^k`: `|grad p|^2 = 4 (x^2 + y^2)` and `Laplace p = 4`.
-fn disc_power(x: &Point<f64, 3>, sign: f64, k: i32) -> Jet<3> {
+fn disc_power(x: &Point<f64, 3>, sign: f64, k: i32) -> DualNumber<3> {
     let [value, first, second] = positive_power(sign * from_circle(x), k);
     let gradient = Point::<f64, 3>::new(x[0], x[1], 0.0) * (2.0 * sign * first);
     let laplacian = second * 4.0 * (x[0] * x[0] + x[1] * x[1]) + sign * first * 4.0;
-    Jet { value, gradient, laplacian }
+    DualNumber { value, gradient, laplacian }
 }

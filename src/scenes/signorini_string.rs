@@ -1,6 +1,6 @@
 //! Signorini conditions at the ends of a string.
 
-use super::Scene;
+use super::scene::Scene;
 use crate::mesh::{BoundaryPart, BoxDomain};
 use crate::problem::{Exact, Problem};
 use crate::real::Point;
@@ -34,7 +34,7 @@ pub fn signorini_reaction_1d() -> Scene<1> {
             .reaction(1.0)
             .signorini(|_| 0.0)
             .solved_by(exact),
-        regularity: Regularity { sobolev: f64::INFINITY, strictly_complementary: true },
+        regularity: Regularity::smooth(),
     }
 }
 
@@ -45,32 +45,51 @@ pub fn signorini_open_1d() -> Scene<1> {
     let exact = Exact::new(|x| x[0] - x[0] * x[0] / 2.0, |x| Point::<f64, 1>::new(1.0 - x[0]))
         .with_multiplier(|_| 0.0)
         .with_contact(|_| -1.0, Vec::new());
-    supported("signorini-open-1d", "a string lifted off its support", 1.0, exact, true)
+    supported(
+        "signorini-open-1d",
+        "a string lifted off its support",
+        1.0,
+        exact,
+        Regularity::smooth(),
+    )
 }
 
-/// The same string pressed onto the support at 1 by the load `f = -1`.
+/// A string on `(0, 1)`, fixed at 0 and pressed onto the support at 1 by the load `f = -1`.
 ///
 /// `u = -x (1 - x)/2`: `u(1) = 0` and `sigma(1) = u'(1) = 1/2 > 0`.
 pub fn signorini_closed_1d() -> Scene<1> {
     let exact = Exact::new(|x| -x[0] * (1.0 - x[0]) / 2.0, |x| Point::<f64, 1>::new(x[0] - 0.5))
         .with_multiplier(|_| 0.5)
         .with_contact(|_| 1.0, Vec::new());
-    supported("signorini-closed-1d", "a string pressed onto its support", -1.0, exact, true)
+    supported(
+        "signorini-closed-1d",
+        "a string pressed onto its support",
+        -1.0,
+        exact,
+        Regularity::smooth(),
+    )
 }
 
-/// The same string without load: `u = 0`, in contact without pressure.
+/// A string on `(0, 1)`, fixed at 0, without load: `u = 0`, in contact at 1 without pressure.
 pub fn signorini_grazing_1d() -> Scene<1> {
     let exact = Exact::new(|_| 0.0, |_| Point::zeros()).with_multiplier(|_| 0.0);
-    supported("signorini-grazing-1d", "a string that touches without pressure", 0.0, exact, false)
+    let regularity = Regularity::smooth().not_strictly_complementary();
+    supported(
+        "signorini-grazing-1d",
+        "a string that touches without pressure",
+        0.0,
+        exact,
+        regularity,
+    )
 }
 
-/// The string under a constant load, with zero gap at 1.
+/// A string on `(0, 1)`, fixed at 0, under a constant load, with zero gap at 1.
 fn supported(
     name: &str,
     summary: &'static str,
     load: f64,
     exact: Exact<1>,
-    strictly_complementary: bool,
+    regularity: Regularity,
 ) -> Scene<1> {
     Scene {
         name: name.into(),
@@ -79,6 +98,6 @@ fn supported(
             .side(0, 1, BoundaryPart::Contact)
             .into(),
         problem: Problem::new().constant_source(load).signorini(|_| 0.0).solved_by(exact),
-        regularity: Regularity { sobolev: f64::INFINITY, strictly_complementary },
+        regularity,
     }
 }

@@ -1,13 +1,13 @@
-//! Strings over parabolas: solutions made of parabolas.
+//! Strings over parabolas, with piecewise quadratic solutions.
 
-use super::Scene;
+use super::scene::Scene;
 use crate::mesh::BoxDomain;
 use crate::problem::{Exact, Problem};
 use crate::real::Point;
 use crate::scheme::Regularity;
 
-/// A parabola up to some point: that point, and `[a, b, c]` of `a + b x + c x^2`.
-type Piece = (f64, [f64; 3]);
+/// The upper end of an interval, and `[a, b, c]` of the parabola `a + b x + c x^2` on it.
+type Parabola = (f64, [f64; 3]);
 
 /// A string on `(0, 1)` under the load `f = -2` over the parabola `psi = 8x(1 - x) - 1`; contact on
 /// `[1/3, 2/3]`.
@@ -17,7 +17,7 @@ type Piece = (f64, [f64; 3]);
 /// both sides have the value `7/9` and the slope `8/3`. *Above the obstacle*:
 /// `u - psi = (3x - 1)^2`. The second derivative jumps: `C^{1,1}`, `H^s` for `s < 5/2`.
 pub fn parabola_1d() -> Scene<1> {
-    const PIECES: [Piece; 3] = [
+    const PARABOLAS: [Parabola; 3] = [
         (1.0 / 3.0, [0.0, 2.0, 1.0]),
         (2.0 / 3.0, [-1.0, 8.0, -8.0]),
         (f64::INFINITY, [3.0, -4.0, 1.0]),
@@ -27,7 +27,7 @@ pub fn parabola_1d() -> Scene<1> {
         .obstacle_below(|x: &Point<f64, 1>| 8.0 * x[0] * (1.0 - x[0]) - 1.0);
     let inside = |x: f64| 1.0 / 6.0 - (x - 0.5).abs();
     let summary = "a string under constant load over a parabola";
-    string("parabola-1d", summary, problem, &PIECES, inside, &[1.0 / 3.0, 2.0 / 3.0])
+    string("parabola-1d", summary, problem, &PARABOLAS, inside, &[1.0 / 3.0, 2.0 / 3.0])
 }
 
 /// A string on `(0, 1)` over `psi = x(1 - x)` that is pressed down by `f = -16` near the ends,
@@ -41,7 +41,7 @@ pub fn parabola_1d() -> Scene<1> {
 /// slope at 0.1, is convex to 0.2 and a parabola with its top at 1/2 beyond. `C^{1,1}`, `H^s` for
 /// `s < 5/2`.
 pub fn icelike_1d() -> Scene<1> {
-    const PIECES: [Piece; 5] = [
+    const PARABOLAS: [Parabola; 5] = [
         (0.1, [0.0, 1.0, -1.0]),
         (0.2, [0.09, -0.8, 8.0]),
         (0.8, [-0.39, 4.0, -4.0]),
@@ -52,27 +52,27 @@ pub fn icelike_1d() -> Scene<1> {
         .source(|x| if (x[0] - 0.5).abs() > 0.3 { -16.0 } else { 8.0 })
         .obstacle_below(|x: &Point<f64, 1>| x[0] * (1.0 - x[0]));
     let summary = "a string held down near its ends and lifted between, over a parabola";
-    string("icelike-1d", summary, problem, &PIECES, |x| (x - 0.5).abs() - 0.4, &[0.1, 0.9])
+    string("icelike-1d", summary, problem, &PARABOLAS, |x| (x - 0.5).abs() - 0.4, &[0.1, 0.9])
 }
 
-/// The scene on `(0, 1)` with the solution made of `pieces` and the multiplier 18 on contact.
+/// The scene on `(0, 1)` whose solution consists of `parabolas`, with the multiplier 18 on contact.
 fn string(
     name: &str,
     summary: &'static str,
     problem: Problem<1>,
-    pieces: &'static [Piece],
+    parabolas: &'static [Parabola],
     contact: impl Fn(f64) -> f64 + Copy + Send + Sync + 'static,
     transitions: &[f64],
 ) -> Scene<1> {
-    let piece = move |x: f64| {
-        pieces.iter().find(|(end, _)| x <= *end).map_or([0.0; 3], |&(_, parabola)| parabola)
+    let coefficients = move |x: f64| {
+        parabolas.iter().find(|(end, _)| x <= *end).map_or([0.0; 3], |&(_, parabola)| parabola)
     };
     let value = move |x: &Point<f64, 1>| {
-        let [a, b, c] = piece(x[0]);
+        let [a, b, c] = coefficients(x[0]);
         a + x[0] * (b + c * x[0])
     };
     let gradient = move |x: &Point<f64, 1>| {
-        let [_, b, c] = piece(x[0]);
+        let [_, b, c] = coefficients(x[0]);
         Point::<f64, 1>::new(b + 2.0 * c * x[0])
     };
     let exact = Exact::new(value, gradient)
@@ -83,6 +83,6 @@ fn string(
         summary,
         domain: BoxDomain::dirichlet(Point::repeat(0.0), Point::repeat(1.0)).into(),
         problem: problem.solved_by(exact),
-        regularity: Regularity { sobolev: 2.5, strictly_complementary: true },
+        regularity: Regularity::new(2.5),
     }
 }

@@ -1,8 +1,8 @@
-//! Widely used scenes without a closed solution; minimal energies take its place.
+//! Widely used scenes without a solution in closed form, with reference values of the energy.
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
-use super::Scene;
+use super::scene::Scene;
 use crate::mesh::{BoundaryPart, BoxDomain};
 use crate::problem::Problem;
 use crate::real::Point;
@@ -12,8 +12,8 @@ use crate::scheme::Regularity;
 /// membrane on `(-1, 1)^2`, zero on the boundary, over
 /// `psi = sin(2 pi/r + pi/2 - theta) + r (r + 1)/(r - 2) - 3 r + 3.6`, 3.6 at the centre.
 ///
-/// The obstacle oscillates without end towards the centre; of the solution no more is known than
-/// that it has finite energy.
+/// The obstacle oscillates infinitely often towards the centre; the solution is known to have finite
+/// energy.
 pub fn spiral_2d() -> Scene<2> {
     let obstacle = |x: &Point<f64, 2>| {
         let r = x.norm();
@@ -28,7 +28,7 @@ pub fn spiral_2d() -> Scene<2> {
         summary: "no load, a spiral obstacle; no closed solution",
         domain: BoxDomain::centred(1.0).into(),
         problem: Problem::new().obstacle_below(obstacle).reference_energy(34.48, 0.02),
-        regularity: Regularity { sobolev: 1.0, strictly_complementary: true },
+        regularity: Regularity::new(1.0),
     }
 }
 
@@ -50,7 +50,7 @@ pub fn signorini_sine_2d() -> Scene<2> {
             .source(|x| 2.0 * PI * (2.0 * PI * x[0]).sin())
             .signorini(|_| 0.0)
             .reference_energy(-0.461_754, 1e-6),
-        regularity: Regularity { sobolev: 2.5, strictly_complementary: true },
+        regularity: Regularity::new(2.5),
     }
 }
 
@@ -72,7 +72,7 @@ pub fn torsion_2d(load: f64) -> Scene<2> {
         summary: "elastic-plastic torsion of a square bar; load is f; no closed solution",
         domain: BoxDomain::dirichlet(Point::zeros(), Point::repeat(1.0)).into(),
         problem,
-        regularity: Regularity { sobolev: 2.0, strictly_complementary: true },
+        regularity: Regularity::new(2.0),
     }
 }
 
@@ -91,7 +91,7 @@ pub fn pyramid_2d(load: f64) -> Scene<2> {
         summary: "a membrane over a pyramid; load is f; no closed solution",
         domain: BoxDomain::centred(1.0).into(),
         problem,
-        regularity: Regularity { sobolev: 1.5, strictly_complementary: true },
+        regularity: Regularity::new(1.5),
     }
 }
 

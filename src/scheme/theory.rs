@@ -12,11 +12,32 @@ pub struct ExpectedOrders {
 
 /// Regularity of the exact solution, from which theory predicts orders.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Regularity {
     /// The solution lies in `H^s` for every `s` below this number.
     pub sobolev: f64,
     /// Gap and multiplier do not vanish together on a set of positive measure.
     pub strictly_complementary: bool,
+}
+
+impl Regularity {
+    /// A solution in `H^s` for every `s` below `sobolev`, strictly complementary.
+    pub const fn new(sobolev: f64) -> Self {
+        Self { sobolev, strictly_complementary: true }
+    }
+    /// A solution in every `H^s`, strictly complementary.
+    pub const fn smooth() -> Self {
+        Self::new(f64::INFINITY)
+    }
+    /// A solution in `H^1`, of which no more is known.
+    pub const fn finite_energy() -> Self {
+        Self::new(1.0).not_strictly_complementary()
+    }
+    /// A solution whose gap and multiplier may vanish together on a set of positive measure.
+    #[must_use]
+    pub const fn not_strictly_complementary(self) -> Self {
+        Self { strictly_complementary: false, ..self }
+    }
 }
 
 /// What a promise of orders may depend on.

@@ -147,6 +147,6 @@ pub(crate) fn sines<const D: usize>() -> Scene<D> {
         problem: Problem::new()
             .source(move |x| D as f64 * PI * PI * value(x))
             .exact(value, gradient),
-        regularity: Regularity { sobolev: f64::INFINITY, strictly_complementary: true },
+        regularity: Regularity::smooth(),
     }
 }

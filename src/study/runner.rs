@@ -11,7 +11,7 @@ use super::{
 };
 use crate::assemble::DataQuadrature;
 use crate::element::Layout;
-use crate::error::Error;
+use crate::error::{Error, write_error};
 use crate::inequality::{ActiveSet, InequalitySolver};
 use crate::mesh::{BoundaryPart, Domain, Mesh};
 #[cfg(feature = "report")]
@@ -350,10 +350,7 @@ impl<'a, T: Real, const D: usize> Study<'a, T, D> {
         solved: &Solved,
     ) -> Result<(), Error> {
         let Some(fields) = &solved.fields else { return Ok(()) };
-        std::fs::create_dir_all(directory).map_err(|e| Error::Write {
-            path: directory.display().to_string(),
-            why: e.to_string(),
-        })?;
+        std::fs::create_dir_all(directory).map_err(|e| write_error(directory, e))?;
         let path = directory.join(format!("{}-{}.vtu", self.scene.name, scheme.name()));
         let constrained = self.scene.problem.is_constrained();
         write_vtu(

@@ -35,14 +35,7 @@ pub fn own_scene<const D: usize>(
     domain: BoxDomain<D>,
     problem: Problem<D>,
 ) -> Scene<D> {
-    let regularity = Regularity { sobolev: f64::INFINITY, strictly_complementary: true };
-    Scene {
-        name: name.to_owned(),
-        summary: "of a test",
-        domain: domain.into(),
-        problem,
-        regularity,
-    }
+    Scene::new(name, domain, problem).summary("of a test").regularity(Regularity::smooth())
 }
 
 /// A mesh of the folder of test data.

@@ -4,8 +4,10 @@ use crate::support::checks::Checks;
 use crate::support::rows::{label, rows};
 use crate::support::scheme_lists::all_schemes;
 use crate::support::schemes::{Boxed, sipg, wopsip};
+use unilateral::mesh::BoxDomain;
 use unilateral::prelude::*;
 use unilateral::scenes::Scene;
+use unilateral::scheme::Regularity;
 use unilateral::study::Row;
 
 /// Outer iterations on the finest level, for schemes whose matrices are close to M-matrices.
@@ -196,19 +198,14 @@ fn a_huge_penalty_is_solved_like_a_moderate_one() {
 #[test]
 fn a_body_held_at_one_point_is_not_singular() {
     let sides = [[BoundaryPart::Neumann; 2], [BoundaryPart::Contact, BoundaryPart::Neumann]];
-    let domain = unilateral::mesh::BoxDomain {
-        lower: Point::from([-1.0, 0.0]),
-        upper: Point::from([1.0, 1.0]),
-        sides,
-    };
-    let scene = || scenes::Scene::<2> {
-        name: "table-2d".into(),
-        summary: "a block on a peak",
-        domain: domain.clone().into(),
-        problem: Problem::new()
+    let domain = BoxDomain::new(Point::from([-1.0, 0.0]), Point::from([1.0, 1.0]), sides);
+    let scene = || {
+        let problem = Problem::new()
             .constant_source(-1.0)
-            .signorini(|x: &Point<f64, 2>| -1000.0 * x[0] * x[0]),
-        regularity: unilateral::scheme::Regularity { sobolev: 2.5, strictly_complementary: true },
+            .signorini(|x: &Point<f64, 2>| -1000.0 * x[0] * x[0]);
+        Scene::new("table-2d", domain.clone(), problem)
+            .summary("a block on a peak")
+            .regularity(Regularity::new(2.5))
     };
     let report = Study::<f64, 2>::new(scene())
         .scheme(ConformingP1)
@@ -227,13 +224,11 @@ fn a_body_held_at_one_point_is_not_singular() {
 #[test]
 fn a_curved_obstacle_may_touch_the_datum() {
     let bump = |x: &Point<f64, 2>| x[0] * (1.0 - x[0]);
-    let scene = scenes::Scene::<2> {
-        name: "bump-2d".into(),
-        summary: "a curved obstacle that touches the boundary",
-        domain: unilateral::mesh::BoxDomain::dirichlet(Point::zeros(), Point::repeat(1.0)).into(),
-        problem: Problem::new().constant_source(-3.0).dirichlet(bump).obstacle_below(bump),
-        regularity: unilateral::scheme::Regularity { sobolev: 2.5, strictly_complementary: true },
-    };
+    let domain = BoxDomain::dirichlet(Point::zeros(), Point::repeat(1.0));
+    let problem = Problem::new().constant_source(-3.0).dirichlet(bump).obstacle_below(bump);
+    let scene = Scene::new("bump-2d", domain, problem)
+        .summary("a curved obstacle that touches the boundary")
+        .regularity(Regularity::new(2.5));
     let report = Study::<f64, 2>::new(scene).scheme(NonconformingP1).levels([4, 8]).run().unwrap();
     assert!(report.rows.iter().all(|row| row.converged()));
 }

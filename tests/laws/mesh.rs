@@ -14,8 +14,8 @@ fn volume<const D: usize>(mesh: &Mesh<f64, D>) -> f64 {
 
 /// Neighbours are mutual and share vertices; the facets of all cells are counted once each.
 fn check_topology<const D: usize>(mesh: &Mesh<f64, D>) {
-    let neighbours = Neighbours::of(mesh);
-    let facets = Facets::of(mesh, &neighbours);
+    let neighbours = Neighbours::new(mesh);
+    let facets = Facets::new(mesh, &neighbours);
     for c in 0..mesh.n_cells() {
         assert!(mesh.cell(c).is_sorted());
         for i in 0..=D {
@@ -182,7 +182,12 @@ fn topology_does_not_depend_on_the_number_of_threads() {
             pool.install(|| {
                 let (fine, refinement) = mesh.refine().unwrap();
                 let lists = (fine.cells().to_vec(), fine.boundary().to_vec(), refinement);
-                (Neighbours::of(&mesh), Edges::numbered(&mesh), lists, fine.vertices().to_vec())
+                (
+                    Neighbours::new(&mesh),
+                    Edges::with_cell_edges(&mesh),
+                    lists,
+                    fine.vertices().to_vec(),
+                )
             })
         };
         let one = run(1);

@@ -9,19 +9,9 @@ use unilateral::study::Row;
 
 /// A scene on the unit square with these data, held on its sides.
 fn scene(problem: Problem<2>) -> Scene<2> {
-    Scene {
-        name: "mine".into(),
-        summary: "",
-        domain: BoxDomain::dirichlet(Point::zeros(), Point::repeat(1.0))
-            .side(
-                1,
-                0,
-                if problem.gap.is_some() { BoundaryPart::Contact } else { BoundaryPart::Neumann },
-            )
-            .into(),
-        problem,
-        regularity: Regularity { sobolev: 2.0, strictly_complementary: true },
-    }
+    let part = if problem.gap.is_some() { BoundaryPart::Contact } else { BoundaryPart::Neumann };
+    let domain = BoxDomain::dirichlet(Point::zeros(), Point::repeat(1.0)).side(1, 0, part);
+    Scene::new("mine", domain, problem).regularity(Regularity::new(2.0))
 }
 
 fn study(problem: Problem<2>) -> Result<Report, Error> {

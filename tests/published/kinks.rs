@@ -23,7 +23,7 @@ fn norms_on_halves(scene: &Scene<2>, level: usize) -> [f64; 2] {
     let (mesh, solved) = solve_as_tables(scene, &*column("p1"), level);
     assert_eq!(solved.outcome, Outcome::Converged, "n = {level}");
     let exact = scene.problem.exact.as_ref().unwrap();
-    let rule = Rule::of_degree(2, 2);
+    let rule = Rule::new(2, 2);
     let [mut l2, mut h1] = [0.0; 2];
     for (cell, values) in solved.fields.unwrap().u.chunks(3).enumerate() {
         let geometry = mesh.geometry(cell);

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use unilateral::measure::{Fields, FoundContact};
 use unilateral::mesh::BoxDomain;
-use unilateral::mesh::{BoundaryPart, Mesh, edge_vertices};
+use unilateral::mesh::{BoundaryPart, Mesh};
 use unilateral::paraview::{CellFields, write_pvd, write_vtu};
 use unilateral::plot::{Picture, Slice, solve_level};
 use unilateral::prelude::*;
@@ -32,7 +32,7 @@ fn picture<const D: usize>(
 
 fn cube<const D: usize>(n: usize) -> Mesh<f64, D> {
     let sides = [[BoundaryPart::Dirichlet; 2]; D];
-    let domain = BoxDomain { lower: Point::zeros(), upper: Point::repeat(1.0), sides };
+    let domain = BoxDomain::new(Point::zeros(), Point::repeat(1.0), sides);
     Mesh::kuhn_box(&domain, [n; D]).unwrap()
 }
 
@@ -187,7 +187,7 @@ fn density_and_midpoints_are_those_of_the_solution() {
 
     let (_, mesh, fields) = picture(&scene, &ConformingP2, 16);
     let exact = &scene.problem.exact.as_ref().unwrap().value;
-    let edges = edge_vertices(2);
+    let edges = [[0, 1], [0, 2], [1, 2]];
     assert_eq!(fields.midpoints.len(), edges.len() * mesh.n_cells());
     for (k, u) in fields.midpoints.iter().enumerate() {
         let cell = mesh.cell(k / edges.len());

@@ -4,8 +4,7 @@ use std::path::PathBuf;
 
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
-use unilateral::mesh::BoxDomain;
-use unilateral::mesh::{BoundaryPart, Mesh};
+use unilateral::mesh::{BoxDomain, Mesh};
 use unilateral::paraview::{CellFields, write_vtu};
 use unilateral::real::{Point, Real};
 
@@ -71,11 +70,7 @@ impl Piece {
 }
 
 fn cube<const D: usize>(lower: f64, upper: f64) -> BoxDomain<D> {
-    BoxDomain {
-        lower: Point::repeat(lower),
-        upper: Point::repeat(upper),
-        sides: [[BoundaryPart::Dirichlet; 2]; D],
-    }
+    BoxDomain::dirichlet(Point::repeat(lower), Point::repeat(upper))
 }
 
 /// Writes a field that jumps from cell to cell on a box, and reads it back.

@@ -59,7 +59,7 @@ pub fn norms_by_rule<const D: usize>(
     degree: usize,
 ) -> [f64; 2] {
     let exact = scene.problem.exact.as_ref().unwrap();
-    let rule = Rule::of_degree(D, degree);
+    let rule = Rule::new(D, degree);
     let [mut l2, mut h1] = [0.0; 2];
     for (cell, values) in u.chunks(D + 1).enumerate() {
         let geometry = mesh.geometry(cell);

@@ -17,7 +17,7 @@ use crate::assemble::space::tables::{BasisAt, FacetTable};
 use crate::element::MAX_BASIS;
 use crate::facet::FacetForm;
 use crate::mesh::{BoundaryPart, Neighbour, Neighbours};
-use crate::quadrature::{OrthonormalPolynomials, Rule, insert};
+use crate::quadrature::{OrthonormalPolynomials, Rule, facet_to_cell};
 use crate::real::Real;
 
 /// Most moments a lift is made of: linears on a triangle.
@@ -59,10 +59,10 @@ impl<T: Real> LiftTable<T> {
 fn tests(dimension: usize, degree: usize, local: usize) -> Vec<Vec<f64>> {
     let on_facet = OrthonormalPolynomials::new(dimension - 1, degree);
     let in_cell = OrthonormalPolynomials::new(dimension, degree);
-    let rule = Rule::of_degree(dimension - 1, 2 * degree);
+    let rule = Rule::new(dimension - 1, 2 * degree);
     let mean = |m: usize, q: usize| {
         let term = |(point, w): (&[f64; 4], f64)| {
-            w * on_facet.value(m, point) * in_cell.value(q, &insert(point, local))
+            w * on_facet.value(m, point) * in_cell.value(q, &facet_to_cell(point, local))
         };
         rule.iter().map(term).sum()
     };

@@ -36,7 +36,7 @@ impl<'s, 'a, T: Real, const D: usize> Patches<'s, 'a, T, D> {
             .neighbours
             .as_ref()
             .filter(|_| form.couples())
-            .map(|neighbours| Facets::of(space.mesh, neighbours));
+            .map(|neighbours| Facets::new(space.mesh, neighbours));
         let coupled = facets.as_ref().map_or(0, |f| match space.pins {
             false => f.part(BoundaryPart::Dirichlet).end,
             true => f.interior().end,

@@ -117,7 +117,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
     /// The rules for means over facets and cells.
     fn mean_rules(&self) -> [Rule; 2] {
         let DataQuadrature { facet, cell } = self.quadrature;
-        [Rule::of_degree(D - 1, facet), Rule::of_degree(D, cell)]
+        [Rule::new(D - 1, facet), Rule::new(D, cell)]
     }
 
     /// What an unknown is of a datum: its value at a point, its mean over a facet or cell.

@@ -71,12 +71,12 @@ impl<'a> Dofs<'a> {
             owners[0] = Owners { unknowns: layout.vertex, numbers, count };
         }
         if layout.edge > 0 {
-            let (edges, numbers) = Edges::numbered(mesh);
+            let (edges, numbers) = Edges::with_cell_edges(mesh);
             let numbers = Cow::Owned(numbers);
             owners[1] = Owners { unknowns: layout.edge, numbers, count: edges.len() };
         }
         if let (true, Some(neighbours)) = (layout.facet > 0, neighbours) {
-            let facets = Facets::of(mesh, neighbours);
+            let facets = Facets::new(mesh, neighbours);
             let numbers = Cow::Owned(facets.numbers::<D>(n_cells));
             owners[2] = Owners { unknowns: layout.facet, numbers, count: facets.len() };
         }

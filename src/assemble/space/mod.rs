@@ -19,7 +19,7 @@ use crate::error::Error;
 use crate::memory::in_large_pages;
 use crate::mesh::{BoundaryFacet, BoundaryPart, Mesh, Neighbours, edge_vertices};
 use crate::problem::Problem;
-use crate::quadrature::{Rule, insert};
+use crate::quadrature::{Rule, facet_to_cell};
 use crate::real::{Point, Real, point_f64};
 pub(crate) use any_element::AnyElement;
 use dofs::Dofs;
@@ -61,7 +61,7 @@ impl<'a, T: Real, const D: usize> Space<'a, T, D> {
         let AnyElement { degree, layout, nodes, basis } = element;
         let neighbours = (with_facets || layout.facet > 0).then(|| {
             count::facet_topologies(1);
-            Neighbours::of(mesh)
+            Neighbours::new(mesh)
         });
         let dofs = Dofs::new(layout, mesh, neighbours.as_ref());
         let space = Self {
@@ -148,7 +148,7 @@ impl<'a, T: Real, const D: usize> Space<'a, T, D> {
     }
     /// The basis at the points of a cell rule.
     pub fn cell_table(&self, degree: usize) -> CellTable<f64> {
-        let rule = Rule::of_degree(D, degree);
+        let rule = Rule::new(D, degree);
         CellTable {
             basis: rule.points.iter().map(self.basis).collect(),
             points: rule.points,
@@ -174,7 +174,7 @@ impl<'a, T: Real, const D: usize> Space<'a, T, D> {
     }
     /// A point of a facet in space.
     pub fn facet_point(&self, point: &[f64; 4], cell: usize, local: usize) -> Point<f64, D> {
-        let inserted = insert(point, local).map(T::lit);
+        let inserted = facet_to_cell(point, local).map(T::lit);
         point_f64(&self.mesh.point(cell, &inserted[..=D]))
     }
     /// A point of a cell in space.

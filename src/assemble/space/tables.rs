@@ -1,7 +1,7 @@
 //! Basis functions tabulated once per assembly: the small arrays that hot loops read.
 
 use crate::element::{MAX_BASIS, ReferenceElement};
-use crate::quadrature::{OrthonormalPolynomials, Rule, insert};
+use crate::quadrature::{OrthonormalPolynomials, Rule, facet_to_cell};
 use crate::real::Real;
 
 /// Values and derivatives of all basis functions at one point.
@@ -67,11 +67,11 @@ impl<T: Real> FacetTable<T> {
         degree: usize,
     ) -> Self {
         let polynomials = OrthonormalPolynomials::new(dimension - 1, degree);
-        let rule = Rule::of_degree(dimension - 1, degree + basis_degree);
+        let rule = Rule::new(dimension - 1, degree + basis_degree);
         let moment = |local: usize, k: usize| {
             let mut moment = BasisAt::zero();
             for (point, w) in rule.iter() {
-                moment.add(w * polynomials.value(k, point), &basis(&insert(point, local)));
+                moment.add(w * polynomials.value(k, point), &basis(&facet_to_cell(point, local)));
             }
             // derivatives have no moments of the element's own degree: what is left is rounding
             if polynomials.degree(k) >= basis_degree {

@@ -2,11 +2,13 @@
 
 use nalgebra::{DMatrix, SymmetricEigen};
 
-use super::Positive;
-use crate::kit::random::Random;
+use super::positive_definite::PositiveDefinite;
+use crate::kit::split_mix::SplitMix64;
+use crate::readable_debug::debug_by_display;
 
 /// The smallest and the largest eigenvalue of `B^-1 A`.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Extremes {
     /// The smallest eigenvalue.
     pub smallest: f64,
@@ -21,8 +23,8 @@ impl Extremes {
     }
 }
 
-/// Why no eigenvalue was found.
-#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+/// The reason why an eigenvalue was not found. `Debug` prints the message.
+#[derive(Clone, Copy, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum SpectrumError {
     /// The residual did not fall to the tolerance.
@@ -55,16 +57,18 @@ pub enum SpectrumError {
     },
 }
 
+debug_by_display!(SpectrumError);
+
 /// The method of Lanczos for the largest eigenvalue of a product of positive definite matrices.
 ///
 /// The iteration runs in the inner product of `B`, in which `B^-1 A` and `A^-1 B` are symmetric;
 /// the smallest eigenvalue is the reciprocal of the largest one of `A^-1 B` (shift and invert at
-/// zero). The start is pseudo-random and always the same.
+/// zero). The initial vector is pseudo-random, with a fixed seed.
 ///
-/// The tolerance bounds the residual relative to the eigenvalue, and so the relative distance to
-/// the next eigenvalue. It has to be finer than the figure that is wanted: where eigenvalues
-/// cluster, a loose one is content with an eigenvalue inside the cluster. Rounding adds the
-/// condition number times the rounding unit to the smallest eigenvalue.
+/// The tolerance bounds the residual relative to the eigenvalue, and with it the relative distance
+/// to the nearest eigenvalue. It must be finer than the accuracy wanted: with clustered eigenvalues
+/// a coarse tolerance accepts an eigenvalue inside the cluster. Rounding adds the condition number
+/// times the rounding unit to the smallest eigenvalue.
 #[derive(Clone, Copy, Debug)]
 pub struct Lanczos {
     /// Largest residual, relative to the eigenvalue.
@@ -84,7 +88,11 @@ impl Lanczos {
     ///
     /// # Errors
     /// [`SpectrumError`].
-    pub fn extremes(&self, a: &dyn Positive, b: &dyn Positive) -> Result<Extremes, SpectrumError> {
+    pub fn extremes(
+        &self,
+        a: &dyn PositiveDefinite,
+        b: &dyn PositiveDefinite,
+    ) -> Result<Extremes, SpectrumError> {
         Ok(Extremes { smallest: self.smallest(a, b)?, largest: self.largest(a, b)? })
     }
 
@@ -92,7 +100,11 @@ impl Lanczos {
     ///
     /// # Errors
     /// [`SpectrumError`].
-    pub fn largest(&self, a: &dyn Positive, b: &dyn Positive) -> Result<f64, SpectrumError> {
+    pub fn largest(
+        &self,
+        a: &dyn PositiveDefinite,
+        b: &dyn PositiveDefinite,
+    ) -> Result<f64, SpectrumError> {
         let operator = |x: &[f64]| {
             let mut y = a.apply(x);
             b.solve(&mut y);
@@ -105,7 +117,11 @@ impl Lanczos {
     ///
     /// # Errors
     /// [`SpectrumError`].
-    pub fn smallest(&self, a: &dyn Positive, b: &dyn Positive) -> Result<f64, SpectrumError> {
+    pub fn smallest(
+        &self,
+        a: &dyn PositiveDefinite,
+        b: &dyn PositiveDefinite,
+    ) -> Result<f64, SpectrumError> {
         let operator = |x: &[f64]| {
             let mut y = b.apply(x);
             a.solve(&mut y);
@@ -119,15 +135,15 @@ impl Lanczos {
         &self,
         size: usize,
         operator: &dyn Fn(&[f64]) -> Vec<f64>,
-        b: &dyn Positive,
+        b: &dyn PositiveDefinite,
     ) -> Result<f64, SpectrumError> {
         if size != b.size() || size == 0 {
             return Err(SpectrumError::Sizes { a: size, b: b.size() });
         }
-        let mut random = Random(1);
-        let mut next: Vec<f64> = (0..size).map(|_| random.unit() - 0.5).collect();
+        let mut generator = SplitMix64(1);
+        let mut next: Vec<f64> = (0..size).map(|_| generator.unit() - 0.5).collect();
         let mut basis: Vec<Vec<f64>> = Vec::new();
-        let (mut diagonal, mut beside) = (Vec::new(), Vec::new());
+        let (mut diagonal, mut off_diagonal) = (Vec::new(), Vec::new());
         let mut check = 4;
         let mut length = norm(&next, b);
         loop {
@@ -142,28 +158,28 @@ impl Lanczos {
             length = norm(&image, b);
             let steps = basis.len();
             let last = steps == size.min(self.max_steps);
-            // an invariant space, but for rounding, needs no further step
-            let closed = length <= f64::EPSILON * diagonal[steps - 1].abs();
-            if steps >= check || last || closed {
-                let (value, share) = largest_of_tridiagonal(&diagonal, &beside);
-                let residual = (length * share / value).abs();
+            // up to rounding the Krylov space is invariant
+            let invariant = length <= f64::EPSILON * diagonal[steps - 1].abs();
+            if steps >= check || last || invariant {
+                let (value, last_entry) = largest_of_tridiagonal(&diagonal, &off_diagonal);
+                let residual = (length * last_entry / value).abs();
                 if residual <= self.tolerance && value > 0.0 {
                     return Ok(value);
                 }
-                if last || closed {
+                if last || invariant {
                     let tolerance = self.tolerance;
                     return Err(SpectrumError::NotReached { steps, value, residual, tolerance });
                 }
                 check = steps + steps / 4 + 1;
             }
-            beside.push(length);
+            off_diagonal.push(length);
             next = image;
         }
     }
 }
 
 /// The norm in the inner product of `b`.
-fn norm(x: &[f64], b: &dyn Positive) -> f64 {
+fn norm(x: &[f64], b: &dyn PositiveDefinite) -> f64 {
     dot(x, &b.apply(x)).sqrt()
 }
 
@@ -171,9 +187,9 @@ fn dot(x: &[f64], y: &[f64]) -> f64 {
     x.iter().zip(y).map(|(x, y)| x * y).sum()
 }
 
-/// Makes a vector orthogonal to a basis in the inner product of `b`, twice against rounding;
-/// returns its component along the last vector of the basis.
-fn orthogonalise(x: &mut [f64], basis: &[Vec<f64>], b: &dyn Positive) -> f64 {
+/// Makes a vector orthogonal to a basis in the inner product of `b`, twice because of rounding
+/// errors; returns its component along the last vector of the basis.
+fn orthogonalise(x: &mut [f64], basis: &[Vec<f64>], b: &dyn PositiveDefinite) -> f64 {
     let mut along_last = 0.0;
     for _ in 0..2 {
         let image = b.apply(x);
@@ -189,11 +205,11 @@ fn orthogonalise(x: &mut [f64], basis: &[Vec<f64>], b: &dyn Positive) -> f64 {
 }
 
 /// The largest eigenvalue of a tridiagonal matrix, and the last entry of its eigenvector.
-fn largest_of_tridiagonal(diagonal: &[f64], beside: &[f64]) -> (f64, f64) {
+fn largest_of_tridiagonal(diagonal: &[f64], off_diagonal: &[f64]) -> (f64, f64) {
     let n = diagonal.len();
     let matrix = DMatrix::from_fn(n, n, |i, j| match i.abs_diff(j) {
         0 => diagonal[i],
-        1 => beside[i.min(j)],
+        1 => off_diagonal[i.min(j)],
         _ => 0.0,
     });
     let eigen = SymmetricEigen::new(matrix);

@@ -41,8 +41,8 @@ impl Row {
 
 impl MeanJump {
     /// The change of variables on a mesh.
-    pub fn of<T: Real, const D: usize>(mesh: &Mesh<T, D>) -> Self {
-        let facets = Facets::of(mesh, &Neighbours::of(mesh));
+    pub fn new<T: Real, const D: usize>(mesh: &Mesh<T, D>) -> Self {
+        let facets = Facets::new(mesh, &Neighbours::new(mesh));
         let [dirichlet, neumann, contact] =
             [BoundaryPart::Dirichlet, BoundaryPart::Neumann, BoundaryPart::Contact]
                 .map(|part| facets.part(part));

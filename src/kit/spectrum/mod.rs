@@ -1,26 +1,26 @@
 //! Extreme eigenvalues of symmetric positive definite matrices and of pencils of two of them.
 //!
-//! The condition number of `B^-1 A`, with `B` one for that of `A` itself, tells how many steps an
-//! iterative solver needs and how much of the rounding unit a direct one loses.
+//! The condition number of `B^-1 A`, with `B = 1` for that of `A`, determines the number of steps of
+//! iterative solvers and the rounding errors of direct ones.
 //!
 //! ```
 //! use unilateral::algebra::SparseMatrix;
-//! use unilateral::kit::spectrum::{Diagonal, Factored, Lanczos};
+//! use unilateral::kit::spectrum::{Diagonal, CholeskyMatrix, Lanczos};
 //!
 //! let matrix = SparseMatrix {
 //!     row_starts: vec![0, 2, 4],
 //!     columns: vec![0, 1, 0, 1],
 //!     values: vec![2.0, -1.0, -1.0, 2.0],
 //! };
-//! let a = Factored::new(&matrix).unwrap();
-//! let found = Lanczos::default().extremes(&a, &Diagonal::one(2)).unwrap();
+//! let a = CholeskyMatrix::new(&matrix).unwrap();
+//! let found = Lanczos::default().extremes(&a, &Diagonal::identity(2)).unwrap();
 //! assert!((found.condition() - 3.0).abs() < 1e-9);
 //! ```
 
 mod lanczos;
 mod mean_jump;
-mod positive;
+mod positive_definite;
 
 pub use lanczos::{Extremes, Lanczos, SpectrumError};
 pub use mean_jump::MeanJump;
-pub use positive::{Diagonal, Factored, Positive};
+pub use positive_definite::{CholeskyMatrix, Diagonal, PositiveDefinite};

@@ -27,7 +27,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         let mut weights = vec![0.0; self.mesh.vertices().len()];
         let mut forces = self.vertex_forces(inequality, solution);
         // for facets and for cells
-        let rules = [D - 1, D].map(|d| DEGREES.map(|degree| Rule::of_degree(d, degree)));
+        let rules = [D - 1, D].map(|d| DEGREES.map(|degree| Rule::new(d, degree)));
         for &carrier in carriers {
             let rules = &rules[usize::from(carrier.dimension::<D>() == D)];
             self.subtract_exact((multiplier, set), carrier, rules, &mut weights, &mut forces)?;

@@ -1,11 +1,54 @@
-//! Kuhn triangulations of boxes.
+//! Boxes and their Kuhn triangulations.
 
+use crate::mesh::boundary::{BoundaryFacet, BoundaryPart};
+use crate::mesh::error::MeshError;
+use crate::mesh::simplicial::Mesh;
 use crate::mesh::validate::check_size;
-use crate::mesh::{BoundaryFacet, BoxDomain, Mesh, MeshError};
 use crate::real::{Point, Real};
 
-/// Orders in which a path steps along the axes from the lowest to the highest corner of a box; each
-/// makes one simplex.
+/// An axis-parallel box and the part of the boundary each of its sides belongs to.
+#[derive(Clone, Debug)]
+#[non_exhaustive]
+pub struct BoxDomain<const D: usize> {
+    /// Lowest corner.
+    pub lower: Point<f64, D>,
+    /// Highest corner.
+    pub upper: Point<f64, D>,
+    /// Part of the sides `x_k = lower_k` and `x_k = upper_k`, for each axis `k`.
+    pub sides: [[BoundaryPart; 2]; D],
+}
+
+impl<const D: usize> BoxDomain<D> {
+    /// The box between two corners, with the part of the sides `x_k = lower_k` and `x_k = upper_k`
+    /// for each axis `k`.
+    pub fn new(lower: Point<f64, D>, upper: Point<f64, D>, sides: [[BoundaryPart; 2]; D]) -> Self {
+        Self { lower, upper, sides }
+    }
+    /// The box with Dirichlet data on every side.
+    pub fn dirichlet(lower: Point<f64, D>, upper: Point<f64, D>) -> Self {
+        Self::new(lower, upper, [[BoundaryPart::Dirichlet; 2]; D])
+    }
+    /// The cube `(-half, half)^D` with Dirichlet data on every side.
+    pub fn centred(half: f64) -> Self {
+        Self::dirichlet(Point::repeat(-half), Point::repeat(half))
+    }
+    /// Sets the part of one side (`end` 0 for the lower, 1 for the upper one).
+    #[must_use]
+    pub fn side(mut self, axis: usize, end: usize, part: BoundaryPart) -> Self {
+        self.sides[axis][end] = part;
+        self
+    }
+    /// The box of Signorini scenes: `(-1,1)^(D-1) x (0,1)`, contact where the last coordinate is
+    /// zero, Dirichlet data on the other sides.
+    pub fn above_contact() -> Self {
+        let mut lower = Point::repeat(-1.0);
+        lower[D - 1] = 0.0;
+        Self::dirichlet(lower, Point::repeat(1.0)).side(D - 1, 0, BoundaryPart::Contact)
+    }
+}
+
+/// The permutations of the axes. Each is a path along edges from the lowest to the highest corner of a
+/// box, and the corners of the path are the vertices of one simplex.
 fn paths<const D: usize>() -> Vec<[usize; D]> {
     let mut paths: Vec<Vec<usize>> = vec![Vec::new()];
     for _ in 0..D {

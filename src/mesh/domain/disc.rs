@@ -1,17 +1,21 @@
-//! The disc: a hexagon bent round.
+//! The disc, as the image of a regular hexagon.
 
 use std::f64::consts::FRAC_PI_3;
 
+use crate::mesh::boundary::BoundaryPart;
+use crate::mesh::error::MeshError;
+use crate::mesh::refine::Refinement;
+use crate::mesh::simplicial::Mesh;
+use crate::mesh::validate::TaggedFacet;
 use crate::mesh::validate::check_size;
-use crate::mesh::{BoundaryPart, Mesh, MeshError, Refinement, TaggedFacet};
 use crate::real::{Point, Real, point_f64};
 
 impl<T: Real, const D: usize> Mesh<T, D> {
     /// The disc of this radius around the origin: a centre, and rings `k = 1..=n` of `6k` vertices
-    /// each, evenly spread. All the boundary is Dirichlet; its vertices lie on the circle.
+    /// each at equal angles. All the boundary is Dirichlet; its vertices lie on the circle.
     ///
-    /// A regular hexagon cut into `6 n^2` equilateral triangles has the same rings; bending each of
-    /// its sides into an arc moves one mesh to the other. Angles stay between 30 and 90 degrees.
+    /// It is the image of a regular hexagon cut into `6 n^2` equilateral triangles, under the map that
+    /// bends each side of the concentric hexagons into an arc. Angles lie between 30 and 90 degrees.
     ///
     /// # Errors
     /// [`MeshError::Parameter`] for `n = 0`, a radius that is not positive and finite and a dimension
@@ -47,8 +51,8 @@ impl<T: Real, const D: usize> Mesh<T, D> {
         Ok(Self::new(vertices, cells, &boundary)?)
     }
 
-    /// The uniform refinement of a mesh of a disc, with new vertices where [`Mesh::disc`] has them:
-    /// in the middle of arcs, not of chords.
+    /// The uniform refinement of a mesh of a disc, with new vertices in the middle of arcs, as in
+    /// [`Mesh::disc`], not of chords.
     ///
     /// # Errors
     /// [`MeshError::TooLarge`].
@@ -65,7 +69,7 @@ impl<T: Real, const D: usize> Mesh<T, D> {
     }
 }
 
-/// Refuses shapes of the plane in other dimensions, without extent and without subdivisions.
+/// Refuses a dimension other than two, a length that is not positive and zero subdivisions.
 pub(crate) fn check_shape<const D: usize>(
     shape: &'static str,
     length: f64,
@@ -84,7 +88,7 @@ pub(crate) fn check_shape<const D: usize>(
         return wrong("length", length.to_string(), "positive and finite");
     }
     let n_cells = n.saturating_mul(n).saturating_mul(6);
-    // the L-shape is cut out of a square with four vertices to a small square
+    // a bound of the number of cells of both shapes and of the vertices of the square of the L-shape
     check_size(n_cells, n_cells)?;
     Ok(())
 }
@@ -93,21 +97,22 @@ fn polar<const D: usize>(r: f64, angle: f64) -> Point<f64, D> {
     Point::from_fn(|k, _| r * if k == 0 { angle.cos() } else { angle.sin() })
 }
 
-/// Sector of 60 degrees around an angle, and how far the angle is into it, from zero to one.
+/// The sector of 60 degrees that contains an angle, and the position of the angle in it, from zero to
+/// one.
 fn sector(angle: f64) -> (f64, f64) {
     let turns = angle / FRAC_PI_3;
     (turns.floor(), turns - turns.floor())
 }
 
-/// The point of the hexagon with corners on the circle that bending moves to `x`.
+/// The inverse of [`to_disc`].
 fn to_hexagon<const D: usize>(x: &Point<f64, D>) -> Point<f64, D> {
     let r = x.norm();
     let (k, t) = sector(x[1].atan2(x[0]));
     polar::<D>(r * (1.0 - t), k * FRAC_PI_3) + polar::<D>(r * t, (k + 1.0) * FRAC_PI_3)
 }
 
-/// Bends the hexagon: the side of a smaller concentric one through `x` becomes an arc, lengths
-/// along it become angles.
+/// The map from the regular hexagon to the disc: each side of the concentric hexagon through `x`
+/// becomes an arc, and lengths along the side become angles.
 fn to_disc<const D: usize>(x: &Point<f64, D>) -> Point<f64, D> {
     let (k, _) = sector(x[1].atan2(x[0]));
     // coordinates along the two rays that bound the sector

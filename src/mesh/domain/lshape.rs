@@ -1,7 +1,10 @@
 //! The L-shaped domain.
 
 use super::disc::check_shape;
-use crate::mesh::{BoundaryPart, Mesh, MeshError, TaggedFacet};
+use crate::mesh::boundary::BoundaryPart;
+use crate::mesh::error::MeshError;
+use crate::mesh::simplicial::Mesh;
+use crate::mesh::validate::TaggedFacet;
 use crate::real::{Point, Real};
 
 impl<T: Real, const D: usize> Mesh<T, D> {
@@ -33,7 +36,7 @@ impl<T: Real, const D: usize> Mesh<T, D> {
             boundary.push(TaggedFacet { vertices, part: BoundaryPart::Dirichlet });
         };
         for k in 0..2 * n {
-            // the level at which a side facing right or down stands back to let the quadrant out
+            // the grid lines of the sides that face right and down: the quadrant moves half of each inwards
             let (right, bottom) = if k < n { (n, 0) } else { (2 * n, n) };
             side(vertex(0, k), vertex(0, k + 1));
             side(vertex(right, k), vertex(right, k + 1));

@@ -4,46 +4,17 @@ mod boxes;
 mod disc;
 mod lshape;
 
-use super::{BoundaryPart, Mesh, MeshError, Refinement};
+pub use boxes::BoxDomain;
+
+use super::boundary::BoundaryPart;
+use super::error::MeshError;
+use super::refine::Refinement;
+use super::simplicial::Mesh;
 use crate::real::{Point, Real};
 
-/// An axis-parallel box and the part of the boundary each of its sides belongs to.
+/// A built-in domain. All the boundary of an L-shape and of a disc is Dirichlet.
 #[derive(Clone, Debug)]
-pub struct BoxDomain<const D: usize> {
-    /// Lowest corner.
-    pub lower: Point<f64, D>,
-    /// Highest corner.
-    pub upper: Point<f64, D>,
-    /// Part of the sides `x_k = lower_k` and `x_k = upper_k`, for each axis `k`.
-    pub sides: [[BoundaryPart; 2]; D],
-}
-
-impl<const D: usize> BoxDomain<D> {
-    /// The box with Dirichlet data on every side.
-    pub fn dirichlet(lower: Point<f64, D>, upper: Point<f64, D>) -> Self {
-        Self { lower, upper, sides: [[BoundaryPart::Dirichlet; 2]; D] }
-    }
-    /// The cube `(-half, half)^D` with Dirichlet data on every side.
-    pub fn centred(half: f64) -> Self {
-        Self::dirichlet(Point::repeat(-half), Point::repeat(half))
-    }
-    /// The same box with another part on one side (`end` 0 for the lower, 1 for the upper one).
-    #[must_use]
-    pub fn side(mut self, axis: usize, end: usize, part: BoundaryPart) -> Self {
-        self.sides[axis][end] = part;
-        self
-    }
-    /// The box of Signorini scenes: `(-1,1)^(D-1) x (0,1)`, contact where the last coordinate is
-    /// zero, Dirichlet data on the other sides.
-    pub fn above_contact() -> Self {
-        let mut lower = Point::repeat(-1.0);
-        lower[D - 1] = 0.0;
-        Self::dirichlet(lower, Point::repeat(1.0)).side(D - 1, 0, BoundaryPart::Contact)
-    }
-}
-
-/// The domain of a scene. Where it is not a box, all its boundary is Dirichlet.
-#[derive(Clone, Debug)]
+#[non_exhaustive]
 pub enum Domain<const D: usize> {
     /// A box.
     Box(BoxDomain<D>),
@@ -66,7 +37,7 @@ impl<const D: usize> From<BoxDomain<D>> for Domain<D> {
 }
 
 impl<const D: usize> Domain<D> {
-    /// The smallest box around the domain; a box itself with its sides.
+    /// The smallest box that contains the domain; for a box that box, with the parts of its sides.
     pub fn bounding_box(&self) -> BoxDomain<D> {
         match *self {
             Domain::Box(ref domain) => domain.clone(),
@@ -74,7 +45,7 @@ impl<const D: usize> Domain<D> {
             Domain::Disc { radius } => BoxDomain::centred(radius),
         }
     }
-    /// The length that a level is a subdivision of: the shortest side, or the radius of a disc.
+    /// The length that a level subdivides: the shortest side, or the radius of a disc.
     pub fn length(&self) -> f64 {
         match *self {
             Domain::Box(ref domain) => (domain.upper - domain.lower).min(),
@@ -82,8 +53,7 @@ impl<const D: usize> Domain<D> {
             Domain::Disc { radius } => radius,
         }
     }
-    /// How far one can go from a point along any axis without leaving the domain, or less; negative
-    /// outside.
+    /// A lower bound of the distance from a point along any axis to the boundary; negative outside.
     pub fn depth(&self, x: &Point<f64, D>) -> f64 {
         let in_box = |b: &BoxDomain<D>| (x - b.lower).min().min((b.upper - x).min());
         match self {
@@ -92,7 +62,7 @@ impl<const D: usize> Domain<D> {
             Domain::Disc { radius } => radius - x.norm(),
         }
     }
-    /// Whether some part of the boundary is of this kind.
+    /// Whether the boundary has a facet in this part.
     pub fn has_part(&self, part: BoundaryPart) -> bool {
         match self {
             Domain::Box(domain) => domain.sides.iter().flatten().any(|&side| side == part),
@@ -100,7 +70,7 @@ impl<const D: usize> Domain<D> {
         }
     }
 
-    /// How many cells the mesh of a level has.
+    /// Number of cells of the mesh of a level.
     pub fn cells(&self, level: usize) -> f64 {
         match self {
             Domain::Box(domain) => {
@@ -111,7 +81,7 @@ impl<const D: usize> Domain<D> {
             Domain::LShape { .. } | Domain::Disc { .. } => 6.0 * (level as f64).powi(2),
         }
     }
-    /// Lengths of the cells of a level along each axis, about.
+    /// Approximate lengths of the cells of a level along each axis.
     pub fn spacings(&self, level: usize) -> [f64; D] {
         match self {
             Domain::Box(domain) => {
@@ -121,8 +91,8 @@ impl<const D: usize> Domain<D> {
             _ => [self.length() / level as f64; D],
         }
     }
-    /// The mesh with `level` subdivisions of [`Domain::length`]. On every domain the mesh of an
-    /// even level is what [`Domain::refine`] makes of the mesh of half of it, up to numbering.
+    /// The mesh with `level` subdivisions of [`Domain::length`]. Up to numbering, the mesh of an even
+    /// level is [`Domain::refine`] of the mesh of half the level.
     ///
     /// # Errors
     /// [`MeshError::Parameter`] for a level of zero, for a domain without volume and for one that does
@@ -134,7 +104,8 @@ impl<const D: usize> Domain<D> {
             Domain::Disc { radius } => Mesh::disc(radius, level),
         }
     }
-    /// The uniform refinement of a mesh of this domain; its boundary is that of the domain.
+    /// The uniform refinement of a mesh of this domain; new vertices on the boundary lie on the boundary
+    /// of the domain.
     ///
     /// # Errors
     /// [`MeshError::TooLarge`] if there would be too many cells.

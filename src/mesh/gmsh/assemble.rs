@@ -1,12 +1,24 @@
-//! From the contents of a file to a mesh.
+//! The mesh of a file, from its contents.
 
-use super::GmshMesh;
 use super::contents::{Contents, Membership};
+use super::element_types::Shape;
 use super::error::{GmshError, GmshWarning};
-use super::kinds::Shape;
 use super::node_index::NodeIndex;
-use crate::mesh::{BoundaryPart, Mesh, MeshError, TaggedFacet};
+use crate::mesh::boundary::BoundaryPart;
+use crate::mesh::error::MeshError;
+use crate::mesh::simplicial::Mesh;
+use crate::mesh::validate::TaggedFacet;
 use crate::real::{Point, Real};
+
+/// A mesh read from a file, and the warnings of the reader.
+#[derive(Clone, Debug)]
+#[non_exhaustive]
+pub struct GmshMesh<T, const D: usize> {
+    /// The mesh.
+    pub mesh: Mesh<T, D>,
+    /// Contents of the file that the mesh does not represent exactly.
+    pub warnings: Vec<GmshWarning>,
+}
 
 /// A mesh of dimension `D` from the contents of a file.
 pub(super) fn assemble<T: Real, const D: usize>(
@@ -46,7 +58,7 @@ fn check_dimension(contents: &Contents, asked: usize) -> Result<(), GmshError> {
     Err(GmshError::WrongDimension { asked, found, advice })
 }
 
-/// Insists that every named group of boundary elements names a part of the boundary.
+/// An error if a named group of boundary elements does not name a part of the boundary.
 fn check_group_names(contents: &Contents, dimension: usize) -> Result<(), GmshError> {
     for (&(of, tag), group) in &contents.groups {
         if of != dimension || BoundaryPart::from_name(&group.name).is_some() {
@@ -54,13 +66,13 @@ fn check_group_names(contents: &Contents, dimension: usize) -> Result<(), GmshEr
         }
         let meant = BoundaryPart::from_name(&group.name.trim().to_lowercase());
         let hint = meant.map_or(String::new(), |part| format!(": write {}", part.name()));
-        let (place, name) = (group.place, group.name.clone());
-        return Err(GmshError::UnknownGroup { place, dimension, tag, name, hint });
+        let (position, name) = (group.position, group.name.clone());
+        return Err(GmshError::UnknownGroup { position, dimension, tag, name, hint });
     }
     Ok(())
 }
 
-/// The vertices of the cells, and which element each cell is.
+/// The vertices of the cells, and the index of the element of each cell.
 fn cells_of<const D: usize>(
     contents: &Contents,
     index: &NodeIndex,
@@ -92,11 +104,11 @@ fn cells_of<const D: usize>(
 
 fn unknown_node(contents: &Contents, dimension: usize, element: usize, node: u64) -> GmshError {
     let simplices = &contents.simplices[dimension];
-    let place = contents.place_of(simplices.positions[element]);
-    GmshError::UnknownNode { place, element: simplices.tags[element], node }
+    let position = contents.position_of(simplices.marks[element]);
+    GmshError::UnknownNode { position, element: simplices.tags[element], node }
 }
 
-/// The elements of the boundary that are in a group, and which element each of them is.
+/// The facets of the boundary that are in a group, and the index of the element of each facet.
 fn tagged_facets<const D: usize>(
     contents: &Contents,
     index: &NodeIndex,
@@ -118,13 +130,13 @@ fn tagged_facets<const D: usize>(
         };
         let mut parts = Vec::new();
         for &tag in groups {
-            // Names that are no parts are refused before.
+            // Other names are refused by `check_group_names`.
             let named = contents
                 .groups
                 .get(&(D - 1, tag))
                 .and_then(|group| BoundaryPart::from_name(&group.name));
             let part = named.ok_or_else(|| GmshError::UnnamedGroup {
-                place: contents.place_of(simplices.positions[run.start]),
+                position: contents.position_of(simplices.marks[run.start]),
                 element: simplices.tags[run.start],
                 dimension: D - 1,
                 tag,
@@ -153,7 +165,7 @@ fn tagged_facets<const D: usize>(
     Ok((boundary, elements))
 }
 
-/// Insists that a mesh of lines lies in a line along x, one of triangles in a plane of constant z.
+/// An error unless a mesh of lines lies in a line along x, a mesh of triangles in a plane of constant z.
 fn check_flat<const D: usize>(contents: &Contents, cells: &[u32]) -> Result<(), GmshError> {
     let points = &contents.nodes.points;
     let Some(&first) = cells.first() else {
@@ -164,16 +176,16 @@ fn check_flat<const D: usize>(contents: &Contents, cells: &[u32]) -> Result<(), 
         (0..D).fold(largest, |largest, k| largest.max((points[v as usize][k] - reference[k]).abs()))
     });
     for axis in D..3 {
-        // Room for rounding in the geometry: relative to the mesh, and to how far off it lies.
+        // Rounding errors of the geometry, relative to the extent of the mesh and to its offset.
         let tolerance = (1e-9 * extent).max(1e-14 * reference[axis].abs());
         for &v in cells {
             let value = points[v as usize][axis];
-            // Written so that an overflow to infinity is refused.
+            // The comparison is false for an infinite difference, which is refused.
             if (value - reference[axis]).abs() <= tolerance {
                 continue;
             }
             return Err(GmshError::NotFlat {
-                place: contents.place_of(contents.nodes.positions[v as usize]),
+                position: contents.position_of(contents.nodes.marks[v as usize]),
                 node: contents.nodes.tags[v as usize],
                 axis: ['x', 'y', 'z'][axis],
                 value,
@@ -186,7 +198,7 @@ fn check_flat<const D: usize>(contents: &Contents, cells: &[u32]) -> Result<(), 
     Ok(())
 }
 
-/// The vertices a mesh error names.
+/// The vertices in the message of a mesh error.
 fn vertices_of(error: &MeshError) -> Vec<usize> {
     match error {
         MeshError::DegenerateCell { vertices, .. }

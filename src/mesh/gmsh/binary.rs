@@ -15,7 +15,7 @@ impl Source<'_> {
             None => Err(self.truncated()),
         }
     }
-    /// Steps over binary numbers.
+    /// Skips binary numbers.
     pub(super) fn skip_bytes(&mut self, count: u64, size: usize) -> Result<(), GmshError> {
         match usize::try_from(count).ok().and_then(|count| count.checked_mul(size)) {
             Some(length) if length <= self.remaining() => {
@@ -25,13 +25,13 @@ impl Source<'_> {
             _ => Err(self.truncated()),
         }
     }
-    /// The byte order, from the integer one at the present position.
+    /// The byte order, from the bytes of the integer one.
     pub(super) fn byte_order(&mut self) -> Result<Encoding, GmshError> {
-        let place = FilePosition::Byte(self.at);
+        let position = FilePosition::Byte(self.at);
         match self.bytes::<4>()? {
             [1, 0, 0, 0] => Ok(Encoding::LittleEndian),
             [0, 0, 0, 1] => Ok(Encoding::BigEndian),
-            found => Err(GmshError::ByteOrder { place, found }),
+            found => Err(GmshError::ByteOrder { position, found }),
         }
     }
     pub(super) fn binary_integer(&mut self) -> Result<i64, GmshError> {

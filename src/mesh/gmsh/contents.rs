@@ -1,7 +1,7 @@
-//! What a file holds, before it is a mesh.
+//! The contents of a file before they are assembled to a mesh.
 
+use super::element_types::{Shape, TypeProperties};
 use super::error::GmshError;
-use super::kinds::{Kind, Shape};
 use super::position::{ElementPosition, FilePosition};
 use super::source::Source;
 use std::collections::{BTreeMap, HashMap};
@@ -10,16 +10,16 @@ use std::collections::{BTreeMap, HashMap};
 pub(super) struct Group {
     /// The name, without its quotes.
     pub(super) name: String,
-    /// Where it stands.
-    pub(super) place: FilePosition,
+    /// The position of the name.
+    pub(super) position: FilePosition,
 }
 
-/// What tells the groups of an element.
+/// The source of the physical groups of an element.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Membership {
-    /// The geometric entity it belongs to, in MSH 4.1.
+    /// The groups of a geometric entity, in MSH 4.1.
     Entity(i64),
-    /// A group, in MSH 2.2; zero for none.
+    /// One group, in MSH 2.2; zero for none.
     Group(i64),
 }
 
@@ -28,27 +28,28 @@ pub(super) enum Membership {
 pub(super) struct Nodes {
     pub(super) tags: Vec<u64>,
     pub(super) points: Vec<[f64; 3]>,
-    pub(super) positions: Vec<usize>,
+    /// Numbers of the positions, see [`Contents::position_of`].
+    pub(super) marks: Vec<usize>,
 }
 
 impl Nodes {
     pub(super) fn reserve(&mut self, nodes: usize) {
         self.tags.reserve(nodes);
         self.points.reserve(nodes);
-        self.positions.reserve(nodes);
+        self.marks.reserve(nodes);
     }
     /// Appends a node, whose coordinates must be finite.
     pub(super) fn push(
         &mut self,
         source: &Source,
-        position: usize,
+        mark: usize,
         node: u64,
         point: [f64; 3],
     ) -> Result<(), GmshError> {
         if let Some(axis) = point.iter().position(|x| !x.is_finite()) {
-            let place = source.place_of(position);
+            let position = source.position_of(mark);
             return Err(GmshError::NotFinite {
-                place,
+                position,
                 node,
                 axis: ['x', 'y', 'z'][axis],
                 value: point[axis],
@@ -56,7 +57,7 @@ impl Nodes {
         }
         self.tags.push(node);
         self.points.push(point);
-        self.positions.push(position);
+        self.marks.push(mark);
         Ok(())
     }
 }
@@ -67,27 +68,22 @@ pub(super) struct Simplices {
     /// Tags of the corners, one more than the dimension for each.
     pub(super) corners: Vec<u64>,
     pub(super) tags: Vec<u64>,
-    pub(super) positions: Vec<usize>,
-    /// Where the groups of each change: the first element, and what tells its groups.
+    /// Numbers of the positions, see [`Contents::position_of`].
+    pub(super) marks: Vec<usize>,
+    /// Runs of elements with the same groups: the first element of each, and its groups.
     pub(super) memberships: Vec<(usize, Membership)>,
-    /// How many are of higher order, by order.
+    /// Numbers of elements of higher order, by order.
     pub(super) curved: BTreeMap<u8, usize>,
 }
 
 impl Simplices {
     pub(super) fn reserve(&mut self, elements: usize, corners_each: usize) {
         self.tags.reserve(elements);
-        self.positions.reserve(elements);
+        self.marks.reserve(elements);
         self.corners.reserve(elements * corners_each);
     }
-    /// Appends an element whose corners are in the list already.
-    pub(super) fn push(
-        &mut self,
-        position: usize,
-        element: u64,
-        order: u8,
-        membership: Membership,
-    ) {
+    /// Appends an element whose corners are appended to `corners` before.
+    pub(super) fn push(&mut self, mark: usize, element: u64, order: u8, membership: Membership) {
         if self.memberships.last().is_none_or(|&(_, last)| last != membership) {
             self.memberships.push((self.tags.len(), membership));
         }
@@ -95,7 +91,7 @@ impl Simplices {
             *self.curved.entry(order).or_insert(0) += 1;
         }
         self.tags.push(element);
-        self.positions.push(position);
+        self.marks.push(mark);
     }
     /// Runs of consecutive elements with the same groups.
     pub(super) fn runs(&self) -> impl Iterator<Item = (std::ops::Range<usize>, Membership)> + '_ {
@@ -108,9 +104,9 @@ impl Simplices {
     }
 }
 
-/// Everything read from a file.
+/// The contents of a file.
 pub(super) struct Contents {
-    /// Whether positions are offsets of bytes.
+    /// Whether positions are bytes, otherwise lines.
     pub(super) binary: bool,
     /// The named groups, by dimension and tag.
     pub(super) groups: BTreeMap<(usize, i64), Group>,
@@ -135,21 +131,24 @@ impl Contents {
     pub(super) fn dimension(&self) -> Result<usize, GmshError> {
         (1..=3).rev().find(|&d| !self.simplices[d].tags.is_empty()).ok_or(GmshError::NoCells)
     }
-    pub(super) fn place_of(&self, position: usize) -> FilePosition {
-        if self.binary { FilePosition::Byte(position) } else { FilePosition::Line(position) }
+    pub(super) fn position_of(&self, mark: usize) -> FilePosition {
+        if self.binary { FilePosition::Byte(mark) } else { FilePosition::Line(mark) }
     }
     /// An element by its position in the list of its dimension.
     pub(super) fn element(&self, dimension: usize, index: usize) -> Option<ElementPosition> {
         let simplices = &self.simplices[dimension];
-        let place = self.place_of(*simplices.positions.get(index)?);
-        Some(ElementPosition { element: *simplices.tags.get(index)?, place })
+        let position = self.position_of(*simplices.marks.get(index)?);
+        Some(ElementPosition { element: *simplices.tags.get(index)?, position })
     }
 }
 
-/// The kind of an element type, whose elements need not be simplices.
-pub(super) fn known_kind(source: &Source, element_type: i64) -> Result<Kind, GmshError> {
-    Kind::from_type(element_type)
-        .ok_or_else(|| GmshError::UnknownElementType { place: source.place(), element_type })
+/// The properties of an element type, of simplices or not.
+pub(super) fn type_properties(
+    source: &Source,
+    element_type: i64,
+) -> Result<TypeProperties, GmshError> {
+    TypeProperties::from_type(element_type)
+        .ok_or_else(|| GmshError::UnknownElementType { position: source.position(), element_type })
 }
 
 /// The dimension of a simplex; an error that names the element for anything else.
@@ -160,7 +159,7 @@ pub(super) fn simplex_dimension(
     element: u64,
 ) -> Result<usize, GmshError> {
     shape.simplex_dimension().ok_or_else(|| GmshError::NotSimplicial {
-        place: source.place(),
+        position: source.position(),
         element,
         element_type,
         name: shape.name(),

@@ -1,90 +1,92 @@
-//! What can be wrong with a mesh file, and what is only worth saying.
+//! Errors and warnings of the reader.
 
 use super::position::{ElementPosition, FilePosition};
-use crate::mesh::MeshError;
+use crate::mesh::error::MeshError;
+use crate::readable_debug::debug_by_display;
 use std::path::PathBuf;
 
-/// Why a Gmsh file could not be read: what, where, and what to do about it.
-#[derive(Debug, thiserror::Error)]
+/// The reason why a Gmsh file was not read: what is wrong, where, and what to do. `Debug` prints the
+/// message and its causes.
+#[derive(thiserror::Error)]
 #[non_exhaustive]
 pub enum GmshError {
-    /// The system does not hand out the file.
+    /// The file cannot be read.
     #[error("cannot read {}: {source}", path.display())]
     Unreadable {
         /// The file.
         path: PathBuf,
-        /// The system's reason.
+        /// The error of the operating system.
         source: std::io::Error,
     },
-    /// The file is something else.
+    /// The file is not a Gmsh mesh.
     #[error(
         "not a Gmsh mesh: the file begins with {found} where `$MeshFormat` is expected; save the mesh from Gmsh as .msh"
     )]
     NotGmsh {
-        /// How the file begins.
+        /// The first word of the file.
         found: String,
     },
-    /// Another revision of the format.
+    /// The version of the format is not supported.
     #[error(
-        "{place}: MSH version {version} is not read, only 4.1 and 2.2 are; save again from Gmsh with `-format msh41` or `-format msh22`"
+        "{position}: MSH version {version} is not read, only 4.1 and 2.2 are; save again from Gmsh with `-format msh41` or `-format msh22`"
     )]
     UnsupportedVersion {
-        /// Where the version stands.
-        place: FilePosition,
+        /// Position of the version.
+        position: FilePosition,
         /// The version found.
         version: String,
     },
-    /// Numbers of another size than this reader knows.
+    /// The size of numbers is not supported.
     #[error(
-        "{place}: numbers of {data_size} bytes are not read, only of 8; save again from a 64-bit Gmsh"
+        "{position}: numbers of {data_size} bytes are not read, only of 8; save again from a 64-bit Gmsh"
     )]
     UnsupportedDataSize {
-        /// Where the size stands.
-        place: FilePosition,
+        /// Position of the size.
+        position: FilePosition,
         /// The size found.
         data_size: u64,
     },
-    /// The number that shows the byte order of a binary file is not one.
+    /// The byte order mark of a binary file is not the integer one.
     #[error(
-        "{place}: the byte order mark of a binary file must be the integer 1, found bytes {found:?}; the file is damaged (was it copied as text?), save or copy it again"
+        "{position}: the byte order mark of a binary file must be the integer 1, found bytes {found:?}; the file is damaged (was it copied as text?), save or copy it again"
     )]
     ByteOrder {
-        /// Where the mark stands.
-        place: FilePosition,
+        /// Position of the mark.
+        position: FilePosition,
         /// The bytes found.
         found: [u8; 4],
     },
     /// The file ends inside a section.
     #[error(
-        "{place}: the file ends inside section {section}; it is incomplete, save or copy it again"
+        "{position}: the file ends inside section {section}; it is incomplete, save or copy it again"
     )]
     Truncated {
-        /// Where the file ends.
-        place: FilePosition,
+        /// Position of the end of the file.
+        position: FilePosition,
         /// The section that was open.
         section: String,
     },
-    /// A section without which there is no mesh.
+    /// A required section is missing.
     #[error("the file has no section {section}; save the mesh again from Gmsh")]
     MissingSection {
         /// The section.
         section: &'static str,
     },
-    /// A partitioned mesh.
+    /// The mesh is partitioned.
     #[error(
-        "{place}: the mesh is partitioned; save it unpartitioned (in Gmsh: Mesh > Delete > Partitions, or leave out `-part`)"
+        "{position}: the mesh is partitioned; save it unpartitioned (in Gmsh: Mesh > Delete > Partitions, or leave out `-part`)"
     )]
     Partitioned {
-        /// Where the section of partitions begins.
-        place: FilePosition,
+        /// Position of the section of partitions.
+        position: FilePosition,
     },
     /// A word where a number is expected.
     #[error(
-        "{place}, section {section}: expected {expected}, found `{word}`; correct the line or save the mesh again"
+        "{position}, section {section}: expected {expected}, found `{word}`; correct the line or save the mesh again"
     )]
     NotANumber {
-        /// Where the word stands.
-        place: FilePosition,
+        /// Position of the word.
+        position: FilePosition,
         /// The section.
         section: String,
         /// Which number was expected.
@@ -92,13 +94,13 @@ pub enum GmshError {
         /// The word found.
         word: String,
     },
-    /// Something else than the format asks for at this place.
+    /// The contents differ from the format.
     #[error(
-        "{place}, section {section}: expected {expected}, found {found}; correct the line or save the mesh again"
+        "{position}, section {section}: expected {expected}, found {found}; correct the line or save the mesh again"
     )]
     Unexpected {
-        /// Where it stands.
-        place: FilePosition,
+        /// Position of the contents.
+        position: FilePosition,
         /// The section.
         section: String,
         /// What was expected.
@@ -106,29 +108,29 @@ pub enum GmshError {
         /// What was found.
         found: String,
     },
-    /// A section announces another number of records than it has.
+    /// The number of records of a section differs from the announced one.
     #[error(
-        "{place}, section {section}: {announced} {what} are announced, {found} found; the file is damaged, save or copy it again"
+        "{position}, section {section}: {announced} {what} are announced, {found} found; the file is damaged, save or copy it again"
     )]
     Count {
-        /// Where the difference shows.
-        place: FilePosition,
+        /// Position of the difference.
+        position: FilePosition,
         /// The section.
         section: String,
         /// What is counted.
         what: &'static str,
-        /// How many are announced.
+        /// The announced number.
         announced: u64,
-        /// How many there are, as far as can be told.
+        /// The number found, or a bound of it.
         found: String,
     },
     /// An element names a node the file does not have.
     #[error(
-        "{place}: element {element} names node {node}, which section $Nodes does not have; save the mesh again"
+        "{position}: element {element} names node {node}, which section $Nodes does not have; save the mesh again"
     )]
     UnknownNode {
-        /// Where the element stands.
-        place: FilePosition,
+        /// Position of the element.
+        position: FilePosition,
         /// Tag of the element.
         element: u64,
         /// Tag of the node.
@@ -136,23 +138,23 @@ pub enum GmshError {
     },
     /// Two nodes have the same tag.
     #[error(
-        "{place}: node {node} is given a second time (first: {first}); tags of nodes must be distinct, renumber the mesh in Gmsh"
+        "{position}: node {node} is given a second time (first: {first}); tags of nodes must be distinct, renumber the mesh in Gmsh"
     )]
     RepeatedNode {
-        /// Where the second one stands.
-        place: FilePosition,
-        /// Where the first one stands.
+        /// Position of the second node.
+        position: FilePosition,
+        /// Position of the first node.
         first: FilePosition,
         /// The tag of both.
         node: u64,
     },
     /// A coordinate is not finite.
     #[error(
-        "{place}: coordinate {axis} of node {node} is {value}; coordinates must be finite, correct the geometry and mesh again"
+        "{position}: coordinate {axis} of node {node} is {value}; coordinates must be finite, correct the geometry and mesh again"
     )]
     NotFinite {
-        /// Where the node stands.
-        place: FilePosition,
+        /// Position of the node.
+        position: FilePosition,
         /// Tag of the node.
         node: u64,
         /// The coordinate: x, y or z.
@@ -160,13 +162,13 @@ pub enum GmshError {
         /// Its value.
         value: f64,
     },
-    /// A line or surface mesh that bends out of its line or plane.
+    /// A line or surface mesh does not lie in a line or plane.
     #[error(
-        "{place}: node {node} has {axis} = {value}, another node {axis} = {constant}; a mesh of dimension {dimension} must lie in {within}, turn it there or mesh the solid it bounds"
+        "{position}: node {node} has {axis} = {value}, another node {axis} = {constant}; a mesh of dimension {dimension} must lie in {within}, turn it there or mesh the solid it bounds"
     )]
     NotFlat {
-        /// Where the node stands.
-        place: FilePosition,
+        /// Position of the node.
+        position: FilePosition,
         /// Tag of the node.
         node: u64,
         /// The coordinate that must be constant: y or z.
@@ -180,7 +182,7 @@ pub enum GmshError {
         /// The line or plane in words.
         within: &'static str,
     },
-    /// Nothing but points, or nothing at all.
+    /// The file has no elements, or only points.
     #[error(
         "the file has no lines, triangles or tetrahedra; mesh before saving, and put the domain in a physical group: Gmsh saves only elements of groups once there is one"
     )]
@@ -194,26 +196,26 @@ pub enum GmshError {
         asked: usize,
         /// Largest dimension of an element of the file.
         found: usize,
-        /// What to do.
+        /// The remedy.
         advice: &'static str,
     },
     /// An element type outside the table of the format, or one without a fixed number of nodes.
     #[error(
-        "{place}: elements of type {element_type} are not known; lines, triangles and tetrahedra are read"
+        "{position}: elements of type {element_type} are not known; lines, triangles and tetrahedra are read"
     )]
     UnknownElementType {
-        /// Where the type stands.
-        place: FilePosition,
+        /// Position of the type.
+        position: FilePosition,
         /// The type found.
         element_type: i64,
     },
     /// An element that is not a simplex.
     #[error(
-        "{place}: element {element} is a {name} (type {element_type}); only simplices are read, triangulate: mesh again without `Recombine`, `Mesh.RecombineAll` and `Mesh.SubdivisionAlgorithm`"
+        "{position}: element {element} is a {name} (type {element_type}); only simplices are read, triangulate: mesh again without `Recombine`, `Mesh.RecombineAll` and `Mesh.SubdivisionAlgorithm`"
     )]
     NotSimplicial {
-        /// Where the element stands.
-        place: FilePosition,
+        /// Position of the element.
+        position: FilePosition,
         /// Tag of the element.
         element: u64,
         /// Its type.
@@ -221,39 +223,39 @@ pub enum GmshError {
         /// Its type in words.
         name: &'static str,
     },
-    /// No part of the boundary has a name.
+    /// No boundary element is in a physical group.
     #[error(
         "no {elements} of the file is in a physical group, so the boundary conditions are unknown; name the boundary parts in Gmsh, e.g. `Physical {entity}(\"dirichlet\") = {{1, 2}};`, with the names dirichlet, neumann and contact, put the domain in a group too, and save without `Mesh.SaveAll`"
     )]
     NoPhysicalGroups {
         /// "point", "line" or "triangle".
         elements: &'static str,
-        /// The word of a Gmsh script for such a part of the boundary.
+        /// The keyword of a Gmsh script for groups of such elements.
         entity: &'static str,
     },
     /// A group of boundary elements with a name that is no boundary part.
     #[error(
-        "{place}: physical group {tag} of dimension {dimension} is named \"{name}\"; allowed are dirichlet, neumann and contact, in lower case{hint}"
+        "{position}: physical group {tag} of dimension {dimension} is named \"{name}\"; allowed are dirichlet, neumann and contact, in lower case{hint}"
     )]
     UnknownGroup {
-        /// Where the name stands.
-        place: FilePosition,
+        /// Position of the name.
+        position: FilePosition,
         /// Dimension of the group.
         dimension: usize,
         /// Its tag.
         tag: i64,
         /// Its name.
         name: String,
-        /// Which name was probably meant, as the end of the sentence.
+        /// The name probably meant, as the end of the message.
         hint: String,
     },
     /// A group of boundary elements without a name.
     #[error(
-        "{place}: element {element} is in physical group {tag} of dimension {dimension}, which has no name in $PhysicalNames; name it dirichlet, neumann or contact"
+        "{position}: element {element} is in physical group {tag} of dimension {dimension}, which has no name in $PhysicalNames; name it dirichlet, neumann or contact"
     )]
     UnnamedGroup {
-        /// Where the element stands.
-        place: FilePosition,
+        /// Position of the element.
+        position: FilePosition,
         /// Tag of the element.
         element: u64,
         /// Dimension of the group.
@@ -261,19 +263,21 @@ pub enum GmshError {
         /// Tag of the group.
         tag: i64,
     },
-    /// The file is sound, but what it holds is not a mesh.
+    /// The contents of the file are not a mesh.
     #[error("{source}{}", in_file(elements, nodes))]
     Mesh {
-        /// What is wrong, with cells and vertices counted from zero.
+        /// The error of the mesh, with cells and vertices counted from zero.
         source: MeshError,
-        /// The elements of the file it is about.
+        /// The elements of the file in the message.
         elements: Vec<ElementPosition>,
-        /// Tags of the nodes it is about.
+        /// Tags of the nodes in the message.
         nodes: Vec<u64>,
     },
 }
 
-/// The end of the sentence that translates cells and vertices to elements and nodes of the file.
+debug_by_display!(GmshError);
+
+/// The end of the message that translates cells and vertices to elements and nodes of the file.
 fn in_file(elements: &[ElementPosition], nodes: &[u64]) -> String {
     let mut parts: Vec<String> = elements.iter().map(ToString::to_string).collect();
     if !nodes.is_empty() {
@@ -283,17 +287,17 @@ fn in_file(elements: &[ElementPosition], nodes: &[u64]) -> String {
     if parts.is_empty() { String::new() } else { format!("; in the file: {}", parts.join(", ")) }
 }
 
-/// What a caller should know about a mesh that was read all the same.
+/// A property of the file that the mesh does not represent.
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum GmshWarning {
-    /// Elements of higher order were taken as straight ones.
+    /// Elements of higher order are read as straight ones.
     Straightened {
-        /// Their type in words.
+        /// Their type.
         name: &'static str,
         /// Their polynomial order.
         order: u8,
-        /// How many there are.
+        /// Their number.
         count: usize,
     },
 }

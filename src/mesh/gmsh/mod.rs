@@ -1,9 +1,9 @@
-//! Reading meshes of Gmsh: MSH 4.1 and 2.2, text and binary.
+//! Reader of Gmsh meshes: MSH 4.1 and 2.2, text and binary.
 //!
 //! The cells of the mesh are the elements of the largest dimension in the file, whatever physical
 //! group they are in. The parts of its boundary are the elements of one dimension less in the
 //! physical groups `dirichlet`, `neumann` and `contact`; elements in no group are ignored, so a
-//! boundary without a name is reported by [`Mesh::new`] as such. Elements of higher order are read
+//! boundary without a name is reported by [`Mesh::new`](crate::mesh::Mesh::new) as such. Elements of higher order are read
 //! as straight ones, with a [`GmshWarning`].
 //!
 //! In Gmsh the groups are made by lines such as
@@ -53,8 +53,8 @@
 mod assemble;
 mod binary;
 mod contents;
+mod element_types;
 mod error;
-mod kinds;
 mod node_index;
 mod position;
 mod sections;
@@ -63,22 +63,13 @@ mod text;
 mod version_four;
 mod version_two;
 
+pub use assemble::GmshMesh;
 pub use error::{GmshError, GmshWarning};
 pub use position::{ElementPosition, FilePosition};
 
-use super::Mesh;
 use crate::real::Real;
 use sections::{Wanted, read_contents};
 use std::path::Path;
-
-/// A mesh read from a file, and what its reader should be told.
-#[derive(Clone, Debug)]
-pub struct GmshMesh<T, const D: usize> {
-    /// The mesh.
-    pub mesh: Mesh<T, D>,
-    /// What was read otherwise than it stands in the file.
-    pub warnings: Vec<GmshWarning>,
-}
 
 /// Reads a mesh of dimension `D` from a file.
 ///
@@ -98,11 +89,10 @@ pub fn parse<T: Real, const D: usize>(bytes: &[u8]) -> Result<GmshMesh<T, D>, Gm
     assemble::assemble(&read_contents(bytes, Wanted::Everything)?)
 }
 
-/// The largest dimension of an element, from the bytes of a file: the `D` to read it with.
+/// The largest dimension of an element of a file, from its bytes: the `D` of [`parse`].
 ///
 /// # Errors
-/// What is wrong with the header or the elements of the file; [`GmshError::NoCells`] if it has
-/// nothing but points.
+/// Errors of the header and of the elements of the file; [`GmshError::NoCells`] if it has only points.
 pub fn dimension(bytes: &[u8]) -> Result<usize, GmshError> {
     read_contents(bytes, Wanted::Elements)?.dimension()
 }

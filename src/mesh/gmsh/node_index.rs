@@ -1,16 +1,16 @@
-//! From the tags of nodes to their positions in the file.
+//! The map from the tags of nodes to their numbers in the order of the file.
 
 use super::contents::Contents;
 use super::error::GmshError;
-use crate::mesh::MeshError;
+use crate::mesh::error::MeshError;
 use std::collections::HashMap;
 use std::collections::hash_map::Entry;
 
-/// Where a node stands in the list, by its tag.
+/// The numbers of the nodes in the order of the file, by their tags.
 pub(super) enum NodeIndex {
     /// A table over all tags up to the largest; [`ABSENT`] where there is no node.
     Dense(Vec<u32>),
-    /// Tags with large gaps.
+    /// A hash table, for tags with large gaps.
     Sparse(HashMap<u64, u32>),
 }
 
@@ -28,8 +28,8 @@ impl NodeIndex {
         }
         let largest = tags.iter().copied().max().unwrap_or(0);
         let repeated = |first: u32, second: u32| GmshError::RepeatedNode {
-            place: contents.place_of(contents.nodes.positions[second as usize]),
-            first: contents.place_of(contents.nodes.positions[first as usize]),
+            position: contents.position_of(contents.nodes.marks[second as usize]),
+            first: contents.position_of(contents.nodes.marks[first as usize]),
             node: tags[second as usize],
         };
         if largest <= 4 * count as u64 + 1024 {
@@ -52,7 +52,7 @@ impl NodeIndex {
         }
         Ok(NodeIndex::Sparse(table))
     }
-    /// The position of a node, if the file has it.
+    /// The number of a node, if the file has it.
     #[inline]
     pub(super) fn find(&self, tag: u64) -> Option<u32> {
         match self {

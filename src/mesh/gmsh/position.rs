@@ -1,4 +1,4 @@
-//! Where in a mesh file something stands.
+//! Positions in a mesh file.
 
 use std::fmt;
 
@@ -20,17 +20,17 @@ impl fmt::Display for FilePosition {
     }
 }
 
-/// An element of the file that an error is about.
+/// An element of the file, in the message of an error.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ElementPosition {
-    /// The tag Gmsh gave it.
+    /// Tag of the element.
     pub element: u64,
-    /// Where it stands.
-    pub place: FilePosition,
+    /// Position of the element.
+    pub position: FilePosition,
 }
 
 impl fmt::Display for ElementPosition {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "element {} ({})", self.element, self.place)
+        write!(f, "element {} ({})", self.element, self.position)
     }
 }

@@ -14,11 +14,11 @@ enum Version {
     Four,
 }
 
-/// Which sections a caller wants.
+/// The sections to read.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Wanted {
     Everything,
-    /// Only the elements: enough to tell the dimension.
+    /// Only the elements, which determine the dimension.
     Elements,
 }
 
@@ -29,7 +29,7 @@ pub(super) fn read_contents(bytes: &[u8], wanted: Wanted) -> Result<Contents, Gm
     let mut contents = Contents::new();
     contents.binary = source.is_binary();
     let (mut has_nodes, mut has_elements) = (false, false);
-    while let Some((name, place)) = open_section(&mut source)? {
+    while let Some((name, position)) = open_section(&mut source)? {
         let wants_all = wanted == Wanted::Everything;
         match (name, version) {
             (b"$PhysicalNames", _) => read_names(&mut source, &mut contents)?,
@@ -37,7 +37,7 @@ pub(super) fn read_contents(bytes: &[u8], wanted: Wanted) -> Result<Contents, Gm
                 version_four::read_entities(&mut source, &mut contents)?;
             }
             (b"$PartitionedEntities", Version::Four) => {
-                return Err(GmshError::Partitioned { place });
+                return Err(GmshError::Partitioned { position });
             }
             (b"$Nodes", _) => {
                 has_nodes = true;
@@ -65,8 +65,8 @@ pub(super) fn read_contents(bytes: &[u8], wanted: Wanted) -> Result<Contents, Gm
     Ok(contents)
 }
 
-/// Reads the name of the next section, and where it stands, and goes to the line after it; nothing
-/// at the end of the file.
+/// Reads the line of the name of the next section; returns the name and its position, nothing at the
+/// end of the file.
 fn open_section<'a>(
     source: &mut Source<'a>,
 ) -> Result<Option<(&'a [u8], FilePosition)>, GmshError> {
@@ -78,30 +78,30 @@ fn open_section<'a>(
         source.section = format!("after {}", source.section);
     }
     let name = source.word();
-    let place = source.place();
+    let position = source.position();
     if name.len() < 2 || name[0] != b'$' || name.starts_with(b"$End") {
         return Err(source.unexpected("the beginning of a section", format!("`{}`", excerpt(name))));
     }
     source.section = String::from_utf8_lossy(name).into_owned();
     source.end_line()?;
     source.rest_of_line();
-    Ok(Some((name, place)))
+    Ok(Some((name, position)))
 }
 
-/// Reads `$MeshFormat`, which settles how everything else is written.
+/// Reads `$MeshFormat`: version and encoding.
 fn read_header(source: &mut Source) -> Result<Version, GmshError> {
     loop {
         source.skip_blank_lines();
-        let place = source.place();
+        let position = source.position();
         match source.word() {
             b"$MeshFormat" => break,
-            // Comments may stand in front.
+            // Comments may come first.
             b"$Comments" => {
                 source.section = "$Comments".into();
                 source.skip_section()?;
             }
             b"$NOD" => {
-                return Err(GmshError::UnsupportedVersion { place, version: "1".into() });
+                return Err(GmshError::UnsupportedVersion { position, version: "1".into() });
             }
             b"" => {
                 return Err(GmshError::NotGmsh { found: "the end of the file".into() });
@@ -113,7 +113,7 @@ fn read_header(source: &mut Source) -> Result<Version, GmshError> {
     }
     source.section = "$MeshFormat".into();
     source.skip_blank_lines();
-    let place = source.place();
+    let position = source.position();
     let version = match source.word() {
         b"4.1" => Version::Four,
         b"2.2" => Version::Two,
@@ -123,11 +123,11 @@ fn read_header(source: &mut Source) -> Result<Version, GmshError> {
                 std::str::from_utf8(word).is_ok_and(|text| text.parse::<f64>().is_ok());
             let version = excerpt(word);
             return Err(if looks_like_a_version {
-                GmshError::UnsupportedVersion { place, version }
+                GmshError::UnsupportedVersion { position, version }
             } else {
                 let section = source.section.clone();
                 GmshError::NotANumber {
-                    place,
+                    position,
                     section,
                     expected: "the version of the format",
                     word: version,
@@ -138,7 +138,7 @@ fn read_header(source: &mut Source) -> Result<Version, GmshError> {
     let file_type = source.text_integer("the file type, 0 for text or 1 for binary")?;
     let data_size = source.text_count("the size of numbers in bytes, 8")?;
     if data_size != 8 {
-        return Err(GmshError::UnsupportedDataSize { place, data_size });
+        return Err(GmshError::UnsupportedDataSize { position, data_size });
     }
     source.end_line()?;
     match file_type {
@@ -155,14 +155,14 @@ fn read_header(source: &mut Source) -> Result<Version, GmshError> {
     Ok(version)
 }
 
-/// Reads the names of the physical groups: text in every file.
+/// Reads the names of the physical groups, which are text also in binary files.
 fn read_names(source: &mut Source, contents: &mut Contents) -> Result<(), GmshError> {
     source.skip_blank_lines();
     let announced = source.text_count("the number of physical names")?;
     source.end_line()?;
     for found in 0..announced {
         source.skip_blank_lines();
-        let place = source.place_of(source.position());
+        let position = source.position_of(source.mark());
         let dimension = match source.word() {
             b"" => return Err(source.truncated()),
             word @ [b'$', ..] if word.starts_with(b"$End") => {
@@ -182,10 +182,10 @@ fn read_names(source: &mut Source, contents: &mut Contents) -> Result<(), GmshEr
         let Some(name) = name else {
             let (section, expected) = (source.section.clone(), "a name in double quotes".into());
             let found = format!("`{}`", excerpt(line));
-            return Err(GmshError::Unexpected { place, section, expected, found });
+            return Err(GmshError::Unexpected { position, section, expected, found });
         };
         let name = String::from_utf8_lossy(name).into_owned();
-        contents.groups.insert((dimension, tag), Group { name, place });
+        contents.groups.insert((dimension, tag), Group { name, position });
     }
     source.end_section("physical names", announced)
 }

@@ -1,13 +1,12 @@
-//! Reading numbers off the bytes of a file, whether they are text or binary.
+//! Numbers of a file, text or binary.
 //!
-//! Text is read record by record, a record being a line: a number that is missing is then reported
-//! on its own line, not wherever the numbers that follow cease to make sense.
+//! Text is read record by record, one per line, so that a missing number is reported on its own line.
 
 use super::error::GmshError;
 use super::position::FilePosition;
 use super::text::excerpt;
 
-/// How numbers are written.
+/// The encoding of numbers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Encoding {
     Text,
@@ -15,16 +14,16 @@ pub(super) enum Encoding {
     BigEndian,
 }
 
-/// The bytes of a file and the position up to which they are read.
+/// The bytes of a file, and how far they are read.
 pub(super) struct Source<'a> {
     pub(super) bytes: &'a [u8],
     /// The next byte to read.
     pub(super) at: usize,
     /// The line it is on, counted from one.
     pub(super) line: usize,
-    /// Where the word or number read last begins.
+    /// The first byte of the word or number read last.
     pub(super) last: usize,
-    /// How the numbers of the sections are written.
+    /// The encoding of the numbers of the sections.
     pub(super) encoding: Encoding,
     /// The section that is being read, for messages.
     pub(super) section: String,
@@ -39,17 +38,17 @@ impl<'a> Source<'a> {
     pub(super) fn is_binary(&self) -> bool {
         self.encoding != Encoding::Text
     }
-    /// The position as a number: what [`Source::place_of`] understands.
-    pub(super) fn position(&self) -> usize {
+    /// The present position as a number, of which [`Source::position_of`] makes a position.
+    pub(super) fn mark(&self) -> usize {
         if self.is_binary() { self.at } else { self.line }
     }
-    /// A position in the way of this file.
-    pub(super) fn place_of(&self, position: usize) -> FilePosition {
-        if self.is_binary() { FilePosition::Byte(position) } else { FilePosition::Line(position) }
+    /// The position with this number: a line of a text file, a byte of a binary one.
+    pub(super) fn position_of(&self, mark: usize) -> FilePosition {
+        if self.is_binary() { FilePosition::Byte(mark) } else { FilePosition::Line(mark) }
     }
-    /// Where the word or number read last stands.
-    pub(super) fn place(&self) -> FilePosition {
-        self.place_of(if self.is_binary() { self.last } else { self.line })
+    /// The position of the word or number read last.
+    pub(super) fn position(&self) -> FilePosition {
+        self.position_of(if self.is_binary() { self.last } else { self.line })
     }
     /// Number of bytes not yet read.
     pub(super) fn remaining(&self) -> usize {
@@ -62,8 +61,9 @@ impl<'a> Source<'a> {
     // Errors at the present position.
 
     pub(super) fn truncated(&self) -> GmshError {
-        let place = self.place_of(if self.is_binary() { self.bytes.len() } else { self.line });
-        GmshError::Truncated { place, section: self.section.clone() }
+        let position =
+            self.position_of(if self.is_binary() { self.bytes.len() } else { self.line });
+        GmshError::Truncated { position, section: self.section.clone() }
     }
     pub(super) fn unexpected(
         &self,
@@ -71,7 +71,7 @@ impl<'a> Source<'a> {
         found: impl Into<String>,
     ) -> GmshError {
         GmshError::Unexpected {
-            place: self.place(),
+            position: self.position(),
             section: self.section.clone(),
             expected: expected.into(),
             found: found.into(),
@@ -83,8 +83,8 @@ impl<'a> Source<'a> {
         announced: u64,
         found: impl Into<String>,
     ) -> GmshError {
-        let (place, section) = (self.place(), self.section.clone());
-        GmshError::Count { place, section, what, announced, found: found.into() }
+        let (position, section) = (self.position(), self.section.clone());
+        GmshError::Count { position, section, what, announced, found: found.into() }
     }
 
     /// An unsigned number of eight bytes: a count, or a tag of a node or element in MSH 4.1.
@@ -119,7 +119,7 @@ impl<'a> Source<'a> {
             Encoding::BigEndian => Ok(f64::from_be_bytes(self.bytes()?)),
         }
     }
-    /// Steps over `count` numbers that nobody needs, each of `size` bytes in a binary file.
+    /// Skips `count` numbers, each of `size` bytes in a binary file.
     pub(super) fn skip(
         &mut self,
         count: u64,
@@ -134,13 +134,13 @@ impl<'a> Source<'a> {
         }
         Ok(())
     }
-    /// Goes to the first number of a section; binary numbers begin right behind the line of its name.
+    /// Moves to the first number of a section; binary numbers begin after the line of its name.
     pub(super) fn begin_numbers(&mut self) {
         if !self.is_binary() {
             self.skip_blank_lines();
         }
     }
-    /// Goes to the line of the next record of text; `found` of `announced` are read already.
+    /// Moves to the line of the next record of text; `found` of `announced` records are read.
     pub(super) fn begin_record(
         &mut self,
         what: &'static str,
@@ -157,12 +157,12 @@ impl<'a> Source<'a> {
             Some(_) => Ok(()),
         }
     }
-    /// Insists that the line of a record has no more words.
+    /// An error if the line of a record has more words.
     pub(super) fn end_record(&mut self) -> Result<(), GmshError> {
         if self.is_binary() { Ok(()) } else { self.end_line() }
     }
-    /// Insists that `announced` records of `size` bytes fit into what is left of a binary file, so
-    /// that a damaged count is told from a file cut short, and neither takes memory.
+    /// An error if `announced` records of `size` bytes exceed the rest of a binary file, tested before
+    /// memory is reserved: a wrong count where the section has an end, a truncated file otherwise.
     pub(super) fn check_room(
         &self,
         what: &'static str,
@@ -180,7 +180,7 @@ impl<'a> Source<'a> {
             None => Err(self.truncated()),
         }
     }
-    /// How many records to make room for: no more than the file can hold.
+    /// Number of records to reserve memory for, at most as many as the rest of the file holds.
     pub(super) fn capacity(&self, announced: u64, text_bytes: usize) -> usize {
         let most = self.remaining() / text_bytes.max(1);
         usize::try_from(announced).map_or(most, |announced| announced.min(most))
@@ -191,7 +191,7 @@ impl<'a> Source<'a> {
     fn section_end(&self) -> String {
         format!("$End{}", self.section.trim_start_matches('$'))
     }
-    /// The end of a section of which all records that were announced have been read.
+    /// Reads the end of a section after the announced records.
     pub(super) fn end_section(
         &mut self,
         what: &'static str,
@@ -199,28 +199,34 @@ impl<'a> Source<'a> {
     ) -> Result<(), GmshError> {
         self.skip_blank_lines();
         let end = self.section_end();
-        let start = self.position();
+        let start = self.mark();
         let word = self.word();
         if word == end.as_bytes() {
             return self.end_line();
         }
-        let place = self.place_of(start);
+        let position = self.position_of(start);
         if word.is_empty() {
             return Err(self.truncated());
         }
         if word[0] != b'$' {
             let section = self.section.clone();
-            return Err(GmshError::Count { place, section, what, announced, found: "more".into() });
+            return Err(GmshError::Count {
+                position,
+                section,
+                what,
+                announced,
+                found: "more".into(),
+            });
         }
         let found = format!("`{}`", excerpt(word));
         Err(GmshError::Unexpected {
-            place,
+            position,
             section: self.section.clone(),
             expected: format!("`{end}`"),
             found,
         })
     }
-    /// Steps over a section, to the end of its last line.
+    /// Skips a section, up to the end of its last line.
     pub(super) fn skip_section(&mut self) -> Result<(), GmshError> {
         let end = self.section_end();
         loop {
@@ -232,7 +238,7 @@ impl<'a> Source<'a> {
             let skipped = &self.bytes[self.at..self.at + length];
             self.line += skipped.iter().filter(|&&byte| byte == b'\n').count();
             self.at += length + end.len();
-            // $EndNode is the beginning of $EndNodeData.
+            // $EndNode is a prefix of $EndNodeData.
             if self.peek().is_none_or(|byte| byte.is_ascii_whitespace()) {
                 return Ok(());
             }
@@ -240,7 +246,7 @@ impl<'a> Source<'a> {
     }
 }
 
-/// Where a pattern first occurs.
+/// The index of the first occurrence of a pattern.
 fn find(bytes: &[u8], pattern: &[u8]) -> Option<usize> {
     let first = *pattern.first()?;
     let mut from = 0;

@@ -19,7 +19,7 @@ impl<'a> Source<'a> {
             self.at += 1;
         }
     }
-    /// The next word of the line; empty at its end.
+    /// The next word of the line; empty at the end of the line.
     pub(super) fn word(&mut self) -> &'a [u8] {
         self.skip_blanks();
         self.last = self.at;
@@ -28,7 +28,7 @@ impl<'a> Source<'a> {
         self.at += length;
         &rest[..length]
     }
-    /// What is left of the line, without its end; the position moves to the next line.
+    /// The rest of the line, without its end; the next byte to read is the first of the next line.
     pub(super) fn rest_of_line(&mut self) -> &'a [u8] {
         let rest = &self.bytes[self.at..];
         let length = rest.iter().position(|&byte| byte == b'\n');
@@ -48,18 +48,18 @@ impl<'a> Source<'a> {
     }
     pub(super) fn not_a_number(&self, expected: &'static str, word: &[u8]) -> GmshError {
         GmshError::NotANumber {
-            place: self.place(),
+            position: self.position(),
             section: self.section.clone(),
             expected,
             word: excerpt(word),
         }
     }
-    /// A number without sign, written as text whatever the file.
+    /// A number without sign, written as text also in binary files.
     pub(super) fn text_count(&mut self, expected: &'static str) -> Result<u64, GmshError> {
         let word = self.number_word(expected)?;
         parse_digits(word).ok_or_else(|| self.not_a_number(expected, word))
     }
-    /// An integer, written as text whatever the file.
+    /// An integer, written as text also in binary files.
     pub(super) fn text_integer(&mut self, expected: &'static str) -> Result<i64, GmshError> {
         let word = self.number_word(expected)?;
         let (negative, digits) = match word {
@@ -76,7 +76,7 @@ impl<'a> Source<'a> {
         let number = std::str::from_utf8(word).ok().and_then(|text| text.parse().ok());
         number.ok_or_else(|| self.not_a_number(expected, word))
     }
-    /// Insists that a line of text, in whatever file, has no more words.
+    /// An error if the line of text has more words.
     pub(super) fn end_line(&mut self) -> Result<(), GmshError> {
         match self.word() {
             [] => Ok(()),
@@ -98,7 +98,7 @@ fn parse_digits(word: &[u8]) -> Option<u64> {
     })
 }
 
-/// A word of the file, fit for a message.
+/// A word of the file for a message: at most 40 characters, without control characters.
 pub(super) fn excerpt(word: &[u8]) -> String {
     const LONGEST: usize = 40;
     let text = String::from_utf8_lossy(word);

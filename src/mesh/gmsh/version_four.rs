@@ -1,6 +1,6 @@
-//! The sections of MSH 4.1, in which nodes and elements stand in blocks, one for each entity.
+//! The sections of MSH 4.1, in which nodes and elements form blocks, one for each entity.
 
-use super::contents::{Contents, Membership, known_kind, simplex_dimension};
+use super::contents::{Contents, Membership, simplex_dimension, type_properties};
 use super::error::GmshError;
 use super::source::Source;
 
@@ -19,7 +19,7 @@ pub(super) fn read_entities(source: &mut Source, contents: &mut Contents) -> Res
     source.end_record()?;
     let what = ["points", "curves", "surfaces", "volumes"];
     for (dimension, &count) in announced.iter().enumerate() {
-        // A point has a position, every other entity a box, and a list of what bounds it.
+        // A point has coordinates, every other entity a box and a list of bounding entities.
         let reals = if dimension == 0 { 3 } else { 6 };
         source.check_room(what[dimension], count, 4 + 8 * reals as usize + 8)?;
         for found in 0..count {
@@ -30,7 +30,7 @@ pub(super) fn read_entities(source: &mut Source, contents: &mut Contents) -> Res
             source.check_room("physical groups", groups, 4)?;
             let mut tags = Vec::new();
             for _ in 0..groups {
-                // The sign tells an orientation.
+                // The sign is an orientation.
                 tags.push(source.integer("the tag of a physical group")?.abs());
             }
             if dimension > 0 {
@@ -92,7 +92,7 @@ pub(super) fn read_nodes(source: &mut Source, contents: &mut Contents) -> Result
         source.end_record()?;
         for (node, found) in tags.into_iter().zip(0..) {
             source.begin_record("nodes of a block", count, found)?;
-            let position = source.position();
+            let mark = source.mark();
             let point = [
                 source.real("coordinate x")?,
                 source.real("coordinate y")?,
@@ -100,7 +100,7 @@ pub(super) fn read_nodes(source: &mut Source, contents: &mut Contents) -> Result
             ];
             source.skip(parametric, 8, "a parametric coordinate")?;
             source.end_record()?;
-            contents.nodes.push(source, position, node, point)?;
+            contents.nodes.push(source, mark, node, point)?;
         }
     }
     if total != announced {
@@ -119,21 +119,22 @@ pub(super) fn read_elements(source: &mut Source, contents: &mut Contents) -> Res
         let dimension = entity_dimension(source)?;
         let entity = source.integer("the tag of an entity")?;
         let element_type = source.integer("the type of elements")?;
-        let kind = known_kind(source, element_type)?;
+        let properties = type_properties(source, element_type)?;
         let count = source.count("the number of elements of a block")?;
         source.end_record()?;
         total = total.saturating_add(count);
         if total > announced {
             return Err(source.miscounted("elements", announced, format!("{total} or more")));
         }
-        source.check_room("elements of a block", count, 8 + 8 * kind.nodes)?;
+        source.check_room("elements of a block", count, 8 + 8 * properties.nodes)?;
         for found in 0..count {
             source.begin_record("elements of a block", count, found)?;
-            let position = source.position();
+            let mark = source.mark();
             let element = source.count("the tag of an element")?;
-            let simplex = simplex_dimension(source, kind.shape, element_type, element)?;
+            let simplex = simplex_dimension(source, properties.shape, element_type, element)?;
             if simplex != dimension {
-                let found = format!("elements of type {element_type}, a {}", kind.shape.name());
+                let found =
+                    format!("elements of type {element_type}, a {}", properties.shape.name());
                 return Err(source.unexpected(format!("elements of dimension {dimension}"), found));
             }
             let simplices = &mut contents.simplices[simplex];
@@ -143,9 +144,9 @@ pub(super) fn read_elements(source: &mut Source, contents: &mut Contents) -> Res
             for _ in 0..=simplex {
                 simplices.corners.push(source.count("the tag of a node")?);
             }
-            source.skip((kind.nodes - simplex - 1) as u64, 8, "the tag of a node")?;
+            source.skip((properties.nodes - simplex - 1) as u64, 8, "the tag of a node")?;
             source.end_record()?;
-            simplices.push(position, element, kind.order, Membership::Entity(entity));
+            simplices.push(mark, element, properties.order, Membership::Entity(entity));
         }
     }
     if total != announced {

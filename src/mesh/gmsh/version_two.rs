@@ -1,8 +1,8 @@
-//! The sections of MSH 2.2, in which every element carries its own tags.
+//! The sections of MSH 2.2, in which the tags of an element stand before its nodes.
 
-use super::contents::{Contents, Membership, known_kind, simplex_dimension};
+use super::contents::{Contents, Membership, simplex_dimension, type_properties};
+use super::element_types::TypeProperties;
 use super::error::GmshError;
-use super::kinds::Kind;
 use super::source::Source;
 
 /// The number of records of a section: text in every file, on a line of its own.
@@ -21,7 +21,7 @@ pub(super) fn read_nodes(source: &mut Source, contents: &mut Contents) -> Result
     contents.nodes.reserve(source.capacity(announced, 8));
     for found in 0..announced {
         source.begin_record("nodes", announced, found)?;
-        let position = source.position();
+        let mark = source.mark();
         let node = source.unsigned("the tag of a node")?;
         let point = [
             source.real("coordinate x")?,
@@ -29,7 +29,7 @@ pub(super) fn read_nodes(source: &mut Source, contents: &mut Contents) -> Result
             source.real("coordinate z")?,
         ];
         source.end_record()?;
-        contents.nodes.push(source, position, node, point)?;
+        contents.nodes.push(source, mark, node, point)?;
     }
     source.end_section("nodes", announced)
 }
@@ -45,18 +45,22 @@ pub(super) fn read_elements(source: &mut Source, contents: &mut Contents) -> Res
             found += read_same_type(source, contents, announced, found)?;
             continue;
         }
-        let position = source.position();
+        let mark = source.mark();
         let element = source.unsigned("the tag of an element")?;
         let element_type = source.integer("the type of an element")?;
-        let kind = known_kind(source, element_type)?;
+        let properties = type_properties(source, element_type)?;
         let tags = source.unsigned("the number of tags of an element")?;
-        read_element(source, contents, &Front { position, element, element_type, kind, tags })?;
+        read_element(
+            source,
+            contents,
+            &ElementHeader { mark, element, element_type, properties, tags },
+        )?;
         found += 1;
     }
     source.end_section("elements", announced)
 }
 
-/// In a binary file elements of one type stand together behind a header; returns how many.
+/// Reads the elements of one type after their common header in a binary file; returns their number.
 fn read_same_type(
     source: &mut Source,
     contents: &mut Contents,
@@ -64,7 +68,7 @@ fn read_same_type(
     found: u64,
 ) -> Result<u64, GmshError> {
     let element_type = source.integer("the type of elements")?;
-    let kind = known_kind(source, element_type)?;
+    let properties = type_properties(source, element_type)?;
     let following = source.unsigned("the number of elements of one type")?;
     if following > announced - found {
         return Err(source.miscounted(
@@ -74,21 +78,29 @@ fn read_same_type(
         ));
     }
     let tags = source.unsigned("the number of tags of an element")?;
-    source.check_room("elements of one type", following, 4 + 4 * (tags as usize + kind.nodes))?;
+    source.check_room(
+        "elements of one type",
+        following,
+        4 + 4 * (tags as usize + properties.nodes),
+    )?;
     for _ in 0..following {
-        let position = source.position();
+        let mark = source.mark();
         let element = source.unsigned("the tag of an element")?;
-        read_element(source, contents, &Front { position, element, element_type, kind, tags })?;
+        read_element(
+            source,
+            contents,
+            &ElementHeader { mark, element, element_type, properties, tags },
+        )?;
     }
     Ok(following)
 }
 
-/// What stands in front of the tags and nodes of an element.
-struct Front {
-    position: usize,
+/// The numbers before the tags and nodes of an element.
+struct ElementHeader {
+    mark: usize,
     element: u64,
     element_type: i64,
-    kind: Kind,
+    properties: TypeProperties,
     tags: u64,
 }
 
@@ -96,21 +108,21 @@ struct Front {
 fn read_element(
     source: &mut Source,
     contents: &mut Contents,
-    front: &Front,
+    header: &ElementHeader,
 ) -> Result<(), GmshError> {
     // The first tag is the physical group, zero for none; the others tell the entity and the
     // partitions.
     let group =
-        if front.tags > 0 { source.integer("the tag of a physical group")?.abs() } else { 0 };
-    source.skip(front.tags.saturating_sub(1), 4, "a tag of an element")?;
-    let Front { kind, element_type, element, .. } = *front;
-    let dimension = simplex_dimension(source, kind.shape, element_type, element)?;
+        if header.tags > 0 { source.integer("the tag of a physical group")?.abs() } else { 0 };
+    source.skip(header.tags.saturating_sub(1), 4, "a tag of an element")?;
+    let ElementHeader { properties, element_type, element, .. } = *header;
+    let dimension = simplex_dimension(source, properties.shape, element_type, element)?;
     let simplices = &mut contents.simplices[dimension];
     for _ in 0..=dimension {
         simplices.corners.push(source.unsigned("the tag of a node")?);
     }
-    source.skip((kind.nodes - dimension - 1) as u64, 4, "the tag of a node")?;
+    source.skip((properties.nodes - dimension - 1) as u64, 4, "the tag of a node")?;
     source.end_record()?;
-    simplices.push(front.position, element, kind.order, Membership::Group(group));
+    simplices.push(header.mark, element, properties.order, Membership::Group(group));
     Ok(())
 }

@@ -1,11 +1,10 @@
 //! Conditions on the data alone, with or without an exact solution.
 
-use super::probe::violation;
 use super::samples::{BoundaryPoint, boundary, lattice};
-use super::{Condition, Violation};
+use super::violation::{Condition, Violation};
 use crate::mesh::BoundaryPart;
 use crate::real::Point;
-use crate::scenes::Scene;
+use crate::scenes::scene::Scene;
 
 /// Data finite, coefficient and reaction of the right sign, bounds in order, gap present.
 pub(super) fn check<const D: usize>(
@@ -22,7 +21,7 @@ pub(super) fn check<const D: usize>(
         match part {
             BoundaryPart::Dirichlet => check_dirichlet(scene, &x)?,
             BoundaryPart::Contact if scene.problem.gap.is_none() => {
-                return Err(violation(scene, Condition::GapGiven, &x, f64::NAN, 0.0));
+                return Err(Violation::new(scene, Condition::GapGiven, &x, f64::NAN, 0.0));
             }
             BoundaryPart::Neumann => {
                 if let Some(q) = &scene.problem.neumann {
@@ -44,7 +43,7 @@ fn finite<const D: usize>(
     if value.is_finite() {
         return Ok(());
     }
-    Err(violation(scene, Condition::Finite(datum), x, value, 0.0))
+    Err(Violation::new(scene, Condition::Finite(datum), x, value, 0.0))
 }
 
 fn check_at<const D: usize>(scene: &Scene<D>, x: &Point<f64, D>) -> Result<(), Violation> {
@@ -75,7 +74,7 @@ fn check_at<const D: usize>(scene: &Scene<D>, x: &Point<f64, D>) -> Result<(), V
     let reaction = problem.reaction.as_ref().map_or(0.0, |c| c.at(x));
     for (value, passes) in [(alpha, alpha > 0.0), (reaction, reaction >= 0.0)] {
         if !passes {
-            return Err(violation(scene, Condition::Ellipticity, x, value, 0.0));
+            return Err(Violation::new(scene, Condition::Ellipticity, x, value, 0.0));
         }
     }
     let (lower, upper) = bounds(scene, x);
@@ -110,5 +109,5 @@ fn in_order<const D: usize>(
     if a - b <= allowed {
         return Ok(());
     }
-    Err(violation(scene, Condition::Admissible, x, a - b, allowed))
+    Err(Violation::new(scene, Condition::Admissible, x, a - b, allowed))
 }

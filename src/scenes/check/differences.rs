@@ -1,12 +1,12 @@
-//! Derivatives by differences, where they can be trusted.
+//! Derivatives by differences, with a test of convergence.
 
 /// The derivative of `phi` at zero, from values at arguments of size up to `reach`, or `None` where
-/// it cannot be told to within `tolerance`.
+/// differences do not converge to within `tolerance`.
 ///
-/// Fourth-order central differences with steps halved until three successive ones agree. Across a
-/// kink or near a singularity they do not agree until the stencil has left it behind, so each point
-/// gets the step it needs; two may agree by chance while the error changes its course. The smallest
-/// step is a thousandth of the largest: below that, rounding grows.
+/// The step of fourth-order central differences is halved until three successive ones agree: across a
+/// kink or near a singularity they disagree until the stencil no longer contains it. Two may agree by
+/// chance where the error changes its sign. The smallest step is a thousandth of the largest: below,
+/// rounding errors dominate.
 pub(super) fn settled_derivative(
     phi: impl Fn(f64) -> f64,
     reach: f64,

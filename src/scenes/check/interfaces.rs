@@ -1,9 +1,8 @@
 //! Jumps of the value, and kinks, found by bisection along segments.
 
-use super::interior::TOUCHING;
-use super::probe::Probe;
+use super::evaluator::{Evaluator, TOUCHING};
 use super::samples::sees;
-use super::{Condition, Violation};
+use super::violation::{Condition, Violation};
 use crate::real::Point;
 
 /// Length to which segments are bisected, relative to the shortest side.
@@ -15,62 +14,64 @@ const JUMP: f64 = 1e-7;
 /// the distance of the segment's length changes it by `SHORT^{1/2} = 3e-5`.
 const KINK: f64 = 1e-3;
 
-/// No jump of the value on segments between successive points, and no kink but where an obstacle
-/// holds it.
+/// The value has no jump on segments between successive points, and no kink except where an obstacle is
+/// active.
 pub(super) fn check<const D: usize>(
-    probe: &Probe<'_, D>,
+    evaluator: &Evaluator<'_, D>,
     points: &[Point<f64, D>],
 ) -> Result<(), Violation> {
-    let domain = &probe.scene.domain;
+    let domain = &evaluator.scene.domain;
     for pair in points.windows(2).filter(|pair| sees(domain, &pair[0], &pair[1])) {
-        check_value(probe, pair[0], pair[1])?;
-        check_flux(probe, pair[0], pair[1])?;
+        check_value(evaluator, pair[0], pair[1])?;
+        check_flux(evaluator, pair[0], pair[1])?;
     }
     Ok(())
 }
 
-/// Follows the half in which value and gradient disagree more.
+/// Bisects towards the half in which the difference of values deviates more from the gradient.
 fn check_value<const D: usize>(
-    probe: &Probe<'_, D>,
+    evaluator: &Evaluator<'_, D>,
     a: Point<f64, D>,
     b: Point<f64, D>,
 ) -> Result<(), Violation> {
-    let (a, b) = bisect(probe.scales.length, a, b, |a, b| {
-        let mean = (probe.gradient(a) + probe.gradient(b)) / 2.0;
-        (probe.value(b) - probe.value(a) - mean.dot(&(b - a))).abs()
+    let (a, b) = bisect(evaluator.scales.length, a, b, |a, b| {
+        let mean = (evaluator.gradient(a) + evaluator.gradient(b)) / 2.0;
+        (evaluator.value(b) - evaluator.value(a) - mean.dot(&(b - a))).abs()
     });
-    let jump = (probe.value(&b) - probe.value(&a)).abs();
-    let allowed = JUMP * probe.scales.slope * probe.scales.length;
-    probe.require(Condition::Continuity, &a, jump, allowed)
+    let jump = (evaluator.value(&b) - evaluator.value(&a)).abs();
+    let allowed = JUMP * evaluator.scales.slope * evaluator.scales.length;
+    evaluator.require(Condition::Continuity, &a, jump, allowed)
 }
 
-/// Follows the half in which the flux changes more.
+/// Bisects towards the half in which the flux changes more.
 ///
-/// If the flux along the segment drops by `j` across an interface, the obstacle exerts there a
-/// force of a positive multiple of `j` per unit area: upwards from below for `j > 0`. Where the
-/// coefficient jumps, the tangential flux does too, without any force; then only the flux along the
-/// jump of the gradient counts, which is normal to the interface since the value is continuous.
+/// If the flux along the segment drops by `j` across an interface, the multiplier has there a density
+/// per unit area that is a positive multiple of `j`: for `j > 0` due to the lower obstacle. Where the
+/// coefficient jumps the tangential flux jumps without a multiplier; then only the flux along the jump
+/// of the gradient is tested, which is normal to the interface since the value is continuous.
 fn check_flux<const D: usize>(
-    probe: &Probe<'_, D>,
+    evaluator: &Evaluator<'_, D>,
     a: Point<f64, D>,
     b: Point<f64, D>,
 ) -> Result<(), Violation> {
-    let (a, b) = bisect(probe.scales.length, a, b, |a, b| (probe.flux(b) - probe.flux(a)).norm());
+    let (a, b) = bisect(evaluator.scales.length, a, b, |a, b| {
+        (evaluator.flux(b) - evaluator.flux(a)).norm()
+    });
     let mut across = (b - a).normalize();
-    if probe.coefficient(&a) != probe.coefficient(&b) {
-        let jump = probe.gradient(&b) - probe.gradient(&a);
-        if jump.norm() <= KINK * probe.scales.slope {
+    if evaluator.coefficient(&a) != evaluator.coefficient(&b) {
+        let jump = evaluator.gradient(&b) - evaluator.gradient(&a);
+        if jump.norm() <= KINK * evaluator.scales.slope {
             return Ok(());
         }
         across = jump.normalize() * jump.dot(&across).signum();
     }
-    let rise = (probe.flux(&b) - probe.flux(&a)).dot(&across);
-    let distance = if rise > 0.0 { probe.below_upper(&a) } else { probe.above_lower(&a) };
-    let touching = TOUCHING * probe.scales.slope * probe.scales.length;
+    let rise = (evaluator.flux(&b) - evaluator.flux(&a)).dot(&across);
+    let distance = if rise > 0.0 { evaluator.below_upper(&a) } else { evaluator.above_lower(&a) };
+    let touching = TOUCHING * evaluator.scales.slope * evaluator.scales.length;
     if distance <= touching {
         return Ok(());
     }
-    probe.require(Condition::Kink, &a, rise.abs(), KINK * probe.scales.flux)
+    evaluator.require(Condition::Kink, &a, rise.abs(), KINK * evaluator.scales.flux)
 }
 
 fn bisect<const D: usize>(

@@ -1,4 +1,4 @@
-//! Points to test a scene at.
+//! Sample points of a domain and its boundary.
 
 use crate::mesh::{BoundaryPart, BoxDomain, Domain};
 use crate::real::Point;
@@ -60,8 +60,8 @@ impl<const D: usize> BoundaryPoint<D> {
     fn dirichlet(x: Point<f64, D>, normal: Point<f64, D>) -> Self {
         Self { x, normal, part: BoundaryPart::Dirichlet }
     }
-    /// Points that rounding may make of this one: a few units in the last place inside and outside,
-    /// and the other zero.
+    /// Points that differ from this one by rounding: a few units in the last place inside and outside,
+    /// and with `-0.0` in place of `0.0`.
     pub fn rounded(&self, length: f64) -> [Point<f64, D>; 3] {
         let level = self.x.dot(&self.normal).abs();
         let shift = self.normal * (4.0 * f64::EPSILON * length.max(level));
@@ -116,7 +116,7 @@ fn beside_quadrant<const D: usize>(x: Point<f64, D>) -> BoundaryPoint<D> {
     if x[0] > 0.0 { on(0, x[0], 1, -1.0) } else { on(1, x[0], 0, 1.0) }
 }
 
-/// Whether the segment between two points of a domain surely lies in it.
+/// A sufficient condition for the segment between two points of a domain to lie in it.
 pub(super) fn sees<const D: usize>(
     domain: &Domain<D>,
     a: &Point<f64, D>,

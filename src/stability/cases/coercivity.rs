@@ -2,7 +2,7 @@
 
 use crate::algebra::SparseMatrix;
 use crate::error::Error;
-use crate::kit::spectrum::{Diagonal, Factored, Lanczos};
+use crate::kit::spectrum::{CholeskyMatrix, Diagonal, Lanczos};
 use crate::scenes;
 use crate::stability::choice::{Choice, Penalty, compared};
 use crate::stability::claim::{Claim, figures, of};
@@ -116,9 +116,9 @@ fn smallest_eigenvalue(matrix: &SparseMatrix<f64>) -> Option<f64> {
                 shifted.values[k] += shift;
             }
         }
-        if let Ok(a) = Factored::new(&shifted) {
+        if let Ok(a) = CholeskyMatrix::new(&shifted) {
             let lanczos = Lanczos { tolerance: 1e-6, ..Lanczos::default() };
-            let found = lanczos.smallest(&a, &Diagonal::one(matrix.size())).ok()?;
+            let found = lanczos.smallest(&a, &Diagonal::identity(matrix.size())).ok()?;
             return Some(found - shift);
         }
         shift = 2.0_f64.powi(attempt - 8);

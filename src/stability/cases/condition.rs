@@ -2,7 +2,7 @@
 
 use crate::algebra::SparseMatrix;
 use crate::error::Error;
-use crate::kit::spectrum::{Diagonal, Factored, Lanczos, MeanJump, Positive};
+use crate::kit::spectrum::{CholeskyMatrix, Diagonal, Lanczos, MeanJump, PositiveDefinite};
 use crate::measure::observed_order;
 use crate::mesh::Mesh;
 use crate::stability::choice::{Choice, Penalty};
@@ -37,8 +37,8 @@ pub(crate) fn plan(plan: &mut Plan<'_>) {
 }
 
 /// The condition number of `B^-1 A`; none where it is out of reach.
-fn condition(matrix: &SparseMatrix<f64>, b: &dyn Positive) -> Option<f64> {
-    let a = Factored::new(matrix).ok()?;
+fn condition(matrix: &SparseMatrix<f64>, b: &dyn PositiveDefinite) -> Option<f64> {
+    let a = CholeskyMatrix::new(matrix).ok()?;
     let lanczos = Lanczos { tolerance: 1e-6, ..Lanczos::default() };
     lanczos.extremes(&a, b).ok().map(|found| found.condition())
 }
@@ -48,12 +48,12 @@ fn both(choice: &Choice, level: usize) -> Result<[Option<f64>; 2], Error> {
     let scene = sines::<2>();
     let mesh: Mesh<f64, 2> = scene.domain.mesh(level)?;
     let matrix = free_matrix(&scene.problem, &mesh, choice)?;
-    let plain = condition(&matrix, &Diagonal::one(matrix.size()));
+    let plain = condition(&matrix, &Diagonal::identity(matrix.size()));
     let means = Choice::new("wopsip:facet-means", choice.penalty);
     if !choice.is_over_penalised() {
         return Ok([plain, None]);
     }
-    let matrix = MeanJump::of(&mesh).transform(&free_matrix(&scene.problem, &mesh, &means)?);
+    let matrix = MeanJump::new(&mesh).transform(&free_matrix(&scene.problem, &mesh, &means)?);
     Ok([plain, condition(&matrix, &Diagonal(matrix.diagonal()))])
 }
 

@@ -28,7 +28,7 @@ const QUADRATICS: [&str; 8] =
 
 /// L2 norm and broken H1 seminorm of a difference of linear functions on each cell.
 fn distance<const D: usize>(mesh: &Mesh<f64, D>, one: &[f64], other: &[f64]) -> [f64; 2] {
-    let rule = Rule::of_degree(D, 2);
+    let rule = Rule::new(D, 2);
     let [mut l2, mut h1] = [0.0; 2];
     for (cell, (one, other)) in one.chunks(D + 1).zip(other.chunks(D + 1)).enumerate() {
         let geometry = mesh.geometry(cell);

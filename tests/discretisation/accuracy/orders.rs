@@ -169,8 +169,8 @@ fn mixed<const D: usize>() -> Scene<D> {
     let reaction = |x: &Point<f64, D>| 1.0 + x[0];
     let squares: f64 = (0..D).map(|k| slope(k) * slope(k)).sum();
     let load = move |x: &Point<f64, D>| (reaction(x) - 3.0 * squares) * value(x);
-    let mut problem = Problem::new().source(load).coefficient(|_| 3.0).exact(value, gradient);
-    problem.reaction = Some(unilateral::problem::Datum::Function(Box::new(reaction)));
+    let problem =
+        Problem::new().source(load).coefficient(|_| 3.0).reaction(reaction).exact(value, gradient);
     let mut domain = unit_box();
     for axis in 0..D {
         for end in 0..2 {

@@ -100,9 +100,7 @@ fn linear_problems<const D: usize>() -> Vec<(&'static str, Problem<D>)> {
         ("varying reaction", {
             let c = |x: &Point<f64, D>| x.norm_squared();
             let f = move |x: &Point<f64, D>| c(x) * linear(x);
-            let mut problem = poisson().source(f);
-            problem.reaction = Some(unilateral::problem::Datum::Function(Box::new(c)));
-            problem
+            poisson().source(f).reaction(c)
         }),
         ("obstacle in contact", poisson().constant_source(-1.0).obstacle_below(linear)),
         ("obstacle below", poisson().obstacle_below(|x| linear(x) - 1.0)),

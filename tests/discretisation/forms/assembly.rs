@@ -72,7 +72,7 @@ impl<const D: usize> Slow<'_, D> {
     }
     fn cell_form(&self, c: usize, u: &Piece, v: &Piece) -> f64 {
         let stiff = (self.alpha)(c) * self.gradient(c, u).dot(&self.gradient(c, v));
-        let mass: f64 = Rule::of_degree(D, 2)
+        let mass: f64 = Rule::new(D, 2)
             .iter()
             .map(|(b, w)| {
                 let at = |p: &Piece| (0..=D).map(|k| b[k] * p[k]).sum::<f64>();
@@ -119,7 +119,7 @@ impl<const D: usize> Slow<'_, D> {
                 sides.iter().zip(w).map(|(s, w)| self.gradient(s.0, w).dot(&normal)).sum();
             harmonic * sum / sides.len() as f64
         };
-        let rule = Rule::of_degree(D - 1, 4);
+        let rule = Rule::new(D - 1, 4);
         let at = |b: &[f64; 4]| {
             points.iter().enumerate().fold(Point::<f64, D>::zeros(), |x, (k, p)| x + p * b[k])
         };

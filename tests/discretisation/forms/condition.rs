@@ -5,7 +5,7 @@ use crate::support::checks::Checks;
 use crate::support::schemes::{sipg, wopsip};
 use unilateral::algebra::{Inequality, SparseMatrix};
 use unilateral::kit::spectrum::MeanJump;
-use unilateral::kit::spectrum::{Diagonal, Factored, Lanczos, Positive};
+use unilateral::kit::spectrum::{CholeskyMatrix, Diagonal, Lanczos, PositiveDefinite};
 use unilateral::linear::is_positive_definite;
 use unilateral::mesh::BoxDomain;
 use unilateral::mesh::Mesh;
@@ -47,26 +47,26 @@ fn free_part(inequality: &Inequality<f64>) -> SparseMatrix<f64> {
 }
 
 /// The condition number of `B^-1 A`.
-fn condition(matrix: &SparseMatrix<f64>, b: &dyn Positive) -> f64 {
-    let a = Factored::new(matrix).unwrap();
+fn condition(matrix: &SparseMatrix<f64>, b: &dyn PositiveDefinite) -> f64 {
+    let a = CholeskyMatrix::new(matrix).unwrap();
     // eigenvalues cluster about one where the blocks precondition well
     let lanczos = Lanczos { tolerance: 1e-8, ..Lanczos::default() };
     lanczos.extremes(&a, b).unwrap().condition()
 }
 
 fn plain(matrix: &SparseMatrix<f64>) -> f64 {
-    condition(matrix, &Diagonal::one(matrix.size()))
+    condition(matrix, &Diagonal::identity(matrix.size()))
 }
 
 /// Condition numbers of the over-penalised matrix: as it is in the basis of vertices, with the
 /// diagonal in means and jumps, with the block diagonal.
 fn over_penalised<const D: usize>(mesh: &Mesh<f64, D>, eta: f64) -> [f64; 3] {
     let on_vertices = assemble(&wopsip(eta), mesh).matrix;
-    let change = MeanJump::of(mesh);
+    let change = MeanJump::new(mesh);
     let matrix = change.transform(&assemble(&FacetMeans(wopsip(eta)), mesh).matrix);
     let diagonal = Diagonal(matrix.diagonal());
     let blocks = change.block_diagonal(&matrix);
-    let blocks = Factored::new(&blocks).unwrap();
+    let blocks = CholeskyMatrix::new(&blocks).unwrap();
     [plain(&on_vertices), condition(&matrix, &diagonal), condition(&matrix, &blocks)]
 }
 
@@ -154,10 +154,10 @@ fn over_factors() {
 #[test]
 fn eigenvalues_are_where_definiteness_ends() {
     fn on<const D: usize>(checks: &mut Checks, mesh: &Mesh<f64, D>, accuracy: f64) {
-        let change = MeanJump::of(mesh);
+        let change = MeanJump::new(mesh);
         let matrix = change.transform(&assemble(&FacetMeans(wopsip(1.0)), mesh).matrix);
         let blocks = change.block_diagonal(&matrix);
-        let (a, b) = (Factored::new(&matrix).unwrap(), Factored::new(&blocks).unwrap());
+        let (a, b) = (CholeskyMatrix::new(&matrix).unwrap(), CholeskyMatrix::new(&blocks).unwrap());
         let found = Lanczos::default().extremes(&a, &b).unwrap();
         // the blocks have the pattern of the matrix or less
         let definite = |sign: f64, shift: f64| {

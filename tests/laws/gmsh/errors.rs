@@ -38,14 +38,14 @@ fn unknown_node() {
     let (text, line) = change(TWO, "6 2 2 7 1 2 3 5", "6 2 2 7 1 2 3 77");
     let error = fail::<2>(text.as_bytes());
     assert!(
-        matches!(error, GmshError::UnknownNode { place: FilePosition::Line(l), element: 6, node: 77 } if l == line)
+        matches!(error, GmshError::UnknownNode { position: FilePosition::Line(l), element: 6, node: 77 } if l == line)
     );
     says(&error, &[&format!("line {line}"), "element 6", "node 77", "$Nodes"]);
     // of a boundary element, with sparse tags
     let (text, line) = change(FOUR, "5 40 10", "5 40 11");
     let error = fail::<2>(text.as_bytes());
     assert!(
-        matches!(error, GmshError::UnknownNode { place: FilePosition::Line(l), element: 5, node: 11 } if l == line)
+        matches!(error, GmshError::UnknownNode { position: FilePosition::Line(l), element: 5, node: 11 } if l == line)
     );
 }
 
@@ -54,7 +54,7 @@ fn repeated_node() {
     let (text, line) = change(TWO, "4 0 1 0", "3 0 1 0");
     let error = fail::<2>(text.as_bytes());
     assert!(
-        matches!(error, GmshError::RepeatedNode { place: FilePosition::Line(b), first: FilePosition::Line(a), node: 3 } if b == line && a == line - 1)
+        matches!(error, GmshError::RepeatedNode { position: FilePosition::Line(b), first: FilePosition::Line(a), node: 3 } if b == line && a == line - 1)
     );
     says(&error, &[&format!("line {line}"), "node 3", "distinct"]);
     let mut sample = square();
@@ -69,7 +69,7 @@ fn not_finite() {
     let (text, line) = change(TWO, "3 1 1 0", "3 1 nan 0");
     let error = fail::<2>(text.as_bytes());
     assert!(
-        matches!(error, GmshError::NotFinite { place: FilePosition::Line(l), node: 3, axis: 'y', .. } if l == line)
+        matches!(error, GmshError::NotFinite { position: FilePosition::Line(l), node: 3, axis: 'y', .. } if l == line)
     );
     says(&error, &[&format!("line {line}"), "node 3", "y", "NaN", "finite"]);
     let mut sample = square();
@@ -85,7 +85,7 @@ fn not_flat() {
     let (text, line) = change(TWO, "5 0.5 0.5 0", "5 0.5 0.5 0.25");
     let error = fail::<2>(text.as_bytes());
     assert!(
-        matches!(error, GmshError::NotFlat { place: FilePosition::Line(l), node: 5, axis: 'z', dimension: 2, .. } if l == line)
+        matches!(error, GmshError::NotFlat { position: FilePosition::Line(l), node: 5, axis: 'z', dimension: 2, .. } if l == line)
     );
     says(&error, &[&format!("line {line}"), "node 5", "0.25", "plane of constant z", "turn"]);
     let mut sample = interval();
@@ -93,7 +93,13 @@ fn not_flat() {
     let error = fail::<1>(&sample.four(Form::Little));
     assert!(matches!(
         error,
-        GmshError::NotFlat { place: FilePosition::Byte(_), node: 3, axis: 'y', dimension: 1, .. }
+        GmshError::NotFlat {
+            position: FilePosition::Byte(_),
+            node: 3,
+            axis: 'y',
+            dimension: 1,
+            ..
+        }
     ));
     says(&error, &["byte ", "line of constant y and z"]);
 }
@@ -126,13 +132,13 @@ fn unknown_element_type() {
     let (text, line) = change(TWO, "6 2 2 7 1 2 3 5", "6 212 2 7 1 2 3 5");
     let error = fail::<2>(text.as_bytes());
     assert!(
-        matches!(error, GmshError::UnknownElementType { place: FilePosition::Line(l), element_type: 212 } if l == line)
+        matches!(error, GmshError::UnknownElementType { position: FilePosition::Line(l), element_type: 212 } if l == line)
     );
     says(&error, &[&format!("line {line}"), "212", "triangles"]);
     let (text, line) = change(FOUR, "2 1 2 4", "2 1 34 4");
     let error = fail::<2>(text.as_bytes());
     assert!(
-        matches!(error, GmshError::UnknownElementType { place: FilePosition::Line(l), element_type: 34 } if l == line)
+        matches!(error, GmshError::UnknownElementType { position: FilePosition::Line(l), element_type: 34 } if l == line)
     );
 }
 
@@ -141,7 +147,7 @@ fn not_simplicial() {
     let (text, line) = change(TWO, "6 2 2 7 1 2 3 5", "6 3 2 7 1 1 2 3 4");
     let error = fail::<2>(text.as_bytes());
     assert!(
-        matches!(error, GmshError::NotSimplicial { place: FilePosition::Line(l), element: 6, element_type: 3, name: "quadrilateral" } if l == line)
+        matches!(error, GmshError::NotSimplicial { position: FilePosition::Line(l), element: 6, element_type: 3, name: "quadrilateral" } if l == line)
     );
     says(
         &error,
@@ -188,7 +194,7 @@ fn unknown_group() {
     let (text, line) = change(TWO, "1 2 \"neumann\"", "1 2 \"outer wall\"");
     let error = fail::<2>(text.as_bytes());
     assert!(
-        matches!(&error, GmshError::UnknownGroup { place: FilePosition::Line(l), dimension: 1, tag: 2, name, .. } if *l == line && name == "outer wall")
+        matches!(&error, GmshError::UnknownGroup { position: FilePosition::Line(l), dimension: 1, tag: 2, name, .. } if *l == line && name == "outer wall")
     );
     says(&error, &[&format!("line {line}"), "\"outer wall\"", "dirichlet, neumann and contact"]);
     let (text, line) = change(FOUR, "1 1 \"dirichlet\"", "1 1 \"Dirichlet\"");
@@ -201,7 +207,7 @@ fn unnamed_group() {
     let (text, line) = change(TWO, "3 1 2 2 3 3 4", "3 1 2 6 3 3 4");
     let error = fail::<2>(text.as_bytes());
     assert!(
-        matches!(error, GmshError::UnnamedGroup { place: FilePosition::Line(l), element: 3, dimension: 1, tag: 6 } if l == line)
+        matches!(error, GmshError::UnnamedGroup { position: FilePosition::Line(l), element: 3, dimension: 1, tag: 6 } if l == line)
     );
     says(&error, &[&format!("line {line}"), "element 3", "group 6", "$PhysicalNames", "name it"]);
 }

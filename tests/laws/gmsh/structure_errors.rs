@@ -28,13 +28,13 @@ fn unsupported_version() {
         let text = format!("$MeshFormat\n{version} 0 8\n$EndMeshFormat\n");
         let error = fail::<2>(text.as_bytes());
         assert!(
-            matches!(&error, GmshError::UnsupportedVersion { place: FilePosition::Line(2), version: v } if v == version)
+            matches!(&error, GmshError::UnsupportedVersion { position: FilePosition::Line(2), version: v } if v == version)
         );
         says(&error, &["line 2", version, "4.1 and 2.2", "msh41"]);
     }
     assert!(matches!(
         fail::<2>(b"$NOD\n3\n"),
-        GmshError::UnsupportedVersion { place: FilePosition::Line(1), .. }
+        GmshError::UnsupportedVersion { position: FilePosition::Line(1), .. }
     ));
 }
 
@@ -44,7 +44,7 @@ fn unsupported_data_size() {
     let error = fail::<2>(text.as_bytes());
     assert!(matches!(
         error,
-        GmshError::UnsupportedDataSize { place: FilePosition::Line(2), data_size: 4 }
+        GmshError::UnsupportedDataSize { position: FilePosition::Line(2), data_size: 4 }
     ));
     says(&error, &["line 2", "4 bytes", "only of 8", "save again"]);
 }
@@ -57,7 +57,7 @@ fn byte_order() {
     assert!(
         matches!(
             error,
-            GmshError::ByteOrder { place: FilePosition::Byte(20), found: [13, 0, 0, 0] }
+            GmshError::ByteOrder { position: FilePosition::Byte(20), found: [13, 0, 0, 0] }
         ),
         "{error}"
     );
@@ -69,7 +69,7 @@ fn truncated() {
     let cut = FOUR.find("2 1 1 1").unwrap();
     let error = fail::<2>(&FOUR.as_bytes()[..cut]);
     assert!(
-        matches!(&error, GmshError::Truncated { place: FilePosition::Line(40), section } if section == "$Nodes"),
+        matches!(&error, GmshError::Truncated { position: FilePosition::Line(40), section } if section == "$Nodes"),
         "{error}"
     );
     says(&error, &["line 40", "$Nodes", "incomplete"]);
@@ -77,7 +77,7 @@ fn truncated() {
         let cut = bytes.len() - 40;
         let error = fail::<2>(&bytes[..cut]);
         assert!(
-            matches!(&error, GmshError::Truncated { place: FilePosition::Byte(b), section } if *b == cut && section == "$Elements"),
+            matches!(&error, GmshError::Truncated { position: FilePosition::Byte(b), section } if *b == cut && section == "$Elements"),
             "{error}"
         );
     }
@@ -99,7 +99,10 @@ fn missing_section() {
 fn partitioned() {
     let text = FOUR.replace("$Nodes", "$PartitionedEntities\n2\n$EndPartitionedEntities\n$Nodes");
     let error = fail::<2>(text.as_bytes());
-    assert!(matches!(error, GmshError::Partitioned { place: FilePosition::Line(28) }), "{error}");
+    assert!(
+        matches!(error, GmshError::Partitioned { position: FilePosition::Line(28) }),
+        "{error}"
+    );
     says(&error, &["line 28", "unpartitioned"]);
 }
 
@@ -108,7 +111,7 @@ fn not_a_number() {
     let (text, line) = change(TWO, "4 0 1 0", "4 0 one 0");
     let error = fail::<2>(text.as_bytes());
     assert!(
-        matches!(&error, GmshError::NotANumber { place: FilePosition::Line(l), word, .. } if *l == line && word == "one")
+        matches!(&error, GmshError::NotANumber { position: FilePosition::Line(l), word, .. } if *l == line && word == "one")
     );
     says(&error, &[&format!("line {line}"), "$Nodes", "coordinate y", "`one`"]);
     let (text, line) = change(FOUR, "103 30 40 90000000000", "103 30 -40 90000000000");
@@ -122,7 +125,7 @@ fn unexpected() {
     let (text, line) = change(TWO, "4 0 1 0", "4 0 1");
     let error = fail::<2>(text.as_bytes());
     assert!(
-        matches!(&error, GmshError::Unexpected { place: FilePosition::Line(l), .. } if *l == line),
+        matches!(&error, GmshError::Unexpected { position: FilePosition::Line(l), .. } if *l == line),
         "{error}"
     );
     says(&error, &[&format!("line {line}"), "coordinate z", "the end of the line"]);
@@ -148,14 +151,14 @@ fn counts() {
     let (text, _) = change(TWO, "5", "6");
     let error = fail::<2>(text.as_bytes());
     assert!(
-        matches!(&error, GmshError::Count { place: FilePosition::Line(18), announced: 6, found, .. } if found == "5"),
+        matches!(&error, GmshError::Count { position: FilePosition::Line(18), announced: 6, found, .. } if found == "5"),
         "{error}"
     );
     says(&error, &["line 18", "$Nodes", "6 nodes", "5 found", "damaged"]);
     let (text, _) = change(TWO, "5", "4");
     let error = fail::<2>(text.as_bytes());
     assert!(
-        matches!(&error, GmshError::Count { place: FilePosition::Line(17), announced: 4, .. }),
+        matches!(&error, GmshError::Count { position: FilePosition::Line(17), announced: 4, .. }),
         "{error}"
     );
     // The blocks do not add up.
@@ -183,7 +186,7 @@ fn absurd_counts_take_no_memory() {
     let error = fail::<2>(&bytes);
     let place = FilePosition::Byte(at + 24);
     assert!(
-        matches!(error, GmshError::Count { place: p, announced: 1_000_000_000_000_000_000, .. } if p <= place),
+        matches!(error, GmshError::Count { position: p, announced: 1_000_000_000_000_000_000, .. } if p <= place),
         "{error}"
     );
     says(&error, &["byte ", "$Nodes", "at most"]);

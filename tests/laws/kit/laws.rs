@@ -2,7 +2,7 @@
 
 use unilateral::algebra::SparseMatrix;
 use unilateral::kit::spectrum::MeanJump;
-use unilateral::kit::spectrum::{Diagonal, Factored, Lanczos, SpectrumError};
+use unilateral::kit::spectrum::{CholeskyMatrix, Diagonal, Lanczos, SpectrumError};
 use unilateral::kit::{check_consistency, check_orders, check_scheme, check_symmetry};
 use unilateral::mesh::BoxDomain;
 use unilateral::mesh::Mesh;
@@ -70,9 +70,9 @@ fn differences(n: usize) -> SparseMatrix<f64> {
 fn eigenvalues_of_second_differences() {
     for n in [1, 2, 3, 7, 50, 200] {
         let matrix = differences(n);
-        let a = Factored::new(&matrix).unwrap();
+        let a = CholeskyMatrix::new(&matrix).unwrap();
         let sine = |k: usize| (k as f64 * std::f64::consts::PI / (2 * n + 2) as f64).sin();
-        let found = Lanczos::default().extremes(&a, &Diagonal::one(n)).unwrap();
+        let found = Lanczos::default().extremes(&a, &Diagonal::identity(n)).unwrap();
         for (ours, k) in [(found.smallest, 1), (found.largest, n)] {
             let exact = 4.0 * sine(k).powi(2);
             assert!((ours - exact).abs() < 1e-11 * exact, "n = {n}: {ours} against {exact}");
@@ -82,7 +82,7 @@ fn eigenvalues_of_second_differences() {
             values: matrix.values.iter().map(|a| 2.0 * a).collect(),
             ..matrix.clone()
         };
-        let half = Lanczos::default().extremes(&a, &Factored::new(&twice).unwrap()).unwrap();
+        let half = Lanczos::default().extremes(&a, &CholeskyMatrix::new(&twice).unwrap()).unwrap();
         assert!((half.smallest - 0.5).abs() + (half.largest - 0.5).abs() < 1e-11, "{half:?}");
     }
 }
@@ -90,14 +90,14 @@ fn eigenvalues_of_second_differences() {
 #[test]
 fn a_spectrum_that_is_not_reached_is_an_error() {
     let matrix = differences(400);
-    let a = Factored::new(&matrix).unwrap();
+    let a = CholeskyMatrix::new(&matrix).unwrap();
     let lanczos = Lanczos { tolerance: 1e-10, max_steps: 5 };
-    let error = lanczos.largest(&a, &Diagonal::one(400)).unwrap_err();
+    let error = lanczos.largest(&a, &Diagonal::identity(400)).unwrap_err();
     let SpectrumError::NotReached { steps: 5, residual, .. } = error else { panic!("{error}") };
     assert!(residual > 1e-10);
-    let error = lanczos.extremes(&a, &Diagonal::one(3)).unwrap_err();
+    let error = lanczos.extremes(&a, &Diagonal::identity(3)).unwrap_err();
     assert_eq!(error, SpectrumError::Sizes { a: 400, b: 3 });
-    let mut negative = Diagonal::one(400);
+    let mut negative = Diagonal::identity(400);
     negative.0[7] = -1e9;
     let error = lanczos.largest(&a, &negative).unwrap_err();
     assert!(matches!(error, SpectrumError::NotPositive { .. }), "{error}");
@@ -120,7 +120,7 @@ fn means_and_jumps() {
         };
         let factor = |eta: f64| FacetMeans(Wopsip { eta: Eta::Absolute(eta), ..Wopsip::default() });
         let (one, many) = (assemble(&factor(1.0)), assemble(&factor(100.0)));
-        let change = MeanJump::of(&mesh);
+        let change = MeanJump::new(&mesh);
         let [small, large] = [&one, &many].map(|matrix| change.transform(matrix));
         assert!(small.is_well_formed() && small.size() == one.size());
         // a global constant has the mean one on every facet and no jump but at the boundary

@@ -17,10 +17,9 @@ fn every_registered_scene_solves_its_inequality() {
 
 #[test]
 fn every_scaled_scene_solves_its_inequality_at_extreme_scales() {
-    for entry in catalogue().into_iter().filter(|entry| entry.takes.scale) {
+    for entry in catalogue().into_iter().filter(|entry| entry.accepts.scale) {
         for scale in [1e-6, 1e-3, 1e6] {
-            let scene =
-                entry.make(&Parameters { scale: Some(scale), ..Parameters::default() }).unwrap();
+            let scene = entry.make(&Parameters::new().with_scale(scale)).unwrap();
             check_any(&scene).unwrap_or_else(|violation| panic!("scale {scale}: {violation}"));
         }
     }
@@ -63,26 +62,24 @@ fn the_catalogue_holds_the_scenes_agreed_on_and_no_others() {
 
 #[test]
 fn every_contrast_scene_solves_its_inequality_in_both_directions() {
-    let takers: Vec<_> = catalogue().into_iter().filter(|entry| entry.takes.contrast).collect();
+    let takers: Vec<_> = catalogue().into_iter().filter(|entry| entry.accepts.contrast).collect();
     assert_eq!(takers.len(), 4);
     for entry in takers {
         for contrast in [1e-6, 1e-4, 0.5, 1.0, 1e4, 1e6] {
-            let contrast = Some(contrast);
-            let scene = entry.make(&Parameters { contrast, ..Parameters::default() }).unwrap();
-            check_any(&scene).unwrap_or_else(|violation| panic!("{contrast:?}: {violation}"));
+            let scene = entry.make(&Parameters::new().with_contrast(contrast)).unwrap();
+            check_any(&scene).unwrap_or_else(|violation| panic!("{contrast}: {violation}"));
         }
     }
 }
 
 #[test]
 fn every_loaded_scene_has_admissible_data() {
-    let takers: Vec<_> = catalogue().into_iter().filter(|entry| entry.takes.load).collect();
+    let takers: Vec<_> = catalogue().into_iter().filter(|entry| entry.accepts.load).collect();
     assert_eq!(takers.len(), 2);
     for entry in takers {
         for load in [-20.0, 0.0, 20.0] {
-            let load = Some(load);
-            let scene = entry.make(&Parameters { load, ..Parameters::default() }).unwrap();
-            check_any(&scene).unwrap_or_else(|violation| panic!("{load:?}: {violation}"));
+            let scene = entry.make(&Parameters::new().with_load(load)).unwrap();
+            check_any(&scene).unwrap_or_else(|violation| panic!("{load}: {violation}"));
         }
     }
 }
@@ -106,7 +103,7 @@ fn every_scene_says_what_it_can_be_held_to() {
 #[test]
 fn scenes_are_found_by_name_only() {
     let entry = by_name("radial-3d").unwrap();
-    assert_eq!((entry.dimension, entry.takes.scale), (3, true));
+    assert_eq!((entry.dimension, entry.accepts.scale), (3, true));
     assert!(matches!(entry.make(&Parameters::default()).unwrap(), AnyScene::Three(_)));
     assert!(by_name("radial").is_none());
     assert!(by_name("Radial-3d").is_none());
@@ -123,7 +120,7 @@ fn a_scale_must_be_positive_and_finite() {
         (1e-200, "1e-200"),
         (1e200, "1e200"),
     ] {
-        let made = entry.make(&Parameters { scale: Some(scale), ..Parameters::default() });
+        let made = entry.make(&Parameters::new().with_scale(scale));
         let Err(Error::Parameter { parameter, value, .. }) = made else {
             panic!("scale {scale} was admitted")
         };
@@ -133,11 +130,10 @@ fn a_scale_must_be_positive_and_finite() {
 
 #[test]
 fn a_parameter_that_a_scene_does_not_take_is_refused() {
-    let one = Some(1.0);
     let cases = [
-        ("ball-2d", "scale", Parameters { scale: one, ..Parameters::default() }),
-        ("radial-2d", "contrast", Parameters { contrast: one, ..Parameters::default() }),
-        ("radial-2d", "load", Parameters { load: one, ..Parameters::default() }),
+        ("ball-2d", "scale", Parameters::new().with_scale(1.0)),
+        ("radial-2d", "contrast", Parameters::new().with_contrast(1.0)),
+        ("radial-2d", "load", Parameters::new().with_load(1.0)),
     ];
     for (name, expected, parameters) in cases {
         let Err(error) = by_name(name).unwrap().make(&parameters) else {
@@ -150,21 +146,21 @@ fn a_parameter_that_a_scene_does_not_take_is_refused() {
 
 #[test]
 fn entries_outside_the_catalogue_hand_their_parameter_on() {
-    let loaded = Entry::loaded(-2.0, |load| {
+    let loaded = Entry::with_load(-2.0, |load| {
         let mut scene = radial::<1>(1.0);
         scene.problem.source = Some(load.into());
         scene
     });
-    assert!(loaded.takes.load && !loaded.takes.scale);
+    assert!(loaded.accepts.load && !loaded.accepts.scale);
     let load_of = |parameters: &Parameters| match loaded.make(parameters).unwrap() {
         AnyScene::One(scene) => source(&scene, [0.0]),
         _ => unreachable!("the scene is one-dimensional"),
     };
     assert_eq!(load_of(&Parameters::default()), -2.0);
-    assert_eq!(load_of(&Parameters { load: Some(-5.0), ..Parameters::default() }), -5.0);
-    let made = loaded.make(&Parameters { load: Some(f64::NAN), ..Parameters::default() });
+    assert_eq!(load_of(&Parameters::new().with_load(-5.0)), -5.0);
+    let made = loaded.make(&Parameters::new().with_load(f64::NAN));
     assert!(matches!(made, Err(Error::Parameter { parameter: "load", .. })));
-    let contrasted = Entry::contrasted(1e4, |_| radial::<1>(1.0));
-    let made = contrasted.make(&Parameters { contrast: Some(0.0), ..Parameters::default() });
+    let contrasted = Entry::with_contrast(1e4, |_| radial::<1>(1.0));
+    let made = contrasted.make(&Parameters::new().with_contrast(0.0));
     assert!(matches!(made, Err(Error::Parameter { parameter: "contrast", .. })));
 }

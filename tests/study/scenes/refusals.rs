@@ -121,16 +121,13 @@ fn the_check_refuses_a_coefficient_that_is_not_positive() {
 
 /// `u = sign * (1/2 - |x|/2)`, harmonic but for a kink at `x = 0` that only an obstacle can hold.
 fn ridge(sign: f64, problem: Problem<1>) -> Scene<1> {
-    Scene {
-        name: "ridge".into(),
-        summary: "a kink",
-        domain: BoxDomain::centred(1.0).into(),
-        problem: problem.exact(
-            move |x| sign * (1.0 - x[0].abs()) / 2.0,
-            move |x| Point::from([-sign * x[0].signum() / 2.0]),
-        ),
-        regularity: Regularity { sobolev: 1.5, strictly_complementary: true },
-    }
+    let problem = problem.exact(
+        move |x| sign * (1.0 - x[0].abs()) / 2.0,
+        move |x| Point::from([-sign * x[0].signum() / 2.0]),
+    );
+    Scene::new("ridge", BoxDomain::centred(1.0), problem)
+        .summary("a kink")
+        .regularity(Regularity::new(1.5))
 }
 
 #[test]

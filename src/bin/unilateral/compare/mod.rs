@@ -24,8 +24,7 @@ use unilateral::inequality::ActiveSet;
 use unilateral::linear::LinearMethod;
 use unilateral::mesh::{Mesh, gmsh};
 use unilateral::real::Real;
-use unilateral::scenes;
-use unilateral::scenes::{AnyScene, Parameters, Scene, Takes};
+use unilateral::scenes::{self, AcceptedParameters, AnyScene, Parameters, Scene};
 use unilateral::scheme::{SCHEMES, scheme_by_name};
 use unilateral::study::orders_table;
 use unilateral::study::{Program, Report, Row, Study, available_memory_bytes};
@@ -81,9 +80,11 @@ impl Chosen {
         // with a mesh, all scenes are all that live in its dimension
         let any_fitting = !options.scenes_are_named();
         catalogue.retain(|s| !any_fitting || mesh.is_none_or(|d| d == s.dimension));
-        let takers = |parameter: &str, takes: fn(&Takes) -> bool, value: Option<f64>| {
+        let takers = |parameter: &str,
+                      accepts: fn(&AcceptedParameters) -> bool,
+                      value: Option<f64>| {
             let takers: Vec<&str> =
-                catalogue.iter().filter(|s| takes(&s.takes)).map(|s| &s.name[..]).collect();
+                catalogue.iter().filter(|s| accepts(&s.accepts)).map(|s| &s.name[..]).collect();
             match value {
                 Some(x) if !takers.iter().any(|s| wanted.iter().any(|w| w == s)) => Err(format!(
                     "--{parameter} {x:?}: none of the scenes chosen takes it; there are: {}",
@@ -104,11 +105,11 @@ impl Chosen {
                 ));
             }
             // a parameter goes to the scenes that take it
-            scenes.push(entry.make(&Parameters {
-                scale: options.scale.filter(|_| entry.takes.scale),
-                contrast: options.contrast.filter(|_| entry.takes.contrast),
-                load: options.load.filter(|_| entry.takes.load),
-            }));
+            let parameters = Parameters::new()
+                .with_scale(options.scale.filter(|_| entry.accepts.scale))
+                .with_contrast(options.contrast.filter(|_| entry.accepts.contrast))
+                .with_load(options.load.filter(|_| entry.accepts.load));
+            scenes.push(entry.make(&parameters));
         }
         scenes.into_iter().collect::<Result<_, _>>().map_err(|e| e.to_string())
     }

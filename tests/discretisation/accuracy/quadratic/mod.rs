@@ -13,7 +13,6 @@ use unilateral::mesh::BoxDomain;
 use unilateral::mesh::{BoundaryPart, Edges, Mesh, TaggedFacet};
 use unilateral::nested::Hierarchy;
 use unilateral::prelude::*;
-use unilateral::problem::Datum;
 use unilateral::quadrature::Rule;
 use unilateral::scenes::Scene;
 use unilateral::scheme::{SchemeOptions, scheme_by_name};
@@ -59,9 +58,9 @@ fn h1_as_tables<S: Scheme<f64, 2, Element = P2>>(
     let solution = solver.solve(&inequality);
     assert_eq!(solution.outcome, Outcome::Converged);
     let exact = scene.problem.exact.as_ref().unwrap();
-    let edges = Edges::of(mesh).numbers(mesh);
+    let edges = Edges::new(mesh).cell_edges(mesh);
     let n = mesh.vertices().len();
-    let rule = Rule::of_degree(2, 9);
+    let rule = Rule::new(2, 9);
     let mut sum = 0.0;
     for (cell, edges) in edges.chunks(3).enumerate() {
         let geometry = mesh.geometry(cell);
@@ -152,8 +151,11 @@ fn smooth<const D: usize>() -> Scene<D> {
     let gradient = move |x: &Point<f64, D>| Point::from_fn(|k, _| slope(k)) * value(x);
     let squares: f64 = (0..D).map(|k| slope(k) * slope(k)).sum();
     let load = move |x: &Point<f64, D>| (1.0 + x[0] - 3.0 * squares) * value(x);
-    let mut problem = Problem::new().source(load).coefficient(|_| 3.0).exact(value, gradient);
-    problem.reaction = Some(Datum::Function(Box::new(|x| 1.0 + x[0])));
+    let problem = Problem::new()
+        .source(load)
+        .coefficient(|_| 3.0)
+        .reaction(|x: &Point<f64, D>| 1.0 + x[0])
+        .exact(value, gradient);
     let mut domain = BoxDomain::dirichlet(Point::zeros(), Point::repeat(1.0));
     domain.sides = [[BoundaryPart::Neumann; 2]; D];
     own_scene("smooth", domain.side(0, 0, BoundaryPart::Dirichlet), problem)
@@ -298,7 +300,7 @@ fn the_basis_with_the_cell_mean_spans_the_quadratics() {
         };
         let (nodal, mean) = (of(&broken()), of(&CellMeans(broken())));
         let size = (D + 1) * (D + 2) / 2;
-        let simplex = Rule::of_degree(D, 2);
+        let simplex = Rule::new(D, 2);
         // the last midpoint of a function of the other basis, from the rule for its mean
         let mut means = [0.0; 10];
         for (point, weight) in simplex.iter() {

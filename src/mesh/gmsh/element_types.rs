@@ -39,25 +39,24 @@ impl Shape {
     }
 }
 
-/// What the number of an element type stands for. The corners of an element are its first nodes.
+/// The properties of an element type. The corners of an element are its first nodes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct Kind {
+pub(super) struct TypeProperties {
     /// The shape.
     pub(super) shape: Shape,
-    /// Polynomial order of the map from the reference element; 1 for what is not a simplex, whose
-    /// order nobody asks for.
+    /// Polynomial order of the map from the reference element; 1 for every type that is not a simplex.
     pub(super) order: u8,
-    /// Number of nodes; 0 for what is not a simplex.
+    /// Number of nodes; 0 for every type that is not a simplex.
     pub(super) nodes: usize,
 }
 
-impl Kind {
-    /// The kind of an element type, if it has a fixed number of nodes.
+impl TypeProperties {
+    /// The properties of an element type; none for a type without a fixed number of nodes.
     pub(super) fn from_type(element_type: i64) -> Option<Self> {
-        // Orders six to ten came late and have numbers of their own.
+        // Orders six to ten have numbers in separate ranges.
         let order = |first: i64, order: i64| (element_type - first + order) as u8;
         Some(match element_type {
-            15 => Kind { shape: Shape::Point, order: 1, nodes: 1 },
+            15 => TypeProperties { shape: Shape::Point, order: 1, nodes: 1 },
             1 => line(1),
             8 => line(2),
             26..=28 => line(order(26, 3)),
@@ -88,32 +87,32 @@ impl Kind {
     }
 }
 
-fn line(order: u8) -> Kind {
-    Kind { shape: Shape::Line, order, nodes: usize::from(order) + 1 }
+fn line(order: u8) -> TypeProperties {
+    TypeProperties { shape: Shape::Line, order, nodes: usize::from(order) + 1 }
 }
 
-fn triangle(order: u8) -> Kind {
+fn triangle(order: u8) -> TypeProperties {
     let k = usize::from(order);
-    Kind { shape: Shape::Triangle, order, nodes: (k + 1) * (k + 2) / 2 }
+    TypeProperties { shape: Shape::Triangle, order, nodes: (k + 1) * (k + 2) / 2 }
 }
 
-/// Without nodes inside the triangle.
-fn triangle_edges(order: u8) -> Kind {
-    Kind { shape: Shape::Triangle, order, nodes: 3 * usize::from(order) }
+/// Triangles without inner nodes.
+fn triangle_edges(order: u8) -> TypeProperties {
+    TypeProperties { shape: Shape::Triangle, order, nodes: 3 * usize::from(order) }
 }
 
-fn tetrahedron(order: u8) -> Kind {
+fn tetrahedron(order: u8) -> TypeProperties {
     let k = usize::from(order);
-    Kind { shape: Shape::Tetrahedron, order, nodes: (k + 1) * (k + 2) * (k + 3) / 6 }
+    TypeProperties { shape: Shape::Tetrahedron, order, nodes: (k + 1) * (k + 2) * (k + 3) / 6 }
 }
 
-/// Without nodes inside the tetrahedron and its faces.
-fn tetrahedron_edges(order: u8) -> Kind {
-    Kind { shape: Shape::Tetrahedron, order, nodes: 6 * usize::from(order) - 2 }
+/// Tetrahedra without nodes inside the tetrahedron and its faces.
+fn tetrahedron_edges(order: u8) -> TypeProperties {
+    TypeProperties { shape: Shape::Tetrahedron, order, nodes: 6 * usize::from(order) - 2 }
 }
 
-fn other(shape: Shape) -> Kind {
-    Kind { shape, order: 1, nodes: 0 }
+fn other(shape: Shape) -> TypeProperties {
+    TypeProperties { shape, order: 1, nodes: 0 }
 }
 
 #[cfg(test)]
@@ -154,13 +153,13 @@ mod tests {
         ];
         for (element_type, nodes) in table {
             assert_eq!(
-                Kind::from_type(element_type).map(|k| k.nodes),
+                TypeProperties::from_type(element_type).map(|k| k.nodes),
                 Some(nodes),
                 "type {element_type}"
             );
         }
         for element_type in [-1, 0, 34, 35, 67, 84, 140, 1 << 40] {
-            assert_eq!(Kind::from_type(element_type), None, "type {element_type}");
+            assert_eq!(TypeProperties::from_type(element_type), None, "type {element_type}");
         }
     }
 }

@@ -1,15 +1,15 @@
-//! Symmetric positive definite matrices, known by what they do.
+//! Symmetric positive definite matrices as operators.
 
 use crate::algebra::SparseMatrix;
 use crate::linear::{FactorError, Factors};
 
-/// A symmetric positive definite matrix that can be applied and solved with.
-pub trait Positive {
+/// A symmetric positive definite matrix with its product and its inverse.
+pub trait PositiveDefinite {
     /// Number of rows.
     fn size(&self) -> usize;
     /// The product with a vector.
     fn apply(&self, x: &[f64]) -> Vec<f64>;
-    /// Solves in place.
+    /// Replaces `x` by the solution of the system with right-hand side `x`.
     fn solve(&self, x: &mut [f64]);
 }
 
@@ -18,13 +18,13 @@ pub trait Positive {
 pub struct Diagonal(pub Vec<f64>);
 
 impl Diagonal {
-    /// The unit matrix.
-    pub fn one(size: usize) -> Self {
+    /// The identity matrix.
+    pub fn identity(size: usize) -> Self {
         Self(vec![1.0; size])
     }
 }
 
-impl Positive for Diagonal {
+impl PositiveDefinite for Diagonal {
     fn size(&self) -> usize {
         self.0.len()
     }
@@ -36,14 +36,14 @@ impl Positive for Diagonal {
     }
 }
 
-/// A sparse matrix with its Cholesky factor.
+/// A sparse matrix and its Cholesky factor.
 #[derive(Debug)]
-pub struct Factored<'a> {
+pub struct CholeskyMatrix<'a> {
     matrix: &'a SparseMatrix<f64>,
     factors: Factors<f64>,
 }
 
-impl<'a> Factored<'a> {
+impl<'a> CholeskyMatrix<'a> {
     /// Factors a symmetric matrix.
     ///
     /// # Errors
@@ -54,7 +54,7 @@ impl<'a> Factored<'a> {
     }
 }
 
-impl Positive for Factored<'_> {
+impl PositiveDefinite for CholeskyMatrix<'_> {
     fn size(&self) -> usize {
         self.matrix.size()
     }

@@ -1,48 +1,51 @@
-//! The quantities of a scene that its conditions are about, and their sizes.
+//! Evaluation of the data and the exact solution of a scene, and their scales.
 
-use super::{Condition, Violation};
+use super::violation::{Condition, Violation};
 use crate::problem::Exact;
 use crate::real::Point;
-use crate::scenes::Scene;
+use crate::scenes::scene::Scene;
 
-/// Largest sizes met at the sample points; tolerances are multiples of these.
+/// Distance to an obstacle that counts as contact, relative to the value.
+pub(super) const TOUCHING: f64 = 1e-8;
+
+/// Largest absolute values at the sample points; tolerances are multiples of them.
 pub(super) struct Scales {
     /// Shortest side of the domain, or radius of a disc.
     pub length: f64,
-    /// Of the value.
+    /// Largest value.
     pub value: f64,
-    /// Of the gradient, or of the value over the length if that is larger.
+    /// Largest gradient, or largest value over the length if that is larger.
     pub slope: f64,
-    /// Of `alpha grad u`, likewise.
+    /// Largest `alpha grad u`, or largest coefficient times value over the length if that is larger.
     pub flux: f64,
-    /// Of the forces: load, reaction, flux over length.
+    /// The largest of load, reaction times value, and flux over length.
     pub force: f64,
 }
 
-/// A scene with its exact solution.
-pub(super) struct Probe<'a, const D: usize> {
+/// A scene with its exact solution and scales.
+pub(super) struct Evaluator<'a, const D: usize> {
     pub scene: &'a Scene<D>,
     pub exact: &'a Exact<D>,
     pub scales: Scales,
 }
 
-impl<'a, const D: usize> Probe<'a, D> {
+impl<'a, const D: usize> Evaluator<'a, D> {
     pub fn new(scene: &'a Scene<D>, exact: &'a Exact<D>, points: &[Point<f64, D>]) -> Self {
         let length = scene.domain.length();
         let scales = Scales { length, value: 0.0, slope: 0.0, flux: 0.0, force: 0.0 };
-        let mut probe = Self { scene, exact, scales };
+        let mut evaluator = Self { scene, exact, scales };
         let largest = |size: &dyn Fn(&Point<f64, D>) -> f64| {
             points.iter().map(|x| size(x).abs()).fold(0.0, f64::max)
         };
-        let coefficient = largest(&|x| probe.coefficient(x));
-        let value = largest(&|x| probe.value(x));
-        let slope = largest(&|x| probe.gradient(x).norm()).max(value / length);
-        let flux = largest(&|x| probe.flux(x).norm()).max(coefficient * value / length);
-        let force = largest(&|x| probe.source(x))
-            .max(largest(&|x| probe.reaction(x) * probe.value(x)))
+        let coefficient = largest(&|x| evaluator.coefficient(x));
+        let value = largest(&|x| evaluator.value(x));
+        let slope = largest(&|x| evaluator.gradient(x).norm()).max(value / length);
+        let flux = largest(&|x| evaluator.flux(x).norm()).max(coefficient * value / length);
+        let force = largest(&|x| evaluator.source(x))
+            .max(largest(&|x| evaluator.reaction(x) * evaluator.value(x)))
             .max(flux / length);
-        probe.scales = Scales { length, value, slope, flux, force };
-        probe
+        evaluator.scales = Scales { length, value, slope, flux, force };
+        evaluator
     }
     pub fn value(&self, x: &Point<f64, D>) -> f64 {
         (self.exact.value)(x)
@@ -71,7 +74,7 @@ impl<'a, const D: usize> Probe<'a, D> {
     pub fn below_upper(&self, x: &Point<f64, D>) -> f64 {
         self.scene.problem.upper.as_ref().map_or(f64::INFINITY, |psi| psi(x) - self.value(x))
     }
-    /// Fails unless `by <= allowed`; not-a-number fails.
+    /// A violation unless `by <= allowed`; a violation if `by` is not a number.
     pub fn require(
         &self,
         condition: Condition,
@@ -79,17 +82,10 @@ impl<'a, const D: usize> Probe<'a, D> {
         by: f64,
         allowed: f64,
     ) -> Result<(), Violation> {
-        if by <= allowed { Ok(()) } else { Err(violation(self.scene, condition, at, by, allowed)) }
+        if by <= allowed {
+            Ok(())
+        } else {
+            Err(Violation::new(self.scene, condition, at, by, allowed))
+        }
     }
-}
-
-pub(super) fn violation<const D: usize>(
-    scene: &Scene<D>,
-    condition: Condition,
-    at: &Point<f64, D>,
-    by: f64,
-    allowed: f64,
-) -> Violation {
-    let at = at.iter().copied().collect();
-    Violation { scene: scene.name.clone(), condition, at, by, allowed }
 }

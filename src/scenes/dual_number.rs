@@ -1,20 +1,25 @@
-//! CoarseSpaces with their gradient and Laplacian at a point, and the product rule.
+//! Forward differentiation: sums and products of functions at a point, with their gradients and
+//! Laplacians.
 
 use std::ops::{Add, Mul, Sub};
 
 use super::halfplane;
 use crate::real::Point;
 
-/// Value, gradient and Laplacian of a function at a point.
+/// Value, gradient and Laplacian of a function at a point: a dual number of second order, of whose
+/// second derivatives only the trace is kept.
+///
+/// `grad (f g) = g grad f + f grad g`,
+/// `Laplace (f g) = g Laplace f + 2 grad f . grad g + f Laplace g`.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Jet<const D: usize> {
+pub(crate) struct DualNumber<const D: usize> {
     pub value: f64,
     pub gradient: Point<f64, D>,
     pub laplacian: f64,
 }
 
-impl<const D: usize> Jet<D> {
-    /// A function of one coordinate, from its value and its first two derivatives.
+impl<const D: usize> DualNumber<D> {
+    /// A function of the coordinate `axis`, from its value and its first two derivatives.
     pub fn along(axis: usize, [value, first, second]: [f64; 3]) -> Self {
         let gradient = Point::from_fn(|k, _| if k == axis { first } else { 0.0 });
         Self { value, gradient, laplacian: second }
@@ -38,7 +43,7 @@ impl<const D: usize> Jet<D> {
     }
 }
 
-impl<const D: usize> Add for Jet<D> {
+impl<const D: usize> Add for DualNumber<D> {
     type Output = Self;
     fn add(self, other: Self) -> Self {
         Self {
@@ -49,14 +54,14 @@ impl<const D: usize> Add for Jet<D> {
     }
 }
 
-impl<const D: usize> Sub for Jet<D> {
+impl<const D: usize> Sub for DualNumber<D> {
     type Output = Self;
     fn sub(self, other: Self) -> Self {
         self + other * Self::along(0, [-1.0, 0.0, 0.0])
     }
 }
 
-impl<const D: usize> Mul for Jet<D> {
+impl<const D: usize> Mul for DualNumber<D> {
     type Output = Self;
     fn mul(self, other: Self) -> Self {
         Self {

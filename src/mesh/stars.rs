@@ -1,4 +1,4 @@
-//! Sweeps over the vertices of a mesh with the cells around each, a range of vertices per thread.
+//! The star of every vertex, the cells that contain it, for one range of vertices per thread.
 
 use std::ops::Range;
 
@@ -6,30 +6,32 @@ use rayon::prelude::*;
 
 use crate::memory::in_large_pages;
 
-/// Cells of one block, of which only the range of their vertices is known.
+/// Number of cells of a block, of which only the range of their vertices is stored.
 const BLOCK: usize = 256;
 
-/// Fewest vertices worth a range of their own.
+/// Least number of vertices of a range.
 const LEAST: usize = 256;
 
-/// Cells by their vertices: of each cell the first few, its leading ones.
-pub(super) struct Sweep<'m, const D: usize> {
+/// The inverse of the map from cells to their leading vertices, built for a range of vertices at a
+/// time.
+pub(super) struct VertexToCells<'m, const D: usize> {
     cells: &'m [u32],
     n_vertices: usize,
     leading: usize,
-    /// For each block of consecutive cells the hull of their leading vertices.
+    /// For each block of consecutive cells the smallest range that contains their leading vertices.
     hulls: Vec<Range<u32>>,
 }
 
-/// The cells around each vertex of a range.
-pub(super) struct Around {
+/// The stars of the vertices of a range, in compressed rows.
+pub(super) struct Stars {
     vertices: Range<u32>,
     starts: Vec<u32>,
-    slots: Vec<u32>,
+    /// Four times the cell plus the number of the vertex in it.
+    corners: Vec<u32>,
 }
 
-impl<'m, const D: usize> Sweep<'m, D> {
-    /// Sweeps that meet each cell of these at its first `leading` vertices.
+impl<'m, const D: usize> VertexToCells<'m, D> {
+    /// The cells by their first `leading` vertices.
     pub fn new(cells: &'m [u32], n_vertices: usize, leading: usize) -> Self {
         let hull = |block: &[u32]| {
             let mut hull = Range { start: u32::MAX, end: 0 };
@@ -43,7 +45,7 @@ impl<'m, const D: usize> Sweep<'m, D> {
         let blocks = cells.par_chunks((D + 1) * BLOCK).with_min_len(16);
         Self { cells, n_vertices, leading, hulls: blocks.map(hull).collect() }
     }
-    /// Ranges of vertices that threads take; what a sweep finds does not depend on them.
+    /// A partition of the vertices into ranges, one per task. Results are independent of it.
     pub fn ranges(&self) -> Vec<Range<u32>> {
         let threads = rayon::current_num_threads();
         let most = if threads == 1 { 1 } else { 2 * threads };
@@ -60,22 +62,23 @@ impl<'m, const D: usize> Sweep<'m, D> {
     pub fn cell(&self, cell: usize) -> &'m [u32] {
         &self.cells[cell * (D + 1)..(cell + 1) * (D + 1)]
     }
-    /// The cells around the vertices of a range: a counting sort.
-    pub fn around(&self, vertices: Range<u32>) -> Around {
+    /// The stars of the vertices of a range, by a counting sort.
+    pub fn stars(&self, vertices: Range<u32>) -> Stars {
         let n = vertices.len();
-        // counts two places on become, summed, starts one place on, which filling makes starts
+        // the count of vertex v stands at v + 2; summed up, entry v + 1 is where row v starts, and
+        // filling the row moves it to where row v ends
         let mut starts = in_large_pages(vec![0_u32; n + 2]);
         self.visit(&vertices, |v, _| starts[v + 2] += 1);
         for v in 0..n {
             starts[v + 2] += starts[v + 1];
         }
-        let mut slots = in_large_pages(vec![0_u32; starts[n + 1] as usize]);
-        self.visit(&vertices, |v, slot| {
+        let mut corners = in_large_pages(vec![0_u32; starts[n + 1] as usize]);
+        self.visit(&vertices, |v, corner| {
             let at = &mut starts[v + 1];
-            slots[*at as usize] = slot;
+            corners[*at as usize] = corner;
             *at += 1;
         });
-        Around { vertices, starts, slots }
+        Stars { vertices, starts, corners }
     }
     #[inline(always)]
     fn visit(&self, vertices: &Range<u32>, mut visit: impl FnMut(usize, u32)) {
@@ -96,44 +99,46 @@ impl<'m, const D: usize> Sweep<'m, D> {
     }
 }
 
-impl Around {
-    /// Each vertex with its cells, ascending, and its number in each.
+impl Stars {
+    /// Each vertex with the cells of its star, ascending, and its number in each of them.
     #[inline(always)]
-    pub fn each(&self) -> impl Iterator<Item = (u32, impl Iterator<Item = (usize, usize)>)> {
-        let slots = |k: usize| &self.slots[self.starts[k] as usize..self.starts[k + 1] as usize];
-        let sides = |&slot: &u32| ((slot >> 2) as usize, (slot & 3) as usize);
-        self.vertices.clone().enumerate().map(move |(k, v)| (v, slots(k).iter().map(sides)))
+    pub fn iter(&self) -> impl Iterator<Item = (u32, impl Iterator<Item = (usize, usize)>)> {
+        let corners =
+            |k: usize| &self.corners[self.starts[k] as usize..self.starts[k + 1] as usize];
+        let split = |&corner: &u32| ((corner >> 2) as usize, (corner & 3) as usize);
+        self.vertices.clone().enumerate().map(move |(k, v)| (v, corners(k).iter().map(split)))
     }
 }
 
-/// What was met at the vertex at hand, by vertices of higher number; each is forgotten at the next.
-pub(super) struct Met {
-    /// One more than the running number of what was met last.
+/// Running numbers of pairs of a current vertex and a neighbour; those of the current vertex count
+/// from zero. Moving to the next vertex takes constant time.
+pub(super) struct NeighbourNumbers {
+    /// For each neighbour one more than the number of its last pair, over all vertices.
     last: Vec<u32>,
     base: u32,
     n: u32,
 }
 
-impl Met {
+impl NeighbourNumbers {
     pub fn new(n_vertices: usize) -> Self {
         Self { last: in_large_pages(vec![0; n_vertices]), base: 0, n: 0 }
     }
-    /// Forgets all.
+    /// Starts with the next current vertex, of which no pair has a number.
     #[inline(always)]
     pub fn next_vertex(&mut self) {
         self.base += self.n;
         self.n = 0;
     }
-    /// The number, counted at this vertex, of what was met last with another vertex.
+    /// The number last given to the current vertex and this neighbour.
     #[inline(always)]
-    pub fn with(&self, other: u32) -> Option<u32> {
-        let last = self.last[other as usize];
+    pub fn get(&self, neighbour: u32) -> Option<u32> {
+        let last = self.last[neighbour as usize];
         (last > self.base).then(|| last - self.base - 1)
     }
-    /// Numbers something met with another vertex.
+    /// Gives the next number to the current vertex and this neighbour.
     #[inline(always)]
-    pub fn push(&mut self, other: u32) {
+    pub fn push(&mut self, neighbour: u32) {
         self.n += 1;
-        self.last[other as usize] = self.base + self.n;
+        self.last[neighbour as usize] = self.base + self.n;
     }
 }

@@ -1,32 +1,18 @@
-//! A numerical test of a scene's derivation, for every author of a scene.
-//!
-//! ```
-//! use unilateral::scenes::{check_scene, radial};
-//!
-//! check_scene(&radial::<2>(1.0), 200).unwrap();
-//! ```
-
-mod boundary;
-mod data;
-mod differences;
-mod interfaces;
-mod interior;
-mod probe;
-mod samples;
-mod stated;
+//! The conditions of a scene, and the report of one that fails.
 
 use std::fmt;
 
-use super::Scene;
-use probe::Probe;
+use crate::readable_debug::debug_by_display;
+use crate::real::Point;
+use crate::scenes::scene::Scene;
 
-/// What a scene must fulfil.
+/// A condition on a scene.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Condition {
     /// The datum of this name is a finite number.
     Finite(&'static str),
-    /// The coefficient is positive, the reaction not negative; the number is the offending value.
+    /// The coefficient is positive, the reaction not negative; [`Violation::by`] is the value found.
     Ellipticity,
     /// A lower bound stays below the upper bound, and Dirichlet data lie between the bounds.
     Admissible,
@@ -36,19 +22,19 @@ pub enum Condition {
     Gradient,
     /// The value has no jump.
     Continuity,
-    /// The normal flux jumps only where an obstacle holds the kink: there the multiplier is a
-    /// measure on a line or surface.
+    /// The normal flux jumps only where an obstacle is active: there the multiplier is a measure on a
+    /// line or surface.
     Kink,
     /// `u >= psi_lower`.
     LowerObstacle,
     /// `u <= psi_upper`.
     UpperObstacle,
-    /// `-div(alpha grad u) + c u = f` where no obstacle is touched.
+    /// `-div(alpha grad u) + c u = f` where no obstacle is active.
     Equation,
-    /// `-div(alpha grad u) + c u - f` is not negative where only the lower obstacle is touched, not
-    /// positive where only the upper one is.
+    /// `-div(alpha grad u) + c u - f` is not negative where only the lower obstacle is active, not
+    /// positive where only the upper obstacle is active.
     MultiplierSign,
-    /// Enough sample points lie where the second derivatives can be told by differences.
+    /// Differences approximate second derivatives at enough sample points.
     Resolution,
     /// Value and gradient on the boundary are their limits from inside, and rounding errors of the
     /// point do not change them.
@@ -66,8 +52,8 @@ pub enum Condition {
     /// The stated multiplier is `-div(alpha grad u) + c u - f`, or `alpha du/dn` on the contact
     /// part.
     Multiplier,
-    /// A bound is touched inside the stated contact set and not outside, where there is no
-    /// multiplier either.
+    /// A bound is active inside the stated contact set; outside, no bound is active and the multiplier
+    /// vanishes.
     ContactSet,
     /// Stated points of the free boundary are zeros of the contact set's indicator.
     FreeBoundary,
@@ -101,8 +87,9 @@ impl fmt::Display for Condition {
     }
 }
 
-/// The first condition found to fail: which, where, and by how much.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+/// The first condition that fails, the point, and the amount. `Debug` prints the message.
+#[derive(Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 #[error("scene {scene}: not fulfilled: {condition}; at {at:?} off by {by:e}, allowed {allowed:e}")]
 pub struct Violation {
     /// Name of the scene.
@@ -113,44 +100,21 @@ pub struct Violation {
     pub at: Vec<f64>,
     /// The amount of the violation.
     pub by: f64,
-    /// The amount that would pass for rounding and truncation.
+    /// The amount allowed for rounding and truncation errors.
     pub allowed: f64,
 }
 
-/// Tests that data and exact solution of a scene fit together, at `samples` quasi-random points of
-/// its domain and as many of each side. The points are the same in every run.
-///
-/// In this order: all data are finite (also at the corners, at the origin and on a lattice that
-/// meshes share); bounds are in order; and, where an exact solution is stated,
-///
-/// * its gradient is that of its value, by fourth-order central differences;
-/// * value and flux have no jumps along the segments between successive points, except kinks that
-///   an obstacle holds with a force of the right sign;
-/// * it respects the obstacles, its multiplier `-div(alpha grad u) + c u - f` vanishes where none
-///   is touched and has the sign of the one that is;
-/// * it takes the boundary data, and fulfils the Signorini conditions on contact sides;
-/// * multiplier and contact set are those of the solution, where they are stated.
-///
-/// Differences use steps from a thousandth of the shortest side downwards until three successive
-/// ones agree; a point where none do lies on an interface or a singularity and is passed over. If
-/// more than a quarter of the points are, that is [`Condition::Resolution`].
-///
-/// Tolerances are relative to the largest values met, `1e-6` for the multiplier and the gradient
-/// and `1e-8` for the rest. Not seen are errors confined to regions that hold no sample.
-///
-/// # Errors
-///
-/// The first [`Violation`] found.
-pub fn check_scene<const D: usize>(scene: &Scene<D>, samples: usize) -> Result<(), Violation> {
-    let samples = samples.max(2);
-    let inside = samples::inside(&scene.domain, samples);
-    data::check(scene, &inside, samples)?;
-    let Some(exact) = &scene.problem.exact else { return Ok(()) };
-    let probe = Probe::new(scene, exact, &inside);
-    interior::check_gradient(&probe, &inside)?;
-    interfaces::check(&probe, &inside)?;
-    interior::check_obstacles(&probe, &inside)?;
-    interior::check_multiplier(&probe, &inside)?;
-    boundary::check(&probe, samples)?;
-    stated::check_free_boundary(&probe, &inside)
+debug_by_display!(Violation);
+
+impl Violation {
+    pub(super) fn new<const D: usize>(
+        scene: &Scene<D>,
+        condition: Condition,
+        at: &Point<f64, D>,
+        by: f64,
+        allowed: f64,
+    ) -> Self {
+        let at = at.iter().copied().collect();
+        Self { scene: scene.name.clone(), condition, at, by, allowed }
+    }
 }

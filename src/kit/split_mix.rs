@@ -1,9 +1,9 @@
-//! Pseudo-random numbers, always the same ones.
+//! Pseudo-random numbers from fixed seeds.
 
 /// The generator SplitMix64: G. L. Steele, D. Lea, C. H. Flood, OOPSLA 2014, 453-472.
-pub(super) struct Random(pub u64);
+pub(super) struct SplitMix64(pub u64);
 
-impl Random {
+impl SplitMix64 {
     fn bits(&mut self) -> u64 {
         self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
         let mut z = self.0;

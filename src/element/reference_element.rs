@@ -1,0 +1,80 @@
+//! The trait of reference elements.
+
+use crate::real::Real;
+
+/// Largest number of basis functions of an element: quadratics on a tetrahedron.
+pub const MAX_BASIS: usize = 10;
+
+/// Number of unknowns at each vertex, edge and facet, shared by the cells that contain it, and inside
+/// each cell. The layout distinguishes conforming, nonconforming and broken spaces with one basis.
+///
+/// A cell lists its unknowns in the order of the fields. In two dimensions edges and facets are the
+/// same sets, but `edge` and `facet` count separately.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Layout {
+    /// Unknowns at each vertex; those of vertex `i` of the cell come `i`-th.
+    pub vertex: usize,
+    /// Unknowns on each edge. Edges are ordered by their second vertex: `(0, 1)`, `(0, 2)`, `(1, 2)`, `(0, 3)`, `(1, 3)`, `(2, 3)`,
+    /// of which a segment has the first and a triangle the first three.
+    pub edge: usize,
+    /// Unknowns on each facet; those of the facet opposite vertex `i` come `i`-th.
+    pub facet: usize,
+    /// Unknowns inside each cell.
+    pub cell: usize,
+}
+
+impl Layout {
+    /// All unknowns inside the cells.
+    pub const fn in_cells(cell: usize) -> Self {
+        Self { vertex: 0, edge: 0, facet: 0, cell }
+    }
+    /// Whether no two cells share an unknown.
+    pub const fn is_broken(&self) -> bool {
+        self.vertex == 0 && self.edge == 0 && self.facet == 0
+    }
+    /// Number of unknowns of a cell of this dimension.
+    pub const fn per_cell(&self, dimension: usize) -> usize {
+        // destructured, so that a field added later is counted here too
+        let Self { vertex, edge, facet, cell } = *self;
+        let edges = dimension * (dimension + 1) / 2;
+        (vertex + facet) * (dimension + 1) + edge * edges + cell
+    }
+}
+
+/// The functional that an unknown is the value of.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Node {
+    /// The value at a vertex of the cell.
+    Vertex(usize),
+    /// The value at the midpoint of an edge of the cell, in the order of [`Layout::edge`].
+    Edge(usize),
+    /// The mean over the facet opposite a vertex of the cell.
+    FacetMean(usize),
+    /// The mean over the cell.
+    CellMean,
+}
+
+/// A finite element on the `D`-simplex.
+///
+/// Laws, tested by [`check_element`](crate::kit::check_element): nodes dual to basis functions,
+/// partition of unity, derivatives equal to those of the values, as many functions as the layout has
+/// unknowns.
+#[diagnostic::on_unimplemented(
+    message = "`{Self}` is not a finite element on a {D}-simplex over `{T}`",
+    note = "elements exist on simplices of dimension 1, 2 and 3"
+)]
+pub trait ReferenceElement<T: Real, const D: usize>: Copy + Send + Sync + 'static {
+    /// Number of basis functions, at most [`MAX_BASIS`].
+    const N: usize;
+    /// Polynomial degree.
+    const DEGREE: usize;
+    /// Unknowns at vertices, edges, facets and inside cells.
+    const LAYOUT: Layout;
+    /// Writes the `N` basis functions at a point; `lambda` has `D + 1` entries.
+    fn values(lambda: &[T], out: &mut [T]);
+    /// Writes the derivatives of the `N` basis functions with respect to the `D + 1` barycentric
+    /// coordinates, taken as independent.
+    fn derivatives(lambda: &[T], out: &mut [[T; 4]]);
+    /// The functional that unknown `i` is the value of.
+    fn node(i: usize) -> Node;
+}

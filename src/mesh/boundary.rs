@@ -1,0 +1,38 @@
+//! Parts of the boundary.
+
+/// The part of the boundary a facet belongs to.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum BoundaryPart {
+    /// Values are given.
+    Dirichlet,
+    /// The flux is given.
+    Neumann,
+    /// The Signorini condition holds.
+    Contact,
+}
+
+impl BoundaryPart {
+    /// The name of the physical group in a mesh file.
+    pub fn name(self) -> &'static str {
+        match self {
+            BoundaryPart::Dirichlet => "dirichlet",
+            BoundaryPart::Neumann => "neumann",
+            BoundaryPart::Contact => "contact",
+        }
+    }
+    /// The part of this name.
+    pub fn from_name(name: &str) -> Option<Self> {
+        [Self::Dirichlet, Self::Neumann, Self::Contact].into_iter().find(|p| p.name() == name)
+    }
+}
+
+/// A facet of the boundary: its cell, its number in the cell, its part.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct BoundaryFacet {
+    /// The cell.
+    pub cell: u32,
+    /// The facet is opposite this vertex of the cell.
+    pub local: u8,
+    /// The part of the boundary.
+    pub part: BoundaryPart,
+}

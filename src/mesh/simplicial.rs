@@ -1,0 +1,99 @@
+//! The mesh: vertices, cells and boundary facets.
+
+use super::boundary::{BoundaryFacet, BoundaryPart};
+use crate::real::{Point, Real, point_f64};
+
+/// A conforming simplicial mesh of a domain in `D` dimensions (1, 2 or 3).
+#[derive(Clone, Debug)]
+pub struct Mesh<T, const D: usize> {
+    pub(in crate::mesh) vertices: Vec<Point<T, D>>,
+    pub(in crate::mesh) cells: Vec<u32>,
+    pub(in crate::mesh) boundary: Vec<BoundaryFacet>,
+}
+
+impl<T: Real, const D: usize> Mesh<T, D> {
+    /// Number of vertices of a cell.
+    pub const CELL_VERTICES: usize = {
+        assert!(D >= 1 && D <= 3, "simplices of dimension 1, 2 and 3 only");
+        D + 1
+    };
+
+    /// Coordinates of the vertices.
+    pub fn vertices(&self) -> &[Point<T, D>] {
+        &self.vertices
+    }
+    /// Number of cells.
+    pub fn n_cells(&self) -> usize {
+        self.cells.len() / Self::CELL_VERTICES
+    }
+    /// Vertices of a cell, ascending.
+    #[inline(always)]
+    pub fn cell(&self, c: usize) -> &[u32] {
+        &self.cells[c * Self::CELL_VERTICES..(c + 1) * Self::CELL_VERTICES]
+    }
+    /// Vertices of all cells, `D + 1` for each.
+    pub fn cells(&self) -> &[u32] {
+        &self.cells
+    }
+    /// Facets of the boundary, by cell and number in the cell.
+    pub fn boundary(&self) -> &[BoundaryFacet] {
+        &self.boundary
+    }
+    /// Whether some facet belongs to a part of the boundary.
+    pub fn has_part(&self, part: BoundaryPart) -> bool {
+        self.boundary.iter().any(|f| f.part == part)
+    }
+    /// Vertices of facet `local` of a cell, ascending: `D` of them.
+    pub fn facet_vertices(&self, c: usize, local: usize) -> impl Iterator<Item = u32> + '_ {
+        self.cell(c).iter().enumerate().filter(move |(i, _)| *i != local).map(|(_, &v)| v)
+    }
+    /// The barycentre of a cell.
+    pub fn barycentre(&self, c: usize) -> Point<T, D> {
+        let sum = self
+            .cell(c)
+            .iter()
+            .fold(Point::zeros(), |s: Point<T, D>, &v| s + self.vertices[v as usize]);
+        sum / T::lit(Self::CELL_VERTICES as f64)
+    }
+    /// The largest distance of two vertices of a cell.
+    pub fn cell_diameter(&self, c: usize) -> T {
+        let cell = self.cell(c);
+        let mut largest = T::lit(0.0);
+        for (i, &a) in cell.iter().enumerate() {
+            for &b in &cell[..i] {
+                let d = (self.vertices[a as usize] - self.vertices[b as usize]).norm_squared();
+                largest = if d > largest { d } else { largest };
+            }
+        }
+        nalgebra::ComplexField::sqrt(largest)
+    }
+    /// The smallest distance of two vertices of a cell.
+    pub fn shortest_edge(&self) -> f64 {
+        let mut shortest = f64::INFINITY;
+        for cell in self.cells.chunks_exact(D + 1) {
+            for (i, &a) in cell.iter().enumerate() {
+                for &b in &cell[..i] {
+                    let edge = self.vertices[a as usize] - self.vertices[b as usize];
+                    shortest = shortest.min(edge.norm_squared().to_f64());
+                }
+            }
+        }
+        shortest.sqrt()
+    }
+    /// The largest cell diameter.
+    pub fn mesh_size(&self) -> f64 {
+        (0..self.n_cells()).map(|c| self.cell_diameter(c).to_f64()).fold(0.0, f64::max)
+    }
+    /// The diagonal of the smallest box around the mesh: the length that makes WOPSIP's penalty
+    /// factor dimensionless.
+    pub fn domain_diameter(&self) -> f64 {
+        let first = point_f64(&self.vertices[0]);
+        let (mut low, mut high) = (first, first);
+        for x in &self.vertices {
+            let x = point_f64(x);
+            low = low.zip_map(&x, f64::min);
+            high = high.zip_map(&x, f64::max);
+        }
+        (high - low).norm()
+    }
+}

@@ -1,0 +1,104 @@
+//! Quadrature rules on simplices.
+
+use super::gauss::gauss_jacobi;
+
+/// A quadrature rule on the simplex of some dimension.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Rule {
+    /// Barycentric coordinates of the points; `dimension + 1` of the four are used.
+    pub points: Vec<[f64; 4]>,
+    /// Positive weights that sum to one.
+    pub weights: Vec<f64>,
+}
+
+impl Rule {
+    /// A rule that is exact for polynomials of this degree.
+    ///
+    /// Degrees 0 and 1: the barycentre. Degree 2: `dimension + 1` points on the medians
+    /// (P. C. Hammer, A. H. Stroud, MTAC 10 (1956), 137-139; the two-point Gauss rule in one
+    /// dimension). Above: the conical product of Gauss-Jacobi rules, `ceil((degree + 1) / 2)`
+    /// points in each direction (A. H. Stroud, Approximate Calculation of Multiple Integrals,
+    /// 1971, section 2.5).
+    ///
+    /// # Panics
+    /// If the dimension is above three.
+    pub fn new(dimension: usize, degree: usize) -> Self {
+        match (dimension, degree) {
+            (0, _) | (_, 0 | 1) => Self::barycentre(dimension),
+            (_, 2) => Self::medians(dimension),
+            _ => Self::conical(dimension, degree / 2 + 1),
+        }
+    }
+
+    fn barycentre(dimension: usize) -> Self {
+        let mut point = [0.0; 4];
+        point[..=dimension].fill(1.0 / (dimension + 1) as f64);
+        Self { points: vec![point], weights: vec![1.0] }
+    }
+
+    /// The points `a e_i + b (1, ..., 1)` with `a = 1 / sqrt(dimension + 2)`.
+    fn medians(dimension: usize) -> Self {
+        let n = dimension + 1;
+        let a = 1.0 / ((dimension + 2) as f64).sqrt();
+        let b = (1.0 - a) / n as f64;
+        let point = |i: usize| {
+            let mut point = [0.0; 4];
+            point[..n].fill(b);
+            point[i] += a;
+            point
+        };
+        Self { points: (0..n).map(point).collect(), weights: vec![1.0 / n as f64; n] }
+    }
+
+    /// The conical product: collapsed coordinates, with a Gauss-Jacobi rule in each of them.
+    fn conical(dimension: usize, points_per_direction: usize) -> Self {
+        let mut rule = Self { points: vec![[1.0, 0.0, 0.0, 0.0]], weights: vec![1.0] };
+        for d in 1..=dimension {
+            // the simplex of dimension d is a cone over the one of dimension d - 1
+            let (nodes, weights) = gauss_jacobi(points_per_direction, d - 1);
+            let mut cone = Self { points: Vec::new(), weights: Vec::new() };
+            for (point, weight) in rule.points.iter().zip(&rule.weights) {
+                for (t, w) in nodes.iter().zip(&weights) {
+                    let mut p = point.map(|b| b * (1.0 - t));
+                    p[d] = *t;
+                    cone.points.push(p);
+                    cone.weights.push(weight * w);
+                }
+            }
+            rule = cone;
+        }
+        rule
+    }
+
+    /// Points with their weights.
+    pub fn iter(&self) -> impl Iterator<Item = (&[f64; 4], f64)> {
+        self.points.iter().zip(self.weights.iter().copied())
+    }
+}
+
+/// The barycentric coordinates in a cell of a point of the facet opposite vertex `local`, from its
+/// barycentric coordinates in the facet.
+#[inline(always)]
+pub(crate) fn facet_to_cell(facet_point: &[f64; 4], local: usize) -> [f64; 4] {
+    std::array::from_fn(|k| match k.cmp(&local) {
+        std::cmp::Ordering::Less => facet_point[k],
+        std::cmp::Ordering::Equal => 0.0,
+        std::cmp::Ordering::Greater => facet_point[k - 1],
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::facet_to_cell;
+    use proptest::prelude::*;
+
+    proptest! {
+        #[test]
+        fn points_of_a_facet_lie_on_it(local in 0_usize..4, b in prop::array::uniform3(0.0_f64..1.0)) {
+            let s = b.iter().sum::<f64>().max(1e-9);
+            let x = facet_to_cell(&[b[0] / s, b[1] / s, b[2] / s, 0.0], local);
+            prop_assert_eq!(x[local], 0.0);
+            prop_assert!((x.iter().sum::<f64>() - 1.0).abs() < 1e-12);
+        }
+    }
+}

@@ -1,0 +1,60 @@
+//! A numerical test of the derivation of a scene's solution, for authors of scenes.
+//!
+//! ```
+//! use unilateral::scenes::{check_scene, radial};
+//!
+//! check_scene(&radial::<2>(1.0), 200).unwrap();
+//! ```
+
+mod boundary;
+mod data;
+mod differences;
+mod evaluator;
+mod interfaces;
+mod interior;
+mod samples;
+mod stated;
+mod violation;
+
+pub use violation::{Condition, Violation};
+
+use super::scene::Scene;
+use evaluator::Evaluator;
+
+/// Tests data and exact solution of a scene against each other, at `samples` quasi-random points of its
+/// domain and of each side. The points are the same in every run.
+///
+/// In this order: all data are finite (also at the corners, at the origin and on a lattice that
+/// meshes share); bounds are in order; and, where an exact solution is stated,
+///
+/// * its gradient is that of its value, by fourth-order central differences;
+/// * value and flux have no jumps along the segments between successive points, except kinks where an
+///   obstacle is active, with a multiplier of the right sign;
+/// * the solution satisfies the obstacles; the multiplier `-div(alpha grad u) + c u - f` vanishes off
+///   contact and on contact has the sign of the active obstacle;
+/// * the solution satisfies the boundary data, and the Signorini conditions on contact sides;
+/// * stated multiplier and contact set are those of the solution.
+///
+/// The step of differences is reduced, from a thousandth of the shortest side, until three successive
+/// differences agree. A point where they never agree lies on an interface or at a singularity and is
+/// skipped. If more than a quarter of the points are skipped, [`Condition::Resolution`] fails.
+///
+/// Tolerances are relative to the largest values met, `1e-6` for the multiplier and the gradient
+/// and `1e-8` for the rest. Errors confined to regions without sample points are not detected.
+///
+/// # Errors
+///
+/// The first [`Violation`] found.
+pub fn check_scene<const D: usize>(scene: &Scene<D>, samples: usize) -> Result<(), Violation> {
+    let samples = samples.max(2);
+    let inside = samples::inside(&scene.domain, samples);
+    data::check(scene, &inside, samples)?;
+    let Some(exact) = &scene.problem.exact else { return Ok(()) };
+    let evaluator = Evaluator::new(scene, exact, &inside);
+    interior::check_gradient(&evaluator, &inside)?;
+    interfaces::check(&evaluator, &inside)?;
+    interior::check_obstacles(&evaluator, &inside)?;
+    interior::check_multiplier(&evaluator, &inside)?;
+    boundary::check(&evaluator, samples)?;
+    stated::check_free_boundary(&evaluator, &inside)
+}
