@@ -163,7 +163,7 @@ impl<'a, T: Real, const D: usize, S: Scheme<T, D>> Discretisation<'a, T, D, S> {
             // in the plane an order found in space is no better for unknowns that cells share
             points: if D == 3 || Self::OWNS_ROWS { self.space.vertex_points() } else { Vec::new() },
             start: Start::Cold,
-            factored,
+            penalised: factored,
         })
     }
     /// The load; if the matrix is kept factored too, the load without Dirichlet data, and these.

@@ -3,9 +3,9 @@
 use super::active_set::inexact::{Inexact, MOST_ITERATIONS};
 use super::{Outcome, Solution};
 use crate::algebra::{Contact, SparseMatrix};
-use crate::linear::krylov::conjugate_gradients::{ConjugateGradients, Preconditioner, Stop, dot};
-use crate::linear::precondition::choice::Preconditioners;
-use crate::parallel::vectors::{signs, zeros};
+use crate::linear::krylov::{ConjugateGradients, StoppingRule};
+use crate::linear::precondition::{AnyPreconditioner, Preconditioner};
+use crate::parallel::vectors::{dot, pseudorandom_signs, zeros};
 use crate::real::Real;
 
 /// The smallest eigenvalue is taken to be at least this share of the smallest Ritz value, which lies
@@ -29,16 +29,16 @@ impl<T: Real> Inexact<'_, T> {
     pub(crate) fn sound(
         &mut self,
         part: &SparseMatrix<T>,
-        preconditioner: &mut Preconditioners<'_, T>,
+        preconditioner: &mut AnyPreconditioner<'_, T>,
     ) -> Option<Outcome> {
         let n = self.values.len();
         let mut force = zeros(n);
         // forces without structure, so that no direction is left out
         let free = (0..n).filter(|&i| !self.fixed[i]);
-        for (i, is_positive) in free.zip(signs()) {
+        for (i, is_positive) in free.zip(pseudorandom_signs()) {
             force[i] = if is_positive { self.diagonal[i] } else { -self.diagonal[i] };
         }
-        let stop = Stop { norm: 0.0, share: SOUNDED, iterations: MOST_ITERATIONS };
+        let stop = StoppingRule { norm: 0.0, reduction: SOUNDED, max_iterations: MOST_ITERATIONS };
         let iterate = (&mut zeros(n)[..], &mut force[..]);
         let run = ConjugateGradients::new(part).solve(&self.fixed, preconditioner, iterate, stop);
         self.linear += run.iterations;
@@ -49,7 +49,7 @@ impl<T: Real> Inexact<'_, T> {
     pub(crate) fn into_solution(
         mut self,
         outcome: Outcome,
-        preconditioner: &mut Preconditioners<'_, T>,
+        preconditioner: &mut AnyPreconditioner<'_, T>,
     ) -> Solution<T> {
         let is_good = outcome == Outcome::Converged;
         let bound = is_good.then(|| self.error_bound(preconditioner)).flatten();
@@ -61,7 +61,7 @@ impl<T: Real> Inexact<'_, T> {
             linear: self.linear,
             linear_solver: preconditioner.name(),
             algebraic_bound: bound,
-            forces: Vec::new(),
+            jump_multipliers: Vec::new(),
         }
     }
 
@@ -81,7 +81,7 @@ impl<T: Real> Inexact<'_, T> {
     /// The inverse is at most the preconditioner over the smallest eigenvalue of the preconditioned
     /// `S`. For that stands nine tenths of the smallest Ritz value met on the way: the one part that is
     /// an estimate.
-    fn error_bound(&mut self, preconditioner: &mut Preconditioners<'_, T>) -> Option<f64> {
+    fn error_bound(&mut self, preconditioner: &mut AnyPreconditioner<'_, T>) -> Option<f64> {
         let bounds = &self.inequality.bounds;
         let mut is_moved = false;
         for (value, bound) in self.values.iter_mut().zip(bounds) {
@@ -106,7 +106,11 @@ impl<T: Real> Inexact<'_, T> {
 
     /// The preconditioned norm of what no multiplier explains, where those unknowns in contact are
     /// held whose multiplier exceeds a number times the root of their diagonal entry.
-    fn norm_with(&mut self, held: f64, preconditioner: &mut Preconditioners<'_, T>) -> Option<f64> {
+    fn norm_with(
+        &mut self,
+        held: f64,
+        preconditioner: &mut AnyPreconditioner<'_, T>,
+    ) -> Option<f64> {
         let mut unexplained = self.residual.clone();
         let mut is_changed = false;
         for (i, bound) in self.inequality.bounds.iter().enumerate() {
@@ -115,7 +119,7 @@ impl<T: Real> Inexact<'_, T> {
                 Contact::Lower => -self.residual[i].to_f64(),
                 Contact::Upper => self.residual[i].to_f64(),
             };
-            let is_given = bound.only_value().is_some();
+            let is_given = bound.fixed_value().is_some();
             if is_given || multiplier >= 0.0 {
                 unexplained[i] = T::lit(0.0);
             }
@@ -124,7 +128,7 @@ impl<T: Real> Inexact<'_, T> {
             self.fixed[i] = is_held;
         }
         if is_changed {
-            preconditioner.fix(&self.fixed).ok()?;
+            preconditioner.set_fixed(&self.fixed).ok()?;
         }
         let mut z = zeros(self.values.len());
         preconditioner.apply(&unexplained, &mut z);

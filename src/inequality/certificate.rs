@@ -137,11 +137,11 @@ fn residual_with_forces<T: Real>(
     deficit: &mut [f64],
 ) -> f64 {
     let value = |i: usize| u[i].to_f64();
-    match &inequality.factored {
+    match &inequality.penalised {
         Some(factored) if forces.len() == factored.n_jumps() => {
             let force = |jump: usize| forces[jump].to_f64();
-            factored.residual_with_forces(value, force, deficit);
-            let mismatch = |jump| factored.mismatch(jump, value, force(jump)).abs();
+            factored.residual_with_jump_multipliers(value, force, deficit);
+            let mismatch = |jump| factored.jump_residual(jump, value, force(jump)).abs();
             // written so that a number that is not finite stays
             (0..forces.len()).map(mismatch).fold(0.0, |m, x| if x <= m { m } else { x })
         }
@@ -175,7 +175,7 @@ struct Local {
 impl Local {
     /// `step` is `r_i / d_i`: positive where the unknown is pressed downwards.
     fn new<T: Real>(bound: &Bound<T>, x: f64, step: f64) -> Self {
-        if let Some(value) = bound.only_value() {
+        if let Some(value) = bound.fixed_value() {
             return Self { violation: (x - value.to_f64()).abs(), ..Self::default() };
         }
         let to_lower = bound.lower().map_or(f64::INFINITY, |l| x - l.to_f64());

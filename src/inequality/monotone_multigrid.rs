@@ -4,10 +4,8 @@ use super::certificate::certify;
 use super::initial_guess::InitialGuess;
 use super::{ActiveSet, InequalitySolver, Outcome, Solution, active_set};
 use crate::algebra::{Contact, Inequality};
-use crate::linear::CoarseSpaces;
-use crate::linear::direct::factors::FactorError;
-use crate::linear::precondition::coarse_level::CoarseLevel;
-use crate::linear::precondition::multigrid::Multigrid;
+use crate::linear::precondition::Multigrid;
+use crate::linear::{CoarseLevel, CoarseSpaces, FactorError};
 use crate::real::Real;
 
 /// The truncated nonsmooth Newton multigrid method (Graeser, Kornhuber, J. Comput. Math. 27 (2009)
@@ -104,7 +102,7 @@ impl<'a, T: Real> Descent<'a, T> {
         let made = match nearby.functions {
             CoarseSpaces::CoarseLevel(_) => None,
             _ => {
-                let given: Vec<bool> = bounds.iter().map(|b| b.only_value().is_some()).collect();
+                let given: Vec<bool> = bounds.iter().map(|b| b.fixed_value().is_some()).collect();
                 CoarseLevel::aggregated(matrix, &given)
             }
         };
@@ -141,7 +139,7 @@ impl<'a, T: Real> Descent<'a, T> {
         let Inequality { matrix, load, bounds, .. } = self.inequality;
         let mut moved = 0.0;
         for (i, bound) in bounds.iter().enumerate() {
-            if bound.only_value().is_some() {
+            if bound.fixed_value().is_some() {
                 continue;
             }
             let d = matrix.get(i, i);
@@ -162,13 +160,13 @@ impl<'a, T: Real> Descent<'a, T> {
         let Inequality { matrix, load, bounds, .. } = self.inequality;
         for (i, bound) in bounds.iter().enumerate() {
             let x = self.values[i];
-            self.fixed[i] = bound.only_value().is_some()
+            self.fixed[i] = bound.fixed_value().is_some()
                 || bound.lower().is_some_and(|l| x <= l)
                 || bound.upper().is_some_and(|u| x >= u);
             let force = load[i].to_f64() - matrix.row_dot_f64(i, &self.values);
             self.force[i] = if self.fixed[i] { T::lit(0.0) } else { T::lit(force) };
         }
-        match multigrid.fix(&self.fixed) {
+        match multigrid.set_fixed(&self.fixed) {
             Ok(()) => {}
             // nothing but bounds holds the body: the sweep alone goes on
             Err(FactorError::Singular) if bounds.iter().any(|bound| bound.is_inequality()) => {
@@ -248,7 +246,7 @@ impl<'a, T: Real> Descent<'a, T> {
             linear: self.cycles,
             linear_solver: "multigrid",
             algebraic_bound: None,
-            forces: Vec::new(),
+            jump_multipliers: Vec::new(),
         }
     }
 }

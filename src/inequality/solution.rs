@@ -20,7 +20,7 @@ pub struct Solution<T> {
     pub linear_solver: &'static str,
     /// Bound on the energy norm of the error over that of the solution, where the solver knows one.
     pub algebraic_bound: Option<f64>,
-    /// The forces of jumps where the matrix is kept [`PenalisedMatrix`](crate::algebra::PenalisedMatrix) and the
-    /// solver knows them better than the values tell; else empty.
-    pub forces: Vec<T>,
+    /// The jump multipliers of a [`PenalisedMatrix`](crate::algebra::PenalisedMatrix), if the solver has
+    /// them as unknowns; else empty.
+    pub jump_multipliers: Vec<T>,
 }

@@ -259,7 +259,7 @@ fn solve<T: Real, const D: usize>(
         certificate: match usable {
             true => Certificate {
                 algebraic_bound: solution.algebraic_bound,
-                ..certify_with_jump_multipliers(&inequality, u, &solution.forces)
+                ..certify_with_jump_multipliers(&inequality, u, &solution.jump_multipliers)
             },
             false => Certificate::WORTHLESS,
         },
@@ -297,7 +297,7 @@ fn run<T: Real, const D: usize>(
             linear: 0,
             linear_solver: "direct",
             algebraic_bound: None,
-            forces: Vec::new(),
+            jump_multipliers: Vec::new(),
         };
         return (solution, clock.elapsed().as_secs_f64());
     }

@@ -199,11 +199,11 @@ impl<'a, T: Real, const D: usize> Hierarchy<'a, T, D> {
         let make = || Arc::new(Prolongation::midpoints(parents.clone(), coarse.contact.len()));
         let transfer = entry.transfer.get_or_insert_with(make);
         let values = match coarse.values.len() == coarse.contact.len() {
-            true => transfer.values(&coarse.values),
+            true => transfer.prolongate(&coarse.values),
             false => Vec::new(),
         };
         let functions = match &coarse.functions {
-            CoarseSpaces::Same(same) => CoarseLevel::new(same.clone(), transfer.clone()),
+            CoarseSpaces::SameMesh(same) => CoarseLevel::new(same.clone(), transfer.clone()),
             _ => None,
         };
         let seconds = coarse.seconds + clock.elapsed().as_secs_f64();
@@ -277,7 +277,7 @@ fn solve_p1<T: Real, const D: usize>(
             CoarseSpaces::CoarseLevel(coarser) => Some(coarser.clone()),
             _ => None,
         });
-        CoarseSpaces::Same(Arc::new(P1Level::new(inequality.matrix, fixed, coarser)))
+        CoarseSpaces::SameMesh(Arc::new(P1Level::new(inequality.matrix, fixed, coarser)))
     };
     let seconds = spent + seconds + clock.elapsed().as_secs_f64();
     Ok(P1Solution { contact, values, functions, seconds, levels: levels + 1 })

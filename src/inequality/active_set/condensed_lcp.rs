@@ -4,7 +4,7 @@ use nalgebra::{DMatrix, DVector};
 
 use super::dense_lcp::SmallProblem;
 use crate::algebra::{Contact, Inequality};
-use crate::linear::direct::factors::{FactorError, Factors};
+use crate::linear::{FactorError, Factors};
 use crate::real::Real;
 
 /// Right-hand sides solved at once: enough for the blocked kernels, few enough that they take
@@ -45,7 +45,7 @@ pub(crate) fn resolve<T: Real>(
     let mut inner = Vec::new();
     let mut values = u.to_vec();
     for i in 0..n {
-        let open = state[i] == Contact::Inactive && bounds[i].only_value().is_none();
+        let open = state[i] == Contact::Inactive && bounds[i].fixed_value().is_none();
         if open && place[i] == Place::Elsewhere {
             place[i] = Place::Inner(inner.len() as u32);
             inner.push(i as u32);

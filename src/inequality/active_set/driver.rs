@@ -7,7 +7,7 @@ use super::{ActiveSet, LastResort};
 use crate::inequality::certificate::certify_with_noise;
 use crate::inequality::projected_newton::descend;
 use crate::inequality::{Outcome, interior_point};
-use crate::linear::direct::factors::FactorError;
+use crate::linear::FactorError;
 use crate::real::Real;
 
 /// How much the band may widen: a thousand units of rounding in all leave a certificate below 1e-9

@@ -7,11 +7,10 @@ use super::{ActiveSet, LastResort, check_definite};
 use crate::algebra::{Bound, Contact, Inequality, Start};
 use crate::inequality::initial_guess::InitialGuess;
 use crate::inequality::{Outcome, Solution};
-use crate::linear::direct::factors::FactorError;
-use crate::linear::krylov::conjugate_gradients::{End, Preconditioner, Run, Stop};
-use crate::linear::krylov::{Krylov, symmetric_part};
-use crate::linear::precondition::choice::Preconditioners;
-use crate::parallel::vectors::{each_mut, zeros};
+use crate::linear::FactorError;
+use crate::linear::krylov::{KrylovMethod, KrylovRun, StopReason, StoppingRule, symmetric_part};
+use crate::linear::precondition::{AnyPreconditioner, Preconditioner};
+use crate::parallel::vectors::{for_each_chunk, zeros};
 use crate::real::Real;
 
 /// Condition number of the preconditioned matrix beyond which the preconditioner does not fit: the
@@ -161,12 +160,13 @@ impl<'a, T: Real> Inexact<'a, T> {
     ) -> Result<Solution<T>, InVain> {
         let inequality = self.inequality;
         let matrix = symmetric_part(inequality);
-        let Some(functions) = Preconditioners::functions(&matrix, inequality, &nearby.functions)
+        let Some(functions) =
+            AnyPreconditioner::coarse_spaces(&matrix, inequality, &nearby.functions)
         else {
             return Err(self.in_vain());
         };
         let Some(mut preconditioner) =
-            Preconditioners::new(&matrix, &inequality.supports, &functions, inequality.symmetric)
+            AnyPreconditioner::new(&matrix, &inequality.supports, &functions, inequality.symmetric)
         else {
             return Err(self.in_vain());
         };
@@ -197,12 +197,12 @@ impl<'a, T: Real> Inexact<'a, T> {
         &mut self,
         settings: &ActiveSet,
         nearby: &InitialGuess<T>,
-        preconditioner: &mut Preconditioners<'_, T>,
+        preconditioner: &mut AnyPreconditioner<'_, T>,
     ) -> Option<Outcome> {
         let tolerance = nearby.accuracy.unwrap_or(0.0).max(0.1 * T::CERTIFICATE_LIMIT);
         // a residual by itself says little: where the answer need not be good it is not asked for
         let limit = if nearby.accuracy.is_some() { f64::INFINITY } else { T::CERTIFICATE_LIMIT };
-        let mut krylov = Krylov::new(self.inequality);
+        let mut krylov = KrylovMethod::new(self.inequality);
         self.energy = self.look(settings.band).energy;
         let is_linear = !self.inequality.bounds.iter().any(Bound::is_inequality);
         let mut course = Course::new(is_linear);
@@ -212,7 +212,7 @@ impl<'a, T: Real> Inexact<'a, T> {
                     return Some(Outcome::IterationLimit);
                 }
                 self.outer += 1;
-                match preconditioner.fix(&self.fixed) {
+                match preconditioner.set_fixed(&self.fixed) {
                     Ok(()) => {}
                     Err(FactorError::OutOfMemory) => return Some(Outcome::OutOfMemory),
                     Err(FactorError::NotPositive) if !self.inequality.symmetric => {
@@ -222,10 +222,14 @@ impl<'a, T: Real> Inexact<'a, T> {
                     Err(_) => return None,
                 }
             }
-            let stop = Stop {
+            let stop = StoppingRule {
                 norm: tolerance * self.energy,
-                share: if course.is_careful() { 0.0 } else { preconditioner.share() },
-                iterations: MOST_ITERATIONS,
+                reduction: if course.is_careful() {
+                    0.0
+                } else {
+                    preconditioner.inexact_reduction()
+                },
+                max_iterations: MOST_ITERATIONS,
             };
             let run = self.solve_linear(&mut krylov, preconditioner, stop);
             match self.judge_run(&run)? {
@@ -237,8 +241,8 @@ impl<'a, T: Real> Inexact<'a, T> {
                 return Some(Outcome::NotFinite);
             }
             self.energy = look.energy;
-            self.norm = run.last;
-            let is_exact = run.last <= stop.norm.min(1.01 * tolerance * self.energy);
+            self.norm = run.norm;
+            let is_exact = run.norm <= stop.norm.min(1.01 * tolerance * self.energy);
             if is_exact && (look.flips.is_empty() || look.holds_to(tolerance)) {
                 if look.off_contact <= limit * self.energy {
                     return Some(Outcome::Converged);
@@ -247,7 +251,7 @@ impl<'a, T: Real> Inexact<'a, T> {
                 course.repeats += 1;
                 if course.repeats > MOST_REPEATS {
                     // where forces of jumps are kept beside values there is less rounding
-                    if self.inequality.factored.is_some() {
+                    if self.inequality.penalised.is_some() {
                         return None;
                     }
                     return Some(Outcome::Stalled);
@@ -272,12 +276,12 @@ impl<'a, T: Real> Inexact<'a, T> {
     /// One linear system, from the iterate as it is.
     fn solve_linear(
         &mut self,
-        krylov: &mut Krylov<'_, T>,
+        krylov: &mut KrylovMethod<'_, T>,
         preconditioner: &mut dyn Preconditioner<T>,
-        stop: Stop,
-    ) -> Run {
+        stop: StoppingRule,
+    ) -> KrylovRun {
         let fixed = &self.fixed;
-        each_mut(&mut self.residual, |range, r| {
+        for_each_chunk(&mut self.residual, |range, r| {
             for (r, &fixed) in r.iter_mut().zip(&fixed[range]) {
                 if fixed {
                     *r = T::lit(0.0);
@@ -291,18 +295,18 @@ impl<'a, T: Real> Inexact<'a, T> {
     }
 
     /// How a linear system ended; `None` if the preconditioner does not fit.
-    pub(crate) fn judge_run(&mut self, run: &Run) -> Option<Outcome> {
+    pub(crate) fn judge_run(&mut self, run: &KrylovRun) -> Option<Outcome> {
         let is_symmetric = self.inequality.symmetric;
         let (low, high) = run.ritz.unwrap_or((1.0, 1.0));
         self.lowest = self.lowest.min(low);
-        match run.end {
+        match run.reason {
             // whether it is so is asked again
-            End::NotPositive if !is_symmetric => Some(Outcome::NotCoercive),
+            StopReason::NotPositive if !is_symmetric => Some(Outcome::NotCoercive),
             _ if high > WORST_CONDITION * low => None,
-            End::Reached => Some(Outcome::Converged),
-            End::NotPositive => Some(Outcome::NotCoercive),
-            End::NotFinite => Some(Outcome::NotFinite),
-            End::Limit => None,
+            StopReason::Converged => Some(Outcome::Converged),
+            StopReason::NotPositive => Some(Outcome::NotCoercive),
+            StopReason::NotFinite => Some(Outcome::NotFinite),
+            StopReason::IterationLimit => None,
         }
     }
 

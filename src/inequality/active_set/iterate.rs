@@ -5,9 +5,7 @@ use crate::algebra::{Bound, Contact, Inequality, Start};
 use crate::inequality::certificate::positive_diagonal;
 use crate::inequality::interior_point::{InteriorPoint, Path};
 use crate::inequality::{Outcome, Solution};
-use crate::linear::direct::elimination::EliminationOrder;
-use crate::linear::direct::factors::{FactorError, Factors};
-use crate::linear::direct::static_condensation::StaticCondensation;
+use crate::linear::direct::{EliminationOrder, FactorError, Factors, StaticCondensation};
 use crate::real::Real;
 
 /// The current unknowns and states, and the best unknowns so far.
@@ -63,7 +61,7 @@ impl<'a, T: Real> Iterate<'a, T> {
             .map(|(i, bound)| rest(bound, guess.get(i).copied().unwrap_or_default()))
             .collect();
         // what is malformed is refused before anything is solved
-        let factored = inequality.factored.as_ref().filter(|_| inequality.is_well_formed());
+        let factored = inequality.penalised.as_ref().filter(|_| inequality.is_well_formed());
         let forces = vec![T::lit(0.0); factored.map_or(0, |factored| factored.n_jumps())];
         Self {
             inequality,
@@ -83,7 +81,8 @@ impl<'a, T: Real> Iterate<'a, T> {
             correction: Vec::new(),
             forces,
             hybrid: factored.map(|factored| {
-                StaticCondensation::new(factored).at(inequality.points_of_unknowns().as_deref())
+                StaticCondensation::new(factored)
+                    .with_points(inequality.points_of_unknowns().as_deref())
             }),
             order: None,
             path: None,
@@ -92,7 +91,7 @@ impl<'a, T: Real> Iterate<'a, T> {
 
     /// The current iterate if it converged, else the best one.
     pub fn into_solution(self, outcome: Outcome) -> Solution<T> {
-        let (values, contact, forces) = if outcome == Outcome::Converged {
+        let (values, contact, jump_multipliers) = if outcome == Outcome::Converged {
             (self.values, self.state, self.forces)
         } else {
             (self.best.values, self.best.state, self.best.forces)
@@ -105,7 +104,7 @@ impl<'a, T: Real> Iterate<'a, T> {
             linear: 0,
             linear_solver: "direct",
             algebraic_bound: None,
-            forces,
+            jump_multipliers,
         }
     }
 
@@ -140,7 +139,7 @@ impl<'a, T: Real> Iterate<'a, T> {
         let factors = if *symmetric {
             let order = match self.order.take() {
                 Some(order) => order,
-                None => EliminationOrder::of(self.inequality)?,
+                None => EliminationOrder::for_inequality(self.inequality)?,
             };
             let order = self.order.insert(order);
             Factors::in_order(matrix, &self.free, order)?
@@ -168,7 +167,7 @@ impl<'a, T: Real> Iterate<'a, T> {
         hybrid: &StaticCondensation<'a, T>,
         refinements: usize,
     ) -> Result<(), FactorError> {
-        let Some(factored) = &self.inequality.factored else { return Ok(()) };
+        let Some(factored) = &self.inequality.penalised else { return Ok(()) };
         let mut is_free = vec![false; self.values.len()];
         self.free.iter().for_each(|&i| is_free[i as usize] = true);
         let factors = hybrid.factor(&is_free)?;
@@ -180,16 +179,20 @@ impl<'a, T: Real> Iterate<'a, T> {
             let (values, forces) = (&self.values, &self.forces);
             let value = |i: usize| values[i].to_f64();
             for (jump, out) in mismatch.iter_mut().enumerate() {
-                *out = factored.mismatch(jump, value, forces[jump].to_f64());
+                *out = factored.jump_residual(jump, value, forces[jump].to_f64());
             }
-            factored.residual_with_forces(value, |f| forces[f].to_f64(), &mut self.deficit);
+            factored.residual_with_jump_multipliers(
+                value,
+                |f| forces[f].to_f64(),
+                &mut self.deficit,
+            );
             let work = hybrid.solve(&factors, &is_free, &mut self.deficit, &mut mismatch);
             let (mut size, mut scale, mut sum) = (0.0_f64, 0.0_f64, 0.0);
             for (i, (value, change)) in self.values.iter_mut().zip(&self.deficit).enumerate() {
                 *value += T::lit(*change);
                 size = size.max(change.abs());
                 scale = scale.max(value.to_f64().abs());
-                sum += factored.diagonal(i) * value.to_f64().powi(2);
+                sum += factored.stiffness_diagonal(i) * value.to_f64().powi(2);
             }
             for (force, change) in self.forces.iter_mut().zip(&mismatch) {
                 *force += T::lit(*change);
@@ -209,7 +212,7 @@ impl<'a, T: Real> Iterate<'a, T> {
         }
         let (values, forces) = (&self.values, &self.forces);
         let force = |jump: usize| forces[jump].to_f64();
-        factored.residual_with_forces(|i| values[i].to_f64(), force, &mut self.deficit);
+        factored.residual_with_jump_multipliers(|i| values[i].to_f64(), force, &mut self.deficit);
         if is_lost { Err(FactorError::Singular) } else { Ok(()) }
     }
 
@@ -258,7 +261,7 @@ impl<'a, T: Real> Iterate<'a, T> {
                 let x = self.values[i].to_f64();
                 // Positive where the bound would have to pull.
                 let pull = match self.state[i] {
-                    _ if bound.only_value().is_some() => return None,
+                    _ if bound.fixed_value().is_some() => return None,
                     Contact::Inactive if bound.lower().is_some_and(|l| l.to_f64() - x > noise) => {
                         return Some((i as u32, Contact::Lower));
                     }
@@ -369,7 +372,7 @@ impl<'a, T: Real> Iterate<'a, T> {
         if let Some(hybrid) = &self.hybrid {
             let value = |j: usize| self.values[j].to_f64();
             let is_known = |j: usize| known_value(&bounds[j], self.state[j]).is_some();
-            let (free, known) = hybrid.force_sizes(i, &value, &self.forces, &is_known);
+            let (free, known) = hybrid.residual_term_sizes(i, &value, &self.forces, &is_known);
             return band * (T::EPSILON * free + f64::EPSILON * known) + spread;
         }
         let (columns, entries) = matrix.row(i);
@@ -391,7 +394,7 @@ impl<'a, T: Real> Iterate<'a, T> {
 /// the lower of two bounds that coincide.
 pub(crate) fn rest<T: Real>(bound: &Bound<T>, contact: Contact) -> Contact {
     match contact {
-        _ if bound.is_inequality() && bound.only_value().is_some() => Contact::Lower,
+        _ if bound.is_inequality() && bound.fixed_value().is_some() => Contact::Lower,
         Contact::Lower if bound.lower().is_some() => Contact::Lower,
         Contact::Upper if bound.upper().is_some() => Contact::Upper,
         _ => Contact::Inactive,
@@ -400,7 +403,7 @@ pub(crate) fn rest<T: Real>(bound: &Bound<T>, contact: Contact) -> Contact {
 
 /// The value an unknown has without solving for it.
 pub(crate) fn known_value<T: Real>(bound: &Bound<T>, state: Contact) -> Option<T> {
-    bound.only_value().or(match state {
+    bound.fixed_value().or(match state {
         Contact::Inactive => None,
         Contact::Lower => bound.lower(),
         Contact::Upper => bound.upper(),

@@ -5,7 +5,7 @@ use super::inexact::Inexact;
 use crate::algebra::{Bound, Contact, Inequality};
 use crate::inequality::initial_guess::InitialGuess;
 use crate::linear::CoarseSpaces;
-use crate::parallel::vectors::{each_mut, map, map_mut};
+use crate::parallel::vectors::{for_each_chunk, map_chunks, map_chunks_mut};
 use crate::real::Real;
 
 /// What a look at the whole iterate tells.
@@ -57,7 +57,7 @@ impl<T: Real> Inexact<'_, T> {
     /// what would take over is neither multigrid nor an elimination that halves the unknowns.
     pub fn patience(&self, settings: &ActiveSet, nearby: &InitialGuess<T>) -> usize {
         let is_nested = matches!(nearby.functions, CoarseSpaces::CoarseLevel(_));
-        let is_cheap = is_nested || self.inequality.factored.is_some();
+        let is_cheap = is_nested || self.inequality.penalised.is_some();
         settings.hesitation * if is_cheap { 1 } else { FACTORS_OVER_INEXACT }
     }
 
@@ -67,7 +67,7 @@ impl<T: Real> Inexact<'_, T> {
         let values = &self.values;
         let exact = self.exact_residual();
         let residual_at = residual_at(self.inequality, values, exact.as_deref());
-        let sizes = map_mut(&mut self.residual, |range, r| {
+        let sizes = map_chunks_mut(&mut self.residual, |range, r| {
             let (mut energy, mut scale) = (0.0, 0.0_f64);
             for (i, r) in range.zip(r) {
                 let (x, b) = (values[i].to_f64(), load[i].to_f64());
@@ -85,7 +85,7 @@ impl<T: Real> Inexact<'_, T> {
         }
         look.scale = if look.scale > 0.0 { look.scale } else { 1.0 };
         let noise = band * T::EPSILON * look.scale;
-        let parts = map(values.len(), |range| {
+        let parts = map_chunks(values.len(), |range| {
             let mut part = Look::default();
             range.for_each(|i| self.judge(i, noise, band, &mut part));
             part
@@ -106,14 +106,14 @@ impl<T: Real> Inexact<'_, T> {
     pub(crate) fn renew_residual(&mut self) {
         let exact = self.exact_residual();
         let residual_at = residual_at(self.inequality, &self.values, exact.as_deref());
-        each_mut(&mut self.residual, |range, r| {
+        for_each_chunk(&mut self.residual, |range, r| {
             range.zip(r).for_each(|(i, r)| *r = T::lit(residual_at(i)));
         });
     }
 
     /// The residual where the matrix is kept factored.
     fn exact_residual(&self) -> Option<Vec<f64>> {
-        let factored = self.inequality.factored.as_ref()?;
+        let factored = self.inequality.penalised.as_ref()?;
         let mut residual = vec![0.0; self.values.len()];
         factored.residual(|i| self.values[i].to_f64(), &mut residual);
         Some(residual)
@@ -142,7 +142,7 @@ impl<T: Real> Inexact<'_, T> {
                 }
                 return;
             }
-            _ if bound.only_value().is_some() => return,
+            _ if bound.fixed_value().is_some() => return,
             Contact::Lower => r,
             Contact::Upper => -r,
         };

@@ -12,9 +12,8 @@ use super::initial_guess::InitialGuess;
 use super::monotone_multigrid::MonotoneMultigrid;
 use super::{InequalitySolver, Outcome, Solution};
 use crate::algebra::{Contact, Inequality, Start};
-use crate::linear::direct::factors::{FactorError, is_positive_definite};
-use crate::linear::direct::static_condensation::StaticCondensation;
-use crate::linear::{CoarseSpaces, LinearMethod};
+use crate::linear::direct::StaticCondensation;
+use crate::linear::{CoarseSpaces, FactorError, LinearMethod, is_positive_definite};
 use crate::real::Real;
 use driver::Search;
 use inexact::{InVain, Inexact};
@@ -229,14 +228,14 @@ pub(crate) fn check_input<T: Real>(inequality: &Inequality<T>) -> Result<(), Out
 }
 
 pub(crate) fn check_definite<T: Real>(inequality: &Inequality<T>) -> Result<(), Outcome> {
-    if let Some(factored) = &inequality.factored {
+    if let Some(factored) = &inequality.penalised {
         let not_given: Vec<bool> =
-            inequality.bounds.iter().map(|bound| bound.only_value().is_none()).collect();
+            inequality.bounds.iter().map(|bound| bound.fixed_value().is_none()).collect();
         StaticCondensation::new(factored).factor(&not_given)?;
         return Ok(());
     }
     let Inequality { matrix, symmetric, .. } = inequality;
-    if is_positive_definite(matrix, *symmetric, &inequality.not_given())? {
+    if is_positive_definite(matrix, *symmetric, &inequality.free_unknowns())? {
         Ok(())
     } else {
         Err(Outcome::NotCoercive)

@@ -1,11 +1,11 @@
 //! LinearMethod systems with a matrix plus a nonnegative diagonal, multiplied out or factored.
 
 use crate::algebra::Inequality;
-use crate::algebra::submatrix::Submatrix;
+use crate::algebra::Submatrix;
 use crate::inequality::certificate::positive_diagonal;
-use crate::linear::direct::elimination::EliminationOrder;
-use crate::linear::direct::factors::{Analysis, FactorError, Factors};
-use crate::linear::direct::static_condensation::{CondensedFactors, StaticCondensation};
+use crate::linear::direct::{
+    CondensedFactors, EliminationOrder, FactorError, Factors, StaticCondensation, SymbolicFactor,
+};
 use crate::real::Real;
 
 /// Values, and the forces of jumps where the matrix is kept factored (else none).
@@ -28,14 +28,15 @@ pub(crate) struct Shifted<'h, 'a, T> {
 /// factors are: the same for every shift.
 struct Half<T> {
     matrix: Submatrix<T>,
-    analysis: Analysis,
+    analysis: SymbolicFactor,
 }
 
 impl<T: Real> Half<T> {
     fn new(inequality: &Inequality<T>, free: &[u32]) -> Result<Self, FactorError> {
-        let matrix = Submatrix::left_of_diagonal(&inequality.matrix, free);
-        let order = EliminationOrder::of(inequality)?.among(free, inequality.size());
-        let analysis = Analysis::new(&matrix, Some(order))?;
+        let matrix = Submatrix::lower_triangle(&inequality.matrix, free);
+        let order =
+            EliminationOrder::for_inequality(inequality)?.restricted_to(free, inequality.size());
+        let analysis = SymbolicFactor::new(&matrix, Some(order))?;
         Ok(Self { matrix, analysis })
     }
 }
@@ -52,7 +53,7 @@ impl<'h, 'a, T: Real> Shifted<'h, 'a, T> {
         inequality: &'a Inequality<T>,
         hybrid: Option<&'h StaticCondensation<'a, T>>,
     ) -> Self {
-        let free = inequality.not_given();
+        let free = inequality.free_unknowns();
         let mut is_free = vec![false; inequality.size()];
         free.iter().for_each(|&i| is_free[i as usize] = true);
         Self { inequality, hybrid, free, is_free, half: None }
@@ -65,7 +66,7 @@ impl<'h, 'a, T: Real> Shifted<'h, 'a, T> {
 
     /// The stiffness of an unknown by itself: without penalties where they are kept apart.
     pub fn stiffness(&self, i: usize) -> f64 {
-        let own = self.inequality.factored.as_ref().map_or(0.0, |f| f.diagonal(i));
+        let own = self.inequality.penalised.as_ref().map_or(0.0, |f| f.stiffness_diagonal(i));
         if own > 0.0 { own } else { positive_diagonal(self.inequality, i) }
     }
 
@@ -86,7 +87,7 @@ impl<'h, 'a, T: Real> Shifted<'h, 'a, T> {
             };
             let mut matrix = half.matrix.clone();
             add_diagonal(&mut matrix, &self.free, shift)?;
-            Factors::definite(&mut matrix, &half.analysis)?
+            Factors::cholesky(&mut matrix, &half.analysis)?
         } else {
             let mut matrix = Submatrix::new(&self.inequality.matrix, &self.free);
             add_diagonal(&mut matrix, &self.free, shift)?;
@@ -115,14 +116,14 @@ impl<'h, 'a, T: Real> Shifted<'h, 'a, T> {
     /// What is missing to `A u = b` at `at`: `b - A u`, and by how much jumps and forces disagree.
     /// Returns the size of energies there.
     pub fn deficit(&self, at: &Pair, out: &mut Pair) -> f64 {
-        let Inequality { load, factored, .. } = self.inequality;
+        let Inequality { load, penalised: factored, .. } = self.inequality;
         let value = |i: usize| at.values[i];
         let (load, energy) = match factored {
             Some(factored) if self.hybrid.is_some() => {
                 let force = |jump: usize| at.forces[jump];
-                factored.residual_with_forces(value, force, &mut out.values);
+                factored.residual_with_jump_multipliers(value, force, &mut out.values);
                 for (jump, out) in out.forces.iter_mut().enumerate() {
-                    *out = factored.mismatch(jump, value, at.forces[jump]);
+                    *out = factored.jump_residual(jump, value, at.forces[jump]);
                 }
                 (&factored.load, factored.energy(value, force))
             }

@@ -4,7 +4,7 @@ mod barrier;
 mod kkt;
 
 use crate::algebra::{Contact, Inequality};
-use crate::linear::direct::static_condensation::StaticCondensation;
+use crate::linear::direct::StaticCondensation;
 use crate::real::Real;
 use barrier::{MOST_POWERS, Rest, Wall, longest_step, mean_product};
 use kkt::{Pair, Shifted, ShiftedFactors};
@@ -100,7 +100,7 @@ impl<'h, 'a, T: Real> InteriorPoint<'h, 'a, T> {
         forces: &[T],
     ) -> Self {
         let bounds = inequality.bounds.iter().zip(near);
-        let values = bounds.map(|(bound, &x)| bound.only_value().unwrap_or(x).to_f64()).collect();
+        let values = bounds.map(|(bound, &x)| bound.fixed_value().unwrap_or(x).to_f64()).collect();
         let forces = forces.iter().map(|force| force.to_f64()).collect();
         let path = Path { at: Pair { values, forces }, walls: Vec::new(), near: NEAR };
         let mut point = Self::resume(inequality, hybrid, path);
@@ -357,7 +357,7 @@ mod tests {
             supports: vec![],
             points: vec![],
             start: Start::Cold,
-            factored: None,
+            penalised: None,
         }
     }
 
