@@ -1,4 +1,5 @@
 //! Orders of elimination for the unknowns of a symmetric matrix.
+
 use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::sparse::linalg::amd;
 

@@ -1,4 +1,5 @@
 //! Sparse Cholesky and LU factors of a submatrix.
+
 use std::sync::Arc;
 
 use faer::MatMut;

@@ -345,26 +345,25 @@ impl<'a, T: Real> StaticCondensation<'a, T> {
     }
 
     /// The sums of the absolute values of the terms of the residual `(c - K u - M^T p)_i`: first those
-    /// with unknowns that are not known and jump multipliers `p`, then those with known unknowns and
-    /// the load.
+    /// with free unknowns and jump multipliers `p`, then those with fixed unknowns and the load.
     pub fn residual_term_sizes(
         &self,
         i: usize,
         u: &dyn Fn(usize) -> f64,
         p: &[T],
-        is_known: &dyn Fn(usize) -> bool,
+        is_fixed: &dyn Fn(usize) -> bool,
     ) -> (f64, f64) {
         let n = self.penalised.block_size;
         let block = i / n;
-        let (mut unknown, mut known) = (0.0, self.penalised.load[i].to_f64().abs());
+        let (mut free, mut fixed) = (0.0, self.penalised.load[i].to_f64().abs());
         for j in block * n..(block + 1) * n {
             let size = (self.penalised.blocks[i * n + j % n].to_f64() * u(j)).abs();
-            *(if is_known(j) { &mut known } else { &mut unknown }) += size;
+            *(if is_fixed(j) { &mut fixed } else { &mut free }) += size;
         }
         for side in self.sides(block) {
-            unknown += (self.mean_coefficient(side, i) * p[side.jump as usize].to_f64()).abs();
+            free += (self.mean_coefficient(side, i) * p[side.jump as usize].to_f64()).abs();
         }
-        (unknown, known)
+        (free, fixed)
     }
 }
 

@@ -8,6 +8,9 @@ use crate::linear::direct::{FactorError, Factors};
 use crate::parallel::vectors::{for_each_chunk, map_chunks, zeros};
 use crate::real::Real;
 
+/// If at most one in so many rows is outdated, replacing rows is faster than a new smoother.
+const REPLACED_FRACTION: usize = 8;
+
 /// A V-cycle with one forward Gauss-Seidel iteration before and one backward iteration after the
 /// coarse correction: symmetric and positive definite.
 ///
@@ -168,9 +171,6 @@ impl<T: Real> Level<'_, T> {
         self.smoother = Some(smoother);
     }
 }
-
-/// Up to one in so many outdated rows, replacing them is faster than a new smoother.
-const REPLACED_FRACTION: usize = 8;
 
 /// The union of two sets, as an ascending list.
 fn union(one: &[u32], other: &[u32]) -> Vec<u32> {
