@@ -1,7 +1,7 @@
-//! Dense matrices of a few rows.
+//! Inverse and rank of small dense matrices, stored by rows.
 
-/// Inverts a dense matrix by rows in place (Gauss, Jordan, partial pivoting); whether its determinant
-/// is positive, nothing if it is singular.
+/// Inverts an `n` by `n` matrix in place by Gauss-Jordan elimination with partial pivoting. Returns
+/// whether the determinant is positive, `None` if the matrix is singular or an entry is not finite.
 pub(crate) fn invert_in_place(a: &mut [f64], n: usize) -> Option<bool> {
     let mut is_positive = true;
     let mut exchanges = Vec::with_capacity(n);
@@ -42,13 +42,14 @@ pub(crate) fn invert_in_place(a: &mut [f64], n: usize) -> Option<bool> {
     Some(is_positive)
 }
 
-/// The rank of a matrix by rows (Gauss, pivots by columns); entries up to `noise` count as zero.
-pub(crate) fn rank(mut rows: Vec<Vec<f64>>, noise: f64) -> usize {
+/// The rank of a matrix by Gaussian elimination with partial pivoting; pivots of absolute value up to
+/// `tolerance` are zero.
+pub(crate) fn rank(mut rows: Vec<Vec<f64>>, tolerance: f64) -> usize {
     let mut rank = 0;
     for column in 0..rows.first().map_or(0, Vec::len) {
         let size = |row: &usize| rows[*row][column].abs();
         let pivot = (rank..rows.len()).max_by(|a, b| size(a).total_cmp(&size(b)));
-        let Some(pivot) = pivot.filter(|row| size(row) > noise) else { continue };
+        let Some(pivot) = pivot.filter(|row| size(row) > tolerance) else { continue };
         rows.swap(rank, pivot);
         let (done, rest) = rows.split_at_mut(rank + 1);
         for row in rest {

@@ -1,14 +1,16 @@
 //! The algebraic variational inequality.
 
-use super::{PenalisedMatrix, SparseMatrix};
+use super::index::NO_INDEX;
+use super::matrix::SparseMatrix;
+use super::penalised_matrix::PenalisedMatrix;
 use crate::real::Real;
 
-/// What an unknown may be. Absent bounds are absent: there is no large number that means none.
+/// The set of admissible values of an unknown. An absent bound is a variant, not a large number.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Bound<T> {
     /// Any value.
     Free,
-    /// This value (a Dirichlet datum).
+    /// This value: a Dirichlet datum.
     Fixed(T),
     /// At least this value.
     Lower(T),
@@ -19,29 +21,29 @@ pub enum Bound<T> {
 }
 
 impl<T: Real> Bound<T> {
-    /// The bound from below, if there is one.
+    /// The lower bound, if there is one.
     pub fn lower(&self) -> Option<T> {
         match *self {
             Bound::Lower(l) | Bound::Both(l, _) => Some(l),
             _ => None,
         }
     }
-    /// The bound from above, if there is one.
+    /// The upper bound, if there is one.
     pub fn upper(&self) -> Option<T> {
         match *self {
             Bound::Upper(u) | Bound::Both(_, u) => Some(u),
             _ => None,
         }
     }
-    /// The only value left: a Dirichlet datum, or two bounds that coincide.
-    pub fn only_value(&self) -> Option<T> {
+    /// The value of a fixed unknown: a Dirichlet datum, or two bounds that coincide; else `None`.
+    pub fn fixed_value(&self) -> Option<T> {
         match *self {
             Bound::Fixed(v) => Some(v),
             Bound::Both(l, u) if l == u => Some(l),
             _ => None,
         }
     }
-    /// The admissible value nearest to `x`.
+    /// The projection of `x` onto the admissible values.
     pub fn nearest(&self, x: T) -> T {
         match *self {
             Bound::Free => x,
@@ -71,16 +73,16 @@ impl<T: Real> Bound<T> {
             }
         }
     }
-    /// Whether an inequality, not an equation, binds the unknown.
+    /// Whether the set is given by one or two inequalities.
     pub fn is_inequality(&self) -> bool {
         matches!(self, Bound::Lower(_) | Bound::Upper(_) | Bound::Both(..))
     }
 }
 
-/// Which bound an unknown rests on.
+/// The contact state of an unknown: the bound that is active.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Contact {
-    /// None: inactive.
+    /// No bound is active: the unknown is solved for.
     #[default]
     Inactive,
     /// The lower bound is active.
@@ -89,23 +91,22 @@ pub enum Contact {
     Upper,
 }
 
-/// What a solver starts from: an active set, best of a coarser level or a simpler scheme.
+/// The initial active set of a solver, for example that of a coarser mesh or a simpler scheme.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub enum Start {
-    /// Nothing known.
+    /// No initial active set.
     #[default]
     Cold,
-    /// A guess of the contact state of every unknown. States that a bound does not have, and
-    /// unknowns beyond the end, count as open.
+    /// A guess of the contact state of every unknown. A state without the bound it names, and the
+    /// state of an unknown beyond the end of the list, is [`Contact::Inactive`].
     Contact(Vec<Contact>),
 }
 
-/// Where an unknown lives: the vertices whose barycentre is its node, and the cell that owns it
-/// where cells do not share it.
+/// The support of an unknown: the vertices whose barycentre is its node, and the cell that owns it
+/// in a broken space.
 ///
-/// One vertex: a vertex value. Two: the value at the midpoint of an edge. `D` vertices: the mean over
-/// a facet. `D + 1`: the mean over the cell. In a dimension in which two of these coincide, so do the
-/// nodes.
+/// One vertex stands for a vertex value, two for the value at the midpoint of an edge, `D` for the
+/// mean over a facet, `D + 1` for the mean over a cell, `D` the dimension of space.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Support {
     cell: u32,
@@ -113,30 +114,29 @@ pub struct Support {
 }
 
 impl Support {
-    const NONE: u32 = u32::MAX;
-
-    /// A place at one to four vertices, owned by a cell or shared.
+    /// The support with one to four vertices, owned by a cell, or shared by cells (`None`).
     ///
     /// # Panics
-    /// If there are more than four.
+    /// If there are more than four vertices.
     #[inline(always)]
+    #[must_use]
     pub fn new(cell: Option<u32>, vertices: &[u32]) -> Self {
-        let mut v = [Self::NONE; 4];
+        let mut v = [NO_INDEX; 4];
         vertices.iter().enumerate().for_each(|(k, &vertex)| v[k] = vertex);
-        Self { cell: cell.unwrap_or(Self::NONE), vertices: v }
+        Self { cell: cell.unwrap_or(NO_INDEX), vertices: v }
     }
-    /// The cell that owns the unknown, `None` if cells share it.
+    /// The cell that owns the unknown; `None` if cells share it.
     pub fn cell(&self) -> Option<u32> {
-        (self.cell != Self::NONE).then_some(self.cell)
+        (self.cell != NO_INDEX).then_some(self.cell)
     }
     /// The vertices whose barycentre is the unknown's node.
     pub fn vertices(&self) -> &[u32] {
-        let n = self.vertices.iter().position(|&v| v == Self::NONE).unwrap_or(4);
+        let n = self.vertices.iter().position(|&v| v == NO_INDEX).unwrap_or(4);
         &self.vertices[..n]
     }
 }
 
-/// The mean of points.
+/// The barycentre of points; not a number for none.
 pub(crate) fn barycentre(points: impl Iterator<Item = [f32; 3]>) -> [f32; 3] {
     let (mut sum, mut n) = ([0.0; 3], 0.0);
     for point in points {
@@ -146,86 +146,116 @@ pub(crate) fn barycentre(points: impl Iterator<Item = [f32; 3]>) -> [f32; 3] {
     sum.map(|x| x / n)
 }
 
-/// Find `u` within the bounds with `(A u - b) . (v - u) >= 0` for all `v` within the bounds.
+/// The variational inequality: `u` within the bounds with `(A u - b) . (v - u) >= 0` for all `v`
+/// within the bounds.
 ///
-/// If `A` is symmetric positive definite this is the minimum of `u.A u / 2 - b.u` over the bounds.
-/// This is the one value every solver and exporter takes; it knows neither dimension nor scheme.
+/// If `A` is symmetric positive definite, `u` is the minimiser of `u.A u / 2 - b.u` within the bounds.
+/// Every solver and every exporter takes this type, which is independent of dimension and scheme.
 #[derive(Clone, Debug)]
+#[non_exhaustive]
 pub struct Inequality<T> {
-    /// The matrix on all unknowns, Dirichlet ones included.
+    /// The matrix `A` on all unknowns, fixed ones included.
     pub matrix: SparseMatrix<T>,
-    /// Whether the form is symmetric, as its scheme declares.
+    /// Whether `A` is symmetric, as the scheme declares.
     pub symmetric: bool,
-    /// The load.
+    /// The load `b`.
     pub load: Vec<T>,
-    /// What each unknown may be.
+    /// The admissible values of each unknown.
     pub bounds: Vec<Bound<T>>,
-    /// Where each unknown lives.
+    /// The support of each unknown; empty if unknown. Iterative solvers need it.
     pub supports: Vec<Support>,
-    /// Where each vertex of the mesh is, missing coordinates zero; empty if that is not known. Direct
-    /// solvers derive an order of elimination from it, and nothing else.
+    /// The coordinates of each vertex of the mesh, missing ones zero; empty if unknown. Direct solvers
+    /// derive an order of elimination from them.
     pub points: Vec<[f32; 3]>,
-    /// What a solver starts from.
+    /// The initial active set.
     pub start: Start,
-    /// Matrix and load once more, not multiplied out, where that is more exact.
-    pub factored: Option<PenalisedMatrix<T>>,
+    /// `A` and `b` as the sums `K + M^T S M` and `c + M^T S g`, for schemes with such a penalty:
+    /// residuals of the sums have smaller rounding errors.
+    pub penalised: Option<PenalisedMatrix<T>>,
 }
 
 impl<T: Real> Inequality<T> {
-    /// The same inequality with another start.
+    /// The inequality with a matrix, whether it is symmetric, a load and bounds; without supports,
+    /// points, initial active set and penalised matrix.
+    #[must_use]
+    pub fn new(
+        matrix: SparseMatrix<T>,
+        symmetric: bool,
+        load: Vec<T>,
+        bounds: Vec<Bound<T>>,
+    ) -> Self {
+        let (supports, points, start) = (Vec::new(), Vec::new(), Start::Cold);
+        Self { matrix, symmetric, load, bounds, supports, points, start, penalised: None }
+    }
+    /// Replaces the initial active set.
     #[must_use]
     pub fn with_start(mut self, start: Start) -> Self {
         self.start = start;
         self
     }
-    /// Number of unknowns, Dirichlet ones included.
+    /// Replaces the supports of unknowns.
+    #[must_use]
+    pub fn with_supports(mut self, supports: Vec<Support>) -> Self {
+        self.supports = supports;
+        self
+    }
+    /// Replaces the coordinates of vertices.
+    #[must_use]
+    pub fn with_points(mut self, points: Vec<[f32; 3]>) -> Self {
+        self.points = points;
+        self
+    }
+    /// Number of unknowns, fixed ones included.
     pub fn size(&self) -> usize {
         self.load.len()
     }
-    /// The unknowns that have more than one admissible value, ascending.
-    pub(crate) fn not_given(&self) -> Vec<u32> {
-        let is_open = |&i: &u32| self.bounds[i as usize].only_value().is_none();
-        (0..self.bounds.len() as u32).filter(is_open).collect()
+    /// The unknowns that are not fixed, ascending: those with more than one admissible value.
+    pub(crate) fn free_unknowns(&self) -> Vec<u32> {
+        let is_free = |&i: &u32| self.bounds[i as usize].fixed_value().is_none();
+        (0..self.bounds.len() as u32).filter(is_free).collect()
     }
-    /// Whether matrix, load and bounds belong together: equal sizes, a matrix as its type
-    /// promises it. Places and points are not looked at; no solver needs them.
+    /// Whether matrix, load, bounds and penalised matrix have the same size, and the two matrices are
+    /// well formed. Supports and points are not checked.
     pub fn is_well_formed(&self) -> bool {
         self.matrix.size() == self.size()
             && self.bounds.len() == self.size()
             && self.matrix.is_well_formed()
-            && self.factored.as_ref().is_none_or(|f| f.is_well_formed(self.size()))
+            && self.penalised.as_ref().is_none_or(|p| p.is_well_formed(self.size()))
     }
-    /// The point of each unknown, the barycentre of the vertices of its place; `None` if some are not
-    /// known.
+    /// The node of each unknown, the barycentre of the vertices of its support; `None` if a support or
+    /// the coordinates of a vertex are unknown.
     pub(crate) fn points_of_unknowns(&self) -> Option<Vec<[f32; 3]>> {
-        let point = |place: &Support| {
-            let known = place.vertices().iter().filter_map(|&v| self.points.get(v as usize));
-            (known.clone().count() == place.vertices().len()).then(|| barycentre(known.copied()))
+        let node = |support: &Support| {
+            let points = support.vertices().iter().filter_map(|&v| self.points.get(v as usize));
+            (points.clone().count() == support.vertices().len())
+                .then(|| barycentre(points.copied()))
         };
         let is_known = self.supports.len() == self.size() && !self.points.is_empty();
-        is_known.then(|| self.supports.iter().map(point).collect()).flatten()
+        is_known.then(|| self.supports.iter().map(node).collect()).flatten()
     }
-    /// `r = b - A u` in `f64`, of the matrix as exact as it is known.
+    /// The residual `r = b - A u` in `f64`, of the penalised matrix where there is one.
     ///
     /// # Panics
     /// If `u` or `r` is shorter than the number of unknowns.
     pub fn residual_f64(&self, u: &[T], r: &mut [f64]) {
-        match &self.factored {
-            Some(factored) => factored.residual(|i| u[i].to_f64(), r),
+        match &self.penalised {
+            Some(penalised) => penalised.residual(|i| u[i].to_f64(), r),
             None => self.matrix.residual_f64(&self.load, u, r),
         }
     }
-    /// The same of unknowns that are not stored in the scalar.
+    /// The residual `r = b - A u` in `f64` for values `u(i)` in `f64`, of the penalised matrix where
+    /// there is one.
     ///
     /// # Panics
     /// If `r` is shorter than the number of unknowns.
     pub fn residual_of(&self, u: &(dyn Fn(usize) -> f64 + Sync), r: &mut [f64]) {
-        match &self.factored {
-            Some(factored) => factored.residual(u, r),
+        match &self.penalised {
+            Some(penalised) => penalised.residual(u, r),
             None => self.matrix.residual_of(&self.load, u, r),
         }
     }
-    /// Whether every number is finite. A bound at infinity is not: leave it out instead.
+    /// Whether every entry of matrix, load and bounds is finite. [`Bound::Free`] or a one-sided bound
+    /// stands for a bound at infinity.
     pub fn is_finite(&self) -> bool {
         let finite = |x: T| x.to_f64().is_finite();
         self.matrix.values.iter().chain(&self.load).all(|&x| finite(x))
@@ -235,11 +265,11 @@ impl<T: Real> Inequality<T> {
                 Bound::Both(l, u) => finite(l) && finite(u),
             })
     }
-    /// Whether some value is admissible for every unknown.
+    /// Whether every unknown has an admissible value.
     pub fn is_feasible(&self) -> bool {
         self.bounds.iter().all(|bound| !matches!(*bound, Bound::Both(l, u) if l > u))
     }
-    /// `u.A u / 2 - b.u`, in `f64`.
+    /// The energy `u.A u / 2 - b.u`, in `f64`.
     ///
     /// # Panics
     /// If `u` is shorter than the number of unknowns.

@@ -1,14 +1,14 @@
-//! Compressed sparse rows.
+//! Square sparse matrices in compressed sparse rows.
 
 use rayon::prelude::*;
 
 use crate::memory::in_large_pages;
 use crate::real::Real;
 
-/// A square sparse matrix by rows: columns ascending in each row, no column twice.
+/// A square sparse matrix in compressed sparse rows; columns ascend strictly in each row.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SparseMatrix<T> {
-    /// Start of each row in `columns` and `values`, and the number of stored entries at the end.
+    /// Start of each row in `columns` and `values`, and the number of entries at the end.
     pub row_starts: Vec<u32>,
     /// Column of each entry.
     pub columns: Vec<u32>,
@@ -21,8 +21,8 @@ impl<T: Real> SparseMatrix<T> {
     pub fn size(&self) -> usize {
         self.row_starts.len().saturating_sub(1)
     }
-    /// Whether the rows are what the type promises: starts that do not fall, columns ascending
-    /// and inside the matrix, a value for every entry.
+    /// Whether the three vectors describe a square matrix: row starts ascend, columns ascend strictly
+    /// in each row and are less than the size, and every entry has a value.
     pub fn is_well_formed(&self) -> bool {
         let n = self.size();
         self.row_starts.first() == Some(&0)
@@ -39,7 +39,7 @@ impl<T: Real> SparseMatrix<T> {
     pub fn nonzeros(&self) -> usize {
         self.columns.len()
     }
-    /// Columns and values of a row.
+    /// Columns and values of row `i`.
     #[inline]
     pub fn row(&self, i: usize) -> (&[u32], &[T]) {
         let range = self.row_starts[i] as usize..self.row_starts[i + 1] as usize;
@@ -54,29 +54,32 @@ impl<T: Real> SparseMatrix<T> {
     pub fn diagonal(&self) -> Vec<T> {
         (0..self.size()).into_par_iter().with_min_len(4096).map(|i| self.get(i, i)).collect()
     }
-    /// Row `i` times a vector.
+    /// The entry `(A x)_i`.
     #[inline]
     pub fn row_dot(&self, i: usize, x: &[T]) -> T {
         let (columns, values) = self.row(i);
         columns.iter().zip(values).fold(T::lit(0.0), |s, (&j, &a)| s + a * x[j as usize])
     }
-    /// Row `i` times a vector, every product and the sum in `f64`.
+    /// The entry `(A x)_i`, products and sum in `f64`.
     #[inline]
     pub fn row_dot_f64(&self, i: usize, x: &[T]) -> f64 {
         let (columns, values) = self.row(i);
         columns.iter().zip(values).fold(0.0, |s, (&j, &a)| s + a.to_f64() * x[j as usize].to_f64())
     }
-    /// `r = b - A x`, accumulated and kept in `f64` whatever the scalar.
+    /// The residual `r = b - A x` in `f64`. For `f32` data the products are exact.
     ///
-    /// For `f32` the products are exact, so that the residual is that of the rounded unknowns and
-    /// not of the summation.
+    /// # Panics
+    /// If `b` or `x` is shorter than `r`, or `r` is longer than the matrix has rows.
     pub fn residual_f64(&self, b: &[T], x: &[T], r: &mut [f64]) {
         r.par_iter_mut()
             .with_min_len(4096)
             .enumerate()
             .for_each(|(i, r)| *r = b[i].to_f64() - self.row_dot_f64(i, x));
     }
-    /// The same of an `x` that is not stored in the scalar.
+    /// The residual `r = b - A x` in `f64` for values `x(j)` in `f64`.
+    ///
+    /// # Panics
+    /// If `b` is shorter than `r`, or `r` is longer than the matrix has rows.
     pub fn residual_of(&self, b: &[T], x: &(dyn Fn(usize) -> f64 + Sync), r: &mut [f64]) {
         r.par_iter_mut().with_min_len(4096).enumerate().for_each(|(i, r)| {
             let (columns, values) = self.row(i);
@@ -84,7 +87,10 @@ impl<T: Real> SparseMatrix<T> {
             *r = b[i].to_f64() - columns.iter().zip(values).fold(0.0, product);
         });
     }
-    /// `b - A x`.
+    /// The residual `b - A x` in the scalar.
+    ///
+    /// # Panics
+    /// If `b` is longer than the matrix has rows, or `x` shorter.
     pub fn residual(&self, b: &[T], x: &[T]) -> Vec<T> {
         let mut r = vec![T::lit(0.0); b.len()];
         r.par_iter_mut()
@@ -93,14 +99,16 @@ impl<T: Real> SparseMatrix<T> {
             .for_each(|(i, r)| *r = b[i] - self.row_dot(i, x));
         r
     }
-    /// The transpose.
+    /// The transpose `A^T`.
+    #[must_use]
     pub fn transpose(&self) -> Self {
         let (row_starts, columns, values) =
             transpose((&self.row_starts, &self.columns, &self.values), self.size());
         Self { row_starts, columns, values }
     }
-    /// `(A + A^T) / 2`, symmetric to the last bit, with an entry wherever the matrix or its
-    /// transpose stores one.
+    /// The symmetric part `(A + A^T) / 2`, symmetric to the last bit. Its pattern is the union of
+    /// those of `A` and `A^T`.
+    #[must_use]
     pub fn symmetric_part(&self) -> Self {
         let transpose = self.transpose();
         let half = T::lit(0.5);
@@ -132,7 +140,7 @@ impl<T: Real> SparseMatrix<T> {
     }
 }
 
-/// The transpose of rows given by starts, columns and values, which has `n_columns` rows.
+/// The transpose of a matrix with `n_columns` columns, both given by row starts, columns and values.
 pub(crate) fn transpose<T: Real>(
     (starts, columns, values): (&[u32], &[u32], &[T]),
     n_columns: usize,
@@ -147,7 +155,7 @@ pub(crate) fn transpose<T: Real>(
     let mut next = new_starts.clone();
     let mut new_columns = in_large_pages(vec![0; columns.len()]);
     let mut new_values = in_large_pages(vec![T::lit(0.0); columns.len()]);
-    // rows are met in order, so that columns of the transpose ascend
+    // Rows are visited in order, so that columns of the transpose ascend.
     for (i, ends) in starts.windows(2).enumerate() {
         let range = ends[0] as usize..ends[1] as usize;
         for (&j, &a) in columns[range.clone()].iter().zip(&values[range]) {

@@ -1,15 +1,22 @@
-//! Numbers only: sparse matrices, and the inequality that every solver and exporter takes.
+//! Algebraic data: sparse and dense matrices, and the variational inequality that every solver and
+//! exporter takes. Independent of mesh, dimension and scheme.
 //!
-//! Nothing here knows a mesh, a dimension or a scheme.
+//! `matrix`: compressed sparse rows. `rectangular_matrix`: the same for prolongations, and `P^T A P`.
+//! `submatrix`: rows and columns of a matrix. `penalised_matrix`: `K + M^T S M`. `dense`: small dense
+//! matrices. `inequality`: bounds, supports of unknowns and the inequality. `index`: the missing index.
 
 pub(crate) mod dense;
+mod index;
 mod inequality;
 mod matrix;
 mod penalised_matrix;
-pub(crate) mod submatrix;
+mod rectangular_matrix;
+mod submatrix;
 
+pub(crate) use index::NO_INDEX;
 pub(crate) use inequality::barycentre;
 pub use inequality::{Bound, Contact, Inequality, Start, Support};
 pub use matrix::SparseMatrix;
-pub(crate) use matrix::transpose;
-pub use penalised_matrix::{PenalisedMatrix, Term};
+pub use penalised_matrix::{JumpTerm, PenalisedMatrix};
+pub(crate) use rectangular_matrix::{RectangularMatrix, galerkin_product};
+pub(crate) use submatrix::Submatrix;

@@ -1,132 +1,135 @@
-//! A matrix that is not multiplied out.
+//! The matrix `K + M^T S M` of an over-penalised scheme, kept as that sum.
 
 use rayon::prelude::*;
 
+use super::index::NO_INDEX;
 use crate::real::Real;
 
-/// A matrix and a load as the sums they are: `A = K + M^T S M` and `b = c + M^T S g`, `K` made of
-/// dense blocks on the diagonal, `S` diagonal and positive, `M` sparse.
+/// The matrix `A = K + M^T S M` and the load `b = c + M^T S g`, stored by `K`, `M`, `S`, `c` and `g`.
 ///
-/// The matrix of an over-penalised scheme is of this kind: `K` is the stiffness of cells, `M u` the
-/// jumps of means over facets, `S` the penalty weights, `g` the Dirichlet data. Multiplied out,
-/// weights bury the stiffness: rounding of size `eps eta h^-2` in every entry acts on all functions
-/// alike. As it stands, a residual `c - K u - M^T S (M u - g)` has rounding of that size in the range
-/// of `M^T` only, where it moves jumps by `eps |u|` and nothing else.
+/// `K` is block diagonal with dense blocks (the stiffness of cells), `M u` are the jumps of means
+/// over facets, `S` is the positive diagonal of penalty weights, `g` the Dirichlet data.
 ///
-/// The *forces* of jumps are `p = S (M u - g)`. Where they are kept besides the values they are known
-/// to all digits, which jumps, differences of values, are not.
+/// In the assembled matrix every entry has a rounding error of size `eps eta h^-2`, which perturbs
+/// the stiffness on all functions. The residual `c - K u - M^T S (M u - g)` of the sum has rounding
+/// errors of that size in the range of `M^T` only, where they change jumps by `eps |u|`.
+///
+/// The *jump multipliers* are `p = S (M u - g)`. A solver that keeps them as unknowns beside `u` knows
+/// them to full relative precision; computed from `u` they suffer from cancellation in `M u`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PenalisedMatrix<T> {
-    /// Unknowns of a block.
-    pub block: usize,
+    /// Number of unknowns of a block of `K`.
+    pub block_size: usize,
     /// `K`: its blocks one after the other, each by rows, positive semidefinite.
     pub blocks: Vec<T>,
     /// `c`.
     pub load: Vec<T>,
     /// Start of each row of `M` in `terms`, and the number of terms at the end.
-    pub starts: Vec<u32>,
-    /// The terms of all rows. What is here in a row is of one block, what is there of another.
-    pub terms: Vec<Term<T>>,
-    /// `S`.
+    pub term_starts: Vec<u32>,
+    /// The rows of `M` one after the other. In a row all [`JumpTerm::here`] belong to one block, all
+    /// [`JumpTerm::there`] to another.
+    pub terms: Vec<JumpTerm<T>>,
+    /// The diagonal of `S`.
     pub weights: Vec<T>,
     /// `g`.
-    pub data: Vec<T>,
+    pub jump_data: Vec<T>,
 }
 
-/// A weight times the difference of two unknowns: differences come first, so that a function without
-/// jump has none in rounded arithmetic either.
+/// The term `weight * (u[here] - u[there])` of a jump. The difference is computed first, so that a
+/// function without jump has none in rounded arithmetic.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Term<T> {
-    /// The unknown here; [`Term::NONE`] for none.
+pub struct JumpTerm<T> {
+    /// The first unknown, or [`JumpTerm::NO_UNKNOWN`].
     pub here: u32,
-    /// The unknown there; [`Term::NONE`] for none.
+    /// The second unknown, or [`JumpTerm::NO_UNKNOWN`].
     pub there: u32,
     /// The weight.
     pub weight: T,
 }
 
-impl<T> Term<T> {
-    /// No unknown: zero in the difference.
-    pub const NONE: u32 = u32::MAX;
+impl<T> JumpTerm<T> {
+    /// No unknown; its value in the difference is zero.
+    pub const NO_UNKNOWN: u32 = NO_INDEX;
 }
 
-/// Items for which another thread pays.
+/// Least number of rows or jumps in a parallel task.
 const CHUNK: usize = 4096;
 
 impl<T: Real> PenalisedMatrix<T> {
-    /// Number of jumps.
+    /// Number of jumps: rows of `M`.
     pub fn n_jumps(&self) -> usize {
         self.weights.len()
     }
 
-    /// The terms of a jump.
+    /// Row `jump` of `M`.
     #[inline]
-    pub fn terms_of(&self, jump: usize) -> &[Term<T>] {
-        &self.terms[self.starts[jump] as usize..self.starts[jump + 1] as usize]
+    pub fn terms_of(&self, jump: usize) -> &[JumpTerm<T>] {
+        &self.terms[self.term_starts[jump] as usize..self.term_starts[jump + 1] as usize]
     }
 
-    /// Whether the parts belong together and to a vector of this size, and weights are positive.
+    /// Whether all parts have consistent sizes for `size` unknowns, and weights are positive.
     pub fn is_well_formed(&self, size: usize) -> bool {
         let n = self.n_jumps();
-        let fits = |i: u32| i == Term::<T>::NONE || (i as usize) < size;
-        self.block > 0
-            && size.is_multiple_of(self.block)
-            && self.blocks.len() == size * self.block
+        let is_valid = |i: u32| i == JumpTerm::<T>::NO_UNKNOWN || (i as usize) < size;
+        self.block_size > 0
+            && size.is_multiple_of(self.block_size)
+            && self.blocks.len() == size * self.block_size
             && self.load.len() == size
-            && self.data.len() == n
-            && self.starts.len() == n + 1
-            && self.starts.first() == Some(&0)
-            && self.starts.windows(2).all(|w| w[0] <= w[1])
-            && self.starts[n] as usize == self.terms.len()
-            && self.terms.iter().all(|t| fits(t.here) && fits(t.there))
+            && self.jump_data.len() == n
+            && self.term_starts.len() == n + 1
+            && self.term_starts.first() == Some(&0)
+            && self.term_starts.windows(2).all(|w| w[0] <= w[1])
+            && self.term_starts[n] as usize == self.terms.len()
+            && self.terms.iter().all(|t| is_valid(t.here) && is_valid(t.there))
             && self.weights.iter().all(|&s| s > T::lit(0.0))
     }
 
-    /// The blocks that a jump is between: here and there, where it has terms.
-    pub fn sides(&self, jump: usize) -> [Option<u32>; 2] {
-        let block = |unknown: fn(&Term<T>) -> u32| {
+    /// The two blocks whose unknowns a jump contains, first that of [`JumpTerm::here`]; `None` for a
+    /// side without unknowns.
+    pub fn blocks_of_jump(&self, jump: usize) -> [Option<u32>; 2] {
+        let block = |unknown: fn(&JumpTerm<T>) -> u32| {
             let mut unknowns = self.terms_of(jump).iter().map(unknown);
-            let found = unknowns.find(|&i| i != Term::<T>::NONE);
-            found.map(|i| i / self.block as u32)
+            let found = unknowns.find(|&i| i != JumpTerm::<T>::NO_UNKNOWN);
+            found.map(|i| i / self.block_size as u32)
         };
         [block(|t| t.here), block(|t| t.there)]
     }
 
-    /// `M u`, one entry, in `f64`.
+    /// The entry `(M u)_jump`, in `f64`.
     #[inline]
     pub fn jump(&self, jump: usize, u: impl Fn(usize) -> f64) -> f64 {
-        let value = |i: u32| if i == Term::<T>::NONE { 0.0 } else { u(i as usize) };
+        let value = |i: u32| if i == JumpTerm::<T>::NO_UNKNOWN { 0.0 } else { u(i as usize) };
         self.terms_of(jump)
             .iter()
             .fold(0.0, |s, t| s + t.weight.to_f64() * (value(t.here) - value(t.there)))
     }
 
-    /// `K u`, one entry, in `f64`.
+    /// The entry `(K u)_i`, in `f64`.
     #[inline]
     pub fn stiffness(&self, i: usize, u: impl Fn(usize) -> f64) -> f64 {
-        let n = self.block;
+        let n = self.block_size;
         let first = i / n * n;
         let row = &self.blocks[i * n..(i + 1) * n];
         row.iter().enumerate().fold(0.0, |s, (j, a)| s + a.to_f64() * u(first + j))
     }
 
-    /// `K`, one entry of its diagonal.
-    pub fn diagonal(&self, i: usize) -> f64 {
-        self.blocks[i * self.block + i % self.block].to_f64()
+    /// The diagonal entry `K_ii`.
+    pub fn stiffness_diagonal(&self, i: usize) -> f64 {
+        self.blocks[i * self.block_size + i % self.block_size].to_f64()
     }
 
-    /// `S (M u - g)`.
-    pub fn forces(&self, u: impl Fn(usize) -> f64 + Sync) -> Vec<f64> {
-        let force =
-            |f: usize| self.weights[f].to_f64() * (self.jump(f, &u) - self.data[f].to_f64());
-        (0..self.n_jumps()).into_par_iter().with_min_len(CHUNK).map(force).collect()
+    /// The jump multipliers `S (M u - g)`.
+    pub fn jump_multipliers(&self, u: impl Fn(usize) -> f64 + Sync) -> Vec<f64> {
+        let multiplier =
+            |k: usize| self.weights[k].to_f64() * (self.jump(k, &u) - self.jump_data[k].to_f64());
+        (0..self.n_jumps()).into_par_iter().with_min_len(CHUNK).map(multiplier).collect()
     }
 
-    /// `r = c - K u - M^T p`.
-    pub fn residual_with_forces(
+    /// The residual `r = c - K u - M^T p` with jump multipliers `p`.
+    pub fn residual_with_jump_multipliers(
         &self,
         u: impl Fn(usize) -> f64 + Sync,
-        forces: impl Fn(usize) -> f64,
+        jump_multipliers: impl Fn(usize) -> f64,
         r: &mut [f64],
     ) {
         r.par_iter_mut()
@@ -134,37 +137,42 @@ impl<T: Real> PenalisedMatrix<T> {
             .enumerate()
             .for_each(|(i, r)| *r = self.load[i].to_f64() - self.stiffness(i, &u));
         for jump in 0..self.n_jumps() {
-            let force = forces(jump);
+            let multiplier = jump_multipliers(jump);
             for t in self.terms_of(jump) {
-                let pull = t.weight.to_f64() * force;
-                if t.here != Term::<T>::NONE {
-                    r[t.here as usize] -= pull;
+                let product = t.weight.to_f64() * multiplier;
+                if t.here != JumpTerm::<T>::NO_UNKNOWN {
+                    r[t.here as usize] -= product;
                 }
-                if t.there != Term::<T>::NONE {
-                    r[t.there as usize] += pull;
+                if t.there != JumpTerm::<T>::NO_UNKNOWN {
+                    r[t.there as usize] += product;
                 }
             }
         }
     }
 
-    /// `r = b - A u`.
+    /// The residual `r = b - A u`.
     pub fn residual(&self, u: impl Fn(usize) -> f64 + Sync, r: &mut [f64]) {
-        let forces = self.forces(&u);
-        self.residual_with_forces(u, |f| forces[f], r);
+        let multipliers = self.jump_multipliers(&u);
+        self.residual_with_jump_multipliers(u, |k| multipliers[k], r);
     }
 
-    /// The size of energies: `u.K u + p.p / s + |c.u|`, the last by its terms.
-    pub fn energy(&self, u: impl Fn(usize) -> f64 + Sync, forces: impl Fn(usize) -> f64) -> f64 {
+    /// The scale of energies `u.K u + p.(S^-1 p) + Σ |c_i u_i|` with jump multipliers `p`.
+    pub fn energy(
+        &self,
+        u: impl Fn(usize) -> f64 + Sync,
+        jump_multipliers: impl Fn(usize) -> f64,
+    ) -> f64 {
         let of_unknown =
             |i: usize| u(i) * self.stiffness(i, &u) + (u(i) * self.load[i].to_f64()).abs();
-        let of_jump = |f: usize| forces(f).powi(2) / self.weights[f].to_f64();
+        let of_jump = |k: usize| jump_multipliers(k).powi(2) / self.weights[k].to_f64();
         (0..self.load.len()).map(of_unknown).sum::<f64>()
             + (0..self.n_jumps()).map(of_jump).sum::<f64>()
     }
 
-    /// By how much jumps and forces disagree: `g - M u + p / s`, one entry.
+    /// The jump residual `g - M u + S^-1 p`, one entry, for the multiplier `p` of that jump.
     #[inline]
-    pub fn mismatch(&self, jump: usize, u: impl Fn(usize) -> f64, force: f64) -> f64 {
-        self.data[jump].to_f64() - self.jump(jump, u) + force / self.weights[jump].to_f64()
+    pub fn jump_residual(&self, jump: usize, u: impl Fn(usize) -> f64, multiplier: f64) -> f64 {
+        self.jump_data[jump].to_f64() - self.jump(jump, u)
+            + multiplier / self.weights[jump].to_f64()
     }
 }

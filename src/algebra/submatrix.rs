@@ -1,63 +1,62 @@
-//! A matrix restricted to some of its rows and columns.
+//! A square submatrix: some rows and the same columns of a matrix.
 
-use super::SparseMatrix;
+use super::index::NO_INDEX;
+use super::matrix::SparseMatrix;
 use crate::real::Real;
 
-/// Marks an unknown that the restriction leaves out.
-const OUT: u32 = u32::MAX;
-
-/// Some rows and columns of a matrix, renumbered in their order.
+/// A submatrix `A_II` in compressed sparse rows, or the lower triangle of one. Rows and columns are
+/// numbered by their positions in the ascending index set `I`.
 #[derive(Clone, Debug)]
 pub(crate) struct Submatrix<T> {
-    /// Start of each row, and the number of entries at the end.
+    /// Start of each row in `columns` and `values`, and the number of entries at the end.
     pub row_starts: Vec<u32>,
-    /// Column of each entry in the new numbering, ascending in each row.
+    /// Column of each entry, ascending in each row.
     pub columns: Vec<u32>,
     /// Value of each entry.
     pub values: Vec<T>,
 }
 
 impl<T: Real> Submatrix<T> {
-    /// The rows and columns `free`, ascending.
+    /// `A_II` for the ascending index set `free`.
     pub fn new(matrix: &SparseMatrix<T>, free: &[u32]) -> Self {
-        Self::restrict(matrix, free, false)
+        Self::extract(matrix, free, false)
     }
 
-    /// The same, without what lies right of the diagonal.
-    pub fn left_of_diagonal(matrix: &SparseMatrix<T>, free: &[u32]) -> Self {
-        Self::restrict(matrix, free, true)
+    /// The lower triangle of `A_II`, diagonal included, for the ascending index set `free`.
+    pub fn lower_triangle(matrix: &SparseMatrix<T>, free: &[u32]) -> Self {
+        Self::extract(matrix, free, true)
     }
 
-    fn restrict(matrix: &SparseMatrix<T>, free: &[u32], left: bool) -> Self {
-        let mut new = vec![OUT; matrix.size()];
+    fn extract(matrix: &SparseMatrix<T>, free: &[u32], is_lower: bool) -> Self {
+        let mut position = vec![NO_INDEX; matrix.size()];
         for (k, &i) in free.iter().enumerate() {
-            new[i as usize] = k as u32;
+            position[i as usize] = k as u32;
         }
-        // A bound on what will be kept saves growing; the order of `free` keeps columns ascending.
-        let rows = free.iter().map(|&i| matrix.row(i as usize).0.len()).sum::<usize>();
-        let bound = if left { (rows + free.len()).div_ceil(2) } else { rows };
-        let mut restricted = Self {
+        // An upper bound on the number of entries avoids reallocation.
+        let stored = free.iter().map(|&i| matrix.row(i as usize).0.len()).sum::<usize>();
+        let capacity = if is_lower { (stored + free.len()).div_ceil(2) } else { stored };
+        let mut submatrix = Self {
             row_starts: Vec::with_capacity(free.len() + 1),
-            columns: Vec::with_capacity(bound),
-            values: Vec::with_capacity(bound),
+            columns: Vec::with_capacity(capacity),
+            values: Vec::with_capacity(capacity),
         };
-        restricted.row_starts.push(0);
+        submatrix.row_starts.push(0);
         for (k, &i) in free.iter().enumerate() {
-            let last = if left { k as u32 } else { OUT - 1 };
+            let last = if is_lower { k as u32 } else { NO_INDEX - 1 };
             let (columns, values) = matrix.row(i as usize);
             for (&j, &a) in columns.iter().zip(values) {
-                let j = new[j as usize];
+                let j = position[j as usize];
                 if j <= last {
-                    restricted.columns.push(j);
-                    restricted.values.push(a);
+                    submatrix.columns.push(j);
+                    submatrix.values.push(a);
                 }
             }
-            restricted.row_starts.push(restricted.columns.len() as u32);
+            submatrix.row_starts.push(submatrix.columns.len() as u32);
         }
-        restricted
+        submatrix
     }
 
-    /// The diagonal, zero where none is stored.
+    /// The diagonal, zero where no entry is stored.
     pub fn diagonal(&self) -> Vec<T> {
         let entry = |i: usize| {
             let (columns, values) = self.row(i);
@@ -67,7 +66,7 @@ impl<T: Real> Submatrix<T> {
     }
 }
 
-/// All rows and columns.
+/// The submatrix of all rows and columns.
 impl<T> From<SparseMatrix<T>> for Submatrix<T> {
     fn from(matrix: SparseMatrix<T>) -> Self {
         let SparseMatrix { row_starts, columns, values } = matrix;
@@ -81,13 +80,13 @@ impl<T> Submatrix<T> {
         self.row_starts.len() - 1
     }
 
-    /// Columns and values of a row.
+    /// Columns and values of row `i`.
     pub fn row(&self, i: usize) -> (&[u32], &[T]) {
         let range = self.row_starts[i] as usize..self.row_starts[i + 1] as usize;
         (&self.columns[range.clone()], &self.values[range])
     }
 
-    /// Columns of a row, and its values to be changed.
+    /// Columns and mutable values of row `i`.
     pub fn row_mut(&mut self, i: usize) -> (&[u32], &mut [T]) {
         let range = self.row_starts[i] as usize..self.row_starts[i + 1] as usize;
         (&self.columns[range.clone()], &mut self.values[range])

@@ -167,7 +167,7 @@ impl<'a, T: Real, const D: usize> Discretisation<'a, T, D> {
                 Vec::new()
             },
             start: Start::Cold,
-            factored,
+            penalised: factored,
         })
     }
     /// The load; if the matrix is kept factored too, the load without Dirichlet data, and these.

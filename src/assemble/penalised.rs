@@ -8,7 +8,7 @@ use super::local::zero_local;
 use super::space::metric::Metrics;
 use super::space::tables::FacetTable;
 use super::space::{Space, data};
-use crate::algebra::{PenalisedMatrix, Term};
+use crate::algebra::{JumpTerm, PenalisedMatrix};
 use crate::element::{MAX_BASIS, Node};
 use crate::facet::FacetForm;
 use crate::mesh::{BoundaryPart, Neighbour, edge_vertices};
@@ -40,13 +40,13 @@ pub(crate) fn factored<T: Real, const D: usize>(
     dirichlet.sort_by_key(|(cell, (local, _))| (*cell, *local));
     let mut dirichlet = dirichlet.into_iter().peekable();
     let mut out = PenalisedMatrix {
-        block: space.per_cell(),
+        block_size: space.per_cell(),
         blocks: blocks(space, metrics),
         load,
-        starts: vec![0],
+        term_starts: vec![0],
         terms: Vec::new(),
         weights: Vec::new(),
-        data: Vec::new(),
+        jump_data: Vec::new(),
     };
     let table = space.facet_table(form.moments(space.degree));
     let templates = Templates::<T>::new::<D>(space, &table);
@@ -67,14 +67,14 @@ pub(crate) fn factored<T: Real, const D: usize>(
             let datum = dirichlet.next_if(|(c, (l, _))| (*c, *l) == (cell, local));
             let zeros = of_degree.iter().map(|_| T::lit(0.0));
             match &datum {
-                Some((_, (_, values))) => out.data.extend(values.iter().map(|&v| T::lit(v))),
-                None => out.data.extend(zeros),
+                Some((_, (_, values))) => out.jump_data.extend(values.iter().map(|&v| T::lit(v))),
+                None => out.jump_data.extend(zeros),
             }
             let penalty = weights.at::<D>((cell, local), true).penalty;
             let measure = metric.measures[local];
             for (terms, &factor) in template.iter().zip(&of_degree) {
-                out.terms.extend(terms.iter().map(|t| t.between(cell, other, out.block)));
-                out.starts.push(out.terms.len() as u32);
+                out.terms.extend(terms.iter().map(|t| t.between(cell, other, out.block_size)));
+                out.term_starts.push(out.terms.len() as u32);
                 let jump_jump = weights.coefficients.jump_jump.at(penalty * factor);
                 out.weights.push(measure * jump_jump);
             }
@@ -118,10 +118,11 @@ struct LocalTerm<T> {
 }
 
 impl<T: Real> LocalTerm<T> {
-    fn between(&self, cell: usize, other: usize, n: usize) -> Term<T> {
-        let unknown =
-            |cell: usize, i: Option<usize>| i.map_or(Term::<T>::NONE, |i| (cell * n + i) as u32);
-        Term {
+    fn between(&self, cell: usize, other: usize, n: usize) -> JumpTerm<T> {
+        let unknown = |cell: usize, i: Option<usize>| {
+            i.map_or(JumpTerm::<T>::NO_UNKNOWN, |i| (cell * n + i) as u32)
+        };
+        JumpTerm {
             here: unknown(cell, self.here),
             there: unknown(other, self.there),
             weight: self.weight,

@@ -152,11 +152,11 @@ fn residual_and_mismatch<T: Real>(
     residual: &mut [f64],
 ) -> f64 {
     let value = |i: usize| u[i].to_f64();
-    match &inequality.factored {
-        Some(factored) if jump_multipliers.len() == factored.n_jumps() => {
+    match &inequality.penalised {
+        Some(penalised) if jump_multipliers.len() == penalised.n_jumps() => {
             let multiplier = |jump: usize| jump_multipliers[jump].to_f64();
-            factored.residual_with_forces(value, multiplier, residual);
-            let mismatch = |jump| factored.mismatch(jump, value, multiplier(jump)).abs();
+            penalised.residual_with_jump_multipliers(value, multiplier, residual);
+            let mismatch = |jump| penalised.jump_residual(jump, value, multiplier(jump)).abs();
             // unlike f64::max this keeps a number that is not finite
             (0..jump_multipliers.len()).map(mismatch).fold(0.0, |m, x| if x <= m { m } else { x })
         }
@@ -192,7 +192,7 @@ impl LocalViolation {
     /// The violations for the value `x` and `step = r_i / d_i`, which is positive where a Gauss-Seidel
     /// correction would decrease the value.
     fn new<T: Real>(bound: &Bound<T>, x: f64, step: f64) -> Self {
-        if let Some(value) = bound.only_value() {
+        if let Some(value) = bound.fixed_value() {
             return Self { feasibility: (x - value.to_f64()).abs(), ..Self::default() };
         }
         let to_lower = bound.lower().map_or(f64::INFINITY, |l| x - l.to_f64());

@@ -7,9 +7,9 @@ use super::validation::check_input;
 use super::{ActiveSet, InequalitySolver, Outcome, Solution};
 use crate::algebra::{Contact, Inequality};
 use crate::linear::CoarseSpaces;
-use crate::linear::direct::factors::FactorError;
-use crate::linear::precondition::coarse_level::CoarseLevel;
-use crate::linear::precondition::multigrid::Multigrid;
+use crate::linear::direct::FactorError;
+use crate::linear::precondition::CoarseLevel;
+use crate::linear::precondition::Multigrid;
 use crate::real::Real;
 
 /// The truncated nonsmooth Newton multigrid method (Graeser, Kornhuber, J. Comput. Math. 27 (2009)
@@ -133,7 +133,7 @@ impl<'a, T: Real> MultigridIterate<'a, T> {
         let aggregated = match guess.coarse_spaces {
             CoarseSpaces::CoarseLevel(_) => None,
             _ => {
-                let fixed: Vec<bool> = bounds.iter().map(|b| b.only_value().is_some()).collect();
+                let fixed: Vec<bool> = bounds.iter().map(|b| b.fixed_value().is_some()).collect();
                 CoarseLevel::aggregated(matrix, &fixed)
             }
         };
@@ -172,7 +172,7 @@ impl<'a, T: Real> MultigridIterate<'a, T> {
         let Inequality { matrix, load, bounds, .. } = self.inequality;
         let mut sum = 0.0;
         for (i, bound) in bounds.iter().enumerate() {
-            if bound.only_value().is_some() {
+            if bound.fixed_value().is_some() {
                 continue;
             }
             let d = matrix.get(i, i);
@@ -193,7 +193,7 @@ impl<'a, T: Real> MultigridIterate<'a, T> {
     fn correct(&mut self, multigrid: &mut Multigrid<'_, T>) -> Result<f64, Outcome> {
         let Inequality { matrix, bounds, .. } = self.inequality;
         self.eliminate_active();
-        match multigrid.fix(&self.eliminated) {
+        match multigrid.set_fixed(&self.eliminated) {
             Ok(()) => {}
             // only the bounds prevent a rigid motion: the sweeps alone converge
             Err(FactorError::Singular) if bounds.iter().any(|bound| bound.is_inequality()) => {
@@ -234,7 +234,7 @@ impl<'a, T: Real> MultigridIterate<'a, T> {
         let Inequality { matrix, load, bounds, .. } = self.inequality;
         for (i, bound) in bounds.iter().enumerate() {
             let x = self.values[i];
-            self.eliminated[i] = bound.only_value().is_some()
+            self.eliminated[i] = bound.fixed_value().is_some()
                 || bound.lower().is_some_and(|l| x <= l)
                 || bound.upper().is_some_and(|u| x >= u);
             let residual = load[i].to_f64() - matrix.row_dot_f64(i, &self.values);

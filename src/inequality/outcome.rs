@@ -1,6 +1,6 @@
 //! The outcome of a solve.
 
-use crate::linear::direct::factors::FactorError;
+use crate::linear::direct::FactorError;
 
 /// The outcome of a solve. Only [`Outcome::Converged`] is a success; every other outcome comes with the
 /// best iterate.

@@ -2,8 +2,8 @@
 
 use super::Outcome;
 use crate::algebra::Inequality;
-use crate::linear::direct::factors::is_positive_definite;
-use crate::linear::direct::static_condensation::StaticCondensation;
+use crate::linear::direct::StaticCondensation;
+use crate::linear::direct::is_positive_definite;
 use crate::real::Real;
 
 /// Checks sizes, numbers and bounds; the error is the outcome of a solve.
@@ -22,14 +22,14 @@ pub(crate) fn check_input<T: Real>(inequality: &Inequality<T>) -> Result<(), Out
 /// Checks by factors that the matrix, or its symmetric part, is positive definite on all unknowns that
 /// are not fixed.
 pub(crate) fn check_definite<T: Real>(inequality: &Inequality<T>) -> Result<(), Outcome> {
-    if let Some(factored) = &inequality.factored {
+    if let Some(penalised) = &inequality.penalised {
         let is_free: Vec<bool> =
-            inequality.bounds.iter().map(|bound| bound.only_value().is_none()).collect();
-        StaticCondensation::new(factored).factor(&is_free)?;
+            inequality.bounds.iter().map(|bound| bound.fixed_value().is_none()).collect();
+        StaticCondensation::new(penalised).factor(&is_free)?;
         return Ok(());
     }
     let Inequality { matrix, symmetric, .. } = inequality;
-    if is_positive_definite(matrix, *symmetric, &inequality.not_given())? {
+    if is_positive_definite(matrix, *symmetric, &inequality.free_unknowns())? {
         Ok(())
     } else {
         Err(Outcome::NotCoercive)

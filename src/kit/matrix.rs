@@ -16,7 +16,7 @@ pub(super) struct Assembled {
 impl Assembled {
     pub fn of<T: Real>(inequality: &Inequality<T>) -> Self {
         let matrix = &inequality.matrix;
-        let given = |i: &usize| inequality.bounds[*i].only_value().is_none();
+        let given = |i: &usize| inequality.bounds[*i].fixed_value().is_none();
         Self {
             matrix: SparseMatrix {
                 row_starts: matrix.row_starts.clone(),

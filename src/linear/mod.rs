@@ -1,14 +1,15 @@
-//! LinearMethod systems: sparse factors, Krylov methods, preconditioners.
+//! Linear systems: sparse factors, Krylov methods, preconditioners.
+//!
+//! A system is solved on the *free* unknowns; all other unknowns are *fixed*, by Dirichlet data or
+//! because their bound is active. `direct`: Cholesky and LU factors, orders of elimination, static
+//! condensation. `krylov`: conjugate gradients and GMRES. `precondition`: multigrid, auxiliary spaces,
+//! mean-jump splitting. `method`: the choice between direct and iterative solvers.
 
-mod choice;
 pub(crate) mod direct;
 pub(crate) mod krylov;
+mod method;
 pub(crate) mod precondition;
 
-pub use choice::LinearMethod;
-pub use direct::elimination::EliminationOrder;
-pub use direct::factors::{FactorError, Factors, is_positive_definite};
-pub use direct::kernels::SparseKernels;
-pub use precondition::coarse_level::{CoarseLevel, P1Level};
-pub use precondition::coarse_spaces::CoarseSpaces;
-pub use precondition::prolongation::Prolongation;
+pub use direct::{EliminationOrder, FactorError, Factors, SparseKernels, is_positive_definite};
+pub use method::LinearMethod;
+pub use precondition::{CoarseLevel, CoarseSpaces, P1Level, Prolongation};

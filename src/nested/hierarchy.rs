@@ -219,11 +219,11 @@ impl<'a, T: Real, const D: usize> Hierarchy<'a, T, D> {
         let new = || Arc::new(Prolongation::midpoints(parents.clone(), coarse.contact.len()));
         let prolongation = entry.prolongation.get_or_insert_with(new);
         let values = match coarse.values.len() == coarse.contact.len() {
-            true => prolongation.values(&coarse.values),
+            true => prolongation.prolongate(&coarse.values),
             false => Vec::new(),
         };
         let coarse_level = match &coarse.coarse_spaces {
-            CoarseSpaces::Same(same) => CoarseLevel::new(same.clone(), prolongation.clone()),
+            CoarseSpaces::SameMesh(same) => CoarseLevel::new(same.clone(), prolongation.clone()),
             _ => None,
         };
         let seconds = coarse.seconds + clock.elapsed().as_secs_f64();
@@ -300,7 +300,7 @@ fn solve_p1<T: Real, const D: usize>(
             CoarseSpaces::CoarseLevel(coarser) => Some(coarser.clone()),
             _ => None,
         });
-        CoarseSpaces::Same(Arc::new(P1Level::new(inequality.matrix, fixed, coarser)))
+        CoarseSpaces::SameMesh(Arc::new(P1Level::new(inequality.matrix, fixed, coarser)))
     };
     let seconds = seconds_before + seconds + clock.elapsed().as_secs_f64();
     Ok(P1Solution { contact, values, coarse_spaces, seconds, levels_solved: levels + 1 })

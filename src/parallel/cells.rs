@@ -1,46 +1,51 @@
-//! The parallel loops, apart from what they do: work is handed over a piece at a time, so that
-//! these loops are compiled once for each scalar and not once for each scheme.
+//! Parallel loops of the assembly over chunks of cells, rows or patches.
+//!
+//! The work on a chunk is a `dyn Fn`, so that a loop is compiled once for each scalar and not once
+//! for each scheme.
 
 use std::ops::Range;
 
 use rayon::prelude::*;
 
-/// Cells, rows or patches of one piece of work.
+/// Number of items (cells, rows or patches) in a chunk.
 pub(crate) const CHUNK: usize = 1024;
 
-/// Number of pieces that `n` items make.
-pub(crate) fn n_pieces(n: usize) -> usize {
+/// Number of chunks of `n` items.
+pub(crate) fn n_chunks(n: usize) -> usize {
     n.div_ceil(CHUNK)
 }
 
-/// The items of a piece.
-pub(crate) fn items(piece: usize, n: usize) -> Range<usize> {
-    piece * CHUNK..((piece + 1) * CHUNK).min(n)
+/// The items of a chunk.
+pub(crate) fn items(chunk: usize, n: usize) -> Range<usize> {
+    chunk * CHUNK..((chunk + 1) * CHUNK).min(n)
 }
 
-/// What is done with the items and entries of a piece.
-pub(crate) type Work<'w, V, E> = &'w (dyn Fn(Range<usize>, &mut [V]) -> Result<(), E> + Sync);
+/// The work on a chunk: a function of its items and their entries.
+pub(crate) type ChunkWork<'w, V, E> = &'w (dyn Fn(Range<usize>, &mut [V]) -> Result<(), E> + Sync);
 
-/// Cuts `entries` so that each piece holds those of its items, where the entries of items `a..b` are
-/// `end(a)..end(b)`, and calls `work` with each piece's items and entries; the first error wins.
+/// Calls `work` with the items of each chunk and their part of `entries`; the entries of the items
+/// `a..b` are `end(a)..end(b)`.
+///
+/// # Errors
+/// One of those that `work` returns; the chunks that have not begun are skipped.
 pub(crate) fn for_each<V: Send, E: Send>(
     n: usize,
     end: &dyn Fn(usize) -> usize,
     entries: &mut [V],
-    work: Work<'_, V, E>,
+    work: ChunkWork<'_, V, E>,
 ) -> Result<(), E> {
-    let mut pieces = Vec::with_capacity(n_pieces(n));
+    let mut chunks = Vec::with_capacity(n_chunks(n));
     let mut rest = entries;
-    for piece in 0..n_pieces(n) {
-        let items = items(piece, n);
+    for chunk in 0..n_chunks(n) {
+        let items = items(chunk, n);
         let (own, tail) = rest.split_at_mut(end(items.end) - end(items.start));
-        pieces.push((items, own));
+        chunks.push((items, own));
         rest = tail;
     }
-    pieces.into_par_iter().try_for_each(|(items, entries)| work(items, entries))
+    chunks.into_par_iter().try_for_each(|(items, entries)| work(items, entries))
 }
 
-/// What `work` makes of each piece's items, in order.
+/// The values of `work` on the items of each chunk, in the order of chunks.
 pub(crate) fn map<R: Send>(n: usize, work: &(dyn Fn(Range<usize>) -> R + Sync)) -> Vec<R> {
-    (0..n_pieces(n)).into_par_iter().map(|piece| work(items(piece, n))).collect()
+    (0..n_chunks(n)).into_par_iter().map(|chunk| work(items(chunk, n))).collect()
 }

@@ -1,5 +1,7 @@
-//! Parallel loops over vectors, in pieces of fixed length: sums are added up in the same order and
-//! smoothers see the same pieces whatever the number of threads, so that all get the same bits.
+//! Parallel loops over vectors in chunks of fixed length.
+//!
+//! Partial sums are added in the order of chunks, and smoothers treat chunks as blocks; both are
+//! therefore independent of the number of threads.
 
 use std::ops::Range;
 
@@ -8,17 +10,18 @@ use rayon::prelude::*;
 use crate::memory::in_large_pages;
 use crate::real::Real;
 
-/// Numbers in a piece: enough to outweigh handing it over, and for a smoother to hardly notice the
-/// cuts.
-pub(crate) const PIECE: usize = 1 << 14;
+/// Number of entries in a chunk. Shorter chunks cost time for scheduling, and weaken smoothers that
+/// do not couple chunks.
+pub(crate) const CHUNK: usize = 1 << 14;
 
-/// A vector of zeros in fresh memory.
+/// A zero vector in newly allocated memory.
 pub(crate) fn zeros<T: Real>(n: usize) -> Vec<T> {
     in_large_pages(vec![T::lit(0.0); n])
 }
 
-/// Signs without structure, the same every time: plus for true.
-pub(crate) fn signs() -> impl Iterator<Item = bool> {
+/// A reproducible pseudorandom sequence of signs, `true` for plus: the leading bits of a linear
+/// congruential generator (multiplier of D. E. Knuth's MMIX).
+pub(crate) fn pseudorandom_signs() -> impl Iterator<Item = bool> {
     let mut state = 1_u64;
     std::iter::repeat_with(move || {
         state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695);
@@ -26,79 +29,90 @@ pub(crate) fn signs() -> impl Iterator<Item = bool> {
     })
 }
 
-/// The numbers of a piece.
-fn range(piece: usize, n: usize) -> Range<usize> {
-    piece * PIECE..((piece + 1) * PIECE).min(n)
+/// The Euclidean inner product `x . y`, products and sum in `f64`.
+pub(crate) fn dot<T: Real>(x: &[T], y: &mut [T]) -> f64 {
+    sum_chunks(y, |range, y| {
+        let products = x[range].iter().zip(y.iter());
+        products.fold(0.0, |sum, (x, y)| sum + x.to_f64() * y.to_f64())
+    })
 }
 
-/// Whether it pays to hand pieces over.
-fn alone(n: usize) -> bool {
-    n <= PIECE || rayon::current_num_threads() == 1
+/// The indices of a chunk of a vector of length `n`.
+fn chunk_range(chunk: usize, n: usize) -> Range<usize> {
+    chunk * CHUNK..((chunk + 1) * CHUNK).min(n)
 }
 
-/// What `work` makes of each piece of `n` numbers, in order.
-pub(crate) fn map<R: Send>(n: usize, work: impl Fn(Range<usize>) -> R + Sync) -> Vec<R> {
-    let pieces = n.div_ceil(PIECE);
-    let one = |k: usize| work(range(k, n));
-    if alone(n) {
-        (0..pieces).map(one).collect()
+/// Whether a loop over `n` entries runs on the calling thread: one chunk, or one thread.
+fn is_sequential(n: usize) -> bool {
+    n <= CHUNK || rayon::current_num_threads() == 1
+}
+
+/// The values of `work` on the index range of each chunk of `0..n`, in the order of chunks.
+pub(crate) fn map_chunks<R: Send>(n: usize, work: impl Fn(Range<usize>) -> R + Sync) -> Vec<R> {
+    let n_chunks = n.div_ceil(CHUNK);
+    let one = |k: usize| work(chunk_range(k, n));
+    if is_sequential(n) {
+        (0..n_chunks).map(one).collect()
     } else {
-        (0..pieces).into_par_iter().map(one).collect()
+        (0..n_chunks).into_par_iter().map(one).collect()
     }
 }
 
-/// The same where `work` may change its piece of `x`.
-pub(crate) fn map_mut<A: Send, R: Send>(
+/// The values of `work` on the index range and the entries of each chunk of `x`, in the order of
+/// chunks; `work` may change the entries.
+pub(crate) fn map_chunks_mut<A: Send, R: Send>(
     x: &mut [A],
     work: impl Fn(Range<usize>, &mut [A]) -> R + Sync,
 ) -> Vec<R> {
     let n = x.len();
-    let one = |(k, x): (usize, &mut [A])| work(range(k, n), x);
-    if alone(n) {
-        x.chunks_mut(PIECE).enumerate().map(one).collect()
+    let one = |(k, x): (usize, &mut [A])| work(chunk_range(k, n), x);
+    if is_sequential(n) {
+        x.chunks_mut(CHUNK).enumerate().map(one).collect()
     } else {
-        x.par_chunks_mut(PIECE).enumerate().map(one).collect()
+        x.par_chunks_mut(CHUNK).enumerate().map(one).collect()
     }
 }
 
-/// Calls `work` with each piece of `x`, and adds up what it returns.
-pub(crate) fn sum_mut<A: Send>(
+/// The sum of the values of `work` on the index range and the entries of each chunk of `x`.
+pub(crate) fn sum_chunks<A: Send>(
     x: &mut [A],
     work: impl Fn(Range<usize>, &mut [A]) -> f64 + Sync,
 ) -> f64 {
-    map_mut(x, work).iter().sum()
+    map_chunks_mut(x, work).iter().sum()
 }
 
-/// The same with two vectors of one length.
-pub(crate) fn sum_mut2<A: Send, B: Send>(
+/// The sum of the values of `work` on the index range and the entries of each chunk of two vectors
+/// of the same length.
+pub(crate) fn sum_chunks_of_two<A: Send, B: Send>(
     x: &mut [A],
     y: &mut [B],
     work: impl Fn(Range<usize>, &mut [A], &mut [B]) -> f64 + Sync,
 ) -> f64 {
     let n = x.len();
-    let one = |(k, (x, y)): (usize, (&mut [A], &mut [B]))| work(range(k, n), x, y);
-    if alone(n) {
-        x.chunks_mut(PIECE).zip(y.chunks_mut(PIECE)).enumerate().map(one).sum()
+    let one = |(k, (x, y)): (usize, (&mut [A], &mut [B]))| work(chunk_range(k, n), x, y);
+    if is_sequential(n) {
+        x.chunks_mut(CHUNK).zip(y.chunks_mut(CHUNK)).enumerate().map(one).sum()
     } else {
-        let pieces = x.par_chunks_mut(PIECE).zip(y.par_chunks_mut(PIECE)).enumerate();
-        pieces.map(one).collect::<Vec<f64>>().iter().sum()
+        let chunks = x.par_chunks_mut(CHUNK).zip(y.par_chunks_mut(CHUNK)).enumerate();
+        chunks.map(one).collect::<Vec<f64>>().iter().sum()
     }
 }
 
-/// Calls `work` with each piece of `x`.
-pub(crate) fn each_mut<A: Send>(x: &mut [A], work: impl Fn(Range<usize>, &mut [A]) + Sync) {
-    each_mut_of(x, 1, work);
+/// Calls `work` with the index range and the entries of each chunk of `x`.
+pub(crate) fn for_each_chunk<A: Send>(x: &mut [A], work: impl Fn(Range<usize>, &mut [A]) + Sync) {
+    for_each_chunk_of_groups(x, 1, work);
 }
 
-/// Calls `work` with pieces of whole groups of numbers; the range is that of the numbers.
-pub(crate) fn each_mut_of<A: Send>(
+/// Calls `work` with the index range and the entries of each chunk of `x`; no chunk divides a group
+/// of `group` consecutive entries.
+pub(crate) fn for_each_chunk_of_groups<A: Send>(
     x: &mut [A],
     group: usize,
     work: impl Fn(Range<usize>, &mut [A]) + Sync,
 ) {
-    let (n, length) = (x.len(), PIECE / group * group);
+    let (n, length) = (x.len(), CHUNK / group * group);
     let one = |(k, x): (usize, &mut [A])| work(k * length..k * length + x.len(), x);
-    if alone(n) {
+    if is_sequential(n) {
         x.chunks_mut(length).enumerate().for_each(one);
     } else {
         x.par_chunks_mut(length).enumerate().for_each(one);

@@ -110,7 +110,7 @@ pub(crate) fn free_matrix<const D: usize>(
 ) -> Result<SparseMatrix<f64>, Error> {
     let inequality =
         choice.make::<f64, D>().inequality(problem, mesh, DataQuadrature::default())?;
-    let is_free = |i: usize| inequality.bounds[i].only_value().is_none();
+    let is_free = |i: usize| inequality.bounds[i].fixed_value().is_none();
     let mut number = vec![u32::MAX; inequality.size()];
     let free: Vec<usize> = (0..inequality.size()).filter(|&i| is_free(i)).collect();
     free.iter().enumerate().for_each(|(k, &i)| number[i] = k as u32);

@@ -29,12 +29,12 @@ fn with_vertices<const D: usize, S: Scheme<f64, D>>(
 /// An inequality that has points, also where it has no use for them.
 fn assembled<const D: usize, S: Scheme<f64, D>>(scheme: &S, n: usize) -> Inequality<f64> {
     let (inequality, points) = with_vertices::<D, _>(scheme, n);
-    Inequality { points, ..inequality }
+    inequality.with_points(points)
 }
 
 /// The unknowns that are not given.
 fn kept(inequality: &Inequality<f64>) -> Vec<u32> {
-    let is_open = |&i: &u32| inequality.bounds[i as usize].only_value().is_none();
+    let is_open = |&i: &u32| inequality.bounds[i as usize].fixed_value().is_none();
     (0..inequality.size() as u32).filter(is_open).collect()
 }
 
@@ -265,7 +265,7 @@ fn the_same_solution_in_any_order() {
         let solver = ActiveSet::default().linear(LinearMethod::Direct);
         let solution = solver.solve(&inequality);
         assert_eq!(solution.values, solver.solve(&inequality).values);
-        let other = solver.solve(&Inequality { points: vec![], ..inequality });
+        let other = solver.solve(&inequality.with_points(vec![]));
         assert_eq!((solution.outcome, solution.outer), (other.outcome, other.outer));
         assert_eq!(solution.contact, other.contact);
         for (x, y) in solution.values.iter().zip(&other.values) {

@@ -1,6 +1,6 @@
 //! Small inequalities with known properties, and slow solvers that are easy to believe.
 
-use unilateral::algebra::{Bound, Contact, Inequality, SparseMatrix, Start};
+use unilateral::algebra::{Bound, Contact, Inequality, SparseMatrix};
 use unilateral::real::Real;
 
 /// The minimal standard generator: a few lines, the same numbers everywhere.
@@ -42,16 +42,7 @@ pub fn inequality<T: Real>(
     bounds: Vec<Bound<T>>,
 ) -> Inequality<T> {
     let load = load.iter().map(|&b| T::lit(b)).collect();
-    Inequality {
-        matrix,
-        symmetric: true,
-        load,
-        bounds,
-        supports: vec![],
-        points: vec![],
-        start: Start::Cold,
-        factored: None,
-    }
+    Inequality::new(matrix, true, load, bounds)
 }
 
 /// The five-point matrix of minus the Laplacian times `h^2` on `n x m` nodes.

@@ -3,9 +3,10 @@
 use super::inexact_iterate::{InexactIterate, MAX_ITERATIONS};
 use crate::algebra::{Contact, SparseMatrix};
 use crate::inequality::Outcome;
-use crate::linear::krylov::conjugate_gradients::{ConjugateGradients, Preconditioner, Stop, dot};
-use crate::linear::precondition::choice::Preconditioners;
-use crate::parallel::vectors::{signs, zeros};
+use crate::linear::krylov::{ConjugateGradients, StoppingRule};
+use crate::linear::precondition::AnyPreconditioner;
+use crate::linear::precondition::Preconditioner;
+use crate::parallel::vectors::{dot, pseudorandom_signs, zeros};
 use crate::real::Real;
 
 /// Assumed lower bound on the smallest eigenvalue over the smallest Ritz value. The Ritz value is above
@@ -29,16 +30,20 @@ impl<T: Real> InexactIterate<'_, T> {
     pub(crate) fn estimate_lowest_eigenvalue(
         &mut self,
         symmetric_part: &SparseMatrix<T>,
-        preconditioner: &mut Preconditioners<'_, T>,
+        preconditioner: &mut AnyPreconditioner<'_, T>,
     ) -> Option<Outcome> {
         let n = self.values.len();
         let mut load = zeros(n);
         // pseudo-random signs, so that every eigenvector has a component
         let inactive = (0..n).filter(|&i| !self.eliminated[i]);
-        for (i, is_positive) in inactive.zip(signs()) {
+        for (i, is_positive) in inactive.zip(pseudorandom_signs()) {
             load[i] = if is_positive { self.diagonal[i] } else { -self.diagonal[i] };
         }
-        let stop = Stop { norm: 0.0, share: EIGENVALUE_RUN_TOL, iterations: MAX_ITERATIONS };
+        let stop = StoppingRule {
+            norm: 0.0,
+            reduction: EIGENVALUE_RUN_TOL,
+            max_iterations: MAX_ITERATIONS,
+        };
         let system = (&mut zeros(n)[..], &mut load[..]);
         let mut method = ConjugateGradients::new(symmetric_part);
         let run = method.solve(&self.eliminated, preconditioner, system, stop);
@@ -64,7 +69,7 @@ impl<T: Real> InexactIterate<'_, T> {
     /// The eigenvalue is replaced by nine tenths of the smallest Ritz value: the only estimate.
     pub(crate) fn error_bound(
         &mut self,
-        preconditioner: &mut Preconditioners<'_, T>,
+        preconditioner: &mut AnyPreconditioner<'_, T>,
     ) -> Option<f64> {
         let bounds = &self.inequality.bounds;
         let mut is_changed = false;
@@ -93,7 +98,7 @@ impl<T: Real> InexactIterate<'_, T> {
     fn unexplained_norm(
         &mut self,
         threshold: f64,
-        preconditioner: &mut Preconditioners<'_, T>,
+        preconditioner: &mut AnyPreconditioner<'_, T>,
     ) -> Option<f64> {
         let mut unexplained = self.residual.clone();
         let mut is_changed = false;
@@ -103,7 +108,7 @@ impl<T: Real> InexactIterate<'_, T> {
                 Contact::Lower => -self.residual[i].to_f64(),
                 Contact::Upper => self.residual[i].to_f64(),
             };
-            let is_fixed = bound.only_value().is_some();
+            let is_fixed = bound.fixed_value().is_some();
             if is_fixed || multiplier >= 0.0 {
                 unexplained[i] = T::lit(0.0);
             }
@@ -113,7 +118,7 @@ impl<T: Real> InexactIterate<'_, T> {
             self.eliminated[i] = is_eliminated;
         }
         if is_changed {
-            preconditioner.fix(&self.eliminated).ok()?;
+            preconditioner.set_fixed(&self.eliminated).ok()?;
         }
         let mut z = zeros(self.values.len());
         preconditioner.apply(&unexplained, &mut z);

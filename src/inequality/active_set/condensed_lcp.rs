@@ -6,7 +6,7 @@ use nalgebra::{DMatrix, DVector};
 
 use super::dense_lcp::DenseLcp;
 use crate::algebra::{Contact, Inequality};
-use crate::linear::direct::factors::{FactorError, Factors};
+use crate::linear::direct::{FactorError, Factors};
 use crate::real::Real;
 
 /// Number of right-hand sides solved at once: enough for the blocked kernels, few enough to need little
@@ -85,7 +85,7 @@ impl<'a, T: Real> Partition<'a, T> {
         let mut inactive = Vec::new();
         for (i, class) in classes.iter_mut().enumerate() {
             let is_inactive =
-                states[i] == Contact::Inactive && inequality.bounds[i].only_value().is_none();
+                states[i] == Contact::Inactive && inequality.bounds[i].fixed_value().is_none();
             if is_inactive && *class == IndexClass::Prescribed {
                 *class = IndexClass::Inactive(inactive.len() as u32);
                 inactive.push(i as u32);

@@ -7,7 +7,7 @@ use crate::real::Real;
 /// exist, lower if two bounds coincide.
 pub(crate) fn admissible_state<T: Real>(bound: &Bound<T>, contact: Contact) -> Contact {
     match contact {
-        _ if bound.is_inequality() && bound.only_value().is_some() => Contact::Lower,
+        _ if bound.is_inequality() && bound.fixed_value().is_some() => Contact::Lower,
         Contact::Lower if bound.lower().is_some() => Contact::Lower,
         Contact::Upper if bound.upper().is_some() => Contact::Upper,
         _ => Contact::Inactive,
@@ -16,7 +16,7 @@ pub(crate) fn admissible_state<T: Real>(bound: &Bound<T>, contact: Contact) -> C
 
 /// The value of a fixed or an active unknown; `None` if it is inactive.
 pub(crate) fn prescribed_value<T: Real>(bound: &Bound<T>, state: Contact) -> Option<T> {
-    bound.only_value().or(match state {
+    bound.fixed_value().or(match state {
         Contact::Inactive => None,
         Contact::Lower => bound.lower(),
         Contact::Upper => bound.upper(),

@@ -8,7 +8,7 @@ use super::state_history::StateHistory;
 use super::{ActiveSet, Globalisation};
 use crate::inequality::certificate::certify_with_rounding;
 use crate::inequality::{Outcome, interior_point};
-use crate::linear::direct::factors::FactorError;
+use crate::linear::direct::FactorError;
 use crate::real::Real;
 
 /// Factor by which each condensation widens the rounding band.

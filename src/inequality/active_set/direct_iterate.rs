@@ -8,7 +8,7 @@ use crate::algebra::{Bound, Contact, Inequality};
 use crate::inequality::certificate::positive_diagonal;
 use crate::inequality::interior_point::{InteriorPoint, Restart};
 use crate::inequality::{Outcome, Solution};
-use crate::linear::direct::factors::FactorError;
+use crate::linear::direct::FactorError;
 use crate::real::Real;
 
 /// The values and contact states of a step, and the best values so far.
@@ -156,7 +156,7 @@ impl<'a, T: Real> DirectIterate<'a, T> {
     /// The new contact state of unknown `i`; `None` if it keeps its own.
     fn predict(&self, i: usize, band: f64, global_band: f64) -> Option<Contact> {
         let bound = &self.inequality.bounds[i];
-        if bound.only_value().is_some() {
+        if bound.fixed_value().is_some() {
             return None;
         }
         let x = self.values[i].to_f64();
@@ -270,7 +270,7 @@ impl<'a, T: Real> DirectIterate<'a, T> {
             let value = |j: usize| self.values[j].to_f64();
             let is_prescribed = |j: usize| prescribed_value(&bounds[j], self.states[j]).is_some();
             let (inactive, prescribed) =
-                condensation.force_sizes(i, &value, &self.jump_multipliers, &is_prescribed);
+                condensation.residual_term_sizes(i, &value, &self.jump_multipliers, &is_prescribed);
             return band * (T::EPSILON * inactive + f64::EPSILON * prescribed) + of_scale;
         }
         let (columns, entries) = matrix.row(i);

@@ -3,9 +3,9 @@
 
 use super::contact_state::prescribed_value;
 use crate::algebra::{Contact, Inequality, PenalisedMatrix};
-use crate::linear::direct::elimination::EliminationOrder;
-use crate::linear::direct::factors::{FactorError, Factors};
-use crate::linear::direct::static_condensation::{CondensedFactors, StaticCondensation};
+use crate::linear::direct::EliminationOrder;
+use crate::linear::direct::{CondensedFactors, StaticCondensation};
+use crate::linear::direct::{FactorError, Factors};
 use crate::real::Real;
 
 /// Largest number of corrections of values and jump multipliers.
@@ -50,9 +50,10 @@ struct CorrectionSize {
 impl<'a, T: Real> InactiveSystem<'a, T> {
     /// The systems of an inequality, which may be malformed as long as none is solved.
     pub fn new(inequality: &'a Inequality<T>) -> Self {
-        let factored = inequality.factored.as_ref().filter(|_| inequality.is_well_formed());
-        let condensation = factored.map(|factored| {
-            StaticCondensation::new(factored).at(inequality.points_of_unknowns().as_deref())
+        let penalised = inequality.penalised.as_ref().filter(|_| inequality.is_well_formed());
+        let condensation = penalised.map(|penalised| {
+            StaticCondensation::new(penalised)
+                .with_points(inequality.points_of_unknowns().as_deref())
         });
         Self {
             inequality,
@@ -65,8 +66,8 @@ impl<'a, T: Real> InactiveSystem<'a, T> {
 
     /// The number of jump multipliers.
     pub fn n_jumps(&self) -> usize {
-        let factored = self.inequality.factored.as_ref().filter(|_| self.condensation.is_some());
-        factored.map_or(0, |factored| factored.n_jumps())
+        let penalised = self.inequality.penalised.as_ref().filter(|_| self.condensation.is_some());
+        penalised.map_or(0, |penalised| penalised.n_jumps())
     }
 
     /// The static condensation, if the matrix is penalised.
@@ -82,16 +83,16 @@ impl<'a, T: Real> InactiveSystem<'a, T> {
         mut unknowns: LinearUnknowns<'_, T>,
         refinements: usize,
     ) -> Result<(), FactorError> {
-        let Inequality { matrix, load, bounds, factored, .. } = self.inequality;
+        let Inequality { matrix, load, bounds, penalised, .. } = self.inequality;
         self.inactive.clear();
         let all = bounds.iter().zip(states).enumerate();
         let inactive = all.filter(|(_, (bound, state))| prescribed_value(bound, **state).is_none());
         self.inactive.extend(inactive.map(|(i, _)| i as u32));
-        if let (Some(condensation), Some(factored)) = (&self.condensation, factored) {
+        if let (Some(condensation), Some(penalised)) = (&self.condensation, penalised) {
             let mut is_inactive = vec![false; unknowns.values.len()];
             self.inactive.iter().for_each(|&i| is_inactive[i as usize] = true);
             let factors = condensation.factor(&is_inactive)?;
-            let system = PenalisedSystem { factored, condensation, factors, is_inactive };
+            let system = PenalisedSystem { penalised, condensation, factors, is_inactive };
             return system.solve(&mut unknowns, refinements);
         }
         let factors = self.factor()?;
@@ -117,7 +118,7 @@ impl<'a, T: Real> InactiveSystem<'a, T> {
         }
         let order = match self.elimination_order.take() {
             Some(order) => order,
-            None => EliminationOrder::of(self.inequality)?,
+            None => EliminationOrder::for_inequality(self.inequality)?,
         };
         let order = self.elimination_order.insert(order);
         Factors::in_order(matrix, &self.inactive, order)
@@ -127,7 +128,7 @@ impl<'a, T: Real> InactiveSystem<'a, T> {
 /// The system `K u + M^T p = c`, `M u - p / s = g` of a penalised matrix, for values `u` of the inactive
 /// unknowns and jump multipliers `p`.
 struct PenalisedSystem<'s, 'a, T> {
-    factored: &'a PenalisedMatrix<T>,
+    penalised: &'a PenalisedMatrix<T>,
     condensation: &'s StaticCondensation<'a, T>,
     factors: CondensedFactors<T>,
     is_inactive: Vec<bool>,
@@ -170,10 +171,10 @@ impl<T: Real> PenalisedSystem<'_, '_, T> {
         unknowns: &mut LinearUnknowns<'_, T>,
         mismatch: &mut [f64],
     ) -> CorrectionSize {
-        let factored = self.factored;
+        let penalised = self.penalised;
         for (jump, out) in mismatch.iter_mut().enumerate() {
             let multiplier = unknowns.jump_multipliers[jump].to_f64();
-            *out = factored.mismatch(jump, |i| unknowns.values[i].to_f64(), multiplier);
+            *out = penalised.jump_residual(jump, |i| unknowns.values[i].to_f64(), multiplier);
         }
         self.compute_residual(unknowns);
         let LinearUnknowns { values, jump_multipliers, residual } = unknowns;
@@ -183,13 +184,13 @@ impl<T: Real> PenalisedSystem<'_, '_, T> {
             *x += T::lit(*correction);
             change = change.max(correction.abs());
             value = value.max(x.to_f64().abs());
-            diagonal_energy += factored.diagonal(i) * x.to_f64().powi(2);
+            diagonal_energy += penalised.stiffness_diagonal(i) * x.to_f64().powi(2);
         }
         for (multiplier, correction) in jump_multipliers.iter_mut().zip(mismatch) {
             *multiplier += T::lit(*correction);
         }
         let multiplier = |jump: usize| jump_multipliers[jump].to_f64();
-        let energy = factored.energy(|i| values[i].to_f64(), multiplier);
+        let energy = penalised.energy(|i| values[i].to_f64(), multiplier);
         CorrectionSize { work, change, value, energy, diagonal_energy }
     }
 
@@ -197,6 +198,6 @@ impl<T: Real> PenalisedSystem<'_, '_, T> {
     fn compute_residual(&self, unknowns: &mut LinearUnknowns<'_, T>) {
         let LinearUnknowns { values, jump_multipliers, residual } = unknowns;
         let multiplier = |jump: usize| jump_multipliers[jump].to_f64();
-        self.factored.residual_with_forces(|i| values[i].to_f64(), multiplier, residual);
+        self.penalised.residual_with_jump_multipliers(|i| values[i].to_f64(), multiplier, residual);
     }
 }

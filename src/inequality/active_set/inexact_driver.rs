@@ -9,10 +9,10 @@ use crate::inequality::initial_guess::InitialGuess;
 use crate::inequality::validation::check_definite;
 use crate::inequality::{Outcome, Solution};
 use crate::linear::CoarseSpaces;
-use crate::linear::direct::factors::FactorError;
-use crate::linear::krylov::conjugate_gradients::Stop;
-use crate::linear::krylov::{Krylov, symmetric_part};
-use crate::linear::precondition::choice::Preconditioners;
+use crate::linear::direct::FactorError;
+use crate::linear::krylov::StoppingRule;
+use crate::linear::krylov::{KrylovMethod, symmetric_part};
+use crate::linear::precondition::AnyPreconditioner;
 use crate::real::Real;
 
 /// The cost of a step with factors in inexact steps.
@@ -36,7 +36,7 @@ pub(crate) struct Failure {
 }
 
 /// How a run ends: an outcome, or `None` if the method does not apply and another one follows.
-type End = Option<Outcome>;
+type StopReason = Option<Outcome>;
 
 impl<'a, T: Real> InexactDriver<'a, T> {
     /// A run from the contact states of the inequality's start and the values of the guess.
@@ -55,11 +55,11 @@ impl<'a, T: Real> InexactDriver<'a, T> {
         let is_symmetric = inequality.symmetric;
         let matrix = symmetric_part(inequality);
         let known = &self.guess.coarse_spaces;
-        let Some(spaces) = Preconditioners::functions(&matrix, inequality, known) else {
+        let Some(spaces) = AnyPreconditioner::coarse_spaces(&matrix, inequality, known) else {
             return Err(self.into_failure());
         };
         let preconditioner =
-            Preconditioners::new(&matrix, &inequality.supports, &spaces, is_symmetric);
+            AnyPreconditioner::new(&matrix, &inequality.supports, &spaces, is_symmetric);
         let Some(mut preconditioner) = preconditioner else {
             return Err(self.into_failure());
         };
@@ -80,14 +80,17 @@ impl<'a, T: Real> InexactDriver<'a, T> {
     }
 
     /// The active set iteration. `Ok` if it converged, else how it ends.
-    fn find_active_set(&mut self, preconditioner: &mut Preconditioners<'_, T>) -> Result<(), End> {
+    fn find_active_set(
+        &mut self,
+        preconditioner: &mut AnyPreconditioner<'_, T>,
+    ) -> Result<(), StopReason> {
         let Self { settings, guess, .. } = *self;
         let tolerance = guess.energy_tolerance.unwrap_or(0.0).max(0.1 * T::CERTIFICATE_LIMIT);
         // a residual is no measure of the energy error: a start for another solve need not have a
         // small one
         let residual_limit =
             if guess.energy_tolerance.is_some() { f64::INFINITY } else { T::CERTIFICATE_LIMIT };
-        let mut krylov = Krylov::new(self.iterate.inequality);
+        let mut krylov = KrylovMethod::new(self.iterate.inequality);
         self.iterate.energy = self.iterate.evaluate_kkt(settings.rounding_band).energy;
         let is_linear = !self.iterate.inequality.bounds.iter().any(Bound::is_inequality);
         let mut progress = ProgressMonitor::new(is_linear);
@@ -95,10 +98,14 @@ impl<'a, T: Real> InexactDriver<'a, T> {
             if progress.active_set_changed {
                 self.begin_step(preconditioner)?;
             }
-            let stop = Stop {
+            let stop = StoppingRule {
                 norm: tolerance * self.iterate.energy,
-                share: if progress.is_accurate() { 0.0 } else { preconditioner.share() },
-                iterations: MAX_ITERATIONS,
+                reduction: if progress.is_accurate() {
+                    0.0
+                } else {
+                    preconditioner.inexact_reduction()
+                },
+                max_iterations: MAX_ITERATIONS,
             };
             let evaluation = self.solve_and_evaluate(&mut krylov, preconditioner, stop)?;
             let energy = evaluation.energy;
@@ -121,13 +128,16 @@ impl<'a, T: Real> InexactDriver<'a, T> {
     }
 
     /// Counts a step and restricts the preconditioner to the inactive unknowns.
-    fn begin_step(&mut self, preconditioner: &mut Preconditioners<'_, T>) -> Result<(), End> {
+    fn begin_step(
+        &mut self,
+        preconditioner: &mut AnyPreconditioner<'_, T>,
+    ) -> Result<(), StopReason> {
         if self.iterate.outer >= self.settings.max_outer {
             return Err(Some(Outcome::IterationLimit));
         }
         self.iterate.outer += 1;
         let is_symmetric = self.iterate.inequality.symmetric;
-        preconditioner.fix(&self.iterate.eliminated).map_err(|error| match error {
+        preconditioner.set_fixed(&self.iterate.eliminated).map_err(|error| match error {
             FactorError::OutOfMemory => Some(Outcome::OutOfMemory),
             FactorError::NotPositive if !is_symmetric => Some(Outcome::NotCoercive),
             // factors of the whole matrix give the reason
@@ -138,10 +148,10 @@ impl<'a, T: Real> InexactDriver<'a, T> {
     /// Solves the linear system of a step and evaluates the KKT conditions.
     fn solve_and_evaluate(
         &mut self,
-        krylov: &mut Krylov<'_, T>,
-        preconditioner: &mut Preconditioners<'_, T>,
-        stop: Stop,
-    ) -> Result<KktEvaluation, End> {
+        krylov: &mut KrylovMethod<'_, T>,
+        preconditioner: &mut AnyPreconditioner<'_, T>,
+        stop: StoppingRule,
+    ) -> Result<KktEvaluation, StopReason> {
         let run = self.iterate.solve_linear(krylov, preconditioner, stop);
         match self.iterate.outcome_of(&run) {
             Some(Outcome::Converged) => {}
@@ -152,18 +162,18 @@ impl<'a, T: Real> InexactDriver<'a, T> {
             return Err(Some(Outcome::NotFinite));
         }
         self.iterate.energy = evaluation.energy;
-        self.iterate.residual_norm = run.last;
+        self.iterate.residual_norm = run.norm;
         Ok(evaluation)
     }
 
-    /// Permits another solution where rounding has made the recursive residual of the Krylov method
+    /// Permits another solution where rounding has made the recursive residual of the KrylovMethod method
     /// smaller than the true one. If that happens too often the run ends; the direct method follows for
     /// penalised matrices, since jump multipliers as unknowns reduce rounding.
-    fn repeat_after_rounding(&self, progress: &mut ProgressMonitor) -> Result<(), End> {
+    fn repeat_after_rounding(&self, progress: &mut ProgressMonitor) -> Result<(), StopReason> {
         if progress.may_repeat() {
             return Ok(());
         }
-        let is_penalised = self.iterate.inequality.factored.is_some();
+        let is_penalised = self.iterate.inequality.penalised.is_some();
         Err(if is_penalised { None } else { Some(Outcome::Stalled) })
     }
 
@@ -173,7 +183,7 @@ impl<'a, T: Real> InexactDriver<'a, T> {
         &mut self,
         progress: &mut ProgressMonitor,
         changes: usize,
-    ) -> Result<(), End> {
+    ) -> Result<(), StopReason> {
         if self.settings.globalisation == Globalisation::OnStagnation
             && self.iterate.inequality.start != Start::Cold
             && progress.stagnates(changes, self.stagnation_steps())
@@ -189,7 +199,7 @@ impl<'a, T: Real> InexactDriver<'a, T> {
     /// multigrid or static condensation, which halves the unknowns.
     fn stagnation_steps(&self) -> usize {
         let is_nested = matches!(self.guess.coarse_spaces, CoarseSpaces::CoarseLevel(_));
-        let is_cheap = is_nested || self.iterate.inequality.factored.is_some();
+        let is_cheap = is_nested || self.iterate.inequality.penalised.is_some();
         self.settings.stagnation_steps * if is_cheap { 1 } else { DIRECT_STEP_COST }
     }
 
@@ -197,7 +207,7 @@ impl<'a, T: Real> InexactDriver<'a, T> {
     fn into_solution(
         mut self,
         outcome: Outcome,
-        preconditioner: &mut Preconditioners<'_, T>,
+        preconditioner: &mut AnyPreconditioner<'_, T>,
     ) -> Solution<T> {
         let is_converged = outcome == Outcome::Converged;
         let bound = is_converged.then(|| self.iterate.error_bound(preconditioner)).flatten();

@@ -5,9 +5,10 @@ use super::state_history::{fingerprint, state_key};
 use crate::algebra::{Contact, Inequality};
 use crate::inequality::Outcome;
 use crate::inequality::initial_guess::InitialGuess;
-use crate::linear::krylov::Krylov;
-use crate::linear::krylov::conjugate_gradients::{End, Preconditioner, Run, Stop};
-use crate::parallel::vectors::{each_mut, zeros};
+use crate::linear::krylov::KrylovMethod;
+use crate::linear::krylov::{KrylovRun, StopReason, StoppingRule};
+use crate::linear::precondition::Preconditioner;
+use crate::parallel::vectors::{for_each_chunk, zeros};
 use crate::real::Real;
 
 /// Condition number of the preconditioned matrix above which the preconditioner counts as unsuitable:
@@ -84,12 +85,12 @@ impl<'a, T: Real> InexactIterate<'a, T> {
     /// Corrects the values by one linear system on the inactive unknowns.
     pub fn solve_linear(
         &mut self,
-        krylov: &mut Krylov<'_, T>,
+        krylov: &mut KrylovMethod<'_, T>,
         preconditioner: &mut dyn Preconditioner<T>,
-        stop: Stop,
-    ) -> Run {
+        stop: StoppingRule,
+    ) -> KrylovRun {
         let eliminated = &self.eliminated;
-        each_mut(&mut self.residual, |range, r| {
+        for_each_chunk(&mut self.residual, |range, r| {
             for (r, &eliminated) in r.iter_mut().zip(&eliminated[range]) {
                 if eliminated {
                     *r = T::lit(0.0);
@@ -104,18 +105,18 @@ impl<'a, T: Real> InexactIterate<'a, T> {
 
     /// The outcome of a linear system, which updates the smallest Ritz value; `None` if the
     /// preconditioner is unsuitable or the iterations did not suffice.
-    pub fn outcome_of(&mut self, run: &Run) -> Option<Outcome> {
+    pub fn outcome_of(&mut self, run: &KrylovRun) -> Option<Outcome> {
         let is_symmetric = self.inequality.symmetric;
         let (low, high) = run.ritz.unwrap_or((1.0, 1.0));
         self.lowest_ritz_value = self.lowest_ritz_value.min(low);
-        match run.end {
+        match run.reason {
             // the driver confirms by factors
-            End::NotPositive if !is_symmetric => Some(Outcome::NotCoercive),
+            StopReason::NotPositive if !is_symmetric => Some(Outcome::NotCoercive),
             _ if high > MAX_CONDITION * low => None,
-            End::Reached => Some(Outcome::Converged),
-            End::NotPositive => Some(Outcome::NotCoercive),
-            End::NotFinite => Some(Outcome::NotFinite),
-            End::Limit => None,
+            StopReason::Converged => Some(Outcome::Converged),
+            StopReason::NotPositive => Some(Outcome::NotCoercive),
+            StopReason::NotFinite => Some(Outcome::NotFinite),
+            StopReason::IterationLimit => None,
         }
     }
 
@@ -166,7 +167,7 @@ impl<'a, T: Real> InexactIterate<'a, T> {
     pub fn recompute_residual(&mut self) {
         let penalised = self.penalised_residual();
         let residual_at = residual_at(self.inequality, &self.values, penalised.as_deref());
-        each_mut(&mut self.residual, |range, r| {
+        for_each_chunk(&mut self.residual, |range, r| {
             range.zip(r).for_each(|(i, r)| *r = T::lit(residual_at(i)));
         });
     }
@@ -174,9 +175,9 @@ impl<'a, T: Real> InexactIterate<'a, T> {
     /// The residual `c - K u - M^T S (M u - g)` of a penalised matrix, which has less rounding than that
     /// of the assembled one; `None` if the matrix is not penalised.
     pub fn penalised_residual(&self) -> Option<Vec<f64>> {
-        let factored = self.inequality.factored.as_ref()?;
+        let penalised = self.inequality.penalised.as_ref()?;
         let mut residual = vec![0.0; self.values.len()];
-        factored.residual(|i| self.values[i].to_f64(), &mut residual);
+        penalised.residual(|i| self.values[i].to_f64(), &mut residual);
         Some(residual)
     }
 }

@@ -3,7 +3,7 @@
 
 use super::inexact_iterate::{InexactIterate, residual_at};
 use crate::algebra::{Bound, Contact};
-use crate::parallel::vectors::{map, map_mut};
+use crate::parallel::vectors::{map_chunks, map_chunks_mut};
 use crate::real::Real;
 
 /// The violations of the KKT conditions, and the active set they predict.
@@ -47,7 +47,7 @@ impl<T: Real> InexactIterate<'_, T> {
         let displacement = evaluation.displacement;
         evaluation.displacement = if displacement > 0.0 { displacement } else { 1.0 };
         let tolerance = band * T::EPSILON * evaluation.displacement;
-        let parts = map(self.values.len(), |range| {
+        let parts = map_chunks(self.values.len(), |range| {
             let mut part = KktEvaluation::default();
             range.for_each(|i| self.predict(i, tolerance, band, &mut part));
             part
@@ -71,7 +71,7 @@ impl<T: Real> InexactIterate<'_, T> {
         let values = &self.values;
         let penalised = self.penalised_residual();
         let residual_at = residual_at(self.inequality, values, penalised.as_deref());
-        map_mut(&mut self.residual, |range, r| {
+        map_chunks_mut(&mut self.residual, |range, r| {
             let (mut energy, mut displacement) = (0.0, 0.0_f64);
             for (i, r) in range.zip(r) {
                 let (x, b) = (values[i].to_f64(), load[i].to_f64());
@@ -107,7 +107,7 @@ impl<T: Real> InexactIterate<'_, T> {
                 }
                 return;
             }
-            _ if bound.only_value().is_some() => return,
+            _ if bound.fixed_value().is_some() => return,
             Contact::Lower => r,
             Contact::Upper => -r,
         };

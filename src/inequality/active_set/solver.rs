@@ -49,7 +49,7 @@ impl<T: Real> InequalitySolver<T> for ActiveSet {
 }
 
 impl ActiveSet {
-    /// The active set method with preconditioned Krylov methods, without factors of the matrix.
+    /// The active set method with preconditioned KrylovMethod methods, without factors of the matrix.
     fn solve_inexactly<T: Real>(
         &self,
         inequality: &Inequality<T>,

@@ -1,11 +1,11 @@
 //! The linear systems of the interior point method: `A + D` with a nonnegative diagonal `D`.
 
 use crate::algebra::Inequality;
-use crate::algebra::submatrix::Submatrix;
+use crate::algebra::Submatrix;
 use crate::inequality::certificate::positive_diagonal;
-use crate::linear::direct::elimination::EliminationOrder;
-use crate::linear::direct::factors::{Analysis, FactorError, Factors};
-use crate::linear::direct::static_condensation::{CondensedFactors, StaticCondensation};
+use crate::linear::direct::EliminationOrder;
+use crate::linear::direct::{CondensedFactors, StaticCondensation};
+use crate::linear::direct::{FactorError, Factors, SymbolicFactor};
 use crate::real::Real;
 
 /// A vector of the mixed system: values of the unknowns, and jump multipliers where the matrix is a
@@ -31,14 +31,15 @@ pub(crate) struct BarrierSystem<'h, 'a, T> {
 /// for every `D`.
 struct LowerTriangle<T> {
     matrix: Submatrix<T>,
-    analysis: Analysis,
+    analysis: SymbolicFactor,
 }
 
 impl<T: Real> LowerTriangle<T> {
     fn new(inequality: &Inequality<T>, free: &[u32]) -> Result<Self, FactorError> {
-        let matrix = Submatrix::left_of_diagonal(&inequality.matrix, free);
-        let order = EliminationOrder::of(inequality)?.among(free, inequality.size());
-        let analysis = Analysis::new(&matrix, Some(order))?;
+        let matrix = Submatrix::lower_triangle(&inequality.matrix, free);
+        let order =
+            EliminationOrder::for_inequality(inequality)?.restricted_to(free, inequality.size());
+        let analysis = SymbolicFactor::new(&matrix, Some(order))?;
         Ok(Self { matrix, analysis })
     }
 }
@@ -57,7 +58,7 @@ impl<'h, 'a, T: Real> BarrierSystem<'h, 'a, T> {
         inequality: &'a Inequality<T>,
         condensation: Option<&'h StaticCondensation<'a, T>>,
     ) -> Self {
-        let free = inequality.not_given();
+        let free = inequality.free_unknowns();
         let mut is_free = vec![false; inequality.size()];
         free.iter().for_each(|&i| is_free[i as usize] = true);
         Self { inequality, condensation, free, is_free, lower_triangle: None }
@@ -71,7 +72,7 @@ impl<'h, 'a, T: Real> BarrierSystem<'h, 'a, T> {
     /// The diagonal entry of an unknown as a scale: of the stiffness `K` without penalties where the
     /// matrix is penalised and the entry is positive, else of `A`.
     pub fn diagonal_scale(&self, i: usize) -> f64 {
-        let stiffness = self.inequality.factored.as_ref().map_or(0.0, |f| f.diagonal(i));
+        let stiffness = self.inequality.penalised.as_ref().map_or(0.0, |f| f.stiffness_diagonal(i));
         if stiffness > 0.0 { stiffness } else { positive_diagonal(self.inequality, i) }
     }
 
@@ -92,7 +93,7 @@ impl<'h, 'a, T: Real> BarrierSystem<'h, 'a, T> {
             };
             let mut matrix = triangle.matrix.clone();
             add_diagonal(&mut matrix, &self.free, diagonal)?;
-            Factors::definite(&mut matrix, &triangle.analysis)?
+            Factors::cholesky(&mut matrix, &triangle.analysis)?
         } else {
             let mut matrix = Submatrix::new(&self.inequality.matrix, &self.free);
             add_diagonal(&mut matrix, &self.free, diagonal)?;
@@ -124,16 +125,16 @@ impl<'h, 'a, T: Real> BarrierSystem<'h, 'a, T> {
     /// Computes the residual `b - A u` and, where jump multipliers `p` are unknowns, `g - M u + p / s`.
     /// Returns the energy at the point plus `sum b_i^2 / d_i`, a positive scale for complementarity.
     pub fn residual(&self, point: &MixedVector, residual: &mut MixedVector) -> f64 {
-        let Inequality { load, factored, .. } = self.inequality;
+        let Inequality { load, penalised, .. } = self.inequality;
         let value = |i: usize| point.values[i];
-        let (load, energy) = match factored {
-            Some(factored) if self.condensation.is_some() => {
+        let (load, energy) = match penalised {
+            Some(penalised) if self.condensation.is_some() => {
                 let multiplier = |jump: usize| point.jump_multipliers[jump];
-                factored.residual_with_forces(value, multiplier, &mut residual.values);
+                penalised.residual_with_jump_multipliers(value, multiplier, &mut residual.values);
                 for (jump, out) in residual.jump_multipliers.iter_mut().enumerate() {
-                    *out = factored.mismatch(jump, value, multiplier(jump));
+                    *out = penalised.jump_residual(jump, value, multiplier(jump));
                 }
-                (&factored.load, factored.energy(value, multiplier))
+                (&penalised.load, penalised.energy(value, multiplier))
             }
             _ => {
                 self.inequality.residual_of(&value, &mut residual.values);

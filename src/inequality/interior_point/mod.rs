@@ -9,7 +9,7 @@ mod barrier_system;
 mod path_expansion;
 
 use crate::algebra::{Bound, Contact, Inequality};
-use crate::linear::direct::static_condensation::StaticCondensation;
+use crate::linear::direct::StaticCondensation;
 use crate::real::Real;
 use barrier::{BarrierTerm, MAX_ORDER, RestartTerm, mean_complementarity};
 use barrier_system::{BarrierSystem, MixedVector};
@@ -89,7 +89,7 @@ impl<'h, 'a, T: Real> InteriorPoint<'h, 'a, T> {
         jump_multipliers: &[T],
     ) -> Self {
         let bounds = inequality.bounds.iter().zip(values);
-        let values = bounds.map(|(bound, &x)| bound.only_value().unwrap_or(x).to_f64()).collect();
+        let values = bounds.map(|(bound, &x)| bound.fixed_value().unwrap_or(x).to_f64()).collect();
         let jump_multipliers = jump_multipliers.iter().map(|p| p.to_f64()).collect();
         let restart = Restart {
             point: MixedVector { values, jump_multipliers },
@@ -300,7 +300,7 @@ mod tests {
             supports: vec![],
             points: vec![],
             start: Start::Cold,
-            factored: None,
+            penalised: None,
         }
     }
 

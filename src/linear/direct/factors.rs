@@ -1,190 +1,133 @@
-//! Direct solvers of linear systems. This file and [`kernels`](crate::linear::direct::kernels) alone name the
-//! factorisations of faer, [`elimination`](crate::linear::direct::elimination) its orders.
+//! Sparse Cholesky and LU factors of a submatrix.
 
 use std::sync::Arc;
 
+use faer::MatMut;
 use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::linalg::cholesky::llt::factor::LltError;
-use faer::perm::Perm;
 use faer::sparse::linalg::LuError;
 use faer::sparse::linalg::cholesky::{
-    CholeskySymbolicParams, SymbolicCholesky, SymbolicCholeskyRaw, SymmetricOrdering,
-    factorize_symbolic_cholesky, supernodal::SupernodalLltRef,
+    SymbolicCholesky, SymbolicCholeskyRaw, supernodal::SupernodalLltRef,
 };
 use faer::sparse::linalg::lu::{LuSymbolicParams, NumericLu, SymbolicLu, factorize_symbolic_lu};
-use faer::sparse::{FaerError, SparseColMatRef};
-use faer::{MatMut, Side};
 
-use super::elimination::EliminationOrder;
+use super::elimination_order::EliminationOrder;
+use super::error::{FactorError, out_of_memory};
 use super::kernels::PAR;
-use crate::algebra::SparseMatrix;
-use crate::algebra::submatrix::Submatrix;
-use crate::parallel::vectors::signs;
+use super::symbolic_factor::{SymbolicFactor, transpose_by_columns};
+use crate::algebra::{SparseMatrix, Submatrix};
+use crate::parallel::vectors::pseudorandom_signs;
 use crate::real::Real;
 
-/// A pivot below this many units of rounding of the diagonal entry it came from has lost every
-/// digit to cancellation: the matrix is singular as far as this scalar can tell.
-const LOST_PIVOT: f64 = 16.0;
-
-/// Why a matrix could not be factored.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
-#[non_exhaustive]
-pub enum FactorError {
-    /// A direction of negative curvature: the symmetric matrix is indefinite.
-    #[error("the matrix is not positive definite")]
-    NotPositive,
-    /// Singular to working precision. A symmetric matrix that is positive semidefinite up to
-    /// rounding (a body that nothing holds) is singular, not indefinite.
-    #[error("the matrix is singular to working precision")]
-    Singular,
-    /// The factors do not fit into memory or into the index type.
-    #[error("the factors do not fit into memory")]
-    OutOfMemory,
-}
-
-impl From<FaerError> for FactorError {
-    fn from(_: FaerError) -> Self {
-        // Index overflow and memory are all that faer's own errors tell apart.
-        FactorError::OutOfMemory
-    }
-}
-
-/// The factors of a matrix restricted to some of its rows and columns.
+/// Pivots up to this many rounding units of their diagonal entry are zero: all their digits are lost
+/// to cancellation.
+const PIVOT_TOLERANCE: f64 = 16.0;
+/// The factors of a submatrix `A_II`, `I` the set of free unknowns.
 ///
-/// Symmetric: sparse Cholesky in an [`EliminationOrder`] or that of approximate minimum degree,
-/// supernodal where that pays.
-/// Otherwise: sparse LU with partial pivoting of the transpose, which is what rows are to a
-/// factorisation by columns; a matrix dominant by rows is then eliminated without exchanges.
+/// For a symmetric matrix these are the sparse Cholesky factors for an [`EliminationOrder`] or for
+/// approximate minimum degree, supernodal where that is faster. For other matrices they are the sparse
+/// LU factors of the transpose with partial pivoting; the rows of a matrix are the columns of its
+/// transpose, so that a row-dominant matrix needs no exchanges.
 #[derive(Debug)]
 pub struct Factors<T> {
     size: usize,
-    kind: Kind<T>,
+    factorisation: Factorisation<T>,
 }
 
 #[derive(Debug)]
-enum Kind<T> {
+enum Factorisation<T> {
     Empty,
     Cholesky { symbolic: Arc<SymbolicCholesky<u32>>, values: Vec<T> },
     Lu { symbolic: Box<SymbolicLu<u32>>, numeric: Box<NumericLu<u32, T>> },
 }
 
-/// Where the entries of the Cholesky factor of a pattern are.
-#[derive(Clone, Debug)]
-pub(crate) struct Analysis(Arc<SymbolicCholesky<u32>>);
-
-impl Analysis {
-    /// Of the entries on and left of the diagonal, for an order of elimination; without one, by
-    /// approximate minimum degree.
-    ///
-    /// # Errors
-    /// [`FactorError::OutOfMemory`].
-    pub fn new<T: Real>(
-        restricted: &Submatrix<T>,
-        order: Option<Vec<u32>>,
-    ) -> Result<Self, FactorError> {
-        let order = order.map(|order| {
-            let mut inverse = vec![0; order.len()];
-            order.iter().enumerate().for_each(|(k, &i)| inverse[i as usize] = k as u32);
-            Perm::new_checked(order.into(), inverse.into(), restricted.size())
-        });
-        let ordering = match &order {
-            Some(order) => SymmetricOrdering::Custom(order.as_ref()),
-            None => SymmetricOrdering::Amd,
-        };
-        // Row i on and left of the diagonal is column i on and above it.
-        let pattern = columns(restricted);
-        let params = CholeskySymbolicParams::default();
-        let symbolic =
-            factorize_symbolic_cholesky(pattern.symbolic(), Side::Upper, ordering, params)?;
-        Ok(Self(Arc::new(symbolic)))
-    }
-}
-
 impl<T: Real> Factors<T> {
-    /// Factors the rows and columns `free` (ascending) of a matrix.
-    ///
-    /// Of a symmetric matrix only the entries on and left of the diagonal are read.
+    /// The factors of the rows and columns `free` (ascending) of a matrix. Only the lower triangle of
+    /// a symmetric matrix is read.
     ///
     /// # Errors
-    /// See [`FactorError`]. Numbers that are not finite end as one of them too.
+    /// See [`FactorError`]; a matrix with an entry that is not finite has one of them.
     pub fn new(
         matrix: &SparseMatrix<T>,
         symmetric: bool,
         free: &[u32],
     ) -> Result<Self, FactorError> {
         if symmetric {
-            let mut restricted = Submatrix::left_of_diagonal(matrix, free);
-            let analysis = Analysis::new(&restricted, None)?;
-            Self::definite(&mut restricted, &analysis)
+            let mut lower = Submatrix::lower_triangle(matrix, free);
+            let symbolic = SymbolicFactor::new(&lower, None)?;
+            Self::cholesky(&mut lower, &symbolic)
         } else {
             Self::lu(&Submatrix::new(matrix, free))
         }
     }
 
-    /// Factors the rows and columns `free` (ascending) of a symmetric matrix, whose unknowns are
-    /// eliminated in an order that is known. Unknowns of the order that are not free, or that the
-    /// matrix does not have, are passed over; free ones that the order does not have come last.
+    /// The Cholesky factor of the rows and columns `free` (ascending) of a symmetric matrix, in the
+    /// restriction of an order of elimination to `free`. Unknowns of `free` that the order lacks come
+    /// last.
     ///
     /// # Errors
-    /// See [`Factors::new`].
+    /// See [`FactorError`].
     pub fn in_order(
         matrix: &SparseMatrix<T>,
         free: &[u32],
         order: &EliminationOrder,
     ) -> Result<Self, FactorError> {
-        let mut restricted = Submatrix::left_of_diagonal(matrix, free);
-        let analysis = Analysis::new(&restricted, Some(order.among(free, matrix.size())))?;
-        Self::definite(&mut restricted, &analysis)
+        let mut lower = Submatrix::lower_triangle(matrix, free);
+        let order = order.restricted_to(free, matrix.size());
+        let symbolic = SymbolicFactor::new(&lower, Some(order))?;
+        Self::cholesky(&mut lower, &symbolic)
     }
 
-    /// Factors a symmetric matrix of which the entries on and left of the diagonal are given, with
-    /// the pattern that was analysed.
+    /// The Cholesky factor of a symmetric matrix, given by its lower triangle and the symbolic factor
+    /// of its pattern. After an error the diagonal may have been changed.
     ///
     /// # Errors
-    /// See [`Factors::new`].
-    pub(crate) fn definite(
-        restricted: &mut Submatrix<T>,
-        analysis: &Analysis,
+    /// See [`FactorError`].
+    pub(crate) fn cholesky(
+        lower: &mut Submatrix<T>,
+        symbolic: &SymbolicFactor,
     ) -> Result<Self, FactorError> {
-        if restricted.size() == 0 {
-            return Ok(Self { size: 0, kind: Kind::Empty });
+        if lower.size() == 0 {
+            return Ok(Self { size: 0, factorisation: Factorisation::Empty });
         }
-        Self::cholesky(restricted, analysis).map_err(|error| match error {
-            FactorError::NotPositive => why_not_positive(restricted, analysis),
+        Self::try_cholesky(lower, symbolic).map_err(|error| match error {
+            FactorError::NotPositive => indefinite_or_singular(lower, symbolic),
             other => other,
         })
     }
 
-    /// How many numbers of a Cholesky factor are stored, zeros inside blocks among them.
+    /// Number of stored entries of a Cholesky factor, zeros inside supernodes included; zero for LU
+    /// factors.
     pub fn entries(&self) -> usize {
-        match &self.kind {
-            Kind::Cholesky { values, .. } => values.len(),
-            Kind::Empty | Kind::Lu { .. } => 0,
+        match &self.factorisation {
+            Factorisation::Cholesky { values, .. } => values.len(),
+            Factorisation::Empty | Factorisation::Lu { .. } => 0,
         }
     }
 
-    /// Number of unknowns of the factored matrix.
+    /// Number of unknowns of the factored submatrix.
     pub fn size(&self) -> usize {
         self.size
     }
 
-    /// Solves for `right_sides` right-hand sides at once, stored one after the other.
+    /// Replaces right-hand sides by solutions; `x` contains `right_sides` vectors of
+    /// [`Factors::size`] entries, one after the other.
     ///
     /// # Panics
-    /// If `x` does not hold that many vectors of [`Factors::size`] numbers.
+    /// If `x` is not empty and has another length.
     pub fn solve_in_place(&self, x: &mut [T], right_sides: usize) {
         if x.is_empty() {
             return;
         }
         let x = MatMut::from_column_major_slice_mut(x, self.size, right_sides);
-        match &self.kind {
-            Kind::Empty => {}
-            Kind::Cholesky { symbolic, values } => {
+        match &self.factorisation {
+            Factorisation::Empty => {}
+            Factorisation::Cholesky { symbolic, values } => {
                 let scratch = symbolic.solve_in_place_scratch::<T>(right_sides, PAR);
                 let mut memory = MemBuffer::new(scratch);
                 T::cholesky_solve(symbolic, values, x, MemStack::new(&mut memory));
             }
-            Kind::Lu { symbolic, numeric } => {
+            Factorisation::Lu { symbolic, numeric } => {
                 let scratch = symbolic.solve_transpose_in_place_scratch::<T>(right_sides, PAR);
                 let mut memory = MemBuffer::new(scratch);
                 T::lu_solve_transpose(symbolic, numeric, x, MemStack::new(&mut memory));
@@ -192,8 +135,8 @@ impl<T: Real> Factors<T> {
         }
     }
 
-    fn cholesky(restricted: &Submatrix<T>, analysis: &Analysis) -> Result<Self, FactorError> {
-        let (a, symbolic) = (columns(restricted), analysis.0.clone());
+    fn try_cholesky(lower: &Submatrix<T>, symbolic: &SymbolicFactor) -> Result<Self, FactorError> {
+        let (a, symbolic) = (transpose_by_columns(lower), symbolic.shared());
         let mut values = Vec::new();
         values.try_reserve_exact(symbolic.len_val()).map_err(|_| FactorError::OutOfMemory)?;
         values.resize(symbolic.len_val(), T::lit(0.0));
@@ -201,62 +144,66 @@ impl<T: Real> Factors<T> {
         let mut memory = MemBuffer::try_new(scratch).map_err(|_| FactorError::OutOfMemory)?;
         T::cholesky(&symbolic, a, &mut values, MemStack::new(&mut memory))
             .map_err(|LltError::NonPositivePivot { .. }| FactorError::NotPositive)?;
-        if pivots_hold(&symbolic, &values, &restricted.diagonal()) {
-            Ok(Self { size: restricted.size(), kind: Kind::Cholesky { symbolic, values } })
+        if pivots_are_significant(&symbolic, &values, &lower.diagonal()) {
+            let factorisation = Factorisation::Cholesky { symbolic, values };
+            Ok(Self { size: lower.size(), factorisation })
         } else {
             Err(FactorError::Singular)
         }
     }
 
-    /// Factors any matrix.
+    /// The LU factors of a matrix.
     ///
     /// # Errors
-    /// See [`Factors::new`].
-    pub(crate) fn lu(restricted: &Submatrix<T>) -> Result<Self, FactorError> {
-        if restricted.size() == 0 {
-            return Ok(Self { size: 0, kind: Kind::Empty });
+    /// See [`FactorError`].
+    pub(crate) fn lu(matrix: &Submatrix<T>) -> Result<Self, FactorError> {
+        if matrix.size() == 0 {
+            return Ok(Self { size: 0, factorisation: Factorisation::Empty });
         }
-        let a = columns(restricted);
-        let symbolic = factorize_symbolic_lu(a.symbolic(), LuSymbolicParams::default())?;
+        let a = transpose_by_columns(matrix);
+        let symbolic = factorize_symbolic_lu(a.symbolic(), LuSymbolicParams::default())
+            .map_err(out_of_memory)?;
         let mut numeric = NumericLu::new();
         let scratch = symbolic.factorize_numeric_lu_scratch::<T>(PAR, Default::default());
         let mut memory = MemBuffer::try_new(scratch).map_err(|_| FactorError::OutOfMemory)?;
         T::lu(&symbolic, a, &mut numeric, MemStack::new(&mut memory)).map_err(
             |error| match error {
                 LuError::SymbolicSingular { .. } => FactorError::Singular,
-                LuError::Generic(error) => error.into(),
+                LuError::Generic(error) => out_of_memory(error),
             },
         )?;
-        let kind = Kind::Lu { symbolic: Box::new(symbolic), numeric: Box::new(numeric) };
-        let factors = Self { size: restricted.size(), kind };
-        if factors.condition_holds(restricted) { Ok(factors) } else { Err(FactorError::Singular) }
+        let factorisation =
+            Factorisation::Lu { symbolic: Box::new(symbolic), numeric: Box::new(numeric) };
+        let factors = Self { size: matrix.size(), factorisation };
+        if factors.is_regular(matrix) { Ok(factors) } else { Err(FactorError::Singular) }
     }
 
-    /// Whether the matrix, its rows scaled to norm one, is regular to working precision.
+    /// Whether the matrix, its rows scaled to norm one, is regular to working precision: whether the
+    /// solution for a right-hand side of pseudorandom signs is smaller than one over the rounding
+    /// unit.
     ///
-    /// Partial pivoting divides by whatever pivot is left, so success alone proves nothing. A
-    /// right-hand side without structure is dominated by the least singular direction; the size
-    /// of its solution bounds the condition number from below, and so raises no false alarm.
-    fn condition_holds(&self, restricted: &Submatrix<T>) -> bool {
+    /// Partial pivoting succeeds on singular matrices too. The norm of the solution is a lower bound of
+    /// the condition number, so that no regular matrix is rejected, and nearly that number for a
+    /// right-hand side with a component in the lowest singular direction.
+    fn is_regular(&self, matrix: &Submatrix<T>) -> bool {
         let mut x: Vec<T> = (0..self.size)
-            .zip(signs())
+            .zip(pseudorandom_signs())
             .map(|(i, is_positive)| {
-                let norm: f64 = restricted.row(i).1.iter().map(|a| a.to_f64().abs()).sum();
+                let norm: f64 = matrix.row(i).1.iter().map(|a| a.to_f64().abs()).sum();
                 T::lit(if is_positive { norm } else { -norm })
             })
             .collect();
         self.solve_in_place(&mut x, 1);
-        // Written so that a number that is not finite fails.
-        x.iter().all(|x| x.to_f64().abs() * LOST_PIVOT * T::EPSILON < 1.0)
+        // The comparison is false for numbers that are not finite.
+        x.iter().all(|x| x.to_f64().abs() * PIVOT_TOLERANCE * T::EPSILON < 1.0)
     }
 }
 
-/// Whether a matrix is positive definite on the unknowns `free` (ascending): its symmetric part
-/// has a Cholesky factor. This is the coercivity of the bilinear form, which the size of an error
-/// does not reveal.
+/// Whether a matrix is positive definite on the unknowns `free` (ascending): whether its symmetric
+/// part has a Cholesky factor. For the matrix of a bilinear form this is coercivity.
 ///
 /// # Errors
-/// [`FactorError::OutOfMemory`] if the question could not be answered.
+/// [`FactorError::OutOfMemory`].
 pub fn is_positive_definite<T: Real>(
     matrix: &SparseMatrix<T>,
     symmetric: bool,
@@ -270,60 +217,55 @@ pub fn is_positive_definite<T: Real>(
     }
 }
 
-/// The rows of a restricted matrix as the columns of its transpose.
-pub(crate) fn columns<T>(restricted: &Submatrix<T>) -> SparseColMatRef<'_, u32, T> {
-    let n = restricted.size();
-    let pattern = faer::sparse::SymbolicSparseColMatRef::new_checked(
-        n,
-        n,
-        &restricted.row_starts,
-        None,
-        &restricted.columns,
-    );
-    SparseColMatRef::new(pattern, &restricted.values)
-}
-
-/// Tells a singular matrix from an indefinite one after a pivot has failed: the former becomes
-/// definite if its diagonal grows by the root of the rounding unit, which is far above rounding
-/// and far below any curvature that a too small penalty leaves behind.
-fn why_not_positive<T: Real>(restricted: &mut Submatrix<T>, analysis: &Analysis) -> FactorError {
-    for i in 0..restricted.size() {
-        let (columns, values) = restricted.row_mut(i);
+/// The error of a matrix with a pivot that is not positive: [`FactorError::Singular`] if the matrix is
+/// positive definite with a diagonal larger by the factor `1 + sqrt(eps)`, else
+/// [`FactorError::NotPositive`]. The increase is large compared with rounding errors and small
+/// compared with the negative eigenvalues of a too small penalty.
+fn indefinite_or_singular<T: Real>(
+    lower: &mut Submatrix<T>,
+    symbolic: &SymbolicFactor,
+) -> FactorError {
+    for i in 0..lower.size() {
+        let (columns, values) = lower.row_mut(i);
         match (columns.last(), values.last_mut()) {
             (Some(&j), Some(a)) if j as usize == i && a.to_f64() > 0.0 => {
                 *a *= T::lit(1.0 + T::EPSILON.sqrt());
             }
-            // Nothing on the diagonal: curvature is negative somewhere, or the row is empty,
-            // which the diagonal alone cannot tell; either way no growth will help.
+            // No relative increase makes a diagonal entry positive that is zero or negative.
             _ => return FactorError::NotPositive,
         }
     }
-    match Factors::cholesky(restricted, analysis) {
+    match Factors::try_cholesky(lower, symbolic) {
         Ok(_) => FactorError::Singular,
         Err(error) => error,
     }
 }
 
-/// Whether every pivot kept digits of the diagonal entry it came from.
-fn pivots_hold<T: Real>(symbolic: &SymbolicCholesky<u32>, values: &[T], diagonal: &[T]) -> bool {
+/// Whether every pivot, the square of a diagonal entry of the factor, exceeds the rounding error of
+/// its diagonal entry of the matrix.
+fn pivots_are_significant<T: Real>(
+    symbolic: &SymbolicCholesky<u32>,
+    values: &[T],
+    diagonal: &[T],
+) -> bool {
     let original = symbolic.perm().map(|permutation| permutation.arrays().0);
-    let holds = |j: usize, root: T| {
+    let is_significant = |j: usize, root: T| {
         let a = diagonal[original.map_or(j, |original| original[j] as usize)].to_f64();
         let root = root.to_f64();
-        // Written so that a number that is not finite fails.
-        root.is_finite() && root * root > LOST_PIVOT * T::EPSILON * a
+        // The comparison is false for numbers that are not finite.
+        root.is_finite() && root * root > PIVOT_TOLERANCE * T::EPSILON * a
     };
     match symbolic.raw() {
         SymbolicCholeskyRaw::Simplicial(simplicial) => {
             let starts = &simplicial.col_ptr()[..simplicial.ncols()];
-            starts.iter().enumerate().all(|(j, &start)| holds(j, values[start as usize]))
+            starts.iter().enumerate().all(|(j, &start)| is_significant(j, values[start as usize]))
         }
         SymbolicCholeskyRaw::Supernodal(supernodal) => {
             let factor = SupernodalLltRef::<'_, u32, T>::new(supernodal, values);
             (0..supernodal.n_supernodes()).all(|s| {
                 let supernode = factor.supernode(s);
                 let block = supernode.val();
-                (0..block.ncols()).all(|k| holds(supernode.start() + k, block[(k, k)]))
+                (0..block.ncols()).all(|k| is_significant(supernode.start() + k, block[(k, k)]))
             })
         }
     }

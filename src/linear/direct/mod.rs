@@ -1,7 +1,22 @@
-//! Sparse factors, orders of elimination, and static condensation of over-penalties.
+//! Direct solvers of linear systems.
+//!
+//! `factors`: Cholesky and LU factors of a submatrix; `symbolic_factor`: the symbolic part of Cholesky;
+//! `repeated_cholesky`: matrices with the same pattern. `elimination_order` and `nested_dissection`:
+//! orders of elimination. `static_condensation`: factors of `K + M^T S M`. `kernels`: the numeric
+//! kernels of faer.
 
-pub(crate) mod elimination;
-pub(crate) mod factors;
-pub(crate) mod kernels;
-pub(crate) mod nested_dissection;
-pub(crate) mod static_condensation;
+mod elimination_order;
+mod error;
+mod factors;
+mod kernels;
+mod nested_dissection;
+mod repeated_cholesky;
+mod static_condensation;
+mod symbolic_factor;
+
+pub use elimination_order::EliminationOrder;
+pub use error::FactorError;
+pub use factors::{Factors, is_positive_definite};
+pub use kernels::SparseKernels;
+pub(crate) use static_condensation::{CondensedFactors, StaticCondensation};
+pub(crate) use symbolic_factor::SymbolicFactor;

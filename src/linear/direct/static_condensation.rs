@@ -1,117 +1,121 @@
-//! Direct solution with a matrix that is kept factored: blocks first, then means over facets.
+//! Static condensation of systems with the matrix `K + M^T S M`, `K` block diagonal.
 //!
-//! An over-penalty `s (here - there)^2` on the means over the sides of a facet is the least value of
-//! `2 s (here - a)^2 + 2 s (there - a)^2` over a number `a`. With these numbers given, blocks are
-//! independent of each other; what is left for the numbers is, up to `1 / s`, the matrix of
-//! Crouzeix-Raviart elements: half the unknowns in the plane, and a condition of `h^-2` whatever the
-//! weight. Blocks are eliminated together with the forces of their jumps, in the quasidefinite form
+//! The penalty `s (m - n)^2` of the means `m`, `n` over the two sides of a facet is the minimum over `a`
+//! of `2 s (m - a)^2 + 2 s (n - a)^2`. With one unknown `a` for each facet between two blocks, the
+//! *facet mean*, blocks are coupled through facet means only. Elimination of a block with its jump
+//! multipliers `p` inverts the quasidefinite matrix
 //!
 //! ```text
 //! [ K  M^T  ] [ u ]   [ r     ]
 //! [ M  -1/w ] [ p ] = [ a + t ]
 //! ```
 //!
-//! in which no weight meets a stiffness. Only where a block can move in fewer ways than it has jumps
-//! (some unknowns are fixed; quadratic functions that vanish at both Gauss points of every edge),
-//! weights remain beside stiffnesses; there they are cut down, and refinement restores them.
+//! in which weights `w` are not added to stiffnesses. The Schur complement on facet means is, up to
+//! `O(1/s)`, the matrix of Crouzeix-Raviart elements: half the unknowns in the plane, and condition
+//! `O(h^-2)` for all weights.
 //!
-//! Source of the elimination: static condensation of hybrid methods, B. Cockburn,
-//! J. Gopalakrishnan, R. Lazarov, SIAM J. Numer. Anal. 47 (2009), 1319-1365.
+//! Where the means over the sides of a block are linearly dependent functions of its free unknowns
+//! (blocks with fixed unknowns; quadratic functions that vanish at both Gauss points of every edge),
+//! the block inverse contains weights beside stiffnesses. Weights of such blocks are cut off; iterative
+//! refinement by the caller restores the solution for the true weights.
+//!
+//! Source: static condensation of hybridised methods, B. Cockburn, J. Gopalakrishnan, R. Lazarov, SIAM
+//! J. Numer. Anal. 47 (2009), 1319-1365.
 
-use super::elimination::KnownPattern;
-use super::factors::{FactorError, Factors};
+use super::error::FactorError;
+use super::factors::Factors;
+use super::repeated_cholesky::RepeatedCholesky;
 use crate::algebra::dense::{invert_in_place, rank};
-use crate::algebra::{PenalisedMatrix, SparseMatrix, Term};
+use crate::algebra::{JumpTerm, NO_INDEX, PenalisedMatrix, SparseMatrix};
 use crate::real::Real;
 
-/// Weights that hide a stiffness are cut down to this part of what hides it entirely, where fixed
-/// unknowns tie a block; refinement restores them.
-const KEPT: f64 = 1e-3;
+/// Largest weight over `k / eps`, `k` the least stiffness, in a block with dependent means because
+/// unknowns are fixed.
+const MAX_WEIGHT: f64 = 1e-3;
 
-/// The same where a block is tied as it is, times the root of what hides it: there are many of them,
-/// so that half the digits are left for stiffnesses. Forces are in balance with stiffnesses there,
-/// and every refinement restores as many digits of them.
-const KEPT_BY_ROOT: f64 = 4.0;
+/// Largest weight over `k / sqrt(eps)`, `k` the least stiffness, in a block with dependent means and no
+/// fixed unknown. All blocks of a mesh can be of this kind, so that half the digits are kept for the
+/// stiffness; jump multipliers are of the size of stiffnesses there, and each refinement step gains
+/// that many digits of them.
+const MAX_WEIGHT_BY_ROOT: f64 = 4.0;
 
-/// No mean: the jump has one side only.
-const NONE: u32 = u32::MAX;
-
-/// One side of a jump, as its block sees it.
-struct Side {
+/// One side of a jump, in the list of its block.
+struct JumpSide {
     jump: u32,
-    /// The mean that the two sides share.
+    /// The facet mean of the jump; [`NO_INDEX`] if the jump has one side only.
     mean: u32,
-    /// One here, minus one there.
+    /// The sign of this side in the jump: one for [`JumpTerm::here`], minus one for
+    /// [`JumpTerm::there`].
     sign: f64,
 }
 
-/// Which blocks meet in which jumps: the same for all sets of fixed unknowns.
+/// The adjacency of blocks and jumps, for all sets of free unknowns.
 pub(crate) struct StaticCondensation<'a, T> {
-    factored: &'a PenalisedMatrix<T>,
-    /// Start of each block's sides, and their number at the end.
+    penalised: &'a PenalisedMatrix<T>,
+    /// Start of each block's list in `sides`, and its length at the end.
     starts: Vec<usize>,
-    sides: Vec<Side>,
-    /// The pattern of the matrix on means, on and left of the diagonal.
+    sides: Vec<JumpSide>,
+    /// The lower triangle of the Schur complement on facet means, all values zero.
     pattern: SparseMatrix<T>,
-    /// What is known of its factors, whatever the active set.
-    known: KnownPattern,
+    cholesky: RepeatedCholesky,
 }
 
-/// What has been eliminated, and the factors of what is left.
+/// The inverses of all blocks with their jump multipliers, and the factors of the Schur complement.
 pub(crate) struct CondensedFactors<T> {
-    /// The inverses of all blocks with their jumps, by rows: free unknowns, then forces.
+    /// The inverses by rows: free unknowns of the block, then jump multipliers.
     inverses: Vec<f64>,
     /// Start of each block's inverse.
     starts: Vec<usize>,
-    means: Factors<T>,
+    schur_complement: Factors<T>,
 }
 
 impl<'a, T: Real> StaticCondensation<'a, T> {
-    pub fn new(factored: &'a PenalisedMatrix<T>) -> Self {
-        let n_blocks = factored.load.len() / factored.block;
-        let between: Vec<[Option<u32>; 2]> =
-            (0..factored.n_jumps()).map(|jump| factored.sides(jump)).collect();
+    /// The condensation of a matrix, without points of its unknowns.
+    pub fn new(penalised: &'a PenalisedMatrix<T>) -> Self {
+        let n_blocks = penalised.load.len() / penalised.block_size;
+        let blocks_of_jumps: Vec<[Option<u32>; 2]> =
+            (0..penalised.n_jumps()).map(|jump| penalised.blocks_of_jump(jump)).collect();
         let mut starts = vec![0; n_blocks + 1];
-        for block in between.iter().flatten().flatten() {
+        for block in blocks_of_jumps.iter().flatten().flatten() {
             starts[*block as usize + 1] += 1;
         }
         for k in 0..n_blocks {
             starts[k + 1] += starts[k];
         }
         let mut next = starts.clone();
-        let none = || Side { jump: NONE, mean: NONE, sign: 0.0 };
-        let mut sides: Vec<Side> = (0..starts[n_blocks]).map(|_| none()).collect();
+        let none = || JumpSide { jump: NO_INDEX, mean: NO_INDEX, sign: 0.0 };
+        let mut sides: Vec<JumpSide> = (0..starts[n_blocks]).map(|_| none()).collect();
         let mut n_means = 0;
-        for (jump, blocks) in between.iter().enumerate() {
+        for (jump, blocks) in blocks_of_jumps.iter().enumerate() {
             let is_shared = blocks.iter().all(Option::is_some);
-            let mean = if is_shared { n_means } else { NONE };
+            let mean = if is_shared { n_means } else { NO_INDEX };
             for (block, sign) in blocks.iter().zip([1.0, -1.0]) {
                 if let Some(block) = block {
-                    let place = &mut next[*block as usize];
-                    sides[*place] = Side { jump: jump as u32, mean, sign };
-                    *place += 1;
+                    let position = &mut next[*block as usize];
+                    sides[*position] = JumpSide { jump: jump as u32, mean, sign };
+                    *position += 1;
                 }
             }
             n_means += u32::from(is_shared);
         }
-        let known = KnownPattern::default();
-        let mut hybrid = Self { factored, starts, sides, pattern: empty(), known };
-        hybrid.pattern = hybrid.find_pattern(n_means as usize);
-        hybrid
+        let cholesky = RepeatedCholesky::default();
+        let mut condensation = Self { penalised, starts, sides, pattern: empty(), cholesky };
+        condensation.pattern = condensation.lower_pattern(n_means as usize);
+        condensation
     }
 
-    /// The same with the points of unknowns, if these are known.
+    /// Uses the points of unknowns, if known, for the order of elimination of facet means.
     #[must_use]
-    pub fn at(mut self, points: Option<&[[f32; 3]]>) -> Self {
-        self.known = KnownPattern::of_jumps(self.factored, points);
+    pub fn with_points(mut self, points: Option<&[[f32; 3]]>) -> Self {
+        self.cholesky = RepeatedCholesky::on_jumps(self.penalised, points);
         self
     }
 
-    /// The means of both blocks of a mean up to itself, ascending.
-    fn find_pattern(&self, n_means: usize) -> SparseMatrix<T> {
+    /// The lower triangle of the Schur complement: facet means of the same block are coupled.
+    fn lower_pattern(&self, n_means: usize) -> SparseMatrix<T> {
         let mut rows: Vec<Vec<u32>> = vec![Vec::new(); n_means];
         for block in 0..self.starts.len() - 1 {
-            let means = || self.sides(block).iter().map(|s| s.mean).filter(|&m| m != NONE);
+            let means = || self.sides(block).iter().map(|s| s.mean).filter(|&m| m != NO_INDEX);
             for row in means() {
                 rows[row as usize].extend(means().filter(|&m| m <= row));
             }
@@ -127,7 +131,7 @@ impl<'a, T: Real> StaticCondensation<'a, T> {
         pattern
     }
 
-    fn sides(&self, block: usize) -> &[Side] {
+    fn sides(&self, block: usize) -> &[JumpSide] {
         &self.sides[self.starts[block]..self.starts[block + 1]]
     }
 
@@ -137,39 +141,39 @@ impl<'a, T: Real> StaticCondensation<'a, T> {
         block: usize,
         is_free: &'f [bool],
     ) -> impl Iterator<Item = usize> + use<'f, T> {
-        let n = self.factored.block;
+        let n = self.penalised.block_size;
         (block * n..(block + 1) * n).filter(|&i| is_free[i])
     }
 
-    /// The weight of an unknown in the mean over a side.
-    fn in_mean(&self, side: &Side, unknown: usize) -> f64 {
-        let own = |t: &&Term<T>| {
+    /// The coefficient of an unknown in the mean over a side.
+    fn mean_coefficient(&self, side: &JumpSide, unknown: usize) -> f64 {
+        let is_own = |t: &&JumpTerm<T>| {
             let i = if side.sign > 0.0 { t.here } else { t.there };
             i as usize == unknown
         };
-        self.factored
+        self.penalised
             .terms_of(side.jump as usize)
             .iter()
-            .find(own)
+            .find(is_own)
             .map_or(0.0, |t| t.weight.to_f64())
     }
 
-    /// The weight with which a mean over a side is tied to what is across: twice that of the jump,
-    /// because the number between the two sides is half way.
-    fn weight(&self, side: &Side) -> f64 {
-        let weight = self.factored.weights[side.jump as usize].to_f64();
-        if side.mean == NONE { weight } else { 2.0 * weight }
+    /// The weight of the difference between the mean over a side and the facet mean: twice that of the
+    /// jump.
+    fn side_weight(&self, side: &JumpSide) -> f64 {
+        let weight = self.penalised.weights[side.jump as usize].to_f64();
+        if side.mean == NO_INDEX { weight } else { 2.0 * weight }
     }
 
-    /// In how many ways a block can move its means with the unknowns that may.
-    fn freedom(&self, block: usize, may_move: impl Fn(usize) -> bool) -> usize {
-        let (n, sides) = (self.factored.block, self.sides(block));
+    /// The rank of the means over the sides of a block, as functions of the unknowns `may_move`.
+    fn rank_of_means(&self, block: usize, may_move: impl Fn(usize) -> bool) -> usize {
+        let (n, sides) = (self.penalised.block_size, self.sides(block));
         let moving = (block * n..(block + 1) * n).filter(|&i| may_move(i));
-        let means = |i: usize| sides.iter().map(|side| self.in_mean(side, i)).collect();
+        let means = |i: usize| sides.iter().map(|side| self.mean_coefficient(side, i)).collect();
         rank(moving.map(means).collect(), T::EPSILON.sqrt())
     }
 
-    /// Eliminates blocks and factors what is left.
+    /// Inverts the blocks on the free unknowns and factors the Schur complement.
     ///
     /// # Errors
     /// See [`FactorError`].
@@ -177,7 +181,8 @@ impl<'a, T: Real> StaticCondensation<'a, T> {
         self.factor_shifted(is_free, &[])
     }
 
-    /// The same with a nonnegative diagonal added to `K`, if there is any.
+    /// [`StaticCondensation::factor`] for `K + D` in place of `K`; `shift` is the nonnegative diagonal of
+    /// `D`, or empty for zero.
     ///
     /// # Errors
     /// See [`FactorError`].
@@ -188,50 +193,51 @@ impl<'a, T: Real> StaticCondensation<'a, T> {
     ) -> Result<CondensedFactors<T>, FactorError> {
         let mut matrix = self.pattern.clone();
         let (mut inverses, mut starts) = (Vec::new(), vec![0]);
-        let mut local = Vec::new();
+        let mut inverse = Vec::new();
         for block in 0..self.starts.len() - 1 {
-            let first_side = self.invert(block, is_free, shift, &mut local)?;
+            let n_free = self.invert_block(block, is_free, shift, &mut inverse)?;
             let sides = self.sides(block);
-            let n = first_side + sides.len();
-            for (i, row) in sides.iter().enumerate().filter(|(_, s)| s.mean != NONE) {
+            let n = n_free + sides.len();
+            for (i, row) in sides.iter().enumerate().filter(|(_, s)| s.mean != NO_INDEX) {
                 let columns = matrix.row(row.mean as usize).0.to_vec();
                 let start = matrix.row_starts[row.mean as usize] as usize;
                 for (j, column) in sides.iter().enumerate().filter(|(_, s)| s.mean <= row.mean) {
-                    if let Ok(place) = columns.binary_search(&column.mean) {
-                        let entry = -local[(first_side + i) * n + first_side + j];
-                        matrix.values[start + place] += T::lit(entry);
+                    if let Ok(k) = columns.binary_search(&column.mean) {
+                        let entry = -inverse[(n_free + i) * n + n_free + j];
+                        matrix.values[start + k] += T::lit(entry);
                     }
                 }
             }
-            inverses.extend_from_slice(&local);
+            inverses.extend_from_slice(&inverse);
             starts.push(inverses.len());
         }
-        let means = self.known.factor(matrix)?;
-        Ok(CondensedFactors { inverses, starts, means })
+        let schur_complement = self.cholesky.factor(matrix)?;
+        Ok(CondensedFactors { inverses, starts, schur_complement })
     }
 
-    /// The inverse of a block with its jumps; returns the number of free unknowns.
-    fn invert(
+    /// Computes the inverse of a block with its jump multipliers; returns the number of free unknowns.
+    fn invert_block(
         &self,
         block: usize,
         is_free: &[bool],
         shift: &[f64],
         out: &mut Vec<f64>,
     ) -> Result<usize, FactorError> {
-        let (size, sides) = (self.factored.block, self.sides(block));
-        let stiffness = |i: usize, j: usize| self.factored.blocks[i * size + j % size].to_f64();
+        let (size, sides) = (self.penalised.block_size, self.sides(block));
+        let stiffness = |i: usize, j: usize| self.penalised.blocks[i * size + j % size].to_f64();
         let n_free = self.free(block, is_free).count();
         let n = n_free + sides.len();
-        // forces in units of the stiffness
+        // Jump multipliers are scaled by the largest stiffness.
         let diagonal = || self.free(block, is_free).map(|i| stiffness(i, i));
         let largest = diagonal().fold(0.0, f64::max);
         let least = diagonal().filter(|&d| d > 0.0).fold(largest, f64::min);
         let unit = if largest > 0.0 { largest } else { 1.0 };
-        // a shift that hides the stiffness fixes an unknown
-        let by_root = least * KEPT_BY_ROOT / T::EPSILON.sqrt();
-        let may_move = |i: usize| is_free[i] && shift.get(i).is_none_or(|&shift| shift <= by_root);
-        let moves = (block * size..(block + 1) * size).all(may_move);
-        let hidden = if moves { by_root } else { least * KEPT / T::EPSILON };
+        // A shift above this limit acts like a fixed unknown.
+        let limit_by_root = least * MAX_WEIGHT_BY_ROOT / T::EPSILON.sqrt();
+        let may_move =
+            |i: usize| is_free[i] && shift.get(i).is_none_or(|&shift| shift <= limit_by_root);
+        let all_move = (block * size..(block + 1) * size).all(may_move);
+        let limit = if all_move { limit_by_root } else { least * MAX_WEIGHT / T::EPSILON };
         out.clear();
         out.resize(n * n, 0.0);
         for (k, i) in self.free(block, is_free).enumerate() {
@@ -242,22 +248,21 @@ impl<'a, T: Real> StaticCondensation<'a, T> {
                 out[k * n + k] += shift / unit;
             }
             for (l, side) in (n_free..).zip(sides) {
-                let weight = self.in_mean(side, i);
-                out[k * n + l] = weight;
-                out[l * n + k] = weight;
+                let coefficient = self.mean_coefficient(side, i);
+                out[k * n + l] = coefficient;
+                out[l * n + k] = coefficient;
             }
         }
-        // a block that can move in fewer ways than it has jumps is tied to what is across more than
-        // once: there weights hide its stiffness
-        let is_heavy = n_free > 0 && sides.iter().any(|side| self.weight(side) > hidden);
-        let is_tied = is_heavy && self.freedom(block, may_move) < sides.len();
-        let most = if is_tied { hidden } else { f64::INFINITY };
+        // The rank decides, and is computed only if some weight exceeds the limit.
+        let is_heavy = n_free > 0 && sides.iter().any(|side| self.side_weight(side) > limit);
+        let has_dependent_means = is_heavy && self.rank_of_means(block, may_move) < sides.len();
+        let max_weight = if has_dependent_means { limit } else { f64::INFINITY };
         for (l, side) in (n_free..).zip(sides) {
-            out[l * n + l] = -unit / self.weight(side).min(most);
+            out[l * n + l] = -unit / self.side_weight(side).min(max_weight);
         }
-        let sign = invert_in_place(out, n).ok_or(FactorError::Singular)?;
-        // as many negative eigenvalues as jumps, if the stiffness has none
-        if sign != (sides.len() % 2 == 0) {
+        let is_positive = invert_in_place(out, n).ok_or(FactorError::Singular)?;
+        // With a positive definite stiffness there are as many negative eigenvalues as jumps.
+        if is_positive != (sides.len() % 2 == 0) {
             return Err(FactorError::NotPositive);
         }
         for k in 0..n {
@@ -272,8 +277,9 @@ impl<'a, T: Real> StaticCondensation<'a, T> {
         Ok(n_free)
     }
 
-    /// Solves `K u + M^T p = r` on the free unknowns, `M u - p / s = t`; `r` becomes `u`, zero where
-    /// fixed, and `t` becomes `p`. Returns the energy `u.K u + p.p / s = u.r - p.t`.
+    /// Solves `K u + M^T p = r` on the free unknowns and `M u - S^-1 p = t`. Replaces `r` by `u`, which
+    /// is zero on fixed unknowns, and `t` by the jump multipliers `p`. Returns the energy
+    /// `u.K u + p.(S^-1 p) = u.r - p.t`.
     pub fn solve(
         &self,
         factors: &CondensedFactors<T>,
@@ -284,43 +290,44 @@ impl<'a, T: Real> StaticCondensation<'a, T> {
         let mut load = vec![0.0; self.pattern.size()];
         let mut local = Vec::new();
         for block in 0..self.starts.len() - 1 {
-            self.right_side(block, is_free, r, t, &|_| 0.0, &mut local);
+            self.block_right_side(block, is_free, r, t, &|_| 0.0, &mut local);
             let n_free = local.len() - self.sides(block).len();
             for (k, side) in (n_free..).zip(self.sides(block)) {
-                if side.mean != NONE {
-                    load[side.mean as usize] += factors.row(block, k, &local);
+                if side.mean != NO_INDEX {
+                    load[side.mean as usize] += factors.row_dot(block, k, &local);
                 }
             }
         }
         let mut means: Vec<T> = load.into_iter().map(T::lit).collect();
-        factors.means.solve_in_place(&mut means, 1);
-        let mean = |k: u32| if k == NONE { 0.0 } else { means[k as usize].to_f64() };
-        let given = t.to_vec();
+        factors.schur_complement.solve_in_place(&mut means, 1);
+        let mean = |k: u32| if k == NO_INDEX { 0.0 } else { means[k as usize].to_f64() };
+        let jump_right_side = t.to_vec();
         let mut energy = 0.0;
         for block in 0..self.starts.len() - 1 {
-            self.right_side(block, is_free, r, &given, &mean, &mut local);
-            let n = self.factored.block;
+            self.block_right_side(block, is_free, r, &jump_right_side, &mean, &mut local);
+            let n = self.penalised.block_size;
             let mut k = 0;
             for i in block * n..(block + 1) * n {
-                let value = if is_free[i] { factors.row(block, k, &local) } else { 0.0 };
+                let value = if is_free[i] { factors.row_dot(block, k, &local) } else { 0.0 };
                 energy += value * r[i];
                 r[i] = value;
                 k += usize::from(is_free[i]);
             }
             for (k, side) in (k..).zip(self.sides(block)) {
-                // both sides know the force; one is enough
-                if side.sign > 0.0 || side.mean == NONE {
-                    let force = side.sign * factors.row(block, k, &local);
-                    energy -= force * given[side.jump as usize];
-                    t[side.jump as usize] = force;
+                // The multipliers of the two sides of a facet are equal.
+                if side.sign > 0.0 || side.mean == NO_INDEX {
+                    let multiplier = side.sign * factors.row_dot(block, k, &local);
+                    energy -= multiplier * jump_right_side[side.jump as usize];
+                    t[side.jump as usize] = multiplier;
                 }
             }
         }
         energy
     }
 
-    /// What stands on the right of a block's equations.
-    fn right_side(
+    /// The right-hand side of the equations of a block: `r` on its free unknowns, then for each side
+    /// the facet mean plus its part of `t`.
+    fn block_right_side(
         &self,
         block: usize,
         is_free: &[bool],
@@ -332,42 +339,43 @@ impl<'a, T: Real> StaticCondensation<'a, T> {
         out.clear();
         out.extend(self.free(block, is_free).map(|i| r[i]));
         out.extend(self.sides(block).iter().map(|side| {
-            let share = if side.mean == NONE { 1.0 } else { 0.5 };
-            mean(side.mean) + side.sign * share * t[side.jump as usize]
+            let part = if side.mean == NO_INDEX { 1.0 } else { 0.5 };
+            mean(side.mean) + side.sign * part * t[side.jump as usize]
         }));
     }
 
-    /// The sizes of the terms that make up the force on an unknown, those of known values apart, with
-    /// forces `p`.
-    pub fn force_sizes(
+    /// The sums of the absolute values of the terms of the residual `(c - K u - M^T p)_i`: first those
+    /// with free unknowns and jump multipliers `p`, then those with fixed unknowns and the load.
+    pub fn residual_term_sizes(
         &self,
         i: usize,
         u: &dyn Fn(usize) -> f64,
         p: &[T],
-        is_known: &dyn Fn(usize) -> bool,
+        is_fixed: &dyn Fn(usize) -> bool,
     ) -> (f64, f64) {
-        let n = self.factored.block;
+        let n = self.penalised.block_size;
         let block = i / n;
-        let (mut free, mut known) = (0.0, self.factored.load[i].to_f64().abs());
+        let (mut free, mut fixed) = (0.0, self.penalised.load[i].to_f64().abs());
         for j in block * n..(block + 1) * n {
-            let size = (self.factored.blocks[i * n + j % n].to_f64() * u(j)).abs();
-            *(if is_known(j) { &mut known } else { &mut free }) += size;
+            let size = (self.penalised.blocks[i * n + j % n].to_f64() * u(j)).abs();
+            *(if is_fixed(j) { &mut fixed } else { &mut free }) += size;
         }
         for side in self.sides(block) {
-            free += (self.in_mean(side, i) * p[side.jump as usize].to_f64()).abs();
+            free += (self.mean_coefficient(side, i) * p[side.jump as usize].to_f64()).abs();
         }
-        (free, known)
+        (free, fixed)
     }
 }
 
 impl<T> CondensedFactors<T> {
-    /// A row of a block's inverse times a vector.
-    fn row(&self, block: usize, k: usize, x: &[f64]) -> f64 {
+    /// Row `k` of a block's inverse times a vector.
+    fn row_dot(&self, block: usize, k: usize, x: &[f64]) -> f64 {
         let row = &self.inverses[self.starts[block] + k * x.len()..][..x.len()];
         row.iter().zip(x).fold(0.0, |s, (a, x)| s + a * x)
     }
 }
 
+/// The matrix without rows.
 fn empty<T>() -> SparseMatrix<T> {
     SparseMatrix { row_starts: vec![0], columns: Vec::new(), values: Vec::new() }
 }

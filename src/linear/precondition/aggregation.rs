@@ -1,105 +1,105 @@
-//! CoarseLevel functions from a matrix alone: smoothed aggregation.
+//! Smoothed aggregation: a coarse space from a matrix alone.
 //!
 //! Source: P. Vanek, J. Mandel, M. Brezina, Computing 56 (1996), 179-196.
 
-use super::prolongation::{Prolongation, RectangularMatrix};
-use crate::algebra::SparseMatrix;
+use super::prolongation::Prolongation;
+use crate::algebra::{NO_INDEX, RectangularMatrix, SparseMatrix, galerkin_product};
 use crate::real::Real;
 
-/// Marks an unknown in no aggregate.
-const NONE: u32 = u32::MAX;
+/// Unknowns `i` and `j` are strongly coupled if `a_ij^2 > STRENGTH^2 a_ii a_jj`.
+const STRENGTH: f64 = 0.05;
 
-/// Neighbours count as strongly coupled above this share of the mean of their diagonals.
-const STRONG: f64 = 0.05;
-
-/// Weights up to this are left away.
+/// Entries of the prolongation up to this absolute value are zero: rounding errors, mostly.
 const NEGLIGIBLE: f64 = 1e-4;
 
-/// The damping of the smoothed functions, over the largest eigenvalue of the scaled matrix.
+/// The damping of the Jacobi step, times the largest eigenvalue of `D^-1 A`.
 const DAMPING: f64 = 4.0 / 3.0;
 
-/// CoarseLevel functions and the form on them; `None` if there would be hardly fewer.
+/// The prolongation `P` and the coarse matrix `P^T A P`; `None` if the coarse space has no unknown or
+/// more than half as many as the fine one.
 pub(crate) fn aggregate<T: Real>(
     matrix: &SparseMatrix<T>,
     fixed: &[bool],
 ) -> Option<(Prolongation<T>, SparseMatrix<T>)> {
     let diagonal: Vec<f64> = matrix.diagonal().iter().map(|d| d.to_f64()).collect();
-    let strong = |i: usize, j: usize, a: T| {
-        i != j && !fixed[j] && a.to_f64().powi(2) > STRONG * STRONG * diagonal[i] * diagonal[j]
+    let is_strong = |i: usize, j: usize, a: T| {
+        i != j && !fixed[j] && a.to_f64().powi(2) > STRENGTH * STRENGTH * diagonal[i] * diagonal[j]
     };
-    let (owner, n_coarse) = aggregates(matrix, fixed, &strong);
+    let (aggregate_of, n_coarse) = aggregates(matrix, fixed, &is_strong);
     if n_coarse == 0 || 2 * n_coarse > matrix.size() {
         return None;
     }
-    let functions = smoothed(matrix, fixed, &diagonal, &owner);
-    let coarse = galerkin(matrix, &functions, n_coarse);
-    Some((Prolongation::weights(functions, n_coarse), coarse))
+    let prolongation = smoothed_prolongation(matrix, fixed, &diagonal, &aggregate_of);
+    let coarse = galerkin_product(matrix, &prolongation, n_coarse);
+    Some((Prolongation::from_weights(prolongation, n_coarse), coarse))
 }
 
-/// The aggregate of every unknown, and how many there are: neighbourhoods that do not overlap, and
-/// what remains joined to one beside it.
+/// The aggregate of each unknown, [`NO_INDEX`] for none, and the number of aggregates.
+///
+/// Aggregates are disjoint neighbourhoods of strong couplings. An unknown outside of all joins the
+/// aggregate of its strongest neighbour; unknowns without such a neighbour make further aggregates.
 fn aggregates<T: Real>(
     matrix: &SparseMatrix<T>,
     fixed: &[bool],
-    strong: &dyn Fn(usize, usize, T) -> bool,
+    is_strong: &dyn Fn(usize, usize, T) -> bool,
 ) -> (Vec<u32>, usize) {
     let n = matrix.size();
-    let mut owner = vec![NONE; n];
+    let mut aggregate_of = vec![NO_INDEX; n];
     let mut count = 0;
     let neighbours = |i: usize| {
         let (columns, values) = matrix.row(i);
-        columns.iter().zip(values).filter(move |(j, a)| strong(i, **j as usize, **a))
+        columns.iter().zip(values).filter(move |(j, a)| is_strong(i, **j as usize, **a))
     };
     for i in 0..n {
-        let is_free = !fixed[i] && owner[i] == NONE;
-        if is_free && neighbours(i).all(|(&j, _)| owner[j as usize] == NONE) {
+        let is_candidate = !fixed[i] && aggregate_of[i] == NO_INDEX;
+        if is_candidate && neighbours(i).all(|(&j, _)| aggregate_of[j as usize] == NO_INDEX) {
             if neighbours(i).next().is_none() {
                 continue;
             }
-            owner[i] = count;
-            neighbours(i).for_each(|(&j, _)| owner[j as usize] = count);
+            aggregate_of[i] = count;
+            neighbours(i).for_each(|(&j, _)| aggregate_of[j as usize] = count);
             count += 1;
         }
     }
-    let first = owner.clone();
-    for i in (0..n).filter(|&i| !fixed[i] && first[i] == NONE) {
+    let disjoint = aggregate_of.clone();
+    for i in (0..n).filter(|&i| !fixed[i] && disjoint[i] == NO_INDEX) {
         let size = |a: &T| a.to_f64().abs();
-        let best = neighbours(i)
-            .filter(|(j, _)| first[**j as usize] != NONE)
+        let strongest = neighbours(i)
+            .filter(|(j, _)| disjoint[**j as usize] != NO_INDEX)
             .max_by(|x, y| size(x.1).total_cmp(&size(y.1)));
-        if let Some((&j, _)) = best {
-            owner[i] = first[j as usize];
+        if let Some((&j, _)) = strongest {
+            aggregate_of[i] = disjoint[j as usize];
         }
     }
     for i in 0..n {
-        if !fixed[i] && owner[i] == NONE && neighbours(i).next().is_some() {
-            owner[i] = count;
+        if !fixed[i] && aggregate_of[i] == NO_INDEX && neighbours(i).next().is_some() {
+            aggregate_of[i] = count;
             for (&j, _) in neighbours(i) {
-                if owner[j as usize] == NONE {
-                    owner[j as usize] = count;
+                if aggregate_of[j as usize] == NO_INDEX {
+                    aggregate_of[j as usize] = count;
                 }
             }
             count += 1;
         }
     }
-    (owner, count as usize)
+    (aggregate_of, count as usize)
 }
 
-/// The indicators of the aggregates after one damped Jacobi step.
-fn smoothed<T: Real>(
+/// The prolongation `(I - omega D^-1 A) P_0`, `P_0` the indicator functions of aggregates.
+fn smoothed_prolongation<T: Real>(
     matrix: &SparseMatrix<T>,
     fixed: &[bool],
     diagonal: &[f64],
-    owner: &[u32],
+    aggregate_of: &[u32],
 ) -> RectangularMatrix<T> {
     let n = matrix.size();
-    // the largest row sum bounds the largest eigenvalue
+    // The largest absolute row sum bounds the largest eigenvalue of D^-1 A.
     let row_sum = |i: usize| {
         let sum: f64 = matrix.row(i).1.iter().map(|a| a.to_f64().abs()).sum();
         sum / diagonal[i].max(f64::MIN_POSITIVE)
     };
     let largest = (0..n).filter(|&i| !fixed[i]).map(row_sum).fold(1.0, f64::max);
-    let damping = DAMPING / largest;
+    let omega = DAMPING / largest;
     let mut rows = RectangularMatrix { starts: vec![0], columns: Vec::new(), values: Vec::new() };
     let mut row: Vec<(u32, f64)> = Vec::new();
     for i in 0..n {
@@ -107,18 +107,17 @@ fn smoothed<T: Real>(
         if !fixed[i] && diagonal[i] > 0.0 {
             let (columns, values) = matrix.row(i);
             for (&j, &a) in columns.iter().zip(values) {
-                let target = owner[j as usize];
-                if target == NONE {
+                let aggregate = aggregate_of[j as usize];
+                if aggregate == NO_INDEX {
                     continue;
                 }
                 let identity = if j as usize == i { 1.0 } else { 0.0 };
-                let weight = identity - damping * a.to_f64() / diagonal[i];
-                match row.iter_mut().find(|(column, _)| *column == target) {
+                let weight = identity - omega * a.to_f64() / diagonal[i];
+                match row.iter_mut().find(|(column, _)| *column == aggregate) {
                     Some((_, sum)) => *sum += weight,
-                    None => row.push((target, weight)),
+                    None => row.push((aggregate, weight)),
                 }
             }
-            // what is left of entries that are zero but for rounding
             row.retain(|(_, weight)| weight.abs() > NEGLIGIBLE);
             row.sort_unstable_by_key(|&(column, _)| column);
         }
@@ -127,46 +126,4 @@ fn smoothed<T: Real>(
         rows.starts.push(rows.columns.len() as u32);
     }
     rows
-}
-
-/// `P^T A P`.
-pub(crate) fn galerkin<T: Real>(
-    matrix: &SparseMatrix<T>,
-    functions: &RectangularMatrix<T>,
-    n_coarse: usize,
-) -> SparseMatrix<T> {
-    let transpose = functions.transpose(n_coarse);
-    let zero = T::lit(0.0);
-    let mut position = vec![NONE; n_coarse];
-    let mut sums: Vec<(u32, T)> = Vec::new();
-    let mut coarse =
-        SparseMatrix { row_starts: vec![0_u32], columns: Vec::new(), values: Vec::new() };
-    for row in 0..n_coarse {
-        sums.clear();
-        let (fine, weights) = transpose.row(row);
-        for (&i, &weight) in fine.iter().zip(weights) {
-            let (columns, values) = matrix.row(i as usize);
-            for (&j, &a) in columns.iter().zip(values) {
-                let a = weight * a;
-                if a == zero {
-                    continue;
-                }
-                let (targets, others) = functions.row(j as usize);
-                for (&target, &other) in targets.iter().zip(others) {
-                    let at = &mut position[target as usize];
-                    if *at == NONE {
-                        *at = sums.len() as u32;
-                        sums.push((target, zero));
-                    }
-                    sums[*at as usize].1 += a * other;
-                }
-            }
-        }
-        sums.iter().for_each(|&(target, _)| position[target as usize] = NONE);
-        sums.sort_unstable_by_key(|&(target, _)| target);
-        coarse.columns.extend(sums.iter().map(|s| s.0));
-        coarse.values.extend(sums.iter().map(|s| s.1));
-        coarse.row_starts.push(coarse.columns.len() as u32);
-    }
-    coarse
 }

@@ -1,46 +1,45 @@
-//! A preconditioner from conforming linear functions: what they miss is local.
+//! A preconditioner with conforming linear functions as the auxiliary space of another finite element.
 //!
-//! Source: J. Xu, Computing 56 (1996), 215-235 (auxiliary space); for discontinuous functions
-//! B. Ayuso de Dios, L. Zikatanov, J. Sci. Comput. 40 (2009), 4-36.
+//! Source: J. Xu, Computing 56 (1996), 215-235; for discontinuous functions B. Ayuso de Dios,
+//! L. Zikatanov, J. Sci. Comput. 40 (2009), 4-36.
 
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use super::multigrid::Multigrid;
-use super::prolongation::RectangularMatrix;
-use crate::algebra::{SparseMatrix, Support};
-use crate::linear::direct::factors::FactorError;
-use crate::linear::krylov::conjugate_gradients::Preconditioner;
+use super::preconditioner::Preconditioner;
+use crate::algebra::{RectangularMatrix, SparseMatrix, Support};
+use crate::linear::direct::FactorError;
 use crate::memory::in_large_pages;
-use crate::parallel::vectors::{each_mut, each_mut_of, zeros};
+use crate::parallel::vectors::{for_each_chunk, for_each_chunk_of_groups, zeros};
 use crate::real::Real;
 
 /// Largest number of unknowns of a cell.
-const LARGEST: usize = 16;
+const MAX_CELL_SIZE: usize = 16;
 
-/// The inverse blocks of the cells plus a multigrid cycle on the vertices that no fixed unknown
-/// touches.
+/// The preconditioner `D^-1 + P C P^T`: `D` the diagonal blocks of cells, `P` the interpolation of
+/// conforming linear functions, `C` a multigrid cycle.
 pub(crate) struct AuxiliarySpace<'a, T: Real> {
-    blocks: Blocks<'a, T>,
-    vertices: Vertices<'a, T>,
+    blocks: BlockJacobi<'a, T>,
+    vertices: VertexCorrection<'a, T>,
 }
 
 impl<'a, T: Real> AuxiliarySpace<'a, T> {
-    /// For a matrix whose unknowns live at `supports`; `None` where they do not say enough.
+    /// The preconditioner of a symmetric matrix; `None` if cells own different numbers of unknowns.
     pub fn new(
         matrix: &'a SparseMatrix<T>,
         supports: &[Support],
-        vertices: Vertices<'a, T>,
+        vertices: VertexCorrection<'a, T>,
     ) -> Option<Self> {
-        Some(Self { blocks: Blocks::new(matrix, cell_size(supports)?)?, vertices })
+        Some(Self { blocks: BlockJacobi::new(matrix, unknowns_per_cell(supports)?)?, vertices })
     }
 
-    /// Sets which unknowns are fixed.
+    /// Sets the fixed unknowns.
     ///
     /// # Errors
-    /// If a block or the form on the coarsest functions is not positive definite.
-    pub fn fix(&mut self, fixed: &[bool]) -> Result<(), FactorError> {
-        self.blocks.fix(fixed)?;
-        self.vertices.fix(fixed)
+    /// [`FactorError`] if a block, or the matrix of the coarsest level, is not positive definite.
+    pub fn set_fixed(&mut self, fixed: &[bool]) -> Result<(), FactorError> {
+        self.blocks.set_fixed(fixed)?;
+        self.vertices.set_fixed(fixed)
     }
 }
 
@@ -51,124 +50,135 @@ impl<T: Real> Preconditioner<T> for AuxiliarySpace<'_, T> {
     }
 }
 
-/// How many unknowns a cell owns, one if cells share them: consecutive ones, the same number for
-/// all.
-pub(crate) fn cell_size(supports: &[Support]) -> Option<usize> {
+/// The number of unknowns that each cell owns, consecutive ones; one if cells share all unknowns.
+/// `None` if it differs between cells or exceeds [`MAX_CELL_SIZE`].
+pub(crate) fn unknowns_per_cell(supports: &[Support]) -> Option<usize> {
     let first = supports.first()?.cell();
     if first.is_none() {
         return supports.iter().all(|p| p.cell().is_none()).then_some(1);
     }
     let size = supports.iter().take_while(|p| p.cell() == first).count();
-    let whole = |cell: &[Support]| {
-        cell.len() == size
-            && cell[0].cell().is_some()
-            && cell.iter().all(|p| p.cell() == cell[0].cell())
+    let is_one_cell = |chunk: &[Support]| {
+        chunk.len() == size
+            && chunk[0].cell().is_some()
+            && chunk.iter().all(|p| p.cell() == chunk[0].cell())
     };
-    (size <= LARGEST && supports.chunks(size).all(whole)).then_some(size)
+    (size <= MAX_CELL_SIZE && supports.chunks(size).all(is_one_cell)).then_some(size)
 }
 
-/// Conforming linear functions inside another space, through multigrid.
-pub(crate) struct Vertices<'a, T: Real> {
+/// The correction `P C P^T r` by conforming linear functions that vanish at the vertices of fixed
+/// unknowns.
+pub(crate) struct VertexCorrection<'a, T: Real> {
     multigrid: Multigrid<'a, T>,
-    given: &'a [bool],
-    /// The unknowns around each vertex, with weights.
-    around: RectangularMatrix<T>,
-    /// The vertices around each unknown, with weights.
-    of: RectangularMatrix<T>,
+    /// The vertices with Dirichlet data.
+    dirichlet: &'a [bool],
+    /// `P`: an unknown is the mean of the values at the vertices of its support.
+    interpolation: RectangularMatrix<T>,
+    /// `P^T`.
+    transpose: RectangularMatrix<T>,
+    /// The fixed vertices.
     fixed: Vec<bool>,
-    force: Vec<T>,
+    residual: Vec<T>,
     values: Vec<T>,
 }
 
-impl<'a, T: Real> Vertices<'a, T> {
-    /// The functions that vanish on `given` vertices. Each unknown is a mean of vertex values;
-    /// `None` if some vertex does not exist.
+impl<'a, T: Real> VertexCorrection<'a, T> {
+    /// The correction with functions that vanish at the vertices `dirichlet`; `None` if a support is
+    /// empty or contains a vertex beyond that list.
     pub fn new(
         multigrid: Multigrid<'a, T>,
-        given: &'a [bool],
+        dirichlet: &'a [bool],
         supports: &[Support],
     ) -> Option<Self> {
-        let n = given.len();
+        let n = dirichlet.len();
         let total = supports.iter().map(|support| support.vertices().len()).sum();
-        let mut of = RectangularMatrix {
+        let mut interpolation = RectangularMatrix {
             starts: in_large_pages(Vec::with_capacity(supports.len() + 1)),
             columns: in_large_pages(Vec::with_capacity(total)),
             values: in_large_pages(Vec::with_capacity(total)),
         };
-        of.starts.push(0);
+        interpolation.starts.push(0);
         for support in supports {
-            let around = support.vertices();
-            if around.is_empty() || around.iter().any(|&v| v as usize >= n) {
+            let vertices = support.vertices();
+            if vertices.is_empty() || vertices.iter().any(|&v| v as usize >= n) {
                 return None;
             }
-            let weight = T::lit(1.0 / around.len() as f64);
-            of.columns.extend(around);
-            of.values.extend(around.iter().map(|_| weight));
-            of.starts.push(of.columns.len() as u32);
+            let weight = T::lit(1.0 / vertices.len() as f64);
+            interpolation.columns.extend(vertices);
+            interpolation.values.extend(vertices.iter().map(|_| weight));
+            interpolation.starts.push(interpolation.columns.len() as u32);
         }
-        let around = of.transpose(n);
-        let (force, values) = (zeros(n), zeros(n));
-        Some(Self { multigrid, given, around, of, fixed: vec![false; n], force, values })
+        let transpose = interpolation.transpose(n);
+        let (residual, values) = (zeros(n), zeros(n));
+        let fixed = vec![false; n];
+        Some(Self { multigrid, dirichlet, interpolation, transpose, fixed, residual, values })
     }
 
-    /// Fixes the vertices in whose reach some unknown is fixed.
-    pub fn fix(&mut self, fixed: &[bool]) -> Result<(), FactorError> {
-        let (around, given) = (&self.around, self.given);
-        each_mut(&mut self.fixed, |range, piece| {
-            for (v, out) in range.zip(piece) {
-                let touched = |&i: &u32| fixed[i as usize];
-                *out = given[v] || around.row(v).0.iter().any(touched);
+    /// Sets the fixed unknowns. A vertex is fixed if it has Dirichlet data or is in the support of a
+    /// fixed unknown.
+    ///
+    /// # Errors
+    /// [`FactorError`] if the matrix of the coarsest level is not positive definite.
+    pub fn set_fixed(&mut self, fixed: &[bool]) -> Result<(), FactorError> {
+        let (transpose, dirichlet) = (&self.transpose, self.dirichlet);
+        for_each_chunk(&mut self.fixed, |range, out| {
+            for (v, out) in range.zip(out) {
+                let is_fixed = |&i: &u32| fixed[i as usize];
+                *out = dirichlet[v] || transpose.row(v).0.iter().any(is_fixed);
             }
         });
-        self.multigrid.fix(&self.fixed)
+        self.multigrid.set_fixed(&self.fixed)
     }
 
-    /// Adds the functions' part of the approximate solution for the force `r`.
+    /// `z = z + P C P^T r`.
     pub fn add(&mut self, r: &[T], z: &mut [T]) {
-        let (around, of, fixed) = (&self.around, &self.of, &self.fixed);
-        each_mut(&mut self.force, |range, piece| {
-            for (v, force) in range.zip(piece) {
-                *force = if fixed[v] { T::lit(0.0) } else { product(around.row(v), r) };
+        let (transpose, interpolation, fixed) = (&self.transpose, &self.interpolation, &self.fixed);
+        for_each_chunk(&mut self.residual, |range, out| {
+            for (v, out) in range.zip(out) {
+                *out = if fixed[v] { T::lit(0.0) } else { row_dot(transpose.row(v), r) };
             }
         });
-        self.multigrid.apply(&self.force, &mut self.values);
+        self.multigrid.apply(&self.residual, &mut self.values);
         let values = &self.values;
-        each_mut(z, |range, piece| {
-            for (i, z) in range.zip(piece) {
-                *z += product(of.row(i), values);
+        for_each_chunk(z, |range, out| {
+            for (i, z) in range.zip(out) {
+                *z += row_dot(interpolation.row(i), values);
             }
         });
     }
 }
 
+/// A row times a vector.
 #[inline(always)]
-fn product<T: Real>((columns, weights): (&[u32], &[T]), x: &[T]) -> T {
+fn row_dot<T: Real>((columns, weights): (&[u32], &[T]), x: &[T]) -> T {
     columns.iter().zip(weights).fold(T::lit(0.0), |s, (&j, &w)| s + w * x[j as usize])
 }
 
-/// The inverses of the diagonal blocks of all cells, on the unknowns that are free.
-struct Blocks<'a, T> {
+/// The inverses of the diagonal blocks of cells on their free unknowns.
+struct BlockJacobi<'a, T> {
     matrix: &'a SparseMatrix<T>,
+    /// Number of unknowns of a cell.
     size: usize,
-    inverse: Vec<T>,
+    /// The inverses by rows, one after the other.
+    inverses: Vec<T>,
 }
 
-impl<'a, T: Real> Blocks<'a, T> {
+impl<'a, T: Real> BlockJacobi<'a, T> {
     fn new(matrix: &'a SparseMatrix<T>, size: usize) -> Option<Self> {
         let n = matrix.size();
-        n.is_multiple_of(size).then(|| Self { matrix, size, inverse: zeros(n * size) })
+        n.is_multiple_of(size).then(|| Self { matrix, size, inverses: zeros(n * size) })
     }
 
-    fn fix(&mut self, fixed: &[bool]) -> Result<(), FactorError> {
-        let Self { matrix, size, ref mut inverse } = *self;
+    fn set_fixed(&mut self, fixed: &[bool]) -> Result<(), FactorError> {
+        let Self { matrix, size, ref mut inverses } = *self;
         let is_positive = AtomicBool::new(true);
-        each_mut_of(inverse, size * size, |range, piece| {
+        for_each_chunk_of_groups(inverses, size * size, |range, chunk| {
             let cells = range.start / (size * size)..;
-            for (cell, block) in cells.zip(piece.chunks_exact_mut(size * size)) {
+            for (cell, block) in cells.zip(chunk.chunks_exact_mut(size * size)) {
                 let first = cell * size;
                 let fixed = &fixed[first..first + size];
-                block_of(matrix, first, fixed, block);
-                if !invert(block, size, fixed) {
+                read_block(matrix, first, fixed, block);
+                if !invert_positive_definite(block, size, fixed) {
                     is_positive.store(false, Ordering::Relaxed);
                 }
             }
@@ -176,12 +186,13 @@ impl<'a, T: Real> Blocks<'a, T> {
         if is_positive.into_inner() { Ok(()) } else { Err(FactorError::NotPositive) }
     }
 
+    /// `z = D^-1 r`.
     fn apply(&self, r: &[T], z: &mut [T]) {
-        let (size, inverse) = (self.size, &self.inverse);
-        each_mut_of(z, size, |range, piece| {
-            for (k, z) in (range.start / size..).zip(piece.chunks_exact_mut(size)) {
+        let (size, inverses) = (self.size, &self.inverses);
+        for_each_chunk_of_groups(z, size, |range, chunk| {
+            for (k, z) in (range.start / size..).zip(chunk.chunks_exact_mut(size)) {
                 let r = &r[k * size..(k + 1) * size];
-                let block = &inverse[k * size * size..(k + 1) * size * size];
+                let block = &inverses[k * size * size..(k + 1) * size * size];
                 for (z, row) in z.iter_mut().zip(block.chunks_exact(size)) {
                     *z = row.iter().zip(r).fold(T::lit(0.0), |s, (&a, &r)| s + a * r);
                 }
@@ -190,8 +201,9 @@ impl<'a, T: Real> Blocks<'a, T> {
     }
 }
 
-/// The diagonal block that begins with an unknown, zero where fixed.
-fn block_of<T: Real>(matrix: &SparseMatrix<T>, first: usize, fixed: &[bool], block: &mut [T]) {
+/// Copies the diagonal block that begins with the unknown `first`; rows and columns of fixed unknowns
+/// are zero.
+fn read_block<T: Real>(matrix: &SparseMatrix<T>, first: usize, fixed: &[bool], block: &mut [T]) {
     let size = fixed.len();
     block.fill(T::lit(0.0));
     for (k, row) in block.chunks_exact_mut(size).enumerate().filter(|&(k, _)| !fixed[k]) {
@@ -207,9 +219,9 @@ fn block_of<T: Real>(matrix: &SparseMatrix<T>, first: usize, fixed: &[bool], blo
     }
 }
 
-/// Inverts a symmetric positive definite block in support on what is not fixed, by exchange steps;
-/// false if a pivot is not positive.
-fn invert<T: Real>(a: &mut [T], size: usize, fixed: &[bool]) -> bool {
+/// Inverts a symmetric positive definite block in place on its free unknowns, by Gauss-Jordan
+/// elimination; false if a pivot is not positive.
+fn invert_positive_definite<T: Real>(a: &mut [T], size: usize, fixed: &[bool]) -> bool {
     let one = T::lit(1.0);
     for k in (0..size).filter(|&k| !fixed[k]) {
         let pivot = a[k * size + k];

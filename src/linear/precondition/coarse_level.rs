@@ -1,4 +1,4 @@
-//! Conforming linear functions on nested meshes, as numbers only.
+//! Levels of a multigrid hierarchy of conforming linear functions: matrices and prolongations.
 
 use std::sync::Arc;
 
@@ -7,13 +7,14 @@ use super::prolongation::Prolongation;
 use crate::algebra::SparseMatrix;
 use crate::real::Real;
 
-/// Up to this many unknowns a system is factored, not coarsened.
-pub(crate) const FACTORED: usize = 600;
+/// Largest number of unknowns of a level that is factored instead of coarsened.
+const MAX_FACTORED: usize = 600;
 
-/// Up to this many unknowns a level that will not be coarsened is factored all the same.
-pub(crate) const LARGEST_FACTORED: usize = 20_000;
+/// Largest number of unknowns of a coarsest level that is factored instead of smoothed.
+pub(crate) const MAX_COARSEST_FACTORED: usize = 20_000;
 
-/// The conforming linear functions on a mesh: the form on its vertices, and coarser functions.
+/// The conforming linear functions on a mesh: the matrix of the form on all vertices, and the next
+/// coarser level.
 #[derive(Debug)]
 pub struct P1Level<T> {
     pub(crate) matrix: SparseMatrix<T>,
@@ -22,8 +23,10 @@ pub struct P1Level<T> {
 }
 
 impl<T: Real> P1Level<T> {
-    /// A level with the form on all vertices, those of Dirichlet data included, and which of them
-    /// these are. A level without a coarser one makes its own by aggregation where that pays.
+    /// The level with the symmetric `matrix` on all vertices, of which `fixed` are those with Dirichlet
+    /// data. Without a coarser level, one is constructed by aggregation if the matrix is large and can
+    /// be coarsened.
+    #[must_use]
     pub fn new(matrix: SparseMatrix<T>, fixed: Vec<bool>, coarser: Option<CoarseLevel<T>>) -> Self {
         let coarser = coarser.or_else(|| CoarseLevel::aggregated(&matrix, &fixed));
         Self { matrix, fixed, coarser }
@@ -33,30 +36,57 @@ impl<T: Real> P1Level<T> {
     pub fn size(&self) -> usize {
         self.fixed.len()
     }
+
+    /// The matrix on all vertices.
+    pub fn matrix(&self) -> &SparseMatrix<T> {
+        &self.matrix
+    }
+
+    /// The vertices with Dirichlet data.
+    pub fn fixed(&self) -> &[bool] {
+        &self.fixed
+    }
+
+    /// The next coarser level, if any.
+    pub fn coarser(&self) -> Option<&CoarseLevel<T>> {
+        self.coarser.as_ref()
+    }
 }
 
-/// A coarser level, and how its functions are written in the finer basis.
+/// The next coarser level, with the prolongation from it.
 #[derive(Clone, Debug)]
 pub struct CoarseLevel<T> {
     pub(crate) level: Arc<P1Level<T>>,
-    pub(crate) transfer: Arc<Prolongation<T>>,
+    pub(crate) prolongation: Arc<Prolongation<T>>,
 }
 
 impl<T: Real> CoarseLevel<T> {
-    /// A coarser level; `None` if the transfer is to a level of another size.
-    pub fn new(level: Arc<P1Level<T>>, transfer: Arc<Prolongation<T>>) -> Option<Self> {
-        (level.size() == transfer.n_coarse()).then_some(Self { level, transfer })
+    /// A coarser level with its prolongation; `None` if the prolongation has another number of coarse
+    /// unknowns than the level has vertices.
+    #[must_use]
+    pub fn new(level: Arc<P1Level<T>>, prolongation: Arc<Prolongation<T>>) -> Option<Self> {
+        (level.size() == prolongation.n_coarse()).then_some(Self { level, prolongation })
     }
 
-    /// A coarser level from the matrix alone; `None` if the matrix is small enough to be factored
-    /// or will not be coarsened.
+    /// The coarser level.
+    pub fn level(&self) -> &P1Level<T> {
+        &self.level
+    }
+
+    /// The prolongation from the coarser level.
+    pub fn prolongation(&self) -> &Prolongation<T> {
+        &self.prolongation
+    }
+
+    /// The coarser level by smoothed aggregation; `None` if the matrix is small enough to be factored,
+    /// or aggregation does not reduce its size.
     pub(crate) fn aggregated(matrix: &SparseMatrix<T>, fixed: &[bool]) -> Option<Self> {
-        if matrix.size() <= FACTORED {
+        if matrix.size() <= MAX_FACTORED {
             return None;
         }
-        let (transfer, coarse) = aggregate(matrix, fixed)?;
+        let (prolongation, coarse) = aggregate(matrix, fixed)?;
         let size = coarse.size();
         let level = P1Level::new(coarse, vec![false; size], None);
-        Some(Self { level: Arc::new(level), transfer: Arc::new(transfer) })
+        Some(Self { level: Arc::new(level), prolongation: Arc::new(prolongation) })
     }
 }

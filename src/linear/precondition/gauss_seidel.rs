@@ -1,41 +1,44 @@
-//! Gauss-Seidel sweeps in single precision.
+//! Symmetric Gauss-Seidel smoothing in single precision.
 //!
-//! Within a piece of the unknowns these are Gauss-Seidel sweeps, between pieces Jacobi's, so that
-//! pieces can be swept at the same time. The backward sweep is the transpose of the forward one.
+//! Within a chunk of unknowns an iteration is a Gauss-Seidel iteration, between chunks a Jacobi
+//! iteration, so that chunks run in parallel. The backward iteration is the transpose of the forward
+//! one.
 //!
-//! A sweep is bound by memory. Only what is left of the diagonal is kept, because a symmetric matrix
-//! has its right part there too: once an unknown is known its share goes to those before it, while
-//! the row is at hand. So the forward sweep returns the residual at no cost, and with columns of two
-//! bytes and values of four both together read a seventh of what the matrix takes twice.
+//! An iteration is limited by memory bandwidth. Only the strictly lower triangle of each chunk is
+//! stored: by symmetry, row `i` of it updates both the equation of unknown `i` and, once `x_i` is
+//! computed, the residuals of the unknowns before. The forward iteration so returns the residual
+//! without a further product. With column indices of two bytes and values of four, a forward and a
+//! backward iteration read a seventh of the bytes of two products with the matrix.
 
 use crate::algebra::SparseMatrix;
-use crate::parallel::vectors::{PIECE, each_mut, map, sum_mut2, zeros};
+use crate::parallel::vectors::{CHUNK, for_each_chunk, map_chunks, sum_chunks_of_two, zeros};
 use crate::real::Real;
 
-/// A symmetric matrix over a number, ready for sweeps.
-pub(crate) struct Sweeps {
-    pieces: Vec<Piece>,
-    /// One over the diagonal; zero where an unknown is fixed: there everything stays zero.
-    inverse: Vec<f32>,
+/// The Gauss-Seidel smoother of a symmetric matrix divided by a scale.
+pub(crate) struct GaussSeidel {
+    chunks: Vec<ChunkRows>,
+    /// One over the diagonal entry; zero for fixed unknowns, whose values then stay zero.
+    inverse_diagonal: Vec<f32>,
 }
 
-/// The rows of a piece.
-struct Piece {
+/// The rows of a chunk.
+struct ChunkRows {
     diagonal: Vec<f32>,
-    /// What is left of the diagonal inside the piece.
+    /// Start of each row in `columns` and `values`, and the number of entries at the end.
     starts: Vec<u32>,
+    /// The strictly lower triangle of the diagonal block of the chunk; columns relative to the chunk.
     columns: Vec<u16>,
     values: Vec<f32>,
-    /// All of the rows that lies outside: row, column, value.
+    /// The entries outside of the diagonal block: row relative to the chunk, column, value.
     outside: Vec<(u16, u32, f32)>,
 }
 
 #[inline(always)]
-fn single<T: Real>(a: T, scale: f64) -> f32 {
+fn to_single<T: Real>(a: T, scale: f64) -> f32 {
     (a.to_f64() / scale) as f32
 }
 
-impl Piece {
+impl ChunkRows {
     fn new<'m, T: Real>(
         matrix: &SparseMatrix<T>,
         row: &impl Fn(usize) -> (&'m [u32], &'m [T]),
@@ -44,41 +47,41 @@ impl Piece {
     ) -> Self {
         let n_rows = range.len();
         let stored = (matrix.row_starts[range.end] - matrix.row_starts[range.start]) as usize;
-        let mut piece = Self {
+        let mut chunk = Self {
             diagonal: Vec::with_capacity(n_rows),
             starts: Vec::with_capacity(n_rows + 1),
             columns: Vec::with_capacity(stored / 2),
             values: Vec::with_capacity(stored / 2),
             outside: Vec::new(),
         };
-        let single = |a: T| single(a, scale);
-        piece.starts.push(0);
+        let to_single = |a: T| to_single(a, scale);
+        chunk.starts.push(0);
         for i in range.clone() {
             let (columns, values) = row(i);
             let mut diagonal = 0.0;
             for (&j, &a) in columns.iter().zip(values) {
                 let column = j as usize;
                 if column == i {
-                    diagonal = single(a);
+                    diagonal = to_single(a);
                 } else if column < range.start {
-                    piece.outside.push(((i - range.start) as u16, j, single(a)));
+                    chunk.outside.push(((i - range.start) as u16, j, to_single(a)));
                 } else if column < i {
-                    piece.columns.push((column - range.start) as u16);
-                    piece.values.push(single(a));
+                    chunk.columns.push((column - range.start) as u16);
+                    chunk.values.push(to_single(a));
                 } else if column >= range.end {
-                    // the row below has it too, and both must be the same
+                    // The value is that of the lower row, so that both rows contain the same one.
                     let (columns, values) = row(column);
                     let a = columns.binary_search(&(i as u32)).map_or(a, |k| values[k]);
-                    piece.outside.push(((i - range.start) as u16, j, single(a)));
+                    chunk.outside.push(((i - range.start) as u16, j, to_single(a)));
                 }
             }
-            piece.diagonal.push(diagonal);
-            piece.starts.push(piece.columns.len() as u32);
+            chunk.diagonal.push(diagonal);
+            chunk.starts.push(chunk.columns.len() as u32);
         }
-        piece
+        chunk
     }
 
-    /// Sets an entry outside.
+    /// Replaces the value in row `k`, relative to the chunk, and a column outside of the chunk.
     fn replace_outside(&mut self, k: u16, column: u32, value: f32) {
         let first = self.outside.partition_point(|entry| entry.0 < k);
         if let Some(entry) = self.outside[first..].iter_mut().find(|entry| entry.1 == column) {
@@ -86,112 +89,114 @@ impl Piece {
         }
     }
 
+    /// Columns and values of row `k` of the strictly lower triangle.
     #[inline(always)]
-    fn row(&self, k: usize) -> impl Iterator<Item = (usize, f32)> {
+    fn lower_row(&self, k: usize) -> impl Iterator<Item = (usize, f32)> {
         let range = self.starts[k] as usize..self.starts[k + 1] as usize;
         let columns = self.columns[range.clone()].iter().map(|&j| usize::from(j));
         columns.zip(self.values[range].iter().copied())
     }
 }
 
-impl Sweeps {
-    /// For a matrix, with rows that may differ from those stored in it, over a number.
+impl GaussSeidel {
+    /// The smoother of a matrix with the pattern of `matrix` and the rows `row(i)`, divided by `scale`.
     pub fn new<'m, T: Real>(
         matrix: &SparseMatrix<T>,
         row: impl Fn(usize) -> (&'m [u32], &'m [T]) + Sync,
         scale: f64,
     ) -> Self {
         let n = matrix.size();
-        let pieces = map(n, |range| Piece::new(matrix, &row, scale, range));
-        Self { pieces, inverse: zeros(n) }
+        let chunks = map_chunks(n, |range| ChunkRows::new(matrix, &row, scale, range));
+        Self { chunks, inverse_diagonal: zeros(n) }
     }
 
-    /// Takes over rows that have changed. As in [`Sweeps::new`] an entry is that of the lower of its
-    /// two rows, so that the outcome is the same to the bit.
-    pub fn replace<'m, T: Real>(
+    /// Replaces the values of the given rows and of the columns with the same indices. As in
+    /// [`GaussSeidel::new`] a value is that of the lower row, so that both have the same result to the
+    /// last bit.
+    pub fn replace_rows<'m, T: Real>(
         &mut self,
         rows: &[u32],
         row: impl Fn(usize) -> (&'m [u32], &'m [T]),
         scale: f64,
     ) {
         for &i in rows {
-            let own = i as usize / PIECE;
-            let k = i as usize % PIECE;
+            let own = i as usize / CHUNK;
+            let k = i as usize % CHUNK;
             let (columns, values) = row(i as usize);
-            let mut at = self.pieces[own].starts[k] as usize;
+            let mut at = self.chunks[own].starts[k] as usize;
             for (&j, &a) in columns.iter().zip(values).take_while(|(j, _)| **j <= i) {
-                let a = single(a, scale);
+                let a = to_single(a, scale);
                 if j == i {
-                    self.pieces[own].diagonal[k] = a;
-                } else if j as usize / PIECE == own {
-                    self.pieces[own].values[at] = a;
+                    self.chunks[own].diagonal[k] = a;
+                } else if j as usize / CHUNK == own {
+                    self.chunks[own].values[at] = a;
                     at += 1;
                 } else {
-                    self.pieces[own].replace_outside(k as u16, j, a);
-                    let other = &mut self.pieces[j as usize / PIECE];
-                    other.replace_outside((j as usize % PIECE) as u16, i, a);
+                    self.chunks[own].replace_outside(k as u16, j, a);
+                    let other = &mut self.chunks[j as usize / CHUNK];
+                    other.replace_outside((j as usize % CHUNK) as u16, i, a);
                 }
             }
         }
     }
 
-    /// Sets which unknowns are fixed.
-    pub fn fix(&mut self, fixed: &[bool]) {
-        let pieces = &self.pieces;
-        each_mut(&mut self.inverse, |range, inverse| {
-            let diagonal = &pieces[range.start / PIECE].diagonal;
+    /// Sets the fixed unknowns.
+    pub fn set_fixed(&mut self, fixed: &[bool]) {
+        let chunks = &self.chunks;
+        for_each_chunk(&mut self.inverse_diagonal, |range, inverse| {
+            let diagonal = &chunks[range.start / CHUNK].diagonal;
             for ((inverse, &d), &fixed) in inverse.iter_mut().zip(diagonal).zip(&fixed[range]) {
                 *inverse = if fixed || d == 0.0 { 0.0 } else { 1.0 / d };
             }
         });
     }
 
-    /// One over the diagonal, zero where fixed.
-    pub fn inverse(&self) -> &[f32] {
-        &self.inverse
+    /// One over the diagonal entries, zero for fixed unknowns.
+    pub fn inverse_diagonal(&self) -> &[f32] {
+        &self.inverse_diagonal
     }
 
-    /// A forward sweep from zero; `r` becomes `b - A x` where free and zero where fixed.
+    /// A forward iteration from zero: sets `x`, and `r = b - A x` on free unknowns, zero on fixed ones.
     pub fn forward(&self, b: &[f32], x: &mut [f32], r: &mut [f32]) {
-        sum_mut2(x, r, |range, x, r| {
-            let piece = &self.pieces[range.start / PIECE];
-            let known = b[range.clone()].iter().zip(&self.inverse[range]);
-            for (k, (&b, &inverse)) in known.enumerate() {
-                let sum = piece.row(k).fold(b, |sum, (j, a)| sum - a * x[j]);
+        sum_chunks_of_two(x, r, |range, x, r| {
+            let chunk = &self.chunks[range.start / CHUNK];
+            let equations = b[range.clone()].iter().zip(&self.inverse_diagonal[range]);
+            for (k, (&b, &inverse)) in equations.enumerate() {
+                let sum = chunk.lower_row(k).fold(b, |sum, (j, a)| sum - a * x[j]);
                 let value = sum * inverse;
                 x[k] = value;
                 r[k] = 0.0;
-                piece.row(k).for_each(|(j, a)| r[j] -= a * value);
+                chunk.lower_row(k).for_each(|(j, a)| r[j] -= a * value);
             }
             0.0
         });
         let x = &*x;
-        each_mut(r, |range, r| {
-            for &(k, j, a) in &self.pieces[range.start / PIECE].outside {
+        for_each_chunk(r, |range, r| {
+            for &(k, j, a) in &self.chunks[range.start / CHUNK].outside {
                 r[usize::from(k)] -= a * x[j as usize];
             }
-            for (r, &inverse) in r.iter_mut().zip(&self.inverse[range]) {
+            for (r, &inverse) in r.iter_mut().zip(&self.inverse_diagonal[range]) {
                 *r = if inverse == 0.0 { 0.0 } else { *r };
             }
         });
     }
 
-    /// A backward sweep, from `x`. `r` is scratch.
+    /// A backward iteration from `x`. `r` is workspace.
     pub fn backward(&self, b: &[f32], x: &mut [f32], r: &mut [f32]) {
         let old = &*x;
-        each_mut(r, |range, r| {
+        for_each_chunk(r, |range, r| {
             r.copy_from_slice(&b[range.clone()]);
-            for &(k, j, a) in &self.pieces[range.start / PIECE].outside {
+            for &(k, j, a) in &self.chunks[range.start / CHUNK].outside {
                 r[usize::from(k)] -= a * old[j as usize];
             }
         });
-        sum_mut2(x, r, |range, x, r| {
-            let piece = &self.pieces[range.start / PIECE];
-            for (k, &inverse) in self.inverse[range].iter().enumerate().rev() {
-                let sum = piece.row(k).fold(r[k], |sum, (j, a)| sum - a * x[j]);
+        sum_chunks_of_two(x, r, |range, x, r| {
+            let chunk = &self.chunks[range.start / CHUNK];
+            for (k, &inverse) in self.inverse_diagonal[range].iter().enumerate().rev() {
+                let sum = chunk.lower_row(k).fold(r[k], |sum, (j, a)| sum - a * x[j]);
                 let value = sum * inverse;
                 x[k] = value;
-                piece.row(k).for_each(|(j, a)| r[j] -= a * value);
+                chunk.lower_row(k).for_each(|(j, a)| r[j] -= a * value);
             }
             0.0
         });
@@ -202,7 +207,7 @@ impl Sweeps {
 mod tests {
     use super::*;
 
-    /// Second differences of more unknowns than a piece has, and couplings across.
+    /// Second differences with more unknowns than a chunk, and couplings between chunks.
     fn matrix(n: usize) -> SparseMatrix<f64> {
         let mut matrix = SparseMatrix { row_starts: vec![0], columns: vec![], values: vec![] };
         for i in 0..n {
@@ -223,8 +228,8 @@ mod tests {
     }
 
     #[test]
-    fn rows_replaced_are_as_good_as_new() {
-        let n = 2 * PIECE + 1000;
+    fn replaced_rows_equal_new_ones() {
+        let n = 2 * CHUNK + 1000;
         let before = matrix(n);
         let mut after = before.clone();
         for i in 0..n {
@@ -239,10 +244,10 @@ mod tests {
             .filter(|&i| before.row(i as usize).1 != after.row(i as usize).1)
             .collect();
         assert!(rows.len() > n / 5 && rows.len() < n);
-        let mut replaced = Sweeps::new(&before, |i| before.row(i), 2.0);
-        replaced.replace(&rows, |i| after.row(i), 2.0);
-        let new = Sweeps::new(&after, |i| after.row(i), 2.0);
-        for (one, other) in replaced.pieces.iter().zip(&new.pieces) {
+        let mut replaced = GaussSeidel::new(&before, |i| before.row(i), 2.0);
+        replaced.replace_rows(&rows, |i| after.row(i), 2.0);
+        let new = GaussSeidel::new(&after, |i| after.row(i), 2.0);
+        for (one, other) in replaced.chunks.iter().zip(&new.chunks) {
             assert!(!one.outside.is_empty());
             assert_eq!(one.diagonal, other.diagonal);
             assert_eq!(one.values, other.values);
@@ -251,19 +256,19 @@ mod tests {
     }
 
     #[test]
-    fn a_sweep_forward_and_one_backward_make_a_symmetric_operator_and_know_their_residual() {
-        let n = 2 * PIECE + 1000;
+    fn forward_and_backward_iteration_are_a_symmetric_operator_and_return_the_residual() {
+        let n = 2 * CHUNK + 1000;
         let matrix = matrix(n);
-        let mut sweeps = Sweeps::new(&matrix, |i| matrix.row(i), 2.0);
+        let mut smoother = GaussSeidel::new(&matrix, |i| matrix.row(i), 2.0);
         let fixed: Vec<bool> = (0..n).map(|i| i % 7 == 3).collect();
-        sweeps.fix(&fixed);
-        let some = |seed: usize| -> Vec<f32> {
-            let one = |i: usize| ((i * 2_654_435_761 + seed) % 1000) as f32 / 500.0 - 1.0;
-            (0..n).map(|i| if fixed[i] { 0.0 } else { one(i) }).collect()
+        smoother.set_fixed(&fixed);
+        let vector = |seed: usize| -> Vec<f32> {
+            let entry = |i: usize| ((i * 2_654_435_761 + seed) % 1000) as f32 / 500.0 - 1.0;
+            (0..n).map(|i| if fixed[i] { 0.0 } else { entry(i) }).collect()
         };
         let apply = |b: &[f32]| {
             let (mut x, mut r) = (vec![9.0; n], vec![9.0; n]);
-            sweeps.forward(b, &mut x, &mut r);
+            smoother.forward(b, &mut x, &mut r);
             let residual = |i: usize| {
                 let product =
                     |s: f64, (&j, a): (&u32, &f64)| s - a / 2.0 * f64::from(x[j as usize]);
@@ -274,10 +279,10 @@ mod tests {
                 let expected = if fixed[i] { 0.0 } else { residual(i) };
                 assert!((f64::from(r[i]) - expected).abs() < 1e-5, "{i}");
             }
-            sweeps.backward(b, &mut x, &mut r);
+            smoother.backward(b, &mut x, &mut r);
             x
         };
-        let (b, c) = (some(0), some(77));
+        let (b, c) = (vector(0), vector(77));
         let dot = |x: &[f32], y: &[f32]| -> f64 {
             x.iter().zip(y).map(|(&x, &y)| f64::from(x) * f64::from(y)).sum()
         };

@@ -1,12 +1,25 @@
-//! Preconditioners for Krylov methods.
+//! Symmetric positive definite preconditioners on the free unknowns.
+//!
+//! `preconditioner`: the trait. `multigrid`: conforming linear functions, with `gauss_seidel`,
+//! `prolongation`, `aggregation` and `coarse_level`. `auxiliary_space`: other finite elements.
+//! `mean_jump_splitting` and `facet_mean_form`: over-penalised broken elements. `coarse_spaces`: the
+//! spaces that are known for an inequality. `any`: the preconditioner that fits an inequality.
 
-pub(crate) mod aggregation;
-pub(crate) mod auxiliary_space;
-pub(crate) mod choice;
-pub(crate) mod coarse_level;
-pub(crate) mod coarse_spaces;
-pub(crate) mod facet_pairs;
-pub(crate) mod gauss_seidel;
-pub(crate) mod mean_jump_split;
-pub(crate) mod multigrid;
-pub(crate) mod prolongation;
+mod aggregation;
+mod any;
+mod auxiliary_space;
+mod coarse_level;
+mod coarse_spaces;
+mod facet_mean_form;
+mod gauss_seidel;
+mod mean_jump_splitting;
+mod multigrid;
+mod preconditioner;
+mod prolongation;
+
+pub(crate) use any::AnyPreconditioner;
+pub use coarse_level::{CoarseLevel, P1Level};
+pub use coarse_spaces::CoarseSpaces;
+pub(crate) use multigrid::Multigrid;
+pub(crate) use preconditioner::Preconditioner;
+pub use prolongation::Prolongation;

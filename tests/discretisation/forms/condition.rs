@@ -28,7 +28,7 @@ fn assemble<const D: usize, S: Scheme<f64, D>>(scheme: &S, mesh: &Mesh<f64, D>) 
 
 /// The rows and columns of the unknowns that are not given.
 fn free_part(inequality: &Inequality<f64>) -> SparseMatrix<f64> {
-    let free = |i: usize| inequality.bounds[i].only_value().is_none();
+    let free = |i: usize| inequality.bounds[i].fixed_value().is_none();
     let mut number = vec![u32::MAX; inequality.size()];
     let kept = (0..inequality.size()).filter(|&i| free(i));
     kept.enumerate().for_each(|(k, i)| number[i] = k as u32);

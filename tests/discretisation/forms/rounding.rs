@@ -36,7 +36,7 @@ fn the_factored_form_is_the_matrix() {
             .coefficient(|x: &Point<f64, D>| 1.0 + x[0])
             .reaction(3.0);
         let inequality = assemble(scheme, &problem, &cube::<f64, D>(2));
-        let factored = inequality.factored.as_ref().unwrap();
+        let factored = inequality.penalised.as_ref().unwrap();
         let n = inequality.size();
         let mut assembled = vec![0.0; n];
         let mut kept = vec![0.0; n];
@@ -57,7 +57,7 @@ fn the_factored_form_is_the_matrix() {
         check::<D, _>(checks, &wopsip(3.0).on(P2));
         check::<D, _>(checks, &CellMeans(wopsip(3.0).on(P2)));
         let problem = Problem::new();
-        let none = assemble(&Sipg::default(), &problem, &cube::<f64, D>(2)).factored;
+        let none = assemble(&Sipg::default(), &problem, &cube::<f64, D>(2)).penalised;
         checks.that(none.is_none(), || "interior penalty is no sum of jumps".to_owned());
     }
     let mut checks = Checks::default();
@@ -71,7 +71,7 @@ fn the_factored_form_is_the_matrix() {
 fn solution<T: Real>(inequality: &Inequality<T>, is_old: bool) -> Solution<T> {
     let mut inequality = inequality.clone();
     if is_old {
-        inequality.factored = None;
+        inequality.penalised = None;
     }
     ActiveSet::default().linear(LinearMethod::Direct).solve(&inequality)
 }

@@ -1,74 +1,78 @@
-//! Orders of elimination by nested dissection of points of space.
+//! Geometric nested dissection.
 //!
-//! The unknowns of a matrix are cut in two by a plane across an axis, where the fewest lie at it; a
-//! least set of them that separates the two comes last; the two are dealt with in the same way
-//! (A. George, SIAM J. Numer. Anal. 10 (1973), 345-363; planes as in J. R. Gilbert, G. L. Miller,
-//! S.-H. Teng, SIAM J. Sci. Comput. 19 (1998), 2091-2110, least separators as in A. Pothen, C.-J. Fan,
-//! ACM Trans. Math. Softw. 16 (1990), 303-324).
+//! A plane across a coordinate axis divides the nodes of a graph in two; a minimum vertex separator of
+//! the two parts is eliminated last; both parts are ordered recursively. Sources: A. George, SIAM J.
+//! Numer. Anal. 10 (1973), 345-363; planes: J. R. Gilbert, G. L. Miller, S.-H. Teng, SIAM J. Sci.
+//! Comput. 19 (1998), 2091-2110; separators: A. Pothen, C.-J. Fan, ACM Trans. Math. Softw. 16 (1990),
+//! 303-324.
+//!
+//! `compressed_graph`: the graph. `bisection`: planes and separators. `minimum_degree`: the order within
+//! small parts.
 
-mod graph;
-mod leaf;
-mod separator;
+mod bisection;
+mod compressed_graph;
+mod minimum_degree;
 
 use std::cmp::Ordering;
 use std::ops::Range;
 
 use crate::algebra::{SparseMatrix, barycentre};
-use graph::Graph;
-use leaf::Leaf;
-use separator::{Cutter, SEPARATOR};
+use bisection::{Bisector, SEPARATOR};
+use compressed_graph::CompressedGraph;
+use minimum_degree::MinimumDegree;
 
-/// Parts of up to this many nodes are not cut but ordered by least degree. Between 16 and 100 fill
-/// differs by two per cent; with 32 the order is found fastest.
-const UNCUT: usize = 32;
+/// Largest number of nodes of a part that is ordered by minimum degree instead of dissection. Fill
+/// differs by two per cent between 16 and 100; the time for the order is least at 32.
+const LEAF_SIZE: usize = 32;
 
-/// A matrix whose unknowns are at points of space.
-pub(crate) struct Cloud<'k> {
-    kept: &'k [u32],
-    graph: Graph,
+/// The compressed graph of a symmetric submatrix, with a point for each node.
+pub(crate) struct GeometricGraph<'f> {
+    free: &'f [u32],
+    graph: CompressedGraph,
     points: Vec<[f32; 3]>,
 }
 
-/// A part that is still to be cut: a range of the order, and the name its nodes have.
+/// A part of the graph to be divided: a range of positions in the order, and the label of its nodes.
 struct Part {
     range: Range<usize>,
-    name: u32,
+    label: u32,
 }
 
-impl<'k> Cloud<'k> {
-    /// The rows and columns `kept` (ascending) of a symmetric matrix, and a point for each of all
-    /// rows.
-    pub fn new<T>(matrix: &SparseMatrix<T>, kept: &'k [u32], points: &[[f32; 3]]) -> Self {
-        let graph = Graph::new(matrix, kept);
-        let point = |node: u32| barycentre(graph.unknowns(node).map(|k| points[kept[k] as usize]));
-        let points = (0..graph.size() as u32).map(point).collect();
-        Self { kept, graph, points }
+impl<'f> GeometricGraph<'f> {
+    /// The graph of the rows and columns `free` (ascending) of a matrix whose row `i` has the point
+    /// `points[i]`. The point of a node is the barycentre of those of its unknowns.
+    pub fn new<T>(matrix: &SparseMatrix<T>, free: &'f [u32], points: &[[f32; 3]]) -> Self {
+        let graph = CompressedGraph::new(matrix, free);
+        let point = |node: u32| barycentre(graph.unknowns(node).map(|k| points[free[k] as usize]));
+        let points = (0..graph.n_nodes() as u32).map(point).collect();
+        Self { free, graph, points }
     }
 
-    /// Number of unknowns that do not share their row with the one before.
-    pub fn different(&self) -> usize {
-        self.graph.size()
+    /// Number of nodes.
+    pub fn n_nodes(&self) -> usize {
+        self.graph.n_nodes()
     }
 
-    /// The axes along which points differ.
-    pub fn axes(&self) -> Vec<usize> {
-        let differ = |k: &usize| self.points.iter().any(|x| x[*k] != self.points[0][*k]);
-        (0..3).filter(differ).collect()
+    /// The axes along which not all points have the same coordinate.
+    pub fn varying_axes(&self) -> Vec<usize> {
+        let varies = |k: &usize| self.points.iter().any(|x| x[*k] != self.points[0][*k]);
+        (0..3).filter(varies).collect()
     }
 
     /// The unknowns in the order of elimination.
-    pub fn order(&self) -> Vec<u32> {
-        let mut nodes = self.axes().into_iter().map(|axis| self.along(axis)).collect::<Vec<_>>();
-        if nodes.is_empty() {
-            nodes.push((0..self.graph.size() as u32).collect());
+    pub fn elimination_order(&self) -> Vec<u32> {
+        let axes = self.varying_axes();
+        let mut sorted = axes.into_iter().map(|axis| self.sorted_along(axis)).collect::<Vec<_>>();
+        if sorted.is_empty() {
+            sorted.push((0..self.graph.n_nodes() as u32).collect());
         }
-        let ordered = dissect(&self.graph, nodes);
+        let ordered = dissect(&self.graph, sorted);
         let unknowns = ordered.into_iter().flat_map(|node| self.graph.unknowns(node));
-        unknowns.map(|k| self.kept[k]).collect()
+        unknowns.map(|k| self.free[k]).collect()
     }
 
-    /// The nodes in their order along an axis, in planes across it along the others.
-    fn along(&self, axis: usize) -> Vec<u32> {
+    /// The nodes sorted by their coordinate along `axis`, then by the two others.
+    fn sorted_along(&self, axis: usize) -> Vec<u32> {
         let mut nodes: Vec<u32> = (0..self.points.len() as u32).collect();
         nodes.sort_by(|&a, &b| {
             let [a, b] = [a, b].map(|node| self.points[node as usize]);
@@ -79,61 +83,61 @@ impl<'k> Cloud<'k> {
     }
 }
 
-/// Orders nodes that are given in their order along each axis.
-fn dissect(graph: &Graph, mut axes: Vec<Vec<u32>>) -> Vec<u32> {
-    let n = graph.size();
-    let mut cutter = Cutter::new(graph);
-    let mut parts = vec![Part { range: 0..n, name: 0 }];
-    let mut names = 1;
+/// The order of elimination of all nodes, given the nodes sorted along each axis.
+fn dissect(graph: &CompressedGraph, mut sorted: Vec<Vec<u32>>) -> Vec<u32> {
+    let n = graph.n_nodes();
+    let mut bisector = Bisector::new(graph);
+    let mut parts = vec![Part { range: 0..n, label: 0 }];
+    let mut n_labels = 1;
     let mut leaves = Vec::new();
-    let mut later = [Vec::with_capacity(n), Vec::new()];
-    while let Some(Part { range, name }) = parts.pop() {
-        let along: Vec<&[u32]> = axes.iter().map(|nodes| &nodes[range.clone()]).collect();
-        let cut = if range.len() > UNCUT { cutter.best(&along, name) } else { None };
-        let Some(cut) = cut else {
+    let mut buffers = [Vec::with_capacity(n), Vec::new()];
+    while let Some(Part { range, label }) = parts.pop() {
+        let along: Vec<&[u32]> = sorted.iter().map(|nodes| &nodes[range.clone()]).collect();
+        let plane = if range.len() > LEAF_SIZE { bisector.best_plane(&along, label) } else { None };
+        let Some(plane) = plane else {
             leaves.push(range);
             continue;
         };
-        let new = [names, names + 1];
-        names += 2;
-        cutter.divide(along[cut.axis], cut, new);
-        let mut middle = range.clone();
-        for nodes in &mut axes {
-            middle = sift(&mut nodes[range.clone()], &cutter, new[0], &mut later);
+        let labels = [n_labels, n_labels + 1];
+        n_labels += 2;
+        bisector.bisect(along[plane.axis], plane, labels);
+        let mut second = range.clone();
+        for nodes in &mut sorted {
+            second = partition(&mut nodes[range.clone()], &bisector, labels[0], &mut buffers);
         }
-        let [from, to] = [middle.start, middle.end].map(|k| range.start + k);
-        parts.push(Part { range: range.start..from, name: new[0] });
-        parts.push(Part { range: from..to, name: new[1] });
+        let [start, end] = [second.start, second.end].map(|k| range.start + k);
+        parts.push(Part { range: range.start..start, label: labels[0] });
+        parts.push(Part { range: start..end, label: labels[1] });
     }
-    let mut order = axes.swap_remove(0);
-    let mut leaf = Leaf::new(n);
-    leaves.into_iter().for_each(|range| leaf.order(graph, &mut order[range]));
+    let mut order = sorted.swap_remove(0);
+    let mut minimum_degree = MinimumDegree::new(n);
+    leaves.into_iter().for_each(|range| minimum_degree.order(graph, &mut order[range]));
     order
 }
 
-/// Puts the nodes of one part first, separators last, all else in their order; returns where the
-/// other part lies.
-fn sift(
+/// Partitions nodes stably into the first part, the second part and the separator; returns the range
+/// of the second part. `buffers` is workspace.
+fn partition(
     nodes: &mut [u32],
-    cutter: &Cutter<'_>,
+    bisector: &Bisector<'_>,
     first: u32,
-    later: &mut [Vec<u32>; 2],
+    buffers: &mut [Vec<u32>; 2],
 ) -> Range<usize> {
-    let [second, separator] = later;
-    let mut kept = 0;
+    let [second, separator] = buffers;
+    let mut n_first = 0;
     for k in 0..nodes.len() {
         let node = nodes[k];
-        match cutter.part(node) {
-            part if part == first => {
-                nodes[kept] = node;
-                kept += 1;
+        match bisector.label(node) {
+            label if label == first => {
+                nodes[n_first] = node;
+                n_first += 1;
             }
             SEPARATOR => separator.push(node),
             _ => second.push(node),
         }
     }
-    let middle = kept..kept + second.len();
+    let second_range = n_first..n_first + second.len();
     let rest = second.drain(..).chain(separator.drain(..));
-    nodes[kept..].iter_mut().zip(rest).for_each(|(place, node)| *place = node);
-    middle
+    nodes[n_first..].iter_mut().zip(rest).for_each(|(out, node)| *out = node);
+    second_range
 }

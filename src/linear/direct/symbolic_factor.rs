@@ -1,0 +1,65 @@
+//! The symbolic part of a Cholesky factorisation, and matrices in the storage of faer.
+
+use std::sync::Arc;
+
+use faer::Side;
+use faer::perm::Perm;
+use faer::sparse::SparseColMatRef;
+use faer::sparse::linalg::cholesky::{
+    CholeskySymbolicParams, SymbolicCholesky, SymmetricOrdering, factorize_symbolic_cholesky,
+};
+
+use super::error::{FactorError, out_of_memory};
+use crate::algebra::Submatrix;
+use crate::real::Real;
+
+/// The pattern of the Cholesky factor of a symmetric matrix, for an order of elimination.
+#[derive(Clone, Debug)]
+pub(crate) struct SymbolicFactor(Arc<SymbolicCholesky<u32>>);
+
+impl SymbolicFactor {
+    /// The pattern for a lower triangle and an order of elimination: a permutation of the rows, or
+    /// approximate minimum degree for `None`.
+    ///
+    /// # Errors
+    /// [`FactorError::OutOfMemory`].
+    pub fn new<T: Real>(
+        lower: &Submatrix<T>,
+        order: Option<Vec<u32>>,
+    ) -> Result<Self, FactorError> {
+        let order = order.map(|order| {
+            let mut inverse = vec![0; order.len()];
+            order.iter().enumerate().for_each(|(k, &i)| inverse[i as usize] = k as u32);
+            Perm::new_checked(order.into(), inverse.into(), lower.size())
+        });
+        let ordering = match &order {
+            Some(order) => SymmetricOrdering::Custom(order.as_ref()),
+            None => SymmetricOrdering::Amd,
+        };
+        // The lower triangle by rows is the upper triangle by columns.
+        let pattern = transpose_by_columns(lower);
+        let params = CholeskySymbolicParams::default();
+        let symbolic =
+            factorize_symbolic_cholesky(pattern.symbolic(), Side::Upper, ordering, params)
+                .map_err(out_of_memory)?;
+        Ok(Self(Arc::new(symbolic)))
+    }
+
+    /// The pattern in the storage of faer, shared by all factors.
+    pub fn shared(&self) -> Arc<SymbolicCholesky<u32>> {
+        self.0.clone()
+    }
+}
+
+/// The transpose of a matrix by columns, which are the rows of the matrix. Nothing is copied.
+pub(crate) fn transpose_by_columns<T>(matrix: &Submatrix<T>) -> SparseColMatRef<'_, u32, T> {
+    let n = matrix.size();
+    let pattern = faer::sparse::SymbolicSparseColMatRef::new_checked(
+        n,
+        n,
+        &matrix.row_starts,
+        None,
+        &matrix.columns,
+    );
+    SparseColMatRef::new(pattern, &matrix.values)
+}

@@ -1,0 +1,54 @@
+//! The stopping rule of a Krylov method, and the result of a run.
+//!
+//! The norm of a residual `r` is the preconditioned one, `(r . B r)^(1/2)` with the preconditioner `B`.
+
+/// When a Krylov method stops; the first rule to hold.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct StoppingRule {
+    /// The norm of the residual is at most this.
+    pub norm: f64,
+    /// The norm of the residual is at most this times its initial value.
+    pub reduction: f64,
+    /// So many iterations are done.
+    pub max_iterations: usize,
+}
+
+impl StoppingRule {
+    /// The norm of the residual at which a run with this initial norm stops.
+    pub fn target(&self, initial_norm: f64) -> f64 {
+        self.norm.max(self.reduction * initial_norm)
+    }
+}
+
+/// Why a Krylov method stopped.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum StopReason {
+    /// The norm of the residual reached the target.
+    Converged,
+    /// The limit of iterations is reached, or too small for the observed rate of convergence.
+    IterationLimit,
+    /// The matrix or the preconditioner is not positive definite.
+    NotPositive,
+    /// A number is not finite.
+    NotFinite,
+}
+
+/// The result of a run of a Krylov method.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct KrylovRun {
+    pub iterations: usize,
+    pub reason: StopReason,
+    /// The norm of the residual at the end. Divided by the root of the smallest eigenvalue of `B A`, it
+    /// bounds the energy norm of the error.
+    pub norm: f64,
+    /// The smallest and the largest Ritz value of `B A`, of its symmetric part for GMRES. The smallest
+    /// one converges to the smallest eigenvalue from above.
+    pub ritz: Option<(f64, f64)>,
+}
+
+impl KrylovRun {
+    /// The run before the first iteration.
+    pub fn new() -> Self {
+        Self { iterations: 0, reason: StopReason::Converged, norm: 0.0, ritz: None }
+    }
+}
