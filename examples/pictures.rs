@@ -154,10 +154,8 @@ fn write_fields<const D: usize>(
     scene: &Scene<D>,
 ) -> Result<(), Error> {
     if let Some(directory) = path.parent() {
-        fs::create_dir_all(directory).map_err(|e| Error::Write {
-            path: directory.display().to_string(),
-            why: e.to_string(),
-        })?;
+        fs::create_dir_all(directory)
+            .map_err(|e| Error::Write { path: directory.display().to_string(), why: e.into() })?;
     }
     let multiplier = scene.problem.is_constrained().then_some(&fields.multiplier[..]);
     let fields = CellFields {

@@ -110,6 +110,7 @@ mod tests {
     use super::{Error, write_error};
     use crate::mesh::MeshError;
     use crate::mesh::gmsh::GmshError;
+    use crate::readable_debug::debug_by_display;
 
     #[test]
     fn debug_prints_the_message() {

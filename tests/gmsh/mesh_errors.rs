@@ -13,7 +13,7 @@ fn a_triangle_without_area() {
     else {
         panic!("{error}")
     };
-    assert_eq!((elements[0].element, elements[0].place), (6, FilePosition::Line(line)));
+    assert_eq!((elements[0].element, elements[0].position), (6, FilePosition::Line(line)));
     says(&error, &["degenerate", "element 6", &format!("line {line}"), "nodes 2, 2, 5"]);
 }
 
