@@ -10,6 +10,7 @@ use crate::readable_debug::debug_by_display;
 
 /// A law of the kit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[non_exhaustive]
 pub enum Law {
     /// The nodes, values and derivatives of the reference element.
     Element,

@@ -5,6 +5,7 @@ use crate::real::{Point, Real};
 
 /// Volume of a cell and gradients of its barycentric coordinates.
 #[derive(Clone, Copy, Debug)]
+#[non_exhaustive]
 pub struct CellGeometry<T, const D: usize> {
     /// The cell's `D`-dimensional measure.
     pub volume: T,

@@ -13,6 +13,7 @@ use crate::real::{Real, point_f64};
 /// The parents of the vertices of a refined mesh. The parent of fine cell `c` is coarse cell
 /// `c / 2^D`.
 #[derive(Clone, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub struct Refinement {
     /// The two coarse vertices whose midpoint a fine vertex is; twice the same one for a vertex of the
     /// coarse mesh.

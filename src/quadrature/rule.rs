@@ -4,6 +4,7 @@ use super::gauss::gauss_jacobi;
 
 /// A quadrature rule on the simplex of some dimension.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Rule {
     /// Barycentric coordinates of the points; `dimension + 1` of the four are used.
     pub points: Vec<[f64; 4]>,

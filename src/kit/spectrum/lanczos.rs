@@ -70,6 +70,7 @@ debug_by_display!(SpectrumError);
 /// a coarse tolerance accepts an eigenvalue inside the cluster. Rounding adds the condition number
 /// times the rounding unit to the smallest eigenvalue.
 #[derive(Clone, Copy, Debug)]
+#[non_exhaustive]
 pub struct Lanczos {
     /// Largest residual, relative to the eigenvalue.
     pub tolerance: f64,
@@ -84,6 +85,17 @@ impl Default for Lanczos {
 }
 
 impl Lanczos {
+    /// Sets the largest residual, relative to the eigenvalue.
+    #[must_use]
+    pub fn with_tolerance(self, tolerance: f64) -> Self {
+        Self { tolerance, ..self }
+    }
+    /// Sets the largest number of steps.
+    #[must_use]
+    pub fn with_max_steps(self, max_steps: usize) -> Self {
+        Self { max_steps, ..self }
+    }
+
     /// Both extreme eigenvalues of `B^-1 A`.
     ///
     /// # Errors

@@ -48,7 +48,7 @@ impl<T: Real, const D: usize> Mesh<T, D> {
                 part: BoundaryPart::Dirichlet,
             })
             .collect();
-        Ok(Self::new(vertices, cells, &boundary)?)
+        Self::new(vertices, cells, &boundary)
     }
 
     /// The uniform refinement of a mesh of a disc, with new vertices in the middle of arcs, as in

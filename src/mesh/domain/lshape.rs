@@ -43,6 +43,6 @@ impl<T: Real, const D: usize> Mesh<T, D> {
             side(vertex(k, 2 * n), vertex(k + 1, 2 * n));
             side(vertex(k, bottom), vertex(k + 1, bottom));
         }
-        Ok(Self::new(vertices, cells, &boundary)?)
+        Self::new(vertices, cells, &boundary)
     }
 }

@@ -22,6 +22,7 @@ impl fmt::Display for FilePosition {
 
 /// An element of the file, in the message of an error.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub struct ElementPosition {
     /// Tag of the element.
     pub element: u64,

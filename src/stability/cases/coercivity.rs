@@ -117,7 +117,7 @@ fn smallest_eigenvalue(matrix: &SparseMatrix<f64>) -> Option<f64> {
             }
         }
         if let Ok(a) = CholeskyMatrix::new(&shifted) {
-            let lanczos = Lanczos { tolerance: 1e-6, ..Lanczos::default() };
+            let lanczos = Lanczos::default().with_tolerance(1e-6);
             let found = lanczos.smallest(&a, &Diagonal::identity(matrix.size())).ok()?;
             return Some(found - shift);
         }

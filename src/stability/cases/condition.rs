@@ -39,7 +39,7 @@ pub(crate) fn plan(plan: &mut Plan<'_>) {
 /// The condition number of `B^-1 A`; none where it is out of reach.
 fn condition(matrix: &SparseMatrix<f64>, b: &dyn PositiveDefinite) -> Option<f64> {
     let a = CholeskyMatrix::new(matrix).ok()?;
-    let lanczos = Lanczos { tolerance: 1e-6, ..Lanczos::default() };
+    let lanczos = Lanczos::default().with_tolerance(1e-6);
     lanczos.extremes(&a, b).ok().map(|found| found.condition())
 }
 

@@ -50,7 +50,7 @@ fn free_part(inequality: &Inequality<f64>) -> SparseMatrix<f64> {
 fn condition(matrix: &SparseMatrix<f64>, b: &dyn PositiveDefinite) -> f64 {
     let a = CholeskyMatrix::new(matrix).unwrap();
     // eigenvalues cluster about one where the blocks precondition well
-    let lanczos = Lanczos { tolerance: 1e-8, ..Lanczos::default() };
+    let lanczos = Lanczos::default().with_tolerance(1e-8);
     lanczos.extremes(&a, b).unwrap().condition()
 }
 

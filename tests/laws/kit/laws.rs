@@ -91,7 +91,7 @@ fn eigenvalues_of_second_differences() {
 fn a_spectrum_that_is_not_reached_is_an_error() {
     let matrix = differences(400);
     let a = CholeskyMatrix::new(&matrix).unwrap();
-    let lanczos = Lanczos { tolerance: 1e-10, max_steps: 5 };
+    let lanczos = Lanczos::default().with_tolerance(1e-10).with_max_steps(5);
     let error = lanczos.largest(&a, &Diagonal::identity(400)).unwrap_err();
     let SpectrumError::NotReached { steps: 5, residual, .. } = error else { panic!("{error}") };
     assert!(residual > 1e-10);
