@@ -1,6 +1,7 @@
 //! The certificate: how well the complementarity conditions hold, from the data and `u` alone.
 
 use crate::algebra::{Bound, Contact, Inequality};
+use crate::instances::compiled;
 use crate::real::Real;
 
 /// Relative, dimensionless violations of the complementarity conditions of an [`Inequality`].
@@ -74,6 +75,12 @@ pub fn certify_with_jump_multipliers<T: Real>(
     u: &[T],
     forces: &[T],
 ) -> Certificate {
+    compiled!(T: fn(&Inequality<T>, &[T], &[T]) -> Certificate = certificate_of)(
+        inequality, u, forces,
+    )
+}
+
+fn certificate_of<T: Real>(inequality: &Inequality<T>, u: &[T], forces: &[T]) -> Certificate {
     certify_with_noise(inequality, u, forces).0
 }
 

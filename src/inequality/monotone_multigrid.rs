@@ -4,6 +4,7 @@ use super::certificate::certify;
 use super::initial_guess::InitialGuess;
 use super::{ActiveSet, InequalitySolver, Outcome, Solution, active_set};
 use crate::algebra::{Contact, Inequality};
+use crate::instances::compiled;
 use crate::linear::CoarseSpaces;
 use crate::linear::direct::factors::FactorError;
 use crate::linear::precondition::coarse_level::CoarseLevel;
@@ -49,6 +50,22 @@ impl<T: Real> InequalitySolver<T> for MonotoneMultigrid {
     }
 
     fn solve_from(&self, inequality: &Inequality<T>, nearby: &InitialGuess<T>) -> Solution<T> {
+        compiled!(T: fn(&MonotoneMultigrid, &Inequality<T>, &InitialGuess<T>) -> Solution<T> = MonotoneMultigrid::descend)(
+            self, inequality, nearby,
+        )
+    }
+
+    fn uses_coarse_spaces(&self, _unknowns: usize) -> bool {
+        true
+    }
+}
+
+impl MonotoneMultigrid {
+    fn descend<T: Real>(
+        &self,
+        inequality: &Inequality<T>,
+        nearby: &InitialGuess<T>,
+    ) -> Solution<T> {
         if !inequality.symmetric {
             return ActiveSet::default().solve_from(inequality, nearby);
         }
@@ -58,10 +75,6 @@ impl<T: Real> InequalitySolver<T> for MonotoneMultigrid {
             Err(outcome) => outcome,
         };
         descent.into_solution(outcome)
-    }
-
-    fn uses_coarse_spaces(&self, _unknowns: usize) -> bool {
-        true
     }
 }
 

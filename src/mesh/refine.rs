@@ -4,6 +4,7 @@ use rayon::prelude::*;
 
 use super::validate::check_size;
 use super::{BoundaryFacet, Edges, Mesh, MeshError, edge_vertices};
+use crate::instances::compiled;
 use crate::memory::in_large_pages;
 use crate::real::{Real, point_f64};
 
@@ -130,6 +131,11 @@ impl<T: Real, const D: usize> Mesh<T, D> {
     /// # Errors
     /// [`MeshError::TooLarge`].
     pub fn refine(&self) -> Result<(Self, Refinement), MeshError> {
+        compiled!(T, D: fn(&Mesh<T, D>) -> Result<(Mesh<T, D>, Refinement), MeshError> = Mesh::refine_uniformly)(
+            self,
+        )
+    }
+    fn refine_uniformly(&self) -> Result<(Self, Refinement), MeshError> {
         let n_children = 1 << D;
         let n_fine = self.n_cells().saturating_mul(n_children);
         check_size(n_fine, 0)?;

@@ -9,6 +9,7 @@ use crate::algebra::{Bound, Contact, Start};
 use crate::assemble::{DataQuadrature, Discretisation};
 use crate::error::Error;
 use crate::inequality::{InequalitySolver, InitialGuess, Outcome};
+use crate::instances::compiled;
 use crate::linear::{CoarseLevel, CoarseSpaces, P1Level, Prolongation};
 use crate::mesh::{Domain, Mesh, Refinement};
 use crate::problem::Problem;
@@ -82,6 +83,11 @@ impl<'a, T: Real, const D: usize> Hierarchy<'a, T, D> {
     /// [`Error::Mesh`] if there would be more cells than can be numbered, [`Error::Parameter`] for
     /// a level of zero on a built-in domain.
     pub fn make(&mut self, level: usize) -> Result<(), Error> {
+        compiled!(T, D: fn(&mut Hierarchy<'_, T, D>, usize) -> Result<(), Error> = |levels, level| levels.make_meshes(level))(
+            self, level,
+        )
+    }
+    fn make_meshes(&mut self, level: usize) -> Result<(), Error> {
         if self.levels.contains_key(&level) {
             return Ok(());
         }
@@ -180,6 +186,17 @@ impl<'a, T: Real, const D: usize> Hierarchy<'a, T, D> {
         quadrature: DataQuadrature,
         repeat: usize,
     ) -> Result<Option<Arc<P1Solution<T>>>, Error> {
+        compiled!(T, D: fn(&mut Hierarchy<'_, T, D>, usize, &dyn InequalitySolver<T>, DataQuadrature, usize) -> Result<Option<Arc<P1Solution<T>>>, Error> = |levels, level, solver, quadrature, repeat| levels.carry_from_coarser(level, solver, quadrature, repeat))(
+            self, level, solver, quadrature, repeat,
+        )
+    }
+    fn carry_from_coarser(
+        &mut self,
+        level: usize,
+        solver: &dyn InequalitySolver<T>,
+        quadrature: DataQuadrature,
+        repeat: usize,
+    ) -> Result<Option<Arc<P1Solution<T>>>, Error> {
         let Some((coarser, _)) = self.levels.get(&level).and_then(|l| l.from.as_ref()) else {
             return Ok(None);
         };
@@ -217,6 +234,17 @@ impl<'a, T: Real, const D: usize> Hierarchy<'a, T, D> {
     /// # Errors
     /// Those of assembly.
     pub fn contact(
+        &mut self,
+        level: usize,
+        solver: &dyn InequalitySolver<T>,
+        quadrature: DataQuadrature,
+        repeat: usize,
+    ) -> Result<Arc<P1Solution<T>>, Error> {
+        compiled!(T, D: fn(&mut Hierarchy<'_, T, D>, usize, &dyn InequalitySolver<T>, DataQuadrature, usize) -> Result<Arc<P1Solution<T>>, Error> = |levels, level, solver, quadrature, repeat| levels.find_contact(level, solver, quadrature, repeat))(
+            self, level, solver, quadrature, repeat,
+        )
+    }
+    fn find_contact(
         &mut self,
         level: usize,
         solver: &dyn InequalitySolver<T>,

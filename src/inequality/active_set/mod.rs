@@ -12,6 +12,7 @@ use super::initial_guess::InitialGuess;
 use super::monotone_multigrid::MonotoneMultigrid;
 use super::{InequalitySolver, Outcome, Solution};
 use crate::algebra::{Contact, Inequality, Start};
+use crate::instances::compiled;
 use crate::linear::direct::factors::{FactorError, is_positive_definite};
 use crate::linear::direct::static_condensation::StaticCondensation;
 use crate::linear::{CoarseSpaces, LinearMethod};
@@ -122,6 +123,26 @@ impl<T: Real> InequalitySolver<T> for ActiveSet {
     }
 
     fn solve_from(&self, inequality: &Inequality<T>, nearby: &InitialGuess<T>) -> Solution<T> {
+        compiled!(T: fn(&ActiveSet, &Inequality<T>, &InitialGuess<T>) -> Solution<T> = ActiveSet::choose_and_solve)(
+            self, inequality, nearby,
+        )
+    }
+
+    fn uses_coarse_spaces(&self, unknowns: usize) -> bool {
+        match self.linear {
+            LinearMethod::Direct => false,
+            LinearMethod::Iterative => true,
+            LinearMethod::BySize => unknowns >= CROSSOVER,
+        }
+    }
+}
+
+impl ActiveSet {
+    fn choose_and_solve<T: Real>(
+        &self,
+        inequality: &Inequality<T>,
+        nearby: &InitialGuess<T>,
+    ) -> Solution<T> {
         let is_iterative =
             <Self as InequalitySolver<T>>::uses_coarse_spaces(self, inequality.size());
         let is_known = !matches!(nearby.functions, CoarseSpaces::Unknown);
@@ -135,16 +156,6 @@ impl<T: Real> InequalitySolver<T> for ActiveSet {
         self.solve_directly(inequality, None)
     }
 
-    fn uses_coarse_spaces(&self, unknowns: usize) -> bool {
-        match self.linear {
-            LinearMethod::Direct => false,
-            LinearMethod::Iterative => true,
-            LinearMethod::BySize => unknowns >= CROSSOVER,
-        }
-    }
-}
-
-impl ActiveSet {
     /// Without factors of the matrix. The error is what was done in vain.
     fn solve_inexactly<T: Real>(
         &self,

@@ -16,9 +16,10 @@ use faer::sparse::{FaerError, SparseColMatRef};
 use faer::{MatMut, Side};
 
 use super::elimination::EliminationOrder;
-use super::kernels::PAR;
+use super::kernels::{self, PAR};
 use crate::algebra::SparseMatrix;
 use crate::algebra::submatrix::Submatrix;
+use crate::instances::compiled;
 use crate::parallel::vectors::signs;
 use crate::real::Real;
 
@@ -112,6 +113,16 @@ impl<T: Real> Factors<T> {
         symmetric: bool,
         free: &[u32],
     ) -> Result<Self, FactorError> {
+        compiled!(T: fn(&SparseMatrix<T>, bool, &[u32]) -> Result<Factors<T>, FactorError> = Factors::factor)(
+            matrix, symmetric, free,
+        )
+    }
+
+    fn factor(
+        matrix: &SparseMatrix<T>,
+        symmetric: bool,
+        free: &[u32],
+    ) -> Result<Self, FactorError> {
         if symmetric {
             let mut restricted = Submatrix::left_of_diagonal(matrix, free);
             let analysis = Analysis::new(&restricted, None)?;
@@ -128,6 +139,15 @@ impl<T: Real> Factors<T> {
     /// # Errors
     /// See [`Factors::new`].
     pub fn in_order(
+        matrix: &SparseMatrix<T>,
+        free: &[u32],
+        order: &EliminationOrder,
+    ) -> Result<Self, FactorError> {
+        compiled!(T: fn(&SparseMatrix<T>, &[u32], &EliminationOrder) -> Result<Factors<T>, FactorError> = Factors::factor_in_order)(
+            matrix, free, order,
+        )
+    }
+    fn factor_in_order(
         matrix: &SparseMatrix<T>,
         free: &[u32],
         order: &EliminationOrder,
@@ -173,6 +193,9 @@ impl<T: Real> Factors<T> {
     /// # Panics
     /// If `x` does not hold that many vectors of [`Factors::size`] numbers.
     pub fn solve_in_place(&self, x: &mut [T], right_sides: usize) {
+        compiled!(T: fn(&Factors<T>, &mut [T], usize) = Factors::substitute)(self, x, right_sides)
+    }
+    fn substitute(&self, x: &mut [T], right_sides: usize) {
         if x.is_empty() {
             return;
         }
@@ -182,12 +205,12 @@ impl<T: Real> Factors<T> {
             Kind::Cholesky { symbolic, values } => {
                 let scratch = symbolic.solve_in_place_scratch::<T>(right_sides, PAR);
                 let mut memory = MemBuffer::new(scratch);
-                T::cholesky_solve(symbolic, values, x, MemStack::new(&mut memory));
+                kernels::cholesky_solve(symbolic, values, x, MemStack::new(&mut memory));
             }
             Kind::Lu { symbolic, numeric } => {
                 let scratch = symbolic.solve_transpose_in_place_scratch::<T>(right_sides, PAR);
                 let mut memory = MemBuffer::new(scratch);
-                T::lu_solve_transpose(symbolic, numeric, x, MemStack::new(&mut memory));
+                kernels::lu_solve_transpose(symbolic, numeric, x, MemStack::new(&mut memory));
             }
         }
     }
@@ -199,7 +222,7 @@ impl<T: Real> Factors<T> {
         values.resize(symbolic.len_val(), T::lit(0.0));
         let scratch = symbolic.factorize_numeric_llt_scratch::<T>(PAR, Default::default());
         let mut memory = MemBuffer::try_new(scratch).map_err(|_| FactorError::OutOfMemory)?;
-        T::cholesky(&symbolic, a, &mut values, MemStack::new(&mut memory))
+        kernels::cholesky(&symbolic, a, &mut values, MemStack::new(&mut memory))
             .map_err(|LltError::NonPositivePivot { .. }| FactorError::NotPositive)?;
         if pivots_hold(&symbolic, &values, &restricted.diagonal()) {
             Ok(Self { size: restricted.size(), kind: Kind::Cholesky { symbolic, values } })
@@ -221,12 +244,12 @@ impl<T: Real> Factors<T> {
         let mut numeric = NumericLu::new();
         let scratch = symbolic.factorize_numeric_lu_scratch::<T>(PAR, Default::default());
         let mut memory = MemBuffer::try_new(scratch).map_err(|_| FactorError::OutOfMemory)?;
-        T::lu(&symbolic, a, &mut numeric, MemStack::new(&mut memory)).map_err(
-            |error| match error {
+        kernels::lu(&symbolic, a, &mut numeric, MemStack::new(&mut memory)).map_err(|error| {
+            match error {
                 LuError::SymbolicSingular { .. } => FactorError::Singular,
                 LuError::Generic(error) => error.into(),
-            },
-        )?;
+            }
+        })?;
         let kind = Kind::Lu { symbolic: Box::new(symbolic), numeric: Box::new(numeric) };
         let factors = Self { size: restricted.size(), kind };
         if factors.condition_holds(restricted) { Ok(factors) } else { Err(FactorError::Singular) }
@@ -258,6 +281,16 @@ impl<T: Real> Factors<T> {
 /// # Errors
 /// [`FactorError::OutOfMemory`] if the question could not be answered.
 pub fn is_positive_definite<T: Real>(
+    matrix: &SparseMatrix<T>,
+    symmetric: bool,
+    free: &[u32],
+) -> Result<bool, FactorError> {
+    compiled!(T: fn(&SparseMatrix<T>, bool, &[u32]) -> Result<bool, FactorError> = has_cholesky_factor)(
+        matrix, symmetric, free,
+    )
+}
+
+fn has_cholesky_factor<T: Real>(
     matrix: &SparseMatrix<T>,
     symmetric: bool,
     free: &[u32],

@@ -1,5 +1,6 @@
 //! Kuhn triangulations of boxes.
 
+use crate::instances::compiled;
 use crate::mesh::validate::check_size;
 use crate::mesh::{BoundaryFacet, BoxDomain, Mesh, MeshError};
 use crate::real::{Point, Real};
@@ -39,6 +40,11 @@ impl<T: Real, const D: usize> Mesh<T, D> {
     /// # Errors
     /// [`MeshError::Parameter`] for a count of zero or a box without volume, [`MeshError::TooLarge`].
     pub fn kuhn_box(domain: &BoxDomain<D>, counts: [usize; D]) -> Result<Self, MeshError> {
+        compiled!(T, D: fn(&BoxDomain<D>, [usize; D]) -> Result<Mesh<T, D>, MeshError> = Mesh::cut_box)(
+            domain, counts,
+        )
+    }
+    fn cut_box(domain: &BoxDomain<D>, counts: [usize; D]) -> Result<Self, MeshError> {
         let wrong = |parameter, value: String, allowed: &str| MeshError::Parameter {
             parameter,
             value,

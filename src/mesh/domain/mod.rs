@@ -5,6 +5,7 @@ mod disc;
 mod lshape;
 
 use super::{BoundaryPart, Mesh, MeshError, Refinement};
+use crate::instances::compiled;
 use crate::real::{Point, Real};
 
 /// An axis-parallel box and the part of the boundary each of its sides belongs to.
@@ -139,6 +140,14 @@ impl<const D: usize> Domain<D> {
     /// # Errors
     /// [`MeshError::TooLarge`] if there would be too many cells.
     pub fn refine<T: Real>(
+        &self,
+        mesh: &Mesh<T, D>,
+    ) -> Result<(Mesh<T, D>, Refinement), MeshError> {
+        compiled!(T, D: fn(&Domain<D>, &Mesh<T, D>) -> Result<(Mesh<T, D>, Refinement), MeshError> = Domain::refine_mesh)(
+            self, mesh,
+        )
+    }
+    fn refine_mesh<T: Real>(
         &self,
         mesh: &Mesh<T, D>,
     ) -> Result<(Mesh<T, D>, Refinement), MeshError> {
