@@ -13,6 +13,7 @@ pub mod element;
 pub mod error;
 pub mod facet;
 pub mod inequality;
+mod instances;
 pub mod kit;
 pub mod linear;
 pub mod measure;

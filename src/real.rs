@@ -2,14 +2,13 @@
 
 /// A real scalar this crate can assemble and solve in: `f64`, or `f32`.
 ///
-/// Data of a scene are always evaluated in `f64` and rounded once, by [`Real::lit`].
+/// Data of a scene are always evaluated in `f64` and rounded once, by [`Real::lit`]. The trait is
+/// sealed: the solvers are compiled for these two scalars, in this library.
 #[diagnostic::on_unimplemented(
     message = "`{Self}` is not a scalar this crate can solve in",
     note = "use `f64` or `f32`"
 )]
-pub trait Real:
-    nalgebra::RealField + faer::traits::RealField + crate::linear::SparseKernels + Copy
-{
+pub trait Real: nalgebra::RealField + sealed::Scalar + Copy {
     /// The name users type and reports state.
     const NAME: &'static str;
     /// Distance from one to the next larger number, as `f64`.
@@ -21,6 +20,13 @@ pub trait Real:
     fn lit(x: f64) -> Self;
     /// The same number in `f64`, exactly.
     fn to_f64(self) -> f64;
+}
+
+mod sealed {
+    /// What no other crate can implement; the library that factors matrices asks for its supertrait.
+    pub trait Scalar: faer::traits::RealField {}
+    impl Scalar for f64 {}
+    impl Scalar for f32 {}
 }
 
 impl Real for f64 {

@@ -24,6 +24,7 @@ use crate::constraint::BoundedNodes;
 use crate::element::ReferenceElement;
 use crate::error::Error;
 use crate::facet::{DirichletBy, FacetForm};
+use crate::instances::compiled;
 use crate::mesh::Mesh;
 use crate::problem::Problem;
 use crate::real::Real;
@@ -76,11 +77,17 @@ impl<'a, T: Real, const D: usize> Discretisation<'a, T, D> {
         mesh: &'a Mesh<T, D>,
         quadrature: DataQuadrature,
     ) -> Result<Self, Error> {
-        let element = AnyElement::of::<T, E, D>();
-        check_form::<T, D>(&element, &*form)?;
         let pins = matches!(dirichlet, DirichletBy::Pinning);
-        let space = Space::new(element, problem, mesh, quadrature, form.couples(), pins, bounded)?;
-        Ok(Self { space, form, loops: CellLoops::of::<E>(), prepared: OnceLock::new() })
+        let parts = Parts {
+            element: AnyElement::of::<T, E, D>(),
+            loops: CellLoops::of::<E>(),
+            form,
+            pins,
+            bounded,
+        };
+        compiled!(T, D: for<'p> fn(Parts<T, D>, &'p Problem<D>, &'p Mesh<T, D>, DataQuadrature) -> Result<Discretisation<'p, T, D>, Error> = |parts, problem, mesh, quadrature| parts.join(problem, mesh, quadrature))(
+            parts, problem, mesh, quadrature,
+        )
     }
 
     /// Number of unknowns, Dirichlet ones included.
@@ -105,6 +112,11 @@ impl<'a, T: Real, const D: usize> Discretisation<'a, T, D> {
     }
     /// The pattern of the matrix, with values zero.
     pub fn pattern(&self) -> SparseMatrix<T> {
+        compiled!(T, D: fn(&Discretisation<'_, T, D>) -> SparseMatrix<T> = |space| space.make_pattern())(
+            self,
+        )
+    }
+    fn make_pattern(&self) -> SparseMatrix<T> {
         if self.owns_rows() {
             owned_rows::pattern(&self.space, self.form.is_lifted())
         } else {
@@ -116,6 +128,11 @@ impl<'a, T: Real, const D: usize> Discretisation<'a, T, D> {
     /// # Panics
     /// If it has another.
     pub fn fill(&self, matrix: &mut SparseMatrix<T>) {
+        compiled!(T, D: fn(&Discretisation<'_, T, D>, &mut SparseMatrix<T>) = |space, matrix| space.fill_values(matrix))(
+            self, matrix,
+        )
+    }
+    fn fill_values(&self, matrix: &mut SparseMatrix<T>) {
         if self.owns_rows() {
             let (metrics, weights) = self.prepared();
             owned_rows::fill(&self.space, self.form(), metrics, weights, matrix);
@@ -141,6 +158,11 @@ impl<'a, T: Real, const D: usize> Discretisation<'a, T, D> {
     /// # Errors
     /// [`Error::DataNotFinite`], [`Error::EmptyConstraint`].
     pub fn inequality(&self) -> Result<Inequality<T>, Error> {
+        compiled!(T, D: fn(&Discretisation<'_, T, D>) -> Result<Inequality<T>, Error> = |space| space.assemble())(
+            self,
+        )
+    }
+    fn assemble(&self) -> Result<Inequality<T>, Error> {
         let (load, own_load, data) = self.loads()?;
         let bounds = self.bounds()?;
         let matrix = self.matrix();
@@ -191,10 +213,20 @@ impl<'a, T: Real, const D: usize> Discretisation<'a, T, D> {
     /// # Errors
     /// [`Error::EmptyConstraint`], [`Error::DataNotFinite`].
     pub fn bounds(&self) -> Result<Vec<Bound<T>>, Error> {
+        compiled!(T, D: fn(&Discretisation<'_, T, D>) -> Result<Vec<Bound<T>>, Error> = |space| space.assemble_bounds())(
+            self,
+        )
+    }
+    fn assemble_bounds(&self) -> Result<Vec<Bound<T>>, Error> {
         self.space.bounds()
     }
     /// Where each unknown lives.
     pub fn supports(&self) -> Vec<Support> {
+        compiled!(T, D: fn(&Discretisation<'_, T, D>) -> Vec<Support> = |space| space.find_supports())(
+            self,
+        )
+    }
+    fn find_supports(&self) -> Vec<Support> {
         self.space.supports()
     }
     /// The discrete function at the vertices of each cell, `D + 1` values for each.
@@ -202,11 +234,21 @@ impl<'a, T: Real, const D: usize> Discretisation<'a, T, D> {
     /// # Panics
     /// If `u` is shorter than the number of unknowns.
     pub fn vertex_values(&self, u: &[T]) -> Vec<f64> {
+        compiled!(T, D: fn(&Discretisation<'_, T, D>, &[T]) -> Vec<f64> = |space, u| space.evaluate_at_vertices(u))(
+            self, u,
+        )
+    }
+    fn evaluate_at_vertices(&self, u: &[T]) -> Vec<f64> {
         self.space.vertex_values(u)
     }
     /// Facets whose weight lies below what the form needs to be provably coercive: how many, and
     /// the one that misses by the largest factor. Nothing if the form promises none.
     pub fn coercivity_margin(&self) -> Option<CoercivityMargin> {
+        compiled!(T, D: fn(&Discretisation<'_, T, D>) -> Option<CoercivityMargin> = |space| space.find_coercivity_margin())(
+            self,
+        )
+    }
+    fn find_coercivity_margin(&self) -> Option<CoercivityMargin> {
         self.space.coercivity_margin(self.form())
     }
     /// The load of all unknowns.
@@ -214,7 +256,36 @@ impl<'a, T: Real, const D: usize> Discretisation<'a, T, D> {
     /// # Errors
     /// [`Error::DataNotFinite`].
     pub fn load(&self) -> Result<Vec<T>, Error> {
+        compiled!(T, D: fn(&Discretisation<'_, T, D>) -> Result<Vec<T>, Error> = |space| space.assemble_load())(
+            self,
+        )
+    }
+    fn assemble_load(&self) -> Result<Vec<T>, Error> {
         self.space.load(self.form(), &|| &self.prepared().0)
+    }
+}
+
+/// What a scheme brings to a discretisation.
+struct Parts<T: Real, const D: usize> {
+    element: AnyElement,
+    loops: Option<CellLoops<T, D>>,
+    form: Box<dyn FacetForm<T, D>>,
+    /// Whether Dirichlet data are pinned.
+    pins: bool,
+    bounded: BoundedNodes,
+}
+
+impl<T: Real, const D: usize> Parts<T, D> {
+    fn join<'a>(
+        self,
+        problem: &'a Problem<D>,
+        mesh: &'a Mesh<T, D>,
+        quadrature: DataQuadrature,
+    ) -> Result<Discretisation<'a, T, D>, Error> {
+        let Self { element, loops, form, pins, bounded } = self;
+        check_form::<T, D>(&element, &*form)?;
+        let space = Space::new(element, problem, mesh, quadrature, form.couples(), pins, bounded)?;
+        Ok(Discretisation { space, form, loops, prepared: OnceLock::new() })
     }
 }
 

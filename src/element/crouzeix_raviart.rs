@@ -16,6 +16,7 @@ impl<T: Real, const D: usize> ReferenceElement<T, D> for CrouzeixRaviart {
     const N: usize = D + 1;
     const DEGREE: usize = 1;
     const LAYOUT: Layout = Layout { vertex: 0, edge: 0, facet: 1, cell: 0 };
+    const COMPILED: bool = true;
 
     #[inline(always)]
     fn values(lambda: &[T], out: &mut [T]) {

@@ -15,6 +15,7 @@ impl<T: Real, const D: usize> ReferenceElement<T, D> for P2 {
     const N: usize = (D + 1) * (D + 2) / 2;
     const DEGREE: usize = 2;
     const LAYOUT: Layout = Layout { vertex: 1, edge: 1, facet: 0, cell: 0 };
+    const COMPILED: bool = true;
 
     #[inline(always)]
     fn values(lambda: &[T], out: &mut [T]) {

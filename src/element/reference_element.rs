@@ -70,6 +70,10 @@ pub trait ReferenceElement<T: Real, const D: usize>: Copy + Send + Sync + 'stati
     const DEGREE: usize;
     /// Unknowns at vertices, edges, facets and inside cells.
     const LAYOUT: Layout;
+    /// Whether this library has compiled the assembly of the element's shared unknowns; no other
+    /// crate sets it.
+    #[doc(hidden)]
+    const COMPILED: bool = false;
     /// Writes the `N` basis functions at a point; `lambda` has `D + 1` entries.
     fn values(lambda: &[T], out: &mut [T]);
     /// Writes the derivatives of the `N` basis functions with respect to the `D + 1` barycentric

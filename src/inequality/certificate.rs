@@ -1,6 +1,7 @@
 //! The certificate: violations of the complementarity conditions, computed from the data and `u` alone.
 
 use crate::algebra::{Bound, Contact, Inequality};
+use crate::instances::compiled;
 use crate::real::Real;
 
 /// Relative, dimensionless violations of the complementarity conditions of an [`Inequality`].
@@ -82,6 +83,18 @@ pub fn certify<T: Real>(inequality: &Inequality<T>, u: &[T]) -> Certificate {
 /// Without jump multipliers, or if their number is not that of the jumps, `p = S (M u - g)`.
 #[must_use]
 pub fn certify_with_jump_multipliers<T: Real>(
+    inequality: &Inequality<T>,
+    u: &[T],
+    jump_multipliers: &[T],
+) -> Certificate {
+    compiled!(T: fn(&Inequality<T>, &[T], &[T]) -> Certificate = certificate_of)(
+        inequality,
+        u,
+        jump_multipliers,
+    )
+}
+
+fn certificate_of<T: Real>(
     inequality: &Inequality<T>,
     u: &[T],
     jump_multipliers: &[T],

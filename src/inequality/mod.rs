@@ -22,7 +22,7 @@
 //! [`ActiveSet`] runs in stages, each only if the one before has not converged:
 //!
 //! 1. Small systems, and those without nested meshes, start with 3. Large ones start with the active set
-//!    method with preconditioned KrylovMethod methods (`active_set/inexact_driver`); a bound on its algebraic
+//!    method with preconditioned Krylov methods (`active_set/inexact_driver`); a bound on its algebraic
 //!    error goes with its solution.
 //! 2. If its active set stagnates on conforming P1 with a symmetric matrix: [`MonotoneMultigrid`].
 //! 3. The active set method with factors (`active_set/direct_driver`). If its active set

@@ -6,6 +6,7 @@ use super::initial_guess::InitialGuess;
 use super::validation::check_input;
 use super::{ActiveSet, InequalitySolver, Outcome, Solution};
 use crate::algebra::{Contact, Inequality};
+use crate::instances::compiled;
 use crate::linear::CoarseSpaces;
 use crate::linear::direct::FactorError;
 use crate::linear::precondition::CoarseLevel;
@@ -75,6 +76,18 @@ impl<T: Real> InequalitySolver<T> for MonotoneMultigrid {
     }
 
     fn solve_from(&self, inequality: &Inequality<T>, guess: &InitialGuess<T>) -> Solution<T> {
+        compiled!(T: fn(&MonotoneMultigrid, &Inequality<T>, &InitialGuess<T>) -> Solution<T> = MonotoneMultigrid::descend)(
+            self, inequality, guess,
+        )
+    }
+
+    fn uses_coarse_spaces(&self, _unknowns: usize) -> bool {
+        true
+    }
+}
+
+impl MonotoneMultigrid {
+    fn descend<T: Real>(&self, inequality: &Inequality<T>, guess: &InitialGuess<T>) -> Solution<T> {
         if !inequality.symmetric {
             return ActiveSet::default().solve_from(inequality, guess);
         }
@@ -84,10 +97,6 @@ impl<T: Real> InequalitySolver<T> for MonotoneMultigrid {
             Err(outcome) => outcome,
         };
         iterate.into_solution(outcome)
-    }
-
-    fn uses_coarse_spaces(&self, _unknowns: usize) -> bool {
-        true
     }
 }
 

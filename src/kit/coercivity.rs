@@ -10,11 +10,20 @@ use super::report::CoercivityReport;
 use super::spectrum::{CholeskyMatrix, Diagonal, Lanczos};
 use super::{meshes, problems};
 use crate::algebra::SparseMatrix;
+use crate::instances::compiled;
 use crate::linear::FactorError;
 use crate::real::Real;
 use crate::scheme::AnyScheme;
 
 pub(super) fn check<T: Real, const D: usize>(
+    scheme: &dyn AnyScheme<T, D>,
+) -> Result<CoercivityReport, KitError> {
+    compiled!(T, D: fn(&dyn AnyScheme<T, D>) -> Result<CoercivityReport, KitError> = check_scheme)(
+        scheme,
+    )
+}
+
+fn check_scheme<T: Real, const D: usize>(
     scheme: &dyn AnyScheme<T, D>,
 ) -> Result<CoercivityReport, KitError> {
     let (law, domain, n) = (Law::Coercivity, meshes::clamped(), meshes::subdivisions(D));

@@ -5,6 +5,7 @@ use super::error::{KitError, Law};
 use super::meshes::Sample;
 use super::report::ConsistencyReport;
 use super::{meshes, problems};
+use crate::instances::compiled;
 use crate::mesh::describe_point;
 use crate::problem::Problem;
 use crate::real::{Real, point_f64};
@@ -15,6 +16,14 @@ use crate::scheme::AnyScheme;
 const UNITS: f64 = 8192.0;
 
 pub(super) fn check<T: Real, const D: usize>(
+    scheme: &dyn AnyScheme<T, D>,
+) -> Result<ConsistencyReport, KitError> {
+    compiled!(T, D: fn(&dyn AnyScheme<T, D>) -> Result<ConsistencyReport, KitError> = check_scheme)(
+        scheme,
+    )
+}
+
+fn check_scheme<T: Real, const D: usize>(
     scheme: &dyn AnyScheme<T, D>,
 ) -> Result<ConsistencyReport, KitError> {
     let (law, domain, n) = (Law::Consistency, meshes::mixed(), meshes::subdivisions(D));

@@ -9,6 +9,7 @@ use super::meshes::{Renumbered, Sample};
 use super::report::InvarianceReport;
 use super::{meshes, problems};
 use crate::algebra::Support;
+use crate::instances::compiled;
 use crate::real::Real;
 use crate::scheme::AnyScheme;
 
@@ -18,6 +19,14 @@ const ENTRY_UNITS: f64 = 512.0;
 const SOLUTION_UNITS: f64 = 8192.0;
 
 pub(super) fn check<T: Real, const D: usize>(
+    scheme: &dyn AnyScheme<T, D>,
+) -> Result<InvarianceReport, KitError> {
+    compiled!(T, D: fn(&dyn AnyScheme<T, D>) -> Result<InvarianceReport, KitError> = check_scheme)(
+        scheme,
+    )
+}
+
+fn check_scheme<T: Real, const D: usize>(
     scheme: &dyn AnyScheme<T, D>,
 ) -> Result<InvarianceReport, KitError> {
     let law = Law::Invariance;

@@ -4,6 +4,7 @@ use super::discrete::{is_symmetric, promised, solve_and_judge};
 use super::error::{KitError, Law};
 use super::report::OrdersReport;
 use super::{meshes, problems};
+use crate::instances::compiled;
 use crate::measure::observed_order;
 use crate::real::Real;
 use crate::scheme::AnyScheme;
@@ -26,6 +27,14 @@ const fn levels(dimension: usize, degree: usize) -> [usize; 2] {
 }
 
 pub(super) fn check<T: Real, const D: usize>(
+    scheme: &dyn AnyScheme<T, D>,
+) -> Result<OrdersReport, KitError> {
+    compiled!(T, D: fn(&dyn AnyScheme<T, D>) -> Result<OrdersReport, KitError> = check_scheme)(
+        scheme,
+    )
+}
+
+fn check_scheme<T: Real, const D: usize>(
     scheme: &dyn AnyScheme<T, D>,
 ) -> Result<OrdersReport, KitError> {
     let law = Law::Orders;

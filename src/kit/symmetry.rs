@@ -5,6 +5,7 @@ use super::error::{KitError, Law};
 use super::matrix::{Assembled, row_sizes};
 use super::report::SymmetryReport;
 use super::{meshes, problems};
+use crate::instances::compiled;
 use crate::real::Real;
 use crate::scheme::AnyScheme;
 
@@ -12,6 +13,14 @@ use crate::scheme::AnyScheme;
 const UNITS: f64 = 256.0;
 
 pub(super) fn check<T: Real, const D: usize>(
+    scheme: &dyn AnyScheme<T, D>,
+) -> Result<SymmetryReport, KitError> {
+    compiled!(T, D: fn(&dyn AnyScheme<T, D>) -> Result<SymmetryReport, KitError> = check_scheme)(
+        scheme,
+    )
+}
+
+fn check_scheme<T: Real, const D: usize>(
     scheme: &dyn AnyScheme<T, D>,
 ) -> Result<SymmetryReport, KitError> {
     let sample = meshes::moved(Law::Symmetry, &meshes::mixed(), meshes::subdivisions(D))?;

@@ -10,6 +10,6 @@ pub(crate) mod krylov;
 mod method;
 pub(crate) mod precondition;
 
-pub use direct::{EliminationOrder, FactorError, Factors, SparseKernels, is_positive_definite};
+pub use direct::{EliminationOrder, FactorError, Factors, is_positive_definite};
 pub use method::LinearMethod;
 pub use precondition::{CoarseLevel, CoarseSpaces, P1Level, Prolongation};

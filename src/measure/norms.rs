@@ -10,6 +10,7 @@ use crate::assemble::space::{Space, data};
 use crate::element::{MAX_BASIS, Node};
 use crate::error::Error;
 use crate::facet::{FacetForm, Trace};
+use crate::instances::compiled;
 use crate::mesh::{BoundaryPart, Neighbour, Neighbours};
 use crate::parallel::cells;
 use crate::problem::Exact;
@@ -65,6 +66,11 @@ impl<T: Real, const D: usize> Discretisation<'_, T, D> {
     /// # Panics
     /// If `u` is shorter than the number of unknowns.
     pub fn errors(&self, u: &[T]) -> Result<Errors, Error> {
+        compiled!(T, D: fn(&Discretisation<'_, T, D>, &[T]) -> Result<Errors, Error> = |space, u| space.errors_of(u))(
+            self, u,
+        )
+    }
+    fn errors_of(&self, u: &[T]) -> Result<Errors, Error> {
         let form = self.form();
         self.space.errors(form.couples().then_some(form), u)
     }

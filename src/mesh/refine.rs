@@ -7,6 +7,7 @@ use super::edges::{Edges, edge_vertices};
 use super::error::MeshError;
 use super::simplicial::Mesh;
 use super::validate::check_size;
+use crate::instances::compiled;
 use crate::memory::in_large_pages;
 use crate::real::{Real, point_f64};
 
@@ -134,6 +135,11 @@ impl<T: Real, const D: usize> Mesh<T, D> {
     /// # Errors
     /// [`MeshError::TooLarge`].
     pub fn refine(&self) -> Result<(Self, Refinement), MeshError> {
+        compiled!(T, D: fn(&Mesh<T, D>) -> Result<(Mesh<T, D>, Refinement), MeshError> = Mesh::refine_uniformly)(
+            self,
+        )
+    }
+    fn refine_uniformly(&self) -> Result<(Self, Refinement), MeshError> {
         let n_children = 1 << D;
         let n_fine = self.n_cells().saturating_mul(n_children);
         check_size(n_fine, 0)?;

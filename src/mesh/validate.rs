@@ -5,6 +5,7 @@ use super::error::MeshError;
 use super::facets::{CELL_LIMIT, Neighbour, Neighbours};
 use super::geometry::CellGeometry;
 use super::simplicial::Mesh;
+use crate::instances::compiled;
 use crate::real::{Point, Real, point_f64};
 
 /// A facet of the boundary by its `D` vertices, in any order, and its part of the boundary.
@@ -28,6 +29,15 @@ impl<T: Real, const D: usize> Mesh<T, D> {
     /// see [`Mesh::check_supported`]. Vertices in errors are numbered as given.
     pub fn new(
         vertices: Vec<Point<f64, D>>,
+        cells: Vec<u32>,
+        boundary: &[TaggedFacet<D>],
+    ) -> Result<Self, MeshError> {
+        compiled!(T, D: fn(Vec<Point<f64, D>>, Vec<u32>, &[TaggedFacet<D>]) -> Result<Mesh<T, D>, MeshError> = Mesh::from_lists)(
+            vertices, cells, boundary,
+        )
+    }
+    fn from_lists(
+        vertices: Vec<Point<f64, D>>,
         mut cells: Vec<u32>,
         boundary: &[TaggedFacet<D>],
     ) -> Result<Self, MeshError> {
@@ -50,6 +60,9 @@ impl<T: Real, const D: usize> Mesh<T, D> {
     /// # Errors
     /// [`MeshError::UnsupportedComponent`].
     pub fn check_supported(&self) -> Result<(), MeshError> {
+        compiled!(T, D: fn(&Mesh<T, D>) -> Result<(), MeshError> = Mesh::find_unsupported)(self)
+    }
+    fn find_unsupported(&self) -> Result<(), MeshError> {
         let neighbours = Neighbours::new(self);
         let mut seen = vec![false; self.n_cells()];
         let mut front = Vec::new();

@@ -9,6 +9,7 @@ use crate::algebra::{Bound, Contact, Start};
 use crate::assemble::{DataQuadrature, Discretisation};
 use crate::error::Error;
 use crate::inequality::{InequalitySolver, InitialGuess, Outcome};
+use crate::instances::compiled;
 use crate::linear::{CoarseLevel, CoarseSpaces, P1Level, Prolongation};
 use crate::mesh::{Domain, Mesh, Refinement};
 use crate::problem::Problem;
@@ -94,6 +95,11 @@ impl<'a, T: Real, const D: usize> Hierarchy<'a, T, D> {
     /// [`Error::Mesh`] if the cells are too many to be numbered, [`Error::Parameter`] for level zero of a
     /// built-in domain.
     pub fn build(&mut self, level: usize) -> Result<(), Error> {
+        compiled!(T, D: fn(&mut Hierarchy<'_, T, D>, usize) -> Result<(), Error> = |levels, level| levels.build_meshes(level))(
+            self, level,
+        )
+    }
+    fn build_meshes(&mut self, level: usize) -> Result<(), Error> {
         if self.levels.contains_key(&level) {
             return Ok(());
         }
@@ -200,6 +206,17 @@ impl<'a, T: Real, const D: usize> Hierarchy<'a, T, D> {
         quadrature: DataQuadrature,
         repeat: usize,
     ) -> Result<Option<Arc<P1Solution<T>>>, Error> {
+        compiled!(T, D: fn(&mut Hierarchy<'_, T, D>, usize, &dyn InequalitySolver<T>, DataQuadrature, usize) -> Result<Option<Arc<P1Solution<T>>>, Error> = |levels, level, solver, quadrature, repeat| levels.prolong_p1_solution(level, solver, quadrature, repeat))(
+            self, level, solver, quadrature, repeat,
+        )
+    }
+    fn prolong_p1_solution(
+        &mut self,
+        level: usize,
+        solver: &dyn InequalitySolver<T>,
+        quadrature: DataQuadrature,
+        repeat: usize,
+    ) -> Result<Option<Arc<P1Solution<T>>>, Error> {
         let Some((coarser, _)) = self.levels.get(&level).and_then(|l| l.coarser.as_ref()) else {
             return Ok(None);
         };
@@ -238,6 +255,17 @@ impl<'a, T: Real, const D: usize> Hierarchy<'a, T, D> {
     /// # Errors
     /// Those of assembly and of [`Hierarchy::build`].
     pub fn p1_solution(
+        &mut self,
+        level: usize,
+        solver: &dyn InequalitySolver<T>,
+        quadrature: DataQuadrature,
+        repeat: usize,
+    ) -> Result<Arc<P1Solution<T>>, Error> {
+        compiled!(T, D: fn(&mut Hierarchy<'_, T, D>, usize, &dyn InequalitySolver<T>, DataQuadrature, usize) -> Result<Arc<P1Solution<T>>, Error> = |levels, level, solver, quadrature, repeat| levels.solve_p1_on(level, solver, quadrature, repeat))(
+            self, level, solver, quadrature, repeat,
+        )
+    }
+    fn solve_p1_on(
         &mut self,
         level: usize,
         solver: &dyn InequalitySolver<T>,

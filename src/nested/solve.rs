@@ -1,5 +1,6 @@
 //! One solve: a scheme on a mesh, from assembly to certificate and errors.
 
+use crate::instances::compiled;
 use crate::measure::Fields;
 use std::time::Instant;
 
@@ -79,6 +80,15 @@ pub struct Solved {
 /// # Errors
 /// Those of assembly: bad data. Numerical outcomes are in [`Solved::outcome`].
 pub fn solve<T: Real, const D: usize>(
+    scheme: &dyn AnyScheme<T, D>,
+    task: &Task<'_, T, D>,
+) -> Result<Solved, Error> {
+    compiled!(T, D: fn(&dyn AnyScheme<T, D>, &Task<'_, T, D>) -> Result<Solved, Error> = solve_task)(
+        scheme, task,
+    )
+}
+
+fn solve_task<T: Real, const D: usize>(
     scheme: &dyn AnyScheme<T, D>,
     task: &Task<'_, T, D>,
 ) -> Result<Solved, Error> {

@@ -6,6 +6,7 @@
 
 use crate::error::Error;
 use crate::error::write_error;
+use crate::instances::compiled;
 use crate::mesh::Mesh;
 use crate::real::{Real, point_f64};
 use base64::engine::general_purpose::STANDARD;
@@ -34,6 +35,16 @@ pub struct CellFields<'a> {
 /// # Errors
 /// [`Error::Write`] if a field has not the length the mesh needs, or the file cannot be written.
 pub fn write_vtu<T: Real, const D: usize>(
+    path: &Path,
+    mesh: &Mesh<T, D>,
+    fields: &CellFields,
+) -> Result<(), Error> {
+    compiled!(T, D: fn(&Path, &Mesh<T, D>, &CellFields) -> Result<(), Error> = write_cells)(
+        path, mesh, fields,
+    )
+}
+
+fn write_cells<T: Real, const D: usize>(
     path: &Path,
     mesh: &Mesh<T, D>,
     fields: &CellFields,

@@ -35,6 +35,7 @@ pub use crate::facet::DirichletBy;
 
 use crate::element::{P2, ReferenceElement};
 use crate::facet::FacetForm;
+use crate::instances::compiled;
 use crate::mesh::Mesh;
 use crate::real::Real;
 use energy_order::{broken_energy_order, energy_order, with_duality};
@@ -117,7 +118,9 @@ pub fn scheme_by_name<T: Real, const D: usize>(
     name: &str,
     options: &SchemeOptions,
 ) -> Option<Box<dyn AnyScheme<T, D>>> {
-    made(name, options)
+    compiled!(T, D: fn(&str, &SchemeOptions) -> Option<Box<dyn AnyScheme<T, D>>> = made)(
+        name, options,
+    )
 }
 
 /// A discretisation of the bilinear form and of Dirichlet data.

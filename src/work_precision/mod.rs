@@ -28,6 +28,7 @@ use std::time::{Duration, Instant};
 
 use crate::error::Error;
 use crate::inequality::ActiveSet;
+use crate::instances::compiled;
 use crate::linear::LinearMethod;
 use crate::real::Real;
 use crate::scenes::Scene;
@@ -196,6 +197,11 @@ impl<'a, const D: usize> WorkPrecision<'a, D> {
     /// # Errors
     /// Those of [`Self::run`].
     pub fn run_into(&self, report: &mut WorkReport) -> Result<(), Error> {
+        compiled!(const D: fn(&WorkPrecision<'_, D>, &mut WorkReport) -> Result<(), Error> = |study, report| study.run_cases(report))(
+            self, report,
+        )
+    }
+    fn run_cases(&self, report: &mut WorkReport) -> Result<(), Error> {
         let mut slots = self.slots()?;
         report.subject.clone_from(&self.subject);
         for precision in self.precisions.iter().map(|p| p.name()) {

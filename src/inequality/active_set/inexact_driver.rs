@@ -166,7 +166,7 @@ impl<'a, T: Real> InexactDriver<'a, T> {
         Ok(evaluation)
     }
 
-    /// Permits another solution where rounding has made the recursive residual of the KrylovMethod method
+    /// Permits another solution where rounding has made the recursive residual of the Krylov method
     /// smaller than the true one. If that happens too often the run ends; the direct method follows for
     /// penalised matrices, since jump multipliers as unknowns reduce rounding.
     fn repeat_after_rounding(&self, progress: &mut ProgressMonitor) -> Result<(), StopReason> {

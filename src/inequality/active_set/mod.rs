@@ -7,7 +7,7 @@
 //! | `direct_driver` | the iteration with factors: active set steps, condensation, interior point, projected Newton |
 //! | `direct_iterate` | its iterate: values, contact states, merit, the prediction of the active set |
 //! | `inactive_system` | its linear system on the inactive unknowns |
-//! | `inexact_driver` | the iteration with preconditioned KrylovMethod methods |
+//! | `inexact_driver` | the iteration with preconditioned Krylov methods |
 //! | `inexact_iterate` | its iterate |
 //! | `kkt_evaluation` | residual, prediction of the active set and merit of an inexact iterate |
 //! | `progress` | when an inexact iteration stagnates |

@@ -9,6 +9,7 @@ use crate::inequality::initial_guess::InitialGuess;
 use crate::inequality::monotone_multigrid::MonotoneMultigrid;
 use crate::inequality::validation::{check_definite, check_input};
 use crate::inequality::{InequalitySolver, Outcome, Solution};
+use crate::instances::compiled;
 use crate::linear::{CoarseSpaces, LinearMethod};
 use crate::real::Real;
 
@@ -25,6 +26,26 @@ impl<T: Real> InequalitySolver<T> for ActiveSet {
     }
 
     fn solve_from(&self, inequality: &Inequality<T>, guess: &InitialGuess<T>) -> Solution<T> {
+        compiled!(T: fn(&ActiveSet, &Inequality<T>, &InitialGuess<T>) -> Solution<T> = ActiveSet::choose_and_solve)(
+            self, inequality, guess,
+        )
+    }
+
+    fn uses_coarse_spaces(&self, unknowns: usize) -> bool {
+        match self.linear {
+            LinearMethod::Direct => false,
+            LinearMethod::Iterative => true,
+            LinearMethod::BySize => unknowns >= CROSSOVER,
+        }
+    }
+}
+
+impl ActiveSet {
+    fn choose_and_solve<T: Real>(
+        &self,
+        inequality: &Inequality<T>,
+        guess: &InitialGuess<T>,
+    ) -> Solution<T> {
         let may_iterate =
             <Self as InequalitySolver<T>>::uses_coarse_spaces(self, inequality.size());
         let has_coarse_spaces = !matches!(guess.coarse_spaces, CoarseSpaces::Unknown);
@@ -39,17 +60,7 @@ impl<T: Real> InequalitySolver<T> for ActiveSet {
         self.solve_directly(inequality, None)
     }
 
-    fn uses_coarse_spaces(&self, unknowns: usize) -> bool {
-        match self.linear {
-            LinearMethod::Direct => false,
-            LinearMethod::Iterative => true,
-            LinearMethod::BySize => unknowns >= CROSSOVER,
-        }
-    }
-}
-
-impl ActiveSet {
-    /// The active set method with preconditioned KrylovMethod methods, without factors of the matrix.
+    /// The active set method with preconditioned Krylov methods, without factors of the matrix.
     fn solve_inexactly<T: Real>(
         &self,
         inequality: &Inequality<T>,

@@ -13,9 +13,10 @@ use faer::sparse::linalg::lu::{LuSymbolicParams, NumericLu, SymbolicLu, factoriz
 
 use super::elimination_order::EliminationOrder;
 use super::error::{FactorError, out_of_memory};
-use super::kernels::PAR;
+use super::kernels::{self, PAR};
 use super::symbolic_factor::{SymbolicFactor, transpose_by_columns};
 use crate::algebra::{SparseMatrix, Submatrix};
+use crate::instances::compiled;
 use crate::parallel::vectors::pseudorandom_signs;
 use crate::real::Real;
 
@@ -52,6 +53,16 @@ impl<T: Real> Factors<T> {
         symmetric: bool,
         free: &[u32],
     ) -> Result<Self, FactorError> {
+        compiled!(T: fn(&SparseMatrix<T>, bool, &[u32]) -> Result<Factors<T>, FactorError> = Factors::factor)(
+            matrix, symmetric, free,
+        )
+    }
+
+    fn factor(
+        matrix: &SparseMatrix<T>,
+        symmetric: bool,
+        free: &[u32],
+    ) -> Result<Self, FactorError> {
         if symmetric {
             let mut lower = Submatrix::lower_triangle(matrix, free);
             let symbolic = SymbolicFactor::new(&lower, None)?;
@@ -68,6 +79,15 @@ impl<T: Real> Factors<T> {
     /// # Errors
     /// See [`FactorError`].
     pub fn in_order(
+        matrix: &SparseMatrix<T>,
+        free: &[u32],
+        order: &EliminationOrder,
+    ) -> Result<Self, FactorError> {
+        compiled!(T: fn(&SparseMatrix<T>, &[u32], &EliminationOrder) -> Result<Factors<T>, FactorError> = Factors::factor_in_order)(
+            matrix, free, order,
+        )
+    }
+    fn factor_in_order(
         matrix: &SparseMatrix<T>,
         free: &[u32],
         order: &EliminationOrder,
@@ -116,6 +136,9 @@ impl<T: Real> Factors<T> {
     /// # Panics
     /// If `x` is not empty and has another length.
     pub fn solve_in_place(&self, x: &mut [T], right_sides: usize) {
+        compiled!(T: fn(&Factors<T>, &mut [T], usize) = Factors::substitute)(self, x, right_sides)
+    }
+    fn substitute(&self, x: &mut [T], right_sides: usize) {
         if x.is_empty() {
             return;
         }
@@ -125,12 +148,12 @@ impl<T: Real> Factors<T> {
             Factorisation::Cholesky { symbolic, values } => {
                 let scratch = symbolic.solve_in_place_scratch::<T>(right_sides, PAR);
                 let mut memory = MemBuffer::new(scratch);
-                T::cholesky_solve(symbolic, values, x, MemStack::new(&mut memory));
+                kernels::cholesky_solve(symbolic, values, x, MemStack::new(&mut memory));
             }
             Factorisation::Lu { symbolic, numeric } => {
                 let scratch = symbolic.solve_transpose_in_place_scratch::<T>(right_sides, PAR);
                 let mut memory = MemBuffer::new(scratch);
-                T::lu_solve_transpose(symbolic, numeric, x, MemStack::new(&mut memory));
+                kernels::lu_solve_transpose(symbolic, numeric, x, MemStack::new(&mut memory));
             }
         }
     }
@@ -142,7 +165,7 @@ impl<T: Real> Factors<T> {
         values.resize(symbolic.len_val(), T::lit(0.0));
         let scratch = symbolic.factorize_numeric_llt_scratch::<T>(PAR, Default::default());
         let mut memory = MemBuffer::try_new(scratch).map_err(|_| FactorError::OutOfMemory)?;
-        T::cholesky(&symbolic, a, &mut values, MemStack::new(&mut memory))
+        kernels::cholesky(&symbolic, a, &mut values, MemStack::new(&mut memory))
             .map_err(|LltError::NonPositivePivot { .. }| FactorError::NotPositive)?;
         if pivots_are_significant(&symbolic, &values, &lower.diagonal()) {
             let factorisation = Factorisation::Cholesky { symbolic, values };
@@ -166,12 +189,12 @@ impl<T: Real> Factors<T> {
         let mut numeric = NumericLu::new();
         let scratch = symbolic.factorize_numeric_lu_scratch::<T>(PAR, Default::default());
         let mut memory = MemBuffer::try_new(scratch).map_err(|_| FactorError::OutOfMemory)?;
-        T::lu(&symbolic, a, &mut numeric, MemStack::new(&mut memory)).map_err(
-            |error| match error {
+        kernels::lu(&symbolic, a, &mut numeric, MemStack::new(&mut memory)).map_err(|error| {
+            match error {
                 LuError::SymbolicSingular { .. } => FactorError::Singular,
                 LuError::Generic(error) => out_of_memory(error),
-            },
-        )?;
+            }
+        })?;
         let factorisation =
             Factorisation::Lu { symbolic: Box::new(symbolic), numeric: Box::new(numeric) };
         let factors = Self { size: matrix.size(), factorisation };
@@ -205,6 +228,16 @@ impl<T: Real> Factors<T> {
 /// # Errors
 /// [`FactorError::OutOfMemory`].
 pub fn is_positive_definite<T: Real>(
+    matrix: &SparseMatrix<T>,
+    symmetric: bool,
+    free: &[u32],
+) -> Result<bool, FactorError> {
+    compiled!(T: fn(&SparseMatrix<T>, bool, &[u32]) -> Result<bool, FactorError> = has_cholesky_factor)(
+        matrix, symmetric, free,
+    )
+}
+
+fn has_cholesky_factor<T: Real>(
     matrix: &SparseMatrix<T>,
     symmetric: bool,
     free: &[u32],

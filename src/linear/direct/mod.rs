@@ -17,6 +17,5 @@ mod symbolic_factor;
 pub use elimination_order::EliminationOrder;
 pub use error::FactorError;
 pub use factors::{Factors, is_positive_definite};
-pub use kernels::SparseKernels;
 pub(crate) use static_condensation::{CondensedFactors, StaticCondensation};
 pub(crate) use symbolic_factor::SymbolicFactor;

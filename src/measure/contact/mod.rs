@@ -17,6 +17,7 @@ use crate::assemble::Discretisation;
 use crate::assemble::space::Space;
 use crate::error::Error;
 use crate::inequality::Solution;
+use crate::instances::compiled;
 use crate::mesh::BoundaryPart;
 use crate::problem::ContactSet;
 use crate::real::{Point, Real, point_f64};
@@ -76,6 +77,15 @@ impl<T: Real, const D: usize> Discretisation<'_, T, D> {
     /// # Panics
     /// If the solution has fewer values than there are unknowns.
     pub fn contact_errors(
+        &self,
+        inequality: &Inequality<T>,
+        solution: &Solution<T>,
+    ) -> Result<ContactErrors, Error> {
+        compiled!(T, D: fn(&Discretisation<'_, T, D>, &Inequality<T>, &Solution<T>) -> Result<ContactErrors, Error> = |space, inequality, solution| space.contact_errors_of(inequality, solution))(
+            self, inequality, solution,
+        )
+    }
+    fn contact_errors_of(
         &self,
         inequality: &Inequality<T>,
         solution: &Solution<T>,

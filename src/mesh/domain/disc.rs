@@ -2,6 +2,7 @@
 
 use std::f64::consts::FRAC_PI_3;
 
+use crate::instances::compiled;
 use crate::mesh::boundary::BoundaryPart;
 use crate::mesh::error::MeshError;
 use crate::mesh::refine::Refinement;
@@ -21,6 +22,9 @@ impl<T: Real, const D: usize> Mesh<T, D> {
     /// [`MeshError::Parameter`] for `n = 0`, a radius that is not positive and finite and a dimension
     /// other than two; [`MeshError::TooLarge`].
     pub fn disc(radius: f64, n: usize) -> Result<Self, MeshError> {
+        compiled!(T, D: fn(f64, usize) -> Result<Mesh<T, D>, MeshError> = Mesh::cut_disc)(radius, n)
+    }
+    fn cut_disc(radius: f64, n: usize) -> Result<Self, MeshError> {
         check_shape::<D>("disc", radius, n)?;
         let number = |ring: usize, place: usize| match ring {
             0 => 0,

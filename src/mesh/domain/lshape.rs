@@ -1,6 +1,7 @@
 //! The L-shaped domain.
 
 use super::disc::check_shape;
+use crate::instances::compiled;
 use crate::mesh::boundary::BoundaryPart;
 use crate::mesh::error::MeshError;
 use crate::mesh::simplicial::Mesh;
@@ -16,6 +17,11 @@ impl<T: Real, const D: usize> Mesh<T, D> {
     /// [`MeshError::Parameter`] for `n = 0`, a length that is not positive and finite and a dimension
     /// other than two; [`MeshError::TooLarge`].
     pub fn l_shape(half: f64, n: usize) -> Result<Self, MeshError> {
+        compiled!(T, D: fn(f64, usize) -> Result<Mesh<T, D>, MeshError> = Mesh::cut_l_shape)(
+            half, n,
+        )
+    }
+    fn cut_l_shape(half: f64, n: usize) -> Result<Self, MeshError> {
         check_shape::<D>("L-shape", half, n)?;
         let across = 2 * n + 1;
         let vertex = |i: usize, j: usize| (i + j * across) as u32;

@@ -10,6 +10,7 @@ use super::boundary::BoundaryPart;
 use super::error::MeshError;
 use super::refine::Refinement;
 use super::simplicial::Mesh;
+use crate::instances::compiled;
 use crate::real::{Point, Real};
 
 /// A built-in domain. All the boundary of an L-shape and of a disc is Dirichlet.
@@ -110,6 +111,14 @@ impl<const D: usize> Domain<D> {
     /// # Errors
     /// [`MeshError::TooLarge`] if there would be too many cells.
     pub fn refine<T: Real>(
+        &self,
+        mesh: &Mesh<T, D>,
+    ) -> Result<(Mesh<T, D>, Refinement), MeshError> {
+        compiled!(T, D: fn(&Domain<D>, &Mesh<T, D>) -> Result<(Mesh<T, D>, Refinement), MeshError> = Domain::refine_mesh)(
+            self, mesh,
+        )
+    }
+    fn refine_mesh<T: Real>(
         &self,
         mesh: &Mesh<T, D>,
     ) -> Result<(Mesh<T, D>, Refinement), MeshError> {

@@ -67,6 +67,7 @@ pub use assemble::GmshMesh;
 pub use error::{GmshError, GmshWarning};
 pub use position::{ElementPosition, FilePosition};
 
+use crate::instances::compiled;
 use crate::real::Real;
 use sections::{Wanted, read_contents};
 use std::path::Path;
@@ -86,6 +87,10 @@ pub fn read<T: Real, const D: usize>(path: &Path) -> Result<GmshMesh<T, D>, Gmsh
 /// # Errors
 /// Every [`GmshError`] but [`GmshError::Unreadable`].
 pub fn parse<T: Real, const D: usize>(bytes: &[u8]) -> Result<GmshMesh<T, D>, GmshError> {
+    compiled!(T, D: fn(&[u8]) -> Result<GmshMesh<T, D>, GmshError> = read_bytes)(bytes)
+}
+
+fn read_bytes<T: Real, const D: usize>(bytes: &[u8]) -> Result<GmshMesh<T, D>, GmshError> {
     assemble::assemble(&read_contents(bytes, Wanted::Everything)?)
 }
 

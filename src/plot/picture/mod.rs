@@ -28,6 +28,7 @@ use plotters::prelude::DrawingBackend;
 use super::{Align, Drawing, Drawn, INK, Pen, Place, draw_png, draw_svg};
 use crate::error::Error;
 use crate::error::write_error;
+use crate::instances::compiled;
 use crate::measure::Fields;
 use crate::mesh::{Mesh, edge_vertices};
 use crate::problem::Problem;
@@ -115,6 +116,17 @@ impl Picture {
     /// [`Error::Parameter`] if the fields are not those of the mesh, and for a slice that is not
     /// through a mesh in space.
     pub fn of<T: Real, const D: usize>(
+        title: &str,
+        problem: &Problem<D>,
+        mesh: &Mesh<T, D>,
+        fields: &Fields,
+        slice: Option<Slice>,
+    ) -> Result<Self, Error> {
+        compiled!(T, D: fn(&str, &Problem<D>, &Mesh<T, D>, &Fields, Option<Slice>) -> Result<Picture, Error> = Picture::painted::<T, D>)(
+            title, problem, mesh, fields, slice,
+        )
+    }
+    fn painted<T: Real, const D: usize>(
         title: &str,
         problem: &Problem<D>,
         mesh: &Mesh<T, D>,

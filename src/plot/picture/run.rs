@@ -3,6 +3,7 @@
 use crate::assemble::DataQuadrature;
 use crate::error::Error;
 use crate::inequality::ActiveSet;
+use crate::instances::compiled;
 use crate::mesh::Mesh;
 use crate::nested::{Hierarchy, Solved, Task, solve};
 use crate::real::Real;
@@ -16,6 +17,16 @@ use crate::scheme::AnyScheme;
 /// # Errors
 /// [`Error::Parameter`] for a level of zero or one too large, and those of assembly.
 pub fn solve_level<T: Real, const D: usize>(
+    scene: &Scene<D>,
+    scheme: &dyn AnyScheme<T, D>,
+    level: usize,
+) -> Result<(Mesh<T, D>, Solved), Error> {
+    compiled!(T, D: fn(&Scene<D>, &dyn AnyScheme<T, D>, usize) -> Result<(Mesh<T, D>, Solved), Error> = solve_scene)(
+        scene, scheme, level,
+    )
+}
+
+fn solve_scene<T: Real, const D: usize>(
     scene: &Scene<D>,
     scheme: &dyn AnyScheme<T, D>,
     level: usize,

@@ -1,0 +1,77 @@
+//! Generic functions compiled once, in this library.
+//!
+//! The compiler instantiates a generic function anew in every crate that calls it, so that each
+//! example, test and program would compile the assembler and the solvers again. There are two scalars
+//! and three dimensions only: [`compiled!`] lists the instances of a function in a static table of
+//! function pointers, whose code is in the library's object file, and picks one by its type. The
+//! generic function that callers see does no more than this look-up and a call.
+//!
+//! ```text
+//! pub fn certify<T: Real>(inequality: &Inequality<T>, u: &[T]) -> Certificate {
+//!     compiled!(T: fn(&Inequality<T>, &[T]) -> Certificate = certify_compiled)(inequality, u)
+//! }
+//! ```
+//!
+//! The function after the equals sign is written with the same names of scalar and dimension as the
+//! signature. A method of a type with a lifetime parameter is written as a closure.
+
+use std::any::Any;
+
+/// The instance of a function for the scalar `T`, the dimension `D`, or both.
+macro_rules! compiled {
+    ($T:ident, $D:ident: $signature:ty = $function:expr) => {{
+        static INSTANCES: [&(dyn ::std::any::Any + Sync); 6] = [
+            &$crate::instances::compiled!(@ type $T = f64; const $D: usize = 1; $signature = $function),
+            &$crate::instances::compiled!(@ type $T = f64; const $D: usize = 2; $signature = $function),
+            &$crate::instances::compiled!(@ type $T = f64; const $D: usize = 3; $signature = $function),
+            &$crate::instances::compiled!(@ type $T = f32; const $D: usize = 1; $signature = $function),
+            &$crate::instances::compiled!(@ type $T = f32; const $D: usize = 2; $signature = $function),
+            &$crate::instances::compiled!(@ type $T = f32; const $D: usize = 3; $signature = $function),
+        ];
+        $crate::instances::find::<$signature>(&INSTANCES)
+    }};
+    ($T:ident: $signature:ty = $function:expr) => {{
+        static INSTANCES: [&(dyn ::std::any::Any + Sync); 2] = [
+            &$crate::instances::compiled!(@ type $T = f64; $signature = $function),
+            &$crate::instances::compiled!(@ type $T = f32; $signature = $function),
+        ];
+        $crate::instances::find::<$signature>(&INSTANCES)
+    }};
+    (const $D:ident: $signature:ty = $function:expr) => {{
+        static INSTANCES: [&(dyn ::std::any::Any + Sync); 3] = [
+            &$crate::instances::compiled!(@ const $D: usize = 1; $signature = $function),
+            &$crate::instances::compiled!(@ const $D: usize = 2; $signature = $function),
+            &$crate::instances::compiled!(@ const $D: usize = 3; $signature = $function),
+        ];
+        $crate::instances::find::<$signature>(&INSTANCES)
+    }};
+    (@ type $T:ident = $scalar:ty; const $D:ident: usize = $d:literal; $signature:ty = $function:expr) => {{
+        type $T = $scalar;
+        const $D: usize = $d;
+        $function as $signature
+    }};
+    (@ type $T:ident = $scalar:ty; $signature:ty = $function:expr) => {{
+        type $T = $scalar;
+        $function as $signature
+    }};
+    (@ const $D:ident: usize = $d:literal; $signature:ty = $function:expr) => {{
+        const $D: usize = $d;
+        $function as $signature
+    }};
+}
+pub(crate) use compiled;
+
+/// The entry of a table that has this type.
+///
+/// # Panics
+/// If there is none: for a dimension other than one, two and three.
+pub(crate) fn find<F: Copy + 'static>(table: &[&(dyn Any + Sync)]) -> F {
+    let entry = |entry: &&(dyn Any + Sync)| {
+        let entry: &dyn Any = *entry;
+        entry.downcast_ref::<F>().copied()
+    };
+    match table.iter().find_map(entry) {
+        Some(found) => found,
+        None => panic!("functions are compiled for f64 and f32 in one, two and three dimensions"),
+    }
+}
