@@ -6,7 +6,7 @@
 //! solver.
 //!
 //! Words: a *fixed* unknown has a Dirichlet value (or two bounds that coincide); an *active* one has the
-//! value of a bound; an *inactive* one is solved for. The *residual* is `b - A u`, the *multiplier* of a
+//! value of a bound; an *inactive* one is solved for; a *free* one is not fixed. The *residual* is `b - A u`, the *multiplier* of a
 //! bound `A u - b` on active unknowns, negated at an upper bound. *Jump multipliers* are the unknowns
 //! `p = S (M u - g)` of a [`PenalisedMatrix`](crate::algebra::PenalisedMatrix).
 //!

@@ -15,9 +15,9 @@ pub enum Outcome {
     Cycling,
     /// Rounding prevents the complementarity conditions from holding to their tolerance.
     Stalled,
-    /// The matrix is not positive definite on the free unknowns (penalty too small).
+    /// The matrix is not positive definite on the inactive unknowns (penalty too small).
     NotCoercive,
-    /// The matrix is singular on the free unknowns.
+    /// The matrix is singular on the inactive unknowns.
     Singular,
     /// A number is not finite.
     NotFinite,

@@ -36,7 +36,7 @@ pub(crate) struct DirectDriver<'s, 'a, T> {
     /// The number of linear systems when the number of state changes last halved, and that number.
     last_halving: usize,
     fewest_changes: usize,
-    /// See [`ActiveSet::stagnation_steps`].
+    /// See `stagnation_steps` of [`ActiveSet`].
     stagnation_steps: usize,
     /// Whether the interior point method may still provide a start because of stagnation.
     may_warm_start: bool,

@@ -195,7 +195,7 @@ impl<'a, T: Real> InexactDriver<'a, T> {
     }
 
     /// The number of inexact steps within which the number of state changes must halve:
-    /// [`ActiveSet::stagnation_steps`], times [`DIRECT_STEP_COST`] unless the fallback is cheap, namely
+    /// `stagnation_steps` of [`ActiveSet`], times [`DIRECT_STEP_COST`] unless the fallback is cheap, namely
     /// multigrid or static condensation, which halves the unknowns.
     fn stagnation_steps(&self) -> usize {
         let is_nested = matches!(self.guess.coarse_spaces, CoarseSpaces::CoarseLevel(_));
