@@ -37,7 +37,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         }
     }
     let program = Program::new("orders", "f64", rayon::current_num_threads(), 1);
-    let report = Report { program, rows };
+    let report = Report::new(program, rows);
     let table = orders_table(&report.observed_orders(), TOLERANCE);
     match file {
         Some(file) => std::fs::write(file, page(&table, &report))?,

@@ -87,7 +87,8 @@ pub enum Error {
     },
 }
 
-/// What could not be written, and why.
+/// The error of a file that cannot be written.
+#[cfg(feature = "report")]
 pub(crate) fn write_error(path: &std::path::Path, why: impl std::fmt::Display) -> Error {
     Error::Write { path: path.display().to_string(), why: why.to_string() }
 }

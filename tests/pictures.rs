@@ -38,7 +38,9 @@ fn cube<const D: usize>(n: usize) -> Mesh<f64, D> {
 
 /// A function with these values on the cells of a mesh.
 fn function<const D: usize>(mesh: &Mesh<f64, D>, value: impl Fn(usize) -> f64) -> Fields {
-    Fields { u: (0..mesh.cells().len()).map(value).collect(), ..Fields::default() }
+    let mut fields = Fields::default();
+    fields.u = (0..mesh.cells().len()).map(value).collect();
+    fields
 }
 
 fn volume<const D: usize>(mesh: &Mesh<f64, D>, cells: &[usize]) -> f64 {
@@ -239,8 +241,8 @@ fn what_cannot_be_drawn_is_refused() {
     let slice = Some(Slice { axis: 2, at: 0.5 });
     assert!(message(&function(&mesh, |_| 0.0), slice).contains("a mesh in space"));
     assert!(message(&Fields::default(), None).contains("this mesh of 8 cells"));
-    let found = FoundContact { cells: vec![8], ..FoundContact::default() };
-    let beyond = Fields { found, ..function(&mesh, |_| 0.0) };
+    let mut beyond = function(&mesh, |_| 0.0);
+    beyond.found.cells = vec![8];
     assert!(message(&beyond, None).contains("this mesh of 8 cells"));
 
     let no_level = solve_level::<f64, 2>(&scenes::radial(1.0), &ConformingP1, 0).map(drop);

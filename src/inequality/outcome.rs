@@ -50,3 +50,10 @@ impl std::fmt::Display for Outcome {
         f.write_str(self.name())
     }
 }
+
+#[cfg(feature = "report")]
+impl serde::Serialize for Outcome {
+    fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.serialize_str(self.name())
+    }
+}

@@ -11,6 +11,7 @@ use crate::scheme::Scheme;
 
 /// Fields on the cells of the mesh, for pictures.
 #[derive(Clone, Debug, Default)]
+#[non_exhaustive]
 pub struct Fields {
     /// The solution at the vertices of each cell.
     pub u: Vec<f64>,

@@ -102,8 +102,8 @@ impl Claim {
 /// Errors, iterations and whatever went wrong of a run, in a few words.
 pub(crate) fn figures(row: &Row) -> String {
     let mut parts = Vec::new();
-    if row.status != "converged" {
-        parts.push(row.status.clone());
+    if !row.converged() {
+        parts.push(row.status.to_string());
     }
     let errors = [("L2", row.error.l2), ("H1", row.error.h1), ("energy", row.error.energy)];
     parts.extend(errors.iter().filter_map(|(name, e)| e.map(|e| format!("{name} {e:.2e}"))));

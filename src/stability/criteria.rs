@@ -4,6 +4,7 @@ use serde::Serialize;
 
 /// A question to which every run of the study has at least one row.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[non_exhaustive]
 pub struct Criterion {
     /// Its name.
     pub name: &'static str,

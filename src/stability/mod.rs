@@ -15,6 +15,7 @@ pub use criteria::{CRITERIA, Criterion, STABILITY_CASES};
 pub use report::StabilityReport;
 pub use row::{Expected, StabilityRow, Verdict};
 
+use std::fmt;
 use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
@@ -38,6 +39,7 @@ pub enum Effort {
 }
 
 /// What a study tells whoever watches it.
+#[derive(Debug)]
 pub enum StabilityProgress<'a> {
     /// This many pieces of work will follow.
     Planned(usize),
@@ -117,8 +119,22 @@ impl<'p> Plan<'p> {
     }
 }
 
+impl fmt::Debug for Stability<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let meshes: Vec<&str> = self.given.iter().map(|(name, _)| &**name).collect();
+        f.debug_struct("Stability")
+            .field("effort", &self.effort)
+            .field("cases", &self.cases)
+            .field("schemes", &self.schemes)
+            .field("meshes", &meshes)
+            .field("directory", &self.directory)
+            .finish_non_exhaustive()
+    }
+}
+
 impl<'a> Stability<'a> {
     /// A study of all cases and schemes.
+    #[must_use]
     pub fn new(effort: Effort) -> Self {
         Self {
             effort,
@@ -140,16 +156,19 @@ impl<'a> Stability<'a> {
         self
     }
     /// Adds a mesh of tetrahedra under a name.
+    #[must_use]
     pub fn mesh(mut self, name: &str, mesh: Mesh<f64, 3>) -> Self {
         self.given.push((name.to_owned(), mesh));
         self
     }
     /// Writes the report to this directory as rows come, twice a second at most, and at the end.
+    #[must_use]
     pub fn write_to(mut self, directory: impl Into<PathBuf>) -> Self {
         self.directory = Some(directory.into());
         self
     }
     /// Sets who is told of progress.
+    #[must_use]
     pub fn observer(mut self, observer: impl Fn(StabilityProgress<'_>) + 'a) -> Self {
         self.observer = Box::new(observer);
         self

@@ -23,6 +23,7 @@ const READING: [&str; 3] = [
 
 /// All rows, in the order run.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct StabilityReport {
     /// The program.
     pub program: Program,

@@ -4,6 +4,7 @@ use serde::Serialize;
 
 /// Where a figure should lie. Without either limit it is reported and not judged.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+#[non_exhaustive]
 pub struct Expected {
     /// The smallest figure allowed.
     pub at_least: Option<f64>,
@@ -135,6 +136,7 @@ impl Verdict {
 
 /// One figure of one scheme at one place of a sweep.
 #[derive(Clone, Debug, PartialEq, Serialize)]
+#[non_exhaustive]
 pub struct StabilityRow {
     /// Name of the case.
     pub case: String,

@@ -33,6 +33,7 @@ pub fn available_memory_bytes() -> Option<u64> {
 
 /// What the largest run of a study will need, about.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct MemoryEstimate {
     /// Bytes of the whole process.
     pub bytes: f64,

@@ -3,6 +3,7 @@
 use super::report::Report;
 use super::row::Row;
 use super::table::distinct;
+use crate::inequality::Outcome;
 use crate::measure::observed_order;
 use crate::scheme::ExpectedOrders;
 
@@ -14,6 +15,7 @@ const ROUNDING: f64 = 1e-8;
 /// CoarseLevel levels do not count: promises hold in the limit. Nor does a level whose solve did not
 /// converge: what it left is no discrete solution.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct ObservedOrders {
     /// Name of the scene.
     pub scene: String,
@@ -31,7 +33,7 @@ pub struct ObservedOrders {
     /// in its space, and there is no order to observe.
     pub exact: Vec<Norm>,
     /// Hierarchy that did not converge, with the typed reason.
-    pub failures: Vec<(usize, String)>,
+    pub failures: Vec<(usize, Outcome)>,
 }
 
 /// A norm in which orders are promised.
@@ -149,7 +151,7 @@ impl ObservedOrders {
         let mut sorted = rows.to_vec();
         sorted.sort_by_key(|row| row.level);
         let failed = sorted.iter().filter(|row| !row.converged());
-        let failures = failed.map(|row| (row.level, row.status.clone())).collect();
+        let failures = failed.map(|row| (row.level, row.status)).collect();
         let finest = *sorted.last()?;
         sorted.retain(|row| row.converged());
         let pair = sorted.last_chunk::<2>();

@@ -47,10 +47,3 @@ fn order(coarse: &Row, fine: &Row) -> Orders {
         multiplier_l2: of(coarse.contact.multiplier_l2, fine.contact.multiplier_l2),
     }
 }
-
-impl Row {
-    /// Whether the run of this row converged.
-    pub fn converged(&self) -> bool {
-        self.status == "converged"
-    }
-}

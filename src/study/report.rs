@@ -4,6 +4,7 @@ use super::row::Row;
 /// The program that made a report, and how it ran.
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "report", derive(serde::Serialize))]
+#[non_exhaustive]
 pub struct Program {
     /// Its name.
     pub name: String,
@@ -20,7 +21,9 @@ pub struct Program {
 }
 
 impl Program {
-    /// A program of this version of the library, compiled as it was.
+    /// A program linked with this version of the library and compiled for the processor that the
+    /// library was compiled for.
+    #[must_use]
     pub fn new(name: &str, precision: &str, threads: usize, repeat: usize) -> Self {
         Program {
             name: name.to_owned(),
@@ -59,9 +62,18 @@ pub fn target_cpu() -> String {
 /// Rows in the order run, and the program that ran them.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "report", derive(serde::Serialize))]
+#[non_exhaustive]
 pub struct Report {
     /// The program.
     pub program: Program,
     /// One row for every scene, scheme and level.
     pub rows: Vec<Row>,
+}
+
+impl Report {
+    /// A report of rows that a program ran.
+    #[must_use]
+    pub fn new(program: Program, rows: Vec<Row>) -> Self {
+        Self { program, rows }
+    }
 }

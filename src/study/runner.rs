@@ -1,22 +1,22 @@
 //! A study: schemes on a scene, level by level.
 
+use std::fmt;
 use std::path::PathBuf;
 use std::sync::Arc;
 
 use super::compatibility::{check_domain, check_fit};
 use super::memory::{estimate, estimate_without_factors, unknowns_about};
 use super::{
-    Iterations, MemoryEstimate, Orders, Program, Report, Row, Seconds, fill_orders,
-    peak_memory_bytes,
+    Iterations, MemoryEstimate, Program, Report, Row, Seconds, fill_orders, peak_memory_bytes,
 };
 use crate::assemble::DataQuadrature;
 use crate::element::Layout;
 use crate::error::Error;
+#[cfg(feature = "report")]
+use crate::error::write_error;
 use crate::inequality::{ActiveSet, InequalitySolver};
 use crate::mesh::{BoundaryPart, Domain, Mesh};
-#[cfg(feature = "report")]
-use crate::nested::Solved;
-use crate::nested::{AnyScheme, Hierarchy, P1Solution, Task};
+use crate::nested::{AnyScheme, Hierarchy, P1Solution, Solved, Task};
 #[cfg(feature = "report")]
 use crate::paraview::{CellFields, write_vtu};
 use crate::real::Real;
@@ -24,6 +24,7 @@ use crate::scenes::Scene;
 use crate::scheme::{ExpectedOrders, Setting};
 
 /// What a study tells whoever watches it.
+#[derive(Debug)]
 pub enum Progress<'a> {
     /// A run begins: scene, scheme, level.
     Started(&'a str, &'a str, usize),
@@ -57,8 +58,22 @@ pub struct Study<'a, T: Real, const D: usize> {
     observer: Box<dyn Fn(Progress<'_>) + 'a>,
 }
 
+impl<T: Real, const D: usize> fmt::Debug for Study<'_, T, D> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let schemes: Vec<&str> = self.schemes.iter().map(|s| s.name()).collect();
+        f.debug_struct("Study")
+            .field("scene", &self.scene.name)
+            .field("schemes", &schemes)
+            .field("levels", &self.levels)
+            .field("solver", &self.solver.name())
+            .field("repeat", &self.repeat)
+            .finish_non_exhaustive()
+    }
+}
+
 impl<'a, T: Real, const D: usize> Study<'a, T, D> {
     /// A study of a scene, without schemes or levels yet.
+    #[must_use]
     pub fn new(scene: Scene<D>) -> Self {
         Self {
             scene,
@@ -73,36 +88,43 @@ impl<'a, T: Real, const D: usize> Study<'a, T, D> {
         }
     }
     /// Adds a scheme.
+    #[must_use]
     pub fn scheme(mut self, scheme: impl AnyScheme<T, D> + 'a) -> Self {
         self.schemes.push(Box::new(scheme));
         self
     }
     /// Adds a scheme chosen at run time.
+    #[must_use]
     pub fn boxed_scheme(mut self, scheme: Box<dyn AnyScheme<T, D> + 'a>) -> Self {
         self.schemes.push(scheme);
         self
     }
     /// Sets the levels: subdivisions of the shortest side, or refinements of a given mesh.
+    #[must_use]
     pub fn levels(mut self, levels: impl IntoIterator<Item = usize>) -> Self {
         self.levels = levels.into_iter().collect();
         self
     }
     /// Runs on this mesh and refinements of it instead of the scene's own domain.
+    #[must_use]
     pub fn on_mesh(mut self, mesh: Mesh<T, D>) -> Self {
         self.mesh = Some(mesh);
         self
     }
     /// Sets the solver of the inequality.
+    #[must_use]
     pub fn solver(mut self, solver: impl InequalitySolver<T> + 'a) -> Self {
         self.solver = Box::new(solver);
         self
     }
     /// Sets the quadrature of data.
+    #[must_use]
     pub fn quadrature(mut self, quadrature: DataQuadrature) -> Self {
         self.quadrature = quadrature;
         self
     }
     /// Makes every time the smallest of this many runs.
+    #[must_use]
     pub fn repeat(mut self, times: usize) -> Self {
         self.repeat = times.max(1);
         self
@@ -110,11 +132,13 @@ impl<'a, T: Real, const D: usize> Study<'a, T, D> {
     /// Writes the fields of every scheme on the finest level to this directory, as
     /// `SCENE-SCHEME.vtu`.
     #[cfg(feature = "report")]
+    #[must_use]
     pub fn fields_to(mut self, directory: impl Into<PathBuf>) -> Self {
         self.directory = Some(directory.into());
         self
     }
     /// Sets who is told of progress.
+    #[must_use]
     pub fn observer(mut self, observer: impl Fn(Progress<'_>) + 'a) -> Self {
         self.observer = Box::new(observer);
         self
@@ -217,7 +241,8 @@ impl<'a, T: Real, const D: usize> Study<'a, T, D> {
         self.row(&mut levels, &**scheme, level, failure.as_deref(), false)
     }
 
-    /// A row, and the seconds of its start from coarser levels.
+    /// Solves one scheme on one level. Returns the row, and the seconds of its start from coarser
+    /// levels.
     fn row(
         &self,
         levels: &mut Hierarchy<'_, T, D>,
@@ -243,27 +268,31 @@ impl<'a, T: Real, const D: usize> Study<'a, T, D> {
         if let (Some(directory), Some(_)) = (&self.directory, &solved.fields) {
             self.write_fields(directory, scheme, mesh, &solved)?;
         }
-        let mut warnings = solved.warnings.clone();
-        if let Some(at) = failure {
-            warnings.push(format!(
-                "the scene's solution breaks the contact condition of this mesh at {at}: no errors"
-            ));
-        }
         let coarser = start.as_ref().map_or(0, |s| s.levels);
         let start_seconds = start.as_ref().map_or(0.0, |s| s.seconds);
-        let solve = solved.solve_seconds + start_seconds;
-        let seconds = Seconds {
-            mesh: mesh_seconds,
-            assemble: solved.assemble_seconds,
-            solve,
-            total: mesh_seconds + solved.assemble_seconds + solve,
-        };
-        let row = Row {
-            scene: self.scene.name.clone(),
-            dimension: D,
-            scheme: scheme.name().to_owned(),
+        let solve_seconds = solved.solve_seconds + start_seconds;
+        let mut row = self.row_of(scheme, level, mesh, solved);
+        row.iterations.levels = coarser.saturating_sub(usize::from(!scheme.is_conforming_linear()));
+        row.expected_order = self.expected_orders(scheme, failure);
+        row.warnings.extend(failure.map(|at| {
+            format!(
+                "the scene's solution breaks the contact condition of this mesh at {at}: no errors"
+            )
+        }));
+        row.seconds = Seconds::new(mesh_seconds, row.seconds.assemble, solve_seconds);
+        Ok((row, start_seconds))
+    }
+
+    /// The row of a solve by itself, without its start, its mesh's time and expected orders.
+    fn row_of(
+        &self,
+        scheme: &dyn AnyScheme<T, D>,
+        level: usize,
+        mesh: &Mesh<T, D>,
+        solved: Solved,
+    ) -> Row {
+        Row {
             constraint: scheme.constraint().to_owned(),
-            level,
             parameters: solved.parameters,
             solver: self.solver.name().to_owned(),
             linear: solved.linear_solver.to_owned(),
@@ -271,30 +300,29 @@ impl<'a, T: Real, const D: usize> Study<'a, T, D> {
             unknowns: solved.unknowns,
             nonzeros: solved.nonzeros,
             mesh_size: mesh.mesh_size(),
-            status: solved.outcome.name().to_owned(),
             error: solved.error,
             contact: solved.contact,
-            order: Orders::default(),
-            expected_order: match failure {
-                // without an exact solution there is no error that could keep a promise
-                None if self.scene.problem.exact.is_some() => {
-                    scheme.expected_orders(&self.setting())
-                }
-                _ => ExpectedOrders::default(),
-            },
             objective: solved.objective,
             active: solved.active,
-            iterations: Iterations {
-                outer: solved.outer,
-                linear: solved.linear,
-                levels: coarser.saturating_sub(usize::from(!scheme.is_conforming_linear())),
-            },
+            iterations: Iterations { outer: solved.outer, linear: solved.linear, levels: 0 },
             certificate: solved.certificate,
-            seconds,
+            seconds: Seconds::new(0.0, solved.assemble_seconds, solved.solve_seconds),
             peak_memory_bytes: peak_memory_bytes(),
-            warnings,
-        };
-        Ok((row, start_seconds))
+            warnings: solved.warnings,
+            ..Row::new(&self.scene.name, D, scheme.name(), level, solved.outcome)
+        }
+    }
+
+    /// The orders that theory proves; none without an exact solution that holds on the mesh.
+    fn expected_orders(
+        &self,
+        scheme: &dyn AnyScheme<T, D>,
+        failure: Option<&str>,
+    ) -> ExpectedOrders {
+        match (failure, &self.scene.problem.exact) {
+            (None, Some(_)) => scheme.expected_orders(&self.setting()),
+            _ => ExpectedOrders::default(),
+        }
     }
 
     /// What a scheme starts from: P1 on the coarser level for P1 itself, P1 on the same level for
@@ -342,10 +370,7 @@ impl<'a, T: Real, const D: usize> Study<'a, T, D> {
         solved: &Solved,
     ) -> Result<(), Error> {
         let Some(fields) = &solved.fields else { return Ok(()) };
-        std::fs::create_dir_all(directory).map_err(|e| Error::Write {
-            path: directory.display().to_string(),
-            why: e.to_string(),
-        })?;
+        std::fs::create_dir_all(directory).map_err(|e| write_error(directory, e))?;
         let path = directory.join(format!("{}-{}.vtu", self.scene.name, scheme.name()));
         let constrained = self.scene.problem.is_constrained();
         write_vtu(

@@ -29,6 +29,7 @@ const FIRST: usize = 5;
 
 /// What changed against a baseline.
 #[derive(Clone, Debug, Default, PartialEq)]
+#[non_exhaustive]
 pub struct Changes {
     /// One line for every number that changed.
     pub changed: Vec<String>,

@@ -94,7 +94,7 @@ impl Measured {
 
     /// Adds a further run. Times may differ, counts may not: if they do, a warning says so.
     pub fn add(&mut self, again: &Row, phases: Phases) {
-        let counts = |r: &Row| (r.status.clone(), r.unknowns, r.nonzeros, r.iterations, r.active);
+        let counts = |r: &Row| (r.status, r.unknowns, r.nonzeros, r.iterations, r.active);
         if counts(again) != counts(&self.row) {
             let warning = "status or counts differ between runs";
             if !self.row.warnings.iter().any(|w| w == warning) {
@@ -132,12 +132,21 @@ impl Measured {
 
 /// A case that gave no solution, and why.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+#[non_exhaustive]
 pub struct Failure {
     /// The case.
     #[serde(flatten)]
     pub case: Case,
     /// The status of its row, or why it was not run at all.
     pub why: String,
+}
+
+impl Failure {
+    /// A case that failed for this reason.
+    #[must_use]
+    pub fn new(case: Case, why: &str) -> Self {
+        Self { case, why: why.to_owned() }
+    }
 }
 
 impl Variant {

@@ -22,6 +22,7 @@ pub(crate) use report::replace;
 pub use table::Table;
 pub(crate) use table::{Cell, latex, markdown};
 
+use std::fmt;
 use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
@@ -38,6 +39,7 @@ use case::Single;
 const PATIENCE: Duration = Duration::from_secs(1);
 
 /// What a study tells whoever watches it.
+#[derive(Debug)]
 pub enum WorkProgress<'a> {
     /// This many runs will follow, unless some turn out to take too long.
     Planned(usize),
@@ -95,8 +97,23 @@ struct Slot<'s> {
     failure: Option<Failure>,
 }
 
+impl<const D: usize> fmt::Debug for WorkPrecision<'_, D> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("WorkPrecision")
+            .field("linear", &self.linear)
+            .field("precisions", &self.precisions)
+            .field("levels", &self.levels)
+            .field("rounds", &self.rounds)
+            .field("limit", &self.limit)
+            .field("subject", &self.subject)
+            .field("directory", &self.directory)
+            .finish_non_exhaustive()
+    }
+}
+
 impl<'a, const D: usize> WorkPrecision<'a, D> {
     /// A study of the scene this makes, without schemes or levels yet.
+    #[must_use]
     pub fn new(scene: impl Fn() -> Scene<D> + 'a) -> Self {
         Self {
             scene: Box::new(scene),
@@ -113,21 +130,25 @@ impl<'a, const D: usize> WorkPrecision<'a, D> {
         }
     }
     /// Adds a scheme, or a registered one as [`Named`].
+    #[must_use]
     pub fn scheme(mut self, scheme: impl Candidate<D> + 'a) -> Self {
         self.candidates.push(Box::new(scheme));
         self
     }
     /// Sets the linear solvers inside the active-set method; one chosen by size otherwise.
+    #[must_use]
     pub fn linear(mut self, linear: impl IntoIterator<Item = LinearMethod>) -> Self {
         self.linear = linear.into_iter().collect();
         self
     }
     /// Sets the scalars; `f64` otherwise.
+    #[must_use]
     pub fn precisions(mut self, precisions: impl IntoIterator<Item = Precision>) -> Self {
         self.precisions = precisions.into_iter().collect();
         self
     }
     /// Sets the levels: subdivisions of the shortest side.
+    #[must_use]
     pub fn levels(mut self, levels: impl IntoIterator<Item = usize>) -> Self {
         self.levels = levels.into_iter().collect();
         self.levels.sort_unstable();
@@ -135,33 +156,39 @@ impl<'a, const D: usize> WorkPrecision<'a, D> {
         self
     }
     /// Sets how often each case runs, at least once; three times otherwise.
+    #[must_use]
     pub fn rounds(mut self, rounds: usize) -> Self {
         self.rounds = rounds.max(1);
         self
     }
     /// A run that took longer than this many seconds is not repeated, and no finer level of its
     /// variant is tried: that is listed among the failures.
+    #[must_use]
     pub fn limit(mut self, seconds: f64) -> Self {
         self.limit = seconds;
         self
     }
     /// Names the scheme of which the verdict speaks; the fastest otherwise.
+    #[must_use]
     pub fn subject(mut self, scheme: &str) -> Self {
         self.subject = scheme.to_owned();
         self
     }
     /// Writes the report to this directory after every round, and within one every second.
+    #[must_use]
     pub fn write_to(mut self, directory: impl Into<PathBuf>) -> Self {
         self.directory = Some(directory.into());
         self
     }
     /// Sets who tells the peak of memory of a case, asked once for each. Otherwise it is that of
     /// this process while the case ran, with all that the process holds besides.
+    #[must_use]
     pub fn memory(mut self, memory: impl Fn(&Case) -> Option<u64> + 'a) -> Self {
         self.memory = Some(Box::new(memory));
         self
     }
     /// Sets who is told of progress.
+    #[must_use]
     pub fn observer(mut self, observer: impl Fn(WorkProgress<'_>) + 'a) -> Self {
         self.observer = Box::new(observer);
         self
@@ -243,13 +270,13 @@ impl<'a, const D: usize> WorkPrecision<'a, D> {
         if round == 0
             && let Some(why) = self.obstacle_to(slots, k)
         {
-            slots[k].failure = Some(Failure { case: slots[k].case.clone(), why });
+            slots[k].failure = Some(Failure::new(slots[k].case.clone(), &why));
             return;
         }
         let slot = &mut slots[k];
         match slot.single.run() {
             Err(e) => {
-                slot.failure = Some(Failure { case: slot.case.clone(), why: e.to_string() });
+                slot.failure = Some(Failure::new(slot.case.clone(), &e.to_string()));
             }
             Ok((mut row, phases)) => {
                 if let Some(memory) = &self.memory {

@@ -6,6 +6,7 @@ use serde::Serialize;
 
 /// Where and when, as far as the system tells.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+#[non_exhaustive]
 pub struct Provenance {
     /// When the study began: the system's clock, in universal time.
     pub date: Option<String>,

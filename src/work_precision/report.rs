@@ -21,6 +21,7 @@ use crate::study::{Program, Row};
 
 /// All that was measured, on any number of scenes.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct WorkReport {
     /// The program; `precision` lists all scalars, `repeat` is the number of rounds.
     pub program: Program,
@@ -60,7 +61,7 @@ impl WorkReport {
     /// Every case without a solution: what did not converge first, then what was not run.
     pub fn failures(&self) -> Vec<Failure> {
         let failed = self.rows.iter().filter(|m| !m.row.converged());
-        let failed = failed.map(|m| Failure { case: m.case(), why: m.row.status.clone() });
+        let failed = failed.map(|m| Failure::new(m.case(), m.row.status.name()));
         failed.chain(self.refused.iter().cloned()).collect()
     }
 

@@ -2,6 +2,7 @@
 
 /// The contact set that a scheme found, in terms that do not depend on its unknowns.
 #[derive(Clone, Debug, Default, PartialEq)]
+#[non_exhaustive]
 pub struct FoundContact {
     /// Cells in contact with an obstacle as a whole.
     pub cells: Vec<usize>,

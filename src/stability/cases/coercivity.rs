@@ -2,6 +2,7 @@
 
 use crate::algebra::SparseMatrix;
 use crate::error::Error;
+use crate::inequality::Outcome;
 use crate::kit::spectrum::{Diagonal, Factored, Lanczos};
 use crate::scenes;
 use crate::stability::choice::{Choice, Penalty, compared};
@@ -55,7 +56,7 @@ fn factor(choice: &Choice, sigma: f64, level: usize, sink: Sink<'_>) -> Result<(
     let found = row::<f64, 2>(scenes::radial::<2>(1.0), choice, 2 * level)?;
     // on Dirichlet facets |dK|/|K| with |dK| = (2 + root 2) h and |K| = h^2 / 2
     let proven = 2.0 * (2.0 + 2.0_f64.sqrt());
-    let told = found.status == "not-coercive" || !found.warnings.is_empty();
+    let told = found.status == Outcome::NotCoercive || !found.warnings.is_empty();
     let claim = Claim::new("refused-or-warned", choice)
         .on(&found.scene)
         .level(2 * level)
