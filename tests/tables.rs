@@ -4,10 +4,10 @@ mod rows;
 
 use rows::{report, row};
 use unilateral::inequality::Outcome;
-use unilateral::measure::{Errors, observed_order};
+use unilateral::measure::{ErrorNorm, Errors, observed_order};
 use unilateral::scheme::ExpectedOrders;
 use unilateral::study::orders_table;
-use unilateral::study::{Norm, OrderMissed, Row, fill_orders};
+use unilateral::study::{OrderMissed, Row, fill_orders};
 
 #[test]
 fn orders_are_of_the_ratio_of_mesh_sizes() {
@@ -144,7 +144,7 @@ fn a_missed_promise_names_the_row() {
         panic!("{missed}")
     };
     assert_eq!((&scene[..], &scheme[..], *coarse, *fine), ("radial-2d", "sipg", 32, 64));
-    assert_eq!((*norm, *promised), (Norm::H1, 1.0));
+    assert_eq!((*norm, *promised), (ErrorNorm::H1, 1.0));
     assert!((observed - 0.8).abs() < 1e-12);
     let text = missed.to_string();
     let expected =
@@ -162,7 +162,7 @@ fn a_promise_that_cannot_be_tested_is_missed() {
     rows[..3].iter_mut().for_each(|row| row.status = "stalled".into());
     let missed = report(rows.clone()).assert_orders(0.1).unwrap_err();
     assert_eq!(missed.0.len(), 2, "one for each norm");
-    assert!(matches!(missed.0[0], OrderMissed::Unobserved { norm: Norm::L2, .. }), "{missed}");
+    assert!(matches!(missed.0[0], OrderMissed::Unobserved { norm: ErrorNorm::L2, .. }), "{missed}");
     assert!(missed.to_string().contains("fewer than two levels"), "{missed}");
     rows.iter_mut().for_each(|row| row.expected_order = ExpectedOrders::default());
     assert_eq!(report(rows).assert_orders(0.1), Ok(()));

@@ -7,9 +7,10 @@ mod work;
 use std::cell::RefCell;
 
 use serde_json::Value;
+use unilateral::measure::ErrorNorm;
 use unilateral::prelude::*;
 use unilateral::work_precision::{
-    ErrorNorm, Phases, Precision, WorkPoint, WorkPrecision, WorkProgress, work_at,
+    Phases, Precision, WorkPoint, WorkPrecision, WorkProgress, work_at,
 };
 use work::{Scratch, measured, synthetic};
 

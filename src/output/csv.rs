@@ -13,7 +13,7 @@ pub fn to_csv(rows: &[Row]) -> String {
     lines(rows)
 }
 
-/// The same for anything that is written as one object a line.
+/// Values as comma-separated values, one object a line.
 pub(crate) fn lines<R: Serialize>(rows: &[R]) -> String {
     let mut text = String::new();
     for (i, row) in rows.iter().enumerate() {

@@ -1,6 +1,6 @@
 //! Errors against what they cost: one column of panels, as wide as a column of text.
 
-use super::Figure;
+use super::figure::Figure;
 use super::series::{Curve, Key, Panel, Point, Quantity};
 use crate::study::row::Row;
 

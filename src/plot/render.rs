@@ -1,6 +1,6 @@
-//! From a figure to SVG and PNG.
+//! Drawings as SVG and PNG files.
 
-use super::Figure;
+use super::figure::Figure;
 use super::panel::draw_panel;
 use super::pen::{Drawn, FAMILY, Pen};
 use super::style::PAPER;

@@ -1,7 +1,7 @@
 //! Reference slopes: a small triangle where no data are.
 
 use super::axis::LogAxis;
-use super::pen::{Align, Drawn, Pen, Place};
+use super::pen::{Align, Drawn, Pen, ScreenPoint};
 use super::style::GREY;
 use plotters::prelude::DrawingBackend;
 
@@ -15,7 +15,7 @@ const FRACTION: f64 = 26.0;
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Slopes {
     /// Lower left corner, relative to the panel's.
-    corner: Place,
+    corner: ScreenPoint,
     width: f64,
     /// The label of each slope and the height of its line.
     rises: Vec<(String, f64)>,
@@ -39,7 +39,7 @@ impl Slopes {
         (slopes, falls_over): (&[u32], Option<u32>),
         (x, y): (&LogAxis, &LogAxis),
         size: (f64, f64),
-        data: &[Place],
+        data: &[ScreenPoint],
     ) -> Option<Self> {
         let steepest = f64::from(*slopes.iter().max()?);
         let dimension = falls_over.unwrap_or(1).max(1);
@@ -63,7 +63,7 @@ impl Slopes {
         places
             .into_iter()
             .find(|&(left, bottom)| {
-                let inside = |&(px, py): &Place| {
+                let inside = |&(px, py): &ScreenPoint| {
                     (left - before - CLEAR..left + width + after + CLEAR).contains(&px)
                         && (bottom - height - LABEL..bottom + CLEAR).contains(&py)
                 };
@@ -73,7 +73,7 @@ impl Slopes {
     }
 
     /// Draws it, the area's upper left corner at `origin`.
-    pub fn draw<DB: DrawingBackend>(&self, pen: &Pen<DB>, origin: Place) -> Drawn {
+    pub fn draw<DB: DrawingBackend>(&self, pen: &Pen<DB>, origin: ScreenPoint) -> Drawn {
         let (left, bottom) = (origin.0 + self.corner.0, origin.1 + self.corner.1);
         let right = left + self.width;
         let top = self.rises.iter().map(|r| r.1).fold(0.0, f64::max);

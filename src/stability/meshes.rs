@@ -1,4 +1,4 @@
-//! Meshes that make it hard: stretched, graded, with slivers.
+//! Difficult meshes: stretched, graded, with slivers.
 
 use std::collections::HashMap;
 
@@ -12,7 +12,7 @@ pub(crate) fn stretched(n: usize, ratio: usize) -> Result<Mesh<f64, 2>, Error> {
     Ok(Mesh::kuhn_box(&square, [n, n * ratio])?)
 }
 
-/// The same mesh with every vertex moved and every facet of the boundary in the same part.
+/// A mesh with every vertex moved; boundary facets keep their parts.
 pub(crate) fn moved<const D: usize>(
     mesh: &Mesh<f64, D>,
     to: impl Fn(&Point<f64, D>) -> Point<f64, D>,
@@ -34,7 +34,7 @@ pub(crate) fn graded(n: usize, power: i32) -> Result<Mesh<f64, 2>, Error> {
     moved(&mesh, |x| x.map(|t| t.signum() * t.abs().powi(power)))
 }
 
-/// The same mesh with Dirichlet data on the whole boundary.
+/// A mesh of tetrahedra with Dirichlet data on the whole boundary.
 pub(crate) fn clamped(
     vertices: Vec<Point<f64, 3>>,
     cells: Vec<u32>,

@@ -1,19 +1,22 @@
-//! Stability: hard cases, each with a sweep, a criterion, and a verdict made from the figures.
+//! Stability study: difficult cases, each with a sweep, a criterion, and a verdict on each figure.
 
 mod cases;
 mod choice;
-mod claim;
 mod criteria;
 mod limit;
 mod meshes;
+mod plan;
 mod report;
 mod row;
+mod row_builder;
 mod runs;
 mod summary;
+mod unweighted;
 
 pub use criteria::{CRITERIA, Criterion, STABILITY_CASES};
+pub use plan::Effort;
 pub use report::StabilityReport;
-pub use row::{Expected, StabilityRow, Verdict};
+pub use row::{ExpectedRange, StabilityRow, Verdict};
 
 use std::fmt;
 use std::path::PathBuf;
@@ -21,33 +24,21 @@ use std::time::{Duration, Instant};
 
 use crate::error::Error;
 use crate::mesh::Mesh;
-use choice::Choice;
+use plan::Plan;
 
 /// How long finished rows may wait to be written.
 const PATIENCE: Duration = Duration::from_millis(500);
 
-/// How much is run.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Effort {
-    /// The coarsest meshes: figures mean little, but every criterion has its rows.
-    Trial,
-    /// Coarse meshes and few places of each sweep; every criterion has its rows.
-    #[default]
-    Quick,
-    /// All sweeps.
-    Full,
-}
-
-/// What a study tells whoever watches it.
+/// Progress of a study.
 #[derive(Debug)]
 pub enum StabilityProgress<'a> {
-    /// This many pieces of work will follow.
+    /// The number of jobs that follow.
     Planned(usize),
-    /// A piece begins: case, and scheme or problem.
+    /// A job begins: case, and scheme or problem.
     Started(&'a str, &'a str),
-    /// A row is there.
+    /// A row is complete.
     Row(&'a StabilityRow),
-    /// The piece ended.
+    /// The job ended.
     Finished,
 }
 
@@ -68,55 +59,6 @@ pub struct Stability<'a> {
     given: Vec<(String, Mesh<f64, 3>)>,
     directory: Option<PathBuf>,
     observer: Box<dyn Fn(StabilityProgress<'_>) + 'a>,
-}
-
-/// Takes rows as they are made.
-type Sink<'s> = &'s mut dyn FnMut(StabilityRow);
-
-/// Makes rows.
-type Run<'p> = Box<dyn Fn(Sink<'_>) -> Result<(), Error> + 'p>;
-
-/// A piece of work: its rows do not depend on any other's.
-struct Job<'p> {
-    case: &'static str,
-    label: String,
-    run: Run<'p>,
-}
-
-/// What will be run.
-struct Plan<'p> {
-    effort: Effort,
-    schemes: &'p [String],
-    given: &'p [(String, Mesh<f64, 3>)],
-    jobs: Vec<Job<'p>>,
-}
-
-impl<'p> Plan<'p> {
-    fn is_full(&self) -> bool {
-        self.effort == Effort::Full
-    }
-    /// One of two, by effort.
-    fn pick<T>(&self, quick: T, full: T) -> T {
-        if self.is_full() { full } else { quick }
-    }
-    /// The same with something smaller for a trial.
-    fn pick_of<T>(&self, trial: T, quick: T, full: T) -> T {
-        if self.effort == Effort::Trial { trial } else { self.pick(quick, full) }
-    }
-    /// Adds work on a scheme, if that scheme is wanted.
-    fn add(
-        &mut self,
-        case: &'static str,
-        choice: Choice,
-        what: &str,
-        run: impl Fn(&Choice, Sink<'_>) -> Result<(), Error> + 'p,
-    ) {
-        if self.schemes.is_empty() || self.schemes.iter().any(|s| s == choice.scheme) {
-            let label = format!("{} {} {what}", choice.scheme, choice.words());
-            let run = Box::new(move |sink: Sink<'_>| run(&choice, sink));
-            self.jobs.push(Job { case, label, run });
-        }
-    }
 }
 
 impl fmt::Debug for Stability<'_> {
@@ -167,7 +109,7 @@ impl<'a> Stability<'a> {
         self.directory = Some(directory.into());
         self
     }
-    /// Sets who is told of progress.
+    /// Sets a function that receives the progress of the study.
     #[must_use]
     pub fn observer(mut self, observer: impl Fn(StabilityProgress<'_>) + 'a) -> Self {
         self.observer = Box::new(observer);

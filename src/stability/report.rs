@@ -5,14 +5,14 @@ use std::path::{Path, PathBuf};
 
 use serde_json::json;
 
+use super::criteria::{CRITERIA, STABILITY_CASES};
+use super::plan::Effort;
 use super::row::{StabilityRow, Verdict, short};
 use super::summary::{by_criterion, by_scheme, missed, robust};
-use super::{CRITERIA, Effort, STABILITY_CASES};
 use crate::error::Error;
-use crate::output::csv;
+use crate::output::table::{Cell, latex, markdown};
+use crate::output::{Provenance, Table, csv, replace};
 use crate::study::Program;
-use crate::work_precision::{Cell, latex, markdown, replace};
-use crate::work_precision::{Provenance, Table};
 
 /// What a reader needs to know before the tables.
 const READING: [&str; 3] = [
@@ -27,7 +27,7 @@ const READING: [&str; 3] = [
 pub struct StabilityReport {
     /// The program.
     pub program: Program,
-    /// Where and when.
+    /// Time and machine.
     pub provenance: Provenance,
     /// How much was run.
     pub effort: Effort,
@@ -155,13 +155,13 @@ impl StabilityReport {
         self.document(Table::to_text, |line| format!("{line}\n"))
     }
 
-    /// The same in Markdown.
+    /// Tables, provenance and notes in Markdown.
     pub fn to_markdown(&self) -> String {
         let text = self.document(Table::to_markdown, |line| format!("{}\n\n", markdown(line)));
         format!("# Stability\n\n{text}")
     }
 
-    /// The same in LaTeX, for `\input`; it needs the package `booktabs`.
+    /// Tables, provenance and notes in LaTeX, for `\input`; it needs the package `booktabs`.
     pub fn to_latex(&self) -> String {
         let text =
             self.document(Table::to_latex, |line| format!("\\noindent {}\\par\n", latex(line)));

@@ -1,20 +1,20 @@
-//! A row: one figure against one expectation, and the verdict that follows.
+//! A row: a figure, its expected range, and the verdict.
 
 use serde::Serialize;
 
-/// Where a figure should lie. Without either limit it is reported and not judged.
+/// The range of a figure that a criterion asks for. A figure without limits is reported and not judged.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 #[non_exhaustive]
-pub struct Expected {
+pub struct ExpectedRange {
     /// The smallest figure allowed.
     pub at_least: Option<f64>,
     /// The largest figure allowed.
     pub at_most: Option<f64>,
-    /// Whether this choice is shown because it is known not to get there.
+    /// Whether the choice is shown because theory or experience says that it misses the range.
     pub to_fail: bool,
 }
 
-impl Expected {
+impl ExpectedRange {
     /// Whether a figure lies where it should; one that is not a number does not.
     pub fn holds(&self, figure: f64) -> bool {
         figure.is_finite()
@@ -121,7 +121,7 @@ impl Verdict {
     }
 
     /// The verdict on a figure, or on its absence after a failed solve.
-    fn on(expected: &Expected, measured: Option<f64>) -> Self {
+    fn on(expected: &ExpectedRange, measured: Option<f64>) -> Self {
         if !expected.is_judged() {
             return Self::Reported;
         }
@@ -159,7 +159,7 @@ pub struct StabilityRow {
     /// What was measured.
     pub quantity: String,
     /// Where it should lie.
-    pub expected: Expected,
+    pub expected: ExpectedRange,
     /// The figure; none if nothing was solved.
     pub measured: Option<f64>,
     /// Further figures, or why there is none.
@@ -195,20 +195,20 @@ impl StabilityRow {
 
 #[cfg(test)]
 mod tests {
-    use super::{Expected, Verdict, short};
+    use super::{ExpectedRange, Verdict, short};
 
     #[test]
     fn verdicts_follow_from_figures() {
-        let most = Expected { at_most: Some(1.5), ..Expected::default() };
+        let most = ExpectedRange { at_most: Some(1.5), ..ExpectedRange::default() };
         assert_eq!(Verdict::on(&most, Some(1.5)), Verdict::Met);
         assert_eq!(Verdict::on(&most, Some(3.0)), Verdict::Missed);
         assert_eq!(Verdict::on(&most, None), Verdict::Missed);
         assert_eq!(most.missed_by(3.0), Some(2.0));
-        let fail = Expected { to_fail: true, ..most };
+        let fail = ExpectedRange { to_fail: true, ..most };
         assert_eq!(Verdict::on(&fail, Some(3.0)), Verdict::FailsAsExpected);
         assert_eq!(Verdict::on(&fail, Some(1.0)), Verdict::BetterThanExpected);
-        assert_eq!(Verdict::on(&Expected::default(), Some(1.0)), Verdict::Reported);
-        let least = Expected { at_least: Some(0.9), ..Expected::default() };
+        assert_eq!(Verdict::on(&ExpectedRange::default(), Some(1.0)), Verdict::Reported);
+        let least = ExpectedRange { at_least: Some(0.9), ..ExpectedRange::default() };
         assert_eq!(least.missed_by(0.45), Some(2.0));
         assert_eq!(least.missed_by(-0.1), None);
         assert!(!least.holds(f64::NAN));

@@ -20,7 +20,7 @@ pub(crate) fn solver() -> ActiveSet {
     ActiveSet { linear: LinearMethod::Direct, ..ActiveSet::default() }
 }
 
-/// The same with another last resort and another number of sets.
+/// The solver of the study with another last resort and another limit on active sets.
 pub(crate) fn solver_with(last_resort: LastResort, max_outer: usize) -> ActiveSet {
     ActiveSet { last_resort, max_outer, ..solver() }
 }

@@ -1,10 +1,10 @@
-//! Verdicts counted, and what they say about choices.
+//! Counts of verdicts, and robust choices of penalties.
 
-use super::CRITERIA;
+use super::criteria::{CRITERIA, Criterion};
 use super::row::{StabilityRow, Verdict, short};
+use crate::output::Table;
+use crate::output::table::Cell;
 use crate::study::table::distinct;
-use crate::work_precision::Cell;
-use crate::work_precision::Table;
 
 fn count<'r>(rows: impl Iterator<Item = &'r StabilityRow>, verdict: Verdict) -> usize {
     rows.filter(|row| row.verdict == verdict).count()
@@ -39,7 +39,7 @@ pub(crate) fn by_scheme(rows: &[StabilityRow]) -> Table {
 /// Verdicts of every criterion.
 pub(crate) fn by_criterion(rows: &[StabilityRow]) -> Table {
     let asked = CRITERIA.iter().filter(|c| rows.iter().any(|r| r.criterion == c.name));
-    let line = |c: &crate::stability::Criterion| {
+    let line = |c: &Criterion| {
         let mine = || rows.iter().filter(|r| r.criterion == c.name);
         let mut cells = vec![Cell::Words(c.case.to_owned()), Cell::Words(c.name.to_owned())];
         cells.extend(Verdict::ALL.map(|verdict| Cell::whole(Some(count(mine(), verdict)))));

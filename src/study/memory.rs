@@ -1,4 +1,4 @@
-//! How much memory the process has needed so far, how much there is, and how much a run will need.
+//! Peak memory of the process, available memory, and an estimate of the memory of a run.
 
 use crate::element::Layout;
 
@@ -31,7 +31,7 @@ pub fn available_memory_bytes() -> Option<u64> {
     kilobytes(&std::fs::read_to_string("/proc/meminfo").ok()?, "MemAvailable:")
 }
 
-/// What the largest run of a study will need, about.
+/// Estimated memory of the largest run of a study.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct MemoryEstimate {
@@ -39,7 +39,7 @@ pub struct MemoryEstimate {
     pub bytes: f64,
     /// Name of the scheme that needs most.
     pub scheme: String,
-    /// The level on which it does.
+    /// The level of that run.
     pub level: usize,
 }
 

@@ -42,7 +42,7 @@ impl Program {
 ///
 /// This is a property of the executable. Instructions that the linear algebra picks at run time do
 /// not show.
-pub fn target_cpu() -> String {
+fn target_cpu() -> String {
     let mut features = Vec::new();
     macro_rules! list {
         ($($name:literal),*) => { $(if cfg!(target_feature = $name) { features.push($name); })* };

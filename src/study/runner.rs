@@ -23,7 +23,7 @@ use crate::real::Real;
 use crate::scenes::Scene;
 use crate::scheme::{ExpectedOrders, Setting};
 
-/// What a study tells whoever watches it.
+/// Progress of a study.
 #[derive(Debug)]
 pub enum Progress<'a> {
     /// A run begins: scene, scheme, level.
@@ -137,14 +137,14 @@ impl<'a, T: Real, const D: usize> Study<'a, T, D> {
         self.directory = Some(directory.into());
         self
     }
-    /// Sets who is told of progress.
+    /// Sets a function that receives the progress of the study.
     #[must_use]
     pub fn observer(mut self, observer: impl Fn(Progress<'_>) + 'a) -> Self {
         self.observer = Box::new(observer);
         self
     }
 
-    /// Checks what can be checked before anything is assembled.
+    /// Checks schemes, levels and mesh without assembly.
     ///
     /// # Errors
     /// [`Error::Parameter`] for an empty list of levels or schemes or a level of zero,
@@ -153,7 +153,8 @@ impl<'a, T: Real, const D: usize> Study<'a, T, D> {
         self.where_exact_fails().map(|_| ())
     }
 
-    /// Checks, and tells where the scene's exact solution fails on a given mesh.
+    /// Checks schemes, levels and mesh. Returns the point at which the exact solution of the scene
+    /// breaks the contact condition of a given mesh.
     fn where_exact_fails(&self) -> Result<Option<String>, Error> {
         let wrong = |parameter, value: &str, allowed: &str| {
             Err(Error::Parameter {
@@ -179,8 +180,8 @@ impl<'a, T: Real, const D: usize> Study<'a, T, D> {
         }
     }
 
-    /// What the largest run will need of memory, about, with factors where the solver makes them from
-    /// the start; nothing for a study without schemes or levels.
+    /// An estimate of the memory of the largest run, with factors if the solver computes them from
+    /// the start; none for a study without schemes or levels.
     pub fn memory_estimate(&self) -> Option<MemoryEstimate> {
         let levels = Hierarchy::new(&self.scene.problem, &self.scene.domain, self.mesh.as_ref());
         let level = self.levels.iter().copied().max()?;
@@ -205,8 +206,8 @@ impl<'a, T: Real, const D: usize> Study<'a, T, D> {
     /// Runs every scheme on every level.
     ///
     /// # Errors
-    /// Whatever is wrong with scene, mesh or parameters. A solve that does not converge is no
-    /// error: its row says why.
+    /// Errors of [`Self::check`] and of assembly. A solve that does not converge is no error: its
+    /// row has the outcome.
     pub fn run(&self) -> Result<Report, Error> {
         let failure = self.where_exact_fails()?;
         let failure = failure.as_deref();
@@ -228,8 +229,8 @@ impl<'a, T: Real, const D: usize> Study<'a, T, D> {
         Ok(Report { program, rows })
     }
 
-    /// Runs the first scheme on the first level alone, with levels of its own, so that all its work is
-    /// done now. Returns the row and the seconds of its solve that the start from coarser levels took.
+    /// Runs the first scheme on the first level with a new hierarchy, so that no earlier run shortens
+    /// it. Returns the row and the seconds of the start from coarser levels.
     #[cfg(feature = "report")]
     pub(crate) fn run_alone(&self) -> Result<(Row, f64), Error> {
         let failure = self.where_exact_fails()?;
@@ -325,8 +326,7 @@ impl<'a, T: Real, const D: usize> Study<'a, T, D> {
         }
     }
 
-    /// What a scheme starts from: P1 on the coarser level for P1 itself, P1 on the same level for
-    /// all others.
+    /// The initial guess: P1 on the coarser level for P1, P1 on the same level for all other schemes.
     fn start(
         &self,
         levels: &mut Hierarchy<'_, T, D>,
@@ -344,7 +344,7 @@ impl<'a, T: Real, const D: usize> Study<'a, T, D> {
         }
     }
 
-    /// What promises of orders may depend on.
+    /// The assumptions of the proofs of orders.
     fn setting(&self) -> Setting {
         let problem = &self.scene.problem;
         let domain = &self.scene.domain;

@@ -18,7 +18,7 @@ impl fmt::Display for Report {
 /// Writes one table for each scene, in the order in which scenes first occur, with a blank line
 /// between schemes; times are in seconds. `certif.` is the largest of the four numbers of the
 /// certificate. A row that did not converge is followed by the reason.
-pub fn write_tables(f: &mut impl fmt::Write, rows: &[Row]) -> fmt::Result {
+fn write_tables(f: &mut impl fmt::Write, rows: &[Row]) -> fmt::Result {
     for (i, scene) in distinct(rows.iter().map(|r| r.scene.as_str())).into_iter().enumerate() {
         if i > 0 {
             writeln!(f)?;

@@ -1,7 +1,8 @@
-//! What was measured: rows with the times of several runs, and what could not be run.
+//! Measured rows with the times of several runs, and failures.
 
 use serde::Serialize;
 
+use crate::study::table::distinct;
 use crate::study::{Row, Seconds};
 
 /// A scheme on a scene with everything it runs with: one curve of a plot.
@@ -51,7 +52,7 @@ impl Phases {
         Phases { mesh, assemble, coarse, solve: solve - coarse, total }
     }
 
-    /// The same as a row states them, where the start counts as part of the solve.
+    /// The times as a row states them, with the start as a part of the solve.
     fn seconds(&self) -> Seconds {
         let Phases { mesh, assemble, coarse, solve, total } = *self;
         Seconds { mesh, assemble, solve: solve + coarse, total }
@@ -79,7 +80,7 @@ pub struct Measured {
 }
 
 impl Measured {
-    /// What a first run found.
+    /// The result of a first run.
     pub fn new(row: Row, phases: Phases, case: &Case) -> Self {
         Measured {
             row,
@@ -166,4 +167,15 @@ impl Variant {
         }
         label
     }
+}
+
+/// The scenes of rows and failures, in the order in which they first occur.
+pub(crate) fn scenes<'a>(rows: &'a [Measured], failures: &'a [Failure]) -> Vec<&'a str> {
+    let of_rows = rows.iter().map(|m| m.row.scene.as_str());
+    distinct(of_rows.chain(failures.iter().map(|f| f.case.variant.scene.as_str())))
+}
+
+/// The variants of rows, in the order in which they first occur.
+pub(crate) fn variants(rows: &[Measured]) -> Vec<Variant> {
+    distinct(rows.iter().map(Measured::variant))
 }

@@ -5,22 +5,16 @@ mod case;
 #[cfg(feature = "plot")]
 mod figures;
 mod measured;
-mod provenance;
-mod reach;
 mod report;
-mod table;
 mod tables;
 mod verdict;
+mod work_at_error;
 
 pub use baseline::{Changes, changes};
 pub use case::{Candidate, Named, Precision};
 pub use measured::{Case, Failure, Measured, Phases, Variant};
-pub use provenance::Provenance;
-pub use reach::{ErrorNorm, Reach, WorkPoint, work_at};
 pub use report::WorkReport;
-pub(crate) use report::replace;
-pub use table::Table;
-pub(crate) use table::{Cell, latex, markdown};
+pub use work_at_error::{WorkAtError, WorkPoint, work_at};
 
 use std::fmt;
 use std::path::PathBuf;
@@ -38,7 +32,7 @@ use case::Single;
 /// How long finished rows of a round may wait to be written.
 const PATIENCE: Duration = Duration::from_secs(1);
 
-/// What a study tells whoever watches it.
+/// Progress of a study.
 #[derive(Debug)]
 pub enum WorkProgress<'a> {
     /// This many runs will follow, unless some turn out to take too long.
@@ -168,7 +162,7 @@ impl<'a, const D: usize> WorkPrecision<'a, D> {
         self.limit = seconds;
         self
     }
-    /// Names the scheme of which the verdict speaks; the fastest otherwise.
+    /// Sets the scheme that verdicts compare with the others; the fastest one by default.
     #[must_use]
     pub fn subject(mut self, scheme: &str) -> Self {
         self.subject = scheme.to_owned();
@@ -187,7 +181,7 @@ impl<'a, const D: usize> WorkPrecision<'a, D> {
         self.memory = Some(Box::new(memory));
         self
     }
-    /// Sets who is told of progress.
+    /// Sets a function that receives the progress of the study.
     #[must_use]
     pub fn observer(mut self, observer: impl Fn(WorkProgress<'_>) + 'a) -> Self {
         self.observer = Box::new(observer);

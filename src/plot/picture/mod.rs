@@ -14,6 +14,7 @@ mod graph;
 mod level_line;
 mod line;
 mod map;
+mod panel;
 mod plane;
 mod run;
 mod section;
@@ -25,16 +26,17 @@ use std::path::{Path, PathBuf};
 
 use plotters::prelude::DrawingBackend;
 
-use super::{Align, Drawing, Drawn, INK, Pen, Place, draw_png, draw_svg};
+use super::pen::{Align, Drawn, Pen, ScreenPoint};
+use super::render::{Drawing, draw_png, draw_svg};
+use super::style::INK;
 use crate::error::Error;
 use crate::error::write_error;
 use crate::measure::Fields;
 use crate::mesh::{Mesh, edge_vertices};
 use crate::problem::Problem;
 use crate::real::Real;
-use graph::Graph;
 use line::Line;
-use map::Map;
+use panel::Panel;
 use plane::{Plane, default_slice};
 pub use run::solve_level;
 pub use section::Slice;
@@ -51,35 +53,12 @@ const MARGIN: f64 = 8.0;
 const HEADING: f64 = 28.0;
 const GAP: f64 = 10.0;
 
-/// One panel.
-#[derive(Clone, Debug)]
-enum Panel {
-    Map(Map),
-    Graph(Graph),
-}
-
-impl Panel {
-    fn height(&self, width: f64) -> f64 {
-        match self {
-            Panel::Map(map) => map.height(width),
-            Panel::Graph(graph) => graph.height(width),
-        }
-    }
-
-    fn shapes(&self) -> usize {
-        match self {
-            Panel::Map(map) => map.fills.len() + map.lines.len(),
-            Panel::Graph(graph) => graph.lines.len(),
-        }
-    }
-}
-
-/// Where the panels stand.
-struct Layout<'a> {
+/// Positions of the panels.
+struct PictureLayout<'a> {
     /// With their upper left corners.
-    panels: Vec<(&'a Panel, Place)>,
+    panels: Vec<(&'a Panel, ScreenPoint)>,
     width: f64,
-    /// Width and height of it all.
+    /// Width and height of the picture.
     size: (f64, f64),
 }
 
@@ -198,7 +177,7 @@ impl Picture {
     }
 
     /// Panels row by row.
-    fn layout(&self) -> Layout<'_> {
+    fn layout(&self) -> PictureLayout<'_> {
         let alone = self.panels.first().is_some_and(|panel| match panel {
             Panel::Map(map) => map.high[0] - map.low[0] > ELONGATED * (map.high[1] - map.low[1]),
             Panel::Graph(_) => true,
@@ -213,7 +192,7 @@ impl Picture {
             y += row.iter().map(|p| p.height(width)).fold(0.0, f64::max) + GAP;
         }
         let size = (2.0 * MARGIN + columns as f64 * width, y);
-        Layout { panels: placed, width, size }
+        PictureLayout { panels: placed, width, size }
     }
 }
 
@@ -223,7 +202,7 @@ impl Drawing for Picture {
     }
 
     fn draw<DB: DrawingBackend>(&self, pen: &Pen<DB>) -> Drawn {
-        let Layout { panels, width, size } = self.layout();
+        let PictureLayout { panels, width, size } = self.layout();
         let heading = (0.5 * size.0, MARGIN + 0.4 * HEADING);
         pen.text(&self.title, heading, axes::TITLE + 1.0, INK, Align::Centre)?;
         for (panel, at) in panels {
@@ -239,7 +218,7 @@ impl Drawing for Picture {
 /// Refuses fields that would be read beyond their ends.
 fn check_fields<T: Real, const D: usize>(mesh: &Mesh<T, D>, fields: &Fields) -> Result<(), Error> {
     let n = mesh.n_cells();
-    let found = &fields.found;
+    let found = &fields.discrete_contact;
     let fits = fields.u.len() == n * (D + 1)
         && [0, n * edge_vertices(D).len()].contains(&fields.midpoints.len())
         && [0, mesh.vertices().len()].contains(&found.density.len())

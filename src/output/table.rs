@@ -1,4 +1,4 @@
-//! A table, written as text, Markdown or LaTeX.
+//! Tables as text, Markdown or LaTeX.
 
 /// A cell.
 #[derive(Clone, Debug, PartialEq)]
