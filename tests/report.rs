@@ -9,6 +9,7 @@ use rows::{report, row, rows};
 use serde_json::Value;
 use std::path::{Path, PathBuf};
 use unilateral::facet::PenaltyParameters;
+use unilateral::inequality::Outcome;
 use unilateral::measure::Errors;
 use unilateral::study::peak_memory_bytes;
 
@@ -170,7 +171,7 @@ fn png_size(path: &Path) -> (u32, u32) {
 fn all_files_are_written_and_plots_show_what_they_should() {
     let scratch = Scratch::new("files");
     let mut rows = rows();
-    rows[5].status = "stalled".into();
+    rows[5].status = Outcome::Stalled;
     rows[5].error = Errors::default();
     for row in &mut rows[9..] {
         row.error = Errors::default();

@@ -159,7 +159,7 @@ fn a_missed_promise_names_the_row() {
 #[test]
 fn a_promise_that_cannot_be_tested_is_missed() {
     let mut rows = four_levels("p1");
-    rows[..3].iter_mut().for_each(|row| row.status = "stalled".into());
+    rows[..3].iter_mut().for_each(|row| row.status = Outcome::Stalled);
     let missed = report(rows.clone()).assert_orders(0.1).unwrap_err();
     assert_eq!(missed.0.len(), 2, "one for each norm");
     assert!(matches!(missed.0[0], OrderMissed::Unobserved { norm: ErrorNorm::L2, .. }), "{missed}");

@@ -31,8 +31,9 @@ pub struct Fields {
 impl<T: Real, const D: usize, S: Scheme<T, D>> Discretisation<'_, T, D, S> {
     /// Solution, obstacle, multiplier and contact set on cells, for pictures.
     ///
-    /// A nodal multiplier over the measure that belongs to its unknown is a density, of volume for obstacles and of the contact boundary for Signorini. A cell shows
-    /// the mean over its unknowns that have such a measure.
+    /// A nodal multiplier over the measure that belongs to its unknown is a density, of volume for
+    /// obstacles and of the contact boundary for Signorini. A cell shows the mean over its unknowns
+    /// that have such a measure.
     pub fn fields(&self, inequality: &Inequality<T>, solution: &Solution<T>) -> Fields {
         self.space.fields(inequality, solution)
     }
@@ -96,7 +97,8 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         (0..self.mesh.n_cells()).flat_map(of_cell).collect()
     }
 
-    /// The measure of domain or contact boundary that belongs to each unknown of the constraint set.
+    /// The measure of domain or contact boundary that belongs to each unknown of the constraint
+    /// set.
     fn constrained_measures(&self) -> Vec<f64> {
         let mut measures = vec![0.0; self.dofs.size()];
         if self.problem.has_obstacle() {

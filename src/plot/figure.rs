@@ -15,8 +15,8 @@ pub struct Figure {
     pub(super) columns: usize,
 }
 
-/// Error against mesh size, with reference slopes: for each scene one panel for the L2 error and one
-/// for the error in the broken H1 seminorm.
+/// Error against mesh size, with reference slopes: for each scene one panel for the L2 error and
+/// one for the error in the broken H1 seminorm.
 pub fn convergence(rows: &[Row]) -> Figure {
     let keys = keys(rows);
     let scenes = scenes(rows);

@@ -16,7 +16,7 @@ const BOTTOM: f64 = 48.0;
 /// Width and height of the area of the data.
 const SIZE: (f64, f64) = (PANEL.0 - LEFT - RIGHT, PANEL.1 - TOP - BOTTOM);
 
-/// Width of a failure's cross, and the distance of its middle from an edge it stands at.
+/// Width of the cross of a failure, and distance of its centre from an edge.
 const CROSS: f64 = 17.0;
 const EDGE: f64 = 10.0;
 

@@ -10,8 +10,8 @@ pub(crate) type Drawn = Result<(), String>;
 /// A position on the drawing: distances from its upper left corner to the right and down.
 pub(crate) type ScreenPoint = (f64, f64);
 
-/// The typeface. PNG files are drawn with the one of this name that [`crate::plot::render`] embeds; an
-/// SVG file names it, and viewers that lack it take the next.
+/// The typeface. PNG files are drawn with the one of this name that [`crate::plot::render`] embeds;
+/// an SVG file names it, and viewers that lack it take the next.
 pub(crate) const FAMILY: &str = "Ubuntu, DejaVu Sans, Arial, sans-serif";
 
 /// A typeface's width of a text.

@@ -33,8 +33,8 @@ fn fraction(order: u32, dimension: u32) -> String {
 
 impl Slopes {
     /// The triangle in the lower right or the upper left corner of an area of this size, the first
-    /// that is free of data (given in pixels of the area). Slopes that fall, each over a dimension,
-    /// stand in the lower left or the upper right one.
+    /// that is free of data (given in pixels of the area). Falling slopes, each over a dimension,
+    /// are placed in the lower left or the upper right corner.
     pub fn place(
         (slopes, falls_over): (&[u32], Option<u32>),
         (x, y): (&LogAxis, &LogAxis),
@@ -86,7 +86,7 @@ impl Slopes {
         for (label, rise) in &self.rises {
             let end = (steep, bottom - rise);
             pen.line((tip, bottom), end, 0.8, GREY)?;
-            // On flat triangles labels would run into each other: the steepest speaks for all.
+            // labels on flat triangles would overlap: only the steepest slope has one
             if step >= 10.0 || *rise == top {
                 pen.text(label, (beside, end.1), 13.0, GREY, align)?;
             }

@@ -1,5 +1,5 @@
-//! Colours and marks of curves. Each differs from the others in both, so that it is told apart in
-//! grey as well; marks are partly open, so that curves on top of each other are both seen.
+//! Colours and marks of curves. Curves differ in both, so that they remain distinct in grey; some
+//! marks are open, so that curves on top of each other are both visible.
 
 use super::pen::{Drawn, Pen, ScreenPoint};
 use plotters::prelude::{DrawingBackend, RGBColor};
@@ -30,7 +30,7 @@ const COLOURS: [RGBColor; 7] = [
 /// A mark: corners on a circle around its place.
 struct Mark {
     corners: usize,
-    /// Where the first corner stands, in parts of a full turn; 0 is to the right, then clockwise.
+    /// Angle of the first corner in parts of a full turn; 0 is to the right, then clockwise.
     turn: f64,
     radius: f64,
     filled: bool,

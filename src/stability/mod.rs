@@ -123,7 +123,7 @@ impl<'a> Stability<'a> {
     ///
     /// # Errors
     /// [`Error::Parameter`] for the name of a case or scheme that does not exist, before anything
-    /// runs; [`Error::Write`]. What goes wrong within a case is told by its rows.
+    /// runs; [`Error::Write`]. Errors of a job are listed in [`StabilityReport::failures`].
     pub fn run(&self) -> Result<StabilityReport, Error> {
         let check = |parameter, names: &[String], known: &[&str]| match names
             .iter()
@@ -148,7 +148,7 @@ impl<'a> Stability<'a> {
             let mut take = |row: StabilityRow| {
                 (self.observer)(StabilityProgress::Row(&row));
                 report.rows.push(row);
-                // whoever interrupts the study keeps the rows that are there
+                // rows are saved early, so that an interrupted study keeps them
                 if written.elapsed() > PATIENCE && saved.is_ok() {
                     saved = self.save(&report);
                     written = Instant::now();

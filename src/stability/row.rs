@@ -2,7 +2,8 @@
 
 use serde::Serialize;
 
-/// The range of a figure that a criterion asks for. A figure without limits is reported and not judged.
+/// The range of a figure that a criterion asks for. A figure without limits is reported and not
+/// judged.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 #[non_exhaustive]
 pub struct ExpectedRange {
@@ -15,15 +16,15 @@ pub struct ExpectedRange {
 }
 
 impl ExpectedRange {
-    /// Whether a figure lies where it should; one that is not a number does not.
+    /// Whether a figure lies in the range; a figure that is not finite does not.
     pub fn holds(&self, figure: f64) -> bool {
         figure.is_finite()
             && self.at_least.is_none_or(|least| figure >= least)
             && self.at_most.is_none_or(|most| figure <= most)
     }
 
-    /// By what factor a figure misses; none where no factor tells it: a limit of zero, a figure that
-    /// is not positive or not a number.
+    /// The factor by which a figure misses the range; none for a limit of zero and for a figure
+    /// that is not positive or not a number.
     pub fn missed_by(&self, figure: f64) -> Option<f64> {
         if self.holds(figure) || figure.is_nan() {
             return None;
@@ -79,21 +80,21 @@ pub(crate) fn short(x: f64) -> String {
     }
 }
 
-/// What follows from figure and expectation.
+/// The verdict on a figure and its expected range.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Verdict {
-    /// The figure lies where it should.
+    /// The figure lies in the range.
     Met,
-    /// It does not, or there is none because nothing was solved.
+    /// The figure lies outside the range, or there is none because the solve failed.
     Missed,
-    /// It does not, and was known not to.
+    /// The figure lies outside the range, as was expected of this choice.
     FailsAsExpected,
-    /// It does, though it was not expected to.
+    /// The figure lies in the range, though that was not expected of this choice.
     BetterThanExpected,
-    /// Nothing is expected here: the figure is for the reader.
+    /// There is no expected range.
     Reported,
-    /// The criterion does not apply, or what it needs is absent.
+    /// The criterion does not apply, or its input is absent.
     NotApplicable,
 }
 
@@ -144,7 +145,7 @@ pub struct StabilityRow {
     pub criterion: String,
     /// The scheme, with the placement of its bounds after a colon if it is not the default.
     pub scheme: String,
-    /// What was chosen about its penalty.
+    /// The choice of the penalty.
     pub choice: String,
     /// Scalar of assembly and solve.
     pub precision: String,
@@ -152,13 +153,13 @@ pub struct StabilityRow {
     pub problem: String,
     /// Subdivisions of the shortest side, where the mesh has such a number.
     pub level: Option<usize>,
-    /// Name of what is swept.
+    /// Name of the parameter of the sweep.
     pub parameter: String,
-    /// Its value here.
+    /// Value of that parameter.
     pub value: Option<f64>,
-    /// What was measured.
+    /// Name of the measured quantity.
     pub quantity: String,
-    /// Where it should lie.
+    /// The expected range.
     pub expected: ExpectedRange,
     /// The figure; none if nothing was solved.
     pub measured: Option<f64>,
@@ -166,7 +167,7 @@ pub struct StabilityRow {
     pub detail: String,
     /// What follows.
     pub verdict: Verdict,
-    /// By what factor a limit is missed, where a factor tells it.
+    /// The factor by which the limit is missed, if there is one.
     pub missed_by: Option<f64>,
 }
 

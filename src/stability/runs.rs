@@ -1,4 +1,4 @@
-//! Runs: a scheme on a scene or on a mesh, and what its matrix is like.
+//! Runs of a scheme on a scene or a mesh, and properties of its matrix.
 
 use super::choice::Choice;
 use crate::algebra::{Bound, SparseMatrix};
@@ -81,8 +81,8 @@ pub(crate) fn solved<const D: usize>(
     Ok((mesh.clone(), solved))
 }
 
-/// Whether a scheme's matrix is symmetric positive definite on a mesh: 1 or 0; none if it is not
-/// meant to be symmetric or the question could not be answered.
+/// Whether a scheme's matrix is symmetric positive definite on a mesh: 1 or 0; none if the
+/// scheme is not symmetric or the factorisation failed.
 pub(crate) fn definite<const D: usize>(
     problem: &Problem<D>,
     mesh: &Mesh<f64, D>,
@@ -100,7 +100,7 @@ pub(crate) fn definite<const D: usize>(
     Ok(answer.map(|is| f64::from(u8::from(is))))
 }
 
-/// The rows and columns of a scheme's matrix that belong to unknowns which are not given.
+/// The matrix of a scheme, restricted to its free unknowns.
 pub(crate) fn free_matrix<const D: usize>(
     problem: &Problem<D>,
     mesh: &Mesh<f64, D>,

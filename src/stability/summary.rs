@@ -58,7 +58,7 @@ pub(crate) fn by_criterion(rows: &[StabilityRow]) -> Table {
     Table { title: "Verdicts by criterion".into(), columns, rows, remarks: Vec::new() }
 }
 
-/// Every row that missed what it should keep, with by how much; no table if there is none.
+/// Every row that misses its range, with the factor; no table without such rows.
 pub(crate) fn missed(rows: &[StabilityRow]) -> Option<Table> {
     let line = |row: &StabilityRow| {
         let sweep =
@@ -95,7 +95,7 @@ pub(crate) fn missed(rows: &[StabilityRow]) -> Option<Table> {
     })
 }
 
-/// Which penalties of a scheme keep all that is asked in a case, where several are shown.
+/// The penalties of a scheme that meet all criteria of a case, for schemes with several penalties.
 pub(crate) fn robust(rows: &[StabilityRow]) -> Vec<String> {
     let mut sentences = Vec::new();
     for key in distinct(rows.iter().map(|r| (r.case.clone(), r.scheme.clone()))) {

@@ -6,8 +6,8 @@ use crate::mesh::Mesh;
 use crate::real::Real;
 use crate::scheme::{DirichletBy, Scheme, Wopsip};
 
-/// WOPSIP with the penalty `eta / h_F^3` for every coefficient, for comparison with the default: the
-/// scheme fails for coefficients that are not of size one.
+/// WOPSIP with the penalty `eta / h_F^3` for every coefficient, for comparison with the default:
+/// the scheme fails for coefficients that are not of size one.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct UnweightedWopsip(pub Wopsip);
 

@@ -7,8 +7,8 @@ use crate::real::{Real, point_f64};
 use crate::scenes::Scene;
 use crate::scheme::{ConformingP1, NonconformingP1};
 
-/// Checks that a mesh is compatible with a scene. Returns the barycentre of a facet on which the exact
-/// solution of the scene breaks the contact condition, or none.
+/// Checks that a mesh is compatible with a scene. Returns the barycentre of a facet on which the
+/// exact solution of the scene breaks the contact condition, or none.
 ///
 /// Dirichlet and Neumann data of a scene with an exact solution come from that solution wherever
 /// the mesh has such parts, so it stays the solution on any domain where it is smooth enough. Only
@@ -16,8 +16,8 @@ use crate::scheme::{ConformingP1, NonconformingP1};
 ///
 /// # Errors
 /// [`Error::UnfitMesh`] if mesh and scene do not agree on having a contact part, or if the data of
-/// the scene are no data on the mesh: not finite, or without an admissible value; [`Error::Mesh`] if
-/// a component of the mesh is held by nothing.
+/// the scene are no data on the mesh: not finite, or without an admissible value; [`Error::Mesh`]
+/// if a component of the mesh has neither Dirichlet nor contact facets.
 pub fn check_fit<T: Real, const D: usize>(
     scene: &Scene<D>,
     mesh: &Mesh<T, D>,

@@ -1,17 +1,18 @@
-//! Observed orders beside those that theory promises, as a table in Markdown.
+//! Observed and promised orders, as a table in Markdown.
 
 use std::fmt::Write;
 
 use crate::measure::ErrorNorm;
 use crate::study::order_check::{ObservedOrders, PROMISED, order_in};
 
-/// What a cell shows where there is no number.
+/// The cell of a number that does not apply.
 const NONE: &str = "-";
 
 /// One line for every scheme on every scene: where bounds are imposed, the levels, observed and
 /// promised order in L2 and H1, and whether the promises were kept.
 ///
-/// The verdict is `kept` or, by norm, `missed`; `exact` where errors are rounding; `nothing promised` where nothing is proven, and
+/// The verdict is `kept` or, by norm, `missed`; `exact` where errors are rounding; `nothing
+/// promised` where nothing is proven, and
 /// `unobserved` where fewer than two levels converged. Levels that did not converge follow with the
 /// outcome of their solves.
 pub fn orders_table(orders: &[ObservedOrders], tolerance: f64) -> String {

@@ -1,12 +1,12 @@
-//! A report: what was run and what came out, and the files it is written to.
+//! A report: rows, and the program that ran them.
 
 use super::row::Row;
-/// The program that made a report, and how it ran.
+/// The program that made a report, and its settings.
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "report", derive(serde::Serialize))]
 #[non_exhaustive]
 pub struct Program {
-    /// Its name.
+    /// Name of the program.
     pub name: String,
     /// Version of the library.
     pub version: String,
@@ -16,7 +16,7 @@ pub struct Program {
     pub precision: String,
     /// Every time is the smallest of this many runs.
     pub repeat: usize,
-    /// Architecture and the vector instructions it was compiled for.
+    /// Architecture and vector instructions for which the program was compiled.
     pub target_cpu: String,
 }
 
@@ -40,8 +40,8 @@ impl Program {
 /// by default on common machines, `x86_64 (avx2, avx512f, fma)` with `-C target-cpu=native` on a
 /// recent one.
 ///
-/// This is a property of the executable. Instructions that the linear algebra picks at run time do
-/// not show.
+/// The text describes the executable. Instructions that the linear algebra selects at run time are
+/// not listed.
 fn target_cpu() -> String {
     let mut features = Vec::new();
     macro_rules! list {

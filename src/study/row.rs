@@ -1,4 +1,4 @@
-//! One row of a report: plain numbers, one for every scene, scheme and level.
+//! Rows of a report: the figures of one scene, scheme and level each.
 
 use crate::facet::PenaltyParameters;
 use crate::inequality::{Certificate, Outcome};
@@ -29,11 +29,11 @@ pub struct Orders {
 #[cfg_attr(feature = "report", derive(serde::Serialize))]
 #[non_exhaustive]
 pub struct Iterations {
-    /// Active sets tried on this level; none where there was nothing to iterate with.
+    /// Number of active sets on this level; none without an iterate.
     pub outer: Option<usize>,
     /// Inner iterations on this level, zero for direct solvers.
     pub linear: usize,
-    /// How many coarser levels the start came from.
+    /// Number of coarser levels of the initial guess.
     pub levels: usize,
 }
 
@@ -46,7 +46,7 @@ pub struct Seconds {
     pub mesh: f64,
     /// Assembly of matrix, load and bounds.
     pub assemble: f64,
-    /// Solve, with whatever the start from coarser levels cost.
+    /// Solve, with the start from coarser levels.
     pub solve: f64,
     /// The sum.
     pub total: f64,
@@ -99,7 +99,7 @@ pub struct Row {
     pub contact: ContactErrors,
     /// Observed order against the previous level of the same scene and scheme.
     pub order: Orders,
-    /// What theory promises.
+    /// Orders that theory promises.
     pub expected_order: ExpectedOrders,
     /// `a(u,u)/2 - l(u)`; null for non-symmetric schemes.
     pub objective: Option<f64>,
@@ -111,7 +111,7 @@ pub struct Row {
     pub certificate: Certificate,
     /// Wall times.
     pub seconds: Seconds,
-    /// Largest resident set of the process so far, where the system tells.
+    /// Largest resident set of the process so far, if the system reports it.
     pub peak_memory_bytes: Option<u64>,
     /// Warnings by type, as text: a penalty below its proven bound, say.
     pub warnings: Vec<String>,

@@ -229,8 +229,8 @@ impl<'a, T: Real, const D: usize> Study<'a, T, D> {
         Ok(Report { program, rows })
     }
 
-    /// Runs the first scheme on the first level with a new hierarchy, so that no earlier run shortens
-    /// it. Returns the row and the seconds of the start from coarser levels.
+    /// Runs the first scheme on the first level with a new hierarchy, so that no earlier run
+    /// shortens it. Returns the row and the seconds of the start from coarser levels.
     #[cfg(feature = "report")]
     pub(crate) fn run_alone(&self) -> Result<(Row, f64), Error> {
         let failure = self.where_exact_fails()?;
@@ -326,7 +326,8 @@ impl<'a, T: Real, const D: usize> Study<'a, T, D> {
         }
     }
 
-    /// The initial guess: P1 on the coarser level for P1, P1 on the same level for all other schemes.
+    /// The initial guess: P1 on the coarser level for P1, P1 on the same level for all other
+    /// schemes.
     fn start(
         &self,
         levels: &mut Hierarchy<'_, T, D>,

@@ -4,7 +4,7 @@ use crate::study::report::Report;
 use crate::study::row::Row;
 use std::fmt;
 
-/// What a table shows in place of a number that does not apply.
+/// The cell of a number that does not apply.
 const NONE: &str = "-";
 /// Characters in a line.
 const WIDTH: usize = 100;
@@ -61,7 +61,7 @@ fn write_scene(f: &mut impl fmt::Write, scene: &str, rows: &[&Row]) -> fmt::Resu
     Ok(())
 }
 
-/// What the heading says after the name of the scene: solvers, and the orders that theory promises.
+/// The heading after the name of the scene: solvers, and the orders that theory promises.
 fn heading(rows: &[&Row]) -> String {
     let solvers = distinct(rows.iter().map(|r| format!("{}/{}", r.solver, r.linear)));
     let mut text = format!("solver {}", solvers.join(", "));
@@ -114,15 +114,15 @@ fn write_wrapped(f: &mut impl fmt::Write, text: &str) -> fmt::Result {
 
 /// One column of a table.
 struct Column {
-    /// Its head.
+    /// Head of the column.
     name: &'static str,
-    /// Text stands left, numbers right.
+    /// Whether cells are aligned to the left, as texts are; numbers are aligned to the right.
     left: bool,
-    /// What it shows of a row.
+    /// The cell of a row.
     cell: fn(&Row) -> String,
 }
 
-/// The columns that have something to tell about these rows.
+/// The columns that are not empty for these rows.
 fn columns(rows: &[&Row]) -> Vec<Column> {
     let text = |name, cell| Column { name, left: true, cell };
     let number = |name, cell| Column { name, left: false, cell };

@@ -5,7 +5,7 @@ use serde::Serialize;
 use crate::study::table::distinct;
 use crate::study::{Row, Seconds};
 
-/// A scheme on a scene with everything it runs with: one curve of a plot.
+/// A scheme on a scene with constraint set, linear solver and scalar: one curve of a plot.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct Variant {
     /// Name of the scene.
@@ -20,7 +20,7 @@ pub struct Variant {
     pub precision: String,
 }
 
-/// A variant on a level: what is run as a whole.
+/// A variant on a level: the unit of a run.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct Case {
     /// The variant.
@@ -69,7 +69,7 @@ pub struct Measured {
     pub precision: String,
     /// The linear solver asked for; `linear` is the one that was used.
     pub linear_asked: String,
-    /// How many runs there were so far.
+    /// Number of runs so far.
     pub runs: usize,
     /// The run with the smallest total.
     pub smallest: Phases,
@@ -131,14 +131,14 @@ impl Measured {
     }
 }
 
-/// A case that gave no solution, and why.
+/// A case without a solution, and the reason.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 #[non_exhaustive]
 pub struct Failure {
     /// The case.
     #[serde(flatten)]
     pub case: Case,
-    /// The status of its row, or why it was not run at all.
+    /// The outcome of the solve, or the reason for which the case was not run.
     pub why: String,
 }
 
@@ -151,7 +151,8 @@ impl Failure {
 }
 
 impl Variant {
-    /// What tells it from the others of a report: the scheme and whatever else varies among them.
+    /// A label that distinguishes the variant from the others of a report: the scheme, and the
+    /// parts that vary among them.
     pub fn label(&self, all: &[Variant]) -> String {
         let varies = |part: fn(&Variant) -> &str| all.iter().any(|v| part(v) != part(self));
         let mut label = self.scheme.clone();

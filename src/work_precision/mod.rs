@@ -35,19 +35,19 @@ const PATIENCE: Duration = Duration::from_secs(1);
 /// Progress of a study.
 #[derive(Debug)]
 pub enum WorkProgress<'a> {
-    /// This many runs will follow, unless some turn out to take too long.
+    /// The number of runs that follow, fewer if some exceed the time limit.
     Planned(usize),
     /// A run begins, in this round from 0.
     Started(&'a Case, usize),
-    /// It ended, or was not needed.
+    /// The run ended, or was not needed.
     Finished,
 }
 
 /// A study of work against precision on one scene.
 ///
-/// In every round each case runs once, with nothing known from other runs: what its mesh and its
-/// start from coarser levels cost is its own. Rounds go forth and back through the cases, so that
-/// drift of the machine hits all alike. Before the first one every variant runs once unmeasured.
+/// In every round each case runs once and reuses nothing of other runs: its time includes its mesh
+/// and its start from coarser levels. Rounds alternate in direction, so that drift of the machine
+/// affects all cases equally. Before the first one every variant runs once unmeasured.
 ///
 /// ```
 /// use unilateral::prelude::*;
@@ -78,10 +78,10 @@ pub struct WorkPrecision<'a, const D: usize> {
     observer: Box<dyn Fn(WorkProgress<'_>) + 'a>,
 }
 
-/// Tells the peak of memory of a case.
+/// Measures the peak of memory of a case.
 type MemoryOf<'a> = Box<dyn Fn(&Case) -> Option<u64> + 'a>;
 
-/// A case, what runs it, and what it gave so far.
+/// A case, its study, and its results so far.
 struct Slot<'s> {
     case: Case,
     single: Box<dyn Single + 's>,
@@ -174,8 +174,8 @@ impl<'a, const D: usize> WorkPrecision<'a, D> {
         self.directory = Some(directory.into());
         self
     }
-    /// Sets who tells the peak of memory of a case, asked once for each. Otherwise it is that of
-    /// this process while the case ran, with all that the process holds besides.
+    /// Sets a function that measures the peak of memory of a case; it is called once for each case.
+    /// The default is the peak of this process during the run, with all its other memory.
     #[must_use]
     pub fn memory(mut self, memory: impl Fn(&Case) -> Option<u64> + 'a) -> Self {
         self.memory = Some(Box::new(memory));
@@ -191,9 +191,9 @@ impl<'a, const D: usize> WorkPrecision<'a, D> {
     /// Runs everything.
     ///
     /// # Errors
-    /// What is wrong with the request, before anything runs: see [`Study::check`]; besides
-    /// [`Error::Parameter`] for an unknown scheme and for two that cannot be told apart. An
-    /// [`Error::Write`] ends the study. A case that fails is no error: it is listed.
+    /// The errors of [`Study::check`], before anything runs; [`Error::Parameter`] for an unknown
+    /// scheme and for two schemes of one name. An [`Error::Write`] ends the study. A case that
+    /// fails is no error: the report lists it.
     pub fn run(&self) -> Result<WorkReport, Error> {
         let mut report = WorkReport::new("work-precision", self.rounds);
         self.run_into(&mut report)?;
@@ -204,8 +204,8 @@ impl<'a, const D: usize> WorkPrecision<'a, D> {
         Ok(report)
     }
 
-    /// Runs everything, adds it to a report of other scenes and draws its figures. That the report is complete is for
-    /// the caller to say.
+    /// Runs everything, adds it to a report of other scenes and draws its figures. That the report
+    /// is complete is for the caller to say.
     ///
     /// # Errors
     /// Those of [`Self::run`].
@@ -285,7 +285,7 @@ impl<'a, const D: usize> WorkPrecision<'a, D> {
         }
     }
 
-    /// Why a case is not worth trying.
+    /// The reason for which a case is not run.
     fn obstacle_to(&self, slots: &[Slot<'_>], k: usize) -> Option<String> {
         if let Some(coarser) = slots[k].coarser.map(|c| &slots[c]) {
             let level = coarser.case.level;
@@ -304,7 +304,7 @@ impl<'a, const D: usize> WorkPrecision<'a, D> {
         })
     }
 
-    /// Puts what there is into the report, behind the rows of other scenes, and writes it.
+    /// Puts the results so far into the report, after the rows of other scenes, and writes it.
     fn save(
         &self,
         report: &mut WorkReport,
@@ -389,7 +389,7 @@ impl<'a, const D: usize> WorkPrecision<'a, D> {
     }
 }
 
-/// A request that makes no sense.
+/// The error of an invalid request.
 fn wrong(parameter: &'static str, value: String, allowed: &str) -> Error {
     Error::Parameter { parameter, value, allowed: allowed.to_owned() }
 }

@@ -24,7 +24,7 @@ pub struct WorkReport {
     pub program: Program,
     /// Time and machine.
     pub provenance: Provenance,
-    /// The scheme of which verdicts speak.
+    /// The scheme that verdicts compare with the others.
     pub subject: String,
     /// One row for every scene, variant and level that gave one.
     pub rows: Vec<Measured>,
@@ -44,7 +44,7 @@ impl WorkReport {
         }
     }
 
-    /// What it takes to reach given errors.
+    /// Time, unknowns and memory at given errors.
     pub fn reach(&self) -> Vec<WorkAtError> {
         work_at_errors(&self.rows)
     }
@@ -82,8 +82,8 @@ impl WorkReport {
         tables(&self.rows, &self.failures(), &self.reach())
     }
 
-    /// The report as JSON: `program`, `provenance`, `rows`, `failures`, `reach` and `verdicts`. What
-    /// does not apply is null.
+    /// The report as JSON: `program`, `provenance`, `rows`, `failures`, `reach` and `verdicts`.
+    /// What does not apply is null.
     pub fn to_json(&self) -> String {
         let value = json!({
             "program": self.program,

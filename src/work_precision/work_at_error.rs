@@ -27,8 +27,9 @@ pub struct WorkPoint {
 }
 
 /// The work at which a given error is reached, on straight lines between neighbouring levels in
-/// logarithmic scales. Points are ordered from coarse to fine. None where no two neighbours that both converged
-/// have the error between them: nothing is extrapolated, and no level that failed is bridged.
+/// logarithmic scales. Points are ordered from coarse to fine. None where no two neighbours that
+/// both converged have the error between them: nothing is extrapolated, and no level that failed is
+/// bridged.
 ///
 /// ```
 /// use unilateral::work_precision::{work_at, WorkPoint};

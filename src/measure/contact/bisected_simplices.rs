@@ -8,7 +8,7 @@ use crate::real::Point;
 pub(crate) struct SubSimplex {
     corners: [[f64; 4]; 4],
     dimension: usize,
-    /// Its share of the measure of the whole simplex.
+    /// Share of the measure of the whole simplex.
     pub share: f64,
     bisections: usize,
 }
@@ -34,7 +34,7 @@ impl SubSimplex {
         })
     }
 
-    /// Whether it is the whole simplex.
+    /// Whether the part is the whole simplex.
     pub fn is_whole(&self) -> bool {
         self.bisections == 0
     }
@@ -48,7 +48,7 @@ impl SubSimplex {
 
     /// Calls `visit` with parts that make up this one: those on which the sign of the function
     /// differs between corners and barycentre are bisected, across their longest edge, down to a
-    /// fixed size. So what a part does not show at these points stays unseen.
+    /// fixed size. A change of sign between these points is not detected.
     pub fn split<const D: usize>(
         &self,
         corners: &[Point<f64, D>; 4],

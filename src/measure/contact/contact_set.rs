@@ -7,7 +7,8 @@ use crate::measure::DiscreteContact;
 use crate::real::Real;
 
 impl<T: Real, const D: usize> Space<'_, T, D> {
-    /// The contact set and density of a solution, as `Discretisation::contact_errors` sees them.
+    /// The contact set and density of a solution, with the definitions of
+    /// `Discretisation::contact_errors`.
     pub(crate) fn discrete_contact(
         &self,
         inequality: &Inequality<T>,

@@ -1,6 +1,7 @@
 //! The discrete contact set.
 
-/// The discrete contact set and multiplier, in terms that do not depend on the unknowns of a scheme.
+/// The discrete contact set and multiplier, in terms that do not depend on the unknowns of a
+/// scheme.
 #[derive(Clone, Debug, Default, PartialEq)]
 #[non_exhaustive]
 pub struct DiscreteContact {
@@ -9,7 +10,7 @@ pub struct DiscreteContact {
     /// Facets of the contact boundary in contact as a whole: cell, and number in the cell.
     pub facets: Vec<(usize, usize)>,
     /// Density of the multiplier at every vertex: the nodal multiplier over the integral of the hat
-    /// function of the vertex, over the domain or the contact boundary. None where there is no such integral and
-    /// on the Dirichlet part; empty without a constraint.
+    /// function of the vertex, over the domain or the contact boundary. None where there is no such
+    /// integral and on the Dirichlet part; empty without a constraint.
     pub density: Vec<Option<f64>>,
 }

@@ -1,7 +1,7 @@
 //! Errors of multipliers and contact sets, in terms that do not depend on the unknowns of a scheme.
 //!
-//! The functions use the supports of unknowns only (a vertex, a facet, an edge), so that schemes with
-//! different unknowns can be compared.
+//! The functions use the supports of unknowns only (a vertex, a facet, an edge), so that schemes
+//! with different unknowns can be compared.
 
 mod bisected_simplices;
 mod contact_set;
@@ -26,7 +26,8 @@ use bisected_simplices::SubSimplex;
 /// A Dirichlet datum this close to a bound, in units of the largest unknown, touches it.
 const TOUCHING: f64 = 1e-9;
 
-/// A mesh entity that can be in contact: a cell under an obstacle, or a facet of the contact boundary.
+/// A mesh entity that can be in contact: a cell under an obstacle, or a facet of the contact
+/// boundary.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 struct ContactEntity {
     cell: usize,
@@ -49,27 +50,28 @@ impl<T: Real, const D: usize, S: Scheme<T, D>> Discretisation<'_, T, D, S> {
     /// Distances of multiplier and contact set of a solution from the exact ones; none where these
     /// are not known, or where an obstacle and a contact boundary bind at once.
     ///
-    /// *Multiplier.* The residual of a constrained unknown in contact is its nodal multiplier. Each is
-    /// divided equally among the vertices whose barycentre is the unknown's node; for every element here the
-    /// sum at a vertex is then the residual tested with the hat function `phi` of that vertex,
-    /// whatever the unknowns. Over the integral of `phi` it is a density, and so is the exact
-    /// multiplier tested with `phi`. Their difference is measured in L1 and in L2, with the integral
-    /// of `phi` as the weight of its vertex (the lumped norms of piecewise linear functions), over
-    /// the vertices off the Dirichlet part. These are weaker than norms of the multiplier itself:
-    /// nodal multipliers of over-penalised schemes that cancel within a patch have no effect.
-    /// In general only the norm dual to the energy norm is bounded by the energy error (A. Veeser,
-    /// SIAM J. Numer. Anal. 39 (2001), 146-167). With an obstacle the exact density jumps across the
-    /// free boundary, so that every scheme is wrong by the size of the jump in a layer of width `h`:
-    /// the L1 norm can be of order one, the L2 norm of one half at best.
+    /// *Multiplier.* The residual of a constrained unknown in contact is its nodal multiplier. Each
+    /// is divided equally among the vertices whose barycentre is the unknown's node; for every
+    /// element here the sum at a vertex is then the residual tested with the hat function `phi` of
+    /// that vertex, whatever the unknowns. Over the integral of `phi` it is a density, and so is
+    /// the exact multiplier tested with `phi`. Their difference is measured in L1 and in L2, with
+    /// the integral of `phi` as the weight of its vertex (the lumped norms of piecewise linear
+    /// functions), over the vertices off the Dirichlet part. These are weaker than norms of the
+    /// multiplier itself: nodal multipliers of over-penalised schemes that cancel within a patch
+    /// have no effect. In general only the norm dual to the energy norm is bounded by the energy
+    /// error (A. Veeser, SIAM J. Numer. Anal. 39 (2001), 146-167). With an obstacle the exact
+    /// density jumps across the free boundary, so that every scheme is wrong by the size of the
+    /// jump in a layer of width `h`: the L1 norm can be of order one, the L2 norm of one half at
+    /// best.
     ///
     /// *Contact set.* A vertex, edge or facet is in contact if some unknown there is: on both sides
-    /// of a facet, in all cells at a vertex. A discontinuous scheme need not press with each of
-    /// these to press on their sum (over-penalised schemes on curved obstacles do not). On the
-    /// Dirichlet part, where some schemes have no unknowns and others fulfil the datum only about,
-    /// it is in contact if the datum is. A cell, or a facet of the contact boundary, is in contact if
-    /// everything on it that is bound at all is. The area error is the measure of the symmetric
-    /// difference with the exact set. The distance is that of Hausdorff between the exact free
-    /// boundary and the facets between cells in contact and cells that are not.
+    /// of a facet, in all cells at a vertex. The nodal multipliers of a discontinuous scheme there
+    /// need not all have the sign of their sum (those of over-penalised schemes on curved obstacles
+    /// do not). On the Dirichlet part, where some schemes have no unknowns and others satisfy the datum
+    /// approximately, it is in contact if the datum is. A cell, or a facet of the contact boundary,
+    /// is in contact if all its unknowns with bounds are. The area error is the measure of the
+    /// symmetric difference with the exact set. The distance is that of Hausdorff between the exact
+    /// free boundary and the facets between cells in contact and cells that are not.
     ///
     /// # Errors
     /// [`Error::DataNotFinite`].
@@ -194,8 +196,8 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         entities.iter().map(state).collect()
     }
 
-    /// Whether the Dirichlet datum at the barycentre of a support differs from a bound by at most the
-    /// slack.
+    /// Whether the Dirichlet datum at the barycentre of a support differs from a bound by at most
+    /// the slack.
     fn datum_touches(&self, support: &[u32], slack: f64) -> bool {
         let corner = |&v: &u32| point_f64(&self.mesh.vertices()[v as usize]);
         let x = support.iter().map(corner).sum::<Point<f64, D>>() / support.len() as f64;

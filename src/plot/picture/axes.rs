@@ -22,9 +22,9 @@ pub(crate) const LINE: f64 = 21.0;
 
 /// The contact set found.
 pub(crate) const CONTACT: RGBColor = RGBColor(150, 190, 222);
-/// What is exact.
+/// Exact free boundary and multiplier.
 pub(crate) const EXACT: RGBColor = RGBColor(213, 94, 0);
-/// What has no number to show.
+/// Parts without a value.
 pub(crate) const FAINT: RGBColor = RGBColor(205, 205, 205);
 
 /// How a line is drawn.
@@ -65,7 +65,7 @@ impl Stroke {
         }
     }
 
-    /// What keeps it apart from lines below it.
+    /// Draws the casing that separates the line from lines below.
     pub fn draw_casing<DB: DrawingBackend>(
         self,
         pen: &Pen<DB>,
@@ -79,7 +79,7 @@ impl Stroke {
     }
 }
 
-/// What stands before an entry of the legend.
+/// The symbol of an entry of the legend.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Symbol {
     Area(RGBColor),
@@ -135,7 +135,7 @@ pub(crate) fn draw_quantity<DB: DrawingBackend>(
     pen.text(&exponent, (end + 0.5, y - 5.0), 0.75 * LABEL, INK, Align::Left)
 }
 
-/// The area of the data: where it stands, and what its ends are.
+/// The area of the data: position, size, and range of the data.
 pub(crate) struct Frame {
     /// Upper left corner.
     pub origin: ScreenPoint,
@@ -146,7 +146,7 @@ pub(crate) struct Frame {
 }
 
 impl Frame {
-    /// Where a point of the data stands.
+    /// Position of a point of the data.
     pub fn place(&self, at: PlanePoint) -> ScreenPoint {
         let share = |k: usize| (at[k] - self.low[k]) / (self.high[k] - self.low[k]);
         let (width, height) = self.size;

@@ -10,7 +10,7 @@ const MOST: u32 = 6;
 const BISECTIONS: usize = 24;
 
 /// Segments of the line on which the sign of a function changes within sections, in a picture of
-/// this size. `inside` tells the sign at a point of a cell.
+/// this size. `inside` returns the sign at a point of a cell.
 pub(crate) fn level_line(
     sections: &[Section],
     size: f64,

@@ -10,7 +10,7 @@ use crate::real::{Point, Real, point_f64};
 /// Parts of a cell on which given functions are drawn as linear.
 const PARTS: usize = 6;
 
-/// All that the panels are made of.
+/// The data of the panels.
 pub(crate) struct Line<'a, T: Real, const D: usize> {
     problem: &'a Problem<D>,
     mesh: &'a Mesh<T, D>,
@@ -22,7 +22,7 @@ impl<'a, T: Real, const D: usize> Line<'a, T, D> {
         Line { problem, mesh, fields }
     }
 
-    /// The solution, and below it the multiplier if it is a density.
+    /// The solution, and the multiplier if it is a density.
     pub fn panels(&self) -> Vec<Graph> {
         let mut panels = vec![self.solution()];
         let is_density =
@@ -31,7 +31,7 @@ impl<'a, T: Real, const D: usize> Line<'a, T, D> {
         panels
     }
 
-    /// Length of all that is in contact.
+    /// Length of the contact set.
     pub fn contact_length(&self) -> f64 {
         self.contact().iter().map(|c| c[1] - c[0]).sum()
     }

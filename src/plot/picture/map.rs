@@ -32,7 +32,7 @@ pub(crate) struct Map {
     pub marks: Vec<PlanePoint>,
     pub scale: Option<Scale>,
     pub legend: Vec<(Symbol, String)>,
-    /// What is said instead of a scale.
+    /// A text in place of a scale.
     pub note: Option<&'static str>,
 }
 
@@ -90,7 +90,7 @@ impl Map {
     }
 }
 
-/// The bar of colours with its numbers and what they measure.
+/// Draws the bar of colours with numbers and the name of the quantity.
 fn draw_bar<DB: DrawingBackend>(
     pen: &Pen<DB>,
     scale: &Scale,

@@ -1,10 +1,10 @@
-//! Pictures of a solution: in the plane four panels with the function, the contact set found against
-//! the exact free boundary, the jumps across facets and the multiplier; on the line curves; in space
-//! the panels of a slice.
+//! Pictures of a solution: in the plane four panels with the function, the contact set found
+//! against the exact free boundary, the jumps across facets and the multiplier; on the line curves;
+//! in space the panels of a slice.
 //!
 //! A discontinuous function is drawn cell by cell as it is. The bands of a colour are cut exactly
-//! along the levels of the function on each cell, of a quadratic one on the parts between vertices and
-//! midpoints, where it is drawn as linear.
+//! along the levels of the function on each cell, of a quadratic one on the parts between vertices
+//! and midpoints, where it is drawn as linear.
 
 mod axes;
 mod bands;
@@ -44,7 +44,7 @@ pub use section::Slice;
 /// Most lines and areas of an SVG file; with more it would be large and slow to show.
 const MOST_SHAPES: usize = 150_000;
 
-/// Widths of panels that stand alone in a row and of those that stand in two columns.
+/// Widths of panels in one column and in two columns.
 const WIDE: f64 = 430.0;
 const NARROW: f64 = 276.0;
 /// A domain this much wider than high gets a row to itself.
@@ -87,8 +87,8 @@ pub struct Picture {
 
 impl Picture {
     /// The picture of a function on a mesh, that of a scheme for this problem. In space it shows a
-    /// slice, by default along the contact boundary if that is a coordinate plane, otherwise through
-    /// the middle across the last coordinate.
+    /// slice, by default along the contact boundary if that is a coordinate plane, otherwise
+    /// through the middle across the last coordinate.
     ///
     /// # Errors
     /// [`Error::Parameter`] if the fields are not those of the mesh, and for a slice that is not
@@ -139,8 +139,8 @@ impl Picture {
     /// The picture as the text of an SVG file.
     ///
     /// # Errors
-    /// [`Error::Parameter`] if it has more shapes than such a file should, [`Error::Write`] with the
-    /// reason of the backend.
+    /// [`Error::Parameter`] if it has more shapes than such a file should, [`Error::Write`] with
+    /// the reason of the backend.
     pub fn to_svg(&self) -> Result<String, Error> {
         let shapes: usize = self.panels.iter().map(Panel::shapes).sum();
         if shapes > MOST_SHAPES {

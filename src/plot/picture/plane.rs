@@ -22,7 +22,7 @@ const ROUNDINGS: f64 = 256.0;
 /// Levels from one contour line to the next.
 const STRIDE: usize = 2;
 
-/// All that the panels are made of.
+/// The data of the panels.
 pub(crate) struct Plane<'a, T: Real, const D: usize> {
     problem: &'a Problem<D>,
     pub view: View<'a, T, D>,
@@ -58,7 +58,7 @@ impl<'a, T: Real, const D: usize> Plane<'a, T, D> {
         Plane { problem, edges: edges(&sections), view, sections, touches, low, high }
     }
 
-    /// All panels that have something to show.
+    /// All panels that are not empty.
     pub fn panels(&self) -> Vec<Panel> {
         let mut panels = vec![Panel::Map(self.solution())];
         if self.problem.is_constrained() {
@@ -133,7 +133,7 @@ impl<'a, T: Real, const D: usize> Plane<'a, T, D> {
         map
     }
 
-    /// Whether an edge parts contact from what is free.
+    /// Whether an edge separates cells in contact from cells that are not.
     fn parts_contact(&self, edge: &Edge) -> bool {
         let any = |touches: bool| edge.sides.iter().any(|s| self.touches[s.cell] == touches);
         any(true) && any(false)

@@ -10,14 +10,14 @@ use crate::real::{Point, Real, point_f64};
 pub struct Slice {
     /// The coordinate that is fixed: 0, 1 or 2.
     pub axis: usize,
-    /// Its value.
+    /// The value of that coordinate.
     pub at: f64,
 }
 
 /// A point in the plane that is shown.
 pub(crate) type PlanePoint = [f64; 2];
 
-/// A corner of what is drawn of a cell.
+/// A corner of a section.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Corner {
     pub at: PlanePoint,
@@ -25,7 +25,7 @@ pub(crate) struct Corner {
     pub barycentric: [f64; 4],
 }
 
-/// What is drawn of a cell: a convex polygon.
+/// The visible part of a cell: a convex polygon.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Section {
     pub cell: usize,
@@ -35,7 +35,7 @@ pub(crate) struct Section {
 /// Sections smaller than this in units of the whole, squared, are points and lines.
 const FLAT: f64 = 1e-14;
 
-/// How space is seen: the coordinates that stand to the right and up, and the one that is cut.
+/// A view of the mesh: the coordinates shown to the right and upwards, and the plane of the slice.
 pub(crate) struct View<'a, T: Real, const D: usize> {
     pub mesh: &'a Mesh<T, D>,
     pub fields: &'a Fields,
@@ -135,8 +135,8 @@ impl<'a, T: Real, const D: usize> View<'a, T, D> {
         edges.iter().map(corner).collect()
     }
 
-    /// Where a facet is seen: the whole of it in the plane, in space its section if it crosses the
-    /// plane.
+    /// The visible part of a facet: the whole facet in the plane, in space its section if the facet
+    /// crosses the plane.
     pub fn facet(&self, cell: usize, local: usize) -> Option<[PlanePoint; 2]> {
         let whole = unit_corners::<D>();
         let corners: Vec<[f64; 4]> =
@@ -189,7 +189,7 @@ impl<'a, T: Real, const D: usize> View<'a, T, D> {
 }
 
 impl Section {
-    /// Its area.
+    /// The area of the section.
     pub fn area(&self) -> f64 {
         area(&self.corners.iter().map(|c| c.at).collect::<Vec<_>>())
     }

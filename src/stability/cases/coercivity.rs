@@ -73,8 +73,8 @@ fn factor(choice: &Choice, sigma: f64, level: usize, sink: Sink<'_>) -> Result<(
     Ok(())
 }
 
-/// Negative pivots of the factorisation `L D L^T` without exchanges, which by Sylvester's law are as
-/// many as negative eigenvalues.
+/// Negative pivots of the factorisation `L D L^T` without exchanges, which by Sylvester's law are
+/// as many as negative eigenvalues.
 fn negative_pivots(matrix: &SparseMatrix<f64>) -> usize {
     let n = matrix.size();
     let mut rows: Vec<Vec<f64>> = (0..n)

@@ -10,7 +10,7 @@ use crate::stability::plan::{Plan, Sink};
 use crate::stability::row_builder::RowBuilder;
 use crate::stability::runs::{free_matrix, sines};
 
-/// What a condition number is that of.
+/// The two matrices with a condition number.
 const PARTS: [&str; 2] = ["not preconditioned", "diagonal of means and jumps"];
 
 pub(crate) fn plan(plan: &mut Plan<'_>) {
