@@ -1,6 +1,6 @@
 //! Solution, obstacle, multiplier and contact set on cells, for pictures.
 
-use super::DiscreteContact;
+use super::contact::DiscreteContact;
 use crate::algebra::{Contact, Inequality};
 use crate::assemble::Discretisation;
 use crate::assemble::space::Space;

@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use super::Errors;
+use super::errors::Errors;
 use crate::assemble::Discretisation;
 use crate::assemble::load::FacetMoments;
 use crate::assemble::space::tables::{BasisAt, CellTable};

@@ -107,7 +107,7 @@ impl<'a> Frame<'a> {
     }
 }
 
-/// Draws a panel with its upper left corner at a place.
+/// Draws a panel with its upper left corner at a position.
 pub(crate) fn draw_panel<DB: DrawingBackend>(
     pen: &Pen<DB>,
     panel: &Panel,
@@ -171,7 +171,7 @@ fn draw_ticks<DB: DrawingBackend>(pen: &Pen<DB>, frame: &Frame, (left, top): Scr
     Ok(())
 }
 
-/// A power, its base ending and its exponent beginning at a place.
+/// Draws a power: the base ends and the exponent begins at a position.
 fn draw_label<DB: DrawingBackend>(
     pen: &Pen<DB>,
     base: &str,
@@ -210,7 +210,7 @@ fn draw_curves<DB: DrawingBackend>(pen: &Pen<DB>, frame: &Frame, origin: ScreenP
                 if converged {
                     draw_mark(pen, curve.key, at, 1.0)?;
                 } else {
-                    // The cross says that it failed, the small mark on it which scheme did.
+                    // the cross marks the failure, the small mark on it the scheme
                     draw_failed(pen, at)?;
                     draw_mark(pen, curve.key, at, 0.7)?;
                 }

@@ -38,7 +38,7 @@ pub(crate) enum Align {
 pub(crate) struct Pen<'a, DB: DrawingBackend> {
     pub area: &'a DrawingArea<DB, Shift>,
     pub scale: f64,
-    /// How much too high the backend puts text that is to be centred, in parts of its size.
+    /// Upward error of the backend in centred text, in parts of the size of the text.
     pub lift: f64,
 }
 

@@ -16,7 +16,7 @@ use std::sync::Once;
 fn embed_font() {
     static ONCE: Once = Once::new();
     ONCE.call_once(|| {
-        // Should it ever not be read, drawing text says so: there is then no font of this name.
+        // without the font every drawing of text returns an error
         let _ = register_font(FAMILY, FontStyle::Normal, epaint_default_fonts::UBUNTU_LIGHT);
     });
 }

@@ -72,7 +72,7 @@ impl Slopes {
             .map(|corner| Slopes { corner, width, rises, falls })
     }
 
-    /// Draws it, the area's upper left corner at `origin`.
+    /// Draws the slopes, with the upper left corner of the area at `origin`.
     pub fn draw<DB: DrawingBackend>(&self, pen: &Pen<DB>, origin: ScreenPoint) -> Drawn {
         let (left, bottom) = (origin.0 + self.corner.0, origin.1 + self.corner.1);
         let right = left + self.width;

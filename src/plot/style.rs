@@ -27,7 +27,7 @@ const COLOURS: [RGBColor; 7] = [
     RGBColor(230, 159, 0),
 ];
 
-/// A mark: corners on a circle around its place.
+/// A mark: corners on a circle around its centre.
 struct Mark {
     corners: usize,
     /// Angle of the first corner in parts of a full turn; 0 is to the right, then clockwise.
@@ -98,7 +98,7 @@ pub(crate) fn draw_mark<DB: DrawingBackend>(
 
 /// The mark of a run that did not converge: a hollow cross.
 pub(crate) fn draw_failed<DB: DrawingBackend>(pen: &Pen<DB>, at: ScreenPoint) -> Drawn {
-    // Reach and half width of its arms.
+    // length and half width of the arms
     const R: f64 = 9.0;
     const W: f64 = 2.2;
     // The arm to the right of an upright cross, to be turned by an eighth and then by quarters.

@@ -73,7 +73,7 @@ pub enum OrderMissed {
         /// The order promised.
         promised: f64,
     },
-    /// There is a promise and nothing to test it with.
+    /// An order is promised, and there are no two levels to observe it.
     #[error(
         "{scheme} ({constraint}) on {scene}: order {promised} in {norm} is promised, but fewer than two levels converged with an error"
     )]

@@ -48,7 +48,7 @@ fn target_cpu() -> String {
         ($($name:literal),*) => { $(if cfg!(target_feature = $name) { features.push($name); })* };
     }
     list!("avx2", "avx512f", "fma", "neon", "sve", "simd128", "v", "altivec", "vsx");
-    // Every processor with AVX2 has what follows; it is news only where AVX2 is missing.
+    // processors with AVX2 have the following features: listed only without AVX2
     if features.is_empty() {
         list!("avx", "sse4.2", "sse2");
         features.truncate(1);

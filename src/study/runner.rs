@@ -5,10 +5,12 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 use super::compatibility::{check_domain, check_fit};
-use super::memory::{estimate, estimate_without_factors, unknowns_about};
-use super::{
-    Iterations, MemoryEstimate, Program, Report, Row, Seconds, fill_orders, peak_memory_bytes,
+use super::memory::{
+    MemoryEstimate, estimate, estimate_without_factors, peak_memory_bytes, unknowns_about,
 };
+use super::orders::fill_orders;
+use super::report::{Program, Report};
+use super::row::{Iterations, Row, Seconds};
 use crate::assemble::DataQuadrature;
 use crate::element::Layout;
 use crate::error::Error;

@@ -149,7 +149,7 @@ fn columns(rows: &[&Row]) -> Vec<Column> {
     columns.push(number("active", |r| whole(r.active)));
     columns.push(number("certif.", |r| {
         let c = &r.certificate;
-        // The largest, where NaN counts as larger than anything: it must not hide.
+        // the largest violation, where NaN counts as larger than any number
         let all = [c.feasibility, c.multiplier, c.complementarity, c.residual];
         let worse = |a: f64, b: f64| if a.is_nan() || a > b { a } else { b };
         scientific(Some(all.into_iter().fold(0.0, worse)))

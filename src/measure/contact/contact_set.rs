@@ -1,9 +1,9 @@
 //! The discrete contact set and the density of the multiplier, for pictures.
 
+use super::discrete_contact::DiscreteContact;
 use crate::algebra::Inequality;
 use crate::assemble::space::Space;
 use crate::inequality::Solution;
-use crate::measure::DiscreteContact;
 use crate::real::Real;
 
 impl<T: Real, const D: usize> Space<'_, T, D> {
@@ -14,21 +14,21 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         inequality: &Inequality<T>,
         solution: &Solution<T>,
     ) -> DiscreteContact {
-        let mut found = DiscreteContact::default();
+        let mut contact = DiscreteContact::default();
         if !self.problem.is_constrained() {
-            return found;
+            return contact;
         }
         let entities = self.entities();
         let touching = self.in_contact(&entities, inequality, solution);
         for (entity, _) in entities.iter().zip(touching).filter(|(_, touches)| *touches) {
             match entity.facet {
-                None => found.cells.push(entity.cell),
-                Some(local) => found.facets.push((entity.cell, local)),
+                None => contact.cells.push(entity.cell),
+                Some(local) => contact.facets.push((entity.cell, local)),
             }
         }
         // with both an obstacle and a contact boundary there are two multipliers of different kind
         if self.problem.has_obstacle() && self.problem.gap.is_some() {
-            return found;
+            return contact;
         }
         let mut weights = vec![0.0; self.mesh.vertices().len()];
         for entity in entities {
@@ -41,7 +41,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         let given = self.on_dirichlet_part();
         let density =
             |v: usize| (weights[v] > 0.0 && !given[v]).then(|| multipliers[v] / weights[v]);
-        found.density = (0..weights.len()).map(density).collect();
-        found
+        contact.density = (0..weights.len()).map(density).collect();
+        contact
     }
 }

@@ -2,8 +2,8 @@
 
 use rayon::prelude::*;
 
-use super::ContactEntity;
 use super::bisected_simplices::in_space;
+use super::entity::ContactEntity;
 use crate::assemble::space::Space;
 use crate::problem::ContactSet;
 use crate::real::{Point, Real, point_f64};

@@ -6,12 +6,13 @@
 mod bisected_simplices;
 mod contact_set;
 mod discrete_contact;
+mod entity;
 mod free_boundary;
 mod multiplier_density;
 
 pub use discrete_contact::DiscreteContact;
 
-use super::ContactErrors;
+use super::errors::ContactErrors;
 use crate::algebra::{Bound, Contact, Inequality};
 use crate::assemble::Discretisation;
 use crate::assemble::space::Space;
@@ -22,29 +23,10 @@ use crate::problem::ContactSet;
 use crate::real::{Point, Real, point_f64};
 use crate::scheme::Scheme;
 use bisected_simplices::SubSimplex;
+use entity::ContactEntity;
 
 /// A Dirichlet datum this close to a bound, in units of the largest unknown, touches it.
 const TOUCHING: f64 = 1e-9;
-
-/// A mesh entity that can be in contact: a cell under an obstacle, or a facet of the contact
-/// boundary.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-struct ContactEntity {
-    cell: usize,
-    /// Number of the facet in the cell.
-    facet: Option<usize>,
-}
-
-impl ContactEntity {
-    /// The vertices of the entity, as numbers in the cell.
-    fn corners<const D: usize>(self) -> impl Iterator<Item = usize> {
-        (0..=D).filter(move |&k| Some(k) != self.facet)
-    }
-    /// The dimension of the entity.
-    fn dimension<const D: usize>(self) -> usize {
-        D - usize::from(self.facet.is_some())
-    }
-}
 
 impl<T: Real, const D: usize, S: Scheme<T, D>> Discretisation<'_, T, D, S> {
     /// Distances of multiplier and contact set of a solution from the exact ones; none where these

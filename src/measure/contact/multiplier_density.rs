@@ -1,7 +1,7 @@
 //! The multiplier as a density at vertices.
 
-use super::ContactEntity;
 use super::bisected_simplices::{SubSimplex, in_space};
+use super::entity::ContactEntity;
 use crate::algebra::{Contact, Inequality};
 use crate::assemble::space::{Space, data};
 use crate::error::Error;

@@ -94,7 +94,7 @@ pub(crate) fn draw_mark<DB: DrawingBackend>(pen: &Pen<DB>, (x, y): ScreenPoint) 
     pen.fill(&diamond(5.0), EXACT)
 }
 
-/// The lines of a legend, the first one's upper left corner at a place.
+/// Draws the lines of a legend below a position of the upper left corner.
 pub(crate) fn draw_legend<DB: DrawingBackend>(
     pen: &Pen<DB>,
     entries: &[(Symbol, String)],
@@ -117,7 +117,7 @@ pub(crate) fn draw_legend<DB: DrawingBackend>(
     Ok(())
 }
 
-/// A quantity, divided by a power of ten if there is one, its middle at a place.
+/// Draws the name of a quantity, divided by a power of ten other than one, centred at a position.
 pub(crate) fn draw_quantity<DB: DrawingBackend>(
     pen: &Pen<DB>,
     name: &str,

@@ -155,7 +155,7 @@ impl<'a, T: Real, const D: usize> View<'a, T, D> {
         self.slice.is_some_and(|s| corners().all(|k| self.vertex(cell, k)[s.axis] == s.at))
     }
 
-    /// The function of a cell at a point of it.
+    /// The value of the solution at a point of a cell.
     pub fn value(&self, cell: usize, barycentric: &[f64; 4]) -> f64 {
         let b = barycentric;
         let corners = &self.fields.u[cell * (D + 1)..(cell + 1) * (D + 1)];
@@ -169,9 +169,9 @@ impl<'a, T: Real, const D: usize> View<'a, T, D> {
         at_corners + at_middles.sum::<f64>()
     }
 
-    /// The density of the multiplier at a point of a cell. A Dirichlet vertex has none of its own:
-    /// there it counts as zero in a cell that is not in contact and has none elsewhere, and is not
-    /// known otherwise.
+    /// The density of the multiplier at a point of a cell. Dirichlet vertices have no density: there it
+    /// is zero in a cell that is not in contact and has zero density at its other vertices, and unknown
+    /// otherwise.
     pub fn density(&self, cell: usize, touches: bool, barycentric: &[f64; 4]) -> Option<f64> {
         let known = &self.fields.discrete_contact.density;
         let at = |k: usize| known.get(self.mesh.cell(cell)[k] as usize).copied().flatten();

@@ -22,7 +22,7 @@ const PROBLEMS: [Touched; 2] =
 /// After so many sets the method wanders.
 const MOST_SETS: usize = 100;
 
-/// Hierarchy to which the order of the multiplier is fitted.
+/// Levels to which the order of the multiplier is fitted.
 const FITTED: [usize; 3] = [16, 32, 64];
 
 pub(crate) fn plan(plan: &mut Plan<'_>) {
