@@ -63,3 +63,10 @@ impl From<FactorError> for Outcome {
         }
     }
 }
+
+#[cfg(feature = "report")]
+impl serde::Serialize for Outcome {
+    fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.serialize_str(self.name())
+    }
+}

@@ -3,6 +3,7 @@
 /// Errors against the exact solution.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "report", derive(serde::Serialize))]
+#[non_exhaustive]
 pub struct Errors {
     /// L2 norm.
     pub l2: Option<f64>,
@@ -18,10 +19,11 @@ pub struct Errors {
 /// [`Discretisation::contact_errors`](crate::assemble::Discretisation::contact_errors).
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "report", derive(serde::Serialize))]
+#[non_exhaustive]
 pub struct ContactErrors {
     /// Error of the multiplier as a density at vertices, in L1.
     pub multiplier_l1: Option<f64>,
-    /// The same in the lumped L2 norm.
+    /// Error of the multiplier as a density at vertices, in the lumped L2 norm.
     pub multiplier_l2: Option<f64>,
     /// Measure of the symmetric difference of the contact sets.
     pub contact_area_error: Option<f64>,

@@ -1,6 +1,6 @@
-//! The solution, obstacle, multiplier and contact set on cells, for pictures.
+//! Solution, obstacle, multiplier and contact set on cells, for pictures.
 
-use super::FoundContact;
+use super::contact::DiscreteContact;
 use crate::algebra::{Contact, Inequality};
 use crate::assemble::Discretisation;
 use crate::assemble::space::Space;
@@ -11,28 +11,29 @@ use crate::real::{Real, point_f64};
 
 /// Fields on the cells of the mesh, for pictures.
 #[derive(Clone, Debug, Default)]
+#[non_exhaustive]
 pub struct Fields {
     /// The solution at the vertices of each cell.
     pub u: Vec<f64>,
     /// The obstacle at the vertices of each cell.
     pub obstacle: Option<Vec<f64>>,
-    /// Density of the multiplier in each cell: force per volume for an obstacle, per measure of
-    /// the contact boundary for Signorini.
+    /// Density of the multiplier in each cell: nodal multipliers over the volume for an obstacle,
+    /// over the measure of the contact boundary for Signorini.
     pub multiplier: Vec<f64>,
     /// Share of each cell's constrained unknowns in contact.
     pub contact: Vec<f64>,
     /// A quadratic solution at the midpoints of each cell's edges; empty for a linear one.
     pub midpoints: Vec<f64>,
-    /// The contact set found, and the multiplier's density at vertices.
-    pub found: FoundContact,
+    /// The discrete contact set, and the multiplier's density at vertices.
+    pub discrete_contact: DiscreteContact,
 }
 
 impl<T: Real, const D: usize> Discretisation<'_, T, D> {
     /// Solution, obstacle, multiplier and contact set on cells, for pictures.
     ///
-    /// The multiplier of an unknown is a force; over the measure that belongs to the unknown it is
-    /// a density, of volume for obstacles and of the contact boundary for Signorini. A cell shows
-    /// the mean over its unknowns that have such a measure.
+    /// A nodal multiplier over the measure that belongs to its unknown is a density, of volume for
+    /// obstacles and of the contact boundary for Signorini. A cell shows the mean over its unknowns
+    /// that have such a measure.
     pub fn fields(&self, inequality: &Inequality<T>, solution: &Solution<T>) -> Fields {
         compiled!(T, D: fn(&Discretisation<'_, T, D>, &Inequality<T>, &Solution<T>) -> Fields = |space, inequality, solution| space.fields_of(inequality, solution))(
             self, inequality, solution,
@@ -54,21 +55,21 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         let mut multiplier = Vec::with_capacity(n_cells);
         let mut contact = Vec::with_capacity(n_cells);
         for cell in 0..n_cells {
-            let (mut force, mut with_measure, mut constrained, mut touching) = (0.0, 0, 0, 0);
+            let (mut density, mut with_measure, mut constrained, mut touching) = (0.0, 0, 0, 0);
             for i in 0..self.per_cell() {
                 let k = self.dofs.of(cell, i);
                 if measures[k] > 0.0 && inequality.bounds[k].is_inequality() {
-                    let reaction = inequality.matrix.row_dot(k, u) - inequality.load[k];
+                    let residual = inequality.matrix.row_dot(k, u) - inequality.load[k];
                     let in_contact = solution.contact[k] != Contact::Inactive;
                     if in_contact {
-                        force += reaction.to_f64() / measures[k];
+                        density += residual.to_f64() / measures[k];
                     }
                     with_measure += 1;
                     constrained += 1;
                     touching += usize::from(in_contact);
                 }
             }
-            multiplier.push(force / f64::from(with_measure.max(1)));
+            multiplier.push(density / f64::from(with_measure.max(1)));
             contact.push(touching as f64 / f64::from(constrained.max(1)));
         }
         Fields {
@@ -78,7 +79,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
             multiplier,
             contact,
             midpoints: self.midpoint_values(u),
-            found: self.found_contact(inequality, solution),
+            discrete_contact: self.discrete_contact(inequality, solution),
         }
     }
 
@@ -101,7 +102,8 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         (0..self.mesh.n_cells()).flat_map(of_cell).collect()
     }
 
-    /// The measure of domain or contact boundary that belongs to each unknown of the constraint set.
+    /// The measure of domain or contact boundary that belongs to each unknown of the constraint
+    /// set.
     fn constrained_measures(&self) -> Vec<f64> {
         let mut measures = vec![0.0; self.dofs.size()];
         if self.problem.has_obstacle() {

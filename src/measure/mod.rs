@@ -1,12 +1,14 @@
-//! What a solution is worth: error norms, multiplier, contact set, free boundary, fields.
+//! Measures of a discrete solution: error norms, multiplier, contact set, free boundary, fields.
 
 mod contact;
+mod error_norm;
 mod errors;
 mod fields;
 mod norms;
 mod order;
 
-pub use contact::FoundContact;
+pub use contact::DiscreteContact;
+pub use error_norm::ErrorNorm;
 pub use errors::{ContactErrors, Errors};
 pub use fields::Fields;
 pub use order::observed_order;

@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use super::Errors;
+use super::errors::Errors;
 use crate::assemble::Discretisation;
 use crate::assemble::load::FacetMoments;
 use crate::assemble::space::tables::{BasisAt, CellTable};
@@ -56,9 +56,9 @@ impl<T: Real, const D: usize> Discretisation<'_, T, D> {
     /// solution.
     ///
     /// The energy norm is the broken seminorm weighted with the coefficient, plus the reaction
-    /// term, plus the facet form at jumps without flux and without products of lifts, of Dirichlet
-    /// data as far as the form sees them: for interior penalty the usual norm `|.|_1^2 + sum sigma_F ||[.]||^2`, for WOPSIP the
-    /// square root of the form itself.
+    /// term, plus the facet form at jumps without flux and without products of lifts, and at
+    /// differences from Dirichlet data that the form imposes: for interior penalty the usual norm
+    /// `|.|_1^2 + sum sigma_F ||[.]||^2`, for WOPSIP the square root of the form itself.
     ///
     /// # Errors
     /// [`Error::DataNotFinite`].

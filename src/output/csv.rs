@@ -4,8 +4,9 @@ use crate::study::row::Row;
 use serde::Serialize;
 use serde_json::Value;
 
-/// One line a row, the keys of the row joined by dots (`error.l2`, `iterations.outer`), header
-/// first. What does not apply is empty; several warnings are separated by `"; "`.
+/// Rows as comma-separated values after a header of keys, nested keys joined by dots (`error.l2`,
+/// `iterations.outer`). A value that does not apply is an empty cell; several warnings are
+/// separated by `"; "`.
 ///
 /// Lines are made from the same serialisation as the JSON report, so that the two agree in keys,
 /// order and digits. Without rows there are no keys, and the text is empty.
@@ -13,7 +14,7 @@ pub fn to_csv(rows: &[Row]) -> String {
     lines(rows)
 }
 
-/// The same for anything that is written as one object a line.
+/// Values as comma-separated values, one object a line.
 pub(crate) fn lines<R: Serialize>(rows: &[R]) -> String {
     let mut text = String::new();
     for (i, row) in rows.iter().enumerate() {

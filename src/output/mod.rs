@@ -1,6 +1,12 @@
-//! Reports as files: JSON, comma-separated values, plots.
+//! Reports as files: JSON, comma-separated values, plots, tables.
 
 pub(crate) mod csv;
+mod provenance;
+mod replace;
 mod report;
+pub(crate) mod table;
 
 pub use csv::to_csv;
+pub use provenance::Provenance;
+pub(crate) use replace::replace;
+pub use table::Table;

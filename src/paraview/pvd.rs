@@ -1,4 +1,4 @@
-//! A series of VTK files in one, as ParaView opens it.
+//! A series of VTK files in one collection file of ParaView.
 
 use std::fmt::Write;
 use std::path::{Path, PathBuf};

@@ -1,8 +1,9 @@
 //! Fields on a mesh as a VTK XML file of an unstructured grid.
 //!
-//! Every cell has points of its own, so that a discontinuous field is drawn as such. Arrays stand
-//! in the file one by one, base64 with a 64-bit length before the data: of the encodings of the
-//! format this is the one that is valid XML, that loses no digit and that nearly all readers take.
+//! Every cell has points of its own, so that jumps of discontinuous fields are visible. Arrays
+//! follow each other in the file, base64 with a 64-bit length before the data: of the encodings of
+//! the format this is the one that is valid XML, that loses no digit and that nearly all readers
+//! take.
 
 use crate::error::Error;
 use crate::error::write_error;
@@ -16,12 +17,12 @@ use std::io;
 use std::io::{BufWriter, Write};
 use std::path::Path;
 
-/// Fields on the cells of a mesh, to be drawn.
+/// Fields on the cells of a mesh.
 #[derive(Clone, Copy, Debug)]
 pub struct CellFields<'a> {
     /// The solution: `D + 1` values for each cell, one for each of its vertices in order.
     pub u: &'a [f64],
-    /// The obstacle, likewise.
+    /// The obstacle, in the order of `u`.
     pub obstacle: Option<&'a [f64]>,
     /// The multiplier: one value for each cell.
     pub multiplier: Option<&'a [f64]>,
@@ -104,7 +105,7 @@ fn write_simplices(
 
 /// The points of every cell. Cells of a mesh list their vertices by number, those of the format
 /// counterclockwise, or seen from the fourth: otherwise volumes come out negative and surfaces look
-/// inwards. So two points change places where need be, in the list and not in the fields.
+/// inwards. Two points of such a cell are exchanged, in the list and not in the fields.
 fn connectivity(dimension: usize, points: &[[f64; 3]]) -> Vec<i64> {
     let mut list: Vec<i64> = (0..points.len() as i64).collect();
     if dimension == 1 {
@@ -125,7 +126,7 @@ fn connectivity(dimension: usize, points: &[[f64; 3]]) -> Vec<i64> {
     list
 }
 
-/// Refuses a field that does not fit: a reader would show nonsense or nothing at all.
+/// Refuses a field whose length does not fit the mesh.
 fn check_length(name: &str, field: Option<&[f64]>, expected: usize) -> io::Result<()> {
     match field {
         Some(values) if values.len() != expected => Err(io::Error::new(
@@ -150,7 +151,7 @@ fn array<const BYTES: usize>(
     items: impl ExactSizeIterator<Item = [u8; BYTES]>,
 ) -> io::Result<()> {
     write!(w, "<DataArray type=\"{kind}\" Name=\"{name}\"")?;
-    // Where it is not needed, some readers take it for one column of a matrix.
+    // Some readers take an attribute of one component for one column of a matrix.
     if components > 1 {
         write!(w, " NumberOfComponents=\"{components}\"")?;
     }

@@ -17,12 +17,12 @@ pub(crate) struct Tick {
 }
 
 impl Tick {
-    /// Its place on a logarithmic axis.
+    /// The logarithm of the tick.
     pub fn log(self) -> f64 {
         f64::from(self.digit).log10() + f64::from(self.exponent)
     }
 
-    /// Its label, as a base and an exponent that stands higher.
+    /// The label: a base and a raised exponent.
     pub fn label(self) -> (String, String) {
         match (self.digit, self.exponent) {
             (d, 0) => (d.to_string(), String::new()),
@@ -48,7 +48,7 @@ impl LogAxis {
         LogAxis { low: low - room, high: high + room }
     }
 
-    /// Where a value stands: 0 at the low end, 1 at the high end.
+    /// Position of a logarithm on the axis: 0 at the low end, 1 at the high end.
     pub fn position(&self, log: f64) -> f64 {
         (log - self.low) / (self.high - self.low)
     }
@@ -69,7 +69,7 @@ impl LogAxis {
                 };
                 let tick = Tick { digit, exponent, labelled };
                 let inside = (self.low..=self.high).contains(&tick.log());
-                // Digits between powers would be a grey bar where powers stand close.
+                // digits between many powers would merge into a grey bar
                 if inside && (digit == 1 || powers <= 6) {
                     ticks.push(tick);
                 }

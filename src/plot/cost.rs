@@ -1,10 +1,10 @@
-//! Errors against what they cost: one column of panels, as wide as a column of text.
+//! Errors against cost: one column of panels, as wide as a column of text.
 
-use super::Figure;
+use super::figure::Figure;
 use super::series::{Curve, Key, Panel, Point, Quantity};
 use crate::study::row::Row;
 
-/// What an error costs.
+/// A measure of the cost of a run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Cost {
     Seconds,
@@ -13,7 +13,7 @@ pub(crate) enum Cost {
 }
 
 impl Cost {
-    /// Its name in names of files.
+    /// Name of the measure in names of files.
     pub fn name(self) -> &'static str {
         match self {
             Cost::Seconds => "time",
@@ -54,7 +54,7 @@ pub(crate) fn cost_figure(scene: &str, named: &[NamedCurve<'_>], cost: Cost) -> 
         Panel { title: scene.to_owned(), x, y, curves, slopes, falls_over }
     };
     let mut panels: Vec<Panel> = [Quantity::L2, Quantity::H1, Quantity::Energy].map(panel).into();
-    // one panel says that there are no errors; it need not be said three times
+    // without errors one empty panel is kept
     let any = panels.iter().any(Panel::has_errors);
     let mut seen = 0;
     panels.retain(|p| {

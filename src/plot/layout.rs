@@ -1,6 +1,6 @@
-//! Where panels and legend stand.
+//! Positions of panels and legend.
 
-use super::pen::{Align, Drawn, Pen, Place, text_width};
+use super::pen::{Align, Drawn, Pen, ScreenPoint, text_width};
 use super::series::Key;
 use super::style::{INK, draw_failed, draw_mark, segment};
 use plotters::prelude::DrawingBackend;
@@ -33,17 +33,17 @@ impl Entry {
     }
 }
 
-/// Places of panels and legend.
+/// Positions of panels and legend.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Layout {
-    /// Width and height of it all.
+pub(crate) struct FigureLayout {
+    /// Width and height of the figure.
     pub size: (f64, f64),
     /// Upper left corners of the panels.
-    pub panels: Vec<Place>,
-    legend: Vec<(Place, Entry)>,
+    pub panels: Vec<ScreenPoint>,
+    legend: Vec<(ScreenPoint, Entry)>,
 }
 
-impl Layout {
+impl FigureLayout {
     /// Panels in a grid, the legend below them in as many lines as it takes.
     pub fn new(panels: usize, columns: usize, keys: &[Key], failures: bool) -> Self {
         let rows = panels.max(1).div_ceil(columns);
@@ -79,7 +79,7 @@ impl Layout {
             }
             y += LINE;
         }
-        Layout { size: (width, y - LINE / 2.0 + MARGIN), panels: places.collect(), legend }
+        FigureLayout { size: (width, y - LINE / 2.0 + MARGIN), panels: places.collect(), legend }
     }
 
     /// Draws the legend.

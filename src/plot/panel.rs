@@ -2,7 +2,7 @@
 
 use super::axis::{LogAxis, Tick};
 use super::layout::PANEL;
-use super::pen::{Align, Drawn, Pen, Place, text_width};
+use super::pen::{Align, Drawn, Pen, ScreenPoint, text_width};
 use super::series::{Panel, Point};
 use super::slopes::Slopes;
 use super::style::{GRID, INK, draw_failed, draw_mark, segment};
@@ -16,7 +16,7 @@ const BOTTOM: f64 = 48.0;
 /// Width and height of the area of the data.
 const SIZE: (f64, f64) = (PANEL.0 - LEFT - RIGHT, PANEL.1 - TOP - BOTTOM);
 
-/// Width of a failure's cross, and the distance of its middle from an edge it stands at.
+/// Width of the cross of a failure, and distance of its centre from an edge.
 const CROSS: f64 = 17.0;
 const EDGE: f64 = 10.0;
 
@@ -57,7 +57,7 @@ impl<'a> Frame<'a> {
     /// A point relative to the upper left corner of the area. One with an error beyond the axis
     /// stands at the edge it is beyond, one without an error at the upper edge, where failures are
     /// looked for.
-    fn place(&self, point: &Point) -> Place {
+    fn place(&self, point: &Point) -> ScreenPoint {
         let x = self.x.position(point.x.log10()) * SIZE.0;
         let y = match point.y.map(|y| (1.0 - self.y.position(y.log10())) * SIZE.1) {
             Some(y) if y > SIZE.1 => SIZE.1 - EDGE,
@@ -69,14 +69,15 @@ impl<'a> Frame<'a> {
 
     /// Places of all points, curve by curve. Failures without an error are moved down until they do
     /// not hide another failure.
-    fn places(&self) -> Vec<Vec<Place>> {
+    fn places(&self) -> Vec<Vec<ScreenPoint>> {
         let failed = |p: &Point| !p.converged && p.y.is_some();
-        let mut taken: Vec<Place> =
+        let mut taken: Vec<ScreenPoint> =
             self.panel.points().filter(failed).map(|p| self.place(&p)).collect();
         let mut place = |point: &Point| {
             let (x, mut y) = self.place(point);
             if point.y.is_none() {
-                let hides = |t: &Place, y: f64| (t.0 - x).abs() < CROSS && (t.1 - y).abs() < CROSS;
+                let hides =
+                    |t: &ScreenPoint, y: f64| (t.0 - x).abs() < CROSS && (t.1 - y).abs() < CROSS;
                 while y < SIZE.1 - EDGE && taken.iter().any(|t| hides(t, y)) {
                     y += 1.0;
                 }
@@ -88,7 +89,7 @@ impl<'a> Frame<'a> {
     }
 
     /// Pixels that marks and lines occupy.
-    fn occupied(&self) -> Vec<Place> {
+    fn occupied(&self) -> Vec<ScreenPoint> {
         let mut occupied = Vec::new();
         for places in self.places() {
             occupied.extend(&places);
@@ -106,8 +107,12 @@ impl<'a> Frame<'a> {
     }
 }
 
-/// Draws a panel with its upper left corner at a place.
-pub(crate) fn draw_panel<DB: DrawingBackend>(pen: &Pen<DB>, panel: &Panel, at: Place) -> Drawn {
+/// Draws a panel with its upper left corner at a position.
+pub(crate) fn draw_panel<DB: DrawingBackend>(
+    pen: &Pen<DB>,
+    panel: &Panel,
+    at: ScreenPoint,
+) -> Drawn {
     let frame = Frame::new(panel);
     let origin = (at.0 + LEFT, at.1 + TOP);
     let middle = (origin.0 + SIZE.0 / 2.0, origin.1 + SIZE.1 / 2.0);
@@ -127,7 +132,7 @@ pub(crate) fn draw_panel<DB: DrawingBackend>(pen: &Pen<DB>, panel: &Panel, at: P
 }
 
 /// Lines behind the data, ticks and their labels.
-fn draw_ticks<DB: DrawingBackend>(pen: &Pen<DB>, frame: &Frame, (left, top): Place) -> Drawn {
+fn draw_ticks<DB: DrawingBackend>(pen: &Pen<DB>, frame: &Frame, (left, top): ScreenPoint) -> Drawn {
     let (right, bottom) = (left + SIZE.0, top + SIZE.1);
     let length = |tick: Tick| if tick.digit == 1 { 5.0 } else { 2.5 };
     if !frame.panel.curves.is_empty() {
@@ -166,12 +171,12 @@ fn draw_ticks<DB: DrawingBackend>(pen: &Pen<DB>, frame: &Frame, (left, top): Pla
     Ok(())
 }
 
-/// A power, its base ending and its exponent beginning at a place.
+/// Draws a power: the base ends and the exponent begins at a position.
 fn draw_label<DB: DrawingBackend>(
     pen: &Pen<DB>,
     base: &str,
     exponent: &str,
-    (x, y): Place,
+    (x, y): ScreenPoint,
 ) -> Drawn {
     pen.text(base, (x, y), TICK, INK, Align::Right)?;
     if exponent.is_empty() {
@@ -182,8 +187,8 @@ fn draw_label<DB: DrawingBackend>(
 
 /// Lines first, then marks, then failures: what matters most is on top. A line ends where a run
 /// did not converge.
-fn draw_curves<DB: DrawingBackend>(pen: &Pen<DB>, frame: &Frame, origin: Place) -> Drawn {
-    let places: Vec<Vec<Place>> = frame
+fn draw_curves<DB: DrawingBackend>(pen: &Pen<DB>, frame: &Frame, origin: ScreenPoint) -> Drawn {
+    let places: Vec<Vec<ScreenPoint>> = frame
         .places()
         .into_iter()
         .map(|c| c.into_iter().map(|(x, y)| (origin.0 + x, origin.1 + y)).collect())
@@ -205,7 +210,7 @@ fn draw_curves<DB: DrawingBackend>(pen: &Pen<DB>, frame: &Frame, origin: Place) 
                 if converged {
                     draw_mark(pen, curve.key, at, 1.0)?;
                 } else {
-                    // The cross says that it failed, the small mark on it which scheme did.
+                    // the cross marks the failure, the small mark on it the scheme
                     draw_failed(pen, at)?;
                     draw_mark(pen, curve.key, at, 0.7)?;
                 }

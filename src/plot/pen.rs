@@ -7,11 +7,11 @@ use plotters::style::text_anchor::{HPos, Pos, VPos};
 /// Why a drawing failed, as text: backends differ in their errors.
 pub(crate) type Drawn = Result<(), String>;
 
-/// A place on the drawing, to the right and down.
-pub(crate) type Place = (f64, f64);
+/// A position on the drawing: distances from its upper left corner to the right and down.
+pub(crate) type ScreenPoint = (f64, f64);
 
-/// The typeface. PNG files are drawn with the one of this name that [`crate::plot::render`] embeds; an
-/// SVG file names it, and viewers that lack it take the next.
+/// The typeface. PNG files are drawn with the one of this name that [`crate::plot::render`] embeds;
+/// an SVG file names it, and viewers that lack it take the next.
 pub(crate) const FAMILY: &str = "Ubuntu, DejaVu Sans, Arial, sans-serif";
 
 /// A typeface's width of a text.
@@ -21,16 +21,16 @@ pub(crate) fn text_width(text: &str, size: f64) -> f64 {
     measured.map_or(0.6 * size * text.len() as f64, |(w, _)| f64::from(w) / 10.0)
 }
 
-/// How a text stands at its place.
+/// How a text is aligned at its position.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Align {
-    /// Starts there.
+    /// The text starts at the position.
     Left,
-    /// Centred.
+    /// The text is centred.
     Centre,
-    /// Ends there.
+    /// The text ends at the position.
     Right,
-    /// Centred, and read upwards.
+    /// The text is centred and runs upwards.
     Upwards,
 }
 
@@ -38,18 +38,18 @@ pub(crate) enum Align {
 pub(crate) struct Pen<'a, DB: DrawingBackend> {
     pub area: &'a DrawingArea<DB, Shift>,
     pub scale: f64,
-    /// How much too high the backend puts text that is to be centred, in parts of its size.
+    /// Upward error of the backend in centred text, in parts of the size of the text.
     pub lift: f64,
 }
 
 impl<DB: DrawingBackend> Pen<'_, DB> {
-    fn pixel(&self, (x, y): Place) -> (i32, i32) {
+    fn pixel(&self, (x, y): ScreenPoint) -> (i32, i32) {
         ((x * self.scale).round() as i32, (y * self.scale).round() as i32)
     }
 
     /// One straight line. Lines of several parts are drawn part by part: backends disagree on the
     /// corners of wide ones.
-    pub fn line(&self, from: Place, to: Place, width: f64, colour: RGBColor) -> Drawn {
+    pub fn line(&self, from: ScreenPoint, to: ScreenPoint, width: f64, colour: RGBColor) -> Drawn {
         let (from, to) = (self.pixel(from), self.pixel(to));
         if from == to {
             return Ok(());
@@ -62,8 +62,8 @@ impl<DB: DrawingBackend> Pen<'_, DB> {
     /// A line of dashes and gaps of these lengths.
     pub fn dashes(
         &self,
-        from: Place,
-        to: Place,
+        from: ScreenPoint,
+        to: ScreenPoint,
         width: f64,
         colour: RGBColor,
         (dash, gap): (f64, f64),
@@ -80,7 +80,7 @@ impl<DB: DrawingBackend> Pen<'_, DB> {
     }
 
     /// A closed outline.
-    pub fn outline(&self, corners: &[Place], width: f64, colour: RGBColor) -> Drawn {
+    pub fn outline(&self, corners: &[ScreenPoint], width: f64, colour: RGBColor) -> Drawn {
         for (i, &from) in corners.iter().enumerate() {
             let to = corners[(i + 1) % corners.len()];
             // Longer by half a width at both ends, so that corners close.
@@ -97,13 +97,20 @@ impl<DB: DrawingBackend> Pen<'_, DB> {
     }
 
     /// A filled area.
-    pub fn fill(&self, corners: &[Place], colour: RGBColor) -> Drawn {
+    pub fn fill(&self, corners: &[ScreenPoint], colour: RGBColor) -> Drawn {
         let corners: Vec<_> = corners.iter().map(|&c| self.pixel(c)).collect();
         self.area.draw(&Polygon::new(corners, colour)).map_err(|e| e.to_string())
     }
 
-    /// Text, its middle at the height of its place.
-    pub fn text(&self, text: &str, at: Place, size: f64, colour: RGBColor, align: Align) -> Drawn {
+    /// Text, its middle at the height of its position.
+    pub fn text(
+        &self,
+        text: &str,
+        at: ScreenPoint,
+        size: f64,
+        colour: RGBColor,
+        align: Align,
+    ) -> Drawn {
         let horizontal = match align {
             Align::Left => HPos::Left,
             Align::Centre | Align::Upwards => HPos::Center,

@@ -1,6 +1,6 @@
-//! From a figure to SVG and PNG.
+//! Drawings as SVG and PNG files.
 
-use super::Figure;
+use super::figure::Figure;
 use super::panel::draw_panel;
 use super::pen::{Drawn, FAMILY, Pen};
 use super::style::PAPER;
@@ -16,7 +16,7 @@ use std::sync::Once;
 fn embed_font() {
     static ONCE: Once = Once::new();
     ONCE.call_once(|| {
-        // Should it ever not be read, drawing text says so: there is then no font of this name.
+        // without the font every drawing of text returns an error
         let _ = register_font(FAMILY, FontStyle::Normal, epaint_default_fonts::UBUNTU_LIGHT);
     });
 }
@@ -25,7 +25,7 @@ fn embed_font() {
 pub(crate) trait Drawing {
     /// Width and height.
     fn size(&self) -> (f64, f64);
-    /// Draws it on empty paper.
+    /// Draws on empty paper.
     fn draw<DB: DrawingBackend>(&self, pen: &Pen<DB>) -> Drawn;
 
     /// Width and height in pixels.
@@ -86,8 +86,8 @@ fn draw<DB: DrawingBackend>(drawing: &impl Drawing, pen: &Pen<DB>) -> Drawn {
 
 /// A drawing as the text of an SVG file.
 pub(crate) fn draw_svg(drawing: &impl Drawing) -> Result<String, String> {
-    // The backend knows whole pixels only. Drawn larger and shown smaller, lines and marks stand
-    // where they belong.
+    // The backend rounds to whole pixels. The drawing is made larger and shown smaller, so that the
+    // error of rounding is small.
     const FINE: u32 = 8;
     embed_font();
     let (size, shown) = (drawing.pixels(FINE), drawing.pixels(1));

@@ -1,4 +1,4 @@
-//! What is drawn: curves of points, taken from rows.
+//! Curves of points, taken from rows.
 
 use crate::study::row::Row;
 use crate::study::table::distinct;
@@ -23,7 +23,7 @@ pub(crate) enum Quantity {
 }
 
 impl Quantity {
-    /// The label of its axis.
+    /// The label of the axis.
     pub fn label(self) -> &'static str {
         match self {
             Quantity::MeshSize => "mesh size h",
@@ -36,11 +36,11 @@ impl Quantity {
         }
     }
 
-    /// Its value, if it can stand on a logarithmic axis.
+    /// The value of a row, if a logarithmic axis can show it.
     fn of(self, row: &Row) -> Option<f64> {
         let value = match self {
             Quantity::MeshSize => Some(row.mesh_size),
-            // No clock is finer: what looks like less is a time that was not taken.
+            // no clock is finer: a smaller number is a time that was not measured
             Quantity::Seconds => Some(row.seconds.total.max(1e-6)),
             Quantity::Unknowns => Some(row.unknowns as f64),
             Quantity::Memory => row.peak_memory_bytes.map(|bytes| bytes as f64 / 1e6),
@@ -51,7 +51,7 @@ impl Quantity {
         value.filter(|x| x.is_finite() && *x > 0.0)
     }
 
-    /// The order that theory promises in it.
+    /// The order that theory promises for this quantity.
     fn expected(self, row: &Row) -> Option<f64> {
         match self {
             Quantity::L2 => row.expected_order.l2,
@@ -72,7 +72,7 @@ impl Quantity {
 pub(crate) struct Key {
     scheme: String,
     constraint: String,
-    /// What the legend says.
+    /// The text in the legend.
     pub label: String,
 }
 
@@ -113,8 +113,8 @@ pub(crate) struct Point {
 }
 
 impl Point {
-    /// The point of a row, if it has a place. A converged run without an error has none; one that
-    /// failed must be seen.
+    /// The point of a row; none for a converged run without an error. A failed run always has a
+    /// point.
     pub fn of(row: &Row, x: Quantity, y: Quantity) -> Option<Self> {
         let point = Point { x: x.of(row)?, y: y.of(row), converged: row.converged() };
         (point.y.is_some() || !point.converged).then_some(point)

@@ -1,7 +1,7 @@
 //! Reference slopes: a small triangle where no data are.
 
 use super::axis::LogAxis;
-use super::pen::{Align, Drawn, Pen, Place};
+use super::pen::{Align, Drawn, Pen, ScreenPoint};
 use super::style::GREY;
 use plotters::prelude::DrawingBackend;
 
@@ -15,7 +15,7 @@ const FRACTION: f64 = 26.0;
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Slopes {
     /// Lower left corner, relative to the panel's.
-    corner: Place,
+    corner: ScreenPoint,
     width: f64,
     /// The label of each slope and the height of its line.
     rises: Vec<(String, f64)>,
@@ -33,13 +33,13 @@ fn fraction(order: u32, dimension: u32) -> String {
 
 impl Slopes {
     /// The triangle in the lower right or the upper left corner of an area of this size, the first
-    /// that is free of data (given in pixels of the area). Slopes that fall, each over a dimension,
-    /// stand in the lower left or the upper right one.
+    /// that is free of data (given in pixels of the area). Falling slopes, each over a dimension,
+    /// are placed in the lower left or the upper right corner.
     pub fn place(
         (slopes, falls_over): (&[u32], Option<u32>),
         (x, y): (&LogAxis, &LogAxis),
         size: (f64, f64),
-        data: &[Place],
+        data: &[ScreenPoint],
     ) -> Option<Self> {
         let steepest = f64::from(*slopes.iter().max()?);
         let dimension = falls_over.unwrap_or(1).max(1);
@@ -63,7 +63,7 @@ impl Slopes {
         places
             .into_iter()
             .find(|&(left, bottom)| {
-                let inside = |&(px, py): &Place| {
+                let inside = |&(px, py): &ScreenPoint| {
                     (left - before - CLEAR..left + width + after + CLEAR).contains(&px)
                         && (bottom - height - LABEL..bottom + CLEAR).contains(&py)
                 };
@@ -72,8 +72,8 @@ impl Slopes {
             .map(|corner| Slopes { corner, width, rises, falls })
     }
 
-    /// Draws it, the area's upper left corner at `origin`.
-    pub fn draw<DB: DrawingBackend>(&self, pen: &Pen<DB>, origin: Place) -> Drawn {
+    /// Draws the slopes, with the upper left corner of the area at `origin`.
+    pub fn draw<DB: DrawingBackend>(&self, pen: &Pen<DB>, origin: ScreenPoint) -> Drawn {
         let (left, bottom) = (origin.0 + self.corner.0, origin.1 + self.corner.1);
         let right = left + self.width;
         let top = self.rises.iter().map(|r| r.1).fold(0.0, f64::max);
@@ -86,7 +86,7 @@ impl Slopes {
         for (label, rise) in &self.rises {
             let end = (steep, bottom - rise);
             pen.line((tip, bottom), end, 0.8, GREY)?;
-            // On flat triangles labels would run into each other: the steepest speaks for all.
+            // labels on flat triangles would overlap: only the steepest slope has one
             if step >= 10.0 || *rise == top {
                 pen.text(label, (beside, end.1), 13.0, GREY, align)?;
             }

@@ -1,7 +1,7 @@
-//! Colours and marks of curves. Each differs from the others in both, so that it is told apart in
-//! grey as well; marks are partly open, so that curves on top of each other are both seen.
+//! Colours and marks of curves. Curves differ in both, so that they remain distinct in grey; some
+//! marks are open, so that curves on top of each other are both visible.
 
-use super::pen::{Drawn, Pen, Place};
+use super::pen::{Drawn, Pen, ScreenPoint};
 use plotters::prelude::{DrawingBackend, RGBColor};
 
 /// Text and frames.
@@ -27,10 +27,10 @@ const COLOURS: [RGBColor; 7] = [
     RGBColor(230, 159, 0),
 ];
 
-/// A mark: corners on a circle around its place.
+/// A mark: corners on a circle around its centre.
 struct Mark {
     corners: usize,
-    /// Where the first corner stands, in parts of a full turn; 0 is to the right, then clockwise.
+    /// Angle of the first corner in parts of a full turn; 0 is to the right, then clockwise.
     turn: f64,
     radius: f64,
     filled: bool,
@@ -64,8 +64,8 @@ pub(crate) fn colour(key: usize) -> RGBColor {
 pub(crate) fn segment<DB: DrawingBackend>(
     pen: &Pen<DB>,
     key: usize,
-    from: Place,
-    to: Place,
+    from: ScreenPoint,
+    to: ScreenPoint,
 ) -> Drawn {
     match key / COLOURS.len() {
         0 => pen.line(from, to, 1.4, colour(key)),
@@ -78,12 +78,12 @@ pub(crate) fn segment<DB: DrawingBackend>(
 pub(crate) fn draw_mark<DB: DrawingBackend>(
     pen: &Pen<DB>,
     key: usize,
-    at: Place,
+    at: ScreenPoint,
     size: f64,
 ) -> Drawn {
     let mark = &MARKS[key % MARKS.len()];
     let radius = size * mark.radius;
-    let corners: Vec<Place> = (0..mark.corners)
+    let corners: Vec<ScreenPoint> = (0..mark.corners)
         .map(|i| {
             let angle = std::f64::consts::TAU * (mark.turn + i as f64 / mark.corners as f64);
             (at.0 + radius * angle.cos(), at.1 + radius * angle.sin())
@@ -97,13 +97,13 @@ pub(crate) fn draw_mark<DB: DrawingBackend>(
 }
 
 /// The mark of a run that did not converge: a hollow cross.
-pub(crate) fn draw_failed<DB: DrawingBackend>(pen: &Pen<DB>, at: Place) -> Drawn {
-    // Reach and half width of its arms.
+pub(crate) fn draw_failed<DB: DrawingBackend>(pen: &Pen<DB>, at: ScreenPoint) -> Drawn {
+    // length and half width of the arms
     const R: f64 = 9.0;
     const W: f64 = 2.2;
     // The arm to the right of an upright cross, to be turned by an eighth and then by quarters.
     let arm = [(W, W), (R, W), (R, -W)];
-    let corners: Vec<Place> = (0..4)
+    let corners: Vec<ScreenPoint> = (0..4)
         .flat_map(|quarter| {
             let (sin, cos) = (std::f64::consts::FRAC_PI_4 * f64::from(1 - 2 * quarter)).sin_cos();
             arm.map(|(x, y)| (at.0 + x * cos - y * sin, at.1 + x * sin + y * cos))

@@ -1,18 +1,57 @@
-//! Schemes with what is chosen about their penalties.
+//! Schemes with choices of their penalties.
 
-use super::cases::unweighted::Blind;
+use super::unweighted::UnweightedWopsip;
 use crate::facet::WeightRule;
 use crate::real::Real;
 use crate::scheme::{AnyScheme, FacetMeans, Placement, SchemeOptions, Wopsip, scheme_by_name};
 
-/// The schemes of the study, as users type them.
-pub(crate) const NAMES: [&str; 7] =
-    ["p1", "cr", "sipg", "wopsip", "wopsip:facet-means", "p2", "nipg"];
+/// A scheme of the study.
+struct StudiedScheme {
+    /// The name that users type.
+    name: &'static str,
+    /// The name in the catalogue of schemes.
+    registered: &'static str,
+    placement: Placement,
+    /// Whether the penalty is of order `h^-3`.
+    is_over_penalised: bool,
+}
 
-/// What is chosen about a penalty.
+const fn scheme(name: &'static str) -> StudiedScheme {
+    let placement = Placement::Nodes;
+    StudiedScheme { name, registered: name, placement, is_over_penalised: false }
+}
+
+/// The schemes of the study.
+const SCHEMES: [StudiedScheme; 7] = [
+    scheme("p1"),
+    scheme("cr"),
+    scheme("sipg"),
+    StudiedScheme { is_over_penalised: true, ..scheme("wopsip") },
+    StudiedScheme {
+        name: "wopsip:facet-means",
+        registered: "wopsip",
+        placement: Placement::FacetMeans,
+        is_over_penalised: true,
+    },
+    scheme("p2"),
+    scheme("nipg"),
+];
+
+/// The schemes of the study, as users type them.
+pub(crate) const NAMES: [&str; 7] = {
+    let mut names = [""; 7];
+    let mut k = 0;
+    while k < names.len() {
+        names[k] = SCHEMES[k].name;
+        k += 1;
+    }
+    names
+};
+
+/// The choice of a penalty.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Penalty {
-    /// What the library chooses.
+    /// The default of the library.
     Default,
     /// WOPSIP: this number over the cube of the facet's diameter.
     Eta(f64),
@@ -21,10 +60,10 @@ pub(crate) enum Penalty {
     /// WOPSIP: weights by heights, for stretched cells.
     ByHeights,
     /// WOPSIP: without the coefficient.
-    Blind,
+    Unweighted,
 }
 
-/// A scheme and what is chosen about it.
+/// A scheme with the choice of its penalty.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Choice {
     /// Its name, with the placement of bounds after a colon.
@@ -40,11 +79,17 @@ impl Choice {
     pub const fn default(scheme: &'static str) -> Self {
         Self::new(scheme, Penalty::Default)
     }
-    /// Whether it is WOPSIP.
-    pub fn is_over_penalised(&self) -> bool {
-        self.scheme.starts_with("wopsip")
+    fn studied(&self) -> &'static StudiedScheme {
+        match SCHEMES.iter().find(|known| known.name == self.scheme) {
+            Some(known) => known,
+            None => unreachable!("names are those of the list above"),
+        }
     }
-    /// The choice in words; nothing where there is none.
+    /// Whether the penalty of the scheme is of order `h^-3`.
+    pub fn is_over_penalised(&self) -> bool {
+        self.studied().is_over_penalised
+    }
+    /// The penalty in words; empty for a scheme without a penalty.
     pub fn words(&self) -> String {
         match self.penalty {
             Penalty::Default if self.is_over_penalised() => "eta = diam^2, eta/h_F^3".into(),
@@ -55,15 +100,12 @@ impl Choice {
             Penalty::Eta(eta) => format!("{eta:e}/h_F^3"),
             Penalty::Sigma(sigma) => format!("{sigma}/h_F"),
             Penalty::ByHeights => "eta = diam^2, eta/(h^2 l_F)".into(),
-            Penalty::Blind => "eta = diam^2, eta/h_F^3, coefficient ignored".into(),
+            Penalty::Unweighted => "eta = diam^2, eta/h_F^3, coefficient ignored".into(),
         }
     }
     /// The scheme.
     pub fn make<T: Real, const D: usize>(&self) -> Box<dyn AnyScheme<T, D>> {
-        let (name, at) = match self.scheme.split_once(':') {
-            Some((name, _)) => (name, Placement::FacetMeans),
-            None => (self.scheme, Placement::Nodes),
-        };
+        let StudiedScheme { registered, placement: at, .. } = *self.studied();
         let mut options = SchemeOptions { placement: at, ..SchemeOptions::default() };
         match self.penalty {
             Penalty::Default => {}
@@ -76,14 +118,14 @@ impl Choice {
                     _ => Box::new(scheme),
                 };
             }
-            Penalty::Blind => {
+            Penalty::Unweighted => {
                 return match at {
-                    Placement::FacetMeans => Box::new(FacetMeans(Blind::default())),
-                    _ => Box::new(Blind::default()),
+                    Placement::FacetMeans => Box::new(FacetMeans(UnweightedWopsip::default())),
+                    _ => Box::new(UnweightedWopsip::default()),
                 };
             }
         }
-        match scheme_by_name(name, &options) {
+        match scheme_by_name(registered, &options) {
             Some(scheme) => scheme,
             None => unreachable!("names are those of the list above"),
         }

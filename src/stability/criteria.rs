@@ -1,15 +1,16 @@
-//! What is asked of schemes, case by case.
+//! Criteria of the stability study, case by case.
 
 use serde::Serialize;
 
-/// A question to which every run of the study has at least one row.
+/// A criterion: every run of the study has at least one row for it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[non_exhaustive]
 pub struct Criterion {
-    /// Its name.
+    /// Name of the criterion.
     pub name: &'static str,
-    /// The case it belongs to.
+    /// Name of its case.
     pub case: &'static str,
-    /// What must hold, in a sentence.
+    /// The condition, in a sentence.
     pub sentence: &'static str,
 }
 

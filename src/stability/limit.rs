@@ -1,9 +1,9 @@
 //! The limit of large factors is the Crouzeix-Raviart scheme.
 
 use super::choice::{Choice, Penalty};
-use super::claim::Claim;
+use super::plan::{Plan, Sink};
+use super::row_builder::RowBuilder;
 use super::runs::{sines, solved, solver};
-use super::{Plan, Sink};
 use crate::error::Error;
 use crate::mesh::Mesh;
 use crate::scenes;
@@ -40,7 +40,7 @@ fn compare(scene: &Scene<2>, choice: &Choice, level: usize, sink: Sink<'_>) -> R
         (Some(a), Some(b)) => Some(relative_distance(&mesh, &a.u, &b.u)),
         _ => None,
     };
-    let claim = Claim::new("limit-of-large-factors", choice)
+    let claim = RowBuilder::new("limit-of-large-factors", choice)
         .on(&scene.name)
         .level(level)
         .at("eta", eta)

@@ -1,4 +1,4 @@
-//! Meshes that make it hard: stretched, graded, with slivers.
+//! Difficult meshes: stretched, graded, with slivers.
 
 use std::collections::HashMap;
 
@@ -12,7 +12,7 @@ pub(crate) fn stretched(n: usize, ratio: usize) -> Result<Mesh<f64, 2>, Error> {
     Ok(Mesh::kuhn_box(&square, [n, n * ratio])?)
 }
 
-/// The same mesh with every vertex moved and every facet of the boundary in the same part.
+/// A mesh with every vertex moved; boundary facets keep their parts.
 pub(crate) fn moved<const D: usize>(
     mesh: &Mesh<f64, D>,
     to: impl Fn(&Point<f64, D>) -> Point<f64, D>,
@@ -28,13 +28,14 @@ pub(crate) fn moved<const D: usize>(
     Ok(Mesh::new(vertices, mesh.cells().to_vec(), &boundary)?)
 }
 
-/// `(-1, 1) x (0, 1)` in `n` squares for each unit, graded to the origin by `t^power`; contact below.
+/// `(-1, 1) x (0, 1)` in `n` squares for each unit, graded to the origin by `t^power`; contact
+/// below.
 pub(crate) fn graded(n: usize, power: i32) -> Result<Mesh<f64, 2>, Error> {
     let mesh = Mesh::kuhn_box(&BoxDomain::above_contact(), [2 * n, n])?;
     moved(&mesh, |x| x.map(|t| t.signum() * t.abs().powi(power)))
 }
 
-/// The same mesh with Dirichlet data on the whole boundary.
+/// A mesh of tetrahedra with Dirichlet data on the whole boundary.
 pub(crate) fn clamped(
     vertices: Vec<Point<f64, 3>>,
     cells: Vec<u32>,
@@ -58,14 +59,14 @@ pub(crate) fn clamped(
     Ok(Mesh::new(vertices, cells, &boundary)?)
 }
 
-/// The cube `(-half, half)^3` in `n^3` smaller ones, `n` even, each cut into five tetrahedra, with a layer of
-/// slivers in the middle: tetrahedra on the four corners of a square that rise and fall by turns,
-/// of height `flatness` times the side of the small cubes.
+/// The cube `(-half, half)^3` in `n^3` smaller ones, `n` even, each cut into five tetrahedra, with
+/// a layer of slivers in the middle: tetrahedra on the four corners of a square that rise and fall
+/// by turns, of height `flatness` times the side of the small cubes.
 ///
 /// Cut into five, a cube has diagonals between every other corner. Below the layer these are the
-/// corners that fall, above it those that rise: so the slivers fill the gap, and every sliver shares
-/// its four facets with tetrahedra above and below. All other tetrahedra stay as they were up to a
-/// shift of corners by half of that height.
+/// corners that fall, above it those that rise: so the slivers fill the gap, and every sliver
+/// shares its four facets with tetrahedra above and below. All other tetrahedra stay as they were
+/// up to a shift of corners by half of that height.
 pub(crate) fn slivers(half: f64, n: usize, flatness: f64) -> Result<Mesh<f64, 3>, Error> {
     let (side, stride, middle) = (2.0 * half / n as f64, n + 1, n / 2);
     let number = |i: [usize; 3]| (i[0] + stride * (i[1] + stride * i[2])) as u32;

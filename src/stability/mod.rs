@@ -1,51 +1,44 @@
-//! Stability: hard cases, each with a sweep, a criterion, and a verdict made from the figures.
+//! Stability study: difficult cases, each with a sweep, a criterion, and a verdict on each figure.
 
 mod cases;
 mod choice;
-mod claim;
 mod criteria;
 mod limit;
 mod meshes;
+mod plan;
 mod report;
 mod row;
+mod row_builder;
 mod runs;
 mod summary;
+mod unweighted;
 
 pub use criteria::{CRITERIA, Criterion, STABILITY_CASES};
+pub use plan::Effort;
 pub use report::StabilityReport;
-pub use row::{Expected, StabilityRow, Verdict};
+pub use row::{ExpectedRange, StabilityRow, Verdict};
 
+use std::fmt;
 use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
 use crate::error::Error;
 use crate::mesh::Mesh;
-use choice::Choice;
+use plan::Plan;
 
 /// How long finished rows may wait to be written.
 const PATIENCE: Duration = Duration::from_millis(500);
 
-/// How much is run.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Effort {
-    /// The coarsest meshes: figures mean little, but every criterion has its rows.
-    Trial,
-    /// Coarse meshes and few places of each sweep; every criterion has its rows.
-    #[default]
-    Quick,
-    /// All sweeps.
-    Full,
-}
-
-/// What a study tells whoever watches it.
+/// Progress of a study.
+#[derive(Debug)]
 pub enum StabilityProgress<'a> {
-    /// This many pieces of work will follow.
+    /// The number of jobs that follow.
     Planned(usize),
-    /// A piece begins: case, and scheme or problem.
+    /// A job begins: case, and scheme or problem.
     Started(&'a str, &'a str),
-    /// A row is there.
+    /// A row is complete.
     Row(&'a StabilityRow),
-    /// The piece ended.
+    /// The job ended.
     Finished,
 }
 
@@ -68,57 +61,22 @@ pub struct Stability<'a> {
     observer: Box<dyn Fn(StabilityProgress<'_>) + 'a>,
 }
 
-/// Takes rows as they are made.
-type Sink<'s> = &'s mut dyn FnMut(StabilityRow);
-
-/// Makes rows.
-type Run<'p> = Box<dyn Fn(Sink<'_>) -> Result<(), Error> + 'p>;
-
-/// A piece of work: its rows do not depend on any other's.
-struct Job<'p> {
-    case: &'static str,
-    label: String,
-    run: Run<'p>,
-}
-
-/// What will be run.
-struct Plan<'p> {
-    effort: Effort,
-    schemes: &'p [String],
-    given: &'p [(String, Mesh<f64, 3>)],
-    jobs: Vec<Job<'p>>,
-}
-
-impl<'p> Plan<'p> {
-    fn is_full(&self) -> bool {
-        self.effort == Effort::Full
-    }
-    /// One of two, by effort.
-    fn pick<T>(&self, quick: T, full: T) -> T {
-        if self.is_full() { full } else { quick }
-    }
-    /// The same with something smaller for a trial.
-    fn pick_of<T>(&self, trial: T, quick: T, full: T) -> T {
-        if self.effort == Effort::Trial { trial } else { self.pick(quick, full) }
-    }
-    /// Adds work on a scheme, if that scheme is wanted.
-    fn add(
-        &mut self,
-        case: &'static str,
-        choice: Choice,
-        what: &str,
-        run: impl Fn(&Choice, Sink<'_>) -> Result<(), Error> + 'p,
-    ) {
-        if self.schemes.is_empty() || self.schemes.iter().any(|s| s == choice.scheme) {
-            let label = format!("{} {} {what}", choice.scheme, choice.words());
-            let run = Box::new(move |sink: Sink<'_>| run(&choice, sink));
-            self.jobs.push(Job { case, label, run });
-        }
+impl fmt::Debug for Stability<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let meshes: Vec<&str> = self.given.iter().map(|(name, _)| &**name).collect();
+        f.debug_struct("Stability")
+            .field("effort", &self.effort)
+            .field("cases", &self.cases)
+            .field("schemes", &self.schemes)
+            .field("meshes", &meshes)
+            .field("directory", &self.directory)
+            .finish_non_exhaustive()
     }
 }
 
 impl<'a> Stability<'a> {
     /// A study of all cases and schemes.
+    #[must_use]
     pub fn new(effort: Effort) -> Self {
         Self {
             effort,
@@ -140,16 +98,19 @@ impl<'a> Stability<'a> {
         self
     }
     /// Adds a mesh of tetrahedra under a name.
+    #[must_use]
     pub fn mesh(mut self, name: &str, mesh: Mesh<f64, 3>) -> Self {
         self.given.push((name.to_owned(), mesh));
         self
     }
     /// Writes the report to this directory as rows come, twice a second at most, and at the end.
+    #[must_use]
     pub fn write_to(mut self, directory: impl Into<PathBuf>) -> Self {
         self.directory = Some(directory.into());
         self
     }
-    /// Sets who is told of progress.
+    /// Sets a function that receives the progress of the study.
+    #[must_use]
     pub fn observer(mut self, observer: impl Fn(StabilityProgress<'_>) + 'a) -> Self {
         self.observer = Box::new(observer);
         self
@@ -162,7 +123,7 @@ impl<'a> Stability<'a> {
     ///
     /// # Errors
     /// [`Error::Parameter`] for the name of a case or scheme that does not exist, before anything
-    /// runs; [`Error::Write`]. What goes wrong within a case is told by its rows.
+    /// runs; [`Error::Write`]. Errors of a job are listed in [`StabilityReport::failures`].
     pub fn run(&self) -> Result<StabilityReport, Error> {
         let check = |parameter, names: &[String], known: &[&str]| match names
             .iter()
@@ -187,7 +148,7 @@ impl<'a> Stability<'a> {
             let mut take = |row: StabilityRow| {
                 (self.observer)(StabilityProgress::Row(&row));
                 report.rows.push(row);
-                // whoever interrupts the study keeps the rows that are there
+                // rows are saved early, so that an interrupted study keeps them
                 if written.elapsed() > PATIENCE && saved.is_ok() {
                     saved = self.save(&report);
                     written = Instant::now();

@@ -5,16 +5,16 @@ use std::path::{Path, PathBuf};
 
 use serde_json::json;
 
+use super::criteria::{CRITERIA, STABILITY_CASES};
+use super::plan::Effort;
 use super::row::{StabilityRow, Verdict, short};
 use super::summary::{by_criterion, by_scheme, missed, robust};
-use super::{CRITERIA, Effort, STABILITY_CASES};
 use crate::error::Error;
-use crate::output::csv;
+use crate::output::table::{Cell, latex, markdown};
+use crate::output::{Provenance, Table, csv, replace};
 use crate::study::Program;
-use crate::work_precision::{Cell, latex, markdown, replace};
-use crate::work_precision::{Provenance, Table};
 
-/// What a reader needs to know before the tables.
+/// Notes before the tables.
 const READING: [&str; 3] = [
     "Every row has a figure, the limits it should keep, and the verdict that follows from the two. A row that fails as expected shows a choice of which theory or experience says that it is not enough there; a row that is missed is a failure that nobody announced. What is reported only has no limits. Several pages of rows follow the summary: one table for each case, the criteria in words below it.",
     "Schemes: p1 and p2, conforming linear and quadratic elements with bounds at nodes; cr, Crouzeix-Raviart elements with bounds on facet means; sipg and nipg, symmetric and non-symmetric interior penalty on broken linears; wopsip, the weakly over-penalised method on broken linears with bounds at vertices, wopsip:facet-means the same with bounds on facet means.",
@@ -23,16 +23,17 @@ const READING: [&str; 3] = [
 
 /// All rows, in the order run.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct StabilityReport {
     /// The program.
     pub program: Program,
-    /// Where and when.
+    /// Time and machine.
     pub provenance: Provenance,
-    /// How much was run.
+    /// The size of the study.
     pub effort: Effort,
     /// One row for every figure.
     pub rows: Vec<StabilityRow>,
-    /// Pieces of work that ended in an error, and why.
+    /// Jobs that ended in an error, with the error.
     pub failures: Vec<String>,
 }
 
@@ -48,13 +49,13 @@ impl StabilityReport {
         }
     }
 
-    /// How many rows have this verdict.
+    /// Number of rows with this verdict.
     pub fn count(&self, verdict: Verdict) -> usize {
         self.rows.iter().filter(|row| row.verdict == verdict).count()
     }
 
-    /// For every case in which a scheme is shown with several penalties, which of them keeps what
-    /// is asked: a sentence each, made from the verdicts.
+    /// The penalties that meet all criteria, for every case with several penalties of a scheme: a
+    /// sentence each, made from the verdicts.
     pub fn robust_choices(&self) -> Vec<String> {
         robust(&self.rows)
     }
@@ -154,13 +155,13 @@ impl StabilityReport {
         self.document(Table::to_text, |line| format!("{line}\n"))
     }
 
-    /// The same in Markdown.
+    /// Tables, provenance and notes in Markdown.
     pub fn to_markdown(&self) -> String {
         let text = self.document(Table::to_markdown, |line| format!("{}\n\n", markdown(line)));
         format!("# Stability\n\n{text}")
     }
 
-    /// The same in LaTeX, for `\input`; it needs the package `booktabs`.
+    /// Tables, provenance and notes in LaTeX, for `\input`; it needs the package `booktabs`.
     pub fn to_latex(&self) -> String {
         let text =
             self.document(Table::to_latex, |line| format!("\\noindent {}\\par\n", latex(line)));

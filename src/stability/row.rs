@@ -1,28 +1,30 @@
-//! A row: one figure against one expectation, and the verdict that follows.
+//! A row: a figure, its expected range, and the verdict.
 
 use serde::Serialize;
 
-/// Where a figure should lie. Without either limit it is reported and not judged.
+/// The range of a figure that a criterion asks for. A figure without limits is reported and not
+/// judged.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
-pub struct Expected {
+#[non_exhaustive]
+pub struct ExpectedRange {
     /// The smallest figure allowed.
     pub at_least: Option<f64>,
     /// The largest figure allowed.
     pub at_most: Option<f64>,
-    /// Whether this choice is shown because it is known not to get there.
+    /// Whether the choice is shown because theory or experience says that it misses the range.
     pub to_fail: bool,
 }
 
-impl Expected {
-    /// Whether a figure lies where it should; one that is not a number does not.
+impl ExpectedRange {
+    /// Whether a figure lies in the range; a figure that is not finite does not.
     pub fn holds(&self, figure: f64) -> bool {
         figure.is_finite()
             && self.at_least.is_none_or(|least| figure >= least)
             && self.at_most.is_none_or(|most| figure <= most)
     }
 
-    /// By what factor a figure misses; none where no factor tells it: a limit of zero, a figure that
-    /// is not positive or not a number.
+    /// The factor by which a figure misses the range; none for a limit of zero and for a figure
+    /// that is not positive or not a number.
     pub fn missed_by(&self, figure: f64) -> Option<f64> {
         if self.holds(figure) || figure.is_nan() {
             return None;
@@ -78,21 +80,21 @@ pub(crate) fn short(x: f64) -> String {
     }
 }
 
-/// What follows from figure and expectation.
+/// The verdict on a figure and its expected range.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Verdict {
-    /// The figure lies where it should.
+    /// The figure lies in the range.
     Met,
-    /// It does not, or there is none because nothing was solved.
+    /// The figure lies outside the range, or there is none because the solve failed.
     Missed,
-    /// It does not, and was known not to.
+    /// The figure lies outside the range, as was expected of this choice.
     FailsAsExpected,
-    /// It does, though it was not expected to.
+    /// The figure lies in the range, though that was not expected of this choice.
     BetterThanExpected,
-    /// Nothing is expected here: the figure is for the reader.
+    /// There is no expected range.
     Reported,
-    /// The criterion does not apply, or what it needs is absent.
+    /// The criterion does not apply, or its input is absent.
     NotApplicable,
 }
 
@@ -120,7 +122,7 @@ impl Verdict {
     }
 
     /// The verdict on a figure, or on its absence after a failed solve.
-    fn on(expected: &Expected, measured: Option<f64>) -> Self {
+    fn on(expected: &ExpectedRange, measured: Option<f64>) -> Self {
         if !expected.is_judged() {
             return Self::Reported;
         }
@@ -135,6 +137,7 @@ impl Verdict {
 
 /// One figure of one scheme at one place of a sweep.
 #[derive(Clone, Debug, PartialEq, Serialize)]
+#[non_exhaustive]
 pub struct StabilityRow {
     /// Name of the case.
     pub case: String,
@@ -142,7 +145,7 @@ pub struct StabilityRow {
     pub criterion: String,
     /// The scheme, with the placement of its bounds after a colon if it is not the default.
     pub scheme: String,
-    /// What was chosen about its penalty.
+    /// The choice of the penalty.
     pub choice: String,
     /// Scalar of assembly and solve.
     pub precision: String,
@@ -150,21 +153,21 @@ pub struct StabilityRow {
     pub problem: String,
     /// Subdivisions of the shortest side, where the mesh has such a number.
     pub level: Option<usize>,
-    /// Name of what is swept.
+    /// Name of the parameter of the sweep.
     pub parameter: String,
-    /// Its value here.
+    /// Value of that parameter.
     pub value: Option<f64>,
-    /// What was measured.
+    /// Name of the measured quantity.
     pub quantity: String,
-    /// Where it should lie.
-    pub expected: Expected,
+    /// The expected range.
+    pub expected: ExpectedRange,
     /// The figure; none if nothing was solved.
     pub measured: Option<f64>,
     /// Further figures, or why there is none.
     pub detail: String,
     /// What follows.
     pub verdict: Verdict,
-    /// By what factor a limit is missed, where a factor tells it.
+    /// The factor by which the limit is missed, if there is one.
     pub missed_by: Option<f64>,
 }
 
@@ -193,20 +196,20 @@ impl StabilityRow {
 
 #[cfg(test)]
 mod tests {
-    use super::{Expected, Verdict, short};
+    use super::{ExpectedRange, Verdict, short};
 
     #[test]
     fn verdicts_follow_from_figures() {
-        let most = Expected { at_most: Some(1.5), ..Expected::default() };
+        let most = ExpectedRange { at_most: Some(1.5), ..ExpectedRange::default() };
         assert_eq!(Verdict::on(&most, Some(1.5)), Verdict::Met);
         assert_eq!(Verdict::on(&most, Some(3.0)), Verdict::Missed);
         assert_eq!(Verdict::on(&most, None), Verdict::Missed);
         assert_eq!(most.missed_by(3.0), Some(2.0));
-        let fail = Expected { to_fail: true, ..most };
+        let fail = ExpectedRange { to_fail: true, ..most };
         assert_eq!(Verdict::on(&fail, Some(3.0)), Verdict::FailsAsExpected);
         assert_eq!(Verdict::on(&fail, Some(1.0)), Verdict::BetterThanExpected);
-        assert_eq!(Verdict::on(&Expected::default(), Some(1.0)), Verdict::Reported);
-        let least = Expected { at_least: Some(0.9), ..Expected::default() };
+        assert_eq!(Verdict::on(&ExpectedRange::default(), Some(1.0)), Verdict::Reported);
+        let least = ExpectedRange { at_least: Some(0.9), ..ExpectedRange::default() };
         assert_eq!(least.missed_by(0.45), Some(2.0));
         assert_eq!(least.missed_by(-0.1), None);
         assert!(!least.holds(f64::NAN));

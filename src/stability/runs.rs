@@ -1,4 +1,4 @@
-//! Runs: a scheme on a scene or on a mesh, and what its matrix is like.
+//! Runs of a scheme on a scene or a mesh, and properties of its matrix.
 
 use super::choice::Choice;
 use crate::algebra::{Bound, SparseMatrix};
@@ -20,7 +20,7 @@ pub(crate) fn solver() -> ActiveSet {
     ActiveSet::default().linear(LinearMethod::Direct)
 }
 
-/// The same with another last resort and another number of sets.
+/// The solver of the study with another globalisation and another limit on active sets.
 pub(crate) fn solver_with(globalisation: Globalisation, max_outer: usize) -> ActiveSet {
     solver().globalisation(globalisation).max_outer(max_outer)
 }
@@ -83,8 +83,8 @@ pub(crate) fn solved<const D: usize>(
     Ok((mesh.clone(), solved))
 }
 
-/// Whether a scheme's matrix is symmetric positive definite on a mesh: 1 or 0; none if it is not
-/// meant to be symmetric or the question could not be answered.
+/// Whether a scheme's matrix is symmetric positive definite on a mesh: 1 or 0; none if the
+/// scheme is not symmetric or the factorisation failed.
 pub(crate) fn definite<const D: usize>(
     problem: &Problem<D>,
     mesh: &Mesh<f64, D>,
@@ -102,7 +102,7 @@ pub(crate) fn definite<const D: usize>(
     Ok(answer.map(|is| f64::from(u8::from(is))))
 }
 
-/// The rows and columns of a scheme's matrix that belong to unknowns which are not given.
+/// The matrix of a scheme, restricted to its free unknowns.
 pub(crate) fn free_matrix<const D: usize>(
     problem: &Problem<D>,
     mesh: &Mesh<f64, D>,

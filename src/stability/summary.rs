@@ -1,10 +1,10 @@
-//! Verdicts counted, and what they say about choices.
+//! Counts of verdicts, and robust choices of penalties.
 
-use super::CRITERIA;
+use super::criteria::{CRITERIA, Criterion};
 use super::row::{StabilityRow, Verdict, short};
+use crate::output::Table;
+use crate::output::table::Cell;
 use crate::study::table::distinct;
-use crate::work_precision::Cell;
-use crate::work_precision::Table;
 
 fn count<'r>(rows: impl Iterator<Item = &'r StabilityRow>, verdict: Verdict) -> usize {
     rows.filter(|row| row.verdict == verdict).count()
@@ -39,7 +39,7 @@ pub(crate) fn by_scheme(rows: &[StabilityRow]) -> Table {
 /// Verdicts of every criterion.
 pub(crate) fn by_criterion(rows: &[StabilityRow]) -> Table {
     let asked = CRITERIA.iter().filter(|c| rows.iter().any(|r| r.criterion == c.name));
-    let line = |c: &crate::stability::Criterion| {
+    let line = |c: &Criterion| {
         let mine = || rows.iter().filter(|r| r.criterion == c.name);
         let mut cells = vec![Cell::Words(c.case.to_owned()), Cell::Words(c.name.to_owned())];
         cells.extend(Verdict::ALL.map(|verdict| Cell::whole(Some(count(mine(), verdict)))));
@@ -58,7 +58,7 @@ pub(crate) fn by_criterion(rows: &[StabilityRow]) -> Table {
     Table { title: "Verdicts by criterion".into(), columns, rows, remarks: Vec::new() }
 }
 
-/// Every row that missed what it should keep, with by how much; no table if there is none.
+/// Every row that misses its range, with the factor; no table without such rows.
 pub(crate) fn missed(rows: &[StabilityRow]) -> Option<Table> {
     let line = |row: &StabilityRow| {
         let sweep =
@@ -95,7 +95,7 @@ pub(crate) fn missed(rows: &[StabilityRow]) -> Option<Table> {
     })
 }
 
-/// Which penalties of a scheme keep all that is asked in a case, where several are shown.
+/// The penalties of a scheme that meet all criteria of a case, for schemes with several penalties.
 pub(crate) fn robust(rows: &[StabilityRow]) -> Vec<String> {
     let mut sentences = Vec::new();
     for key in distinct(rows.iter().map(|r| (r.case.clone(), r.scheme.clone()))) {

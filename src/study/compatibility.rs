@@ -1,4 +1,4 @@
-//! Whether a mesh fits a scene.
+//! Compatibility of a mesh and a scene.
 
 use crate::assemble::{DataQuadrature, Discretisation};
 use crate::error::Error;
@@ -7,8 +7,8 @@ use crate::real::{Real, point_f64};
 use crate::scenes::Scene;
 use crate::scheme::{ConformingP1, NonconformingP1};
 
-/// Checks that a mesh can carry a scene, and tells where the scene's exact solution fails on it: the
-/// barycentre of a facet, or none.
+/// Checks that a mesh is compatible with a scene. Returns the barycentre of a facet on which the
+/// exact solution of the scene breaks the contact condition, or none.
 ///
 /// Dirichlet and Neumann data of a scene with an exact solution come from that solution wherever
 /// the mesh has such parts, so it stays the solution on any domain where it is smooth enough. Only
@@ -16,8 +16,8 @@ use crate::scheme::{ConformingP1, NonconformingP1};
 ///
 /// # Errors
 /// [`Error::UnfitMesh`] if mesh and scene do not agree on having a contact part, or if the data of
-/// the scene are no data on the mesh: not finite, or without an admissible value; [`Error::Mesh`] if
-/// a component of the mesh is held by nothing.
+/// the scene are no data on the mesh: not finite, or without an admissible value; [`Error::Mesh`]
+/// if a component of the mesh has neither Dirichlet nor contact facets.
 pub fn check_fit<T: Real, const D: usize>(
     scene: &Scene<D>,
     mesh: &Mesh<T, D>,
@@ -30,8 +30,8 @@ pub fn check_fit<T: Real, const D: usize>(
     Ok(first_failure(scene, mesh))
 }
 
-/// A mesh may reach beyond where the data of a scene make sense. All kinds of nodes are tried before
-/// any scheme runs: vertices, facets, and the points of quadrature.
+/// Checks that the data of the scene are defined on the mesh, at vertices, on facets and at
+/// quadrature points.
 fn check_data<T: Real, const D: usize>(scene: &Scene<D>, mesh: &Mesh<T, D>) -> Result<(), Error> {
     let (problem, quadrature) = (&scene.problem, DataQuadrature::default());
     let at_vertices = || {
@@ -67,7 +67,7 @@ pub(crate) fn check_domain<const D: usize>(scene: &Scene<D>) -> Result<(), Error
     Ok(())
 }
 
-/// A contact part without a Signorini condition, or the other way round, is a mistake.
+/// Checks that there is a contact part if and only if there is a Signorini condition.
 fn check_contact<const D: usize>(scene: &Scene<D>, contact: bool) -> Result<(), Error> {
     let why = match (&scene.problem.gap, contact) {
         (Some(_), false) => {

@@ -1,8 +1,8 @@
-//! How much memory the process has needed so far, how much there is, and how much a run will need.
+//! Peak memory of the process, available memory, and an estimate of the memory of a run.
 
 use crate::element::Layout;
 
-/// The largest resident set of this process so far, where the system tells: on Linux the peak the
+/// The largest resident set of this process so far, if the system reports it: on Linux the peak the
 /// kernel keeps (`VmHWM`), elsewhere nothing.
 pub fn peak_memory_bytes() -> Option<u64> {
     if !cfg!(target_os = "linux") {
@@ -22,7 +22,7 @@ fn kilobytes(text: &str, key: &str) -> Option<u64> {
     kilobytes.checked_mul(1024)
 }
 
-/// The memory that new work can have without swapping, where the system tells: on Linux
+/// The memory available without swapping, if the system reports it: on Linux
 /// `MemAvailable`, elsewhere nothing. Limits of a container are not seen.
 pub fn available_memory_bytes() -> Option<u64> {
     if !cfg!(target_os = "linux") {
@@ -31,14 +31,15 @@ pub fn available_memory_bytes() -> Option<u64> {
     kilobytes(&std::fs::read_to_string("/proc/meminfo").ok()?, "MemAvailable:")
 }
 
-/// What the largest run of a study will need, about.
+/// Estimated memory of the largest run of a study.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct MemoryEstimate {
     /// Bytes of the whole process.
     pub bytes: f64,
     /// Name of the scheme that needs most.
     pub scheme: String,
-    /// The level on which it does.
+    /// The level of that run.
     pub level: usize,
 }
 
@@ -82,8 +83,8 @@ pub(super) fn estimate(
     constant * growth * cells * contact * scalar
 }
 
-/// The unknowns of a layout, about: of every six cells in the plane three have a vertex and nine an edge
-/// of their own, in space one and seven, and twelve a facet.
+/// The unknowns of a layout, about: of every six cells in the plane three have a vertex and nine an
+/// edge of their own, in space one and seven, and twelve a facet.
 pub(super) fn unknowns_about(dimension: usize, layout: Layout, cells: f64) -> f64 {
     let [vertex, edge, facet] = match dimension {
         1 => [1.0, 0.0, 1.0],
@@ -98,10 +99,10 @@ pub(super) fn unknowns_about(dimension: usize, layout: Layout, cells: f64) -> f6
             + of(layout.cell, 1.0))
 }
 
-/// Bytes a run will need where no factors are made: so many for each unknown, coarser levels and meshes
-/// included. Peaks of the process were measured on obstacle and Signorini scenes with 1e4 to 1e6
-/// unknowns; on these the estimate is right to a third but for matrices without symmetry, which need
-/// up to twice as much.
+/// Bytes a run will need where no factors are made: so many for each unknown, coarser levels and
+/// meshes included. Peaks of the process were measured on obstacle and Signorini scenes with 1e4 to
+/// 1e6 unknowns; on these the estimate is right to a third but for matrices without symmetry, which
+/// need up to twice as much.
 pub(super) fn estimate_without_factors(
     dimension: usize,
     layout: Layout,

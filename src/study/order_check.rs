@@ -1,67 +1,50 @@
-//! Observed orders against those that theory promises.
+//! Observed orders compared with the orders that theory promises.
 
 use super::report::Report;
 use super::row::Row;
 use super::table::distinct;
-use crate::measure::observed_order;
+use crate::inequality::Outcome;
+use crate::measure::{ErrorNorm, observed_order};
 use crate::scheme::ExpectedOrders;
 
 /// An error of this share of the mesh size, of solutions whose size is one, is rounding.
 const ROUNDING: f64 = 1e-8;
 
-/// What was observed of one scheme on one scene, on its two finest levels that converged.
+/// Observed orders of one scheme on one scene, on its two finest levels that converged.
 ///
-/// CoarseLevel levels do not count: promises hold in the limit. Nor does a level whose solve did not
-/// converge: what it left is no discrete solution.
+/// Coarser levels do not count, since promised orders hold in the limit. Levels whose solve did not
+/// converge do not count either.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct ObservedOrders {
     /// Name of the scene.
     pub scene: String,
     /// Name of the scheme.
     pub scheme: String,
-    /// Where it imposes bounds.
+    /// Where the scheme imposes bounds.
     pub constraint: String,
     /// The two levels, coarse and fine; none if fewer converged.
     pub levels: Option<[usize; 2]>,
     /// Order in L2 and in the broken H1 seminorm; none where there is no error to compare.
     pub observed: ExpectedOrders,
-    /// What theory promises.
+    /// The orders that theory promises.
     pub promised: ExpectedOrders,
     /// Norms in which the error on the finer level is rounding: the scheme has the exact solution
     /// in its space, and there is no order to observe.
-    pub exact: Vec<Norm>,
-    /// Hierarchy that did not converge, with the typed reason.
-    pub failures: Vec<(usize, String)>,
+    pub exact: Vec<ErrorNorm>,
+    /// Levels that did not converge, with the typed reason.
+    pub failures: Vec<(usize, Outcome)>,
 }
 
-/// A norm in which orders are promised.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Norm {
-    /// The L2 norm.
-    L2,
-    /// The broken H1 seminorm.
-    H1,
-}
+/// The norms in which theory promises orders.
+pub(crate) const PROMISED: [ErrorNorm; 2] = [ErrorNorm::L2, ErrorNorm::H1];
 
-impl Norm {
-    /// Both.
-    pub const ALL: [Self; 2] = [Self::L2, Self::H1];
-
-    /// The order in this norm.
-    pub fn of(self, orders: &ExpectedOrders) -> Option<f64> {
-        match self {
-            Norm::L2 => orders.l2,
-            Norm::H1 => orders.h1,
-        }
-    }
-}
-
-impl std::fmt::Display for Norm {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.write_str(match self {
-            Norm::L2 => "L2",
-            Norm::H1 => "H1",
-        })
+/// The order in a norm; none in norms without promises.
+pub(crate) fn order_in(norm: ErrorNorm, orders: &ExpectedOrders) -> Option<f64> {
+    match norm {
+        ErrorNorm::L2 => orders.l2,
+        ErrorNorm::H1 => orders.h1,
+        ErrorNorm::Energy => None,
     }
 }
 
@@ -77,20 +60,20 @@ pub enum OrderMissed {
         scene: String,
         /// Name of the scheme.
         scheme: String,
-        /// Where it imposes bounds.
+        /// Where the scheme imposes bounds.
         constraint: String,
         /// The coarser of the two levels.
         coarse: usize,
         /// The finer one: that of the row that misses.
         fine: usize,
         /// The norm.
-        norm: Norm,
+        norm: ErrorNorm,
         /// The order observed.
         observed: f64,
         /// The order promised.
         promised: f64,
     },
-    /// There is a promise and nothing to test it with.
+    /// An order is promised, and there are no two levels to observe it.
     #[error(
         "{scheme} ({constraint}) on {scene}: order {promised} in {norm} is promised, but fewer than two levels converged with an error"
     )]
@@ -99,10 +82,10 @@ pub enum OrderMissed {
         scene: String,
         /// Name of the scheme.
         scheme: String,
-        /// Where it imposes bounds.
+        /// Where the scheme imposes bounds.
         constraint: String,
         /// The norm.
-        norm: Norm,
+        norm: ErrorNorm,
         /// The order promised.
         promised: f64,
     },
@@ -117,9 +100,10 @@ impl ObservedOrders {
     /// The promises that are missed by more than the tolerance.
     pub fn missed(&self, tolerance: f64) -> Vec<OrderMissed> {
         let [scene, scheme, constraint] = [&self.scene, &self.scheme, &self.constraint];
-        let miss = |norm: Norm| {
-            let promised = norm.of(&self.promised).filter(|_| !self.exact.contains(&norm))?;
-            match (norm.of(&self.observed), self.levels) {
+        let miss = |norm: ErrorNorm| {
+            let promised =
+                order_in(norm, &self.promised).filter(|_| !self.exact.contains(&norm))?;
+            match (order_in(norm, &self.observed), self.levels) {
                 (Some(observed), Some([coarse, fine])) => {
                     (observed < promised - tolerance).then(|| OrderMissed::Below {
                         scene: scene.clone(),
@@ -141,15 +125,15 @@ impl ObservedOrders {
                 }),
             }
         };
-        Norm::ALL.into_iter().filter_map(miss).collect()
+        PROMISED.into_iter().filter_map(miss).collect()
     }
 
-    /// What the rows of one scheme on one scene show.
+    /// The observed orders of the rows of one scheme on one scene.
     fn of(rows: &[&Row]) -> Option<Self> {
         let mut sorted = rows.to_vec();
         sorted.sort_by_key(|row| row.level);
         let failed = sorted.iter().filter(|row| !row.converged());
-        let failures = failed.map(|row| (row.level, row.status.clone())).collect();
+        let failures = failed.map(|row| (row.level, row.status)).collect();
         let finest = *sorted.last()?;
         sorted.retain(|row| row.converged());
         let pair = sorted.last_chunk::<2>();
@@ -157,7 +141,7 @@ impl ObservedOrders {
             let [coarse, fine] = pair?;
             observed_order(norm(coarse)?, norm(fine)?, coarse.mesh_size, fine.mesh_size)
         };
-        let errors = [(Norm::L2, finest.error.l2), (Norm::H1, finest.error.h1)];
+        let errors = [(ErrorNorm::L2, finest.error.l2), (ErrorNorm::H1, finest.error.h1)];
         let is_rounding = |error: Option<f64>| {
             error.is_some_and(|error| error <= ROUNDING * finest.mesh_size.min(1.0))
         };
@@ -175,7 +159,7 @@ impl ObservedOrders {
 }
 
 impl Report {
-    /// What was observed of every scheme on every scene, in the order of the rows. A scheme counts
+    /// Observed orders of every scheme on every scene, in the order of the rows. A scheme counts
     /// once for every placement of bounds and every penalty.
     pub fn observed_orders(&self) -> Vec<ObservedOrders> {
         let key = |row: &Row| {

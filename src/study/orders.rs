@@ -6,8 +6,8 @@ use crate::measure::observed_order;
 /// Fills in the order of every row against the previous level: the row with the next smaller level
 /// of the same scene, scheme and constraint.
 ///
-/// Where either of the two did not converge, or has no error, the order is none. It is never taken
-/// against a level further back, since a reader could not tell.
+/// The order is none if one of the two rows did not converge or has no error. Rows further back are
+/// never used, since the table would not show it.
 pub fn fill_orders(rows: &mut [Row]) {
     let orders: Vec<Orders> = rows
         .iter()
@@ -45,12 +45,5 @@ fn order(coarse: &Row, fine: &Row) -> Orders {
         max: of(coarse.error.max, fine.error.max),
         multiplier_l1: of(coarse.contact.multiplier_l1, fine.contact.multiplier_l1),
         multiplier_l2: of(coarse.contact.multiplier_l2, fine.contact.multiplier_l2),
-    }
-}
-
-impl Row {
-    /// Whether the run of this row converged.
-    pub fn converged(&self) -> bool {
-        self.status == "converged"
     }
 }

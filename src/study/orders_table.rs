@@ -1,18 +1,20 @@
-//! Observed orders beside those that theory promises, as a table in Markdown.
+//! Observed and promised orders, as a table in Markdown.
 
 use std::fmt::Write;
 
-use crate::study::order_check::{Norm, ObservedOrders};
+use crate::measure::ErrorNorm;
+use crate::study::order_check::{ObservedOrders, PROMISED, order_in};
 
-/// What a cell shows where there is no number.
+/// The cell of a number that does not apply.
 const NONE: &str = "-";
 
 /// One line for every scheme on every scene: where bounds are imposed, the levels, observed and
 /// promised order in L2 and H1, and whether the promises were kept.
 ///
-/// The verdict is `kept` or, by norm, `missed`; `exact` where errors are rounding; `nothing promised` where nothing is proven, and
-/// `unobserved` where fewer than two levels converged. Hierarchy that did not converge follow with the
-/// typed reason.
+/// The verdict is `kept` or, by norm, `missed`; `exact` where errors are rounding; `nothing
+/// promised` where nothing is proven, and
+/// `unobserved` where fewer than two levels converged. Levels that did not converge follow with the
+/// outcome of their solves.
 pub fn orders_table(orders: &[ObservedOrders], tolerance: f64) -> String {
     let mut text = format!(
         "Orders are observed on the two finest levels that converged. A promise is kept if the \
@@ -22,12 +24,13 @@ pub fn orders_table(orders: &[ObservedOrders], tolerance: f64) -> String {
     );
     for line in orders {
         let levels = line.levels.map_or(NONE.to_owned(), |[a, b]| format!("{a}, {b}"));
-        let norms: Vec<String> = Norm::ALL
+        let norms: Vec<String> = PROMISED
             .iter()
             .map(|norm| {
                 let observed =
-                    norm.of(&line.observed).map_or(NONE.to_owned(), |x| format!("{x:.2}"));
-                let promised = norm.of(&line.promised).map_or(NONE.to_owned(), |x| x.to_string());
+                    order_in(*norm, &line.observed).map_or(NONE.to_owned(), |x| format!("{x:.2}"));
+                let promised =
+                    order_in(*norm, &line.promised).map_or(NONE.to_owned(), |x| x.to_string());
                 format!("{observed} | {promised}")
             })
             .collect();
@@ -46,21 +49,22 @@ pub fn orders_table(orders: &[ObservedOrders], tolerance: f64) -> String {
 }
 
 fn verdict(line: &ObservedOrders, tolerance: f64) -> String {
-    let missed = |norm: &Norm| {
-        let promised = norm.of(&line.promised).filter(|_| !line.exact.contains(norm))?;
-        let kept = norm.of(&line.observed)? >= promised - tolerance;
+    let missed = |norm: &ErrorNorm| {
+        let promised = order_in(*norm, &line.promised).filter(|_| !line.exact.contains(norm))?;
+        let kept = order_in(*norm, &line.observed)? >= promised - tolerance;
         (!kept).then(|| norm.to_string())
     };
-    let promised = |norm: &Norm| norm.of(&line.promised).is_some() && !line.exact.contains(norm);
-    let unobserved = |norm: &Norm| promised(norm) && norm.of(&line.observed).is_none();
-    let missed: Vec<String> = Norm::ALL.iter().filter_map(missed).collect();
-    let mut parts = vec![if !line.exact.is_empty() && !Norm::ALL.iter().any(promised) {
+    let promised =
+        |norm: &ErrorNorm| order_in(*norm, &line.promised).is_some() && !line.exact.contains(norm);
+    let unobserved = |norm: &ErrorNorm| promised(norm) && order_in(*norm, &line.observed).is_none();
+    let missed: Vec<String> = PROMISED.iter().filter_map(missed).collect();
+    let mut parts = vec![if !line.exact.is_empty() && !PROMISED.iter().any(promised) {
         "exact".to_owned()
-    } else if !Norm::ALL.iter().any(promised) {
+    } else if !PROMISED.iter().any(promised) {
         "nothing promised".to_owned()
     } else if !missed.is_empty() {
         format!("missed in {}", missed.join(", "))
-    } else if Norm::ALL.iter().any(unobserved) {
+    } else if PROMISED.iter().any(unobserved) {
         "unobserved".to_owned()
     } else {
         "kept".to_owned()

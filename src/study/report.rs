@@ -1,11 +1,12 @@
-//! A report: what was run and what came out, and the files it is written to.
+//! A report: rows, and the program that ran them.
 
 use super::row::Row;
-/// The program that made a report, and how it ran.
+/// The program that made a report, and its settings.
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "report", derive(serde::Serialize))]
+#[non_exhaustive]
 pub struct Program {
-    /// Its name.
+    /// Name of the program.
     pub name: String,
     /// Version of the library.
     pub version: String,
@@ -15,12 +16,14 @@ pub struct Program {
     pub precision: String,
     /// Every time is the smallest of this many runs.
     pub repeat: usize,
-    /// Architecture and the vector instructions it was compiled for.
+    /// Architecture and vector instructions for which the program was compiled.
     pub target_cpu: String,
 }
 
 impl Program {
-    /// A program of this version of the library, compiled as it was.
+    /// A program linked with this version of the library and compiled for the processor that the
+    /// library was compiled for.
+    #[must_use]
     pub fn new(name: &str, precision: &str, threads: usize, repeat: usize) -> Self {
         Program {
             name: name.to_owned(),
@@ -37,15 +40,15 @@ impl Program {
 /// by default on common machines, `x86_64 (avx2, avx512f, fma)` with `-C target-cpu=native` on a
 /// recent one.
 ///
-/// This is a property of the executable. Instructions that the linear algebra picks at run time do
-/// not show.
-pub fn target_cpu() -> String {
+/// The text describes the executable. Instructions that the linear algebra selects at run time are
+/// not listed.
+fn target_cpu() -> String {
     let mut features = Vec::new();
     macro_rules! list {
         ($($name:literal),*) => { $(if cfg!(target_feature = $name) { features.push($name); })* };
     }
     list!("avx2", "avx512f", "fma", "neon", "sve", "simd128", "v", "altivec", "vsx");
-    // Every processor with AVX2 has what follows; it is news only where AVX2 is missing.
+    // processors with AVX2 have the following features: listed only without AVX2
     if features.is_empty() {
         list!("avx", "sse4.2", "sse2");
         features.truncate(1);
@@ -59,9 +62,18 @@ pub fn target_cpu() -> String {
 /// Rows in the order run, and the program that ran them.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "report", derive(serde::Serialize))]
+#[non_exhaustive]
 pub struct Report {
     /// The program.
     pub program: Program,
     /// One row for every scene, scheme and level.
     pub rows: Vec<Row>,
+}
+
+impl Report {
+    /// A report of rows that a program ran.
+    #[must_use]
+    pub fn new(program: Program, rows: Vec<Row>) -> Self {
+        Self { program, rows }
+    }
 }

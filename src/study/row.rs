@@ -1,13 +1,14 @@
-//! One row of a report: plain numbers, one for every scene, scheme and level.
+//! Rows of a report: the figures of one scene, scheme and level each.
 
 use crate::facet::PenaltyParameters;
-use crate::inequality::Certificate;
+use crate::inequality::{Certificate, Outcome};
 use crate::measure::{ContactErrors, Errors};
 use crate::scheme::ExpectedOrders;
 
 /// Observed orders.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "report", derive(serde::Serialize))]
+#[non_exhaustive]
 pub struct Orders {
     /// Of the error in the L2 norm.
     pub l2: Option<f64>,
@@ -26,32 +27,43 @@ pub struct Orders {
 /// Iteration counts.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "report", derive(serde::Serialize))]
+#[non_exhaustive]
 pub struct Iterations {
-    /// Active sets tried on this level; none where there was nothing to iterate with.
+    /// Number of active sets on this level; none without an iterate.
     pub outer: Option<usize>,
     /// Inner iterations on this level, zero for direct solvers.
     pub linear: usize,
-    /// How many coarser levels the start came from.
+    /// Number of coarser levels of the initial guess.
     pub levels: usize,
 }
 
 /// Wall times in seconds.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "report", derive(serde::Serialize))]
+#[non_exhaustive]
 pub struct Seconds {
     /// Making the mesh.
     pub mesh: f64,
     /// Assembly of matrix, load and bounds.
     pub assemble: f64,
-    /// Solve, with whatever the start from coarser levels cost.
+    /// Solve, with the start from coarser levels.
     pub solve: f64,
     /// The sum.
     pub total: f64,
 }
 
+impl Seconds {
+    /// Times of mesh, assembly and solve, with their sum.
+    #[must_use]
+    pub fn new(mesh: f64, assemble: f64, solve: f64) -> Self {
+        Self { mesh, assemble, solve, total: mesh + assemble + solve }
+    }
+}
+
 /// One row of a report. Keys are binding for scripts; a number that does not apply is null.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "report", derive(serde::Serialize))]
+#[non_exhaustive]
 pub struct Row {
     /// Name of the scene.
     pub scene: String,
@@ -78,8 +90,8 @@ pub struct Row {
     pub nonzeros: usize,
     /// Largest cell diameter.
     pub mesh_size: f64,
-    /// `converged`, or the typed reason.
-    pub status: String,
+    /// How the solve ended; its name in files.
+    pub status: Outcome,
     /// Errors against the exact solution.
     pub error: Errors,
     /// Distances of multiplier and contact set, keys of the row itself.
@@ -87,7 +99,7 @@ pub struct Row {
     pub contact: ContactErrors,
     /// Observed order against the previous level of the same scene and scheme.
     pub order: Orders,
-    /// What theory promises.
+    /// Orders that theory promises.
     pub expected_order: ExpectedOrders,
     /// `a(u,u)/2 - l(u)`; null for non-symmetric schemes.
     pub objective: Option<f64>,
@@ -99,8 +111,46 @@ pub struct Row {
     pub certificate: Certificate,
     /// Wall times.
     pub seconds: Seconds,
-    /// Largest resident set of the process so far, where the system tells.
+    /// Largest resident set of the process so far, if the system reports it.
     pub peak_memory_bytes: Option<u64>,
     /// Warnings by type, as text: a penalty below its proven bound, say.
     pub warnings: Vec<String>,
+}
+
+impl Row {
+    /// A row without numbers, for a caller that fills them in.
+    #[must_use]
+    pub fn new(scene: &str, dimension: usize, scheme: &str, level: usize, status: Outcome) -> Self {
+        Self {
+            scene: scene.to_owned(),
+            dimension,
+            scheme: scheme.to_owned(),
+            constraint: String::new(),
+            level,
+            parameters: PenaltyParameters::default(),
+            solver: String::new(),
+            linear: String::new(),
+            cells: 0,
+            unknowns: 0,
+            nonzeros: 0,
+            mesh_size: f64::NAN,
+            status,
+            error: Errors::default(),
+            contact: ContactErrors::default(),
+            order: Orders::default(),
+            expected_order: ExpectedOrders::default(),
+            objective: None,
+            active: None,
+            iterations: Iterations::default(),
+            certificate: Certificate::INVALID,
+            seconds: Seconds::default(),
+            peak_memory_bytes: None,
+            warnings: Vec::new(),
+        }
+    }
+
+    /// Whether the solve of this row converged.
+    pub fn converged(&self) -> bool {
+        self.status == Outcome::Converged
+    }
 }

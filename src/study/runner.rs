@@ -1,30 +1,33 @@
 //! A study: schemes on a scene, level by level.
 
+use std::fmt;
 use std::path::PathBuf;
 use std::sync::Arc;
 
 use super::compatibility::{check_domain, check_fit};
-use super::memory::{estimate, estimate_without_factors, unknowns_about};
-use super::{
-    Iterations, MemoryEstimate, Orders, Program, Report, Row, Seconds, fill_orders,
-    peak_memory_bytes,
+use super::memory::{
+    MemoryEstimate, estimate, estimate_without_factors, peak_memory_bytes, unknowns_about,
 };
+use super::orders::fill_orders;
+use super::report::{Program, Report};
+use super::row::{Iterations, Row, Seconds};
 use crate::assemble::DataQuadrature;
 use crate::element::Layout;
-use crate::error::{Error, write_error};
+use crate::error::Error;
+#[cfg(feature = "report")]
+use crate::error::write_error;
 use crate::inequality::{ActiveSet, InequalitySolver};
 use crate::instances::compiled;
 use crate::mesh::{BoundaryPart, Domain, Mesh};
-#[cfg(feature = "report")]
-use crate::nested::Solved;
-use crate::nested::{Hierarchy, P1Solution, Task, solve};
+use crate::nested::{Hierarchy, P1Solution, Solved, Task, solve};
 #[cfg(feature = "report")]
 use crate::paraview::{CellFields, write_vtu};
 use crate::real::Real;
 use crate::scenes::Scene;
 use crate::scheme::{AnyScheme, ExpectedOrders, Setting};
 
-/// What a study tells whoever watches it.
+/// Progress of a study.
+#[derive(Debug)]
 pub enum Progress<'a> {
     /// A run begins: scene, scheme, level.
     Started(&'a str, &'a str, usize),
@@ -58,8 +61,22 @@ pub struct Study<'a, T: Real, const D: usize> {
     observer: Box<dyn Fn(Progress<'_>) + 'a>,
 }
 
+impl<T: Real, const D: usize> fmt::Debug for Study<'_, T, D> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let schemes: Vec<&str> = self.schemes.iter().map(|s| s.name()).collect();
+        f.debug_struct("Study")
+            .field("scene", &self.scene.name)
+            .field("schemes", &schemes)
+            .field("levels", &self.levels)
+            .field("solver", &self.solver.name())
+            .field("repeat", &self.repeat)
+            .finish_non_exhaustive()
+    }
+}
+
 impl<'a, T: Real, const D: usize> Study<'a, T, D> {
     /// A study of a scene, without schemes or levels yet.
+    #[must_use]
     pub fn new(scene: Scene<D>) -> Self {
         Self {
             scene,
@@ -74,11 +91,13 @@ impl<'a, T: Real, const D: usize> Study<'a, T, D> {
         }
     }
     /// Adds a scheme.
+    #[must_use]
     pub fn scheme(mut self, scheme: impl AnyScheme<T, D> + 'a) -> Self {
         self.schemes.push(Arc::new(scheme));
         self
     }
     /// Adds a scheme chosen at run time.
+    #[must_use]
     pub fn boxed_scheme(mut self, scheme: Box<dyn AnyScheme<T, D> + 'a>) -> Self {
         self.schemes.push(scheme.into());
         self
@@ -89,26 +108,31 @@ impl<'a, T: Real, const D: usize> Study<'a, T, D> {
         self
     }
     /// Sets the levels: subdivisions of the shortest side, or refinements of a given mesh.
+    #[must_use]
     pub fn levels(mut self, levels: impl IntoIterator<Item = usize>) -> Self {
         self.levels = levels.into_iter().collect();
         self
     }
     /// Runs on this mesh and refinements of it instead of the scene's own domain.
+    #[must_use]
     pub fn on_mesh(mut self, mesh: Mesh<T, D>) -> Self {
         self.mesh = Some(mesh);
         self
     }
     /// Sets the solver of the inequality.
+    #[must_use]
     pub fn solver(mut self, solver: impl InequalitySolver<T> + 'a) -> Self {
         self.solver = Box::new(solver);
         self
     }
     /// Sets the quadrature of data.
+    #[must_use]
     pub fn quadrature(mut self, quadrature: DataQuadrature) -> Self {
         self.quadrature = quadrature;
         self
     }
     /// Makes every time the smallest of this many runs.
+    #[must_use]
     pub fn repeat(mut self, times: usize) -> Self {
         self.repeat = times.max(1);
         self
@@ -116,17 +140,19 @@ impl<'a, T: Real, const D: usize> Study<'a, T, D> {
     /// Writes the fields of every scheme on the finest level to this directory, as
     /// `SCENE-SCHEME.vtu`.
     #[cfg(feature = "report")]
+    #[must_use]
     pub fn fields_to(mut self, directory: impl Into<PathBuf>) -> Self {
         self.directory = Some(directory.into());
         self
     }
-    /// Sets who is told of progress.
+    /// Sets a function that receives the progress of the study.
+    #[must_use]
     pub fn observer(mut self, observer: impl Fn(Progress<'_>) + 'a) -> Self {
         self.observer = Box::new(observer);
         self
     }
 
-    /// Checks what can be checked before anything is assembled.
+    /// Checks schemes, levels and mesh without assembly.
     ///
     /// # Errors
     /// [`Error::Parameter`] for an empty list of levels or schemes or a level of zero,
@@ -137,7 +163,8 @@ impl<'a, T: Real, const D: usize> Study<'a, T, D> {
         )
     }
 
-    /// Checks, and tells where the scene's exact solution fails on a given mesh.
+    /// Checks schemes, levels and mesh. Returns the point at which the exact solution of the scene
+    /// breaks the contact condition of a given mesh.
     fn where_exact_fails(&self) -> Result<Option<String>, Error> {
         let wrong = |parameter, value: &str, allowed: &str| {
             Err(Error::Parameter {
@@ -163,8 +190,8 @@ impl<'a, T: Real, const D: usize> Study<'a, T, D> {
         }
     }
 
-    /// What the largest run will need of memory, about, with factors where the solver makes them from
-    /// the start; nothing for a study without schemes or levels.
+    /// An estimate of the memory of the largest run, with factors if the solver computes them from
+    /// the start; none for a study without schemes or levels.
     pub fn memory_estimate(&self) -> Option<MemoryEstimate> {
         compiled!(T, D: fn(&Study<'_, T, D>) -> Option<MemoryEstimate> = |study| study.estimate_memory())(
             self,
@@ -194,8 +221,8 @@ impl<'a, T: Real, const D: usize> Study<'a, T, D> {
     /// Runs every scheme on every level.
     ///
     /// # Errors
-    /// Whatever is wrong with scene, mesh or parameters. A solve that does not converge is no
-    /// error: its row says why.
+    /// Errors of [`Self::check`] and of assembly. A solve that does not converge is no error: its
+    /// row has the outcome.
     pub fn run(&self) -> Result<Report, Error> {
         compiled!(T, D: fn(&Study<'_, T, D>) -> Result<Report, Error> = |study| study.run_all())(
             self,
@@ -222,8 +249,8 @@ impl<'a, T: Real, const D: usize> Study<'a, T, D> {
         Ok(Report { program, rows })
     }
 
-    /// Runs the first scheme on the first level alone, with levels of its own, so that all its work is
-    /// done now. Returns the row and the seconds of its solve that the start from coarser levels took.
+    /// Runs the first scheme on the first level with a new hierarchy, so that no earlier run
+    /// shortens it. Returns the row and the seconds of the start from coarser levels.
     #[cfg(feature = "report")]
     pub(crate) fn run_alone(&self) -> Result<(Row, f64), Error> {
         let failure = self.where_exact_fails()?;
@@ -235,7 +262,8 @@ impl<'a, T: Real, const D: usize> Study<'a, T, D> {
         self.row(&mut levels, &**scheme, level, failure.as_deref(), false)
     }
 
-    /// A row, and the seconds of its start from coarser levels.
+    /// Solves one scheme on one level. Returns the row, and the seconds of its start from coarser
+    /// levels.
     fn row(
         &self,
         levels: &mut Hierarchy<'_, T, D>,
@@ -262,27 +290,32 @@ impl<'a, T: Real, const D: usize> Study<'a, T, D> {
         if let (Some(directory), Some(_)) = (&self.directory, &solved.fields) {
             self.write_fields(directory, scheme, mesh, &solved)?;
         }
-        let mut warnings = solved.warnings.clone();
-        if let Some(at) = failure {
-            warnings.push(format!(
-                "the scene's solution breaks the contact condition of this mesh at {at}: no errors"
-            ));
-        }
         let coarser = start.as_ref().map_or(0, |s| s.levels_solved);
         let start_seconds = start.as_ref().map_or(0.0, |s| s.seconds);
         let solve_seconds = solved.solve_seconds + start_seconds;
-        let seconds = Seconds {
-            mesh: mesh_seconds,
-            assemble: solved.assemble_seconds,
-            solve: solve_seconds,
-            total: mesh_seconds + solved.assemble_seconds + solve_seconds,
-        };
-        let row = Row {
-            scene: self.scene.name.clone(),
-            dimension: D,
-            scheme: scheme.name().to_owned(),
+        let mut row = self.row_of(scheme, level, mesh, solved);
+        row.iterations.levels =
+            coarser.saturating_sub(usize::from(!scheme.is_conforming_linear(mesh)));
+        row.expected_order = self.expected_orders(scheme, failure);
+        row.warnings.extend(failure.map(|at| {
+            format!(
+                "the scene's solution breaks the contact condition of this mesh at {at}: no errors"
+            )
+        }));
+        row.seconds = Seconds::new(mesh_seconds, row.seconds.assemble, solve_seconds);
+        Ok((row, start_seconds))
+    }
+
+    /// The row of a solve by itself, without its start, its mesh's time and expected orders.
+    fn row_of(
+        &self,
+        scheme: &dyn AnyScheme<T, D>,
+        level: usize,
+        mesh: &Mesh<T, D>,
+        solved: Solved,
+    ) -> Row {
+        Row {
             constraint: scheme.constraint().to_owned(),
-            level,
             parameters: solved.parameters,
             solver: self.solver.name().to_owned(),
             linear: solved.linear_solver.to_owned(),
@@ -290,34 +323,33 @@ impl<'a, T: Real, const D: usize> Study<'a, T, D> {
             unknowns: solved.unknowns,
             nonzeros: solved.nonzeros,
             mesh_size: mesh.mesh_size(),
-            status: solved.outcome.name().to_owned(),
             error: solved.error,
             contact: solved.contact,
-            order: Orders::default(),
-            expected_order: match failure {
-                // without an exact solution there is no error that could keep a promise
-                None if self.scene.problem.exact.is_some() => {
-                    scheme.expected_orders(&self.setting())
-                }
-                _ => ExpectedOrders::default(),
-            },
             objective: solved.objective,
             active: solved.active,
-            iterations: Iterations {
-                outer: solved.outer,
-                linear: solved.linear,
-                levels: coarser.saturating_sub(usize::from(!scheme.is_conforming_linear(mesh))),
-            },
+            iterations: Iterations { outer: solved.outer, linear: solved.linear, levels: 0 },
             certificate: solved.certificate,
-            seconds,
+            seconds: Seconds::new(0.0, solved.assemble_seconds, solved.solve_seconds),
             peak_memory_bytes: peak_memory_bytes(),
-            warnings,
-        };
-        Ok((row, start_seconds))
+            warnings: solved.warnings,
+            ..Row::new(&self.scene.name, D, scheme.name(), level, solved.outcome)
+        }
     }
 
-    /// What a scheme starts from: P1 on the coarser level for P1 itself, P1 on the same level for
-    /// all others.
+    /// The orders that theory proves; none without an exact solution that holds on the mesh.
+    fn expected_orders(
+        &self,
+        scheme: &dyn AnyScheme<T, D>,
+        failure: Option<&str>,
+    ) -> ExpectedOrders {
+        match (failure, &self.scene.problem.exact) {
+            (None, Some(_)) => scheme.expected_orders(&self.setting()),
+            _ => ExpectedOrders::default(),
+        }
+    }
+
+    /// The initial guess: P1 on the coarser level for P1, P1 on the same level for all other
+    /// schemes.
     fn start(
         &self,
         levels: &mut Hierarchy<'_, T, D>,
@@ -337,7 +369,7 @@ impl<'a, T: Real, const D: usize> Study<'a, T, D> {
         }
     }
 
-    /// What promises of orders may depend on.
+    /// The assumptions of the proofs of orders.
     fn setting(&self) -> Setting {
         let problem = &self.scene.problem;
         let domain = &self.scene.domain;

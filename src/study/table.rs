@@ -4,7 +4,7 @@ use crate::study::report::Report;
 use crate::study::row::Row;
 use std::fmt;
 
-/// What a table shows in place of a number that does not apply.
+/// The cell of a number that does not apply.
 const NONE: &str = "-";
 /// Characters in a line.
 const WIDTH: usize = 100;
@@ -18,7 +18,7 @@ impl fmt::Display for Report {
 /// Writes one table for each scene, in the order in which scenes first occur, with a blank line
 /// between schemes; times are in seconds. `certif.` is the largest of the four numbers of the
 /// certificate. A row that did not converge is followed by the reason.
-pub fn write_tables(f: &mut impl fmt::Write, rows: &[Row]) -> fmt::Result {
+fn write_tables(f: &mut impl fmt::Write, rows: &[Row]) -> fmt::Result {
     for (i, scene) in distinct(rows.iter().map(|r| r.scene.as_str())).into_iter().enumerate() {
         if i > 0 {
             writeln!(f)?;
@@ -61,7 +61,7 @@ fn write_scene(f: &mut impl fmt::Write, scene: &str, rows: &[&Row]) -> fmt::Resu
     Ok(())
 }
 
-/// What the heading says after the name of the scene: solvers, and the orders that theory promises.
+/// The heading after the name of the scene: solvers, and the orders that theory promises.
 fn heading(rows: &[&Row]) -> String {
     let solvers = distinct(rows.iter().map(|r| format!("{}/{}", r.solver, r.linear)));
     let mut text = format!("solver {}", solvers.join(", "));
@@ -114,15 +114,15 @@ fn write_wrapped(f: &mut impl fmt::Write, text: &str) -> fmt::Result {
 
 /// One column of a table.
 struct Column {
-    /// Its head.
+    /// Head of the column.
     name: &'static str,
-    /// Text stands left, numbers right.
+    /// Whether cells are aligned to the left, as texts are; numbers are aligned to the right.
     left: bool,
-    /// What it shows of a row.
+    /// The cell of a row.
     cell: fn(&Row) -> String,
 }
 
-/// The columns that have something to tell about these rows.
+/// The columns that are not empty for these rows.
 fn columns(rows: &[&Row]) -> Vec<Column> {
     let text = |name, cell| Column { name, left: true, cell };
     let number = |name, cell| Column { name, left: false, cell };
@@ -149,7 +149,7 @@ fn columns(rows: &[&Row]) -> Vec<Column> {
     columns.push(number("active", |r| whole(r.active)));
     columns.push(number("certif.", |r| {
         let c = &r.certificate;
-        // The largest, where NaN counts as larger than anything: it must not hide.
+        // the largest violation, where NaN counts as larger than any number
         let all = [c.feasibility, c.multiplier, c.complementarity, c.residual];
         let worse = |a: f64, b: f64| if a.is_nan() || a > b { a } else { b };
         scientific(Some(all.into_iter().fold(0.0, worse)))

@@ -1,4 +1,4 @@
-//! What changed since an earlier report: counts exactly, errors to rounding, times not at all.
+//! Comparison with an earlier report: counts exactly, errors to rounding, times not at all.
 
 use std::fmt;
 
@@ -8,9 +8,9 @@ use super::report::WorkReport;
 use crate::error::Error;
 use crate::real::Real;
 
-/// What identifies a row.
+/// Keys that identify a row.
 const KEYS: [&str; 6] = ["scene", "scheme", "constraint", "linear_asked", "precision", "level"];
-/// What must be the same to the last digit.
+/// Keys whose values must agree exactly.
 const COUNTS: [&str; 8] = [
     "/status",
     "/linear",
@@ -21,14 +21,15 @@ const COUNTS: [&str; 8] = [
     "/iterations/outer",
     "/iterations/linear",
 ];
-/// What must be the same to rounding.
+/// Keys whose values must agree to rounding.
 const NUMBERS: [&str; 4] = ["/error/l2", "/error/h1", "/error/energy", "/error/max"];
 
 /// How many rows without a counterpart are named when changes are printed.
 const FIRST: usize = 5;
 
-/// What changed against a baseline.
+/// Changes against a baseline.
 #[derive(Clone, Debug, Default, PartialEq)]
+#[non_exhaustive]
 pub struct Changes {
     /// One line for every number that changed.
     pub changed: Vec<String>,
@@ -86,7 +87,7 @@ pub fn changes(baseline: &str, report: &WorkReport) -> Result<Changes, Error> {
     Ok(changes)
 }
 
-/// What a row is called.
+/// The name of a row.
 fn name(row: &Value) -> String {
     let part = |key: &str| match &row[key] {
         Value::String(text) => text.clone(),

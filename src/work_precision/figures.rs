@@ -1,13 +1,13 @@
 //! Errors against what they cost, drawn.
 
-use super::reach::curves;
-use super::report::WorkReport;
+use super::measured::{Measured, variants};
+use super::work_at_error::curves;
 use crate::plot::{Cost, Figure, NamedCurve, cost_figure};
 
 /// The figures `SCENE-time`, `SCENE-unknowns` and `SCENE-memory` of a scene.
-pub(crate) fn figures(report: &WorkReport, scene: &str) -> Vec<(String, Figure)> {
-    let variants = report.variants();
-    let curves: Vec<NamedCurve<'_>> = curves(&report.rows, scene)
+pub(crate) fn figures(rows: &[Measured], scene: &str) -> Vec<(String, Figure)> {
+    let variants = variants(rows);
+    let curves: Vec<NamedCurve<'_>> = curves(rows, scene)
         .into_iter()
         .map(|(variant, levels)| NamedCurve {
             label: variant.label(&variants),

@@ -1,10 +1,11 @@
-//! What was measured: rows with the times of several runs, and what could not be run.
+//! Measured rows with the times of several runs, and failures.
 
 use serde::Serialize;
 
+use crate::study::table::distinct;
 use crate::study::{Row, Seconds};
 
-/// A scheme on a scene with everything it runs with: one curve of a plot.
+/// A scheme on a scene with constraint set, linear solver and scalar: one curve of a plot.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct Variant {
     /// Name of the scene.
@@ -19,7 +20,7 @@ pub struct Variant {
     pub precision: String,
 }
 
-/// A variant on a level: what is run as a whole.
+/// A variant on a level: the unit of a run.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct Case {
     /// The variant.
@@ -51,7 +52,7 @@ impl Phases {
         Phases { mesh, assemble, coarse, solve: solve - coarse, total }
     }
 
-    /// The same as a row states them, where the start counts as part of the solve.
+    /// The times as a row states them, with the start as a part of the solve.
     fn seconds(&self) -> Seconds {
         let Phases { mesh, assemble, coarse, solve, total } = *self;
         Seconds { mesh, assemble, solve: solve + coarse, total }
@@ -68,7 +69,7 @@ pub struct Measured {
     pub precision: String,
     /// The linear solver asked for; `linear` is the one that was used.
     pub linear_asked: String,
-    /// How many runs there were so far.
+    /// Number of runs so far.
     pub runs: usize,
     /// The run with the smallest total.
     pub smallest: Phases,
@@ -79,7 +80,7 @@ pub struct Measured {
 }
 
 impl Measured {
-    /// What a first run found.
+    /// The result of a first run.
     pub fn new(row: Row, phases: Phases, case: &Case) -> Self {
         Measured {
             row,
@@ -94,7 +95,7 @@ impl Measured {
 
     /// Adds a further run. Times may differ, counts may not: if they do, a warning says so.
     pub fn add(&mut self, again: &Row, phases: Phases) {
-        let counts = |r: &Row| (r.status.clone(), r.unknowns, r.nonzeros, r.iterations, r.active);
+        let counts = |r: &Row| (r.status, r.unknowns, r.nonzeros, r.iterations, r.active);
         if counts(again) != counts(&self.row) {
             let warning = "status or counts differ between runs";
             if !self.row.warnings.iter().any(|w| w == warning) {
@@ -130,18 +131,28 @@ impl Measured {
     }
 }
 
-/// A case that gave no solution, and why.
+/// A case without a solution, and the reason.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+#[non_exhaustive]
 pub struct Failure {
     /// The case.
     #[serde(flatten)]
     pub case: Case,
-    /// The status of its row, or why it was not run at all.
+    /// The outcome of the solve, or the reason for which the case was not run.
     pub why: String,
 }
 
+impl Failure {
+    /// A case that failed for this reason.
+    #[must_use]
+    pub fn new(case: Case, why: &str) -> Self {
+        Self { case, why: why.to_owned() }
+    }
+}
+
 impl Variant {
-    /// What tells it from the others of a report: the scheme and whatever else varies among them.
+    /// A label that distinguishes the variant from the others of a report: the scheme, and the
+    /// parts that vary among them.
     pub fn label(&self, all: &[Variant]) -> String {
         let varies = |part: fn(&Variant) -> &str| all.iter().any(|v| part(v) != part(self));
         let mut label = self.scheme.clone();
@@ -157,4 +168,15 @@ impl Variant {
         }
         label
     }
+}
+
+/// The scenes of rows and failures, in the order in which they first occur.
+pub(crate) fn scenes<'a>(rows: &'a [Measured], failures: &'a [Failure]) -> Vec<&'a str> {
+    let of_rows = rows.iter().map(|m| m.row.scene.as_str());
+    distinct(of_rows.chain(failures.iter().map(|f| f.case.variant.scene.as_str())))
+}
+
+/// The variants of rows, in the order in which they first occur.
+pub(crate) fn variants(rows: &[Measured]) -> Vec<Variant> {
+    distinct(rows.iter().map(Measured::variant))
 }

@@ -5,23 +5,18 @@ mod case;
 #[cfg(feature = "plot")]
 mod figures;
 mod measured;
-mod provenance;
-mod reach;
 mod report;
-mod table;
 mod tables;
 mod verdict;
+mod work_at_error;
 
 pub use baseline::{Changes, changes};
 pub use case::Precision;
 pub use measured::{Case, Failure, Measured, Phases, Variant};
-pub use provenance::Provenance;
-pub use reach::{ErrorNorm, Reach, WorkPoint, work_at};
 pub use report::WorkReport;
-pub(crate) use report::replace;
-pub use table::Table;
-pub(crate) use table::{Cell, latex, markdown};
+pub use work_at_error::{WorkAtError, WorkPoint, work_at};
 
+use std::fmt;
 use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
@@ -39,21 +34,22 @@ use case::{Candidate, OneStudy};
 /// How long finished rows of a round may wait to be written.
 const PATIENCE: Duration = Duration::from_secs(1);
 
-/// What a study tells whoever watches it.
+/// Progress of a study.
+#[derive(Debug)]
 pub enum WorkProgress<'a> {
-    /// This many runs will follow, unless some turn out to take too long.
+    /// The number of runs that follow, fewer if some exceed the time limit.
     Planned(usize),
     /// A run begins, in this round from 0.
     Started(&'a Case, usize),
-    /// It ended, or was not needed.
+    /// The run ended, or was not needed.
     Finished,
 }
 
 /// A study of work against precision on one scene.
 ///
-/// In every round each case runs once, with nothing known from other runs: what its mesh and its
-/// start from coarser levels cost is its own. Rounds go forth and back through the cases, so that
-/// drift of the machine hits all alike. Before the first one every variant runs once unmeasured.
+/// In every round each case runs once and reuses nothing of other runs: its time includes its mesh
+/// and its start from coarser levels. Rounds alternate in direction, so that drift of the machine
+/// affects all cases equally. Before the first one every variant runs once unmeasured.
 ///
 /// ```
 /// use unilateral::prelude::*;
@@ -85,10 +81,10 @@ pub struct WorkPrecision<'a, const D: usize> {
     observer: Box<dyn Fn(WorkProgress<'_>) + 'a>,
 }
 
-/// Tells the peak of memory of a case.
+/// Measures the peak of memory of a case.
 type MemoryOf<'a> = Box<dyn Fn(&Case) -> Option<u64> + 'a>;
 
-/// A case, what runs it, and what it gave so far.
+/// A case, its study, and its results so far.
 struct Slot<'s, const D: usize> {
     case: Case,
     study: OneStudy<'s, D>,
@@ -98,8 +94,23 @@ struct Slot<'s, const D: usize> {
     failure: Option<Failure>,
 }
 
+impl<const D: usize> fmt::Debug for WorkPrecision<'_, D> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("WorkPrecision")
+            .field("linear", &self.linear)
+            .field("precisions", &self.precisions)
+            .field("levels", &self.levels)
+            .field("rounds", &self.rounds)
+            .field("limit", &self.limit)
+            .field("subject", &self.subject)
+            .field("directory", &self.directory)
+            .finish_non_exhaustive()
+    }
+}
+
 impl<'a, const D: usize> WorkPrecision<'a, D> {
     /// A study of the scene this makes, without schemes or levels yet.
+    #[must_use]
     pub fn new(scene: impl Fn() -> Scene<D> + 'a) -> Self {
         Self {
             scene: Box::new(scene),
@@ -116,26 +127,31 @@ impl<'a, const D: usize> WorkPrecision<'a, D> {
         }
     }
     /// Adds a scheme.
+    #[must_use]
     pub fn scheme(mut self, scheme: impl AnyScheme<f64, D> + AnyScheme<f32, D> + 'a) -> Self {
         self.candidates.push(Some(Candidate::new(scheme)));
         self
     }
     /// Adds a scheme by its name; a name that no scheme has is an error of the run.
+    #[must_use]
     pub fn scheme_by_name(mut self, name: &str, options: &SchemeOptions) -> Self {
         self.candidates.push(Candidate::by_name(name, options));
         self
     }
     /// Sets the linear solvers inside the active-set method; one chosen by size otherwise.
+    #[must_use]
     pub fn linear(mut self, linear: impl IntoIterator<Item = LinearMethod>) -> Self {
         self.linear = linear.into_iter().collect();
         self
     }
     /// Sets the scalars; `f64` otherwise.
+    #[must_use]
     pub fn precisions(mut self, precisions: impl IntoIterator<Item = Precision>) -> Self {
         self.precisions = precisions.into_iter().collect();
         self
     }
     /// Sets the levels: subdivisions of the shortest side.
+    #[must_use]
     pub fn levels(mut self, levels: impl IntoIterator<Item = usize>) -> Self {
         self.levels = levels.into_iter().collect();
         self.levels.sort_unstable();
@@ -143,33 +159,39 @@ impl<'a, const D: usize> WorkPrecision<'a, D> {
         self
     }
     /// Sets how often each case runs, at least once; three times otherwise.
+    #[must_use]
     pub fn rounds(mut self, rounds: usize) -> Self {
         self.rounds = rounds.max(1);
         self
     }
     /// A run that took longer than this many seconds is not repeated, and no finer level of its
     /// variant is tried: that is listed among the failures.
+    #[must_use]
     pub fn limit(mut self, seconds: f64) -> Self {
         self.limit = seconds;
         self
     }
-    /// Names the scheme of which the verdict speaks; the fastest otherwise.
+    /// Sets the scheme that verdicts compare with the others; the fastest one by default.
+    #[must_use]
     pub fn subject(mut self, scheme: &str) -> Self {
         self.subject = scheme.to_owned();
         self
     }
     /// Writes the report to this directory after every round, and within one every second.
+    #[must_use]
     pub fn write_to(mut self, directory: impl Into<PathBuf>) -> Self {
         self.directory = Some(directory.into());
         self
     }
-    /// Sets who tells the peak of memory of a case, asked once for each. Otherwise it is that of
-    /// this process while the case ran, with all that the process holds besides.
+    /// Sets a function that measures the peak of memory of a case; it is called once for each case.
+    /// The default is the peak of this process during the run, with all its other memory.
+    #[must_use]
     pub fn memory(mut self, memory: impl Fn(&Case) -> Option<u64> + 'a) -> Self {
         self.memory = Some(Box::new(memory));
         self
     }
-    /// Sets who is told of progress.
+    /// Sets a function that receives the progress of the study.
+    #[must_use]
     pub fn observer(mut self, observer: impl Fn(WorkProgress<'_>) + 'a) -> Self {
         self.observer = Box::new(observer);
         self
@@ -178,9 +200,9 @@ impl<'a, const D: usize> WorkPrecision<'a, D> {
     /// Runs everything.
     ///
     /// # Errors
-    /// What is wrong with the request, before anything runs: see [`Study::check`]; besides
-    /// [`Error::Parameter`] for an unknown scheme and for two that cannot be told apart. An
-    /// [`Error::Write`] ends the study. A case that fails is no error: it is listed.
+    /// The errors of [`Study::check`], before anything runs; [`Error::Parameter`] for an unknown
+    /// scheme and for two schemes of one name. An [`Error::Write`] ends the study. A case that
+    /// fails is no error: the report lists it.
     pub fn run(&self) -> Result<WorkReport, Error> {
         let mut report = WorkReport::new("work-precision", self.rounds);
         self.run_into(&mut report)?;
@@ -191,8 +213,8 @@ impl<'a, const D: usize> WorkPrecision<'a, D> {
         Ok(report)
     }
 
-    /// Runs everything, adds it to a report of other scenes and draws its figures. That the report is complete is for
-    /// the caller to say.
+    /// Runs everything, adds it to a report of other scenes and draws its figures. That the report
+    /// is complete is for the caller to say.
     ///
     /// # Errors
     /// Those of [`Self::run`].
@@ -256,13 +278,13 @@ impl<'a, const D: usize> WorkPrecision<'a, D> {
         if round == 0
             && let Some(why) = self.obstacle_to(slots, k)
         {
-            slots[k].failure = Some(Failure { case: slots[k].case.clone(), why });
+            slots[k].failure = Some(Failure::new(slots[k].case.clone(), &why));
             return;
         }
         let slot = &mut slots[k];
         match slot.study.run() {
             Err(e) => {
-                slot.failure = Some(Failure { case: slot.case.clone(), why: e.to_string() });
+                slot.failure = Some(Failure::new(slot.case.clone(), &e.to_string()));
             }
             Ok((mut row, phases)) => {
                 if let Some(memory) = &self.memory {
@@ -277,7 +299,7 @@ impl<'a, const D: usize> WorkPrecision<'a, D> {
         }
     }
 
-    /// Why a case is not worth trying.
+    /// The reason for which a case is not run.
     fn obstacle_to(&self, slots: &[Slot<'_, D>], k: usize) -> Option<String> {
         if let Some(coarser) = slots[k].coarser.map(|c| &slots[c]) {
             let level = coarser.case.level;
@@ -296,7 +318,7 @@ impl<'a, const D: usize> WorkPrecision<'a, D> {
         })
     }
 
-    /// Puts what there is into the report, behind the rows of other scenes, and writes it.
+    /// Puts the results so far into the report, after the rows of other scenes, and writes it.
     fn save(
         &self,
         report: &mut WorkReport,
@@ -387,7 +409,7 @@ impl<'a, const D: usize> WorkPrecision<'a, D> {
     }
 }
 
-/// A request that makes no sense.
+/// The error of an invalid request.
 fn wrong(parameter: &'static str, value: String, allowed: &str) -> Error {
     Error::Parameter { parameter, value, allowed: allowed.to_owned() }
 }

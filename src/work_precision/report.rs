@@ -5,32 +5,30 @@ use std::path::{Path, PathBuf};
 
 use serde_json::json;
 
-use super::Table;
 #[cfg(feature = "plot")]
 use super::figures::figures;
-use super::measured::{Failure, Measured, Variant};
-use super::provenance::Provenance;
-use super::reach::{Reach, reach};
+use super::measured::{Failure, Measured, Variant, scenes, variants};
 use super::tables::tables;
 use super::verdict::verdict;
+use super::work_at_error::{WorkAtError, work_at_errors};
 use crate::error::Error;
-use crate::error::write_error;
-use crate::output::csv;
-use crate::study::table::distinct;
+use crate::output::table::{latex, markdown};
+use crate::output::{Provenance, Table, csv, replace};
 use crate::study::{Program, Row};
 
-/// All that was measured, on any number of scenes.
+/// The results of a work-precision study on any number of scenes.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct WorkReport {
     /// The program; `precision` lists all scalars, `repeat` is the number of rounds.
     pub program: Program,
-    /// Where and when.
+    /// Time and machine.
     pub provenance: Provenance,
-    /// The scheme of which verdicts speak.
+    /// The scheme that verdicts compare with the others.
     pub subject: String,
     /// One row for every scene, variant and level that gave one.
     pub rows: Vec<Measured>,
-    /// What was not run, or ended in an error.
+    /// Cases that were not run or ended in an error.
     pub refused: Vec<Failure>,
 }
 
@@ -46,9 +44,9 @@ impl WorkReport {
         }
     }
 
-    /// What it takes to reach given errors.
-    pub fn reach(&self) -> Vec<Reach> {
-        reach(&self.rows)
+    /// Time, unknowns and memory at given errors.
+    pub fn reach(&self) -> Vec<WorkAtError> {
+        work_at_errors(&self.rows)
     }
 
     /// One sentence for every scene whose errors are known.
@@ -60,20 +58,18 @@ impl WorkReport {
     /// Every case without a solution: what did not converge first, then what was not run.
     pub fn failures(&self) -> Vec<Failure> {
         let failed = self.rows.iter().filter(|m| !m.row.converged());
-        let failed = failed.map(|m| Failure { case: m.case(), why: m.row.status.clone() });
+        let failed = failed.map(|m| Failure::new(m.case(), m.row.status.name()));
         failed.chain(self.refused.iter().cloned()).collect()
     }
 
     /// The scenes in the order run.
     pub fn scenes(&self) -> Vec<&str> {
-        let rows = self.rows.iter().map(|m| m.row.scene.as_str());
-        let refused = self.refused.iter().map(|f| f.case.variant.scene.as_str());
-        distinct(rows.chain(refused))
+        scenes(&self.rows, &self.refused)
     }
 
     /// The variants in the order run.
     pub fn variants(&self) -> Vec<Variant> {
-        distinct(self.rows.iter().map(Measured::variant))
+        variants(&self.rows)
     }
 
     /// The rows alone.
@@ -83,11 +79,11 @@ impl WorkReport {
 
     /// All tables, scene by scene.
     pub fn tables(&self) -> Vec<Table> {
-        tables(self)
+        tables(&self.rows, &self.failures(), &self.reach())
     }
 
-    /// The report as JSON: `program`, `provenance`, `rows`, `failures`, `reach` and `verdicts`. What
-    /// does not apply is null.
+    /// The report as JSON: `program`, `provenance`, `rows`, `failures`, `reach` and `verdicts`.
+    /// What does not apply is null.
     pub fn to_json(&self) -> String {
         let value = json!({
             "program": self.program,
@@ -115,20 +111,15 @@ impl WorkReport {
         self.document(Table::to_text, |line| format!("{line}\n"))
     }
 
-    /// The same in Markdown.
+    /// Tables, provenance and verdicts in Markdown.
     pub fn to_markdown(&self) -> String {
-        self.document(Table::to_markdown, |line| {
-            format!("{}\n\n", crate::work_precision::table::markdown(line))
-        })
+        self.document(Table::to_markdown, |line| format!("{}\n\n", markdown(line)))
     }
 
-    /// The same in LaTeX, for `\input`; it needs the package `booktabs`.
+    /// Tables, provenance and verdicts in LaTeX, for `\input`; it needs the package `booktabs`.
     pub fn to_latex(&self) -> String {
         let text = self.document(Table::to_latex, |line| {
-            format!(
-                "{{\\raggedright\\noindent {}\\par}}\n",
-                crate::work_precision::table::latex(line)
-            )
+            format!("{{\\raggedright\\noindent {}\\par}}\n", latex(line))
         });
         format!("% needs \\usepackage{{booktabs}}\n{text}")
     }
@@ -188,7 +179,7 @@ impl WorkReport {
     #[cfg(feature = "plot")]
     pub fn write_figures(&self, directory: &Path, scene: &str) -> Result<Vec<PathBuf>, Error> {
         let mut written = Vec::new();
-        for (name, figure) in figures(self, scene) {
+        for (name, figure) in figures(&self.rows, scene) {
             let svg = directory.join(format!("{name}.svg"));
             written.push(replace(&svg, |path| {
                 fs::write(path, figure.to_svg()?).map_err(|e| e.to_string())
@@ -216,19 +207,4 @@ impl WorkReport {
         }
         Ok(written)
     }
-}
-
-/// Writes a file beside its place and moves it there when it is whole.
-pub(crate) fn replace(
-    path: &Path,
-    write: impl FnOnce(&Path) -> Result<(), String>,
-) -> Result<PathBuf, Error> {
-    let directory = path.parent().unwrap_or(Path::new("."));
-    fs::create_dir_all(directory).map_err(|e| write_error(directory, e))?;
-    // the ending stays, for it tells writers of pictures the format
-    let name = path.file_name().map(|n| n.to_string_lossy().into_owned()).unwrap_or_default();
-    let draft = directory.join(format!(".{}-{name}", std::process::id()));
-    write(&draft).map_err(|why| write_error(path, why))?;
-    fs::rename(&draft, path).map_err(|e| write_error(path, e))?;
-    Ok(path.to_owned())
 }

@@ -1,27 +1,27 @@
 //! The tables of a report: for every scene what was run, where the time went, and what it takes to
 //! reach given errors.
 
-use super::measured::{Measured, Phases, Variant};
-use super::reach::{ErrorNorm, Reach};
-use super::report::WorkReport;
-use super::table::{Cell, Table};
+use super::measured::{Failure, Measured, Phases, Variant, scenes, variants};
+use super::work_at_error::WorkAtError;
+use crate::measure::ErrorNorm;
+use crate::output::Table;
+use crate::output::table::Cell;
 use crate::study::table::distinct;
 
 /// Columns of errors that fit into a line.
 const MOST_ERRORS: usize = 5;
 
 /// All tables, scene by scene.
-pub(crate) fn tables(report: &WorkReport) -> Vec<Table> {
-    let variants = report.variants();
-    let reach = report.reach();
+pub(crate) fn tables(all: &[Measured], failures: &[Failure], reach: &[WorkAtError]) -> Vec<Table> {
+    let variants = variants(all);
     let mut tables = Vec::new();
-    for scene in report.scenes() {
-        let rows: Vec<&Measured> = report.rows.iter().filter(|m| m.row.scene == scene).collect();
-        tables.push(runs(report, scene, &rows, &variants));
+    for scene in scenes(all, failures) {
+        let rows: Vec<&Measured> = all.iter().filter(|m| m.row.scene == scene).collect();
+        tables.push(runs(failures, scene, &rows, &variants));
         tables.push(phases(scene, &rows, &variants));
         for norm in ErrorNorm::ALL {
-            let here = |r: &&Reach| r.variant.scene == scene && r.norm == norm;
-            let reach: Vec<&Reach> = reach.iter().filter(here).collect();
+            let here = |r: &&WorkAtError| r.variant.scene == scene && r.norm == norm;
+            let reach: Vec<&WorkAtError> = reach.iter().filter(here).collect();
             if !reach.is_empty() {
                 tables.push(times(scene, norm, &reach, &variants));
             }
@@ -35,7 +35,7 @@ fn head(names: &[&str]) -> Vec<String> {
 }
 
 /// Counts, errors, time and memory of every case, failures below.
-fn runs(report: &WorkReport, scene: &str, rows: &[&Measured], variants: &[Variant]) -> Table {
+fn runs(failures: &[Failure], scene: &str, rows: &[&Measured], variants: &[Variant]) -> Table {
     let line = |m: &&Measured| {
         let row = &m.row;
         let c = &row.certificate;
@@ -57,7 +57,7 @@ fn runs(report: &WorkReport, scene: &str, rows: &[&Measured], variants: &[Varian
                 .map_or(Cell::Nothing, |b| Cell::Number(format!("{:.0}", b as f64 / 1e6), None)),
         ]
     };
-    let failures = report.failures().into_iter().filter(|f| f.case.variant.scene == scene);
+    let failures = failures.iter().filter(|f| f.case.variant.scene == scene);
     Table {
         title: format!("{scene}: runs"),
         columns: head(&[
@@ -100,7 +100,7 @@ fn phases(scene: &str, rows: &[&Measured], variants: &[Variant]) -> Table {
 }
 
 /// Times to reach errors, with the ratio to the fastest.
-fn times(scene: &str, norm: ErrorNorm, reach: &[&Reach], variants: &[Variant]) -> Table {
+fn times(scene: &str, norm: ErrorNorm, reach: &[&WorkAtError], variants: &[Variant]) -> Table {
     let errors = distinct(reach.iter().map(|r| r.error));
     // the smallest is what matters most, the others as evenly as it goes
     let n = errors.len().min(MOST_ERRORS);

@@ -1,13 +1,14 @@
 //! One sentence for a scene, made from the figures.
 
 use super::measured::Variant;
-use super::reach::{ErrorNorm, Reach};
+use super::work_at_error::WorkAtError;
+use crate::measure::ErrorNorm;
 
 /// What the figures say of a scene: at the smallest error in L2 that the most variants reach, how
 /// many times the time of each other one the subject takes. The subject is the first variant of
 /// the named scheme that gets there, otherwise the fastest. Nothing without errors in L2.
-pub(crate) fn verdict(reach: &[Reach], scene: &str, subject: &str) -> Option<String> {
-    let of_scene: Vec<&Reach> =
+pub(crate) fn verdict(reach: &[WorkAtError], scene: &str, subject: &str) -> Option<String> {
+    let of_scene: Vec<&WorkAtError> =
         reach.iter().filter(|r| r.variant.scene == scene && r.norm == ErrorNorm::L2).collect();
     let variants: Vec<Variant> = of_scene.iter().map(|r| r.variant.clone()).collect();
     let reached =
@@ -15,8 +16,8 @@ pub(crate) fn verdict(reach: &[Reach], scene: &str, subject: &str) -> Option<Str
     let most = of_scene.iter().map(|r| reached(r.error)).max()?;
     let errors = of_scene.iter().map(|r| r.error).filter(|&e| reached(e) == most);
     let error = errors.fold(f64::INFINITY, f64::min);
-    let here: Vec<&Reach> = of_scene.into_iter().filter(|r| r.error == error).collect();
-    let (there, missing): (Vec<&Reach>, Vec<&Reach>) =
+    let here: Vec<&WorkAtError> = of_scene.into_iter().filter(|r| r.error == error).collect();
+    let (there, missing): (Vec<&WorkAtError>, Vec<&WorkAtError>) =
         here.into_iter().partition(|r| r.seconds.is_some());
     let fastest = || there.iter().find(|r| r.ratio == Some(1.0));
     let named = there.iter().find(|r| r.variant.scheme == subject);

@@ -109,7 +109,7 @@ fn level_counts<const D: usize>(
 ) -> Vec<Row> {
     let found = rows(scenes::radial, scheme, levels, LinearMethod::Iterative);
     for row in &found {
-        assert_eq!((&*row.status, &*row.linear), ("converged", "auxiliary-space"));
+        assert_eq!((row.status, &*row.linear), (Outcome::Converged, "auxiliary-space"));
         assert!(row.certificate.largest() <= 1e-9, "{:?}", row.certificate);
         assert!(row.certificate.algebraic_bound.unwrap() <= 1e-9, "{:?}", row.certificate);
         assert!(row.iterations.linear <= most, "{} inner", row.iterations.linear);

@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use unilateral::measure::{Fields, FoundContact};
+use unilateral::measure::Fields;
 use unilateral::mesh::BoxDomain;
 use unilateral::mesh::{BoundaryPart, Mesh};
 use unilateral::paraview::{CellFields, write_pvd, write_vtu};
@@ -38,7 +38,9 @@ fn cube<const D: usize>(n: usize) -> Mesh<f64, D> {
 
 /// A function with these values on the cells of a mesh.
 fn function<const D: usize>(mesh: &Mesh<f64, D>, value: impl Fn(usize) -> f64) -> Fields {
-    Fields { u: (0..mesh.cells().len()).map(value).collect(), ..Fields::default() }
+    let mut fields = Fields::default();
+    fields.u = (0..mesh.cells().len()).map(value).collect();
+    fields
 }
 
 fn volume<const D: usize>(mesh: &Mesh<f64, D>, cells: &[usize]) -> f64 {
@@ -82,7 +84,7 @@ fn areas(svg: &str) -> Vec<(String, f64)> {
 fn the_area_painted_is_that_of_the_cells_in_contact() {
     let scene = scenes::radial::<2>(1.0);
     let (picture, mesh, fields) = picture(&scene, &Wopsip::default(), 16);
-    let contact = volume(&mesh, &fields.found.cells);
+    let contact = volume(&mesh, &fields.discrete_contact.cells);
     // near that of the unit disc, which is the exact set
     assert!((contact - std::f64::consts::PI).abs() < 0.4, "{contact}");
     assert!((picture.contact_measure() - contact).abs() < 1e-12);
@@ -143,7 +145,7 @@ fn jumps_are_drawn_as_they_are() {
 fn slices_of_a_cube_have_area_one_and_volumes_are_kept() {
     let mesh = cube::<3>(2);
     let mut fields = function(&mesh, |k| k as f64);
-    fields.found.cells = (0..mesh.n_cells()).step_by(3).collect();
+    fields.discrete_contact.cells = (0..mesh.n_cells()).step_by(3).collect();
     let problem = Problem::<3>::new();
     let of = |axis: usize, at: f64| {
         Picture::of("slice", &problem, &mesh, &fields, Some(Slice { axis, at })).unwrap()
@@ -158,7 +160,10 @@ fn slices_of_a_cube_have_area_one_and_volumes_are_kept() {
         let shift = 0.25 / 3.0_f64.sqrt();
         let heights = [0.25 - shift, 0.25 + shift, 0.75 - shift, 0.75 + shift];
         let sum: f64 = heights.iter().map(|&at| 0.25 * of(axis, at).contact_measure()).sum();
-        assert!((sum - volume(&mesh, &fields.found.cells)).abs() < 1e-12, "{axis}: {sum}");
+        assert!(
+            (sum - volume(&mesh, &fields.discrete_contact.cells)).abs() < 1e-12,
+            "{axis}: {sum}"
+        );
     }
 }
 
@@ -166,7 +171,7 @@ fn slices_of_a_cube_have_area_one_and_volumes_are_kept() {
 fn contact_in_space_is_seen_on_its_own_boundary() {
     let scene = scenes::signorini_line_3d();
     let (picture, mesh, fields) = picture(&scene, &ConformingP1, 4);
-    let facets = fields.found.facets.iter();
+    let facets = fields.discrete_contact.facets.iter();
     let area: f64 = facets.map(|&(cell, k)| mesh.geometry(cell).facet_measure(k)).sum();
     assert!(area > 1.0, "{area}");
     assert!((picture.contact_measure() - area).abs() < 1e-12);
@@ -178,7 +183,8 @@ fn density_and_midpoints_are_those_of_the_solution() {
     let scene = scenes::radial::<2>(1.0);
     let (_, mesh, fields) = picture(&scene, &ConformingP1, 16);
     let inside = |x: &Point<f64, 2>| x.norm() < 0.6;
-    let density = fields.found.density.iter().zip(mesh.vertices()).filter(|(_, x)| inside(x));
+    let density =
+        fields.discrete_contact.density.iter().zip(mesh.vertices()).filter(|(_, x)| inside(x));
     let density: Vec<f64> = density.map(|(d, _)| d.unwrap()).collect();
     assert!(density.len() > 20);
     // the load alone holds the membrane down there
@@ -201,7 +207,7 @@ fn density_and_midpoints_are_those_of_the_solution() {
 fn a_string_is_drawn_as_a_curve_over_its_obstacle() {
     let (picture, mesh, fields) = picture(&scenes::radial::<1>(1.0), &Wopsip::default(), 16);
     assert!((picture.measure() - 3.0).abs() < 1e-12);
-    let contact = volume(&mesh, &fields.found.cells);
+    let contact = volume(&mesh, &fields.discrete_contact.cells);
     assert!((1.5..2.5).contains(&contact), "{contact}");
     assert!((picture.contact_measure() - contact).abs() < 1e-12);
     let svg = picture.to_svg().unwrap();
@@ -239,8 +245,8 @@ fn what_cannot_be_drawn_is_refused() {
     let slice = Some(Slice { axis: 2, at: 0.5 });
     assert!(message(&function(&mesh, |_| 0.0), slice).contains("a mesh in space"));
     assert!(message(&Fields::default(), None).contains("this mesh of 8 cells"));
-    let found = FoundContact { cells: vec![8], ..FoundContact::default() };
-    let beyond = Fields { found, ..function(&mesh, |_| 0.0) };
+    let mut beyond = function(&mesh, |_| 0.0);
+    beyond.discrete_contact.cells = vec![8];
     assert!(message(&beyond, None).contains("this mesh of 8 cells"));
 
     let no_level = solve_level::<f64, 2>(&scenes::radial(1.0), &ConformingP1, 0).map(drop);

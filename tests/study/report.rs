@@ -6,6 +6,7 @@ use crate::support::keys::ROW_KEYS;
 use serde_json::Value;
 use std::path::Path;
 use unilateral::facet::PenaltyParameters;
+use unilateral::inequality::Outcome;
 use unilateral::measure::Errors;
 use unilateral::study::peak_memory_bytes;
 
@@ -43,7 +44,8 @@ fn json_has_the_keys_that_scripts_rely_on() {
 fn what_does_not_apply_or_is_not_finite_is_null() {
     let mut bad = row("radial-2d", "p1", 8);
     bad.parameters = PenaltyParameters::default();
-    bad.error = Errors { l2: Some(f64::NAN), h1: Some(f64::INFINITY), energy: None, max: None };
+    bad.error = Errors::default();
+    (bad.error.l2, bad.error.h1) = (Some(f64::NAN), Some(f64::INFINITY));
     bad.certificate.residual = f64::NAN;
     bad.certificate.feasibility = f64::NEG_INFINITY;
     bad.peak_memory_bytes = None;
@@ -150,7 +152,7 @@ fn png_size(path: &Path) -> (u32, u32) {
 fn all_files_are_written_and_plots_show_what_they_should() {
     let scratch = Scratch::new("files");
     let mut rows = rows();
-    rows[5].status = "stalled".into();
+    rows[5].status = Outcome::Stalled;
     rows[5].error = Errors::default();
     for row in &mut rows[9..] {
         row.error = Errors::default();

@@ -1,10 +1,11 @@
 //! Observed orders, and the tables that a terminal shows.
 
 use crate::rows::{self, report, row};
-use unilateral::measure::{Errors, observed_order};
+use unilateral::inequality::Outcome;
+use unilateral::measure::{ErrorNorm, Errors, observed_order};
 use unilateral::scheme::ExpectedOrders;
 use unilateral::study::orders_table;
-use unilateral::study::{Norm, OrderMissed, Row, fill_orders};
+use unilateral::study::{OrderMissed, Row, fill_orders};
 
 #[test]
 fn orders_are_of_the_ratio_of_mesh_sizes() {
@@ -38,7 +39,7 @@ fn orders_are_taken_within_a_scheme_and_between_runs_that_converged() {
         row("a", "cr", 64),
         row("a", "p1", 16),
     ];
-    rows[4].status = "cycling".into();
+    rows[4].status = Outcome::Cycling;
     rows[5].order.l2 = Some(7.0);
     rows[7].constraint = "facet-means".into();
     fill_orders(&mut rows);
@@ -65,7 +66,7 @@ fn tables_are_aligned_and_say_what_failed() {
         .into_iter()
         .flat_map(|scheme| [8, 16].map(|level| row("radial-2d", scheme, level)))
         .collect();
-    rows[3].status = "iteration-limit".into();
+    rows[3].status = Outcome::IterationLimit;
     rows[3].error = Errors::default();
     rows[3].warnings = vec!["eta below its bound".into()];
     rows[2].expected_order = ExpectedOrders { l2: None, h1: Some(0.5) };
@@ -111,10 +112,11 @@ fn kept_promises_pass() {
     let mut rows = four_levels("p1");
     assert_eq!(report(rows.clone()).assert_orders(1e-9), Ok(()));
     // Coarse levels do not count, whatever their errors.
-    rows[0].error = Errors { l2: Some(1e-9), h1: Some(1e-9), energy: None, max: None };
+    rows[0].error = Errors::default();
+    (rows[0].error.l2, rows[0].error.h1) = (Some(1e-9), Some(1e-9));
     assert_eq!(report(rows.clone()).assert_orders(1e-9), Ok(()));
     // Nor do levels that did not converge: the two finest that did are compared.
-    rows[3].status = "cycling".into();
+    rows[3].status = Outcome::Cycling;
     rows[3].error.h1 = Some(7.0);
     let report = report(rows);
     assert_eq!(report.observed_orders()[0].levels, Some([16, 32]));
@@ -140,7 +142,7 @@ fn a_missed_promise_names_the_row() {
         panic!("{missed}")
     };
     assert_eq!((&scene[..], &scheme[..], *coarse, *fine), ("radial-2d", "sipg", 32, 64));
-    assert_eq!((*norm, *promised), (Norm::H1, 1.0));
+    assert_eq!((*norm, *promised), (ErrorNorm::H1, 1.0));
     assert!((observed - 0.8).abs() < 1e-12);
     let text = missed.to_string();
     let expected =
@@ -155,10 +157,10 @@ fn a_missed_promise_names_the_row() {
 #[test]
 fn a_promise_that_cannot_be_tested_is_missed() {
     let mut rows = four_levels("p1");
-    rows[..3].iter_mut().for_each(|row| row.status = "stalled".into());
+    rows[..3].iter_mut().for_each(|row| row.status = Outcome::Stalled);
     let missed = report(rows.clone()).assert_orders(0.1).unwrap_err();
     assert_eq!(missed.0.len(), 2, "one for each norm");
-    assert!(matches!(missed.0[0], OrderMissed::Unobserved { norm: Norm::L2, .. }), "{missed}");
+    assert!(matches!(missed.0[0], OrderMissed::Unobserved { norm: ErrorNorm::L2, .. }), "{missed}");
     assert!(missed.to_string().contains("fewer than two levels"), "{missed}");
     rows.iter_mut().for_each(|row| row.expected_order = ExpectedOrders::default());
     assert_eq!(report(rows).assert_orders(0.1), Ok(()));
@@ -170,7 +172,7 @@ fn the_table_of_orders_gives_a_verdict_for_every_scheme() {
         ["p1", "cr", "sipg", "wopsip"].into_iter().flat_map(four_levels).collect();
     rows[7].error.h1 = rows[6].error.h1;
     rows[8..12].iter_mut().for_each(|row| row.expected_order = ExpectedOrders::default());
-    rows[12..15].iter_mut().for_each(|row| row.status = "cycling".into());
+    rows[12..15].iter_mut().for_each(|row| row.status = Outcome::Cycling);
     rows[12..16].iter_mut().for_each(|row| row.constraint = "facet-means".into());
     let text = orders_table(&report(rows).observed_orders(), 0.1);
     let lines: Vec<&str> = text.lines().skip_while(|line| !line.starts_with("|---")).collect();

@@ -61,7 +61,7 @@ fn make(options: &Options) -> Result<(), Box<dyn Error>> {
         }
     }
     let program = Program::new("orders", "f64", rayon::current_num_threads(), 1);
-    let report = Report { program, rows };
+    let report = Report::new(program, rows);
     let table = orders_table(&report.observed_orders(), ORDER_TOLERANCE);
     match &options.file {
         Some(file) => write(file, page(&table, &report))?,

@@ -1,45 +1,47 @@
-//! What pictures show of contact: the set found, and the multiplier as a density.
+//! The discrete contact set and the density of the multiplier, for pictures.
 
+use super::discrete_contact::DiscreteContact;
 use crate::algebra::Inequality;
 use crate::assemble::space::Space;
 use crate::inequality::Solution;
-use crate::measure::FoundContact;
 use crate::real::Real;
 
 impl<T: Real, const D: usize> Space<'_, T, D> {
-    /// The contact set and density of a solution, as `Discretisation::contact_errors` sees them.
-    pub(crate) fn found_contact(
+    /// The contact set and density of a solution, with the definitions of
+    /// `Discretisation::contact_errors`.
+    pub(crate) fn discrete_contact(
         &self,
         inequality: &Inequality<T>,
         solution: &Solution<T>,
-    ) -> FoundContact {
-        let mut found = FoundContact::default();
+    ) -> DiscreteContact {
+        let mut contact = DiscreteContact::default();
         if !self.problem.is_constrained() {
-            return found;
+            return contact;
         }
-        let carriers = self.carriers();
-        let touching = self.in_contact(&carriers, inequality, solution);
-        for (carrier, _) in carriers.iter().zip(touching).filter(|(_, touches)| *touches) {
-            match carrier.facet {
-                None => found.cells.push(carrier.cell),
-                Some(local) => found.facets.push((carrier.cell, local)),
+        let entities = self.entities();
+        let touching = self.in_contact(&entities, inequality, solution);
+        for (entity, _) in entities.iter().zip(touching).filter(|(_, touches)| *touches) {
+            match entity.facet {
+                None => contact.cells.push(entity.cell),
+                Some(local) => contact.facets.push((entity.cell, local)),
             }
         }
         // with both an obstacle and a contact boundary there are two multipliers of different kind
         if self.problem.has_obstacle() && self.problem.gap.is_some() {
-            return found;
+            return contact;
         }
         let mut weights = vec![0.0; self.mesh.vertices().len()];
-        for carrier in carriers {
-            let share = self.measure_of(carrier) / (carrier.dimension::<D>() + 1) as f64;
-            for local in carrier.corners::<D>() {
-                weights[self.mesh.cell(carrier.cell)[local] as usize] += share;
+        for entity in entities {
+            let share = self.measure_of(entity) / (entity.dimension::<D>() + 1) as f64;
+            for local in entity.corners::<D>() {
+                weights[self.mesh.cell(entity.cell)[local] as usize] += share;
             }
         }
-        let forces = self.vertex_forces(inequality, solution);
+        let multipliers = self.vertex_multipliers(inequality, solution);
         let given = self.on_dirichlet_part();
-        let density = |v: usize| (weights[v] > 0.0 && !given[v]).then(|| forces[v] / weights[v]);
-        found.density = (0..weights.len()).map(density).collect();
-        found
+        let density =
+            |v: usize| (weights[v] > 0.0 && !given[v]).then(|| multipliers[v] / weights[v]);
+        contact.density = (0..weights.len()).map(density).collect();
+        contact
     }
 }

@@ -2,8 +2,8 @@
 
 use rayon::prelude::*;
 
-use super::Carrier;
-use super::clipped_simplices::in_space;
+use super::bisected_simplices::in_space;
+use super::entity::ContactEntity;
 use crate::assemble::space::Space;
 use crate::problem::ContactSet;
 use crate::real::{Point, Real, point_f64};
@@ -17,33 +17,33 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
     pub(super) fn free_boundary_distance(
         &self,
         set: &ContactSet<D>,
-        carriers: &[Carrier],
+        entities: &[ContactEntity],
         touching: &[bool],
     ) -> Option<f64> {
-        let discrete = self.discrete_free_boundary(carriers, touching);
-        let exact = self.within_mesh(set, carriers);
+        let discrete = self.discrete_free_boundary(entities, touching);
+        let exact = self.within_mesh(set, entities);
         if discrete.is_empty() || exact.is_empty() {
             return None;
         }
         Some(one_sided(&discrete, &exact).max(one_sided(&exact, &discrete)))
     }
 
-    /// Points on the facets between carriers in contact and carriers that are not.
+    /// Points on the facets between entities in contact and entities that are not.
     fn discrete_free_boundary(
         &self,
-        carriers: &[Carrier],
+        entities: &[ContactEntity],
         touching: &[bool],
     ) -> Vec<Point<f64, D>> {
-        let Some(dimension) = carriers.first().map(|c| c.dimension::<D>()) else {
+        let Some(dimension) = entities.first().map(|c| c.dimension::<D>()) else {
             return Vec::new();
         };
-        // every facet of every carrier, named by its vertices, in the order of these names
+        // every facet of every entity, named by its vertices, in the order of these names
         let mut facets: Vec<([u32; 3], bool)> = Vec::new();
-        for (carrier, &touches) in carriers.iter().zip(touching) {
-            let cell = self.mesh.cell(carrier.cell);
-            for opposite in carrier.corners::<D>().filter(|_| dimension > 0) {
+        for (entity, &touches) in entities.iter().zip(touching) {
+            let cell = self.mesh.cell(entity.cell);
+            for opposite in entity.corners::<D>().filter(|_| dimension > 0) {
                 let mut name = [u32::MAX; 3];
-                let others = carrier.corners::<D>().filter(|&k| k != opposite);
+                let others = entity.corners::<D>().filter(|&k| k != opposite);
                 name.iter_mut().zip(others).for_each(|(v, k)| *v = cell[k]);
                 facets.push((name, touches));
             }
@@ -62,16 +62,16 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         points
     }
 
-    /// The points of the exact free boundary that lie on some carrier: a mesh from a file need not
+    /// The points of the exact free boundary that lie on some entity: a mesh from a file need not
     /// cover the domain of the scene.
-    fn within_mesh(&self, set: &ContactSet<D>, carriers: &[Carrier]) -> Vec<Point<f64, D>> {
-        // in the order of their first coordinates, so that few are tried on each carrier
+    fn within_mesh(&self, set: &ContactSet<D>, entities: &[ContactEntity]) -> Vec<Point<f64, D>> {
+        // in the order of their first coordinates, so that few are tried on each entity
         let mut points = set.free_boundary.clone();
         points.sort_unstable_by(|x, y| x[0].total_cmp(&y[0]));
         let mut found = vec![false; points.len()];
-        for carrier in carriers {
-            let corners = self.corner_points(*carrier);
-            let corners = &corners[..=carrier.dimension::<D>()];
+        for entity in entities {
+            let corners = self.corner_points(*entity);
+            let corners = &corners[..=entity.dimension::<D>()];
             let fold = |f: fn(f64, f64) -> f64| {
                 corners[1..].iter().fold(corners[0], |x, y| x.zip_map(y, f))
             };
@@ -83,22 +83,22 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
                 if *found || (1..D).any(|k| x[k] < low[k] - slack || x[k] > high[k] + slack) {
                     continue;
                 }
-                *found = self.covers(*carrier, x);
+                *found = self.covers(*entity, x);
             }
         }
         points.iter().zip(found).filter(|(_, found)| *found).map(|(x, _)| *x).collect()
     }
 
-    /// Whether a point lies on a carrier.
-    fn covers(&self, carrier: Carrier, x: &Point<f64, D>) -> bool {
-        let geometry = self.mesh.geometry(carrier.cell);
-        let cell = self.mesh.cell(carrier.cell);
+    /// Whether a point lies on an entity.
+    fn covers(&self, entity: ContactEntity, x: &Point<f64, D>) -> bool {
+        let geometry = self.mesh.geometry(entity.cell);
+        let cell = self.mesh.cell(entity.cell);
         (0..=D).all(|k| {
             // coordinate k vanishes at any other corner of the cell
             let zero = point_f64(&self.mesh.vertices()[cell[usize::from(k == 0)] as usize]);
             let coordinate = point_f64(geometry.gradient(k)).dot(&(x - zero));
             let slack = SLACK.max(16.0 * T::EPSILON);
-            coordinate >= -slack && (carrier.facet != Some(k) || coordinate <= slack)
+            coordinate >= -slack && (entity.facet != Some(k) || coordinate <= slack)
         })
     }
 }

@@ -1,17 +1,18 @@
-//! Multipliers and contact sets against the exact ones, in terms that every scheme shares.
+//! Errors of multipliers and contact sets, in terms that do not depend on the unknowns of a scheme.
 //!
-//! Nothing here asks what the unknowns are, only where they live: a vertex, a facet, an edge. So
-//! figures of schemes with different unknowns can be compared.
+//! The functions use the supports of unknowns only (a vertex, a facet, an edge), so that schemes
+//! with different unknowns can be compared.
 
-mod clipped_simplices;
+mod bisected_simplices;
 mod contact_set;
-mod density;
-mod found_contact;
+mod discrete_contact;
+mod entity;
 mod free_boundary;
+mod multiplier_density;
 
-pub use found_contact::FoundContact;
+pub use discrete_contact::DiscreteContact;
 
-use super::ContactErrors;
+use super::errors::ContactErrors;
 use crate::algebra::{Bound, Contact, Inequality};
 use crate::assemble::Discretisation;
 use crate::assemble::space::Space;
@@ -21,55 +22,38 @@ use crate::instances::compiled;
 use crate::mesh::BoundaryPart;
 use crate::problem::ContactSet;
 use crate::real::{Point, Real, point_f64};
-use clipped_simplices::Piece;
+use bisected_simplices::SubSimplex;
+use entity::ContactEntity;
 
 /// A Dirichlet datum this close to a bound, in units of the largest unknown, touches it.
 const TOUCHING: f64 = 1e-9;
-
-/// What may be in contact as a whole: a cell under an obstacle, or a facet of the contact boundary.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-struct Carrier {
-    cell: usize,
-    /// Number of the facet in the cell.
-    facet: Option<usize>,
-}
-
-impl Carrier {
-    /// The vertices of the carrier, as numbers in the cell.
-    fn corners<const D: usize>(self) -> impl Iterator<Item = usize> {
-        (0..=D).filter(move |&k| Some(k) != self.facet)
-    }
-    /// Its dimension.
-    fn dimension<const D: usize>(self) -> usize {
-        D - usize::from(self.facet.is_some())
-    }
-}
 
 impl<T: Real, const D: usize> Discretisation<'_, T, D> {
     /// Distances of multiplier and contact set of a solution from the exact ones; none where these
     /// are not known, or where an obstacle and a contact boundary bind at once.
     ///
-    /// *Multiplier.* The residuals of the constrained unknowns in contact are forces. Each is shared
-    /// equally by the vertices whose barycentre is the unknown's node; for every element here the
-    /// sum at a vertex is then the residual tested with the hat function `phi` of that vertex,
-    /// whatever the unknowns. Over the integral of `phi` it is a density, and so is the exact
-    /// multiplier tested with `phi`. Their difference is measured in L1 and in L2, with the integral
-    /// of `phi` as the weight of its vertex (the lumped norms of piecewise linear functions), over
-    /// the vertices off the Dirichlet part. These are weaker than norms of the multiplier itself:
-    /// what cancels within a patch is not seen, such as the forces of over-penalised schemes.
-    /// In general only the norm dual to the energy norm is bounded by the energy error (A. Veeser,
-    /// SIAM J. Numer. Anal. 39 (2001), 146-167). With an obstacle the exact density jumps across the
-    /// free boundary, so that every scheme is wrong by the size of the jump in a layer of width `h`:
-    /// the L1 norm can be of order one, the L2 norm of one half at best.
+    /// *Multiplier.* The residual of a constrained unknown in contact is its nodal multiplier. Each
+    /// is divided equally among the vertices whose barycentre is the unknown's node; for every
+    /// element here the sum at a vertex is then the residual tested with the hat function `phi` of
+    /// that vertex, whatever the unknowns. Over the integral of `phi` it is a density, and so is
+    /// the exact multiplier tested with `phi`. Their difference is measured in L1 and in L2, with
+    /// the integral of `phi` as the weight of its vertex (the lumped norms of piecewise linear
+    /// functions), over the vertices off the Dirichlet part. These are weaker than norms of the
+    /// multiplier itself: nodal multipliers of over-penalised schemes that cancel within a patch
+    /// have no effect. In general only the norm dual to the energy norm is bounded by the energy
+    /// error (A. Veeser, SIAM J. Numer. Anal. 39 (2001), 146-167). With an obstacle the exact
+    /// density jumps across the free boundary, so that every scheme is wrong by the size of the
+    /// jump in a layer of width `h`: the L1 norm can be of order one, the L2 norm of one half at
+    /// best.
     ///
     /// *Contact set.* A vertex, edge or facet is in contact if some unknown there is: on both sides
-    /// of a facet, in all cells at a vertex. A discontinuous scheme need not press with each of
-    /// these to press on their sum (over-penalised schemes on curved obstacles do not). On the
-    /// Dirichlet part, where some schemes have no unknowns and others fulfil the datum only about,
-    /// it is in contact if the datum is. A cell, or a facet of the contact boundary, is in contact if
-    /// everything on it that is bound at all is. The area error is the measure of the symmetric
-    /// difference with the exact set. The distance is that of Hausdorff between the exact free
-    /// boundary and the facets between cells in contact and cells that are not.
+    /// of a facet, in all cells at a vertex. The nodal multipliers of a discontinuous scheme there
+    /// need not all have the sign of their sum (those of over-penalised schemes on curved obstacles
+    /// do not). On the Dirichlet part, where some schemes have no unknowns and others satisfy the datum
+    /// approximately, it is in contact if the datum is. A cell, or a facet of the contact boundary,
+    /// is in contact if all its unknowns with bounds are. The area error is the measure of the
+    /// symmetric difference with the exact set. The distance is that of Hausdorff between the exact
+    /// free boundary and the facets between cells in contact and cells that are not.
     ///
     /// # Errors
     /// [`Error::DataNotFinite`].
@@ -105,30 +89,32 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         if self.problem.has_obstacle() == self.problem.gap.is_some() {
             return Ok(ContactErrors::default());
         }
-        let carriers = self.carriers();
+        let entities = self.entities();
         let mut errors = ContactErrors::default();
         if let Some(multiplier) = &exact.multiplier {
             let set = exact.contact.as_ref();
-            let found = self.multiplier_errors(multiplier, set, &carriers, inequality, solution)?;
+            let found = self.multiplier_errors(multiplier, set, &entities, inequality, solution)?;
             [errors.multiplier_l1, errors.multiplier_l2] = [0, 1].map(|k| found.map(|e| e[k]));
         }
         if let Some(set) = &exact.contact {
-            let touching = self.in_contact(&carriers, inequality, solution);
-            errors.contact_area_error = Some(self.area_error(set, &carriers, &touching));
-            errors.free_boundary_distance = self.free_boundary_distance(set, &carriers, &touching);
+            let touching = self.in_contact(&entities, inequality, solution);
+            errors.contact_area_error = Some(self.area_error(set, &entities, &touching));
+            errors.free_boundary_distance = self.free_boundary_distance(set, &entities, &touching);
         }
         Ok(errors)
     }
 
-    fn carriers(&self) -> Vec<Carrier> {
+    fn entities(&self) -> Vec<ContactEntity> {
         if self.problem.has_obstacle() {
-            return (0..self.mesh.n_cells()).map(|cell| Carrier { cell, facet: None }).collect();
+            return (0..self.mesh.n_cells())
+                .map(|cell| ContactEntity { cell, facet: None })
+                .collect();
         }
         let contact = self.facets_of(BoundaryPart::Contact);
-        contact.map(|(cell, local)| Carrier { cell, facet: Some(local) }).collect()
+        contact.map(|(cell, local)| ContactEntity { cell, facet: Some(local) }).collect()
     }
 
-    /// Which vertices lie on the Dirichlet part, where values are given and nothing presses.
+    /// Whether each vertex lies on the Dirichlet part, where values are given.
     fn on_dirichlet_part(&self) -> Vec<bool> {
         let mut given = vec![false; self.mesh.vertices().len()];
         for (cell, local) in self.facets_of(BoundaryPart::Dirichlet) {
@@ -137,41 +123,41 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         given
     }
 
-    fn measure_of(&self, carrier: Carrier) -> f64 {
-        let geometry = self.mesh.geometry(carrier.cell);
-        match carrier.facet {
+    fn measure_of(&self, entity: ContactEntity) -> f64 {
+        let geometry = self.mesh.geometry(entity.cell);
+        match entity.facet {
             None => geometry.volume.to_f64(),
             Some(local) => geometry.facet_measure(local).to_f64(),
         }
     }
 
-    /// Corners of a carrier in space; one point more than its dimension of them are used.
-    fn corner_points(&self, carrier: Carrier) -> [Point<f64, D>; 4] {
+    /// Corners of an entity in space; one point more than its dimension of them are used.
+    fn corner_points(&self, entity: ContactEntity) -> [Point<f64, D>; 4] {
         let mut points = [Point::zeros(); 4];
-        for (point, k) in points.iter_mut().zip(carrier.corners::<D>()) {
-            *point = point_f64(&self.mesh.vertices()[self.mesh.cell(carrier.cell)[k] as usize]);
+        for (point, k) in points.iter_mut().zip(entity.corners::<D>()) {
+            *point = point_f64(&self.mesh.vertices()[self.mesh.cell(entity.cell)[k] as usize]);
         }
         points
     }
 
-    /// The unknowns on a carrier that something binds.
+    /// The unknowns on an entity that have a bound.
     fn bound_unknowns<'s>(
         &'s self,
-        carrier: Carrier,
+        entity: ContactEntity,
         inequality: &'s Inequality<T>,
     ) -> impl Iterator<Item = usize> + 's {
-        let on_facet = carrier.facet.map(|local| self.nodes_on(local));
-        let all = carrier.facet.is_none().then(|| 0..self.per_cell());
+        let on_facet = entity.facet.map(|local| self.nodes_on(local));
+        let all = entity.facet.is_none().then(|| 0..self.per_cell());
         let nodes = on_facet.into_iter().flatten().chain(all.into_iter().flatten());
         nodes
-            .map(move |i| self.dofs.of(carrier.cell, i))
+            .map(move |i| self.dofs.of(entity.cell, i))
             .filter(|&unknown| inequality.bounds[unknown] != Bound::Free)
     }
 
-    /// Which carriers are in contact.
+    /// Which entities are in contact.
     fn in_contact(
         &self,
-        carriers: &[Carrier],
+        entities: &[ContactEntity],
         inequality: &Inequality<T>,
         solution: &Solution<T>,
     ) -> Vec<bool> {
@@ -186,42 +172,52 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         let given = self.on_dirichlet_part();
         let largest = solution.values.iter().map(|u| u.to_f64().abs()).fold(0.0, f64::max);
         let slack = largest * TOUCHING.max(64.0 * T::EPSILON);
-        let place_touches = |unknown: usize| {
-            let place = inequality.supports[unknown].vertices();
-            if place.iter().all(|&v| given[v as usize]) {
-                self.datum_touches(place, slack)
+        let support_touches = |unknown: usize| {
+            let support = inequality.supports[unknown].vertices();
+            if support.iter().all(|&v| given[v as usize]) {
+                self.datum_touches(support, slack)
             } else {
-                supports.binary_search(&place).is_ok()
+                supports.binary_search(&support).is_ok()
             }
         };
-        let state = |&carrier: &Carrier| {
-            let mut unknowns = self.bound_unknowns(carrier, inequality).peekable();
-            unknowns.peek().is_some() && unknowns.all(place_touches)
+        let state = |&entity: &ContactEntity| {
+            let mut unknowns = self.bound_unknowns(entity, inequality).peekable();
+            unknowns.peek().is_some() && unknowns.all(support_touches)
         };
-        carriers.iter().map(state).collect()
+        entities.iter().map(state).collect()
     }
 
-    /// Whether the Dirichlet datum at a place is that of a bound, but for the slack.
-    fn datum_touches(&self, place: &[u32], slack: f64) -> bool {
+    /// Whether the Dirichlet datum at the barycentre of a support differs from a bound by at most
+    /// the slack.
+    fn datum_touches(&self, support: &[u32], slack: f64) -> bool {
         let corner = |&v: &u32| point_f64(&self.mesh.vertices()[v as usize]);
-        let x = place.iter().map(corner).sum::<Point<f64, D>>() / place.len() as f64;
+        let x = support.iter().map(corner).sum::<Point<f64, D>>() / support.len() as f64;
         let bounds = [&self.problem.lower, &self.problem.upper, &self.problem.gap];
         let value = self.problem.dirichlet_at(&x);
         bounds.into_iter().flatten().any(|bound| (value - bound(&x)).abs() <= slack)
     }
 
-    /// The measure of the symmetric difference of carriers in contact and the exact contact set.
-    fn area_error(&self, set: &ContactSet<D>, carriers: &[Carrier], touching: &[bool]) -> f64 {
+    /// The measure of the symmetric difference of entities in contact and the exact contact set.
+    fn area_error(
+        &self,
+        set: &ContactSet<D>,
+        entities: &[ContactEntity],
+        touching: &[bool],
+    ) -> f64 {
         let mut error = 0.0;
-        for (&carrier, &touches) in carriers.iter().zip(touching) {
-            let corners = self.corner_points(carrier);
+        for (&entity, &touches) in entities.iter().zip(touching) {
+            let corners = self.corner_points(entity);
             let mut wrong = 0.0;
-            Piece::whole(carrier.dimension::<D>()).split(&corners, &set.indicator, &mut |piece| {
-                if ((set.indicator)(&piece.barycentre(&corners)) > 0.0) != touches {
-                    wrong += piece.share;
-                }
-            });
-            error += wrong * self.measure_of(carrier);
+            SubSimplex::whole(entity.dimension::<D>()).split(
+                &corners,
+                &set.indicator,
+                &mut |part| {
+                    if ((set.indicator)(&part.barycentre(&corners)) > 0.0) != touches {
+                        wrong += part.share;
+                    }
+                },
+            );
+            error += wrong * self.measure_of(entity);
         }
         error
     }

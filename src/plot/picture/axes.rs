@@ -3,8 +3,9 @@
 use plotters::prelude::{DrawingBackend, RGBColor};
 
 use super::colour::labels;
-use super::section::Spot;
-use crate::plot::{Align, Drawn, INK, PAPER, Pen, Place, colour, text_width};
+use super::section::PlanePoint;
+use crate::plot::pen::{Align, Drawn, Pen, ScreenPoint, text_width};
+use crate::plot::style::{INK, PAPER, colour};
 
 /// Sizes of text.
 pub(crate) const TITLE: f64 = 17.0;
@@ -21,9 +22,9 @@ pub(crate) const LINE: f64 = 21.0;
 
 /// The contact set found.
 pub(crate) const CONTACT: RGBColor = RGBColor(150, 190, 222);
-/// What is exact.
+/// Exact free boundary and multiplier.
 pub(crate) const EXACT: RGBColor = RGBColor(213, 94, 0);
-/// What has no number to show.
+/// Parts without a value.
 pub(crate) const FAINT: RGBColor = RGBColor(205, 205, 205);
 
 /// How a line is drawn.
@@ -33,8 +34,8 @@ pub(crate) enum Stroke {
     Mesh,
     /// In a colour and width.
     Coloured(RGBColor, f64),
-    /// Found by the scheme.
-    Found,
+    /// Of the discrete contact set.
+    Discrete,
     /// A part of the boundary in contact.
     Touching,
     /// Exact.
@@ -47,11 +48,16 @@ pub(crate) enum Stroke {
 
 impl Stroke {
     /// Draws a segment.
-    pub fn draw<DB: DrawingBackend>(self, pen: &Pen<DB>, from: Place, to: Place) -> Drawn {
+    pub fn draw<DB: DrawingBackend>(
+        self,
+        pen: &Pen<DB>,
+        from: ScreenPoint,
+        to: ScreenPoint,
+    ) -> Drawn {
         match self {
             Stroke::Mesh => pen.line(from, to, 0.5, FAINT),
             Stroke::Coloured(colour, width) => pen.line(from, to, width, colour),
-            Stroke::Found => pen.line(from, to, 2.0, INK),
+            Stroke::Discrete => pen.line(from, to, 2.0, INK),
             Stroke::Touching => pen.line(from, to, 7.0, CONTACT),
             Stroke::Exact => pen.line(from, to, 1.8, EXACT),
             Stroke::Given => pen.line(from, to, 4.0, FAINT),
@@ -59,8 +65,13 @@ impl Stroke {
         }
     }
 
-    /// What keeps it apart from lines below it.
-    pub fn draw_casing<DB: DrawingBackend>(self, pen: &Pen<DB>, from: Place, to: Place) -> Drawn {
+    /// Draws the casing that separates the line from lines below.
+    pub fn draw_casing<DB: DrawingBackend>(
+        self,
+        pen: &Pen<DB>,
+        from: ScreenPoint,
+        to: ScreenPoint,
+    ) -> Drawn {
         match self {
             Stroke::Exact => pen.line(from, to, 4.0, PAPER),
             _ => Ok(()),
@@ -68,7 +79,7 @@ impl Stroke {
     }
 }
 
-/// What stands before an entry of the legend.
+/// The symbol of an entry of the legend.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Symbol {
     Area(RGBColor),
@@ -77,17 +88,17 @@ pub(crate) enum Symbol {
 }
 
 /// The mark of a point of the exact free boundary: a diamond.
-pub(crate) fn draw_mark<DB: DrawingBackend>(pen: &Pen<DB>, (x, y): Place) -> Drawn {
+pub(crate) fn draw_mark<DB: DrawingBackend>(pen: &Pen<DB>, (x, y): ScreenPoint) -> Drawn {
     let diamond = |r: f64| [(x + r, y), (x, y + r), (x - r, y), (x, y - r)];
     pen.fill(&diamond(7.0), PAPER)?;
     pen.fill(&diamond(5.0), EXACT)
 }
 
-/// The lines of a legend, the first one's upper left corner at a place.
+/// Draws the lines of a legend below a position of the upper left corner.
 pub(crate) fn draw_legend<DB: DrawingBackend>(
     pen: &Pen<DB>,
     entries: &[(Symbol, String)],
-    (x, y): Place,
+    (x, y): ScreenPoint,
 ) -> Drawn {
     const WIDTH: f64 = 26.0;
     for (k, (symbol, label)) in entries.iter().enumerate() {
@@ -106,12 +117,12 @@ pub(crate) fn draw_legend<DB: DrawingBackend>(
     Ok(())
 }
 
-/// A quantity, divided by a power of ten if there is one, its middle at a place.
+/// Draws the name of a quantity, divided by a power of ten other than one, centred at a position.
 pub(crate) fn draw_quantity<DB: DrawingBackend>(
     pen: &Pen<DB>,
     name: &str,
     power: i32,
-    (x, y): Place,
+    (x, y): ScreenPoint,
 ) -> Drawn {
     if power == 0 {
         return pen.text(name, (x, y), LABEL, INK, Align::Centre);
@@ -124,19 +135,19 @@ pub(crate) fn draw_quantity<DB: DrawingBackend>(
     pen.text(&exponent, (end + 0.5, y - 5.0), 0.75 * LABEL, INK, Align::Left)
 }
 
-/// The area of the data: where it stands, and what its ends are.
+/// The area of the data: position, size, and range of the data.
 pub(crate) struct Frame {
     /// Upper left corner.
-    pub origin: Place,
+    pub origin: ScreenPoint,
     /// Width and height.
     pub size: (f64, f64),
-    pub low: Spot,
-    pub high: Spot,
+    pub low: PlanePoint,
+    pub high: PlanePoint,
 }
 
 impl Frame {
-    /// Where a point of the data stands.
-    pub fn place(&self, at: Spot) -> Place {
+    /// Position of a point of the data.
+    pub fn place(&self, at: PlanePoint) -> ScreenPoint {
         let share = |k: usize| (at[k] - self.low[k]) / (self.high[k] - self.low[k]);
         let (width, height) = self.size;
         (self.origin.0 + share(0) * width, self.origin.1 + (1.0 - share(1)) * height)

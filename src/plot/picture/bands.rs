@@ -1,19 +1,19 @@
 //! A triangle cut along the levels of a linear function on it.
 
-use super::section::Spot;
+use super::section::PlanePoint;
 
 /// A point with the value of the function there.
-type Valued = (Spot, f64);
+type Valued = (PlanePoint, f64);
 
 /// The part of a triangle on which the function lies between two levels; empty if there is none.
-pub(crate) fn band(triangle: &[Valued; 3], low: f64, high: f64) -> Vec<Spot> {
+pub(crate) fn band(triangle: &[Valued; 3], low: f64, high: f64) -> Vec<PlanePoint> {
     let above = keep(triangle, |v| v - low);
     let within = keep(&above, |v| high - v);
     within.into_iter().map(|(at, _)| at).collect()
 }
 
 /// The segment on which the function has a value; none where it only touches.
-pub(crate) fn contour(triangle: &[Valued; 3], level: f64) -> Option<[Spot; 2]> {
+pub(crate) fn contour(triangle: &[Valued; 3], level: f64) -> Option<[PlanePoint; 2]> {
     let mut ends = Vec::new();
     for k in 0..3 {
         let (a, b) = (triangle[k], triangle[(k + 1) % 3]);
@@ -21,7 +21,7 @@ pub(crate) fn contour(triangle: &[Valued; 3], level: f64) -> Option<[Spot; 2]> {
             ends.push(crossing(a, b, level));
         }
     }
-    <[Spot; 2]>::try_from(ends).ok()
+    <[PlanePoint; 2]>::try_from(ends).ok()
 }
 
 /// The part of a polygon on which a measure of the values is not negative, corner by corner as by
@@ -44,7 +44,7 @@ fn keep(polygon: &[Valued], measure: impl Fn(f64) -> f64) -> Vec<Valued> {
     kept
 }
 
-fn crossing(a: Valued, b: Valued, level: f64) -> Spot {
+fn crossing(a: Valued, b: Valued, level: f64) -> PlanePoint {
     let share = (level - a.1) / (b.1 - a.1);
     std::array::from_fn(|k| a.0[k] + share * (b.0[k] - a.0[k]))
 }

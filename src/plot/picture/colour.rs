@@ -25,7 +25,7 @@ pub(crate) fn colour(share: f64) -> RGBColor {
 /// A scale of colours: bands between levels.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Scale {
-    /// What it measures.
+    /// Name of the quantity.
     pub name: String,
     /// The ends of the bands, ascending; in a logarithmic scale exponents of ten.
     pub levels: Vec<f64>,
@@ -81,7 +81,7 @@ impl Scale {
         colour((band as f64 + 0.5) / self.bands() as f64)
     }
 
-    /// Where a level stands on the bar: from 0 to 1.
+    /// Position of a level on the bar: from 0 to 1.
     pub fn position(&self, level: f64) -> f64 {
         let (low, high) = (self.levels[0], self.levels[self.bands()]);
         (level - low) / (high - low)

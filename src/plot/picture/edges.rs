@@ -2,12 +2,12 @@
 
 use std::collections::BTreeMap;
 
-use super::section::{Corner, Section, Spot, View};
+use super::section::{Corner, PlanePoint, Section, View};
 use crate::real::Real;
 
 /// An edge of sections, and the cells beside it with the edge's ends in each.
 pub(crate) struct Edge {
-    pub ends: [Spot; 2],
+    pub ends: [PlanePoint; 2],
     pub sides: Vec<Side>,
 }
 

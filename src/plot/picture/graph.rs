@@ -5,8 +5,9 @@ use plotters::prelude::DrawingBackend;
 use super::axes::{
     BOTTOM, CONTACT, Frame, LEFT, LINE, RIGHT, Stroke, Symbol, TITLE, TOP, draw_legend, draw_mark,
 };
-use super::section::Spot;
-use crate::plot::{Align, Drawn, INK, Pen, Place};
+use super::section::PlanePoint;
+use crate::plot::pen::{Align, Drawn, Pen, ScreenPoint};
+use crate::plot::style::INK;
 
 /// Height of the data on paper over their width.
 const RATIO: f64 = 0.5;
@@ -20,7 +21,7 @@ pub(crate) struct Graph {
     pub title: String,
     pub axes: [String; 2],
     /// Segments of functions, drawn in this order.
-    pub lines: Vec<(Stroke, [Spot; 2])>,
+    pub lines: Vec<(Stroke, [PlanePoint; 2])>,
     /// Intervals found to be in contact, at the lower edge; of no length where it is a point.
     pub contact: Vec<[f64; 2]>,
     /// Points of the exact free boundary, at the lower edge.
@@ -36,7 +37,7 @@ impl Graph {
     }
 
     /// The ends of the axes: those of the data, with room above and below.
-    fn ends(&self) -> (Spot, Spot) {
+    fn ends(&self) -> (PlanePoint, PlanePoint) {
         let points = || self.lines.iter().flat_map(|l| l.1);
         let mut low = [f64::INFINITY; 2];
         let mut high = [f64::NEG_INFINITY; 2];
@@ -56,7 +57,7 @@ impl Graph {
         ([low[0], low[1] - 1.5 * room], [high[0], high[1] + room])
     }
 
-    pub fn draw<DB: DrawingBackend>(&self, pen: &Pen<DB>, at: Place, width: f64) -> Drawn {
+    pub fn draw<DB: DrawingBackend>(&self, pen: &Pen<DB>, at: ScreenPoint, width: f64) -> Drawn {
         let room = width - LEFT - RIGHT;
         let size = (room, RATIO * room);
         let (low, high) = self.ends();

@@ -1,6 +1,6 @@
 //! The line on which a function changes sign.
 
-use super::section::{Corner, Section, Spot};
+use super::section::{Corner, PlanePoint, Section};
 
 /// Sections are cut into parts no longer than this share of the picture.
 const FINEST: f64 = 1.0 / 120.0;
@@ -10,12 +10,12 @@ const MOST: u32 = 6;
 const BISECTIONS: usize = 24;
 
 /// Segments of the line on which the sign of a function changes within sections, in a picture of
-/// this size. `inside` tells the sign at a point of a cell.
+/// this size. `inside` returns the sign at a point of a cell.
 pub(crate) fn level_line(
     sections: &[Section],
     size: f64,
     inside: &dyn Fn(usize, &[f64; 4]) -> bool,
-) -> Vec<[Spot; 2]> {
+) -> Vec<[PlanePoint; 2]> {
     let mut segments = Vec::new();
     for section in sections {
         let longest = section
@@ -37,7 +37,7 @@ fn follow(
     corners: [Corner; 3],
     cuts: u32,
     inside: &dyn Fn(usize, &[f64; 4]) -> bool,
-    segments: &mut Vec<[Spot; 2]>,
+    segments: &mut Vec<[PlanePoint; 2]>,
 ) {
     let [a, b, c] = corners;
     if cuts > 0 {
@@ -67,7 +67,7 @@ fn change(
     to: Corner,
     sign: bool,
     inside: &dyn Fn(usize, &[f64; 4]) -> bool,
-) -> Spot {
+) -> PlanePoint {
     let (mut low, mut high) = (0.0, 1.0);
     for _ in 0..BISECTIONS {
         let middle = 0.5 * (low + high);
@@ -88,7 +88,7 @@ fn between(a: Corner, b: Corner, share: f64) -> Corner {
     }
 }
 
-pub(crate) fn distance(a: Spot, b: Spot) -> f64 {
+pub(crate) fn distance(a: PlanePoint, b: PlanePoint) -> f64 {
     (a[0] - b[0]).hypot(a[1] - b[1])
 }
 

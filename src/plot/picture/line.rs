@@ -10,7 +10,7 @@ use crate::real::{Point, Real, point_f64};
 /// Parts of a cell on which given functions are drawn as linear.
 const PARTS: usize = 6;
 
-/// All that the panels are made of.
+/// The data of the panels.
 pub(crate) struct Line<'a, T: Real, const D: usize> {
     problem: &'a Problem<D>,
     mesh: &'a Mesh<T, D>,
@@ -22,15 +22,16 @@ impl<'a, T: Real, const D: usize> Line<'a, T, D> {
         Line { problem, mesh, fields }
     }
 
-    /// The solution, and below it the multiplier if it is a density.
+    /// The solution, and the multiplier if it is a density.
     pub fn panels(&self) -> Vec<Graph> {
         let mut panels = vec![self.solution()];
-        let is_density = self.problem.has_obstacle() && !self.fields.found.density.is_empty();
+        let is_density =
+            self.problem.has_obstacle() && !self.fields.discrete_contact.density.is_empty();
         panels.extend(is_density.then(|| self.multiplier()));
         panels
     }
 
-    /// Length of all that is in contact.
+    /// Length of the contact set.
     pub fn contact_length(&self) -> f64 {
         self.contact().iter().map(|c| c[1] - c[0]).sum()
     }
@@ -43,11 +44,11 @@ impl<'a, T: Real, const D: usize> Line<'a, T, D> {
 
     /// Cells in contact, and points.
     fn contact(&self) -> Vec<[f64; 2]> {
-        let cells = self.fields.found.cells.iter().map(|&cell| {
+        let cells = self.fields.discrete_contact.cells.iter().map(|&cell| {
             let [a, b] = self.ends(cell);
             [a.min(b), a.max(b)]
         });
-        let points = self.fields.found.facets.iter().map(|&(cell, local)| {
+        let points = self.fields.discrete_contact.facets.iter().map(|&(cell, local)| {
             let x = self.ends(cell)[1 - local];
             [x, x]
         });
@@ -112,17 +113,20 @@ impl<'a, T: Real, const D: usize> Line<'a, T, D> {
             }
         }
         self.mark_contact(&mut graph);
-        self.tell_reactions(&mut graph);
+        self.list_point_multipliers(&mut graph);
         graph
     }
 
-    /// A multiplier on the contact boundary is a force at a point: a number, not a curve.
-    fn tell_reactions(&self, graph: &mut Graph) {
-        for &(cell, local) in &self.fields.found.facets {
+    /// Adds nodal multipliers on the contact boundary to the legend: in one dimension each is a
+    /// number at a point, not a curve.
+    fn list_point_multipliers(&self, graph: &mut Graph) {
+        for &(cell, local) in &self.fields.discrete_contact.facets {
             let vertex = self.mesh.cell(cell)[1 - local] as usize;
-            if let Some(Some(force)) = self.fields.found.density.get(vertex) {
+            if let Some(Some(multiplier)) = self.fields.discrete_contact.density.get(vertex) {
                 let x = self.ends(cell)[1 - local];
-                graph.legend.push((Symbol::Area(CONTACT), format!("force {force:.4} at x = {x}")));
+                graph
+                    .legend
+                    .push((Symbol::Area(CONTACT), format!("force {multiplier:.4} at x = {x}")));
             }
         }
     }
@@ -137,7 +141,8 @@ impl<'a, T: Real, const D: usize> Line<'a, T, D> {
         for cell in 0..self.mesh.n_cells() {
             let x = self.ends(cell);
             let vertices = self.mesh.cell(cell);
-            let density = [0, 1].map(|k| self.fields.found.density[vertices[k] as usize]);
+            let density =
+                [0, 1].map(|k| self.fields.discrete_contact.density[vertices[k] as usize]);
             if let [Some(a), Some(b)] = density {
                 graph.lines.push((Stroke::Solution, [[x[0], a], [x[1], b]]));
             }

@@ -7,8 +7,9 @@ use super::axes::{
     draw_quantity,
 };
 use super::colour::{Scale, labels};
-use super::section::Spot;
-use crate::plot::{Align, Drawn, INK, Pen, Place};
+use super::section::PlanePoint;
+use crate::plot::pen::{Align, Drawn, Pen, ScreenPoint};
+use crate::plot::style::INK;
 
 /// Largest height of the data over their width on paper.
 const TALLEST: f64 = 1.4;
@@ -20,18 +21,18 @@ const BAR_ROOM: f64 = 62.0;
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Map {
     pub title: String,
-    pub low: Spot,
-    pub high: Spot,
+    pub low: PlanePoint,
+    pub high: PlanePoint,
     pub axes: [&'static str; 2],
     /// Areas of one colour each, those of the same colour together.
-    pub fills: Vec<(RGBColor, Vec<Spot>)>,
+    pub fills: Vec<(RGBColor, Vec<PlanePoint>)>,
     /// Lines, drawn in this order.
-    pub lines: Vec<(Stroke, [Spot; 2])>,
+    pub lines: Vec<(Stroke, [PlanePoint; 2])>,
     /// Points of the exact free boundary.
-    pub marks: Vec<Spot>,
+    pub marks: Vec<PlanePoint>,
     pub scale: Option<Scale>,
     pub legend: Vec<(Symbol, String)>,
-    /// What is said instead of a scale.
+    /// A text in place of a scale.
     pub note: Option<&'static str>,
 }
 
@@ -53,7 +54,7 @@ impl Map {
         TOP + self.data_size(width - LEFT - RIGHT).1 + BOTTOM + below
     }
 
-    pub fn draw<DB: DrawingBackend>(&self, pen: &Pen<DB>, at: Place, width: f64) -> Drawn {
+    pub fn draw<DB: DrawingBackend>(&self, pen: &Pen<DB>, at: ScreenPoint, width: f64) -> Drawn {
         let room = width - LEFT - RIGHT;
         let size = self.data_size(room);
         let left = at.0 + LEFT + 0.5 * (room - size.0);
@@ -61,12 +62,12 @@ impl Map {
         let middle = left + 0.5 * size.0;
         pen.text(&self.title, (middle, at.1 + TOP / 2.0), TITLE, INK, Align::Centre)?;
         for (colour, corners) in &self.fills {
-            let corners: Vec<Place> = corners.iter().map(|&c| frame.place(c)).collect();
+            let corners: Vec<ScreenPoint> = corners.iter().map(|&c| frame.place(c)).collect();
             pen.fill(&corners, *colour)?;
         }
         // below the lines, some of which run along it
         frame.draw(pen, self.axes)?;
-        let ends = |ends: &[Spot; 2]| (frame.place(ends[0]), frame.place(ends[1]));
+        let ends = |ends: &[PlanePoint; 2]| (frame.place(ends[0]), frame.place(ends[1]));
         for (stroke, segment) in &self.lines {
             let (from, to) = ends(segment);
             stroke.draw_casing(pen, from, to)?;
@@ -89,11 +90,11 @@ impl Map {
     }
 }
 
-/// The bar of colours with its numbers and what they measure.
+/// Draws the bar of colours with numbers and the name of the quantity.
 fn draw_bar<DB: DrawingBackend>(
     pen: &Pen<DB>,
     scale: &Scale,
-    (left, top): Place,
+    (left, top): ScreenPoint,
     width: f64,
 ) -> Drawn {
     let bottom = top + BAR;

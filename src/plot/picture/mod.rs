@@ -1,10 +1,10 @@
-//! Pictures of a solution: in the plane four panels with the function, the contact set found against
-//! the exact free boundary, the jumps across facets and the multiplier; on the line curves; in space
-//! the panels of a slice.
+//! Pictures of a solution: in the plane four panels with the function, the contact set found
+//! against the exact free boundary, the jumps across facets and the multiplier; on the line curves;
+//! in space the panels of a slice.
 //!
 //! A discontinuous function is drawn cell by cell as it is. The bands of a colour are cut exactly
-//! along the levels of the function on each cell, of a quadratic one on the parts between vertices and
-//! midpoints, where it is drawn as linear.
+//! along the levels of the function on each cell, of a quadratic one on the parts between vertices
+//! and midpoints, where it is drawn as linear.
 
 mod axes;
 mod bands;
@@ -14,6 +14,7 @@ mod graph;
 mod level_line;
 mod line;
 mod map;
+mod panel;
 mod plane;
 mod run;
 mod section;
@@ -25,7 +26,9 @@ use std::path::{Path, PathBuf};
 
 use plotters::prelude::DrawingBackend;
 
-use super::{Align, Drawing, Drawn, INK, Pen, Place, draw_png, draw_svg};
+use super::pen::{Align, Drawn, Pen, ScreenPoint};
+use super::render::{Drawing, draw_png, draw_svg};
+use super::style::INK;
 use crate::error::Error;
 use crate::error::write_error;
 use crate::instances::compiled;
@@ -33,9 +36,8 @@ use crate::measure::Fields;
 use crate::mesh::{Mesh, edge_vertices};
 use crate::problem::Problem;
 use crate::real::Real;
-use graph::Graph;
 use line::Line;
-use map::Map;
+use panel::Panel;
 use plane::{Plane, default_slice};
 pub use run::solve_level;
 pub use section::Slice;
@@ -43,7 +45,7 @@ pub use section::Slice;
 /// Most lines and areas of an SVG file; with more it would be large and slow to show.
 const MOST_SHAPES: usize = 150_000;
 
-/// Widths of panels that stand alone in a row and of those that stand in two columns.
+/// Widths of panels in one column and in two columns.
 const WIDE: f64 = 430.0;
 const NARROW: f64 = 276.0;
 /// A domain this much wider than high gets a row to itself.
@@ -52,35 +54,12 @@ const MARGIN: f64 = 8.0;
 const HEADING: f64 = 28.0;
 const GAP: f64 = 10.0;
 
-/// One panel.
-#[derive(Clone, Debug)]
-enum Panel {
-    Map(Map),
-    Graph(Graph),
-}
-
-impl Panel {
-    fn height(&self, width: f64) -> f64 {
-        match self {
-            Panel::Map(map) => map.height(width),
-            Panel::Graph(graph) => graph.height(width),
-        }
-    }
-
-    fn shapes(&self) -> usize {
-        match self {
-            Panel::Map(map) => map.fills.len() + map.lines.len(),
-            Panel::Graph(graph) => graph.lines.len(),
-        }
-    }
-}
-
-/// Where the panels stand.
-struct Layout<'a> {
+/// Positions of the panels.
+struct PictureLayout<'a> {
     /// With their upper left corners.
-    panels: Vec<(&'a Panel, Place)>,
+    panels: Vec<(&'a Panel, ScreenPoint)>,
     width: f64,
-    /// Width and height of it all.
+    /// Width and height of the picture.
     size: (f64, f64),
 }
 
@@ -109,8 +88,8 @@ pub struct Picture {
 
 impl Picture {
     /// The picture of a function on a mesh, that of a scheme for this problem. In space it shows a
-    /// slice, by default along the contact boundary if that is a coordinate plane, otherwise through
-    /// the middle across the last coordinate.
+    /// slice, by default along the contact boundary if that is a coordinate plane, otherwise
+    /// through the middle across the last coordinate.
     ///
     /// # Errors
     /// [`Error::Parameter`] if the fields are not those of the mesh, and for a slice that is not
@@ -172,8 +151,8 @@ impl Picture {
     /// The picture as the text of an SVG file.
     ///
     /// # Errors
-    /// [`Error::Parameter`] if it has more shapes than such a file should, [`Error::Write`] with the
-    /// reason of the backend.
+    /// [`Error::Parameter`] if it has more shapes than such a file should, [`Error::Write`] with
+    /// the reason of the backend.
     pub fn to_svg(&self) -> Result<String, Error> {
         let shapes: usize = self.panels.iter().map(Panel::shapes).sum();
         if shapes > MOST_SHAPES {
@@ -210,7 +189,7 @@ impl Picture {
     }
 
     /// Panels row by row.
-    fn layout(&self) -> Layout<'_> {
+    fn layout(&self) -> PictureLayout<'_> {
         let alone = self.panels.first().is_some_and(|panel| match panel {
             Panel::Map(map) => map.high[0] - map.low[0] > ELONGATED * (map.high[1] - map.low[1]),
             Panel::Graph(_) => true,
@@ -225,7 +204,7 @@ impl Picture {
             y += row.iter().map(|p| p.height(width)).fold(0.0, f64::max) + GAP;
         }
         let size = (2.0 * MARGIN + columns as f64 * width, y);
-        Layout { panels: placed, width, size }
+        PictureLayout { panels: placed, width, size }
     }
 }
 
@@ -235,7 +214,7 @@ impl Drawing for Picture {
     }
 
     fn draw<DB: DrawingBackend>(&self, pen: &Pen<DB>) -> Drawn {
-        let Layout { panels, width, size } = self.layout();
+        let PictureLayout { panels, width, size } = self.layout();
         let heading = (0.5 * size.0, MARGIN + 0.4 * HEADING);
         pen.text(&self.title, heading, axes::TITLE + 1.0, INK, Align::Centre)?;
         for (panel, at) in panels {
@@ -251,7 +230,7 @@ impl Drawing for Picture {
 /// Refuses fields that would be read beyond their ends.
 fn check_fields<T: Real, const D: usize>(mesh: &Mesh<T, D>, fields: &Fields) -> Result<(), Error> {
     let n = mesh.n_cells();
-    let found = &fields.found;
+    let found = &fields.discrete_contact;
     let fits = fields.u.len() == n * (D + 1)
         && [0, n * edge_vertices(D).len()].contains(&fields.midpoints.len())
         && [0, mesh.vertices().len()].contains(&found.density.len())

@@ -6,11 +6,12 @@ use super::colour::Scale;
 use super::edges::{Edge, edges, mean_jump};
 use super::level_line::{distance, level_line};
 use super::map::Map;
-use super::section::{Section, Slice, Spot, View};
-use super::{Panel, trace};
+use super::panel::Panel;
+use super::section::{PlanePoint, Section, Slice, View};
+use super::trace;
 use crate::measure::Fields;
 use crate::mesh::{BoundaryPart, Mesh};
-use crate::plot::{INK, PAPER};
+use crate::plot::style::{INK, PAPER};
 use crate::problem::{ContactSet, Problem};
 use crate::real::Real;
 
@@ -18,10 +19,10 @@ use crate::real::Real;
 const MOST_EDGES: usize = 1500;
 /// Jumps below this many roundings of the largest value are none.
 const ROUNDINGS: f64 = 256.0;
-/// Hierarchy from one contour line to the next.
+/// Levels from one contour line to the next.
 const STRIDE: usize = 2;
 
-/// All that the panels are made of.
+/// The data of the panels.
 pub(crate) struct Plane<'a, T: Real, const D: usize> {
     problem: &'a Problem<D>,
     pub view: View<'a, T, D>,
@@ -29,8 +30,8 @@ pub(crate) struct Plane<'a, T: Real, const D: usize> {
     edges: Vec<Edge>,
     /// Whether each cell, or in a slice along the contact boundary its facet there, is in contact.
     touches: Vec<bool>,
-    low: Spot,
-    high: Spot,
+    low: PlanePoint,
+    high: PlanePoint,
 }
 
 impl<'a, T: Real, const D: usize> Plane<'a, T, D> {
@@ -43,8 +44,8 @@ impl<'a, T: Real, const D: usize> Plane<'a, T, D> {
         let view = View::new(mesh, fields, slice);
         let sections = view.sections();
         let mut touches = vec![false; mesh.n_cells()];
-        fields.found.cells.iter().for_each(|&cell| touches[cell] = true);
-        for &(cell, local) in &fields.found.facets {
+        fields.discrete_contact.cells.iter().for_each(|&cell| touches[cell] = true);
+        for &(cell, local) in &fields.discrete_contact.facets {
             touches[cell] |= view.lies_in_slice(cell, local);
         }
         let (mut low, mut high) = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
@@ -57,14 +58,14 @@ impl<'a, T: Real, const D: usize> Plane<'a, T, D> {
         Plane { problem, edges: edges(&sections), view, sections, touches, low, high }
     }
 
-    /// All panels that have something to show.
+    /// All panels that are not empty.
     pub fn panels(&self) -> Vec<Panel> {
         let mut panels = vec![Panel::Map(self.solution())];
         if self.problem.is_constrained() {
             panels.push(Panel::Map(self.contact()));
         }
         panels.push(Panel::Map(self.jumps()));
-        if self.problem.is_constrained() && !self.view.fields.found.density.is_empty() {
+        if self.problem.is_constrained() && !self.view.fields.discrete_contact.density.is_empty() {
             panels.push(self.multiplier());
         }
         panels
@@ -86,7 +87,7 @@ impl<'a, T: Real, const D: usize> Plane<'a, T, D> {
     }
 
     /// Edges with a cell on one side only.
-    fn rim(&self) -> impl Iterator<Item = (Stroke, [Spot; 2])> {
+    fn rim(&self) -> impl Iterator<Item = (Stroke, [PlanePoint; 2])> {
         let outer = self.edges.iter().filter(|e| e.sides.len() == 1);
         outer.map(|e| (Stroke::Coloured(INK, 0.8), e.ends))
     }
@@ -98,7 +99,7 @@ impl<'a, T: Real, const D: usize> Plane<'a, T, D> {
             (corner.at, view.value(piece.cell, &corner.barycentric))
         };
         let triangles: Vec<_> =
-            view.pieces().iter().map(|p| [value(p, 0), value(p, 1), value(p, 2)]).collect();
+            view.linear_parts().iter().map(|p| [value(p, 0), value(p, 1), value(p, 2)]).collect();
         let mut map = self.map("solution");
         shade(&mut map, "u", &triangles, true);
         map.lines.extend(self.rim());
@@ -122,9 +123,9 @@ impl<'a, T: Real, const D: usize> Plane<'a, T, D> {
         map.legend.push((of_contact, "in contact".to_owned()));
         let found = self.edges.iter().filter(|e| self.parts_contact(e));
         let before = map.lines.len();
-        map.lines.extend(found.map(|e| (Stroke::Found, e.ends)));
+        map.lines.extend(found.map(|e| (Stroke::Discrete, e.ends)));
         if map.lines.len() > before {
-            map.legend.push((Symbol::Line(Stroke::Found), "free boundary, found".to_owned()));
+            map.legend.push((Symbol::Line(Stroke::Discrete), "free boundary, found".to_owned()));
         }
         if let Some(set) = self.problem.exact.as_ref().and_then(|e| e.contact.as_ref()) {
             self.add_exact(set, &mut map);
@@ -132,15 +133,15 @@ impl<'a, T: Real, const D: usize> Plane<'a, T, D> {
         map
     }
 
-    /// Whether an edge parts contact from what is free.
+    /// Whether an edge separates cells in contact from cells that are not.
     fn parts_contact(&self, edge: &Edge) -> bool {
         let any = |touches: bool| edge.sides.iter().any(|s| self.touches[s.cell] == touches);
         any(true) && any(false)
     }
 
     /// Facets in contact that are seen as lines: cell, number in it, ends.
-    fn facets_seen(&self) -> Vec<(usize, usize, [Spot; 2])> {
-        let facets = self.view.fields.found.facets.iter();
+    fn facets_seen(&self) -> Vec<(usize, usize, [PlanePoint; 2])> {
+        let facets = self.view.fields.discrete_contact.facets.iter();
         let outside = facets.filter(|&&(cell, local)| !self.view.lies_in_slice(cell, local));
         outside.filter_map(|&(c, l)| self.view.facet(c, l).map(|ends| (c, l, ends))).collect()
     }
@@ -153,11 +154,12 @@ impl<'a, T: Real, const D: usize> Plane<'a, T, D> {
             let mut line = level_line(&self.sections, self.size(), &at);
             if line.is_empty() && D == 2 {
                 // a set without inner points
-                let spots: Vec<Spot> = set.free_boundary.iter().map(|x| [x[0], x[1]]).collect();
-                let near = |pair: &&[Spot]| distance(pair[0], pair[1]) < 0.02 * self.size();
-                line = spots.windows(2).filter(near).map(|pair| [pair[0], pair[1]]).collect();
+                let points: Vec<PlanePoint> =
+                    set.free_boundary.iter().map(|x| [x[0], x[1]]).collect();
+                let near = |pair: &&[PlanePoint]| distance(pair[0], pair[1]) < 0.02 * self.size();
+                line = points.windows(2).filter(near).map(|pair| [pair[0], pair[1]]).collect();
                 if line.is_empty() {
-                    map.marks = spots;
+                    map.marks = points;
                 }
             }
             map.lines.extend(line.iter().map(|&ends| (Stroke::Exact, ends)));
@@ -193,7 +195,7 @@ impl<'a, T: Real, const D: usize> Plane<'a, T, D> {
         let mut map = self.map(title);
         let largest = self.view.fields.u.iter().fold(0.0_f64, |m, u| m.max(u.abs()));
         let floor = ROUNDINGS * T::EPSILON * largest;
-        let jumps: Vec<(f64, [Spot; 2])> =
+        let jumps: Vec<(f64, [PlanePoint; 2])> =
             self.edges.iter().filter_map(|e| Some((mean_jump(&self.view, e)?, e.ends))).collect();
         map.scale = Scale::logarithmic("|mean jump|", jumps.iter().map(|j| j.0), floor);
         let none = jumps.iter().filter(|j| j.0 <= floor);
@@ -207,7 +209,7 @@ impl<'a, T: Real, const D: usize> Plane<'a, T, D> {
                     / jumps.len().max(1) as f64;
                 let on_paper = 200.0 * mean / (self.high[0] - self.low[0]);
                 let width = (0.35 * on_paper).clamp(0.6, 3.0);
-                let mut coloured: Vec<(usize, [Spot; 2])> =
+                let mut coloured: Vec<(usize, [PlanePoint; 2])> =
                     jumps.iter().filter(|j| j.0 > floor).map(|j| (scale.band(j.0), j.1)).collect();
                 coloured.sort_by_key(|c| c.0);
                 let stroke = |band| Stroke::Coloured(scale.colour(band), width);
@@ -265,21 +267,22 @@ impl<'a, T: Real, const D: usize> Plane<'a, T, D> {
     /// The multiplier on a contact boundary that is not straight.
     fn multiplier_on_facets(&self) -> Map {
         let mut map = self.map("multiplier");
-        let density = &self.view.fields.found.density;
+        let density = &self.view.fields.discrete_contact.density;
         let mut facets = Vec::new();
         for f in self.view.mesh.boundary().iter().filter(|f| f.part == BoundaryPart::Contact) {
             let (cell, local) = (f.cell as usize, usize::from(f.local));
             let ends = self.view.mesh.facet_vertices(cell, local);
             let values: Vec<f64> = ends.filter_map(|v| density[v as usize]).collect();
-            if let (Some(spots), false) = (self.view.facet(cell, local), values.is_empty()) {
-                facets.push((values.iter().sum::<f64>() / values.len() as f64, spots));
+            if let (Some(points), false) = (self.view.facet(cell, local), values.is_empty()) {
+                facets.push((values.iter().sum::<f64>() / values.len() as f64, points));
             }
         }
         map.scale = Scale::linear("density of the multiplier", facets.iter().map(|f| f.0));
         map.lines.extend(self.rim());
         if let Some(scale) = &map.scale {
-            let coloured =
-                |f: &(f64, [Spot; 2])| (Stroke::Coloured(scale.colour(scale.band(f.0)), 6.0), f.1);
+            let coloured = |f: &(f64, [PlanePoint; 2])| {
+                (Stroke::Coloured(scale.colour(scale.band(f.0)), 6.0), f.1)
+            };
             map.lines.extend(facets.iter().map(coloured));
         }
         map
@@ -288,7 +291,7 @@ impl<'a, T: Real, const D: usize> Plane<'a, T, D> {
 
 /// Fills a map with the bands of a function that is linear on triangles, perhaps with its contour
 /// lines.
-fn shade(map: &mut Map, name: &str, triangles: &[[(Spot, f64); 3]], with_lines: bool) {
+fn shade(map: &mut Map, name: &str, triangles: &[[(PlanePoint, f64); 3]], with_lines: bool) {
     let values = triangles.as_flattened().iter().map(|corner| corner.1);
     let Some(scale) = Scale::linear(name, values) else { return };
     let mut fills = Vec::new();

@@ -1,4 +1,4 @@
-//! One scheme on one level, with what a picture needs.
+//! The solution of one scheme on one level, with fields for pictures.
 
 use crate::assemble::DataQuadrature;
 use crate::error::Error;
@@ -11,8 +11,7 @@ use crate::scenes::Scene;
 use crate::scheme::AnyScheme;
 
 /// Solves a scene with a scheme on one level, with fields for pictures, the start from coarser
-/// levels as in a study. The outcome is for the caller to look at: without a solution there are no
-/// fields.
+/// levels as in a study. The caller checks the outcome: there are no fields without a solution.
 ///
 /// # Errors
 /// [`Error::Parameter`] for a level of zero or one too large, and those of assembly.

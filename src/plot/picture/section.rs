@@ -10,22 +10,22 @@ use crate::real::{Point, Real, point_f64};
 pub struct Slice {
     /// The coordinate that is fixed: 0, 1 or 2.
     pub axis: usize,
-    /// Its value.
+    /// The value of that coordinate.
     pub at: f64,
 }
 
-/// A place of the picture, two coordinates.
-pub(crate) type Spot = [f64; 2];
+/// A point in the plane that is shown.
+pub(crate) type PlanePoint = [f64; 2];
 
-/// A corner of what is drawn of a cell.
+/// A corner of a section.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Corner {
-    pub at: Spot,
-    /// The same by barycentric coordinates in the cell.
+    pub at: PlanePoint,
+    /// Barycentric coordinates of the corner in the cell.
     pub barycentric: [f64; 4],
 }
 
-/// What is drawn of a cell: a convex polygon.
+/// The visible part of a cell: a convex polygon.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Section {
     pub cell: usize,
@@ -35,7 +35,7 @@ pub(crate) struct Section {
 /// Sections smaller than this in units of the whole, squared, are points and lines.
 const FLAT: f64 = 1e-14;
 
-/// How space is seen: the coordinates that stand to the right and up, and the one that is cut.
+/// A view of the mesh: the coordinates shown to the right and upwards, and the plane of the slice.
 pub(crate) struct View<'a, T: Real, const D: usize> {
     pub mesh: &'a Mesh<T, D>,
     pub fields: &'a Fields,
@@ -73,7 +73,7 @@ impl<'a, T: Real, const D: usize> View<'a, T, D> {
         (0..=D).fold(Point::zeros(), |x, k| x + self.vertex(cell, k) * barycentric[k])
     }
 
-    fn spot(&self, x: &Point<f64, D>) -> Spot {
+    fn plane_point(&self, x: &Point<f64, D>) -> PlanePoint {
         // minus zero is the same place as zero
         self.axes.map(|k| x[k] + 0.0)
     }
@@ -86,7 +86,7 @@ impl<'a, T: Real, const D: usize> View<'a, T, D> {
 
     /// Triangles on which the function of a cell is drawn as linear: of a quadratic one those
     /// between its vertices and midpoints.
-    pub fn pieces(&self) -> Vec<Section> {
+    pub fn linear_parts(&self) -> Vec<Section> {
         let parts = parts::<D>(!self.fields.midpoints.is_empty());
         let of_cell = |cell| parts.iter().filter_map(move |part| self.section(cell, part));
         (0..self.mesh.n_cells()).flat_map(of_cell).flat_map(triangles).collect()
@@ -98,7 +98,7 @@ impl<'a, T: Real, const D: usize> View<'a, T, D> {
         let corners = match self.slice {
             None => {
                 let corner = |(b, x): (&[f64; 4], &Point<f64, D>)| Corner {
-                    at: self.spot(x),
+                    at: self.plane_point(x),
                     barycentric: *b,
                 };
                 simplex.iter().zip(&points).map(corner).collect()
@@ -127,23 +127,26 @@ impl<'a, T: Real, const D: usize> View<'a, T, D> {
             for k in 0..4 {
                 barycentric[k] = (1.0 - share) * simplex[i][k] + share * simplex[j][k];
             }
-            Corner { at: self.spot(&(points[i] + (points[j] - points[i]) * share)), barycentric }
+            Corner {
+                at: self.plane_point(&(points[i] + (points[j] - points[i]) * share)),
+                barycentric,
+            }
         };
         edges.iter().map(corner).collect()
     }
 
-    /// Where a facet is seen: the whole of it in the plane, in space its section if it crosses the
-    /// plane.
-    pub fn facet(&self, cell: usize, local: usize) -> Option<[Spot; 2]> {
+    /// The visible part of a facet: the whole facet in the plane, in space its section if the facet
+    /// crosses the plane.
+    pub fn facet(&self, cell: usize, local: usize) -> Option<[PlanePoint; 2]> {
         let whole = unit_corners::<D>();
         let corners: Vec<[f64; 4]> =
             whole.iter().enumerate().filter(|(k, _)| *k != local).map(|(_, b)| *b).collect();
         let points: Vec<Point<f64, D>> = corners.iter().map(|b| self.point(cell, b)).collect();
-        let ends: Vec<Spot> = match self.slice {
-            None => points.iter().map(|x| self.spot(x)).collect(),
+        let ends: Vec<PlanePoint> = match self.slice {
+            None => points.iter().map(|x| self.plane_point(x)).collect(),
             Some(slice) => self.cut(slice, &corners, &points).iter().map(|c| c.at).collect(),
         };
-        <[Spot; 2]>::try_from(ends).ok()
+        <[PlanePoint; 2]>::try_from(ends).ok()
     }
 
     /// Whether a facet lies in the plane of the slice.
@@ -152,7 +155,7 @@ impl<'a, T: Real, const D: usize> View<'a, T, D> {
         self.slice.is_some_and(|s| corners().all(|k| self.vertex(cell, k)[s.axis] == s.at))
     }
 
-    /// The function of a cell at a point of it.
+    /// The value of the solution at a point of a cell.
     pub fn value(&self, cell: usize, barycentric: &[f64; 4]) -> f64 {
         let b = barycentric;
         let corners = &self.fields.u[cell * (D + 1)..(cell + 1) * (D + 1)];
@@ -166,11 +169,11 @@ impl<'a, T: Real, const D: usize> View<'a, T, D> {
         at_corners + at_middles.sum::<f64>()
     }
 
-    /// The density of the multiplier at a point of a cell. A Dirichlet vertex has none of its own:
-    /// there it counts as zero in a cell that is not in contact and has none elsewhere, and is not
-    /// known otherwise.
+    /// The density of the multiplier at a point of a cell. Dirichlet vertices have no density: there it
+    /// is zero in a cell that is not in contact and has zero density at its other vertices, and unknown
+    /// otherwise.
     pub fn density(&self, cell: usize, touches: bool, barycentric: &[f64; 4]) -> Option<f64> {
-        let known = &self.fields.found.density;
+        let known = &self.fields.discrete_contact.density;
         let at = |k: usize| known.get(self.mesh.cell(cell)[k] as usize).copied().flatten();
         let free = !touches && (0..=D).all(|k| at(k).is_none_or(|density| density == 0.0));
         let mut sum = 0.0;
@@ -186,14 +189,14 @@ impl<'a, T: Real, const D: usize> View<'a, T, D> {
 }
 
 impl Section {
-    /// Its area.
+    /// The area of the section.
     pub fn area(&self) -> f64 {
         area(&self.corners.iter().map(|c| c.at).collect::<Vec<_>>())
     }
 }
 
 /// The area of a polygon, by the formula of the shoelace.
-pub(crate) fn area(corners: &[Spot]) -> f64 {
+pub(crate) fn area(corners: &[PlanePoint]) -> f64 {
     let Some(&first) = corners.first() else { return 0.0 };
     // relative to a corner, so that little is lost far from the origin
     let at = |k: usize| [corners[k][0] - first[0], corners[k][1] - first[1]];

@@ -66,7 +66,7 @@ pub(crate) fn graph<T: Real, const D: usize>(
         legend: vec![(Symbol::Line(Stroke::Solution), "density found".to_owned())],
         ..Graph::default()
     };
-    let density = &fields.found.density;
+    let density = &fields.discrete_contact.density;
     for (_, _, vertices) in &facets {
         if let [Some(a), Some(b)] = [0, 1].map(|k| density[vertices[k] as usize]) {
             let ends = [[along(vertices[0]), a], [along(vertices[1]), b]];
@@ -81,7 +81,7 @@ pub(crate) fn graph<T: Real, const D: usize>(
         }
         graph.legend.push((Symbol::Line(Stroke::Exact), "exact density".to_owned()));
     }
-    for &(cell, local) in &fields.found.facets {
+    for &(cell, local) in &fields.discrete_contact.facets {
         let ends: Vec<f64> = mesh.facet_vertices(cell, local).map(along).collect();
         graph.contact.push([ends[0].min(ends[1]), ends[0].max(ends[1])]);
     }

@@ -2,10 +2,10 @@
 
 use crate::error::Error;
 use crate::stability::choice::{Choice, Penalty, compared_and};
-use crate::stability::claim::{Claim, figures, jump, of, quotient};
 use crate::stability::meshes::stretched;
+use crate::stability::plan::{Plan, Sink};
+use crate::stability::row_builder::{RowBuilder, figures, jump, of, quotient};
 use crate::stability::runs::{definite, row_on, sines};
-use crate::stability::{Plan, Sink};
 
 /// The penalty `sigma/h_F` shown beside the proven one.
 const SIGMA: f64 = 10.0;
@@ -30,7 +30,7 @@ fn sweep(choice: &Choice, n: usize, ratios: &[usize], sink: Sink<'_>) -> Result<
     for &ratio in ratios {
         let mesh = stretched(n, ratio)?;
         let claim = |name| {
-            Claim::new(name, choice).on("sines-2d").level(n).at("aspect ratio", ratio as f64)
+            RowBuilder::new(name, choice).on("sines-2d").level(n).at("aspect ratio", ratio as f64)
         };
         // the threshold of sigma/h_F is about twice the aspect ratio
         let is_weak = choice.penalty == Penalty::Sigma(SIGMA) && 2.0 * ratio as f64 > SIGMA;

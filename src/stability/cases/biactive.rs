@@ -5,9 +5,9 @@ use crate::inequality::{Globalisation, Outcome};
 use crate::scenes;
 use crate::scenes::Scene;
 use crate::stability::choice::{Choice, compared};
-use crate::stability::claim::{Claim, figures, fitted_order, listed, of};
+use crate::stability::plan::{Plan, Sink};
+use crate::stability::row_builder::{RowBuilder, figures, fitted_order, listed, of};
 use crate::stability::runs::{row, rows, solved, solver_with};
-use crate::stability::{Plan, Sink};
 use crate::study::Row;
 
 pub(crate) fn plan(plan: &mut Plan<'_>) {
@@ -53,7 +53,7 @@ fn orders<const D: usize>(
         let errors: Vec<(usize, f64)> =
             rows.iter().filter_map(|r| Some((r.level, of(r, error)?))).collect();
         let order = (errors.len() == levels.len()).then(|| fitted_order(&errors)).flatten();
-        let claim = Claim::new("orders-on-biactive-sets", choice)
+        let claim = RowBuilder::new("orders-on-biactive-sets", choice)
             .on(&name)
             .quantity(&format!("order in {norm}, fitted"))
             .at_least(least)
@@ -81,7 +81,7 @@ fn steps<const D: usize>(
         let (_, found) = solved(&scene, choice, level, &solver_with(resort, 4 * level), false)?;
         let steps = found.outer.filter(|_| found.outcome == Outcome::Converged);
         sink(
-            Claim::new(criterion, choice)
+            RowBuilder::new(criterion, choice)
                 .on(&scene.name)
                 .level(level)
                 .quantity(quantity)
@@ -97,7 +97,7 @@ fn distances(choice: &Choice, level: usize, sink: Sink<'_>) -> Result<(), Error>
     let scene = scenes::polynomial::<2>();
     let size = scene.domain.length() / level as f64;
     let claim = |name: &str| {
-        Claim::new("free-boundary", choice).on(name).level(level).quantity("distance over h")
+        RowBuilder::new("free-boundary", choice).on(name).level(level).quantity("distance over h")
     };
     let name = scene.name.clone();
     let found = row::<f64, 2>(scene, choice, level)?;

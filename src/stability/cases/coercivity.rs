@@ -2,12 +2,13 @@
 
 use crate::algebra::SparseMatrix;
 use crate::error::Error;
+use crate::inequality::Outcome;
 use crate::kit::spectrum::{CholeskyMatrix, Diagonal, Lanczos};
 use crate::scenes;
 use crate::stability::choice::{Choice, Penalty, compared};
-use crate::stability::claim::{Claim, figures, of};
+use crate::stability::plan::{Plan, Sink};
+use crate::stability::row_builder::{RowBuilder, figures, of};
 use crate::stability::runs::{free_matrix, row, sines};
-use crate::stability::{Plan, Sink};
 
 /// The factor below which `sigma/h_F` is indefinite on right isosceles triangles.
 const THRESHOLD: f64 = 3.0;
@@ -33,7 +34,7 @@ fn inertia(choice: &Choice, level: usize) -> Result<crate::stability::StabilityR
     let negative = negative_pivots(&matrix);
     let is_weak = matches!(choice.penalty, Penalty::Sigma(sigma) if sigma < THRESHOLD);
     let least = smallest_eigenvalue(&matrix);
-    let claim = Claim::new("inertia", choice).on("sines-2d").level(level);
+    let claim = RowBuilder::new("inertia", choice).on("sines-2d").level(level);
     let claim = match choice.penalty {
         Penalty::Sigma(sigma) => claim.at("sigma", sigma),
         _ => claim,
@@ -55,8 +56,8 @@ fn factor(choice: &Choice, sigma: f64, level: usize, sink: Sink<'_>) -> Result<(
     let found = row::<f64, 2>(scenes::radial::<2>(1.0), choice, 2 * level)?;
     // on Dirichlet facets |dK|/|K| with |dK| = (2 + root 2) h and |K| = h^2 / 2
     let proven = 2.0 * (2.0 + 2.0_f64.sqrt());
-    let told = found.status == "not-coercive" || !found.warnings.is_empty();
-    let claim = Claim::new("refused-or-warned", choice)
+    let told = found.status == Outcome::NotCoercive || !found.warnings.is_empty();
+    let claim = RowBuilder::new("refused-or-warned", choice)
         .on(&found.scene)
         .level(2 * level)
         .at("sigma", sigma)
@@ -72,8 +73,8 @@ fn factor(choice: &Choice, sigma: f64, level: usize, sink: Sink<'_>) -> Result<(
     Ok(())
 }
 
-/// Negative pivots of the factorisation `L D L^T` without exchanges, which by Sylvester's law are as
-/// many as negative eigenvalues.
+/// Negative pivots of the factorisation `L D L^T` without exchanges, which by Sylvester's law are
+/// as many as negative eigenvalues.
 fn negative_pivots(matrix: &SparseMatrix<f64>) -> usize {
     let n = matrix.size();
     let mut rows: Vec<Vec<f64>> = (0..n)

@@ -6,11 +6,11 @@ use crate::kit::spectrum::{CholeskyMatrix, Diagonal, Lanczos, MeanJump, Positive
 use crate::measure::observed_order;
 use crate::mesh::Mesh;
 use crate::stability::choice::{Choice, Penalty};
-use crate::stability::claim::Claim;
+use crate::stability::plan::{Plan, Sink};
+use crate::stability::row_builder::RowBuilder;
 use crate::stability::runs::{free_matrix, sines};
-use crate::stability::{Plan, Sink};
 
-/// What a condition number is that of.
+/// The two matrices with a condition number.
 const PARTS: [&str; 2] = ["not preconditioned", "diagonal of means and jumps"];
 
 pub(crate) fn plan(plan: &mut Plan<'_>) {
@@ -61,7 +61,7 @@ fn factors(choice: &Choice, exponent: i32, level: usize, sink: Sink<'_>) -> Resu
     let here = both(choice, level)?;
     let at_one = both(&Choice::new(choice.scheme, Penalty::Eta(1.0)), level)?;
     for (k, what) in PARTS.into_iter().enumerate() {
-        let claim = Claim::new("condition-over-factors", choice)
+        let claim = RowBuilder::new("condition-over-factors", choice)
             .with(what)
             .on("sines-2d")
             .level(level)
@@ -87,7 +87,7 @@ fn meshes(choice: &Choice, finest: usize, sink: Sink<'_>) -> Result<(), Error> {
             observed_order(a, b, h, half).map(|order| -order)
         });
         sink(
-            Claim::new("condition-over-meshes", choice)
+            RowBuilder::new("condition-over-meshes", choice)
                 .with(what)
                 .on("sines-2d")
                 .level(finest)

@@ -6,9 +6,9 @@ use crate::real::Point;
 use crate::scenes;
 use crate::scenes::Scene;
 use crate::stability::choice::{Choice, compared};
-use crate::stability::claim::{Claim, figures, fitted_order, listed, of};
+use crate::stability::plan::{Plan, Sink};
+use crate::stability::row_builder::{RowBuilder, figures, fitted_order, listed, of};
 use crate::stability::runs::{rows, solved, solver};
-use crate::stability::{Plan, Sink};
 use crate::study::Study;
 
 /// A Signorini problem with contact for `x <= c`, and `c`.
@@ -43,7 +43,7 @@ fn sweep(
         found.iter().filter_map(|r| Some((r.level, of(r, |r| r.error.h1)?))).collect();
     let order = (errors.len() == levels.len()).then(|| fitted_order(&errors)).flatten();
     let name = make().name;
-    let claim = Claim::new("order-with-ends-off-mesh", choice)
+    let claim = RowBuilder::new("order-with-ends-off-mesh", choice)
         .on(&name)
         .at("c", end)
         .quantity("order in H1, fitted")
@@ -53,7 +53,7 @@ fn sweep(
     for row in &found {
         let size = 1.0 / row.level as f64;
         let claim = |name| {
-            Claim::new(name, choice).on(&row.scene).level(row.level).at("c", end).at_most(1.0)
+            RowBuilder::new(name, choice).on(&row.scene).level(row.level).at("c", end).at_most(1.0)
         };
         let distance = of(row, |r| r.contact.free_boundary_distance);
         sink(
@@ -118,7 +118,7 @@ fn junction(choice: &Choice, sink: Sink<'_>) -> Result<(), Error> {
         }
     };
     sink(
-        Claim::new("junction-inside-facet", choice)
+        RowBuilder::new("junction-inside-facet", choice)
             .on("signorini-2d")
             .quantity("refused, or errors withheld")
             .at_least(1.0)

@@ -6,9 +6,9 @@ use crate::scenes;
 use crate::scenes::Scene;
 use crate::scheme::ConformingP1;
 use crate::stability::choice::{Choice, Penalty, compared, compared_and};
-use crate::stability::claim::{Claim, figures, fitted_order, listed, of, quotient};
+use crate::stability::plan::{Plan, Sink};
+use crate::stability::row_builder::{RowBuilder, figures, fitted_order, listed, of, quotient};
 use crate::stability::runs::{row, rows};
-use crate::stability::{Plan, Sink};
 use crate::study::Row;
 
 /// Most active sets that count as bounded.
@@ -18,8 +18,8 @@ pub(crate) fn plan(plan: &mut Plan<'_>) {
     let level = plan.pick_of(8, 16, 32);
     let exponents: &[i32] = plan.pick(&[-8, -4, 4, 8], &[-8, -6, -4, -2, 2, 4, 6, 8]);
     let further = [
-        Choice::new("wopsip", Penalty::Blind),
-        Choice::new("wopsip:facet-means", Penalty::Blind),
+        Choice::new("wopsip", Penalty::Unweighted),
+        Choice::new("wopsip:facet-means", Penalty::Unweighted),
         Choice::new("sipg", Penalty::Sigma(10.0)),
     ];
     for choice in compared_and(&further) {
@@ -61,7 +61,7 @@ fn aligned(choice: &Choice, level: usize, exponents: &[i32], sink: Sink<'_>) -> 
         let (row, error) = relative(contrast)?;
         let relative = error.map_or(String::new(), |e| format!(", relative energy error {e:.2e}"));
         let claim = |name| {
-            Claim::new(name, choice)
+            RowBuilder::new(name, choice)
                 .on(&row.scene)
                 .level(level)
                 .at("contrast", contrast)
@@ -72,7 +72,7 @@ fn aligned(choice: &Choice, level: usize, exponents: &[i32], sink: Sink<'_>) -> 
                 .quantity("relative energy error over that at contrast 1")
                 .at_most(1.5)
                 // below one it is larger than it need be, which harms less
-                .known_to_fail(choice.penalty == Penalty::Blind && contrast > 1.0)
+                .known_to_fail(choice.penalty == Penalty::Unweighted && contrast > 1.0)
                 .measured(quotient(error, at_one)),
         );
         let sets = of(&row, |r| r.iterations.outer.map(|n| n as f64));
@@ -93,7 +93,7 @@ fn across(choice: &Choice, level: usize, sink: Sink<'_>) -> Result<(), Error> {
         let theirs = row::<f64, 2>(scenes::contrast::<2>(contrast), &p1, level)?;
         let error = |r: &Row| r.error.h1;
         sink(
-            Claim::new("interface-across-flux", choice)
+            RowBuilder::new("interface-across-flux", choice)
                 .on(&ours.scene)
                 .level(level)
                 .at("contrast", contrast)
@@ -112,7 +112,7 @@ fn inside_cells(choice: &Choice, levels: &[usize], sink: Sink<'_>) -> Result<(),
     let errors: Vec<(usize, f64)> =
         rows.iter().filter_map(|r| Some((r.level, of(r, |r| r.error.h1)?))).collect();
     sink(
-        Claim::new("interface-inside-cells", choice)
+        RowBuilder::new("interface-inside-cells", choice)
             .on("contrast-disc-2d")
             .at("contrast", contrast)
             .quantity("order in H1, fitted")

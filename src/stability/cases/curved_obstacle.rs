@@ -9,9 +9,9 @@ use crate::real::{Point, Real};
 use crate::scenes;
 use crate::scenes::Scene;
 use crate::stability::choice::{Choice, Penalty, compared_and};
-use crate::stability::claim::{Claim, figures, fitted_order, listed, of};
+use crate::stability::plan::{Plan, Sink};
+use crate::stability::row_builder::{RowBuilder, figures, fitted_order, listed, of};
 use crate::stability::runs::{row, rows, solved, solver, solver_with};
-use crate::stability::{Plan, Sink};
 
 /// An obstacle touched in a disc around the origin, with its radius.
 type Touched = (fn() -> Scene<2>, f64);
@@ -22,7 +22,7 @@ const PROBLEMS: [Touched; 2] =
 /// After so many sets the method wanders.
 const MOST_SETS: usize = 100;
 
-/// Hierarchy to which the order of the multiplier is fitted.
+/// Levels to which the order of the multiplier is fitted.
 const FITTED: [usize; 3] = [16, 32, 64];
 
 pub(crate) fn plan(plan: &mut Plan<'_>) {
@@ -57,7 +57,7 @@ fn sweep(
     let errors: Vec<(usize, f64)> =
         found.iter().filter_map(|r| Some((r.level, of(r, |r| r.contact.multiplier_l1)?))).collect();
     let order = (errors.len() == fitted.len()).then(|| fitted_order(&errors)).flatten();
-    let claim = Claim::new("multiplier-order", choice)
+    let claim = RowBuilder::new("multiplier-order", choice)
         .on(&name)
         .quantity("order of the multiplier in L1, fitted")
         .detail(format!("L1 error {}", listed(&errors)));
@@ -77,7 +77,7 @@ fn single(
     let scene = make();
     let mesh = scene.domain.mesh::<f64>(level)?;
     let size = scene.domain.length() / level as f64;
-    let claim = |name| Claim::new(name, choice).on(&scene.name).level(level).at("h", size);
+    let claim = |name| RowBuilder::new(name, choice).on(&scene.name).level(level).at("h", size);
     let found = row::<f64, 2>(make(), choice, level)?;
     sink(
         claim("certificate")

@@ -3,10 +3,10 @@
 use crate::error::Error;
 use crate::scenes;
 use crate::stability::choice::{Choice, Penalty, compared_and};
-use crate::stability::claim::{Claim, figures, of, quotient};
 use crate::stability::meshes::graded;
+use crate::stability::plan::{Plan, Sink};
+use crate::stability::row_builder::{RowBuilder, figures, of, quotient};
 use crate::stability::runs::row_on;
-use crate::stability::{Plan, Sink};
 
 pub(crate) fn plan(plan: &mut Plan<'_>) {
     let n = plan.pick_of(8, 16, 32);
@@ -25,7 +25,7 @@ pub(crate) fn plan(plan: &mut Plan<'_>) {
 }
 
 fn compare(choice: &Choice, n: usize, power: i32, sink: Sink<'_>) -> Result<(), Error> {
-    let claim = Claim::new("error-on-graded-meshes", choice)
+    let claim = RowBuilder::new("error-on-graded-meshes", choice)
         .on("signorini-harmonic-2d")
         .level(n)
         .at("power", f64::from(power))

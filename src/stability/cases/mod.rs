@@ -13,4 +13,3 @@ pub(crate) mod over_penalty;
 pub(crate) mod round_off;
 pub(crate) mod scaling;
 pub(crate) mod slivers;
-pub(crate) mod unweighted;

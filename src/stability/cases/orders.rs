@@ -4,9 +4,11 @@ use crate::error::Error;
 use crate::scenes;
 use crate::scenes::Scene;
 use crate::stability::choice::{Choice, Penalty, compared};
-use crate::stability::claim::{Claim, figures, fitted_order, jump, listed, of, quotient};
+use crate::stability::plan::{Plan, Sink};
+use crate::stability::row_builder::{
+    RowBuilder, figures, fitted_order, jump, listed, of, quotient,
+};
 use crate::stability::runs::{row, rows, sines};
-use crate::stability::{Plan, Sink};
 use crate::study::Row;
 
 /// A norm of the error by name, and the least order expected of it.
@@ -80,7 +82,7 @@ fn fit<const D: usize>(
         let errors: Vec<(usize, f64)> =
             rows.iter().filter_map(|r| Some((r.level, of(r, error)?))).collect();
         let order = (errors.len() == levels.len()).then(|| fitted_order(&errors)).flatten();
-        let claim = Claim::new(criterion, choice)
+        let claim = RowBuilder::new(criterion, choice)
             .on(&name)
             .quantity(&format!("order in {norm}, fitted"))
             .detail(format!("error {}", listed(&errors)));
@@ -106,7 +108,7 @@ fn in_space(choice: &Choice, levels: &[usize], sink: Sink<'_>) -> Result<(), Err
         let ours = row::<f64, 3>(scenes::radial::<3>(1.0), choice, level)?;
         let p1 = row::<f64, 3>(scenes::radial::<3>(1.0), &Choice::default("p1"), level)?;
         sink(
-            Claim::new("boxes-in-space", choice)
+            RowBuilder::new("boxes-in-space", choice)
                 .on(&ours.scene)
                 .level(level)
                 .quantity("L2 error over that of p1")

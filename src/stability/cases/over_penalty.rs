@@ -4,9 +4,9 @@ use crate::error::Error;
 use crate::scenes;
 use crate::scenes::Scene;
 use crate::stability::choice::{Choice, Penalty};
-use crate::stability::claim::{Claim, figures, jump, of, quotient};
+use crate::stability::plan::{Plan, Sink};
+use crate::stability::row_builder::{RowBuilder, figures, jump, of, quotient};
 use crate::stability::runs::{definite, row};
-use crate::stability::{Plan, Sink};
 
 pub(crate) fn plan(plan: &mut Plan<'_>) {
     let level = plan.pick_of(8, 32, 32);
@@ -34,7 +34,7 @@ fn factor(
 ) -> Result<(), Error> {
     let eta = 10.0_f64.powi(exponent);
     let scene = make();
-    let claim = |name| Claim::new(name, choice).on(&scene.name).level(level).at("eta", eta);
+    let claim = |name| RowBuilder::new(name, choice).on(&scene.name).level(level).at("eta", eta);
     let mesh = scene.domain.mesh::<f64>(level)?;
     sink(
         claim("definite-for-every-factor")

@@ -3,9 +3,9 @@
 use crate::error::Error;
 use crate::real::Real;
 use crate::stability::choice::{Choice, Penalty, compared_and};
-use crate::stability::claim::{Claim, figures, of, quotient};
+use crate::stability::plan::{Plan, Sink};
+use crate::stability::row_builder::{RowBuilder, figures, of, quotient};
 use crate::stability::runs::{rows, sines};
-use crate::stability::{Plan, Sink};
 use crate::study::Row;
 
 /// The largest factor between errors of a mesh and of the coarser one.
@@ -49,7 +49,7 @@ fn sweep<T: Real, const D: usize>(
         if let Some(before) = &coarser {
             let ratio = quotient(of(&row, error), of(before, error));
             let claim = |name| {
-                Claim::new(name, choice)
+                RowBuilder::new(name, choice)
                     .on(&row.scene)
                     .precision(T::NAME)
                     .level(level)

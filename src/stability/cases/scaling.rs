@@ -1,13 +1,13 @@
-//! The same problem in other units.
+//! Invariance under a change of units.
 
 use crate::error::Error;
 use crate::problem::Datum;
 use crate::scenes;
 use crate::scenes::Scene;
 use crate::stability::choice::{Choice, Penalty, compared_and};
-use crate::stability::claim::{Claim, quotient};
+use crate::stability::plan::{Plan, Sink};
+use crate::stability::row_builder::{RowBuilder, quotient};
 use crate::stability::runs::{solved, solver};
-use crate::stability::{Plan, Sink};
 
 pub(crate) fn plan(plan: &mut Plan<'_>) {
     let level = plan.pick(8, 32);
@@ -22,8 +22,8 @@ pub(crate) fn plan(plan: &mut Plan<'_>) {
         });
     }
     for choice in compared_and(&[
-        Choice::new("wopsip", Penalty::Blind),
-        Choice::new("wopsip:facet-means", Penalty::Blind),
+        Choice::new("wopsip", Penalty::Unweighted),
+        Choice::new("wopsip:facet-means", Penalty::Unweighted),
     ]) {
         plan.add("scaling", choice, "size of the coefficient", move |c, sink| {
             coefficient(c, level, factors, sink)
@@ -60,7 +60,7 @@ fn domain(choice: &Choice, level: usize, lengths: &[f64], sink: Sink<'_>) -> Res
     for &length in lengths {
         let (here, how) = values(&scenes::radial(length), choice, level)?;
         sink(
-            Claim::new("size-of-domain", choice)
+            RowBuilder::new("size-of-domain", choice)
                 .on("radial-2d")
                 .level(level)
                 .at("L", length)
@@ -87,13 +87,13 @@ fn coefficient(
         scene.problem.coefficient = Some(Box::new(move |_| factor));
         let (here, how) = values(&scene, choice, level)?;
         sink(
-            Claim::new("size-of-coefficient", choice)
+            RowBuilder::new("size-of-coefficient", choice)
                 .on("radial-2d")
                 .level(level)
                 .at("c", factor)
                 .quantity("relative difference of solutions")
                 .at_most(1e-10)
-                .known_to_fail(choice.penalty == Penalty::Blind)
+                .known_to_fail(choice.penalty == Penalty::Unweighted)
                 .detail(how)
                 .measured(difference(&here, &at_one)),
         );

@@ -3,10 +3,10 @@
 use crate::error::Error;
 use crate::scenes;
 use crate::stability::choice::{Choice, Penalty, compared_and};
-use crate::stability::claim::{Claim, figures, of, quotient};
 use crate::stability::meshes::{clamped, slivers};
+use crate::stability::plan::{Plan, Sink};
+use crate::stability::row_builder::{RowBuilder, figures, of, quotient};
 use crate::stability::runs::{definite, row_on, sines};
-use crate::stability::{Plan, Sink};
 
 pub(crate) fn plan(plan: &mut Plan<'_>) {
     let n = plan.pick_of(2, 4, 6);
@@ -23,14 +23,16 @@ pub(crate) fn plan(plan: &mut Plan<'_>) {
             for (name, mesh) in given {
                 let mesh = clamped(mesh.vertices().to_vec(), mesh.cells().to_vec())?;
                 let claim =
-                    Claim::new("given-meshes", c).on(name).quantity("has a Cholesky factor");
+                    RowBuilder::new("given-meshes", c).on(name).quantity("has a Cholesky factor");
                 let error = row_on(sines(), mesh.clone(), c)?;
                 let is_weak = c.penalty == Penalty::Sigma(10.0);
                 let claim = claim.detail(figures(&error)).at_least(1.0).known_to_fail(is_weak);
                 sink(claim.measured(definite(&sines::<3>().problem, &mesh, c)?));
             }
             if given.is_empty() {
-                sink(Claim::new("given-meshes", c).not_applicable("not run: no mesh was given"));
+                sink(
+                    RowBuilder::new("given-meshes", c).not_applicable("not run: no mesh was given"),
+                );
             }
             Ok(())
         });
@@ -43,7 +45,7 @@ fn sweep(choice: &Choice, n: usize, heights: &[f64], sink: Sink<'_>) -> Result<(
     for &height in heights {
         let mesh = slivers(1.0, n, height)?;
         let claim = |name, problem: &str| {
-            Claim::new(name, choice).on(problem).level(n).at("relative height", height)
+            RowBuilder::new(name, choice).on(problem).level(n).at("relative height", height)
         };
         sink(
             claim("definite-on-slivers", "sines-3d")

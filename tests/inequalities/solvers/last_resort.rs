@@ -134,7 +134,7 @@ fn converges<const D: usize>(scene: Scene<D>, scheme: Wopsip, level: usize, most
     let report = Study::<f64, D>::new(scene).scheme(scheme).levels([level]).run().unwrap();
     let row = &report.rows[0];
     let what = format!("{} at level {level}, {:?}", row.scene, scheme.eta);
-    assert_eq!(row.status, "converged", "{what}");
+    assert!(row.converged(), "{what}");
     assert!(row.certificate.largest() < 1e-9, "{what}: {:?}", row.certificate);
     let outer = row.iterations.outer.unwrap();
     println!("{what}: {outer} steps, {:.2} s", row.seconds.solve);
@@ -186,7 +186,7 @@ fn no_penalty_is_too_large() {
             let scheme = scheme_by_name::<f64, 2>(name, &options).unwrap();
             let study = Study::<f64, 2>::new(scenes::ball_2d()).boxed_scheme(scheme);
             let row = study.solver(solver.clone()).levels([8]).run().unwrap().rows.remove(0);
-            assert_eq!(row.status, "converged", "{name} {eta:e}");
+            assert!(row.converged(), "{name} {eta:e}");
             assert!(row.certificate.largest() < 1e-9, "{name} {eta:e}: {:?}", row.certificate);
             let outer = row.iterations.outer.unwrap();
             assert!(outer <= 40, "{name} {eta:e}: {outer} steps");
@@ -200,7 +200,7 @@ fn a_solution_without_energy_is_not_singular() {
     let scheme = FacetMeans(wopsip(1e-2));
     let study = Study::<f64, 3>::new(scenes::ball_3d()).scheme(scheme).levels([1]);
     let row = study.run().unwrap().rows.remove(0);
-    assert_eq!(row.status, "converged");
+    assert!(row.converged());
 }
 
 #[test]

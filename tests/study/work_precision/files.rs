@@ -4,7 +4,8 @@ use std::process::Command;
 
 use super::synthetic::{measured, synthetic};
 use crate::scratch::Scratch;
-use unilateral::work_precision::changes;
+use unilateral::inequality::Outcome;
+use unilateral::work_precision::{Failure, changes};
 
 /// Cells of a line without quoted commas.
 fn table(csv: &str) -> Vec<Vec<&str>> {
@@ -62,7 +63,8 @@ fn markdown_tables_have_as_many_cells_in_each_line() {
 #[test]
 fn latex_tables_have_as_many_cells_as_columns_and_nothing_unescaped() {
     let mut report = synthetic();
-    report.rows[0].row.status = "odd_status & 100%".into();
+    let case = report.rows[0].case();
+    report.refused.push(Failure::new(case, "odd_reason & 100%"));
     let text = report.to_latex();
     let tables: Vec<&str> = text.split("\\begin{tabular}").skip(1).collect();
     assert_eq!(tables.len(), 4);
@@ -78,7 +80,7 @@ fn latex_tables_have_as_many_cells_as_columns_and_nothing_unescaped() {
             assert_eq!(body.matches(rule).count(), 1);
         }
     }
-    assert!(text.contains("odd\\_status \\& 100\\%"), "{text}");
+    assert!(text.contains("odd\\_reason \\& 100\\%"), "{text}");
     assert_eq!(text.matches("\\begin{table}").count(), text.matches("\\end{table}").count());
 }
 
@@ -131,7 +133,7 @@ fn a_baseline_tells_changed_counts_and_errors_and_ignores_times() {
 
     report.rows[1].row.iterations.outer = Some(4);
     report.rows[2].row.error.l2 = report.rows[2].row.error.l2.map(|e| 1.001 * e);
-    report.rows[4].row.status = "cycling".into();
+    report.rows[4].row.status = Outcome::Cycling;
     let dropped = report.rows.pop().unwrap();
     report.rows.push(measured("cr", 8, 1.0));
     let different = changes(&baseline, &report).unwrap();
@@ -150,7 +152,7 @@ fn a_baseline_tells_changed_counts_and_errors_and_ignores_times() {
 #[test]
 fn failures_are_listed_and_drawn() {
     let mut report = synthetic();
-    report.rows[2].row.status = "cycling".into();
+    report.rows[2].row.status = Outcome::Cycling;
     let failures = report.failures();
     assert_eq!(failures.len(), 1);
     assert_eq!((failures[0].case.level, &failures[0].why[..]), (32, "cycling"));

@@ -8,9 +8,10 @@ use std::cell::RefCell;
 use crate::scratch::Scratch;
 use serde_json::Value;
 use synthetic::{measured, synthetic};
+use unilateral::measure::ErrorNorm;
 use unilateral::prelude::*;
 use unilateral::work_precision::{
-    ErrorNorm, Phases, Precision, WorkPoint, WorkPrecision, WorkProgress, work_at,
+    Phases, Precision, WorkPoint, WorkPrecision, WorkProgress, work_at,
 };
 
 fn close(a: f64, b: f64) -> bool {

@@ -42,7 +42,7 @@ pub fn run(options: &Options) -> Request<bool> {
         _ => (f64::NAME, chosen.run::<f64>(options)?),
     };
     let program = Program::new("compare", precision, rayon::current_num_threads(), options.repeat);
-    let report = Report { program, rows };
+    let report = Report::new(program, rows);
     write_all(options, &report)?;
     Ok(report.rows.iter().all(Row::converged))
 }

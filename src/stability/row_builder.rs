@@ -1,16 +1,16 @@
-//! A row in the making.
+//! Construction of rows, and their figures.
 
 use super::choice::Choice;
 use super::criteria::criterion;
-use super::row::{Expected, StabilityRow, Verdict, short};
+use super::row::{ExpectedRange, StabilityRow, Verdict, short};
 use crate::study::Row;
 
-/// A row in the making: what is asked of whom, then the figure.
+/// A row under construction: criterion, scheme and limits first, then the figure.
 #[derive(Clone)]
-pub(crate) struct Claim(StabilityRow);
+pub(crate) struct RowBuilder(StabilityRow);
 
-impl Claim {
-    /// A claim about a scheme under a criterion.
+impl RowBuilder {
+    /// A row of a scheme for a criterion.
     pub fn new(name: &'static str, choice: &Choice) -> Self {
         Self(StabilityRow {
             case: criterion(name).map_or("", |c| c.case).to_owned(),
@@ -23,14 +23,14 @@ impl Claim {
             parameter: String::new(),
             value: None,
             quantity: String::new(),
-            expected: Expected::default(),
+            expected: ExpectedRange::default(),
             measured: None,
             detail: String::new(),
             verdict: Verdict::Reported,
             missed_by: None,
         })
     }
-    /// What else was chosen.
+    /// Adds a further choice.
     pub fn with(mut self, what: &str) -> Self {
         let comma = if self.0.choice.is_empty() { "" } else { ", " };
         self.0.choice += &format!("{comma}{what}");
@@ -70,14 +70,14 @@ impl Claim {
         self.0.expected.at_least = Some(least);
         self
     }
-    /// Whether this is shown because it does not get there.
+    /// Marks a choice that is known to miss the limits.
     pub fn known_to_fail(mut self, to_fail: bool) -> Self {
         self.0.expected.to_fail = to_fail;
         self
     }
-    /// The limits are for others: this figure is reported only.
+    /// Removes the limits, so that the figure is reported without a verdict.
     pub fn only_reported(mut self) -> Self {
-        self.0.expected = Expected::default();
+        self.0.expected = ExpectedRange::default();
         self
     }
     /// Further figures.
@@ -102,8 +102,8 @@ impl Claim {
 /// Errors, iterations and whatever went wrong of a run, in a few words.
 pub(crate) fn figures(row: &Row) -> String {
     let mut parts = Vec::new();
-    if row.status != "converged" {
-        parts.push(row.status.clone());
+    if !row.converged() {
+        parts.push(row.status.to_string());
     }
     let errors = [("L2", row.error.l2), ("H1", row.error.h1), ("energy", row.error.energy)];
     parts.extend(errors.iter().filter_map(|(name, e)| e.map(|e| format!("{name} {e:.2e}"))));

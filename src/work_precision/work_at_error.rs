@@ -1,59 +1,35 @@
-//! What it takes to reach a given error, between the levels that were run.
+//! Time, unknowns and memory at a given error, interpolated between the levels that were run.
 
 use serde::Serialize;
 
 use super::measured::{Measured, Variant};
+use crate::measure::ErrorNorm;
 use crate::study::table::distinct;
 
-/// A norm in which errors are given.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "lowercase")]
-pub enum ErrorNorm {
-    /// L2.
-    L2,
-    /// The broken H1 seminorm.
-    H1,
-    /// The scheme's own norm, which differs between schemes: compare with care.
-    Energy,
+/// The error of a row in a norm; none where the run did not converge.
+fn error_in(norm: ErrorNorm, measured: &Measured) -> Option<f64> {
+    let error = &measured.row.error;
+    let value = match norm {
+        ErrorNorm::L2 => error.l2,
+        ErrorNorm::H1 => error.h1,
+        ErrorNorm::Energy => error.energy,
+    };
+    value.filter(|e| measured.row.converged() && e.is_finite() && *e > 0.0)
 }
 
-impl ErrorNorm {
-    /// All of them.
-    pub const ALL: [Self; 3] = [Self::L2, Self::H1, Self::Energy];
-
-    /// Its name in tables.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::L2 => "L2",
-            Self::H1 => "H1",
-            Self::Energy => "energy",
-        }
-    }
-
-    /// The error of a row in it; none where the run did not converge.
-    pub fn of(self, measured: &Measured) -> Option<f64> {
-        let error = &measured.row.error;
-        let value = match self {
-            Self::L2 => error.l2,
-            Self::H1 => error.h1,
-            Self::Energy => error.energy,
-        };
-        value.filter(|e| measured.row.converged() && e.is_finite() && *e > 0.0)
-    }
-}
-
-/// A level: its error, and what it took.
+/// Error and work of a level.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct WorkPoint {
     /// The error; none where the run failed.
     pub error: Option<f64>,
-    /// Seconds, or whatever is counted.
+    /// Seconds, unknowns or bytes.
     pub work: f64,
 }
 
 /// The work at which a given error is reached, on straight lines between neighbouring levels in
-/// logarithmic scales. Hierarchy stand in order. Nothing where no two neighbours that both converged
-/// have the error between them: nothing is extrapolated, and no level that failed is bridged.
+/// logarithmic scales. Points are ordered from coarse to fine. None where no two neighbours that
+/// both converged have the error between them: nothing is extrapolated, and no level that failed is
+/// bridged.
 ///
 /// ```
 /// use unilateral::work_precision::{work_at, WorkPoint};
@@ -74,9 +50,10 @@ pub fn work_at(points: &[WorkPoint], error: f64) -> Option<f64> {
     })
 }
 
-/// What a variant takes to reach an error.
+/// Time, unknowns and memory with which a variant reaches an error.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Reach {
+#[non_exhaustive]
+pub struct WorkAtError {
     /// The variant.
     #[serde(flatten)]
     pub variant: Variant,
@@ -96,13 +73,13 @@ pub struct Reach {
 
 /// All variants at all errors worth comparing at: for every scene and norm the numbers 1, 2 and 5
 /// times powers of ten that at least two variants reach, or the only one there is.
-pub fn reach(rows: &[Measured]) -> Vec<Reach> {
+pub(crate) fn work_at_errors(rows: &[Measured]) -> Vec<WorkAtError> {
     let mut all = Vec::new();
     for scene in distinct(rows.iter().map(|m| m.row.scene.as_str())) {
         let curves = curves(rows, scene);
         for norm in ErrorNorm::ALL {
             for error in targets(&curves, norm) {
-                all.extend(reach_at(&curves, norm, error));
+                all.extend(work_of_variants_at(&curves, norm, error));
             }
         }
     }
@@ -123,39 +100,44 @@ pub(crate) fn curves<'a>(rows: &'a [Measured], scene: &str) -> Vec<(Variant, Vec
 
 type Curves<'a> = [(Variant, Vec<&'a Measured>)];
 
-fn reach_at(curves: &Curves<'_>, norm: ErrorNorm, error: f64) -> Vec<Reach> {
+fn work_of_variants_at(curves: &Curves<'_>, norm: ErrorNorm, error: f64) -> Vec<WorkAtError> {
     let at = |levels: &[&Measured], work: fn(&Measured) -> Option<f64>| {
         let point = |m: &&Measured| {
             let work = work(m);
-            WorkPoint { error: norm.of(m).filter(|_| work.is_some()), work: work.unwrap_or(0.0) }
+            WorkPoint {
+                error: error_in(norm, m).filter(|_| work.is_some()),
+                work: work.unwrap_or(0.0),
+            }
         };
         work_at(&levels.iter().map(point).collect::<Vec<_>>(), error)
     };
     let seconds: Vec<Option<f64>> =
         curves.iter().map(|(_, levels)| at(levels, |m| Some(m.smallest.total))).collect();
     let best = seconds.iter().flatten().copied().fold(f64::INFINITY, f64::min);
-    let of = |((variant, levels), seconds): (&(Variant, Vec<&Measured>), Option<f64>)| Reach {
-        variant: variant.clone(),
-        norm,
-        error,
-        seconds,
-        ratio: seconds.map(|s| s / best),
-        unknowns: at(levels, |m| Some(m.row.unknowns as f64)),
-        memory_bytes: at(levels, |m| m.row.peak_memory_bytes.map(|b| b as f64)),
-    };
+    let of =
+        |((variant, levels), seconds): (&(Variant, Vec<&Measured>), Option<f64>)| WorkAtError {
+            variant: variant.clone(),
+            norm,
+            error,
+            seconds,
+            ratio: seconds.map(|s| s / best),
+            unknowns: at(levels, |m| Some(m.row.unknowns as f64)),
+            memory_bytes: at(levels, |m| m.row.peak_memory_bytes.map(|b| b as f64)),
+        };
     curves.iter().zip(seconds).map(of).collect()
 }
 
 /// Errors to compare at, from large to small.
 fn targets(curves: &Curves<'_>, norm: ErrorNorm) -> Vec<f64> {
-    let errors = || curves.iter().flat_map(|c| &c.1).filter_map(|m| norm.of(m));
+    let errors = || curves.iter().flat_map(|c| &c.1).filter_map(|m| error_in(norm, m));
     let low = errors().fold(f64::INFINITY, f64::min);
     let high = errors().fold(0.0, f64::max);
     if low > high {
         return Vec::new();
     }
     let reached = |error: &f64| {
-        let seconds = reach_at(curves, norm, *error).into_iter().filter(|r| r.seconds.is_some());
+        let seconds =
+            work_of_variants_at(curves, norm, *error).into_iter().filter(|r| r.seconds.is_some());
         seconds.count() >= curves.len().min(2)
     };
     let (first, last) = (low.log10().floor() as i32, high.log10().ceil() as i32);

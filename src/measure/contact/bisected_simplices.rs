@@ -5,19 +5,19 @@ use crate::real::Point;
 
 /// A part of a simplex, by barycentric coordinates in it.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Piece {
+pub(crate) struct SubSimplex {
     corners: [[f64; 4]; 4],
     dimension: usize,
-    /// Its share of the measure of the whole simplex.
+    /// Share of the measure of the whole simplex.
     pub share: f64,
     bisections: usize,
 }
 
-/// How often a simplex is bisected, by dimension: pieces that the boundary of the set runs through
+/// How often a simplex is bisected, by dimension: parts that the boundary of the set runs through
 /// are then about 1e-5, 1/32 and 1/8 of the simplex in size.
 const BISECTIONS: [usize; 4] = [0, 16, 10, 9];
 
-impl Piece {
+impl SubSimplex {
     /// The whole simplex of some dimension.
     pub fn whole(dimension: usize) -> Self {
         let mut corners = [[0.0; 4]; 4];
@@ -27,14 +27,14 @@ impl Piece {
         Self { corners, dimension, share: 1.0, bisections: 0 }
     }
 
-    /// A point of the piece in barycentric coordinates of the whole.
+    /// A point of the part in barycentric coordinates of the whole.
     pub fn point(&self, barycentric: &[f64; 4]) -> [f64; 4] {
         std::array::from_fn(|k| {
             (0..=self.dimension).map(|i| barycentric[i] * self.corners[i][k]).sum()
         })
     }
 
-    /// Whether it is the whole simplex.
+    /// Whether the part is the whole simplex.
     pub fn is_whole(&self) -> bool {
         self.bisections == 0
     }
@@ -46,9 +46,9 @@ impl Piece {
         in_space(&self.point(&middle), corners)
     }
 
-    /// Calls `visit` with pieces that make up this one: those on which the sign of the function
+    /// Calls `visit` with parts that make up this one: those on which the sign of the function
     /// differs between corners and barycentre are bisected, across their longest edge, down to a
-    /// fixed size. So what a piece does not show at these points stays unseen.
+    /// fixed size. A change of sign between these points is not detected.
     pub fn split<const D: usize>(
         &self,
         corners: &[Point<f64, D>; 4],
@@ -119,9 +119,9 @@ mod tests {
         (0..D).for_each(|k| corners[k + 1][k] = 1.0);
         let ball: Field<D> = Box::new(|x| 0.5 - x.norm());
         let [mut all, mut within] = [0.0; 2];
-        Piece::whole(D).split(&corners, &ball, &mut |piece| {
-            all += piece.share;
-            within += if ball(&piece.barycentre(&corners)) > 0.0 { piece.share } else { 0.0 };
+        SubSimplex::whole(D).split(&corners, &ball, &mut |part| {
+            all += part.share;
+            within += if ball(&part.barycentre(&corners)) > 0.0 { part.share } else { 0.0 };
         });
         assert_eq!(all, 1.0, "halves make up the whole");
         within

@@ -1,11 +1,12 @@
-//! Where and when a report was made.
+//! Time and machine of a report.
 
 use std::time::{SystemTime, UNIX_EPOCH};
 
 use serde::Serialize;
 
-/// Where and when, as far as the system tells.
+/// Time and machine of a report, as far as the system reports them.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+#[non_exhaustive]
 pub struct Provenance {
     /// When the study began: the system's clock, in universal time.
     pub date: Option<String>,
@@ -13,12 +14,12 @@ pub struct Provenance {
     pub processor: Option<String>,
     /// Rounds asked for.
     pub rounds: usize,
-    /// Whether all of them are done; a report that was interrupted says false.
+    /// Whether all rounds are complete; false in the report of an interrupted study.
     pub complete: bool,
 }
 
 impl Provenance {
-    /// Here and now, with nothing done yet.
+    /// The present time and this machine, with no rounds complete.
     pub fn now(rounds: usize) -> Self {
         let seconds = SystemTime::now().duration_since(UNIX_EPOCH).ok().map(|d| d.as_secs());
         let processor = std::fs::read_to_string("/proc/cpuinfo").ok();

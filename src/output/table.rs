@@ -1,4 +1,4 @@
-//! A table, written as text, Markdown or LaTeX.
+//! Tables as text, Markdown or LaTeX.
 
 /// A cell.
 #[derive(Clone, Debug, PartialEq)]
@@ -7,11 +7,12 @@ pub(crate) enum Cell {
     Words(String),
     /// A number, perhaps with a power of ten as in `1.37e-2`, and a remark in parentheses.
     Number(String, Option<String>),
-    /// Nothing that applies.
+    /// A value that does not apply.
     Nothing,
 }
 
-/// A table with a title and remarks below it. Words stand left, numbers right.
+/// A table with a title, and with remarks below. Words are aligned to the left, numbers to the
+/// right.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Table {
     pub(crate) title: String,
@@ -118,7 +119,7 @@ impl Table {
     }
 }
 
-/// Words in LaTeX: its special characters as they look.
+/// A text with the special characters of LaTeX escaped.
 pub(crate) fn latex(text: &str) -> String {
     let mut escaped = String::new();
     for c in text.chars() {
@@ -139,7 +140,7 @@ pub(crate) fn latex(text: &str) -> String {
     escaped
 }
 
-/// Words in Markdown: characters that would be markup as they look.
+/// A text with the markup characters of Markdown escaped.
 pub(crate) fn markdown(text: &str) -> String {
     let mut escaped = String::new();
     for c in text.chars() {

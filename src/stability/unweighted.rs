@@ -1,4 +1,4 @@
-//! An over-penalty that does not know the coefficient: what the harmonic mean is good for.
+//! An over-penalty without the coefficient, to show the effect of the harmonic mean.
 
 use crate::element::{Broken, P1};
 use crate::facet::{FacetForm, FacetView, OverPenalty, Trace};
@@ -6,16 +6,16 @@ use crate::mesh::Mesh;
 use crate::real::Real;
 use crate::scheme::{DirichletBy, Scheme, Wopsip};
 
-/// `eta / h_F^3`, whatever the coefficient. Shown beside the library's own choice, and for nothing
-/// else: it fails where coefficients are not of size one.
+/// WOPSIP with the penalty `eta / h_F^3` for every coefficient, for comparison with the default:
+/// the scheme fails for coefficients that are not of size one.
 #[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct Blind(pub Wopsip);
+pub(crate) struct UnweightedWopsip(pub Wopsip);
 
-/// Its form.
+/// The form of [`UnweightedWopsip`].
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct BlindPenalty(OverPenalty);
+pub(crate) struct UnweightedPenalty(OverPenalty);
 
-impl<T: Real, const D: usize> FacetForm<T, D> for BlindPenalty {
+impl<T: Real, const D: usize> FacetForm<T, D> for UnweightedPenalty {
     fn moments(&self, degree: usize) -> usize {
         FacetForm::<T, D>::moments(&self.0, degree)
     }
@@ -29,16 +29,16 @@ impl<T: Real, const D: usize> FacetForm<T, D> for BlindPenalty {
     }
 }
 
-impl<T: Real, const D: usize> Scheme<T, D> for Blind {
+impl<T: Real, const D: usize> Scheme<T, D> for UnweightedWopsip {
     type Element = Broken<P1>;
-    type Facet = BlindPenalty;
+    type Facet = UnweightedPenalty;
     const DIRICHLET: DirichletBy = DirichletBy::FacetForm;
     const CONSISTENT: bool = false;
 
     fn name(&self) -> &str {
         "wopsip"
     }
-    fn facet(&self, mesh: &Mesh<T, D>) -> BlindPenalty {
-        BlindPenalty(Scheme::<T, D>::facet(&self.0, mesh))
+    fn facet(&self, mesh: &Mesh<T, D>) -> UnweightedPenalty {
+        UnweightedPenalty(Scheme::<T, D>::facet(&self.0, mesh))
     }
 }

@@ -1,0 +1,16 @@
+//! The discrete contact set.
+
+/// The discrete contact set and multiplier, in terms that do not depend on the unknowns of a
+/// scheme.
+#[derive(Clone, Debug, Default, PartialEq)]
+#[non_exhaustive]
+pub struct DiscreteContact {
+    /// Cells in contact with an obstacle as a whole.
+    pub cells: Vec<usize>,
+    /// Facets of the contact boundary in contact as a whole: cell, and number in the cell.
+    pub facets: Vec<(usize, usize)>,
+    /// Density of the multiplier at every vertex: the nodal multiplier over the integral of the hat
+    /// function of the vertex, over the domain or the contact boundary. None where there is no such
+    /// integral and on the Dirichlet part; empty without a constraint.
+    pub density: Vec<Option<f64>>,
+}

@@ -1,0 +1,106 @@
+//! The multiplier as a density at vertices.
+
+use super::bisected_simplices::{SubSimplex, in_space};
+use super::entity::ContactEntity;
+use crate::algebra::{Contact, Inequality};
+use crate::assemble::space::{Space, data};
+use crate::error::Error;
+use crate::inequality::Solution;
+use crate::problem::{ContactSet, Field};
+use crate::quadrature::Rule;
+use crate::real::Real;
+
+/// Degree of the rule on a simplex that the free boundary does not cut, and on the parts of one
+/// that it does.
+const DEGREES: [usize; 2] = [5, 2];
+
+impl<T: Real, const D: usize> Space<'_, T, D> {
+    /// The errors of the density in L1 and lumped L2; none if no vertex counts.
+    pub(super) fn multiplier_errors(
+        &self,
+        multiplier: &Field<D>,
+        set: Option<&ContactSet<D>>,
+        entities: &[ContactEntity],
+        inequality: &Inequality<T>,
+        solution: &Solution<T>,
+    ) -> Result<Option<[f64; 2]>, Error> {
+        let mut weights = vec![0.0; self.mesh.vertices().len()];
+        let mut multipliers = self.vertex_multipliers(inequality, solution);
+        // for facets and for cells
+        let rules = [D - 1, D].map(|d| DEGREES.map(|degree| Rule::new(d, degree)));
+        for &entity in entities {
+            let rules = &rules[usize::from(entity.dimension::<D>() == D)];
+            self.subtract_exact((multiplier, set), entity, rules, &mut weights, &mut multipliers)?;
+        }
+        let given = self.on_dirichlet_part();
+        let counted = |v: &usize| weights[*v] > 0.0 && !given[*v];
+        let vertices = || (0..weights.len()).filter(counted);
+        let squares: f64 = vertices().map(|v| multipliers[v] * multipliers[v] / weights[v]).sum();
+        let sum: f64 = vertices().map(|v| multipliers[v].abs()).sum();
+        Ok(vertices().next().map(|_| [sum, squares.sqrt()]))
+    }
+
+    /// Nodal multipliers at vertices: the residual of every constrained unknown in contact, divided
+    /// equally among the vertices around its node.
+    pub(crate) fn vertex_multipliers(
+        &self,
+        inequality: &Inequality<T>,
+        solution: &Solution<T>,
+    ) -> Vec<f64> {
+        let mut residual = vec![0.0; inequality.size()];
+        inequality.residual_f64(&solution.values, &mut residual);
+        let mut multipliers = vec![0.0; self.mesh.vertices().len()];
+        for (unknown, &residual) in residual.iter().enumerate() {
+            let touches = solution.contact[unknown] != Contact::Inactive;
+            if touches && inequality.bounds[unknown].is_inequality() {
+                let around = inequality.supports[unknown].vertices();
+                let share = -residual / around.len() as f64;
+                around.iter().for_each(|&v| multipliers[v as usize] += share);
+            }
+        }
+        multipliers
+    }
+
+    /// Subtracts the exact multiplier tested with the hat functions of an entity, and adds their
+    /// integrals to the weights.
+    fn subtract_exact(
+        &self,
+        (multiplier, set): (&Field<D>, Option<&ContactSet<D>>),
+        entity: ContactEntity,
+        rules: &[Rule; 2],
+        weights: &mut [f64],
+        multipliers: &mut [f64],
+    ) -> Result<(), Error> {
+        let dimension = entity.dimension::<D>();
+        let corners = self.corner_points(entity);
+        let mut tested = [0.0; 4];
+        let mut failure = None;
+        let mut add = |part: &SubSimplex| {
+            for (point, weight) in rules[usize::from(!part.is_whole())].iter() {
+                let hats = part.point(point);
+                let x = in_space(&hats, &corners);
+                match data::finite(multiplier(&x), "exact multiplier", &x, entity.cell) {
+                    Ok(density) => tested
+                        .iter_mut()
+                        .zip(hats)
+                        .for_each(|(sum, hat)| *sum += weight * part.share * density * hat),
+                    Err(why) => failure = Some(why),
+                }
+            }
+        };
+        match set {
+            Some(set) => SubSimplex::whole(dimension).split(&corners, &set.indicator, &mut add),
+            None => add(&SubSimplex::whole(dimension)),
+        }
+        if let Some(why) = failure {
+            return Err(why);
+        }
+        let measure = self.measure_of(entity);
+        for (k, local) in entity.corners::<D>().enumerate() {
+            let vertex = self.mesh.cell(entity.cell)[local] as usize;
+            weights[vertex] += measure / (dimension + 1) as f64;
+            multipliers[vertex] -= measure * tested[k];
+        }
+        Ok(())
+    }
+}

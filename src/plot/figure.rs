@@ -1,0 +1,65 @@
+//! Figures of a report: error against mesh size, and error against time.
+
+use super::layout::FigureLayout;
+use super::series::{Key, Panel, Quantity, keys, scenes};
+use crate::study::Row;
+
+/// A drawing that can be written as SVG or PNG.
+#[derive(Clone, Debug)]
+pub struct Figure {
+    /// The panels, row by row.
+    pub(super) panels: Vec<Panel>,
+    /// The entries of the legend, shared by the panels.
+    pub(super) keys: Vec<Key>,
+    /// Number of panels in a row.
+    pub(super) columns: usize,
+}
+
+/// Error against mesh size, with reference slopes: for each scene one panel for the L2 error and
+/// one for the error in the broken H1 seminorm.
+pub fn convergence(rows: &[Row]) -> Figure {
+    let keys = keys(rows);
+    let scenes = scenes(rows);
+    let columns = match scenes.len() {
+        0..=3 => 2,
+        4..=16 => 4,
+        _ => 6,
+    };
+    let panels = scenes
+        .iter()
+        .flat_map(|scene| [Quantity::L2, Quantity::H1].map(|error| (scene, error)))
+        .map(|(scene, error)| Panel::new(rows, &keys, scene, Quantity::MeshSize, error))
+        .collect();
+    Figure { panels, keys, columns }
+}
+
+/// L2 error against the seconds a run took altogether, one panel for each scene. Runs that did not
+/// converge are marked.
+pub fn work_precision(rows: &[Row]) -> Figure {
+    let keys = keys(rows);
+    let scenes = scenes(rows);
+    let columns = match scenes.len() {
+        0 | 1 => 1,
+        2 | 4 => 2,
+        3 | 5 | 6 | 9 => 3,
+        7..=16 => 4,
+        _ => 6,
+    };
+    let panels = scenes
+        .iter()
+        .map(|scene| Panel::new(rows, &keys, scene, Quantity::Seconds, Quantity::L2))
+        .collect();
+    Figure { panels, keys, columns }
+}
+
+impl Figure {
+    /// Whether a run that is shown did not converge.
+    fn has_failures(&self) -> bool {
+        self.panels.iter().any(|p| p.curves.iter().any(|c| c.points.iter().any(|q| !q.converged)))
+    }
+
+    /// Positions of panels and legend.
+    pub(super) fn layout(&self) -> FigureLayout {
+        FigureLayout::new(self.panels.len(), self.columns, &self.keys, self.has_failures())
+    }
+}

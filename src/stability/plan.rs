@@ -1,0 +1,68 @@
+//! The jobs of a stability study.
+
+use super::choice::Choice;
+use super::row::StabilityRow;
+use crate::error::Error;
+use crate::mesh::Mesh;
+
+/// How many meshes and values of each sweep are run.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Effort {
+    /// The coarsest meshes: figures mean little, but every criterion has its rows.
+    Trial,
+    /// Coarse meshes and few places of each sweep; every criterion has its rows.
+    #[default]
+    Quick,
+    /// All sweeps.
+    Full,
+}
+
+/// A function that takes rows as they are computed.
+pub(crate) type Sink<'s> = &'s mut dyn FnMut(StabilityRow);
+
+/// A function that computes rows.
+type Run<'p> = Box<dyn Fn(Sink<'_>) -> Result<(), Error> + 'p>;
+
+/// A unit of work whose rows do not depend on other jobs.
+pub(super) struct Job<'p> {
+    pub(super) case: &'static str,
+    pub(super) label: String,
+    pub(super) run: Run<'p>,
+}
+
+/// The jobs of a study.
+pub(crate) struct Plan<'p> {
+    pub(super) effort: Effort,
+    pub(super) schemes: &'p [String],
+    pub(super) given: &'p [(String, Mesh<f64, 3>)],
+    pub(super) jobs: Vec<Job<'p>>,
+}
+
+impl<'p> Plan<'p> {
+    /// Whether all sweeps run.
+    pub fn is_full(&self) -> bool {
+        self.effort == Effort::Full
+    }
+    /// One of two, by effort.
+    pub fn pick<T>(&self, quick: T, full: T) -> T {
+        if self.is_full() { full } else { quick }
+    }
+    /// One of three, by effort.
+    pub fn pick_of<T>(&self, trial: T, quick: T, full: T) -> T {
+        if self.effort == Effort::Trial { trial } else { self.pick(quick, full) }
+    }
+    /// Adds work on a scheme, if that scheme is wanted.
+    pub fn add(
+        &mut self,
+        case: &'static str,
+        choice: Choice,
+        what: &str,
+        run: impl Fn(&Choice, Sink<'_>) -> Result<(), Error> + 'p,
+    ) {
+        if self.schemes.is_empty() || self.schemes.iter().any(|s| s == choice.scheme) {
+            let label = format!("{} {} {what}", choice.scheme, choice.words());
+            let run = Box::new(move |sink: Sink<'_>| run(&choice, sink));
+            self.jobs.push(Job { case, label, run });
+        }
+    }
+}
