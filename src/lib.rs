@@ -1,3 +1,5 @@
+// labels of links and pictures: see `guide`
+#![cfg_attr(doc, doc = include_str!("guide/links.md"), doc = include_str!("guide/pictures.md"))]
 #![doc = include_str!("../README.md")]
 #![deny(unsafe_code)]
 #![deny(missing_docs)]
@@ -12,6 +14,7 @@ pub mod constraint;
 pub mod element;
 pub mod error;
 pub mod facet;
+pub mod guide;
 pub mod inequality;
 mod instances;
 pub mod kit;

@@ -1,0 +1,62 @@
+//! The guide: which scheme to take, what signs and norms mean, and how every figure was measured.
+//!
+//! The chapters are the pages of the folder `docs` of the repository.
+//!
+//! | chapter | contents |
+//! |---|---|
+//! | [`choosing`] | what each scheme costs and gives, and where it fails |
+//! | [`conventions`] | signs, scalings, norms, the certificate |
+//! | [`reproduce`] | published tables beside ours |
+//! | [`solvers`] | how inequalities are solved, up to which size, in which time |
+//! | [`assembly`] | what assembly costs |
+//! | [`pictures`] | solutions drawn |
+//! | [`house`] | the rooms of the source and their order |
+//!
+//! # Generated tables
+//!
+//! Two pages are too long for a chapter. The program writes them, and the folder `docs` has a copy:
+//!
+//! | page | contents | command, after `cargo run --release --` |
+//! |---|---|---|
+//! | `docs/orders.md` | observed and promised orders of every scheme on every scene | `orders FILE` |
+//! | `docs/stability.md` | hard cases, each with its criterion and its measured figures | `stability --markdown FILE` |
+
+// A page of the repository links to other pages, to source files and to pictures by labels, which it
+// defines at its end. The first definition of a label counts: `links.md` and `pictures.md` stand
+// before each page and define the labels as items of this crate and as pictures inside the page.
+// Only rustdoc reads them.
+
+/// Which scheme to take: costs, errors, orders and difficulties of each.
+#[cfg_attr(doc, doc = "", doc = include_str!("links.md"), doc = include_str!("pictures.md"))]
+#[cfg_attr(doc, doc = include_str!("../../docs/choosing.md"))]
+pub mod choosing {}
+
+/// Signs, scalings, norms and the certificate, each with the test that asserts it.
+#[cfg_attr(doc, doc = "", doc = include_str!("links.md"))]
+#[cfg_attr(doc, doc = include_str!("../../docs/conventions.md"))]
+pub mod conventions {}
+
+/// Published tables beside ours, each with the command that prints ours.
+#[cfg_attr(doc, doc = "", doc = include_str!("links.md"))]
+#[cfg_attr(doc, doc = include_str!("../../docs/reproduce.md"))]
+pub mod reproduce {}
+
+/// The stages of the solver, the number of their steps, rounding, time and memory.
+#[cfg_attr(doc, doc = "", doc = include_str!("links.md"))]
+#[cfg_attr(doc, doc = include_str!("../../docs/solvers.md"))]
+pub mod solvers {}
+
+/// Time per cell of assembly, beside the bandwidth of the memory.
+#[cfg_attr(doc, doc = "", doc = include_str!("links.md"))]
+#[cfg_attr(doc, doc = include_str!("../../docs/assembly.md"))]
+pub mod assembly {}
+
+/// Solutions, contact sets, jumps and multipliers drawn.
+#[cfg_attr(doc, doc = "", doc = include_str!("links.md"), doc = include_str!("pictures.md"))]
+#[cfg_attr(doc, doc = include_str!("../../docs/pictures.md"))]
+pub mod pictures {}
+
+/// The rooms of the source and their order.
+#[cfg_attr(doc, doc = "", doc = include_str!("links.md"))]
+#[cfg_attr(doc, doc = include_str!("../../docs/house.md"))]
+pub mod house {}

@@ -1,0 +1,282 @@
+//! Links and pictures: of the pages of the repository, and of the built documentation.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::fs;
+use std::path::{Component, Path, PathBuf};
+use std::process::Command;
+
+/// Pages of the repository. Orders and stability are tables that the program writes.
+const PAGES: [&str; 11] = [
+    "README.md",
+    "CHANGELOG.md",
+    "docs/assembly.md",
+    "docs/choosing.md",
+    "docs/conventions.md",
+    "docs/house.md",
+    "docs/orders.md",
+    "docs/pictures.md",
+    "docs/reproduce.md",
+    "docs/solvers.md",
+    "docs/stability.md",
+];
+const LABELS: &str = "src/guide/links.md";
+const PICTURES: &str = "src/guide/pictures.md";
+
+fn root() -> PathBuf {
+    PathBuf::from(env!("CARGO_MANIFEST_DIR"))
+}
+
+fn read(path: &Path) -> String {
+    fs::read_to_string(path).unwrap_or_else(|e| panic!("cannot read {}: {e}", path.display()))
+}
+
+/// The path without `.` and `..`.
+fn normal(path: &Path) -> PathBuf {
+    let mut plain = PathBuf::new();
+    for part in path.components() {
+        match part {
+            Component::CurDir => {}
+            Component::ParentDir => {
+                plain.pop();
+            }
+            other => plain.push(other),
+        }
+    }
+    plain
+}
+
+fn is_elsewhere(target: &str) -> bool {
+    ["https://", "http://", "mailto:"].iter().any(|start| target.starts_with(start))
+}
+
+/// Lines of a page outside code blocks.
+fn prose(text: &str) -> impl Iterator<Item = &str> {
+    let mut in_code = false;
+    text.lines().filter(move |line| {
+        let is_fence = line.trim_start().starts_with("```");
+        in_code ^= is_fence;
+        !in_code && !is_fence
+    })
+}
+
+/// Definitions `[label]: target` of a page.
+fn definitions(text: &str) -> BTreeMap<String, String> {
+    let definition = |line: &str| {
+        let (label, target) = line.strip_prefix('[')?.split_once("]: ")?;
+        Some((label.to_lowercase(), target.trim().to_owned()))
+    };
+    prose(text).filter_map(definition).collect()
+}
+
+/// Targets of `[text](target)` and of definitions.
+fn targets(text: &str) -> Vec<String> {
+    let mut found: Vec<String> = definitions(text).into_values().collect();
+    for line in prose(text) {
+        let words: String = line.split('`').step_by(2).collect();
+        let parts = words.split("](").skip(1);
+        found.extend(parts.filter_map(|rest| Some(rest.split_once(')')?.0.to_owned())));
+    }
+    found
+}
+
+/// The anchor that a heading gets: lower case, hyphens for spaces, no punctuation.
+fn anchor(heading: &str) -> String {
+    let keep = |c: &char| c.is_alphanumeric() || matches!(c, ' ' | '-' | '_');
+    heading.trim().to_lowercase().chars().filter(keep).collect::<String>().replace(' ', "-")
+}
+
+fn has_heading(page: &str, wanted: &str) -> bool {
+    prose(page)
+        .filter(|line| line.starts_with('#'))
+        .any(|line| anchor(line.trim_start_matches('#')) == wanted)
+}
+
+#[test]
+fn pages_of_the_repository_have_no_dead_link() {
+    let mut dead = Vec::new();
+    for page in PAGES {
+        let path = root().join(page);
+        let text = read(&path);
+        for target in targets(&text).iter().filter(|target| !is_elsewhere(target)) {
+            let (file, heading) = target.split_once('#').unwrap_or((target, ""));
+            let file =
+                if file.is_empty() { path.clone() } else { path.parent().unwrap().join(file) };
+            let lives = file.exists() && (heading.is_empty() || has_heading(&read(&file), heading));
+            if !lives {
+                dead.push(format!("{page}: {target}"));
+            }
+        }
+    }
+    assert!(dead.is_empty(), "dead links:\n{}", dead.join("\n"));
+}
+
+#[test]
+fn labels_of_chapters_are_items_of_the_crate() {
+    let mut items = definitions(&read(&root().join(LABELS)));
+    items.extend(definitions(&read(&root().join(PICTURES))));
+    for page in PAGES {
+        for (label, target) in definitions(&read(&root().join(page))) {
+            assert!(
+                is_elsewhere(&target) || items.contains_key(&label),
+                "{page} defines [{label}], but neither {LABELS} nor {PICTURES} does"
+            );
+        }
+    }
+}
+
+fn base64(bytes: &[u8]) -> String {
+    const DIGITS: &[u8; 64] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    let mut text = String::new();
+    for group in bytes.chunks(3) {
+        let number = (0..3).fold(0, |n, k| n << 8 | u32::from(*group.get(k).unwrap_or(&0)));
+        for k in 0..4 {
+            let digit = DIGITS[(number >> (18 - 6 * k) & 63) as usize];
+            text.push(if k <= group.len() { char::from(digit) } else { '=' });
+        }
+    }
+    text
+}
+
+/// The definitions of all pictures of the pages, each with its bytes.
+fn embedded_pictures() -> String {
+    let mut lines = BTreeSet::new();
+    for page in PAGES {
+        let path = root().join(page);
+        for (label, target) in definitions(&read(&path)) {
+            let kind = match target.rsplit_once('.') {
+                Some((_, "png")) => "png",
+                Some((_, "svg")) => "svg+xml",
+                _ => continue,
+            };
+            let file = path.parent().unwrap().join(&target);
+            let bytes = fs::read(&file).unwrap_or_else(|e| panic!("{}: {e}", file.display()));
+            lines.insert(format!("[{label}]: data:image/{kind};base64,{}\n", base64(&bytes)));
+        }
+    }
+    lines.into_iter().collect::<String>() + "\n"
+}
+
+#[test]
+fn pictures_of_the_guide_are_those_of_the_pages() {
+    assert!(
+        read(&root().join(PICTURES)) == embedded_pictures(),
+        "{PICTURES} is not up to date: cargo test -- --ignored write_embedded_pictures"
+    );
+}
+
+#[test]
+#[ignore = "writes src/guide/pictures.md"]
+fn write_embedded_pictures() {
+    let pictures = embedded_pictures();
+    if read(&root().join(PICTURES)) != pictures {
+        fs::write(root().join(PICTURES), pictures).unwrap();
+    }
+}
+
+/// What a page of HTML points to, and the anchors it has.
+struct Html {
+    links: Vec<String>,
+    anchors: BTreeSet<String>,
+}
+
+fn attributes<'a>(html: &'a str, name: &'a str) -> impl Iterator<Item = String> + 'a {
+    html.match_indices(name).filter_map(move |(start, _)| {
+        // an attribute follows a space and stands in quotes, or bare as in the pages of the source
+        let before = html[..start].chars().next_back()?;
+        let value = html[start + name.len()..].strip_prefix('=')?;
+        let value = match value.strip_prefix('"') {
+            Some(quoted) => quoted.split_once('"')?.0,
+            None => value.split(|c: char| c.is_whitespace() || c == '>').next()?,
+        };
+        before.is_whitespace().then(|| value.replace("&amp;", "&").replace("&#38;", "&"))
+    })
+}
+
+/// The text without scripts, whose strings are no attributes.
+fn without_scripts(html: &str) -> String {
+    html.split("<script")
+        .enumerate()
+        .map(|(k, part)| match (k, part.split_once('>'), part.split_once("</script>")) {
+            (0, ..) => part.to_owned(),
+            (_, Some((tag, _)), Some((_, rest))) => format!("<script{tag}>{rest}"),
+            _ => String::new(),
+        })
+        .collect()
+}
+
+fn parse(html: &str) -> Html {
+    let html = without_scripts(html);
+    Html {
+        links: attributes(&html, "href").chain(attributes(&html, "src")).collect(),
+        anchors: attributes(&html, "id").collect(),
+    }
+}
+
+fn html_files(folder: &Path, found: &mut Vec<PathBuf>) {
+    let entries = fs::read_dir(folder).unwrap_or_else(|e| panic!("{}: {e}", folder.display()));
+    for path in entries.map(|entry| entry.unwrap().path()) {
+        if path.is_dir() {
+            html_files(&path, found);
+        } else if path.extension().is_some_and(|extension| extension == "html") {
+            found.push(path);
+        }
+    }
+}
+
+/// Whether a page has the anchor. Pages of the source have one for each line; a range of lines is
+/// marked by their script.
+fn has_anchor(page: &Html, wanted: &str) -> bool {
+    let first_line = wanted.split('-').next().unwrap_or_default();
+    let is_lines = wanted.chars().all(|c| c.is_ascii_digit() || c == '-');
+    page.anchors.contains(wanted) || is_lines && page.anchors.contains(first_line)
+}
+
+/// The documentation, in the target directory of this test, so that a `cargo doc` just before is used.
+fn build_documentation() -> PathBuf {
+    let target = Path::new(env!("CARGO_TARGET_TMPDIR")).parent().expect("a target directory");
+    let status = Command::new(env!("CARGO"))
+        .args(["doc", "--no-deps", "--lib", "--target-dir"])
+        .arg(target)
+        .current_dir(root())
+        .status()
+        .expect("cargo runs");
+    assert!(status.success(), "cargo doc failed");
+    target.join("doc")
+}
+
+#[test]
+#[ignore = "builds the documentation: cargo test -- --ignored built_documentation"]
+fn built_documentation_has_no_dead_link() {
+    let doc = build_documentation();
+    let mut files = Vec::new();
+    html_files(&doc.join("unilateral"), &mut files);
+    html_files(&doc.join("src/unilateral"), &mut files);
+    let pages: BTreeMap<PathBuf, Html> =
+        files.into_iter().map(|file| (file.clone(), parse(&read(&file)))).collect();
+    let mut dead = BTreeSet::new();
+    let mut checked = 0;
+    for (file, page) in &pages {
+        for link in &page.links {
+            if is_elsewhere(link) || link.starts_with("data:") || link.starts_with("javascript:") {
+                continue;
+            }
+            checked += 1;
+            let (target, wanted) = link.split_once('#').unwrap_or((link, ""));
+            let target = target.split('?').next().unwrap_or_default();
+            let path = if target.is_empty() {
+                file.clone()
+            } else {
+                normal(&file.parent().unwrap().join(target))
+            };
+            let lives = path.starts_with(&doc) && path.is_file();
+            let anchored =
+                wanted.is_empty() || pages.get(&path).is_none_or(|page| has_anchor(page, wanted));
+            if !(lives && anchored) {
+                dead.insert(format!("{}: {link}", file.strip_prefix(&doc).unwrap().display()));
+            }
+        }
+    }
+    assert!(checked > 1000, "only {checked} links found: are these the pages of rustdoc?");
+    let list: Vec<String> = dead.into_iter().collect();
+    assert!(list.is_empty(), "{} dead links:\n{}", list.len(), list.join("\n"));
+}
