@@ -75,9 +75,10 @@ pub fn certify_with_jump_multipliers<T: Real>(
     u: &[T],
     forces: &[T],
 ) -> Certificate {
-    compiled!(T: fn(&Inequality<T>, &[T], &[T]) -> Certificate = certificate_of)(
-        inequality, u, forces,
-    )
+    compiled!(
+        T: fn(&Inequality<T>, &[T], &[T]) -> Certificate
+            = certificate_of
+    )(inequality, u, forces)
 }
 
 fn certificate_of<T: Real>(inequality: &Inequality<T>, u: &[T], forces: &[T]) -> Certificate {

@@ -50,9 +50,10 @@ impl<T: Real> InequalitySolver<T> for MonotoneMultigrid {
     }
 
     fn solve_from(&self, inequality: &Inequality<T>, nearby: &InitialGuess<T>) -> Solution<T> {
-        compiled!(T: fn(&MonotoneMultigrid, &Inequality<T>, &InitialGuess<T>) -> Solution<T> = MonotoneMultigrid::descend)(
-            self, inequality, nearby,
-        )
+        compiled!(
+            T: fn(&MonotoneMultigrid, &Inequality<T>, &InitialGuess<T>) -> Solution<T>
+                = MonotoneMultigrid::descend
+        )(self, inequality, nearby)
     }
 
     fn uses_coarse_spaces(&self, _unknowns: usize) -> bool {

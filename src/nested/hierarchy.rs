@@ -83,9 +83,10 @@ impl<'a, T: Real, const D: usize> Hierarchy<'a, T, D> {
     /// [`Error::Mesh`] if there would be more cells than can be numbered, [`Error::Parameter`] for
     /// a level of zero on a built-in domain.
     pub fn make(&mut self, level: usize) -> Result<(), Error> {
-        compiled!(T, D: fn(&mut Hierarchy<'_, T, D>, usize) -> Result<(), Error> = |levels, level| levels.make_meshes(level))(
-            self, level,
-        )
+        compiled!(
+            T, D: fn(&mut Hierarchy<'_, T, D>, usize) -> Result<(), Error>
+                = |levels, level| levels.make_meshes(level)
+        )(self, level)
     }
     fn make_meshes(&mut self, level: usize) -> Result<(), Error> {
         if self.levels.contains_key(&level) {
@@ -186,9 +187,17 @@ impl<'a, T: Real, const D: usize> Hierarchy<'a, T, D> {
         quadrature: DataQuadrature,
         repeat: usize,
     ) -> Result<Option<Arc<P1Solution<T>>>, Error> {
-        compiled!(T, D: fn(&mut Hierarchy<'_, T, D>, usize, &dyn InequalitySolver<T>, DataQuadrature, usize) -> Result<Option<Arc<P1Solution<T>>>, Error> = |levels, level, solver, quadrature, repeat| levels.carry_from_coarser(level, solver, quadrature, repeat))(
-            self, level, solver, quadrature, repeat,
-        )
+        compiled!(
+            T, D: fn(
+                &mut Hierarchy<'_, T, D>,
+                usize,
+                &dyn InequalitySolver<T>,
+                DataQuadrature,
+                usize,
+            ) -> Result<Option<Arc<P1Solution<T>>>, Error>
+                = |levels, level, solver, quadrature, repeat|
+                    levels.carry_from_coarser(level, solver, quadrature, repeat)
+        )(self, level, solver, quadrature, repeat)
     }
     fn carry_from_coarser(
         &mut self,
@@ -240,9 +249,17 @@ impl<'a, T: Real, const D: usize> Hierarchy<'a, T, D> {
         quadrature: DataQuadrature,
         repeat: usize,
     ) -> Result<Arc<P1Solution<T>>, Error> {
-        compiled!(T, D: fn(&mut Hierarchy<'_, T, D>, usize, &dyn InequalitySolver<T>, DataQuadrature, usize) -> Result<Arc<P1Solution<T>>, Error> = |levels, level, solver, quadrature, repeat| levels.find_contact(level, solver, quadrature, repeat))(
-            self, level, solver, quadrature, repeat,
-        )
+        compiled!(
+            T, D: fn(
+                &mut Hierarchy<'_, T, D>,
+                usize,
+                &dyn InequalitySolver<T>,
+                DataQuadrature,
+                usize,
+            ) -> Result<Arc<P1Solution<T>>, Error>
+                = |levels, level, solver, quadrature, repeat|
+                    levels.find_contact(level, solver, quadrature, repeat)
+        )(self, level, solver, quadrature, repeat)
     }
     fn find_contact(
         &mut self,

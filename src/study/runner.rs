@@ -128,9 +128,10 @@ impl<'a, T: Real, const D: usize> Study<'a, T, D> {
     /// [`Error::Parameter`] for an empty list of levels or schemes or a level of zero,
     /// [`Error::UnfitMesh`], [`Error::Mesh`].
     pub fn check(&self) -> Result<(), Error> {
-        compiled!(T, D: fn(&Study<'_, T, D>) -> Result<(), Error> = |study| study.where_exact_fails().map(|_| ()))(
-            self,
-        )
+        compiled!(
+            T, D: fn(&Study<'_, T, D>) -> Result<(), Error>
+                = |study| study.where_exact_fails().map(|_| ())
+        )(self)
     }
 
     /// Checks, and tells where the scene's exact solution fails on a given mesh.
@@ -162,9 +163,10 @@ impl<'a, T: Real, const D: usize> Study<'a, T, D> {
     /// What the largest run will need of memory, about, with factors where the solver makes them from
     /// the start; nothing for a study without schemes or levels.
     pub fn memory_estimate(&self) -> Option<MemoryEstimate> {
-        compiled!(T, D: fn(&Study<'_, T, D>) -> Option<MemoryEstimate> = |study| study.estimate_memory())(
-            self,
-        )
+        compiled!(
+            T, D: fn(&Study<'_, T, D>) -> Option<MemoryEstimate>
+                = |study| study.estimate_memory()
+        )(self)
     }
     fn estimate_memory(&self) -> Option<MemoryEstimate> {
         let levels = Hierarchy::new(&self.scene.problem, &self.scene.domain, self.mesh.as_ref());
@@ -193,9 +195,10 @@ impl<'a, T: Real, const D: usize> Study<'a, T, D> {
     /// Whatever is wrong with scene, mesh or parameters. A solve that does not converge is no
     /// error: its row says why.
     pub fn run(&self) -> Result<Report, Error> {
-        compiled!(T, D: fn(&Study<'_, T, D>) -> Result<Report, Error> = |study| study.run_all())(
-            self,
-        )
+        compiled!(
+            T, D: fn(&Study<'_, T, D>) -> Result<Report, Error>
+                = |study| study.run_all()
+        )(self)
     }
     fn run_all(&self) -> Result<Report, Error> {
         let failure = self.where_exact_fails()?;

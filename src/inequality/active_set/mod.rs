@@ -123,9 +123,10 @@ impl<T: Real> InequalitySolver<T> for ActiveSet {
     }
 
     fn solve_from(&self, inequality: &Inequality<T>, nearby: &InitialGuess<T>) -> Solution<T> {
-        compiled!(T: fn(&ActiveSet, &Inequality<T>, &InitialGuess<T>) -> Solution<T> = ActiveSet::choose_and_solve)(
-            self, inequality, nearby,
-        )
+        compiled!(
+            T: fn(&ActiveSet, &Inequality<T>, &InitialGuess<T>) -> Solution<T>
+                = ActiveSet::choose_and_solve
+        )(self, inequality, nearby)
     }
 
     fn uses_coarse_spaces(&self, unknowns: usize) -> bool {
