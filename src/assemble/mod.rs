@@ -30,7 +30,7 @@ use crate::problem::Problem;
 use crate::real::Real;
 pub use coercivity_margin::CoercivityMargin;
 use facet_coefficients::FacetCoefficients;
-use shared_rows::CellLoops;
+use shared_rows::{CellLoops, SharedRows};
 use space::metric::Metrics;
 use space::{AnyElement, Space};
 
@@ -59,7 +59,7 @@ impl Default for DataQuadrature {
 pub struct Discretisation<'a, T: Real, const D: usize> {
     pub(crate) space: Space<'a, T, D>,
     form: Box<dyn FacetForm<T, D>>,
-    loops: Option<CellLoops<T, D>>,
+    shared_rows: SharedRows<T, D>,
     /// What facet forms need of cells and facets, computed when first needed.
     prepared: OnceLock<(Metrics<T>, FacetCoefficients<T>)>,
 }
@@ -85,9 +85,15 @@ impl<'a, T: Real, const D: usize> Discretisation<'a, T, D> {
             pins,
             bounded,
         };
-        compiled!(T, D: for<'p> fn(Parts<T, D>, &'p Problem<D>, &'p Mesh<T, D>, DataQuadrature) -> Result<Discretisation<'p, T, D>, Error> = |parts, problem, mesh, quadrature| parts.join(problem, mesh, quadrature))(
-            parts, problem, mesh, quadrature,
-        )
+        compiled!(
+            T, D: for<'p> fn(
+                Parts<T, D>,
+                &'p Problem<D>,
+                &'p Mesh<T, D>,
+                DataQuadrature,
+            ) -> Result<Discretisation<'p, T, D>, Error>
+                = |parts, problem, mesh, quadrature| parts.join(problem, mesh, quadrature)
+        )(parts, problem, mesh, quadrature)
     }
 
     /// Number of unknowns, Dirichlet ones included.
@@ -112,15 +118,16 @@ impl<'a, T: Real, const D: usize> Discretisation<'a, T, D> {
     }
     /// The pattern of the matrix, with values zero.
     pub fn pattern(&self) -> SparseMatrix<T> {
-        compiled!(T, D: fn(&Discretisation<'_, T, D>) -> SparseMatrix<T> = |space| space.make_pattern())(
-            self,
-        )
+        compiled!(
+            T, D: fn(&Discretisation<'_, T, D>) -> SparseMatrix<T>
+                = |of| of.make_pattern()
+        )(self)
     }
     fn make_pattern(&self) -> SparseMatrix<T> {
         if self.owns_rows() {
             owned_rows::pattern(&self.space, self.form.is_lifted())
         } else {
-            shared_rows::pattern(&self.space, self.form(), self.loops.as_ref())
+            self.shared_rows.pattern(&self.space, self.form())
         }
     }
     /// Overwrites the values of a matrix that has this discretisation's pattern.
@@ -128,16 +135,17 @@ impl<'a, T: Real, const D: usize> Discretisation<'a, T, D> {
     /// # Panics
     /// If it has another.
     pub fn fill(&self, matrix: &mut SparseMatrix<T>) {
-        compiled!(T, D: fn(&Discretisation<'_, T, D>, &mut SparseMatrix<T>) = |space, matrix| space.fill_values(matrix))(
-            self, matrix,
-        )
+        compiled!(
+            T, D: fn(&Discretisation<'_, T, D>, &mut SparseMatrix<T>)
+                = |of, matrix| of.fill_values(matrix)
+        )(self, matrix)
     }
     fn fill_values(&self, matrix: &mut SparseMatrix<T>) {
         if self.owns_rows() {
             let (metrics, weights) = self.prepared();
             owned_rows::fill(&self.space, self.form(), metrics, weights, matrix);
         } else {
-            shared_rows::fill(&self.space, self.form(), self.loops.as_ref(), matrix);
+            self.shared_rows.fill(&self.space, self.form(), matrix);
         }
     }
     fn prepared(&self) -> &(Metrics<T>, FacetCoefficients<T>) {
@@ -158,9 +166,10 @@ impl<'a, T: Real, const D: usize> Discretisation<'a, T, D> {
     /// # Errors
     /// [`Error::DataNotFinite`], [`Error::EmptyConstraint`].
     pub fn inequality(&self) -> Result<Inequality<T>, Error> {
-        compiled!(T, D: fn(&Discretisation<'_, T, D>) -> Result<Inequality<T>, Error> = |space| space.assemble())(
-            self,
-        )
+        compiled!(
+            T, D: fn(&Discretisation<'_, T, D>) -> Result<Inequality<T>, Error>
+                = |of| of.assemble()
+        )(self)
     }
     fn assemble(&self) -> Result<Inequality<T>, Error> {
         let (load, own_load, data) = self.loads()?;
@@ -213,55 +222,45 @@ impl<'a, T: Real, const D: usize> Discretisation<'a, T, D> {
     /// # Errors
     /// [`Error::EmptyConstraint`], [`Error::DataNotFinite`].
     pub fn bounds(&self) -> Result<Vec<Bound<T>>, Error> {
-        compiled!(T, D: fn(&Discretisation<'_, T, D>) -> Result<Vec<Bound<T>>, Error> = |space| space.assemble_bounds())(
-            self,
-        )
-    }
-    fn assemble_bounds(&self) -> Result<Vec<Bound<T>>, Error> {
-        self.space.bounds()
+        compiled!(
+            T, D: fn(&Discretisation<'_, T, D>) -> Result<Vec<Bound<T>>, Error>
+                = |of| of.space.bounds()
+        )(self)
     }
     /// Where each unknown lives.
     pub fn supports(&self) -> Vec<Support> {
-        compiled!(T, D: fn(&Discretisation<'_, T, D>) -> Vec<Support> = |space| space.find_supports())(
-            self,
-        )
-    }
-    fn find_supports(&self) -> Vec<Support> {
-        self.space.supports()
+        compiled!(
+            T, D: fn(&Discretisation<'_, T, D>) -> Vec<Support>
+                = |of| of.space.supports()
+        )(self)
     }
     /// The discrete function at the vertices of each cell, `D + 1` values for each.
     ///
     /// # Panics
     /// If `u` is shorter than the number of unknowns.
     pub fn vertex_values(&self, u: &[T]) -> Vec<f64> {
-        compiled!(T, D: fn(&Discretisation<'_, T, D>, &[T]) -> Vec<f64> = |space, u| space.evaluate_at_vertices(u))(
-            self, u,
-        )
-    }
-    fn evaluate_at_vertices(&self, u: &[T]) -> Vec<f64> {
-        self.space.vertex_values(u)
+        compiled!(
+            T, D: fn(&Discretisation<'_, T, D>, &[T]) -> Vec<f64>
+                = |of, u| of.space.vertex_values(u)
+        )(self, u)
     }
     /// Facets whose weight lies below what the form needs to be provably coercive: how many, and
     /// the one that misses by the largest factor. Nothing if the form promises none.
     pub fn coercivity_margin(&self) -> Option<CoercivityMargin> {
-        compiled!(T, D: fn(&Discretisation<'_, T, D>) -> Option<CoercivityMargin> = |space| space.find_coercivity_margin())(
-            self,
-        )
-    }
-    fn find_coercivity_margin(&self) -> Option<CoercivityMargin> {
-        self.space.coercivity_margin(self.form())
+        compiled!(
+            T, D: fn(&Discretisation<'_, T, D>) -> Option<CoercivityMargin>
+                = |of| of.space.coercivity_margin(of.form())
+        )(self)
     }
     /// The load of all unknowns.
     ///
     /// # Errors
     /// [`Error::DataNotFinite`].
     pub fn load(&self) -> Result<Vec<T>, Error> {
-        compiled!(T, D: fn(&Discretisation<'_, T, D>) -> Result<Vec<T>, Error> = |space| space.assemble_load())(
-            self,
-        )
-    }
-    fn assemble_load(&self) -> Result<Vec<T>, Error> {
-        self.space.load(self.form(), &|| &self.prepared().0)
+        compiled!(
+            T, D: fn(&Discretisation<'_, T, D>) -> Result<Vec<T>, Error>
+                = |of| of.space.load(of.form(), &|| &of.prepared().0)
+        )(self)
     }
 }
 
@@ -285,7 +284,8 @@ impl<T: Real, const D: usize> Parts<T, D> {
         let Self { element, loops, form, pins, bounded } = self;
         check_form::<T, D>(&element, &*form)?;
         let space = Space::new(element, problem, mesh, quadrature, form.couples(), pins, bounded)?;
-        Ok(Discretisation { space, form, loops, prepared: OnceLock::new() })
+        let shared_rows = SharedRows::new(loops);
+        Ok(Discretisation { space, form, shared_rows, prepared: OnceLock::new() })
     }
 }
 

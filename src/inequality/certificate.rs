@@ -87,11 +87,10 @@ pub fn certify_with_jump_multipliers<T: Real>(
     u: &[T],
     jump_multipliers: &[T],
 ) -> Certificate {
-    compiled!(T: fn(&Inequality<T>, &[T], &[T]) -> Certificate = certificate_of)(
-        inequality,
-        u,
-        jump_multipliers,
-    )
+    compiled!(
+        T: fn(&Inequality<T>, &[T], &[T]) -> Certificate
+            = certificate_of
+    )(inequality, u, jump_multipliers)
 }
 
 fn certificate_of<T: Real>(

@@ -76,9 +76,10 @@ impl<T: Real> InequalitySolver<T> for MonotoneMultigrid {
     }
 
     fn solve_from(&self, inequality: &Inequality<T>, guess: &InitialGuess<T>) -> Solution<T> {
-        compiled!(T: fn(&MonotoneMultigrid, &Inequality<T>, &InitialGuess<T>) -> Solution<T> = MonotoneMultigrid::descend)(
-            self, inequality, guess,
-        )
+        compiled!(
+            T: fn(&MonotoneMultigrid, &Inequality<T>, &InitialGuess<T>) -> Solution<T>
+                = MonotoneMultigrid::descend
+        )(self, inequality, guess)
     }
 
     fn uses_coarse_spaces(&self, _unknowns: usize) -> bool {

@@ -18,9 +18,10 @@ use crate::scheme::AnyScheme;
 pub(super) fn check<T: Real, const D: usize>(
     scheme: &dyn AnyScheme<T, D>,
 ) -> Result<CoercivityReport, KitError> {
-    compiled!(T, D: fn(&dyn AnyScheme<T, D>) -> Result<CoercivityReport, KitError> = check_scheme)(
-        scheme,
-    )
+    compiled!(
+        T, D: fn(&dyn AnyScheme<T, D>) -> Result<CoercivityReport, KitError>
+            = check_scheme
+    )(scheme)
 }
 
 fn check_scheme<T: Real, const D: usize>(

@@ -18,9 +18,10 @@ const UNITS: f64 = 8192.0;
 pub(super) fn check<T: Real, const D: usize>(
     scheme: &dyn AnyScheme<T, D>,
 ) -> Result<ConsistencyReport, KitError> {
-    compiled!(T, D: fn(&dyn AnyScheme<T, D>) -> Result<ConsistencyReport, KitError> = check_scheme)(
-        scheme,
-    )
+    compiled!(
+        T, D: fn(&dyn AnyScheme<T, D>) -> Result<ConsistencyReport, KitError>
+            = check_scheme
+    )(scheme)
 }
 
 fn check_scheme<T: Real, const D: usize>(

@@ -21,9 +21,10 @@ const SOLUTION_UNITS: f64 = 8192.0;
 pub(super) fn check<T: Real, const D: usize>(
     scheme: &dyn AnyScheme<T, D>,
 ) -> Result<InvarianceReport, KitError> {
-    compiled!(T, D: fn(&dyn AnyScheme<T, D>) -> Result<InvarianceReport, KitError> = check_scheme)(
-        scheme,
-    )
+    compiled!(
+        T, D: fn(&dyn AnyScheme<T, D>) -> Result<InvarianceReport, KitError>
+            = check_scheme
+    )(scheme)
 }
 
 fn check_scheme<T: Real, const D: usize>(

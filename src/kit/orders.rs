@@ -29,9 +29,10 @@ const fn levels(dimension: usize, degree: usize) -> [usize; 2] {
 pub(super) fn check<T: Real, const D: usize>(
     scheme: &dyn AnyScheme<T, D>,
 ) -> Result<OrdersReport, KitError> {
-    compiled!(T, D: fn(&dyn AnyScheme<T, D>) -> Result<OrdersReport, KitError> = check_scheme)(
-        scheme,
-    )
+    compiled!(
+        T, D: fn(&dyn AnyScheme<T, D>) -> Result<OrdersReport, KitError>
+            = check_scheme
+    )(scheme)
 }
 
 fn check_scheme<T: Real, const D: usize>(

@@ -15,9 +15,10 @@ const UNITS: f64 = 256.0;
 pub(super) fn check<T: Real, const D: usize>(
     scheme: &dyn AnyScheme<T, D>,
 ) -> Result<SymmetryReport, KitError> {
-    compiled!(T, D: fn(&dyn AnyScheme<T, D>) -> Result<SymmetryReport, KitError> = check_scheme)(
-        scheme,
-    )
+    compiled!(
+        T, D: fn(&dyn AnyScheme<T, D>) -> Result<SymmetryReport, KitError>
+            = check_scheme
+    )(scheme)
 }
 
 fn check_scheme<T: Real, const D: usize>(

@@ -35,12 +35,10 @@ impl<T: Real, const D: usize> Discretisation<'_, T, D> {
     /// obstacles and of the contact boundary for Signorini. A cell shows the mean over its unknowns
     /// that have such a measure.
     pub fn fields(&self, inequality: &Inequality<T>, solution: &Solution<T>) -> Fields {
-        compiled!(T, D: fn(&Discretisation<'_, T, D>, &Inequality<T>, &Solution<T>) -> Fields = |space, inequality, solution| space.fields_of(inequality, solution))(
-            self, inequality, solution,
-        )
-    }
-    fn fields_of(&self, inequality: &Inequality<T>, solution: &Solution<T>) -> Fields {
-        self.space.fields(inequality, solution)
+        compiled!(
+            T, D: fn(&Discretisation<'_, T, D>, &Inequality<T>, &Solution<T>) -> Fields
+                = |of, inequality, solution| of.space.fields(inequality, solution)
+        )(self, inequality, solution)
     }
 }
 

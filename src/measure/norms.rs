@@ -66,13 +66,10 @@ impl<T: Real, const D: usize> Discretisation<'_, T, D> {
     /// # Panics
     /// If `u` is shorter than the number of unknowns.
     pub fn errors(&self, u: &[T]) -> Result<Errors, Error> {
-        compiled!(T, D: fn(&Discretisation<'_, T, D>, &[T]) -> Result<Errors, Error> = |space, u| space.errors_of(u))(
-            self, u,
-        )
-    }
-    fn errors_of(&self, u: &[T]) -> Result<Errors, Error> {
-        let form = self.form();
-        self.space.errors(form.couples().then_some(form), u)
+        compiled!(
+            T, D: fn(&Discretisation<'_, T, D>, &[T]) -> Result<Errors, Error>
+                = |of, u| of.space.errors(of.form().couples().then_some(of.form()), u)
+        )(self, u)
     }
 }
 

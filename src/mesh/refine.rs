@@ -135,9 +135,10 @@ impl<T: Real, const D: usize> Mesh<T, D> {
     /// # Errors
     /// [`MeshError::TooLarge`].
     pub fn refine(&self) -> Result<(Self, Refinement), MeshError> {
-        compiled!(T, D: fn(&Mesh<T, D>) -> Result<(Mesh<T, D>, Refinement), MeshError> = Mesh::refine_uniformly)(
-            self,
-        )
+        compiled!(
+            T, D: fn(&Mesh<T, D>) -> Result<(Mesh<T, D>, Refinement), MeshError>
+                = Mesh::refine_uniformly
+        )(self)
     }
     fn refine_uniformly(&self) -> Result<(Self, Refinement), MeshError> {
         let n_children = 1 << D;

@@ -32,9 +32,14 @@ impl<T: Real, const D: usize> Mesh<T, D> {
         cells: Vec<u32>,
         boundary: &[TaggedFacet<D>],
     ) -> Result<Self, MeshError> {
-        compiled!(T, D: fn(Vec<Point<f64, D>>, Vec<u32>, &[TaggedFacet<D>]) -> Result<Mesh<T, D>, MeshError> = Mesh::from_lists)(
-            vertices, cells, boundary,
-        )
+        compiled!(
+            T, D: fn(
+                Vec<Point<f64, D>>,
+                Vec<u32>,
+                &[TaggedFacet<D>],
+            ) -> Result<Mesh<T, D>, MeshError>
+                = Mesh::from_lists
+        )(vertices, cells, boundary)
     }
     fn from_lists(
         vertices: Vec<Point<f64, D>>,

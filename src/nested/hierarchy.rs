@@ -95,9 +95,10 @@ impl<'a, T: Real, const D: usize> Hierarchy<'a, T, D> {
     /// [`Error::Mesh`] if the cells are too many to be numbered, [`Error::Parameter`] for level zero of a
     /// built-in domain.
     pub fn build(&mut self, level: usize) -> Result<(), Error> {
-        compiled!(T, D: fn(&mut Hierarchy<'_, T, D>, usize) -> Result<(), Error> = |levels, level| levels.build_meshes(level))(
-            self, level,
-        )
+        compiled!(
+            T, D: fn(&mut Hierarchy<'_, T, D>, usize) -> Result<(), Error>
+                = |levels, level| levels.build_meshes(level)
+        )(self, level)
     }
     fn build_meshes(&mut self, level: usize) -> Result<(), Error> {
         if self.levels.contains_key(&level) {
@@ -206,9 +207,17 @@ impl<'a, T: Real, const D: usize> Hierarchy<'a, T, D> {
         quadrature: DataQuadrature,
         repeat: usize,
     ) -> Result<Option<Arc<P1Solution<T>>>, Error> {
-        compiled!(T, D: fn(&mut Hierarchy<'_, T, D>, usize, &dyn InequalitySolver<T>, DataQuadrature, usize) -> Result<Option<Arc<P1Solution<T>>>, Error> = |levels, level, solver, quadrature, repeat| levels.prolong_p1_solution(level, solver, quadrature, repeat))(
-            self, level, solver, quadrature, repeat,
-        )
+        compiled!(
+            T, D: fn(
+                &mut Hierarchy<'_, T, D>,
+                usize,
+                &dyn InequalitySolver<T>,
+                DataQuadrature,
+                usize,
+            ) -> Result<Option<Arc<P1Solution<T>>>, Error>
+                = |levels, level, solver, quadrature, repeat|
+                    levels.prolong_p1_solution(level, solver, quadrature, repeat)
+        )(self, level, solver, quadrature, repeat)
     }
     fn prolong_p1_solution(
         &mut self,
@@ -261,9 +270,17 @@ impl<'a, T: Real, const D: usize> Hierarchy<'a, T, D> {
         quadrature: DataQuadrature,
         repeat: usize,
     ) -> Result<Arc<P1Solution<T>>, Error> {
-        compiled!(T, D: fn(&mut Hierarchy<'_, T, D>, usize, &dyn InequalitySolver<T>, DataQuadrature, usize) -> Result<Arc<P1Solution<T>>, Error> = |levels, level, solver, quadrature, repeat| levels.solve_p1_on(level, solver, quadrature, repeat))(
-            self, level, solver, quadrature, repeat,
-        )
+        compiled!(
+            T, D: fn(
+                &mut Hierarchy<'_, T, D>,
+                usize,
+                &dyn InequalitySolver<T>,
+                DataQuadrature,
+                usize,
+            ) -> Result<Arc<P1Solution<T>>, Error>
+                = |levels, level, solver, quadrature, repeat|
+                    levels.solve_p1_on(level, solver, quadrature, repeat)
+        )(self, level, solver, quadrature, repeat)
     }
     fn solve_p1_on(
         &mut self,

@@ -83,9 +83,10 @@ pub fn solve<T: Real, const D: usize>(
     scheme: &dyn AnyScheme<T, D>,
     task: &Task<'_, T, D>,
 ) -> Result<Solved, Error> {
-    compiled!(T, D: fn(&dyn AnyScheme<T, D>, &Task<'_, T, D>) -> Result<Solved, Error> = solve_task)(
-        scheme, task,
-    )
+    compiled!(
+        T, D: fn(&dyn AnyScheme<T, D>, &Task<'_, T, D>) -> Result<Solved, Error>
+            = solve_task
+    )(scheme, task)
 }
 
 fn solve_task<T: Real, const D: usize>(

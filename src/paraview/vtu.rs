@@ -40,9 +40,10 @@ pub fn write_vtu<T: Real, const D: usize>(
     mesh: &Mesh<T, D>,
     fields: &CellFields,
 ) -> Result<(), Error> {
-    compiled!(T, D: fn(&Path, &Mesh<T, D>, &CellFields) -> Result<(), Error> = write_cells)(
-        path, mesh, fields,
-    )
+    compiled!(
+        T, D: fn(&Path, &Mesh<T, D>, &CellFields) -> Result<(), Error>
+            = write_cells
+    )(path, mesh, fields)
 }
 
 fn write_cells<T: Real, const D: usize>(

@@ -118,9 +118,10 @@ pub fn scheme_by_name<T: Real, const D: usize>(
     name: &str,
     options: &SchemeOptions,
 ) -> Option<Box<dyn AnyScheme<T, D>>> {
-    compiled!(T, D: fn(&str, &SchemeOptions) -> Option<Box<dyn AnyScheme<T, D>>> = made)(
-        name, options,
-    )
+    compiled!(
+        T, D: fn(&str, &SchemeOptions) -> Option<Box<dyn AnyScheme<T, D>>>
+            = made
+    )(name, options)
 }
 
 /// A discretisation of the bilinear form and of Dirichlet data.

@@ -158,9 +158,10 @@ impl<'a, T: Real, const D: usize> Study<'a, T, D> {
     /// [`Error::Parameter`] for an empty list of levels or schemes or a level of zero,
     /// [`Error::UnfitMesh`], [`Error::Mesh`].
     pub fn check(&self) -> Result<(), Error> {
-        compiled!(T, D: fn(&Study<'_, T, D>) -> Result<(), Error> = |study| study.where_exact_fails().map(|_| ()))(
-            self,
-        )
+        compiled!(
+            T, D: fn(&Study<'_, T, D>) -> Result<(), Error>
+                = |study| study.where_exact_fails().map(|_| ())
+        )(self)
     }
 
     /// Checks schemes, levels and mesh. Returns the point at which the exact solution of the scene
@@ -193,9 +194,10 @@ impl<'a, T: Real, const D: usize> Study<'a, T, D> {
     /// An estimate of the memory of the largest run, with factors if the solver computes them from
     /// the start; none for a study without schemes or levels.
     pub fn memory_estimate(&self) -> Option<MemoryEstimate> {
-        compiled!(T, D: fn(&Study<'_, T, D>) -> Option<MemoryEstimate> = |study| study.estimate_memory())(
-            self,
-        )
+        compiled!(
+            T, D: fn(&Study<'_, T, D>) -> Option<MemoryEstimate>
+                = |study| study.estimate_memory()
+        )(self)
     }
     fn estimate_memory(&self) -> Option<MemoryEstimate> {
         let levels = Hierarchy::new(&self.scene.problem, &self.scene.domain, self.mesh.as_ref());
@@ -224,9 +226,10 @@ impl<'a, T: Real, const D: usize> Study<'a, T, D> {
     /// Errors of [`Self::check`] and of assembly. A solve that does not converge is no error: its
     /// row has the outcome.
     pub fn run(&self) -> Result<Report, Error> {
-        compiled!(T, D: fn(&Study<'_, T, D>) -> Result<Report, Error> = |study| study.run_all())(
-            self,
-        )
+        compiled!(
+            T, D: fn(&Study<'_, T, D>) -> Result<Report, Error>
+                = |study| study.run_all()
+        )(self)
     }
     fn run_all(&self) -> Result<Report, Error> {
         let failure = self.where_exact_fails()?;

@@ -219,9 +219,10 @@ impl<'a, const D: usize> WorkPrecision<'a, D> {
     /// # Errors
     /// Those of [`Self::run`].
     pub fn run_into(&self, report: &mut WorkReport) -> Result<(), Error> {
-        compiled!(const D: fn(&WorkPrecision<'_, D>, &mut WorkReport) -> Result<(), Error> = |study, report| study.run_cases(report))(
-            self, report,
-        )
+        compiled!(
+            const D: fn(&WorkPrecision<'_, D>, &mut WorkReport) -> Result<(), Error>
+                = |study, report| study.run_cases(report)
+        )(self, report)
     }
     fn run_cases(&self, report: &mut WorkReport) -> Result<(), Error> {
         let mut slots = self.slots()?;

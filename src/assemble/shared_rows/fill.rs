@@ -1,4 +1,4 @@
-//! The values of a known pattern: each cell adds its matrix to the places noted for it.
+//! The values of a known pattern: each cell adds its matrix at the positions noted for its entries.
 
 use std::ops::Range;
 use std::sync::atomic::Ordering;
@@ -6,8 +6,8 @@ use std::sync::atomic::Ordering;
 use rayon::prelude::*;
 
 use super::cells::{CellMatrices, CellMatrix, General, Gradients};
-use super::partition::{Lies, Rows, pieces};
-use super::pattern::{LONGEST, Places, pattern};
+use super::partition::{Location, Rows, partition};
+use super::pattern::{EntryPositions, LONGEST};
 use crate::algebra::SparseMatrix;
 use crate::assemble::space::Space;
 use crate::assemble::space::dofs::{Dofs, KINDS, kind_of};
@@ -27,33 +27,30 @@ struct Target<'v, T> {
 /// The values, on a known pattern.
 pub(crate) fn fill<T: Real, const D: usize, E: ReferenceElement<T, D>>(
     space: &Space<'_, T, D>,
+    positions: &EntryPositions,
     matrix: &mut SparseMatrix<T>,
 ) {
     let dofs = &space.dofs;
-    let places = dofs.places.get().unwrap_or_else(|| {
-        pattern::<T, D, E>(dofs);
-        dofs.places.get().expect("places are made with the pattern")
-    });
     let SparseMatrix { row_starts, columns, values } = matrix;
-    let same = row_starts.len() == dofs.size() + 1 && values.len() == places.nonzeros;
+    let same = row_starts.len() == dofs.size() + 1 && values.len() == positions.nonzeros;
     assert!(same, "the matrix has the pattern of another discretisation");
     let cells = CellMatrices::new::<E>(space);
-    let filling = Filling { dofs, row_starts, columns, places, cells };
-    let cut = pieces(dofs);
-    let targets = targets(&cut, row_starts, values);
-    cut.par_iter().zip(targets).for_each(|(rows, targets)| filling.piece::<E>(rows, targets));
+    let filling = Filling { dofs, row_starts, columns, positions, cells };
+    let pieces = partition(dofs);
+    let targets = targets(&pieces, row_starts, values);
+    pieces.par_iter().zip(targets).for_each(|(rows, targets)| filling.piece::<E>(rows, targets));
 }
 
 /// Cuts the values so that each piece has those of its rows.
 fn targets<'v, T>(
-    cut: &[Rows],
+    pieces: &[Rows],
     row_starts: &[u32],
     values: &'v mut [T],
 ) -> Vec<[Target<'v, T>; KINDS]> {
     let mut rest = values;
     let mut by_kind = [const { Vec::new() }; KINDS];
     for (kind, targets) in by_kind.iter_mut().enumerate() {
-        for rows in cut {
+        for rows in pieces {
             let rows = rows[kind].clone();
             let base = row_starts[rows.start as usize] as usize;
             let (values, tail) = rest.split_at_mut(row_starts[rows.end as usize] as usize - base);
@@ -63,8 +60,8 @@ fn targets<'v, T>(
     }
     let mut by_kind = by_kind.map(Vec::into_iter);
     let next = |_| by_kind.each_mut().map(|targets| targets.next());
-    let pieces = (0..cut.len()).map(next);
-    pieces.map(|piece| piece.map(|target| target.expect("a target for every piece"))).collect()
+    let of_pieces = (0..pieces.len()).map(next);
+    of_pieces.map(|piece| piece.map(|target| target.expect("a target for every piece"))).collect()
 }
 
 impl<T: Real> Target<'_, T> {
@@ -87,24 +84,24 @@ struct Filling<'f, 's, 'a, T: Real, const D: usize> {
     dofs: &'f Dofs<'a>,
     row_starts: &'f [u32],
     columns: &'f [u32],
-    places: &'f Places,
+    positions: &'f EntryPositions,
     cells: CellMatrices<'s, 'a, T, D>,
 }
 
 impl<T: Real, const D: usize> Filling<'_, '_, '_, T, D> {
     fn piece<E: ReferenceElement<T, D>>(&self, rows: &Rows, mut targets: [Target<'_, T>; KINDS]) {
-        for (cells, lies, hull) in self.places.blocks.of(rows) {
+        for (cells, location, hull) in self.positions.blocks.of(rows) {
             for (target, hull) in targets.iter_mut().zip(hull) {
                 target.clear_before(hull.end, self.row_starts);
             }
             match self.cells.only_gradients() {
                 Some(square) => {
                     let matrices = Gradients::new(&self.cells, square);
-                    self.block::<E, _>(cells, lies, &mut targets, matrices);
+                    self.block::<E, _>(cells, location, &mut targets, matrices);
                 }
                 None => {
                     let matrices = General::<E, T, D>::new(&self.cells);
-                    self.block::<E, _>(cells, lies, &mut targets, matrices);
+                    self.block::<E, _>(cells, location, &mut targets, matrices);
                 }
             }
         }
@@ -117,11 +114,11 @@ impl<T: Real, const D: usize> Filling<'_, '_, '_, T, D> {
     fn block<E: ReferenceElement<T, D>, M: CellMatrix<T>>(
         &self,
         cells: Range<usize>,
-        lies: Lies,
+        location: Location,
         targets: &mut [Target<'_, T>; KINDS],
         matrices: M,
     ) {
-        if lies == Lies::Inside {
+        if location == Location::Inside {
             self.add::<E, M, true>(cells, targets, matrices);
         } else {
             self.add::<E, M, false>(cells, targets, matrices);
@@ -138,10 +135,10 @@ impl<T: Real, const D: usize> Filling<'_, '_, '_, T, D> {
     ) {
         let mut numbers = Vec::new();
         let square = E::N * E::N;
-        let places = &self.places.places[cells.start * square..cells.end * square];
+        let positions = &self.positions.in_rows[cells.start * square..cells.end * square];
         let unknowns = self.dofs.of_cells(cells.clone(), &mut numbers);
-        let each = unknowns.chunks_exact(E::N).zip(places.chunks_exact(square)).zip(cells);
-        for ((unknowns, places), cell) in each {
+        let each = unknowns.chunks_exact(E::N).zip(positions.chunks_exact(square)).zip(cells);
+        for ((unknowns, positions), cell) in each {
             let has = |i: usize| targets[kind_of(E::LAYOUT, D, i)].rows.contains(&unknowns[i]);
             if !INSIDE && !(0..E::N).any(has) {
                 continue;
@@ -156,8 +153,8 @@ impl<T: Real, const D: usize> Filling<'_, '_, '_, T, D> {
                     let out = &mut target.values[start..end];
                     if out.len() <= LONGEST {
                         for j in 0..E::N {
-                            let place = places[i * E::N + j].load(Ordering::Relaxed);
-                            out[place as usize] += matrix.entry(i, j);
+                            let position = positions[i * E::N + j].load(Ordering::Relaxed);
+                            out[position as usize] += matrix.entry(i, j);
                         }
                     } else {
                         let columns = &self.columns[start + target.base..end + target.base];
@@ -169,7 +166,7 @@ impl<T: Real, const D: usize> Filling<'_, '_, '_, T, D> {
     }
 }
 
-/// Adds to a row so long that the places noted for it are not its own.
+/// Adds to a row too long for the positions noted, by searching its columns.
 #[cold]
 #[inline(never)]
 fn add_by_search<T: Real>(

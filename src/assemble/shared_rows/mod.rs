@@ -1,7 +1,7 @@
 //! Rows of spaces that share unknowns.
 //!
-//! Without a form on facets each cell adds its matrix to the places in its rows that were noted when
-//! the pattern was made: see [`pattern`](pattern::pattern) and [`fill`](fill::fill). With one, which
+//! Without a form on facets each cell adds its matrix to the positions in its rows that were noted
+//! when the pattern was made: see [`pattern`](pattern::pattern) and [`fill`](fill::fill). With one, which
 //! is rare here, rows gather from the matrices of [`patches`].
 
 mod cells;
@@ -12,6 +12,7 @@ pub(crate) mod pattern;
 
 use std::any::Any;
 use std::marker::PhantomData;
+use std::sync::OnceLock;
 
 use super::space::Space;
 use super::space::dofs::Dofs;
@@ -20,13 +21,13 @@ use crate::element::{CrouzeixRaviart, P1, P2, ReferenceElement};
 use crate::facet::FacetForm;
 use crate::instances::find;
 use crate::real::Real;
-pub(crate) use pattern::Places;
+pub(crate) use pattern::EntryPositions;
 
 /// The loops over shared rows, instantiated for an element, of which only they are generic.
 #[derive(Clone, Copy)]
 pub(crate) struct CellLoops<T: Real, const D: usize> {
-    pattern: fn(&Dofs<'_>) -> SparseMatrix<T>,
-    fill: fn(&Space<'_, T, D>, &mut SparseMatrix<T>),
+    pattern: fn(&Dofs<'_>) -> (SparseMatrix<T>, EntryPositions),
+    fill: fn(&Space<'_, T, D>, &EntryPositions, &mut SparseMatrix<T>),
 }
 
 impl<T: Real, const D: usize> CellLoops<T, D> {
@@ -79,27 +80,44 @@ static COMPILED: [&(dyn Any + Sync); 18] = [
     &Loops::<f32, 3, CrouzeixRaviart>::instance(),
 ];
 
-/// The pattern, with values zero.
-pub(crate) fn pattern<T: Real, const D: usize>(
-    space: &Space<'_, T, D>,
-    form: &dyn FacetForm<T, D>,
-    loops: Option<&CellLoops<T, D>>,
-) -> SparseMatrix<T> {
-    match loops {
-        Some(loops) if !form.couples() => (loops.pattern)(&space.dofs),
-        _ => patches::pattern(space, form),
-    }
+/// Shared rows of a space, with what making their pattern tells about filling it.
+pub(crate) struct SharedRows<T: Real, const D: usize> {
+    loops: Option<CellLoops<T, D>>,
+    positions: OnceLock<EntryPositions>,
 }
 
-/// The values, on a known pattern.
-pub(crate) fn fill<T: Real, const D: usize>(
-    space: &Space<'_, T, D>,
-    form: &dyn FacetForm<T, D>,
-    loops: Option<&CellLoops<T, D>>,
-    matrix: &mut SparseMatrix<T>,
-) {
-    match loops {
-        Some(loops) if !form.couples() => (loops.fill)(space, matrix),
-        _ => patches::fill(space, form, matrix),
+impl<T: Real, const D: usize> SharedRows<T, D> {
+    /// Rows whose pattern is not known yet.
+    pub fn new(loops: Option<CellLoops<T, D>>) -> Self {
+        Self { loops, positions: OnceLock::new() }
+    }
+
+    /// The pattern, with values zero.
+    pub fn pattern(&self, space: &Space<'_, T, D>, form: &dyn FacetForm<T, D>) -> SparseMatrix<T> {
+        match &self.loops {
+            Some(loops) if !form.couples() => {
+                let (matrix, positions) = (loops.pattern)(&space.dofs);
+                // a space has one pattern: another thread that was first has set the same positions
+                let _ = self.positions.set(positions);
+                matrix
+            }
+            _ => patches::pattern(space, form),
+        }
+    }
+
+    /// The values, on a known pattern.
+    pub fn fill(
+        &self,
+        space: &Space<'_, T, D>,
+        form: &dyn FacetForm<T, D>,
+        matrix: &mut SparseMatrix<T>,
+    ) {
+        match &self.loops {
+            Some(loops) if !form.couples() => {
+                let positions = self.positions.get_or_init(|| (loops.pattern)(&space.dofs).1);
+                (loops.fill)(space, positions, matrix);
+            }
+            _ => patches::fill(space, form, matrix),
+        }
     }
 }

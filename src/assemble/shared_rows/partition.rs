@@ -1,10 +1,10 @@
 //! How rows are shared out among threads.
 //!
-//! Rows are cut into pieces, and a piece visits every cell that has one of its rows, in ascending
-//! order, and adds to its own rows only. So no two threads write to one place, and every row sums
-//! its cells in the same order wherever the cuts are: the bits do not depend on the number of
-//! threads. Cells at a cut are visited more than once; where neighbours have near numbers these
-//! are few.
+//! Rows are partitioned into pieces. The work on a piece visits every cell that has one of its rows,
+//! in ascending order, and adds to these rows only. So no two threads write to one entry, and every
+//! row sums its cells in the same order whatever the partition: the bits do not depend on the number
+//! of threads. Cells with rows in two pieces are visited twice; they are few where neighbours have
+//! near numbers.
 
 use std::ops::Range;
 
@@ -21,8 +21,8 @@ const LEAST_ROWS: usize = 256;
 /// Rows by kind of owner: a range for each kind.
 pub(crate) type Rows = [Range<u32>; KINDS];
 
-/// The rows of each thread's pieces.
-pub(crate) fn pieces(dofs: &Dofs<'_>) -> Vec<Rows> {
+/// The pieces into which the threads share out the rows.
+pub(crate) fn partition(dofs: &Dofs<'_>) -> Vec<Rows> {
     let threads = rayon::current_num_threads();
     let most = if threads == 1 { 1 } else { 2 * threads };
     parts(dofs.kinds(), most.min(dofs.size() / LEAST_ROWS))
@@ -45,14 +45,14 @@ const MOST_PARTS: usize = 16;
 
 /// Blocks of consecutive cells with the unknowns they have.
 pub(crate) struct Blocks {
-    /// For each block the hull of its unknowns of each kind; empty for kinds it has not.
+    /// For each block the hull of its unknowns of each kind; empty for kinds that the block does not have.
     hulls: Vec<Rows>,
     n_cells: usize,
 }
 
-/// How a block lies to a piece.
+/// Where the rows of a block are: none, some or all of them in a piece.
 #[derive(Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Lies {
+pub(crate) enum Location {
     Outside,
     Across,
     Inside,
@@ -95,23 +95,23 @@ impl Blocks {
             n /= 2;
         }
     }
-    /// The blocks that may have rows of a piece: their cells, how they lie to it, their hulls.
+    /// The blocks that may have rows of a piece: their cells, their location, their hulls.
     pub fn of<'b>(
         &'b self,
         piece: &'b Rows,
-    ) -> impl Iterator<Item = (Range<usize>, Lies, &'b Rows)> {
-        let lies = move |hull: &Rows| {
+    ) -> impl Iterator<Item = (Range<usize>, Location, &'b Rows)> {
+        let location = move |hull: &Rows| {
             let pairs = || hull.iter().zip(piece).filter(|(hull, _)| !hull.is_empty());
             if pairs().all(|(hull, rows)| rows.start <= hull.start && hull.end <= rows.end) {
-                Lies::Inside
+                Location::Inside
             } else if pairs().any(|(hull, rows)| hull.start < rows.end && rows.start < hull.end) {
-                Lies::Across
+                Location::Across
             } else {
-                Lies::Outside
+                Location::Outside
             }
         };
         let all = self.hulls.iter().enumerate();
-        all.map(move |(block, hull)| (Self::cells(block, self.n_cells), lies(hull), hull))
-            .filter(|(_, lies, _)| *lies != Lies::Outside)
+        all.map(move |(block, hull)| (Self::cells(block, self.n_cells), location(hull), hull))
+            .filter(|(_, location, _)| *location != Location::Outside)
     }
 }

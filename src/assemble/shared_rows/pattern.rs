@@ -5,7 +5,7 @@ use std::sync::atomic::{AtomicU8, Ordering};
 
 use rayon::prelude::*;
 
-use super::partition::{Blocks, Rows, pieces};
+use super::partition::{Blocks, Rows, partition};
 use crate::algebra::SparseMatrix;
 use crate::assemble::space::dofs::{Dofs, KINDS, kind_of};
 use crate::element::ReferenceElement;
@@ -13,39 +13,41 @@ use crate::memory::in_large_pages;
 use crate::real::Real;
 
 /// Where each cell adds its matrix: made with the pattern, kept for every filling of it.
-pub(crate) struct Places {
-    /// For each cell, its unknown `i` and its unknown `j`: the place of column `j` in row `i`.
+pub(crate) struct EntryPositions {
+    /// For each cell, its unknown `i` and its unknown `j`: the position of column `j` in row `i`.
     ///
-    /// Of rows with more than 256 entries the places are wrong, and are searched for instead.
-    /// Atomic because the rows of one cell may be made by two threads, each its own places.
-    pub places: Vec<AtomicU8>,
+    /// In rows of more than 256 entries a byte does not hold the position, and filling searches for
+    /// it. The bytes are atomic because two threads may make the rows of one cell, each thread the
+    /// positions in its own rows.
+    pub in_rows: Vec<AtomicU8>,
     /// The cells in blocks.
     pub blocks: Blocks,
     /// Entries of the pattern.
     pub nonzeros: usize,
 }
 
-/// Longest row whose places a byte can name.
+/// Longest row whose positions a byte holds.
 pub(crate) const LONGEST: usize = 256;
 
-/// Rows of a piece by kind: their columns and lengths.
-type Made = [MadeRows; KINDS];
+/// The pattern of the rows of a piece, by kind.
+type PatternOfPiece = [PatternOfRows; KINDS];
 
+/// Columns and lengths of rows.
 #[derive(Default)]
-struct MadeRows {
+struct PatternOfRows {
     columns: Vec<u32>,
     lengths: Vec<u32>,
 }
 
-/// The pattern, with values zero; the places are left with the numbering.
+/// The pattern, with values zero, and the positions at which cells add to it.
 pub(crate) fn pattern<T: Real, const D: usize, E: ReferenceElement<T, D>>(
     dofs: &Dofs<'_>,
-) -> SparseMatrix<T> {
+) -> (SparseMatrix<T>, EntryPositions) {
     let blocks = Blocks::new(dofs, |i| kind_of(E::LAYOUT, D, i));
-    let places = zeros(dofs.n_cells() * E::N * E::N);
-    let cut = pieces(dofs);
-    let make = |rows: &Rows| Maker { dofs, blocks: &blocks, places: &places }.rows::<T, E, D>(rows);
-    let mut made: Vec<Made> = cut.par_iter().map(make).collect();
+    let in_rows = zeros(dofs.n_cells() * E::N * E::N);
+    let builder = PatternBuilder { dofs, blocks: &blocks, in_rows: &in_rows };
+    let build = |rows: &Rows| builder.rows::<T, E, D>(rows);
+    let mut made: Vec<PatternOfPiece> = partition(dofs).par_iter().map(build).collect();
     let row_starts = row_starts(dofs.size(), &made);
     let columns = match &mut made[..] {
         [only] => {
@@ -57,18 +59,18 @@ pub(crate) fn pattern<T: Real, const D: usize, E: ReferenceElement<T, D>>(
         _ => join(&row_starts, &made),
     };
     let nonzeros = columns.len();
-    // a numbering has one pattern: what another thread may have left here is the same
-    let _ = dofs.places.set(Places { places, blocks, nonzeros });
-    SparseMatrix { row_starts, columns, values: in_large_pages(vec![T::lit(0.0); nonzeros]) }
+    let values = in_large_pages(vec![T::lit(0.0); nonzeros]);
+    let matrix = SparseMatrix { row_starts, columns, values };
+    (matrix, EntryPositions { in_rows, blocks, nonzeros })
 }
 
 fn zeros(n: usize) -> Vec<AtomicU8> {
-    // bytes that the system hands out as zeros, taken for what they are in place
+    // the system hands out zeroed bytes; the conversion copies nothing
     in_large_pages(vec![0_u8; n]).into_iter().map(AtomicU8::new).collect()
 }
 
 /// Where rows start, from their lengths.
-fn row_starts(size: usize, made: &[Made]) -> Vec<u32> {
+fn row_starts(size: usize, made: &[PatternOfPiece]) -> Vec<u32> {
     let mut starts = in_large_pages(Vec::with_capacity(size + 1));
     starts.push(0);
     let mut end = 0;
@@ -84,7 +86,7 @@ fn row_starts(size: usize, made: &[Made]) -> Vec<u32> {
 }
 
 /// The columns of all pieces in the order of rows.
-fn join(row_starts: &[u32], made: &[Made]) -> Vec<u32> {
+fn join(row_starts: &[u32], made: &[PatternOfPiece]) -> Vec<u32> {
     let mut columns = in_large_pages(vec![0; row_starts[row_starts.len() - 1] as usize]);
     let mut copies = Vec::new();
     let mut rest = &mut columns[..];
@@ -100,30 +102,33 @@ fn join(row_starts: &[u32], made: &[Made]) -> Vec<u32> {
     columns
 }
 
-/// What the rows of a piece are made from.
-struct Maker<'m> {
+/// Builds the pattern of the rows of a piece.
+struct PatternBuilder<'m> {
     dofs: &'m Dofs<'m>,
     blocks: &'m Blocks,
-    places: &'m [AtomicU8],
+    in_rows: &'m [AtomicU8],
 }
 
-impl Maker<'_> {
+impl PatternBuilder<'_> {
     /// The rows of a piece, in parts, so that scratch memory is small and used again.
-    fn rows<T: Real, E: ReferenceElement<T, D>, const D: usize>(&self, piece: &Rows) -> Made {
-        let mut around = Around::default();
+    fn rows<T: Real, E: ReferenceElement<T, D>, const D: usize>(
+        &self,
+        piece: &Rows,
+    ) -> PatternOfPiece {
+        let mut stars = Stars::default();
         let mut row = Row { seen: in_large_pages(vec![0; self.dofs.size()]), ..Row::default() };
         // about as many entries as the cells' matrices have: what is not used is never touched
-        let entries = |rows: &Range<u32>| self.places.len() / self.dofs.size() * rows.len();
-        let mut made = piece.each_ref().map(|rows| MadeRows {
+        let entries = |rows: &Range<u32>| self.in_rows.len() / self.dofs.size() * rows.len();
+        let mut made = piece.each_ref().map(|rows| PatternOfRows {
             columns: in_large_pages(Vec::with_capacity(entries(rows))),
             lengths: in_large_pages(Vec::with_capacity(rows.len())),
         });
         for part in self.blocks.parts_of(piece) {
-            self.find_around::<T, E, D>(&part, &mut around);
+            self.find_stars::<T, E, D>(&part, &mut stars);
             let mut k = 0;
             for (rows, made) in part.iter().zip(&mut made) {
                 for _ in rows.clone() {
-                    self.row::<T, E, D>(around.row(k), &mut row, made);
+                    self.row::<T, E, D>(stars.of_row(k), &mut row, made);
                     k += 1;
                 }
             }
@@ -132,20 +137,21 @@ impl Maker<'_> {
         made
     }
 
-    /// Finds the cells around each row of a part: a counting sort.
+    /// Finds the star of each row of a part: a counting sort.
     #[inline(always)]
-    fn find_around<T: Real, E: ReferenceElement<T, D>, const D: usize>(
+    fn find_stars<T: Real, E: ReferenceElement<T, D>, const D: usize>(
         &self,
         part: &Rows,
-        around: &mut Around,
+        stars: &mut Stars,
     ) {
         let mut n_rows = 0;
         let offsets = part.each_ref().map(|rows| {
             n_rows += rows.len();
             n_rows - rows.len()
         });
-        let Around { starts, slots } = around;
-        // counts two places on become, summed, starts one place on, which filling makes starts
+        let Stars { starts, slots } = stars;
+        // counts stand two entries on; summed they are starts one entry on; filling moves them to
+        // their own entries
         starts.clear();
         starts.resize(n_rows + 2, 0);
         self.visit::<T, E, D>(part, &offsets, |row, _| starts[row + 2] += 1);
@@ -186,19 +192,19 @@ impl Maker<'_> {
         }
     }
 
-    /// Makes a row from the cells around it, and their places in it.
+    /// Makes a row from its star, and the positions of the star's cells in it.
     #[inline(always)]
     fn row<T: Real, E: ReferenceElement<T, D>, const D: usize>(
         &self,
-        around: &[u32],
+        star: &[u32],
         row: &mut Row,
-        made: &mut MadeRows,
+        made: &mut PatternOfRows,
     ) {
-        row.make_room(around.len() * E::N);
-        let Row { seen, columns, met, ranks, base } = row;
+        row.make_room(star.len() * E::N);
+        let Row { seen, columns, numbers, ranks, base } = row;
         let table = self.dofs.table();
         let mut n = 0_u32;
-        for (&slot, met) in around.iter().zip(met.chunks_exact_mut(E::N)) {
+        for (&slot, numbers) in star.iter().zip(numbers.chunks_exact_mut(E::N)) {
             let first = slot as usize / E::N * E::N;
             let unknowns = table.map(|t| &t[first..first + E::N]);
             for j in 0..E::N {
@@ -207,7 +213,7 @@ impl Maker<'_> {
                 let is_new = *seen <= *base;
                 let number = if is_new { n } else { *seen - *base - 1 };
                 *seen = *base + number + 1;
-                met[j] = number;
+                numbers[j] = number;
                 columns[n as usize] = column;
                 n += u32::from(is_new);
             }
@@ -222,26 +228,26 @@ impl Maker<'_> {
             out[rank as usize] = column;
         }
         made.lengths.push(n as u32);
-        for (&slot, met) in around.iter().zip(met.chunks_exact(E::N)) {
-            let places = &self.places[slot as usize * E::N..][..E::N];
-            for (place, &number) in places.iter().zip(met) {
-                place.store(ranks[number as usize] as u8, Ordering::Relaxed);
+        for (&slot, numbers) in star.iter().zip(numbers.chunks_exact(E::N)) {
+            let positions = &self.in_rows[slot as usize * E::N..][..E::N];
+            for (position, &number) in positions.iter().zip(numbers) {
+                position.store(ranks[number as usize] as u8, Ordering::Relaxed);
             }
         }
     }
 }
 
-/// The cells around rows.
+/// The stars of rows: the cells that have a row's unknown.
 #[derive(Default)]
-struct Around {
+struct Stars {
     starts: Vec<u32>,
     /// Each cell times `N` plus the number of the row's unknown in it.
     slots: Vec<u32>,
 }
 
-impl Around {
+impl Stars {
     #[inline(always)]
-    fn row(&self, k: usize) -> &[u32] {
+    fn of_row(&self, k: usize) -> &[u32] {
         &self.slots[self.starts[k] as usize..self.starts[k + 1] as usize]
     }
 }
@@ -249,25 +255,25 @@ impl Around {
 /// A row in the making.
 #[derive(Default)]
 struct Row {
-    /// For each column one more than the running number at which it was last met first.
+    /// For each column one more than the running number that it got in the last row that has it.
     seen: Vec<u32>,
     /// Running number of the first column of this row.
     base: u32,
-    /// The columns in the order in which they are met.
+    /// The columns in the order of their numbers.
     columns: Vec<u32>,
     /// For each unknown of each cell the number of its column.
-    met: Vec<u32>,
-    /// The place in the row of each column.
+    numbers: Vec<u32>,
+    /// The position in the row of each column.
     ranks: Vec<u32>,
 }
 
 impl Row {
     #[inline(always)]
     fn make_room(&mut self, most: usize) {
-        if self.met.len() < most {
+        if self.numbers.len() < most {
             self.columns.resize(most + LANES, 0);
             self.ranks.resize(most + LANES, 0);
-            self.met.resize(most, 0);
+            self.numbers.resize(most, 0);
         }
     }
 }
@@ -278,7 +284,7 @@ const LANES: usize = 8;
 /// Longest row ranked by comparing all pairs, which vectorises; longer ones are sorted.
 const ALL_PAIRS: usize = 128;
 
-/// The place of each of the first `n` columns in their sorted order; the others are overwritten.
+/// The position of each of the first `n` columns in their sorted order; the others are overwritten.
 #[inline(always)]
 fn rank(columns: &mut [u32], n: usize, ranks: &mut [u32]) {
     if n > ALL_PAIRS {

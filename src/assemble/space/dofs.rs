@@ -2,11 +2,9 @@
 
 use std::borrow::Cow;
 use std::ops::Range;
-use std::sync::OnceLock;
 
 use rayon::prelude::*;
 
-use crate::assemble::shared_rows::Places;
 use crate::element::Layout;
 use crate::memory::in_large_pages;
 use crate::mesh::{Edges, Facets, Mesh, Neighbours};
@@ -19,8 +17,6 @@ pub(crate) struct Dofs<'a> {
     n_cells: usize,
     /// The unknowns of vertices, edges, facets and cells, in this order.
     kinds: [Range<u32>; KINDS],
-    /// Where cells add to the matrix that these unknowns make, once its pattern is known.
-    pub(crate) places: OnceLock<Places>,
 }
 
 /// Kinds of owners of unknowns: vertices, edges, facets and cells.
@@ -53,13 +49,7 @@ impl<'a> Dofs<'a> {
         neighbours: Option<&Neighbours>,
     ) -> Self {
         let (per_cell, n_cells) = (layout.per_cell(D), mesh.n_cells());
-        let mut dofs = Self {
-            table: None,
-            per_cell,
-            n_cells,
-            kinds: Default::default(),
-            places: OnceLock::new(),
-        };
+        let mut dofs = Self { table: None, per_cell, n_cells, kinds: Default::default() };
         if layout.is_broken() {
             dofs.kinds = ranges([0, 0, 0, per_cell * n_cells]);
             return dofs;

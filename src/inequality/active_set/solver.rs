@@ -26,9 +26,10 @@ impl<T: Real> InequalitySolver<T> for ActiveSet {
     }
 
     fn solve_from(&self, inequality: &Inequality<T>, guess: &InitialGuess<T>) -> Solution<T> {
-        compiled!(T: fn(&ActiveSet, &Inequality<T>, &InitialGuess<T>) -> Solution<T> = ActiveSet::choose_and_solve)(
-            self, inequality, guess,
-        )
+        compiled!(
+            T: fn(&ActiveSet, &Inequality<T>, &InitialGuess<T>) -> Solution<T>
+                = ActiveSet::choose_and_solve
+        )(self, inequality, guess)
     }
 
     fn uses_coarse_spaces(&self, unknowns: usize) -> bool {

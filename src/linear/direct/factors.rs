@@ -53,9 +53,10 @@ impl<T: Real> Factors<T> {
         symmetric: bool,
         free: &[u32],
     ) -> Result<Self, FactorError> {
-        compiled!(T: fn(&SparseMatrix<T>, bool, &[u32]) -> Result<Factors<T>, FactorError> = Factors::factor)(
-            matrix, symmetric, free,
-        )
+        compiled!(
+            T: fn(&SparseMatrix<T>, bool, &[u32]) -> Result<Factors<T>, FactorError>
+                = Factors::factor
+        )(matrix, symmetric, free)
     }
 
     fn factor(
@@ -83,9 +84,10 @@ impl<T: Real> Factors<T> {
         free: &[u32],
         order: &EliminationOrder,
     ) -> Result<Self, FactorError> {
-        compiled!(T: fn(&SparseMatrix<T>, &[u32], &EliminationOrder) -> Result<Factors<T>, FactorError> = Factors::factor_in_order)(
-            matrix, free, order,
-        )
+        compiled!(
+            T: fn(&SparseMatrix<T>, &[u32], &EliminationOrder) -> Result<Factors<T>, FactorError>
+                = Factors::factor_in_order
+        )(matrix, free, order)
     }
     fn factor_in_order(
         matrix: &SparseMatrix<T>,
@@ -232,9 +234,10 @@ pub fn is_positive_definite<T: Real>(
     symmetric: bool,
     free: &[u32],
 ) -> Result<bool, FactorError> {
-    compiled!(T: fn(&SparseMatrix<T>, bool, &[u32]) -> Result<bool, FactorError> = has_cholesky_factor)(
-        matrix, symmetric, free,
-    )
+    compiled!(
+        T: fn(&SparseMatrix<T>, bool, &[u32]) -> Result<bool, FactorError>
+            = has_cholesky_factor
+    )(matrix, symmetric, free)
 }
 
 fn has_cholesky_factor<T: Real>(

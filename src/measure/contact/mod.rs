@@ -65,16 +65,14 @@ impl<T: Real, const D: usize> Discretisation<'_, T, D> {
         inequality: &Inequality<T>,
         solution: &Solution<T>,
     ) -> Result<ContactErrors, Error> {
-        compiled!(T, D: fn(&Discretisation<'_, T, D>, &Inequality<T>, &Solution<T>) -> Result<ContactErrors, Error> = |space, inequality, solution| space.contact_errors_of(inequality, solution))(
-            self, inequality, solution,
-        )
-    }
-    fn contact_errors_of(
-        &self,
-        inequality: &Inequality<T>,
-        solution: &Solution<T>,
-    ) -> Result<ContactErrors, Error> {
-        self.space.contact_errors(inequality, solution)
+        compiled!(
+            T, D: fn(
+                &Discretisation<'_, T, D>,
+                &Inequality<T>,
+                &Solution<T>,
+            ) -> Result<ContactErrors, Error>
+                = |of, inequality, solution| of.space.contact_errors(inequality, solution)
+        )(self, inequality, solution)
     }
 }
 

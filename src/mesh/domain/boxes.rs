@@ -83,9 +83,10 @@ impl<T: Real, const D: usize> Mesh<T, D> {
     /// # Errors
     /// [`MeshError::Parameter`] for a count of zero or a box without volume, [`MeshError::TooLarge`].
     pub fn kuhn_box(domain: &BoxDomain<D>, counts: [usize; D]) -> Result<Self, MeshError> {
-        compiled!(T, D: fn(&BoxDomain<D>, [usize; D]) -> Result<Mesh<T, D>, MeshError> = Mesh::cut_box)(
-            domain, counts,
-        )
+        compiled!(
+            T, D: fn(&BoxDomain<D>, [usize; D]) -> Result<Mesh<T, D>, MeshError>
+                = Mesh::cut_box
+        )(domain, counts)
     }
     fn cut_box(domain: &BoxDomain<D>, counts: [usize; D]) -> Result<Self, MeshError> {
         let wrong = |parameter, value: String, allowed: &str| MeshError::Parameter {

@@ -17,9 +17,10 @@ impl<T: Real, const D: usize> Mesh<T, D> {
     /// [`MeshError::Parameter`] for `n = 0`, a length that is not positive and finite and a dimension
     /// other than two; [`MeshError::TooLarge`].
     pub fn l_shape(half: f64, n: usize) -> Result<Self, MeshError> {
-        compiled!(T, D: fn(f64, usize) -> Result<Mesh<T, D>, MeshError> = Mesh::cut_l_shape)(
-            half, n,
-        )
+        compiled!(
+            T, D: fn(f64, usize) -> Result<Mesh<T, D>, MeshError>
+                = Mesh::cut_l_shape
+        )(half, n)
     }
     fn cut_l_shape(half: f64, n: usize) -> Result<Self, MeshError> {
         check_shape::<D>("L-shape", half, n)?;

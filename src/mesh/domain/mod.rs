@@ -114,9 +114,10 @@ impl<const D: usize> Domain<D> {
         &self,
         mesh: &Mesh<T, D>,
     ) -> Result<(Mesh<T, D>, Refinement), MeshError> {
-        compiled!(T, D: fn(&Domain<D>, &Mesh<T, D>) -> Result<(Mesh<T, D>, Refinement), MeshError> = Domain::refine_mesh)(
-            self, mesh,
-        )
+        compiled!(
+            T, D: fn(&Domain<D>, &Mesh<T, D>) -> Result<(Mesh<T, D>, Refinement), MeshError>
+                = Domain::refine_mesh
+        )(self, mesh)
     }
     fn refine_mesh<T: Real>(
         &self,

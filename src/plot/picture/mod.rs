@@ -101,9 +101,16 @@ impl Picture {
         fields: &Fields,
         slice: Option<Slice>,
     ) -> Result<Self, Error> {
-        compiled!(T, D: fn(&str, &Problem<D>, &Mesh<T, D>, &Fields, Option<Slice>) -> Result<Picture, Error> = Picture::painted::<T, D>)(
-            title, problem, mesh, fields, slice,
-        )
+        compiled!(
+            T, D: fn(
+                &str,
+                &Problem<D>,
+                &Mesh<T, D>,
+                &Fields,
+                Option<Slice>,
+            ) -> Result<Picture, Error>
+                = Picture::painted::<T, D>
+        )(title, problem, mesh, fields, slice)
     }
     fn painted<T: Real, const D: usize>(
         title: &str,

@@ -20,9 +20,10 @@ pub fn solve_level<T: Real, const D: usize>(
     scheme: &dyn AnyScheme<T, D>,
     level: usize,
 ) -> Result<(Mesh<T, D>, Solved), Error> {
-    compiled!(T, D: fn(&Scene<D>, &dyn AnyScheme<T, D>, usize) -> Result<(Mesh<T, D>, Solved), Error> = solve_scene)(
-        scene, scheme, level,
-    )
+    compiled!(
+        T, D: fn(&Scene<D>, &dyn AnyScheme<T, D>, usize) -> Result<(Mesh<T, D>, Solved), Error>
+            = solve_scene
+    )(scene, scheme, level)
 }
 
 fn solve_scene<T: Real, const D: usize>(
