@@ -8,6 +8,7 @@
 
 mod coercivity_margin;
 pub(crate) mod count;
+mod data_quadrature;
 mod facet_coefficients;
 mod jump_products;
 pub(crate) mod load;
@@ -29,28 +30,11 @@ use crate::mesh::Mesh;
 use crate::problem::Problem;
 use crate::real::Real;
 pub use coercivity_margin::CoercivityMargin;
+pub use data_quadrature::DataQuadrature;
 use facet_coefficients::FacetCoefficients;
 use shared_rows::{CellLoops, SharedRows};
 use space::metric::Metrics;
 use space::{AnyElement, Space};
-
-/// Degrees of the quadrature rules for data, beyond what the forms need.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct DataQuadrature {
-    /// Degree of the cell rule for loads that vary.
-    pub cell: usize,
-    /// Degree of the facet rule for Dirichlet and Neumann data.
-    pub facet: usize,
-}
-
-impl Default for DataQuadrature {
-    /// Loads to degree 5, which leaves an error of higher order than linear and quadratic elements
-    /// have; boundary data to degree 15, because there are few boundary facets and the weak
-    /// Dirichlet data of an over-penalised scheme weigh much.
-    fn default() -> Self {
-        Self { cell: 5, facet: 15 }
-    }
-}
 
 /// A scheme applied to a problem on a mesh.
 ///

@@ -26,8 +26,7 @@
 //!    error goes with its solution.
 //! 2. If its active set stagnates on conforming P1 with a symmetric matrix: [`MonotoneMultigrid`].
 //! 3. The active set method with factors (`active_set/direct_driver`). If its active set
-//!    - returns to an earlier one: condensation on the unknowns of the cycle (`condensed_lcp`,
-//!      `dense_lcp`);
+//!    - returns to an earlier one: condensation on the unknowns of the cycle (`condensation`);
 //!    - stagnates, or condensation does not apply: a new start by the interior point method;
 //!    - cycles after that with a symmetric matrix: projected Newton (`projected_newton`), which is
 //!      finite.

@@ -1,7 +1,7 @@
 //! The driver of the active set method with factors: its iteration, and the methods that follow where
 //! the active set stagnates or cycles.
 
-use super::condensed_lcp::{self, Tolerances};
+use super::condensation::{self, Tolerances};
 use super::direct_iterate::DirectIterate;
 use super::projected_newton;
 use super::state_history::StateHistory;
@@ -245,7 +245,7 @@ impl<'s, 'a, T: Real> DirectDriver<'s, 'a, T> {
             multiplier: &|i| iterate.multiplier_tolerance(i, band, global_band),
         };
         let (inequality, values, states) = (iterate.inequality, &iterate.values, &iterate.states);
-        let solved = condensed_lcp::solve(inequality, values, states, members, &tolerances);
+        let solved = condensation::solve(inequality, values, states, members, &tolerances);
         let Ok(Some(new_states)) = solved else {
             return false;
         };

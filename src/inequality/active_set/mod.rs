@@ -14,13 +14,12 @@
 //! | `algebraic_bound` | the bound on the error of an inexact iterate |
 //! | `contact_state` | the states a bound admits, the value a state prescribes |
 //! | `state_history` | which active sets have occurred before |
-//! | `condensed_lcp`, `dense_lcp` | the problem condensed on the unknowns of a cycle, and its solution |
+//! | `condensation` | the problem condensed on the unknowns of a cycle, and its solution |
 //! | `projected_newton` | the descent method for symmetric matrices |
 
 mod algebraic_bound;
-mod condensed_lcp;
+mod condensation;
 mod contact_state;
-mod dense_lcp;
 mod direct_driver;
 mod direct_iterate;
 mod inactive_system;

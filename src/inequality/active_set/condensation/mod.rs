@@ -1,13 +1,15 @@
 //! Condensation of an inequality on the few unknowns of a cycle, by a Schur complement.
 
+mod dense_lcp;
+
 use std::ops::Range;
 
 use nalgebra::{DMatrix, DVector};
 
-use super::dense_lcp::DenseLcp;
 use crate::algebra::{Contact, Inequality};
 use crate::linear::direct::{FactorError, Factors};
 use crate::real::Real;
+use dense_lcp::DenseLcp;
 
 /// Number of right-hand sides solved at once: enough for the blocked kernels, few enough to need little
 /// memory beside the factors.
