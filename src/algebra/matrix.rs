@@ -1,6 +1,6 @@
 //! Square sparse matrices in compressed sparse rows.
 
-use rayon::prelude::*;
+use crate::parallel::vectors::for_each_chunk;
 
 use crate::memory::in_large_pages;
 use crate::real::Real;
@@ -52,7 +52,11 @@ impl<T: Real> SparseMatrix<T> {
     }
     /// The diagonal.
     pub fn diagonal(&self) -> Vec<T> {
-        (0..self.size()).into_par_iter().with_min_len(4096).map(|i| self.get(i, i)).collect()
+        let mut diagonal = vec![T::lit(0.0); self.size()];
+        for_each_chunk(&mut diagonal, |range, diagonal| {
+            diagonal.iter_mut().zip(range).for_each(|(d, i)| *d = self.get(i, i));
+        });
+        diagonal
     }
     /// The entry `(A x)_i`.
     #[inline]
@@ -71,20 +75,21 @@ impl<T: Real> SparseMatrix<T> {
     /// # Panics
     /// If `b` or `x` is shorter than `r`, or `r` is longer than the matrix has rows.
     pub fn residual_f64(&self, b: &[T], x: &[T], r: &mut [f64]) {
-        r.par_iter_mut()
-            .with_min_len(4096)
-            .enumerate()
-            .for_each(|(i, r)| *r = b[i].to_f64() - self.row_dot_f64(i, x));
+        for_each_chunk(r, |range, r| {
+            r.iter_mut().zip(range).for_each(|(r, i)| *r = b[i].to_f64() - self.row_dot_f64(i, x));
+        });
     }
     /// The residual `r = b - A x` in `f64` for values `x(j)` in `f64`.
     ///
     /// # Panics
     /// If `b` is shorter than `r`, or `r` is longer than the matrix has rows.
     pub fn residual_of(&self, b: &[T], x: &(dyn Fn(usize) -> f64 + Sync), r: &mut [f64]) {
-        r.par_iter_mut().with_min_len(4096).enumerate().for_each(|(i, r)| {
-            let (columns, values) = self.row(i);
-            let product = |s: f64, (&j, a): (&u32, &T)| s + a.to_f64() * x(j as usize);
-            *r = b[i].to_f64() - columns.iter().zip(values).fold(0.0, product);
+        for_each_chunk(r, |range, r| {
+            for (r, i) in r.iter_mut().zip(range) {
+                let (columns, values) = self.row(i);
+                let product = |s: f64, (&j, a): (&u32, &T)| s + a.to_f64() * x(j as usize);
+                *r = b[i].to_f64() - columns.iter().zip(values).fold(0.0, product);
+            }
         });
     }
     /// The residual `b - A x` in the scalar.
@@ -93,10 +98,9 @@ impl<T: Real> SparseMatrix<T> {
     /// If `b` is longer than the matrix has rows, or `x` shorter.
     pub fn residual(&self, b: &[T], x: &[T]) -> Vec<T> {
         let mut r = vec![T::lit(0.0); b.len()];
-        r.par_iter_mut()
-            .with_min_len(4096)
-            .enumerate()
-            .for_each(|(i, r)| *r = b[i] - self.row_dot(i, x));
+        for_each_chunk(&mut r, |range, r| {
+            r.iter_mut().zip(range).for_each(|(r, i)| *r = b[i] - self.row_dot(i, x));
+        });
         r
     }
     /// The transpose `A^T`.

@@ -1,6 +1,6 @@
 //! The matrix `K + M^T S M` of an over-penalised scheme, kept as that sum.
 
-use rayon::prelude::*;
+use crate::parallel::vectors::for_each_chunk;
 
 use super::index::NO_INDEX;
 use crate::real::Real;
@@ -51,9 +51,6 @@ impl<T> JumpTerm<T> {
     /// No unknown; its value in the difference is zero.
     pub const NO_UNKNOWN: u32 = NO_INDEX;
 }
-
-/// Least number of rows or jumps in a parallel task.
-const CHUNK: usize = 4096;
 
 impl<T: Real> PenalisedMatrix<T> {
     /// Number of jumps: rows of `M`.
@@ -122,7 +119,11 @@ impl<T: Real> PenalisedMatrix<T> {
     pub fn jump_multipliers(&self, u: impl Fn(usize) -> f64 + Sync) -> Vec<f64> {
         let multiplier =
             |k: usize| self.weights[k].to_f64() * (self.jump(k, &u) - self.jump_data[k].to_f64());
-        (0..self.n_jumps()).into_par_iter().with_min_len(CHUNK).map(multiplier).collect()
+        let mut multipliers = vec![0.0; self.n_jumps()];
+        for_each_chunk(&mut multipliers, |range, multipliers| {
+            multipliers.iter_mut().zip(range).for_each(|(m, jump)| *m = multiplier(jump));
+        });
+        multipliers
     }
 
     /// The residual `r = c - K u - M^T p` with jump multipliers `p`.
@@ -132,10 +133,11 @@ impl<T: Real> PenalisedMatrix<T> {
         jump_multipliers: impl Fn(usize) -> f64,
         r: &mut [f64],
     ) {
-        r.par_iter_mut()
-            .with_min_len(CHUNK)
-            .enumerate()
-            .for_each(|(i, r)| *r = self.load[i].to_f64() - self.stiffness(i, &u));
+        for_each_chunk(r, |range, r| {
+            for (r, i) in r.iter_mut().zip(range) {
+                *r = self.load[i].to_f64() - self.stiffness(i, &u);
+            }
+        });
         for jump in 0..self.n_jumps() {
             let multiplier = jump_multipliers(jump);
             for t in self.terms_of(jump) {

@@ -3,7 +3,8 @@
 use std::ops::Range;
 use std::sync::atomic::{AtomicU32, Ordering};
 
-use rayon::prelude::*;
+use crate::parallel::map_indices;
+use crate::parallel::vectors::for_each_chunk_of_groups;
 
 use super::simplicial::Mesh;
 use super::stars::{NeighbourNumbers, VertexToCells};
@@ -43,14 +44,15 @@ impl Edges {
         let edges = Self::from_cells::<D>(mesh.cells(), mesh.vertices().len(), Some(&ranks));
         let mut numbers: Vec<u32> = ranks.into_iter().map(AtomicU32::into_inner).collect();
         // the number of an edge is that of the first edge with its lower vertex plus its rank
-        let cells = mesh.cells().par_chunks_exact(D + 1);
-        cells.zip(numbers.par_chunks_exact_mut(pairs.len())).with_min_len(4096).for_each(
-            |(cell, numbers)| {
+        for_each_chunk_of_groups(&mut numbers, pairs.len(), |range, numbers| {
+            let first = range.start / pairs.len();
+            for (k, numbers) in numbers.chunks_exact_mut(pairs.len()).enumerate() {
+                let cell = mesh.cell(first + k);
                 for (number, &[i, _]) in numbers.iter_mut().zip(pairs) {
                     *number += edges.starts[cell[i] as usize];
                 }
-            },
-        );
+            }
+        });
         (edges, numbers)
     }
     /// The edges. In `ranks` each edge of each cell gets its rank among the edges with the same
@@ -62,8 +64,8 @@ impl Edges {
     ) -> Self {
         let incidence = VertexToCells::<D>::new(cells, n_vertices, D);
         let ranges = incidence.ranges();
-        let found = |vertices: &Range<u32>| upper_ends(&incidence, vertices.clone(), ranks);
-        let mut found: Vec<(Vec<u32>, Vec<u32>)> = ranges.par_iter().map(found).collect();
+        let found = |k: usize| upper_ends(&incidence, ranges[k].clone(), ranks);
+        let mut found: Vec<(Vec<u32>, Vec<u32>)> = map_indices(ranges.len(), &found);
         let mut starts = in_large_pages(Vec::with_capacity(n_vertices + 1));
         starts.push(0);
         let mut end = 0;

@@ -3,7 +3,7 @@
 use std::ops::Range;
 use std::sync::atomic::{AtomicU32, Ordering};
 
-use rayon::prelude::*;
+use crate::parallel::map_indices;
 
 use super::boundary::BoundaryPart;
 use super::error::MeshError;
@@ -71,8 +71,9 @@ impl Neighbours {
         let incidence = VertexToCells::<D>::new(cells, n_vertices, 2);
         let mut codes = in_large_pages(Vec::with_capacity(cells.len()));
         codes.resize_with(cells.len(), || AtomicU32::new(UNKNOWN));
-        let matched = |vertices: &Range<u32>| match_facets_of(&incidence, vertices.clone(), &codes);
-        if !incidence.ranges().par_iter().all(matched)
+        let ranges = incidence.ranges();
+        let matched = |k: usize| match_facets_of(&incidence, ranges[k].clone(), &codes);
+        if map_indices(ranges.len(), &matched).contains(&false)
             && let Some(error) = mismatch::<D>(cells)
         {
             return Err(error);

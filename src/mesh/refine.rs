@@ -1,6 +1,6 @@
 //! Uniform refinement, with the parents of vertices and cells.
 
-use rayon::prelude::*;
+use crate::parallel::vectors::{for_each_chunk, for_each_chunk_of_groups};
 
 use super::boundary::BoundaryFacet;
 use super::edges::{Edges, edge_vertices};
@@ -9,7 +9,7 @@ use super::simplicial::Mesh;
 use super::validate::check_size;
 use crate::instances::compiled;
 use crate::memory::in_large_pages;
-use crate::real::{Real, point_f64};
+use crate::real::{Point, Real, point_f64};
 
 /// The parents of the vertices of a refined mesh. The parent of fine cell `c` is coarse cell
 /// `c / 2^D`.
@@ -148,21 +148,27 @@ impl<T: Real, const D: usize> Mesh<T, D> {
         let parents = parents(&edges, self.vertices.len());
         check_size(n_fine, parents.len())?;
         let half = T::lit(0.5);
-        let middle = |&[a, b]: &[u32; 2]| {
-            let (x, y) = (self.vertices[a as usize], self.vertices[b as usize]);
-            if a == b { x } else { (x + y) * half }
-        };
-        let vertices = parents.par_iter().with_min_len(4096).map(middle).collect();
+        let mut vertices = vec![Point::zeros(); parents.len()];
+        for_each_chunk(&mut vertices, |range, vertices| {
+            for (vertex, &[a, b]) in vertices.iter_mut().zip(&parents[range]) {
+                let (x, y) = (self.vertices[a as usize], self.vertices[b as usize]);
+                *vertex = if a == b { x } else { (x + y) * half };
+            }
+        });
         let mut cells = in_large_pages(vec![0; n_fine * (D + 1)]);
-        let cut = |(c, (out, numbers)): (usize, (&mut [u32], &[u32]))| {
+        let per_cell = edge_vertices(D).len();
+        let cut = |c: usize, out: &mut [u32]| {
+            let numbers = &numbers[c * per_cell..(c + 1) * per_cell];
             let midpoints = midpoints::<D>(&edges, self.cell(c), numbers);
             for (out, child) in out.chunks_exact_mut(D + 1).zip(children(self, c)) {
                 out.iter_mut().zip(*child).for_each(|(vertex, &[i, j])| *vertex = midpoints[i][j]);
             }
         };
-        let fine = cells.par_chunks_exact_mut(n_children * (D + 1));
-        let numbers = numbers.par_chunks_exact(edge_vertices(D).len());
-        fine.zip(numbers).enumerate().with_min_len(1024).for_each(cut);
+        let group = n_children * (D + 1);
+        for_each_chunk_of_groups(&mut cells, group, |range, cells| {
+            let first = range.start / group;
+            cells.chunks_exact_mut(group).enumerate().for_each(|(k, out)| cut(first + k, out));
+        });
         Ok((Self { vertices, cells, boundary: self.refined_boundary() }, Refinement { parents }))
     }
 

@@ -2,12 +2,14 @@
 
 use std::ops::Range;
 
-use rayon::prelude::*;
+use crate::parallel::map_groups;
 
 use crate::memory::in_large_pages;
 
 /// Number of cells of a block, of which only the range of their vertices is stored.
 const BLOCK: usize = 256;
+/// Number of blocks in a parallel task.
+const BLOCKS_PER_TASK: usize = 16;
 
 /// Least number of vertices of a range.
 const LEAST: usize = 256;
@@ -33,7 +35,8 @@ pub(super) struct Stars {
 impl<'m, const D: usize> VertexToCells<'m, D> {
     /// The cells by their first `leading` vertices.
     pub fn new(cells: &'m [u32], n_vertices: usize, leading: usize) -> Self {
-        let hull = |block: &[u32]| {
+        let length = (D + 1) * BLOCK;
+        let hull_of = |block: &[u32]| {
             let mut hull = Range { start: u32::MAX, end: 0 };
             for cell in block.chunks_exact(D + 1) {
                 for &v in &cell[..leading] {
@@ -42,8 +45,12 @@ impl<'m, const D: usize> VertexToCells<'m, D> {
             }
             hull
         };
-        let blocks = cells.par_chunks((D + 1) * BLOCK).with_min_len(16);
-        Self { cells, n_vertices, leading, hulls: blocks.map(hull).collect() }
+        let n_blocks = cells.len().div_ceil(length);
+        let of_chunk = |blocks: Range<usize>| -> Vec<Range<u32>> {
+            cells.chunks(length).skip(blocks.start).take(blocks.len()).map(hull_of).collect()
+        };
+        let hulls = map_groups(n_blocks, BLOCKS_PER_TASK, &of_chunk).concat();
+        Self { cells, n_vertices, leading, hulls }
     }
     /// A partition of the vertices into ranges, one per task. Results are independent of it.
     pub fn ranges(&self) -> Vec<Range<u32>> {

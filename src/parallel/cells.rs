@@ -4,8 +4,9 @@
 //! for each scheme.
 
 use std::ops::Range;
+use std::sync::{Mutex, PoisonError};
 
-use rayon::prelude::*;
+use super::{for_each_item, lock, map_groups};
 
 /// Number of items (cells, rows or patches) in a chunk.
 pub(crate) const CHUNK: usize = 1024;
@@ -42,10 +43,21 @@ pub(crate) fn for_each<V: Send, E: Send>(
         chunks.push((items, own));
         rest = tail;
     }
-    chunks.into_par_iter().try_for_each(|(items, entries)| work(items, entries))
+    let failed = Mutex::new(None);
+    for_each_item(chunks, &|_, (items, entries)| {
+        if lock(&failed).is_none()
+            && let Err(error) = work(items, entries)
+        {
+            *lock(&failed) = Some(error);
+        }
+    });
+    match failed.into_inner().unwrap_or_else(PoisonError::into_inner) {
+        Some(error) => Err(error),
+        None => Ok(()),
+    }
 }
 
 /// The values of `work` on the items of each chunk, in the order of chunks.
 pub(crate) fn map<R: Send>(n: usize, work: &(dyn Fn(Range<usize>) -> R + Sync)) -> Vec<R> {
-    (0..n_chunks(n)).into_par_iter().map(|chunk| work(items(chunk, n))).collect()
+    map_groups(n, CHUNK, work)
 }

@@ -4,9 +4,9 @@
 //! therefore independent of the number of threads.
 
 use std::ops::Range;
+use std::sync::Mutex;
 
-use rayon::prelude::*;
-
+use super::{for_each_item, lock, map_indices};
 use crate::memory::in_large_pages;
 use crate::real::Real;
 
@@ -51,11 +51,7 @@ fn is_sequential(n: usize) -> bool {
 pub(crate) fn map_chunks<R: Send>(n: usize, work: impl Fn(Range<usize>) -> R + Sync) -> Vec<R> {
     let n_chunks = n.div_ceil(CHUNK);
     let one = |k: usize| work(chunk_range(k, n));
-    if is_sequential(n) {
-        (0..n_chunks).map(one).collect()
-    } else {
-        (0..n_chunks).into_par_iter().map(one).collect()
-    }
+    if is_sequential(n) { (0..n_chunks).map(one).collect() } else { map_indices(n_chunks, &one) }
 }
 
 /// The values of `work` on the index range and the entries of each chunk of `x`, in the order of
@@ -69,7 +65,8 @@ pub(crate) fn map_chunks_mut<A: Send, R: Send>(
     if is_sequential(n) {
         x.chunks_mut(CHUNK).enumerate().map(one).collect()
     } else {
-        x.par_chunks_mut(CHUNK).enumerate().map(one).collect()
+        let chunks: Vec<Mutex<&mut [A]>> = x.chunks_mut(CHUNK).map(Mutex::new).collect();
+        map_indices(chunks.len(), &|k| one((k, &mut *lock(&chunks[k]))))
     }
 }
 
@@ -93,8 +90,13 @@ pub(crate) fn sum_chunks_of_two<A: Send, B: Send>(
     if is_sequential(n) {
         x.chunks_mut(CHUNK).zip(y.chunks_mut(CHUNK)).enumerate().map(one).sum()
     } else {
-        let chunks = x.par_chunks_mut(CHUNK).zip(y.par_chunks_mut(CHUNK)).enumerate();
-        chunks.map(one).collect::<Vec<f64>>().iter().sum()
+        let chunks = x.chunks_mut(CHUNK).zip(y.chunks_mut(CHUNK));
+        let chunks: Vec<Mutex<(&mut [A], &mut [B])>> = chunks.map(Mutex::new).collect();
+        let sums = map_indices(chunks.len(), &|k| {
+            let (x, y) = &mut *lock(&chunks[k]);
+            one((k, (x, y)))
+        });
+        sums.iter().sum()
     }
 }
 
@@ -115,6 +117,6 @@ pub(crate) fn for_each_chunk_of_groups<A: Send>(
     if is_sequential(n) {
         x.chunks_mut(length).enumerate().for_each(one);
     } else {
-        x.par_chunks_mut(length).enumerate().for_each(one);
+        for_each_item(x.chunks_mut(length).collect(), &|k, x| one((k, x)));
     }
 }

@@ -3,7 +3,7 @@
 use std::ops::Range;
 use std::sync::atomic::Ordering;
 
-use rayon::prelude::*;
+use crate::parallel::for_each_item;
 
 use super::cells::{CellMatrices, CellMatrix, General, Gradients};
 use super::partition::{Location, Rows, partition};
@@ -38,7 +38,7 @@ pub(crate) fn fill<T: Real, const D: usize, E: ReferenceElement<T, D>>(
     let filling = Filling { dofs, row_starts, columns, positions, cells };
     let pieces = partition(dofs);
     let targets = targets(&pieces, row_starts, values);
-    pieces.par_iter().zip(targets).for_each(|(rows, targets)| filling.piece::<E>(rows, targets));
+    for_each_item(targets, &|k, targets| filling.piece::<E>(&pieces[k], targets));
 }
 
 /// Cuts the values so that each piece has those of its rows.

@@ -8,12 +8,14 @@
 
 use std::ops::Range;
 
-use rayon::prelude::*;
+use crate::parallel::map_groups;
 
 use crate::assemble::space::dofs::{Dofs, KINDS};
 
 /// Cells of one block, of which only the range of their unknowns is known.
 const BLOCK: usize = 256;
+/// Number of blocks in a parallel task.
+const BLOCKS_PER_TASK: usize = 16;
 
 /// Fewest rows worth a piece of their own.
 const LEAST_ROWS: usize = 256;
@@ -62,7 +64,7 @@ impl Blocks {
     /// The blocks of a numbering whose unknown `i` of a cell is of kind `kind(i)`.
     pub fn new(dofs: &Dofs<'_>, kind: impl Fn(usize) -> usize + Sync) -> Self {
         let n_cells = dofs.n_cells();
-        let hull = |block: usize| {
+        let hull_of = |block: usize| {
             let mut numbers = Vec::new();
             let mut hull = [const { Range { start: u32::MAX, end: 0 } }; KINDS];
             let cells = Self::cells(block, n_cells);
@@ -74,8 +76,9 @@ impl Blocks {
             }
             hull
         };
-        let hulls = (0..n_cells.div_ceil(BLOCK)).into_par_iter().with_min_len(16).map(hull);
-        Self { hulls: hulls.collect(), n_cells }
+        let of_chunk = |blocks: Range<usize>| blocks.map(hull_of).collect::<Vec<_>>();
+        let hulls = map_groups(n_cells.div_ceil(BLOCK), BLOCKS_PER_TASK, &of_chunk).concat();
+        Self { hulls, n_cells }
     }
     /// The cells of a block.
     fn cells(block: usize, n_cells: usize) -> Range<usize> {

@@ -3,7 +3,7 @@
 use std::ops::Range;
 use std::sync::atomic::{AtomicU8, Ordering};
 
-use rayon::prelude::*;
+use crate::parallel::{for_each_item, map_indices};
 
 use super::partition::{Blocks, Rows, partition};
 use crate::algebra::SparseMatrix;
@@ -46,8 +46,9 @@ pub(crate) fn pattern<T: Real, const D: usize, E: ReferenceElement<T, D>>(
     let blocks = Blocks::new(dofs, |i| kind_of(E::LAYOUT, D, i));
     let in_rows = zeros(dofs.n_cells() * E::N * E::N);
     let builder = PatternBuilder { dofs, blocks: &blocks, in_rows: &in_rows };
-    let build = |rows: &Rows| builder.rows::<T, E, D>(rows);
-    let mut made: Vec<PatternOfPiece> = partition(dofs).par_iter().map(build).collect();
+    let pieces = partition(dofs);
+    let build = |k: usize| builder.rows::<T, E, D>(&pieces[k]);
+    let mut made: Vec<PatternOfPiece> = map_indices(pieces.len(), &build);
     let row_starts = row_starts(dofs.size(), &made);
     let columns = match &mut made[..] {
         [only] => {
@@ -98,7 +99,7 @@ fn join(row_starts: &[u32], made: &[PatternOfPiece]) -> Vec<u32> {
             rest = tail;
         }
     }
-    copies.into_par_iter().for_each(|(out, from)| out.copy_from_slice(from));
+    for_each_item(copies, &|_, (out, from): (&mut [u32], &Vec<u32>)| out.copy_from_slice(from));
     columns
 }
 

@@ -3,7 +3,7 @@
 use std::borrow::Cow;
 use std::ops::Range;
 
-use rayon::prelude::*;
+use crate::parallel::vectors::for_each_chunk_of_groups;
 
 use crate::element::Layout;
 use crate::memory::in_large_pages;
@@ -153,6 +153,9 @@ fn table(owners: &[Owners<'_>; KINDS], n_cells: usize, per_cell: usize) -> Vec<u
             first += of.unknowns * of.count;
         }
     };
-    table.par_chunks_exact_mut(per_cell).enumerate().with_min_len(1024).for_each(fill);
+    for_each_chunk_of_groups(&mut table, per_cell, |range, table| {
+        let first = range.start / per_cell;
+        table.chunks_exact_mut(per_cell).enumerate().for_each(|(k, out)| fill((first + k, out)));
+    });
     table
 }

@@ -1,6 +1,7 @@
 //! The free boundary of a discrete solution and its distance from the exact one.
 
-use rayon::prelude::*;
+use crate::parallel::cells;
+use std::ops::Range;
 
 use super::bisected_simplices::in_space;
 use super::entity::ContactEntity;
@@ -110,7 +111,8 @@ const SLACK: f64 = 1e-9;
 fn one_sided<const D: usize>(from: &[Point<f64, D>], to: &[Point<f64, D>]) -> f64 {
     let nearest =
         |x: &Point<f64, D>| to.iter().map(|y| (x - y).norm_squared()).fold(f64::INFINITY, f64::min);
-    from.par_iter().map(nearest).reduce(|| 0.0, f64::max).sqrt()
+    let of_chunk = |range: Range<usize>| from[range].iter().map(nearest).fold(0.0, f64::max);
+    cells::map(from.len(), &of_chunk).into_iter().fold(0.0, f64::max).sqrt()
 }
 
 /// Barycentric coordinates of evenly spaced points on the simplex of some dimension.
