@@ -164,7 +164,7 @@ impl<'a, T: Real, const D: usize> Discretisation<'a, T, D> {
             penalised::factored(&self.space, self.form(), (metrics, weights), own_load, data)
         });
         // the loops that fill the matrix cannot fail: whoever is to blame is sought afterwards
-        if let Some(reaction) = space::data::ReactionTerm::new(&self.space)
+        if let Some(reaction) = space::reaction_term::ReactionTerm::new(&self.space)
             && !matrix.values.iter().all(|v| v.to_f64().is_finite())
         {
             reaction.check(self.mesh())?;

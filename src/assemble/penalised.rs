@@ -5,9 +5,10 @@ use std::convert::Infallible;
 use super::facet_coefficients::FacetCoefficients;
 use super::load::FacetDatum;
 use super::local::zero_local;
+use super::space::Space;
 use super::space::metric::Metrics;
+use super::space::reaction_term::ReactionTerm;
 use super::space::tables::FacetTable;
-use super::space::{Space, data};
 use crate::algebra::{JumpTerm, PenalisedMatrix};
 use crate::element::{MAX_BASIS, Node};
 use crate::facet::FacetForm;
@@ -87,7 +88,7 @@ pub(crate) fn factored<T: Real, const D: usize>(
 fn blocks<T: Real, const D: usize>(space: &Space<'_, T, D>, metrics: &Metrics<T>) -> Vec<T> {
     let n = space.per_cell();
     let stiffness = space.stiffness_table();
-    let reaction = data::ReactionTerm::new(space);
+    let reaction = ReactionTerm::new(space);
     let mut blocks = vec![T::lit(0.0); n * n * space.mesh.n_cells()];
     let fill = |cells: std::ops::Range<usize>, piece: &mut [T]| {
         for (cell, out) in cells.zip(piece.chunks_exact_mut(n * n)) {

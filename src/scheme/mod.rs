@@ -5,6 +5,7 @@ mod any_scheme;
 mod cell_means;
 mod conforming;
 mod crouzeix_raviart;
+mod definition;
 mod energy_order;
 mod facet_means;
 mod interior_penalty;
@@ -19,6 +20,7 @@ pub use any_scheme::AnyScheme;
 pub use cell_means::CellMeans;
 pub use conforming::{ConformingP1, ConformingP2};
 pub use crouzeix_raviart::NonconformingP1;
+pub use definition::Scheme;
 pub use facet_means::FacetMeans;
 pub use interior_penalty::{Iipg, InteriorPenaltyMethod, Nipg, Sipg};
 pub use ldg::{Ldg, LocalFluxes};
@@ -33,10 +35,8 @@ pub use crate::constraint::BoundedNodes;
 #[doc(no_inline)]
 pub use crate::facet::DirichletBy;
 
-use crate::element::{P2, ReferenceElement};
-use crate::facet::FacetForm;
+use crate::element::P2;
 use crate::instances::compiled;
-use crate::mesh::Mesh;
 use crate::real::Real;
 use energy_order::{broken_energy_order, energy_order, with_duality};
 
@@ -122,34 +122,4 @@ pub fn scheme_by_name<T: Real, const D: usize>(
         T, D: fn(&str, &SchemeOptions) -> Option<Box<dyn AnyScheme<T, D>>>
             = made
     )(name, options)
-}
-
-/// A discretisation of the bilinear form and of Dirichlet data.
-#[diagnostic::on_unimplemented(
-    message = "`{Self}` is not a scheme on {D}-simplices over `{T}`",
-    note = "a scheme is an element, a facet form and a way to impose Dirichlet data: implement `Scheme<{T}, {D}>`, see examples/my_scheme.rs"
-)]
-pub trait Scheme<T: Real, const D: usize>: Send + Sync {
-    /// The finite element.
-    type Element: ReferenceElement<T, D>;
-    /// The form on facets; [`NoFacets`](crate::facet::NoFacets) if there is none.
-    type Facet: FacetForm<T, D>;
-    /// How Dirichlet data are imposed.
-    const DIRICHLET: DirichletBy;
-    /// Whether the exact solution satisfies the discrete equations, so that polynomials of the
-    /// element's degree are reproduced; [`crate::kit`] holds a scheme to it either way.
-    const CONSISTENT: bool = true;
-    /// The name users type and reports state.
-    fn name(&self) -> &str;
-    /// At which nodes it imposes the inequality.
-    fn bounded_nodes(&self) -> BoundedNodes {
-        BoundedNodes::All
-    }
-    /// The facet form on a mesh, its parameters resolved.
-    fn facet(&self, mesh: &Mesh<T, D>) -> Self::Facet;
-    /// Orders that theory proves in this setting; none by default.
-    fn expected_orders(&self, setting: &Setting) -> ExpectedOrders {
-        let _ = setting;
-        ExpectedOrders::default()
-    }
 }

@@ -16,9 +16,10 @@ use std::convert::Infallible;
 use super::facet_coefficients::FacetCoefficients;
 use super::jump_products::JumpProducts;
 use super::local::{StiffnessTable, zero_local};
+use super::space::Space;
 use super::space::metric::Metrics;
+use super::space::reaction_term::ReactionTerm;
 use super::space::tables::FacetTable;
-use super::space::{Space, data};
 use crate::algebra::SparseMatrix;
 use crate::element::MAX_BASIS;
 use crate::facet::FacetForm;
@@ -205,7 +206,7 @@ pub(crate) fn fill<T: Real, const D: usize>(
             lifting.add(filling.neighbours, cell, coupled, rows);
         });
     }
-    if let Some(reaction) = data::ReactionTerm::new(space) {
+    if let Some(reaction) = ReactionTerm::new(space) {
         let n = space.per_cell();
         filling.add_to_cells(row_starts, values, &|cell, coupled, rows| {
             let mut own = zero_local();

@@ -4,8 +4,8 @@ use std::marker::PhantomData;
 
 use crate::assemble::local::zero_local;
 use crate::assemble::space::Space;
-use crate::assemble::space::data::ReactionTerm;
 use crate::assemble::space::metric::{CellMetric, shape};
+use crate::assemble::space::reaction_term::ReactionTerm;
 use crate::element::{MAX_BASIS, ReferenceElement};
 use crate::real::Real;
 

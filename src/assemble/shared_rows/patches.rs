@@ -11,8 +11,9 @@ use std::ops::Range;
 use crate::algebra::SparseMatrix;
 use crate::assemble::count;
 use crate::assemble::local::{traces, view, zero_local};
+use crate::assemble::space::Space;
+use crate::assemble::space::reaction_term::ReactionTerm;
 use crate::assemble::space::tables::FacetTable;
-use crate::assemble::space::{Space, data};
 use crate::element::MAX_BASIS;
 use crate::facet::{FacetForm, Trace};
 use crate::mesh::{BoundaryPart, Facets};
@@ -177,7 +178,7 @@ pub(crate) fn fill<T: Real, const D: usize>(
 fn local_matrices<T: Real, const D: usize>(patches: &Patches<'_, '_, T, D>) -> Vec<T> {
     let (n, space) = (patches.n, patches.space);
     let stiffness = space.stiffness_table();
-    let reaction = data::ReactionTerm::new(space);
+    let reaction = ReactionTerm::new(space);
     let mut locals = vec![T::lit(0.0); patches.start(patches.len())];
     let (cells, facets) = locals.split_at_mut(patches.start(patches.n_cells()));
     let of_cells = |range: Range<usize>, entries: &mut [T]| {

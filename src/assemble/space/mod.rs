@@ -8,6 +8,7 @@ mod bounds;
 pub(crate) mod data;
 pub(crate) mod dofs;
 pub(crate) mod metric;
+pub(crate) mod reaction_term;
 pub(crate) mod tables;
 
 use super::local::{CellSide, StiffnessTable};

@@ -10,7 +10,7 @@ use unilateral::mesh::gmsh::GmshWarning;
 /// The folder of meshes, if there is one.
 fn folder() -> Option<PathBuf> {
     // Tests run in the folder of the package.
-    let path = PathBuf::from("../shared/meshes");
+    let path = PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/../shared/meshes"));
     let found = path.is_dir();
     if !found {
         eprintln!("skipped: there is no {}", path.display());

@@ -1,0 +1,39 @@
+//! What a scheme is.
+
+use crate::constraint::BoundedNodes;
+use crate::element::ReferenceElement;
+use crate::facet::{DirichletBy, FacetForm};
+use crate::mesh::Mesh;
+use crate::real::Real;
+
+use super::theory::{ExpectedOrders, Setting};
+
+/// A discretisation of the bilinear form and of Dirichlet data.
+#[diagnostic::on_unimplemented(
+    message = "`{Self}` is not a scheme on {D}-simplices over `{T}`",
+    note = "a scheme is an element, a facet form and a way to impose Dirichlet data: implement `Scheme<{T}, {D}>`, see examples/my_scheme.rs"
+)]
+pub trait Scheme<T: Real, const D: usize>: Send + Sync {
+    /// The finite element.
+    type Element: ReferenceElement<T, D>;
+    /// The form on facets; [`NoFacets`](crate::facet::NoFacets) if there is none.
+    type Facet: FacetForm<T, D>;
+    /// How Dirichlet data are imposed.
+    const DIRICHLET: DirichletBy;
+    /// Whether the exact solution satisfies the discrete equations, so that polynomials of the
+    /// element's degree are reproduced; [`crate::kit`] holds a scheme to it either way.
+    const CONSISTENT: bool = true;
+    /// The name users type and reports state.
+    fn name(&self) -> &str;
+    /// At which nodes it imposes the inequality.
+    fn bounded_nodes(&self) -> BoundedNodes {
+        BoundedNodes::All
+    }
+    /// The facet form on a mesh, its parameters resolved.
+    fn facet(&self, mesh: &Mesh<T, D>) -> Self::Facet;
+    /// Orders that theory proves in this setting; none by default.
+    fn expected_orders(&self, setting: &Setting) -> ExpectedOrders {
+        let _ = setting;
+        ExpectedOrders::default()
+    }
+}
