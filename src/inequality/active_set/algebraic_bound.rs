@@ -67,11 +67,11 @@ impl<T: Real> InexactIterate<'_, T> {
     ///
     /// Notation: `u` are the projected values, `u*` is the solution, `e = u* - u` the error,
     /// `S = (A + A^T) / 2` the symmetric part of `A`, and `||e||_A = (e . A e)^(1/2)` the energy norm,
-    /// which equals `(e . S e)^(1/2)`. The vector `m` equals `A u - b` on fixed unknowns and on active unknowns
-    /// whose multiplier has the right sign (`m_i >= 0` at a lower bound, `m_i <= 0` at an upper
-    /// one), and zero on all others. The *unbalanced residual* `r = b + m - A u` is therefore the
-    /// stored residual `b - A u` with zeros on these fixed and active unknowns; multipliers of the
-    /// wrong sign remain in `r`.
+    /// which equals `(e . S e)^(1/2)`. The vector `m` equals `A u - b` on fixed unknowns and on active
+    /// unknowns whose multiplier has the right sign (`m_i >= 0` at a lower bound, `m_i <= 0` at an
+    /// upper one), and zero on all others. The *unbalanced residual* `r = b + m - A u` is therefore
+    /// the stored residual `b - A u` with zeros on these fixed and active unknowns; multipliers of
+    /// the wrong sign remain in `r`.
     ///
     /// 1. *Proven:* `||e||_A^2 <= e . r <= ||e||_A (r . inv(S) r)^(1/2)`, since `u` and `u*` are
     ///    admissible and `e . m >= 0`. Here `inv(S)` is the inverse on the unknowns where `e` may be

@@ -18,7 +18,8 @@ const MIN_DISSECTED: usize = 2_000;
 ///
 /// The order determines the size of the Cholesky factor. An active set method computes it once for
 /// all active sets. Times in milliseconds of one thread (two hyperthreads of a shared AMD EPYC,
-/// November 2026; `cargo test --release --test ordering -- --ignored --nocapture`), in the columns:
+/// November 2026; `cargo test --release --test inequalities ordering::times -- --ignored --nocapture`),
+/// in the columns:
 ///
 /// * *degree*, *dissection*: computation of the order by minimum degree and by nested dissection;
 /// * *new degree*: symbolic and numeric factorisation of one step with an order by minimum degree
