@@ -7,42 +7,48 @@ use crate::real::Real;
 /// Relative, dimensionless violations of the complementarity conditions of an [`Inequality`].
 ///
 /// Notation: `r = A u - b`; `d` the diagonal of `A`; `E` the energy norm `(u.A u)^(1/2)` of the
-/// solution; `v_i` the admissible value nearest to `u_i`; `U` the largest of all `|u_i|` and `|v_i|`;
-/// the gap the distance of `u_i` from the nearer bound; the step `s_i = r_i / d_i`, its sign reversed at
-/// an upper bound, the length of a Gauss-Seidel correction. An unknown counts as active if its gap is at
-/// most `|s_i|`. No contact state of a solver enters.
+/// solution; `v_i` the admissible value nearest to `u_i`; `U` the largest of all `|u_i|` and
+/// `|v_i|`; the gap the distance of `u_i` from the nearer bound; the step `s_i = r_i / d_i`, its
+/// sign reversed if the upper bound is nearer: a Gauss-Seidel correction towards this bound. An
+/// unknown counts as active if its gap is at most `|s_i|`. No contact state of a solver enters.
 ///
-/// Reasons for these scalings. *Displacements* (`feasibility`) are relative to `U`: by the comparison
-/// principle a violation of a bound by `g` changes the solution by `g` at most. Bounds far from the
-/// solution (an obstacle at minus a million) do not enter `U`, where they would hide everything else.
-/// *Residuals and multipliers* are relative to `E` in the dual norm `(sum r_i^2 / d_i)^(1/2)`:
-/// `r_i^2 / (2 d_i)` is the decrease of the energy by a correction of unknown `i` alone, so that each
-/// measure bounds a relative distance to the solution from below. The Euclidean norm of `r` over that
-/// of `b` is no measure for an over-penalised scheme: with entries of size `eta h^-2` it is dominated
-/// by the penalty rows and cannot fall below rounding times the largest entry. Sums, not maxima,
-/// because the multiplier of one unknown shrinks like the volume of its patch: on a fine mesh each
-/// wrong multiplier is tiny while all of them change the solution by its own size. A sum is never below
-/// its largest term.
+/// Reasons for these scalings. *Violations of bounds* (`feasibility`) are relative to `U`: by the
+/// comparison principle a violation of a bound by `g` changes the solution by `g` at most. Bounds
+/// far from the solution (an obstacle at minus a million) do not enter `U`, where they would hide
+/// everything else. *Residuals and multipliers* are relative to `E` in the dual norm
+/// `(sum r_i^2 / d_i)^(1/2)`: `r_i^2 / (2 d_i)` is the decrease of the energy by a correction of
+/// unknown `i` alone, so that each measure bounds a relative distance to the solution from below.
+/// The Euclidean norm of `r` divided by the Euclidean norm of `b` is no measure for an
+/// over-penalised scheme: with entries of size `eta h^-2` (`eta` the penalty, `h` the mesh size) it
+/// is dominated by the penalty rows and cannot fall below rounding times the largest entry. Sums,
+/// not maxima, because the multiplier of one unknown shrinks like the volume of its patch: on a
+/// fine mesh each wrong multiplier is tiny, while all of them together may change the solution by
+/// as much as the solution itself. A sum is never below its largest term.
 ///
 /// Where `u.A u` is not positive beyond rounding (a constant, zero), `(sum d_i u_i^2)^(1/2)` replaces
 /// `E`, then `(sum b_i^2 / d_i)^(1/2)`, then one. All sums are in `f64`. If a number is not finite or
-/// sizes do not match, all four are infinite.
+/// sizes do not match, all four violations are infinite.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "report", derive(serde::Serialize))]
 #[non_exhaustive]
 pub struct Certificate {
-    /// Largest violation of a bound or Dirichlet value, over `U`.
+    /// Largest violation of a bound or Dirichlet value, divided by `U`.
     pub feasibility: f64,
-    /// Dual norm over `E` of the multipliers of active unknowns with the wrong sign, each up to the
-    /// multiplier whose step reaches the opposite bound, where the sign would be right.
+    /// Dual norm, divided by `E`, of the multipliers of active unknowns with the wrong sign. Each
+    /// counts at most with the multiplier whose step reaches the opposite bound, where its sign
+    /// would be right.
     pub multiplier: f64,
-    /// `(sum d_i min(gap_i, s_i)^2)^(1/2)` over `E`, summed where gap and step are both positive.
+    /// `(sum d_i min(gap_i, s_i)^2)^(1/2)` divided by `E`, the sum over all `i` with positive gap
+    /// and step.
     pub complementarity: f64,
-    /// Dual norm over `E` of the residual on inactive unknowns; if larger, the largest difference, over
-    /// `U`, of a jump and the jump that its multiplier determines ([`certify_with_jump_multipliers`]).
+    /// Dual norm of the residual on inactive unknowns divided by `E`; or, if larger, the largest
+    /// difference between a jump and the jump that its multiplier determines, divided by `U`
+    /// ([`certify_with_jump_multipliers`]).
     pub residual: f64,
-    /// Relative bound on the distance to the discrete solution in the energy norm, where the solver
-    /// computes one. It rests on one estimate, of the smallest eigenvalue of the preconditioned matrix.
+    /// Bound on the relative algebraic error in the energy norm, if the solver computes one; else
+    /// `None`. It rests on an estimate of the smallest eigenvalue of the preconditioned matrix and,
+    /// for a matrix that is not symmetric, on the assumption that no strongly active unknown
+    /// becomes inactive.
     pub algebraic_bound: Option<f64>,
 }
 
@@ -57,7 +63,7 @@ impl Certificate {
         Self { feasibility, multiplier, complementarity, residual, algebraic_bound: None }
     }
 
-    /// Sets the relative bound on the algebraic error.
+    /// Sets the bound on the relative algebraic error.
     #[must_use]
     pub fn with_algebraic_bound(mut self, bound: Option<f64>) -> Self {
         self.algebraic_bound = bound;
@@ -79,7 +85,8 @@ pub fn certify<T: Real>(inequality: &Inequality<T>, u: &[T]) -> Certificate {
 
 /// The certificate of `u` together with the jump multipliers `p` of a
 /// [`PenalisedMatrix`](crate::algebra::PenalisedMatrix): the residual is `c - K u - M^T p`, without the
-/// rounding of differences of values, and the largest `|g - M u + p / s|` counts as a displacement.
+/// rounding of differences of values, and the largest `|g - M u + p / s|`, `s` the weight of a jump, is
+/// divided by `U`.
 /// Without jump multipliers, or if their number is not that of the jumps, `p = S (M u - g)`.
 #[must_use]
 pub fn certify_with_jump_multipliers<T: Real>(
@@ -101,8 +108,9 @@ fn certificate_of<T: Real>(
     certify_with_rounding(inequality, u, jump_multipliers).0
 }
 
-/// The certificate, and the dual norm over `E` of errors `d_i U` in every entry of `A u`: times the
-/// rounding unit, the level below which no solver can reduce the residual.
+/// The certificate, and the dual norm, divided by `E`, of the vector with the entries `d_i U`. This
+/// second number times machine epsilon is the size of rounding errors in `A u`, below which no
+/// solver can reduce the residual.
 pub(crate) fn certify_with_rounding<T: Real>(
     inequality: &Inequality<T>,
     u: &[T],
@@ -116,14 +124,14 @@ pub(crate) fn certify_with_rounding<T: Real>(
     let mut negative_r = vec![0.0; n];
     let mismatch = residual_and_mismatch(inequality, u, jump_multipliers, &mut negative_r);
 
-    let mut displacement = 0.0_f64;
+    let mut max_norm = 0.0_f64;
     let [mut work, mut energy, mut diagonal_energy, mut load_energy, mut stiffness] = [0.0; 5];
     let [mut multiplier, mut complementarity, mut residual] = [0.0_f64; 3];
     let mut violation = 0.0_f64;
     for i in 0..n {
         let (x, b, r) = (u[i].to_f64(), load[i].to_f64(), -negative_r[i]);
         let d = positive_diagonal(inequality, i);
-        displacement = displacement.max(x.abs()).max(bounds[i].nearest(u[i]).to_f64().abs());
+        max_norm = max_norm.max(x.abs()).max(bounds[i].nearest(u[i]).to_f64().abs());
         energy += x * (b + r);
         work += (x * (b + r)).abs();
         diagonal_energy += d * x * x;
@@ -135,28 +143,27 @@ pub(crate) fn certify_with_rounding<T: Real>(
         complementarity += d * local.complementarity.powi(2);
         residual += d * local.residual.powi(2);
     }
-    if ![displacement, work, load_energy, multiplier, residual, mismatch]
-        .iter()
-        .all(|x| x.is_finite())
+    if ![max_norm, work, load_energy, multiplier, residual, mismatch].iter().all(|x| x.is_finite())
     {
         return (Certificate::INVALID, 0.0);
     }
-    let displacement = if displacement > 0.0 { displacement } else { 1.0 };
+    let max_norm = if max_norm > 0.0 { max_norm } else { 1.0 };
     let candidates = [energy, diagonal_energy, load_energy, 1.0];
     let least = [8.0 * f64::EPSILON * work, 0.0, 0.0, 0.0];
     let energy = (0..4).find(|&k| candidates[k] > least[k]).map_or(1.0, |k| candidates[k]);
     let norm = |sum: f64| (sum / energy).sqrt();
     let certificate = Certificate {
-        feasibility: violation / displacement,
+        feasibility: violation / max_norm,
         multiplier: norm(multiplier),
         complementarity: norm(complementarity),
-        residual: norm(residual).max(mismatch / displacement),
+        residual: norm(residual).max(mismatch / max_norm),
         algebraic_bound: None,
     };
-    (certificate, displacement * norm(stiffness))
+    (certificate, max_norm * norm(stiffness))
 }
 
-/// Computes `b - A u`, with the jump multipliers if given; returns the largest `|g - M u + p / s|`.
+/// Sets `residual` to `b - A u`, or to `c - K u - M^T p` if the jump multipliers `p` are given;
+/// returns the largest `|g - M u + p / s|`, zero without jump multipliers.
 fn residual_and_mismatch<T: Real>(
     inequality: &Inequality<T>,
     u: &[T],
@@ -179,8 +186,8 @@ fn residual_and_mismatch<T: Real>(
     }
 }
 
-/// The diagonal entry as a positive scale: if it is not positive, the largest absolute entry of its row,
-/// or one.
+/// The diagonal entry of row `i` as a positive scale: if it is not positive, the largest absolute
+/// entry of the row, or one if the row is zero.
 pub(crate) fn positive_diagonal<T: Real>(inequality: &Inequality<T>, i: usize) -> f64 {
     let d = inequality.matrix.get(i, i).to_f64();
     if d > 0.0 {
@@ -191,7 +198,7 @@ pub(crate) fn positive_diagonal<T: Real>(inequality: &Inequality<T>, i: usize) -
     if largest > 0.0 { largest } else { 1.0 }
 }
 
-/// The violations of one unknown, as displacements.
+/// The violations of one unknown, each as a change of its value.
 #[derive(Default)]
 struct LocalViolation {
     feasibility: f64,

@@ -1,4 +1,4 @@
-//! The data beside an inequality from which an iterative solver starts.
+//! The data, in addition to an inequality, from which an iterative solver starts.
 
 use crate::linear::CoarseSpaces;
 
@@ -7,12 +7,13 @@ use crate::linear::CoarseSpaces;
 #[derive(Clone, Debug)]
 #[non_exhaustive]
 pub struct InitialGuess<T> {
-    /// The conforming P1 functions on the mesh and on coarser ones.
+    /// The conforming P1 functions on the mesh and on coarser meshes.
     pub coarse_spaces: CoarseSpaces<T>,
-    /// The starting value of every unknown.
+    /// The starting value of every unknown; `None`, or a list of another length, for zeros.
     pub values: Option<Vec<T>>,
-    /// Tolerance on the energy norm of the error over that of the solution; `None` for the limit of the
-    /// certificate. Direct solvers ignore it.
+    /// Tolerance on the relative error in the energy norm (energy norm of the error divided by the
+    /// energy norm of the iterate); `None` for the limit of the certificate. Direct solvers ignore
+    /// it.
     pub energy_tolerance: Option<f64>,
 }
 
@@ -24,7 +25,7 @@ impl<T> Default for InitialGuess<T> {
 
 /// Setters, one for each field.
 impl<T> InitialGuess<T> {
-    /// Sets the conforming P1 functions on the mesh and on coarser ones.
+    /// Sets the conforming P1 functions on the mesh and on coarser meshes.
     #[must_use]
     pub fn coarse_spaces(mut self, coarse_spaces: CoarseSpaces<T>) -> Self {
         self.coarse_spaces = coarse_spaces;
@@ -36,7 +37,7 @@ impl<T> InitialGuess<T> {
         self.values = Some(values);
         self
     }
-    /// Sets the tolerance on the relative energy norm of the error.
+    /// Sets the tolerance on the relative error in the energy norm.
     #[must_use]
     pub fn energy_tolerance(mut self, tolerance: f64) -> Self {
         self.energy_tolerance = Some(tolerance);

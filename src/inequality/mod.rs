@@ -5,34 +5,38 @@
 //! [`Outcome`] says whether it converged. The [`Certificate`] measures any `u` without knowledge of the
 //! solver.
 //!
-//! Words: a *fixed* unknown has a Dirichlet value (or two bounds that coincide); an *active* one has the
-//! value of a bound; an *inactive* one is solved for; a *free* one is not fixed. The *residual* is `b - A u`, the *multiplier* of a
-//! bound `A u - b` on active unknowns, negated at an upper bound. *Jump multipliers* are the unknowns
-//! `p = S (M u - g)` of a [`PenalisedMatrix`](crate::algebra::PenalisedMatrix).
+//! Words: a *fixed* unknown has a Dirichlet value (or two bounds that coincide); an *active* one
+//! has the value of a bound; an *inactive* one is solved for; a *free* one is not fixed. The
+//! *residual* is `b - A u`; the *multiplier* of an active unknown is the entry of `A u - b`,
+//! negated at an upper bound, and has the right sign if it is not negative. *Jump multipliers* are
+//! the unknowns `p = S (M u - g)` of a [`PenalisedMatrix`](crate::algebra::PenalisedMatrix).
 //!
 //! | file | content |
 //! |---|---|
 //! | `validation` | checks of the input, and of definiteness where a setting requires it |
-//! | `active_set` | [`ActiveSet`]: the primal-dual active set method |
-//! | `interior_point` | the interior point method that provides a start where the active set stagnates |
+//! | `active_set/` | [`ActiveSet`]: the primal-dual active set method, with condensation on the unknowns of a cycle (`active_set/condensation/`) and projected Newton |
+//! | `interior_point/` | the interior point method, which provides a start where the active set stagnates |
 //! | `monotone_multigrid` | [`MonotoneMultigrid`]: truncated nonsmooth Newton multigrid |
 //! | `certificate` | [`Certificate`], [`certify`] |
-//! | `initial_guess`, `solution`, `outcome` | input and results of a solver |
+//! | `initial_guess` | [`InitialGuess`]: coarse spaces, starting values and tolerance of a solve |
+//! | `solution`, `outcome` | [`Solution`], [`Outcome`]: the result of a solver |
 //!
-//! [`ActiveSet`] runs in stages, each only if the one before has not converged:
+//! [`ActiveSet`] runs in stages, each only if the preceding one has not converged:
 //!
-//! 1. Small systems, and those without nested meshes, start with 3. Large ones start with the active set
-//!    method with preconditioned Krylov methods (`active_set/inexact_driver`); a bound on its algebraic
-//!    error goes with its solution.
+//! 1. The active set method with preconditioned Krylov methods (`active_set/inexact_driver`), which
+//!    adds a bound on the algebraic error to its solution. Small systems, and systems without known
+//!    coarse spaces, start with stage 3.
 //! 2. If its active set stagnates on conforming P1 with a symmetric matrix: [`MonotoneMultigrid`].
 //! 3. The active set method with factors (`active_set/direct_driver`). If its active set
-//!    - returns to an earlier one: condensation on the unknowns of the cycle (`condensation`);
-//!    - stagnates, or condensation does not apply: a new start by the interior point method;
-//!    - cycles after that with a symmetric matrix: projected Newton (`projected_newton`), which is
-//!      finite.
+//!    - returns to an earlier one: condensation on the unknowns of the cycle
+//!      (`active_set/condensation`);
+//!    - stagnates, or condensation does not apply: a new start by the interior point method
+//!      (`interior_point`);
+//!    - cycles after the new start, with a symmetric matrix: projected Newton
+//!      (`active_set/projected_newton`), which is finite.
 //!
-//! The certificate decides between [`Outcome::Converged`] and [`Outcome::Stalled`] after stages 2 and 3;
-//! stage 1 ends by the norm of the residual in the preconditioner.
+//! The certificate decides between [`Outcome::Converged`] and [`Outcome::Stalled`] after stages 2
+//! and 3; stage 1 ends by the preconditioned norm of the residual.
 
 mod active_set;
 mod certificate;

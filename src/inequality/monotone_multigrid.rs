@@ -19,13 +19,13 @@ use crate::real::Real;
 ///
 /// One cycle consists of sweeps of projected Gauss-Seidel, a V-cycle for a correction of the inactive
 /// unknowns, and an exact line search along the correction projected onto the bounds. The energy never
-/// rises, and the method converges from any start because the sweeps do (Glowinski 1984). Coarse
-/// functions are truncated at the active unknowns. Neither step depends on strict complementarity, and
-/// from a close start the number of cycles hardly depends on the mesh.
+/// rises, and the method converges from any start because the sweeps alone do (Glowinski 1984). Coarse
+/// functions are truncated at the active unknowns. Neither sweeps nor corrections depend on
+/// strict complementarity, and from a close start the number of cycles hardly depends on the mesh.
 ///
-/// The coarse spaces are those of [`InitialGuess`], or follow from the matrix by aggregation, which
-/// suits conforming P1. For other matrices the method converges slowly. Matrices that are not symmetric
-/// are solved by [`ActiveSet`].
+/// The coarse spaces are those of the [`InitialGuess`] for nested meshes, or follow from the matrix
+/// by aggregation, which suits conforming P1. For other matrices the method converges slowly.
+/// Matrices that are not symmetric are solved by [`ActiveSet`].
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct MonotoneMultigrid {
@@ -33,8 +33,8 @@ pub struct MonotoneMultigrid {
     pub max_cycles: usize,
     /// Sweeps of projected Gauss-Seidel before each linear correction.
     pub sweeps: usize,
-    /// Tolerance on the energy norm of the changes of a cycle over that of the iterate; at least four
-    /// units of rounding count.
+    /// Tolerance on the energy norm of the changes of a cycle divided by the energy norm of the
+    /// iterate; four times machine epsilon if that is larger.
     pub tolerance: f64,
 }
 
@@ -107,6 +107,7 @@ struct MultigridIterate<'a, T> {
     values: Vec<T>,
     /// `b - A u`; zero on eliminated unknowns.
     residual: Vec<T>,
+    /// The linear correction of the values.
     correction: Vec<T>,
     /// Whether an unknown is fixed or active and takes no part in the linear correction.
     eliminated: Vec<bool>,
@@ -132,8 +133,11 @@ impl<'a, T: Real> MultigridIterate<'a, T> {
         }
     }
 
-    /// Cycles until the changes are within the tolerance and the certificate within its limit. The error
-    /// is the outcome without a solution.
+    /// Cycles until the changes are within the tolerance and the certificate is within its limit; the
+    /// certificate is not required if the guess sets a tolerance.
+    ///
+    /// # Errors
+    /// The outcome if the method does not converge.
     fn run(
         &mut self,
         settings: &MonotoneMultigrid,
@@ -163,7 +167,7 @@ impl<'a, T: Real> MultigridIterate<'a, T> {
                 by_sweeps += self.gauss_seidel_sweep()?;
             }
             let by_correction = self.correct(&mut multigrid)?;
-            let energy = self.energy();
+            let energy = self.squared_energy_norm();
             if !(energy.is_finite() && by_sweeps.is_finite()) {
                 return Err(Outcome::NotFinite);
             }
@@ -176,8 +180,11 @@ impl<'a, T: Real> MultigridIterate<'a, T> {
         Err(Outcome::IterationLimit)
     }
 
-    /// One sweep of projected Gauss-Seidel. Returns the sum of `d_i (change of u_i)^2`, an estimate of the
-    /// square of the energy norm of the change.
+    /// One sweep of projected Gauss-Seidel. Returns the sum of `d_i (change of u_i)^2`, an estimate
+    /// of the square of the energy norm of the change.
+    ///
+    /// # Errors
+    /// [`Outcome::NotCoercive`] for a diagonal entry that is not positive.
     fn gauss_seidel_sweep(&mut self) -> Result<f64, Outcome> {
         let Inequality { matrix, load, bounds, .. } = self.inequality;
         let mut sum = 0.0;
@@ -198,14 +205,18 @@ impl<'a, T: Real> MultigridIterate<'a, T> {
         Ok(sum)
     }
 
-    /// One linear correction of the inactive unknowns with exact line search. Returns the square of the
-    /// energy norm of the change.
+    /// One linear correction of the inactive unknowns with exact line search. Returns the square of
+    /// the energy norm of the change; zero if nothing changes, because the coarsest matrix is
+    /// singular or the projected correction is no direction of descent.
+    ///
+    /// # Errors
+    /// The outcome if the matrix is not positive definite or has no factors for another reason.
     fn correct(&mut self, multigrid: &mut Multigrid<'_, T>) -> Result<f64, Outcome> {
         let Inequality { matrix, bounds, .. } = self.inequality;
         self.eliminate_active();
         match multigrid.set_fixed(&self.eliminated) {
             Ok(()) => {}
-            // only the bounds prevent a rigid motion: the sweeps alone converge
+            // only the bounds prevent a rigid motion; the sweeps converge without the correction
             Err(FactorError::Singular) if bounds.iter().any(|bound| bound.is_inequality()) => {
                 return Ok(0.0);
             }
@@ -239,7 +250,8 @@ impl<'a, T: Real> MultigridIterate<'a, T> {
         Ok(curvature * length.to_f64().powi(2))
     }
 
-    /// Marks fixed and active unknowns as eliminated and computes the residual of all others.
+    /// Marks fixed and active unknowns as eliminated and computes the residual: zero on these,
+    /// `b - A u` on all others.
     fn eliminate_active(&mut self) {
         let Inequality { matrix, load, bounds, .. } = self.inequality;
         for (i, bound) in bounds.iter().enumerate() {
@@ -252,7 +264,8 @@ impl<'a, T: Real> MultigridIterate<'a, T> {
         }
     }
 
-    /// The ratio test: the longest multiple of the correction that the bounds admit, at least one.
+    /// The ratio test: the largest multiple of the projected correction that the bounds admit, at
+    /// least one; infinite if no bound limits it.
     fn ratio_test(&self) -> f64 {
         let mut longest = f64::INFINITY;
         for (i, bound) in self.inequality.bounds.iter().enumerate() {
@@ -266,8 +279,9 @@ impl<'a, T: Real> MultigridIterate<'a, T> {
         longest.max(1.0)
     }
 
-    /// The square of the energy norm; that of the load, `sum b_i^2 / d_i`, where the values are zero.
-    fn energy(&self) -> f64 {
+    /// The square of the energy norm of the values; if it is zero, `sum b_i^2 / d_i` of the load;
+    /// if this is zero too, one.
+    fn squared_energy_norm(&self) -> f64 {
         let Inequality { matrix, load, .. } = self.inequality;
         let values = self.values.iter().enumerate();
         let energy: f64 =

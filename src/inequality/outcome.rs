@@ -2,8 +2,8 @@
 
 use crate::linear::direct::FactorError;
 
-/// The outcome of a solve. Only [`Outcome::Converged`] is a success; every other outcome comes with the
-/// best iterate.
+/// The outcome of a solve. Only [`Outcome::Converged`] is a success; for the values that come with
+/// any other outcome see [`Solution::values`](super::Solution::values).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum Outcome {
@@ -13,7 +13,7 @@ pub enum Outcome {
     IterationLimit,
     /// The active set returned to an earlier one, and no method resolved the cycle.
     Cycling,
-    /// Rounding prevents the complementarity conditions from holding to their tolerance.
+    /// Rounding prevents the complementarity conditions from holding to the tolerance.
     Stalled,
     /// The matrix is not positive definite on the inactive unknowns (penalty too small).
     NotCoercive,
@@ -21,11 +21,11 @@ pub enum Outcome {
     Singular,
     /// A number is not finite.
     NotFinite,
-    /// The lower bound of an unknown exceeds its upper one.
+    /// The lower bound of an unknown exceeds its upper bound.
     Infeasible,
     /// Sizes of matrix, load and bounds do not match, or the matrix violates an invariant of its type.
     Malformed,
-    /// The factors exceed the memory.
+    /// The factors do not fit into memory.
     OutOfMemory,
 }
 

@@ -7,28 +7,40 @@ use crate::algebra::Contact;
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Solution<T> {
-    /// The unknowns: the solution if converged, else the best iterate.
+    /// The unknowns: the solution if converged. Else, from the active set method with factors, the
+    /// iterate with the smallest distance from its projected Jacobi step, measured in the norm of
+    /// the diagonal of `A`; from the other methods the last iterate.
     pub values: Vec<T>,
-    /// The active bound of each unknown.
+    /// Which bound, if any, is active at each unknown.
     pub contact: Vec<Contact>,
     /// How the solve ended.
     pub outcome: Outcome,
-    /// Number of outer iterations: linear systems with a new active set, or cycles.
+    /// Number of outer iterations:
+    ///
+    /// * active set method with factors: linear systems with a new active set, condensed problems, and
+    ///   steps of the interior point method and of projected Newton;
+    /// * active set method with a Krylov method: active sets for which linear systems were solved;
+    /// * monotone multigrid: cycles;
+    /// * several methods one after the other: the sum.
     pub outer: usize,
-    /// Number of iterations of the linear solver, zero for a direct one.
+    /// Number of iterations of the linear solver: of the Krylov method, or cycles of monotone
+    /// multigrid; zero for a direct solver.
     pub linear: usize,
     /// The linear solver: `direct`, or the name of a preconditioner.
     pub linear_solver: &'static str,
-    /// Bound on the energy norm of the error over that of the solution, where the solver computes one.
+    /// Bound on the relative algebraic error in the energy norm, if the solver computes one: on the
+    /// energy norm of the difference between `values` and the exact solution of the inequality,
+    /// divided by the energy norm of the iterate.
     pub algebraic_bound: Option<f64>,
-    /// The jump multipliers `p = S (M u - g)` where the matrix is a
-    /// [`PenalisedMatrix`](crate::algebra::PenalisedMatrix) and the solver determines them more exactly
-    /// than the values do; else empty.
+    /// The jump multipliers `p = S (M u - g)` of a
+    /// [`PenalisedMatrix`](crate::algebra::PenalisedMatrix), which defines `S`, `M` and `g`, if the
+    /// solver determines them more accurately than they follow from `values`; else empty.
     pub jump_multipliers: Vec<T>,
 }
 
 impl<T> Solution<T> {
-    /// A result without iterations, by a direct linear solver.
+    /// A result with zero iterations, the linear solver `direct`, no algebraic bound and no jump
+    /// multipliers, to be completed by the setters.
     #[must_use]
     pub fn new(values: Vec<T>, contact: Vec<Contact>, outcome: Outcome) -> Self {
         Self {
@@ -54,7 +66,7 @@ impl<T> Solution<T> {
         self.linear_solver = name;
         self
     }
-    /// Sets the relative bound on the energy norm of the error.
+    /// Sets the bound on the relative algebraic error in the energy norm.
     #[must_use]
     pub fn algebraic_bound(mut self, bound: Option<f64>) -> Self {
         self.algebraic_bound = bound;

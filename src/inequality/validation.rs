@@ -6,7 +6,11 @@ use crate::linear::direct::StaticCondensation;
 use crate::linear::direct::is_positive_definite;
 use crate::real::Real;
 
-/// Checks sizes, numbers and bounds; the error is the outcome of a solve.
+/// Checks that sizes match, that all numbers are finite, and that no lower bound exceeds its upper one.
+///
+/// # Errors
+/// The outcome that a solver returns: [`Outcome::Malformed`], [`Outcome::NotFinite`] or
+/// [`Outcome::Infeasible`].
 pub(crate) fn check_input<T: Real>(inequality: &Inequality<T>) -> Result<(), Outcome> {
     if !inequality.is_well_formed() {
         Err(Outcome::Malformed)
@@ -19,8 +23,12 @@ pub(crate) fn check_input<T: Real>(inequality: &Inequality<T>) -> Result<(), Out
     }
 }
 
-/// Checks by factors that the matrix, or its symmetric part, is positive definite on all unknowns that
-/// are not fixed.
+/// Checks by a Cholesky factorisation that the matrix, or its symmetric part if it is not symmetric, is
+/// positive definite on all unknowns that are not fixed. A penalised matrix is factored by static
+/// condensation.
+///
+/// # Errors
+/// The outcome that a solver returns: [`Outcome::NotCoercive`], or the reason why there are no factors.
 pub(crate) fn check_definite<T: Real>(inequality: &Inequality<T>) -> Result<(), Outcome> {
     if let Some(penalised) = &inequality.penalised {
         let is_free: Vec<bool> =

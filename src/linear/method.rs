@@ -11,8 +11,8 @@ pub enum LinearMethod {
     /// [`Outcome::NotCoercive`](crate::inequality::Outcome::NotCoercive) if that part is not positive
     /// definite.
     Iterative,
-    /// [`LinearMethod::Iterative`] above a measured number of unknowns if coarse spaces are known,
-    /// else [`LinearMethod::Direct`].
+    /// [`LinearMethod::Iterative`] for at least 10 000 unknowns if coarse spaces are known, else
+    /// [`LinearMethod::Direct`].
     #[default]
     BySize,
 }

@@ -1,9 +1,14 @@
 //! Linear systems: sparse factors, Krylov methods, preconditioners.
 //!
 //! A system is solved on the *free* unknowns; all other unknowns are *fixed*, by Dirichlet data or
-//! because their bound is active. `direct`: Cholesky and LU factors, orders of elimination, static
-//! condensation. `krylov`: conjugate gradients and GMRES. `precondition`: multigrid, auxiliary spaces,
-//! mean-jump splitting. `method`: the choice between direct and iterative solvers.
+//! because their bound is active.
+//!
+//! | file | content |
+//! |---|---|
+//! | `method` | [`LinearMethod`]: the choice between direct and iterative solvers |
+//! | `direct/` | Cholesky and LU factors, orders of elimination, static condensation |
+//! | `krylov/` | conjugate gradients and GMRES |
+//! | `precondition/` | multigrid, auxiliary spaces, mean-jump splitting |
 
 pub(crate) mod direct;
 pub(crate) mod krylov;

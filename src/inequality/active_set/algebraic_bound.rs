@@ -9,11 +9,11 @@ use crate::linear::precondition::Preconditioner;
 use crate::parallel::vectors::{dot, pseudorandom_signs, zeros};
 use crate::real::Real;
 
-/// Assumed lower bound on the smallest eigenvalue over the smallest Ritz value. The Ritz value is above
-/// the eigenvalue and close to it after a few iterations.
-const EIGENVALUE_OVER_RITZ_VALUE: f64 = 0.9;
+/// Assumed lower bound of the ratio of the smallest eigenvalue to the smallest Ritz value. The Ritz
+/// value is above the eigenvalue and close to it after a few iterations.
+const EIGENVALUE_TO_RITZ_VALUE: f64 = 0.9;
 
-/// Factor between an estimate of the error and the threshold of strong activity.
+/// The threshold of strong activity divided by the estimate of the error.
 const THRESHOLD_FACTOR: f64 = 4.0;
 
 /// Number of thresholds tried before no unknown counts as strongly active.
@@ -24,10 +24,17 @@ const EIGENVALUE_RUN_TOL: f64 = 1e-6;
 
 impl<T: Real> InexactIterate<'_, T> {
     /// Estimates the smallest eigenvalue of the preconditioned symmetric part of a matrix that is not
-    /// symmetric, by the Ritz values of conjugate gradients; those of minimal residuals are no estimate.
-    /// `None` if the preconditioner is unsuitable, another outcome than converged if the symmetric part
-    /// is not positive definite.
-    pub(crate) fn estimate_lowest_eigenvalue(
+    /// symmetric, by the Ritz values of conjugate gradients for that part on the inactive unknowns;
+    /// stores the smallest Ritz value in `smallest_ritz_value` if it is smaller than the stored one.
+    ///
+    /// The Ritz values of GMRES, which solves the systems with the matrix itself, do not estimate this
+    /// eigenvalue: its Krylov space belongs to the whole matrix, so that they lie above the eigenvalue
+    /// but need not come close to it.
+    ///
+    /// Returns [`Outcome::Converged`] for a usable estimate; `None` if the preconditioner is unsuitable
+    /// or the iterations do not suffice; another outcome if the symmetric part is not positive definite
+    /// or a number is not finite.
+    pub(crate) fn estimate_smallest_eigenvalue(
         &mut self,
         symmetric_part: &SparseMatrix<T>,
         preconditioner: &mut AnyPreconditioner<'_, T>,
@@ -51,22 +58,38 @@ impl<T: Real> InexactIterate<'_, T> {
         self.outcome_of(&run)
     }
 
-    /// Projects the values onto their bounds and returns a bound on the energy norm of their error over
-    /// that of the solution.
+    /// Projects the values onto their bounds and returns a bound on the energy norm of their error
+    /// divided by the energy norm of the iterate, which stands for the energy norm of the solution.
+    /// `None` if the preconditioner cannot be set up for an enlarged set of unknowns.
     ///
-    /// For admissible `u` and multipliers `m` of the right sign that vanish where `u` is inactive, the
-    /// energy error `e` satisfies `e . A e <= e . r <= (e . A e)^(1/2) (r . inv(S) r)^(1/2)` with
-    /// `r = b + m - A u` and the symmetric part `S` of `A`. Multipliers of the wrong sign belong to `r`.
+    /// Overwrites the residual, `eliminated` and the fixed unknowns of the preconditioner: no linear
+    /// system can be solved afterwards without setting them again.
     ///
-    /// `inv(S)` is the inverse on the unknowns where `e` may be nonzero. Call an active unknown strongly
-    /// active if its multiplier exceeds a threshold times the root of its diagonal entry, and consider
-    /// the problem in which all strongly active unknowns keep their values. If the error bound of that
-    /// problem is at most the threshold, none of their multipliers changes its sign between `u` and its
-    /// solution, which is therefore the solution of the inequality. Otherwise the threshold is raised,
-    /// and in the end no unknown counts as strongly active.
+    /// Notation: `u` are the projected values, `u*` is the solution, `e = u* - u` the error,
+    /// `S = (A + A^T) / 2` the symmetric part of `A`, and `||e||_A = (e . A e)^(1/2)` the energy norm,
+    /// which equals `(e . S e)^(1/2)`. The vector `m` equals `A u - b` on fixed unknowns and on active
+    /// unknowns whose multiplier has the right sign (`m_i >= 0` at a lower bound, `m_i <= 0` at an
+    /// upper one), and zero on all others. The *unbalanced residual* `r = b + m - A u` is therefore
+    /// the stored residual `b - A u` with zeros on these fixed and active unknowns; multipliers of
+    /// the wrong sign remain in `r`.
     ///
-    /// `inv(S)` is at most the preconditioner over the smallest eigenvalue of the preconditioned `S`.
-    /// The eigenvalue is replaced by nine tenths of the smallest Ritz value: the only estimate.
+    /// 1. *Proven:* `||e||_A^2 <= e . r <= ||e||_A (r . inv(S) r)^(1/2)`, since `u` and `u*` are
+    ///    admissible and `e . m >= 0`. Here `inv(S)` is the inverse on the unknowns where `e` may be
+    ///    nonzero.
+    /// 2. Fewer such unknowns give a smaller bound. Call an active unknown strongly active if its
+    ///    multiplier exceeds a threshold times `sqrt(d_i)`, `d_i` its diagonal entry, and consider
+    ///    the problem in which all strongly active unknowns keep their values. If the bound on the
+    ///    error `e` of that problem is at most the threshold, none of their multipliers changes its
+    ///    sign between `u` and its solution, which is therefore the solution of the inequality.
+    ///    *Proven for a symmetric `A`*, where `|(A e)_i| <= sqrt(d_i) ||e||_A`; *assumed for any
+    ///    other*, where the skew-symmetric part of `A` may change a multiplier by more. Otherwise
+    ///    the threshold is raised, and in the end no unknown counts as strongly active: then
+    ///    nothing is assumed here.
+    /// 3. *Proven:* `inv(S) <= B / lambda_min(B S)` for the preconditioner `B` on the same unknowns.
+    ///    *Estimated:* `lambda_min(B S)` by [`EIGENVALUE_TO_RITZ_VALUE`] times the smallest Ritz value.
+    ///    The Ritz values come from systems on the inactive unknowns, while the bound uses all unknowns
+    ///    that are neither fixed nor strongly active, a larger set with a smaller eigenvalue at most:
+    ///    that the factor covers this difference too is assumed.
     pub(crate) fn error_bound(
         &mut self,
         preconditioner: &mut AnyPreconditioner<'_, T>,
@@ -81,26 +104,28 @@ impl<T: Real> InexactIterate<'_, T> {
         if is_changed {
             self.recompute_residual();
         }
-        let root = (EIGENVALUE_OVER_RITZ_VALUE * self.lowest_ritz_value).sqrt();
-        let mut threshold = THRESHOLD_FACTOR * self.residual_norm / root;
+        let sqrt_eigenvalue = (EIGENVALUE_TO_RITZ_VALUE * self.smallest_ritz_value).sqrt();
+        let mut threshold = THRESHOLD_FACTOR * self.residual_norm / sqrt_eigenvalue;
         for _ in 0..MAX_THRESHOLDS {
-            let error = self.unexplained_norm(threshold, preconditioner)? / root;
+            let error = self.unbalanced_norm(threshold, preconditioner)? / sqrt_eigenvalue;
             if error <= threshold {
-                return Some(error / self.energy);
+                return Some(error / self.energy_norm);
             }
             threshold = THRESHOLD_FACTOR * error;
         }
-        Some(self.unexplained_norm(f64::INFINITY, preconditioner)? / root / self.energy)
+        let norm = self.unbalanced_norm(f64::INFINITY, preconditioner)?;
+        Some(norm / sqrt_eigenvalue / self.energy_norm)
     }
 
-    /// The preconditioned norm of the part of the residual that no multiplier of the right sign balances,
-    /// with all strongly active unknowns eliminated.
-    fn unexplained_norm(
+    /// The preconditioned norm `(r . B r)^(1/2)` of the unbalanced residual `r`, with all fixed and
+    /// strongly active unknowns eliminated; see [`InexactIterate::error_bound`]. Sets `eliminated` and
+    /// the fixed unknowns of the preconditioner; `None` if it rejects them.
+    fn unbalanced_norm(
         &mut self,
         threshold: f64,
         preconditioner: &mut AnyPreconditioner<'_, T>,
     ) -> Option<f64> {
-        let mut unexplained = self.residual.clone();
+        let mut unbalanced = self.residual.clone();
         let mut is_changed = false;
         for (i, bound) in self.inequality.bounds.iter().enumerate() {
             let multiplier = match self.states[i] {
@@ -110,7 +135,7 @@ impl<T: Real> InexactIterate<'_, T> {
             };
             let is_fixed = bound.fixed_value().is_some();
             if is_fixed || multiplier >= 0.0 {
-                unexplained[i] = T::lit(0.0);
+                unbalanced[i] = T::lit(0.0);
             }
             let is_strongly_active = multiplier > threshold * self.diagonal[i].to_f64().sqrt();
             let is_eliminated = is_fixed || is_strongly_active;
@@ -121,7 +146,7 @@ impl<T: Real> InexactIterate<'_, T> {
             preconditioner.set_fixed(&self.eliminated).ok()?;
         }
         let mut z = zeros(self.values.len());
-        preconditioner.apply(&unexplained, &mut z);
-        Some(dot(&unexplained, &mut z).max(0.0).sqrt())
+        preconditioner.apply(&unbalanced, &mut z);
+        Some(dot(&unbalanced, &mut z).max(0.0).sqrt())
     }
 }

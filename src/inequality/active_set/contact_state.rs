@@ -3,8 +3,8 @@
 use crate::algebra::{Bound, Contact, Start};
 use crate::real::Real;
 
-/// The contact state nearest to a given one that a bound admits: inactive if the bound named does not
-/// exist, lower if two bounds coincide.
+/// The given contact state if the bound admits it; inactive if the lower or upper bound that the state
+/// names does not exist; always lower if two bounds coincide.
 pub(crate) fn admissible_state<T: Real>(bound: &Bound<T>, contact: Contact) -> Contact {
     match contact {
         _ if bound.is_inequality() && bound.fixed_value().is_some() => Contact::Lower,
@@ -23,7 +23,7 @@ pub(crate) fn prescribed_value<T: Real>(bound: &Bound<T>, state: Contact) -> Opt
     })
 }
 
-/// The admissible contact states of a start; inactive where it has none.
+/// The admissible contact states of a start; inactive where the start names no state.
 pub(crate) fn starting_states<T: Real>(bounds: &[Bound<T>], start: &Start) -> Vec<Contact> {
     let guess = match start {
         Start::Cold => &[],

@@ -11,15 +11,16 @@ use crate::inequality::{Outcome, interior_point};
 use crate::linear::direct::FactorError;
 use crate::real::Real;
 
-/// Factor by which each condensation widens the rounding band.
-const BAND_GROWTH: f64 = 4.0;
+/// Factor by which each condensation enlarges the rounding multiple.
+const MULTIPLE_GROWTH: f64 = 4.0;
 
-/// Largest factor by which the rounding band is widened in all. A thousand units of rounding leave a
-/// certificate below 1e-9 in `f64` and about 1e-4 in `f32`.
-const MAX_BAND_GROWTH: f64 = 64.0;
+/// Largest factor by which the rounding multiple is enlarged in all. A thousand times machine epsilon
+/// leaves a certificate below 1e-9 in `f64` and about 1e-4 in `f32`.
+const MAX_MULTIPLE_GROWTH: f64 = 64.0;
 
-/// Largest certificate, in units of the rounding band, that rounding explains.
-const CERTIFICATE_UNITS: f64 = 8.0;
+/// The largest certificate that is attributed to rounding, divided by the rounding multiple times
+/// machine epsilon.
+const CERTIFICATE_FACTOR: f64 = 8.0;
 
 /// A run of the active set method with factors.
 pub(crate) struct DirectDriver<'s, 'a, T> {
@@ -28,19 +29,22 @@ pub(crate) struct DirectDriver<'s, 'a, T> {
     history: StateHistory,
     /// Whether an unknown changes state within the present cycle.
     cycle: Vec<bool>,
-    /// Units of rounding within which no unknown changes its state; grows with condensations.
-    band: f64,
+    /// The multiple of machine epsilon within which no unknown changes its state; grows with
+    /// condensations.
+    rounding_multiple: f64,
+    /// The number of condensed problems since the last warm start.
     condensations: usize,
     /// The number of linear systems at the last cycle, condensation or warm start.
     last_intervention: usize,
-    /// The number of linear systems when the number of state changes last halved, and that number.
+    /// The number of linear systems when the number of state changes last halved.
     last_halving: usize,
+    /// The number of state changes when it last halved.
     fewest_changes: usize,
     /// See `stagnation_steps` of [`ActiveSet`].
     stagnation_steps: usize,
     /// Whether the interior point method may still provide a start because of stagnation.
     may_warm_start: bool,
-    /// State changes after the linear system before, unless a warm start came in between.
+    /// The number of state changes after the preceding linear system; `None` after a warm start.
     previous_changes: Option<usize>,
 }
 
@@ -53,7 +57,7 @@ impl<'s, 'a, T: Real> DirectDriver<'s, 'a, T> {
             iterate,
             history: StateHistory::new(n),
             cycle: vec![false; n],
-            band: settings.rounding_band,
+            rounding_multiple: settings.rounding_band,
             condensations: 0,
             last_intervention: 0,
             last_halving: 0,
@@ -64,8 +68,8 @@ impl<'s, 'a, T: Real> DirectDriver<'s, 'a, T> {
         }
     }
 
-    /// The run for contact states that stagnated in another method: the first system that does not
-    /// halve the number of state changes leads to the interior point method.
+    /// Prepares the run for contact states that stagnated in another method: the first system that
+    /// does not halve the number of state changes leads to the interior point method.
     pub fn after_stagnation(mut self) -> Self {
         self.stagnation_steps = 0;
         self
@@ -86,7 +90,10 @@ impl<'s, 'a, T: Real> DirectDriver<'s, 'a, T> {
         result.unwrap_or_else(|outcome| self.outcome_of_best(outcome))
     }
 
-    /// The active set iteration. The error is the outcome if it does not end in a solution.
+    /// The active set iteration.
+    ///
+    /// # Errors
+    /// The outcome if it does not end in a solution.
     fn run_active_set(&mut self) -> Result<Outcome, Outcome> {
         self.reset_history();
         loop {
@@ -99,8 +106,12 @@ impl<'s, 'a, T: Real> DirectDriver<'s, 'a, T> {
             if !self.iterate.update_best() {
                 return Err(Outcome::NotFinite);
             }
-            let global_band = self.band - self.settings.rounding_band;
-            if !self.iterate.update_active_set(self.band, global_band, &mut self.history) {
+            let global_multiple = self.rounding_multiple - self.settings.rounding_band;
+            if !self.iterate.update_active_set(
+                self.rounding_multiple,
+                global_multiple,
+                &mut self.history,
+            ) {
                 return self.confirm();
             }
             if self.was_identified_too_early() && self.has_steps_for_interior_point() {
@@ -125,8 +136,9 @@ impl<'s, 'a, T: Real> DirectDriver<'s, 'a, T> {
         }
     }
 
-    /// Whether the second system or a later one after a warm start does not halve the number of state
-    /// changes, while the interior point method can continue.
+    /// Whether the interior point method can continue, and the present system, at least the second
+    /// after a warm start, did not halve the number of state changes of the preceding one. Stores
+    /// the present number.
     fn was_identified_too_early(&mut self) -> bool {
         let changes = self.history.pending_changes();
         let before = self.previous_changes.replace(changes);
@@ -158,14 +170,17 @@ impl<'s, 'a, T: Real> DirectDriver<'s, 'a, T> {
         self.iterate.outer - last >= self.settings.improvement_steps
     }
 
-    /// Clears the history but for the present active set.
+    /// Replaces the history by one that contains the present active set only.
     fn reset_history(&mut self) {
         self.history = StateHistory::new(self.iterate.states.len());
         self.history.record(&self.iterate.states, &mut self.cycle);
     }
 
-    /// Solves for the present active set. False if the first matrix of the run is singular; every bound
-    /// is then made active.
+    /// Solves the linear system of the present active set. `Ok(false)` if the first matrix of the
+    /// run is singular and every bound has been made active instead.
+    ///
+    /// # Errors
+    /// The outcome if the matrix has no factors otherwise.
     fn solve_linear(&mut self) -> Result<bool, Outcome> {
         match self.iterate.solve_linear(self.settings.refinements) {
             Ok(()) => Ok(true),
@@ -183,9 +198,12 @@ impl<'s, 'a, T: Real> DirectDriver<'s, 'a, T> {
         }
     }
 
-    /// Leaves a cycle by condensation, else by the interior point method, else by projected Newton; an
-    /// outcome if that ends the run. `has_returned` tells an active set that occurred before from a lack
-    /// of improvement.
+    /// Leaves a cycle by condensation, else by the interior point method, else by projected Newton.
+    /// `has_returned`: the active set has occurred before; else the best iterate has not improved.
+    /// Returns the outcome of projected Newton; `None` if the active set iteration continues.
+    ///
+    /// # Errors
+    /// The outcome if the run ends without a solution.
     fn resolve_cycle(&mut self, has_returned: bool) -> Result<Option<Outcome>, Outcome> {
         let members: Vec<u32> =
             (0..self.cycle.len()).filter(|&i| self.cycle[i]).map(|i| i as u32).collect();
@@ -195,8 +213,8 @@ impl<'s, 'a, T: Real> DirectDriver<'s, 'a, T> {
             self.condensations += 1;
             if self.condense(&members) {
                 self.history.restart(&self.iterate.states);
-                let widest = MAX_BAND_GROWTH * self.settings.rounding_band;
-                self.band = (BAND_GROWTH * self.band).min(widest);
+                let largest = MAX_MULTIPLE_GROWTH * self.settings.rounding_band;
+                self.rounding_multiple = (MULTIPLE_GROWTH * self.rounding_multiple).min(largest);
                 return Ok(None);
             }
         }
@@ -210,12 +228,14 @@ impl<'s, 'a, T: Real> DirectDriver<'s, 'a, T> {
         } else if has_returned {
             return Err(Outcome::Cycling);
         }
-        // without a repeated active set the iteration may still converge, or cycle with fewer unknowns
+        // no active set has been repeated: the iteration may still converge, or cycle with fewer
+        // unknowns
         self.cycle.fill(false);
         Ok(None)
     }
 
-    /// Continues with the active set that the interior point method finds.
+    /// Continues with the active set that the interior point method finds, with the present one if
+    /// it finds none.
     fn warm_start(&mut self) {
         self.may_warm_start = false;
         self.previous_changes = None;
@@ -227,22 +247,27 @@ impl<'s, 'a, T: Real> DirectDriver<'s, 'a, T> {
     }
 
     /// Projected Newton from the present iterate.
+    ///
+    /// # Errors
+    /// The outcome if it does not end in a solution.
     fn run_projected_newton(&mut self) -> Result<Outcome, Outcome> {
         projected_newton::minimise(self.iterate, self.settings)?;
-        self.band = self.settings.rounding_band;
+        self.rounding_multiple = self.settings.rounding_band;
         self.confirm()
     }
 
-    /// Sets the contact states of `members` to those that solve the problem condensed on them; false if
-    /// none is found.
+    /// Sets the contact states of `members` to the states that solve the problem condensed on these
+    /// unknowns; false, with states unchanged, if no solution is found or there are no factors.
+    /// Counts as a linear system.
     fn condense(&mut self, members: &[u32]) -> bool {
-        let (band, global_band) = (self.band, self.band - self.settings.rounding_band);
+        let multiple = self.rounding_multiple;
+        let global_multiple = multiple - self.settings.rounding_band;
         let iterate = &mut *self.iterate;
         iterate.outer += 1;
         iterate.set_prescribed_values();
         let tolerances = Tolerances {
-            bound: iterate.bound_tolerance(band),
-            multiplier: &|i| iterate.multiplier_tolerance(i, band, global_band),
+            bound: iterate.bound_tolerance(multiple),
+            multiplier: &|i| iterate.multiplier_tolerance(i, multiple, global_multiple),
         };
         let (inequality, values, states) = (iterate.inequality, &iterate.values, &iterate.states);
         let solved = condensation::solve(inequality, values, states, members, &tolerances);
@@ -255,8 +280,10 @@ impl<'s, 'a, T: Real> DirectDriver<'s, 'a, T> {
         true
     }
 
-    /// The outcome of an iteration that ends without a final active set: the best iterate may satisfy the
-    /// complementarity conditions, or as well as rounding allows.
+    /// The outcome of an iteration that ends with `outcome`, without a final active set. If the
+    /// best iterate satisfies the complementarity conditions as well as rounding allows, it is
+    /// [`Outcome::Converged`] (and the best iterate replaces the present one) or, above the limit
+    /// of the certificate, [`Outcome::Stalled`]; else `outcome`.
     fn outcome_of_best(&mut self, outcome: Outcome) -> Outcome {
         if !matches!(outcome, Outcome::IterationLimit | Outcome::Cycling | Outcome::Stalled) {
             return outcome;
@@ -266,7 +293,7 @@ impl<'s, 'a, T: Real> DirectDriver<'s, 'a, T> {
         let (certificate, amplification) =
             certify_with_rounding(inequality, best, jump_multipliers);
         let rounding =
-            CERTIFICATE_UNITS * self.settings.rounding_band * T::EPSILON * amplification.max(1.0);
+            CERTIFICATE_FACTOR * self.settings.rounding_band * T::EPSILON * amplification.max(1.0);
         if certificate.largest() > rounding {
             outcome
         } else if certificate.largest() <= T::CERTIFICATE_LIMIT {
@@ -277,14 +304,17 @@ impl<'s, 'a, T: Real> DirectDriver<'s, 'a, T> {
         }
     }
 
-    /// The outcome of an active set that predicts itself: converged if the certificate, which does not
-    /// depend on contact states, is within rounding.
+    /// The outcome of an iterate that predicts its own active set: [`Outcome::Converged`] if the
+    /// certificate, which does not depend on contact states, is within rounding.
+    ///
+    /// # Errors
+    /// [`Outcome::Stalled`] otherwise.
     fn confirm(&self) -> Result<Outcome, Outcome> {
         let DirectIterate { inequality, values, jump_multipliers, .. } = &*self.iterate;
         let (certificate, amplification) =
             certify_with_rounding(inequality, values, jump_multipliers);
-        let rounding = CERTIFICATE_UNITS * self.band * T::EPSILON;
-        // large penalties amplify rounding; the limit holds all the same
+        let rounding = CERTIFICATE_FACTOR * self.rounding_multiple * T::EPSILON;
+        // large penalties amplify rounding; the limit of the certificate is respected nevertheless
         let largest = (rounding * amplification.max(1.0)).min(T::CERTIFICATE_LIMIT);
         if certificate.feasibility <= rounding && certificate.largest() <= largest {
             Ok(Outcome::Converged)

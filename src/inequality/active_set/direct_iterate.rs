@@ -20,19 +20,23 @@ pub(crate) struct DirectIterate<'a, T> {
     pub outer: usize,
     /// `b - A u`.
     residual: Vec<f64>,
-    /// The largest `|u_i|` or `|v_i|`, `v_i` the admissible value nearest to `u_i`.
-    displacement: f64,
+    /// The largest of all `|u_i|` and `|v_i|`, `v_i` the admissible value nearest to `u_i`; one if
+    /// all are zero.
+    max_norm: f64,
     best: BestIterate<T>,
-    /// The jump multipliers where the matrix is penalised; else empty.
+    /// The jump multipliers if the matrix is a
+    /// [`PenalisedMatrix`](crate::algebra::PenalisedMatrix); else empty.
     pub jump_multipliers: Vec<T>,
     system: InactiveSystem<'a, T>,
-    /// The data from which the interior point method can continue.
+    /// The data from which the interior point method can continue; `None` before its first run, or
+    /// if no further step is possible.
     restart: Option<Restart>,
 }
 
 /// The iterate with the smallest merit; see [`DirectIterate::update_best`].
 struct BestIterate<T> {
     merit: f64,
+    /// Number of linear systems before this iterate.
     outer: usize,
     values: Vec<T>,
     states: Vec<Contact>,
@@ -51,7 +55,7 @@ impl<'a, T: Real> DirectIterate<'a, T> {
             inequality,
             outer: 0,
             residual: vec![0.0; inequality.size()],
-            displacement: 1.0,
+            max_norm: 1.0,
             best: BestIterate {
                 merit: f64::INFINITY,
                 outer: 0,
@@ -90,7 +94,12 @@ impl<'a, T: Real> DirectIterate<'a, T> {
         }
     }
 
-    /// Solves the linear system of the present active set; see [`InactiveSystem::solve`].
+    /// Sets the prescribed values and solves the linear system of the present active set, which
+    /// changes values, jump multipliers and residual; see [`InactiveSystem::solve`]. Counts the
+    /// system even if it has no factors.
+    ///
+    /// # Errors
+    /// See [`FactorError`].
     pub fn solve_linear(&mut self, refinements: usize) -> Result<(), FactorError> {
         self.outer += 1;
         self.set_prescribed_values();
@@ -99,26 +108,27 @@ impl<'a, T: Real> DirectIterate<'a, T> {
         self.system.solve(&self.states, unknowns, refinements)
     }
 
-    /// Computes the largest displacement and the merit, and keeps the iterate if its merit is the
-    /// smallest so far; false if the merit is not finite.
+    /// Computes `max_norm` and the merit, and keeps the iterate as the best one if its merit is the
+    /// smallest so far. False, without a change, if the merit is not finite.
     ///
-    /// The merit is the square of the projected Jacobi step `u - P(u + r / d)`, `r = b - A u`, in the
-    /// energy norm of the diagonal `d`. It is zero at the solution only. Unlike a relative measure it
-    /// does not favour iterates that are far too large.
+    /// The merit is the square of the projected Jacobi step `u - P(u + r / d)`, `r = b - A u`, in
+    /// the norm `(sum d_i v_i^2)^(1/2)` of the diagonal `d` of `A`. It is zero at the solution
+    /// only. It is not divided by the size of the iterate, which would favour iterates that are far
+    /// too large.
     pub fn update_best(&mut self) -> bool {
-        let mut displacement = 0.0_f64;
+        let mut max_norm = 0.0_f64;
         let mut merit = 0.0;
         for (i, bound) in self.inequality.bounds.iter().enumerate() {
             let (x, value) = (self.values[i], self.values[i].to_f64());
             let d = positive_diagonal(self.inequality, i);
             let target = bound.nearest(T::lit(value + self.residual[i] / d)).to_f64();
-            displacement = displacement.max(value.abs()).max(bound.nearest(x).to_f64().abs());
+            max_norm = max_norm.max(value.abs()).max(bound.nearest(x).to_f64().abs());
             merit += d * (value - target).powi(2);
         }
         if !merit.is_finite() {
             return false;
         }
-        self.displacement = if displacement > 0.0 { displacement } else { 1.0 };
+        self.max_norm = if max_norm > 0.0 { max_norm } else { 1.0 };
         if merit < self.best.merit {
             self.best.merit = merit;
             self.best.outer = self.outer;
@@ -129,23 +139,25 @@ impl<'a, T: Real> DirectIterate<'a, T> {
         true
     }
 
-    /// The number of linear systems at the best iterate.
+    /// The number of linear systems before the best iterate.
     pub fn best_outer(&self) -> usize {
         self.best.outer
     }
 
     /// Sets the active set that the iterate predicts: inactive unknowns that violate a bound become
-    /// active, active unknowns whose multiplier has the wrong sign become inactive, both beyond
-    /// rounding. Returns whether any state changed.
+    /// active, active unknowns whose multiplier has the wrong sign become inactive, both only
+    /// beyond the tolerances [`DirectIterate::bound_tolerance`] and
+    /// [`DirectIterate::multiplier_tolerance`]. Notes the changes in the history; returns whether
+    /// any state changed.
     pub fn update_active_set(
         &mut self,
-        band: f64,
-        global_band: f64,
+        rounding_multiple: f64,
+        global_multiple: f64,
         history: &mut StateHistory,
     ) -> bool {
         // all states are predicted before any is set: a multiplier's tolerance depends on neighbours
         let changes: Vec<(u32, Contact)> = (0..self.states.len())
-            .filter_map(|i| Some((i as u32, self.predict(i, band, global_band)?)))
+            .filter_map(|i| Some((i as u32, self.predict(i, rounding_multiple, global_multiple)?)))
             .collect();
         for &(i, contact) in &changes {
             self.set_state(i as usize, contact, history);
@@ -154,13 +166,13 @@ impl<'a, T: Real> DirectIterate<'a, T> {
     }
 
     /// The new contact state of unknown `i`; `None` if it keeps its own.
-    fn predict(&self, i: usize, band: f64, global_band: f64) -> Option<Contact> {
+    fn predict(&self, i: usize, rounding_multiple: f64, global_multiple: f64) -> Option<Contact> {
         let bound = &self.inequality.bounds[i];
         if bound.fixed_value().is_some() {
             return None;
         }
         let x = self.values[i].to_f64();
-        let tolerance = self.bound_tolerance(band);
+        let tolerance = self.bound_tolerance(rounding_multiple);
         let wrong_multiplier = match self.states[i] {
             Contact::Inactive if bound.lower().is_some_and(|l| l.to_f64() - x > tolerance) => {
                 return Some(Contact::Lower);
@@ -173,7 +185,7 @@ impl<'a, T: Real> DirectIterate<'a, T> {
             Contact::Upper => -self.residual[i],
         };
         let is_wrong = wrong_multiplier > 0.0
-            && wrong_multiplier > self.multiplier_tolerance(i, band, global_band);
+            && wrong_multiplier > self.multiplier_tolerance(i, rounding_multiple, global_multiple);
         is_wrong.then_some(Contact::Inactive)
     }
 
@@ -186,7 +198,8 @@ impl<'a, T: Real> DirectIterate<'a, T> {
     }
 
     /// Replaces the iterate by the result of the interior point method, which starts from the best
-    /// iterate or continues from its own last point. Nothing changes if it finds no active set.
+    /// iterate, or continues from its own last point if there is one. If it finds no active set,
+    /// only the number of linear systems changes, and the method cannot continue later.
     pub fn warm_start_by_interior_point(&mut self) {
         let BestIterate { values, jump_multipliers, .. } = &self.best;
         let condensation = self.system.condensation();
@@ -218,9 +231,9 @@ impl<'a, T: Real> DirectIterate<'a, T> {
         }
     }
 
-    /// Whether no bound is violated beyond rounding.
-    pub fn is_admissible(&self, band: f64) -> bool {
-        let tolerance = self.bound_tolerance(band);
+    /// Whether no bound is violated by more than [`DirectIterate::bound_tolerance`].
+    pub fn is_admissible(&self, rounding_multiple: f64) -> bool {
+        let tolerance = self.bound_tolerance(rounding_multiple);
         let violation =
             |(&x, bound): (&T, &Bound<T>)| (x.to_f64() - bound.nearest(x).to_f64()).abs();
         let mut violations = self.values.iter().zip(&self.inequality.bounds).map(violation);
@@ -232,14 +245,15 @@ impl<'a, T: Real> DirectIterate<'a, T> {
         (&self.best.values, &self.best.jump_multipliers)
     }
 
-    /// Replaces the iterate by the best one.
+    /// Replaces values, states and jump multipliers by those of the best iterate; the residual stays.
     pub fn restore_best(&mut self) {
         self.values.copy_from_slice(&self.best.values);
         self.states.copy_from_slice(&self.best.states);
         self.jump_multipliers.copy_from_slice(&self.best.jump_multipliers);
     }
 
-    /// Makes every bounded unknown active, at the lower of two bounds; false if nothing changed.
+    /// Makes every unknown with a bound active, at its lower bound if it has two; false if nothing
+    /// changed.
     pub fn activate_all(&mut self, history: &mut StateHistory) -> bool {
         let mut is_changed = false;
         for (i, bound) in self.inequality.bounds.iter().enumerate() {
@@ -254,24 +268,32 @@ impl<'a, T: Real> DirectIterate<'a, T> {
         is_changed
     }
 
-    /// The violation of a bound up to which rounding explains it.
-    pub fn bound_tolerance(&self, band: f64) -> f64 {
-        band * T::EPSILON * self.displacement
+    /// Tolerance for the violation of a bound: `rounding_multiple` times machine epsilon times
+    /// `max_norm`.
+    pub fn bound_tolerance(&self, rounding_multiple: f64) -> f64 {
+        rounding_multiple * T::EPSILON * self.max_norm
     }
 
-    /// The size of a multiplier of wrong sign up to which rounding explains it: `band` units of the
-    /// absolute terms of its residual, in the scalar's epsilon for inactive neighbours and in that of
-    /// `f64` for all others, and `global_band` units of `d_i` times the largest displacement.
-    pub fn multiplier_tolerance(&self, i: usize, band: f64, global_band: f64) -> f64 {
+    /// Tolerance for a multiplier of the wrong sign, the sum of two parts: `rounding_multiple`
+    /// times the sum of the absolute values of the terms of its residual, each times machine
+    /// epsilon (of the scalar `T` for terms of inactive unknowns, of `f64` for all others); and
+    /// `global_multiple` times the machine epsilon of `T` times `d_i` times `max_norm`.
+    pub fn multiplier_tolerance(
+        &self,
+        i: usize,
+        rounding_multiple: f64,
+        global_multiple: f64,
+    ) -> f64 {
         let Inequality { matrix, load, bounds, .. } = self.inequality;
-        let global = positive_diagonal(self.inequality, i) * self.displacement;
-        let of_scale = global_band * T::EPSILON * global;
+        let global = positive_diagonal(self.inequality, i) * self.max_norm;
+        let global_part = global_multiple * T::EPSILON * global;
         if let Some(condensation) = self.system.condensation() {
             let value = |j: usize| self.values[j].to_f64();
             let is_prescribed = |j: usize| prescribed_value(&bounds[j], self.states[j]).is_some();
             let (inactive, prescribed) =
                 condensation.residual_term_sizes(i, &value, &self.jump_multipliers, &is_prescribed);
-            return band * (T::EPSILON * inactive + f64::EPSILON * prescribed) + of_scale;
+            return rounding_multiple * (T::EPSILON * inactive + f64::EPSILON * prescribed)
+                + global_part;
         }
         let (columns, entries) = matrix.row(i);
         let mut inactive = 0.0;
@@ -284,6 +306,6 @@ impl<'a, T: Real> DirectIterate<'a, T> {
                 None => inactive += term,
             }
         }
-        band * (T::EPSILON * inactive + f64::EPSILON * prescribed) + of_scale
+        rounding_multiple * (T::EPSILON * inactive + f64::EPSILON * prescribed) + global_part
     }
 }

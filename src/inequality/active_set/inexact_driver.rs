@@ -15,7 +15,7 @@ use crate::linear::krylov::{KrylovMethod, symmetric_part};
 use crate::linear::precondition::AnyPreconditioner;
 use crate::real::Real;
 
-/// The cost of a step with factors in inexact steps.
+/// The number of inexact steps that cost as much as one step with factors.
 const DIRECT_STEP_COST: usize = 4;
 
 /// A run of the inexact active set method.
@@ -23,19 +23,23 @@ pub(crate) struct InexactDriver<'a, T> {
     settings: &'a ActiveSet,
     guess: &'a InitialGuess<T>,
     iterate: InexactIterate<'a, T>,
+    /// Whether the number of state changes did not halve for too long, so that the run ended.
     has_stagnated: bool,
 }
 
-/// The iterations of a run without result, after which another method follows.
+/// What remains of a run without result, after which another method follows.
 #[derive(Default)]
 pub(crate) struct Failure {
+    /// Number of linear systems with a new active set.
     pub outer: usize,
+    /// Number of iterations of the linear solver.
     pub linear: usize,
-    /// The last contact states if the active set stagnated; `None` if linear systems were the reason.
+    /// The last contact states if the active set stagnated; `None` if the run ended for another reason.
     pub last_active_set: Option<Vec<Contact>>,
 }
 
-/// How a run ends: an outcome, or `None` if the method does not apply and another one follows.
+/// Why the iteration ends early: an outcome of the run, or `None` if the method does not apply and
+/// another one follows.
 type StopReason = Option<Outcome>;
 
 impl<'a, T: Real> InexactDriver<'a, T> {
@@ -50,6 +54,9 @@ impl<'a, T: Real> InexactDriver<'a, T> {
     }
 
     /// Chooses the preconditioner, finds the active set, and bounds the error of the solution.
+    ///
+    /// # Errors
+    /// [`Failure`] if no preconditioner fits, or the iteration ends without an outcome.
     pub fn run(mut self) -> Result<Solution<T>, Failure> {
         let inequality = self.iterate.inequality;
         let is_symmetric = inequality.symmetric;
@@ -66,11 +73,11 @@ impl<'a, T: Real> InexactDriver<'a, T> {
         let found = self.find_active_set(&mut preconditioner);
         let mut end = found.map_or_else(|end| end, |()| Some(Outcome::Converged));
         if end == Some(Outcome::Converged) && !is_symmetric {
-            end = self.iterate.estimate_lowest_eigenvalue(&matrix, &mut preconditioner);
+            end = self.iterate.estimate_smallest_eigenvalue(&matrix, &mut preconditioner);
         }
         if end == Some(Outcome::NotCoercive) && !is_symmetric {
-            // Rounding may be the reason. The direct method would not detect an indefinite symmetric
-            // part of this matrix.
+            // Rounding may be the reason, so that a Cholesky factorisation decides. LU factors of this
+            // matrix would not detect an indefinite symmetric part.
             end = check_definite(inequality).err();
         }
         match end {
@@ -79,19 +86,22 @@ impl<'a, T: Real> InexactDriver<'a, T> {
         }
     }
 
-    /// The active set iteration. `Ok` if it converged, else how it ends.
+    /// The active set iteration. `Ok` if it converged.
+    ///
+    /// # Errors
+    /// The reason why it ended without convergence.
     fn find_active_set(
         &mut self,
         preconditioner: &mut AnyPreconditioner<'_, T>,
     ) -> Result<(), StopReason> {
         let Self { settings, guess, .. } = *self;
         let tolerance = guess.energy_tolerance.unwrap_or(0.0).max(0.1 * T::CERTIFICATE_LIMIT);
-        // a residual is no measure of the energy error: a start for another solve need not have a
-        // small one
+        // The residual is no measure of the error in the energy norm. A solve with a given tolerance on
+        // that error only provides a start for another solve, which needs no small residual.
         let residual_limit =
             if guess.energy_tolerance.is_some() { f64::INFINITY } else { T::CERTIFICATE_LIMIT };
         let mut krylov = KrylovMethod::new(self.iterate.inequality);
-        self.iterate.energy = self.iterate.evaluate_kkt(settings.rounding_band).energy;
+        self.iterate.energy_norm = self.iterate.evaluate_kkt(settings.rounding_band).energy_norm;
         let is_linear = !self.iterate.inequality.bounds.iter().any(Bound::is_inequality);
         let mut progress = ProgressMonitor::new(is_linear);
         loop {
@@ -99,7 +109,7 @@ impl<'a, T: Real> InexactDriver<'a, T> {
                 self.begin_step(preconditioner)?;
             }
             let stop = StoppingRule {
-                norm: tolerance * self.iterate.energy,
+                norm: tolerance * self.iterate.energy_norm,
                 reduction: if progress.is_accurate() {
                     0.0
                 } else {
@@ -108,12 +118,12 @@ impl<'a, T: Real> InexactDriver<'a, T> {
                 max_iterations: MAX_ITERATIONS,
             };
             let evaluation = self.solve_and_evaluate(&mut krylov, preconditioner, stop)?;
-            let energy = evaluation.energy;
+            let energy_norm = evaluation.energy_norm;
             let is_accurate =
-                self.iterate.residual_norm <= stop.norm.min(1.01 * tolerance * energy);
+                self.iterate.residual_norm <= stop.norm.min(1.01 * tolerance * energy_norm);
             let changes = &evaluation.state_changes;
             if is_accurate && (changes.is_empty() || evaluation.holds_to(tolerance)) {
-                if evaluation.inactive_residual <= residual_limit * energy {
+                if evaluation.inactive_residual <= residual_limit * energy_norm {
                     return Ok(());
                 }
                 self.repeat_after_rounding(&mut progress)?;
@@ -128,6 +138,9 @@ impl<'a, T: Real> InexactDriver<'a, T> {
     }
 
     /// Counts a step and restricts the preconditioner to the inactive unknowns.
+    ///
+    /// # Errors
+    /// The limit of steps is reached, or the preconditioner has no factors.
     fn begin_step(
         &mut self,
         preconditioner: &mut AnyPreconditioner<'_, T>,
@@ -145,7 +158,11 @@ impl<'a, T: Real> InexactDriver<'a, T> {
         })
     }
 
-    /// Solves the linear system of a step and evaluates the KKT conditions.
+    /// Solves the linear system of a step, evaluates the KKT conditions, and stores energy norm and
+    /// residual norm in the iterate.
+    ///
+    /// # Errors
+    /// The linear solver did not converge, or a number is not finite.
     fn solve_and_evaluate(
         &mut self,
         krylov: &mut KrylovMethod<'_, T>,
@@ -158,17 +175,20 @@ impl<'a, T: Real> InexactDriver<'a, T> {
             end => return Err(end),
         }
         let evaluation = self.iterate.evaluate_kkt(self.settings.rounding_band);
-        if !(evaluation.energy.is_finite() && evaluation.displacement.is_finite()) {
+        if !(evaluation.energy_norm.is_finite() && evaluation.max_norm.is_finite()) {
             return Err(Some(Outcome::NotFinite));
         }
-        self.iterate.energy = evaluation.energy;
+        self.iterate.energy_norm = evaluation.energy_norm;
         self.iterate.residual_norm = run.norm;
         Ok(evaluation)
     }
 
     /// Permits another solution where rounding has made the recursive residual of the Krylov method
-    /// smaller than the true one. If that happens too often the run ends; the direct method follows for
-    /// penalised matrices, since jump multipliers as unknowns reduce rounding.
+    /// smaller than the true one.
+    ///
+    /// # Errors
+    /// Too many solutions were repeated: for penalised matrices `None`, since the direct method that
+    /// follows has less rounding with jump multipliers as unknowns; else [`Outcome::Stalled`].
     fn repeat_after_rounding(&self, progress: &mut ProgressMonitor) -> Result<(), StopReason> {
         if progress.may_repeat() {
             return Ok(());
@@ -177,8 +197,9 @@ impl<'a, T: Real> InexactDriver<'a, T> {
         Err(if is_penalised { None } else { Some(Outcome::Stalled) })
     }
 
-    /// Ends the run if the number of state changes does not halve. From a cold start it need not: the
-    /// active set then grows layer by layer, in many steps that are cheap.
+    /// Ends the run (`Err(None)`) if the number of state changes has not halved for too long. From
+    /// a cold start it need not halve: the active set then grows layer by layer, in many steps that
+    /// are cheap.
     fn check_stagnation(
         &mut self,
         progress: &mut ProgressMonitor,
@@ -195,15 +216,16 @@ impl<'a, T: Real> InexactDriver<'a, T> {
     }
 
     /// The number of inexact steps within which the number of state changes must halve:
-    /// `stagnation_steps` of [`ActiveSet`], times [`DIRECT_STEP_COST`] unless the fallback is cheap, namely
-    /// multigrid or static condensation, which halves the unknowns.
+    /// `stagnation_steps` of [`ActiveSet`], times [`DIRECT_STEP_COST`] unless the method that
+    /// follows is cheap: multigrid, or static condensation, which halves the number of unknowns.
     fn stagnation_steps(&self) -> usize {
         let is_nested = matches!(self.guess.coarse_spaces, CoarseSpaces::CoarseLevel(_));
         let is_cheap = is_nested || self.iterate.inequality.penalised.is_some();
         self.settings.stagnation_steps * if is_cheap { 1 } else { DIRECT_STEP_COST }
     }
 
-    /// The solution, with a bound on its error in the energy norm if it converged.
+    /// The solution, with a bound on its error in the energy norm if it converged; the values are then
+    /// projected onto their bounds.
     fn into_solution(
         mut self,
         outcome: Outcome,

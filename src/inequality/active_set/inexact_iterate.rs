@@ -11,33 +11,39 @@ use crate::linear::precondition::Preconditioner;
 use crate::parallel::vectors::{for_each_chunk, zeros};
 use crate::real::Real;
 
-/// Condition number of the preconditioned matrix above which the preconditioner counts as unsuitable:
-/// the preconditioned norm of a residual is then no measure of the error, and factors are better.
+/// Estimated condition number of the preconditioned matrix (largest Ritz value divided by the
+/// smallest) above which the preconditioner counts as unsuitable: the preconditioned norm of a
+/// residual is then no measure of the error, and factors are better.
 const MAX_CONDITION: f64 = 1e4;
 
 /// Largest number of iterations for one linear system.
 pub(crate) const MAX_ITERATIONS: usize = 500;
 
-/// The values and contact states of a step.
+/// The values and contact states of a step of the active set method, and the history of the run.
 pub(crate) struct InexactIterate<'a, T> {
     pub inequality: &'a Inequality<T>,
     pub values: Vec<T>,
     pub states: Vec<Contact>,
     /// Whether an unknown is eliminated from the linear system: fixed or active.
     pub eliminated: Vec<bool>,
+    /// The diagonal of the matrix.
     pub diagonal: Vec<T>,
     /// `b - A u`; zero on eliminated unknowns while a linear system is solved.
     pub residual: Vec<T>,
+    /// The fingerprint of the current active set; see [`fingerprint`].
     fingerprint: u128,
+    /// The fingerprints of all active sets that have occurred.
     seen: Vec<u128>,
-    /// Number of linear systems with a new active set, and of iterations of the linear solver.
+    /// Number of linear systems with a new active set.
     pub outer: usize,
+    /// Number of iterations of the linear solver.
     pub linear: usize,
-    /// Smallest Ritz value so far.
-    pub lowest_ritz_value: f64,
-    /// Energy norm of the iterate.
-    pub energy: f64,
-    /// Preconditioned norm of the residual after the last linear system.
+    /// Smallest Ritz value of all linear systems so far, at most one.
+    pub smallest_ritz_value: f64,
+    /// Energy norm of the iterate at its last evaluation; see
+    /// [`KktEvaluation`](super::kkt_evaluation::KktEvaluation).
+    pub energy_norm: f64,
+    /// Preconditioned norm of the residual at the end of the last linear system.
     pub residual_norm: f64,
 }
 
@@ -63,8 +69,8 @@ impl<'a, T: Real> InexactIterate<'a, T> {
             seen: vec![fingerprint],
             outer: 0,
             linear: 0,
-            lowest_ritz_value: 1.0,
-            energy: 1.0,
+            smallest_ritz_value: 1.0,
+            energy_norm: 1.0,
             residual_norm: f64::INFINITY,
         };
         iterate.set_prescribed_values();
@@ -82,7 +88,8 @@ impl<'a, T: Real> InexactIterate<'a, T> {
         }
     }
 
-    /// Corrects the values by one linear system on the inactive unknowns.
+    /// Corrects the values by one linear system on the inactive unknowns. Sets the residual to zero on
+    /// eliminated unknowns, and adds to `linear`.
     pub fn solve_linear(
         &mut self,
         krylov: &mut KrylovMethod<'_, T>,
@@ -103,12 +110,12 @@ impl<'a, T: Real> InexactIterate<'a, T> {
         run
     }
 
-    /// The outcome of a linear system, which updates the smallest Ritz value; `None` if the
-    /// preconditioner is unsuitable or the iterations did not suffice.
+    /// Updates `smallest_ritz_value` by a run of a Krylov method and returns the outcome of the run;
+    /// `None` if the preconditioner is unsuitable or the iterations did not suffice.
     pub fn outcome_of(&mut self, run: &KrylovRun) -> Option<Outcome> {
         let is_symmetric = self.inequality.symmetric;
         let (low, high) = run.ritz.unwrap_or((1.0, 1.0));
-        self.lowest_ritz_value = self.lowest_ritz_value.min(low);
+        self.smallest_ritz_value = self.smallest_ritz_value.min(low);
         match run.reason {
             // the driver confirms by factors
             StopReason::NotPositive if !is_symmetric => Some(Outcome::NotCoercive),
@@ -120,7 +127,8 @@ impl<'a, T: Real> InexactIterate<'a, T> {
         }
     }
 
-    /// Records the active set after given state changes; true if it has occurred before.
+    /// Records the active set that follows from state changes, before [`InexactIterate::change_states`]
+    /// makes them; true if it has occurred before. Without changes nothing is recorded: false.
     pub fn record(&mut self, changes: &[(u32, Contact)]) -> bool {
         if changes.is_empty() {
             return false;
@@ -166,14 +174,15 @@ impl<'a, T: Real> InexactIterate<'a, T> {
     /// Recomputes the residual from the values.
     pub fn recompute_residual(&mut self) {
         let penalised = self.penalised_residual();
-        let residual_at = residual_at(self.inequality, &self.values, penalised.as_deref());
+        let residual_entry = residual_at(self.inequality, &self.values, penalised.as_deref());
         for_each_chunk(&mut self.residual, |range, r| {
-            range.zip(r).for_each(|(i, r)| *r = T::lit(residual_at(i)));
+            range.zip(r).for_each(|(i, r)| *r = T::lit(residual_entry(i)));
         });
     }
 
-    /// The residual `c - K u - M^T S (M u - g)` of a penalised matrix, which has less rounding than that
-    /// of the assembled one; `None` if the matrix is not penalised.
+    /// The residual `c - K u - M^T S (M u - g)` of a
+    /// [`PenalisedMatrix`](crate::algebra::PenalisedMatrix), which has less rounding than the
+    /// residual of the assembled matrix; `None` if the matrix is not penalised.
     pub fn penalised_residual(&self) -> Option<Vec<f64>> {
         let penalised = self.inequality.penalised.as_ref()?;
         let mut residual = vec![0.0; self.values.len()];
@@ -182,7 +191,8 @@ impl<'a, T: Real> InexactIterate<'a, T> {
     }
 }
 
-/// The entries of the residual in `f64`: those of the penalised matrix if given, else `b - A u`.
+/// The function that returns an entry of the residual in `f64`: the entry of `penalised` if given,
+/// else of `b - A u`.
 pub(crate) fn residual_at<'v, T: Real>(
     inequality: &'v Inequality<T>,
     values: &'v [T],

@@ -2,31 +2,35 @@
 
 use super::kkt_evaluation::KktEvaluation;
 
-/// Fewer state changes than this hardly change the error, so that the next system is solved accurately.
+/// Fewer state changes than this hardly change the error: the next system is then solved accurately.
 const FEW_CHANGES: usize = 16;
 
-/// Largest number of solutions repeated because of rounding.
+/// Largest number of solutions that may be repeated because of rounding.
 const MAX_REPEATS: usize = 3;
 
 /// The progress of an iteration.
 pub(crate) struct ProgressMonitor {
     /// Whether the active set changed after the last linear system.
     pub active_set_changed: bool,
-    /// Whether the next system is solved accurately, and whether all following ones are.
+    /// Whether the next system is solved accurately.
     next_is_accurate: bool,
+    /// Whether all systems from now on are solved accurately.
     all_are_accurate: bool,
-    /// The smallest merit so far, and the number of systems since.
+    /// The smallest merit so far.
     best_merit: f64,
+    /// The number of systems since the smallest merit, or since all are solved accurately.
     steps_without_improvement: usize,
     /// The number of accurate solutions whose residual was too large.
     repeats: usize,
-    /// The fewest state changes when they last halved, and the number of systems since.
+    /// The number of state changes when it last halved.
     fewest_changes: usize,
+    /// The number of systems with state changes since then.
     steps_without_halving: usize,
 }
 
 impl ProgressMonitor {
-    /// The progress before the first system, which is solved accurately if no inequality binds.
+    /// The progress before the first system, which is solved accurately if `is_linear`: no unknown
+    /// has an inequality as bound.
     pub fn new(is_linear: bool) -> Self {
         Self {
             active_set_changed: true,
@@ -56,15 +60,16 @@ impl ProgressMonitor {
         self.steps_without_halving > stagnation_steps
     }
 
-    /// Notes an accurate solution whose residual is too large; false if it is one too many.
+    /// Notes an accurate solution whose residual is too large; false after more than [`MAX_REPEATS`] of
+    /// them.
     pub fn may_repeat(&mut self) -> bool {
         self.repeats += 1;
         self.repeats <= MAX_REPEATS
     }
 
-    /// Notes an evaluation; false if the merit has not improved for more than `improvement_steps`
-    /// systems, all of them solved accurately. Systems are solved accurately as soon as that many
-    /// others passed without improvement.
+    /// Notes an evaluation. If the merit has not improved for more than `improvement_steps`
+    /// systems, all further systems are solved accurately; if it has not improved for as many of
+    /// these either, returns false. `has_returned`: whether the active set has occurred before.
     pub fn improves(
         &mut self,
         evaluation: &KktEvaluation,

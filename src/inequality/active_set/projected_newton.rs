@@ -10,18 +10,22 @@ use crate::real::Real;
 /// The Armijo constant: the fraction of the decrease predicted by the slope that a step must achieve.
 const ARMIJO: f64 = 1e-4;
 
-/// Minimises the energy `u.A u / 2 - b.u` over the bounds from the values of the iterate. The error is
-/// the outcome without a solution: [`Outcome::Stalled`] where rounding exceeds the decrease.
+/// Minimises the energy `u.A u / 2 - b.u` within the bounds, from the values of the iterate, which
+/// becomes the minimiser. The matrix must be symmetric.
 ///
-/// All values are admissible and the energy never rises. Each step computes the minimum on the present
-/// face, the set of values with the present active set. If that minimum violates bounds, the step goes
-/// towards it along the projected path (Bertsekas, SIAM J. Control Optim. 20 (1982) 221-246) as far as
-/// the Armijo condition holds, but at least to the first bound, and every bound it reaches becomes
-/// active. If it is admissible, all unknowns whose multiplier has the wrong sign become inactive (More,
-/// Toraldo, SIAM J. Optim. 1 (1991) 93-113).
+/// All values are admissible and the energy never rises. Each step computes the minimum on the
+/// present face, the set of values with the present active set. If this minimum violates bounds,
+/// the step goes towards it along the projected path (Bertsekas, SIAM J. Control Optim. 20 (1982)
+/// 221-246) as far as the Armijo condition holds, but at least to the first bound, and every bound
+/// it reaches becomes active. If the minimum is admissible, all unknowns whose multiplier has the
+/// wrong sign become inactive (More, Toraldo, SIAM J. Optim. 1 (1991) 93-113).
 ///
 /// The method is finite: every step adds an active unknown until the minimum is admissible, and the
 /// energies of admissible minima, of which there are at most as many as faces, decrease.
+///
+/// # Errors
+/// The outcome if no solution is found, among them [`Outcome::Stalled`] where rounding exceeds the
+/// decrease of the energy.
 pub(crate) fn minimise<T: Real>(
     iterate: &mut DirectIterate<'_, T>,
     settings: &ActiveSet,
@@ -61,16 +65,17 @@ struct FeasiblePoint<T> {
     residual: Vec<f64>,
 }
 
-/// A bound that lies between the values of a feasible point and a target.
+/// A bound of an unknown that lies between its value at a feasible point and its target value.
 struct Crossing {
     unknown: usize,
     /// The fraction of the way to the target at which the bound lies.
     fraction: f64,
+    /// The contact state at the bound.
     contact: Contact,
 }
 
 impl<T: Real> FeasiblePoint<T> {
-    /// The point of an iterate whose values are admissible.
+    /// The point of an iterate, whose values must be admissible.
     fn of(iterate: &DirectIterate<'_, T>) -> Self {
         let values = iterate.values.clone();
         let mut residual = vec![0.0; values.len()];
@@ -96,8 +101,9 @@ impl<T: Real> FeasiblePoint<T> {
         (slope, curvature)
     }
 
-    /// The Armijo search along the projected path `P(u + t (target - u))` towards the values of the
-    /// iterate. Every bound reached becomes active. Returns the decrease of the energy.
+    /// The Armijo search along the projected path `P(u + t (target - u))` from this point `u` to
+    /// the values of the iterate, the target, which are replaced by the point found. Every bound
+    /// reached becomes active. Returns the decrease of the energy.
     fn projected_search(
         &self,
         iterate: &mut DirectIterate<'_, T>,

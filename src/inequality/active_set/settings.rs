@@ -19,17 +19,19 @@ use crate::linear::LinearMethod;
 /// * If nothing is left, the outcome is [`Outcome::Cycling`](super::super::Outcome::Cycling).
 ///
 /// No difference within rounding changes a state, since ties would cycle. Two tolerances decide, both
-/// in units of `rounding_band` times the scalar's epsilon:
+/// proportional to `rounding_band` times machine epsilon:
 ///
-/// * A bound is violated beyond the unit times the largest displacement. An unknown wrongly left
-///   inactive changes the solution by its violation at most, so that a global scale is safe.
-/// * A multiplier has the wrong sign beyond the unit times the sum of the absolute terms of its residual
-///   (for terms of fixed and active unknowns the epsilon is that of `f64`). Multipliers shrink like the
-///   volume of a patch and there are many of them, so that a global scale would hide all of them on
-///   fine meshes.
+/// * A bound counts as violated if the violation exceeds this product times the largest absolute
+///   value of all unknowns. An unknown wrongly left inactive changes the solution by its violation
+///   at most, so that a global scale is safe.
+/// * The sign of a multiplier counts as wrong if its size exceeds this product times the sum of the
+///   absolute values of the terms of its residual (machine epsilon of the scalar for terms of
+///   inactive unknowns; with factors, of `f64` for terms of fixed and active unknowns). Multipliers
+///   shrink like the volume of a patch and there are many of them, so that a global scale would
+///   hide all of them on fine meshes.
 ///
-/// Each condensation widens the band fourfold, to 64 times itself at most; the part beyond the first
-/// band is measured on the global scale for multipliers too.
+/// Each condensation multiplies the factor `rounding_band` by four, up to 64 times its first value; the
+/// excess over the first value is applied to the global scale for multipliers too.
 ///
 /// A cold start begins with the solution without inequalities. If the matrix is singular on the free
 /// unknowns, because only the bounds prevent a rigid motion, it begins with every bound active.
@@ -38,17 +40,17 @@ use crate::linear::LinearMethod;
 pub struct ActiveSet {
     /// Largest number of linear systems with a new active set.
     pub max_outer: usize,
-    /// Units of rounding within which no unknown changes its state.
+    /// The multiple of machine epsilon within which no unknown changes its state.
     pub rounding_band: f64,
-    /// Corrections of each linear solution by its residual in `f64`. Every step corrects the iterate
-    /// before it anyway; one more matters where a single step suffices (a warm start), in `f32` by
-    /// two digits and more.
+    /// Number of corrections of each linear solution by its residual in `f64`. Every step of the
+    /// active set method is itself a correction of the preceding iterate; one more matters where a
+    /// single step suffices (a warm start), in `f32` by two digits and more.
     pub refinements: usize,
-    /// Linear systems within which the number of state changes must halve; otherwise the active set
-    /// stagnates and the interior point method provides a new start.
+    /// Number of linear systems within which the number of state changes must halve; otherwise the
+    /// active set stagnates and the interior point method provides a new start.
     pub stagnation_steps: usize,
-    /// Linear systems within which the best iterate must improve; otherwise the unknowns that changed
-    /// state in these steps are condensed.
+    /// Number of linear systems within which the best iterate must improve; otherwise the unknowns
+    /// that changed state in these steps are condensed.
     pub improvement_steps: usize,
     /// Largest number of condensed problems.
     pub max_condensations: usize,
@@ -56,9 +58,9 @@ pub struct ActiveSet {
     pub max_condensed: usize,
     /// The method that takes over from an active set that stagnates or cycles.
     pub globalisation: Globalisation,
-    /// Whether to check first that the matrix is positive definite on all unknowns that are not fixed,
-    /// its symmetric part if it is not symmetric. The size of an error does not reveal a loss of
-    /// coercivity. Free of cost for a cold start with a symmetric matrix.
+    /// Whether to check first that the matrix, or its symmetric part if it is not symmetric, is
+    /// positive definite on all unknowns that are not fixed. The size of an error does not reveal a
+    /// loss of coercivity. Free of cost for a cold start with a symmetric matrix.
     pub check_definite: bool,
     /// The method for the linear systems.
     pub linear: LinearMethod,
@@ -68,20 +70,21 @@ pub struct ActiveSet {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Globalisation {
-    /// None: the outcome is that of the active set method with condensation.
+    /// No method: the active set method with condensation alone determines the outcome.
     Never,
-    /// An interior point method (Mehrotra, SIAM J. Optim. 2 (1992) 575-601) provides a new active set
-    /// where the present one stagnates; projected Newton follows if that one cycles too and the matrix
-    /// is symmetric.
+    /// An interior point method (Mehrotra, SIAM J. Optim. 2 (1992) 575-601) provides a new active
+    /// set where the present one stagnates; projected Newton follows if the iteration from the new
+    /// active set cycles too and the matrix is symmetric.
     #[default]
     OnStagnation,
-    /// The interior point method provides the first active set; projected Newton follows as above.
+    /// The interior point method provides the first active set; projected Newton follows as for
+    /// [`Globalisation::OnStagnation`].
     InteriorPointFirst,
     /// Projected Newton from the start, for symmetric matrices: the energy is minimised on one face of
     /// the bounds after the other and never rises. Finite for every symmetric positive definite matrix
     /// (Bertsekas, SIAM J. Control Optim. 20 (1982) 221-246; More, Toraldo, SIAM J. Optim. 1 (1991)
-    /// 93-113) if `max_outer` is large enough. For matrices that are not symmetric the active set method
-    /// with condensation.
+    /// 93-113) if `max_outer` is large enough. For matrices that are not symmetric, the active set
+    /// method with condensation runs instead.
     ProjectedNewton,
 }
 
@@ -110,7 +113,7 @@ impl ActiveSet {
         self.max_outer = max_outer;
         self
     }
-    /// Sets the units of rounding within which no unknown changes its state.
+    /// Sets the multiple of machine epsilon within which no unknown changes its state.
     #[must_use]
     pub fn rounding_band(mut self, rounding_band: f64) -> Self {
         self.rounding_band = rounding_band;
@@ -122,13 +125,13 @@ impl ActiveSet {
         self.refinements = refinements;
         self
     }
-    /// Sets the linear systems within which the number of state changes must halve.
+    /// Sets the number of linear systems within which the number of state changes must halve.
     #[must_use]
     pub fn stagnation_steps(mut self, stagnation_steps: usize) -> Self {
         self.stagnation_steps = stagnation_steps;
         self
     }
-    /// Sets the linear systems within which the best iterate must improve.
+    /// Sets the number of linear systems within which the best iterate must improve.
     #[must_use]
     pub fn improvement_steps(mut self, improvement_steps: usize) -> Self {
         self.improvement_steps = improvement_steps;

@@ -1,4 +1,5 @@
-//! The choice between the two drivers of the active set method, and the fallback between them.
+//! The choice between the direct and the inexact driver of the active set method, and the fallback
+//! from the inexact to the direct one.
 
 use super::ActiveSet;
 use super::direct_driver::DirectDriver;
@@ -62,6 +63,9 @@ impl ActiveSet {
     }
 
     /// The active set method with preconditioned Krylov methods, without factors of the matrix.
+    ///
+    /// # Errors
+    /// [`Failure`] if another method must follow.
     fn solve_inexactly<T: Real>(
         &self,
         inequality: &Inequality<T>,
@@ -75,7 +79,7 @@ impl ActiveSet {
 
     /// The solution after a failure of the inexact method: by monotone multigrid if the active set
     /// stagnated, the matrix is symmetric and the unknowns are conforming P1 on nested meshes; else, or
-    /// if that fails too, with factors.
+    /// if monotone multigrid does not converge, with factors. Iterations of all methods are added.
     fn fall_back<T: Real>(
         &self,
         inequality: &Inequality<T>,
@@ -102,8 +106,8 @@ impl ActiveSet {
         solution
     }
 
-    /// The active set method with factors of the matrix, from an active set that stagnated in the
-    /// inexact method if there is one.
+    /// The active set method with factors of the matrix, from the active set `stagnated` of the inexact
+    /// method if it is given, else from the start of the inequality.
     fn solve_directly<T: Real>(
         &self,
         inequality: &Inequality<T>,
@@ -121,8 +125,12 @@ impl ActiveSet {
         iterate.into_solution(outcome)
     }
 
-    /// Checks the input, and definiteness where that is a setting and no factorisation of a cold start
-    /// reveals it.
+    /// Checks the input, and definiteness where a setting requires it; a cold start with a
+    /// symmetric matrix begins with a Cholesky factorisation on all free unknowns, which is such a
+    /// check itself.
+    ///
+    /// # Errors
+    /// The outcome that the solver returns.
     fn check<T: Real>(&self, inequality: &Inequality<T>) -> Result<(), Outcome> {
         check_input(inequality)?;
         let is_checked_by_factors = inequality.start == Start::Cold && inequality.symmetric;

@@ -9,9 +9,13 @@ use crate::algebra::Contact;
 /// below 1e-33, so that equal fingerprints count as equal sets.
 #[derive(Debug)]
 pub(crate) struct StateHistory {
+    /// The fingerprints of the active sets, each with the step at which it was recorded.
     seen: Vec<(u128, u32)>,
+    /// The step of the last change of each unknown; zero if it never changed.
     last_change: Vec<u32>,
+    /// The number of recorded active sets.
     step: u32,
+    /// The number of changes since the last recorded active set.
     pending_changes: usize,
     /// The step of the last [`StateHistory::restart`].
     restarted_at: Option<u32>,
@@ -40,12 +44,12 @@ impl StateHistory {
         self.pending_changes
     }
 
-    /// Records an active set. If it has occurred before, marks in `cycle` every unknown that has changed
-    /// since then, and returns true.
+    /// Records an active set. If it has occurred before, marks in `cycle` every unknown that has
+    /// changed since then, and returns true; marks that are set already stay.
     ///
-    /// After a [`StateHistory::restart`] every unknown is marked that has changed since the restart: one
-    /// that changed only before the cycle began may be the one that made the method leave the set of
-    /// the restart, and would do so again.
+    /// After a [`StateHistory::restart`] every unknown is marked that has changed since the
+    /// restart, even if it changed only before the cycle began: its change may have made the method
+    /// leave the active set of the restart, and would do so again.
     pub fn record(&mut self, states: &[Contact], cycle: &mut [bool]) -> bool {
         self.step += 1;
         self.pending_changes = 0;
@@ -58,7 +62,8 @@ impl StateHistory {
         true
     }
 
-    /// Marks in `cycle` every unknown that has changed within the last `steps` records.
+    /// Marks in `cycle` every unknown that has changed within the last `steps` recorded active sets, or
+    /// since the last restart if there was one.
     pub fn mark_recent(&self, steps: usize, cycle: &mut [bool]) {
         let recent = self.step.saturating_sub(steps as u32);
         self.mark_changed(self.restarted_at.unwrap_or(recent), cycle);
@@ -87,7 +92,8 @@ pub(crate) fn fingerprint(states: &[Contact]) -> u128 {
         .fold(0, |sum: u128, (i, &contact)| sum.wrapping_add(state_key(i, contact)))
 }
 
-/// The key of one contact state: a pseudo-random number of unknown and bound, zero if inactive.
+/// The key of the contact state of unknown `i`: a pseudo-random number determined by the unknown
+/// and its active bound, zero if the unknown is inactive.
 pub(crate) fn state_key(i: usize, contact: Contact) -> u128 {
     let side = match contact {
         Contact::Inactive => return 0,

@@ -1,35 +1,41 @@
 //! A primal-dual interior point method, which finds a starting active set where the active set method
 //! stagnates.
 //!
-//! [`barrier`] contains slack and dual variable of every bound, [`barrier_system`] the linear systems,
-//! [`path_expansion`] the Taylor polynomials along which a step goes.
+//! | file | content |
+//! |---|---|
+//! | `complementarity_pairs` | slack and dual variable of every bound, the ratio test |
+//! | `newton_system` | the linear systems |
+//! | `path_expansion` | the Taylor polynomials along which a step goes |
 
-mod barrier;
-mod barrier_system;
+mod complementarity_pairs;
+mod newton_system;
 mod path_expansion;
 
 use crate::algebra::{Bound, Contact, Inequality};
 use crate::linear::direct::StaticCondensation;
 use crate::real::Real;
-use barrier::{BarrierTerm, MAX_ORDER, RestartTerm, mean_complementarity};
-use barrier_system::{BarrierSystem, MixedVector};
+use complementarity_pairs::{ComplementarityPair, MAX_ORDER, StoredPair, mean_complementarity};
+use newton_system::{MixedVector, NewtonSystem};
 use path_expansion::{PREDICTOR_ORDER, PathExpansion};
 
-/// Relative complementarity (the sum of all complementarity products over the energy) of the starting
-/// point.
+/// Relative complementarity (the sum of all complementarity products divided by the energy scale of
+/// [`NewtonSystem::residual`]) of the starting point.
 const INITIAL_COMPLEMENTARITY: f64 = 0.1;
 
-/// Relative complementarity at which the method ends: slack and dual variable differ to all digits.
+/// Relative complementarity at which the method ends: the smaller one of slack and dual variable is
+/// then within rounding.
 const FINAL_COMPLEMENTARITY: f64 = 1e-18;
 
-/// Relative complementarity below which the active set is identified, if the Tapia indicators are
+/// Relative complementarity at or below which the active set is identified, if the Tapia indicators are
 /// separated and gave the same active set one step before.
 const IDENTIFICATION_TOL: f64 = 1e-10;
 
-/// Factor on [`IDENTIFICATION_TOL`] at each restart: the active set was identified too early.
+/// Factor by which the identification tolerance is reduced at each restart, since the active set was
+/// identified too early.
 const IDENTIFICATION_TOL_REDUCTION: f64 = 1e-2;
 
-/// Relative complementarity above which stagnation is due to the starting point, not to rounding.
+/// Relative complementarity above which stagnation counts as due to the starting point, not to
+/// rounding.
 const STAGNATION_TOL: f64 = 1e-8;
 
 /// Least distance of the two Tapia indicators of a bound at which they count as separated.
@@ -45,33 +51,38 @@ const STAGNATION_STEPS: usize = 3;
 #[derive(Debug)]
 pub(crate) struct Restart {
     point: MixedVector,
-    terms: Vec<RestartTerm>,
+    pairs: Vec<StoredPair>,
+    /// See [`IDENTIFICATION_TOL`].
     identification_tol: f64,
 }
 
 /// The predictor-corrector method of Mehrotra (SIAM J. Optim. 2 (1992) 575-601) for
-/// `A u - b = z_lower - z_upper` with positive slack and dual variables `z`, whose products all equal a
-/// number that tends to zero: the central path.
+/// `A u - b = z_lower - z_upper` with the dual variables `z` of the bounds. It follows the central
+/// path: the points at which all slacks and dual variables are positive and all complementarity
+/// products equal, while their common value tends to zero.
 ///
 /// A step follows the Taylor polynomial of the path (Monteiro, Adler, Resende, Math. Oper. Res. 15
-/// (1990) 191-214). Every order costs one solution with the factors of the step.
+/// (1990) 191-214). Every degree costs one solution with the factors of the step.
 ///
 /// The matrix of a step is `A` plus a positive diagonal, so that the method applies to every matrix
 /// whose symmetric part is positive semidefinite. The number of steps is one or two dozen in practice,
 /// and at most of the order of the square root of the number of unknowns in theory (Wright,
 /// Primal-Dual Interior-Point Methods, SIAM 1997). Values are accurate up to rounding in the energy
-/// only. The active set consists of the bounds whose last step kept a larger fraction of the dual
+/// norm only. The active set consists of the bounds whose last step kept a larger fraction of the dual
 /// variable than of the slack (Tapia indicators).
 ///
-/// Where the matrix is a [`PenalisedMatrix`](crate::algebra::PenalisedMatrix) the jump multipliers are
-/// unknowns too, and `g - M u + p / s` is part of the residual. No penalty weight is then added to a
-/// stiffness, and moving the starting point off its bounds does not change jump multipliers.
+/// Where the matrix is a [`PenalisedMatrix`](crate::algebra::PenalisedMatrix) `K + M^T S M` and a
+/// static condensation is given, the jump multipliers `p = S (M u - g)` are unknowns too, and
+/// `g - M u + p / s`, `s` the weight of the jump in `S`, is part of the residual. No penalty weight
+/// is then added to a stiffness, and moving the starting point off its bounds does not change jump
+/// multipliers.
 pub(crate) struct InteriorPoint<'h, 'a, T> {
     inequality: &'a Inequality<T>,
-    system: BarrierSystem<'h, 'a, T>,
+    system: NewtonSystem<'h, 'a, T>,
     point: MixedVector,
+    /// The positive diagonal scales of all unknowns; see [`NewtonSystem::diagonal_scale`].
     diagonal: Vec<f64>,
-    terms: Vec<BarrierTerm>,
+    pairs: Vec<ComplementarityPair>,
     /// Number of linear systems solved.
     pub steps: usize,
     /// See [`IDENTIFICATION_TOL`].
@@ -81,7 +92,7 @@ pub(crate) struct InteriorPoint<'h, 'a, T> {
 }
 
 impl<'h, 'a, T: Real> InteriorPoint<'h, 'a, T> {
-    /// A method that starts near the central path, close to values and jump multipliers.
+    /// A method that starts near the central path, close to the given values and jump multipliers.
     pub fn new(
         inequality: &'a Inequality<T>,
         condensation: Option<&'h StaticCondensation<'a, T>>,
@@ -93,7 +104,7 @@ impl<'h, 'a, T: Real> InteriorPoint<'h, 'a, T> {
         let jump_multipliers = jump_multipliers.iter().map(|p| p.to_f64()).collect();
         let restart = Restart {
             point: MixedVector { values, jump_multipliers },
-            terms: Vec::new(),
+            pairs: Vec::new(),
             identification_tol: IDENTIFICATION_TOL,
         };
         let mut method = Self::resume(inequality, condensation, restart);
@@ -107,16 +118,16 @@ impl<'h, 'a, T: Real> InteriorPoint<'h, 'a, T> {
         condensation: Option<&'h StaticCondensation<'a, T>>,
         restart: Restart,
     ) -> Self {
-        let Restart { point, terms, identification_tol } = restart;
-        let terms = terms.into_iter().map(BarrierTerm::from).collect();
-        let system = BarrierSystem::new(inequality, condensation);
+        let Restart { point, pairs, identification_tol } = restart;
+        let pairs = pairs.into_iter().map(ComplementarityPair::from).collect();
+        let system = NewtonSystem::new(inequality, condensation);
         let diagonal = (0..inequality.size()).map(|i| system.diagonal_scale(i)).collect();
         Self {
             inequality,
             system,
             point,
             diagonal,
-            terms,
+            pairs,
             steps: 0,
             identification_tol,
             is_final: false,
@@ -126,31 +137,32 @@ impl<'h, 'a, T: Real> InteriorPoint<'h, 'a, T> {
     /// The restart with a smaller identification tolerance; `None` if no further step is possible.
     pub fn into_restart(self) -> Option<Restart> {
         let identification_tol = IDENTIFICATION_TOL_REDUCTION * self.identification_tol;
-        let terms = self.terms.into_iter().map(RestartTerm::from);
+        let pairs = self.pairs.into_iter().map(StoredPair::from);
         (!self.is_final).then(|| Restart {
             point: self.point,
-            terms: terms.collect(),
+            pairs: pairs.collect(),
             identification_tol,
         })
     }
 
-    /// Iterates until the active set is identified. Returns the contact states, or `None` if a matrix
-    /// has no factors, a number is not finite, or the first step has length zero.
+    /// Iterates until the active set is identified, no step improves the point, or [`MAX_STEPS`]
+    /// are done. Returns the contact states, or `None` if a matrix has no factors, a number is not
+    /// finite, or the first step has length zero.
     pub fn run(&mut self) -> Option<Vec<Contact>> {
         let mut residual = self.point.clone();
         let (mut least, mut stagnant_steps) = (f64::INFINITY, 0);
         let mut previous_contact = Vec::new();
         let mut is_recentred = false;
-        // the terms of a restart carry the indicators of its last step
-        let has_indicators = self.terms.iter().any(|term| term.indicators != [1.0; 2]);
+        // the pairs of a restart carry the indicators of its last step
+        let has_indicators = self.pairs.iter().any(|pair| pair.indicators != [1.0; 2]);
         let mut last_contact = has_indicators.then(|| self.contact());
         while self.steps < MAX_STEPS {
             let energy = self.residual(&mut residual);
-            let mean = mean_complementarity(&self.terms, 0.0, 0);
+            let mean = mean_complementarity(&self.pairs, 0.0, 0);
             if !mean.is_finite() || !energy.is_finite() {
                 return None;
             }
-            let relative = mean * self.terms.len() as f64 / energy;
+            let relative = mean * self.pairs.len() as f64 / energy;
             stagnant_steps = if relative < 0.5 * least { 0 } else { stagnant_steps + 1 };
             least = if stagnant_steps == 0 { relative } else { least };
             let contact = self.contact();
@@ -189,10 +201,11 @@ impl<'h, 'a, T: Real> InteriorPoint<'h, 'a, T> {
         self.point.values.iter().zip(&self.inequality.bounds).map(nearest).collect()
     }
 
-    /// Moves the point to the central path with a given relative complementarity, as close to the
-    /// current values as the path admits.
+    /// Moves every free unknown off its bounds, close to its Jacobi value, and sets its pairs anew
+    /// so that all complementarity products are equal and their sum, relative to the energy scale,
+    /// is about `relative_complementarity`.
     fn move_to_central_path(&mut self, relative_complementarity: f64) {
-        self.terms.clear();
+        self.pairs.clear();
         let mut residual = self.point.clone();
         let energy = self.residual(&mut residual);
         let bounds = &self.inequality.bounds;
@@ -204,10 +217,10 @@ impl<'h, 'a, T: Real> InteriorPoint<'h, 'a, T> {
         }
     }
 
-    /// Moves unknown `i` to a given complementarity product and adds its barrier terms.
+    /// Moves unknown `i` to a given complementarity product and adds its complementarity pairs.
     ///
     /// Without its neighbours the unknown would move to the Jacobi value `u_i + r_i / d_i`. With the
-    /// distance `y` of that value from the bound, the slack `x` is the positive root of
+    /// signed distance `y` of that value from the bound, the slack `x` is the positive root of
     /// `x - product / (d_i x) = y`. Between two bounds the Jacobi value is clamped instead.
     fn centre_unknown(&mut self, i: usize, residual: &[f64], product: f64) {
         let bound = &self.inequality.bounds[i];
@@ -227,57 +240,60 @@ impl<'h, 'a, T: Real> InteriorPoint<'h, 'a, T> {
         for (bound, side) in [(lower, 1.0), (upper, -1.0)] {
             if let Some(bound) = bound {
                 let slack = side * (self.point.values[i] - bound);
-                self.terms.push(BarrierTerm::new(i, side, slack, product / slack));
+                self.pairs.push(ComplementarityPair::new(i, side, slack, product / slack));
             }
         }
     }
 
-    /// One predictor-corrector step. False if its length is zero; `None` if the matrix has no factors.
+    /// One predictor-corrector step, which moves the point and the pairs. `Some(false)` if its
+    /// length is zero: the point is then unchanged; `None` if the matrix has no factors.
     fn step(&mut self, residual: &MixedVector, mean: f64) -> Option<bool> {
         self.steps += 1;
         let mut diagonal = vec![0.0; self.point.values.len()];
-        for term in &self.terms {
-            diagonal[term.unknown] += term.dual / term.slack;
+        for pair in &self.pairs {
+            diagonal[pair.unknown] += pair.dual / pair.slack;
         }
         let factors = self.system.factor(&diagonal).ok()?;
         let mut expand = |target: f64, max_order: usize| {
-            PathExpansion::new(&self.system, &factors, &mut self.terms, residual, target, max_order)
+            PathExpansion::new(&self.system, &factors, &mut self.pairs, residual, target, max_order)
         };
         // Mehrotra's centring: the cube of the reduction that the predictor achieves
         let predicted = expand(0.0, PREDICTOR_ORDER).complementarity;
         let target = mean * (predicted / mean).clamp(0.0, 1.0).powi(3);
         let expansion = expand(target, MAX_ORDER);
-        // no order is kept if the coefficients are not finite
+        // no degree is kept if the coefficients are not finite
         if expansion.order() == 0 || expansion.length <= 0.0 {
             return Some(false);
         }
         expansion.advance(&mut self.point);
         let (length, order) = (expansion.length, expansion.order());
-        self.terms.iter_mut().for_each(|term| term.advance(length, order));
+        self.pairs.iter_mut().for_each(|pair| pair.advance(length, order));
         Some(true)
     }
 
-    /// Computes the residual `b - A u + z_lower - z_upper`; returns a scale of the energy.
+    /// Computes the residual `b - A u + z_lower - z_upper`; returns the energy scale of
+    /// [`NewtonSystem::residual`].
     fn residual(&self, residual: &mut MixedVector) -> f64 {
         let energy = self.system.residual(&self.point, residual);
-        for term in &self.terms {
-            residual.values[term.unknown] += term.side * term.dual;
+        for pair in &self.pairs {
+            residual.values[pair.unknown] += pair.side * pair.dual;
         }
         energy
     }
 
-    /// Whether the Tapia indicators are separated at every bound: in the limit one is one and the other
-    /// zero (El-Bakry, Tapia, Zhang, SIAM Rev. 36 (1994) 45-72).
+    /// Whether the two Tapia indicators are separated at every bound: in the limit one of them is
+    /// one, the other zero (El-Bakry, Tapia, Zhang, SIAM Rev. 36 (1994) 45-72).
     fn indicators_are_separated(&self) -> bool {
-        let distance = |term: &BarrierTerm| (term.indicators[0] - term.indicators[1]).abs();
-        self.terms.iter().all(|term| distance(term) > INDICATOR_SEPARATION)
+        let distance = |pair: &ComplementarityPair| (pair.indicators[0] - pair.indicators[1]).abs();
+        self.pairs.iter().all(|pair| distance(pair) > INDICATOR_SEPARATION)
     }
 
-    /// The contact states: a bound is active if its indicator of the dual variable is the larger one.
+    /// The contact states: a bound is active if the indicator of its dual variable is larger than the
+    /// indicator of its slack.
     fn contact(&self) -> Vec<Contact> {
         let mut contact = vec![Contact::Inactive; self.point.values.len()];
-        for term in self.terms.iter().filter(|term| term.indicators[1] > term.indicators[0]) {
-            contact[term.unknown] = if term.side > 0.0 { Contact::Lower } else { Contact::Upper };
+        for pair in self.pairs.iter().filter(|pair| pair.indicators[1] > pair.indicators[0]) {
+            contact[pair.unknown] = if pair.side > 0.0 { Contact::Lower } else { Contact::Upper };
         }
         contact
     }
@@ -288,8 +304,8 @@ mod tests {
     use super::*;
     use crate::algebra::{SparseMatrix, Start};
 
-    /// Two coupled unknowns above zero, with a load whose double overflows the scalar: the direction of
-    /// the first step is not finite.
+    /// Two coupled unknowns with lower bounds zero, and a load twice which overflows the scalar: the
+    /// direction of the first step is not finite.
     fn overflowing() -> Inequality<f32> {
         let (row_starts, columns) = (vec![0, 2, 4], vec![0, 1, 0, 1]);
         Inequality {
@@ -319,7 +335,7 @@ mod tests {
         let inequality = overflowing();
         let mut method = InteriorPoint::new(&inequality, None, &[0.0; 2], &[]);
         let indicators = [[0.1, 1.0], [1.0, 0.1]];
-        method.terms.iter_mut().zip(indicators).for_each(|(term, values)| term.indicators = values);
+        method.pairs.iter_mut().zip(indicators).for_each(|(pair, values)| pair.indicators = values);
         let restart = method.into_restart().unwrap();
         let mut method = InteriorPoint::resume(&inequality, None, restart);
         let before = method.point.values.clone();

@@ -1,14 +1,15 @@
 //! Taylor polynomials of the central path.
 
-use super::barrier::{BarrierTerm, mean_complementarity, ratio_test};
-use super::barrier_system::{BarrierFactors, BarrierSystem, MixedVector};
+use super::complementarity_pairs::{ComplementarityPair, mean_complementarity, ratio_test};
+use super::newton_system::{MixedVector, NewtonFactors, NewtonSystem};
 use crate::real::Real;
 
 /// Order of the first expansion of a step, which determines the target of the second.
 pub(crate) const PREDICTOR_ORDER: usize = 2;
 
-/// A further order is kept if it multiplies the complementarity after the step by less than this:
-/// otherwise it is not worth a solution with the factors of the step.
+/// A higher order is kept if the mean complementarity product after its step is less than this
+/// fraction of the smallest so far: otherwise it is not worth a solution with the factors of the
+/// step.
 const ORDER_GAIN: f64 = 0.95;
 
 /// Consecutive orders without gain after which the expansion ends.
@@ -16,7 +17,7 @@ const MAX_ORDERS_WITHOUT_GAIN: usize = 3;
 
 /// The Taylor polynomial of the central path at the current point, and the step along it.
 pub(crate) struct PathExpansion {
-    /// The coefficients of `t, t^2, ...` of values and jump multipliers.
+    /// The coefficients of `t`, `t^2`, ... of values and jump multipliers; none if no order was kept.
     coefficients: Vec<MixedVector>,
     /// The step length that the ratio test admits.
     pub length: f64,
@@ -25,14 +26,14 @@ pub(crate) struct PathExpansion {
 }
 
 impl PathExpansion {
-    /// The Taylor polynomial of the curve on which the residual and the differences of all
-    /// complementarity products from `target` are `(1 - t)^2` times what they are now. The order, at
-    /// most `max_order`, increases as long as the complementarity after the step gains from it. Sets the
-    /// coefficients of the barrier terms.
+    /// The Taylor polynomial of the curve on which the residual, and the difference of each
+    /// complementarity product from `target`, are `(1 - t)^2` times their values at the current point.
+    /// The order, at most `max_order`, increases as long as the mean complementarity product after the
+    /// step decreases by it. Sets the coefficients of the complementarity pairs.
     pub fn new<T: Real>(
-        system: &BarrierSystem<'_, '_, T>,
-        factors: &BarrierFactors<T>,
-        terms: &mut [BarrierTerm],
+        system: &NewtonSystem<'_, '_, T>,
+        factors: &NewtonFactors<T>,
+        pairs: &mut [ComplementarityPair],
         residual: &MixedVector,
         target: f64,
         max_order: usize,
@@ -41,14 +42,14 @@ impl PathExpansion {
             Self { coefficients: Vec::new(), length: 0.0, complementarity: f64::INFINITY };
         let mut without_gain = Vec::new();
         for k in 0..max_order {
-            without_gain.push(coefficient(system, factors, terms, residual, target, k));
+            without_gain.push(coefficient(system, factors, pairs, residual, target, k));
             let order = k + 1;
             // the linear polynomial alone may admit no step
             if order < PREDICTOR_ORDER {
                 continue;
             }
-            let length = ratio_test(terms, order);
-            let complementarity = mean_complementarity(terms, length, order);
+            let length = ratio_test(pairs, order);
+            let complementarity = mean_complementarity(pairs, length, order);
             if complementarity < ORDER_GAIN * best.complementarity {
                 (best.length, best.complementarity) = (length, complementarity);
                 best.coefficients.append(&mut without_gain);
@@ -77,41 +78,45 @@ impl PathExpansion {
     }
 }
 
-/// The coefficient of `t^(k+1)` of the path, given all lower ones; sets those of the barrier terms.
+/// The coefficient of `t^(k+1)` of values and jump multipliers, given the coefficients of `t` to `t^k`;
+/// sets the coefficients of `t^(k+1)` of the complementarity pairs.
 fn coefficient<T: Real>(
-    system: &BarrierSystem<'_, '_, T>,
-    factors: &BarrierFactors<T>,
-    terms: &mut [BarrierTerm],
+    system: &NewtonSystem<'_, '_, T>,
+    factors: &NewtonFactors<T>,
+    pairs: &mut [ComplementarityPair],
     residual: &MixedVector,
     target: f64,
     k: usize,
 ) -> MixedVector {
     // 1 - (1 - t)^2 = 2 t - t^2
     let fraction = [2.0, -1.0].get(k).copied().unwrap_or(0.0);
-    let rate =
-        |term: &BarrierTerm| fraction * (target - term.product()) - term.lower_order_product(k);
-    let rates: Vec<f64> = terms.iter().map(rate).collect();
+    let right_side = |pair: &ComplementarityPair| {
+        fraction * (target - pair.product()) - pair.lower_order_product(k)
+    };
+    let right_sides: Vec<f64> = pairs.iter().map(right_side).collect();
     let mut right = residual.clone();
     let MixedVector { values, jump_multipliers } = &mut right;
     values.iter_mut().chain(jump_multipliers).for_each(|r| *r *= fraction);
-    let coefficient = newton_direction(system, factors, terms, right, &rates);
-    for (term, rate) in terms.iter_mut().zip(rates) {
-        term.set_coefficient(k, term.side * coefficient.values[term.unknown], rate);
+    let coefficient = newton_direction(system, factors, pairs, right, &right_sides);
+    for (pair, right_side) in pairs.iter_mut().zip(right_sides) {
+        pair.set_coefficient(k, pair.side * coefficient.values[pair.unknown], right_side);
     }
     coefficient
 }
 
-/// The Newton direction: the solution of `(A + D) x = r + sum side rate / slack`, along which
-/// complementarity products change at given rates.
+/// The Newton direction: the solution of `(A + D) x = r + sum side right_side / slack`, the sum
+/// over the pairs of each unknown. `right_sides` are the right-hand sides of the linearised
+/// complementarity conditions, one for each pair:
+/// `slack * (change of dual) + dual * (change of slack) = right_side`.
 fn newton_direction<T: Real>(
-    system: &BarrierSystem<'_, '_, T>,
-    factors: &BarrierFactors<T>,
-    terms: &[BarrierTerm],
+    system: &NewtonSystem<'_, '_, T>,
+    factors: &NewtonFactors<T>,
+    pairs: &[ComplementarityPair],
     mut right: MixedVector,
-    rates: &[f64],
+    right_sides: &[f64],
 ) -> MixedVector {
-    for (term, rate) in terms.iter().zip(rates) {
-        right.values[term.unknown] += term.side * rate / term.slack;
+    for (pair, right_side) in pairs.iter().zip(right_sides) {
+        right.values[pair.unknown] += pair.side * right_side / pair.slack;
     }
     system.solve(factors, &mut right);
     right

@@ -5,40 +5,51 @@ use faer::sparse::linalg::amd;
 
 use super::error::{FactorError, out_of_memory};
 use super::nested_dissection::GeometricGraph;
-use super::symbolic_factor::transpose_by_columns;
+use super::symbolic_factor::transpose_view;
 use crate::algebra::{Inequality, NO_INDEX, SparseMatrix, Submatrix};
 use crate::real::Real;
 
-/// Least number of unknowns for nested dissection. With fewer the two orders differ by a tenth of a
-/// millisecond.
+/// Least number of unknowns for nested dissection. With fewer unknowns the times with the two
+/// orders differ by a tenth of a millisecond.
 const MIN_DISSECTED: usize = 2_000;
 
 /// An order of elimination for the unknowns of a symmetric matrix, and by restriction for each subset
 /// of them.
 ///
 /// The order determines the size of the Cholesky factor. An active set method computes it once for
-/// all active sets. Symbolic and numeric factorisation of a step then take, in milliseconds of one
-/// thread (two hyperthreads of a shared AMD EPYC, November 2026;
-/// `cargo test --release --test ordering -- --ignored --nocapture`):
+/// all active sets. Times in milliseconds of one thread (two hyperthreads of a shared AMD EPYC,
+/// November 2026; `cargo test --release --test inequalities ordering::times -- --ignored --nocapture`),
+/// in the columns:
 ///
-/// | | unknowns | order: degree | dissection | step: new degree | same degree | same dissection |
+/// * *degree*, *dissection*: computation of the order by minimum degree and by nested dissection;
+/// * *new degree*: symbolic and numeric factorisation of one step with an order by minimum degree
+///   that is computed anew, its computation included;
+/// * *old degree*, *old dissection*: symbolic and numeric factorisation of one step with the order
+///   of all free unknowns, which has been computed before, restricted to the unknowns of the step.
+///
+/// | | unknowns | degree | dissection | new degree | old degree | old dissection |
 /// |---|---|---|---|---|---|---|
 /// | P1, `2 * 128^2` triangles | 16 129 | 1.6 | 5.7 | 15 | 13 | 13 |
-/// | the inactive ones | 10 308 | | | 7.6 | 5.0 | 4.7 |
+/// | its inactive unknowns | 10 308 | | | 7.6 | 5.0 | 4.7 |
 /// | P1, `2 * 256^2` triangles | 65 025 | 6.5 | 27 | 39 | 33 | 31 |
-/// | the inactive ones | 41 956 | | | 27 | 36 | 32 |
+/// | its inactive unknowns | 41 956 | | | 27 | 36 (a) | 32 |
 /// | SIPG, `2 * 128^2` triangles | 98 304 | 8 | 22 | 93 | 87 | 80 |
 /// | P1, `6 * 32^3` tetrahedra | 29 791 | 9 | 24 | 287 | 275 | 139 |
-/// | the inactive ones | 24 264 | | | 132 | 125 | 68 |
+/// | its inactive unknowns | 24 264 | | | 132 | 125 | 68 |
 /// | Crouzeix-Raviart, `6 * 12^3` tetrahedra | 19 872 | 3 | 17 | 25 | 22 | 12 |
 /// | SIPG, `6 * 12^3` tetrahedra | 41 472 | 6 | 9 | 238 | 234 | 205 |
 ///
-/// (36 instead of 27: the factor has fewer entries, so few that faer chooses its simplicial algorithm
-/// instead of the supernodal one.)
+/// (a) More than with a new order although the factor has fewer entries: so few that faer chooses its
+/// simplicial algorithm instead of the supernodal one.
 ///
-/// For conforming linear elements nested dissection stores 36 % fewer entries in space, 4 % fewer in
-/// the plane. In the plane it saves time from about the fourth step on, except for broken elements,
-/// for which the cells are ordered instead of the unknowns.
+/// With an order that is computed once, the sum of the times up to step `k` is, by the rows of full
+/// systems, smaller for dissection than for minimum degree from the first or second step on in
+/// three dimensions, from the third on for SIPG on triangles (where dissection orders the cells
+/// instead of the unknowns), and from the eleventh on at the earliest for P1 on triangles. Compared
+/// with a new order in every step, it is smaller from the fourth step on at the latest.
+///
+/// Not in the table: for conforming linear elements nested dissection stores 36 % fewer entries of the
+/// factor in three dimensions, 4 % fewer in two.
 #[derive(Clone, Debug)]
 pub struct EliminationOrder {
     unknowns: Vec<u32>,
@@ -46,18 +57,23 @@ pub struct EliminationOrder {
 
 impl EliminationOrder {
     /// The order for the unknowns `free` (ascending) of a matrix whose row `i` has the node
-    /// `points[i]`: nested dissection for many unknowns in space or in a broken space, else minimum
-    /// degree. A list with fewer points than the matrix has rows is ignored.
+    /// `points[i]`: nested dissection for at least `MIN_DISSECTED` (2 000) unknowns if the domain
+    /// is three-dimensional (the points vary along all three axes) or the elements are
+    /// discontinuous (the graph of cells has at most half as many nodes as there are unknowns);
+    /// else approximate minimum degree, also if `points` is `None` or has fewer entries than the
+    /// matrix has rows.
     ///
-    /// Only the lower triangle is read, except that two consecutive unknowns belong to the same cell
-    /// if their whole rows have the same pattern.
+    /// Only the lower triangle is read, except that two consecutive unknowns belong to the same
+    /// cell if their whole rows have the same pattern. A pattern that is not symmetric is treated
+    /// as the pattern of its lower triangle and the transpose of this triangle; the result is a
+    /// permutation all the same.
     ///
     /// # Errors
     /// [`FactorError::OutOfMemory`].
     ///
     /// # Panics
-    /// If `free` contains a row that the matrix does not have. For a list that is not strictly
-    /// ascending the result may be no permutation.
+    /// If `free` contains a row that the matrix does not have. If `free` is not strictly ascending, the
+    /// result need not be a permutation.
     pub fn new<T: Real>(
         matrix: &SparseMatrix<T>,
         free: &[u32],
@@ -94,7 +110,7 @@ impl EliminationOrder {
     /// If `free` contains a row that the matrix does not have.
     pub fn by_degree<T: Real>(matrix: &SparseMatrix<T>, free: &[u32]) -> Result<Self, FactorError> {
         let lower = Submatrix::lower_triangle(matrix, free);
-        let pattern = transpose_by_columns(&lower);
+        let pattern = transpose_view(&lower);
         let n = free.len();
         let (mut order, mut inverse) = (vec![0_u32; n], vec![0_u32; n]);
         let scratch = amd::order_scratch::<u32>(n, lower.columns.len());
@@ -114,18 +130,21 @@ impl EliminationOrder {
         Self::new(&inequality.matrix, &inequality.free_unknowns(), points.as_deref())
     }
 
-    /// The unknowns in the order of elimination.
+    /// The unknowns in the order of elimination: the one at position zero is eliminated first.
     pub fn unknowns(&self) -> &[u32] {
         &self.unknowns
     }
 
-    /// The unknowns in the order of elimination.
+    /// The list [`EliminationOrder::unknowns`], without a copy.
     pub(crate) fn into_unknowns(self) -> Vec<u32> {
         self.unknowns
     }
 
     /// The restriction of the order to the unknowns `free` of a matrix with `size` rows: positions in
     /// `free` in the order of elimination. Unknowns of `free` that the order lacks come last.
+    ///
+    /// # Panics
+    /// If `free` contains an unknown that is not less than `size`.
     pub(crate) fn restricted_to(&self, free: &[u32], size: usize) -> Vec<u32> {
         let mut positions = vec![NO_INDEX; size];
         free.iter().enumerate().for_each(|(k, &i)| positions[i as usize] = k as u32);

@@ -2,11 +2,11 @@
 
 use faer::sparse::FaerError;
 
-/// The reason why a matrix has no factors.
+/// The reason why no factors of a matrix could be computed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum FactorError {
-    /// The symmetric matrix is indefinite: some `x` has `x.A x < 0`.
+    /// The symmetric matrix `A` is indefinite: some `x` has `x.A x < 0`.
     #[error("the matrix is not positive definite")]
     NotPositive,
     /// The matrix is singular to working precision. A matrix that is positive semidefinite up to
@@ -18,7 +18,7 @@ pub enum FactorError {
     OutOfMemory,
 }
 
-/// The error of a symbolic factorisation: index overflow or lack of memory.
+/// The [`FactorError`] for an error of faer, which means index overflow or lack of memory.
 pub(crate) fn out_of_memory(_: FaerError) -> FactorError {
     FactorError::OutOfMemory
 }

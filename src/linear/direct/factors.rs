@@ -14,15 +14,16 @@ use faer::sparse::linalg::lu::{LuSymbolicParams, NumericLu, SymbolicLu, factoriz
 use super::elimination_order::EliminationOrder;
 use super::error::{FactorError, out_of_memory};
 use super::kernels::{self, PAR};
-use super::symbolic_factor::{SymbolicFactor, transpose_by_columns};
+use super::symbolic_factor::{SymbolicFactor, transpose_view};
 use crate::algebra::{SparseMatrix, Submatrix};
 use crate::instances::compiled;
 use crate::parallel::vectors::pseudorandom_signs;
 use crate::real::Real;
 
-/// Pivots up to this many rounding units of their diagonal entry are zero: all their digits are lost
-/// to cancellation.
+/// A pivot counts as zero if it is at most this multiple of machine epsilon times the diagonal
+/// entry of the matrix: all its digits are lost to cancellation.
 const PIVOT_TOLERANCE: f64 = 16.0;
+
 /// The factors of a submatrix `A_II`, `I` the set of free unknowns.
 ///
 /// For a symmetric matrix these are the sparse Cholesky factors for an [`EliminationOrder`] or for
@@ -47,7 +48,7 @@ impl<T: Real> Factors<T> {
     /// a symmetric matrix is read.
     ///
     /// # Errors
-    /// See [`FactorError`]; a matrix with an entry that is not finite has one of them.
+    /// See [`FactorError`]; a matrix with an entry that is not finite always gives one of these errors.
     pub fn new(
         matrix: &SparseMatrix<T>,
         symmetric: bool,
@@ -101,7 +102,7 @@ impl<T: Real> Factors<T> {
     }
 
     /// The Cholesky factor of a symmetric matrix, given by its lower triangle and the symbolic factor
-    /// of its pattern. After an error the diagonal may have been changed.
+    /// of its pattern. After an error the diagonal of `lower` may have been changed.
     ///
     /// # Errors
     /// See [`FactorError`].
@@ -133,7 +134,7 @@ impl<T: Real> Factors<T> {
     }
 
     /// Replaces right-hand sides by solutions; `x` contains `right_sides` vectors of
-    /// [`Factors::size`] entries, one after the other.
+    /// [`Factors::size`] entries each, one after the other.
     ///
     /// # Panics
     /// If `x` is not empty and has another length.
@@ -160,8 +161,10 @@ impl<T: Real> Factors<T> {
         }
     }
 
+    /// The Cholesky factor as in [`Factors::cholesky`]; [`FactorError::NotPositive`] for every
+    /// pivot that is not positive.
     fn try_cholesky(lower: &Submatrix<T>, symbolic: &SymbolicFactor) -> Result<Self, FactorError> {
-        let (a, symbolic) = (transpose_by_columns(lower), symbolic.shared());
+        let (a, symbolic) = (transpose_view(lower), symbolic.symbolic_cholesky());
         let mut values = Vec::new();
         values.try_reserve_exact(symbolic.len_val()).map_err(|_| FactorError::OutOfMemory)?;
         values.resize(symbolic.len_val(), T::lit(0.0));
@@ -185,7 +188,7 @@ impl<T: Real> Factors<T> {
         if matrix.size() == 0 {
             return Ok(Self { size: 0, factorisation: Factorisation::Empty });
         }
-        let a = transpose_by_columns(matrix);
+        let a = transpose_view(matrix);
         let symbolic = factorize_symbolic_lu(a.symbolic(), LuSymbolicParams::default())
             .map_err(out_of_memory)?;
         let mut numeric = NumericLu::new();
@@ -204,12 +207,12 @@ impl<T: Real> Factors<T> {
     }
 
     /// Whether the matrix, its rows scaled to norm one, is regular to working precision: whether the
-    /// solution for a right-hand side of pseudorandom signs is smaller than one over the rounding
-    /// unit.
+    /// solution for a right-hand side of pseudorandom signs is smaller than the reciprocal of
+    /// [`PIVOT_TOLERANCE`] times machine epsilon.
     ///
     /// Partial pivoting succeeds on singular matrices too. The norm of the solution is a lower bound of
-    /// the condition number, so that no regular matrix is rejected, and nearly that number for a
-    /// right-hand side with a component in the lowest singular direction.
+    /// the condition number, so that no regular matrix is rejected, and close to the condition number
+    /// for a right-hand side with a component in the direction of the smallest singular value.
     fn is_regular(&self, matrix: &Submatrix<T>) -> bool {
         let mut x: Vec<T> = (0..self.size)
             .zip(pseudorandom_signs())
@@ -225,7 +228,8 @@ impl<T: Real> Factors<T> {
 }
 
 /// Whether a matrix is positive definite on the unknowns `free` (ascending): whether its symmetric
-/// part has a Cholesky factor. For the matrix of a bilinear form this is coercivity.
+/// part has a Cholesky factor. The matrix of a bilinear form is positive definite if the form is
+/// coercive.
 ///
 /// # Errors
 /// [`FactorError::OutOfMemory`].
@@ -253,10 +257,11 @@ fn has_cholesky_factor<T: Real>(
     }
 }
 
-/// The error of a matrix with a pivot that is not positive: [`FactorError::Singular`] if the matrix is
-/// positive definite with a diagonal larger by the factor `1 + sqrt(eps)`, else
-/// [`FactorError::NotPositive`]. The increase is large compared with rounding errors and small
-/// compared with the negative eigenvalues of a too small penalty.
+/// The error for a matrix with a pivot that is not positive: [`FactorError::Singular`] if the
+/// matrix is positive definite with its diagonal multiplied by `1 + sqrt(eps)`, `eps` machine
+/// epsilon, else [`FactorError::NotPositive`]. Changes the diagonal of `lower`. The increase is
+/// large compared with rounding errors and small compared with the negative eigenvalues of a too
+/// small penalty.
 fn indefinite_or_singular<T: Real>(
     lower: &mut Submatrix<T>,
     symbolic: &SymbolicFactor,
@@ -277,8 +282,9 @@ fn indefinite_or_singular<T: Real>(
     }
 }
 
-/// Whether every pivot, the square of a diagonal entry of the factor, exceeds the rounding error of
-/// its diagonal entry of the matrix.
+/// Whether every pivot, the square of a diagonal entry of the factor, is significant: larger than
+/// [`PIVOT_TOLERANCE`] times machine epsilon times the corresponding entry of `diagonal`, the
+/// diagonal of the matrix.
 fn pivots_are_significant<T: Real>(
     symbolic: &SymbolicCholesky<u32>,
     values: &[T],

@@ -13,10 +13,10 @@ use crate::real::Real;
 /// One thread, always: sums in the same order give the same bits on every machine.
 pub(crate) const PAR: Par = Par::Seq;
 
-/// The Cholesky factor of a symmetric matrix given by its upper triangle.
+/// Sets `values` to the Cholesky factor of a symmetric matrix, given by its upper triangle.
 ///
 /// # Errors
-/// A pivot that is not positive.
+/// A pivot is not positive.
 pub(crate) fn cholesky<T: Real>(
     symbolic: &SymbolicCholesky<u32>,
     a: SparseColMatRef<'_, u32, T>,
@@ -29,7 +29,7 @@ pub(crate) fn cholesky<T: Real>(
         .map(|_| ())
 }
 
-/// Solves with a Cholesky factor.
+/// Replaces the right-hand sides `x` by solutions, with a Cholesky factor.
 pub(crate) fn cholesky_solve<T: Real>(
     symbolic: &SymbolicCholesky<u32>,
     values: &[T],
@@ -40,10 +40,10 @@ pub(crate) fn cholesky_solve<T: Real>(
     factor.solve_in_place_with_conj(Conj::No, x, PAR, memory);
 }
 
-/// The factors of any matrix.
+/// Computes the LU factors of any matrix.
 ///
 /// # Errors
-/// A structurally singular matrix, or no memory.
+/// The matrix is structurally singular, or the factors do not fit into memory.
 pub(crate) fn lu<T: Real>(
     symbolic: &SymbolicLu<u32>,
     a: SparseColMatRef<'_, u32, T>,
@@ -53,7 +53,7 @@ pub(crate) fn lu<T: Real>(
     symbolic.factorize_numeric_lu(numeric, a, PAR, memory, Default::default()).map(|_| ())
 }
 
-/// Solves with the transpose of a factored matrix.
+/// Replaces the right-hand sides `x` by solutions for the transpose of the factored matrix.
 pub(crate) fn lu_solve_transpose<T: Real>(
     symbolic: &SymbolicLu<u32>,
     numeric: &NumericLu<u32, T>,

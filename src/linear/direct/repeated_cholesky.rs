@@ -9,12 +9,13 @@ use super::symbolic_factor::SymbolicFactor;
 use crate::algebra::{PenalisedMatrix, SparseMatrix, Submatrix, barycentre};
 use crate::real::Real;
 
-/// Cholesky factorisation of matrices with the same pattern: order of elimination and symbolic factor
-/// are those of the first one.
+/// Cholesky factorisation of matrices with the same pattern: the order of elimination and the
+/// symbolic factor of the first matrix are used for all.
 #[derive(Default)]
 pub(crate) struct RepeatedCholesky {
     /// A point for each row, if known.
     points: Option<Vec<[f32; 3]>>,
+    /// The symbolic factor; empty before the first factorisation.
     symbolic: OnceLock<SymbolicFactor>,
 }
 
@@ -31,7 +32,8 @@ impl RepeatedCholesky {
         Self { points: points.map(centres), symbolic: OnceLock::new() }
     }
 
-    /// The Cholesky factor of a symmetric matrix, given by its lower triangle.
+    /// The Cholesky factor of a symmetric matrix, given by its lower triangle. All matrices must
+    /// have the same pattern.
     ///
     /// # Errors
     /// See [`FactorError`].

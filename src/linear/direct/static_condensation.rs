@@ -1,18 +1,19 @@
 //! Static condensation of systems with the matrix `K + M^T S M`, `K` block diagonal.
 //!
-//! The penalty `s (m - n)^2` of the means `m`, `n` over the two sides of a facet is the minimum over `a`
-//! of `2 s (m - a)^2 + 2 s (n - a)^2`. With one unknown `a` for each facet between two blocks, the
-//! *facet mean*, blocks are coupled through facet means only. Elimination of a block with its jump
-//! multipliers `p` inverts the quasidefinite matrix
+//! The penalty `s (m - n)^2` of the means `m`, `n` over the two sides of a facet is the minimum
+//! over `a` of `2 s (m - a)^2 + 2 s (n - a)^2`. With one unknown `a` for each facet between two
+//! blocks, the *facet mean*, blocks are coupled through facet means only. Elimination of a block
+//! with its jump multipliers `p` inverts the quasidefinite matrix
 //!
 //! ```text
 //! [ K  M^T  ] [ u ]   [ r     ]
 //! [ M  -1/w ] [ p ] = [ a + t ]
 //! ```
 //!
-//! in which weights `w` are not added to stiffnesses. The Schur complement on facet means is, up to
-//! `O(1/s)`, the matrix of Crouzeix-Raviart elements: half the unknowns in the plane, and condition
-//! `O(h^-2)` for all weights.
+//! in which weights `w` (`2 s`, or `s` on a facet with one block) are not added to stiffnesses; `r`
+//! and `t` are the right-hand sides, `a` the facet means. The Schur complement on facet means is,
+//! up to `O(1/s)`, the matrix of Crouzeix-Raviart elements: on triangles it has half as many
+//! unknowns as `K`, and its condition number is `O(h^-2)` for all weights.
 //!
 //! Where the means over the sides of a block are linearly dependent functions of its free unknowns
 //! (blocks with fixed unknowns; quadratic functions that vanish at both Gauss points of every edge),
@@ -29,14 +30,14 @@ use crate::algebra::dense::{invert_in_place, rank};
 use crate::algebra::{JumpTerm, NO_INDEX, PenalisedMatrix, SparseMatrix};
 use crate::real::Real;
 
-/// Largest weight over `k / eps`, `k` the least stiffness, in a block with dependent means because
-/// unknowns are fixed.
+/// Largest weight divided by `k / eps`, in a block with dependent means because unknowns are fixed;
+/// `k` is the least positive diagonal entry of the stiffness of the block, `eps` machine epsilon.
 const MAX_WEIGHT: f64 = 1e-3;
 
-/// Largest weight over `k / sqrt(eps)`, `k` the least stiffness, in a block with dependent means and no
-/// fixed unknown. All blocks of a mesh can be of this kind, so that half the digits are kept for the
-/// stiffness; jump multipliers are of the size of stiffnesses there, and each refinement step gains
-/// that many digits of them.
+/// Largest weight divided by `k / sqrt(eps)`, in a block with dependent means and no fixed unknown;
+/// `k` and `eps` as for [`MAX_WEIGHT`]. All blocks of a mesh can be of this kind, so that half the
+/// digits are kept for the stiffness; jump multipliers are of the size of stiffnesses there, and
+/// each refinement step gains half the digits of the jump multipliers.
 const MAX_WEIGHT_BY_ROOT: f64 = 4.0;
 
 /// One side of a jump, in the list of its block.
@@ -64,7 +65,7 @@ pub(crate) struct StaticCondensation<'a, T> {
 pub(crate) struct CondensedFactors<T> {
     /// The inverses by rows: free unknowns of the block, then jump multipliers.
     inverses: Vec<f64>,
-    /// Start of each block's inverse.
+    /// Start of each block's inverse in `inverses`, and its length at the end.
     starts: Vec<usize>,
     schur_complement: Factors<T>,
 }
@@ -104,7 +105,8 @@ impl<'a, T: Real> StaticCondensation<'a, T> {
         condensation
     }
 
-    /// Uses the points of unknowns, if known, for the order of elimination of facet means.
+    /// Uses the points of unknowns for the order of elimination of facet means; `None` if they are
+    /// not known.
     #[must_use]
     pub fn with_points(mut self, points: Option<&[[f32; 3]]>) -> Self {
         self.cholesky = RepeatedCholesky::on_jumps(self.penalised, points);
@@ -145,7 +147,8 @@ impl<'a, T: Real> StaticCondensation<'a, T> {
         (block * n..(block + 1) * n).filter(|&i| is_free[i])
     }
 
-    /// The coefficient of an unknown in the mean over a side.
+    /// The coefficient of an unknown in the mean over a side of a facet; zero if the mean does not
+    /// contain it.
     fn mean_coefficient(&self, side: &JumpSide, unknown: usize) -> f64 {
         let is_own = |t: &&JumpTerm<T>| {
             let i = if side.sign > 0.0 { t.here } else { t.there };
@@ -158,8 +161,8 @@ impl<'a, T: Real> StaticCondensation<'a, T> {
             .map_or(0.0, |t| t.weight.to_f64())
     }
 
-    /// The weight of the difference between the mean over a side and the facet mean: twice that of the
-    /// jump.
+    /// The weight of the difference between the mean over a side and the facet mean: twice the
+    /// weight of the jump; if the jump has one side only, the weight of the jump.
     fn side_weight(&self, side: &JumpSide) -> f64 {
         let weight = self.penalised.weights[side.jump as usize].to_f64();
         if side.mean == NO_INDEX { weight } else { 2.0 * weight }
@@ -181,8 +184,8 @@ impl<'a, T: Real> StaticCondensation<'a, T> {
         self.factor_shifted(is_free, &[])
     }
 
-    /// [`StaticCondensation::factor`] for `K + D` in place of `K`; `shift` is the nonnegative diagonal of
-    /// `D`, or empty for zero.
+    /// [`StaticCondensation::factor`] for `K + D` in place of `K`; `shift` is the nonnegative
+    /// diagonal of `D`, or empty for zero.
     ///
     /// # Errors
     /// See [`FactorError`].
@@ -215,7 +218,11 @@ impl<'a, T: Real> StaticCondensation<'a, T> {
         Ok(CondensedFactors { inverses, starts, schur_complement })
     }
 
-    /// Computes the inverse of a block with its jump multipliers; returns the number of free unknowns.
+    /// Sets `out` to the inverse of a block with its jump multipliers; returns the number of free
+    /// unknowns of the block.
+    ///
+    /// # Errors
+    /// [`FactorError::Singular`] or [`FactorError::NotPositive`].
     fn invert_block(
         &self,
         block: usize,
@@ -344,8 +351,9 @@ impl<'a, T: Real> StaticCondensation<'a, T> {
         }));
     }
 
-    /// The sums of the absolute values of the terms of the residual `(c - K u - M^T p)_i`: first those
-    /// with free unknowns and jump multipliers `p`, then those with fixed unknowns and the load.
+    /// Two sums of absolute values of terms of the residual `(c - K u - M^T p)_i`: first of the
+    /// terms with free unknowns and jump multipliers `p`, then of the terms with fixed unknowns and
+    /// of the load.
     pub fn residual_term_sizes(
         &self,
         i: usize,

@@ -1,4 +1,4 @@
-//! The symbolic part of a Cholesky factorisation, and matrices in the storage of faer.
+//! The symbolic part of a Cholesky factorisation, and views of matrices as faer's data structure.
 
 use std::sync::Arc;
 
@@ -18,11 +18,14 @@ use crate::real::Real;
 pub(crate) struct SymbolicFactor(Arc<SymbolicCholesky<u32>>);
 
 impl SymbolicFactor {
-    /// The pattern for a lower triangle and an order of elimination: a permutation of the rows, or
-    /// approximate minimum degree for `None`.
+    /// The pattern for the lower triangle of a matrix and an order of elimination: a permutation of the
+    /// rows, or approximate minimum degree for `None`.
     ///
     /// # Errors
     /// [`FactorError::OutOfMemory`].
+    ///
+    /// # Panics
+    /// If `order` is not a permutation of the rows.
     pub fn new<T: Real>(
         lower: &Submatrix<T>,
         order: Option<Vec<u32>>,
@@ -36,8 +39,8 @@ impl SymbolicFactor {
             Some(order) => SymmetricOrdering::Custom(order.as_ref()),
             None => SymmetricOrdering::Amd,
         };
-        // The lower triangle by rows is the upper triangle by columns.
-        let pattern = transpose_by_columns(lower);
+        // The transpose of the lower triangle is the upper triangle.
+        let pattern = transpose_view(lower);
         let params = CholeskySymbolicParams::default();
         let symbolic =
             factorize_symbolic_cholesky(pattern.symbolic(), Side::Upper, ordering, params)
@@ -45,14 +48,15 @@ impl SymbolicFactor {
         Ok(Self(Arc::new(symbolic)))
     }
 
-    /// The pattern in the storage of faer, shared by all factors.
-    pub fn shared(&self) -> Arc<SymbolicCholesky<u32>> {
+    /// The pattern as faer's data structure, which all factors of matrices with this pattern share.
+    pub fn symbolic_cholesky(&self) -> Arc<SymbolicCholesky<u32>> {
         self.0.clone()
     }
 }
 
-/// The transpose of a matrix by columns, which are the rows of the matrix. Nothing is copied.
-pub(crate) fn transpose_by_columns<T>(matrix: &Submatrix<T>) -> SparseColMatRef<'_, u32, T> {
+/// A view of the transpose in compressed column storage: the row arrays of the matrix are the
+/// column arrays of its transpose.
+pub(crate) fn transpose_view<T>(matrix: &Submatrix<T>) -> SparseColMatRef<'_, u32, T> {
     let n = matrix.size();
     let pattern = faer::sparse::SymbolicSparseColMatRef::new_checked(
         n,

@@ -107,9 +107,9 @@ impl<'m, T: Real> ConjugateGradients<'m, T> {
         });
     }
 
-    /// `x = x + omega z`: a step of Richardson's iteration with the last preconditioned residual, which
-    /// needs no further product. It reduces the energy error if `omega` is less than two over the
-    /// largest eigenvalue of `B A`.
+    /// `x = x + omega z`: a step of Richardson's iteration with the last preconditioned residual,
+    /// which needs no further product. It reduces the error in the energy norm if `omega` is less
+    /// than two divided by the largest eigenvalue of `B A`.
     fn richardson_step(&self, omega: T, x: &mut [T]) {
         for_each_chunk(x, |range, x| {
             x.iter_mut().zip(&self.z[range]).for_each(|(x, &z)| *x += omega * z);

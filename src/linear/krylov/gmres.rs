@@ -1,9 +1,10 @@
 //! GMRES on the free unknowns, for matrices that are not symmetric.
 //!
-//! Source: Y. Saad, M. H. Schultz, SIAM J. Sci. Stat. Comput. 7 (1986), 856-869. The inner product is
-//! that of a preconditioner `B` of the symmetric part: the rate of convergence then depends on the
-//! field of values of `B A` only, and not on the mesh (G. Starke, Numer. Math. 78 (1997), 103-117;
-//! S. C. Eisenstat, H. C. Elman, M. H. Schultz, SIAM J. Numer. Anal. 20 (1983), 345-357).
+//! Source: Y. Saad, M. H. Schultz, SIAM J. Sci. Stat. Comput. 7 (1986), 856-869. The inner product
+//! is `v . B w` with a preconditioner `B` of the symmetric part: the rate of convergence then
+//! depends on the field of values of `B A` only, and not on the mesh (G. Starke, Numer. Math. 78
+//! (1997), 103-117; S. C. Eisenstat, H. C. Elman, M. H. Schultz, SIAM J. Numer. Anal. 20 (1983),
+//! 345-357).
 
 use nalgebra::DMatrix;
 
@@ -16,9 +17,9 @@ use crate::real::Real;
 /// Largest dimension of the Krylov space before a restart.
 const RESTART: usize = 25;
 
-/// Largest reduction of the residual before a restart. Preconditioners work in single precision, and
-/// the basis loses its orthogonality as the residual falls (A. Greenbaum, M. Rozloznik, Z. Strakos, BIT
-/// 37 (1997), 706-719).
+/// Factor by which the residual is reduced at most before a restart. Preconditioners work in single
+/// precision, and the basis loses its orthogonality as the residual falls (A. Greenbaum, M.
+/// Rozloznik, Z. Strakos, BIT 37 (1997), 706-719).
 const MAX_REDUCTION: f64 = 1e-4;
 
 /// The factor between the residual of the least squares problem and the target, for the rounding
@@ -41,8 +42,8 @@ impl<T: Real> Gmres<T> {
         Self { basis: vec![zeros(size)], directions: vec![zeros(size)] }
     }
 
-    /// Corrects the iterate `(x, r)`, `r` the residual of `x` on free unknowns and zero on fixed ones;
-    /// on return as well.
+    /// Corrects the iterate `(x, r)`, `r` the residual of `x` on free unknowns and zero on fixed ones,
+    /// before and after the call.
     pub fn solve(
         &mut self,
         matrix: &SparseMatrix<T>,
@@ -255,9 +256,9 @@ impl HessenbergMatrix {
         y
     }
 
-    /// The smallest and the largest eigenvalue of the symmetric part of the square matrix, or of
-    /// `previous` if more extreme. They lie between the extreme eigenvalues of the preconditioned
-    /// symmetric part of `A`.
+    /// The smallest and the largest eigenvalue of the symmetric part of the square matrix, or the
+    /// values `previous` where they are more extreme; `None` if both are empty. They lie between
+    /// the extreme eigenvalues of the preconditioned symmetric part of `A`.
     fn extreme_ritz_values(&self, previous: Option<(f64, f64)>) -> Option<(f64, f64)> {
         let entry = |i: usize, j: usize| self.columns[j].get(i).copied().unwrap_or(0.0);
         let n = self.size();

@@ -9,7 +9,7 @@ pub(crate) struct LanczosMatrix {
     diagonal: Vec<f64>,
     /// The squares of the off-diagonal entries.
     off_diagonal_squares: Vec<f64>,
-    /// The coefficients of the last iteration.
+    /// The coefficients `alpha` and `beta` of the last iteration; `None` before the first.
     last: Option<(f64, f64)>,
 }
 
@@ -24,8 +24,8 @@ impl LanczosMatrix {
         self.last = Some((alpha, beta));
     }
 
-    /// The smallest and the largest eigenvalue, by bisection with Sylvester's law of inertia; `None` for
-    /// the empty matrix.
+    /// The smallest and the largest eigenvalue, by bisection with Sylvester's law of inertia;
+    /// `None` for the empty matrix.
     pub fn extreme_eigenvalues(&self) -> Option<(f64, f64)> {
         let n = self.diagonal.len();
         if n == 0 {

@@ -2,14 +2,14 @@
 //!
 //! The norm of a residual `r` is the preconditioned one, `(r . B r)^(1/2)` with the preconditioner `B`.
 
-/// When a Krylov method stops; the first rule to hold.
+/// When a Krylov method stops: as soon as one of the three conditions holds.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct StoppingRule {
     /// The norm of the residual is at most this.
     pub norm: f64,
     /// The norm of the residual is at most this times its initial value.
     pub reduction: f64,
-    /// So many iterations are done.
+    /// The number of iterations is this.
     pub max_iterations: usize,
 }
 
@@ -38,11 +38,13 @@ pub(crate) enum StopReason {
 pub(crate) struct KrylovRun {
     pub iterations: usize,
     pub reason: StopReason,
-    /// The norm of the residual at the end. Divided by the root of the smallest eigenvalue of `B A`, it
-    /// bounds the energy norm of the error.
+    /// The norm of the residual at the end. Divided by the square root of the smallest eigenvalue
+    /// of `B A` (of `B` times the symmetric part of `A`), it bounds the energy norm of the error.
     pub norm: f64,
-    /// The smallest and the largest Ritz value of `B A`, of its symmetric part for GMRES. The smallest
-    /// one converges to the smallest eigenvalue from above.
+    /// The smallest and the largest Ritz value: of `B A` for conjugate gradients, of the symmetric
+    /// part of the Hessenberg matrix for GMRES; `None` without an iteration. The smallest one is
+    /// above the smallest eigenvalue of `B` times the symmetric part of `A`; for conjugate
+    /// gradients it converges to this eigenvalue.
     pub ritz: Option<(f64, f64)>,
 }
 

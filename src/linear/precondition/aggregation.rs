@@ -9,10 +9,12 @@ use crate::real::Real;
 /// Unknowns `i` and `j` are strongly coupled if `a_ij^2 > STRENGTH^2 a_ii a_jj`.
 const STRENGTH: f64 = 0.05;
 
-/// Entries of the prolongation up to this absolute value are zero: rounding errors, mostly.
+/// Entries of the prolongation up to this absolute value are set to zero: most of them are rounding
+/// errors.
 const NEGLIGIBLE: f64 = 1e-4;
 
-/// The damping of the Jacobi step, times the largest eigenvalue of `D^-1 A`.
+/// The damping of the Jacobi step times the bound on the largest eigenvalue of `D^-1 A`, `D` the
+/// diagonal.
 const DAMPING: f64 = 4.0 / 3.0;
 
 /// The prolongation `P` and the coarse matrix `P^T A P`; `None` if the coarse space has no unknown or
@@ -36,8 +38,10 @@ pub(crate) fn aggregate<T: Real>(
 
 /// The aggregate of each unknown, [`NO_INDEX`] for none, and the number of aggregates.
 ///
-/// Aggregates are disjoint neighbourhoods of strong couplings. An unknown outside of all joins the
-/// aggregate of its strongest neighbour; unknowns without such a neighbour make further aggregates.
+/// Aggregates are disjoint neighbourhoods of strong couplings. An unknown outside of all of them
+/// joins the aggregate of its most strongly coupled neighbour that has one; the remaining unknowns
+/// form further aggregates with their neighbours. Fixed unknowns, and unknowns without strong
+/// couplings, have none.
 fn aggregates<T: Real>(
     matrix: &SparseMatrix<T>,
     fixed: &[bool],

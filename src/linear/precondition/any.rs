@@ -14,7 +14,7 @@ use crate::algebra::{
 use crate::linear::direct::FactorError;
 use crate::real::Real;
 
-/// One of the preconditioners, chosen by the supports of the unknowns and the matrix.
+/// One of the preconditioners, chosen by the supports of the unknowns, the matrix and the known spaces.
 pub(crate) enum AnyPreconditioner<'a, T: Real> {
     Multigrid(Box<Multigrid<'a, T>>),
     AuxiliarySpace(Box<AuxiliarySpace<'a, T>>),
@@ -22,9 +22,9 @@ pub(crate) enum AnyPreconditioner<'a, T: Real> {
 }
 
 impl<'a, T: Real> AnyPreconditioner<'a, T> {
-    /// The spaces of conforming linear functions for a symmetric matrix: those known for the
-    /// inequality if they fit, else constructed from the matrix and the supports; `None` without
-    /// supports.
+    /// The spaces of conforming linear functions for a symmetric matrix: the spaces `known` if they
+    /// fit, else constructed from the matrix and the supports of the inequality; `None` if the
+    /// inequality does not have a support for each unknown.
     pub fn coarse_spaces(
         matrix: &SparseMatrix<T>,
         inequality: &Inequality<T>,
@@ -57,7 +57,7 @@ impl<'a, T: Real> AnyPreconditioner<'a, T> {
 
     /// The preconditioner of a symmetric matrix; `None` if none fits. [`MeanJumpSplitting`] is
     /// considered only if `allow_splitting`: in the symmetric part of a matrix fluxes can cancel, so
-    /// that cells are coupled by a penalty alone which need not be large.
+    /// that only a penalty couples the cells, which need not be large.
     pub fn new(
         matrix: &'a SparseMatrix<T>,
         supports: &[Support],
@@ -70,24 +70,24 @@ impl<'a, T: Real> AnyPreconditioner<'a, T> {
                 Some(Self::Multigrid(Box::new(Multigrid::new(matrix, Some(coarser)))))
             }
             CoarseSpaces::SameMesh(level) => {
-                let vertices = || {
+                let correction = || {
                     let multigrid = Multigrid::new(&level.matrix, level.coarser.as_ref());
                     VertexCorrection::new(multigrid, &level.fixed, supports)
                 };
                 let splitting = match allow_splitting {
-                    true => MeanJumpSplitting::new(matrix, supports, vertices),
+                    true => MeanJumpSplitting::new(matrix, supports, correction),
                     false => None,
                 };
                 if let Some(splitting) = splitting {
                     return Some(Self::MeanJumpSplitting(Box::new(splitting)));
                 }
-                let space = AuxiliarySpace::new(matrix, supports, vertices()?)?;
+                let space = AuxiliarySpace::new(matrix, supports, correction()?)?;
                 Some(Self::AuxiliarySpace(Box::new(space)))
             }
         }
     }
 
-    /// Sets the fixed unknowns.
+    /// Sets the fixed unknowns; must be called before the first use.
     ///
     /// # Errors
     /// [`FactorError`] if a diagonal block or a coarse matrix is not positive definite.
@@ -99,9 +99,9 @@ impl<'a, T: Real> AnyPreconditioner<'a, T> {
         }
     }
 
-    /// The reduction of the residual to which a system is solved while the active set changes. It is
-    /// smaller for over-penalised elements: an error that is small in the energy can be large in
-    /// single unknowns, and change their contact states.
+    /// The factor by which the norm of the residual is reduced by the solution of a system while
+    /// the active set changes. The factor is smaller for over-penalised elements: an error that is
+    /// small in the energy norm can be large in single unknowns, and change their contact states.
     pub fn inexact_reduction(&self) -> f64 {
         match self {
             Self::MeanJumpSplitting(_) => 0.01,
@@ -109,7 +109,7 @@ impl<'a, T: Real> AnyPreconditioner<'a, T> {
         }
     }
 
-    /// The name in reports.
+    /// The name in reports and in [`Solution`](crate::inequality::Solution).
     pub fn name(&self) -> &'static str {
         match self {
             Self::Multigrid(_) => "multigrid",
@@ -138,8 +138,9 @@ fn are_vertex_values(supports: &[Support]) -> bool {
 }
 
 /// The conforming linear functions on the mesh of another finite element, with the Galerkin matrix
-/// `P^T A P`; an unknown of the element is the mean of the values at the vertices of its support.
-/// Vertices of fixed unknowns are fixed.
+/// `P^T A P`, where an unknown of the element is the mean of the values at the vertices of its
+/// support. Vertices in the supports of fixed unknowns are fixed, and vertices whose diagonal entry
+/// is not positive. `None` without supports.
 fn p1_level<T: Real>(
     matrix: &SparseMatrix<T>,
     supports: &[Support],

@@ -16,42 +16,51 @@ use crate::real::Real;
 /// Largest number of unknowns of a cell.
 const MAX_CELL_SIZE: usize = 16;
 
-/// The preconditioner `D^-1 + P C P^T`: `D` the diagonal blocks of cells, `P` the interpolation of
-/// conforming linear functions, `C` a multigrid cycle.
+/// The preconditioner `D^-1 + P C P^T` of a symmetric matrix `A`.
+///
+/// `D` is the block diagonal part of `A` with one block for the unknowns of each cell. `P` maps the
+/// vertex values of a conforming linear function to unknowns: an unknown is the mean of the values
+/// at the vertices of its support. `C` is a multigrid cycle for the matrix of the form on
+/// conforming linear functions ([`P1Level`](super::coarse_level::P1Level)), not for `A`.
 pub(crate) struct AuxiliarySpace<'a, T: Real> {
     blocks: BlockJacobi<'a, T>,
-    vertices: VertexCorrection<'a, T>,
+    correction: VertexCorrection<'a, T>,
 }
 
 impl<'a, T: Real> AuxiliarySpace<'a, T> {
-    /// The preconditioner of a symmetric matrix; `None` if cells own different numbers of unknowns.
+    /// The preconditioner of a symmetric matrix; `None` if [`unknowns_per_cell`] is, or the size of the
+    /// matrix is not a multiple of this number.
     pub fn new(
         matrix: &'a SparseMatrix<T>,
         supports: &[Support],
-        vertices: VertexCorrection<'a, T>,
+        correction: VertexCorrection<'a, T>,
     ) -> Option<Self> {
-        Some(Self { blocks: BlockJacobi::new(matrix, unknowns_per_cell(supports)?)?, vertices })
+        Some(Self { blocks: BlockJacobi::new(matrix, unknowns_per_cell(supports)?)?, correction })
     }
 
-    /// Sets the fixed unknowns.
+    /// Sets the fixed unknowns; must be called before the first use.
     ///
     /// # Errors
     /// [`FactorError`] if a block, or the matrix of the coarsest level, is not positive definite.
     pub fn set_fixed(&mut self, fixed: &[bool]) -> Result<(), FactorError> {
         self.blocks.set_fixed(fixed)?;
-        self.vertices.set_fixed(fixed)
+        self.correction.set_fixed(fixed)
     }
 }
 
 impl<T: Real> Preconditioner<T> for AuxiliarySpace<'_, T> {
     fn apply(&mut self, r: &[T], z: &mut [T]) {
         self.blocks.apply(r, z);
-        self.vertices.add(r, z);
+        self.correction.add(r, z);
     }
 }
 
-/// The number of unknowns that each cell owns, consecutive ones; one if cells share all unknowns.
-/// `None` if it differs between cells or exceeds [`MAX_CELL_SIZE`].
+/// One if cells share all unknowns. If cells own all unknowns: the number `n` of unknowns at the
+/// beginning of the list that belong to the first cell, provided that `n` is at most
+/// [`MAX_CELL_SIZE`] and the list consists of groups of `n` consecutive unknowns, each with the
+/// same cell. `None` for every other list, among them the empty one.
+///
+/// Whether two groups belong to different cells is not examined.
 pub(crate) fn unknowns_per_cell(supports: &[Support]) -> Option<usize> {
     let first = supports.first()?.cell();
     if first.is_none() {
@@ -66,8 +75,8 @@ pub(crate) fn unknowns_per_cell(supports: &[Support]) -> Option<usize> {
     (size <= MAX_CELL_SIZE && supports.chunks(size).all(is_one_cell)).then_some(size)
 }
 
-/// The correction `P C P^T r` by conforming linear functions that vanish at the vertices of fixed
-/// unknowns.
+/// The correction `P C P^T r` by conforming linear functions that vanish at the vertices in the
+/// supports of fixed unknowns; for `P` and `C` see [`AuxiliarySpace`].
 pub(crate) struct VertexCorrection<'a, T: Real> {
     multigrid: Multigrid<'a, T>,
     /// The vertices with Dirichlet data.
@@ -76,8 +85,9 @@ pub(crate) struct VertexCorrection<'a, T: Real> {
     interpolation: RectangularMatrix<T>,
     /// `P^T`.
     transpose: RectangularMatrix<T>,
-    /// The fixed vertices.
-    fixed: Vec<bool>,
+    /// Whether a vertex is fixed; see [`VertexCorrection::set_fixed`].
+    fixed_vertices: Vec<bool>,
+    /// Workspace: `P^T r` and `C P^T r`, zero at fixed vertices.
     residual: Vec<T>,
     values: Vec<T>,
 }
@@ -110,32 +120,41 @@ impl<'a, T: Real> VertexCorrection<'a, T> {
         }
         let transpose = interpolation.transpose(n);
         let (residual, values) = (zeros(n), zeros(n));
-        let fixed = vec![false; n];
-        Some(Self { multigrid, dirichlet, interpolation, transpose, fixed, residual, values })
+        let fixed_vertices = vec![false; n];
+        Some(Self {
+            multigrid,
+            dirichlet,
+            interpolation,
+            transpose,
+            fixed_vertices,
+            residual,
+            values,
+        })
     }
 
-    /// Sets the fixed unknowns. A vertex is fixed if it has Dirichlet data or is in the support of a
-    /// fixed unknown.
+    /// Sets the fixed unknowns, and the fixed vertices: those with Dirichlet data, and those in the
+    /// support of a fixed unknown.
     ///
     /// # Errors
     /// [`FactorError`] if the matrix of the coarsest level is not positive definite.
     pub fn set_fixed(&mut self, fixed: &[bool]) -> Result<(), FactorError> {
         let (transpose, dirichlet) = (&self.transpose, self.dirichlet);
-        for_each_chunk(&mut self.fixed, |range, out| {
+        for_each_chunk(&mut self.fixed_vertices, |range, out| {
             for (v, out) in range.zip(out) {
                 let is_fixed = |&i: &u32| fixed[i as usize];
                 *out = dirichlet[v] || transpose.row(v).0.iter().any(is_fixed);
             }
         });
-        self.multigrid.set_fixed(&self.fixed)
+        self.multigrid.set_fixed(&self.fixed_vertices)
     }
 
     /// `z = z + P C P^T r`.
     pub fn add(&mut self, r: &[T], z: &mut [T]) {
-        let (transpose, interpolation, fixed) = (&self.transpose, &self.interpolation, &self.fixed);
+        let (transpose, interpolation) = (&self.transpose, &self.interpolation);
+        let fixed_vertices = &self.fixed_vertices;
         for_each_chunk(&mut self.residual, |range, out| {
             for (v, out) in range.zip(out) {
-                *out = if fixed[v] { T::lit(0.0) } else { row_dot(transpose.row(v), r) };
+                *out = if fixed_vertices[v] { T::lit(0.0) } else { row_dot(transpose.row(v), r) };
             }
         });
         self.multigrid.apply(&self.residual, &mut self.values);
@@ -159,7 +178,7 @@ struct BlockJacobi<'a, T> {
     matrix: &'a SparseMatrix<T>,
     /// Number of unknowns of a cell.
     size: usize,
-    /// The inverses by rows, one after the other.
+    /// The inverses by rows, one inverse after the other; zero in rows and columns of fixed unknowns.
     inverses: Vec<T>,
 }
 
@@ -169,6 +188,10 @@ impl<'a, T: Real> BlockJacobi<'a, T> {
         n.is_multiple_of(size).then(|| Self { matrix, size, inverses: zeros(n * size) })
     }
 
+    /// Inverts all blocks on their free unknowns.
+    ///
+    /// # Errors
+    /// [`FactorError::NotPositive`] if a block is not positive definite.
     fn set_fixed(&mut self, fixed: &[bool]) -> Result<(), FactorError> {
         let Self { matrix, size, ref mut inverses } = *self;
         let is_positive = AtomicBool::new(true);
@@ -201,8 +224,9 @@ impl<'a, T: Real> BlockJacobi<'a, T> {
     }
 }
 
-/// Copies the diagonal block that begins with the unknown `first`; rows and columns of fixed unknowns
-/// are zero.
+/// Copies the diagonal block that begins with the unknown `first`; rows and columns of fixed
+/// unknowns are zero. `fixed` are the entries for the unknowns of the block. The columns of a row
+/// of the matrix must be ascending.
 fn read_block<T: Real>(matrix: &SparseMatrix<T>, first: usize, fixed: &[bool], block: &mut [T]) {
     let size = fixed.len();
     block.fill(T::lit(0.0));
@@ -220,7 +244,7 @@ fn read_block<T: Real>(matrix: &SparseMatrix<T>, first: usize, fixed: &[bool], b
 }
 
 /// Inverts a symmetric positive definite block in place on its free unknowns, by Gauss-Jordan
-/// elimination; false if a pivot is not positive.
+/// elimination; false if a pivot is not positive, with the block destroyed.
 fn invert_positive_definite<T: Real>(a: &mut [T], size: usize, fixed: &[bool]) -> bool {
     let one = T::lit(1.0);
     for k in (0..size).filter(|&k| !fixed[k]) {

@@ -7,10 +7,10 @@ use super::prolongation::Prolongation;
 use crate::algebra::SparseMatrix;
 use crate::real::Real;
 
-/// Largest number of unknowns of a level that is factored instead of coarsened.
+/// Largest number of unknowns of a level that is factored instead of being coarsened by aggregation.
 const MAX_FACTORED: usize = 600;
 
-/// Largest number of unknowns of a coarsest level that is factored instead of smoothed.
+/// Largest number of free unknowns of a coarsest level that is factored instead of smoothed.
 pub(crate) const MAX_COARSEST_FACTORED: usize = 20_000;
 
 /// The conforming linear functions on a mesh: the matrix of the form on all vertices, and the next

@@ -1,16 +1,17 @@
-//! The form of an over-penalised broken element on its facet mean functions, read from the matrix.
+//! The form of an over-penalised discontinuous element on its facet mean functions, read from the
+//! matrix.
 
 use crate::algebra::{NO_INDEX, SparseMatrix, Support};
 use crate::real::Real;
 
-/// Entries up to this many rounding units of the largest entry of their block are zero.
+/// Entries up to this multiple of machine epsilon times the largest entry of their block count as zero.
 const ROUNDING: f64 = 64.0;
 
 /// The entries of a symmetric form between the facet mean functions of the two sides of a facet.
 ///
-/// The facet mean function of a side is the linear function on its cell with mean one over that facet
-/// and mean zero over the cell's other facets: the Crouzeix-Raviart basis. Sides have the indices of
-/// unknowns: side `i` of a cell is that of its facet `i`, which is opposite to vertex `i`.
+/// The facet mean function of a side is the linear function on its cell with mean one on the facet
+/// and mean zero on the other facets of the cell: the Crouzeix-Raviart basis. Sides have the indices of
+/// unknowns: side `i` of a cell belongs to facet `i` of the cell, which is opposite to vertex `i`.
 pub(crate) struct FacetMeanForm<T> {
     /// Number of unknowns of a cell.
     pub cell_size: usize,
@@ -20,7 +21,8 @@ pub(crate) struct FacetMeanForm<T> {
     pub opposite: Vec<u32>,
     /// The form of the function of a side with itself.
     pub diagonal: Vec<T>,
-    /// The form of the functions of a side and of the opposite one.
+    /// The form of the function of a side with the function of the opposite side; zero if there is
+    /// none.
     pub coupling: Vec<T>,
 }
 
@@ -31,8 +33,9 @@ pub(crate) fn cr_basis<T: Real>(cell_size: usize, vertex: usize, facet: usize) -
 }
 
 impl<T: Real> FacetMeanForm<T> {
-    /// The entries of a matrix; `None` if its unknowns are not those of broken linear functions in two
-    /// or three dimensions, or cells are coupled by more than the means over their common facet.
+    /// The entries of a matrix; `None` if its unknowns are not those of discontinuous linear
+    /// functions in two or three dimensions, or cells are coupled by more than the means over their
+    /// common facet.
     pub fn from_matrix(
         matrix: &SparseMatrix<T>,
         supports: &[Support],
@@ -144,7 +147,8 @@ impl<T: Real> FacetMeanForm<T> {
         let (here, there) = (of(cell), of(other));
         let is_shared =
             |p: &Support, cell: &[Support]| cell.iter().any(|q| q.vertices() == p.vertices());
-        // The facet has the mean that both cells have, or is opposite to the vertex of one cell only.
+        // With means as unknowns, the common facet is the one whose mean both cells have; with
+        // vertex values, the one opposite to the vertex that only one of the cells has.
         let wanted = self.are_means;
         let local = |from: &[Support], to: &[Support]| {
             let mut found = (0..size).filter(|&i| is_shared(&from[i], to) == wanted);

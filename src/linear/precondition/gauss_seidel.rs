@@ -6,9 +6,9 @@
 //!
 //! An iteration is limited by memory bandwidth. Only the strictly lower triangle of each chunk is
 //! stored: by symmetry, row `i` of it updates both the equation of unknown `i` and, once `x_i` is
-//! computed, the residuals of the unknowns before. The forward iteration so returns the residual
-//! without a further product. With column indices of two bytes and values of four, a forward and a
-//! backward iteration read a seventh of the bytes of two products with the matrix.
+//! computed, the residuals of the preceding unknowns. The forward iteration therefore returns the
+//! residual without a further product. With column indices of two bytes and values of four, a
+//! forward and a backward iteration read a seventh of the bytes of two products with the matrix.
 
 use crate::algebra::SparseMatrix;
 use crate::parallel::vectors::{CHUNK, for_each_chunk, map_chunks, sum_chunks_of_two, zeros};
@@ -17,7 +17,8 @@ use crate::real::Real;
 /// The Gauss-Seidel smoother of a symmetric matrix divided by a scale.
 pub(crate) struct GaussSeidel {
     chunks: Vec<ChunkRows>,
-    /// One over the diagonal entry; zero for fixed unknowns, whose values then stay zero.
+    /// The reciprocal of the diagonal entry; zero for fixed unknowns, whose values then stay zero,
+    /// and where the diagonal entry is zero.
     inverse_diagonal: Vec<f32>,
 }
 
@@ -69,7 +70,8 @@ impl ChunkRows {
                     chunk.columns.push((column - range.start) as u16);
                     chunk.values.push(to_single(a));
                 } else if column >= range.end {
-                    // The value is that of the lower row, so that both rows contain the same one.
+                    // The value is taken from the row with the larger index, so that both rows
+                    // contain the same value.
                     let (columns, values) = row(column);
                     let a = columns.binary_search(&(i as u32)).map_or(a, |k| values[k]);
                     chunk.outside.push(((i - range.start) as u16, j, to_single(a)));
@@ -99,7 +101,8 @@ impl ChunkRows {
 }
 
 impl GaussSeidel {
-    /// The smoother of a matrix with the pattern of `matrix` and the rows `row(i)`, divided by `scale`.
+    /// The smoother of a matrix with the pattern of `matrix` and the rows `row(i)`, with ascending
+    /// columns, divided by `scale`. All unknowns are fixed until [`GaussSeidel::set_fixed`].
     pub fn new<'m, T: Real>(
         matrix: &SparseMatrix<T>,
         row: impl Fn(usize) -> (&'m [u32], &'m [T]) + Sync,
@@ -110,9 +113,10 @@ impl GaussSeidel {
         Self { chunks, inverse_diagonal: zeros(n) }
     }
 
-    /// Replaces the values of the given rows and of the columns with the same indices. As in
-    /// [`GaussSeidel::new`] a value is that of the lower row, so that both have the same result to the
-    /// last bit.
+    /// Replaces the values of the given rows and of the columns with the same indices; the pattern
+    /// must be the same as before. As in [`GaussSeidel::new`], of two symmetric entries the one in
+    /// the row with the larger index is used, so that both functions have the same result to the
+    /// last bit. [`GaussSeidel::set_fixed`] must follow.
     pub fn replace_rows<'m, T: Real>(
         &mut self,
         rows: &[u32],
@@ -151,7 +155,7 @@ impl GaussSeidel {
         });
     }
 
-    /// One over the diagonal entries, zero for fixed unknowns.
+    /// The reciprocals of the diagonal entries, zero for fixed unknowns.
     pub fn inverse_diagonal(&self) -> &[f32] {
         &self.inverse_diagonal
     }

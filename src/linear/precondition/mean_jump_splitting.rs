@@ -1,9 +1,10 @@
-//! A preconditioner for broken linear functions that are coupled by a penalty on jumps of facet means
-//! only.
+//! A preconditioner for discontinuous linear functions that are coupled only by a penalty on jumps
+//! of facet means.
 //!
-//! The form is nearly diagonal in the means and jumps of the two facet means of each facet: jumps have
-//! the penalty as diagonal, means are Crouzeix-Raviart functions, with conforming linear functions as
-//! auxiliary space. Source: B. Ayuso de Dios, L. Zikatanov, J. Sci. Comput. 40 (2009), 4-36.
+//! A facet has a facet mean from each side. The form is nearly diagonal in the sum and the
+//! difference of the two, the mean and the jump: jumps have the penalty as diagonal, means are
+//! Crouzeix-Raviart functions, with conforming linear functions as auxiliary space. Source: B.
+//! Ayuso de Dios, L. Zikatanov, J. Sci. Comput. 40 (2009), 4-36.
 
 use super::auxiliary_space::{VertexCorrection, unknowns_per_cell};
 use super::facet_mean_form::{FacetMeanForm, cr_basis};
@@ -23,7 +24,8 @@ use crate::real::Real;
 pub(crate) struct MeanJumpSplitting<'a, T: Real> {
     matrix: &'a SparseMatrix<T>,
     form: FacetMeanForm<T>,
-    vertices: VertexCorrection<'a, T>,
+    correction: VertexCorrection<'a, T>,
+    /// The diagonal correction of each side.
     sides: Vec<SideCorrection<T>>,
     mixed_block: MixedBlock<T>,
     /// Workspace: residuals and corrections in the basis of facet mean functions.
@@ -36,9 +38,10 @@ pub(crate) struct MeanJumpSplitting<'a, T: Real> {
 struct SideCorrection<T> {
     /// The opposite side, if the two are corrected together; else [`NO_INDEX`].
     opposite: u32,
-    /// One over the form of the sum of the two functions.
+    /// The reciprocal of the form of the sum of the two functions; zero if there is no opposite side.
     inverse_mean: T,
-    /// One over the form of their difference; of the single function if there is no opposite side.
+    /// The reciprocal of the form of the difference of the two functions; of the function of this
+    /// side if there is no opposite side; zero without a correction.
     inverse_jump: T,
 }
 
@@ -46,19 +49,21 @@ struct SideCorrection<T> {
 struct MixedBlock<T> {
     /// The free vertex values of cells with free and fixed unknowns.
     vertex_values: Vec<u32>,
-    /// The sides of other cells opposite to such cells.
+    /// The sides of cells without fixed unknowns that are opposite to such cells.
     sides: Vec<u32>,
+    /// `None` if the block is empty.
     factors: Option<Factors<T>>,
     vector: Vec<T>,
 }
 
 impl<'a, T: Real> MeanJumpSplitting<'a, T> {
-    /// The preconditioner of a symmetric matrix; `None` if its unknowns are not those of broken linear
-    /// functions, or cells are coupled by more than facet means.
+    /// The preconditioner of a symmetric matrix; `None` if its unknowns are not those of
+    /// discontinuous linear functions, or cells are coupled by more than facet means, or `correction`
+    /// returns `None`.
     pub fn new(
         matrix: &'a SparseMatrix<T>,
         supports: &[Support],
-        vertices: impl FnOnce() -> Option<VertexCorrection<'a, T>>,
+        correction: impl FnOnce() -> Option<VertexCorrection<'a, T>>,
     ) -> Option<Self> {
         let form = FacetMeanForm::from_matrix(matrix, supports, unknowns_per_cell(supports)?)?;
         let zero = T::lit(0.0);
@@ -68,7 +73,7 @@ impl<'a, T: Real> MeanJumpSplitting<'a, T> {
         Some(Self {
             matrix,
             form,
-            vertices: vertices()?,
+            correction: correction()?,
             sides: vec![no_correction; n],
             mixed_block: MixedBlock {
                 vertex_values: vec![],
@@ -125,18 +130,21 @@ impl<'a, T: Real> MeanJumpSplitting<'a, T> {
             }
         }
         self.mixed_block.factor(self.matrix, size)?;
-        self.vertices.set_fixed(fixed)
+        self.correction.set_fixed(fixed)
     }
 }
 
-/// One over a positive number.
+/// The reciprocal of a positive number; [`FactorError::NotPositive`] for any other.
 fn invert<T: Real>(x: T) -> Result<T, FactorError> {
     if x > T::lit(0.0) { Ok(T::lit(1.0) / x) } else { Err(FactorError::NotPositive) }
 }
 
 impl<T: Real> MixedBlock<T> {
-    /// Factors `P^T A P`, the columns of `P` the basis functions of the vertex values and facet mean
-    /// functions of the sides.
+    /// Factors `P^T A P`, where the columns of `P` are the basis functions of the vertex values and
+    /// the facet mean functions of the sides.
+    ///
+    /// # Errors
+    /// See [`FactorError`].
     fn factor(&mut self, matrix: &SparseMatrix<T>, cell_size: usize) -> Result<(), FactorError> {
         let n = self.vertex_values.len() + self.sides.len();
         self.factors = None;
@@ -170,8 +178,9 @@ impl<T: Real> MixedBlock<T> {
         Ok(())
     }
 
-    /// Solves for the residual `r` at vertex values and `g` at facet mean functions; sets these entries
-    /// of `z` and `means`.
+    /// Solves for the residual with the entries `r` for vertex values and `g` for facet mean
+    /// functions; sets the entries of `z` for the vertex values and of `means` for the sides of the
+    /// block.
     fn solve(&mut self, r: &[T], g: &[T], means: &mut [T], z: &mut [T]) {
         let Some(factors) = &self.factors else { return };
         self.vector.clear();
@@ -192,7 +201,8 @@ impl<T: Real> Preconditioner<T> for MeanJumpSplitting<'_, T> {
     fn apply(&mut self, r: &[T], z: &mut [T]) {
         let (size, are_means, sides) = (self.form.cell_size, self.form.are_means, &self.sides);
         let zero = T::lit(0.0);
-        // The values of a facet mean function are 1 - d at the opposite vertex and 1 at the others.
+        // The values of a facet mean function are 1 - d at the opposite vertex and 1 at the others,
+        // where d is the number of dimensions.
         let d = T::lit((size - 1) as f64);
         if !are_means {
             for_each_chunk_of_groups(&mut self.mean_residuals, size, |range, chunk| {
@@ -228,6 +238,6 @@ impl<T: Real> Preconditioner<T> for MeanJumpSplitting<'_, T> {
                 }
             });
         }
-        self.vertices.add(r, z);
+        self.correction.add(r, z);
     }
 }

@@ -2,8 +2,9 @@
 //!
 //! `preconditioner`: the trait. `multigrid`: conforming linear functions, with `gauss_seidel`,
 //! `prolongation`, `aggregation` and `coarse_level`. `auxiliary_space`: other finite elements.
-//! `mean_jump_splitting` and `facet_mean_form`: over-penalised broken elements. `coarse_spaces`: the
-//! spaces that are known for an inequality. `any`: the preconditioner that fits an inequality.
+//! `mean_jump_splitting` and `facet_mean_form`: over-penalised discontinuous elements.
+//! `coarse_spaces`: the spaces that are known for an inequality. `any`: the preconditioner that
+//! fits an inequality.
 
 mod aggregation;
 mod any;

@@ -1,4 +1,7 @@
-//! A multigrid V-cycle for conforming linear functions with fixed vertices.
+//! A multigrid V-cycle for conforming linear functions with fixed unknowns.
+//!
+//! On each level, unknown `i` is the coefficient of basis function `i`, and row `i` of the matrix
+//! is its equation. On a mesh it is the value at vertex `i`.
 
 use super::coarse_level::{CoarseLevel, MAX_COARSEST_FACTORED};
 use super::gauss_seidel::GaussSeidel;
@@ -8,41 +11,49 @@ use crate::linear::direct::{FactorError, Factors};
 use crate::parallel::vectors::{for_each_chunk, map_chunks, zeros};
 use crate::real::Real;
 
-/// If at most one in so many rows is outdated, replacing rows is faster than a new smoother.
-const REPLACED_FRACTION: usize = 8;
+/// If at most one in so many rows is outdated, the outdated rows of a smoother are replaced, which
+/// is then faster than a new smoother.
+const ROWS_PER_OUTDATED_ROW: usize = 8;
 
 /// A V-cycle with one forward Gauss-Seidel iteration before and one backward iteration after the
 /// coarse correction: symmetric and positive definite.
 ///
-/// Coarse basis functions are truncated: set to zero at fixed fine vertices (R. Kornhuber, Numer.
-/// Math. 69 (1994), 167-184). The matrix of a level is the given one, except for the rows of truncated
-/// functions near fixed vertices, which are Galerkin products with the finer matrix.
+/// Coarse basis functions are truncated: their coefficients at fixed unknowns of the finer level
+/// are set to zero (R. Kornhuber, Numer. Math. 69 (1994), 167-184). The matrix of a level is the
+/// given one, except for the rows that truncation may change, those of truncated functions and of
+/// functions near them: these rows are Galerkin products with the matrix of the finer level.
 ///
-/// All levels but a factored coarsest one work in single precision, with the matrix divided by its
-/// largest entry and the right-hand side by its own: a preconditioner need not be exact, and half the
-/// bytes take half the time. Right-hand side and result are in the scalar `T`.
+/// All levels but a factored coarsest one work in single precision, with the matrices of all levels
+/// divided by the largest entry of the finest matrix, and the right-hand side by its largest entry.
+/// A preconditioner need not be exact, and the time is limited by memory bandwidth: numbers with
+/// half the bytes of `f64` take half the time. Right-hand side and result are in the scalar `T`.
 pub(crate) struct Multigrid<'a, T: Real> {
     levels: Vec<Level<'a, T>>,
     coarsest: CoarsestSolver<T>,
-    /// The divisor of all matrices.
+    /// The divisor of the matrices of all levels: the largest absolute entry of the finest matrix.
     scale: f64,
     right_side: Vec<f32>,
     values: Vec<f32>,
 }
 
 struct Level<'a, T: Real> {
+    /// The given matrix, without truncation.
     matrix: &'a SparseMatrix<T>,
-    /// The truncated functions, ascending, and the values of their rows, one row after the other.
-    truncated: Vec<u32>,
-    truncated_starts: Vec<usize>,
-    truncated_values: Vec<T>,
+    /// The rows that may differ from the given matrix because of truncation, ascending.
+    recomputed_rows: Vec<u32>,
+    /// Start of each of these rows in `recomputed_values`, and the number of values at the end.
+    recomputed_starts: Vec<usize>,
+    /// The values of these rows, one row after the other; the columns are those of the given matrix.
+    recomputed_values: Vec<T>,
     /// The rows that have changed since the smoother was updated, ascending.
     outdated: Vec<u32>,
     /// The prolongation from the next coarser level; `None` for the coarsest.
     prolongation: Option<&'a Prolongation<T>>,
-    /// The vertices with Dirichlet data; empty for the finest level.
+    /// The unknowns with Dirichlet data; empty for the finest level.
     dirichlet: &'a [bool],
+    /// `None` before the first use, and on a factored coarsest level.
     smoother: Option<GaussSeidel>,
+    /// The fixed unknowns.
     fixed: Vec<bool>,
     right_side: Vec<f32>,
     values: Vec<f32>,
@@ -53,8 +64,8 @@ struct Level<'a, T: Real> {
 struct CoarsestSolver<T> {
     free: Vec<u32>,
     factors: Option<Factors<T>>,
-    /// Whether the factors are those of a matrix with truncated functions.
-    is_truncated: bool,
+    /// Whether the matrix of the factors has recomputed rows.
+    has_recomputed_rows: bool,
     values: Vec<T>,
     scale: f64,
 }
@@ -70,9 +81,9 @@ impl<'a, T: Real> Level<'a, T> {
         let n_coarse = if is_finest { 0 } else { n };
         Self {
             matrix,
-            truncated: Vec::new(),
-            truncated_starts: vec![0],
-            truncated_values: Vec::new(),
+            recomputed_rows: Vec::new(),
+            recomputed_starts: vec![0],
+            recomputed_values: Vec::new(),
             outdated: Vec::new(),
             prolongation: coarser.map(|c| &*c.prolongation),
             dirichlet,
@@ -89,23 +100,27 @@ impl<T: Real> Level<'_, T> {
     /// Columns and values of row `i`, after truncation.
     fn row(&self, i: usize) -> (&[u32], &[T]) {
         let (columns, values) = self.matrix.row(i);
-        match self.truncated.binary_search(&(i as u32)) {
-            Ok(k) if !self.truncated.is_empty() => {
-                let range = self.truncated_starts[k]..self.truncated_starts[k + 1];
-                (columns, &self.truncated_values[range])
+        match self.recomputed_rows.binary_search(&(i as u32)) {
+            Ok(k) if !self.recomputed_rows.is_empty() => {
+                let range = self.recomputed_starts[k]..self.recomputed_starts[k + 1];
+                (columns, &self.recomputed_values[range])
             }
             _ => (columns, values),
         }
     }
 
-    /// The Cholesky factor on the free unknowns. Truncated functions can be linearly dependent; a
-    /// diagonal larger by the factor `1 + sqrt(eps)` then makes the matrix positive definite.
+    /// The Cholesky factor on the unknowns `free`. Truncated functions can be linearly dependent;
+    /// the matrix is then made positive definite by multiplication of its diagonal by
+    /// `1 + sqrt(eps)`, `eps` machine epsilon.
+    ///
+    /// # Errors
+    /// See [`FactorError`].
     fn factor(&self, free: &[u32]) -> Result<Factors<T>, FactorError> {
-        if self.truncated.is_empty() {
+        if self.recomputed_rows.is_empty() {
             return Factors::new(self.matrix, true, free);
         }
         let mut matrix = self.matrix.clone();
-        for &j in &self.truncated {
+        for &j in &self.recomputed_rows {
             let range = row_range(&matrix, j);
             matrix.values[range].copy_from_slice(self.row(j as usize).1);
         }
@@ -123,45 +138,47 @@ impl<T: Real> Level<'_, T> {
         }
     }
 
-    /// Computes the rows of the functions that the fixed unknowns of the finer level truncate.
-    fn truncate(&mut self, finer: &Level<'_, T>, prolongation: &Prolongation<T>) {
+    /// Recomputes the rows that truncation at the fixed unknowns of the finer level may change, and
+    /// marks them, with all rows recomputed before, as outdated. A free unknown is concerned if one
+    /// of its children is fixed, is coupled to a fixed unknown, or has a recomputed row itself.
+    fn recompute_rows(&mut self, finer: &Level<'_, T>, prolongation: &Prolongation<T>) {
         let mut is_near = vec![false; finer.fixed.len()];
         for i in (0..is_near.len()).filter(|&i| finer.fixed[i]) {
             is_near[i] = true;
             finer.matrix.row(i).0.iter().for_each(|&j| is_near[j as usize] = true);
         }
-        finer.truncated.iter().for_each(|&i| is_near[i as usize] = true);
+        finer.recomputed_rows.iter().for_each(|&i| is_near[i as usize] = true);
         let fixed = &self.fixed;
-        let is_truncated = |j: usize| !fixed[j] && prolongation.any_child(j, |i| is_near[i]);
-        let truncated: Vec<u32> =
-            (0..fixed.len()).filter(|&j| is_truncated(j)).map(|j| j as u32).collect();
-        self.outdated = union(&self.truncated, &truncated);
-        self.truncated = truncated;
-        self.truncated_values.clear();
-        self.truncated_starts.truncate(1);
-        for &j in &self.truncated {
+        let is_recomputed = |j: usize| !fixed[j] && prolongation.any_child(j, |i| is_near[i]);
+        let recomputed_rows: Vec<u32> =
+            (0..fixed.len()).filter(|&j| is_recomputed(j)).map(|j| j as u32).collect();
+        self.outdated = union(&self.recomputed_rows, &recomputed_rows);
+        self.recomputed_rows = recomputed_rows;
+        self.recomputed_values.clear();
+        self.recomputed_starts.truncate(1);
+        for &j in &self.recomputed_rows {
             let columns = self.matrix.row(j as usize).0;
-            let start = self.truncated_values.len();
-            self.truncated_values.resize(start + columns.len(), T::lit(0.0));
-            let values = &mut self.truncated_values[start..];
+            let start = self.recomputed_values.len();
+            self.recomputed_values.resize(start + columns.len(), T::lit(0.0));
+            let values = &mut self.recomputed_values[start..];
             prolongation.for_each_child(j as usize, |i, weight| {
                 if !finer.fixed[i] {
                     add_row(finer.row(i), &finer.fixed, prolongation, weight, (columns, values));
                 }
             });
-            self.truncated_starts.push(self.truncated_values.len());
+            self.recomputed_starts.push(self.recomputed_values.len());
         }
     }
 
     /// Updates the smoother to the rows and the fixed unknowns of the level.
     fn update_smoother(&mut self, scale: f64) {
-        let few = self.matrix.size() / REPLACED_FRACTION;
+        let few = self.matrix.size() / ROWS_PER_OUTDATED_ROW;
         let mut smoother = match self.smoother.take() {
             Some(mut smoother) if self.outdated.len() <= few => {
                 smoother.replace_rows(&self.outdated, |i| self.row(i), scale);
                 smoother
             }
-            _ if self.truncated.is_empty() => {
+            _ if self.recomputed_rows.is_empty() => {
                 GaussSeidel::new(self.matrix, |i| self.matrix.row(i), scale)
             }
             _ => GaussSeidel::new(self.matrix, |i| self.row(i), scale),
@@ -186,8 +203,9 @@ fn row_range<T>(matrix: &SparseMatrix<T>, j: u32) -> std::ops::Range<usize> {
     matrix.row_starts[j] as usize..matrix.row_starts[j + 1] as usize
 }
 
-/// Adds `weight` times a fine row, on free unknowns and times the prolongation, to the values of a
-/// coarse row with the given columns.
+/// Adds `weight` times a fine row, restricted to free unknowns and multiplied by the prolongation,
+/// to the values of a coarse row with the given ascending columns. Products in other columns are
+/// dropped.
 fn add_row<T: Real>(
     (neighbours, entries): (&[u32], &[T]),
     fixed: &[bool],
@@ -220,12 +238,14 @@ impl<'a, T: Real> Multigrid<'a, T> {
         let largest = matrix.values.iter().fold(0.0, |m: f64, a| m.max(a.to_f64().abs()));
         let scale = if largest > 0.0 { largest } else { 1.0 };
         let (free, values) = (Vec::new(), Vec::new());
-        let coarsest = CoarsestSolver { free, factors: None, is_truncated: false, values, scale };
+        let coarsest =
+            CoarsestSolver { free, factors: None, has_recomputed_rows: false, values, scale };
         let n = matrix.size();
         Self { levels, coarsest, scale, right_side: zeros(n), values: zeros(n) }
     }
 
-    /// Sets the fixed unknowns.
+    /// Sets the fixed unknowns of the finest level, and of all coarser levels those with Dirichlet
+    /// data or all of whose children are fixed.
     ///
     /// # Errors
     /// [`FactorError`] if the matrix of the coarsest level is not positive definite.
@@ -237,8 +257,9 @@ impl<'a, T: Real> Multigrid<'a, T> {
             if let Some(finer) = finer.last() {
                 level.fixed.copy_from_slice(level.dirichlet);
                 if let Some(prolongation) = finer.prolongation {
+                    // functions that truncation sets to zero
                     prolongation.fix_covered(&finer.fixed, &mut level.fixed);
-                    level.truncate(finer, prolongation);
+                    level.recompute_rows(finer, prolongation);
                 }
             }
             let is_coarsest = rest.len() == 1;
@@ -259,15 +280,15 @@ impl<'a, T: Real> Multigrid<'a, T> {
             level.update_smoother(self.scale);
             return Ok(());
         }
-        // A smoother kept beside factors would miss changes of rows.
+        // Discarded, because its rows are not updated while factors are used.
         level.smoother = None;
-        let is_truncated = !level.truncated.is_empty();
+        let has_recomputed_rows = !level.recomputed_rows.is_empty();
         let coarsest = &mut self.coarsest;
         let is_same_set = coarsest.factors.is_some() && free == coarsest.free;
-        if !is_same_set || is_truncated || coarsest.is_truncated {
+        if !is_same_set || has_recomputed_rows || coarsest.has_recomputed_rows {
             coarsest.factors = None;
             coarsest.factors = Some(level.factor(&free)?);
-            (coarsest.free, coarsest.is_truncated) = (free, is_truncated);
+            (coarsest.free, coarsest.has_recomputed_rows) = (free, has_recomputed_rows);
         }
         Ok(())
     }
@@ -293,7 +314,7 @@ impl<'a, T: Real> Multigrid<'a, T> {
     }
 }
 
-/// One V-cycle from zero on the first of `levels`.
+/// Sets `x` to the result of one V-cycle from zero on the first of `levels`.
 fn cycle<T: Real>(
     levels: &mut [Level<'_, T>],
     coarsest: &mut CoarsestSolver<T>,
@@ -312,6 +333,7 @@ fn cycle<T: Real>(
         let mut coarse_values = std::mem::take(&mut coarse.values);
         prolongation.restrict(&level.residual, &mut coarse_right_side);
         cycle(coarser, coarsest, &coarse_right_side, &mut coarse_values);
+        // the inverse diagonal serves as mask: it is zero at fixed unknowns
         prolongation.add_prolongation(&coarse_values, smoother.inverse_diagonal(), x);
         coarser[0].right_side = coarse_right_side;
         coarser[0].values = coarse_values;
@@ -320,7 +342,7 @@ fn cycle<T: Real>(
 }
 
 impl<T: Real> CoarsestSolver<T> {
-    /// Solves with the factors on free unknowns; zero on fixed ones.
+    /// Sets `x` to the solution with the factors on free unknowns, and to zero on fixed ones.
     fn solve(&mut self, right_side: &[f32], x: &mut [f32]) {
         let Some(factors) = &self.factors else { return };
         self.values.clear();

@@ -17,11 +17,12 @@ pub struct Prolongation<T> {
 
 #[derive(Clone, Debug)]
 enum Entries<T> {
-    /// Each fine unknown is the mean of two parents, which are equal for a vertex of the coarse mesh:
-    /// its child of weight one is `own`; `children`, from `starts` on, are the midpoints, of weight
-    /// 1/2.
+    /// Each fine unknown is the mean of its two `parents`, which are equal if it belongs to a
+    /// vertex of the coarse mesh. A coarse unknown has one child of weight one, in `own`, and as
+    /// children of weight 1/2 the midpoints in `children`, from its entry of `starts` up to the
+    /// next one.
     Midpoints { parents: Vec<[u32; 2]>, starts: Vec<u32>, children: Vec<u32>, own: Vec<u32> },
-    /// General weights: `P` and its transpose.
+    /// General weights: `P` by rows (`fine`), and its transpose by rows (`coarse`).
     Weights { fine: RectangularMatrix<T>, coarse: RectangularMatrix<T> },
 }
 
@@ -77,7 +78,7 @@ impl<T: Real> Prolongation<T> {
         }
     }
 
-    /// The coarse residual `P^T r` of a fine one, in the scalar of the residual.
+    /// Sets the coarse residual to `P^T r` for the fine residual `r`, in the scalar of the residual.
     pub(crate) fn restrict<S: Real>(&self, fine_residual: &[S], coarse_residual: &mut [S]) {
         let half = S::lit(0.5);
         for_each_chunk(coarse_residual, |range, out| match &self.entries {
@@ -97,7 +98,8 @@ impl<T: Real> Prolongation<T> {
         });
     }
 
-    /// Adds `P v` for the coarse values `v` to the fine values whose `mask` is not zero.
+    /// Adds the entries of `P v`, for the coarse values `v`, to the fine values at which `mask` is
+    /// not zero; its other entries are not used as factors.
     pub(crate) fn add_prolongation<S: Real>(
         &self,
         coarse_values: &[S],
@@ -135,7 +137,8 @@ impl<T: Real> Prolongation<T> {
         fine
     }
 
-    /// Fixes every coarse unknown all children of which are fixed.
+    /// Fixes every coarse unknown all of whose children are fixed; coarse unknowns that are fixed
+    /// already stay fixed.
     pub(crate) fn fix_covered(&self, fine_fixed: &[bool], coarse_fixed: &mut [bool]) {
         for_each_chunk(coarse_fixed, |range, out| {
             for (j, fixed) in range.zip(out).filter(|(_, fixed)| !**fixed) {

@@ -4,8 +4,9 @@ use nalgebra::{DMatrix, DVector};
 
 use crate::algebra::Contact;
 
-/// Find `z` with `lower <= z <= upper` such that `w = M z + q` is zero between the bounds, not negative
-/// on the lower and not positive on the upper one. Absent bounds are infinite.
+/// Find `z` with `lower <= z <= upper` such that `w_i` of `w = M z + q` is zero where `z_i` lies
+/// between the bounds, not negative at the lower bound and not positive at the upper bound. Absent
+/// bounds are infinite.
 #[derive(Debug)]
 pub(crate) struct DenseLcp {
     /// `M`, symmetric or not.
@@ -16,9 +17,9 @@ pub(crate) struct DenseLcp {
     pub lower: Vec<f64>,
     /// Upper bounds.
     pub upper: Vec<f64>,
-    /// Largest violation of a bound that rounding explains.
+    /// Tolerance for the violation of a bound.
     pub bound_tolerance: f64,
-    /// Largest `w_i` of wrong sign that rounding explains, for each unknown.
+    /// Tolerance for `|w_i|` of the wrong sign, for each unknown.
     pub multiplier_tolerances: Vec<f64>,
 }
 
@@ -26,11 +27,13 @@ pub(crate) struct DenseLcp {
 const MAX_PIVOTS_WITHOUT_GAIN: usize = 10;
 
 impl DenseLcp {
-    /// The contact states of the solution, from a first guess. `None` if a pivot matrix is singular or
-    /// the parametric method does not end, which happens only if `M` is no P-matrix or by ties.
+    /// The contact states of the solution, from a first guess. `None` if a pivot matrix is singular
+    /// or the parametric method does not end, which happens only by ties or if `M` is not a
+    /// P-matrix (all principal minors positive).
     ///
-    /// Block principal pivots change the states of all infeasible unknowns at once; a few suffice as a
-    /// rule. Where their number no longer falls, [`DenseLcp::parametric_pivots`] follow.
+    /// A block principal pivot changes the states of all infeasible unknowns at once; a few pivots
+    /// suffice as a rule. Where the number of infeasible unknowns no longer falls,
+    /// [`DenseLcp::parametric_pivots`] follow.
     pub fn solve(&self, mut states: Vec<Contact>) -> Option<Vec<Contact>> {
         let n = states.len();
         let mut fewest = n + 1;
@@ -56,6 +59,7 @@ impl DenseLcp {
 
     /// Parametric principal pivoting (Cottle, Math. Program. 3 (1972) 210-224): follows the solutions
     /// for the constants `q + t p` from `t = 1`, where `p` makes the given states feasible, to `t = 0`.
+    /// `None` if a pivot matrix is singular or `t = 0` is not reached within the limit of pivots.
     ///
     /// For a P-matrix the solution is unique for every `t`, continuous and piecewise linear in `t`: one
     /// unknown changes state at a time, `t` decreases, and no set of states returns. The number of
@@ -100,7 +104,7 @@ impl DenseLcp {
         None
     }
 
-    /// The state to which an unknown changes; its own if it is feasible.
+    /// The state to which unknown `i` changes; its present state if it is feasible.
     fn predict(&self, i: usize, state: Contact, z: f64, w: f64) -> Contact {
         match state {
             Contact::Inactive if z < self.lower[i] - self.bound_tolerance => Contact::Lower,
@@ -113,7 +117,7 @@ impl DenseLcp {
 
     /// The perturbation `p` of the constant that makes given states feasible: each infeasible `z_i` or
     /// `w_i` is moved beyond its limit by a fraction of its violation. The fractions differ, so that no
-    /// two unknowns change state at the same `t`.
+    /// two unknowns change state at the same `t`. `None` if the pivot matrix is singular.
     fn perturbation(&self, states: &[Contact]) -> Option<DVector<f64>> {
         let (z, w) = self.complementary(states, std::slice::from_ref(&self.constant))?;
         let (mut z, mut w) = (z.column(0).into_owned(), w.column(0).into_owned());
@@ -135,8 +139,9 @@ impl DenseLcp {
         Some(w - &self.matrix * z - &self.constant)
     }
 
-    /// `z` and `w = M z + q` for each constant `q`, one column each: `w_i` is zero for inactive `i`. For
-    /// active `i`, `z_i` is the bound in the first column and zero in all others, which are rates.
+    /// `z` and `w = M z + q` for each constant `q`, one column each: `w_i` is zero for inactive
+    /// `i`. For active `i`, `z_i` is the bound in the first column and zero in all other columns,
+    /// which are derivatives with respect to the parameter. `None` if the pivot matrix is singular.
     fn complementary(
         &self,
         states: &[Contact],

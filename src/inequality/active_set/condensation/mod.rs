@@ -1,4 +1,5 @@
-//! Condensation of an inequality on the few unknowns of a cycle, by a Schur complement.
+//! Condensation of an inequality on the few unknowns of a cycle, by a Schur complement; `dense_lcp`
+//! solves the small problem.
 
 mod dense_lcp;
 
@@ -11,24 +12,25 @@ use crate::linear::direct::{FactorError, Factors};
 use crate::real::Real;
 use dense_lcp::DenseLcp;
 
-/// Number of right-hand sides solved at once: enough for the blocked kernels, few enough to need little
-/// memory beside the factors.
+/// Number of right-hand sides solved at once: enough for the blocked kernels, few enough that they need
+/// little memory compared with the factors.
 const BLOCK: usize = 32;
 
-/// The violations that rounding explains.
+/// Tolerances for violations within rounding.
 pub(crate) struct Tolerances<'a> {
-    /// Of a bound.
+    /// For the violation of a bound.
     pub bound: f64,
-    /// Of the sign of the multiplier of an unknown.
+    /// For a multiplier of the wrong sign, as a function of its unknown.
     pub multiplier: &'a dyn Fn(usize) -> f64,
 }
 
 /// Solves for the contact states of the unknowns `F` in `members` (ascending), with the states of all
-/// others as given; `None` if the small problem has no solution that is found.
+/// others as given; returns the states in the order of `members`, `None` if no solution of the small
+/// problem is found.
 ///
 /// With the inactive unknowns `I` outside `F`, the small problem has the Schur complement
 /// `A_FF - A_FI inv(A_II) A_IF` as matrix: one factorisation, and one right-hand side for each member.
-/// `values` are those of the remaining unknowns.
+/// Of `values` only those of fixed unknowns and of active unknowns outside `F` are used.
 ///
 /// # Errors
 /// If `A_II` has no factors.
@@ -59,7 +61,7 @@ pub(crate) fn solve<T: Real>(
     Ok(problem.solve(members.iter().map(|&i| states[i as usize]).collect()))
 }
 
-/// The class of an unknown, with its position in it.
+/// The class of an unknown, with its position in the class.
 #[derive(Clone, Copy, PartialEq)]
 enum IndexClass {
     /// In `F`.
@@ -134,7 +136,7 @@ impl<'a, T: Real> Partition<'a, T> {
         schur
     }
 
-    /// The columns of `A_IF` for a range of members, one after the other.
+    /// The columns of `A_IF` for a range of members, one column after the other.
     fn coupling(&self, columns: &Range<usize>) -> Vec<T> {
         let mut coupling = vec![T::lit(0.0); self.inactive.len() * columns.len()];
         for (row, &i) in self.inactive.iter().enumerate() {
@@ -150,8 +152,8 @@ impl<'a, T: Real> Partition<'a, T> {
         coupling
     }
 
-    /// Adds a range of columns of `A_FF - A_FI X` to the Schur complement, `X` the solutions for these
-    /// columns of `A_IF`.
+    /// Adds a range of columns of `A_FF - A_FI X` to the Schur complement, where `X` are the given
+    /// solutions `inv(A_II) A_IF` for these columns.
     fn add_columns(&self, schur: &mut DMatrix<f64>, columns: &Range<usize>, solutions: &[T]) {
         for (row, &i) in self.members.iter().enumerate() {
             let (js, entries) = self.inequality.matrix.row(i as usize);

@@ -6,7 +6,7 @@ use crate::algebra::NO_INDEX;
 /// The label of separators.
 pub(crate) const SEPARATOR: u32 = u32::MAX;
 
-/// Least fraction of the nodes on either side of a plane.
+/// Least fraction of the nodes on each side of a plane.
 const MIN_FRACTION: f64 = 0.4;
 
 /// Weight of the squared imbalance `((k - n/2) / n)^2` in the relative cost of a plane with `k` of `n`
@@ -18,26 +18,28 @@ const IMBALANCE_WEIGHT: f64 = 8.0;
 struct NodeState {
     /// The label of its part.
     label: u32,
-    /// Its position in that part, sorted along each axis.
+    /// Its position among the nodes of its part, sorted along each axis.
     positions: [u32; 3],
 }
 
-/// The boundary sizes of all planes across an axis.
+/// The boundary sizes of all planes perpendicular to an axis. The plane at a position has the nodes
+/// before this position below it, all others above it. Its two boundaries are the nodes below with
+/// neighbours above, and the nodes above with neighbours below.
 #[derive(Clone, Default)]
 struct AxisPlanes {
-    /// The difference between the boundary sizes at a position and at the one before: the nodes below
-    /// with neighbours above, and the nodes above with neighbours below.
+    /// The sizes of the two boundaries of the plane at a position minus the sizes for the plane at the
+    /// preceding position.
     boundary_changes: Vec<[i32; 2]>,
-    /// The last position among the node at a position and its neighbours.
+    /// For each position the last position among its node and the neighbours of this node.
     last_neighbours: Vec<u32>,
 }
 
-/// A plane across an axis, with the nodes before a position below.
+/// A plane perpendicular to an axis, with the nodes before a position below.
 #[derive(Clone, Copy)]
 pub(crate) struct Plane {
     pub axis: usize,
     position: usize,
-    /// The smaller boundary size, times one plus the weighted squared imbalance.
+    /// The size of the smaller boundary, times the sum of one and the weighted squared imbalance.
     cost: f64,
 }
 
@@ -46,15 +48,17 @@ pub(crate) struct Bisector<'g> {
     graph: &'g CompressedGraph,
     nodes: Vec<NodeState>,
     axes: [AxisPlanes; 3],
-    /// The matching across the plane: the mate of each node, or [`NO_INDEX`].
+    /// The matching across the plane: the mate of each node, or [`NO_INDEX`]; all [`NO_INDEX`]
+    /// between two bisections.
     mate: Vec<u32>,
     /// The number of the last search that visited each node.
     visited: Vec<u32>,
+    /// The number of the present search.
     search: u32,
 }
 
 impl<'g> Bisector<'g> {
-    /// For a graph whose nodes all have the label zero.
+    /// The bisector of a graph; all nodes have the label zero.
     pub fn new(graph: &'g CompressedGraph) -> Self {
         let n = graph.n_nodes();
         let axis =
@@ -75,11 +79,12 @@ impl<'g> Bisector<'g> {
         self.nodes[node as usize].label
     }
 
-    /// The plane of least cost through the part `label`, whose nodes are given sorted along each axis;
-    /// `None` if no plane leaves enough nodes on both sides.
+    /// The plane of least cost through the part `label`, whose nodes are given sorted along each
+    /// axis, up to three; `None` if no plane has enough nodes on both sides.
     ///
     /// A node belongs to the boundary of all planes between its own position and those of its first
-    /// and last neighbours, so that one pass over the edges determines the boundary sizes of all planes.
+    /// and last neighbours, so that one pass over the edges determines the boundary sizes of all
+    /// planes.
     pub fn best_plane(&mut self, along: &[&[u32]], label: u32) -> Option<Plane> {
         let n = along[0].len();
         for (axis, nodes) in along.iter().enumerate() {
@@ -113,7 +118,8 @@ impl<'g> Bisector<'g> {
         planes.min_by(|a, b| a.cost.total_cmp(&b.cost))
     }
 
-    /// The plane of least cost across an axis, for a part of `n` nodes.
+    /// The plane of least cost perpendicular to an axis, for a part of `n` nodes; `None` as for
+    /// [`Bisector::best_plane`].
     fn best_plane_across(&self, axis: usize, n: usize) -> Option<Plane> {
         let (least, middle) = (((n as f64 * MIN_FRACTION) as usize).max(1), n as f64 / 2.0);
         let mut sizes = [0, 0];
@@ -132,12 +138,14 @@ impl<'g> Bisector<'g> {
         best
     }
 
-    /// Divides the part of the last call of [`Bisector::best_plane`], its nodes sorted along the axis
-    /// of the plane, into two parts with the given labels and a minimum vertex separator.
+    /// Divides the part of the last call of [`Bisector::best_plane`] into two parts with the given
+    /// labels and a minimum vertex separator with the label [`SEPARATOR`]. `nodes` are the nodes of
+    /// the part sorted along the axis of the plane.
     ///
-    /// The separator is the minimum vertex cover of the edges across the plane. By König's theorem it
-    /// has as many nodes as a maximum matching: of each matched pair the node above if an alternating
-    /// path from an unmatched node below reaches the pair, else the node below.
+    /// The separator is the minimum vertex cover of the edges across the plane. By König's theorem
+    /// it has as many nodes as a maximum matching has pairs. It contains the node above of each
+    /// matched pair that an alternating path from an unmatched node below reaches, and the node
+    /// below of every other pair.
     pub fn bisect(&mut self, nodes: &[u32], plane: Plane, labels: [u32; 2]) {
         let (below, above) = nodes.split_at(plane.position);
         below.iter().for_each(|&node| self.nodes[node as usize].label = labels[0]);

@@ -5,10 +5,10 @@ use std::ops::Range;
 use crate::algebra::{NO_INDEX, SparseMatrix};
 
 /// The compressed graph of a symmetric submatrix: a node is a maximal set of consecutive unknowns
-/// whose rows have the same pattern, for example the unknowns of a cell in a broken space. Two nodes
-/// are adjacent if the matrix couples their unknowns.
+/// whose rows have the same pattern, for example the unknowns of a cell of discontinuous elements. Two
+/// different nodes are adjacent if the matrix couples their unknowns; no node is its own neighbour.
 ///
-/// Unknowns of a node are indistinguishable for minimum degree and dissection, and eliminated one
+/// Unknowns of a node are indistinguishable for minimum degree and dissection; they are eliminated one
 /// after the other (C. Ashcraft, SIAM J. Sci. Comput. 16 (1995), 1404-1411).
 pub(crate) struct CompressedGraph {
     /// Start of each node's list in `neighbours`, and its length at the end.
@@ -20,7 +20,11 @@ pub(crate) struct CompressedGraph {
 }
 
 impl CompressedGraph {
-    /// The graph of the rows and columns `free` (ascending). Edges are read from the lower triangle.
+    /// The graph of the rows and columns `free` (ascending) of a matrix. Edges are read from the lower
+    /// triangle, from the row of the first unknown of each node.
+    ///
+    /// # Panics
+    /// If `free` contains a row that the matrix does not have.
     pub fn new<T>(matrix: &SparseMatrix<T>, free: &[u32]) -> Self {
         let row = |i: u32| {
             let [start, end] = [0, 1].map(|k| matrix.row_starts[i as usize + k] as usize);

@@ -3,18 +3,23 @@
 use super::compressed_graph::CompressedGraph;
 use crate::algebra::NO_INDEX;
 
-/// Exact minimum degree for small sets of nodes. The halo of a set, its neighbours outside, is
-/// eliminated later.
+/// Exact minimum degree for small sets of nodes. The halo of a set, the neighbours of its nodes
+/// outside of the set, is eliminated later.
 ///
-/// Degrees count the halo; without it, nodes at the boundary of the set would have too small degrees
-/// and be eliminated first (F. Pellegrini, J. Roman, P. Amestoy, Concurrency: Pract. Exper. 12 (2000),
-/// 69-84). The adjacency of a hundred nodes and their halo is a bit matrix with a few words a row.
+/// The degree of a node is the number of adjacent nodes of the compressed graph, not of unknowns.
+/// Degrees count the halo; without it, nodes at the boundary of the set would have too small
+/// degrees and be eliminated first (F. Pellegrini, J. Roman, P. Amestoy, Concurrency: Pract. Exper.
+/// 12 (2000), 69-84). The adjacency of [`LEAF_SIZE`](super::LEAF_SIZE) nodes and their halo is a
+/// bit matrix with a few words a row.
 pub(crate) struct MinimumDegree {
-    /// The local number of each node of the set and its halo, [`NO_INDEX`] for all others.
+    /// The local number of each node of the set (first) and of its halo (after the set);
+    /// [`NO_INDEX`] for all other nodes, and for all nodes between two calls of
+    /// [`MinimumDegree::order`].
     local: Vec<u32>,
-    /// The adjacency in the elimination graph: a row of bits, by local number, for each node of the
-    /// set.
+    /// The adjacency in the elimination graph: row `k` belongs to the node of the set with local
+    /// number `k`; bit `j` is set if this node is adjacent to the node with local number `j`.
     adjacency: Vec<u64>,
+    /// The nodes of the halo, in the order of their local numbers.
     halo: Vec<u32>,
 }
 
@@ -24,7 +29,9 @@ impl MinimumDegree {
         Self { local: vec![NO_INDEX; n_nodes], adjacency: Vec::new(), halo: Vec::new() }
     }
 
-    /// Permutes a set of nodes into their order of elimination.
+    /// Permutes a set of nodes into their order of elimination. The nodes must be different, and no
+    /// node of the graph its own neighbour; the graph must have the number of nodes given to
+    /// [`MinimumDegree::new`].
     pub fn order(&mut self, graph: &CompressedGraph, nodes: &mut [u32]) {
         let n = nodes.len();
         if n == 0 {
@@ -46,7 +53,8 @@ impl MinimumDegree {
         nodes.copy_from_slice(&sorted);
     }
 
-    /// Numbers the set and its halo; returns the number of words of a row of bits.
+    /// Sets the local numbers of a set and its halo, which must be [`NO_INDEX`] before; returns the
+    /// number of words of a row of bits.
     fn number_locally(&mut self, graph: &CompressedGraph, nodes: &[u32]) -> usize {
         for (k, &node) in nodes.iter().enumerate() {
             self.local[node as usize] = k as u32;
@@ -62,8 +70,10 @@ impl MinimumDegree {
         (nodes.len() + self.halo.len()).div_ceil(64)
     }
 
-    /// Eliminates a node of minimum degree `n` times; returns a postorder of the elimination tree, in
-    /// which columns with similar patterns are consecutive.
+    /// Repeats `n` times: eliminates a node of minimum degree. Returns the local numbers of the `n`
+    /// nodes of the set in a postorder of the elimination tree, which makes columns of the Cholesky
+    /// factor with similar patterns consecutive. Afterwards the row of a node contains its
+    /// neighbours at the time of its elimination.
     fn eliminate(&mut self, n: usize, width: usize) -> Vec<usize> {
         let count = |row: &[u64]| row.iter().map(|word| word.count_ones()).sum::<u32>();
         let mut degrees: Vec<u32> = self.adjacency.chunks(width).map(count).collect();
@@ -86,13 +96,14 @@ impl MinimumDegree {
         self.postorder(&pivots, width)
     }
 
-    /// The postorder of the elimination tree of `pivots`, the largest subtree of each node last.
+    /// The postorder of the elimination tree of `pivots`, nodes in the order of their elimination;
+    /// among the children of a node the one with the largest subtree comes last.
     fn postorder(&self, pivots: &[usize], width: usize) -> Vec<usize> {
         let n = pivots.len();
         let mut position = vec![0; n];
         pivots.iter().enumerate().for_each(|(k, &pivot)| position[pivot] = k);
-        // The row of an eliminated node contains its neighbours at the time of elimination, the first
-        // eliminated of which is its parent.
+        // The row of an eliminated node contains its neighbours at the time of elimination. Its
+        // parent is the neighbour that is eliminated next.
         let parent = |pivot: usize| {
             let row = &self.adjacency[pivot * width..(pivot + 1) * width];
             bits(row).take_while(|&k| k < n).map(|k| position[k]).min()

@@ -1,13 +1,13 @@
 //! Geometric nested dissection.
 //!
-//! A plane across a coordinate axis divides the nodes of a graph in two; a minimum vertex separator of
-//! the two parts is eliminated last; both parts are ordered recursively. Sources: A. George, SIAM J.
-//! Numer. Anal. 10 (1973), 345-363; planes: J. R. Gilbert, G. L. Miller, S.-H. Teng, SIAM J. Sci.
-//! Comput. 19 (1998), 2091-2110; separators: A. Pothen, C.-J. Fan, ACM Trans. Math. Softw. 16 (1990),
-//! 303-324.
+//! A plane perpendicular to a coordinate axis divides the nodes of a graph in two parts; a minimum
+//! vertex separator of the two parts is eliminated last; both parts are ordered recursively.
+//! Sources: A. George, SIAM J. Numer. Anal. 10 (1973), 345-363; planes: J. R. Gilbert, G. L.
+//! Miller, S.-H. Teng, SIAM J. Sci. Comput. 19 (1998), 2091-2110; separators: A. Pothen, C.-J. Fan,
+//! ACM Trans. Math. Softw. 16 (1990), 303-324.
 //!
-//! `compressed_graph`: the graph. `bisection`: planes and separators. `minimum_degree`: the order within
-//! small parts.
+//! `compressed_graph`: the graph. `bisection`: planes and separators. `minimum_degree`: the order
+//! within small parts.
 
 mod bisection;
 mod compressed_graph;
@@ -22,13 +22,15 @@ use compressed_graph::CompressedGraph;
 use minimum_degree::MinimumDegree;
 
 /// Largest number of nodes of a part that is ordered by minimum degree instead of dissection. Fill
-/// differs by two per cent between 16 and 100; the time for the order is least at 32.
+/// differs by two per cent between the sizes 16 and 100; the time to compute the order is least for 32.
 const LEAF_SIZE: usize = 32;
 
 /// The compressed graph of a symmetric submatrix, with a point for each node.
 pub(crate) struct GeometricGraph<'f> {
+    /// The rows and columns of the submatrix, ascending.
     free: &'f [u32],
     graph: CompressedGraph,
+    /// The point of each node.
     points: Vec<[f32; 3]>,
 }
 
@@ -40,7 +42,10 @@ struct Part {
 
 impl<'f> GeometricGraph<'f> {
     /// The graph of the rows and columns `free` (ascending) of a matrix whose row `i` has the point
-    /// `points[i]`. The point of a node is the barycentre of those of its unknowns.
+    /// `points[i]`. The point of a node is the barycentre of the points of its unknowns.
+    ///
+    /// # Panics
+    /// If `free` contains a row that the matrix or `points` does not have.
     pub fn new<T>(matrix: &SparseMatrix<T>, free: &'f [u32], points: &[[f32; 3]]) -> Self {
         let graph = CompressedGraph::new(matrix, free);
         let point = |node: u32| barycentre(graph.unknowns(node).map(|k| points[free[k] as usize]));
@@ -83,7 +88,8 @@ impl<'f> GeometricGraph<'f> {
     }
 }
 
-/// The order of elimination of all nodes, given the nodes sorted along each axis.
+/// The order of elimination of all nodes. `sorted` are the nodes sorted along each axis, for at
+/// least one axis.
 fn dissect(graph: &CompressedGraph, mut sorted: Vec<Vec<u32>>) -> Vec<u32> {
     let n = graph.n_nodes();
     let mut bisector = Bisector::new(graph);
@@ -115,8 +121,9 @@ fn dissect(graph: &CompressedGraph, mut sorted: Vec<Vec<u32>>) -> Vec<u32> {
     order
 }
 
-/// Partitions nodes stably into the first part, the second part and the separator; returns the range
-/// of the second part. `buffers` is workspace.
+/// Partitions nodes stably into the first part, whose label is `first`, the second part and the
+/// separator; returns the range of the second part in `nodes`. `buffers` is workspace, empty before
+/// and after.
 fn partition(
     nodes: &mut [u32],
     bisector: &Bisector<'_>,

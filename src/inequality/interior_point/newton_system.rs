@@ -9,21 +9,24 @@ use crate::linear::direct::{FactorError, Factors, SymbolicFactor};
 use crate::real::Real;
 
 /// A vector of the mixed system: values of the unknowns, and jump multipliers where the matrix is a
-/// [`PenalisedMatrix`](crate::algebra::PenalisedMatrix) (else none).
+/// [`PenalisedMatrix`](crate::algebra::PenalisedMatrix) (else the list is empty).
 #[derive(Clone, Debug)]
 pub(crate) struct MixedVector {
     pub values: Vec<f64>,
     pub jump_multipliers: Vec<f64>,
 }
 
-/// The matrix `A` of an inequality on all unknowns that are not fixed, to which a barrier diagonal `D`
-/// is added. Slack and dual variables are eliminated: `D_ii` is the sum of dual variable over slack of
-/// the bounds of unknown `i`.
-pub(crate) struct BarrierSystem<'h, 'a, T> {
+/// The matrix `A` of an inequality on all unknowns that are not fixed, to which a nonnegative
+/// diagonal `D` is added for each Newton step. Slacks and dual variables are eliminated: `D_ii` is
+/// the sum, over the bounds of unknown `i`, of the dual variable divided by the slack.
+pub(crate) struct NewtonSystem<'h, 'a, T> {
     inequality: &'a Inequality<T>,
     condensation: Option<&'h StaticCondensation<'a, T>>,
+    /// The unknowns that are not fixed, ascending.
     free: Vec<u32>,
+    /// Whether an unknown is not fixed.
     is_free: Vec<bool>,
+    /// Set by the first factorisation of a symmetric assembled matrix.
     lower_triangle: Option<LowerTriangle<T>>,
 }
 
@@ -45,15 +48,16 @@ impl<T: Real> LowerTriangle<T> {
 }
 
 /// Factors of `A + D`.
-pub(crate) enum BarrierFactors<T> {
-    /// Of the assembled matrix.
+pub(crate) enum NewtonFactors<T> {
+    /// Factors of the assembled matrix.
     Assembled(Factors<T>),
-    /// Of the penalised matrix by static condensation.
+    /// Factors of the penalised matrix by static condensation.
     Condensed(CondensedFactors<T>),
 }
 
-impl<'h, 'a, T: Real> BarrierSystem<'h, 'a, T> {
-    /// The system of an inequality, solved by static condensation where one is given.
+impl<'h, 'a, T: Real> NewtonSystem<'h, 'a, T> {
+    /// The system of an inequality, solved by the static condensation if it is given, which must be
+    /// that of the penalised matrix of the inequality.
     pub fn new(
         inequality: &'a Inequality<T>,
         condensation: Option<&'h StaticCondensation<'a, T>>,
@@ -69,22 +73,23 @@ impl<'h, 'a, T: Real> BarrierSystem<'h, 'a, T> {
         &self.free
     }
 
-    /// The diagonal entry of an unknown as a scale: of the stiffness `K` without penalties where the
-    /// matrix is penalised and the entry is positive, else of `A`.
+    /// A positive scale for unknown `i`: the diagonal entry of the stiffness `K` without penalties
+    /// where the matrix is penalised and this entry is positive, else the scale of
+    /// [`positive_diagonal`].
     pub fn diagonal_scale(&self, i: usize) -> f64 {
         let stiffness = self.inequality.penalised.as_ref().map_or(0.0, |f| f.stiffness_diagonal(i));
         if stiffness > 0.0 { stiffness } else { positive_diagonal(self.inequality, i) }
     }
 
-    /// Factors `A + D`.
+    /// Factors `A + D`; `diagonal` contains `D_ii` for every unknown.
     ///
     /// # Errors
     /// See [`FactorError`].
-    pub fn factor(&mut self, diagonal: &[f64]) -> Result<BarrierFactors<T>, FactorError> {
+    pub fn factor(&mut self, diagonal: &[f64]) -> Result<NewtonFactors<T>, FactorError> {
         if let Some(condensation) = self.condensation {
             return condensation
                 .factor_shifted(&self.is_free, diagonal)
-                .map(BarrierFactors::Condensed);
+                .map(NewtonFactors::Condensed);
         }
         let factors = if self.inequality.symmetric {
             let triangle = match &mut self.lower_triangle {
@@ -99,31 +104,37 @@ impl<'h, 'a, T: Real> BarrierSystem<'h, 'a, T> {
             add_diagonal(&mut matrix, &self.free, diagonal)?;
             Factors::lu(&matrix)?
         };
-        Ok(BarrierFactors::Assembled(factors))
+        Ok(NewtonFactors::Assembled(factors))
     }
 
-    /// Solves in place; fixed unknowns become zero.
-    pub fn solve(&self, factors: &BarrierFactors<T>, right: &mut MixedVector) {
+    /// Replaces a right-hand side by the solution, with zeros for fixed unknowns. `factors` must
+    /// come from [`NewtonSystem::factor`] of this system.
+    pub fn solve(&self, factors: &NewtonFactors<T>, right: &mut MixedVector) {
         match (factors, self.condensation) {
-            (BarrierFactors::Condensed(factors), Some(condensation)) => {
+            (NewtonFactors::Condensed(factors), Some(condensation)) => {
                 let MixedVector { values, jump_multipliers } = right;
                 condensation.solve(factors, &self.is_free, values, jump_multipliers);
             }
-            (BarrierFactors::Assembled(factors), _) => {
+            (NewtonFactors::Assembled(factors), _) => {
                 let free = || self.free.iter().map(|&i| i as usize);
                 let mut x: Vec<T> = free().map(|i| T::lit(right.values[i])).collect();
                 factors.solve_in_place(&mut x, 1);
                 right.values.fill(0.0);
                 free().zip(x).for_each(|(i, x)| right.values[i] = x.to_f64());
             }
-            (BarrierFactors::Condensed(_), None) => {
+            (NewtonFactors::Condensed(_), None) => {
                 unreachable!("condensed factors come from a condensation")
             }
         }
     }
 
-    /// Computes the residual `b - A u` and, where jump multipliers `p` are unknowns, `g - M u + p / s`.
-    /// Returns the energy at the point plus `sum b_i^2 / d_i`, a positive scale for complementarity.
+    /// Computes the residual `b - A u`; where jump multipliers `p` are unknowns, `c - K u - M^T p`
+    /// and `g - M u + p / s` in the notation of
+    /// [`PenalisedMatrix`](crate::algebra::PenalisedMatrix), `s` the weight of a jump.
+    ///
+    /// Returns a positive energy scale for the sum of all complementarity products:
+    /// `sum |u_i b_i|`, or the energy of the penalised matrix where jump multipliers are unknowns,
+    /// plus `sum b_i^2 / d_i` with the diagonal scales `d`; one if all of this is zero.
     pub fn residual(&self, point: &MixedVector, residual: &mut MixedVector) -> f64 {
         let Inequality { load, penalised, .. } = self.inequality;
         let value = |i: usize| point.values[i];
@@ -148,7 +159,10 @@ impl<'h, 'a, T: Real> BarrierSystem<'h, 'a, T> {
     }
 }
 
-/// Adds `D` to the diagonal; an error if a row with a positive `D_ii` stores no diagonal entry.
+/// Adds `D` to the diagonal of the submatrix on the unknowns `free`.
+///
+/// # Errors
+/// [`FactorError::NotPositive`] if a row with a positive `D_ii` stores no diagonal entry.
 fn add_diagonal<T: Real>(
     matrix: &mut Submatrix<T>,
     free: &[u32],
