@@ -1,7 +1,8 @@
 //! Algebraic data: sparse and dense matrices, and the variational inequality that every solver and
 //! exporter takes. Independent of mesh, dimension and scheme.
 //!
-//! `matrix`: compressed sparse rows. `rectangular_matrix`: the same for prolongations, and `P^T A P`.
+//! `matrix`: compressed sparse rows. `rectangular_matrix`: prolongations in compressed sparse rows, and
+//! `P^T A P`.
 //! `submatrix`: rows and columns of a matrix. `penalised_matrix`: `K + M^T S M`. `dense`: small dense
 //! matrices. `inequality`: bounds, supports of unknowns and the inequality. `index`: the missing index.
 

@@ -1,12 +1,12 @@
 //! One assembler for every scheme.
 //!
-//! A [`Discretisation`] joins element, facet form, problem and mesh; which of these make a scheme, the
-//! room [`scheme`](crate::scheme) above knows. Its matrix is made in one of two ways, which
-//! the element's layout decides, not the scheme's name: rows of a broken space belong to one cell,
-//! which writes them in place; rows of a space that shares unknowns are gathered from local
-//! matrices. Both are parallel, without locks, and give the same bits for any number of threads.
+//! A [`Discretisation`] joins element, facet form, problem and mesh; the room
+//! [`scheme`](crate::scheme) defines which elements and forms make a scheme. The layout of the
+//! element and the form, not the name of the scheme, select one of two ways to compute the matrix.
+//! Rows of a broken space belong to one cell and are written in place; rows of a space that shares
+//! unknowns are gathered from local matrices. Both ways are parallel, without locks, and give the
+//! same bits for any number of threads.
 
-mod coercivity_margin;
 pub(crate) mod count;
 mod data_quadrature;
 mod facet_coefficients;
@@ -15,6 +15,7 @@ pub(crate) mod load;
 pub(crate) mod local;
 mod owned_rows;
 mod penalised;
+mod penalty_below_bound;
 mod shared_rows;
 pub(crate) mod space;
 
@@ -29,9 +30,9 @@ use crate::instances::compiled;
 use crate::mesh::Mesh;
 use crate::problem::Problem;
 use crate::real::Real;
-pub use coercivity_margin::CoercivityMargin;
 pub use data_quadrature::DataQuadrature;
 use facet_coefficients::FacetCoefficients;
+pub use penalty_below_bound::PenaltyBelowBound;
 use shared_rows::{CellLoops, SharedRows};
 use space::metric::Metrics;
 use space::{AnyElement, Space};
@@ -159,11 +160,18 @@ impl<'a, T: Real, const D: usize> Discretisation<'a, T, D> {
         let (load, own_load, data) = self.loads()?;
         let bounds = self.bounds()?;
         let matrix = self.matrix();
-        let factored = own_load.map(|own_load| {
+        let penalised = own_load.map(|own_load| {
             let (metrics, weights) = self.prepared();
-            penalised::factored(&self.space, self.form(), (metrics, weights), own_load, data)
+            penalised::penalised_matrix(
+                &self.space,
+                self.form(),
+                (metrics, weights),
+                own_load,
+                data,
+            )
         });
-        // the loops that fill the matrix cannot fail: whoever is to blame is sought afterwards
+        // the loops that fill the matrix return no error: a reaction term that is not finite is
+        // detected here
         if let Some(reaction) = space::reaction_term::ReactionTerm::new(&self.space)
             && !matrix.values.iter().all(|v| v.to_f64().is_finite())
         {
@@ -182,16 +190,17 @@ impl<'a, T: Real, const D: usize> Discretisation<'a, T, D> {
                 Vec::new()
             },
             start: Start::Cold,
-            penalised: factored,
+            penalised,
         })
     }
-    /// The load; if the matrix is kept factored too, the load without Dirichlet data, and these.
+    /// The load; if the penalised form of the matrix is kept too, the load without Dirichlet data,
+    /// and the Dirichlet data.
     fn loads(&self) -> Result<penalised::Loads<T>, Error> {
-        let is_factored = self.owns_rows() && penalised::applies(self.form());
+        let is_penalised = self.owns_rows() && penalised::applies(self.form());
         let mut own = None;
         let (load, data) =
             self.space.load_and_data(self.form(), &|| &self.prepared().0, &mut |by_cell| {
-                own = is_factored.then(|| by_cell.to_vec());
+                own = is_penalised.then(|| by_cell.to_vec());
             })?;
         Ok((load, own, data))
     }
@@ -211,7 +220,7 @@ impl<'a, T: Real, const D: usize> Discretisation<'a, T, D> {
                 = |of| of.space.bounds()
         )(self)
     }
-    /// Where each unknown lives.
+    /// The support of each unknown.
     pub fn supports(&self) -> Vec<Support> {
         compiled!(
             T, D: fn(&Discretisation<'_, T, D>) -> Vec<Support>
@@ -228,12 +237,13 @@ impl<'a, T: Real, const D: usize> Discretisation<'a, T, D> {
                 = |of, u| of.space.vertex_values(u)
         )(self, u)
     }
-    /// Facets whose weight lies below what the form needs to be provably coercive: how many, and
-    /// the one that misses by the largest factor. Nothing if the form promises none.
-    pub fn coercivity_margin(&self) -> Option<CoercivityMargin> {
+    /// The facets whose penalty lies below the bound that proves coercivity: their number and the
+    /// one with the smallest quotient of penalty and bound; none if no penalty lies below its bound
+    /// or the form has no such bound.
+    pub fn penalty_below_bound(&self) -> Option<PenaltyBelowBound> {
         compiled!(
-            T, D: fn(&Discretisation<'_, T, D>) -> Option<CoercivityMargin>
-                = |of| of.space.coercivity_margin(of.form())
+            T, D: fn(&Discretisation<'_, T, D>) -> Option<PenaltyBelowBound>
+                = |of| of.space.penalty_below_bound(of.form())
         )(self)
     }
     /// The load of all unknowns.

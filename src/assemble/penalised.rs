@@ -16,7 +16,8 @@ use crate::mesh::{BoundaryPart, Neighbour, edge_vertices};
 use crate::parallel::cells;
 use crate::real::Real;
 
-/// The load, that without Dirichlet data where the matrix is kept factored, and Dirichlet data.
+/// The load; the load without Dirichlet data where the penalised form of the matrix is kept; and
+/// Dirichlet data.
 pub(crate) type Loads<T> = (Vec<T>, Option<Vec<T>>, Vec<FacetDatum>);
 
 /// Moments up to this share of the largest are what quadrature leaves of zero, and differences up to
@@ -30,7 +31,7 @@ pub(crate) fn applies<T: Real, const D: usize>(form: &dyn FacetForm<T, D>) -> bo
 
 /// The parts: stiffness and reaction by cells, jumps of moments over facets with their weights, the
 /// load without Dirichlet data by cells (empty for none), Dirichlet data.
-pub(crate) fn factored<T: Real, const D: usize>(
+pub(crate) fn penalised_matrix<T: Real, const D: usize>(
     space: &Space<'_, T, D>,
     form: &dyn FacetForm<T, D>,
     (metrics, weights): (&Metrics<T>, &FacetCoefficients<T>),

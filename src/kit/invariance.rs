@@ -64,13 +64,13 @@ struct Numbered {
     solution: Vec<f64>,
 }
 
-/// The cell and the vertices of a place, in the numbers of the first mesh.
+/// The cell and the vertices of a support, in the numbers of the first mesh.
 type Key = (Option<u32>, Vec<u32>);
 
-fn key(place: &Support, vertex: impl Fn(u32) -> u32, cell: impl Fn(u32) -> u32) -> Key {
-    let mut vertices: Vec<u32> = place.vertices().iter().map(|&v| vertex(v)).collect();
+fn key(support: &Support, vertex: impl Fn(u32) -> u32, cell: impl Fn(u32) -> u32) -> Key {
+    let mut vertices: Vec<u32> = support.vertices().iter().map(|&v| vertex(v)).collect();
     vertices.sort_unstable();
-    (place.cell().map(cell), vertices)
+    (support.cell().map(cell), vertices)
 }
 
 impl Numbered {
@@ -83,16 +83,16 @@ impl Numbered {
     ) -> Result<Vec<usize>, KitError> {
         let supports = &self.assembled.supports;
         let mut here = HashMap::with_capacity(supports.len());
-        for (second, place) in supports.iter().enumerate() {
-            let key = key(place, |v| vertices[v as usize], |c| cells[c as usize]);
+        for (second, support) in supports.iter().enumerate() {
+            let key = key(support, |v| vertices[v as usize], |c| cells[c as usize]);
             if let Some(first) = here.insert(key, second) {
                 let place = self.assembled.describe(second);
                 return Err(KitError::UnknownsNotTold { first, second, place });
             }
         }
         // both meshes have the same supports, so that one that is not found is one that is there twice
-        let find = |(first, place): (usize, &Support)| {
-            here.remove(&key(place, |v| v, |c| c)).ok_or_else(|| {
+        let find = |(first, support): (usize, &Support)| {
+            here.remove(&key(support, |v| v, |c| c)).ok_or_else(|| {
                 let place = there.assembled.describe(first);
                 KitError::UnknownsNotTold { first, second: first, place }
             })

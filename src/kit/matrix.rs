@@ -9,14 +9,14 @@ pub(super) struct Assembled {
     pub symmetric: bool,
     pub load: Vec<f64>,
     pub supports: Vec<Support>,
-    /// The unknowns that are not given.
+    /// The unknowns that are not fixed.
     pub free: Vec<u32>,
 }
 
 impl Assembled {
     pub fn of<T: Real>(inequality: &Inequality<T>) -> Self {
         let matrix = &inequality.matrix;
-        let given = |i: &usize| inequality.bounds[*i].fixed_value().is_none();
+        let is_free = |i: &usize| inequality.bounds[*i].fixed_value().is_none();
         Self {
             matrix: SparseMatrix {
                 row_starts: matrix.row_starts.clone(),
@@ -26,15 +26,15 @@ impl Assembled {
             symmetric: inequality.symmetric,
             load: inequality.load.iter().map(|b| b.to_f64()).collect(),
             supports: inequality.supports.clone(),
-            free: (0..inequality.size()).filter(given).map(|i| i as u32).collect(),
+            free: (0..inequality.size()).filter(is_free).map(|i| i as u32).collect(),
         }
     }
 
-    /// Where an unknown lives, in words.
+    /// The support of an unknown, in words.
     pub fn describe(&self, unknown: usize) -> String {
-        let place = &self.supports[unknown];
-        let cell = place.cell().map_or_else(String::new, |cell| format!("cell {cell}, "));
-        match place.vertices() {
+        let support = &self.supports[unknown];
+        let cell = support.cell().map_or_else(String::new, |cell| format!("cell {cell}, "));
+        match support.vertices() {
             [] => format!("{cell}inside"),
             [vertex] => format!("{cell}vertex {vertex}"),
             vertices => format!("{cell}amid vertices {vertices:?}"),

@@ -1,7 +1,5 @@
 //! One solve: a scheme on a mesh, from assembly to certificate and errors.
 
-use crate::instances::compiled;
-use crate::measure::Fields;
 use std::time::Instant;
 
 use super::hierarchy::P1Solution;
@@ -12,14 +10,15 @@ use crate::facet::PenaltyParameters;
 use crate::inequality::{
     Certificate, InequalitySolver, InitialGuess, Outcome, Solution, certify_with_jump_multipliers,
 };
+use crate::instances::compiled;
 use crate::linear::is_positive_definite;
-use crate::measure::{ContactErrors, Errors};
+use crate::measure::{ContactErrors, Errors, Fields};
 use crate::mesh::Mesh;
 use crate::problem::Problem;
 use crate::real::Real;
 use crate::scheme::AnyScheme;
 
-/// What a scheme is asked to solve.
+/// The input of [`solve`]: data, mesh, start and settings.
 pub struct Task<'a, T: Real, const D: usize> {
     /// The data.
     pub problem: &'a Problem<D>,
@@ -39,7 +38,7 @@ pub struct Task<'a, T: Real, const D: usize> {
     pub with_fields: bool,
 }
 
-/// What a scheme found.
+/// The result of [`solve`]: outcome, errors, counts, times and warnings.
 pub struct Solved {
     /// Penalty factors in force.
     pub parameters: PenaltyParameters,
@@ -103,21 +102,21 @@ fn solve_task<T: Real, const D: usize>(
         drop(discretise()?.inequality()?);
         assemble_seconds = assemble_seconds.min(clock.elapsed().as_secs_f64());
     }
-    let mut nearby = InitialGuess::default();
+    let mut guess = InitialGuess::default();
     if let Some(start) = task.start {
-        // contact nowhere is no knowledge: such a start must be free to find that nothing else
-        // holds the body
+        // a start without contact stays cold: the solver must detect a body that only contact holds
         if start.contact.iter().any(|&c| c != Contact::Inactive) {
-            inequality.start = Start::Contact(transfer(&start.contact, &inequality.supports));
+            inequality.start =
+                Start::Contact(starting_contact(&start.contact, &inequality.supports));
         }
-        nearby.coarse_spaces = start.coarse_spaces.clone();
-        nearby.values =
+        guess.coarse_spaces = start.coarse_spaces.clone();
+        guess.values =
             (!start.values.is_empty()).then(|| means(&start.values, &inequality.supports));
     }
-    let shortfall = space.coercivity_margin();
+    let penalty_below_bound = space.penalty_below_bound();
     let mut warnings = Vec::new();
-    if let Some(s) = shortfall {
-        warnings.push(s.to_string());
+    if let Some(warning) = penalty_below_bound {
+        warnings.push(warning.to_string());
     }
     let limit = space.form().rounding_limit(T::EPSILON, task.mesh.domain_diameter());
     let shortest = task.mesh.shortest_edge();
@@ -127,10 +126,10 @@ fn solve_task<T: Real, const D: usize>(
             T::NAME
         ));
     }
-    let (solution, solve_seconds) = run(task, &inequality, &nearby, shortfall.is_some());
+    let (solution, solve_seconds) = run(task, &inequality, &guess, penalty_below_bound.is_some());
     let u = &solution.values;
-    // without a factorisation there is no iterate, and no number that says anything about one
-    let nothing = matches!(
+    // these outcomes have no iterate, hence no errors, counts or certificate
+    let has_no_iterate = matches!(
         solution.outcome,
         Outcome::NotCoercive
             | Outcome::Singular
@@ -138,7 +137,7 @@ fn solve_task<T: Real, const D: usize>(
             | Outcome::OutOfMemory
             | Outcome::Malformed
     );
-    let usable = !nothing && u.iter().all(|v| v.to_f64().is_finite());
+    let usable = !has_no_iterate && u.iter().all(|v| v.to_f64().is_finite());
     let (error, contact) = if task.with_errors && usable {
         (space.errors(u)?, space.contact_errors(&inequality, &solution)?)
     } else {
@@ -171,13 +170,14 @@ fn solve_task<T: Real, const D: usize>(
     })
 }
 
-/// Solves as often as asked and keeps the smallest time. A penalty below its proven bound may still
-/// do, but the size of an error does not tell: the matrix is tested for definiteness first, in time
-/// that counts.
+/// Solves [`Task::repeat`] times and returns the last solution with the smallest time. A penalty
+/// below its proven bound may still give a coercive form, and the size of an error does not show
+/// whether it does: with `in_doubt` the matrix is first tested for definiteness. The time includes
+/// this test.
 fn run<T: Real, const D: usize>(
     task: &Task<'_, T, D>,
     inequality: &Inequality<T>,
-    nearby: &InitialGuess<T>,
+    guess: &InitialGuess<T>,
     in_doubt: bool,
 ) -> (Solution<T>, f64) {
     let clock = Instant::now();
@@ -198,7 +198,7 @@ fn run<T: Real, const D: usize>(
     let mut last = None;
     for _ in 0..task.repeat.max(1) {
         let clock = Instant::now();
-        last = Some(task.solver.solve_from(inequality, nearby));
+        last = Some(task.solver.solve_from(inequality, guess));
         seconds = seconds.min(clock.elapsed().as_secs_f64());
     }
     match last {
@@ -207,28 +207,28 @@ fn run<T: Real, const D: usize>(
     }
 }
 
-/// Contact of vertices carried to unknowns: an unknown starts in contact if more than half of the
-/// vertices around its node are.
-fn transfer(vertices: &[Contact], supports: &[Support]) -> Vec<Contact> {
-    let state = |place: &Support| {
-        let around = place.vertices();
+/// The starting contact of unknowns: an unknown starts in contact if more than half of the vertices
+/// of its support are in contact.
+fn starting_contact(contact: &[Contact], supports: &[Support]) -> Vec<Contact> {
+    let state = |support: &Support| {
+        let vertices = support.vertices();
         [Contact::Lower, Contact::Upper]
             .into_iter()
             .find(|&side| {
-                let on = around.iter().filter(|&&v| vertices[v as usize] == side).count();
-                2 * on > around.len()
+                let on = vertices.iter().filter(|&&v| contact[v as usize] == side).count();
+                2 * on > vertices.len()
             })
             .unwrap_or(Contact::Inactive)
     };
     supports.iter().map(state).collect()
 }
 
-/// Values at vertices carried to unknowns: the mean over the vertices around each node.
-fn means<T: Real>(vertices: &[T], supports: &[Support]) -> Vec<T> {
-    let mean = |place: &Support| {
-        let around = place.vertices();
-        let sum = around.iter().fold(T::lit(0.0), |s, &v| s + vertices[v as usize]);
-        sum / T::lit(around.len().max(1) as f64)
+/// The starting values of unknowns: the means of values over the vertices of each support.
+fn means<T: Real>(values: &[T], supports: &[Support]) -> Vec<T> {
+    let mean = |support: &Support| {
+        let vertices = support.vertices();
+        let sum = vertices.iter().fold(T::lit(0.0), |s, &v| s + values[v as usize]);
+        sum / T::lit(vertices.len().max(1) as f64)
     };
     supports.iter().map(mean).collect()
 }

@@ -13,8 +13,8 @@ pub(crate) fn replace(
 ) -> Result<PathBuf, Error> {
     let directory = path.parent().unwrap_or(Path::new("."));
     fs::create_dir_all(directory).map_err(|e| write_error(directory, e))?;
-    // the extension is kept, since writers of pictures take the format from it
     let name = path.file_name().map(|n| n.to_string_lossy().into_owned()).unwrap_or_default();
+    // the number of the process separates the drafts of two processes
     let draft = directory.join(format!(".{}-{name}", std::process::id()));
     write(&draft).map_err(|why| write_error(path, why))?;
     fs::rename(&draft, path).map_err(|e| write_error(path, e))?;

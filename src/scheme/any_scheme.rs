@@ -10,10 +10,10 @@ use crate::mesh::Mesh;
 use crate::problem::Problem;
 use crate::real::Real;
 
-/// A scheme without its type, so that schemes of different types stand in one list and all that uses
-/// them is compiled once for each scalar and dimension.
+/// A scheme without its type: one list can hold schemes of different types, and functions that take
+/// schemes are compiled once for each scalar and dimension.
 ///
-/// Every [`Scheme`] is one; nobody implements this trait by hand.
+/// A blanket implementation covers every [`Scheme`]; no other implementation is needed.
 pub trait AnyScheme<T: Real, const D: usize>: Send + Sync {
     /// The scheme's name.
     fn name(&self) -> &str;
@@ -25,7 +25,7 @@ pub trait AnyScheme<T: Real, const D: usize>: Send + Sync {
     fn expected_orders(&self, setting: &Setting) -> ExpectedOrders;
     /// Polynomial degree of its element.
     fn degree(&self) -> usize;
-    /// Who owns its unknowns.
+    /// The numbers of unknowns at each vertex, edge, facet and cell.
     fn layout(&self) -> Layout;
     /// The facet form on a mesh, its parameters resolved.
     fn form(&self, mesh: &Mesh<T, D>) -> Box<dyn FacetForm<T, D>>;

@@ -26,7 +26,7 @@ impl Placement {
             Self::Nodes,
             "values at vertices (linear elements), all nodes (quadratic ones)",
         ),
-        ("nodes", Self::Nodes, "the same"),
+        ("nodes", Self::Nodes, "all nodes of the element: vertices for linear elements"),
         ("facet-means", Self::FacetMeans, "means over facets (discontinuous schemes on linears)"),
         ("midpoints", Self::Midpoints, "midpoints of edges only (schemes on quadratics)"),
         (

@@ -132,12 +132,12 @@ impl Choice {
     }
 }
 
-/// The library's choice of the schemes every case compares.
+/// The schemes that every case compares, with default penalties.
 pub(crate) fn compared() -> Vec<Choice> {
     NAMES[..6].iter().map(|name| Choice::default(name)).collect()
 }
 
-/// These and further ones.
+/// The schemes that every case compares, with default penalties, followed by further choices.
 pub(crate) fn compared_and(further: &[Choice]) -> Vec<Choice> {
     let mut all = compared();
     all.extend_from_slice(further);

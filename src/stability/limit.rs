@@ -9,7 +9,7 @@ use crate::mesh::Mesh;
 use crate::scenes;
 use crate::scenes::Scene;
 
-/// The largest factor of which the limit is asked; beyond it rounding decides.
+/// The largest factor for which the criterion applies; rounding dominates for larger factors.
 const JUDGED: f64 = 1e6;
 
 pub(crate) fn plan(plan: &mut Plan<'_>) {

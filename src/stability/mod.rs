@@ -26,8 +26,8 @@ use crate::error::Error;
 use crate::mesh::Mesh;
 use plan::Plan;
 
-/// How long finished rows may wait to be written.
-const PATIENCE: Duration = Duration::from_millis(500);
+/// The least time between two writes of finished rows.
+const WRITE_INTERVAL: Duration = Duration::from_millis(500);
 
 /// Progress of a study.
 #[derive(Debug)]
@@ -149,7 +149,7 @@ impl<'a> Stability<'a> {
                 (self.observer)(StabilityProgress::Row(&row));
                 report.rows.push(row);
                 // rows are saved early, so that an interrupted study keeps them
-                if written.elapsed() > PATIENCE && saved.is_ok() {
+                if written.elapsed() > WRITE_INTERVAL && saved.is_ok() {
                     saved = self.save(&report);
                     written = Instant::now();
                 }

@@ -1,6 +1,7 @@
 //! A report: rows, and the program that ran them.
 
 use super::row::Row;
+
 /// The program that made a report, and its settings.
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "report", derive(serde::Serialize))]

@@ -31,8 +31,8 @@ use crate::scheme::{AnyScheme, SchemeOptions};
 use crate::study::{Study, available_memory_bytes};
 use case::{Candidate, OneStudy};
 
-/// How long finished rows of a round may wait to be written.
-const PATIENCE: Duration = Duration::from_secs(1);
+/// The least time between two writes of finished rows within a round.
+const WRITE_INTERVAL: Duration = Duration::from_secs(1);
 
 /// Progress of a study.
 #[derive(Debug)]
@@ -251,7 +251,7 @@ impl<'a, const D: usize> WorkPrecision<'a, D> {
                 (self.observer)(WorkProgress::Started(&slots[k].case, round));
                 self.run_slot(&mut slots, k, round);
                 (self.observer)(WorkProgress::Finished);
-                if written.elapsed() > PATIENCE {
+                if written.elapsed() > WRITE_INTERVAL {
                     self.save(report, before, &slots)?;
                     written = Instant::now();
                 }

@@ -14,7 +14,7 @@ use super::work_at_error::{WorkAtError, work_at_errors};
 use crate::error::Error;
 use crate::output::table::{latex, markdown};
 use crate::output::{Provenance, Table, csv, replace};
-use crate::study::{Program, Row};
+use crate::study::Program;
 
 /// The results of a work-precision study on any number of scenes.
 #[derive(Clone, Debug, PartialEq)]
@@ -70,11 +70,6 @@ impl WorkReport {
     /// The variants in the order run.
     pub fn variants(&self) -> Vec<Variant> {
         variants(&self.rows)
-    }
-
-    /// The rows alone.
-    pub fn plain_rows(&self) -> Vec<Row> {
-        self.rows.iter().map(|m| m.row.clone()).collect()
     }
 
     /// All tables, scene by scene.

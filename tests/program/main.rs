@@ -1,4 +1,4 @@
-//! The program `compare` as its users and their scripts meet it: wrong requests, right requests.
+//! The program `unilateral`, subcommand `compare`: wrong requests and right requests.
 
 mod data;
 mod meshes;

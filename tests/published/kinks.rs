@@ -44,7 +44,7 @@ fn norms_on_halves(scene: &Scene<2>, level: usize) -> [f64; 2] {
     [l2.sqrt(), h1.sqrt()]
 }
 
-/// LinearMethod elements interpolate the pyramid. On each of the `n` squares along the diagonal that is
+/// Linear elements interpolate the pyramid. On each of the `n` squares along the diagonal that is
 /// no line of the mesh the error is a pyramid of height `1/n`: H1 `2 n^(-1/2)`, L2
 /// `(2/3)^(1/2) n^(-3/2)`.
 #[test]

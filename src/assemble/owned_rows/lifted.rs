@@ -77,8 +77,8 @@ pub(crate) struct Lifting<'s, 'a, T: Real, const D: usize> {
     pub table: &'s LiftTable<T>,
 }
 
-/// A facet of a centre that carries jumps.
-struct Carrier<T> {
+/// A facet of a centre whose jump is lifted.
+struct JumpFacet<T> {
     local: usize,
     /// The cell across and the facet's number in it; none on the boundary.
     across: Option<(usize, usize)>,
@@ -94,36 +94,36 @@ impl<T: Real, const D: usize> Lifting<'_, '_, T, D> {
             if let Neighbour::Cell { cell: other, local: other_local } =
                 neighbours.across(cell, local)
             {
-                let seen = Some((other_local as usize, local));
-                self.add_centre(neighbours, other as usize, seen, coupled, rows);
+                let shared = Some((other_local as usize, local));
+                self.add_centre(neighbours, other as usize, shared, coupled, rows);
             }
         }
     }
 
     /// Adds what one centre contributes to the rows of a cell: the cell itself, or a neighbour that
-    /// sees the cell across one facet, with its number there and here.
+    /// shares one facet with the cell, with the number of this facet there and here.
     fn add_centre(
         &self,
         neighbours: &Neighbours,
         centre: usize,
-        seen: Option<(usize, usize)>,
+        shared: Option<(usize, usize)>,
         coupled: &Coupled,
         rows: &mut [T],
     ) {
         let metric = self.metrics.at::<D>(centre);
-        let carriers: [Option<Carrier<T>>; 4] = std::array::from_fn(|l| {
-            if l <= D { self.carrier(neighbours, centre, &metric, l) } else { None }
+        let facets_with_jumps: [Option<JumpFacet<T>>; 4] = std::array::from_fn(|l| {
+            if l <= D { self.jump_facet(neighbours, centre, &metric, l) } else { None }
         });
         let n = self.space.per_cell();
         let row = rows.len() / n;
-        for test in carriers.iter().flatten() {
-            let (sign, local) = match seen {
+        for test in facets_with_jumps.iter().flatten() {
+            let (sign, local) = match shared {
                 None => (T::lit(1.0), test.local),
                 Some((there, here)) if there == test.local => (T::lit(-1.0), here),
                 Some(_) => continue,
             };
             let tested = self.moments(local);
-            for trial in carriers.iter().flatten() {
+            for trial in facets_with_jumps.iter().flatten() {
                 let scale = sign * self.scale(centre, &metric, test, trial);
                 let weighted = self.weighted(&tested, test.local, trial.local, scale);
                 let columns = self.moments(trial.local);
@@ -143,22 +143,22 @@ impl<T: Real, const D: usize> Lifting<'_, '_, T, D> {
         &self,
         centre: usize,
         metric: &CellMetric<T, D>,
-        test: &Carrier<T>,
-        trial: &Carrier<T>,
+        test: &JumpFacet<T>,
+        trial: &JumpFacet<T>,
     ) -> T {
         let product = metric.products[test.local][trial.local];
         T::lit((D * D) as f64) * test.flux_weight * trial.flux_weight * product
             / self.space.alpha(centre)
     }
 
-    /// The facet of a centre as a carrier of jumps, if a form acts on it.
-    fn carrier(
+    /// Facet `local` of a centre, if a form acts on its jumps.
+    fn jump_facet(
         &self,
         neighbours: &Neighbours,
         centre: usize,
         metric: &CellMetric<T, D>,
         local: usize,
-    ) -> Option<Carrier<T>> {
+    ) -> Option<JumpFacet<T>> {
         let mesh = self.space.mesh;
         let coefficient = self.space.alpha(centre);
         let me = CellSide { cell: centre, local, metric, coefficient };
@@ -171,10 +171,10 @@ impl<T: Real, const D: usize> Lifting<'_, '_, T, D> {
                 let (here, there) = if is_here { (&me, &other) } else { (&other, &me) };
                 let facet = view(mesh, here, Some(there));
                 let flux_weight = flux_weight(&facet, self.form.average_weight(&facet), is_here);
-                Some(Carrier { local, across: Some((cell, other_local)), flux_weight })
+                Some(JumpFacet { local, across: Some((cell, other_local)), flux_weight })
             }
             Neighbour::Boundary(BoundaryPart::Dirichlet) => {
-                Some(Carrier { local, across: None, flux_weight: coefficient })
+                Some(JumpFacet { local, across: None, flux_weight: coefficient })
             }
             Neighbour::Boundary(_) => None,
         }
@@ -236,9 +236,9 @@ impl<T: Real, const D: usize> Lifting<'_, '_, T, D> {
     ) {
         let metric = self.metrics.at::<D>(centre);
         let datum =
-            Carrier { local: *datum_local, across: None, flux_weight: self.space.alpha(centre) };
+            JumpFacet { local: *datum_local, across: None, flux_weight: self.space.alpha(centre) };
         for local in 0..=D {
-            let Some(test) = self.carrier(neighbours, centre, &metric, local) else { continue };
+            let Some(test) = self.jump_facet(neighbours, centre, &metric, local) else { continue };
             let scale = self.scale(centre, &metric, &test, &datum);
             let mut add = |cell: usize, local: usize, sign: T| {
                 let tested = self.moments(local);

@@ -50,7 +50,7 @@ impl<T: Real, const D: usize> Filling<'_, '_, T, D> {
             if self.lifted {
                 entries.fill(T::lit(0.0));
             }
-            let rows = Rows::new(N, entries, self.supports(cell));
+            let rows = Rows::new(N, entries, self.positions(cell));
             self.write_linear::<N, FLUX>(&reference, cell, rows);
         });
     }

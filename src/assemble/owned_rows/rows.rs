@@ -82,14 +82,15 @@ impl<T: Real, const D: usize> Filling<'_, '_, T, D> {
             if self.lifted {
                 entries.fill(T::lit(0.0));
             }
-            let rows = Rows::new(n, entries, self.supports(cell));
+            let rows = Rows::new(n, entries, self.positions(cell));
             self.write_cell::<N, M>(cell, rows);
         });
     }
 
-    /// The supports of the cells across each facet among those coupled to a cell, and its own.
+    /// The positions of the cells across each facet among the coupled cells, and that of the cell
+    /// itself.
     #[inline(always)]
-    pub(crate) fn supports(&self, cell: usize) -> ([usize; 4], usize) {
+    pub(crate) fn positions(&self, cell: usize) -> ([usize; 4], usize) {
         let across = |local| match self.neighbours.across(cell, local) {
             Neighbour::Cell { cell, .. } => cell,
             Neighbour::Boundary(_) => u32::MAX,

@@ -43,7 +43,7 @@ impl<T: Real, const D: usize> CellLoops<T, D> {
     }
 }
 
-/// The loops of one element: the type tells which.
+/// The loops of the element `E`.
 #[derive(Clone, Copy)]
 struct Loops<T: Real, const D: usize, E> {
     loops: CellLoops<T, D>,
@@ -80,7 +80,7 @@ static COMPILED: [&(dyn Any + Sync); 18] = [
     &Loops::<f32, 3, CrouzeixRaviart>::instance(),
 ];
 
-/// Shared rows of a space, with what making their pattern tells about filling it.
+/// Shared rows of a space, with the positions of their entries once the pattern is computed.
 pub(crate) struct SharedRows<T: Real, const D: usize> {
     loops: Option<CellLoops<T, D>>,
     positions: OnceLock<EntryPositions>,

@@ -212,14 +212,14 @@ impl<'a, T: Real, const D: usize> Space<'a, T, D> {
             Node::CellMean => self.mesh.barycentre(cell),
         })
     }
-    /// Where each unknown lives.
+    /// The support of each unknown.
     pub fn supports(&self) -> Vec<Support> {
         let n = self.dofs.size();
         if self.broken {
             let mut supports = in_large_pages(Vec::with_capacity(n));
             for cell in 0..self.mesh.n_cells() {
                 let owner = Some(cell as u32);
-                supports.extend(self.nodes.iter().map(|&node| self.place(owner, cell, node)));
+                supports.extend(self.nodes.iter().map(|&node| self.support(owner, cell, node)));
             }
             return supports;
         }
@@ -232,13 +232,13 @@ impl<'a, T: Real, const D: usize> Space<'a, T, D> {
         let mut supports = in_large_pages(vec![Support::new(None, &[]); n]);
         for cell in 0..self.mesh.n_cells() {
             for (i, &node) in self.nodes.iter().enumerate() {
-                supports[self.dofs.of(cell, i)] = self.place(None, cell, node);
+                supports[self.dofs.of(cell, i)] = self.support(None, cell, node);
             }
         }
         supports
     }
     #[inline(always)]
-    fn place(&self, owner: Option<u32>, cell: usize, node: Node) -> Support {
+    fn support(&self, owner: Option<u32>, cell: usize, node: Node) -> Support {
         let vertices = self.mesh.cell(cell);
         match node {
             Node::Vertex(k) => Support::new(owner, &[vertices[k]]),

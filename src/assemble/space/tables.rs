@@ -40,7 +40,7 @@ pub(crate) struct CellTable<T> {
 }
 
 impl CellTable<f64> {
-    /// The same in another scalar.
+    /// The table, its numbers rounded to another scalar.
     pub fn rounded<T: Real>(&self) -> CellTable<T> {
         CellTable {
             points: self.points.iter().map(|p| p.map(T::lit)).collect(),
@@ -94,7 +94,7 @@ impl<T: Real> FacetTable<T> {
 }
 
 impl BasisAt<f64> {
-    /// The same in another scalar.
+    /// The values and derivatives, rounded to another scalar.
     fn rounded<T: Real>(&self) -> BasisAt<T> {
         BasisAt {
             values: self.values.map(T::lit),

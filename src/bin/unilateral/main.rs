@@ -1,8 +1,8 @@
 //! Finite element schemes on variational inequalities, from the command line.
 //!
 //! `cargo run --release` compares schemes with the defaults, `cargo run --release -- --help` names
-//! the other commands. Exit codes: 0 if all went as asked, 1 if some of the work did not, 2 if the
-//! request was wrong.
+//! the other commands. Exit codes: 0 if the command succeeded, 1 if a run did not converge or a
+//! check failed, 2 if the request was wrong.
 
 mod compare;
 mod orders;
@@ -49,7 +49,7 @@ fn main() -> ExitCode {
     }
 }
 
-/// Whether all went as asked.
+/// Runs a command; false for exit code 1.
 fn run(command: Command) -> Request<bool> {
     match command {
         Command::Compare(options) => compare::run(&options),

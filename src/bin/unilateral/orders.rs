@@ -98,7 +98,7 @@ fn page(table: &str, report: &Report) -> String {
          default penalties and constraint sets. The orders of coarse levels are those of coarse \
          levels: a promise is for small mesh sizes, so `missed` here means not yet reached, or \
          missed, and finer levels tell which (`compare --scene S --scheme A --levels 32,64,128`).\n\n\
-         Hierarchy that end with another word than `converged` did so for a reason: \
+         Levels that end with another word than `converged` did so for a reason: \
          `iteration-limit`, the active set did not settle; `cycling`, it came back to where it was; \
          `stalled`, rounding keeps the certificate above its limit; `not-coercive`, the matrix is \
          not positive definite; `singular`, nothing holds the body, or rounding hides what does; `infeasible`, no function lies \

@@ -1,7 +1,7 @@
 //! A solution as a picture: the function, the contact set found against the exact free boundary, the
 //! jumps across facets and the multiplier, as PNG and SVG.
 //!
-//! `cargo run --release -- pictures --help` tells the options. Exit codes: 0 if every solve converged,
+//! `cargo run --release -- pictures --help` lists the options. Exit codes: 0 if every solve converged,
 //! 1 if one did not (its last iterate is drawn, and said to be one), 2 if the request was wrong.
 
 use std::fs;

@@ -124,9 +124,10 @@ impl<'a, T: Real, const D: usize> Line<'a, T, D> {
             let vertex = self.mesh.cell(cell)[1 - local] as usize;
             if let Some(Some(multiplier)) = self.fields.discrete_contact.density.get(vertex) {
                 let x = self.ends(cell)[1 - local];
-                graph
-                    .legend
-                    .push((Symbol::Area(CONTACT), format!("force {multiplier:.4} at x = {x}")));
+                graph.legend.push((
+                    Symbol::Area(CONTACT),
+                    format!("multiplier {multiplier:.4} at x = {x}"),
+                ));
             }
         }
     }

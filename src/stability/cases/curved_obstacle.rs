@@ -144,10 +144,10 @@ fn share_inside(
         return Ok(None);
     }
     let (mut inside, mut touching) = (0_u32, 0_u32);
-    for (k, place) in inequality.supports.iter().enumerate() {
-        let around = place.vertices();
-        let sum: Point<f64, 2> = around.iter().map(|&v| mesh.vertices()[v as usize]).sum();
-        if inequality.bounds[k].is_inequality() && (sum / around.len() as f64).norm() < radius {
+    for (k, support) in inequality.supports.iter().enumerate() {
+        let vertices = support.vertices();
+        let sum: Point<f64, 2> = vertices.iter().map(|&v| mesh.vertices()[v as usize]).sum();
+        if inequality.bounds[k].is_inequality() && (sum / vertices.len() as f64).norm() < radius {
             inside += 1;
             touching += u32::from(solution.contact[k] != Contact::Inactive);
         }

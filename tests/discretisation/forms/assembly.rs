@@ -510,21 +510,21 @@ fn continuous_functions_have_no_jump_and_constants_no_energy() {
 fn the_proven_bound_is_what_the_default_penalty_is_made_of() {
     let mesh = Mesh::<f64, 2>::kuhn_box(&mixed_box(), [4, 4]).unwrap();
     let problem = Problem::<2>::new();
-    let shortfall = |sigma| {
+    let below_bound = |sigma| {
         let scheme = Sipg { penalty: PenaltyRule::Diameter(sigma), ..Sipg::default() };
         Discretisation::new(&scheme, &problem, &mesh, DataQuadrature::default())
             .unwrap()
-            .coercivity_margin()
+            .penalty_below_bound()
     };
     // right isosceles cells: |dK|/|K| = (4 + 2 sqrt 2)/h, on a Dirichlet leg sigma must reach that
     let least = 4.0 + 2.0 * 2_f64.sqrt();
-    assert_eq!(shortfall(least * 1.0001), None);
-    let found = shortfall(least * 0.999).unwrap();
+    assert_eq!(below_bound(least * 1.0001), None);
+    let found = below_bound(least * 0.999).unwrap();
     assert!((found.needed - 4.0 * least).abs() < 1e-9 && found.weight < found.needed);
-    assert!(shortfall(1.0).unwrap().facets > found.facets);
+    assert!(below_bound(1.0).unwrap().facets > found.facets);
     let default =
         Discretisation::new(&Sipg::default(), &problem, &mesh, DataQuadrature::default()).unwrap();
-    assert_eq!(default.coercivity_margin(), None);
+    assert_eq!(default.penalty_below_bound(), None);
     let side = unilateral::facet::Side { coefficient: 2.0, volume: 0.5, surface: 3.0, height: 1.0 };
     let view = FacetView::new(&mesh, (0, 0), 1.0, side, Some(side));
     assert_eq!(proven_bound::<f64, 2>(1, &view), 0.5 * 2.0 * 6.0);

@@ -28,7 +28,7 @@ fn assemble<T: Real, const D: usize, S: Scheme<T, D>>(
 
 /// The sum is the matrix and the load, in every basis and degree; no other scheme keeps it.
 #[test]
-fn the_factored_form_is_the_matrix() {
+fn the_penalised_form_is_the_matrix() {
     fn check<const D: usize, S: Scheme<f64, D>>(checks: &mut Checks, scheme: &S) {
         let problem = Problem::new()
             .source(|x: &Point<f64, D>| 1.0 + x[0])
@@ -36,14 +36,14 @@ fn the_factored_form_is_the_matrix() {
             .coefficient(|x: &Point<f64, D>| 1.0 + x[0])
             .reaction(3.0);
         let inequality = assemble(scheme, &problem, &cube::<f64, D>(2));
-        let factored = inequality.penalised.as_ref().unwrap();
+        let penalised = inequality.penalised.as_ref().unwrap();
         let n = inequality.size();
         let mut assembled = vec![0.0; n];
         let mut kept = vec![0.0; n];
         for seed in 0..3 {
             let u: Vec<f64> = (0..n).map(|i| ((i * 37 + seed * 11) % 17) as f64 / 17.0).collect();
             inequality.matrix.residual_f64(&inequality.load, &u, &mut assembled);
-            factored.residual(|i| u[i], &mut kept);
+            penalised.residual(|i| u[i], &mut kept);
             let largest = assembled.iter().fold(0.0_f64, |m, r| m.max(r.abs()));
             let off = assembled.iter().zip(&kept).fold(0.0_f64, |m, (a, b)| m.max((a - b).abs()));
             checks.that(off <= 1e-13 * largest, || {

@@ -1,6 +1,6 @@
 //! Schemes side by side on the same inequality: errors, observed orders, times and a certificate.
 //!
-//! `cargo run --release -- compare --help` tells the options. Exit codes: 0 if every row converged,
+//! `cargo run --release -- compare --help` lists the options. Exit codes: 0 if every row converged,
 //! 1 if some did not, 2 if the request was wrong.
 
 mod options;

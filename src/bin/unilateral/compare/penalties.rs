@@ -18,8 +18,8 @@ pub fn scheme_options(options: &Options) -> SchemeOptions {
     }
 }
 
-/// Refuses a penalty factor that none of the schemes chosen takes. A scheme takes a factor if it is
-/// in force when given; that is asked of each on one small mesh.
+/// Refuses a penalty factor that none of the schemes chosen takes. A scheme takes a factor if its
+/// parameters on a small mesh contain it.
 pub fn check_penalties(options: &Options, chosen: &[String], names: &[&str]) -> Request<()> {
     let square = BoxDomain::dirichlet(Point::zeros(), Point::repeat(1.0));
     let mesh = Mesh::<f64, 2>::kuhn_box(&square, [1, 1]).map_err(|e| e.to_string())?;

@@ -29,7 +29,7 @@ fn shown(path: &Path) -> String {
     if path.is_relative() { path.display().to_string() } else { name_of(path) }
 }
 
-/// Whether all went as asked.
+/// Runs the study; false if a job ended in an error, or with `--strict` if a criterion was missed.
 pub fn run(options: &Options) -> Request<bool> {
     use_threads(options.threads.map(usize::from))?;
     let bar = bar(options.quiet, 0, "{bar:24} {pos} of {len}, {elapsed}, {eta} to go: {msg}");

@@ -1,6 +1,6 @@
 //! Work against precision: what schemes, linear solvers and scalars take to reach a given error.
 //!
-//! `cargo run --release -- work-precision --help` tells the options; `--quick` ends within a minute.
+//! `cargo run --release -- work-precision --help` lists the options; `--quick` ends within a minute.
 //! Exit codes: 0 if every run converged and nothing changed against the baseline, 1 otherwise, 2 if
 //! the request was wrong.
 

@@ -7,10 +7,11 @@ use crate::mesh::{BoundaryPart, Neighbour, Neighbours};
 use crate::real::Real;
 
 impl<'a, T: Real, const D: usize> Space<'a, T, D> {
-    /// See `Discretisation::coercivity_margin`.
-    pub fn coercivity_margin(&self, form: &dyn FacetForm<T, D>) -> Option<CoercivityMargin> {
+    /// The facets whose penalty lies below the bound that proves coercivity: their number and the
+    /// one with the smallest quotient of penalty and bound; none if the form has no such bound.
+    pub fn penalty_below_bound(&self, form: &dyn FacetForm<T, D>) -> Option<PenaltyBelowBound> {
         let neighbours = self.neighbours.as_ref()?;
-        let mut worst: Option<CoercivityMargin> = None;
+        let mut worst: Option<PenaltyBelowBound> = None;
         for cell in 0..self.mesh.n_cells() {
             for local in 0..=D {
                 if let Neighbour::Cell { cell: other, .. } = neighbours.across(cell, local)
@@ -28,10 +29,10 @@ impl<'a, T: Real, const D: usize> Space<'a, T, D> {
                     continue;
                 }
                 let facets = worst.map_or(0, |w| w.facets) + 1;
-                let here = CoercivityMargin { facets, cell, local, weight, needed };
+                let here = PenaltyBelowBound { facets, cell, local, weight, needed };
                 worst = match worst {
                     Some(w) if w.weight / w.needed <= weight / needed => {
-                        Some(CoercivityMargin { facets, ..w })
+                        Some(PenaltyBelowBound { facets, ..w })
                     }
                     _ => Some(here),
                 };
@@ -40,7 +41,7 @@ impl<'a, T: Real, const D: usize> Space<'a, T, D> {
         worst
     }
 
-    /// The view of a facet that carries a form, from the cell here.
+    /// The view of a facet on which a form acts, from the cell here.
     pub fn facet_view(
         &self,
         neighbours: &Neighbours,
@@ -68,7 +69,7 @@ impl<'a, T: Real, const D: usize> Space<'a, T, D> {
 #[error(
     "the penalty of {facets} facets lies below the bound that proves coercivity; worst at facet {local} of cell {cell}: {weight:.3e} where {needed:.3e} is enough"
 )]
-pub struct CoercivityMargin {
+pub struct PenaltyBelowBound {
     /// How many facets lie below.
     pub facets: usize,
     /// Cell of the facet that misses by the largest factor.
