@@ -61,16 +61,21 @@ macro_rules! compiled {
 }
 pub(crate) use compiled;
 
-/// The entry of a table that has this type.
-///
-/// # Panics
-/// If there is none: for a dimension other than one, two and three.
-pub(crate) fn find<F: Copy + 'static>(table: &[&(dyn Any + Sync)]) -> F {
+/// The entry of a table that has this type, if there is one.
+pub(crate) fn look_up<F: Copy + 'static>(table: &[&(dyn Any + Sync)]) -> Option<F> {
     let entry = |entry: &&(dyn Any + Sync)| {
         let entry: &dyn Any = *entry;
         entry.downcast_ref::<F>().copied()
     };
-    match table.iter().find_map(entry) {
+    table.iter().find_map(entry)
+}
+
+/// The entry of a table of scalars and dimensions that has this type.
+///
+/// # Panics
+/// If there is none: for a dimension other than one, two and three.
+pub(crate) fn find<F: Copy + 'static>(table: &[&(dyn Any + Sync)]) -> F {
+    match look_up(table) {
         Some(found) => found,
         None => panic!("functions are compiled for f64 and f32 in one, two and three dimensions"),
     }

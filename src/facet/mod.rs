@@ -58,10 +58,9 @@ pub trait FacetForm<T: Real, const D: usize>: Send + Sync + 'static {
     fn couples(&self) -> bool {
         true
     }
-    /// Whether the formula reads fluxes; if not, no normal derivative is computed.
-    fn uses_flux(&self) -> bool {
-        false
-    }
+    /// Whether the formula reads fluxes; if not, no normal derivative is computed, and those it would
+    /// read are not numbers. There is no default: a form that forgot to say so would read them.
+    fn uses_flux(&self) -> bool;
     /// Whether `int alpha r(v) . r(u)` is added, which couples cells with the neighbours of their
     /// neighbours. Only broken elements of degree one or two carry such a form.
     fn is_lifted(&self) -> bool {

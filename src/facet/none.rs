@@ -8,6 +8,9 @@ use crate::real::Real;
 pub struct NoFacets;
 
 impl<T: Real, const D: usize> FacetForm<T, D> for NoFacets {
+    fn uses_flux(&self) -> bool {
+        false
+    }
     fn couples(&self) -> bool {
         false
     }

@@ -34,6 +34,9 @@ pub struct OverPenalty {
 }
 
 impl<T: Real, const D: usize> FacetForm<T, D> for OverPenalty {
+    fn uses_flux(&self) -> bool {
+        false
+    }
     fn moments(&self, degree: usize) -> usize {
         degree - 1
     }

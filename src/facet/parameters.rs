@@ -3,6 +3,7 @@
 /// Penalty factors in force.
 #[derive(Clone, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "report", derive(serde::Serialize))]
+#[non_exhaustive]
 pub struct PenaltyParameters {
     /// Interior penalty factor.
     pub sigma: Option<f64>,
@@ -10,4 +11,30 @@ pub struct PenaltyParameters {
     pub eta: Option<f64>,
     /// The rule that turns the factor into a weight.
     pub rule: Option<String>,
+}
+
+impl PenaltyParameters {
+    /// No factor in force.
+    #[must_use]
+    pub const fn none() -> Self {
+        Self { sigma: None, eta: None, rule: None }
+    }
+    /// Sets the interior penalty factor.
+    #[must_use]
+    pub const fn with_sigma(mut self, sigma: f64) -> Self {
+        self.sigma = Some(sigma);
+        self
+    }
+    /// Sets the WOPSIP factor.
+    #[must_use]
+    pub const fn with_eta(mut self, eta: f64) -> Self {
+        self.eta = Some(eta);
+        self
+    }
+    /// Sets the rule that turns the factor into a weight.
+    #[must_use]
+    pub fn with_rule(mut self, rule: impl Into<String>) -> Self {
+        self.rule = Some(rule.into());
+        self
+    }
 }

@@ -34,14 +34,7 @@ pub(super) fn is_symmetric<T: Real, const D: usize>(scheme: &dyn AnyScheme<T, D>
 
 /// The orders that the scheme promises for a smooth solution without inequalities.
 pub(super) fn promised<T: Real, const D: usize>(scheme: &dyn AnyScheme<T, D>) -> ExpectedOrders {
-    let regularity = Regularity { sobolev: f64::INFINITY, strictly_complementary: true };
-    scheme.expected_orders(&Setting {
-        dimension: D,
-        obstacle: false,
-        contact: false,
-        regularity,
-        regular_dual: true,
-    })
+    scheme.expected_orders(&Setting::new(D, Regularity::smooth()).with_regular_dual(true))
 }
 
 /// The inequality of a problem on a mesh.

@@ -53,7 +53,8 @@ fn values<T: Real, const D: usize, E: ReferenceElement<T, D>>(
 fn derivatives<T: Real, const D: usize, E: ReferenceElement<T, D>>(
     point: &[f64; 4],
 ) -> [[f64; 4]; MAX_BASIS] {
-    let mut out = [[T::lit(0.0); 4]; MAX_BASIS];
+    // not a number, so that an entry left unwritten is no zero that happens to be right
+    let mut out = [[T::lit(f64::NAN); 4]; MAX_BASIS];
     E::derivatives(&point.map(T::lit)[..=D], &mut out);
     out.map(|row| row.map(T::to_f64))
 }

@@ -92,8 +92,8 @@ impl<'a, T: Real, const D: usize> Hierarchy<'a, T, D> {
     /// Builds the meshes of a level and of all coarser ones.
     ///
     /// # Errors
-    /// [`Error::Mesh`] if the cells are too many to be numbered, [`Error::Parameter`] for level zero of a
-    /// built-in domain.
+    /// [`Error::Parameter`] for level zero of a built-in domain and for one with more cells than can be
+    /// numbered or with cells too small for the scalar, [`Error::Mesh`] if the domain has no mesh.
     pub fn build(&mut self, level: usize) -> Result<(), Error> {
         compiled!(
             T, D: fn(&mut Hierarchy<'_, T, D>, usize) -> Result<(), Error>
@@ -154,6 +154,13 @@ impl<'a, T: Real, const D: usize> Hierarchy<'a, T, D> {
                 allowed: format!(
                     "it would have {cells:.1e} cells, at most {limit:.1e} are possible"
                 ),
+            });
+        }
+        if level == 0 && self.input_mesh.is_none() {
+            return Err(Error::Parameter {
+                parameter: "level",
+                value: "0".to_owned(),
+                allowed: "a built-in mesh has at least one subdivision".to_owned(),
             });
         }
         self.check_scalar(level)
@@ -349,4 +356,18 @@ fn solve_p1<T: Real, const D: usize>(
     };
     let seconds = seconds_before + seconds + clock.elapsed().as_secs_f64();
     Ok(P1Solution { contact, values, coarse_spaces, seconds, levels_solved: levels + 1 })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scenes;
+
+    #[test]
+    fn level_zero_of_a_built_in_domain_is_refused_by_its_name() {
+        let scene = scenes::radial::<2>(1.0);
+        let mut levels = Hierarchy::<f64, 2>::new(&scene.problem, &scene.domain, None);
+        let error = levels.build(0).unwrap_err();
+        assert!(matches!(error, Error::Parameter { parameter: "level", .. }), "{error}");
+    }
 }

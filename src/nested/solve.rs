@@ -1,5 +1,6 @@
 //! One solve: a scheme on a mesh, from assembly to certificate and errors.
 
+use std::fmt;
 use std::time::Instant;
 
 use super::hierarchy::P1Solution;
@@ -19,6 +20,7 @@ use crate::real::Real;
 use crate::scheme::AnyScheme;
 
 /// The input of [`solve`]: data, mesh, start and settings.
+#[non_exhaustive]
 pub struct Task<'a, T: Real, const D: usize> {
     /// The data.
     pub problem: &'a Problem<D>,
@@ -38,7 +40,78 @@ pub struct Task<'a, T: Real, const D: usize> {
     pub with_fields: bool,
 }
 
+impl<'a, T: Real, const D: usize> Task<'a, T, D> {
+    /// One run from a cold start, by the usual quadrature, without errors and fields.
+    #[must_use]
+    pub fn new(
+        problem: &'a Problem<D>,
+        mesh: &'a Mesh<T, D>,
+        solver: &'a dyn InequalitySolver<T>,
+    ) -> Self {
+        Self {
+            problem,
+            mesh,
+            start: None,
+            solver,
+            quadrature: DataQuadrature::default(),
+            with_errors: false,
+            repeat: 1,
+            with_fields: false,
+        }
+    }
+    /// Sets the solution to start from; none for a cold start.
+    #[must_use]
+    pub fn start(mut self, start: Option<&'a P1Solution<T>>) -> Self {
+        self.start = start;
+        self
+    }
+    /// Sets the quadrature of data.
+    #[must_use]
+    pub fn quadrature(mut self, quadrature: DataQuadrature) -> Self {
+        self.quadrature = quadrature;
+        self
+    }
+    /// Sets whether errors are computed: the exact solution must hold on this mesh.
+    #[must_use]
+    pub fn with_errors(mut self, with_errors: bool) -> Self {
+        self.with_errors = with_errors;
+        self
+    }
+    /// Sets the number of runs of which times are the smallest.
+    #[must_use]
+    pub fn repeat(mut self, repeat: usize) -> Self {
+        self.repeat = repeat;
+        self
+    }
+    /// Sets whether fields for pictures are wanted.
+    #[must_use]
+    pub fn with_fields(mut self, with_fields: bool) -> Self {
+        self.with_fields = with_fields;
+        self
+    }
+}
+
+impl<T: Real, const D: usize> fmt::Debug for Task<'_, T, D> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        // destructured, so that a field added later is listed too
+        let &Self { problem, mesh, start, solver, quadrature, with_errors, repeat, with_fields } =
+            self;
+        f.debug_struct("Task")
+            .field("problem", problem)
+            .field("cells", &mesh.n_cells())
+            .field("start", &start.is_some())
+            .field("solver", &solver.name())
+            .field("quadrature", &quadrature)
+            .field("with_errors", &with_errors)
+            .field("repeat", &repeat)
+            .field("with_fields", &with_fields)
+            .finish()
+    }
+}
+
 /// The result of [`solve`]: outcome, errors, counts, times and warnings.
+#[derive(Debug)]
+#[non_exhaustive]
 pub struct Solved {
     /// Penalty factors in force.
     pub parameters: PenaltyParameters,

@@ -39,24 +39,28 @@ pub trait AnyScheme<T: Real, const D: usize>: Send + Sync {
         mesh: &'a Mesh<T, D>,
         quadrature: DataQuadrature,
     ) -> Result<Discretisation<'a, T, D>, Error>;
+}
 
+// Not in the trait, whose table of each scheme would have its own copy. For a scheme with its type
+// they are to be had after a cast to `&dyn AnyScheme<T, D>`.
+impl<T: Real, const D: usize> dyn AnyScheme<T, D> + '_ {
     /// Whether its unknowns are those of conforming P1, so that it starts from a coarser level and
     /// not from P1 on the same level.
-    fn is_conforming_linear(&self, mesh: &Mesh<T, D>) -> bool {
+    pub fn is_conforming_linear(&self, mesh: &Mesh<T, D>) -> bool {
         let layout = self.layout();
         layout.vertex == 1
             && layout.edge + layout.facet + layout.cell == 0
             && !self.form(mesh).couples()
     }
     /// Penalty factors in force on a mesh.
-    fn parameters(&self, mesh: &Mesh<T, D>) -> PenaltyParameters {
+    pub fn parameters(&self, mesh: &Mesh<T, D>) -> PenaltyParameters {
         self.form(mesh).parameters()
     }
     /// The algebraic inequality alone, for other solvers and exporters.
     ///
     /// # Errors
     /// Those of assembly.
-    fn inequality(
+    pub fn inequality(
         &self,
         problem: &Problem<D>,
         mesh: &Mesh<T, D>,

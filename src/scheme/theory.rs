@@ -3,11 +3,30 @@
 /// Orders that theory promises.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "report", derive(serde::Serialize))]
+#[non_exhaustive]
 pub struct ExpectedOrders {
     /// In L2.
     pub l2: Option<f64>,
     /// In the broken H1 seminorm.
     pub h1: Option<f64>,
+}
+
+impl ExpectedOrders {
+    /// No promise in any norm.
+    #[must_use]
+    pub const fn none() -> Self {
+        Self { l2: None, h1: None }
+    }
+    /// Promises an order in L2.
+    #[must_use]
+    pub const fn with_l2(self, order: f64) -> Self {
+        Self { l2: Some(order), ..self }
+    }
+    /// Promises an order in the broken H1 seminorm.
+    #[must_use]
+    pub const fn with_h1(self, order: f64) -> Self {
+        Self { h1: Some(order), ..self }
+    }
 }
 
 /// Regularity of the exact solution, from which theory predicts orders.
@@ -42,6 +61,7 @@ impl Regularity {
 
 /// What a promise of orders may depend on.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Setting {
     /// Dimension of space.
     pub dimension: usize,
@@ -57,6 +77,28 @@ pub struct Setting {
 }
 
 impl Setting {
+    /// The linear problem in this dimension, with a solution of this regularity, of whose dual
+    /// nothing is known.
+    #[must_use]
+    pub const fn new(dimension: usize, regularity: Regularity) -> Self {
+        let (obstacle, contact, regular_dual) = (false, false, false);
+        Self { dimension, obstacle, contact, regularity, regular_dual }
+    }
+    /// Sets whether an obstacle binds in the domain.
+    #[must_use]
+    pub const fn with_obstacle(self, obstacle: bool) -> Self {
+        Self { obstacle, ..self }
+    }
+    /// Sets whether a Signorini condition binds on the boundary.
+    #[must_use]
+    pub const fn with_contact(self, contact: bool) -> Self {
+        Self { contact, ..self }
+    }
+    /// Sets whether the dual of the linear problem has solutions in `H^2`.
+    #[must_use]
+    pub const fn with_regular_dual(self, regular_dual: bool) -> Self {
+        Self { regular_dual, ..self }
+    }
     /// Whether no inequality binds.
     pub fn is_linear(&self) -> bool {
         !self.obstacle && !self.contact

@@ -31,6 +31,7 @@ const WRITE_INTERVAL: Duration = Duration::from_millis(500);
 
 /// Progress of a study.
 #[derive(Debug)]
+#[non_exhaustive]
 pub enum StabilityProgress<'a> {
     /// The number of jobs that follow.
     Planned(usize),

@@ -69,16 +69,11 @@ pub(crate) fn solved<const D: usize>(
         if is_warm { Some(levels.p1_solution(level, solver, quadrature, 1)?) } else { None };
     let Some((mesh, _)) = levels.mesh(level) else { unreachable!("made above") };
     let scheme = choice.make::<f64, D>();
-    let task = Task {
-        problem: &scene.problem,
-        mesh,
-        start: start.as_deref(),
-        solver,
-        quadrature,
-        with_errors: true,
-        repeat: 1,
-        with_fields: true,
-    };
+    let task = Task::new(&scene.problem, mesh, solver)
+        .start(start.as_deref())
+        .quadrature(quadrature)
+        .with_errors(true)
+        .with_fields(true);
     let solved = solve(&*scheme, &task)?;
     Ok((mesh.clone(), solved))
 }

@@ -16,6 +16,9 @@ pub(crate) struct UnweightedWopsip(pub Wopsip);
 pub(crate) struct UnweightedPenalty(OverPenalty);
 
 impl<T: Real, const D: usize> FacetForm<T, D> for UnweightedPenalty {
+    fn uses_flux(&self) -> bool {
+        false
+    }
     fn moments(&self, degree: usize) -> usize {
         FacetForm::<T, D>::moments(&self.0, degree)
     }

@@ -5,6 +5,7 @@ use super::row::Row;
 use super::table::distinct;
 use crate::inequality::Outcome;
 use crate::measure::{ErrorNorm, observed_order};
+use crate::readable_debug::debug_by_display;
 use crate::scheme::ExpectedOrders;
 
 /// An error of this share of the mesh size, of solutions whose size is one, is rounding.
@@ -49,7 +50,7 @@ pub(crate) fn order_in(norm: ErrorNorm, orders: &ExpectedOrders) -> Option<f64> 
 }
 
 /// A promise that was not kept.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[derive(Clone, PartialEq, thiserror::Error)]
 pub enum OrderMissed {
     /// The observed order is below the promised one.
     #[error(
@@ -92,9 +93,12 @@ pub enum OrderMissed {
 }
 
 /// All promises of a report that were not kept; at least one.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[derive(Clone, PartialEq, thiserror::Error)]
 #[error("{}", self.0.iter().map(ToString::to_string).collect::<Vec<_>>().join("\n"))]
 pub struct OrdersMissed(pub Vec<OrderMissed>);
+
+// so that a `main` that returns it prints what was missed, and not fields
+debug_by_display!(OrderMissed, OrdersMissed);
 
 impl ObservedOrders {
     /// The promises that are missed by more than the tolerance.

@@ -28,6 +28,7 @@ use crate::scheme::{AnyScheme, ExpectedOrders, Setting};
 
 /// Progress of a study.
 #[derive(Debug)]
+#[non_exhaustive]
 pub enum Progress<'a> {
     /// A run begins: scene, scheme, level.
     Started(&'a str, &'a str, usize),
@@ -278,16 +279,12 @@ impl<'a, T: Real, const D: usize> Study<'a, T, D> {
         levels.build(level)?;
         let start = self.start(levels, scheme, level)?;
         let Some((mesh, mesh_seconds)) = levels.mesh(level) else { unreachable!("made above") };
-        let task = Task {
-            problem: &self.scene.problem,
-            mesh,
-            start: start.as_deref(),
-            solver: &*self.solver,
-            quadrature: self.quadrature,
-            with_errors: failure.is_none(),
-            repeat: self.repeat,
-            with_fields,
-        };
+        let task = Task::new(&self.scene.problem, mesh, &*self.solver)
+            .start(start.as_deref())
+            .quadrature(self.quadrature)
+            .with_errors(failure.is_none())
+            .repeat(self.repeat)
+            .with_fields(with_fields);
         let solved = solve(scheme, &task)?;
         #[cfg(feature = "report")]
         if let (Some(directory), Some(_)) = (&self.directory, &solved.fields) {

@@ -36,6 +36,7 @@ const WRITE_INTERVAL: Duration = Duration::from_secs(1);
 
 /// Progress of a study.
 #[derive(Debug)]
+#[non_exhaustive]
 pub enum WorkProgress<'a> {
     /// The number of runs that follow, fewer if some exceed the time limit.
     Planned(usize),

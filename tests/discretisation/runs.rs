@@ -16,16 +16,7 @@ pub fn solve<T: Real, const D: usize>(
     mesh: &Mesh<T, D>,
 ) -> Solved {
     let solver = ActiveSet::default();
-    let task = Task {
-        problem,
-        mesh,
-        start: None,
-        solver: &solver,
-        quadrature: Default::default(),
-        with_errors: true,
-        repeat: 1,
-        with_fields: true,
-    };
+    let task = Task::new(problem, mesh, &solver).with_errors(true).with_fields(true);
     nested::solve(scheme, &task).unwrap()
 }
 

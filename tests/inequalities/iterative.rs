@@ -3,7 +3,7 @@
 
 use unilateral::algebra::{Bound, Inequality, SparseMatrix};
 use unilateral::assemble::{DataQuadrature, Discretisation};
-use unilateral::inequality::{ActiveSet, InequalitySolver, Outcome};
+use unilateral::inequality::{ActiveSet, InequalitySolver, Outcome, certify};
 use unilateral::linear::LinearMethod;
 use unilateral::prelude::*;
 use unilateral::scenes::Scene;
@@ -181,8 +181,9 @@ fn what_cannot_be_solved_is_named() {
     let mut wrong = grid(40, 0.1);
     wrong.load[5] = f64::NAN;
     assert_eq!(outcome(&wrong), Outcome::NotFinite);
-    let mut wrong = grid(40, 0.1);
-    wrong.supports.truncate(3);
+    let whole = grid(40, 0.1);
+    let few = whole.supports[..3].to_vec();
+    let wrong = whole.with_supports(few);
     let solution = with(LinearMethod::Iterative).solve(&wrong);
     assert_eq!((solution.outcome, solution.linear_solver), (Outcome::Converged, "direct"));
 }
@@ -204,6 +205,11 @@ fn the_bound_on_the_error_is_one() {
         let name = (&scene.name, scheme.name());
         assert!(error <= bound, "{name:?}: {error} and {bound}");
         assert!(bound <= 1e-9, "{name:?}: {bound}");
+        // a certificate carries the bound, and its violations stay what they are
+        let without = certify(&inequality, &solution.values);
+        let with = without.with_algebraic_bound(Some(bound));
+        assert_eq!((without.algebraic_bound, with.algebraic_bound), (None, Some(bound)));
+        assert_eq!(with.largest(), without.largest());
     }
     // contact of the last two has no multiplier, so that any of it may come loose
     for scene in [scenes::radial(1.0), scenes::biactive_half_2d(), scenes::degenerate(2)] {

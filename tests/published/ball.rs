@@ -2,7 +2,7 @@
 
 use crate::support::checks::Checks;
 use unilateral::algebra::Contact;
-use unilateral::assemble::DataQuadrature;
+use unilateral::assemble::{DataQuadrature, Discretisation};
 use unilateral::inequality::{ActiveSet, InequalitySolver, Outcome};
 use unilateral::prelude::*;
 
@@ -26,7 +26,10 @@ fn ball_obstacle_of_petsc() {
     for (points, mean, max, active) in cases {
         let mesh = scene.domain.mesh::<f64>(points - 1).unwrap();
         let inequality =
-            ConformingP1.inequality(&scene.problem, &mesh, DataQuadrature::default()).unwrap();
+            Discretisation::new(&ConformingP1, &scene.problem, &mesh, DataQuadrature::default())
+                .unwrap()
+                .inequality()
+                .unwrap();
         let solution = ActiveSet::default().solve(&inequality);
         assert_eq!(solution.outcome, Outcome::Converged);
         let nodes = mesh.vertices().iter().zip(&solution.values);

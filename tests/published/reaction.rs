@@ -98,7 +98,10 @@ fn rough_load(mesh: &Mesh<f64, 1>) -> Vec<f64> {
 fn rough_solution(power: i32) -> (Vec<f64>, f64) {
     let mesh = mesh(power);
     let problem = Problem::new().reaction(1.0).signorini(|_| 0.0);
-    let mut inequality = ConformingP1.inequality(&problem, &mesh, Default::default()).unwrap();
+    let mut inequality = Discretisation::new(&ConformingP1, &problem, &mesh, Default::default())
+        .unwrap()
+        .inequality()
+        .unwrap();
     inequality.load = rough_load(&mesh);
     solve(&inequality)
 }

@@ -2,6 +2,7 @@
 
 use crate::support::checks::Checks;
 use unilateral::algebra::{Bound, Contact, Start};
+use unilateral::assemble::Discretisation;
 use unilateral::inequality::{ActiveSet, InequalitySolver, Outcome};
 use unilateral::mesh::Mesh;
 use unilateral::prelude::*;
@@ -32,7 +33,10 @@ fn nodal_errors(checks: &mut Checks, scene: &Scene<1>) -> Vec<f64> {
             let mesh = Mesh::<f64, 1>::kuhn_box(&scene.domain.bounding_box(), [cells as usize]);
             let mesh = mesh.unwrap();
             let mut inequality =
-                ConformingP1.inequality(problem, &mesh, Default::default()).unwrap();
+                Discretisation::new(&ConformingP1, problem, &mesh, Default::default())
+                    .unwrap()
+                    .inequality()
+                    .unwrap();
             inequality.load = mesh.vertices().iter().map(|x| h * load.at(x)).collect();
             if !start.is_empty() {
                 inequality.start = Start::Contact(refined(&start));

@@ -69,8 +69,8 @@ fn tables_are_aligned_and_say_what_failed() {
     rows[3].status = Outcome::IterationLimit;
     rows[3].error = Errors::default();
     rows[3].warnings = vec!["eta below its bound".into()];
-    rows[2].expected_order = ExpectedOrders { l2: None, h1: Some(0.5) };
-    rows[3].expected_order = ExpectedOrders { l2: None, h1: Some(0.5) };
+    rows[2].expected_order = ExpectedOrders::none().with_h1(0.5);
+    rows[3].expected_order = ExpectedOrders::none().with_h1(0.5);
     fill_orders(&mut rows);
     let expected = "\
 radial-2d: solver active-set/direct; expected order L2 2 H1 1 (p1), H1 0.5 (wopsip)
@@ -92,7 +92,7 @@ fn tables_leave_out_what_says_nothing_and_name_constraints_that_vary() {
     rows[1].constraint = "facet-means".into();
     for row in &mut rows {
         row.error = Errors::default();
-        row.expected_order = ExpectedOrders::default();
+        row.expected_order = ExpectedOrders::none();
     }
     let text = report(rows).to_string();
     assert!(!text.contains("L2") && !text.contains("order"), "{text}");
@@ -126,7 +126,7 @@ fn kept_promises_pass() {
 #[test]
 fn orders_above_the_promise_keep_it() {
     let mut rows = four_levels("p1");
-    rows.iter_mut().for_each(|r| r.expected_order = ExpectedOrders { l2: None, h1: Some(0.5) });
+    rows.iter_mut().for_each(|r| r.expected_order = ExpectedOrders::none().with_h1(0.5));
     assert_eq!(report(rows).assert_orders(0.0), Ok(()));
 }
 
@@ -148,6 +148,8 @@ fn a_missed_promise_names_the_row() {
     let expected =
         "sipg (vertices) on radial-2d: order 0.800 in H1 from level 32 to 64, promised 1";
     assert_eq!(text, expected);
+    // what a `main` that returns it prints
+    assert_eq!(format!("{missed:?}"), expected);
     assert_eq!(report(rows.clone()).assert_orders(0.21), Ok(()));
     // Where nothing is promised, nothing is missed.
     rows[7].expected_order.h1 = None;
@@ -162,7 +164,7 @@ fn a_promise_that_cannot_be_tested_is_missed() {
     assert_eq!(missed.0.len(), 2, "one for each norm");
     assert!(matches!(missed.0[0], OrderMissed::Unobserved { norm: ErrorNorm::L2, .. }), "{missed}");
     assert!(missed.to_string().contains("fewer than two levels"), "{missed}");
-    rows.iter_mut().for_each(|row| row.expected_order = ExpectedOrders::default());
+    rows.iter_mut().for_each(|row| row.expected_order = ExpectedOrders::none());
     assert_eq!(report(rows).assert_orders(0.1), Ok(()));
 }
 
@@ -171,7 +173,7 @@ fn the_table_of_orders_gives_a_verdict_for_every_scheme() {
     let mut rows: Vec<Row> =
         ["p1", "cr", "sipg", "wopsip"].into_iter().flat_map(four_levels).collect();
     rows[7].error.h1 = rows[6].error.h1;
-    rows[8..12].iter_mut().for_each(|row| row.expected_order = ExpectedOrders::default());
+    rows[8..12].iter_mut().for_each(|row| row.expected_order = ExpectedOrders::none());
     rows[12..15].iter_mut().for_each(|row| row.status = Outcome::Cycling);
     rows[12..16].iter_mut().for_each(|row| row.constraint = "facet-means".into());
     let text = orders_table(&report(rows).observed_orders(), 0.1);

@@ -35,16 +35,11 @@ pub fn solve_by_rule<const D: usize>(
     levels.build(level).unwrap();
     let start = levels.p1_solution(level, &solver, quadrature, 1).unwrap();
     let mesh = levels.mesh(level).unwrap().0.clone();
-    let task = Task {
-        problem: &scene.problem,
-        mesh: &mesh,
-        start: Some(&start),
-        solver: &solver,
-        quadrature,
-        with_errors: true,
-        repeat: 1,
-        with_fields: true,
-    };
+    let task = Task::new(&scene.problem, &mesh, &solver)
+        .start(Some(&start))
+        .quadrature(quadrature)
+        .with_errors(true)
+        .with_fields(true);
     let solved = nested::solve(scheme, &task).unwrap();
     (mesh, solved)
 }

@@ -19,7 +19,7 @@ use super::space::dofs::Dofs;
 use crate::algebra::SparseMatrix;
 use crate::element::{CrouzeixRaviart, P1, P2, ReferenceElement};
 use crate::facet::FacetForm;
-use crate::instances::find;
+use crate::instances::look_up;
 use crate::real::Real;
 pub(crate) use pattern::EntryPositions;
 
@@ -36,11 +36,24 @@ impl<T: Real, const D: usize> CellLoops<T, D> {
         if const { E::LAYOUT.is_broken() } {
             None
         } else if const { E::COMPILED } {
-            Some(find::<Loops<T, D, E>>(&COMPILED).loops)
+            match look_up::<Loops<T, D, E>>(&COMPILED) {
+                Some(found) => Some(found.loops),
+                None => not_compiled::<T, D, E>(),
+            }
         } else {
             Some(Loops::<T, D, E>::instance().loops)
         }
     }
+}
+
+/// Loops made here instead would be compiled in every crate, which the constant is there to prevent.
+#[cold]
+fn not_compiled<T: Real, const D: usize, E: ReferenceElement<T, D>>() -> ! {
+    panic!(
+        "no loops of {} over {} in dimension {D} are compiled: elements of other crates leave `ReferenceElement::COMPILED` false",
+        std::any::type_name::<E>(),
+        T::NAME
+    )
 }
 
 /// The loops of the element `E`.

@@ -31,13 +31,6 @@ fn solve_scene<T: Real, const D: usize>(
     scheme: &dyn AnyScheme<T, D>,
     level: usize,
 ) -> Result<(Mesh<T, D>, Solved), Error> {
-    if level == 0 {
-        return Err(Error::Parameter {
-            parameter: "level",
-            value: "0".to_owned(),
-            allowed: "a built-in mesh has at least one subdivision".to_owned(),
-        });
-    }
     let solver = ActiveSet::default();
     let quadrature = DataQuadrature::default();
     let mut levels = Hierarchy::new(&scene.problem, &scene.domain, None);
@@ -49,16 +42,10 @@ fn solve_scene<T: Real, const D: usize>(
         Some(levels.p1_solution(level, &solver, quadrature, 1)?)
     };
     let Some((mesh, _)) = levels.mesh(level) else { unreachable!("made above") };
-    let task = Task {
-        problem: &scene.problem,
-        mesh,
-        start: start.as_deref(),
-        solver: &solver,
-        quadrature,
-        with_errors: false,
-        repeat: 1,
-        with_fields: true,
-    };
+    let task = Task::new(&scene.problem, mesh, &solver)
+        .start(start.as_deref())
+        .quadrature(quadrature)
+        .with_fields(true);
     let solved = solve(scheme, &task)?;
     Ok((mesh.clone(), solved))
 }

@@ -31,6 +31,7 @@ impl Watcher {
                 tick(&self.bar);
             }
             Progress::Finished(_) => self.bar.inc(1),
+            _ => {}
         }
     }
     pub fn warn_once(&self, warning: String) {

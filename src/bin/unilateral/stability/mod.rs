@@ -41,8 +41,8 @@ pub fn run(options: &Options) -> Request<bool> {
         .observer(|progress| match progress {
             StabilityProgress::Planned(n) => bar.set_length(n as u64),
             StabilityProgress::Started(case, label) => bar.set_message(format!("{case}: {label}")),
-            StabilityProgress::Row(_) => {}
             StabilityProgress::Finished => bar.inc(1),
+            _ => {}
         });
     for path in &options.meshes {
         let mesh = gmsh::read::<f64, 3>(path).map_err(|e| format!("{}: {e}", path.display()))?;

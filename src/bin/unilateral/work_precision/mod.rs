@@ -112,8 +112,6 @@ where
         .write_to(&options.out)
         .memory(|case| memory_of(case, options.threads()))
         .observer(|progress| match progress {
-            // the bar was made for all scenes
-            WorkProgress::Planned(_) => {}
             WorkProgress::Finished => bar.inc(1),
             WorkProgress::Started(case, round) => {
                 let v = &case.variant;
@@ -126,6 +124,8 @@ where
                     round + 1
                 ));
             }
+            // what is planned counts for nothing: the bar was made for all scenes
+            _ => {}
         });
     for (name, scheme_options) in options.schemes() {
         study = study.scheme_by_name(&name, &scheme_options);
