@@ -24,6 +24,11 @@ pub(crate) trait CellMatrix<T> {
     fn entry(&self, i: usize, j: usize) -> T;
 }
 
+/// Whether basis functions are linear and as many as the vertices of a cell.
+pub(crate) const fn is_linear<T: Real, E: ReferenceElement<T, D>, const D: usize>() -> bool {
+    E::DEGREE == 1 && E::N == D + 1
+}
+
 /// What cells contribute, tabulated.
 pub(crate) struct CellMatrices<'s, 'a, T: Real, const D: usize> {
     space: &'s Space<'a, T, D>,
@@ -41,8 +46,7 @@ impl<'s, 'a, T: Real, const D: usize> CellMatrices<'s, 'a, T, D> {
         let zero = T::lit(0.0);
         let table = space.stiffness_table();
         let unit = |k, l| CellMetric { products: unit(k, l), volume: zero, measures: [zero; 4] };
-        let linear = E::DEGREE == 1 && E::N == D + 1;
-        let mut square = linear.then(|| table.entry::<D>(&unit(0, 1), 0, 1));
+        let mut square = is_linear::<T, E, D>().then(|| table.entry::<D>(&unit(0, 1), 0, 1));
         let mut pairs = [[zero; 64]; PAIRS];
         let mut places = [0; MAX_BASIS * MAX_BASIS];
         for (pair, (k, l)) in pairs_of::<D>().enumerate() {

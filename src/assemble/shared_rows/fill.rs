@@ -5,7 +5,7 @@ use std::sync::atomic::Ordering;
 
 use crate::parallel::for_each_item;
 
-use super::cells::{CellMatrices, CellMatrix, General, Gradients};
+use super::cells::{CellMatrices, CellMatrix, General, Gradients, is_linear};
 use super::partition::{Location, Rows, partition};
 use super::pattern::{EntryPositions, LONGEST};
 use crate::algebra::SparseMatrix;
@@ -95,11 +95,12 @@ impl<T: Real, const D: usize> Filling<'_, '_, '_, T, D> {
                 target.clear_before(hull.end, self.row_starts);
             }
             match self.cells.only_gradients() {
-                Some(square) => {
+                // for other elements the loop over products of gradients is not even instantiated
+                Some(square) if const { is_linear::<T, E, D>() } => {
                     let matrices = Gradients::new(&self.cells, square);
                     self.block::<E, _>(cells, location, &mut targets, matrices);
                 }
-                None => {
+                _ => {
                     let matrices = General::<E, T, D>::new(&self.cells);
                     self.block::<E, _>(cells, location, &mut targets, matrices);
                 }
