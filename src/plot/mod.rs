@@ -1,7 +1,7 @@
 //! Plots of a report: error against mesh size, and error against time; pictures of a solution.
 //!
-//! Data ([`series`]), positions ([`axis`], [`layout`]) and appearance ([`panel`], [`pen`],
-//! [`style`]) are separate from the file formats ([`render`]), so that SVG and PNG files show one
+//! Data (`series`), positions (`axis`, `layout`) and appearance (`panel`, `pen`,
+//! `style`) are separate from the file formats (`render`), so that SVG and PNG files show one
 //! drawing.
 
 mod axis;

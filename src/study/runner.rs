@@ -104,6 +104,7 @@ impl<'a, T: Real, const D: usize> Study<'a, T, D> {
         self
     }
     /// Adds a scheme that other studies have too.
+    #[cfg(feature = "report")]
     pub(crate) fn shared_scheme(mut self, scheme: Arc<dyn AnyScheme<T, D> + 'a>) -> Self {
         self.schemes.push(scheme);
         self
