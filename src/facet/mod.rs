@@ -34,6 +34,8 @@ pub use parameters::PenaltyParameters;
 pub use proven::proven_bound;
 pub use view::{FacetView, Side};
 
+use std::any::Any;
+
 use crate::real::Real;
 
 /// A moment of the jump and of the mean normal flux of a function on a facet.
@@ -53,7 +55,7 @@ pub struct Trace<T> {
 /// From the one formula come the matrix, the load of Dirichlet data (which enter as the trial trace
 /// `{ jump: u_D, flux: 0 }`: wherever `[u]` stands on a Dirichlet facet, `[u] - u_D` is meant) and
 /// the penalty part of the norm (the formula at traces without flux).
-pub trait FacetForm<T: Real, const D: usize>: Send + Sync + 'static {
+pub trait FacetForm<T: Real, const D: usize>: Any + Send + Sync {
     /// Whether there is a form at all. Without one, facets are not even built.
     fn couples(&self) -> bool {
         true
