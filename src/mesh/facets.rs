@@ -78,7 +78,7 @@ impl Neighbours {
         {
             return Err(error);
         }
-        // only the task of the lowest vertex of a facet writes its codes
+        // the codes of a facet are written by one task only, that of the lowest vertex of the facet
         let codes = codes.into_iter().map(AtomicU32::into_inner).collect();
         Ok(Self { codes, per_cell: D + 1 })
     }

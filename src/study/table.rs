@@ -122,7 +122,7 @@ struct Column {
     cell: fn(&Row) -> String,
 }
 
-/// The columns that are not empty for these rows.
+/// The columns of the table of `rows`: those in which at least one row has an entry.
 fn columns(rows: &[&Row]) -> Vec<Column> {
     let text = |name, cell| Column { name, left: true, cell };
     let number = |name, cell| Column { name, left: false, cell };

@@ -87,7 +87,7 @@ impl<const D: usize> OneStudy<'_, D> {
     }
 }
 
-/// Resets the largest resident set that the kernel has recorded; tells whether it did. Linux only.
+/// Resets the peak of the resident set that the kernel records; `true` if it was reset. Linux only.
 fn reset_peak_memory() -> bool {
     cfg!(target_os = "linux") && std::fs::write("/proc/self/clear_refs", "5").is_ok()
 }

@@ -65,7 +65,8 @@ fn targets<'v, T>(
 }
 
 impl<T: Real> Target<'_, T> {
-    /// Sets the values before a row to zero, just before they are needed: they are then at hand.
+    /// Sets the values before a row to zero just before entries are added to them: they are then in
+    /// the cache.
     #[inline(always)]
     fn clear_before(&mut self, row: u32, row_starts: &[u32]) {
         let row = row.min(self.rows.end);

@@ -257,8 +257,8 @@ impl HessenbergMatrix {
     }
 
     /// The smallest and the largest eigenvalue of the symmetric part of the square matrix, or the
-    /// values `previous` where they are more extreme; `None` if both are empty. They lie between
-    /// the extreme eigenvalues of the preconditioned symmetric part of `A`.
+    /// values `previous` where those are more extreme; `None` if there is neither. Both values lie
+    /// between the extreme eigenvalues of the preconditioned symmetric part of `A`.
     fn extreme_ritz_values(&self, previous: Option<(f64, f64)>) -> Option<(f64, f64)> {
         let entry = |i: usize, j: usize| self.columns[j].get(i).copied().unwrap_or(0.0);
         let n = self.size();

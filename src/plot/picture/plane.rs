@@ -324,7 +324,7 @@ fn shade(map: &mut Map, name: &str, triangles: &[[(PlanePoint, f64); 3]], with_l
     map.scale = Some(scale);
 }
 
-/// The slice shown unless another is asked for: along the contact boundary if that is a coordinate
+/// The default slice: along the contact boundary if that is a coordinate
 /// plane, otherwise through the middle across the last coordinate.
 pub(crate) fn default_slice<T: Real, const D: usize>(
     problem: &Problem<D>,

@@ -19,7 +19,7 @@ type Touched = (fn() -> Scene<2>, f64);
 const PROBLEMS: [Touched; 2] =
     [(scenes::ball_2d, 0.697_965_148_223_373_6), (scenes::cone::<2>, 0.5)];
 
-/// After so many sets the method wanders.
+/// Number of active sets above which the active set method counts as stagnating.
 const MOST_SETS: usize = 100;
 
 /// Levels to which the order of the multiplier is fitted.
