@@ -189,6 +189,7 @@ impl<'a, T: Real, const D: usize> Discretisation<'a, T, D> {
             } else {
                 Vec::new()
             },
+            conforming_linear: self.space.is_conforming_linear(),
             start: Start::Cold,
             penalised,
         })

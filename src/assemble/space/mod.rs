@@ -143,6 +143,10 @@ impl<'a, T: Real, const D: usize> Space<'a, T, D> {
     pub fn stiffness_table(&self) -> StiffnessTable<T> {
         StiffnessTable::new(D, &self.cell_table(2 * (self.degree - 1)))
     }
+    /// Whether unknown `i` is the value at vertex `i` of a conforming linear function.
+    pub fn is_conforming_linear(&self) -> bool {
+        self.degree == 1 && !self.broken && self.nodes.iter().all(|n| matches!(n, Node::Vertex(_)))
+    }
     /// Moments of the basis on facets, up to a degree.
     pub fn facet_table(&self, degree: usize) -> FacetTable<T> {
         FacetTable::new(D, self.degree, self.basis, degree)
