@@ -1,6 +1,9 @@
 //! Linear Lagrange elements.
 
-use super::reference_element::{Layout, Node, ReferenceElement};
+use super::basis::Basis;
+use super::broken::Broken;
+use super::crouzeix_raviart::CrouzeixRaviart;
+use super::reference_element::{ElementVisitor, Layout, Node, ReferenceElement};
 use crate::real::Real;
 
 /// Continuous piecewise linears: the basis functions are the barycentric coordinates.
@@ -26,5 +29,8 @@ impl<T: Real, const D: usize> ReferenceElement<T, D> for P1 {
     }
     fn node(i: usize) -> Node {
         Node::Vertex(i)
+    }
+    fn broken_in_basis<V: ElementVisitor<T, D>>(basis: Basis, visitor: V) -> Option<V::Output> {
+        (basis == Basis::FacetMeans).then(|| visitor.visit::<Broken<CrouzeixRaviart>>())
     }
 }

@@ -1,6 +1,8 @@
 //! Quadratic Lagrange elements.
 
-use super::reference_element::{Layout, Node, ReferenceElement};
+use super::basis::Basis;
+use super::quadratic_cell_mean::QuadraticCellMean;
+use super::reference_element::{ElementVisitor, Layout, Node, ReferenceElement};
 use crate::mesh::edge_vertices;
 use crate::real::Real;
 
@@ -40,5 +42,8 @@ impl<T: Real, const D: usize> ReferenceElement<T, D> for P2 {
     }
     fn node(i: usize) -> Node {
         if i <= D { Node::Vertex(i) } else { Node::Edge(i - D - 1) }
+    }
+    fn broken_in_basis<V: ElementVisitor<T, D>>(basis: Basis, visitor: V) -> Option<V::Output> {
+        (basis == Basis::CellMean).then(|| visitor.visit::<QuadraticCellMean<P2>>())
     }
 }

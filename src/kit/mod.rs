@@ -48,8 +48,12 @@ pub use report::{
     SymmetryReport,
 };
 
+use std::sync::Arc;
+
+use crate::constraint::{ConstraintSet, Nodes};
 use crate::real::Real;
-use crate::scheme::{AnyScheme, Scheme};
+use crate::scheme::Scheme;
+use discrete::Tested;
 
 /// Tests all laws; those on solutions follow those on which the existence of solutions depends.
 ///
@@ -58,8 +62,19 @@ use crate::scheme::{AnyScheme, Scheme};
 pub fn check_scheme<T: Real, const D: usize, S: Scheme<T, D>>(
     scheme: &S,
 ) -> Result<KitReport, KitError> {
+    check_scheme_on(scheme, Nodes)
+}
+
+/// Tests all laws in the basis that a constraint set needs.
+///
+/// # Errors
+/// The first law that does not hold.
+pub fn check_scheme_on<T: Real, const D: usize, S: Scheme<T, D>>(
+    scheme: &S,
+    set: impl ConstraintSet + 'static,
+) -> Result<KitReport, KitError> {
     let element = check_element::<T, D, S::Element>()?;
-    let tested: &dyn AnyScheme<T, D> = scheme;
+    let tested: &Tested<'_, T, D> = &Tested { set: Arc::new(set), ..Tested::new(scheme) };
     Ok(KitReport {
         scheme: tested.name().to_owned(),
         dimension: D,
@@ -80,7 +95,7 @@ pub fn check_scheme<T: Real, const D: usize, S: Scheme<T, D>>(
 pub fn check_symmetry<T: Real, const D: usize, S: Scheme<T, D>>(
     scheme: &S,
 ) -> Result<SymmetryReport, KitError> {
-    symmetry::check::<T, D>(scheme)
+    symmetry::check::<T, D>(&Tested::new(scheme))
 }
 
 /// The symmetric part of the matrix is positive definite on the free unknowns.
@@ -90,7 +105,7 @@ pub fn check_symmetry<T: Real, const D: usize, S: Scheme<T, D>>(
 pub fn check_coercivity<T: Real, const D: usize, S: Scheme<T, D>>(
     scheme: &S,
 ) -> Result<CoercivityReport, KitError> {
-    coercivity::check::<T, D>(scheme)
+    coercivity::check::<T, D>(&Tested::new(scheme))
 }
 
 /// Matrix, load and solution do not depend on the numbers of vertices and cells, nor on the order
@@ -102,7 +117,7 @@ pub fn check_coercivity<T: Real, const D: usize, S: Scheme<T, D>>(
 pub fn check_invariance<T: Real, const D: usize, S: Scheme<T, D>>(
     scheme: &S,
 ) -> Result<InvarianceReport, KitError> {
-    invariance::check::<T, D>(scheme)
+    invariance::check::<T, D>(&Tested::new(scheme))
 }
 
 /// The patch test: a polynomial of the element's degree is reproduced to rounding if the scheme
@@ -113,7 +128,7 @@ pub fn check_invariance<T: Real, const D: usize, S: Scheme<T, D>>(
 pub fn check_consistency<T: Real, const D: usize, S: Scheme<T, D>>(
     scheme: &S,
 ) -> Result<ConsistencyReport, KitError> {
-    consistency::check::<T, D>(scheme)
+    consistency::check::<T, D>(&Tested::new(scheme))
 }
 
 /// Errors against a smooth solution fall with the order of the element: its degree in the broken
@@ -126,5 +141,5 @@ pub fn check_consistency<T: Real, const D: usize, S: Scheme<T, D>>(
 pub fn check_orders<T: Real, const D: usize, S: Scheme<T, D>>(
     scheme: &S,
 ) -> Result<OrdersReport, KitError> {
-    orders::check::<T, D>(scheme)
+    orders::check::<T, D>(&Tested::new(scheme))
 }

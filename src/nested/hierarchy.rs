@@ -7,6 +7,7 @@ use std::time::Instant;
 
 use crate::algebra::{Bound, Contact, Start};
 use crate::assemble::{DataQuadrature, Discretisation};
+use crate::constraint::Nodes;
 use crate::error::Error;
 use crate::inequality::{InequalitySolver, InitialGuess, Outcome};
 use crate::instances::compiled;
@@ -321,6 +322,8 @@ fn solve_p1<T: Real, const D: usize>(
 ) -> Result<P1Solution<T>, Error> {
     let (seconds_before, levels) =
         start.as_ref().map_or((0.0, 0), |s| (s.seconds, s.levels_solved));
+    // the constraint set of the problem is for the scheme that starts from here
+    let problem = &problem.clone().on(Nodes);
     let mut seconds = f64::INFINITY;
     let mut last = None;
     for _ in 0..repeat.max(1) {

@@ -27,10 +27,11 @@ pub(crate) fn solver_with(globalisation: Globalisation, max_outer: usize) -> Act
 
 /// The rows of a scheme on levels of a scene.
 pub(crate) fn rows<T: Real, const D: usize>(
-    scene: Scene<D>,
+    mut scene: Scene<D>,
     choice: &Choice,
     levels: &[usize],
 ) -> Result<Vec<Row>, Error> {
+    scene.problem = choice.constrain(scene.problem);
     let study = Study::<T, D>::new(scene).boxed_scheme(choice.make()).solver(solver());
     Ok(study.levels(levels.iter().copied()).run()?.rows)
 }
@@ -46,10 +47,11 @@ pub(crate) fn row<T: Real, const D: usize>(
 
 /// The row of a scheme on a mesh.
 pub(crate) fn row_on<const D: usize>(
-    scene: Scene<D>,
+    mut scene: Scene<D>,
     mesh: Mesh<f64, D>,
     choice: &Choice,
 ) -> Result<Row, Error> {
+    scene.problem = choice.constrain(scene.problem);
     let study = Study::<f64, D>::new(scene).on_mesh(mesh).boxed_scheme(choice.make());
     Ok(study.solver(solver()).levels([0]).run()?.rows.swap_remove(0))
 }
@@ -69,7 +71,8 @@ pub(crate) fn solved<const D: usize>(
         if is_warm { Some(levels.p1_solution(level, solver, quadrature, 1)?) } else { None };
     let Some((mesh, _)) = levels.mesh(level) else { unreachable!("made above") };
     let scheme = choice.make::<f64, D>();
-    let task = Task::new(&scene.problem, mesh, solver)
+    let problem = choice.constrain(scene.problem.clone());
+    let task = Task::new(&problem, mesh, solver)
         .start(start.as_deref())
         .quadrature(quadrature)
         .with_errors(true)
@@ -85,8 +88,7 @@ pub(crate) fn definite<const D: usize>(
     mesh: &Mesh<f64, D>,
     choice: &Choice,
 ) -> Result<Option<f64>, Error> {
-    let inequality =
-        choice.make::<f64, D>().inequality(problem, mesh, DataQuadrature::default())?;
+    let inequality = choice.inequality(problem, mesh)?;
     let free: Vec<u32> = (0..inequality.size() as u32)
         .filter(|&i| !matches!(inequality.bounds[i as usize], Bound::Fixed(_)))
         .collect();
@@ -103,8 +105,7 @@ pub(crate) fn free_matrix<const D: usize>(
     mesh: &Mesh<f64, D>,
     choice: &Choice,
 ) -> Result<SparseMatrix<f64>, Error> {
-    let inequality =
-        choice.make::<f64, D>().inequality(problem, mesh, DataQuadrature::default())?;
+    let inequality = choice.inequality(problem, mesh)?;
     let is_free = |i: usize| inequality.bounds[i].fixed_value().is_none();
     let mut number = vec![u32::MAX; inequality.size()];
     let free: Vec<usize> = (0..inequality.size()).filter(|&i| is_free(i)).collect();

@@ -12,6 +12,7 @@ use super::orders::fill_orders;
 use super::report::{Program, Report};
 use super::row::{Iterations, Row, Seconds};
 use crate::assemble::DataQuadrature;
+use crate::constraint::ConstraintSet;
 use crate::element::Layout;
 use crate::error::Error;
 #[cfg(feature = "report")]
@@ -22,6 +23,7 @@ use crate::mesh::{BoundaryPart, Domain, Mesh};
 use crate::nested::{Hierarchy, P1Solution, Solved, Task, solve};
 #[cfg(feature = "report")]
 use crate::paraview::{CellFields, write_vtu};
+use crate::problem::Problem;
 use crate::real::Real;
 use crate::scenes::Scene;
 use crate::scheme::{AnyScheme, ExpectedOrders, Setting};
@@ -52,7 +54,7 @@ pub enum Progress<'a> {
 /// ```
 pub struct Study<'a, T: Real, const D: usize> {
     scene: Scene<D>,
-    schemes: Vec<Arc<dyn AnyScheme<T, D> + 'a>>,
+    entries: Vec<Entry<'a, T, D>>,
     levels: Vec<usize>,
     mesh: Option<Mesh<T, D>>,
     solver: Box<dyn InequalitySolver<T> + 'a>,
@@ -62,9 +64,24 @@ pub struct Study<'a, T: Real, const D: usize> {
     observer: Box<dyn Fn(Progress<'_>) + 'a>,
 }
 
+/// A scheme, with its constraint set if that is not the problem's.
+struct Entry<'a, T: Real, const D: usize> {
+    scheme: Arc<dyn AnyScheme<T, D> + 'a>,
+    set: Option<Arc<dyn ConstraintSet>>,
+}
+
+impl<T: Real, const D: usize> Entry<'_, T, D> {
+    /// The problem with the constraint set of the entry.
+    fn problem(&self, problem: &Problem<D>) -> Problem<D> {
+        let mut problem = problem.clone();
+        problem.constraint_set = self.set.clone().or(problem.constraint_set);
+        problem
+    }
+}
+
 impl<T: Real, const D: usize> fmt::Debug for Study<'_, T, D> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let schemes: Vec<&str> = self.schemes.iter().map(|s| s.name()).collect();
+        let schemes: Vec<&str> = self.entries.iter().map(|e| e.scheme.name()).collect();
         f.debug_struct("Study")
             .field("scene", &self.scene.name)
             .field("schemes", &schemes)
@@ -81,7 +98,7 @@ impl<'a, T: Real, const D: usize> Study<'a, T, D> {
     pub fn new(scene: Scene<D>) -> Self {
         Self {
             scene,
-            schemes: Vec::new(),
+            entries: Vec::new(),
             levels: Vec::new(),
             mesh: None,
             solver: Box::new(ActiveSet::default()),
@@ -91,22 +108,42 @@ impl<'a, T: Real, const D: usize> Study<'a, T, D> {
             observer: Box::new(|_| {}),
         }
     }
-    /// Adds a scheme.
+    /// Adds a scheme, with the constraint set of the problem.
     #[must_use]
-    pub fn scheme(mut self, scheme: impl AnyScheme<T, D> + 'a) -> Self {
-        self.schemes.push(Arc::new(scheme));
-        self
+    pub fn scheme(self, scheme: impl AnyScheme<T, D> + 'a) -> Self {
+        self.shared_scheme(Arc::new(scheme), None)
     }
-    /// Adds a scheme chosen at run time.
+    /// Adds a scheme with a constraint set of its own, so that one scheme may stand beside itself with
+    /// other bounds.
     #[must_use]
-    pub fn boxed_scheme(mut self, scheme: Box<dyn AnyScheme<T, D> + 'a>) -> Self {
-        self.schemes.push(scheme.into());
-        self
+    pub fn scheme_on(
+        self,
+        scheme: impl AnyScheme<T, D> + 'a,
+        set: impl ConstraintSet + 'static,
+    ) -> Self {
+        self.shared_scheme(Arc::new(scheme), Some(Arc::new(set)))
+    }
+    /// Adds a scheme chosen at run time, with the constraint set of the problem.
+    #[must_use]
+    pub fn boxed_scheme(self, scheme: Box<dyn AnyScheme<T, D> + 'a>) -> Self {
+        self.shared_scheme(scheme.into(), None)
+    }
+    /// Adds a scheme chosen at run time, with a constraint set of its own.
+    #[must_use]
+    pub fn boxed_scheme_on(
+        self,
+        scheme: Box<dyn AnyScheme<T, D> + 'a>,
+        set: impl ConstraintSet + 'static,
+    ) -> Self {
+        self.shared_scheme(scheme.into(), Some(Arc::new(set)))
     }
     /// Adds a scheme that other studies have too.
-    #[cfg(feature = "report")]
-    pub(crate) fn shared_scheme(mut self, scheme: Arc<dyn AnyScheme<T, D> + 'a>) -> Self {
-        self.schemes.push(scheme);
+    pub(crate) fn shared_scheme(
+        mut self,
+        scheme: Arc<dyn AnyScheme<T, D> + 'a>,
+        set: Option<Arc<dyn ConstraintSet>>,
+    ) -> Self {
+        self.entries.push(Entry { scheme, set });
         self
     }
     /// Sets the levels: subdivisions of the shortest side, or refinements of a given mesh.
@@ -140,7 +177,7 @@ impl<'a, T: Real, const D: usize> Study<'a, T, D> {
         self
     }
     /// Writes the fields of every scheme on the finest level to this directory, as
-    /// `SCENE-SCHEME.vtu`.
+    /// `SCENE-SCHEME.vtu`; where a scheme stands twice, its constraint set follows its name.
     #[cfg(feature = "report")]
     #[must_use]
     pub fn fields_to(mut self, directory: impl Into<PathBuf>) -> Self {
@@ -176,7 +213,7 @@ impl<'a, T: Real, const D: usize> Study<'a, T, D> {
                 allowed: allowed.to_owned(),
             })
         };
-        if self.schemes.is_empty() {
+        if self.entries.is_empty() {
             return wrong("schemes", "none", "a study needs at least one scheme");
         }
         if self.levels.is_empty() {
@@ -219,7 +256,7 @@ impl<'a, T: Real, const D: usize> Study<'a, T, D> {
             scheme: scheme.name().to_owned(),
             level,
         };
-        self.schemes.iter().map(|s| of(&**s)).max_by(|a, b| a.bytes.total_cmp(&b.bytes))
+        self.entries.iter().map(|e| of(&*e.scheme)).max_by(|a, b| a.bytes.total_cmp(&b.bytes))
     }
 
     /// Runs every scheme on every level.
@@ -240,11 +277,12 @@ impl<'a, T: Real, const D: usize> Study<'a, T, D> {
             Hierarchy::new(&self.scene.problem, &self.scene.domain, self.mesh.as_ref());
         let finest = self.levels.iter().copied().max();
         let mut rows = Vec::new();
-        for scheme in &self.schemes {
+        for entry in &self.entries {
             for &level in &self.levels {
-                (self.observer)(Progress::Started(&self.scene.name, scheme.name(), level));
+                let name = entry.scheme.name();
+                (self.observer)(Progress::Started(&self.scene.name, name, level));
                 let with_fields = self.directory.is_some() && Some(level) == finest;
-                let (row, _) = self.row(&mut levels, &**scheme, level, failure, with_fields)?;
+                let (row, _) = self.row(&mut levels, entry, level, failure, with_fields)?;
                 (self.observer)(Progress::Finished(&row));
                 rows.push(row);
             }
@@ -259,12 +297,12 @@ impl<'a, T: Real, const D: usize> Study<'a, T, D> {
     #[cfg(feature = "report")]
     pub(crate) fn run_alone(&self) -> Result<(Row, f64), Error> {
         let failure = self.where_exact_fails()?;
-        let (Some(scheme), Some(&level)) = (self.schemes.first(), self.levels.first()) else {
+        let (Some(entry), Some(&level)) = (self.entries.first(), self.levels.first()) else {
             unreachable!("checked above")
         };
         let mut levels =
             Hierarchy::new(&self.scene.problem, &self.scene.domain, self.mesh.as_ref());
-        self.row(&mut levels, &**scheme, level, failure.as_deref(), false)
+        self.row(&mut levels, entry, level, failure.as_deref(), false)
     }
 
     /// Solves one scheme on one level. Returns the row, and the seconds of its start from coarser
@@ -272,15 +310,17 @@ impl<'a, T: Real, const D: usize> Study<'a, T, D> {
     fn row(
         &self,
         levels: &mut Hierarchy<'_, T, D>,
-        scheme: &dyn AnyScheme<T, D>,
+        entry: &Entry<'_, T, D>,
         level: usize,
         failure: Option<&str>,
         with_fields: bool,
     ) -> Result<(Row, f64), Error> {
+        let scheme = &*entry.scheme;
+        let problem = entry.problem(&self.scene.problem);
         levels.build(level)?;
         let start = self.start(levels, scheme, level)?;
         let Some((mesh, mesh_seconds)) = levels.mesh(level) else { unreachable!("made above") };
-        let task = Task::new(&self.scene.problem, mesh, &*self.solver)
+        let task = Task::new(&problem, mesh, &*self.solver)
             .start(start.as_deref())
             .quadrature(self.quadrature)
             .with_errors(failure.is_none())
@@ -289,15 +329,17 @@ impl<'a, T: Real, const D: usize> Study<'a, T, D> {
         let solved = solve(scheme, &task)?;
         #[cfg(feature = "report")]
         if let (Some(directory), Some(_)) = (&self.directory, &solved.fields) {
-            self.write_fields(directory, scheme, mesh, &solved)?;
+            self.write_fields(directory, entry, mesh, &solved)?;
         }
         let coarser = start.as_ref().map_or(0, |s| s.levels_solved);
         let start_seconds = start.as_ref().map_or(0.0, |s| s.seconds);
         let solve_seconds = solved.solve_seconds + start_seconds;
         let mut row = self.row_of(scheme, level, mesh, solved);
+        let set = problem.constraint_set();
+        row.constraint = scheme.constraint_on(set).unwrap_or_else(|| set.name().to_owned());
         row.iterations.levels =
             coarser.saturating_sub(usize::from(!scheme.is_conforming_linear(mesh)));
-        row.expected_order = self.expected_orders(scheme, failure);
+        row.expected_order = self.expected_orders(scheme, set, failure);
         row.warnings.extend(failure.map(|at| {
             format!(
                 "the scene's solution breaks the contact condition of this mesh at {at}: no errors"
@@ -316,7 +358,6 @@ impl<'a, T: Real, const D: usize> Study<'a, T, D> {
         solved: Solved,
     ) -> Row {
         Row {
-            constraint: scheme.constraint().to_owned(),
             parameters: solved.parameters,
             solver: self.solver.name().to_owned(),
             linear: solved.linear_solver.to_owned(),
@@ -341,10 +382,11 @@ impl<'a, T: Real, const D: usize> Study<'a, T, D> {
     fn expected_orders(
         &self,
         scheme: &dyn AnyScheme<T, D>,
+        set: &dyn ConstraintSet,
         failure: Option<&str>,
     ) -> ExpectedOrders {
         match (failure, &self.scene.problem.exact) {
-            (None, Some(_)) => scheme.expected_orders(&self.setting()),
+            (None, Some(_)) => scheme.expected_orders_on(set, &self.setting()),
             _ => ExpectedOrders::default(),
         }
     }
@@ -391,13 +433,19 @@ impl<'a, T: Real, const D: usize> Study<'a, T, D> {
     fn write_fields(
         &self,
         directory: &std::path::Path,
-        scheme: &dyn AnyScheme<T, D>,
+        entry: &Entry<'_, T, D>,
         mesh: &Mesh<T, D>,
         solved: &Solved,
     ) -> Result<(), Error> {
         let Some(fields) = &solved.fields else { return Ok(()) };
         std::fs::create_dir_all(directory).map_err(|e| write_error(directory, e))?;
-        let path = directory.join(format!("{}-{}.vtu", self.scene.name, scheme.name()));
+        let name = entry.scheme.name();
+        let same_name = self.entries.iter().filter(|e| e.scheme.name() == name).count();
+        let set = match &entry.set {
+            Some(set) if same_name > 1 => format!("-{}", set.name()),
+            _ => String::new(),
+        };
+        let path = directory.join(format!("{}-{name}{set}.vtu", self.scene.name));
         let constrained = self.scene.problem.is_constrained();
         write_vtu(
             &path,

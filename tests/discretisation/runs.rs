@@ -1,5 +1,6 @@
 //! Scenes, meshes and solves of tests of discretisations.
 
+use crate::support::schemes::Entry;
 use std::path::Path;
 use unilateral::inequality::ActiveSet;
 use unilateral::mesh::BoxDomain;
@@ -18,6 +19,13 @@ pub fn solve<T: Real, const D: usize>(
     let solver = ActiveSet::default();
     let task = Task::new(problem, mesh, &solver).with_errors(true).with_fields(true);
     nested::solve(scheme, &task).unwrap()
+}
+
+impl<T: Real, const D: usize> Entry<T, D> {
+    /// The problem with the constraint set.
+    pub fn constrain(&self, problem: &Problem<D>) -> Problem<D> {
+        problem.clone().on(self.set.clone())
+    }
 }
 
 /// A scene of a test's own.

@@ -3,6 +3,7 @@
 use super::{Space, data};
 use crate::algebra::Bound;
 use crate::assemble::{DataQuadrature, count};
+use crate::constraint::BoundBy;
 use crate::element::Node;
 use crate::error::Error;
 use crate::mesh::{BoundaryPart, describe_point};
@@ -37,10 +38,10 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         bounds: &mut [Bound<T>],
         conflicts: &mut Vec<Conflict<D>>,
     ) -> Result<(), Error> {
-        let bounded: Vec<usize> = self.bounded_nodes().collect();
+        let bounded: Vec<(usize, BoundBy)> = self.bounded_nodes().collect();
         let rules = self.mean_rules();
         for cell in 0..self.mesh.n_cells() {
-            for &i in &bounded {
+            for &(i, by) in &bounded {
                 let unknown = self.dofs.of(cell, i);
                 if bounds[unknown] != Bound::Free {
                     continue;
@@ -48,12 +49,9 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
                 count::bounds(1);
                 let node = self.nodes[i];
                 let x = self.node_point(cell, node);
-                let at = |psi: &Option<Field<D>>| match (psi, node) {
-                    (Some(psi), Node::CellMean) => {
-                        self.at_node(&rules, cell, node, "obstacle", psi).map(Some)
-                    }
-                    (Some(psi), _) => data::finite(psi(&x), "obstacle", &x, cell).map(Some),
-                    (None, _) => Ok(None),
+                let at = |psi: &Option<Field<D>>| {
+                    let bound = |psi| self.bound(by, &rules, (cell, node), "obstacle", psi);
+                    psi.as_ref().map(bound).transpose()
                 };
                 let (lower, upper) = (at(&self.problem.lower)?, at(&self.problem.upper)?);
                 bounds[unknown] = between(lower, upper, unknown, x, conflicts);
@@ -70,10 +68,10 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
     ) -> Result<(), Error> {
         let rules = self.mean_rules();
         for (cell, local) in self.facets_of(BoundaryPart::Contact) {
-            for i in self.bounded_nodes_on(local) {
+            for (i, by) in self.bounded_nodes_on(local) {
                 count::bounds(1);
                 let node = self.nodes[i];
-                let value = self.at_node(&rules, cell, node, "gap", gap)?;
+                let value = self.bound(by, &rules, (cell, node), "gap", gap)?;
                 let unknown = self.dofs.of(cell, i);
                 let old = bounds[unknown];
                 let lower = old.lower().map_or(value, |l| l.to_f64().max(value));
@@ -83,6 +81,24 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
             }
         }
         Ok(())
+    }
+
+    /// What a datum imposes at a node.
+    fn bound(
+        &self,
+        by: BoundBy,
+        rules: &[Rule; 2],
+        (cell, node): (usize, Node),
+        name: &'static str,
+        datum: &Field<D>,
+    ) -> Result<f64, Error> {
+        match by {
+            BoundBy::Mean => self.at_node(rules, cell, node, name, &**datum),
+            BoundBy::Value => {
+                let x = self.node_point(cell, node);
+                data::finite(datum(&x), name, &x, cell)
+            }
+        }
     }
 
     fn pin(&self, bounds: &mut [Bound<T>], conflicts: &mut Vec<Conflict<D>>) -> Result<(), Error> {
@@ -103,10 +119,10 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
                 // curved obstacle the value at the barycentre may lie above the mean of a datum
                 // that touches it
                 if let Some(psi) = &self.problem.lower {
-                    note(at("obstacle", psi)?, value, unknown, x, conflicts);
+                    note(at("obstacle", &**psi)?, value, unknown, x, conflicts);
                 }
                 if let Some(psi) = &self.problem.upper {
-                    note(value, at("obstacle", psi)?, unknown, x, conflicts);
+                    note(value, at("obstacle", &**psi)?, unknown, x, conflicts);
                 }
                 bounds[unknown] = Bound::Fixed(T::lit(value));
             }

@@ -14,7 +14,7 @@ pub(crate) mod tables;
 use super::local::{CellSide, StiffnessTable};
 use super::{DataQuadrature, count};
 use crate::algebra::Support;
-use crate::constraint::BoundedNodes;
+use crate::constraint::BoundBy;
 use crate::element::{MAX_BASIS, Node};
 use crate::error::Error;
 use crate::memory::in_large_pages;
@@ -43,8 +43,11 @@ pub(crate) struct Space<'a, T: Real, const D: usize> {
     pub broken: bool,
     /// Whether Dirichlet data are pinned; else the facet form imposes them.
     pub pins: bool,
-    /// Which nodes an inequality binds.
-    pub bounded: BoundedNodes,
+    /// By what obstacles bind each of a cell's unknowns, if they do.
+    in_domain: Vec<Option<BoundBy>>,
+    /// By what a Signorini condition binds each of a cell's unknowns, if it does and the node lies on
+    /// a contact facet.
+    on_contact: Vec<Option<BoundBy>>,
     basis: fn(&[f64; 4]) -> BasisAt<f64>,
 }
 
@@ -57,9 +60,10 @@ impl<'a, T: Real, const D: usize> Space<'a, T, D> {
         quadrature: DataQuadrature,
         with_facets: bool,
         pins: bool,
-        bounded: BoundedNodes,
+        offered: fn(contact: bool) -> Vec<String>,
     ) -> Result<Self, Error> {
         let AnyElement { degree, layout, nodes, basis } = element;
+        let set = problem.constraint_set();
         let neighbours = (with_facets || layout.facet > 0).then(|| {
             count::facet_topologies(1);
             Neighbours::new(mesh)
@@ -72,31 +76,34 @@ impl<'a, T: Real, const D: usize> Space<'a, T, D> {
             neighbours,
             dofs,
             coefficients: data::coefficients(problem, mesh)?,
+            in_domain: nodes.iter().map(|node| set.in_domain(node, D)).collect(),
+            on_contact: nodes.iter().map(|node| set.on_contact(node, D)).collect(),
             nodes,
             degree,
             broken: layout.is_broken(),
             pins,
-            bounded,
             basis,
         };
-        space.check_constraint_set()?;
+        space.check_constraint_set(offered)?;
         Ok(space)
     }
 
     /// Refuses an inequality that would bind nothing at all.
-    fn check_constraint_set(&self) -> Result<(), Error> {
-        let constraint = self.bounded.name(self.degree, self.nodes[0]);
-        let refuse =
-            |condition, allowed| Err(Error::NothingToBound { constraint, condition, allowed });
+    fn check_constraint_set(&self, offered: fn(contact: bool) -> Vec<String>) -> Result<(), Error> {
+        let refuse = |condition, contact| {
+            let constraint = self.problem.constraint_set().name_on(&self.nodes).to_owned();
+            let allowed = match &offered(contact)[..] {
+                [] => "another element: this one has no nodes on facets".to_owned(),
+                names => names.join(" or "),
+            };
+            Err(Error::NothingToBound { constraint, condition, allowed })
+        };
         if self.problem.is_constrained() && self.bounded_nodes().next().is_none() {
-            return refuse("an inequality", "the scheme's element has no such values");
+            return refuse("an inequality", self.problem.gap.is_some());
         }
-        if self.problem.gap.is_some() && self.bounded_nodes_on(0).next().is_none() {
-            return refuse(
-                "a Signorini condition",
-                "only bounds on values or means that belong to the facets of a cell can, as those \
-                 at nodes, vertices or midpoints or on facet means",
-            );
+        let on_facets = || (0..=D).any(|local| self.bounded_nodes_on(local).next().is_some());
+        if self.problem.gap.is_some() && !on_facets() {
+            return refuse("a Signorini condition", true);
         }
         Ok(())
     }
@@ -188,20 +195,15 @@ impl<'a, T: Real, const D: usize> Space<'a, T, D> {
     }
     /// The basis functions whose nodes lie on facet `local`.
     pub fn nodes_on(&self, local: usize) -> impl Iterator<Item = usize> {
-        (0..self.per_cell()).filter(move |&i| match self.nodes[i] {
-            Node::Vertex(k) => k != local,
-            Node::Edge(k) => !edge_vertices(D)[k].contains(&local),
-            Node::FacetMean(k) => k == local,
-            Node::CellMean => false,
-        })
+        (0..self.per_cell()).filter(move |&i| lies_on::<D>(&self.nodes[i], local))
     }
-    /// The basis functions whose unknowns an obstacle binds.
-    pub fn bounded_nodes(&self) -> impl Iterator<Item = usize> {
-        (0..self.per_cell()).filter(|&i| self.bounded.in_domain(self.nodes[i]))
+    /// The basis functions whose unknowns an obstacle binds, and by what.
+    pub fn bounded_nodes(&self) -> impl Iterator<Item = (usize, BoundBy)> {
+        self.in_domain.iter().enumerate().filter_map(|(i, by)| Some((i, (*by)?)))
     }
-    /// The basis functions whose unknowns a Signorini condition on facet `local` binds.
-    pub fn bounded_nodes_on(&self, local: usize) -> impl Iterator<Item = usize> {
-        self.nodes_on(local).filter(|&i| self.bounded.on_contact(self.nodes[i], D))
+    /// The basis functions whose unknowns a Signorini condition on facet `local` binds, and by what.
+    pub fn bounded_nodes_on(&self, local: usize) -> impl Iterator<Item = (usize, BoundBy)> {
+        self.nodes_on(local).filter_map(|i| Some((i, self.on_contact[i]?)))
     }
     /// The point at which a node sits.
     pub fn node_point(&self, cell: usize, node: Node) -> Point<f64, D> {
@@ -277,5 +279,15 @@ impl<'a, T: Real, const D: usize> Space<'a, T, D> {
             out.extend(corners.iter().map(|basis| basis.value(&local)));
         }
         out
+    }
+}
+
+/// Whether a node lies on the facet opposite vertex `local`.
+pub(crate) fn lies_on<const D: usize>(node: &Node, local: usize) -> bool {
+    match *node {
+        Node::Vertex(k) => k != local,
+        Node::Edge(k) => !edge_vertices(D)[k].contains(&local),
+        Node::FacetMean(k) => k == local,
+        Node::CellMean => false,
     }
 }

@@ -16,9 +16,9 @@ use unilateral::nested::Solved;
 use unilateral::paraview::{CellFields, write_pvd, write_vtu};
 use unilateral::plot::{Picture, Slice, solve_level};
 use unilateral::scenes::{AnyScene, Scene};
-use unilateral::scheme::{AnyScheme, Placement, SCHEMES, SchemeOptions, scheme_by_name};
+use unilateral::scheme::{AnyScheme, SCHEMES, SchemeOptions, scheme_by_name};
 
-use crate::shared::{Request, print, scene, split};
+use crate::shared::{Request, constraint_set, print, scene, split};
 
 /// Draws the solution of a scheme on a scene
 #[derive(Args, Debug)]
@@ -49,31 +49,37 @@ pub struct Options {
 /// Whether every solve converged.
 pub fn run(options: &Options) -> Request<bool> {
     match scene(&options.scene)? {
-        AnyScene::One(scene) => draw(options, &scene),
-        AnyScene::Two(scene) => draw(options, &scene),
-        AnyScene::Three(scene) => draw(options, &scene),
+        AnyScene::One(scene) => draw(options, scene),
+        AnyScene::Two(scene) => draw(options, scene),
+        AnyScene::Three(scene) => draw(options, scene),
     }
 }
 
-fn scheme<const D: usize>(choice: &str) -> Request<Box<dyn AnyScheme<f64, D>>> {
-    let (name, place) = split(choice);
-    let placement = match place {
-        None => Placement::default(),
-        Some(place) => Placement::by_name(place).ok_or_else(|| {
-            let names = Placement::ALL.map(|p| p.0).join(", ");
-            format!("there is no placement {place}; there are: {names}")
-        })?,
-    };
-    scheme_by_name(name, &SchemeOptions { placement, ..SchemeOptions::default() }).ok_or_else(
-        || {
-            let names: Vec<&str> = SCHEMES.iter().map(|s| s.0).collect();
-            format!("there is no scheme {name}; there are: {}", names.join(", "))
-        },
-    )
+/// The scheme, and the scene with the constraint set after the colon.
+fn scheme<const D: usize>(
+    choice: &str,
+    mut scene: Scene<D>,
+) -> Request<(Box<dyn AnyScheme<f64, D>>, Scene<D>)> {
+    let (name, set) = split(choice);
+    if let Some(set) = set {
+        scene.problem = scene.problem.on(constraint_set(set)?);
+    }
+    let scheme = scheme_by_name(name, &SchemeOptions::default()).ok_or_else(|| {
+        let names: Vec<&str> = SCHEMES.iter().map(|s| s.0).collect();
+        format!("there is no scheme {name}; there are: {}", names.join(", "))
+    })?;
+    Ok((scheme, scene))
 }
 
-fn draw<const D: usize>(options: &Options, scene: &Scene<D>) -> Request<bool> {
-    let scheme = scheme::<D>(&options.scheme)?;
+/// The name of the constraint set in force.
+fn constraint<const D: usize>(scene: &Scene<D>, scheme: &dyn AnyScheme<f64, D>) -> String {
+    let set = scene.problem.constraint_set();
+    scheme.constraint_on(set).unwrap_or_else(|| set.name().to_owned())
+}
+
+fn draw<const D: usize>(options: &Options, scene: Scene<D>) -> Request<bool> {
+    let (scheme, scene) = scheme::<D>(&options.scheme, scene)?;
+    let scene = &scene;
     let level = options.level.unwrap_or(if D == 3 { 8 } else { 16 });
     let slice = match (&options.across, options.at) {
         (Some(name), Some(at)) => {
@@ -84,8 +90,8 @@ fn draw<const D: usize>(options: &Options, scene: &Scene<D>) -> Request<bool> {
     let (mesh, solved) = solve_level(scene, &*scheme, level).map_err(|e| e.to_string())?;
     let fields = fields(&solved, level)?;
     let converged = solved.outcome == Outcome::Converged;
-    let mut title =
-        format!("{}: {} ({}), level {level}", scene.name, scheme.name(), scheme.constraint());
+    let constraint = constraint(scene, &*scheme);
+    let mut title = format!("{}: {} ({constraint}), level {level}", scene.name, scheme.name());
     if !converged {
         title += &format!(", NOT CONVERGED: {}", solved.outcome.name());
     }
@@ -116,7 +122,8 @@ fn series<const D: usize>(
         files.push((level as f64, path));
     }
     if !files.is_empty() {
-        let name = format!("{}-{}-{}.pvd", scene.name, scheme.name(), scheme.constraint());
+        let constraint = constraint(scene, scheme);
+        let name = format!("{}-{}-{constraint}.pvd", scene.name, scheme.name());
         let path = options.out.join(name.replace(' ', "-"));
         write_pvd(&path, &files).map_err(|e| e.to_string())?;
         print(&format!("{}\n", path.display()))?;
@@ -155,5 +162,6 @@ fn file_name<const D: usize>(
     scheme: &dyn AnyScheme<f64, D>,
     level: usize,
 ) -> String {
-    format!("{}-{}-{}-{level}", scene.name, scheme.name(), scheme.constraint()).replace(' ', "-")
+    let constraint = constraint(scene, scheme);
+    format!("{}-{}-{constraint}-{level}", scene.name, scheme.name()).replace(' ', "-")
 }

@@ -108,7 +108,9 @@ fn junction(choice: &Choice, sink: Sink<'_>) -> Result<(), Error> {
     let lower = Point::<f64, 2>::new(-1.1, 0.0);
     let domain = BoxDomain { lower, ..BoxDomain::above_contact() };
     let mesh: Mesh<f64, 2> = Mesh::kuhn_box(&domain, [20, 10])?;
-    let study = Study::<f64, 2>::new(scenes::signorini_2d()).on_mesh(mesh);
+    let mut scene = scenes::signorini_2d();
+    scene.problem = choice.constrain(scene.problem);
+    let study = Study::<f64, 2>::new(scene).on_mesh(mesh);
     let study = study.boxed_scheme(choice.make()).solver(solver());
     let (told, how) = match study.levels([0]).run() {
         Err(why) => (true, why.to_string()),

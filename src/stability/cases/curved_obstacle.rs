@@ -1,7 +1,6 @@
 //! Curved obstacles, on which an over-penalty with bounds at vertices lifts off in a pattern.
 
 use crate::algebra::{Contact, Inequality};
-use crate::assemble::DataQuadrature;
 use crate::error::Error;
 use crate::inequality::{Globalisation, InequalitySolver, Outcome, Solution};
 use crate::mesh::Mesh;
@@ -136,9 +135,7 @@ fn share_inside(
     choice: &Choice,
     radius: f64,
 ) -> Result<Option<f64>, Error> {
-    let scheme = choice.make::<f64, 2>();
-    let inequality: Inequality<f64> =
-        scheme.inequality(&scene.problem, mesh, DataQuadrature::default())?;
+    let inequality: Inequality<f64> = choice.inequality(&scene.problem, mesh)?;
     let solution: Solution<f64> = solver().solve(&inequality);
     if solution.outcome != Outcome::Converged {
         return Ok(None);

@@ -84,7 +84,7 @@ fn coefficient(
     for &factor in factors {
         let mut scene = scenes::radial::<2>(1.0);
         scene.problem.source = Some(Datum::Constant(-2.0 * factor));
-        scene.problem.coefficient = Some(Box::new(move |_| factor));
+        scene.problem = scene.problem.coefficient(move |_| factor);
         let (here, how) = values(&scene, choice, level)?;
         sink(
             RowBuilder::new("size-of-coefficient", choice)

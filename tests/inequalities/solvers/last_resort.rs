@@ -3,13 +3,14 @@
 use crate::problems::*;
 use unilateral::algebra::{Bound, Inequality};
 use unilateral::assemble::{DataQuadrature, Discretisation};
+use unilateral::constraint::constraint_set_by_name;
 use unilateral::inequality::{
     ActiveSet, Globalisation, InequalitySolver, MonotoneMultigrid, Outcome, certify,
 };
 use unilateral::linear::LinearMethod;
 use unilateral::prelude::*;
 use unilateral::scenes::Scene;
-use unilateral::scheme::{Placement, SCHEMES, SchemeOptions, scheme_by_name};
+use unilateral::scheme::{SCHEMES, SchemeOptions, scheme_by_name};
 
 /// Every solver there is for symmetric matrices, by what forces it.
 fn agree(what: &str, problem: &Inequality<f64>) {
@@ -77,7 +78,9 @@ fn all_agree_on_scenes() {
         for eta in [1.0, 10.0, 100.0] {
             let scheme = wopsip(eta);
             agree(&format!("{name} wopsip {eta}"), &of(&scene, &scheme, 4));
-            agree(&format!("{name} means {eta}"), &of(&scene, &FacetMeans(scheme), 4));
+            let mut on_means = scene.clone();
+            on_means.problem = on_means.problem.on(FacetMeans);
+            agree(&format!("{name} means {eta}"), &of(&on_means, &scheme, 4));
         }
     }
 }
@@ -105,11 +108,15 @@ fn all_schemes_agree_with_the_oracle() {
         let mesh = scene.domain.mesh(2).unwrap();
         for &(name, _) in SCHEMES {
             for place in ["vertices", "facet-means", "nodes", "midpoints", "cell-means"] {
-                let placement = Placement::by_name(place).unwrap();
-                let options = SchemeOptions { placement, ..SchemeOptions::default() };
-                let Some(scheme) = scheme_by_name::<f64, 2>(name, &options) else { continue };
+                let set = constraint_set_by_name(place).unwrap();
+                let scheme = scheme_by_name::<f64, 2>(name, &SchemeOptions::default()).unwrap();
+                // a scheme without such values keeps its nodes
+                let constrained = match scheme.constraint_on(&set) {
+                    Some(_) => scene.problem.clone().on(set),
+                    None => scene.problem.clone(),
+                };
                 let quadrature = DataQuadrature::default();
-                let Ok(problem) = scheme.inequality(&scene.problem, &mesh, quadrature) else {
+                let Ok(problem) = scheme.inequality(&constrained, &mesh, quadrature) else {
                     continue;
                 };
                 if !problem.symmetric {
@@ -195,8 +202,8 @@ fn no_penalty_is_too_large() {
 /// A constant has no energy for rounding to be compared with.
 #[test]
 fn a_solution_without_energy_is_not_singular() {
-    let scheme = FacetMeans(wopsip(1e-2));
-    let study = Study::<f64, 3>::new(scenes::ball_3d()).scheme(scheme).levels([1]);
+    let study = Study::<f64, 3>::new(scenes::ball_3d()).scheme_on(wopsip(1e-2), FacetMeans);
+    let study = study.levels([1]);
     let row = study.run().unwrap().rows.remove(0);
     assert!(row.converged());
 }
