@@ -79,6 +79,11 @@ pub enum Error {
         /// What does not fit, where, and what to do.
         why: String,
     },
+    /// Two solutions are compared whose meshes do not belong to one hierarchy.
+    #[error(
+        "solutions are compared on one mesh or on meshes of one hierarchy: solve both on the same `Hierarchy`"
+    )]
+    NotNested,
     /// A parameter outside its range.
     #[error("{parameter} = {value}: {allowed}")]
     Parameter {

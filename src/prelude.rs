@@ -7,7 +7,8 @@ pub use crate::error::Error;
 pub use crate::facet::{
     DirichletBy, FacetForm, FacetView, NoFacets, PenaltyRule, Trace, WeightRule,
 };
-pub use crate::mesh::{BoundaryPart, Mesh};
+pub use crate::mesh::{BoundaryPart, BoxDomain, Mesh};
+pub use crate::nested::{Hierarchy, NestedIteration, Solved, solve};
 pub use crate::problem::Problem;
 pub use crate::real::{Point, Real};
 pub use crate::scenes;

@@ -2,12 +2,11 @@
 
 use super::choice::Choice;
 use crate::algebra::{Bound, SparseMatrix};
-use crate::assemble::DataQuadrature;
 use crate::error::Error;
 use crate::inequality::{ActiveSet, Globalisation};
 use crate::linear::{LinearMethod, is_positive_definite};
 use crate::mesh::{BoxDomain, Mesh};
-use crate::nested::{Hierarchy, Solved, Task, solve};
+use crate::nested::{Hierarchy, NestedIteration, Solved};
 use crate::problem::Problem;
 use crate::real::{Point, Real};
 use crate::scenes::Scene;
@@ -56,29 +55,17 @@ pub(crate) fn row_on<const D: usize>(
     Ok(study.solver(solver()).levels([0]).run()?.rows.swap_remove(0))
 }
 
-/// A scheme's solution on a level, with fields; started from conforming elements if asked for.
-pub(crate) fn solved<const D: usize>(
-    scene: &Scene<D>,
+/// A scheme's solution of a problem with the scheme's constraint set ([`Choice::constrain`]) on the finest
+/// mesh of a hierarchy; started from conforming elements if asked for.
+pub(crate) fn solved<'a, const D: usize>(
+    problem: &'a Problem<D>,
+    meshes: &'a Hierarchy<f64, D>,
     choice: &Choice,
-    level: usize,
-    solver: &ActiveSet,
+    solver: ActiveSet,
     is_warm: bool,
-) -> Result<(Mesh<f64, D>, Solved), Error> {
-    let quadrature = DataQuadrature::default();
-    let mut levels = Hierarchy::<f64, D>::new(&scene.problem, &scene.domain, None);
-    levels.build(level)?;
-    let start =
-        if is_warm { Some(levels.p1_solution(level, solver, quadrature, 1)?) } else { None };
-    let Some((mesh, _)) = levels.mesh(level) else { unreachable!("made above") };
-    let scheme = choice.make::<f64, D>();
-    let problem = choice.constrain(scene.problem.clone());
-    let task = Task::new(&problem, mesh, solver)
-        .start(start.as_deref())
-        .quadrature(quadrature)
-        .with_errors(true)
-        .with_fields(true);
-    let solved = solve(&*scheme, &task)?;
-    Ok((mesh.clone(), solved))
+) -> Result<Solved<'a, f64, D>, Error> {
+    let nested = NestedIteration::new(problem, meshes).solver(solver);
+    nested.cold_start(!is_warm).solve(&*choice.make())
 }
 
 /// Whether a scheme's matrix is symmetric positive definite on a mesh: 1 or 0; none if the

@@ -35,6 +35,8 @@ pub struct Iterations {
     pub linear: usize,
     /// Number of coarser levels of the initial guess.
     pub levels: usize,
+    /// Cycles of monotone multigrid for the initial guess on a large mesh without coarser ones.
+    pub start_cycles: usize,
 }
 
 /// Wall times in seconds.

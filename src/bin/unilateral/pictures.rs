@@ -4,17 +4,12 @@
 //! `cargo run --release -- pictures --help` lists the options. Exit codes: 0 if every solve converged,
 //! 1 if one did not (its last iterate is drawn, and said to be one), 2 if the request was wrong.
 
-use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use clap::Args;
-use unilateral::error::Error;
-use unilateral::inequality::Outcome;
-use unilateral::measure::Fields;
-use unilateral::mesh::Mesh;
-use unilateral::nested::Solved;
-use unilateral::paraview::{CellFields, write_pvd, write_vtu};
-use unilateral::plot::{Picture, Slice, solve_level};
+use unilateral::nested::{Hierarchy, solve};
+use unilateral::paraview::write_pvd;
+use unilateral::plot::{Picture, Slice};
 use unilateral::scenes::{AnyScene, Scene};
 use unilateral::scheme::{AnyScheme, SCHEMES, SchemeOptions, scheme_by_name};
 
@@ -87,15 +82,18 @@ fn draw<const D: usize>(options: &Options, scene: Scene<D>) -> Request<bool> {
         }
         _ => None,
     };
-    let (mesh, solved) = solve_level(scene, &*scheme, level).map_err(|e| e.to_string())?;
-    let fields = fields(&solved, level)?;
-    let converged = solved.outcome == Outcome::Converged;
+    let meshes = meshes(scene, level)?;
+    let solved = solve(&scene.problem, &meshes, &*scheme).map_err(|e| e.to_string())?;
+    let fields = solved
+        .fields()
+        .ok_or_else(|| format!("level {level}: {}: there is nothing to draw", solved.outcome()))?;
+    let converged = solved.converged();
     let constraint = constraint(scene, &*scheme);
     let mut title = format!("{}: {} ({constraint}), level {level}", scene.name, scheme.name());
     if !converged {
-        title += &format!(", NOT CONVERGED: {}", solved.outcome.name());
+        title += &format!(", NOT CONVERGED: {}", solved.outcome());
     }
-    let picture = Picture::of(&title, &scene.problem, &mesh, fields, slice);
+    let picture = Picture::of(&title, &scene.problem, solved.mesh(), &fields, slice);
     let name = file_name(scene, &*scheme, level);
     let written = picture
         .and_then(|picture| picture.write(&options.out, &name))
@@ -115,10 +113,11 @@ fn series<const D: usize>(
     let mut files = Vec::new();
     let mut converged = true;
     for &level in &options.series {
-        let (mesh, solved) = solve_level(scene, scheme, level).map_err(|e| e.to_string())?;
+        let meshes = meshes(scene, level)?;
+        let solved = solve(&scene.problem, &meshes, scheme).map_err(|e| e.to_string())?;
         let path = options.out.join(format!("{}.vtu", file_name(scene, scheme, level)));
-        write_fields(&path, &mesh, fields(&solved, level)?, scene).map_err(|e| e.to_string())?;
-        converged &= solved.outcome == Outcome::Converged;
+        solved.write_vtu(&path).map_err(|e| e.to_string())?;
+        converged &= solved.converged();
         files.push((level as f64, path));
     }
     if !files.is_empty() {
@@ -131,30 +130,8 @@ fn series<const D: usize>(
     Ok(converged)
 }
 
-fn write_fields<const D: usize>(
-    path: &Path,
-    mesh: &Mesh<f64, D>,
-    fields: &Fields,
-    scene: &Scene<D>,
-) -> Result<(), Error> {
-    if let Some(directory) = path.parent() {
-        fs::create_dir_all(directory)
-            .map_err(|e| Error::Write { path: directory.display().to_string(), why: e.into() })?;
-    }
-    let multiplier = scene.problem.is_constrained().then_some(&fields.multiplier[..]);
-    let fields = CellFields {
-        u: &fields.u,
-        obstacle: fields.obstacle.as_deref(),
-        multiplier,
-        contact: &fields.contact,
-    };
-    write_vtu(path, mesh, &fields)
-}
-
-fn fields(solved: &Solved, level: usize) -> Request<&Fields> {
-    solved.fields.as_ref().ok_or_else(|| {
-        format!("level {level}: {}: there is nothing to draw", solved.outcome.name())
-    })
+fn meshes<const D: usize>(scene: &Scene<D>, level: usize) -> Request<Hierarchy<f64, D>> {
+    Hierarchy::of_domain(&scene.domain, level).map_err(|e| e.to_string())
 }
 
 fn file_name<const D: usize>(

@@ -2,6 +2,7 @@
 
 use crate::error::Error;
 use crate::mesh::{BoundaryPart, BoxDomain, Mesh};
+use crate::nested::Hierarchy;
 use crate::real::Point;
 use crate::scenes;
 use crate::scenes::Scene;
@@ -81,8 +82,11 @@ fn largest_on_contact(
     level: usize,
     end: f64,
 ) -> Result<Option<f64>, Error> {
-    let (mesh, found) = solved(scene, choice, level, &solver(), true)?;
-    let Some(fields) = found.fields else { return Ok(None) };
+    let meshes = Hierarchy::of_domain(&scene.domain, level)?;
+    let mesh = meshes.finest();
+    let problem = choice.constrain(scene.problem.clone());
+    let found = solved(&problem, &meshes, choice, solver(), true)?;
+    let Some(fields) = found.fields() else { return Ok(None) };
     let mut largest = 0.0_f64;
     for facet in mesh.boundary().iter().filter(|f| f.part == BoundaryPart::Contact) {
         let (cell, local) = (facet.cell as usize, facet.local as usize);

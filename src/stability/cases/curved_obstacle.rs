@@ -4,6 +4,7 @@ use crate::algebra::{Contact, Inequality};
 use crate::error::Error;
 use crate::inequality::{Globalisation, InequalitySolver, Outcome, Solution};
 use crate::mesh::Mesh;
+use crate::nested::Hierarchy;
 use crate::real::{Point, Real};
 use crate::scenes;
 use crate::scenes::Scene;
@@ -100,14 +101,16 @@ fn single(
     );
     let mut silent = 0;
     let mut outcomes = Vec::new();
+    let meshes = Hierarchy::of_domain(&scene.domain, level)?;
     for resort in [Globalisation::Never, Globalisation::OnStagnation] {
-        let (_, solved) = solved(&scene, choice, level, &solver_with(resort, MOST_SETS), true)?;
-        let largest = solved.certificate.largest();
+        let problem = choice.constrain(scene.problem.clone());
+        let solved = solved(&problem, &meshes, choice, solver_with(resort, MOST_SETS), true)?;
+        let largest = solved.certificate().largest();
         let is_wrong = largest.is_nan() || largest > f64::CERTIFICATE_LIMIT;
-        silent += usize::from(solved.outcome == Outcome::Converged && is_wrong);
-        outcomes.push(format!("{} after {}", solved.outcome, solved.outer.unwrap_or(0)));
+        silent += usize::from(solved.converged() && is_wrong);
+        outcomes.push(format!("{} after {}", solved.outcome(), solved.outer().unwrap_or(0)));
         if resort == Globalisation::Never {
-            let sets = solved.outer.filter(|_| solved.outcome == Outcome::Converged);
+            let sets = solved.outer().filter(|_| solved.converged());
             sink(
                 claim("iterations")
                     .quantity("active sets tried, no last resort")

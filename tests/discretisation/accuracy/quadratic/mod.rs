@@ -12,7 +12,6 @@ use unilateral::assemble::{DataQuadrature, Discretisation};
 use unilateral::inequality::{ActiveSet, InequalitySolver, Outcome};
 use unilateral::mesh::BoxDomain;
 use unilateral::mesh::{BoundaryPart, Edges, Mesh, TaggedFacet};
-use unilateral::nested::Hierarchy;
 use unilateral::prelude::*;
 use unilateral::quadrature::Rule;
 use unilateral::scenes::Scene;
@@ -41,10 +40,10 @@ fn all<T: Real, const D: usize>() -> Vec<Entry<T, D>> {
 /// of conforming linear elements.
 fn h1_as_tables(scene: &Scene<2>, set: impl ConstraintSet + 'static, level: usize) -> f64 {
     let (solver, quadrature) = (ActiveSet::default(), DataQuadrature::default());
-    let mut levels = Hierarchy::new(&scene.problem, &scene.domain, None);
-    levels.build(level).unwrap();
-    let start = levels.p1_solution(level, &solver, quadrature, 1).unwrap().contact.clone();
-    let mesh = levels.mesh(level).unwrap().0;
+    let meshes = Hierarchy::of_domain(&scene.domain, level).unwrap();
+    let mut nested = NestedIteration::new(&scene.problem, &meshes);
+    let start = nested.p1_solution(meshes.n_meshes() - 1).unwrap().contact.clone();
+    let mesh = meshes.finest();
     let problem = scene.problem.clone().on(set);
     let space = Discretisation::new(&ConformingP2, &problem, mesh, quadrature).unwrap();
     let mut inequality = space.inequality().unwrap();
