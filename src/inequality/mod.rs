@@ -19,7 +19,7 @@
 //! | `monotone_multigrid` | [`MonotoneMultigrid`]: truncated nonsmooth Newton multigrid |
 //! | `certificate` | [`Certificate`], [`certify`] |
 //! | `initial_guess` | [`InitialGuess`]: coarse spaces, starting values and tolerance of a solve |
-//! | `solution`, `outcome` | [`Solution`], [`Outcome`]: the result of a solver |
+//! | `solution`, `outcome`, `stage` | [`Solution`], [`Outcome`], [`StageRun`]: the result of a solver |
 //!
 //! [`ActiveSet`] runs in stages, each only if the preceding one has not converged; its
 //! `strategy` lists them with all thresholds, and [`Solution::stages`] tells which ones ran. The
@@ -32,14 +32,16 @@ mod interior_point;
 mod monotone_multigrid;
 mod outcome;
 mod solution;
+mod stage;
 mod validation;
 
-pub use active_set::{ActiveSet, Globalisation, Preconditioned, Stage, StageRun};
+pub use active_set::{ActiveSet, Globalisation, Preconditioned};
 pub use certificate::{Certificate, certify, certify_with_jump_multipliers, count_active};
 pub use initial_guess::InitialGuess;
 pub use monotone_multigrid::MonotoneMultigrid;
 pub use outcome::Outcome;
 pub use solution::Solution;
+pub use stage::{Stage, StageRun};
 
 use crate::algebra::Inequality;
 use crate::real::Real;

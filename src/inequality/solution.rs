@@ -1,7 +1,7 @@
 //! The result of a solver.
 
 use super::Outcome;
-use super::active_set::StageRun;
+use super::stage::StageRun;
 use crate::algebra::Contact;
 
 /// The result of a solver of an inequality.

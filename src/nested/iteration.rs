@@ -5,7 +5,7 @@ use std::sync::Arc;
 use std::time::Instant;
 
 use super::hierarchy::Hierarchy;
-use super::p1::P1Solution;
+use super::p1_solution::P1Solution;
 use super::solved::Solved;
 use crate::algebra::{Bound, Contact, Inequality, Start, Support};
 use crate::assemble::{DataQuadrature, Discretisation};

@@ -3,10 +3,11 @@
 mod hierarchy;
 mod iteration;
 mod p1;
+mod p1_solution;
 mod solved;
 
 pub(crate) use hierarchy::Coarsest;
 pub use hierarchy::Hierarchy;
 pub use iteration::{Meshes, NestedIteration, solve};
-pub use p1::P1Solution;
+pub use p1_solution::P1Solution;
 pub use solved::Solved;

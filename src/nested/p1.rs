@@ -1,9 +1,10 @@
-//! The conforming P1 solutions from which all schemes start.
+//! The solution of conforming P1 on nested meshes, from which all schemes start.
 
 use std::sync::Arc;
 use std::time::Instant;
 
 use super::iteration::NestedIteration;
+use super::p1_solution::P1Solution;
 use crate::algebra::{Bound, Contact, Inequality, Start};
 use crate::assemble::Discretisation;
 use crate::constraint::Nodes;
@@ -24,25 +25,6 @@ const FLAT_ENERGY_TOLERANCE: f64 = 1e-3;
 
 /// Largest number of cycles of that start; 22 to 27 are usual.
 const MAX_FLAT_CYCLES: usize = 60;
-
-/// A conforming P1 function from which a solve starts: the solution on the same mesh, or the
-/// prolongation of the solution on the next coarser one.
-#[derive(Clone, Debug)]
-#[non_exhaustive]
-pub struct P1Solution<T> {
-    /// The contact state of every vertex.
-    pub contact: Vec<Contact>,
-    /// The value at every vertex; empty if the solve did not converge.
-    pub values: Vec<T>,
-    /// The conforming P1 spaces of this and all coarser levels.
-    pub coarse_spaces: CoarseSpaces<T>,
-    /// Seconds of assembly, solve and prolongation on this level and all coarser ones.
-    pub seconds: f64,
-    /// Number of levels on which conforming P1 was solved.
-    pub levels_solved: usize,
-    /// Cycles of monotone multigrid for the start on the coarsest mesh.
-    pub start_cycles: usize,
-}
 
 impl<T: Real, const D: usize> NestedIteration<'_, T, D> {
     /// The start of conforming P1 on a mesh: the prolongation of the coarser solution, where a new

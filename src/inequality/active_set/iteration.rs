@@ -1,9 +1,9 @@
 //! The active set iteration, for every linear solver.
 
-use super::ActiveSet;
 use super::iterate::Iterate;
 use super::linear_solver::{Accuracy, LinearFailure, LinearSolver};
 use super::progress::{Obstruction, Patience, ProgressMonitor};
+use super::settings::ActiveSet;
 use crate::algebra::Bound;
 use crate::inequality::Outcome;
 use crate::inequality::certificate::certify_with_rounding;

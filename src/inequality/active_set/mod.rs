@@ -3,6 +3,7 @@
 //! | file | content |
 //! |---|---|
 //! | `settings` | [`ActiveSet`], the settings |
+//! | `solver` | the method as a solver, [`Preconditioned`] |
 //! | `strategy` | the stages of a solve in their order, with all thresholds |
 //! | `iteration` | the active set iteration, for every linear solver |
 //! | `iterate` | values, contact states and residual of a step, and the best values |
@@ -24,7 +25,8 @@ mod linear_solver;
 mod preconditioned_solver;
 mod progress;
 mod settings;
+mod solver;
 mod strategy;
 
-pub use settings::{ActiveSet, Globalisation, Preconditioned};
-pub use strategy::{Stage, StageRun};
+pub use settings::{ActiveSet, Globalisation};
+pub use solver::Preconditioned;

@@ -11,21 +11,19 @@
 //! the active set early, and a second time at its final accuracy. The active set iteration that follows
 //! the second one has no limit but `max_outer`.
 
-use std::fmt;
-
 use super::contact_state::admissible_state;
 use super::direct_solver::DirectSolver;
 use super::iterate::Iterate;
 use super::iteration::{End, Iteration, outcome_of_best};
 use super::preconditioned_solver::PreconditionedSolver;
 use super::progress::{Obstruction, Patience};
-use super::{ActiveSet, Globalisation};
+use super::settings::{ActiveSet, Globalisation};
 use crate::algebra::{Inequality, Start};
 use crate::inequality::initial_guess::InitialGuess;
 use crate::inequality::interior_point::{Identification, InteriorPoint, MAX_STEPS};
 use crate::inequality::monotone_multigrid::MonotoneMultigrid;
 use crate::inequality::validation::{check_definite, check_input};
-use crate::inequality::{InequalitySolver, Outcome, Solution};
+use crate::inequality::{InequalitySolver, Outcome, Solution, Stage, StageRun};
 use crate::linear::krylov::symmetric_part;
 use crate::linear::{CoarseSpaces, LinearMethod, PreconditionedSystem, PreconditionerFamily};
 use crate::real::Real;
@@ -41,51 +39,6 @@ const DIRECT_STEP_COST: usize = 4;
 
 /// Relative tolerance of accurate solutions by Krylov methods, divided by the limit of the certificate.
 const TOLERANCE_TO_LIMIT: f64 = 0.1;
-
-/// A stage of a solve.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-#[non_exhaustive]
-pub enum Stage {
-    /// The active set method with a preconditioned Krylov method.
-    PreconditionedActiveSet,
-    /// [`MonotoneMultigrid`].
-    MonotoneMultigrid,
-    /// The active set method with factors.
-    DirectActiveSet,
-    /// The interior point method, which provides an active set.
-    InteriorPoint,
-}
-
-impl Stage {
-    /// The name in reports.
-    #[must_use]
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::PreconditionedActiveSet => "preconditioned-active-set",
-            Self::MonotoneMultigrid => "monotone-multigrid",
-            Self::DirectActiveSet => "direct-active-set",
-            Self::InteriorPoint => "interior-point",
-        }
-    }
-}
-
-impl fmt::Display for Stage {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(self.name())
-    }
-}
-
-/// A stage that ran.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[non_exhaustive]
-pub struct StageRun {
-    /// The stage.
-    pub stage: Stage,
-    /// The number of its outer iterations; see [`Solution::outer`].
-    pub outer: usize,
-    /// The number of iterations of its linear solver.
-    pub linear: usize,
-}
 
 /// The stages in their order.
 const STRATEGY: [Stage; 7] = [
@@ -113,6 +66,9 @@ struct Solve<'s, 'a, T: Real> {
     end: Option<End>,
     /// The number of runs of the interior point method.
     interior_point_runs: usize,
+    /// Whether another run of the interior point method may find a better active set: before the first
+    /// run, and after one that identified the active set before the limit of rounding.
+    interior_point_may_improve: bool,
 }
 
 /// What the last stage of a solve found, in addition to the iterate.
@@ -157,6 +113,7 @@ pub(crate) fn solve<T: Real>(
         stages: Vec::new(),
         end: None,
         interior_point_runs: 0,
+        interior_point_may_improve: true,
     };
     let mut found = None;
     for stage in STRATEGY {
@@ -231,6 +188,7 @@ impl<'a, T: Real> Solve<'_, 'a, T> {
     /// Whether the interior point method comes next.
     fn may_run_interior_point(&self) -> bool {
         self.settings.globalisation != Globalisation::Never
+            && self.interior_point_may_improve
             && self.iterate.outer + MAX_STEPS <= self.settings.max_outer
     }
 
@@ -338,6 +296,7 @@ impl<'a, T: Real> Solve<'_, 'a, T> {
         let contact = method.run();
         let (values, jump_multipliers, steps) =
             (method.values(), method.jump_multipliers(), method.steps);
+        self.interior_point_may_improve = method.is_identified;
         self.iterate.outer += steps;
         if let Some(contact) = contact {
             let states = contact.iter().zip(&self.inequality.bounds);
@@ -367,7 +326,7 @@ impl<'a, T: Real> Solve<'_, 'a, T> {
                 improvement: improvement_steps,
             };
         }
-        if self.interior_point_runs > 1 || !self.may_run_interior_point() {
+        if !self.may_run_interior_point() {
             return Patience { halving: None, improvement: usize::MAX };
         }
         let halving = match (self.interior_point_runs, self.end) {

@@ -82,6 +82,8 @@ pub(crate) struct InteriorPoint<'h, 'a, T> {
     /// Number of linear systems solved.
     pub steps: usize,
     identification: Identification,
+    /// Whether the method ended because it had identified the active set.
+    pub is_identified: bool,
 }
 
 impl<'h, 'a, T: Real> InteriorPoint<'h, 'a, T> {
@@ -109,6 +111,7 @@ impl<'h, 'a, T: Real> InteriorPoint<'h, 'a, T> {
             pairs: Vec::new(),
             steps: 0,
             identification,
+            is_identified: false,
         };
         method.move_to_central_path(INITIAL_COMPLEMENTARITY);
         method
@@ -133,7 +136,7 @@ impl<'h, 'a, T: Real> InteriorPoint<'h, 'a, T> {
             stagnant_steps = if relative < 0.5 * least { 0 } else { stagnant_steps + 1 };
             least = if stagnant_steps == 0 { relative } else { least };
             let contact = self.contact();
-            let is_identified = self.identification == Identification::Early
+            self.is_identified = self.identification == Identification::Early
                 && relative <= IDENTIFICATION_TOL
                 && self.indicators_are_separated()
                 && contact == previous_contact;
@@ -145,7 +148,7 @@ impl<'h, 'a, T: Real> InteriorPoint<'h, 'a, T> {
                 self.move_to_central_path(1.0);
                 continue;
             }
-            if is_identified || relative <= FINAL_COMPLEMENTARITY || stagnates {
+            if self.is_identified || relative <= FINAL_COMPLEMENTARITY || stagnates {
                 break;
             }
             if !self.step(&residual, mean)? {
