@@ -1,6 +1,6 @@
 //! Constraint sets: which of an element's unknowns an inequality binds.
 
-use crate::element::Node;
+use crate::element::{Entity, Node};
 
 /// The constraint set of a scheme: at which nodes of its element the inequality is imposed.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -20,33 +20,32 @@ pub enum BoundedNodes {
 
 impl BoundedNodes {
     /// Whether an obstacle binds the unknown of this node.
-    pub const fn in_domain(self, node: Node) -> bool {
+    pub fn in_domain(self, node: &Node) -> bool {
         match self {
             Self::All => true,
-            Self::Midpoints => matches!(node, Node::Edge(_)),
-            Self::CellMeans => matches!(node, Node::CellMean),
+            Self::Midpoints => node.is_midpoint(),
+            Self::CellMeans => node.is_mean() && node.entity() == Entity::Cell,
         }
     }
     /// Whether a Signorini condition binds the unknown of this node, which lies on the facet.
-    pub const fn on_contact(self, node: Node, dimension: usize) -> bool {
+    pub fn on_contact(self, node: &Node, dimension: usize) -> bool {
         match self {
             Self::All => true,
             Self::Midpoints => {
-                matches!(node, Node::Edge(_)) || (dimension < 3 && matches!(node, Node::Vertex(_)))
+                let is_vertex = matches!(node.entity(), Entity::Vertex(_));
+                node.is_midpoint() || (dimension < 3 && is_vertex)
             }
             Self::CellMeans => false,
         }
     }
     /// The name of the set for an element of this degree that begins with this node.
-    pub const fn name(self, degree: usize, first: Node) -> &'static str {
+    pub fn name(self, degree: usize, first: &Node) -> &'static str {
         match self {
             Self::Midpoints => "midpoints",
             Self::CellMeans => "cell-means",
-            Self::All => match first {
-                Node::FacetMean(_) => "facet-means",
-                _ if degree == 1 => "vertices",
-                _ => "nodes",
-            },
+            Self::All if first.is_mean() => "facet-means",
+            Self::All if degree == 1 => "vertices",
+            Self::All => "nodes",
         }
     }
 }

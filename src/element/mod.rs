@@ -2,6 +2,7 @@
 
 mod broken;
 mod crouzeix_raviart;
+mod node;
 mod p1;
 mod p2;
 mod quadratic_cell_mean;
@@ -9,7 +10,8 @@ mod reference_element;
 
 pub use broken::Broken;
 pub use crouzeix_raviart::CrouzeixRaviart;
+pub use node::{Entity, Node};
 pub use p1::P1;
 pub use p2::P2;
 pub use quadratic_cell_mean::QuadraticCellMean;
-pub use reference_element::{Layout, MAX_BASIS, Node, ReferenceElement};
+pub use reference_element::{Layout, MAX_BASIS, ReferenceElement};

@@ -1,6 +1,7 @@
 //! Linear Lagrange elements.
 
-use super::reference_element::{Layout, Node, ReferenceElement};
+use super::node::Node;
+use super::reference_element::{Layout, ReferenceElement};
 use crate::real::Real;
 
 /// Continuous piecewise linears: the basis functions are the barycentric coordinates.
@@ -25,6 +26,6 @@ impl<T: Real, const D: usize> ReferenceElement<T, D> for P1 {
         }
     }
     fn node(i: usize) -> Node {
-        Node::Vertex(i)
+        Node::vertex(i)
     }
 }

@@ -1,6 +1,7 @@
 //! Quadratic Lagrange elements.
 
-use super::reference_element::{Layout, Node, ReferenceElement};
+use super::node::Node;
+use super::reference_element::{Layout, ReferenceElement};
 use crate::mesh::edge_vertices;
 use crate::real::Real;
 
@@ -39,6 +40,6 @@ impl<T: Real, const D: usize> ReferenceElement<T, D> for P2 {
         }
     }
     fn node(i: usize) -> Node {
-        if i <= D { Node::Vertex(i) } else { Node::Edge(i - D - 1) }
+        if i <= D { Node::vertex(i) } else { Node::midpoint(i - D - 1) }
     }
 }

@@ -1,7 +1,8 @@
 //! Quadratics in a basis that has the mean over the cell among its unknowns.
 
+use super::node::Node;
 use super::p2::P2;
-use super::reference_element::{Layout, Node, ReferenceElement};
+use super::reference_element::{Layout, ReferenceElement};
 use crate::real::Real;
 
 /// Discontinuous quadratics with the nodes of [`P2`], except that the mean over the cell replaces the
@@ -52,7 +53,7 @@ impl<T: Real, const D: usize> ReferenceElement<T, D> for QuadraticCellMean {
     }
     fn node(i: usize) -> Node {
         if i + 1 == <Self as ReferenceElement<T, D>>::N {
-            Node::CellMean
+            Node::cell_mean()
         } else {
             <P2 as ReferenceElement<T, D>>::node(i)
         }

@@ -76,7 +76,7 @@ impl<T: Real, const D: usize, S: Scheme<T, D>> AnyScheme<T, D> for S {
         Scheme::name(self)
     }
     fn constraint(&self) -> &'static str {
-        self.bounded_nodes().name(S::Element::DEGREE, S::Element::node(0))
+        self.bounded_nodes().name(S::Element::BASIS_DEGREE, &S::Element::node(0))
     }
     fn is_consistent(&self) -> bool {
         S::CONSISTENT

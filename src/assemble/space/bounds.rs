@@ -2,12 +2,11 @@
 
 use super::{Space, data};
 use crate::algebra::Bound;
-use crate::assemble::{DataQuadrature, count};
-use crate::element::Node;
+use crate::assemble::count;
+use crate::element::Entity;
 use crate::error::Error;
 use crate::mesh::{BoundaryPart, describe_point};
 use crate::problem::Field;
-use crate::quadrature::Rule;
 use crate::real::{Point, Real};
 
 /// Two bounds contradict each other if they do so by more than this share of their size: less is
@@ -38,7 +37,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         conflicts: &mut Vec<Conflict<D>>,
     ) -> Result<(), Error> {
         let bounded: Vec<usize> = self.bounded_nodes().collect();
-        let rules = self.mean_rules();
+        let terms = self.node_terms(&self.facet_rule, &self.cell_rule);
         for cell in 0..self.mesh.n_cells() {
             for &i in &bounded {
                 let unknown = self.dofs.of(cell, i);
@@ -46,14 +45,13 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
                     continue;
                 }
                 count::bounds(1);
-                let node = self.nodes[i];
+                let node = &self.nodes[i];
                 let x = self.node_point(cell, node);
-                let at = |psi: &Option<Field<D>>| match (psi, node) {
-                    (Some(psi), Node::CellMean) => {
-                        self.at_node(&rules, cell, node, "obstacle", psi).map(Some)
-                    }
-                    (Some(psi), _) => data::finite(psi(&x), "obstacle", &x, cell).map(Some),
-                    (None, _) => Ok(None),
+                let by_point = matches!(node.entity(), Entity::Facet(_)) && node.is_mean();
+                let at = |psi: &Option<Field<D>>| match psi {
+                    Some(psi) if by_point => data::finite(psi(&x), "obstacle", &x, cell).map(Some),
+                    Some(psi) => self.at_node(&terms[i], cell, "obstacle", psi).map(Some),
+                    None => Ok(None),
                 };
                 let (lower, upper) = (at(&self.problem.lower)?, at(&self.problem.upper)?);
                 bounds[unknown] = between(lower, upper, unknown, x, conflicts);
@@ -68,17 +66,16 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         bounds: &mut [Bound<T>],
         conflicts: &mut Vec<Conflict<D>>,
     ) -> Result<(), Error> {
-        let rules = self.mean_rules();
+        let terms = self.node_terms(&self.facet_rule, &self.cell_rule);
         for (cell, local) in self.facets_of(BoundaryPart::Contact) {
             for i in self.bounded_nodes_on(local) {
                 count::bounds(1);
-                let node = self.nodes[i];
-                let value = self.at_node(&rules, cell, node, "gap", gap)?;
+                let value = self.at_node(&terms[i], cell, "gap", gap)?;
                 let unknown = self.dofs.of(cell, i);
                 let old = bounds[unknown];
                 let lower = old.lower().map_or(value, |l| l.to_f64().max(value));
                 let upper = old.upper().map(Real::to_f64);
-                let x = self.node_point(cell, node);
+                let x = self.node_point(cell, &self.nodes[i]);
                 bounds[unknown] = between(Some(lower), upper, unknown, x, conflicts);
             }
         }
@@ -86,7 +83,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
     }
 
     fn pin(&self, bounds: &mut [Bound<T>], conflicts: &mut Vec<Conflict<D>>) -> Result<(), Error> {
-        let rules = self.mean_rules();
+        let terms = self.node_terms(&self.facet_rule, &self.cell_rule);
         let zero = !self.problem.has_dirichlet_data();
         let datum = |x: &Point<f64, D>| self.problem.dirichlet_at(x);
         for (cell, local) in self.facets_of(BoundaryPart::Dirichlet) {
@@ -95,10 +92,9 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
                 if let Bound::Fixed(_) = bounds[unknown] {
                     continue;
                 }
-                let node = self.nodes[i];
-                let at = |name, datum: Datum<'_, D>| self.at_node(&rules, cell, node, name, datum);
+                let at = |name, datum: Datum<'_, D>| self.at_node(&terms[i], cell, name, datum);
                 let value = if zero { 0.0 } else { at("dirichlet", &datum)? };
-                let x = self.node_point(cell, node);
+                let x = self.node_point(cell, &self.nodes[i]);
                 // obstacles must leave room for the datum; a mean is compared with a mean: over a
                 // curved obstacle the value at the barycentre may lie above the mean of a datum
                 // that touches it
@@ -114,38 +110,22 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         Ok(())
     }
 
-    /// The rules for means over facets and cells.
-    fn mean_rules(&self) -> [Rule; 2] {
-        let DataQuadrature { facet, cell } = self.quadrature;
-        [Rule::new(D - 1, facet), Rule::new(D, cell)]
-    }
-
-    /// What an unknown is of a datum: its value at a point, its mean over a facet or cell.
+    /// The functional of a node at a datum.
     fn at_node(
         &self,
-        [facet_rule, cell_rule]: &[Rule; 2],
+        terms: &[([f64; 4], f64)],
         cell: usize,
-        node: Node,
         name: &'static str,
         datum: Datum<'_, D>,
     ) -> Result<f64, Error> {
-        let at = |x: Point<f64, D>| {
+        let at = |(point, weight): &([f64; 4], f64)| {
             if name == "dirichlet" {
                 count::dirichlet(1);
             }
-            data::finite(datum(&x), name, &x, cell)
+            let x = self.cell_point(point, cell);
+            Ok(weight * data::finite(datum(&x), name, &x, cell)?)
         };
-        match node {
-            Node::Vertex(_) | Node::Edge(_) => at(self.node_point(cell, node)),
-            Node::FacetMean(local) => facet_rule
-                .iter()
-                .map(|(point, weight)| Ok(weight * at(self.facet_point(point, cell, local))?))
-                .sum(),
-            Node::CellMean => cell_rule
-                .iter()
-                .map(|(point, weight)| Ok(weight * at(self.cell_point(point, cell))?))
-                .sum(),
-        }
+        terms.iter().map(at).sum()
     }
 }
 
