@@ -3,6 +3,7 @@
 use std::fmt;
 
 use super::spectrum::SpectrumError;
+use crate::element::Entity;
 use crate::error::Error;
 use crate::inequality::Outcome;
 use crate::linear::FactorError;
@@ -66,6 +67,30 @@ pub enum KitError {
         /// The functional at the function.
         found: f64,
         /// One or zero.
+        expected: f64,
+    },
+    /// A node is not tied to the vertex, edge or facet that owns its unknown.
+    #[error("element: node {node} is tied to {entity:?}, its unknown belongs to {owner:?}")]
+    NodeElsewhere {
+        /// The node.
+        node: usize,
+        /// The entity of the node.
+        entity: Entity,
+        /// The owner by the layout.
+        owner: Entity,
+    },
+    /// A basis function has a degree above the stated one.
+    #[error(
+        "element: a rule for basis functions of degree {stated} gives {found:.6e} for the mean of the square of function {function}, which is {expected:.6e}: state the degree of the basis as `BASIS_DEGREE`"
+    )]
+    DegreeExceeded {
+        /// The basis function.
+        function: usize,
+        /// The stated degree of the basis.
+        stated: usize,
+        /// The mean by the rule for that degree.
+        found: f64,
+        /// The mean.
         expected: f64,
     },
     /// The basis does not sum to one.
@@ -297,6 +322,8 @@ impl KitError {
         match self {
             Self::LayoutCount { .. }
             | Self::NotDual { .. }
+            | Self::NodeElsewhere { .. }
+            | Self::DegreeExceeded { .. }
             | Self::NotPartitionOfUnity { .. }
             | Self::PolynomialMissing { .. }
             | Self::WrongDerivative { .. } => Law::Element,

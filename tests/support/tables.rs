@@ -29,7 +29,7 @@ pub fn solve_by_rule<const D: usize>(
     level: usize,
     degree: usize,
 ) -> (Mesh<f64, D>, Solved) {
-    let quadrature = DataQuadrature { cell: degree, facet: degree };
+    let quadrature = DataQuadrature::default().cell(degree).facet(degree);
     let solver = ActiveSet::default();
     let mut levels = Hierarchy::new(&scene.problem, &scene.domain, None);
     levels.build(level).unwrap();

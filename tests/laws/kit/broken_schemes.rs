@@ -258,7 +258,7 @@ impl<T: Real, const D: usize, const MISTAKE: usize> ReferenceElement<T, D> for W
         }
     }
     fn node(i: usize) -> Node {
-        if MISTAKE == NODE { Node::FacetMean(i) } else { Node::Vertex(i) }
+        if MISTAKE == NODE { Node::facet_mean(i) } else { Node::vertex(i) }
     }
 }
 
