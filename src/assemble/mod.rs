@@ -307,7 +307,10 @@ fn check_form<T: Real, const D: usize>(
     if form.is_lifted() && !(owns_rows && element.basis_degree <= 2) {
         return refuse("lifts of jumps", "broken elements of degree one and two");
     }
-    if owns_rows && form.uses_flux() && polynomials(D - 1, element.basis_degree - 1) > owned_rows::MAX_FLUX_MOMENTS {
+    if owns_rows
+        && form.uses_flux()
+        && polynomials(D - 1, element.basis_degree - 1) > owned_rows::MAX_FLUX_MOMENTS
+    {
         return refuse(
             "fluxes",
             "broken elements with basis functions of degree at most 10 in the plane and 4 in space",

@@ -172,7 +172,10 @@ impl<'a, T: Real, const D: usize> Space<'a, T, D> {
     }
     /// The stiffness of the reference element.
     pub fn stiffness_table(&self) -> StiffnessTable<T> {
-        StiffnessTable::new(D, &self.cell_table(Rule::new(D, 2 * self.basis_degree.saturating_sub(1))))
+        StiffnessTable::new(
+            D,
+            &self.cell_table(Rule::new(D, 2 * self.basis_degree.saturating_sub(1))),
+        )
     }
     /// Moments of the basis on facets, up to a degree.
     pub fn facet_table(&self, degree: usize) -> FacetTable<T> {
@@ -288,11 +291,7 @@ impl<'a, T: Real, const D: usize> Space<'a, T, D> {
 }
 
 /// A rule of a family, tested, for it may be a user's.
-fn rule(
-    family: &dyn Quadrature,
-    dimension: usize,
-    degree: usize,
-) -> Result<Rule, QuadratureError> {
+fn rule(family: &dyn Quadrature, dimension: usize, degree: usize) -> Result<Rule, QuadratureError> {
     let Rule { points, weights } = family.rule(dimension, degree)?;
     Rule::from_points(dimension, points, weights)
 }
