@@ -3,13 +3,15 @@
 //! Weights sum to one: multiply by the measure of the cell or facet. Points are barycentric, so one
 //! rule serves cells of dimension `d` and facets of cells of dimension `d + 1`.
 
+mod error;
 mod families;
 mod gauss;
 mod orthonormal;
 mod rule;
 mod symmetric;
 
-pub use families::{ConicalProduct, Quadrature, QuadratureError, VertexRule};
+pub use error::QuadratureError;
+pub use families::{ConicalProduct, Quadrature, VertexRule};
 pub(crate) use orthonormal::OrthonormalPolynomials;
 pub use rule::Rule;
 pub(crate) use rule::facet_to_cell;

@@ -1,6 +1,6 @@
 //! Quadrature rules on simplices.
 
-use super::families::QuadratureError;
+use super::error::QuadratureError;
 use super::gauss::gauss_jacobi;
 
 /// A quadrature rule on the simplex of some dimension.

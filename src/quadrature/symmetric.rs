@@ -1,6 +1,7 @@
 //! Fully symmetric rules with positive weights on triangles and tetrahedra.
 
-use super::families::{Quadrature, QuadratureError};
+use super::error::QuadratureError;
+use super::families::Quadrature;
 use super::rule::Rule;
 
 /// Rules that do not change if the vertices of the simplex are permuted, with positive weights and
