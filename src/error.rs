@@ -4,6 +4,7 @@
 
 use crate::mesh::MeshError;
 use crate::mesh::gmsh::GmshError;
+use crate::quadrature::QuadratureError;
 use crate::readable_debug::debug_by_display;
 
 /// An error of input data, of a file or of a parameter. The message says what is wrong, where, and
@@ -17,6 +18,9 @@ pub enum Error {
     /// A mesh file could not be read.
     #[error(transparent)]
     Gmsh(#[from] GmshError),
+    /// A family of quadrature rules has no rule that is needed.
+    #[error(transparent)]
+    Quadrature(#[from] QuadratureError),
     /// A datum is not a finite number at a point where it is evaluated.
     #[error("{datum} is {value} at {at} in cell {cell}: data of a scene must be finite")]
     DataNotFinite {

@@ -106,7 +106,10 @@ pub enum Start {
 /// in a broken space.
 ///
 /// One vertex stands for a vertex value, two for the value at the midpoint of an edge, `D` for the
-/// mean over a facet, `D + 1` for the mean over a cell, `D` the dimension of space.
+/// mean over a facet, `D + 1` for the mean over a cell, `D` the dimension of space. A vertex may occur
+/// more than once: two times the first and once the second end of an edge stand for the value at a
+/// third of the edge. A node that is the barycentre of no four vertices has four whose barycentre is
+/// near to it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Support {
     cell: u32,

@@ -1,7 +1,7 @@
 //! The element of a scheme in the basis that a constraint set needs.
 
 use super::shared_rows::CellLoops;
-use super::space::{AnyElement, lies_on};
+use super::space::AnyElement;
 use crate::constraint::{CONSTRAINT_SETS, ConstraintSet, constraint_set_by_name};
 use crate::element::{ElementVisitor, ReferenceElement};
 use crate::real::Real;
@@ -50,7 +50,7 @@ fn offered<T: Real, E: ReferenceElement<T, D>, const D: usize>(contact: bool) ->
         let AnyElement { nodes, .. } = ChosenElement::<T, D>::of::<E>(&set).element;
         let is_bound = nodes.iter().any(|node| set.in_domain(node, D).is_some());
         let is_bound_on_facets = nodes.iter().any(|node| {
-            set.on_contact(node, D).is_some() && (0..=D).any(|k| lies_on::<D>(node, k))
+            set.on_contact(node, D).is_some() && (0..=D).any(|k| !node.entity().contains(D, k))
         });
         let name = set.name_on(&nodes);
         if is_bound && (is_bound_on_facets || !contact) && !names.iter().any(|known| known == name)

@@ -1,19 +1,55 @@
-//! Degrees of the quadrature rules for data.
+//! The quadrature rules for data.
 
-/// Degrees of the quadrature rules for data, beyond what the forms need.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+use crate::quadrature::{ConicalProduct, Quadrature};
+
+/// The quadrature rules for data: degrees, and families of rules. Integrals of the basis alone are
+/// exact whatever the rules for data.
+#[derive(Clone, Copy, Debug)]
+#[non_exhaustive]
 pub struct DataQuadrature {
-    /// Degree of the cell rule for loads that vary.
+    /// Degree of the cell rule for loads that vary; raised to `k + b - 1` for an element that
+    /// contains the polynomials of degree `k` and has basis functions of degree `b`, below which the
+    /// rule would limit the orders.
     pub cell: usize,
     /// Degree of the facet rule for Dirichlet and Neumann data.
     pub facet: usize,
+    /// The family of the rules for loads, Dirichlet and Neumann data and means of data.
+    pub family: &'static dyn Quadrature,
+    /// The family of the rule for the reaction term. It is asked for the degree of products of basis
+    /// functions, or for that of the cell rule where this is larger and the reaction varies. With
+    /// [`VertexRule`](crate::quadrature::VertexRule) the term is lumped.
+    pub reaction: &'static dyn Quadrature,
 }
 
 impl Default for DataQuadrature {
     /// Loads to degree 5, which leaves an error of higher order than linear and quadratic elements
     /// have; boundary data to degree 15, because there are few boundary facets and the weak
-    /// Dirichlet data of an over-penalised scheme weigh much.
+    /// Dirichlet data of an over-penalised scheme weigh much; all by [`ConicalProduct`].
     fn default() -> Self {
-        Self { cell: 5, facet: 15 }
+        Self { cell: 5, facet: 15, family: &ConicalProduct, reaction: &ConicalProduct }
+    }
+}
+
+/// Setters, one for each field.
+impl DataQuadrature {
+    /// Sets the degree of the cell rule.
+    #[must_use]
+    pub fn cell(self, degree: usize) -> Self {
+        Self { cell: degree, ..self }
+    }
+    /// Sets the degree of the facet rule.
+    #[must_use]
+    pub fn facet(self, degree: usize) -> Self {
+        Self { facet: degree, ..self }
+    }
+    /// Sets the family of the rules for loads, Dirichlet and Neumann data and means of data.
+    #[must_use]
+    pub fn family(self, family: &'static dyn Quadrature) -> Self {
+        Self { family, ..self }
+    }
+    /// Sets the family of the rule for the reaction term.
+    #[must_use]
+    pub fn reaction(self, reaction: &'static dyn Quadrature) -> Self {
+        Self { reaction, ..self }
     }
 }

@@ -66,7 +66,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
     fn add_constant_source(&self, f: f64, load: &mut [T]) -> Result<(), Error> {
         count::source(1);
         let f = data::finite(f, "source", &Point::<f64, D>::zeros(), 0)?;
-        let table = self.cell_table(self.degree);
+        let table = self.cell_table(Rule::new(D, self.basis_degree));
         let mean = |i: usize| -> f64 {
             table.basis.iter().zip(&table.weights).map(|(basis, w)| w * basis.values[i]).sum()
         };
@@ -81,7 +81,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
     }
 
     fn add_source(&self, f: &Field<D>, load: &mut [T]) -> Result<(), Error> {
-        let table = self.cell_table(self.quadrature.cell);
+        let table = self.cell_table(self.cell_rule.clone());
         self.for_each_cell(load, &|cell, out| {
             let volume = self.mesh.geometry(cell).volume.to_f64();
             let samples = table.points.iter().zip(&table.basis).zip(&table.weights);
@@ -110,14 +110,13 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
     }
 
     fn add_neumann(&self, load: &mut [T]) -> Result<(), Error> {
-        let rule = Rule::new(D - 1, self.quadrature.facet);
         let n = self.per_cell();
         for (cell, local) in self.facets_of(BoundaryPart::Neumann) {
             let geometry = self.mesh.geometry(cell);
             let normal = point_f64(&geometry.normal(local));
             let measure = geometry.facet_measure(local).to_f64();
             let out = &mut load[cell * n..(cell + 1) * n];
-            for (point, weight) in rule.iter() {
+            for (point, weight) in self.facet_rule.iter() {
                 count::neumann(1);
                 let x = self.facet_point(point, cell, local);
                 let flux = match (&self.problem.neumann, &self.problem.exact) {
@@ -140,7 +139,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
     /// Moments of Dirichlet data on a facet.
     pub fn dirichlet_moments(
         &self,
-        moments: &FacetMoments,
+        moments: &FacetMoments<'_>,
         cell: usize,
         local: usize,
     ) -> Result<Vec<f64>, Error> {
@@ -158,18 +157,15 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
 }
 
 /// What moments of data on facets are computed with.
-pub(crate) struct FacetMoments {
+pub(crate) struct FacetMoments<'r> {
     polynomials: OrthonormalPolynomials,
-    rule: Rule,
+    rule: &'r Rule,
 }
 
-impl FacetMoments {
-    /// Moments up to a degree, by a rule of another.
-    pub fn new(dimension: usize, degree: usize, rule: usize) -> Self {
-        Self {
-            polynomials: OrthonormalPolynomials::new(dimension - 1, degree),
-            rule: Rule::new(dimension - 1, rule),
-        }
+impl<'r> FacetMoments<'r> {
+    /// Moments up to a degree, by a rule on facets.
+    pub fn new(dimension: usize, degree: usize, rule: &'r Rule) -> Self {
+        Self { polynomials: OrthonormalPolynomials::new(dimension - 1, degree), rule }
     }
 }
 
@@ -210,9 +206,9 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         load: &mut [T],
     ) -> Result<Vec<FacetDatum>, Error> {
         let n = self.per_cell();
-        let degree = form.moments(self.degree);
+        let degree = form.moments(self.basis_degree);
         let table = self.facet_table(degree);
-        let moments = FacetMoments::new(D, degree, self.quadrature.facet);
+        let moments = FacetMoments::new(D, degree, &self.facet_rule);
         let mut data = Vec::new();
         for (cell, local) in self.facets_of(BoundaryPart::Dirichlet) {
             let metric = self.metric(cell);

@@ -81,7 +81,7 @@ impl<'a, T: Real, const D: usize> Discretisation<'a, T, D> {
     pub fn unknowns(&self) -> usize {
         self.space.dofs.size()
     }
-    /// Polynomial degree of the element.
+    /// Largest degree of which the element contains all polynomials.
     pub fn degree(&self) -> usize {
         self.space.degree
     }
@@ -168,7 +168,7 @@ impl<'a, T: Real, const D: usize> Discretisation<'a, T, D> {
         });
         // the loops that fill the matrix return no error: a reaction term that is not finite is
         // detected here
-        if let Some(reaction) = space::reaction_term::ReactionTerm::new(&self.space)
+        if let Some(reaction) = &self.space.reaction
             && !matrix.values.iter().all(|v| v.to_f64().is_finite())
         {
             reaction.check(self.mesh())?;
@@ -285,6 +285,11 @@ impl<T: Real, const D: usize> std::fmt::Debug for Discretisation<'_, T, D> {
     }
 }
 
+/// The number of polynomials of a degree in some variables that are linearly independent.
+fn polynomials(variables: usize, degree: usize) -> usize {
+    (1..=variables).fold(1, |count, k| count * (degree + k) / k)
+}
+
 /// Refuses forms that the loops over owned rows have no tables for.
 fn check_form<T: Real, const D: usize>(
     element: &AnyElement,
@@ -292,13 +297,16 @@ fn check_form<T: Real, const D: usize>(
 ) -> Result<(), Error> {
     let refuse = |requested, allowed| Err(Error::UnsupportedForm { requested, allowed });
     let owns_rows = form.couples() && element.layout.is_broken();
-    if form.is_lifted() && !(owns_rows && element.degree <= 2) {
+    if form.is_lifted() && !(owns_rows && element.basis_degree <= 2) {
         return refuse("lifts of jumps", "broken elements of degree one and two");
     }
-    if owns_rows && form.uses_flux() && element.degree > [9, 9, 3, 2][D] {
+    if owns_rows
+        && form.uses_flux()
+        && polynomials(D - 1, element.basis_degree - 1) > owned_rows::MAX_FLUX_MOMENTS
+    {
         return refuse(
             "fluxes",
-            "broken elements of degree at most 9, 3 and 2 in dimensions 1, 2, 3",
+            "broken elements with basis functions of degree at most 10 in the plane and 4 in space",
         );
     }
     Ok(())

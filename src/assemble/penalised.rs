@@ -7,12 +7,11 @@ use super::load::FacetDatum;
 use super::local::zero_local;
 use super::space::Space;
 use super::space::metric::Metrics;
-use super::space::reaction_term::ReactionTerm;
 use super::space::tables::FacetTable;
 use crate::algebra::{JumpTerm, PenalisedMatrix};
 use crate::element::{MAX_BASIS, Node};
 use crate::facet::FacetForm;
-use crate::mesh::{BoundaryPart, Neighbour, edge_vertices};
+use crate::mesh::{BoundaryPart, Neighbour};
 use crate::parallel::cells;
 use crate::real::Real;
 
@@ -50,7 +49,7 @@ pub(crate) fn penalised_matrix<T: Real, const D: usize>(
         weights: Vec::new(),
         jump_data: Vec::new(),
     };
-    let table = space.facet_table(form.moments(space.degree));
+    let table = space.facet_table(form.moments(space.basis_degree));
     let templates = Templates::<T>::new::<D>(space, &table);
     let of_degree: Vec<T> = table.degrees.iter().map(|&k| T::lit(form.moment_weight(k))).collect();
     let neighbours = space.coupled_neighbours();
@@ -89,7 +88,6 @@ pub(crate) fn penalised_matrix<T: Real, const D: usize>(
 fn blocks<T: Real, const D: usize>(space: &Space<'_, T, D>, metrics: &Metrics<T>) -> Vec<T> {
     let n = space.per_cell();
     let stiffness = space.stiffness_table();
-    let reaction = ReactionTerm::new(space);
     let mut blocks = vec![T::lit(0.0); n * n * space.mesh.n_cells()];
     let fill = |cells: std::ops::Range<usize>, piece: &mut [T]| {
         for (cell, out) in cells.zip(piece.chunks_exact_mut(n * n)) {
@@ -98,7 +96,7 @@ fn blocks<T: Real, const D: usize>(space: &Space<'_, T, D>, metrics: &Metrics<T>
             for (k, out) in out.iter_mut().enumerate() {
                 *out = coefficient * stiffness.entry::<D>(&metric, k / n, k % n);
             }
-            if let Some(reaction) = &reaction {
+            if let Some(reaction) = &space.reaction {
                 let mut own = zero_local();
                 reaction.add(space.mesh, cell, metric.volume, &mut own);
                 for (k, out) in out.iter_mut().enumerate() {
@@ -177,7 +175,7 @@ fn moment<T: Real, const D: usize>(
     let mut is_paired = [false; MAX_BASIS];
     for (i, node) in nodes.iter().enumerate().filter(|(i, _)| !is_zero(here[*i])) {
         let partner = there.and_then(|(other, values)| {
-            let node = across::<D>(*node, facet, other)?;
+            let node = node.across(D, facet, other)?;
             let j = nodes.iter().position(|n| *n == node)?;
             is_zero(values[j] - here[i]).then_some(j)
         });
@@ -191,23 +189,4 @@ fn moment<T: Real, const D: usize>(
         terms.extend(left.map(|j| LocalTerm { here: None, there: Some(j), weight: values[j] }));
     }
     terms
-}
-
-/// The node of the cell there that is a node of the cell here, on their common facet, whose vertices
-/// both cells have in the same order.
-fn across<const D: usize>(node: Node, facet: usize, other: usize) -> Option<Node> {
-    let vertex = |k: usize| {
-        let place = (k != facet).then(|| k - usize::from(k > facet))?;
-        Some(place + usize::from(place >= other))
-    };
-    match node {
-        Node::Vertex(k) => vertex(k).map(Node::Vertex),
-        Node::Edge(k) => {
-            let [i, j] = edge_vertices(D)[k].map(vertex);
-            let ends = [i?, j?];
-            edge_vertices(D).iter().position(|e| *e == ends).map(Node::Edge)
-        }
-        Node::FacetMean(k) => (k == facet).then_some(Node::FacetMean(other)),
-        Node::CellMean => None,
-    }
 }

@@ -1,7 +1,7 @@
 //! Bounds on cell means.
 
 use super::constraint_set::{BoundBy, ConstraintSet};
-use crate::element::{Basis, Node};
+use crate::element::{Basis, Entity, Node};
 
 /// The mean over each cell is bound by the mean of the obstacle, and nothing else is.
 ///
@@ -19,6 +19,6 @@ impl ConstraintSet for CellMeans {
         Some(Basis::CellMean)
     }
     fn in_domain(&self, node: &Node, _: usize) -> Option<BoundBy> {
-        matches!(node, Node::CellMean).then_some(BoundBy::Mean)
+        (node.is_mean() && node.entity() == Entity::Cell).then_some(BoundBy::Mean)
     }
 }

@@ -8,10 +8,11 @@ use crate::theory::Setting;
 /// By what an unknown is bound.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum BoundBy {
-    /// By the datum at the point of the node; the point of a mean is the barycentre.
+    /// By the datum at the point of the node; the point of a mean is the barycentre,
+    /// that of a sum is its [`centre`](Node::centre).
     Value,
-    /// By the datum's mean over the facet or cell of the node; at a node that is a point, by the
-    /// value there.
+    /// By the functional of the node, applied to the datum: the mean over the facet or cell, the sum
+    /// of values at points times weights, at a node that is a point the value there.
     Mean,
 }
 

@@ -20,6 +20,6 @@ impl ConstraintSet for FacetMeans {
         Some(Basis::FacetMeans)
     }
     fn in_domain(&self, node: &Node, _: usize) -> Option<BoundBy> {
-        matches!(node, Node::FacetMean(_)).then_some(BoundBy::Value)
+        node.is_facet_mean().then_some(BoundBy::Value)
     }
 }

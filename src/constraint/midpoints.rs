@@ -1,7 +1,7 @@
 //! Bounds at midpoints of edges.
 
 use super::constraint_set::{BoundBy, ConstraintSet};
-use crate::element::Node;
+use crate::element::{Entity, Node};
 use crate::theory::Setting;
 
 /// An obstacle binds the midpoints of edges only. A Signorini condition binds the nodes that carry
@@ -22,12 +22,11 @@ impl ConstraintSet for Midpoints {
         "midpoints"
     }
     fn in_domain(&self, node: &Node, _: usize) -> Option<BoundBy> {
-        matches!(node, Node::Edge(_)).then_some(BoundBy::Value)
+        node.is_midpoint().then_some(BoundBy::Value)
     }
     fn on_contact(&self, node: &Node, dimension: usize) -> Option<BoundBy> {
-        let carries_mean =
-            matches!(node, Node::Edge(_)) || (dimension < 3 && matches!(node, Node::Vertex(_)));
-        carries_mean.then_some(BoundBy::Mean)
+        let is_vertex = matches!(node.entity(), Entity::Vertex(_));
+        (node.is_midpoint() || (dimension < 3 && is_vertex)).then_some(BoundBy::Mean)
     }
     fn keeps_orders(&self, setting: &Setting) -> bool {
         !(setting.obstacle && setting.dimension != 2 || setting.contact && setting.dimension == 3)

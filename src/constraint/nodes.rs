@@ -1,7 +1,7 @@
 //! Bounds at all nodes.
 
 use super::constraint_set::{BoundBy, ConstraintSet};
-use crate::element::Node;
+use crate::element::{Entity, Node};
 use crate::theory::Setting;
 
 /// Every unknown of the element is bound: the set in force where nothing else is said.
@@ -17,16 +17,16 @@ impl ConstraintSet for Nodes {
         "nodes"
     }
     fn name_on(&self, nodes: &[Node]) -> &str {
-        if nodes.iter().all(|node| matches!(node, Node::Vertex(_))) {
+        if nodes.iter().all(|node| matches!(node.entity(), Entity::Vertex(_))) {
             "vertices"
-        } else if nodes.iter().all(|node| matches!(node, Node::FacetMean(_))) {
+        } else if nodes.iter().all(Node::is_facet_mean) {
             "facet-means"
         } else {
             self.name()
         }
     }
     fn in_domain(&self, node: &Node, _: usize) -> Option<BoundBy> {
-        Some(if let Node::CellMean = node { BoundBy::Mean } else { BoundBy::Value })
+        Some(if node.is_facet_mean() { BoundBy::Value } else { BoundBy::Mean })
     }
     fn keeps_orders(&self, _: &Setting) -> bool {
         true

@@ -1,7 +1,8 @@
 //! The discontinuous version of any element.
 
 use super::basis::Basis;
-use super::reference_element::{ElementVisitor, Layout, Node, ReferenceElement};
+use super::node::Node;
+use super::reference_element::{ElementVisitor, Layout, ReferenceElement};
 use crate::real::Real;
 
 /// The basis of `E` with all unknowns inside the cells.
@@ -14,6 +15,7 @@ pub struct Broken<E>(pub E);
 impl<T: Real, const D: usize, E: ReferenceElement<T, D>> ReferenceElement<T, D> for Broken<E> {
     const N: usize = E::N;
     const DEGREE: usize = E::DEGREE;
+    const BASIS_DEGREE: usize = E::BASIS_DEGREE;
     const LAYOUT: Layout = Layout::in_cells(E::N);
 
     #[inline(always)]

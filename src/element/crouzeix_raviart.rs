@@ -1,6 +1,7 @@
 //! The Crouzeix-Raviart element.
 
-use super::reference_element::{Layout, Node, ReferenceElement};
+use super::node::Node;
+use super::reference_element::{Layout, ReferenceElement};
 use crate::real::Real;
 
 /// Piecewise linears with continuous means over facets.
@@ -32,6 +33,6 @@ impl<T: Real, const D: usize> ReferenceElement<T, D> for CrouzeixRaviart {
         }
     }
     fn node(i: usize) -> Node {
-        Node::FacetMean(i)
+        Node::facet_mean(i)
     }
 }

@@ -3,6 +3,7 @@
 mod basis;
 mod broken;
 mod crouzeix_raviart;
+mod node;
 mod p1;
 mod p2;
 mod quadratic_cell_mean;
@@ -11,7 +12,8 @@ mod reference_element;
 pub use basis::Basis;
 pub use broken::Broken;
 pub use crouzeix_raviart::CrouzeixRaviart;
+pub use node::{Entity, Node};
 pub use p1::P1;
 pub use p2::P2;
 pub use quadratic_cell_mean::QuadraticCellMean;
-pub use reference_element::{ElementVisitor, Layout, MAX_BASIS, Node, ReferenceElement};
+pub use reference_element::{ElementVisitor, Layout, MAX_BASIS, ReferenceElement};

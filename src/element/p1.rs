@@ -3,7 +3,8 @@
 use super::basis::Basis;
 use super::broken::Broken;
 use super::crouzeix_raviart::CrouzeixRaviart;
-use super::reference_element::{ElementVisitor, Layout, Node, ReferenceElement};
+use super::node::Node;
+use super::reference_element::{ElementVisitor, Layout, ReferenceElement};
 use crate::real::Real;
 
 /// Continuous piecewise linears: the basis functions are the barycentric coordinates.
@@ -28,7 +29,7 @@ impl<T: Real, const D: usize> ReferenceElement<T, D> for P1 {
         }
     }
     fn node(i: usize) -> Node {
-        Node::Vertex(i)
+        Node::vertex(i)
     }
     fn broken_in_basis<V: ElementVisitor<T, D>>(basis: Basis, visitor: V) -> Option<V::Output> {
         (basis == Basis::FacetMeans).then(|| visitor.visit::<Broken<CrouzeixRaviart>>())

@@ -1,6 +1,7 @@
 //! Quadratics in a basis that has the mean over the cell among its unknowns.
 
-use super::reference_element::{Layout, Node, ReferenceElement};
+use super::node::Node;
+use super::reference_element::{Layout, ReferenceElement};
 use crate::real::Real;
 
 /// Discontinuous quadratics with the nodes of `E`, which is [`P2`](super::P2), except that the mean over the cell replaces the
@@ -52,6 +53,6 @@ impl<T: Real, const D: usize, E: ReferenceElement<T, D>> ReferenceElement<T, D>
         out[last] = of_mean;
     }
     fn node(i: usize) -> Node {
-        if i + 1 == E::N { Node::CellMean } else { E::node(i) }
+        if i + 1 == E::N { Node::cell_mean() } else { E::node(i) }
     }
 }

@@ -1,10 +1,11 @@
 //! The trait of reference elements.
 
 use super::basis::Basis;
+use super::node::Node;
 use crate::real::Real;
 
-/// Largest number of basis functions of an element: quadratics on a tetrahedron.
-pub const MAX_BASIS: usize = 10;
+/// Largest number of basis functions of an element: cubics on a tetrahedron.
+pub const MAX_BASIS: usize = 20;
 
 /// Number of unknowns at each vertex, edge and facet, shared by the cells that contain it, and inside
 /// each cell. The layout distinguishes conforming, nonconforming and broken spaces with one basis.
@@ -42,24 +43,12 @@ impl Layout {
     }
 }
 
-/// The functional that an unknown is the value of.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Node {
-    /// The value at a vertex of the cell.
-    Vertex(usize),
-    /// The value at the midpoint of an edge of the cell, in the order of [`Layout::edge`].
-    Edge(usize),
-    /// The mean over the facet opposite a vertex of the cell.
-    FacetMean(usize),
-    /// The mean over the cell.
-    CellMean,
-}
-
 /// A finite element on the `D`-simplex.
 ///
 /// Laws, tested by [`check_element`](crate::kit::check_element): nodes dual to basis functions,
-/// partition of unity, derivatives equal to those of the values, as many functions as the layout has
-/// unknowns.
+/// partition of unity, polynomials of degree [`DEGREE`](Self::DEGREE) in the span, basis functions of
+/// degree [`BASIS_DEGREE`](Self::BASIS_DEGREE) at most, derivatives equal to those of the values, as
+/// many functions as the layout has unknowns, nodes tied to the entities that own the unknowns.
 #[diagnostic::on_unimplemented(
     message = "`{Self}` is not a finite element on a {D}-simplex over `{T}`",
     note = "elements exist on simplices of dimension 1, 2 and 3"
@@ -67,8 +56,13 @@ pub enum Node {
 pub trait ReferenceElement<T: Real, const D: usize>: Copy + Send + Sync + 'static {
     /// Number of basis functions, at most [`MAX_BASIS`].
     const N: usize;
-    /// Polynomial degree.
+    /// Largest degree of which the span of the basis contains all polynomials: what the element
+    /// reproduces and what determines the orders of convergence.
     const DEGREE: usize;
+    /// Largest degree of a basis function, from which the rules for integrals of the basis follow.
+    /// It differs from [`DEGREE`](Self::DEGREE) where the basis has more than the polynomials of
+    /// that degree: it is `D + 1` for linears with a bubble that vanishes on the boundary of the cell.
+    const BASIS_DEGREE: usize = Self::DEGREE;
     /// Unknowns at vertices, edges, facets and inside cells.
     const LAYOUT: Layout;
     /// Whether this library has compiled the assembly of the element's shared unknowns; no other

@@ -36,7 +36,7 @@ pub struct InteriorPenalty {
     pub symmetry: Symmetry,
     /// How the weight is chosen.
     pub rule: PenaltyRule,
-    /// Polynomial degree of the element, for the proven bound.
+    /// Largest degree of a basis function of the element, for the proven bound.
     pub degree: usize,
 }
 

@@ -18,7 +18,7 @@ use crate::real::Real;
 pub struct FacetLifts {
     /// The factor, without dimension.
     pub eta: f64,
-    /// Polynomial degree of the element, one or two.
+    /// Largest degree of a basis function of the element.
     pub degree: usize,
     /// Whether the form needs `eta` above the number of facets of a cell.
     pub bounded: bool,
@@ -43,16 +43,13 @@ impl<T: Real, const D: usize> FacetForm<T, D> for FacetLifts {
     fn penalty(&self, facet: &FacetView<T, D>) -> T {
         Self::weight(self.eta, facet)
     }
-    /// `|K| / |F|^2 int_K s^2` for the polynomial `s` of the lift's degree with
-    /// `int_K s q = int_F e q`, `e` a normalised moment: one for constants; for linears from the
-    /// inverse of their mass matrix.
+    /// `|K| / |F|^2 int_K s^2` for the polynomial `s` of the lift's degree `p - 1` with
+    /// `int_K s q = int_F e q`, `e` a normalised moment of degree `m`: `(p - m)(p + m + D - 1) / D`,
+    /// the sum over `j < p - m` of `(2 j + 2 m + D) / D`, the squares on the facet of the orthonormal
+    /// polynomials that are `e` times a Jacobi polynomial of degree `j` in the height.
     fn moment_weight(&self, moment: usize) -> f64 {
-        let d = D as f64;
-        match (self.degree, moment) {
-            (1, _) => 1.0,
-            (_, 0) => 2.0 * (d + 1.0) / d,
-            _ => (d + 2.0) / d,
-        }
+        let [d, p, m] = [D, self.degree, moment].map(|k| k as f64);
+        (p - m) * (p + m + d - 1.0) / d
     }
     fn least_penalty(&self, facet: &FacetView<T, D>) -> Option<T> {
         self.bounded.then(|| Self::weight((D + 1) as f64, facet))

@@ -72,7 +72,7 @@ pub trait FacetForm<T: Real, const D: usize>: Any + Send + Sync {
     fn is_symmetric(&self) -> bool {
         true
     }
-    /// Up to which degree the form sees moments of traces, for an element of this degree.
+    /// Up to which degree the form sees moments of traces, for basis functions of this degree.
     fn moments(&self, degree: usize) -> usize {
         degree
     }

@@ -25,7 +25,7 @@ pub enum WeightRule {
 pub struct OverPenalty {
     /// The factor, of the dimension of a length to the power `2k`.
     pub eta: f64,
-    /// The degree `k` of the element.
+    /// The degree `k` of the polynomials that the element contains.
     pub degree: usize,
     /// How it becomes a weight.
     pub rule: WeightRule,
@@ -37,8 +37,8 @@ impl<T: Real, const D: usize> FacetForm<T, D> for OverPenalty {
     fn uses_flux(&self) -> bool {
         false
     }
-    fn moments(&self, degree: usize) -> usize {
-        degree - 1
+    fn moments(&self, _: usize) -> usize {
+        self.degree - 1
     }
     #[inline(always)]
     fn penalty(&self, facet: &FacetView<T, D>) -> T {

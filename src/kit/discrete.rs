@@ -51,7 +51,7 @@ pub(super) struct Judged {
 /// what keeps the quadrature of a smooth one out of the orders.
 fn quadrature(degree: usize) -> DataQuadrature {
     let default = DataQuadrature::default();
-    DataQuadrature { cell: default.cell.max(2 * degree + 2), ..default }
+    default.cell(default.cell.max(2 * degree + 2))
 }
 
 /// Whether the form declares itself symmetric.

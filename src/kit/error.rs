@@ -3,6 +3,7 @@
 use std::fmt;
 
 use super::spectrum::SpectrumError;
+use crate::element::Entity;
 use crate::error::Error;
 use crate::inequality::Outcome;
 use crate::linear::FactorError;
@@ -12,6 +13,8 @@ use crate::readable_debug::debug_by_display;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum Law {
+    /// Exactness of quadrature rules.
+    Quadrature,
     /// The nodes, values and derivatives of the reference element.
     Element,
     /// Equality of the matrix and its transpose.
@@ -29,6 +32,7 @@ pub enum Law {
 impl fmt::Display for Law {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
+            Law::Quadrature => "quadrature",
             Law::Element => "element",
             Law::Symmetry => "symmetry",
             Law::Coercivity => "coercivity",
@@ -44,6 +48,24 @@ impl fmt::Display for Law {
 #[derive(thiserror::Error)]
 #[non_exhaustive]
 pub enum KitError {
+    /// A quadrature rule is not exact for the degree asked for.
+    #[error(
+        "quadrature: the rule of family {family} for degree {degree} in dimension {dimension} gives {found:.16e} for the mean of the monomial with powers {powers:?} of barycentric coordinates, which is {expected:.16e}"
+    )]
+    RuleNotExact {
+        /// Name of the family.
+        family: String,
+        /// Dimension of the simplex.
+        dimension: usize,
+        /// The degree asked for.
+        degree: usize,
+        /// The powers of barycentric coordinates in the monomial.
+        powers: Vec<usize>,
+        /// The mean by the rule.
+        found: f64,
+        /// The mean.
+        expected: f64,
+    },
     /// The layout does not own as many unknowns as there are basis functions.
     #[error(
         "element: the layout owns {owned} unknowns of a cell, there are {functions} basis functions (at most {limit})"
@@ -66,6 +88,30 @@ pub enum KitError {
         /// The functional at the function.
         found: f64,
         /// One or zero.
+        expected: f64,
+    },
+    /// A node is not tied to the vertex, edge or facet that owns its unknown.
+    #[error("element: node {node} is tied to {entity:?}, its unknown belongs to {owner:?}")]
+    NodeElsewhere {
+        /// The node.
+        node: usize,
+        /// The entity of the node.
+        entity: Entity,
+        /// The owner by the layout.
+        owner: Entity,
+    },
+    /// A basis function has a degree above the stated one.
+    #[error(
+        "element: a rule for basis functions of degree {stated} gives {found:.6e} for the mean of the square of function {function}, which is {expected:.6e}: state the degree of the basis as `BASIS_DEGREE`"
+    )]
+    DegreeExceeded {
+        /// The basis function.
+        function: usize,
+        /// The stated degree of the basis.
+        stated: usize,
+        /// The mean by the rule for that degree.
+        found: f64,
+        /// The mean.
         expected: f64,
     },
     /// The basis does not sum to one.
@@ -295,8 +341,11 @@ impl KitError {
     /// The law that does not hold.
     pub fn law(&self) -> Law {
         match self {
+            Self::RuleNotExact { .. } => Law::Quadrature,
             Self::LayoutCount { .. }
             | Self::NotDual { .. }
+            | Self::NodeElsewhere { .. }
+            | Self::DegreeExceeded { .. }
             | Self::NotPartitionOfUnity { .. }
             | Self::PolynomialMissing { .. }
             | Self::WrongDerivative { .. } => Law::Element,

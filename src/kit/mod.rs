@@ -3,12 +3,14 @@
 //!
 //! | law | function | what it catches |
 //! |---|---|---|
-//! | element | [`check_element`] | a node not dual to its function, a wrong derivative, a wrong layout |
+//! | element | [`check_element`] | a node not dual to its function, a wrong derivative, degree or layout |
 //! | symmetry | [`check_symmetry`] | a form that is not as symmetric as it declares |
 //! | coercivity | [`check_coercivity`] | a penalty that is too small |
 //! | invariance | [`check_invariance`] | a form that depends on how cells and vertices are numbered |
 //! | consistency | [`check_consistency`] | a wrong sign or factor of a term on facets |
 //! | orders | [`check_orders`] | a scheme that converges slower than its element allows |
+//!
+//! [`check_quadrature`] tests a family of quadrature rules.
 //!
 //! The meshes are small boxes, regular and with moved vertices, in the dimension and scalar of the
 //! call; tolerances are multiples of the scalar's rounding unit. An error names the law, the place
@@ -36,6 +38,7 @@ mod matrix;
 mod meshes;
 mod orders;
 mod problems;
+mod quadrature;
 mod report;
 pub mod spectrum;
 mod split_mix;
@@ -43,9 +46,10 @@ mod symmetry;
 
 pub use element::check_element;
 pub use error::{KitError, Law};
+pub use quadrature::check_quadrature;
 pub use report::{
     CoercivityReport, ConsistencyReport, ElementReport, InvarianceReport, KitReport, OrdersReport,
-    SymmetryReport,
+    QuadratureReport, SymmetryReport,
 };
 
 use std::sync::Arc;

@@ -18,6 +18,18 @@ pub struct ElementReport {
     pub derivatives: f64,
 }
 
+/// Measurements of a quadrature rule.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct QuadratureReport {
+    /// Number of points.
+    pub points: usize,
+    /// The smallest weight.
+    pub smallest_weight: f64,
+    /// Largest relative deviation from the mean of a monomial of the degree.
+    pub error: f64,
+}
+
 /// Measurements of the law of symmetry.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]

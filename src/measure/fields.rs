@@ -22,7 +22,8 @@ pub struct Fields {
     pub multiplier: Vec<f64>,
     /// Share of each cell's constrained unknowns in contact.
     pub contact: Vec<f64>,
-    /// A quadratic solution at the midpoints of each cell's edges; empty for a linear one.
+    /// A solution that is not linear on cells, at the midpoints of each cell's edges; empty for a
+    /// linear one.
     pub midpoints: Vec<f64>,
     /// The discrete contact set, and the multiplier's density at vertices.
     pub discrete_contact: DiscreteContact,
@@ -81,10 +82,10 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         }
     }
 
-    /// The values of a quadratic function at the midpoints of each cell's edges, in the order of
-    /// [`edge_vertices`]; none for a linear one, whose vertices tell all.
+    /// The values of a function that is not linear on cells at the midpoints of each cell's edges, in
+    /// the order of [`edge_vertices`]; none for a linear one, which its vertex values determine.
     fn midpoint_values(&self, u: &[T]) -> Vec<f64> {
-        if self.degree < 2 {
+        if self.basis_degree < 2 {
             return Vec::new();
         }
         let middle = |&[i, j]: &[usize; 2]| {

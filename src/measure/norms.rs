@@ -7,8 +7,8 @@ use super::evaluation::Reference;
 use crate::assemble::Discretisation;
 use crate::assemble::load::FacetMoments;
 use crate::assemble::space::tables::{BasisAt, CellTable};
-use crate::assemble::space::{Space, data};
-use crate::element::{MAX_BASIS, Node};
+use crate::assemble::space::{Space, Terms, data};
+use crate::element::MAX_BASIS;
 use crate::error::Error;
 use crate::facet::{FacetForm, Trace};
 use crate::instances::compiled;
@@ -19,7 +19,8 @@ use crate::quadrature::Rule;
 use crate::real::{Real, point_f64};
 
 /// Degree of the rule for error norms: the exact solution is not polynomial, and the rule must not
-/// limit what it measures.
+/// limit what it measures. For basis functions of degree `b` it is at least `2 b + 2`, the degree of the
+/// square of the largest part of the error.
 const fn error_degree(dimension: usize) -> usize {
     match dimension {
         1 | 2 => 19,
@@ -124,13 +125,14 @@ impl<T: Real, const D: usize> Discretisation<'_, T, D> {
 impl<T: Real, const D: usize> Space<'_, T, D> {
     /// Squares of the errors over all cells.
     fn cell_errors(&self, exact: &Reference<'_, T, D>, u: &[T]) -> Result<SquaredErrors, Error> {
-        let table = self.cell_table(error_degree(D));
-        let means = Rule::new(D - 1, MEAN_DEGREE);
+        let cell_rule = Rule::new(D, error_degree(D).max(2 * self.basis_degree + 2));
+        let terms = self.node_terms(&Rule::new(D - 1, MEAN_DEGREE), &cell_rule);
+        let table = self.cell_table(cell_rule);
         // partial sums are added in order, so the result does not depend on threads
         let parts = cells::map(self.mesh.n_cells(), &|cells: Range<usize>| {
             let mut sum = SquaredErrors::default();
             for cell in cells {
-                sum.add(&self.cell_error(exact, (&table, &means), cell, u)?);
+                sum.add(&self.cell_error(exact, (&table, &terms), cell, u)?);
             }
             Ok::<_, Error>(sum)
         });
@@ -144,7 +146,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
     fn cell_error(
         &self,
         exact: &Reference<'_, T, D>,
-        (table, means): (&CellTable<f64>, &Rule),
+        (table, terms): (&CellTable<f64>, &[Terms]),
         cell: usize,
         u: &[T],
     ) -> Result<SquaredErrors, Error> {
@@ -169,19 +171,10 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
             sum.h1 += weight * volume * square;
             sum.energy += weight * volume * (alpha * square + reaction * difference * difference);
         }
-        for (node, value) in self.nodes.iter().zip(&local) {
-            let exact_value: f64 = match *node {
-                Node::FacetMean(k) => means
-                    .iter()
-                    .map(|(point, w)| w * exact.value(cell, &self.facet_point(point, cell, k)))
-                    .sum(),
-                Node::CellMean => {
-                    let samples = table.points.iter().zip(&table.weights);
-                    samples.map(|(p, w)| w * exact.value(cell, &self.cell_point(p, cell))).sum()
-                }
-                Node::Vertex(_) | Node::Edge(_) => exact.value(cell, &self.node_point(cell, *node)),
-            };
-            let x = self.node_point(cell, *node);
+        for ((node, terms), value) in self.nodes.iter().zip(terms).zip(&local) {
+            let exact_value: f64 =
+                terms.iter().map(|(p, w)| w * exact.value(cell, &self.cell_point(p, cell))).sum();
+            let x = self.node_point(cell, node);
             let exact_value = data::finite(exact_value, "exact solution", &x, cell)?;
             sum.max = sum.max.max((value - exact_value).abs());
         }
@@ -211,9 +204,9 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         neighbours: &Neighbours,
         u: &[T],
     ) -> Result<f64, Error> {
-        let degree = form.moments(self.degree);
+        let degree = form.moments(self.basis_degree);
         let table = self.facet_table(degree);
-        let moments = FacetMoments::new(D, degree, self.quadrature.facet);
+        let moments = FacetMoments::new(D, degree, &self.facet_rule);
         let value = |basis: &BasisAt<T>, local: &[f64; MAX_BASIS]| -> f64 {
             local.iter().zip(&basis.values).map(|(c, v)| c * v.to_f64()).sum()
         };

@@ -1,5 +1,6 @@
 //! Quadrature rules on simplices.
 
+use super::error::QuadratureError;
 use super::gauss::gauss_jacobi;
 
 /// A quadrature rule on the simplex of some dimension.
@@ -8,7 +9,7 @@ use super::gauss::gauss_jacobi;
 pub struct Rule {
     /// Barycentric coordinates of the points; `dimension + 1` of the four are used.
     pub points: Vec<[f64; 4]>,
-    /// Positive weights that sum to one.
+    /// Weights that sum to one; positive in the rules of this library.
     pub weights: Vec<f64>,
 }
 
@@ -29,6 +30,32 @@ impl Rule {
             (_, 2) => Self::medians(dimension),
             _ => Self::conical(dimension, degree / 2 + 1),
         }
+    }
+
+    /// A rule of one's own on the simplex of this dimension.
+    ///
+    /// # Errors
+    /// [`QuadratureError::Lengths`], [`QuadratureError::Point`], [`QuadratureError::Weights`].
+    pub fn from_points(
+        dimension: usize,
+        points: Vec<[f64; 4]>,
+        weights: Vec<f64>,
+    ) -> Result<Self, QuadratureError> {
+        let near_one = |sum: f64| (sum - 1.0).abs() < 1e-12;
+        if points.len() != weights.len() || points.is_empty() {
+            return Err(QuadratureError::Lengths { points: points.len(), weights: weights.len() });
+        }
+        for (point, (&coordinates, &weight)) in points.iter().zip(&weights).enumerate() {
+            let outside = coordinates.iter().skip(dimension + 1).any(|&x| x != 0.0);
+            if outside || !near_one(coordinates.iter().sum()) || !weight.is_finite() {
+                return Err(QuadratureError::Point { point, coordinates, weight, dimension });
+            }
+        }
+        let sum: f64 = weights.iter().sum();
+        if !near_one(sum) {
+            return Err(QuadratureError::Weights { sum });
+        }
+        Ok(Self { points, weights })
     }
 
     fn barycentre(dimension: usize) -> Self {

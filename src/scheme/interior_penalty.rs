@@ -89,7 +89,7 @@ impl<T: Real, const D: usize, const THETA: i8, E: ReferenceElement<T, D>> Scheme
         }
     }
     fn facet(&self, _: &Mesh<T, D>) -> InteriorPenalty {
-        InteriorPenalty { symmetry: Self::SYMMETRY, rule: self.penalty, degree: E::DEGREE }
+        InteriorPenalty { symmetry: Self::SYMMETRY, rule: self.penalty, degree: E::BASIS_DEGREE }
     }
     fn expected_orders(&self, setting: &Setting) -> ExpectedOrders {
         let orders = broken_energy_order(setting, E::DEGREE);

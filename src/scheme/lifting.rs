@@ -47,7 +47,7 @@ impl<T: Real, const D: usize, E: ReferenceElement<T, D>> Scheme<T, D> for Br2<E>
     }
     fn facet(&self, _: &Mesh<T, D>) -> FacetLifts {
         let eta = self.eta.unwrap_or(1.5 * (D + 1) as f64);
-        FacetLifts { eta, degree: E::DEGREE, bounded: true }
+        FacetLifts { eta, degree: E::BASIS_DEGREE, bounded: true }
     }
     fn expected_orders(&self, setting: &Setting) -> ExpectedOrders {
         with_duality(broken_energy_order(setting, E::DEGREE), setting)
@@ -93,7 +93,7 @@ impl<T: Real, const D: usize, E: ReferenceElement<T, D>> Scheme<T, D> for Bmmpr<
         name_of_degree!("bmmpr", E::DEGREE)
     }
     fn facet(&self, _: &Mesh<T, D>) -> Lifted<FacetLifts> {
-        Lifted(FacetLifts { eta: self.eta, degree: E::DEGREE, bounded: false })
+        Lifted(FacetLifts { eta: self.eta, degree: E::BASIS_DEGREE, bounded: false })
     }
     fn expected_orders(&self, setting: &Setting) -> ExpectedOrders {
         with_duality(broken_energy_order(setting, E::DEGREE), setting)

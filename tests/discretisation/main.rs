@@ -1,6 +1,7 @@
 //! Matrices and loads of discretisations, and the accuracy of their solutions.
 
 mod accuracy;
+mod elements;
 mod forms;
 mod runs;
 

@@ -1,6 +1,7 @@
 //! Every monomial up to the stated degree, positive weights, points inside.
 
-use unilateral::quadrature::Rule;
+use unilateral::kit::check_quadrature;
+use unilateral::quadrature::{FullySymmetric, Quadrature, QuadratureError, Rule, VertexRule};
 
 fn factorial(n: usize) -> f64 {
     (1..=n).map(|k| k as f64).product()
@@ -67,4 +68,65 @@ fn a_rule_is_not_exact_beyond_what_its_points_allow() {
     let rule = Rule::new(1, 3);
     let sum: f64 = rule.iter().map(|(x, w)| w * x[0].powi(4)).sum();
     assert!((sum - 0.2).abs() > 1e-3);
+}
+
+#[test]
+fn symmetric_rules_are_exact_with_positive_weights_and_few_points() {
+    for dimension in 1..=3 {
+        for degree in 0..=12 {
+            let report = check_quadrature(&FullySymmetric, dimension, degree)
+                .unwrap_or_else(|error| panic!("{error}"));
+            assert!(report.smallest_weight > 0.0, "{dimension} {degree}");
+            let rule = FullySymmetric.rule(dimension, degree).unwrap();
+            let inside = |x: &[f64; 4]| x[..=dimension].iter().all(|&b| b > 0.0);
+            assert!(rule.points.iter().all(inside), "{dimension} {degree}");
+            assert!(rule.points.len() <= Rule::new(dimension, degree).points.len());
+        }
+    }
+    let points = |dimension: usize, degrees: std::ops::RangeInclusive<usize>| -> Vec<usize> {
+        degrees.map(|degree| FullySymmetric.rule(dimension, degree).unwrap().points.len()).collect()
+    };
+    assert_eq!(points(2, 4..=10), [6, 7, 12, 15, 16, 19, 25]);
+    assert_eq!(points(3, 4..=8), [14, 14, 24, 35, 46]);
+}
+
+#[test]
+fn symmetric_rules_do_not_change_with_the_order_of_vertices() {
+    for (dimension, degree) in [(2, 7), (2, 10), (3, 6), (3, 8)] {
+        let rule = FullySymmetric.rule(dimension, degree).unwrap();
+        for (point, weight) in rule.iter() {
+            for k in 0..dimension {
+                let mut moved = *point;
+                moved.swap(k, k + 1);
+                let is_it = |(x, w): (&[f64; 4], f64)| {
+                    w == weight && x.iter().zip(&moved).all(|(a, b)| (a - b).abs() < 1e-14)
+                };
+                assert_eq!(rule.iter().filter(|&x| is_it(x)).count(), 1, "{dimension} {degree}");
+            }
+        }
+    }
+}
+
+#[test]
+fn the_vertex_rule_is_exact_for_linears() {
+    for dimension in 0..=3 {
+        assert_eq!(check_quadrature(&VertexRule, dimension, 1).unwrap().points, dimension + 1);
+    }
+    assert!(check_quadrature(&VertexRule, 1, 2).is_err());
+}
+
+#[test]
+fn points_and_weights_that_are_no_rule_are_refused() {
+    let middle = [0.5, 0.5, 0.0, 0.0];
+    let refused = |points: &[[f64; 4]], weights: &[f64]| {
+        Rule::from_points(1, points.to_vec(), weights.to_vec()).unwrap_err()
+    };
+    assert!(matches!(refused(&[], &[]), QuadratureError::Lengths { .. }));
+    assert!(matches!(refused(&[middle], &[0.5, 0.5]), QuadratureError::Lengths { points: 1, .. }));
+    assert!(matches!(refused(&[middle], &[0.5]), QuadratureError::Weights { .. }));
+    for point in [[0.5, 0.6, 0.0, 0.0], [0.5, 0.25, 0.25, 0.0], [f64::NAN, 0.5, 0.0, 0.0]] {
+        let error = refused(&[middle, point], &[0.5, 0.5]);
+        assert!(matches!(error, QuadratureError::Point { point: 1, .. }), "{error}");
+    }
+    assert_eq!(Rule::from_points(1, vec![middle], vec![1.0]), Ok(Rule::new(1, 1)));
 }

@@ -54,7 +54,7 @@ fn smooth_load() {
     ];
     let scene = scenes::signorini_reaction_1d();
     let exact = scene.problem.exact.as_ref().unwrap();
-    let quadrature = DataQuadrature { cell: 19, ..DataQuadrature::default() };
+    let quadrature = DataQuadrature::default().cell(19);
     let mut checks = Checks::default();
     for &(power, printed) in table {
         let mesh = mesh(power);

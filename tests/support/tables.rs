@@ -48,7 +48,7 @@ pub fn solve_by_rule<const D: usize>(
     degree: usize,
 ) -> (Mesh<f64, D>, Figures) {
     let meshes = Hierarchy::of_domain(&scene.domain, level).unwrap();
-    let quadrature = DataQuadrature { cell: degree, facet: degree };
+    let quadrature = DataQuadrature::default().cell(degree).facet(degree);
     let mut nested = NestedIteration::new(&scene.problem, &meshes).quadrature(quadrature);
     let solved = nested.solve(scheme).unwrap();
     (meshes.finest().clone(), Figures::of(&solved))

@@ -37,7 +37,7 @@ pub(crate) struct LiftTable<T> {
 impl<T: Real> LiftTable<T> {
     /// The lifts of a space of degree one or two.
     pub fn new<const D: usize>(space: &Space<'_, T, D>) -> Self {
-        let degree = space.degree - 1;
+        let degree = space.basis_degree - 1;
         let mut products = [[[[T::lit(0.0); MAX_MOMENTS]; MAX_MOMENTS]; 4]; 4];
         let tests: Vec<Vec<Vec<f64>>> = (0..=D).map(|l| tests(D, degree, l)).collect();
         for l in 0..=D {

@@ -39,8 +39,17 @@ impl<T: Real, const D: usize> Filling<'_, '_, T, D> {
         self.gradient.is_some() && self.jumps.weights.len() == 1 && self.flux_moments.len() < 2
     }
 
-    /// The rows of all cells, for elements of `N = D + 1` functions; `FLUX`: the form has fluxes.
-    pub(crate) fn fill_linear<const N: usize, const FLUX: bool>(
+    /// The rows of all cells, for elements of `N = D + 1` functions.
+    pub(crate) fn fill_linear<const N: usize>(&self, row_starts: &[u32], values: &mut [T]) {
+        if self.flux_moments.is_empty() {
+            self.fill_by_moments::<N, false>(row_starts, values);
+        } else {
+            self.fill_by_moments::<N, true>(row_starts, values);
+        }
+    }
+
+    /// The same; `FLUX`: the form has fluxes.
+    fn fill_by_moments<const N: usize, const FLUX: bool>(
         &self,
         row_starts: &[u32],
         values: &mut [T],

@@ -18,7 +18,6 @@ use super::jump_products::JumpProducts;
 use super::local::{StiffnessTable, zero_local};
 use super::space::Space;
 use super::space::metric::Metrics;
-use super::space::reaction_term::ReactionTerm;
 use super::space::tables::FacetTable;
 use crate::algebra::SparseMatrix;
 use crate::element::MAX_BASIS;
@@ -28,7 +27,7 @@ use crate::mesh::{Neighbour, Neighbours};
 use crate::parallel::cells;
 use crate::real::Real;
 use lifted::{LiftTable, Lifting};
-use rows::MAX_FLUX_MOMENTS;
+pub(crate) use rows::MAX_FLUX_MOMENTS;
 
 /// The cells coupled to a cell, itself included, ascending.
 pub(crate) struct Coupled {
@@ -171,9 +170,9 @@ pub(crate) fn fill<T: Real, const D: usize>(
     weights: &FacetCoefficients<T>,
     matrix: &mut SparseMatrix<T>,
 ) {
-    let facets = space.facet_table(form.moments(space.degree));
+    let facets = space.facet_table(form.moments(space.basis_degree));
     let of_degree = |k| T::lit(form.moment_weight(k));
-    let has_flux = |k: &&usize| form.uses_flux() && **k < space.degree;
+    let has_flux = |k: &&usize| form.uses_flux() && **k < space.basis_degree;
     let filling = Filling {
         space,
         neighbours: space.coupled_neighbours(),
@@ -187,16 +186,20 @@ pub(crate) fn fill<T: Real, const D: usize>(
         lifted: form.is_lifted(),
     };
     let SparseMatrix { row_starts, values, .. } = matrix;
-    let has_flux = !filling.flux_moments.is_empty();
-    match (D, space.per_cell(), filling.is_linear()) {
-        (1, 2, true) if has_flux => filling.fill_linear::<2, true>(row_starts, values),
-        (1, 2, true) => filling.fill_linear::<2, false>(row_starts, values),
-        (2, 3, true) if has_flux => filling.fill_linear::<3, true>(row_starts, values),
-        (2, 3, true) => filling.fill_linear::<3, false>(row_starts, values),
-        (3, 4, true) if has_flux => filling.fill_linear::<4, true>(row_starts, values),
-        (3, 4, true) => filling.fill_linear::<4, false>(row_starts, values),
-        (1, 3, _) => filling.fill::<3, 1>(row_starts, values),
-        (2, 6, _) if filling.flux_moments.len() <= 2 => filling.fill::<6, 2>(row_starts, values),
+    // constant conditions: loops for another dimension are not even instantiated
+    match (space.per_cell(), filling.flux_moments.len()) {
+        (2, _) if const { D == 1 } && filling.is_linear() => {
+            filling.fill_linear::<2>(row_starts, values);
+        }
+        (3, _) if const { D == 2 } && filling.is_linear() => {
+            filling.fill_linear::<3>(row_starts, values);
+        }
+        (4, _) if const { D == 3 } && filling.is_linear() => {
+            filling.fill_linear::<4>(row_starts, values);
+        }
+        (3, 0..=1) if const { D == 1 } => filling.fill::<3, 1>(row_starts, values),
+        (6, 0..=2) if const { D == 2 } => filling.fill::<6, 2>(row_starts, values),
+        (10, 0..=3) if const { D > 1 } => filling.fill::<10, 3>(row_starts, values),
         _ => filling.fill::<MAX_BASIS, MAX_FLUX_MOMENTS>(row_starts, values),
     }
     if form.is_lifted() {
@@ -206,7 +209,7 @@ pub(crate) fn fill<T: Real, const D: usize>(
             lifting.add(filling.neighbours, cell, coupled, rows);
         });
     }
-    if let Some(reaction) = ReactionTerm::new(space) {
+    if let Some(reaction) = &space.reaction {
         let n = space.per_cell();
         filling.add_to_cells(row_starts, values, &|cell, coupled, rows| {
             let mut own = zero_local();

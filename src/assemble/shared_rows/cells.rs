@@ -5,13 +5,13 @@ use std::marker::PhantomData;
 use crate::assemble::local::zero_local;
 use crate::assemble::space::Space;
 use crate::assemble::space::metric::{CellMetric, shape};
-use crate::assemble::space::reaction_term::ReactionTerm;
 use crate::element::{MAX_BASIS, ReferenceElement};
 use crate::real::Real;
 
 /// The upper triangle of a cell's matrix, by rows; a power of two holds the largest.
-type Triangle<T> = [T; 64];
-const _: () = assert!(MAX_BASIS * (MAX_BASIS + 1) / 2 <= 64);
+type Triangle<T> = [T; TRIANGLE];
+const TRIANGLE: usize = 256;
+const _: () = assert!(MAX_BASIS * (MAX_BASIS + 1) / 2 <= TRIANGLE);
 
 /// Pairs of barycentric coordinates of a tetrahedron.
 const PAIRS: usize = 6;
@@ -26,7 +26,7 @@ pub(crate) trait CellMatrix<T> {
 
 /// Whether basis functions are linear and as many as the vertices of a cell.
 pub(crate) const fn is_linear<T: Real, E: ReferenceElement<T, D>, const D: usize>() -> bool {
-    E::DEGREE == 1 && E::N == D + 1
+    E::BASIS_DEGREE == 1 && E::N == D + 1
 }
 
 /// What cells contribute, tabulated.
@@ -36,7 +36,6 @@ pub(crate) struct CellMatrices<'s, 'a, T: Real, const D: usize> {
     pairs: [Triangle<T>; PAIRS],
     /// For entry `(i, j)`, at `N i + j`, where it is in the triangle.
     places: [u8; MAX_BASIS * MAX_BASIS],
-    reaction: Option<ReactionTerm<'a, T, D>>,
     /// If basis function `i` is `c` times barycentric coordinate `i` but for a constant: `c^2`.
     square: Option<T>,
 }
@@ -47,7 +46,7 @@ impl<'s, 'a, T: Real, const D: usize> CellMatrices<'s, 'a, T, D> {
         let table = space.stiffness_table();
         let unit = |k, l| CellMetric { products: unit(k, l), volume: zero, measures: [zero; 4] };
         let mut square = is_linear::<T, E, D>().then(|| table.entry::<D>(&unit(0, 1), 0, 1));
-        let mut pairs = [[zero; 64]; PAIRS];
+        let mut pairs = [[zero; TRIANGLE]; PAIRS];
         let mut places = [0; MAX_BASIS * MAX_BASIS];
         for (pair, (k, l)) in pairs_of::<D>().enumerate() {
             let mut place = 0;
@@ -65,12 +64,12 @@ impl<'s, 'a, T: Real, const D: usize> CellMatrices<'s, 'a, T, D> {
                 }
             }
         }
-        Self { space, pairs, places, reaction: ReactionTerm::new(space), square }
+        Self { space, pairs, places, square }
     }
 
     /// The square by which products of gradients make the whole matrix, if they do.
     pub fn only_gradients(&self) -> Option<T> {
-        self.square.filter(|_| self.reaction.is_none())
+        self.square.filter(|_| self.space.reaction.is_none())
     }
 
     /// Writes the matrix of a cell.
@@ -88,7 +87,7 @@ impl<'s, 'a, T: Real, const D: usize> CellMatrices<'s, 'a, T, D> {
             }
             out[place] = sum;
         }
-        if let Some(reaction) = &self.reaction {
+        if let Some(reaction) = &self.space.reaction {
             let mut local = zero_local();
             reaction.add(self.space.mesh, cell, volume, &mut local);
             let mut place = 0;
@@ -142,7 +141,7 @@ pub(crate) struct General<'c, 's, 'a, E, T: Real, const D: usize> {
 
 impl<'c, 's, 'a, E, T: Real, const D: usize> General<'c, 's, 'a, E, T, D> {
     pub fn new(cells: &'c CellMatrices<'s, 'a, T, D>) -> Self {
-        Self { cells, triangle: [T::lit(0.0); 64], element: PhantomData }
+        Self { cells, triangle: [T::lit(0.0); TRIANGLE], element: PhantomData }
     }
 }
 
@@ -155,7 +154,7 @@ impl<E: ReferenceElement<T, D>, T: Real, const D: usize> CellMatrix<T>
     }
     #[inline(always)]
     fn entry(&self, i: usize, j: usize) -> T {
-        self.triangle[self.cells.places[i * E::N + j] as usize % 64]
+        self.triangle[self.cells.places[i * E::N + j] as usize % TRIANGLE]
     }
 }
 

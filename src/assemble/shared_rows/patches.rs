@@ -12,7 +12,6 @@ use crate::algebra::SparseMatrix;
 use crate::assemble::count;
 use crate::assemble::local::{traces, view, zero_local};
 use crate::assemble::space::Space;
-use crate::assemble::space::reaction_term::ReactionTerm;
 use crate::assemble::space::tables::FacetTable;
 use crate::element::MAX_BASIS;
 use crate::facet::{FacetForm, Trace};
@@ -178,7 +177,6 @@ pub(crate) fn fill<T: Real, const D: usize>(
 fn local_matrices<T: Real, const D: usize>(patches: &Patches<'_, '_, T, D>) -> Vec<T> {
     let (n, space) = (patches.n, patches.space);
     let stiffness = space.stiffness_table();
-    let reaction = ReactionTerm::new(space);
     let mut locals = vec![T::lit(0.0); patches.start(patches.len())];
     let (cells, facets) = locals.split_at_mut(patches.start(patches.n_cells()));
     let of_cells = |range: Range<usize>, entries: &mut [T]| {
@@ -186,7 +184,7 @@ fn local_matrices<T: Real, const D: usize>(patches: &Patches<'_, '_, T, D>) -> V
             let metric = space.metric(cell);
             let mut local = zero_local();
             stiffness.add::<D>(n, &metric, space.alpha(cell), &mut local);
-            if let Some(reaction) = &reaction {
+            if let Some(reaction) = &space.reaction {
                 reaction.add(space.mesh, cell, metric.volume, &mut local);
             }
             for (row, values) in out.chunks_exact_mut(n).zip(&local) {
@@ -197,7 +195,7 @@ fn local_matrices<T: Real, const D: usize>(patches: &Patches<'_, '_, T, D>) -> V
     };
     let Ok(()) = cells::for_each(patches.n_cells(), &|c| c * n * n, cells, &of_cells);
     if let Some(all) = &patches.facets {
-        let table = space.facet_table(patches.form.moments(space.degree));
+        let table = space.facet_table(patches.form.moments(space.basis_degree));
         let of_facets = |range: Range<usize>, entries: &mut [T]| {
             for (facet, out) in range.zip(entries.chunks_exact_mut(4 * n * n)) {
                 facet_matrix(patches, all, &table, facet, out);

@@ -6,8 +6,10 @@ use crate::real::Real;
 
 /// What the assembler reads of a reference element, except in the loops over shared rows.
 pub(crate) struct AnyElement {
-    /// Polynomial degree.
+    /// Largest degree of which the element contains all polynomials.
     pub degree: usize,
+    /// Largest degree of a basis function.
+    pub basis_degree: usize,
     /// Who owns the unknowns.
     pub layout: Layout,
     /// What each unknown is the value of.
@@ -21,6 +23,7 @@ impl AnyElement {
     pub fn of<T: Real, E: ReferenceElement<T, D>, const D: usize>() -> Self {
         Self {
             degree: E::DEGREE,
+            basis_degree: E::BASIS_DEGREE,
             layout: E::LAYOUT,
             nodes: (0..E::N).map(E::node).collect(),
             basis: BasisAt::new_in_f64::<T, E, D>,

@@ -1,14 +1,13 @@
 //! What each unknown may be: Dirichlet values, obstacles, the Signorini condition.
 
-use super::{Space, data};
+use super::{Space, Terms, data};
 use crate::algebra::Bound;
-use crate::assemble::{DataQuadrature, count};
+use crate::assemble::count;
 use crate::constraint::BoundBy;
 use crate::element::Node;
 use crate::error::Error;
 use crate::mesh::{BoundaryPart, describe_point};
 use crate::problem::Field;
-use crate::quadrature::Rule;
 use crate::real::{Point, Real};
 
 /// Two bounds contradict each other if they do so by more than this share of their size: less is
@@ -39,7 +38,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         conflicts: &mut Vec<Conflict<D>>,
     ) -> Result<(), Error> {
         let bounded: Vec<(usize, BoundBy)> = self.bounded_nodes().collect();
-        let rules = self.mean_rules();
+        let terms = self.node_terms(&self.facet_rule, &self.cell_rule);
         for cell in 0..self.mesh.n_cells() {
             for &(i, by) in &bounded {
                 let unknown = self.dofs.of(cell, i);
@@ -47,10 +46,10 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
                     continue;
                 }
                 count::bounds(1);
-                let node = self.nodes[i];
+                let node = &self.nodes[i];
                 let x = self.node_point(cell, node);
                 let at = |psi: &Option<Field<D>>| {
-                    let bound = |psi| self.bound(by, &rules, (cell, node), "obstacle", psi);
+                    let bound = |psi| self.bound(by, &terms[i], (cell, node), "obstacle", psi);
                     psi.as_ref().map(bound).transpose()
                 };
                 let (lower, upper) = (at(&self.problem.lower)?, at(&self.problem.upper)?);
@@ -66,12 +65,12 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         bounds: &mut [Bound<T>],
         conflicts: &mut Vec<Conflict<D>>,
     ) -> Result<(), Error> {
-        let rules = self.mean_rules();
+        let terms = self.node_terms(&self.facet_rule, &self.cell_rule);
         for (cell, local) in self.facets_of(BoundaryPart::Contact) {
             for (i, by) in self.bounded_nodes_on(local) {
                 count::bounds(1);
-                let node = self.nodes[i];
-                let value = self.bound(by, &rules, (cell, node), "gap", gap)?;
+                let node = &self.nodes[i];
+                let value = self.bound(by, &terms[i], (cell, node), "gap", gap)?;
                 let unknown = self.dofs.of(cell, i);
                 let old = bounds[unknown];
                 let lower = old.lower().map_or(value, |l| l.to_f64().max(value));
@@ -87,13 +86,13 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
     fn bound(
         &self,
         by: BoundBy,
-        rules: &[Rule; 2],
-        (cell, node): (usize, Node),
+        terms: &Terms,
+        (cell, node): (usize, &Node),
         name: &'static str,
         datum: &Field<D>,
     ) -> Result<f64, Error> {
         match by {
-            BoundBy::Mean => self.at_node(rules, cell, node, name, &**datum),
+            BoundBy::Mean => self.at_node(terms, cell, name, &**datum),
             BoundBy::Value => {
                 let x = self.node_point(cell, node);
                 data::finite(datum(&x), name, &x, cell)
@@ -102,7 +101,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
     }
 
     fn pin(&self, bounds: &mut [Bound<T>], conflicts: &mut Vec<Conflict<D>>) -> Result<(), Error> {
-        let rules = self.mean_rules();
+        let terms = self.node_terms(&self.facet_rule, &self.cell_rule);
         let zero = !self.problem.has_dirichlet_data();
         let datum = |x: &Point<f64, D>| self.problem.dirichlet_at(x);
         for (cell, local) in self.facets_of(BoundaryPart::Dirichlet) {
@@ -111,10 +110,9 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
                 if let Bound::Fixed(_) = bounds[unknown] {
                     continue;
                 }
-                let node = self.nodes[i];
-                let at = |name, datum: Datum<'_, D>| self.at_node(&rules, cell, node, name, datum);
+                let at = |name, datum: Datum<'_, D>| self.at_node(&terms[i], cell, name, datum);
                 let value = if zero { 0.0 } else { at("dirichlet", &datum)? };
-                let x = self.node_point(cell, node);
+                let x = self.node_point(cell, &self.nodes[i]);
                 // obstacles must leave room for the datum; a mean is compared with a mean: over a
                 // curved obstacle the value at the barycentre may lie above the mean of a datum
                 // that touches it
@@ -130,38 +128,22 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         Ok(())
     }
 
-    /// The rules for means over facets and cells.
-    fn mean_rules(&self) -> [Rule; 2] {
-        let DataQuadrature { facet, cell } = self.quadrature;
-        [Rule::new(D - 1, facet), Rule::new(D, cell)]
-    }
-
-    /// What an unknown is of a datum: its value at a point, its mean over a facet or cell.
+    /// The functional of a node at a datum.
     fn at_node(
         &self,
-        [facet_rule, cell_rule]: &[Rule; 2],
+        terms: &Terms,
         cell: usize,
-        node: Node,
         name: &'static str,
         datum: Datum<'_, D>,
     ) -> Result<f64, Error> {
-        let at = |x: Point<f64, D>| {
+        let at = |(point, weight): &([f64; 4], f64)| {
             if name == "dirichlet" {
                 count::dirichlet(1);
             }
-            data::finite(datum(&x), name, &x, cell)
+            let x = self.cell_point(point, cell);
+            Ok(weight * data::finite(datum(&x), name, &x, cell)?)
         };
-        match node {
-            Node::Vertex(_) | Node::Edge(_) => at(self.node_point(cell, node)),
-            Node::FacetMean(local) => facet_rule
-                .iter()
-                .map(|(point, weight)| Ok(weight * at(self.facet_point(point, cell, local))?))
-                .sum(),
-            Node::CellMean => cell_rule
-                .iter()
-                .map(|(point, weight)| Ok(weight * at(self.cell_point(point, cell))?))
-                .sum(),
-        }
+        terms.iter().map(at).sum()
     }
 }
 

@@ -15,30 +15,42 @@ use super::local::{CellSide, StiffnessTable};
 use super::{DataQuadrature, count};
 use crate::algebra::Support;
 use crate::constraint::BoundBy;
-use crate::element::{MAX_BASIS, Node};
+use crate::element::{Entity, MAX_BASIS, Node};
 use crate::error::Error;
 use crate::memory::in_large_pages;
-use crate::mesh::{BoundaryFacet, BoundaryPart, Mesh, Neighbours, edge_vertices};
-use crate::problem::Problem;
-use crate::quadrature::{Rule, facet_to_cell};
+use crate::mesh::{BoundaryFacet, BoundaryPart, Mesh, Neighbours};
+use crate::problem::{Datum, Problem};
+use crate::quadrature::{Quadrature, QuadratureError, Rule, facet_to_cell};
 use crate::real::{Point, Real, point_f64};
 pub(crate) use any_element::AnyElement;
 use dofs::Dofs;
 use metric::CellMetric;
+use reaction_term::ReactionTerm;
 use tables::{BasisAt, CellTable, FacetTable};
+
+/// A functional as barycentric points with weights.
+pub(crate) type Terms = Vec<([f64; 4], f64)>;
 
 /// A finite element space with the problem posed on it.
 pub(crate) struct Space<'a, T: Real, const D: usize> {
     pub problem: &'a Problem<D>,
     pub mesh: &'a Mesh<T, D>,
-    pub quadrature: DataQuadrature,
+    /// The rule for data on cells.
+    pub cell_rule: Rule,
+    /// The rule for data on facets.
+    pub facet_rule: Rule,
+    pub reaction: Option<ReactionTerm<'a, T, D>>,
     pub neighbours: Option<Neighbours>,
     pub dofs: Dofs<'a>,
     pub coefficients: Option<Vec<T>>,
     /// What each of a cell's unknowns is the value of.
     pub nodes: Vec<Node>,
-    /// Degree of the element.
+    /// By node, the vertices of the cell whose barycentre it is.
+    around: Vec<Around>,
+    /// Largest degree of which the element contains all polynomials.
     pub degree: usize,
+    /// Largest degree of a basis function.
+    pub basis_degree: usize,
     /// Whether cells share no unknowns.
     pub broken: bool,
     /// Whether Dirichlet data are pinned; else the facet form imposes them.
@@ -62,24 +74,43 @@ impl<'a, T: Real, const D: usize> Space<'a, T, D> {
         pins: bool,
         offered: fn(contact: bool) -> Vec<String>,
     ) -> Result<Self, Error> {
-        let AnyElement { degree, layout, nodes, basis } = element;
+        let AnyElement { degree, basis_degree, layout, nodes, basis } = element;
         let set = problem.constraint_set();
         let neighbours = (with_facets || layout.facet > 0).then(|| {
             count::facet_topologies(1);
             Neighbours::new(mesh)
         });
         let dofs = Dofs::new(layout, mesh, neighbours.as_ref());
+        let cell_degree = quadrature.cell.max((degree + basis_degree).saturating_sub(1));
+        let cell_rule = rule(quadrature.family, D, cell_degree)?;
+        let facet_rule = rule(quadrature.family, D - 1, quadrature.facet)?;
+        let reaction = match &problem.reaction {
+            None => None,
+            Some(datum) => {
+                let products = 2 * basis_degree;
+                let degree = match datum {
+                    Datum::Constant(_) => products,
+                    Datum::Function(_) => products.max(quadrature.cell),
+                };
+                let table = CellTable::new(rule(quadrature.reaction, D, degree)?, basis);
+                Some(ReactionTerm::new(datum, &table, nodes.len()))
+            }
+        };
         let space = Self {
             problem,
             mesh,
-            quadrature,
+            cell_rule,
+            facet_rule,
+            reaction,
             neighbours,
             dofs,
             coefficients: data::coefficients(problem, mesh)?,
             in_domain: nodes.iter().map(|node| set.in_domain(node, D)).collect(),
             on_contact: nodes.iter().map(|node| set.on_contact(node, D)).collect(),
+            around: nodes.iter().map(|node| Around::new(&node.centre(D))).collect(),
             nodes,
             degree,
+            basis_degree,
             broken: layout.is_broken(),
             pins,
             basis,
@@ -141,31 +172,29 @@ impl<'a, T: Real, const D: usize> Space<'a, T, D> {
         let derivatives = self.basis_at(&[1.0 / (D + 1) as f64; 4]).derivatives;
         let factor = derivatives[0][0];
         let is_one = |i: usize, k: usize| derivatives[i][k] == if i == k { factor } else { 0.0 };
-        let all = self.degree == 1
+        let all = self.basis_degree == 1
             && self.per_cell() == D + 1
             && (0..=D).all(|i| (0..=D).all(|k| is_one(i, k)));
         all.then(|| T::lit(factor))
     }
     /// The stiffness of the reference element.
     pub fn stiffness_table(&self) -> StiffnessTable<T> {
-        StiffnessTable::new(D, &self.cell_table(2 * (self.degree - 1)))
+        StiffnessTable::new(
+            D,
+            &self.cell_table(Rule::new(D, 2 * self.basis_degree.saturating_sub(1))),
+        )
     }
     /// Whether unknown `i` is the value at vertex `i` of a conforming linear function.
     pub fn is_conforming_linear(&self) -> bool {
-        self.degree == 1 && !self.broken && self.nodes.iter().all(|n| matches!(n, Node::Vertex(_)))
+        !self.broken && self.nodes.iter().cloned().eq((0..=D).map(Node::vertex))
     }
     /// Moments of the basis on facets, up to a degree.
     pub fn facet_table(&self, degree: usize) -> FacetTable<T> {
-        FacetTable::new(D, self.degree, self.basis, degree)
+        FacetTable::new(D, self.basis_degree, self.basis, degree)
     }
     /// The basis at the points of a cell rule.
-    pub fn cell_table(&self, degree: usize) -> CellTable<f64> {
-        let rule = Rule::new(D, degree);
-        CellTable {
-            basis: rule.points.iter().map(self.basis).collect(),
-            points: rule.points,
-            weights: rule.weights,
-        }
+    pub fn cell_table(&self, rule: Rule) -> CellTable<f64> {
+        CellTable::new(rule, self.basis)
     }
     /// The unknowns of a cell in `f64`.
     pub fn local_values(&self, cell: usize, u: &[T]) -> [f64; MAX_BASIS] {
@@ -195,7 +224,7 @@ impl<'a, T: Real, const D: usize> Space<'a, T, D> {
     }
     /// The basis functions whose nodes lie on facet `local`.
     pub fn nodes_on(&self, local: usize) -> impl Iterator<Item = usize> {
-        (0..self.per_cell()).filter(move |&i| lies_on::<D>(&self.nodes[i], local))
+        (0..self.per_cell()).filter(move |&i| !self.nodes[i].entity().contains(D, local))
     }
     /// The basis functions whose unknowns an obstacle binds, and by what.
     pub fn bounded_nodes(&self) -> impl Iterator<Item = (usize, BoundBy)> {
@@ -205,18 +234,17 @@ impl<'a, T: Real, const D: usize> Space<'a, T, D> {
     pub fn bounded_nodes_on(&self, local: usize) -> impl Iterator<Item = (usize, BoundBy)> {
         self.nodes_on(local).filter_map(|i| Some((i, self.on_contact[i]?)))
     }
-    /// The point at which a node sits.
-    pub fn node_point(&self, cell: usize, node: Node) -> Point<f64, D> {
-        let vertex = |k: usize| self.mesh.vertices()[self.mesh.cell(cell)[k] as usize];
-        point_f64(&match node {
-            Node::Vertex(k) => vertex(k),
-            Node::Edge(k) => {
-                let [i, j] = edge_vertices(D)[k];
-                (vertex(i) + vertex(j)) * T::lit(0.5)
-            }
-            Node::FacetMean(k) => self.mesh.facet_barycentre(cell, k),
-            Node::CellMean => self.mesh.barycentre(cell),
-        })
+    /// The point that stands for a node.
+    pub fn node_point(&self, cell: usize, node: &Node) -> Point<f64, D> {
+        match node.entity() {
+            Entity::Facet(k) if node.is_mean() => point_f64(&self.mesh.facet_barycentre(cell, k)),
+            Entity::Cell if node.is_mean() => point_f64(&self.mesh.barycentre(cell)),
+            _ => self.cell_point(&node.centre(D), cell),
+        }
+    }
+    /// The functional of each node, with these rules for means.
+    pub fn node_terms(&self, facet_rule: &Rule, cell_rule: &Rule) -> Vec<Terms> {
+        self.nodes.iter().map(|node| node.terms(facet_rule, cell_rule)).collect()
     }
     /// The support of each unknown.
     pub fn supports(&self) -> Vec<Support> {
@@ -225,11 +253,11 @@ impl<'a, T: Real, const D: usize> Space<'a, T, D> {
             let mut supports = in_large_pages(Vec::with_capacity(n));
             for cell in 0..self.mesh.n_cells() {
                 let owner = Some(cell as u32);
-                supports.extend(self.nodes.iter().map(|&node| self.support(owner, cell, node)));
+                supports.extend(self.around.iter().map(|around| self.support(owner, cell, around)));
             }
             return supports;
         }
-        if self.nodes.iter().all(|node| matches!(node, Node::Vertex(_))) {
+        if self.nodes.iter().all(|node| matches!(node.entity(), Entity::Vertex(_))) {
             // unknowns are numbered like the vertices that own them
             let mut supports = in_large_pages(Vec::with_capacity(n));
             supports.extend((0..n as u32).map(|vertex| Support::new(None, &[vertex])));
@@ -237,26 +265,17 @@ impl<'a, T: Real, const D: usize> Space<'a, T, D> {
         }
         let mut supports = in_large_pages(vec![Support::new(None, &[]); n]);
         for cell in 0..self.mesh.n_cells() {
-            for (i, &node) in self.nodes.iter().enumerate() {
-                supports[self.dofs.of(cell, i)] = self.support(None, cell, node);
+            for (i, around) in self.around.iter().enumerate() {
+                supports[self.dofs.of(cell, i)] = self.support(None, cell, around);
             }
         }
         supports
     }
     #[inline(always)]
-    fn support(&self, owner: Option<u32>, cell: usize, node: Node) -> Support {
+    fn support(&self, owner: Option<u32>, cell: usize, around: &Around) -> Support {
         let vertices = self.mesh.cell(cell);
-        match node {
-            Node::Vertex(k) => Support::new(owner, &[vertices[k]]),
-            Node::Edge(k) => Support::new(owner, &edge_vertices(D)[k].map(|v| vertices[v])),
-            Node::CellMean => Support::new(owner, vertices),
-            Node::FacetMean(k) => {
-                let mut own = [0; D];
-                let facet = self.mesh.facet_vertices(cell, k);
-                own.iter_mut().zip(facet).for_each(|(v, w)| *v = w);
-                Support::new(owner, &own)
-            }
-        }
+        let own = around.vertices.map(|k| vertices[usize::from(k)]);
+        Support::new(owner, &own[..around.n])
     }
     /// Where each vertex is, to single precision, missing coordinates zero.
     pub fn vertex_points(&self) -> Vec<[f32; 3]> {
@@ -282,12 +301,41 @@ impl<'a, T: Real, const D: usize> Space<'a, T, D> {
     }
 }
 
-/// Whether a node lies on the facet opposite vertex `local`.
-pub(crate) fn lies_on<const D: usize>(node: &Node, local: usize) -> bool {
-    match *node {
-        Node::Vertex(k) => k != local,
-        Node::Edge(k) => !edge_vertices(D)[k].contains(&local),
-        Node::FacetMean(k) => k == local,
-        Node::CellMean => false,
+/// A rule of a family, tested, for it may be a user's.
+fn rule(family: &dyn Quadrature, dimension: usize, degree: usize) -> Result<Rule, QuadratureError> {
+    let Rule { points, weights } = family.rule(dimension, degree)?;
+    Rule::from_points(dimension, points, weights)
+}
+
+/// One to four vertices of a cell, ascending, each as often as it counts in their barycentre.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Around {
+    vertices: [u8; 4],
+    n: usize,
+}
+
+impl Around {
+    /// The fewest vertices whose barycentre is a point; if no four are, four with a barycentre near
+    /// to it.
+    fn new(point: &[f64; 4]) -> Self {
+        let mut found = Self { vertices: [0; 4], n: 4 };
+        for n in 1..=4 {
+            // each vertex in turn is the one whose share lies furthest below its coordinate
+            let mut missing = point.map(|x| x * n as f64);
+            let mut counts = [0; 4];
+            for _ in 0..n {
+                let most = (1..4).fold(0, |k, l| if missing[l] > missing[k] { l } else { k });
+                missing[most] -= 1.0;
+                counts[most] += 1;
+            }
+            let mut vertices = [0; 4];
+            let listed = (0..4).flat_map(|k| std::iter::repeat_n(k as u8, counts[k]));
+            vertices.iter_mut().zip(listed).for_each(|(v, k)| *v = k);
+            found = Self { vertices, n };
+            if missing.iter().all(|x| x.abs() < 1e-9) {
+                break;
+            }
+        }
+        found
     }
 }

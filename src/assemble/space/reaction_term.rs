@@ -1,6 +1,5 @@
 //! The reaction term in the matrix of a cell.
 
-use super::Space;
 use super::data::finite;
 use super::tables::CellTable;
 use crate::assemble::count;
@@ -18,16 +17,9 @@ pub(crate) struct ReactionTerm<'a, T, const D: usize> {
 }
 
 impl<'a, T: Real, const D: usize> ReactionTerm<'a, T, D> {
-    /// Nothing if the problem has no reaction.
-    pub fn new(space: &Space<'a, T, D>) -> Option<Self> {
-        let datum = space.problem.reaction.as_ref()?;
-        let products = 2 * space.degree;
-        let degree = match datum {
-            Datum::Constant(_) => products,
-            Datum::Function(_) => products.max(space.quadrature.cell),
-        };
-        let table = space.cell_table(degree).rounded();
-        Some(Self { datum, table, n: space.per_cell() })
+    /// The term of a datum with `n` basis functions at the points of a rule.
+    pub fn new(datum: &'a Datum<D>, table: &CellTable<f64>, n: usize) -> Self {
+        Self { datum, table: table.rounded(), n }
     }
     /// Adds `(c phi_j, phi_i)` over a cell.
     pub fn add(&self, mesh: &Mesh<T, D>, cell: usize, volume: T, out: &mut Local<T>) {

@@ -40,6 +40,11 @@ pub(crate) struct CellTable<T> {
 }
 
 impl CellTable<f64> {
+    /// The table of a basis.
+    pub fn new(rule: Rule, basis: fn(&[f64; 4]) -> BasisAt<f64>) -> Self {
+        let Rule { points, weights } = rule;
+        Self { basis: points.iter().map(basis).collect(), points, weights }
+    }
     /// The table, its numbers rounded to another scalar.
     pub fn rounded<T: Real>(&self) -> CellTable<T> {
         CellTable {

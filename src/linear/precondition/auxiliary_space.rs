@@ -14,7 +14,7 @@ use crate::parallel::vectors::{for_each_chunk, for_each_chunk_of_groups, zeros};
 use crate::real::Real;
 
 /// Largest number of unknowns of a cell.
-const MAX_CELL_SIZE: usize = 16;
+const MAX_CELL_SIZE: usize = 20;
 
 /// The preconditioner `D^-1 + P C P^T` of a symmetric matrix `A`.
 ///

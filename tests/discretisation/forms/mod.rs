@@ -3,5 +3,6 @@
 mod assembly;
 mod condition;
 mod lifting;
+mod lumping;
 mod rounding;
 mod shared_unknowns;

@@ -2,7 +2,7 @@
 
 use std::marker::PhantomData;
 
-use unilateral::element::{Layout, Node};
+use unilateral::element::{Entity, Layout, Node};
 use unilateral::facet::proven_bound;
 use unilateral::kit::{
     KitError, Law, check_coercivity, check_consistency, check_element, check_invariance,
@@ -238,6 +238,8 @@ const NODE: usize = 1;
 const SUM: usize = 2;
 const COUNT: usize = 3;
 const DEGREE: usize = 4;
+const BASIS: usize = 5;
+const ENTITY: usize = 6;
 
 impl<T: Real, const D: usize, const MISTAKE: usize> ReferenceElement<T, D> for Wrong<MISTAKE> {
     const N: usize = D + 1;
@@ -250,6 +252,11 @@ impl<T: Real, const D: usize, const MISTAKE: usize> ReferenceElement<T, D> for W
             // vanishes at all vertices
             out[0] += lambda[0] * lambda[1];
         }
+        if MISTAKE == BASIS {
+            // vanishes at all vertices, and so does the change of the sum
+            out[0] += lambda[0] * lambda[1];
+            out[1] -= lambda[0] * lambda[1];
+        }
     }
     fn derivatives(lambda: &[T], out: &mut [[T; 4]]) {
         <P1 as ReferenceElement<T, D>>::derivatives(lambda, out);
@@ -258,7 +265,14 @@ impl<T: Real, const D: usize, const MISTAKE: usize> ReferenceElement<T, D> for W
         }
     }
     fn node(i: usize) -> Node {
-        if MISTAKE == NODE { Node::FacetMean(i) } else { Node::Vertex(i) }
+        match Node::vertex(i) {
+            _ if MISTAKE == NODE => Node::facet_mean(i),
+            right if MISTAKE == ENTITY => Node::weighted_sum(
+                Entity::Cell,
+                right.point().map(|point| (*point, 1.0)).into_iter().collect(),
+            ),
+            right => right,
+        }
     }
 }
 
@@ -280,6 +294,11 @@ fn wrong_elements<const D: usize>() {
     assert!(matches!(error, KitError::NotPartitionOfUnity { .. }), "{error}");
     let error = wrong_element::<D, DEGREE>();
     assert!(matches!(error, KitError::PolynomialMissing { degree: 2, .. }), "{error}");
+    let error = wrong_element::<D, BASIS>();
+    assert!(matches!(error, KitError::DegreeExceeded { function: 0, stated: 1, .. }), "{error}");
+    // the value at a vertex as a functional of the cell, where the vertex owns the unknown
+    let error = check_element::<f64, D, Wrong<ENTITY>>().unwrap_err();
+    assert!(matches!(error, KitError::NodeElsewhere { node: 0, .. }), "{error}");
 }
 
 #[test]

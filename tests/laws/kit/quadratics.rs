@@ -34,7 +34,7 @@ impl<T: Real> ReferenceElement<T, 2> for SideMeans {
         }
     }
     fn node(i: usize) -> Node {
-        if i < 3 { Node::Vertex(i) } else { Node::FacetMean(i - 3) }
+        if i < 3 { Node::vertex(i) } else { Node::facet_mean(i - 3) }
     }
 }
 

@@ -1,0 +1,189 @@
+//! Degrees of freedom: functionals on the functions of a cell.
+
+use crate::mesh::edge_vertices;
+use crate::quadrature::{Rule, facet_to_cell};
+
+/// A part of the reference simplex.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Entity {
+    /// A vertex.
+    Vertex(usize),
+    /// An edge, in the order of [`Layout::edge`](super::Layout::edge).
+    Edge(usize),
+    /// The facet opposite a vertex.
+    Facet(usize),
+    /// The cell.
+    Cell,
+}
+
+impl Entity {
+    /// Whether vertex `k` of a cell of this dimension belongs to the entity.
+    pub fn contains(self, dimension: usize, k: usize) -> bool {
+        k <= dimension
+            && match self {
+                Self::Vertex(vertex) => k == vertex,
+                Self::Edge(edge) => edge_vertices(3).get(edge).is_some_and(|e| e.contains(&k)),
+                Self::Facet(opposite) => k != opposite,
+                Self::Cell => true,
+            }
+    }
+}
+
+/// The functional that an unknown is the value of: a weighted sum of point values, tied to a part of
+/// the reference simplex. Points are barycentric; entries beyond the dimension are zero.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Node {
+    entity: Entity,
+    functional: Functional,
+}
+
+#[derive(Clone, Debug, PartialEq)]
+enum Functional {
+    /// The value at a point.
+    Value([f64; 4]),
+    /// The mean over the facet or cell.
+    Mean,
+    /// A sum of values at points times weights.
+    Sum(Vec<([f64; 4], f64)>),
+}
+
+impl Node {
+    /// The value at a vertex of the cell.
+    ///
+    /// # Panics
+    /// If the number of the vertex is above three.
+    pub fn vertex(k: usize) -> Self {
+        let mut point = [0.0; 4];
+        point[k] = 1.0;
+        Self::value(Entity::Vertex(k), point)
+    }
+    /// The value at the midpoint of an edge, in the order of [`Layout::edge`](super::Layout::edge).
+    ///
+    /// # Panics
+    /// If the number of the edge is above five.
+    pub fn midpoint(edge: usize) -> Self {
+        Self::on_edge(edge, 0.5)
+    }
+    /// The value at the point of an edge whose distance from the edge's first vertex is this share
+    /// of the edge, above zero and below one. The first vertex has the lower number in the cell and in
+    /// the mesh, so that cells agree on the nodes of a common edge.
+    ///
+    /// # Panics
+    /// If the number of the edge is above five.
+    pub fn on_edge(edge: usize, share: f64) -> Self {
+        // edges are ordered by their second vertex, so that the first ones are those of a triangle
+        let [first, second] = edge_vertices(3)[edge];
+        let mut point = [0.0; 4];
+        (point[first], point[second]) = (1.0 - share, share);
+        Self::value(Entity::Edge(edge), point)
+    }
+    /// The mean over the facet opposite a vertex of the cell.
+    pub fn facet_mean(k: usize) -> Self {
+        Self { entity: Entity::Facet(k), functional: Functional::Mean }
+    }
+    /// The mean over the cell.
+    pub fn cell_mean() -> Self {
+        Self { entity: Entity::Cell, functional: Functional::Mean }
+    }
+    /// The value at a point of an entity.
+    pub fn value(entity: Entity, point: [f64; 4]) -> Self {
+        Self { entity, functional: Functional::Value(point) }
+    }
+    /// The sum of values at points of an entity times weights.
+    pub fn weighted_sum(entity: Entity, terms: Vec<([f64; 4], f64)>) -> Self {
+        Self { entity, functional: Functional::Sum(terms) }
+    }
+    /// The entity to which the functional is tied; its functionals of a function are known from the
+    /// function on the entity.
+    pub fn entity(&self) -> Entity {
+        self.entity
+    }
+    /// The point if the functional is the value at a point.
+    pub fn point(&self) -> Option<&[f64; 4]> {
+        match &self.functional {
+            Functional::Value(point) => Some(point),
+            _ => None,
+        }
+    }
+    /// Whether the functional is the value at the midpoint of an edge.
+    pub fn is_midpoint(&self) -> bool {
+        matches!(self.entity, Entity::Edge(_))
+            && self.point().is_some_and(|point| point.iter().all(|&x| x == 0.0 || x == 0.5))
+    }
+    /// Whether the functional is the mean over a facet.
+    pub fn is_facet_mean(&self) -> bool {
+        self.is_mean() && matches!(self.entity, Entity::Facet(_))
+    }
+    /// Whether the functional is the mean over the facet or cell to which it is tied.
+    pub fn is_mean(&self) -> bool {
+        self.functional == Functional::Mean
+    }
+    /// The functional as points with weights. Means are taken by the rules for facets and for cells,
+    /// exactly for polynomials that the rules integrate exactly.
+    pub fn terms(&self, facet_rule: &Rule, cell_rule: &Rule) -> Vec<([f64; 4], f64)> {
+        match (&self.functional, self.entity) {
+            (Functional::Value(point), _) => vec![(*point, 1.0)],
+            (Functional::Sum(terms), _) => terms.clone(),
+            (Functional::Mean, Entity::Facet(k)) => {
+                facet_rule.iter().map(|(point, w)| (facet_to_cell(point, k), w)).collect()
+            }
+            (Functional::Mean, _) => cell_rule.iter().map(|(point, w)| (*point, w)).collect(),
+        }
+    }
+    /// The point that stands for the node: where it is the value at a point that point, of a mean the
+    /// barycentre, of a sum the mean of its points with the weights' magnitudes.
+    pub fn centre(&self, dimension: usize) -> [f64; 4] {
+        let mean = |terms: &mut dyn Iterator<Item = ([f64; 4], f64)>| {
+            let (mut sum, mut total) = ([0.0; 4], 0.0);
+            for (point, weight) in terms {
+                total += weight;
+                sum.iter_mut().zip(point).for_each(|(sum, x)| *sum += weight * x);
+            }
+            sum.map(|x| x / total)
+        };
+        match &self.functional {
+            Functional::Value(point) => *point,
+            Functional::Sum(terms) => mean(&mut terms.iter().map(|(point, w)| (*point, w.abs()))),
+            Functional::Mean => {
+                let vertices = (0..=dimension).filter(|&k| self.entity.contains(dimension, k));
+                let vertex = |k: usize| std::array::from_fn(|i| f64::from(u8::from(i == k)));
+                mean(&mut vertices.map(|k| (vertex(k), 1.0)))
+            }
+        }
+    }
+    /// The node that the cell across a facet has in the place of this one, if the node is tied to
+    /// the facet, which is opposite vertex `facet` of this cell and `other` of the cell across. Both
+    /// cells list the vertices of the facet in the same order.
+    pub(crate) fn across(&self, dimension: usize, facet: usize, other: usize) -> Option<Self> {
+        if self.entity.contains(dimension, facet) {
+            return None;
+        }
+        let place = |k: usize| k - usize::from(k > facet);
+        let vertex = |k: usize| place(k) + usize::from(place(k) >= other);
+        let point = |p: &[f64; 4]| {
+            let mut moved = [0.0; 4];
+            for k in (0..=dimension).filter(|&k| k != facet) {
+                moved[vertex(k)] = p[k];
+            }
+            moved
+        };
+        let entity = match self.entity {
+            Entity::Vertex(k) => Entity::Vertex(vertex(k)),
+            Entity::Edge(k) => {
+                let ends = edge_vertices(dimension).get(k)?.map(vertex);
+                let edge = edge_vertices(dimension).iter().position(|e| *e == ends);
+                Entity::Edge(edge?)
+            }
+            Entity::Facet(_) => Entity::Facet(other),
+            Entity::Cell => return None,
+        };
+        let functional = match &self.functional {
+            Functional::Value(p) => Functional::Value(point(p)),
+            Functional::Mean => Functional::Mean,
+            Functional::Sum(terms) => {
+                Functional::Sum(terms.iter().map(|(p, w)| (point(p), *w)).collect())
+            }
+        };
+        Some(Self { entity, functional })
+    }
+}

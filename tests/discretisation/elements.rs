@@ -1,0 +1,203 @@
+//! Elements made outside the crate: cubics, continuous and broken.
+
+use crate::runs::own_scene;
+use crate::support::checks::Checks;
+use unilateral::algebra::Contact;
+use unilateral::assemble::{DataQuadrature, Discretisation};
+use unilateral::element::{Entity, Layout, Node};
+use unilateral::inequality::{ActiveSet, InequalitySolver};
+use unilateral::kit::check_scheme;
+use unilateral::mesh::{BoxDomain, Mesh};
+use unilateral::prelude::*;
+
+/// Continuous cubics: values at the vertices, at the thirds of edges and at the barycentres of
+/// triangles.
+#[derive(Clone, Copy)]
+struct P3;
+
+const EDGES: [[usize; 2]; 6] = [[0, 1], [0, 2], [1, 2], [0, 3], [1, 3], [2, 3]];
+
+/// The linear factors of a basis function: a vertex `i` and a number `m` stand for `3 l_i - m`.
+/// Their product over the values at the node is the function.
+fn factors(dimension: usize, i: usize) -> [(usize, f64); 3] {
+    let edges = dimension * (dimension + 1) / 2;
+    let inside = |i: usize| -> [usize; 3] {
+        match (dimension, i) {
+            (2, _) | (_, 3) => [0, 1, 2],
+            (_, 0) => [1, 2, 3],
+            (_, 1) => [0, 2, 3],
+            _ => [0, 1, 3],
+        }
+    };
+    match i.checked_sub(dimension + 1) {
+        None => [(i, 0.0), (i, 1.0), (i, 2.0)],
+        Some(k) if k < 2 * edges => {
+            let [a, b] = EDGES[k / 2];
+            // the first third is the node nearer to the first vertex
+            let (near, far) = if k % 2 == 0 { (a, b) } else { (b, a) };
+            [(near, 0.0), (near, 1.0), (far, 0.0)]
+        }
+        Some(k) => inside(k - 2 * edges).map(|v| (v, 0.0)),
+    }
+}
+
+/// The product of the factors at the node of a function.
+fn at_node(dimension: usize, i: usize) -> f64 {
+    let vertices = dimension + 1;
+    match i {
+        _ if i < vertices => 6.0,
+        _ if i < vertices + dimension * vertices => 2.0,
+        _ => 1.0,
+    }
+}
+
+impl<T: Real, const D: usize> ReferenceElement<T, D> for P3 {
+    const N: usize = (D + 1) * (D + 2) * (D + 3) / 6;
+    const DEGREE: usize = 3;
+    const LAYOUT: Layout = Layout {
+        vertex: 1,
+        edge: 2,
+        facet: if D == 3 { 1 } else { 0 },
+        cell: if D == 2 { 1 } else { 0 },
+    };
+
+    fn values(lambda: &[T], out: &mut [T]) {
+        for (i, value) in out.iter_mut().enumerate().take(<Self as ReferenceElement<T, D>>::N) {
+            let factor = |(v, m): (usize, f64)| T::lit(3.0) * lambda[v] - T::lit(m);
+            let [a, b, c] = factors(D, i).map(factor);
+            *value = a * b * c / T::lit(at_node(D, i));
+        }
+    }
+    fn derivatives(lambda: &[T], out: &mut [[T; 4]]) {
+        for (i, row) in out.iter_mut().enumerate().take(<Self as ReferenceElement<T, D>>::N) {
+            let of = factors(D, i);
+            let [a, b, c] = of.map(|(v, m)| T::lit(3.0) * lambda[v] - T::lit(m));
+            *row = [T::lit(0.0); 4];
+            for ((v, _), others) in of.into_iter().zip([b * c, a * c, a * b]) {
+                row[v] += T::lit(3.0 / at_node(D, i)) * others;
+            }
+        }
+    }
+    fn node(i: usize) -> Node {
+        let edges = D * (D + 1) / 2;
+        match i.checked_sub(D + 1) {
+            None => Node::vertex(i),
+            Some(k) if k < 2 * edges => Node::on_edge(k / 2, (1 + k % 2) as f64 / 3.0),
+            Some(k) => {
+                let mut point = [0.0; 4];
+                factors(D, i).iter().for_each(|&(v, _)| point[v] = 1.0 / 3.0);
+                let entity = if D == 2 { Entity::Cell } else { Entity::Facet(k - 2 * edges) };
+                Node::value(entity, point)
+            }
+        }
+    }
+}
+
+struct ConformingP3;
+
+impl<T: Real, const D: usize> Scheme<T, D> for ConformingP3 {
+    type Element = P3;
+    type Facet = NoFacets;
+    const DIRICHLET: DirichletBy = DirichletBy::Pinning;
+    fn name(&self) -> &str {
+        "p3"
+    }
+    fn facet(&self, _: &Mesh<T, D>) -> NoFacets {
+        NoFacets
+    }
+}
+
+/// Equations with the solution `exp(a . x)` on the unit box.
+fn equation<const D: usize>() -> scenes::Scene<D> {
+    let along = || Point::<f64, D>::from_fn(|k, _| [0.9, -0.6, 0.5][k]);
+    let value = move |x: &Point<f64, D>| along().dot(x).exp();
+    let problem = Problem::new()
+        .exact(value, move |x| along() * value(x))
+        .source(move |x| -along().norm_squared() * value(x));
+    own_scene("exponential", BoxDomain::dirichlet(Point::zeros(), Point::repeat(1.0)), problem)
+}
+
+/// Orders of broken and continuous cubics on an equation: four in L2, three in H1.
+fn orders<const D: usize>(levels: [usize; 2]) {
+    let study =
+        Study::<f64, D>::new(equation()).scheme(Sipg::default().on(P3)).scheme(ConformingP3);
+    let rows = study.levels(levels).run().unwrap().rows;
+    let mut checks = Checks::default();
+    let finest: Vec<_> = rows.iter().filter(|row| row.level == levels[1]).collect();
+    assert_eq!(finest.len(), 2);
+    for row in finest {
+        let [l2, h1] = [row.order.l2, row.order.h1].map(|order| order.unwrap_or(f64::NAN));
+        let holds = (l2 - 4.0).abs() < 0.15 && (h1 - 3.0).abs() < 0.15;
+        checks.that(holds, || format!("{} in {D}d: L2 {l2:.3}, H1 {h1:.3}", row.scheme));
+        checks.certified(row, 1e-9);
+    }
+    checks.finish();
+}
+
+#[test]
+fn cubics_have_orders_four_and_three() {
+    orders::<1>([8, 16]);
+    orders::<2>([8, 16]);
+    orders::<3>([2, 4]);
+}
+
+fn kit<T: Real, const D: usize>() {
+    let report = check_scheme::<T, D, _>(&Sipg::default().on(P3)).unwrap_or_else(|e| panic!("{e}"));
+    assert_eq!((report.scheme.as_str(), report.element.functions), ("sipg-p3", [4, 10, 20][D - 1]));
+    check_scheme::<T, D, _>(&ConformingP3).unwrap_or_else(|e| panic!("{e}"));
+}
+
+#[test]
+fn cubics_pass_the_kit() {
+    kit::<f64, 1>();
+    kit::<f64, 2>();
+    kit::<f64, 3>();
+    kit::<f32, 2>();
+}
+
+/// The penalty by lifts of single facets knows every degree.
+#[test]
+fn lifts_of_cubics_pass_the_kit() {
+    check_scheme::<f64, 2, _>(&Br2::default().on(P3)).unwrap_or_else(|e| panic!("{e}"));
+}
+
+/// With a constant obstacle above zero load, bounds at nodes hold at the nodes, and multipliers and
+/// contact are those of linears up to the size of a cell.
+#[test]
+fn cubics_run_beside_linears_on_an_obstacle() {
+    let scene = scenes::radial::<2>(1.0);
+    let study = Study::<f64, 2>::new(scene).scheme(ConformingP1).scheme(ConformingP3);
+    let rows = study.scheme(Sipg::default().on(P3)).levels([16]).run().unwrap().rows;
+    let linear = rows[0].error.h1.unwrap();
+    for row in &rows[1..] {
+        assert_eq!(row.constraint, "nodes");
+        assert!(row.certificate.largest() < 1e-9, "{row:?}");
+        assert!(row.error.h1.unwrap() < 0.5 * linear, "{}: {:?} {linear}", row.scheme, row.error);
+    }
+}
+
+#[test]
+fn multipliers_of_cubics_balance_the_load() {
+    // a load that presses everything but a layer at the boundary onto the obstacle
+    let problem = Problem::<2>::new().constant_source(-40.0).obstacle_below(|_| -0.1);
+    let domain = BoxDomain::dirichlet(Point::zeros(), Point::repeat(1.0));
+    let mesh = Mesh::<f64, 2>::kuhn_box(&domain, [8, 8]).unwrap();
+    let space =
+        Discretisation::new(&ConformingP3, &problem, &mesh, DataQuadrature::default()).unwrap();
+    let inequality = space.inequality().unwrap();
+    let solution = ActiveSet::default().solve(&inequality);
+    let in_contact = solution.contact.iter().filter(|&&c| c == Contact::Lower).count();
+    assert!(in_contact > inequality.size() / 3, "{in_contact} of {}", inequality.size());
+    for (k, support) in inequality.supports.iter().enumerate() {
+        // an unknown at a third of an edge counts the nearer end twice
+        let vertices = support.vertices();
+        let sum = vertices.iter().map(|&v| mesh.vertices()[v as usize]).sum::<Point<f64, 2>>();
+        let node = sum / vertices.len() as f64;
+        assert!([1, 3].contains(&vertices.len()), "unknown {k} at {node}: {vertices:?}");
+    }
+    let density = space.fields(&inequality, &solution).discrete_contact.density;
+    // tested with the hat functions the multiplier is the load where there is contact all around
+    let middle = mesh.vertices().iter().position(|x| (x - Point::repeat(0.5)).norm() < 1e-9);
+    let found = density[middle.unwrap()].unwrap();
+    assert!((found - 40.0).abs() < 1e-6, "{found}");
+}
