@@ -19,6 +19,7 @@
 //! | `monotone_multigrid` | [`MonotoneMultigrid`]: truncated nonsmooth Newton multigrid |
 //! | `certificate` | [`Certificate`], [`certify`] |
 //! | `initial_guess` | [`InitialGuess`]: coarse spaces, starting values and tolerance of a solve |
+//! | `by_name` | [`solver_by_name`] |
 //! | `solution`, `outcome` | [`Solution`], [`Outcome`]: the result of a solver |
 //!
 //! [`ActiveSet`] runs in stages, each only if the preceding one has not converged:
@@ -39,6 +40,7 @@
 //! and 3; stage 1 ends by the preconditioned norm of the residual.
 
 mod active_set;
+mod by_name;
 mod certificate;
 mod initial_guess;
 mod interior_point;
@@ -48,6 +50,7 @@ mod solution;
 mod validation;
 
 pub use active_set::{ActiveSet, Globalisation};
+pub use by_name::{SOLVERS, SolverOptions, solver_by_name};
 pub use certificate::{Certificate, certify, certify_with_jump_multipliers, count_active};
 pub use initial_guess::InitialGuess;
 pub use monotone_multigrid::MonotoneMultigrid;
