@@ -7,7 +7,7 @@ use std::time::Instant;
 use super::hierarchy::Hierarchy;
 use super::p1_solution::P1Solution;
 use super::solved::Solved;
-use crate::algebra::{Bound, Contact, Inequality, Start, Support};
+use crate::algebra::{Bound, Contact, Inequality, Start};
 use crate::assemble::{DataQuadrature, Discretisation};
 use crate::element::Layout;
 use crate::error::Error;
@@ -249,12 +249,10 @@ impl<'a, T: Real, const D: usize> NestedIteration<'a, T, D> {
         if let Some(start) = &start {
             // a start without contact stays cold: the solver must detect a body that only contact holds
             if start.contact.iter().any(|&c| c != Contact::Inactive) {
-                let states = starting_contact(&start.contact, &inequality.supports);
-                inequality.start = Start::Contact(states);
+                inequality.start = Start::Contact(start.contact_of(&inequality.supports));
             }
             guess.coarse_spaces = start.coarse_spaces.clone();
-            guess.values =
-                (!start.values.is_empty()).then(|| means(&start.values, &inequality.supports));
+            guess.values = start.values_of(&inequality.supports);
         }
         let mut warnings = Vec::new();
         let penalty_below_bound = discretisation.penalty_below_bound();
@@ -369,32 +367,6 @@ pub fn solve<'a, T: Real, const D: usize>(
     scheme: &dyn AnyScheme<T, D>,
 ) -> Result<Solved<'a, T, D>, Error> {
     NestedIteration::new(problem, meshes).solve(scheme)
-}
-
-/// The starting contact of unknowns: an unknown starts in contact if more than half of the vertices
-/// of its support are in contact.
-fn starting_contact(contact: &[Contact], supports: &[Support]) -> Vec<Contact> {
-    let state = |support: &Support| {
-        let vertices = support.vertices();
-        [Contact::Lower, Contact::Upper]
-            .into_iter()
-            .find(|&side| {
-                let on = vertices.iter().filter(|&&v| contact[v as usize] == side).count();
-                2 * on > vertices.len()
-            })
-            .unwrap_or(Contact::Inactive)
-    };
-    supports.iter().map(state).collect()
-}
-
-/// The starting values of unknowns: the means of values over the vertices of each support.
-fn means<T: Real>(values: &[T], supports: &[Support]) -> Vec<T> {
-    let mean = |support: &Support| {
-        let vertices = support.vertices();
-        let sum = vertices.iter().fold(T::lit(0.0), |s, &v| s + values[v as usize]);
-        sum / T::lit(vertices.len().max(1) as f64)
-    };
-    supports.iter().map(mean).collect()
 }
 
 /// Number of unknowns of a layout on a mesh.
