@@ -191,7 +191,7 @@ fn solve_task<T: Real, const D: usize>(
     if let Some(warning) = penalty_below_bound {
         warnings.push(warning.to_string());
     }
-    let limit = space.form().rounding_limit(T::EPSILON, task.mesh.domain_diameter());
+    let limit = space.form().theory().rounding_limit(T::EPSILON, task.mesh.domain_diameter());
     let shortest = task.mesh.shortest_edge();
     if shortest < limit {
         warnings.push(format!(
@@ -218,7 +218,7 @@ fn solve_task<T: Real, const D: usize>(
     };
     let fields = (task.with_fields && usable).then(|| space.fields(&inequality, &solution));
     Ok(Solved {
-        parameters: space.form().parameters(),
+        parameters: space.form().theory().parameters,
         unknowns: inequality.size(),
         nonzeros: inequality.matrix.nonzeros(),
         outcome: solution.outcome,

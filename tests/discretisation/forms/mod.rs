@@ -3,5 +3,6 @@
 mod assembly;
 mod condition;
 mod lifting;
+mod own_forms;
 mod rounding;
 mod shared_unknowns;
