@@ -257,7 +257,8 @@ impl<'a, T: Real, const D: usize> NestedIteration<'a, T, D> {
         let mut warnings = Vec::new();
         let penalty_below_bound = discretisation.penalty_below_bound();
         warnings.extend(penalty_below_bound.as_ref().map(ToString::to_string));
-        let limit = discretisation.form().rounding_limit(T::EPSILON, mesh.domain_diameter());
+        let limit =
+            discretisation.form().theory().rounding_limit(T::EPSILON, mesh.domain_diameter());
         let shortest = mesh.shortest_edge();
         if shortest < limit {
             warnings.push(format!(

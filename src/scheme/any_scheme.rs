@@ -78,7 +78,7 @@ impl<T: Real, const D: usize> dyn AnyScheme<T, D> + '_ {
     }
     /// Penalty factors in force on a mesh.
     pub fn parameters(&self, mesh: &Mesh<T, D>) -> PenaltyParameters {
-        self.form(mesh).parameters()
+        self.form(mesh).theory().parameters
     }
     /// The algebraic inequality alone, for other solvers and exporters.
     ///

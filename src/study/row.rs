@@ -163,7 +163,7 @@ impl Row {
         let (mesh, solution) = (solved.mesh(), solved.solution());
         let solve_seconds = solved.solve_seconds + solved.start_seconds;
         Self {
-            parameters: solved.discretisation().form().parameters(),
+            parameters: solved.discretisation().form().theory().parameters,
             linear: solution.linear_solver.to_owned(),
             cells: mesh.n_cells(),
             unknowns: solution.values.len(),
