@@ -3,12 +3,13 @@
 use std::sync::Arc;
 use std::time::Instant;
 
-use super::iteration::NestedIteration;
+use super::meshes::Meshes;
 use crate::algebra::{Bound, Contact, Inequality, Start, Support};
-use crate::assemble::Discretisation;
+use crate::assemble::{DataQuadrature, Discretisation};
 use crate::error::Error;
 use crate::inequality::{InequalitySolver, InitialGuess, MonotoneMultigrid, Outcome};
 use crate::linear::{CoarseLevel, CoarseSpaces, P1Level};
+use crate::problem::Problem;
 use crate::real::Real;
 use crate::scheme::ConformingP1;
 
@@ -72,15 +73,24 @@ impl<T: Real> P1Solution<T> {
     }
 }
 
-impl<T: Real, const D: usize> NestedIteration<'_, T, D> {
+/// Conforming P1 solved by nested iteration: its settings, and the solutions that are known.
+pub(super) struct P1Iteration<'a, T: Real, const D: usize> {
+    pub problem: &'a Problem<D>,
+    pub meshes: Meshes<'a, T, D>,
+    pub solver: Arc<dyn InequalitySolver<T> + 'a>,
+    pub quadrature: DataQuadrature,
+    /// Times are the smallest of this many runs, at least one.
+    pub repeat: usize,
+    /// The solution on each mesh, once computed.
+    pub solutions: Vec<Option<Arc<P1Solution<T>>>>,
+}
+
+impl<T: Real, const D: usize> P1Iteration<'_, T, D> {
     /// The start of conforming P1 on a mesh: the prolongation of the coarser solution, where a new
     /// vertex is active if both ends of its edge are. On the coarsest mesh, if the solver uses coarse
     /// spaces for so many unknowns: spaces by aggregation, and a solution by monotone multigrid to
     /// [`FLAT_ENERGY_TOLERANCE`]; else `None`.
-    pub(super) fn start_of_p1(
-        &mut self,
-        position: usize,
-    ) -> Result<Option<Arc<P1Solution<T>>>, Error> {
+    pub fn start(&mut self, position: usize) -> Result<Option<Arc<P1Solution<T>>>, Error> {
         let Some((refinement, prolongation)) = self.meshes.refinement(position) else {
             let size = self.meshes.mesh(position).vertices().len();
             // in one dimension factors are as sparse as the matrix
@@ -89,7 +99,7 @@ impl<T: Real, const D: usize> NestedIteration<'_, T, D> {
                 false => Ok(None),
             };
         };
-        let coarse = self.solve_p1(position - 1)?;
+        let coarse = self.solve(position - 1)?;
         let clock = Instant::now();
         let contact = refinement
             .parents
@@ -115,7 +125,7 @@ impl<T: Real, const D: usize> NestedIteration<'_, T, D> {
     /// The start on a mesh without coarser ones.
     fn flat_start(&self, position: usize) -> Result<Option<Arc<P1Solution<T>>>, Error> {
         let clock = Instant::now();
-        let inequality = self.p1_inequality(position)?;
+        let inequality = self.inequality(position)?;
         let Some(coarser) = CoarseLevel::aggregated(&inequality.matrix, &fixed(&inequality)) else {
             return Ok(None);
         };
@@ -146,16 +156,16 @@ impl<T: Real, const D: usize> NestedIteration<'_, T, D> {
 
     /// The conforming P1 solution on a mesh, from its start; computed once. The seconds are the smallest
     /// of all runs.
-    pub(super) fn solve_p1(&mut self, position: usize) -> Result<Arc<P1Solution<T>>, Error> {
-        if let Some(known) = &self.p1_solutions[position] {
+    pub fn solve(&mut self, position: usize) -> Result<Arc<P1Solution<T>>, Error> {
+        if let Some(known) = &self.solutions[position] {
             return Ok(known.clone());
         }
-        let start = self.start_of_p1(position)?;
+        let start = self.start(position)?;
         let mut seconds = f64::INFINITY;
         let mut last = None;
         for _ in 0..self.repeat {
             let clock = Instant::now();
-            let mut inequality = self.p1_inequality(position)?;
+            let mut inequality = self.inequality(position)?;
             let mut guess = InitialGuess::default().energy_tolerance(P1_ENERGY_TOLERANCE);
             if let Some(start) = &start {
                 inequality.start = Start::Contact(start.contact.clone());
@@ -193,12 +203,12 @@ impl<T: Real, const D: usize> NestedIteration<'_, T, D> {
             levels_solved: before.1 + 1,
             start_cycles: before.2,
         });
-        self.p1_solutions[position] = Some(solution.clone());
+        self.solutions[position] = Some(solution.clone());
         Ok(solution)
     }
 
     /// The inequality of conforming P1 on a mesh.
-    fn p1_inequality(&self, position: usize) -> Result<Inequality<T>, Error> {
+    fn inequality(&self, position: usize) -> Result<Inequality<T>, Error> {
         let mesh = self.meshes.mesh(position);
         Discretisation::new(&ConformingP1, self.problem, mesh, self.quadrature)?.inequality()
     }
