@@ -1,6 +1,7 @@
 //! A study: schemes on a scene, level by level.
 
 use std::fmt;
+#[cfg(feature = "report")]
 use std::path::PathBuf;
 use std::sync::Arc;
 
@@ -57,6 +58,7 @@ pub struct Study<'a, T: Real, const D: usize> {
     solvers: Vec<Arc<dyn InequalitySolver<T> + 'a>>,
     quadrature: DataQuadrature,
     repeat: usize,
+    #[cfg(feature = "report")]
     directory: Option<PathBuf>,
     observer: Box<dyn Fn(Progress<'_>) + 'a>,
 }
@@ -101,6 +103,7 @@ impl<'a, T: Real, const D: usize> Study<'a, T, D> {
             solvers: Vec::new(),
             quadrature: DataQuadrature::default(),
             repeat: 1,
+            #[cfg(feature = "report")]
             directory: None,
             observer: Box::new(|_| {}),
         }
