@@ -80,8 +80,7 @@ fn scheme<const D: usize>(name: &str) -> Box<dyn AnyScheme<f64, D>> {
         "cr" => Box::new(NonconformingP1),
         "sipg" => Box::new(Sipg::default()),
         "nipg" => Box::new(Nipg::default()),
-        "wopsip" => Box::new(Wopsip::default()),
-        _ => Box::new(FacetMeans(Wopsip::default())),
+        _ => Box::new(Wopsip::default()),
     }
 }
 
@@ -92,6 +91,9 @@ fn run<const D: usize>(
 ) -> Result<Row, Failure> {
     if is_linear {
         (scene.problem.lower, scene.problem.upper) = (None, None);
+    }
+    if name == "wopsip-means" {
+        scene.problem = scene.problem.on(FacetMeans);
     }
     let report = Study::<f64, D>::new(scene)
         .boxed_scheme(scheme(name))

@@ -56,14 +56,16 @@ pub enum Error {
         upper: f64,
     },
     /// No unknown of the constraint set can carry the bounds of an inequality.
-    #[error("bounds on {constraint} cannot impose {condition}: {allowed}")]
+    #[error(
+        "bounds on {constraint} cannot impose {condition}: the element has no such values; choose {allowed}"
+    )]
     NothingToBound {
         /// Name of the constraint set.
-        constraint: &'static str,
+        constraint: String,
         /// The inequality: "an inequality" in general, or "a Signorini condition".
         condition: &'static str,
-        /// The constraint sets that can impose it.
-        allowed: &'static str,
+        /// The constraint sets that can impose it on the element.
+        allowed: String,
     },
     /// A facet form asks for what the assembler does not make for the element.
     #[error("{requested} are made for {allowed} only")]
@@ -81,6 +83,11 @@ pub enum Error {
         /// What does not fit, where, and what to do.
         why: String,
     },
+    /// Two solutions are compared whose meshes do not belong to one hierarchy.
+    #[error(
+        "solutions are compared on one mesh or on meshes of one hierarchy: solve both on the same `Hierarchy`"
+    )]
+    NotNested,
     /// A parameter outside its range.
     #[error("{parameter} = {value}: {allowed}")]
     Parameter {

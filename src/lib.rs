@@ -40,5 +40,6 @@ pub mod scheme;
 #[cfg(feature = "report")]
 pub mod stability;
 pub mod study;
+mod theory;
 #[cfg(feature = "report")]
 pub mod work_precision;

@@ -1,11 +1,14 @@
 //! What a program that compares schemes needs, in one line.
 
-pub use crate::element::{Broken, CrouzeixRaviart, P1, P2, ReferenceElement};
+pub use crate::assemble::Discretisation;
+pub use crate::constraint::{BoundBy, CellMeans, ConstraintSet, FacetMeans, Midpoints, Nodes};
+pub use crate::element::{Broken, CrouzeixRaviart, Node, P1, P2, ReferenceElement};
 pub use crate::error::Error;
 pub use crate::facet::{
     DirichletBy, FacetForm, FacetView, NoFacets, PenaltyRule, Trace, WeightRule,
 };
-pub use crate::mesh::{BoundaryPart, Mesh};
+pub use crate::mesh::{BoundaryPart, BoxDomain, Mesh};
+pub use crate::nested::{Hierarchy, NestedIteration, Solved, solve};
 pub use crate::problem::Problem;
 pub use crate::real::{Point, Real};
 pub use crate::scenes;

@@ -11,19 +11,22 @@
 //! `n` is the outward unit normal. An absent datum is `None`, and no loop runs for it.
 
 use std::fmt;
+use std::sync::Arc;
 
+use crate::constraint::{ConstraintSet, Nodes};
 use crate::real::Point;
 
-/// A scalar function of space.
-pub type Field<const D: usize> = Box<dyn Fn(&Point<f64, D>) -> f64 + Send + Sync>;
+/// A scalar function of space, shared by the clones of a problem.
+pub type Field<const D: usize> = Arc<dyn Fn(&Point<f64, D>) -> f64 + Send + Sync>;
 /// A vector function of space.
-pub type VectorField<const D: usize> = Box<dyn Fn(&Point<f64, D>) -> Point<f64, D> + Send + Sync>;
+pub type VectorField<const D: usize> = Arc<dyn Fn(&Point<f64, D>) -> Point<f64, D> + Send + Sync>;
 /// A flux through the boundary: a function of the point and the outward unit normal.
 pub type BoundaryFlux<const D: usize> =
-    Box<dyn Fn(&Point<f64, D>, &Point<f64, D>) -> f64 + Send + Sync>;
+    Arc<dyn Fn(&Point<f64, D>, &Point<f64, D>) -> f64 + Send + Sync>;
 
 /// A coefficient or load: a constant, integrated exactly and without a quadrature loop, or a
 /// function.
+#[derive(Clone)]
 pub enum Datum<const D: usize> {
     /// A constant.
     Constant(f64),
@@ -52,7 +55,7 @@ where
     F: Fn(&Point<f64, D>) -> f64 + Send + Sync + 'static,
 {
     fn from(f: F) -> Self {
-        Datum::Function(Box::new(f))
+        Datum::Function(Arc::new(f))
     }
 }
 
@@ -67,6 +70,7 @@ impl<const D: usize> fmt::Debug for Datum<D> {
 
 /// The exact solution, for error norms, and for Dirichlet and Neumann data where the problem has
 /// none.
+#[derive(Clone)]
 #[non_exhaustive]
 pub struct Exact<const D: usize> {
     /// The solution.
@@ -84,6 +88,7 @@ pub struct Exact<const D: usize> {
 
 /// The set where the exact solution equals a bound: with obstacles a subset of the domain, with the
 /// Signorini condition a subset of the contact part of the boundary.
+#[derive(Clone)]
 #[non_exhaustive]
 pub struct ContactSet<const D: usize> {
     /// Positive inside the contact set, negative outside, zero on its free boundary.
@@ -114,8 +119,8 @@ impl<const D: usize> Exact<D> {
         gradient: impl Fn(&Point<f64, D>) -> Point<f64, D> + Send + Sync + 'static,
     ) -> Self {
         Self {
-            value: Box::new(value),
-            gradient: Box::new(gradient),
+            value: Arc::new(value),
+            gradient: Arc::new(gradient),
             multiplier: None,
             contact: None,
         }
@@ -126,7 +131,7 @@ impl<const D: usize> Exact<D> {
         mut self,
         lambda: impl Fn(&Point<f64, D>) -> f64 + Send + Sync + 'static,
     ) -> Self {
-        self.multiplier = Some(Box::new(lambda));
+        self.multiplier = Some(Arc::new(lambda));
         self
     }
     /// Sets the contact set: a function positive inside and negative outside, and points of the
@@ -137,7 +142,7 @@ impl<const D: usize> Exact<D> {
         indicator: impl Fn(&Point<f64, D>) -> f64 + Send + Sync + 'static,
         free_boundary: Vec<Point<f64, D>>,
     ) -> Self {
-        self.contact = Some(ContactSet { indicator: Box::new(indicator), free_boundary });
+        self.contact = Some(ContactSet { indicator: Arc::new(indicator), free_boundary });
         self
     }
 }
@@ -159,8 +164,9 @@ impl<const D: usize> fmt::Debug for ContactSet<D> {
     }
 }
 
-/// A variational inequality: data and, where known, its solution.
-#[derive(Default)]
+/// A variational inequality: data, the constraint set and, where known, its solution. A clone shares
+/// the functions.
+#[derive(Clone, Default)]
 #[non_exhaustive]
 pub struct Problem<const D: usize> {
     /// The load `f` per unit volume.
@@ -179,6 +185,8 @@ pub struct Problem<const D: usize> {
     pub upper: Option<Field<D>>,
     /// Signorini gap `g` on the contact part.
     pub gap: Option<Field<D>>,
+    /// Where obstacles and gap bind; at the [`Nodes`] of the element where absent.
+    pub constraint_set: Option<Arc<dyn ConstraintSet>>,
     /// The exact solution.
     pub exact: Option<Exact<D>>,
     /// The minimum of the energy, where it is known and the solution is not.
@@ -197,6 +205,7 @@ impl<const D: usize> fmt::Debug for Problem<D> {
             lower,
             upper,
             gap,
+            constraint_set,
             exact,
             reference_energy,
         } = self;
@@ -217,6 +226,9 @@ impl<const D: usize> fmt::Debug for Problem<D> {
             if is_present {
                 out.field(name, &format_args!("Function(..)"));
             }
+        }
+        if let Some(set) = constraint_set {
+            out.field("constraint_set", &set.name());
         }
         if let Some(exact) = exact {
             out.field("exact", exact);
@@ -242,13 +254,13 @@ impl<const D: usize> Problem<D> {
     /// Sets a load that is a function of space.
     #[must_use]
     pub fn source(mut self, f: impl Fn(&Point<f64, D>) -> f64 + Send + Sync + 'static) -> Self {
-        self.source = Some(Datum::Function(Box::new(f)));
+        self.source = Some(Datum::Function(Arc::new(f)));
         self
     }
     /// Sets Dirichlet data.
     #[must_use]
     pub fn dirichlet(mut self, u: impl Fn(&Point<f64, D>) -> f64 + Send + Sync + 'static) -> Self {
-        self.dirichlet = Some(Box::new(u));
+        self.dirichlet = Some(Arc::new(u));
         self
     }
     /// Sets Neumann data, a function of the point and the outward normal.
@@ -257,7 +269,7 @@ impl<const D: usize> Problem<D> {
         mut self,
         q: impl Fn(&Point<f64, D>, &Point<f64, D>) -> f64 + Send + Sync + 'static,
     ) -> Self {
-        self.neumann = Some(Box::new(q));
+        self.neumann = Some(Arc::new(q));
         self
     }
     /// Sets the diffusion coefficient.
@@ -266,7 +278,7 @@ impl<const D: usize> Problem<D> {
         mut self,
         alpha: impl Fn(&Point<f64, D>) -> f64 + Send + Sync + 'static,
     ) -> Self {
-        self.coefficient = Some(Box::new(alpha));
+        self.coefficient = Some(Arc::new(alpha));
         self
     }
     /// Sets the reaction coefficient: a number, or a closure whose argument is written with its
@@ -282,7 +294,7 @@ impl<const D: usize> Problem<D> {
         mut self,
         psi: impl Fn(&Point<f64, D>) -> f64 + Send + Sync + 'static,
     ) -> Self {
-        self.lower = Some(Box::new(psi));
+        self.lower = Some(Arc::new(psi));
         self
     }
     /// Sets an obstacle from above.
@@ -291,7 +303,7 @@ impl<const D: usize> Problem<D> {
         mut self,
         psi: impl Fn(&Point<f64, D>) -> f64 + Send + Sync + 'static,
     ) -> Self {
-        self.upper = Some(Box::new(psi));
+        self.upper = Some(Arc::new(psi));
         self
     }
     /// Sets the Signorini condition `u >= g` on the contact part.
@@ -300,7 +312,28 @@ impl<const D: usize> Problem<D> {
         mut self,
         gap: impl Fn(&Point<f64, D>) -> f64 + Send + Sync + 'static,
     ) -> Self {
-        self.gap = Some(Box::new(gap));
+        self.gap = Some(Arc::new(gap));
+        self
+    }
+    /// Sets the constraint set: where obstacles and gap bind. A [`Study`](crate::study::Study) may
+    /// give each of its schemes another one.
+    ///
+    /// ```
+    /// use unilateral::prelude::*;
+    /// # fn main() -> Result<(), Error> {
+    /// let scene = scenes::radial::<2>(1.0);
+    /// let mesh = scene.domain.mesh::<f64>(4)?;
+    /// let problem = scene.problem.on(FacetMeans);
+    /// let discretisation =
+    ///     Discretisation::new(&Wopsip::default(), &problem, &mesh, Default::default())?;
+    /// // the obstacle at the barycentres of facets, from each of their cells
+    /// assert_eq!(discretisation.unknowns(), 3 * mesh.n_cells());
+    /// # Ok(())
+    /// # }
+    /// ```
+    #[must_use]
+    pub fn on(mut self, set: impl ConstraintSet + 'static) -> Self {
+        self.constraint_set = Some(Arc::new(set));
         self
     }
     /// Sets the exact solution and its gradient, and makes it the Dirichlet datum and, times the
@@ -325,6 +358,10 @@ impl<const D: usize> Problem<D> {
     pub fn reference_energy(mut self, value: f64, uncertainty: f64) -> Self {
         self.reference_energy = Some(ReferenceEnergy { value, uncertainty });
         self
+    }
+    /// The constraint set in force.
+    pub fn constraint_set(&self) -> &dyn ConstraintSet {
+        self.constraint_set.as_deref().unwrap_or(&Nodes)
     }
     /// The Dirichlet value at a point.
     pub fn dirichlet_at(&self, x: &Point<f64, D>) -> f64 {

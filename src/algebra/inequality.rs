@@ -170,6 +170,8 @@ pub struct Inequality<T> {
     /// The coordinates of each vertex of the mesh, missing ones zero; empty if unknown. Direct solvers
     /// derive an order of elimination from them.
     pub points: Vec<[f32; 3]>,
+    /// Whether unknown `i` is the value at vertex `i` of a conforming linear function.
+    pub conforming_linear: bool,
     /// The initial active set.
     pub start: Start,
     /// `A` and `b` as the sums `K + M^T S M` and `c + M^T S g`, for schemes with such a penalty:
@@ -188,7 +190,17 @@ impl<T: Real> Inequality<T> {
         bounds: Vec<Bound<T>>,
     ) -> Self {
         let (supports, points, start) = (Vec::new(), Vec::new(), Start::Cold);
-        Self { matrix, symmetric, load, bounds, supports, points, start, penalised: None }
+        Self {
+            matrix,
+            symmetric,
+            load,
+            bounds,
+            supports,
+            points,
+            conforming_linear: false,
+            start,
+            penalised: None,
+        }
     }
     /// Replaces the initial active set.
     #[must_use]
@@ -206,6 +218,12 @@ impl<T: Real> Inequality<T> {
     #[must_use]
     pub fn with_points(mut self, points: Vec<[f32; 3]>) -> Self {
         self.points = points;
+        self
+    }
+    /// States that unknown `i` is the value at vertex `i` of a conforming linear function.
+    #[must_use]
+    pub fn with_conforming_linear(mut self) -> Self {
+        self.conforming_linear = true;
         self
     }
     /// Number of unknowns, fixed ones included.

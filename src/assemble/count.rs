@@ -53,10 +53,11 @@ mod tests {
 
     use super::take;
     use crate::assemble::{DataQuadrature, Discretisation};
+    use crate::constraint::FacetMeans;
     use crate::mesh::{BoundaryPart, BoxDomain, Mesh};
     use crate::problem::Problem;
     use crate::real::Point;
-    use crate::scheme::{ConformingP1, FacetMeans, NonconformingP1, Scheme, Sipg, Wopsip};
+    use crate::scheme::{ConformingP1, NonconformingP1, Scheme, Sipg, Wopsip};
 
     /// What assembling an inequality counts, on one thread.
     fn counted<S: Scheme<f64, 2>>(
@@ -93,7 +94,10 @@ mod tests {
         let facets = [("facet_topologies", 1), ("facets", 2 * 40 + 8)];
         // WOPSIP computes no normal derivative, in either basis
         assert_eq!(counted(&Wopsip::default(), &bare), BTreeMap::from(facets));
-        assert_eq!(counted(&FacetMeans(Wopsip::default()), &bare), BTreeMap::from(facets));
+        assert_eq!(
+            counted(&Wopsip::default(), &bare.clone().on(FacetMeans)),
+            BTreeMap::from(facets)
+        );
         // SIPG does, for three functions on each side, of the mean over an edge
         let derivatives = 3 * (2 * 2 * 40 + 8);
         let with_flux = [facets[0], facets[1], ("normal_derivatives", derivatives)];

@@ -7,6 +7,7 @@
 //! unknowns are gathered from local matrices. Both ways are parallel, without locks, and give the
 //! same bits for any number of threads.
 
+mod chosen_element;
 pub(crate) mod count;
 mod data_quadrature;
 mod facet_coefficients;
@@ -22,7 +23,6 @@ pub(crate) mod space;
 use std::sync::OnceLock;
 
 use crate::algebra::{Bound, Inequality, SparseMatrix, Start, Support};
-use crate::constraint::BoundedNodes;
 use crate::element::ReferenceElement;
 use crate::error::Error;
 use crate::facet::{DirichletBy, FacetForm};
@@ -30,10 +30,11 @@ use crate::instances::compiled;
 use crate::mesh::Mesh;
 use crate::problem::Problem;
 use crate::real::Real;
+pub(crate) use chosen_element::ChosenElement;
 pub use data_quadrature::DataQuadrature;
 use facet_coefficients::FacetCoefficients;
 pub use penalty_below_bound::PenaltyBelowBound;
-use shared_rows::{CellLoops, SharedRows};
+use shared_rows::SharedRows;
 use space::metric::Metrics;
 use space::{AnyElement, Space};
 
@@ -57,19 +58,14 @@ impl<'a, T: Real, const D: usize> Discretisation<'a, T, D> {
     /// [`Error::CoefficientNotPositive`], [`Error::NothingToBound`], [`Error::UnsupportedForm`].
     pub(crate) fn of<E: ReferenceElement<T, D>>(
         form: Box<dyn FacetForm<T, D>>,
-        (dirichlet, bounded): (DirichletBy, BoundedNodes),
+        dirichlet: DirichletBy,
         problem: &'a Problem<D>,
         mesh: &'a Mesh<T, D>,
         quadrature: DataQuadrature,
     ) -> Result<Self, Error> {
         let pins = matches!(dirichlet, DirichletBy::Pinning);
-        let parts = Parts {
-            element: AnyElement::of::<T, E, D>(),
-            loops: CellLoops::of::<E>(),
-            form,
-            pins,
-            bounded,
-        };
+        let element = ChosenElement::of::<E>(problem.constraint_set());
+        let parts = Parts { element, form, pins };
         compiled!(
             T, D: for<'p> fn(
                 Parts<T, D>,
@@ -189,6 +185,7 @@ impl<'a, T: Real, const D: usize> Discretisation<'a, T, D> {
             } else {
                 Vec::new()
             },
+            conforming_linear: self.space.is_conforming_linear(),
             start: Start::Cold,
             penalised,
         })
@@ -206,11 +203,9 @@ impl<'a, T: Real, const D: usize> Discretisation<'a, T, D> {
     }
     /// The bounds of all unknowns.
     ///
-    /// Of the unknowns in the scheme's constraint set, obstacles bind every one at its node: a
-    /// vertex, the midpoint of an edge or the barycentre of a facet; means over a cell against the
-    /// mean of the obstacle. The Signorini condition binds those of contact facets on the cell that
-    /// has the facet: point values against the gap there, facet means against the mean of the gap.
-    /// An unknown pinned by Dirichlet data is not constrained besides.
+    /// Obstacles bind the unknowns of the problem's constraint set, the Signorini condition those of
+    /// contact facets on the cell that has the facet; the set says whether a node is bound by the
+    /// value of the datum or by its mean. An unknown pinned by Dirichlet data is not constrained besides.
     ///
     /// # Errors
     /// [`Error::EmptyConstraint`], [`Error::DataNotFinite`].
@@ -260,12 +255,10 @@ impl<'a, T: Real, const D: usize> Discretisation<'a, T, D> {
 
 /// What a scheme brings to a discretisation.
 struct Parts<T: Real, const D: usize> {
-    element: AnyElement,
-    loops: Option<CellLoops<T, D>>,
+    element: ChosenElement<T, D>,
     form: Box<dyn FacetForm<T, D>>,
     /// Whether Dirichlet data are pinned.
     pins: bool,
-    bounded: BoundedNodes,
 }
 
 impl<T: Real, const D: usize> Parts<T, D> {
@@ -275,9 +268,9 @@ impl<T: Real, const D: usize> Parts<T, D> {
         mesh: &'a Mesh<T, D>,
         quadrature: DataQuadrature,
     ) -> Result<Discretisation<'a, T, D>, Error> {
-        let Self { element, loops, form, pins, bounded } = self;
+        let Self { element: ChosenElement { element, loops, offered }, form, pins } = self;
         check_form::<T, D>(&element, &*form)?;
-        let space = Space::new(element, problem, mesh, quadrature, form.couples(), pins, bounded)?;
+        let space = Space::new(element, problem, mesh, quadrature, form.couples(), pins, offered)?;
         let shared_rows = SharedRows::new(loops);
         Ok(Discretisation { space, form, shared_rows, prepared: OnceLock::new() })
     }

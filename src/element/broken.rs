@@ -1,7 +1,8 @@
 //! The discontinuous version of any element.
 
+use super::basis::Basis;
 use super::node::Node;
-use super::reference_element::{Layout, ReferenceElement};
+use super::reference_element::{ElementVisitor, Layout, ReferenceElement};
 use crate::real::Real;
 
 /// The basis of `E` with all unknowns inside the cells.
@@ -27,5 +28,8 @@ impl<T: Real, const D: usize, E: ReferenceElement<T, D>> ReferenceElement<T, D> 
     }
     fn node(i: usize) -> Node {
         E::node(i)
+    }
+    fn broken_in_basis<V: ElementVisitor<T, D>>(basis: Basis, visitor: V) -> Option<V::Output> {
+        E::broken_in_basis(basis, visitor)
     }
 }

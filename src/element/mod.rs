@@ -1,5 +1,6 @@
 //! Reference elements on simplices, in barycentric coordinates.
 
+mod basis;
 mod broken;
 mod crouzeix_raviart;
 mod node;
@@ -8,10 +9,11 @@ mod p2;
 mod quadratic_cell_mean;
 mod reference_element;
 
+pub use basis::Basis;
 pub use broken::Broken;
 pub use crouzeix_raviart::CrouzeixRaviart;
 pub use node::{Entity, Node};
 pub use p1::P1;
 pub use p2::P2;
 pub use quadratic_cell_mean::QuadraticCellMean;
-pub use reference_element::{Layout, MAX_BASIS, ReferenceElement};
+pub use reference_element::{ElementVisitor, Layout, MAX_BASIS, ReferenceElement};

@@ -110,6 +110,10 @@ impl Node {
         matches!(self.entity, Entity::Edge(_))
             && self.point().is_some_and(|point| point.iter().all(|&x| x == 0.0 || x == 0.5))
     }
+    /// Whether the functional is the mean over a facet.
+    pub fn is_facet_mean(&self) -> bool {
+        self.is_mean() && matches!(self.entity, Entity::Facet(_))
+    }
     /// Whether the functional is the mean over the facet or cell to which it is tied.
     pub fn is_mean(&self) -> bool {
         self.functional == Functional::Mean

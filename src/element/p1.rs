@@ -1,7 +1,10 @@
 //! Linear Lagrange elements.
 
+use super::basis::Basis;
+use super::broken::Broken;
+use super::crouzeix_raviart::CrouzeixRaviart;
 use super::node::Node;
-use super::reference_element::{Layout, ReferenceElement};
+use super::reference_element::{ElementVisitor, Layout, ReferenceElement};
 use crate::real::Real;
 
 /// Continuous piecewise linears: the basis functions are the barycentric coordinates.
@@ -27,5 +30,8 @@ impl<T: Real, const D: usize> ReferenceElement<T, D> for P1 {
     }
     fn node(i: usize) -> Node {
         Node::vertex(i)
+    }
+    fn broken_in_basis<V: ElementVisitor<T, D>>(basis: Basis, visitor: V) -> Option<V::Output> {
+        (basis == Basis::FacetMeans).then(|| visitor.visit::<Broken<CrouzeixRaviart>>())
     }
 }

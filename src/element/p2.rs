@@ -1,7 +1,9 @@
 //! Quadratic Lagrange elements.
 
+use super::basis::Basis;
 use super::node::Node;
-use super::reference_element::{Layout, ReferenceElement};
+use super::quadratic_cell_mean::QuadraticCellMean;
+use super::reference_element::{ElementVisitor, Layout, ReferenceElement};
 use crate::mesh::edge_vertices;
 use crate::real::Real;
 
@@ -41,5 +43,8 @@ impl<T: Real, const D: usize> ReferenceElement<T, D> for P2 {
     }
     fn node(i: usize) -> Node {
         if i <= D { Node::vertex(i) } else { Node::midpoint(i - D - 1) }
+    }
+    fn broken_in_basis<V: ElementVisitor<T, D>>(basis: Basis, visitor: V) -> Option<V::Output> {
+        (basis == Basis::CellMean).then(|| visitor.visit::<QuadraticCellMean<P2>>())
     }
 }

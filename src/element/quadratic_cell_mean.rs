@@ -1,38 +1,39 @@
 //! Quadratics in a basis that has the mean over the cell among its unknowns.
 
 use super::node::Node;
-use super::p2::P2;
 use super::reference_element::{Layout, ReferenceElement};
 use crate::real::Real;
 
-/// Discontinuous quadratics with the nodes of [`P2`], except that the mean over the cell replaces the
+/// Discontinuous quadratics with the nodes of `E`, which is [`P2`](super::P2), except that the mean over the cell replaces the
 /// value at the midpoint of the last edge.
 ///
-/// The mean is `sum_i m_i v_i` over the nodes of [`P2`], with `m = (2 - D) / ((D + 1)(D + 2))` at
+/// The mean is `sum_i m_i v_i` over the nodes of `E`, with `m = (2 - D) / ((D + 1)(D + 2))` at
 /// vertices and `4 / ((D + 1)(D + 2))` at midpoints: Simpson's rule in one dimension, the mean of
-/// the three midpoints in two. With the functions `phi` of [`P2`] and `e` the last edge the basis is
+/// the three midpoints in two. With the functions `phi` of `E` and `e` the last edge the basis is
 /// `phi_i - m_i / m_e phi_e`, and `phi_e / m_e` for the mean. The replaced node is a midpoint because
 /// in two dimensions `m = 0` at vertices.
 ///
-/// The space is that of [`Broken<P2>`](super::Broken).
+/// The space is that of [`Broken<E>`](super::Broken).
 #[derive(Clone, Copy, Debug, Default)]
-pub struct QuadraticCellMean;
+pub struct QuadraticCellMean<E>(pub E);
 
-/// The mean of function `i` of [`P2`] over the cell.
+/// The mean of function `i` of quadratic Lagrange elements over the cell.
 const fn mean(dimension: usize, i: usize) -> f64 {
     let numerator = if i <= dimension { 2.0 - dimension as f64 } else { 4.0 };
     numerator / ((dimension + 1) * (dimension + 2)) as f64
 }
 
-impl<T: Real, const D: usize> ReferenceElement<T, D> for QuadraticCellMean {
-    const N: usize = <P2 as ReferenceElement<T, D>>::N;
+impl<T: Real, const D: usize, E: ReferenceElement<T, D>> ReferenceElement<T, D>
+    for QuadraticCellMean<E>
+{
+    const N: usize = E::N;
     const DEGREE: usize = 2;
-    const LAYOUT: Layout = Layout::in_cells(<P2 as ReferenceElement<T, D>>::N);
+    const LAYOUT: Layout = Layout::in_cells(E::N);
 
     #[inline(always)]
     fn values(lambda: &[T], out: &mut [T]) {
-        <P2 as ReferenceElement<T, D>>::values(lambda, out);
-        let last = <Self as ReferenceElement<T, D>>::N - 1;
+        E::values(lambda, out);
+        let last = E::N - 1;
         let of_mean = out[last] / T::lit(mean(D, last));
         for (i, value) in out[..last].iter_mut().enumerate() {
             *value -= T::lit(mean(D, i)) * of_mean;
@@ -41,8 +42,8 @@ impl<T: Real, const D: usize> ReferenceElement<T, D> for QuadraticCellMean {
     }
     #[inline(always)]
     fn derivatives(lambda: &[T], out: &mut [[T; 4]]) {
-        <P2 as ReferenceElement<T, D>>::derivatives(lambda, out);
-        let last = <Self as ReferenceElement<T, D>>::N - 1;
+        E::derivatives(lambda, out);
+        let last = E::N - 1;
         let of_mean = out[last].map(|slope| slope / T::lit(mean(D, last)));
         for (i, row) in out[..last].iter_mut().enumerate() {
             for (slope, &of_mean) in row.iter_mut().zip(&of_mean) {
@@ -52,10 +53,6 @@ impl<T: Real, const D: usize> ReferenceElement<T, D> for QuadraticCellMean {
         out[last] = of_mean;
     }
     fn node(i: usize) -> Node {
-        if i + 1 == <Self as ReferenceElement<T, D>>::N {
-            Node::cell_mean()
-        } else {
-            <P2 as ReferenceElement<T, D>>::node(i)
-        }
+        if i + 1 == E::N { Node::cell_mean() } else { E::node(i) }
     }
 }

@@ -1,5 +1,6 @@
 //! The trait of reference elements.
 
+use super::basis::Basis;
 use super::node::Node;
 use crate::real::Real;
 
@@ -75,4 +76,19 @@ pub trait ReferenceElement<T: Real, const D: usize>: Copy + Send + Sync + 'stati
     fn derivatives(lambda: &[T], out: &mut [[T; 4]]);
     /// The functional that unknown `i` is the value of.
     fn node(i: usize) -> Node;
+    /// Calls the visitor with the broken element of the same polynomials that has this basis; none
+    /// if the element knows no such basis. Only broken elements are asked, and
+    /// [`Broken`](super::Broken) passes the question to the element inside.
+    fn broken_in_basis<V: ElementVisitor<T, D>>(basis: Basis, visitor: V) -> Option<V::Output> {
+        let _ = (basis, visitor);
+        None
+    }
+}
+
+/// A function of an element's type, as [`ReferenceElement::broken_in_basis`] calls it.
+pub trait ElementVisitor<T: Real, const D: usize> {
+    /// What it returns.
+    type Output;
+    /// Called with the element.
+    fn visit<E: ReferenceElement<T, D>>(self) -> Self::Output;
 }

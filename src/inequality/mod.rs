@@ -14,29 +14,16 @@
 //! | file | content |
 //! |---|---|
 //! | `validation` | checks of the input, and of definiteness where a setting requires it |
-//! | `active_set/` | [`ActiveSet`]: the primal-dual active set method, with condensation on the unknowns of a cycle (`active_set/condensation/`) and projected Newton |
+//! | `active_set/` | [`ActiveSet`]: the primal-dual active set method, with its stages in `active_set/strategy` |
 //! | `interior_point/` | the interior point method, which provides a start where the active set stagnates |
 //! | `monotone_multigrid` | [`MonotoneMultigrid`]: truncated nonsmooth Newton multigrid |
 //! | `certificate` | [`Certificate`], [`certify`] |
 //! | `initial_guess` | [`InitialGuess`]: coarse spaces, starting values and tolerance of a solve |
-//! | `solution`, `outcome` | [`Solution`], [`Outcome`]: the result of a solver |
+//! | `solution`, `outcome`, `stage` | [`Solution`], [`Outcome`], [`StageRun`]: the result of a solver |
 //!
-//! [`ActiveSet`] runs in stages, each only if the preceding one has not converged:
-//!
-//! 1. The active set method with preconditioned Krylov methods (`active_set/inexact_driver`), which
-//!    adds a bound on the algebraic error to its solution. Small systems, and systems without known
-//!    coarse spaces, start with stage 3.
-//! 2. If its active set stagnates on conforming P1 with a symmetric matrix: [`MonotoneMultigrid`].
-//! 3. The active set method with factors (`active_set/direct_driver`). If its active set
-//!    - returns to an earlier one: condensation on the unknowns of the cycle
-//!      (`active_set/condensation`);
-//!    - stagnates, or condensation does not apply: a new start by the interior point method
-//!      (`interior_point`);
-//!    - cycles after the new start, with a symmetric matrix: projected Newton
-//!      (`active_set/projected_newton`), which is finite.
-//!
-//! The certificate decides between [`Outcome::Converged`] and [`Outcome::Stalled`] after stages 2
-//! and 3; stage 1 ends by the preconditioned norm of the residual.
+//! [`ActiveSet`] runs in stages, each only if the preceding one has not converged; its
+//! `strategy` lists them with all thresholds, and [`Solution::stages`] tells which ones ran. The
+//! certificate decides between [`Outcome::Converged`] and [`Outcome::Stalled`] after every stage.
 
 mod active_set;
 mod certificate;
@@ -45,14 +32,16 @@ mod interior_point;
 mod monotone_multigrid;
 mod outcome;
 mod solution;
+mod stage;
 mod validation;
 
-pub use active_set::{ActiveSet, Globalisation};
+pub use active_set::{ActiveSet, Globalisation, Preconditioned};
 pub use certificate::{Certificate, certify, certify_with_jump_multipliers, count_active};
 pub use initial_guess::InitialGuess;
 pub use monotone_multigrid::MonotoneMultigrid;
 pub use outcome::Outcome;
 pub use solution::Solution;
+pub use stage::{Stage, StageRun};
 
 use crate::algebra::Inequality;
 use crate::real::Real;

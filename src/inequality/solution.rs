@@ -1,15 +1,16 @@
 //! The result of a solver.
 
 use super::Outcome;
+use super::stage::StageRun;
 use crate::algebra::Contact;
 
 /// The result of a solver of an inequality.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Solution<T> {
-    /// The unknowns: the solution if converged. Else, from the active set method with factors, the
-    /// iterate with the smallest distance from its projected Jacobi step, measured in the norm of
-    /// the diagonal of `A`; from the other methods the last iterate.
+    /// The unknowns: the solution if converged. Else, from the active set method, the iterate with
+    /// the smallest distance from its projected Jacobi step, measured in the norm of the diagonal of
+    /// `A`; from the other methods the last iterate.
     pub values: Vec<T>,
     /// Which bound, if any, is active at each unknown.
     pub contact: Vec<Contact>,
@@ -17,8 +18,8 @@ pub struct Solution<T> {
     pub outcome: Outcome,
     /// Number of outer iterations:
     ///
-    /// * active set method with factors: linear systems with a new active set, condensed problems, and
-    ///   steps of the interior point method and of projected Newton;
+    /// * active set method with factors: linear systems with a new active set, and steps of the interior
+    ///   point method;
     /// * active set method with a Krylov method: active sets for which linear systems were solved;
     /// * monotone multigrid: cycles;
     /// * several methods one after the other: the sum.
@@ -36,6 +37,8 @@ pub struct Solution<T> {
     /// [`PenalisedMatrix`](crate::algebra::PenalisedMatrix), which defines `S`, `M` and `g`, if the
     /// solver determines them more accurately than they follow from `values`; else empty.
     pub jump_multipliers: Vec<T>,
+    /// The stages of the solver that ran, in their order; empty for a solver without stages.
+    pub stages: Vec<StageRun>,
 }
 
 impl<T> Solution<T> {
@@ -52,6 +55,7 @@ impl<T> Solution<T> {
             linear_solver: "direct",
             algebraic_bound: None,
             jump_multipliers: Vec::new(),
+            stages: Vec::new(),
         }
     }
     /// Sets the numbers of outer iterations and of iterations of the linear solver.
@@ -76,6 +80,12 @@ impl<T> Solution<T> {
     #[must_use]
     pub fn jump_multipliers(mut self, jump_multipliers: Vec<T>) -> Self {
         self.jump_multipliers = jump_multipliers;
+        self
+    }
+    /// Sets the stages that ran.
+    #[must_use]
+    pub fn stages(mut self, stages: Vec<StageRun>) -> Self {
+        self.stages = stages;
         self
     }
 }

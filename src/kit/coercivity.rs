@@ -2,7 +2,7 @@
 
 use nalgebra::DMatrix;
 
-use super::discrete::assemble;
+use super::discrete::{Tested, assemble};
 use super::error::{KitError, Law};
 use super::matrix::Assembled;
 use super::meshes::Sample;
@@ -13,19 +13,18 @@ use crate::algebra::SparseMatrix;
 use crate::instances::compiled;
 use crate::linear::FactorError;
 use crate::real::Real;
-use crate::scheme::AnyScheme;
 
 pub(super) fn check<T: Real, const D: usize>(
-    scheme: &dyn AnyScheme<T, D>,
+    scheme: &Tested<'_, T, D>,
 ) -> Result<CoercivityReport, KitError> {
     compiled!(
-        T, D: fn(&dyn AnyScheme<T, D>) -> Result<CoercivityReport, KitError>
+        T, D: fn(&Tested<'_, T, D>) -> Result<CoercivityReport, KitError>
             = check_scheme
     )(scheme)
 }
 
 fn check_scheme<T: Real, const D: usize>(
-    scheme: &dyn AnyScheme<T, D>,
+    scheme: &Tested<'_, T, D>,
 ) -> Result<CoercivityReport, KitError> {
     let (law, domain, n) = (Law::Coercivity, meshes::clamped(), meshes::subdivisions(D));
     let mut smallest = f64::INFINITY;

@@ -1,6 +1,6 @@
 //! The patch test.
 
-use super::discrete::{Judged, solve_and_judge};
+use super::discrete::{Judged, Tested, solve_and_judge};
 use super::error::{KitError, Law};
 use super::meshes::Sample;
 use super::report::ConsistencyReport;
@@ -9,23 +9,22 @@ use crate::instances::compiled;
 use crate::mesh::describe_point;
 use crate::problem::Problem;
 use crate::real::{Real, point_f64};
-use crate::scheme::AnyScheme;
 
 /// Rounding units that the error may have: some hundreds for the condition of a small matrix,
 /// some tens for the sums of its entries.
 const UNITS: f64 = 8192.0;
 
 pub(super) fn check<T: Real, const D: usize>(
-    scheme: &dyn AnyScheme<T, D>,
+    scheme: &Tested<'_, T, D>,
 ) -> Result<ConsistencyReport, KitError> {
     compiled!(
-        T, D: fn(&dyn AnyScheme<T, D>) -> Result<ConsistencyReport, KitError>
+        T, D: fn(&Tested<'_, T, D>) -> Result<ConsistencyReport, KitError>
             = check_scheme
     )(scheme)
 }
 
 fn check_scheme<T: Real, const D: usize>(
-    scheme: &dyn AnyScheme<T, D>,
+    scheme: &Tested<'_, T, D>,
 ) -> Result<ConsistencyReport, KitError> {
     let (law, domain, n) = (Law::Consistency, meshes::mixed(), meshes::subdivisions(D));
     let declared = scheme.is_consistent();

@@ -1,15 +1,44 @@
 //! The discrete inequalities and solutions that the laws ask of a scheme.
 
+use std::ops::Deref;
+use std::sync::Arc;
+
 use super::error::{KitError, Law};
 use super::meshes::Sample;
 use crate::algebra::Inequality;
 use crate::assemble::DataQuadrature;
+use crate::constraint::{ConstraintSet, Nodes};
 use crate::inequality::{ActiveSet, InequalitySolver, Outcome};
 use crate::measure::Errors;
 use crate::mesh::{BoxDomain, Mesh};
 use crate::problem::Problem;
 use crate::real::{Point, Real};
 use crate::scheme::{AnyScheme, ExpectedOrders, Regularity, Setting};
+
+/// A scheme under test with its constraint set.
+pub(super) struct Tested<'s, T: Real, const D: usize> {
+    pub scheme: &'s dyn AnyScheme<T, D>,
+    pub set: Arc<dyn ConstraintSet>,
+}
+
+impl<'s, T: Real, const D: usize> Tested<'s, T, D> {
+    /// A scheme with bounds at its nodes.
+    pub fn new(scheme: &'s dyn AnyScheme<T, D>) -> Self {
+        Self { scheme, set: Arc::new(Nodes) }
+    }
+    /// The problem with the constraint set.
+    fn problem(&self, problem: &Problem<D>) -> Problem<D> {
+        problem.clone().on(self.set.clone())
+    }
+}
+
+impl<'s, T: Real, const D: usize> Deref for Tested<'s, T, D> {
+    type Target = dyn AnyScheme<T, D> + 's;
+
+    fn deref(&self) -> &Self::Target {
+        self.scheme
+    }
+}
 
 /// A discrete solution against the exact one.
 pub(super) struct Judged {
@@ -40,12 +69,12 @@ pub(super) fn promised<T: Real, const D: usize>(scheme: &dyn AnyScheme<T, D>) ->
 /// The inequality of a problem on a mesh.
 pub(super) fn assemble<T: Real, const D: usize>(
     law: Law,
-    scheme: &dyn AnyScheme<T, D>,
+    scheme: &Tested<'_, T, D>,
     problem: &Problem<D>,
     mesh: &Mesh<T, D>,
 ) -> Result<Inequality<T>, KitError> {
     scheme
-        .inequality(problem, mesh, quadrature(scheme.degree()))
+        .inequality(&scheme.problem(problem), mesh, quadrature(scheme.degree()))
         .map_err(|why| KitError::NotAssembled { law, why })
 }
 
@@ -65,7 +94,7 @@ pub(super) fn solve<T: Real, const D: usize>(
 /// The discrete solution of a linear problem against the exact one.
 pub(super) fn solve_and_judge<T: Real, const D: usize>(
     law: Law,
-    scheme: &dyn AnyScheme<T, D>,
+    scheme: &Tested<'_, T, D>,
     problem: &Problem<D>,
     sample: &Sample<T, D>,
 ) -> Result<Judged, KitError> {
@@ -73,7 +102,8 @@ pub(super) fn solve_and_judge<T: Real, const D: usize>(
     let u = solve(law, &inequality, sample)?;
     let judge = || {
         let quadrature = quadrature(scheme.degree());
-        let discretisation = scheme.discretise(problem, &sample.mesh, quadrature)?;
+        let problem = scheme.problem(problem);
+        let discretisation = scheme.discretise(&problem, &sample.mesh, quadrature)?;
         let errors = discretisation.errors(&u)?;
         Ok(Judged { errors, vertex_values: discretisation.vertex_values(&u) })
     };

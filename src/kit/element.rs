@@ -326,7 +326,7 @@ mod tests {
         check::<P1, D>();
         check::<P2, D>();
         check::<CrouzeixRaviart, D>();
-        check::<QuadraticCellMean, D>();
+        check::<QuadraticCellMean<P2>, D>();
         check::<Broken<P1>, D>();
         check::<Broken<P2>, D>();
         check::<Broken<CrouzeixRaviart>, D>();

@@ -2,7 +2,7 @@
 
 use std::collections::HashMap;
 
-use super::discrete::{assemble, solve};
+use super::discrete::{Tested, assemble, solve};
 use super::error::{KitError, Law};
 use super::matrix::{Assembled, row_sizes};
 use super::meshes::{Renumbered, Sample};
@@ -11,7 +11,6 @@ use super::{meshes, problems};
 use crate::algebra::Support;
 use crate::instances::compiled;
 use crate::real::Real;
-use crate::scheme::AnyScheme;
 
 /// Rounding units by which entries of matrix and load may change.
 const ENTRY_UNITS: f64 = 512.0;
@@ -19,16 +18,16 @@ const ENTRY_UNITS: f64 = 512.0;
 const SOLUTION_UNITS: f64 = 8192.0;
 
 pub(super) fn check<T: Real, const D: usize>(
-    scheme: &dyn AnyScheme<T, D>,
+    scheme: &Tested<'_, T, D>,
 ) -> Result<InvarianceReport, KitError> {
     compiled!(
-        T, D: fn(&dyn AnyScheme<T, D>) -> Result<InvarianceReport, KitError>
+        T, D: fn(&Tested<'_, T, D>) -> Result<InvarianceReport, KitError>
             = check_scheme
     )(scheme)
 }
 
 fn check_scheme<T: Real, const D: usize>(
-    scheme: &dyn AnyScheme<T, D>,
+    scheme: &Tested<'_, T, D>,
 ) -> Result<InvarianceReport, KitError> {
     let law = Law::Invariance;
     let sample = meshes::moved::<T, D>(law, &meshes::mixed(), meshes::subdivisions(D))?;

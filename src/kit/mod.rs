@@ -52,8 +52,12 @@ pub use report::{
     QuadratureReport, SymmetryReport,
 };
 
+use std::sync::Arc;
+
+use crate::constraint::{ConstraintSet, Nodes};
 use crate::real::Real;
-use crate::scheme::{AnyScheme, Scheme};
+use crate::scheme::Scheme;
+use discrete::Tested;
 
 /// Tests all laws; those on solutions follow those on which the existence of solutions depends.
 ///
@@ -62,8 +66,19 @@ use crate::scheme::{AnyScheme, Scheme};
 pub fn check_scheme<T: Real, const D: usize, S: Scheme<T, D>>(
     scheme: &S,
 ) -> Result<KitReport, KitError> {
+    check_scheme_on(scheme, Nodes)
+}
+
+/// Tests all laws in the basis that a constraint set needs.
+///
+/// # Errors
+/// The first law that does not hold.
+pub fn check_scheme_on<T: Real, const D: usize, S: Scheme<T, D>>(
+    scheme: &S,
+    set: impl ConstraintSet + 'static,
+) -> Result<KitReport, KitError> {
     let element = check_element::<T, D, S::Element>()?;
-    let tested: &dyn AnyScheme<T, D> = scheme;
+    let tested: &Tested<'_, T, D> = &Tested { set: Arc::new(set), ..Tested::new(scheme) };
     Ok(KitReport {
         scheme: tested.name().to_owned(),
         dimension: D,
@@ -84,7 +99,7 @@ pub fn check_scheme<T: Real, const D: usize, S: Scheme<T, D>>(
 pub fn check_symmetry<T: Real, const D: usize, S: Scheme<T, D>>(
     scheme: &S,
 ) -> Result<SymmetryReport, KitError> {
-    symmetry::check::<T, D>(scheme)
+    symmetry::check::<T, D>(&Tested::new(scheme))
 }
 
 /// The symmetric part of the matrix is positive definite on the free unknowns.
@@ -94,7 +109,7 @@ pub fn check_symmetry<T: Real, const D: usize, S: Scheme<T, D>>(
 pub fn check_coercivity<T: Real, const D: usize, S: Scheme<T, D>>(
     scheme: &S,
 ) -> Result<CoercivityReport, KitError> {
-    coercivity::check::<T, D>(scheme)
+    coercivity::check::<T, D>(&Tested::new(scheme))
 }
 
 /// Matrix, load and solution do not depend on the numbers of vertices and cells, nor on the order
@@ -106,7 +121,7 @@ pub fn check_coercivity<T: Real, const D: usize, S: Scheme<T, D>>(
 pub fn check_invariance<T: Real, const D: usize, S: Scheme<T, D>>(
     scheme: &S,
 ) -> Result<InvarianceReport, KitError> {
-    invariance::check::<T, D>(scheme)
+    invariance::check::<T, D>(&Tested::new(scheme))
 }
 
 /// The patch test: a polynomial of the element's degree is reproduced to rounding if the scheme
@@ -117,7 +132,7 @@ pub fn check_invariance<T: Real, const D: usize, S: Scheme<T, D>>(
 pub fn check_consistency<T: Real, const D: usize, S: Scheme<T, D>>(
     scheme: &S,
 ) -> Result<ConsistencyReport, KitError> {
-    consistency::check::<T, D>(scheme)
+    consistency::check::<T, D>(&Tested::new(scheme))
 }
 
 /// Errors against a smooth solution fall with the order of the element: its degree in the broken
@@ -130,5 +145,5 @@ pub fn check_consistency<T: Real, const D: usize, S: Scheme<T, D>>(
 pub fn check_orders<T: Real, const D: usize, S: Scheme<T, D>>(
     scheme: &S,
 ) -> Result<OrdersReport, KitError> {
-    orders::check::<T, D>(scheme)
+    orders::check::<T, D>(&Tested::new(scheme))
 }

@@ -1,13 +1,12 @@
 //! Convergence to a smooth solution.
 
-use super::discrete::{is_symmetric, promised, solve_and_judge};
+use super::discrete::{Tested, is_symmetric, promised, solve_and_judge};
 use super::error::{KitError, Law};
 use super::report::OrdersReport;
 use super::{meshes, problems};
 use crate::instances::compiled;
 use crate::measure::observed_order;
 use crate::real::Real;
-use crate::scheme::AnyScheme;
 
 /// Largest deficit of an order observed on two small meshes.
 const SLACK: f64 = 0.25;
@@ -27,16 +26,16 @@ const fn levels(dimension: usize, degree: usize) -> [usize; 2] {
 }
 
 pub(super) fn check<T: Real, const D: usize>(
-    scheme: &dyn AnyScheme<T, D>,
+    scheme: &Tested<'_, T, D>,
 ) -> Result<OrdersReport, KitError> {
     compiled!(
-        T, D: fn(&dyn AnyScheme<T, D>) -> Result<OrdersReport, KitError>
+        T, D: fn(&Tested<'_, T, D>) -> Result<OrdersReport, KitError>
             = check_scheme
     )(scheme)
 }
 
 fn check_scheme<T: Real, const D: usize>(
-    scheme: &dyn AnyScheme<T, D>,
+    scheme: &Tested<'_, T, D>,
 ) -> Result<OrdersReport, KitError> {
     let law = Law::Orders;
     let problem = problems::smooth::<D>();
@@ -53,8 +52,9 @@ fn check_scheme<T: Real, const D: usize>(
         sizes: [coarse_level, fine_level].map(|n| 1.0 / n as f64),
     };
     let degree = scheme.degree() as f64;
-    let promised = promised(scheme);
-    let by_duality = (scheme.is_consistent() && is_symmetric(scheme)).then_some(degree + 1.0);
+    let promised = promised(scheme.scheme);
+    let by_duality =
+        (scheme.is_consistent() && is_symmetric(scheme.scheme)).then_some(degree + 1.0);
     let l2_expected = promised.l2.into_iter().chain(by_duality).reduce(f64::max);
     let h1_expected = promised.h1.map_or(degree, |h1| h1.max(degree));
     let rounding = UNITS * T::EPSILON * problem.dirichlet_at(&domain.upper);

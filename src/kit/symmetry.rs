@@ -1,28 +1,27 @@
 //! A matrix is as symmetric as its form declares.
 
-use super::discrete::assemble;
+use super::discrete::{Tested, assemble};
 use super::error::{KitError, Law};
 use super::matrix::{Assembled, row_sizes};
 use super::report::SymmetryReport;
 use super::{meshes, problems};
 use crate::instances::compiled;
 use crate::real::Real;
-use crate::scheme::AnyScheme;
 
 /// Rounding units by which an entry may differ from its mirror image.
 const UNITS: f64 = 256.0;
 
 pub(super) fn check<T: Real, const D: usize>(
-    scheme: &dyn AnyScheme<T, D>,
+    scheme: &Tested<'_, T, D>,
 ) -> Result<SymmetryReport, KitError> {
     compiled!(
-        T, D: fn(&dyn AnyScheme<T, D>) -> Result<SymmetryReport, KitError>
+        T, D: fn(&Tested<'_, T, D>) -> Result<SymmetryReport, KitError>
             = check_scheme
     )(scheme)
 }
 
 fn check_scheme<T: Real, const D: usize>(
-    scheme: &dyn AnyScheme<T, D>,
+    scheme: &Tested<'_, T, D>,
 ) -> Result<SymmetryReport, KitError> {
     let sample = meshes::moved(Law::Symmetry, &meshes::mixed(), meshes::subdivisions(D))?;
     let inequality = assemble(Law::Symmetry, scheme, &problems::rich(), &sample.mesh)?;

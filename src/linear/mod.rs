@@ -17,4 +17,7 @@ pub(crate) mod precondition;
 
 pub use direct::{EliminationOrder, FactorError, Factors, is_positive_definite};
 pub use method::LinearMethod;
-pub use precondition::{CoarseLevel, CoarseSpaces, P1Level, Prolongation};
+pub use precondition::{
+    BuiltInPreconditioners, CoarseLevel, CoarseSpaces, P1Level, PreconditionedSystem,
+    Preconditioner, PreconditionerFamily, Prolongation,
+};

@@ -109,7 +109,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
             for cell in 0..self.mesh.n_cells() {
                 let volume = self.mesh.geometry(cell).volume.to_f64();
                 let share = volume / self.bounded_nodes().count() as f64;
-                for i in self.bounded_nodes() {
+                for (i, _) in self.bounded_nodes() {
                     measures[self.dofs.of(cell, i)] += share;
                 }
             }
@@ -117,7 +117,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
             for (cell, local) in self.facets_of(BoundaryPart::Contact) {
                 let measure = self.mesh.geometry(cell).facet_measure(local).to_f64();
                 let share = measure / self.bounded_nodes_on(local).count() as f64;
-                for i in self.bounded_nodes_on(local) {
+                for (i, _) in self.bounded_nodes_on(local) {
                     measures[self.dofs.of(cell, i)] += share;
                 }
             }

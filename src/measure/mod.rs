@@ -3,6 +3,7 @@
 mod contact;
 mod error_norm;
 mod errors;
+mod evaluation;
 mod fields;
 mod norms;
 mod order;

@@ -3,6 +3,7 @@
 use std::ops::Range;
 
 use super::errors::Errors;
+use super::evaluation::Reference;
 use crate::assemble::Discretisation;
 use crate::assemble::load::FacetMoments;
 use crate::assemble::space::tables::{BasisAt, CellTable};
@@ -50,6 +51,15 @@ impl SquaredErrors {
         self.energy += other.energy;
         self.max = self.max.max(other.max);
     }
+    /// The norms.
+    fn roots(&self) -> Errors {
+        Errors {
+            l2: Some(self.l2.sqrt()),
+            h1: Some(self.h1.sqrt()),
+            energy: Some(self.energy.sqrt()),
+            max: Some(self.max),
+        }
+    }
 }
 
 impl<T: Real, const D: usize> Discretisation<'_, T, D> {
@@ -67,16 +77,54 @@ impl<T: Real, const D: usize> Discretisation<'_, T, D> {
     /// # Panics
     /// If `u` is shorter than the number of unknowns.
     pub fn errors(&self, u: &[T]) -> Result<Errors, Error> {
+        match &self.space.problem.exact {
+            Some(exact) => self.errors_against(exact, u),
+            None => Ok(Errors::default()),
+        }
+    }
+
+    /// Errors of a vector of unknowns against a function with its gradient, in the norms of
+    /// [`Discretisation::errors`]. The energy norm contains the differences from the Dirichlet data of
+    /// the problem, not from those of the function.
+    ///
+    /// # Errors
+    /// [`Error::DataNotFinite`].
+    ///
+    /// # Panics
+    /// If `u` is shorter than the number of unknowns.
+    pub fn errors_against(&self, exact: &Exact<D>, u: &[T]) -> Result<Errors, Error> {
         compiled!(
-            T, D: fn(&Discretisation<'_, T, D>, &[T]) -> Result<Errors, Error>
-                = |of, u| of.space.errors(of.form().couples().then_some(of.form()), u)
-        )(self, u)
+            T, D: fn(&Discretisation<'_, T, D>, &Exact<D>, &[T]) -> Result<Errors, Error>
+                = |of, exact, u| of.space.errors(exact, of.form().couples().then_some(of.form()), u)
+        )(self, exact, u)
+    }
+
+    /// Norms of the difference between `u` and a discrete function on the mesh of which this mesh is the
+    /// refinement after some `refinements`: L2, H1 and the maximum over the nodes of this space.
+    pub(crate) fn difference(
+        &self,
+        u: &[T],
+        (coarse, values, refinements): (&Discretisation<'_, T, D>, &[T], usize),
+    ) -> Result<Errors, Error> {
+        compiled!(
+            T, D: fn(
+                &Discretisation<'_, T, D>,
+                &[T],
+                (&Discretisation<'_, T, D>, &[T], usize),
+            ) -> Result<Errors, Error>
+                = |of, u, (coarse, values, refinements)| {
+                    let space = &coarse.space;
+                    let reference = Reference::Coarse { space, values, refinements };
+                    let total = of.space.cell_errors(&reference, u)?;
+                    Ok(Errors { energy: None, ..total.roots() })
+                }
+        )(self, u, (coarse, values, refinements))
     }
 }
 
 impl<T: Real, const D: usize> Space<'_, T, D> {
     /// Squares of the errors over all cells.
-    fn cell_errors(&self, exact: &Exact<D>, u: &[T]) -> Result<SquaredErrors, Error> {
+    fn cell_errors(&self, exact: &Reference<'_, T, D>, u: &[T]) -> Result<SquaredErrors, Error> {
         let cell_rule = Rule::new(D, error_degree(D).max(2 * self.basis_degree + 2));
         let terms = self.node_terms(&Rule::new(D - 1, MEAN_DEGREE), &cell_rule);
         let table = self.cell_table(cell_rule);
@@ -97,7 +145,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
 
     fn cell_error(
         &self,
-        exact: &Exact<D>,
+        exact: &Reference<'_, T, D>,
         (table, terms): (&CellTable<f64>, &[Terms]),
         cell: usize,
         u: &[T],
@@ -110,12 +158,12 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         let mut sum = SquaredErrors::default();
         for ((point, basis), &weight) in table.points.iter().zip(&table.basis).zip(&table.weights) {
             let x = self.cell_point(point, cell);
-            let mut error = -(exact.gradient)(&x);
+            let mut error = -exact.gradient(cell, &x);
             for k in 0..=D {
                 let slope: f64 = (0..n).map(|i| local[i] * basis.derivatives[i][k]).sum();
                 error += point_f64(geometry.gradient(k)) * slope;
             }
-            let value = data::finite((exact.value)(&x), "exact solution", &x, cell)?;
+            let value = data::finite(exact.value(cell, &x), "exact solution", &x, cell)?;
             let difference = basis.value(&local) - value;
             let square = data::finite(error.norm_squared(), "exact gradient", &x, cell)?;
             let reaction = self.problem.reaction.as_ref().map_or(0.0, |c| c.at(&x));
@@ -125,7 +173,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         }
         for ((node, terms), value) in self.nodes.iter().zip(terms).zip(&local) {
             let exact_value: f64 =
-                terms.iter().map(|(p, w)| w * (exact.value)(&self.cell_point(p, cell))).sum();
+                terms.iter().map(|(p, w)| w * exact.value(cell, &self.cell_point(p, cell))).sum();
             let x = self.node_point(cell, node);
             let exact_value = data::finite(exact_value, "exact solution", &x, cell)?;
             sum.max = sum.max.max((value - exact_value).abs());
@@ -136,18 +184,17 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
 
 impl<T: Real, const D: usize> Space<'_, T, D> {
     /// Errors of a vector of unknowns; see `Discretisation::errors`.
-    pub fn errors(&self, form: Option<&dyn FacetForm<T, D>>, u: &[T]) -> Result<Errors, Error> {
-        let Some(exact) = &self.problem.exact else { return Ok(Errors::default()) };
-        let mut total = self.cell_errors(exact, u)?;
+    pub fn errors(
+        &self,
+        exact: &Exact<D>,
+        form: Option<&dyn FacetForm<T, D>>,
+        u: &[T],
+    ) -> Result<Errors, Error> {
+        let mut total = self.cell_errors(&Reference::Exact(exact), u)?;
         if let (Some(neighbours), Some(form)) = (&self.neighbours, form) {
             total.energy += self.facet_error(form, neighbours, u)?;
         }
-        Ok(Errors {
-            l2: Some(total.l2.sqrt()),
-            h1: Some(total.h1.sqrt()),
-            energy: Some(total.energy.sqrt()),
-            max: Some(total.max),
-        })
+        Ok(total.roots())
     }
 
     /// The facet form at the jumps of the error.

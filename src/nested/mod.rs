@@ -1,7 +1,13 @@
-//! Nested iteration: the hierarchy of meshes, the start from conforming P1, and one solve.
+//! One problem solved: nested meshes, the start from conforming P1, the result.
 
 mod hierarchy;
-mod solve;
+mod iteration;
+mod p1;
+mod p1_solution;
+mod solved;
 
-pub use hierarchy::{Hierarchy, P1Solution};
-pub use solve::{Solved, Task, solve};
+pub(crate) use hierarchy::Coarsest;
+pub use hierarchy::Hierarchy;
+pub use iteration::{Meshes, NestedIteration, solve};
+pub use p1_solution::P1Solution;
+pub use solved::Solved;

@@ -18,4 +18,4 @@ mod style;
 
 pub(crate) use cost::{Cost, NamedCurve, cost_figure};
 pub use figure::{Figure, convergence, work_precision};
-pub use picture::{Picture, Slice, solve_level};
+pub use picture::{Picture, Slice};

@@ -5,7 +5,7 @@ use crate::problem::Problem;
 use crate::scheme::Regularity;
 
 /// A named inequality on a domain.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 #[non_exhaustive]
 pub struct Scene<const D: usize> {
     /// The name users type.

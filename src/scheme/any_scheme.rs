@@ -2,8 +2,9 @@
 
 use super::{ExpectedOrders, Scheme, Setting};
 use crate::algebra::Inequality;
-use crate::assemble::{DataQuadrature, Discretisation};
-use crate::element::{Layout, ReferenceElement};
+use crate::assemble::{ChosenElement, DataQuadrature, Discretisation};
+use crate::constraint::{ConstraintSet, Nodes};
+use crate::element::{Layout, Node, ReferenceElement};
 use crate::error::Error;
 use crate::facet::{FacetForm, PenaltyParameters};
 use crate::mesh::Mesh;
@@ -17,11 +18,11 @@ use crate::real::Real;
 pub trait AnyScheme<T: Real, const D: usize>: Send + Sync {
     /// The scheme's name.
     fn name(&self) -> &str;
-    /// The name of its constraint set: where it imposes bounds.
-    fn constraint(&self) -> &'static str;
+    /// The nodes of its element, in the basis that a constraint set needs.
+    fn nodes_for(&self, set: &dyn ConstraintSet) -> Vec<Node>;
     /// Whether the exact solution satisfies the discrete equations.
     fn is_consistent(&self) -> bool;
-    /// Orders that theory proves in this setting.
+    /// Orders that theory proves in this setting, with bounds at all nodes.
     fn expected_orders(&self, setting: &Setting) -> ExpectedOrders;
     /// Polynomial degree of its element.
     fn degree(&self) -> usize;
@@ -52,6 +53,29 @@ impl<T: Real, const D: usize> dyn AnyScheme<T, D> + '_ {
             && layout.edge + layout.facet + layout.cell == 0
             && !self.form(mesh).couples()
     }
+    /// The name that reports state of a constraint set on its element; none if the set binds no
+    /// unknown of it.
+    pub fn constraint_on(&self, set: &dyn ConstraintSet) -> Option<String> {
+        let nodes = self.nodes_for(set);
+        let binds = nodes.iter().any(|node| set.in_domain(node, D).is_some());
+        binds.then(|| set.name_on(&nodes).to_owned())
+    }
+    /// Orders that theory proves in this setting with this constraint set: those with bounds at all
+    /// nodes, if the set binds the same, or if it [keeps](ConstraintSet::keeps_orders) them.
+    pub fn expected_orders_on(&self, set: &dyn ConstraintSet, setting: &Setting) -> ExpectedOrders {
+        let bound_by = |set: &dyn ConstraintSet| -> Vec<_> {
+            let nodes = self.nodes_for(set);
+            nodes.iter().map(|n| (set.in_domain(n, D), set.on_contact(n, D))).collect()
+        };
+        let own = self.nodes_for(&Nodes);
+        if set.keeps_orders(setting)
+            || own == self.nodes_for(set) && bound_by(set) == bound_by(&Nodes)
+        {
+            self.expected_orders(setting)
+        } else {
+            ExpectedOrders::default()
+        }
+    }
     /// Penalty factors in force on a mesh.
     pub fn parameters(&self, mesh: &Mesh<T, D>) -> PenaltyParameters {
         self.form(mesh).parameters()
@@ -75,8 +99,8 @@ impl<T: Real, const D: usize, S: Scheme<T, D>> AnyScheme<T, D> for S {
     fn name(&self) -> &str {
         Scheme::name(self)
     }
-    fn constraint(&self) -> &'static str {
-        self.bounded_nodes().name(S::Element::BASIS_DEGREE, &S::Element::node(0))
+    fn nodes_for(&self, set: &dyn ConstraintSet) -> Vec<Node> {
+        ChosenElement::<T, D>::of::<S::Element>(set).element.nodes
     }
     fn is_consistent(&self) -> bool {
         S::CONSISTENT
@@ -99,18 +123,12 @@ impl<T: Real, const D: usize, S: Scheme<T, D>> AnyScheme<T, D> for S {
         mesh: &'a Mesh<T, D>,
         quadrature: DataQuadrature,
     ) -> Result<Discretisation<'a, T, D>, Error> {
-        Discretisation::of::<S::Element>(
-            self.form(mesh),
-            (S::DIRICHLET, self.bounded_nodes()),
-            problem,
-            mesh,
-            quadrature,
-        )
+        Discretisation::of::<S::Element>(self.form(mesh), S::DIRICHLET, problem, mesh, quadrature)
     }
 }
 
 impl<'a, T: Real, const D: usize> Discretisation<'a, T, D> {
-    /// Joins scheme, problem and mesh; builds facets only if the scheme needs them.
+    /// Joins scheme, problem and mesh, in the basis that the problem's constraint set needs; builds facets only if the scheme needs them.
     ///
     /// # Errors
     /// [`Error::CoefficientNotPositive`], [`Error::NothingToBound`], [`Error::UnsupportedForm`].

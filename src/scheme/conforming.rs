@@ -32,7 +32,7 @@ impl<T: Real, const D: usize> Scheme<T, D> for ConformingP1 {
 
 /// Continuous piecewise quadratics, bounds at all nodes, Dirichlet values pinned.
 ///
-/// [`Midpoints`](super::Midpoints) binds midpoints of edges only. The diffusion coefficient is a
+/// [`Midpoints`](crate::constraint::Midpoints) binds midpoints of edges only. The diffusion coefficient is a
 /// constant in each cell: the order two is that of problems whose coefficient is constant in each cell.
 ///
 /// Orders in the energy norm, for a solution in `H^s`: `min(s - 1, 2)` by interpolation where no

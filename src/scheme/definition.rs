@@ -1,12 +1,11 @@
 //! What a scheme is.
 
-use crate::constraint::BoundedNodes;
 use crate::element::ReferenceElement;
 use crate::facet::{DirichletBy, FacetForm};
 use crate::mesh::Mesh;
 use crate::real::Real;
 
-use super::theory::{ExpectedOrders, Setting};
+use crate::theory::{ExpectedOrders, Setting};
 
 /// A discretisation of the bilinear form and of Dirichlet data.
 #[diagnostic::on_unimplemented(
@@ -25,13 +24,9 @@ pub trait Scheme<T: Real, const D: usize>: Send + Sync {
     const CONSISTENT: bool = true;
     /// The name users type and reports state.
     fn name(&self) -> &str;
-    /// At which nodes it imposes the inequality.
-    fn bounded_nodes(&self) -> BoundedNodes {
-        BoundedNodes::All
-    }
     /// The facet form on a mesh, its parameters resolved.
     fn facet(&self, mesh: &Mesh<T, D>) -> Self::Facet;
-    /// Orders that theory proves in this setting; none by default.
+    /// Orders that theory proves in this setting, with bounds at all nodes; none by default.
     fn expected_orders(&self, setting: &Setting) -> ExpectedOrders {
         let _ = setting;
         ExpectedOrders::default()

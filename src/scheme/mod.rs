@@ -1,39 +1,31 @@
-//! Schemes: an element, a facet form, a way to impose Dirichlet data and a constraint set. Nothing
-//! else.
+//! Schemes: an element, a facet form and a way to impose Dirichlet data. Nothing else: where an
+//! inequality binds is for the [constraint set](crate::constraint).
 
 mod any_scheme;
-mod cell_means;
 mod conforming;
 mod crouzeix_raviart;
 mod definition;
 mod energy_order;
-mod facet_means;
 mod interior_penalty;
 mod ldg;
 mod lifting;
-mod midpoints;
 mod options;
-mod theory;
+
 mod wopsip;
 
 pub use any_scheme::AnyScheme;
-pub use cell_means::CellMeans;
 pub use conforming::{ConformingP1, ConformingP2};
 pub use crouzeix_raviart::NonconformingP1;
 pub use definition::Scheme;
-pub use facet_means::FacetMeans;
 pub use interior_penalty::{Iipg, InteriorPenaltyMethod, Nipg, Sipg};
 pub use ldg::{Ldg, LocalFluxes};
 pub use lifting::{Bmmpr, Br2};
-pub use midpoints::Midpoints;
-pub use options::{Placement, SchemeOptions};
-pub use theory::{ExpectedOrders, Regularity, Setting};
+pub use options::SchemeOptions;
 pub use wopsip::{Eta, Wopsip};
 
 #[doc(no_inline)]
-pub use crate::constraint::BoundedNodes;
-#[doc(no_inline)]
 pub use crate::facet::DirichletBy;
+pub use crate::theory::{ExpectedOrders, Regularity, Setting};
 
 use crate::element::P2;
 use crate::instances::compiled;
@@ -70,7 +62,7 @@ macro_rules! schemes_by_name {
             $options: &SchemeOptions,
         ) -> Option<Box<dyn AnyScheme<T, D>>> {
             match name {
-                $($name => Some($scheme),)*
+                $($name => Some(Box::new($scheme)),)*
                 _ => None,
             }
         }
@@ -79,38 +71,38 @@ macro_rules! schemes_by_name {
 
 // A scheme gets its name by one entry here: name, summary, constructor from the options.
 schemes_by_name! { options:
-    "p1", "conforming linear elements" => options.fixed(ConformingP1);
-    "p2", "conforming quadratic elements" => options.at_nodes(ConformingP2);
-    "cr", "Crouzeix-Raviart elements, bounds on facet means" => options.fixed(NonconformingP1);
+    "p1", "conforming linear elements" => ConformingP1;
+    "p2", "conforming quadratic elements" => ConformingP2;
+    "cr", "Crouzeix-Raviart elements, bounds on facet means" => NonconformingP1;
     "sipg", "symmetric interior penalty on broken linears (takes --sigma)"
-        => options.linear(Sipg::with_options(options));
+        => Sipg::with_options(options);
     "nipg", "non-symmetric interior penalty on broken linears (takes --sigma)"
-        => options.linear(Nipg::with_options(options));
+        => Nipg::with_options(options);
     "iipg", "incomplete interior penalty on broken linears (takes --sigma)"
-        => options.linear(Iipg::with_options(options));
+        => Iipg::with_options(options);
     "ldg", "local discontinuous Galerkin on broken linears, mean fluxes (takes --sigma)"
-        => options.linear(Ldg::with_options(options, false));
+        => Ldg::with_options(options, false);
     "ldg-switch", "local discontinuous Galerkin on broken linears, one-sided fluxes (takes --sigma)"
-        => options.linear(Ldg::with_options(options, true));
-    "br2", "second method of Bassi and Rebay on broken linears" => options.linear(Br2::default());
+        => Ldg::with_options(options, true);
+    "br2", "second method of Bassi and Rebay on broken linears" => Br2::default();
     "bmmpr", "method of Brezzi, Manzini, Marini, Pietra and Russo on broken linears"
-        => options.linear(Bmmpr::default());
+        => Bmmpr::default();
     "wopsip", "weakly over-penalised symmetric interior penalty on broken linears (takes --eta)"
-        => options.linear(Wopsip::with_options(options));
+        => Wopsip::with_options(options);
     "sipg-p2", "sipg on broken quadratics (takes --sigma)"
-        => options.quadratic(Sipg::with_options(options).on(P2));
+        => Sipg::with_options(options).on(P2);
     "nipg-p2", "nipg on broken quadratics (takes --sigma)"
-        => options.quadratic(Nipg::with_options(options).on(P2));
+        => Nipg::with_options(options).on(P2);
     "iipg-p2", "iipg on broken quadratics (takes --sigma)"
-        => options.quadratic(Iipg::with_options(options).on(P2));
+        => Iipg::with_options(options).on(P2);
     "ldg-p2", "ldg on broken quadratics (takes --sigma)"
-        => options.quadratic(Ldg::with_options(options, false).on(P2));
+        => Ldg::with_options(options, false).on(P2);
     "ldg-switch-p2", "ldg-switch on broken quadratics (takes --sigma)"
-        => options.quadratic(Ldg::with_options(options, true).on(P2));
-    "br2-p2", "br2 on broken quadratics" => options.quadratic(Br2::default().on(P2));
-    "bmmpr-p2", "bmmpr on broken quadratics" => options.quadratic(Bmmpr::default().on(P2));
+        => Ldg::with_options(options, true).on(P2);
+    "br2-p2", "br2 on broken quadratics" => Br2::default().on(P2);
+    "bmmpr-p2", "bmmpr on broken quadratics" => Bmmpr::default().on(P2);
     "wopsip-p2", "wopsip on broken quadratics, moments of degree one (takes --eta)"
-        => options.quadratic(Wopsip::with_options(options).on(P2));
+        => Wopsip::with_options(options).on(P2);
 }
 
 /// The scheme of this name.

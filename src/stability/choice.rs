@@ -1,9 +1,15 @@
 //! Schemes with choices of their penalties.
 
 use super::unweighted::UnweightedWopsip;
+use crate::algebra::Inequality;
+use crate::assemble::DataQuadrature;
+use crate::constraint::FacetMeans;
+use crate::error::Error;
 use crate::facet::WeightRule;
+use crate::mesh::Mesh;
+use crate::problem::Problem;
 use crate::real::Real;
-use crate::scheme::{AnyScheme, FacetMeans, Placement, SchemeOptions, Wopsip, scheme_by_name};
+use crate::scheme::{AnyScheme, SchemeOptions, Wopsip, scheme_by_name};
 
 /// A scheme of the study.
 struct StudiedScheme {
@@ -11,14 +17,14 @@ struct StudiedScheme {
     name: &'static str,
     /// The name in the catalogue of schemes.
     registered: &'static str,
-    placement: Placement,
+    /// Whether facet means are bound instead of nodes.
+    on_facet_means: bool,
     /// Whether the penalty is of order `h^-3`.
     is_over_penalised: bool,
 }
 
 const fn scheme(name: &'static str) -> StudiedScheme {
-    let placement = Placement::Nodes;
-    StudiedScheme { name, registered: name, placement, is_over_penalised: false }
+    StudiedScheme { name, registered: name, on_facet_means: false, is_over_penalised: false }
 }
 
 /// The schemes of the study.
@@ -30,7 +36,7 @@ const SCHEMES: [StudiedScheme; 7] = [
     StudiedScheme {
         name: "wopsip:facet-means",
         registered: "wopsip",
-        placement: Placement::FacetMeans,
+        on_facet_means: true,
         is_over_penalised: true,
     },
     scheme("p2"),
@@ -103,29 +109,32 @@ impl Choice {
             Penalty::Unweighted => "eta = diam^2, eta/h_F^3, coefficient ignored".into(),
         }
     }
+    /// The problem with the constraint set of the choice.
+    pub fn constrain<const D: usize>(&self, problem: Problem<D>) -> Problem<D> {
+        if self.studied().on_facet_means { problem.on(FacetMeans) } else { problem }
+    }
+    /// The inequality of a problem on a mesh.
+    pub fn inequality<const D: usize>(
+        &self,
+        problem: &Problem<D>,
+        mesh: &Mesh<f64, D>,
+    ) -> Result<Inequality<f64>, Error> {
+        let problem = self.constrain(problem.clone());
+        self.make::<f64, D>().inequality(&problem, mesh, DataQuadrature::default())
+    }
     /// The scheme.
     pub fn make<T: Real, const D: usize>(&self) -> Box<dyn AnyScheme<T, D>> {
-        let StudiedScheme { registered, placement: at, .. } = *self.studied();
-        let mut options = SchemeOptions { placement: at, ..SchemeOptions::default() };
+        let mut options = SchemeOptions::default();
         match self.penalty {
             Penalty::Default => {}
             Penalty::Eta(eta) => options.eta = Some(eta),
             Penalty::Sigma(sigma) => options.sigma = Some(sigma),
             Penalty::ByHeights => {
-                let scheme = Wopsip { weight: WeightRule::Anisotropic, ..Wopsip::default() };
-                return match at {
-                    Placement::FacetMeans => Box::new(FacetMeans(scheme)),
-                    _ => Box::new(scheme),
-                };
+                return Box::new(Wopsip { weight: WeightRule::Anisotropic, ..Wopsip::default() });
             }
-            Penalty::Unweighted => {
-                return match at {
-                    Placement::FacetMeans => Box::new(FacetMeans(UnweightedWopsip::default())),
-                    _ => Box::new(UnweightedWopsip::default()),
-                };
-            }
+            Penalty::Unweighted => return Box::new(UnweightedWopsip::default()),
         }
-        match scheme_by_name(registered, &options) {
+        match scheme_by_name(self.studied().registered, &options) {
             Some(scheme) => scheme,
             None => unreachable!("names are those of the list above"),
         }

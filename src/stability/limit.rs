@@ -6,6 +6,7 @@ use super::row_builder::RowBuilder;
 use super::runs::{sines, solved, solver};
 use crate::error::Error;
 use crate::mesh::Mesh;
+use crate::nested::Hierarchy;
 use crate::scenes;
 use crate::scenes::Scene;
 
@@ -34,10 +35,13 @@ pub(crate) fn plan(plan: &mut Plan<'_>) {
 fn compare(scene: &Scene<2>, choice: &Choice, level: usize, sink: Sink<'_>) -> Result<(), Error> {
     let Penalty::Eta(eta) = choice.penalty else { unreachable!("planned with a factor") };
     let means = Choice::default("cr");
-    let (mesh, ours) = solved(scene, choice, level, &solver(), true)?;
-    let (_, limit) = solved(scene, &means, level, &solver(), true)?;
-    let distance = match (&ours.fields, &limit.fields) {
-        (Some(a), Some(b)) => Some(relative_distance(&mesh, &a.u, &b.u)),
+    let meshes = Hierarchy::of_domain(&scene.domain, level)?;
+    let problem = choice.constrain(scene.problem.clone());
+    let ours = solved(&problem, &meshes, choice, solver(), true)?;
+    let problem_of_means = means.constrain(scene.problem.clone());
+    let limit = solved(&problem_of_means, &meshes, &means, solver(), true)?;
+    let distance = match (ours.fields(), limit.fields()) {
+        (Some(a), Some(b)) => Some(relative_distance(ours.mesh(), &a.u, &b.u)),
         _ => None,
     };
     let claim = RowBuilder::new("limit-of-large-factors", choice)
@@ -46,7 +50,7 @@ fn compare(scene: &Scene<2>, choice: &Choice, level: usize, sink: Sink<'_>) -> R
         .at("eta", eta)
         .quantity("relative L2 distance to cr, times eta^(1/2)")
         .at_most(1.0)
-        .detail(distance.map_or(ours.outcome.name().to_owned(), |d| format!("distance {d:.2e}")));
+        .detail(distance.map_or(ours.outcome().name().to_owned(), |d| format!("distance {d:.2e}")));
     let claim = if eta > JUDGED { claim.only_reported() } else { claim };
     sink(claim.measured(distance.map(|d| d * eta.sqrt())));
     Ok(())

@@ -2,12 +2,11 @@
 
 use super::choice::Choice;
 use crate::algebra::{Bound, SparseMatrix};
-use crate::assemble::DataQuadrature;
 use crate::error::Error;
 use crate::inequality::{ActiveSet, Globalisation};
 use crate::linear::{LinearMethod, is_positive_definite};
 use crate::mesh::{BoxDomain, Mesh};
-use crate::nested::{Hierarchy, Solved, Task, solve};
+use crate::nested::{Hierarchy, NestedIteration, Solved};
 use crate::problem::Problem;
 use crate::real::{Point, Real};
 use crate::scenes::Scene;
@@ -27,10 +26,11 @@ pub(crate) fn solver_with(globalisation: Globalisation, max_outer: usize) -> Act
 
 /// The rows of a scheme on levels of a scene.
 pub(crate) fn rows<T: Real, const D: usize>(
-    scene: Scene<D>,
+    mut scene: Scene<D>,
     choice: &Choice,
     levels: &[usize],
 ) -> Result<Vec<Row>, Error> {
+    scene.problem = choice.constrain(scene.problem);
     let study = Study::<T, D>::new(scene).boxed_scheme(choice.make()).solver(solver());
     Ok(study.levels(levels.iter().copied()).run()?.rows)
 }
@@ -46,36 +46,26 @@ pub(crate) fn row<T: Real, const D: usize>(
 
 /// The row of a scheme on a mesh.
 pub(crate) fn row_on<const D: usize>(
-    scene: Scene<D>,
+    mut scene: Scene<D>,
     mesh: Mesh<f64, D>,
     choice: &Choice,
 ) -> Result<Row, Error> {
+    scene.problem = choice.constrain(scene.problem);
     let study = Study::<f64, D>::new(scene).on_mesh(mesh).boxed_scheme(choice.make());
     Ok(study.solver(solver()).levels([0]).run()?.rows.swap_remove(0))
 }
 
-/// A scheme's solution on a level, with fields; started from conforming elements if asked for.
-pub(crate) fn solved<const D: usize>(
-    scene: &Scene<D>,
+/// A scheme's solution of a problem with the scheme's constraint set ([`Choice::constrain`]) on the finest
+/// mesh of a hierarchy; started from conforming elements if asked for.
+pub(crate) fn solved<'a, const D: usize>(
+    problem: &'a Problem<D>,
+    meshes: &'a Hierarchy<f64, D>,
     choice: &Choice,
-    level: usize,
-    solver: &ActiveSet,
+    solver: ActiveSet,
     is_warm: bool,
-) -> Result<(Mesh<f64, D>, Solved), Error> {
-    let quadrature = DataQuadrature::default();
-    let mut levels = Hierarchy::<f64, D>::new(&scene.problem, &scene.domain, None);
-    levels.build(level)?;
-    let start =
-        if is_warm { Some(levels.p1_solution(level, solver, quadrature, 1)?) } else { None };
-    let Some((mesh, _)) = levels.mesh(level) else { unreachable!("made above") };
-    let scheme = choice.make::<f64, D>();
-    let task = Task::new(&scene.problem, mesh, solver)
-        .start(start.as_deref())
-        .quadrature(quadrature)
-        .with_errors(true)
-        .with_fields(true);
-    let solved = solve(&*scheme, &task)?;
-    Ok((mesh.clone(), solved))
+) -> Result<Solved<'a, f64, D>, Error> {
+    let nested = NestedIteration::new(problem, meshes).solver(solver);
+    nested.cold_start(!is_warm).solve(&*choice.make())
 }
 
 /// Whether a scheme's matrix is symmetric positive definite on a mesh: 1 or 0; none if the
@@ -85,8 +75,7 @@ pub(crate) fn definite<const D: usize>(
     mesh: &Mesh<f64, D>,
     choice: &Choice,
 ) -> Result<Option<f64>, Error> {
-    let inequality =
-        choice.make::<f64, D>().inequality(problem, mesh, DataQuadrature::default())?;
+    let inequality = choice.inequality(problem, mesh)?;
     let free: Vec<u32> = (0..inequality.size() as u32)
         .filter(|&i| !matches!(inequality.bounds[i as usize], Bound::Fixed(_)))
         .collect();
@@ -103,8 +92,7 @@ pub(crate) fn free_matrix<const D: usize>(
     mesh: &Mesh<f64, D>,
     choice: &Choice,
 ) -> Result<SparseMatrix<f64>, Error> {
-    let inequality =
-        choice.make::<f64, D>().inequality(problem, mesh, DataQuadrature::default())?;
+    let inequality = choice.inequality(problem, mesh)?;
     let is_free = |i: usize| inequality.bounds[i].fixed_value().is_none();
     let mut number = vec![u32::MAX; inequality.size()];
     let free: Vec<usize> = (0..inequality.size()).filter(|&i| is_free(i)).collect();

@@ -35,6 +35,8 @@ pub struct Iterations {
     pub linear: usize,
     /// Number of coarser levels of the initial guess.
     pub levels: usize,
+    /// Cycles of monotone multigrid for the initial guess on a large mesh without coarser ones.
+    pub start_cycles: usize,
 }
 
 /// Wall times in seconds.
@@ -71,8 +73,8 @@ pub struct Row {
     pub dimension: usize,
     /// Name of the scheme.
     pub scheme: String,
-    /// Where the inequality is imposed: `vertices`, `facet-means`, `nodes`, `midpoints` or
-    /// `cell-means`.
+    /// Where the inequality is imposed: `vertices`, `facet-means`, `nodes`, `midpoints`,
+    /// `cell-means`, or the name of a constraint set of one's own.
     pub constraint: String,
     /// Subdivisions of the shortest side, or number of refinements of a mesh file.
     pub level: usize,

@@ -12,16 +12,14 @@ use super::orders::fill_orders;
 use super::report::{Program, Report};
 use super::row::{Iterations, Row, Seconds};
 use crate::assemble::DataQuadrature;
+use crate::constraint::ConstraintSet;
 use crate::element::Layout;
 use crate::error::Error;
-#[cfg(feature = "report")]
-use crate::error::write_error;
 use crate::inequality::{ActiveSet, InequalitySolver};
 use crate::instances::compiled;
 use crate::mesh::{BoundaryPart, Domain, Mesh};
-use crate::nested::{Hierarchy, P1Solution, Solved, Task, solve};
-#[cfg(feature = "report")]
-use crate::paraview::{CellFields, write_vtu};
+use crate::nested::{Coarsest, Hierarchy, NestedIteration, Solved};
+use crate::problem::Problem;
 use crate::real::Real;
 use crate::scenes::Scene;
 use crate::scheme::{AnyScheme, ExpectedOrders, Setting};
@@ -52,24 +50,39 @@ pub enum Progress<'a> {
 /// ```
 pub struct Study<'a, T: Real, const D: usize> {
     scene: Scene<D>,
-    schemes: Vec<Arc<dyn AnyScheme<T, D> + 'a>>,
+    entries: Vec<Entry<'a, T, D>>,
     levels: Vec<usize>,
     mesh: Option<Mesh<T, D>>,
-    solver: Box<dyn InequalitySolver<T> + 'a>,
+    solvers: Vec<Arc<dyn InequalitySolver<T> + 'a>>,
     quadrature: DataQuadrature,
     repeat: usize,
     directory: Option<PathBuf>,
     observer: Box<dyn Fn(Progress<'_>) + 'a>,
 }
 
+/// A scheme, with its constraint set if that is not the problem's.
+struct Entry<'a, T: Real, const D: usize> {
+    scheme: Arc<dyn AnyScheme<T, D> + 'a>,
+    set: Option<Arc<dyn ConstraintSet>>,
+}
+
+impl<T: Real, const D: usize> Entry<'_, T, D> {
+    /// The problem with the constraint set of the entry.
+    fn problem(&self, problem: &Problem<D>) -> Problem<D> {
+        let mut problem = problem.clone();
+        problem.constraint_set = self.set.clone().or(problem.constraint_set);
+        problem
+    }
+}
+
 impl<T: Real, const D: usize> fmt::Debug for Study<'_, T, D> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let schemes: Vec<&str> = self.schemes.iter().map(|s| s.name()).collect();
+        let schemes: Vec<&str> = self.entries.iter().map(|e| e.scheme.name()).collect();
         f.debug_struct("Study")
             .field("scene", &self.scene.name)
             .field("schemes", &schemes)
             .field("levels", &self.levels)
-            .field("solver", &self.solver.name())
+            .field("solvers", &self.solvers().iter().map(|s| s.name()).collect::<Vec<_>>())
             .field("repeat", &self.repeat)
             .finish_non_exhaustive()
     }
@@ -81,32 +94,52 @@ impl<'a, T: Real, const D: usize> Study<'a, T, D> {
     pub fn new(scene: Scene<D>) -> Self {
         Self {
             scene,
-            schemes: Vec::new(),
+            entries: Vec::new(),
             levels: Vec::new(),
             mesh: None,
-            solver: Box::new(ActiveSet::default()),
+            solvers: Vec::new(),
             quadrature: DataQuadrature::default(),
             repeat: 1,
             directory: None,
             observer: Box::new(|_| {}),
         }
     }
-    /// Adds a scheme.
+    /// Adds a scheme, with the constraint set of the problem.
     #[must_use]
-    pub fn scheme(mut self, scheme: impl AnyScheme<T, D> + 'a) -> Self {
-        self.schemes.push(Arc::new(scheme));
-        self
+    pub fn scheme(self, scheme: impl AnyScheme<T, D> + 'a) -> Self {
+        self.shared_scheme(Arc::new(scheme), None)
     }
-    /// Adds a scheme chosen at run time.
+    /// Adds a scheme with a constraint set of its own, so that one scheme may stand beside itself with
+    /// other bounds.
     #[must_use]
-    pub fn boxed_scheme(mut self, scheme: Box<dyn AnyScheme<T, D> + 'a>) -> Self {
-        self.schemes.push(scheme.into());
-        self
+    pub fn scheme_on(
+        self,
+        scheme: impl AnyScheme<T, D> + 'a,
+        set: impl ConstraintSet + 'static,
+    ) -> Self {
+        self.shared_scheme(Arc::new(scheme), Some(Arc::new(set)))
+    }
+    /// Adds a scheme chosen at run time, with the constraint set of the problem.
+    #[must_use]
+    pub fn boxed_scheme(self, scheme: Box<dyn AnyScheme<T, D> + 'a>) -> Self {
+        self.shared_scheme(scheme.into(), None)
+    }
+    /// Adds a scheme chosen at run time, with a constraint set of its own.
+    #[must_use]
+    pub fn boxed_scheme_on(
+        self,
+        scheme: Box<dyn AnyScheme<T, D> + 'a>,
+        set: impl ConstraintSet + 'static,
+    ) -> Self {
+        self.shared_scheme(scheme.into(), Some(Arc::new(set)))
     }
     /// Adds a scheme that other studies have too.
-    #[cfg(feature = "report")]
-    pub(crate) fn shared_scheme(mut self, scheme: Arc<dyn AnyScheme<T, D> + 'a>) -> Self {
-        self.schemes.push(scheme);
+    pub(crate) fn shared_scheme(
+        mut self,
+        scheme: Arc<dyn AnyScheme<T, D> + 'a>,
+        set: Option<Arc<dyn ConstraintSet>>,
+    ) -> Self {
+        self.entries.push(Entry { scheme, set });
         self
     }
     /// Sets the levels: subdivisions of the shortest side, or refinements of a given mesh.
@@ -121,10 +154,16 @@ impl<'a, T: Real, const D: usize> Study<'a, T, D> {
         self.mesh = Some(mesh);
         self
     }
-    /// Sets the solver of the inequality.
+    /// Adds a solver of the inequality; without one, the active set method runs. Several solvers stand
+    /// side by side: every scheme runs with each of them, also on coarser levels for its start.
     #[must_use]
-    pub fn solver(mut self, solver: impl InequalitySolver<T> + 'a) -> Self {
-        self.solver = Box::new(solver);
+    pub fn solver(self, solver: impl InequalitySolver<T> + 'a) -> Self {
+        self.boxed_solver(Box::new(solver))
+    }
+    /// Adds a solver of the inequality chosen at run time.
+    #[must_use]
+    pub fn boxed_solver(mut self, solver: Box<dyn InequalitySolver<T> + 'a>) -> Self {
+        self.solvers.push(solver.into());
         self
     }
     /// Sets the quadrature of data.
@@ -140,7 +179,7 @@ impl<'a, T: Real, const D: usize> Study<'a, T, D> {
         self
     }
     /// Writes the fields of every scheme on the finest level to this directory, as
-    /// `SCENE-SCHEME.vtu`.
+    /// `SCENE-SCHEME.vtu`; where a scheme stands twice, its constraint set follows its name.
     #[cfg(feature = "report")]
     #[must_use]
     pub fn fields_to(mut self, directory: impl Into<PathBuf>) -> Self {
@@ -176,7 +215,7 @@ impl<'a, T: Real, const D: usize> Study<'a, T, D> {
                 allowed: allowed.to_owned(),
             })
         };
-        if self.schemes.is_empty() {
+        if self.entries.is_empty() {
             return wrong("schemes", "none", "a study needs at least one scheme");
         }
         if self.levels.is_empty() {
@@ -185,8 +224,7 @@ impl<'a, T: Real, const D: usize> Study<'a, T, D> {
         if self.mesh.is_none() && self.levels.contains(&0) {
             return wrong("level", "0", "a built-in mesh has at least one subdivision");
         }
-        let levels = Hierarchy::new(&self.scene.problem, &self.scene.domain, self.mesh.as_ref());
-        self.levels.iter().try_for_each(|&level| levels.check_size(level))?;
+        self.levels.iter().try_for_each(|&level| self.coarsest().check(level))?;
         match &self.mesh {
             Some(mesh) => check_fit(&self.scene, mesh),
             None => check_domain(&self.scene).map(|()| None),
@@ -202,14 +240,13 @@ impl<'a, T: Real, const D: usize> Study<'a, T, D> {
         )(self)
     }
     fn estimate_memory(&self) -> Option<MemoryEstimate> {
-        let levels = Hierarchy::new(&self.scene.problem, &self.scene.domain, self.mesh.as_ref());
         let level = self.levels.iter().copied().max()?;
-        let cells = levels.cells(level);
+        let cells = self.coarsest().cells(level);
         let obstacle = self.scene.problem.has_obstacle();
+        let solvers = self.solvers();
         let bytes = |layout: Layout| {
-            let is_iterative =
-                self.solver.uses_coarse_spaces(unknowns_about(D, layout, cells) as usize);
-            match is_iterative && D > 1 {
+            let unknowns = unknowns_about(D, layout, cells) as usize;
+            match D > 1 && solvers.iter().all(|s| s.uses_coarse_spaces(unknowns)) {
                 true => estimate_without_factors(D, layout, cells, size_of::<T>()),
                 false => estimate(D, layout, cells, obstacle, size_of::<T>()),
             }
@@ -219,10 +256,10 @@ impl<'a, T: Real, const D: usize> Study<'a, T, D> {
             scheme: scheme.name().to_owned(),
             level,
         };
-        self.schemes.iter().map(|s| of(&**s)).max_by(|a, b| a.bytes.total_cmp(&b.bytes))
+        self.entries.iter().map(|e| of(&*e.scheme)).max_by(|a, b| a.bytes.total_cmp(&b.bytes))
     }
 
-    /// Runs every scheme on every level.
+    /// Runs every scheme with every solver on every level.
     ///
     /// # Errors
     /// Errors of [`Self::check`] and of assembly. A solve that does not converge is no error: its
@@ -235,18 +272,24 @@ impl<'a, T: Real, const D: usize> Study<'a, T, D> {
     }
     fn run_all(&self) -> Result<Report, Error> {
         let failure = self.where_exact_fails()?;
-        let failure = failure.as_deref();
-        let mut levels =
-            Hierarchy::new(&self.scene.problem, &self.scene.domain, self.mesh.as_ref());
-        let finest = self.levels.iter().copied().max();
+        let hierarchies = self.coarsest().build_all(&self.levels)?;
+        let problems: Vec<Problem<D>> =
+            self.entries.iter().map(|e| e.problem(&self.scene.problem)).collect();
+        let mut by_solver: Vec<Vec<NestedIteration<'_, T, D>>> = self
+            .solvers()
+            .iter()
+            .map(|solver| hierarchies.iter().map(|h| self.nested(h, solver)).collect())
+            .collect();
         let mut rows = Vec::new();
-        for scheme in &self.schemes {
-            for &level in &self.levels {
-                (self.observer)(Progress::Started(&self.scene.name, scheme.name(), level));
-                let with_fields = self.directory.is_some() && Some(level) == finest;
-                let (row, _) = self.row(&mut levels, &**scheme, level, failure, with_fields)?;
-                (self.observer)(Progress::Finished(&row));
-                rows.push(row);
+        for (entry, problem) in self.entries.iter().zip(&problems) {
+            for nested in &mut by_solver {
+                for &level in &self.levels {
+                    let name = entry.scheme.name();
+                    (self.observer)(Progress::Started(&self.scene.name, name, level));
+                    let (row, _) = self.row(nested, (entry, problem), level, failure.as_deref())?;
+                    (self.observer)(Progress::Finished(&row));
+                    rows.push(row);
+                }
             }
         }
         fill_orders(&mut rows);
@@ -254,119 +297,108 @@ impl<'a, T: Real, const D: usize> Study<'a, T, D> {
         Ok(Report { program, rows })
     }
 
-    /// Runs the first scheme on the first level with a new hierarchy, so that no earlier run
-    /// shortens it. Returns the row and the seconds of the start from coarser levels.
+    /// Runs the first scheme with the first solver on the first level with a new hierarchy, so that no
+    /// earlier run shortens it. Returns the row and the seconds of the start from coarser levels.
     #[cfg(feature = "report")]
     pub(crate) fn run_alone(&self) -> Result<(Row, f64), Error> {
         let failure = self.where_exact_fails()?;
-        let (Some(scheme), Some(&level)) = (self.schemes.first(), self.levels.first()) else {
+        let (Some(entry), Some(&level)) = (self.entries.first(), self.levels.first()) else {
             unreachable!("checked above")
         };
-        let mut levels =
-            Hierarchy::new(&self.scene.problem, &self.scene.domain, self.mesh.as_ref());
-        self.row(&mut levels, &**scheme, level, failure.as_deref(), false)
+        let problem = entry.problem(&self.scene.problem);
+        let hierarchy = self.coarsest().build(level)?;
+        let mut nested = [self.nested(&hierarchy, &self.solvers()[0])];
+        self.row(&mut nested, (entry, &problem), level, failure.as_deref())
     }
 
-    /// Solves one scheme on one level. Returns the row, and the seconds of its start from coarser
-    /// levels.
-    fn row(
+    /// From which the meshes of all levels are refined.
+    fn coarsest(&self) -> Coarsest<'_, T, D> {
+        match &self.mesh {
+            Some(mesh) => Coarsest::Mesh(mesh),
+            None => Coarsest::Domain(&self.scene.domain),
+        }
+    }
+
+    /// The solvers; the active set method if there is none.
+    fn solvers(&self) -> Vec<Arc<dyn InequalitySolver<T> + 'a>> {
+        match &self.solvers[..] {
+            [] => vec![Arc::new(ActiveSet::default())],
+            some => some.to_vec(),
+        }
+    }
+
+    /// The problem of the scene on nested meshes.
+    fn nested<'s>(
+        &'s self,
+        hierarchy: &'s Hierarchy<T, D>,
+        solver: &Arc<dyn InequalitySolver<T> + 's>,
+    ) -> NestedIteration<'s, T, D> {
+        NestedIteration::new(&self.scene.problem, hierarchy)
+            .shared_solver(solver.clone())
+            .quadrature(self.quadrature)
+            .repeat(self.repeat)
+    }
+
+    /// Solves one scheme on one level of these hierarchies. Returns the row, and the seconds of its start
+    /// from coarser levels.
+    fn row<'p>(
         &self,
-        levels: &mut Hierarchy<'_, T, D>,
-        scheme: &dyn AnyScheme<T, D>,
+        nested: &mut [NestedIteration<'p, T, D>],
+        (entry, problem): (&Entry<'_, T, D>, &'p Problem<D>),
         level: usize,
         failure: Option<&str>,
-        with_fields: bool,
     ) -> Result<(Row, f64), Error> {
-        levels.build(level)?;
-        let start = self.start(levels, scheme, level)?;
-        let Some((mesh, mesh_seconds)) = levels.mesh(level) else { unreachable!("made above") };
-        let task = Task::new(&self.scene.problem, mesh, &*self.solver)
-            .start(start.as_deref())
-            .quadrature(self.quadrature)
-            .with_errors(failure.is_none())
-            .repeat(self.repeat)
-            .with_fields(with_fields);
-        let solved = solve(scheme, &task)?;
+        let mut on_level = nested.iter_mut().filter_map(|n| Some((n.position(level)?, n)));
+        let Some((position, nested)) = on_level.next() else {
+            unreachable!("a hierarchy has the level")
+        };
+        let (scheme, set) = (&*entry.scheme, problem.constraint_set());
+        nested.replace_constraint_set(problem);
+        let solved = nested.solve_on(position, scheme)?;
+        let solver = nested.solver_name();
         #[cfg(feature = "report")]
-        if let (Some(directory), Some(_)) = (&self.directory, &solved.fields) {
-            self.write_fields(directory, scheme, mesh, &solved)?;
+        if let Some(directory) = &self.directory
+            && solved.has_iterate()
+            && self.levels.iter().max() == Some(&level)
+        {
+            let mut name = format!("{}-{}", self.scene.name, scheme.name());
+            let same_name = |e: &&Entry<'_, T, D>| e.scheme.name() == scheme.name();
+            if let Some(set) = &entry.set
+                && self.entries.iter().filter(same_name).count() > 1
+            {
+                name += &format!("-{}", set.name());
+            }
+            if self.solvers.len() > 1 {
+                name += &format!("-{solver}");
+            }
+            solved.write_vtu(directory.join(name + ".vtu"))?;
         }
-        let coarser = start.as_ref().map_or(0, |s| s.levels_solved);
-        let start_seconds = start.as_ref().map_or(0.0, |s| s.seconds);
-        let solve_seconds = solved.solve_seconds + start_seconds;
-        let mut row = self.row_of(scheme, level, mesh, solved);
-        row.iterations.levels =
-            coarser.saturating_sub(usize::from(!scheme.is_conforming_linear(mesh)));
-        row.expected_order = self.expected_orders(scheme, failure);
-        row.warnings.extend(failure.map(|at| {
-            format!(
-                "the scene's solution breaks the contact condition of this mesh at {at}: no errors"
-            )
-        }));
-        row.seconds = Seconds::new(mesh_seconds, row.seconds.assemble, solve_seconds);
-        Ok((row, start_seconds))
-    }
-
-    /// The row of a solve by itself, without its start, its mesh's time and expected orders.
-    fn row_of(
-        &self,
-        scheme: &dyn AnyScheme<T, D>,
-        level: usize,
-        mesh: &Mesh<T, D>,
-        solved: Solved,
-    ) -> Row {
-        Row {
-            constraint: scheme.constraint().to_owned(),
-            parameters: solved.parameters,
-            solver: self.solver.name().to_owned(),
-            linear: solved.linear_solver.to_owned(),
-            cells: mesh.n_cells(),
-            unknowns: solved.unknowns,
-            nonzeros: solved.nonzeros,
-            mesh_size: mesh.mesh_size(),
-            error: solved.error,
-            contact: solved.contact,
-            objective: solved.objective,
-            active: solved.active,
-            iterations: Iterations { outer: solved.outer, linear: solved.linear, levels: 0 },
-            certificate: solved.certificate,
-            seconds: Seconds::new(0.0, solved.assemble_seconds, solved.solve_seconds),
+        let mut row = Row {
+            constraint: scheme.constraint_on(set).unwrap_or_else(|| set.name().to_owned()),
+            solver: solver.to_owned(),
+            expected_order: self.expected_orders(scheme, set, failure),
             peak_memory_bytes: peak_memory_bytes(),
-            warnings: solved.warnings,
-            ..Row::new(&self.scene.name, D, scheme.name(), level, solved.outcome)
+            ..row_of(&self.scene.name, scheme.name(), level, &solved)
+        };
+        match failure {
+            None => (row.error, row.contact) = (solved.errors()?, solved.contact_errors()?),
+            Some(at) => row.warnings.push(format!(
+                "the scene's solution breaks the contact condition of this mesh at {at}: no errors"
+            )),
         }
+        Ok((row, solved.start_seconds))
     }
 
     /// The orders that theory proves; none without an exact solution that holds on the mesh.
     fn expected_orders(
         &self,
         scheme: &dyn AnyScheme<T, D>,
+        set: &dyn ConstraintSet,
         failure: Option<&str>,
     ) -> ExpectedOrders {
         match (failure, &self.scene.problem.exact) {
-            (None, Some(_)) => scheme.expected_orders(&self.setting()),
+            (None, Some(_)) => scheme.expected_orders_on(set, &self.setting()),
             _ => ExpectedOrders::default(),
-        }
-    }
-
-    /// The initial guess: P1 on the coarser level for P1, P1 on the same level for all other
-    /// schemes.
-    fn start(
-        &self,
-        levels: &mut Hierarchy<'_, T, D>,
-        scheme: &dyn AnyScheme<T, D>,
-        level: usize,
-    ) -> Result<Option<Arc<P1Solution<T>>>, Error> {
-        let (solver, quadrature) = (&*self.solver, self.quadrature);
-        let Some((mesh, _)) = levels.mesh(level) else { unreachable!("made before") };
-        let unknowns = unknowns(mesh, scheme.layout());
-        let is_conforming_linear = scheme.is_conforming_linear(mesh);
-        if !self.scene.problem.is_constrained() && !solver.uses_coarse_spaces(unknowns) {
-            Ok(None)
-        } else if is_conforming_linear {
-            levels.prolonged_p1_solution(level, solver, quadrature, self.repeat)
-        } else {
-            levels.p1_solution(level, solver, quadrature, self.repeat).map(Some)
         }
     }
 
@@ -386,41 +418,35 @@ impl<'a, T: Real, const D: usize> Study<'a, T, D> {
                 && (D == 1 || self.mesh.is_none() && is_convex && all_dirichlet),
         }
     }
-
-    #[cfg(feature = "report")]
-    fn write_fields(
-        &self,
-        directory: &std::path::Path,
-        scheme: &dyn AnyScheme<T, D>,
-        mesh: &Mesh<T, D>,
-        solved: &Solved,
-    ) -> Result<(), Error> {
-        let Some(fields) = &solved.fields else { return Ok(()) };
-        std::fs::create_dir_all(directory).map_err(|e| write_error(directory, e))?;
-        let path = directory.join(format!("{}-{}.vtu", self.scene.name, scheme.name()));
-        let constrained = self.scene.problem.is_constrained();
-        write_vtu(
-            &path,
-            mesh,
-            &CellFields {
-                u: &fields.u,
-                obstacle: fields.obstacle.as_deref(),
-                multiplier: constrained.then_some(&fields.multiplier[..]),
-                contact: &fields.contact,
-            },
-        )
-    }
 }
 
-/// Number of unknowns of a layout on a mesh.
-fn unknowns<T: Real, const D: usize>(mesh: &Mesh<T, D>, layout: Layout) -> usize {
-    let facets = ((D + 1) * mesh.n_cells() + mesh.boundary().len()) / 2;
-    let (vertices, cells) = (mesh.vertices().len(), mesh.n_cells());
-    // in space by Euler's formula for a ball: near enough elsewhere
-    let edges = match D {
-        1 => cells,
-        2 => facets,
-        _ => (vertices + facets).saturating_sub(cells + 1),
-    };
-    layout.vertex * vertices + layout.edge * edges + layout.facet * facets + layout.cell * cells
+/// The row of a solve without errors, expected orders and the names of constraint set and solver.
+fn row_of<T: Real, const D: usize>(
+    scene: &str,
+    scheme: &str,
+    level: usize,
+    solved: &Solved<'_, T, D>,
+) -> Row {
+    let (mesh, solution) = (solved.mesh(), solved.solution());
+    let solve_seconds = solved.solve_seconds + solved.start_seconds;
+    Row {
+        parameters: solved.discretisation().form().parameters(),
+        linear: solution.linear_solver.to_owned(),
+        cells: mesh.n_cells(),
+        unknowns: solution.values.len(),
+        nonzeros: solved.inequality().matrix.nonzeros(),
+        mesh_size: mesh.mesh_size(),
+        objective: solved.objective(),
+        active: solved.active(),
+        iterations: Iterations {
+            outer: solved.outer(),
+            linear: solution.linear,
+            levels: solved.coarser_levels,
+            start_cycles: solved.start_cycles,
+        },
+        certificate: solved.certificate(),
+        seconds: Seconds::new(solved.mesh_seconds, solved.assemble_seconds, solve_seconds),
+        warnings: solved.warnings().to_vec(),
+        ..Row::new(scene, D, scheme, level, solved.outcome())
+    }
 }

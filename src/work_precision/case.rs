@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use crate::constraint::ConstraintSet;
 use crate::error::Error;
 use crate::real::Real;
 use crate::scheme::{AnyScheme, SchemeOptions, scheme_by_name};
@@ -36,19 +37,21 @@ impl Precision {
 pub(crate) struct Candidate<'a, const D: usize> {
     pub double: Arc<dyn AnyScheme<f64, D> + 'a>,
     pub single: Arc<dyn AnyScheme<f32, D> + 'a>,
+    /// Its constraint set, if that is not the problem's.
+    pub set: Option<Arc<dyn ConstraintSet>>,
 }
 
 impl<'a, const D: usize> Candidate<'a, D> {
     /// A scheme of either scalar.
     pub fn new(scheme: impl AnyScheme<f64, D> + AnyScheme<f32, D> + 'a) -> Self {
         let scheme = Arc::new(scheme);
-        Self { double: scheme.clone(), single: scheme }
+        Self { double: scheme.clone(), single: scheme, set: None }
     }
     /// The scheme of this name, if there is one.
     pub fn by_name(name: &str, options: &SchemeOptions) -> Option<Self> {
         let double = Arc::from(scheme_by_name::<f64, D>(name, options)?);
         let single = Arc::from(scheme_by_name::<f32, D>(name, options)?);
-        Some(Self { double, single })
+        Some(Self { double, single, set: None })
     }
 }
 

@@ -21,6 +21,7 @@ use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
+use crate::constraint::ConstraintSet;
 use crate::error::Error;
 use crate::inequality::ActiveSet;
 use crate::instances::compiled;
@@ -133,10 +134,35 @@ impl<'a, const D: usize> WorkPrecision<'a, D> {
         self.candidates.push(Some(Candidate::new(scheme)));
         self
     }
+    /// Adds a scheme with a constraint set of its own.
+    #[must_use]
+    pub fn scheme_on(
+        mut self,
+        scheme: impl AnyScheme<f64, D> + AnyScheme<f32, D> + 'a,
+        set: impl ConstraintSet + 'static,
+    ) -> Self {
+        let set: Option<Arc<dyn ConstraintSet>> = Some(Arc::new(set));
+        self.candidates.push(Some(Candidate { set, ..Candidate::new(scheme) }));
+        self
+    }
     /// Adds a scheme by its name; a name that no scheme has is an error of the run.
     #[must_use]
     pub fn scheme_by_name(mut self, name: &str, options: &SchemeOptions) -> Self {
         self.candidates.push(Candidate::by_name(name, options));
+        self
+    }
+    /// Adds a scheme by its name with a constraint set of its own; a name that no scheme has is an
+    /// error of the run.
+    #[must_use]
+    pub fn scheme_by_name_on(
+        mut self,
+        name: &str,
+        options: &SchemeOptions,
+        set: impl ConstraintSet + 'static,
+    ) -> Self {
+        let set: Option<Arc<dyn ConstraintSet>> = Some(Arc::new(set));
+        let candidate = Candidate::by_name(name, options);
+        self.candidates.push(candidate.map(|candidate| Candidate { set, ..candidate }));
         self
     }
     /// Sets the linear solvers inside the active-set method; one chosen by size otherwise.
@@ -375,13 +401,14 @@ impl<'a, const D: usize> WorkPrecision<'a, D> {
     ) -> Result<Slot<'s, D>, Error> {
         let allowed = "there is no scheme of this name in this dimension";
         let candidate = candidate.ok_or_else(|| wrong("scheme", "unknown".to_owned(), allowed))?;
+        let set = candidate.set.clone();
         let (case, study) = match precision {
             Precision::Double => {
-                let (case, study) = self.one_study(candidate.double.clone(), linear, level);
+                let (case, study) = self.one_study(candidate.double.clone(), set, linear, level);
                 (case, OneStudy::Double(study))
             }
             Precision::Single => {
-                let (case, study) = self.one_study(candidate.single.clone(), linear, level);
+                let (case, study) = self.one_study(candidate.single.clone(), set, linear, level);
                 (case, OneStudy::Single(study))
             }
         };
@@ -391,21 +418,24 @@ impl<'a, const D: usize> WorkPrecision<'a, D> {
     fn one_study<'s, T: Real>(
         &'s self,
         scheme: Arc<dyn AnyScheme<T, D> + 's>,
+        set: Option<Arc<dyn ConstraintSet>>,
         linear: LinearMethod,
         level: usize,
     ) -> (Case, Study<'s, T, D>) {
         let scene = (self.scene)();
         let name = LinearMethod::NAMES.iter().find(|l| l.1 == linear).map_or("", |l| l.0);
+        let in_force = set.as_deref().unwrap_or(scene.problem.constraint_set());
+        let constraint = scheme.constraint_on(in_force);
         let variant = Variant {
             scene: scene.name.clone(),
             scheme: scheme.name().to_owned(),
-            constraint: scheme.constraint().to_owned(),
+            constraint: constraint.unwrap_or_else(|| in_force.name().to_owned()),
             linear_asked: name.to_owned(),
             precision: T::NAME.to_owned(),
         };
         let study = Study::<T, D>::new(scene)
             .solver(ActiveSet::default().linear(linear))
-            .shared_scheme(scheme)
+            .shared_scheme(scheme, set)
             .levels([level]);
         (Case { variant, level }, study)
     }

@@ -1,10 +1,10 @@
 //! Scenes, meshes and solves of tests of discretisations.
 
+use crate::support::schemes::Entry;
+use crate::support::tables::Figures;
 use std::path::Path;
-use unilateral::inequality::ActiveSet;
 use unilateral::mesh::BoxDomain;
 use unilateral::mesh::{Mesh, gmsh};
-use unilateral::nested::{self, Solved, Task};
 use unilateral::prelude::*;
 use unilateral::scenes::Scene;
 use unilateral::scheme::Regularity;
@@ -14,10 +14,16 @@ pub fn solve<T: Real, const D: usize>(
     scheme: &dyn AnyScheme<T, D>,
     problem: &Problem<D>,
     mesh: &Mesh<T, D>,
-) -> Solved {
-    let solver = ActiveSet::default();
-    let task = Task::new(problem, mesh, &solver).with_errors(true).with_fields(true);
-    nested::solve(scheme, &task).unwrap()
+) -> Figures {
+    let mut nested = NestedIteration::new(problem, mesh).cold_start(true);
+    Figures::of(&nested.solve(scheme).unwrap())
+}
+
+impl<T: Real, const D: usize> Entry<T, D> {
+    /// The problem with the constraint set.
+    pub fn constrain(&self, problem: &Problem<D>) -> Problem<D> {
+        problem.clone().on(self.set.clone())
+    }
 }
 
 /// A scene of a test's own.

@@ -3,16 +3,16 @@
 use crate::support::checks::Checks;
 use crate::support::rows::{label, rows};
 use crate::support::scheme_lists::all_schemes;
-use crate::support::schemes::Boxed;
+use crate::support::schemes::Entry;
 use std::f64::consts::PI;
 use unilateral::prelude::*;
 use unilateral::scenes::Scene;
 use unilateral::study::Row;
 
 /// The schemes with the placement of bounds each is known for.
-fn schemes(names: &[(&str, &str)]) -> Vec<Boxed<f64, 2>> {
+fn schemes(names: &[(&str, &str)]) -> Vec<Entry<f64, 2>> {
     let mut schemes = all_schemes::<f64, 2>();
-    schemes.retain(|s| names.contains(&(s.name(), s.constraint())));
+    schemes.retain(|s| names.contains(&(s.name(), &s.constraint()[..])));
     assert_eq!(schemes.len(), names.len());
     schemes
 }

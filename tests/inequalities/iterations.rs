@@ -3,7 +3,8 @@
 use crate::support::checks::Checks;
 use crate::support::rows::{label, rows};
 use crate::support::scheme_lists::all_schemes;
-use crate::support::schemes::{Boxed, sipg, wopsip};
+use crate::support::scheme_lists::entry;
+use crate::support::schemes::{Boxed, Entry, sipg, wopsip};
 use unilateral::inequality::Outcome;
 use unilateral::mesh::BoxDomain;
 use unilateral::prelude::*;
@@ -93,10 +94,10 @@ fn typed_reason(checks: &mut Checks, row: &Row) {
 #[test]
 fn over_penalty_on_a_curved_obstacle() {
     let vertices: Vec<Boxed<f64, 2>> = vec![Box::new(wopsip(10.0)), Box::new(Wopsip::default())];
-    let means: Vec<Boxed<f64, 2>> = vec![
-        Box::new(FacetMeans(wopsip(1.0))),
-        Box::new(FacetMeans(wopsip(100.0))),
-        Box::new(FacetMeans(Wopsip::default())),
+    let means: Vec<Entry<f64, 2>> = vec![
+        entry(wopsip(1.0), FacetMeans),
+        entry(wopsip(100.0), FacetMeans),
+        entry(Wopsip::default(), FacetMeans),
     ];
     let mut checks = Checks::default();
     for row in &rows(scenes::ball_2d(), vertices, [32, 64]) {
@@ -130,7 +131,8 @@ fn interior_penalty_without_coercivity() {
         (10.0, Some("2.08e-1")),
         (1e3, Some("2.26e-1")),
     ] {
-        let row = rows::<f64, 2>(scenes::radial(1.0), vec![Box::new(sipg(sigma))], [16]).remove(0);
+        let row =
+            rows::<f64, 2>(scenes::radial(1.0), vec![entry(sipg(sigma), Nodes)], [16]).remove(0);
         let what = format!("sigma = {sigma}");
         // the proven bound is 1/2 |dK|/|K| = (2 + sqrt 2)/h inside, twice that on the boundary,
         // where h_F is h on sides and sqrt 2 h on diagonals
@@ -155,12 +157,12 @@ fn interior_penalty_without_coercivity() {
 fn large_penalties() {
     let mut checks = Checks::default();
     for scene in [scenes::radial::<2>(1.0), scenes::signorini_2d()] {
-        let schemes: Vec<Boxed<f64, 2>> = vec![
-            Box::new(ConformingP1),
-            Box::new(sipg(1e3)),
-            Box::new(sipg(1e6)),
-            Box::new(wopsip(1e3)),
-            Box::new(FacetMeans(wopsip(1e3))),
+        let schemes: Vec<Entry<f64, 2>> = vec![
+            entry(ConformingP1, Nodes),
+            entry(sipg(1e3), Nodes),
+            entry(sipg(1e6), Nodes),
+            entry(wopsip(1e3), Nodes),
+            entry(wopsip(1e3), FacetMeans),
         ];
         let found = rows(scene, schemes, [16]);
         let conforming = found[0].error.h1.unwrap();
@@ -211,7 +213,7 @@ fn a_body_held_at_one_point_is_not_singular() {
     let report = Study::<f64, 2>::new(scene())
         .scheme(ConformingP1)
         .scheme(NonconformingP1)
-        .scheme(FacetMeans(Wopsip::default()))
+        .scheme_on(Wopsip::default(), FacetMeans)
         .levels([4, 8, 16])
         .run()
         .unwrap();

@@ -2,7 +2,6 @@
 
 use unilateral::mesh::BoxDomain;
 use unilateral::prelude::*;
-use unilateral::problem::Datum;
 use unilateral::scenes::Scene;
 use unilateral::scheme::Regularity;
 use unilateral::study::Row;
@@ -40,7 +39,7 @@ fn data_that_are_not_finite_are_named_with_the_point() {
             ("obstacle", problem().obstacle_below(value)),
             ("obstacle", problem().obstacle_above(value)),
             ("gap", problem().signorini(value)),
-            ("reaction", problem().reaction(Datum::Function(Box::new(value)))),
+            ("reaction", problem().reaction(value)),
             ("reaction", problem().reaction(bad)),
         ] {
             match study(problem) {

@@ -6,7 +6,7 @@ use unilateral::measure::Fields;
 use unilateral::mesh::BoxDomain;
 use unilateral::mesh::{BoundaryPart, Mesh};
 use unilateral::paraview::{CellFields, write_pvd, write_vtu};
-use unilateral::plot::{Picture, Slice, solve_level};
+use unilateral::plot::{Picture, Slice};
 use unilateral::prelude::*;
 use unilateral::scenes::Scene;
 
@@ -23,11 +23,12 @@ fn picture<const D: usize>(
     scheme: &dyn AnyScheme<f64, D>,
     level: usize,
 ) -> (Picture, Mesh<f64, D>, Fields) {
-    let (mesh, solved) = solve_level(scene, scheme, level).unwrap();
-    assert_eq!(solved.outcome.name(), "converged");
-    let fields = solved.fields.unwrap();
-    let picture = Picture::of("a & b", &scene.problem, &mesh, &fields, None).unwrap();
-    (picture, mesh, fields)
+    let meshes = Hierarchy::of_domain(&scene.domain, level).unwrap();
+    let solved = solve(&scene.problem, &meshes, scheme).unwrap();
+    assert!(solved.converged());
+    let fields = solved.fields().unwrap();
+    let picture = Picture::of("a & b", &scene.problem, solved.mesh(), &fields, None).unwrap();
+    (picture, solved.mesh().clone(), fields)
 }
 
 fn cube<const D: usize>(n: usize) -> Mesh<f64, D> {
@@ -249,7 +250,7 @@ fn what_cannot_be_drawn_is_refused() {
     beyond.discrete_contact.cells = vec![8];
     assert!(message(&beyond, None).contains("this mesh of 8 cells"));
 
-    let no_level = solve_level::<f64, 2>(&scenes::radial(1.0), &ConformingP1, 0).map(drop);
+    let no_level = Hierarchy::<f64, 2>::of_domain(&scenes::radial(1.0).domain, 0).map(drop);
     assert!(no_level.unwrap_err().to_string().contains("at least one subdivision"));
 
     let (problem, mesh) = (Problem::<3>::new(), cube::<3>(1));

@@ -1,7 +1,7 @@
 //! Rows of studies, and what is asserted of each.
 
 use super::checks::Checks;
-use super::schemes::Boxed;
+use super::schemes::Entry;
 use unilateral::prelude::*;
 use unilateral::scenes::Scene;
 use unilateral::study::Row;
@@ -14,11 +14,14 @@ pub fn label(row: &Row) -> String {
 /// The rows of schemes on levels of a scene.
 pub fn rows<T: Real, const D: usize>(
     scene: Scene<D>,
-    schemes: Vec<Boxed<T, D>>,
+    schemes: Vec<impl Into<Entry<T, D>>>,
     levels: impl IntoIterator<Item = usize>,
 ) -> Vec<Row> {
-    let study = Study::<T, D>::new(scene).levels(levels);
-    schemes.into_iter().fold(study, Study::boxed_scheme).run().unwrap().rows
+    let study = Study::<'static, T, D>::new(scene).levels(levels);
+    let add = |study: Study<'static, T, D>, entry: Entry<T, D>| {
+        study.boxed_scheme_on(entry.scheme, entry.set)
+    };
+    schemes.into_iter().map(Into::into).fold(study, add).run().unwrap().rows
 }
 
 impl Checks {

@@ -1,22 +1,38 @@
 //! Lists of schemes.
 
-use super::schemes::Boxed;
+use super::schemes::Entry;
+use std::sync::Arc;
 use unilateral::prelude::*;
 
+/// A scheme with a constraint set.
+pub fn entry<T: Real, const D: usize>(
+    scheme: impl AnyScheme<T, D> + 'static,
+    set: impl ConstraintSet + 'static,
+) -> Entry<T, D> {
+    Entry { scheme: Box::new(scheme), set: Arc::new(set) }
+}
+
+impl<T: Real, const D: usize> Entry<T, D> {
+    /// The name of the constraint set on the scheme's element.
+    pub fn constraint(&self) -> String {
+        self.constraint_on(&self.set).unwrap()
+    }
+}
+
 /// The schemes that reproduce linear functions.
-pub fn consistent_schemes<T: Real, const D: usize>() -> Vec<Boxed<T, D>> {
+pub fn consistent_schemes<T: Real, const D: usize>() -> Vec<Entry<T, D>> {
     vec![
-        Box::new(ConformingP1),
-        Box::new(NonconformingP1),
-        Box::new(Sipg::default()),
-        Box::new(FacetMeans(Sipg::default())),
+        entry(ConformingP1, Nodes),
+        entry(NonconformingP1, Nodes),
+        entry(Sipg::default(), Nodes),
+        entry(Sipg::default(), FacetMeans),
     ]
 }
 
 /// Every scheme, and the discontinuous ones with both sets of constraints, with default penalties.
-pub fn all_schemes<T: Real, const D: usize>() -> Vec<Boxed<T, D>> {
+pub fn all_schemes<T: Real, const D: usize>() -> Vec<Entry<T, D>> {
     let mut schemes = consistent_schemes();
-    schemes.push(Box::new(Wopsip::default()));
-    schemes.push(Box::new(FacetMeans(Wopsip::default())));
+    schemes.push(entry(Wopsip::default(), Nodes));
+    schemes.push(entry(Wopsip::default(), FacetMeans));
     schemes
 }

@@ -1,9 +1,31 @@
 //! Schemes with penalties as tables state them.
 
+use std::ops::Deref;
+use std::sync::Arc;
 use unilateral::prelude::*;
 
 /// A scheme chosen at run time.
 pub type Boxed<T, const D: usize> = Box<dyn AnyScheme<T, D>>;
+
+/// A scheme with its constraint set: an entry of a list.
+pub struct Entry<T, const D: usize> {
+    pub scheme: Boxed<T, D>,
+    pub set: Arc<dyn ConstraintSet>,
+}
+
+impl<T, const D: usize> From<Boxed<T, D>> for Entry<T, D> {
+    fn from(scheme: Boxed<T, D>) -> Self {
+        Self { scheme, set: Arc::new(Nodes) }
+    }
+}
+
+impl<T, const D: usize> Deref for Entry<T, D> {
+    type Target = dyn AnyScheme<T, D>;
+
+    fn deref(&self) -> &Self::Target {
+        &*self.scheme
+    }
+}
 
 /// Interior penalty with `sigma / h_F`.
 pub fn sipg(sigma: f64) -> Sipg {

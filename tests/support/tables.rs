@@ -1,9 +1,9 @@
 //! Solutions and error norms by the rules of printed tables.
 
 use unilateral::assemble::DataQuadrature;
-use unilateral::inequality::ActiveSet;
+use unilateral::inequality::{Certificate, Outcome};
+use unilateral::measure::{Errors, Fields};
 use unilateral::mesh::Mesh;
-use unilateral::nested::{self, Hierarchy, Solved, Task};
 use unilateral::prelude::*;
 use unilateral::quadrature::Rule;
 use unilateral::scenes::Scene;
@@ -12,36 +12,46 @@ use unilateral::scenes::Scene;
 /// five points of Gauss in each direction.
 pub const DEGREE_OF_TABLES: usize = 9;
 
+/// The figures of a solution, without its mesh.
+pub struct Figures {
+    pub outcome: Outcome,
+    pub certificate: Certificate,
+    pub error: Errors,
+    pub fields: Option<Fields>,
+}
+
+impl Figures {
+    pub fn of<T: Real, const D: usize>(solved: &Solved<'_, T, D>) -> Self {
+        Self {
+            outcome: solved.outcome(),
+            certificate: solved.certificate(),
+            error: solved.errors().unwrap(),
+            fields: solved.fields(),
+        }
+    }
+}
+
 /// A scheme's solution on a level with the rules of those tables.
 pub fn solve_as_tables<const D: usize>(
     scene: &Scene<D>,
     scheme: &dyn AnyScheme<f64, D>,
     level: usize,
-) -> (Mesh<f64, D>, Solved) {
+) -> (Mesh<f64, D>, Figures) {
     solve_by_rule(scene, scheme, level, DEGREE_OF_TABLES)
 }
 
-/// A scheme's solution on a level, started from that of conforming elements, with rules of this
-/// degree for data.
+/// A scheme's solution on a level, with rules of this degree for data.
 pub fn solve_by_rule<const D: usize>(
     scene: &Scene<D>,
     scheme: &dyn AnyScheme<f64, D>,
     level: usize,
     degree: usize,
-) -> (Mesh<f64, D>, Solved) {
+) -> (Mesh<f64, D>, Figures) {
+    let meshes = Hierarchy::of_domain(&scene.domain, level).unwrap();
     let quadrature = DataQuadrature::default().cell(degree).facet(degree);
-    let solver = ActiveSet::default();
-    let mut levels = Hierarchy::new(&scene.problem, &scene.domain, None);
-    levels.build(level).unwrap();
-    let start = levels.p1_solution(level, &solver, quadrature, 1).unwrap();
-    let mesh = levels.mesh(level).unwrap().0.clone();
-    let task = Task::new(&scene.problem, &mesh, &solver)
-        .start(Some(&start))
-        .quadrature(quadrature)
-        .with_errors(true)
-        .with_fields(true);
-    let solved = nested::solve(scheme, &task).unwrap();
-    (mesh, solved)
+    let mut nested = NestedIteration::new(&scene.problem, &meshes).quadrature(quadrature);
+    let solved = nested.solve(scheme).unwrap();
+    (meshes.finest().clone(), Figures::of(&solved))
 }
 
 /// L2 norm and H1 seminorm of the error by a rule of this degree, which collapses a square onto

@@ -1,9 +1,10 @@
 //! What each unknown may be: Dirichlet values, obstacles, the Signorini condition.
 
-use super::{Space, data};
+use super::{Space, Terms, data};
 use crate::algebra::Bound;
 use crate::assemble::count;
-use crate::element::Entity;
+use crate::constraint::BoundBy;
+use crate::element::Node;
 use crate::error::Error;
 use crate::mesh::{BoundaryPart, describe_point};
 use crate::problem::Field;
@@ -36,10 +37,10 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         bounds: &mut [Bound<T>],
         conflicts: &mut Vec<Conflict<D>>,
     ) -> Result<(), Error> {
-        let bounded: Vec<usize> = self.bounded_nodes().collect();
+        let bounded: Vec<(usize, BoundBy)> = self.bounded_nodes().collect();
         let terms = self.node_terms(&self.facet_rule, &self.cell_rule);
         for cell in 0..self.mesh.n_cells() {
-            for &i in &bounded {
+            for &(i, by) in &bounded {
                 let unknown = self.dofs.of(cell, i);
                 if bounds[unknown] != Bound::Free {
                     continue;
@@ -47,11 +48,9 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
                 count::bounds(1);
                 let node = &self.nodes[i];
                 let x = self.node_point(cell, node);
-                let by_point = matches!(node.entity(), Entity::Facet(_)) && node.is_mean();
-                let at = |psi: &Option<Field<D>>| match psi {
-                    Some(psi) if by_point => data::finite(psi(&x), "obstacle", &x, cell).map(Some),
-                    Some(psi) => self.at_node(&terms[i], cell, "obstacle", psi).map(Some),
-                    None => Ok(None),
+                let at = |psi: &Option<Field<D>>| {
+                    let bound = |psi| self.bound(by, &terms[i], (cell, node), "obstacle", psi);
+                    psi.as_ref().map(bound).transpose()
                 };
                 let (lower, upper) = (at(&self.problem.lower)?, at(&self.problem.upper)?);
                 bounds[unknown] = between(lower, upper, unknown, x, conflicts);
@@ -68,18 +67,37 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
     ) -> Result<(), Error> {
         let terms = self.node_terms(&self.facet_rule, &self.cell_rule);
         for (cell, local) in self.facets_of(BoundaryPart::Contact) {
-            for i in self.bounded_nodes_on(local) {
+            for (i, by) in self.bounded_nodes_on(local) {
                 count::bounds(1);
-                let value = self.at_node(&terms[i], cell, "gap", gap)?;
+                let node = &self.nodes[i];
+                let value = self.bound(by, &terms[i], (cell, node), "gap", gap)?;
                 let unknown = self.dofs.of(cell, i);
                 let old = bounds[unknown];
                 let lower = old.lower().map_or(value, |l| l.to_f64().max(value));
                 let upper = old.upper().map(Real::to_f64);
-                let x = self.node_point(cell, &self.nodes[i]);
+                let x = self.node_point(cell, node);
                 bounds[unknown] = between(Some(lower), upper, unknown, x, conflicts);
             }
         }
         Ok(())
+    }
+
+    /// What a datum imposes at a node.
+    fn bound(
+        &self,
+        by: BoundBy,
+        terms: &Terms,
+        (cell, node): (usize, &Node),
+        name: &'static str,
+        datum: &Field<D>,
+    ) -> Result<f64, Error> {
+        match by {
+            BoundBy::Mean => self.at_node(terms, cell, name, &**datum),
+            BoundBy::Value => {
+                let x = self.node_point(cell, node);
+                data::finite(datum(&x), name, &x, cell)
+            }
+        }
     }
 
     fn pin(&self, bounds: &mut [Bound<T>], conflicts: &mut Vec<Conflict<D>>) -> Result<(), Error> {
@@ -99,10 +117,10 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
                 // curved obstacle the value at the barycentre may lie above the mean of a datum
                 // that touches it
                 if let Some(psi) = &self.problem.lower {
-                    note(at("obstacle", psi)?, value, unknown, x, conflicts);
+                    note(at("obstacle", &**psi)?, value, unknown, x, conflicts);
                 }
                 if let Some(psi) = &self.problem.upper {
-                    note(value, at("obstacle", psi)?, unknown, x, conflicts);
+                    note(value, at("obstacle", &**psi)?, unknown, x, conflicts);
                 }
                 bounds[unknown] = Bound::Fixed(T::lit(value));
             }
@@ -113,7 +131,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
     /// The functional of a node at a datum.
     fn at_node(
         &self,
-        terms: &[([f64; 4], f64)],
+        terms: &Terms,
         cell: usize,
         name: &'static str,
         datum: Datum<'_, D>,

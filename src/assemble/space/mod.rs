@@ -14,7 +14,7 @@ pub(crate) mod tables;
 use super::local::{CellSide, StiffnessTable};
 use super::{DataQuadrature, count};
 use crate::algebra::Support;
-use crate::constraint::BoundedNodes;
+use crate::constraint::BoundBy;
 use crate::element::{Entity, MAX_BASIS, Node};
 use crate::error::Error;
 use crate::memory::in_large_pages;
@@ -55,8 +55,11 @@ pub(crate) struct Space<'a, T: Real, const D: usize> {
     pub broken: bool,
     /// Whether Dirichlet data are pinned; else the facet form imposes them.
     pub pins: bool,
-    /// Which nodes an inequality binds.
-    pub bounded: BoundedNodes,
+    /// By what obstacles bind each of a cell's unknowns, if they do.
+    in_domain: Vec<Option<BoundBy>>,
+    /// By what a Signorini condition binds each of a cell's unknowns, if it does and the node lies on
+    /// a contact facet.
+    on_contact: Vec<Option<BoundBy>>,
     basis: fn(&[f64; 4]) -> BasisAt<f64>,
 }
 
@@ -69,9 +72,10 @@ impl<'a, T: Real, const D: usize> Space<'a, T, D> {
         quadrature: DataQuadrature,
         with_facets: bool,
         pins: bool,
-        bounded: BoundedNodes,
+        offered: fn(contact: bool) -> Vec<String>,
     ) -> Result<Self, Error> {
         let AnyElement { degree, basis_degree, layout, nodes, basis } = element;
+        let set = problem.constraint_set();
         let neighbours = (with_facets || layout.facet > 0).then(|| {
             count::facet_topologies(1);
             Neighbours::new(mesh)
@@ -101,33 +105,36 @@ impl<'a, T: Real, const D: usize> Space<'a, T, D> {
             neighbours,
             dofs,
             coefficients: data::coefficients(problem, mesh)?,
+            in_domain: nodes.iter().map(|node| set.in_domain(node, D)).collect(),
+            on_contact: nodes.iter().map(|node| set.on_contact(node, D)).collect(),
             around: nodes.iter().map(|node| Around::new(&node.centre(D))).collect(),
             nodes,
             degree,
             basis_degree,
             broken: layout.is_broken(),
             pins,
-            bounded,
             basis,
         };
-        space.check_constraint_set()?;
+        space.check_constraint_set(offered)?;
         Ok(space)
     }
 
     /// Refuses an inequality that would bind nothing at all.
-    fn check_constraint_set(&self) -> Result<(), Error> {
-        let constraint = self.bounded.name(self.basis_degree, &self.nodes[0]);
-        let refuse =
-            |condition, allowed| Err(Error::NothingToBound { constraint, condition, allowed });
+    fn check_constraint_set(&self, offered: fn(contact: bool) -> Vec<String>) -> Result<(), Error> {
+        let refuse = |condition, contact| {
+            let constraint = self.problem.constraint_set().name_on(&self.nodes).to_owned();
+            let allowed = match &offered(contact)[..] {
+                [] => "another element: this one has no nodes on facets".to_owned(),
+                names => names.join(" or "),
+            };
+            Err(Error::NothingToBound { constraint, condition, allowed })
+        };
         if self.problem.is_constrained() && self.bounded_nodes().next().is_none() {
-            return refuse("an inequality", "the scheme's element has no such values");
+            return refuse("an inequality", self.problem.gap.is_some());
         }
-        if self.problem.gap.is_some() && self.bounded_nodes_on(0).next().is_none() {
-            return refuse(
-                "a Signorini condition",
-                "only bounds on values or means that belong to the facets of a cell can, as those \
-                 at nodes, vertices or midpoints or on facet means",
-            );
+        let on_facets = || (0..=D).any(|local| self.bounded_nodes_on(local).next().is_some());
+        if self.problem.gap.is_some() && !on_facets() {
+            return refuse("a Signorini condition", true);
         }
         Ok(())
     }
@@ -177,6 +184,10 @@ impl<'a, T: Real, const D: usize> Space<'a, T, D> {
             &self.cell_table(Rule::new(D, 2 * self.basis_degree.saturating_sub(1))),
         )
     }
+    /// Whether unknown `i` is the value at vertex `i` of a conforming linear function.
+    pub fn is_conforming_linear(&self) -> bool {
+        !self.broken && self.nodes.iter().cloned().eq((0..=D).map(Node::vertex))
+    }
     /// Moments of the basis on facets, up to a degree.
     pub fn facet_table(&self, degree: usize) -> FacetTable<T> {
         FacetTable::new(D, self.basis_degree, self.basis, degree)
@@ -215,13 +226,13 @@ impl<'a, T: Real, const D: usize> Space<'a, T, D> {
     pub fn nodes_on(&self, local: usize) -> impl Iterator<Item = usize> {
         (0..self.per_cell()).filter(move |&i| !self.nodes[i].entity().contains(D, local))
     }
-    /// The basis functions whose unknowns an obstacle binds.
-    pub fn bounded_nodes(&self) -> impl Iterator<Item = usize> {
-        (0..self.per_cell()).filter(|&i| self.bounded.in_domain(&self.nodes[i]))
+    /// The basis functions whose unknowns an obstacle binds, and by what.
+    pub fn bounded_nodes(&self) -> impl Iterator<Item = (usize, BoundBy)> {
+        self.in_domain.iter().enumerate().filter_map(|(i, by)| Some((i, (*by)?)))
     }
-    /// The basis functions whose unknowns a Signorini condition on facet `local` binds.
-    pub fn bounded_nodes_on(&self, local: usize) -> impl Iterator<Item = usize> {
-        self.nodes_on(local).filter(|&i| self.bounded.on_contact(&self.nodes[i], D))
+    /// The basis functions whose unknowns a Signorini condition on facet `local` binds, and by what.
+    pub fn bounded_nodes_on(&self, local: usize) -> impl Iterator<Item = (usize, BoundBy)> {
+        self.nodes_on(local).filter_map(|i| Some((i, self.on_contact[i]?)))
     }
     /// The point that stands for a node.
     pub fn node_point(&self, cell: usize, node: &Node) -> Point<f64, D> {

@@ -4,21 +4,16 @@
 //! `cargo run --release -- pictures --help` lists the options. Exit codes: 0 if every solve converged,
 //! 1 if one did not (its last iterate is drawn, and said to be one), 2 if the request was wrong.
 
-use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use clap::Args;
-use unilateral::error::Error;
-use unilateral::inequality::Outcome;
-use unilateral::measure::Fields;
-use unilateral::mesh::Mesh;
-use unilateral::nested::Solved;
-use unilateral::paraview::{CellFields, write_pvd, write_vtu};
-use unilateral::plot::{Picture, Slice, solve_level};
+use unilateral::nested::{Hierarchy, solve};
+use unilateral::paraview::write_pvd;
+use unilateral::plot::{Picture, Slice};
 use unilateral::scenes::{AnyScene, Scene};
-use unilateral::scheme::{AnyScheme, Placement, SCHEMES, SchemeOptions, scheme_by_name};
+use unilateral::scheme::{AnyScheme, SCHEMES, SchemeOptions, scheme_by_name};
 
-use crate::shared::{Request, print, scene, split};
+use crate::shared::{Request, constraint_set, print, scene, split};
 
 /// Draws the solution of a scheme on a scene
 #[derive(Args, Debug)]
@@ -49,31 +44,37 @@ pub struct Options {
 /// Whether every solve converged.
 pub fn run(options: &Options) -> Request<bool> {
     match scene(&options.scene)? {
-        AnyScene::One(scene) => draw(options, &scene),
-        AnyScene::Two(scene) => draw(options, &scene),
-        AnyScene::Three(scene) => draw(options, &scene),
+        AnyScene::One(scene) => draw(options, scene),
+        AnyScene::Two(scene) => draw(options, scene),
+        AnyScene::Three(scene) => draw(options, scene),
     }
 }
 
-fn scheme<const D: usize>(choice: &str) -> Request<Box<dyn AnyScheme<f64, D>>> {
-    let (name, place) = split(choice);
-    let placement = match place {
-        None => Placement::default(),
-        Some(place) => Placement::by_name(place).ok_or_else(|| {
-            let names = Placement::ALL.map(|p| p.0).join(", ");
-            format!("there is no placement {place}; there are: {names}")
-        })?,
-    };
-    scheme_by_name(name, &SchemeOptions { placement, ..SchemeOptions::default() }).ok_or_else(
-        || {
-            let names: Vec<&str> = SCHEMES.iter().map(|s| s.0).collect();
-            format!("there is no scheme {name}; there are: {}", names.join(", "))
-        },
-    )
+/// The scheme, and the scene with the constraint set after the colon.
+fn scheme<const D: usize>(
+    choice: &str,
+    mut scene: Scene<D>,
+) -> Request<(Box<dyn AnyScheme<f64, D>>, Scene<D>)> {
+    let (name, set) = split(choice);
+    if let Some(set) = set {
+        scene.problem = scene.problem.on(constraint_set(set)?);
+    }
+    let scheme = scheme_by_name(name, &SchemeOptions::default()).ok_or_else(|| {
+        let names: Vec<&str> = SCHEMES.iter().map(|s| s.0).collect();
+        format!("there is no scheme {name}; there are: {}", names.join(", "))
+    })?;
+    Ok((scheme, scene))
 }
 
-fn draw<const D: usize>(options: &Options, scene: &Scene<D>) -> Request<bool> {
-    let scheme = scheme::<D>(&options.scheme)?;
+/// The name of the constraint set in force.
+fn constraint<const D: usize>(scene: &Scene<D>, scheme: &dyn AnyScheme<f64, D>) -> String {
+    let set = scene.problem.constraint_set();
+    scheme.constraint_on(set).unwrap_or_else(|| set.name().to_owned())
+}
+
+fn draw<const D: usize>(options: &Options, scene: Scene<D>) -> Request<bool> {
+    let (scheme, scene) = scheme::<D>(&options.scheme, scene)?;
+    let scene = &scene;
     let level = options.level.unwrap_or(if D == 3 { 8 } else { 16 });
     let slice = match (&options.across, options.at) {
         (Some(name), Some(at)) => {
@@ -81,15 +82,18 @@ fn draw<const D: usize>(options: &Options, scene: &Scene<D>) -> Request<bool> {
         }
         _ => None,
     };
-    let (mesh, solved) = solve_level(scene, &*scheme, level).map_err(|e| e.to_string())?;
-    let fields = fields(&solved, level)?;
-    let converged = solved.outcome == Outcome::Converged;
-    let mut title =
-        format!("{}: {} ({}), level {level}", scene.name, scheme.name(), scheme.constraint());
+    let meshes = meshes(scene, level)?;
+    let solved = solve(&scene.problem, &meshes, &*scheme).map_err(|e| e.to_string())?;
+    let fields = solved
+        .fields()
+        .ok_or_else(|| format!("level {level}: {}: there is nothing to draw", solved.outcome()))?;
+    let converged = solved.converged();
+    let constraint = constraint(scene, &*scheme);
+    let mut title = format!("{}: {} ({constraint}), level {level}", scene.name, scheme.name());
     if !converged {
-        title += &format!(", NOT CONVERGED: {}", solved.outcome.name());
+        title += &format!(", NOT CONVERGED: {}", solved.outcome());
     }
-    let picture = Picture::of(&title, &scene.problem, &mesh, fields, slice);
+    let picture = Picture::of(&title, &scene.problem, solved.mesh(), &fields, slice);
     let name = file_name(scene, &*scheme, level);
     let written = picture
         .and_then(|picture| picture.write(&options.out, &name))
@@ -109,14 +113,16 @@ fn series<const D: usize>(
     let mut files = Vec::new();
     let mut converged = true;
     for &level in &options.series {
-        let (mesh, solved) = solve_level(scene, scheme, level).map_err(|e| e.to_string())?;
+        let meshes = meshes(scene, level)?;
+        let solved = solve(&scene.problem, &meshes, scheme).map_err(|e| e.to_string())?;
         let path = options.out.join(format!("{}.vtu", file_name(scene, scheme, level)));
-        write_fields(&path, &mesh, fields(&solved, level)?, scene).map_err(|e| e.to_string())?;
-        converged &= solved.outcome == Outcome::Converged;
+        solved.write_vtu(&path).map_err(|e| e.to_string())?;
+        converged &= solved.converged();
         files.push((level as f64, path));
     }
     if !files.is_empty() {
-        let name = format!("{}-{}-{}.pvd", scene.name, scheme.name(), scheme.constraint());
+        let constraint = constraint(scene, scheme);
+        let name = format!("{}-{}-{constraint}.pvd", scene.name, scheme.name());
         let path = options.out.join(name.replace(' ', "-"));
         write_pvd(&path, &files).map_err(|e| e.to_string())?;
         print(&format!("{}\n", path.display()))?;
@@ -124,30 +130,8 @@ fn series<const D: usize>(
     Ok(converged)
 }
 
-fn write_fields<const D: usize>(
-    path: &Path,
-    mesh: &Mesh<f64, D>,
-    fields: &Fields,
-    scene: &Scene<D>,
-) -> Result<(), Error> {
-    if let Some(directory) = path.parent() {
-        fs::create_dir_all(directory)
-            .map_err(|e| Error::Write { path: directory.display().to_string(), why: e.into() })?;
-    }
-    let multiplier = scene.problem.is_constrained().then_some(&fields.multiplier[..]);
-    let fields = CellFields {
-        u: &fields.u,
-        obstacle: fields.obstacle.as_deref(),
-        multiplier,
-        contact: &fields.contact,
-    };
-    write_vtu(path, mesh, &fields)
-}
-
-fn fields(solved: &Solved, level: usize) -> Request<&Fields> {
-    solved.fields.as_ref().ok_or_else(|| {
-        format!("level {level}: {}: there is nothing to draw", solved.outcome.name())
-    })
+fn meshes<const D: usize>(scene: &Scene<D>, level: usize) -> Request<Hierarchy<f64, D>> {
+    Hierarchy::of_domain(&scene.domain, level).map_err(|e| e.to_string())
 }
 
 fn file_name<const D: usize>(
@@ -155,5 +139,6 @@ fn file_name<const D: usize>(
     scheme: &dyn AnyScheme<f64, D>,
     level: usize,
 ) -> String {
-    format!("{}-{}-{}-{level}", scene.name, scheme.name(), scheme.constraint()).replace(' ', "-")
+    let constraint = constraint(scene, scheme);
+    format!("{}-{}-{constraint}-{level}", scene.name, scheme.name()).replace(' ', "-")
 }

@@ -3,9 +3,11 @@
 use std::fs;
 use std::io::{ErrorKind, IsTerminal, Write};
 use std::path::Path;
+use std::sync::Arc;
 use std::time::Duration;
 
 use indicatif::{ProgressBar, ProgressStyle};
+use unilateral::constraint::{CONSTRAINT_SETS, ConstraintSet, constraint_set_by_name};
 use unilateral::scenes;
 use unilateral::scenes::{AnyScene, Parameters};
 
@@ -68,6 +70,14 @@ pub fn split(choice: &str) -> (&str, Option<&str>) {
         Some((name, place)) => (name, Some(place)),
         None => (choice, None),
     }
+}
+
+/// The constraint set of this name.
+pub fn constraint_set(name: &str) -> Request<Arc<dyn ConstraintSet>> {
+    constraint_set_by_name(name).ok_or_else(|| {
+        let names = CONSTRAINT_SETS.map(|set| set.0).join(", ");
+        format!("there is no placement {name}; there are: {names}")
+    })
 }
 
 /// Each item once, in order of first occurrence.

@@ -1,12 +1,9 @@
 //! A computed bound on the energy norm of the algebraic error of an inexact iterate.
 
-use super::inexact_iterate::{InexactIterate, MAX_ITERATIONS};
-use crate::algebra::{Contact, SparseMatrix};
-use crate::inequality::Outcome;
-use crate::linear::krylov::{ConjugateGradients, StoppingRule};
-use crate::linear::precondition::AnyPreconditioner;
-use crate::linear::precondition::Preconditioner;
-use crate::parallel::vectors::{dot, pseudorandom_signs, zeros};
+use super::iterate::Iterate;
+use super::preconditioned_solver::PreconditionedSolver;
+use crate::algebra::Contact;
+use crate::parallel::vectors::{dot, zeros};
 use crate::real::Real;
 
 /// Assumed lower bound of the ratio of the smallest eigenvalue to the smallest Ritz value. The Ritz
@@ -19,51 +16,13 @@ const THRESHOLD_FACTOR: f64 = 4.0;
 /// Number of thresholds tried before no unknown counts as strongly active.
 const MAX_THRESHOLDS: usize = 3;
 
-/// Relative tolerance of the linear system that is solved for its Ritz values alone.
-const EIGENVALUE_RUN_TOL: f64 = 1e-6;
-
-impl<T: Real> InexactIterate<'_, T> {
-    /// Estimates the smallest eigenvalue of the preconditioned symmetric part of a matrix that is not
-    /// symmetric, by the Ritz values of conjugate gradients for that part on the inactive unknowns;
-    /// stores the smallest Ritz value in `smallest_ritz_value` if it is smaller than the stored one.
-    ///
-    /// The Ritz values of GMRES, which solves the systems with the matrix itself, do not estimate this
-    /// eigenvalue: its Krylov space belongs to the whole matrix, so that they lie above the eigenvalue
-    /// but need not come close to it.
-    ///
-    /// Returns [`Outcome::Converged`] for a usable estimate; `None` if the preconditioner is unsuitable
-    /// or the iterations do not suffice; another outcome if the symmetric part is not positive definite
-    /// or a number is not finite.
-    pub(crate) fn estimate_smallest_eigenvalue(
-        &mut self,
-        symmetric_part: &SparseMatrix<T>,
-        preconditioner: &mut AnyPreconditioner<'_, T>,
-    ) -> Option<Outcome> {
-        let n = self.values.len();
-        let mut load = zeros(n);
-        // pseudo-random signs, so that every eigenvector has a component
-        let inactive = (0..n).filter(|&i| !self.eliminated[i]);
-        for (i, is_positive) in inactive.zip(pseudorandom_signs()) {
-            load[i] = if is_positive { self.diagonal[i] } else { -self.diagonal[i] };
-        }
-        let stop = StoppingRule {
-            norm: 0.0,
-            reduction: EIGENVALUE_RUN_TOL,
-            max_iterations: MAX_ITERATIONS,
-        };
-        let system = (&mut zeros(n)[..], &mut load[..]);
-        let mut method = ConjugateGradients::new(symmetric_part);
-        let run = method.solve(&self.eliminated, preconditioner, system, stop);
-        self.linear += run.iterations;
-        self.outcome_of(&run)
-    }
-
+impl<T: Real> PreconditionedSolver<'_, T> {
     /// Projects the values onto their bounds and returns a bound on the energy norm of their error
     /// divided by the energy norm of the iterate, which stands for the energy norm of the solution.
     /// `None` if the preconditioner cannot be set up for an enlarged set of unknowns.
     ///
-    /// Overwrites the residual, `eliminated` and the fixed unknowns of the preconditioner: no linear
-    /// system can be solved afterwards without setting them again.
+    /// Overwrites the fixed unknowns of the preconditioner: no linear system can be solved afterwards
+    /// without setting them again.
     ///
     /// Notation: `u` are the projected values, `u*` is the solution, `e = u* - u` the error,
     /// `S = (A + A^T) / 2` the symmetric part of `A`, and `||e||_A = (e . A e)^(1/2)` the energy norm,
@@ -90,63 +49,55 @@ impl<T: Real> InexactIterate<'_, T> {
     ///    The Ritz values come from systems on the inactive unknowns, while the bound uses all unknowns
     ///    that are neither fixed nor strongly active, a larger set with a smaller eigenvalue at most:
     ///    that the factor covers this difference too is assumed.
-    pub(crate) fn error_bound(
-        &mut self,
-        preconditioner: &mut AnyPreconditioner<'_, T>,
-    ) -> Option<f64> {
-        let bounds = &self.inequality.bounds;
+    pub(crate) fn error_bound(&mut self, iterate: &mut Iterate<'_, T>) -> Option<f64> {
         let mut is_changed = false;
-        for (value, bound) in self.values.iter_mut().zip(bounds) {
+        for (value, bound) in iterate.values.iter_mut().zip(&iterate.inequality.bounds) {
             let nearest = bound.nearest(*value);
             is_changed |= nearest != *value;
             *value = nearest;
         }
         if is_changed {
-            self.recompute_residual();
+            iterate.compute_residual();
         }
         let sqrt_eigenvalue = (EIGENVALUE_TO_RITZ_VALUE * self.smallest_ritz_value).sqrt();
         let mut threshold = THRESHOLD_FACTOR * self.residual_norm / sqrt_eigenvalue;
         for _ in 0..MAX_THRESHOLDS {
-            let error = self.unbalanced_norm(threshold, preconditioner)? / sqrt_eigenvalue;
+            let error = self.unbalanced_norm(iterate, threshold)? / sqrt_eigenvalue;
             if error <= threshold {
-                return Some(error / self.energy_norm);
+                return Some(error / iterate.energy_norm);
             }
             threshold = THRESHOLD_FACTOR * error;
         }
-        let norm = self.unbalanced_norm(f64::INFINITY, preconditioner)?;
-        Some(norm / sqrt_eigenvalue / self.energy_norm)
+        let norm = self.unbalanced_norm(iterate, f64::INFINITY)?;
+        Some(norm / sqrt_eigenvalue / iterate.energy_norm)
     }
 
     /// The preconditioned norm `(r . B r)^(1/2)` of the unbalanced residual `r`, with all fixed and
-    /// strongly active unknowns eliminated; see [`InexactIterate::error_bound`]. Sets `eliminated` and
-    /// the fixed unknowns of the preconditioner; `None` if it rejects them.
-    fn unbalanced_norm(
-        &mut self,
-        threshold: f64,
-        preconditioner: &mut AnyPreconditioner<'_, T>,
-    ) -> Option<f64> {
-        let mut unbalanced = self.residual.clone();
-        let mut is_changed = false;
-        for (i, bound) in self.inequality.bounds.iter().enumerate() {
-            let multiplier = match self.states[i] {
+    /// strongly active unknowns eliminated; see [`PreconditionedSolver::error_bound`]. `None` if the
+    /// preconditioner rejects these unknowns.
+    fn unbalanced_norm(&mut self, iterate: &Iterate<'_, T>, threshold: f64) -> Option<f64> {
+        let mut unbalanced = zeros(iterate.values.len());
+        let mut eliminated = vec![false; iterate.values.len()];
+        for (i, bound) in iterate.inequality.bounds.iter().enumerate() {
+            let residual = iterate.residual[i];
+            let multiplier = match iterate.states[i] {
                 Contact::Inactive => f64::NEG_INFINITY,
-                Contact::Lower => -self.residual[i].to_f64(),
-                Contact::Upper => self.residual[i].to_f64(),
+                Contact::Lower => -residual,
+                Contact::Upper => residual,
             };
             let is_fixed = bound.fixed_value().is_some();
-            if is_fixed || multiplier >= 0.0 {
-                unbalanced[i] = T::lit(0.0);
+            if !is_fixed && multiplier < 0.0 {
+                unbalanced[i] = T::lit(residual);
             }
-            let is_strongly_active = multiplier > threshold * self.diagonal[i].to_f64().sqrt();
-            let is_eliminated = is_fixed || is_strongly_active;
-            is_changed |= self.eliminated[i] != is_eliminated;
-            self.eliminated[i] = is_eliminated;
+            let is_strongly_active = multiplier > threshold * iterate.diagonal[i].sqrt();
+            eliminated[i] = is_fixed || is_strongly_active;
         }
-        if is_changed {
-            preconditioner.set_fixed(&self.eliminated).ok()?;
+        if eliminated != self.eliminated {
+            self.preconditioner.set_fixed(&eliminated).ok()?;
+            self.eliminated = eliminated;
         }
-        let mut z = zeros(self.values.len());
-        preconditioner.apply(&unbalanced, &mut z);
+        let mut z = zeros(unbalanced.len());
+        self.preconditioner.apply(&unbalanced, &mut z);
         Some(dot(&unbalanced, &mut z).max(0.0).sqrt())
     }
 }

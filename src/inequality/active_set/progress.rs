@@ -1,6 +1,8 @@
-//! The progress of the inexact active set method: stagnation, and how accurately to solve.
+//! The progress of an active set iteration: active sets that return, stagnation, and how accurately to
+//! solve.
 
-use super::kkt_evaluation::KktEvaluation;
+use super::linear_solver::Accuracy;
+use crate::algebra::Contact;
 
 /// Fewer state changes than this hardly change the error: the next system is then solved accurately.
 const FEW_CHANGES: usize = 16;
@@ -8,19 +10,36 @@ const FEW_CHANGES: usize = 16;
 /// Largest number of solutions that may be repeated because of rounding.
 const MAX_REPEATS: usize = 3;
 
+/// Why an active set iteration does not continue.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Obstruction {
+    /// The active set has occurred before, with an accurate solution.
+    Cycle,
+    /// The number of state changes has not halved, or the merit has not decreased, for too long.
+    Stagnation,
+}
+
+/// The numbers of steps within which an iteration must progress.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Patience {
+    /// Number of systems within which the number of state changes must halve; `None` for no limit.
+    pub halving: Option<usize>,
+    /// Number of systems within which the merit must decrease.
+    pub improvement: usize,
+}
+
 /// The progress of an iteration.
 pub(crate) struct ProgressMonitor {
-    /// Whether the active set changed after the last linear system.
-    pub active_set_changed: bool,
-    /// Whether the next system is solved accurately.
+    patience: Patience,
+    /// The fingerprint of the present active set; see [`fingerprint`].
+    fingerprint: u128,
+    /// The fingerprints of all active sets that have occurred.
+    seen: Vec<u128>,
     next_is_accurate: bool,
-    /// Whether all systems from now on are solved accurately.
     all_are_accurate: bool,
-    /// The smallest merit so far.
-    best_merit: f64,
     /// The number of systems since the smallest merit, or since all are solved accurately.
     steps_without_improvement: usize,
-    /// The number of accurate solutions whose residual was too large.
+    /// The number of accurate solutions whose certificate was too large.
     repeats: usize,
     /// The number of state changes when it last halved.
     fewest_changes: usize,
@@ -29,14 +48,16 @@ pub(crate) struct ProgressMonitor {
 }
 
 impl ProgressMonitor {
-    /// The progress before the first system, which is solved accurately if `is_linear`: no unknown
-    /// has an inequality as bound.
-    pub fn new(is_linear: bool) -> Self {
+    /// The progress before the first system of contact states, which is solved accurately if
+    /// `is_linear`: no unknown has an inequality as bound.
+    pub fn new(states: &[Contact], patience: Patience, is_linear: bool) -> Self {
+        let fingerprint = fingerprint(states);
         Self {
-            active_set_changed: true,
+            patience,
+            fingerprint,
+            seen: vec![fingerprint],
             next_is_accurate: is_linear,
             all_are_accurate: false,
-            best_merit: f64::INFINITY,
             steps_without_improvement: 0,
             repeats: 0,
             fewest_changes: usize::MAX,
@@ -44,55 +65,108 @@ impl ProgressMonitor {
         }
     }
 
-    /// Whether the next system is solved accurately.
-    pub fn is_accurate(&self) -> bool {
-        self.next_is_accurate || self.all_are_accurate
-    }
-
-    /// Notes a number of state changes; true if it has not halved for more than `stagnation_steps`
-    /// systems.
-    pub fn stagnates(&mut self, changes: usize, stagnation_steps: usize) -> bool {
-        if 2 * changes <= self.fewest_changes {
-            (self.fewest_changes, self.steps_without_halving) = (changes, 0);
-        } else if changes > 0 {
-            self.steps_without_halving += 1;
+    /// How accurately the next system is solved.
+    pub fn accuracy(&self) -> Accuracy {
+        match self.next_is_accurate || self.all_are_accurate {
+            true => Accuracy::Full,
+            false => Accuracy::Reduced,
         }
-        self.steps_without_halving > stagnation_steps
     }
 
-    /// Notes an accurate solution whose residual is too large; false after more than [`MAX_REPEATS`] of
-    /// them.
+    /// Notes an accurate solution whose certificate is too large; false after more than
+    /// [`MAX_REPEATS`] of them.
     pub fn may_repeat(&mut self) -> bool {
         self.repeats += 1;
         self.repeats <= MAX_REPEATS
     }
 
-    /// Notes an evaluation. If the merit has not improved for more than `improvement_steps`
-    /// systems, all further systems are solved accurately; if it has not improved for as many of
-    /// these either, returns false. `has_returned`: whether the active set has occurred before.
-    pub fn improves(
+    /// Notes the state changes that follow from a solution and whether the solution is the best so
+    /// far. `before` are the states before the changes, `is_accurate` tells whether the solution is as
+    /// accurate as possible.
+    ///
+    /// # Errors
+    /// [`Obstruction`] if the iteration does not progress.
+    pub fn note(
         &mut self,
-        evaluation: &KktEvaluation,
-        has_returned: bool,
-        improvement_steps: usize,
-    ) -> bool {
-        let changes = evaluation.state_changes.len();
-        self.active_set_changed = changes > 0;
-        self.next_is_accurate = has_returned || changes < FEW_CHANGES;
-        if !self.active_set_changed {
-            return true;
+        changes: &[(u32, Contact)],
+        before: &[Contact],
+        is_best: bool,
+        is_accurate: bool,
+    ) -> Result<(), Obstruction> {
+        self.next_is_accurate = changes.len() < FEW_CHANGES;
+        if changes.is_empty() {
+            return Ok(());
         }
-        let merit = evaluation.merit();
+        let has_returned = self.record(changes, before);
+        self.next_is_accurate |= has_returned;
+        if has_returned && is_accurate {
+            return Err(Obstruction::Cycle);
+        }
+        if self.has_stagnated(changes.len()) {
+            return Err(Obstruction::Stagnation);
+        }
         self.steps_without_improvement =
-            if merit < self.best_merit { 0 } else { self.steps_without_improvement + 1 };
-        self.best_merit = self.best_merit.min(merit);
-        if self.steps_without_improvement > improvement_steps {
-            if self.all_are_accurate {
-                return false;
+            if is_best { 0 } else { self.steps_without_improvement + 1 };
+        if self.steps_without_improvement > self.patience.improvement {
+            if self.all_are_accurate || is_accurate {
+                return Err(Obstruction::Stagnation);
             }
             // inaccurate solutions may be the cause
             (self.all_are_accurate, self.steps_without_improvement) = (true, 0);
         }
-        true
+        Ok(())
     }
+
+    /// Whether the number of state changes has not halved for too long.
+    fn has_stagnated(&mut self, changes: usize) -> bool {
+        if 2 * changes <= self.fewest_changes {
+            (self.fewest_changes, self.steps_without_halving) = (changes, 0);
+        } else {
+            self.steps_without_halving += 1;
+        }
+        self.patience.halving.is_some_and(|steps| self.steps_without_halving >= steps)
+    }
+
+    /// Records the active set that follows from state changes; true if it has occurred before.
+    fn record(&mut self, changes: &[(u32, Contact)], before: &[Contact]) -> bool {
+        for &(i, contact) in changes {
+            let i = i as usize;
+            self.fingerprint = self
+                .fingerprint
+                .wrapping_sub(state_key(i, before[i]))
+                .wrapping_add(state_key(i, contact));
+        }
+        let has_returned = self.seen.contains(&self.fingerprint);
+        self.seen.push(self.fingerprint);
+        has_returned
+    }
+}
+
+/// The fingerprint of an active set: the sum of the keys of all unknowns. It has 128 bits: two
+/// different sets among a few hundred share one with a probability below 1e-33, so that equal
+/// fingerprints count as equal sets.
+fn fingerprint(states: &[Contact]) -> u128 {
+    let keys = states.iter().enumerate().map(|(i, &contact)| state_key(i, contact));
+    keys.fold(0, u128::wrapping_add)
+}
+
+/// The key of the contact state of unknown `i`: a pseudo-random number determined by the unknown
+/// and its active bound, zero if the unknown is inactive.
+fn state_key(i: usize, contact: Contact) -> u128 {
+    let side = match contact {
+        Contact::Inactive => return 0,
+        Contact::Lower => 0,
+        Contact::Upper => 1,
+    };
+    let key = 2 * i as u64 + side;
+    u128::from(scramble(key)) << 64 | u128::from(scramble(!key))
+}
+
+/// The output function of SplitMix64 (Steele, Lea, Flood 2014), a bijection of 64 bits without visible
+/// structure.
+fn scramble(key: u64) -> u64 {
+    let z = key.wrapping_add(0x9e37_79b9_7f4a_7c15);
+    let z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+    let z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+    z ^ (z >> 31)
 }

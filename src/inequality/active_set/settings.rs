@@ -11,11 +11,9 @@ use crate::linear::LinearMethod;
 /// becomes active. For M-matrices the method ends in the solution after finitely many steps. For other
 /// matrices it may cycle or stagnate:
 ///
-/// * An active set that returns, or `improvement_steps` steps without a better iterate, lead to
-///   condensation: the problem on all unknowns that changed state within the cycle is a small dense
-///   complementarity problem, which is solved exactly.
-/// * If the number of state changes has not halved within `stagnation_steps` steps, or condensation
-///   does not apply, the [`Globalisation`] provides a new start or a method that descends.
+/// * An active set that returns, a number of state changes that has not halved within
+///   `stagnation_steps` steps, or `improvement_steps` steps without a better iterate, lead to the next
+///   stage, in the end to the interior point method, which provides a new start ([`Globalisation`]).
 /// * If nothing is left, the outcome is [`Outcome::Cycling`](super::super::Outcome::Cycling).
 ///
 /// No difference within rounding changes a state, since ties would cycle. Two tolerances decide, both
@@ -26,12 +24,13 @@ use crate::linear::LinearMethod;
 ///   at most, so that a global scale is safe.
 /// * The sign of a multiplier counts as wrong if its size exceeds this product times the sum of the
 ///   absolute values of the terms of its residual (machine epsilon of the scalar for terms of
-///   inactive unknowns; with factors, of `f64` for terms of fixed and active unknowns). Multipliers
+///   inactive unknowns, of `f64` for terms of fixed and active unknowns). Multipliers
 ///   shrink like the volume of a patch and there are many of them, so that a global scale would
 ///   hide all of them on fine meshes.
 ///
-/// Each condensation multiplies the factor `rounding_band` by four, up to 64 times its first value; the
-/// excess over the first value is applied to the global scale for multipliers too.
+/// The band is the same for all linear solvers. The solution of a Krylov method is accepted if all
+/// violations are within the tolerance of the linear systems, a tenth of the limit of the certificate:
+/// unknowns whose gap or multiplier is smaller may have another state than with factors.
 ///
 /// A cold start begins with the solution without inequalities. If the matrix is singular on the free
 /// unknowns, because only the bounds prevent a rigid motion, it begins with every bound active.
@@ -49,13 +48,9 @@ pub struct ActiveSet {
     /// Number of linear systems within which the number of state changes must halve; otherwise the
     /// active set stagnates and the interior point method provides a new start.
     pub stagnation_steps: usize,
-    /// Number of linear systems within which the best iterate must improve; otherwise the unknowns
-    /// that changed state in these steps are condensed.
+    /// Number of linear systems within which the best iterate must improve; otherwise the next stage
+    /// follows.
     pub improvement_steps: usize,
-    /// Largest number of condensed problems.
-    pub max_condensations: usize,
-    /// Largest number of unknowns of a condensed problem, whose matrix is dense.
-    pub max_condensed: usize,
     /// The method that takes over from an active set that stagnates or cycles.
     pub globalisation: Globalisation,
     /// Whether to check first that the matrix, or its symmetric part if it is not symmetric, is
@@ -66,26 +61,18 @@ pub struct ActiveSet {
     pub linear: LinearMethod,
 }
 
-/// The method that finds the solution where the active set stagnates or cycles.
+/// The use of the interior point method (Mehrotra, SIAM J. Optim. 2 (1992) 575-601), which provides
+/// starting active sets.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Globalisation {
-    /// No method: the active set method with condensation alone determines the outcome.
+    /// None: the active set method alone determines the outcome.
     Never,
-    /// An interior point method (Mehrotra, SIAM J. Optim. 2 (1992) 575-601) provides a new active
-    /// set where the present one stagnates; projected Newton follows if the iteration from the new
-    /// active set cycles too and the matrix is symmetric.
+    /// Where the active set stagnates or cycles.
     #[default]
     OnStagnation,
-    /// The interior point method provides the first active set; projected Newton follows as for
-    /// [`Globalisation::OnStagnation`].
+    /// For the first active set too.
     InteriorPointFirst,
-    /// Projected Newton from the start, for symmetric matrices: the energy is minimised on one face of
-    /// the bounds after the other and never rises. Finite for every symmetric positive definite matrix
-    /// (Bertsekas, SIAM J. Control Optim. 20 (1982) 221-246; More, Toraldo, SIAM J. Optim. 1 (1991)
-    /// 93-113) if `max_outer` is large enough. For matrices that are not symmetric, the active set
-    /// method with condensation runs instead.
-    ProjectedNewton,
 }
 
 impl Default for ActiveSet {
@@ -96,8 +83,6 @@ impl Default for ActiveSet {
             refinements: 1,
             stagnation_steps: 3,
             improvement_steps: 20,
-            max_condensations: 10,
-            max_condensed: 500,
             globalisation: Globalisation::default(),
             check_definite: false,
             linear: LinearMethod::default(),
@@ -135,18 +120,6 @@ impl ActiveSet {
     #[must_use]
     pub fn improvement_steps(mut self, improvement_steps: usize) -> Self {
         self.improvement_steps = improvement_steps;
-        self
-    }
-    /// Sets the largest number of condensed problems.
-    #[must_use]
-    pub fn max_condensations(mut self, max_condensations: usize) -> Self {
-        self.max_condensations = max_condensations;
-        self
-    }
-    /// Sets the largest number of unknowns of a condensed problem.
-    #[must_use]
-    pub fn max_condensed(mut self, max_condensed: usize) -> Self {
-        self.max_condensed = max_condensed;
         self
     }
     /// Sets the method that takes over from an active set that stagnates or cycles.

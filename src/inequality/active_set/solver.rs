@@ -1,21 +1,21 @@
-//! The choice between the direct and the inexact driver of the active set method, and the fallback
-//! from the inexact to the direct one.
+//! The active set method as a solver of inequalities, with the preconditioners of this library or with
+//! others.
 
-use super::ActiveSet;
-use super::direct_driver::DirectDriver;
-use super::direct_iterate::DirectIterate;
-use super::inexact_driver::{Failure, InexactDriver};
-use crate::algebra::{Contact, Inequality, Start};
-use crate::inequality::initial_guess::InitialGuess;
-use crate::inequality::monotone_multigrid::MonotoneMultigrid;
-use crate::inequality::validation::{check_definite, check_input};
-use crate::inequality::{InequalitySolver, Outcome, Solution};
+use super::settings::ActiveSet;
+use super::strategy::{self, CROSSOVER};
+use crate::algebra::Inequality;
+use crate::inequality::{InequalitySolver, InitialGuess, Solution};
 use crate::instances::compiled;
-use crate::linear::{CoarseSpaces, LinearMethod};
+use crate::linear::{BuiltInPreconditioners, LinearMethod, PreconditionerFamily};
 use crate::real::Real;
 
-/// Number of unknowns from which the iterative solver is faster, given nested meshes.
-const CROSSOVER: usize = 10_000;
+impl ActiveSet {
+    /// The method with preconditioners of another family.
+    #[must_use]
+    pub fn with_preconditioners<P>(self, family: P) -> Preconditioned<P> {
+        Preconditioned { settings: self, family }
+    }
+}
 
 impl<T: Real> InequalitySolver<T> for ActiveSet {
     fn name(&self) -> &'static str {
@@ -27,10 +27,7 @@ impl<T: Real> InequalitySolver<T> for ActiveSet {
     }
 
     fn solve_from(&self, inequality: &Inequality<T>, guess: &InitialGuess<T>) -> Solution<T> {
-        compiled!(
-            T: fn(&ActiveSet, &Inequality<T>, &InitialGuess<T>) -> Solution<T>
-                = ActiveSet::choose_and_solve
-        )(self, inequality, guess)
+        solve_by_stages(self, inequality, guess, &BuiltInPreconditioners)
     }
 
     fn uses_coarse_spaces(&self, unknowns: usize) -> bool {
@@ -42,101 +39,44 @@ impl<T: Real> InequalitySolver<T> for ActiveSet {
     }
 }
 
-impl ActiveSet {
-    fn choose_and_solve<T: Real>(
-        &self,
-        inequality: &Inequality<T>,
-        guess: &InitialGuess<T>,
-    ) -> Solution<T> {
-        let may_iterate =
-            <Self as InequalitySolver<T>>::uses_coarse_spaces(self, inequality.size());
-        let has_coarse_spaces = !matches!(guess.coarse_spaces, CoarseSpaces::Unknown);
-        let is_iterative =
-            may_iterate && (has_coarse_spaces || self.linear == LinearMethod::Iterative);
-        if is_iterative && check_input(inequality).is_ok() {
-            return match self.solve_inexactly(inequality, guess) {
-                Ok(solution) => solution,
-                Err(failure) => self.fall_back(inequality, guess, failure),
-            };
-        }
-        self.solve_directly(inequality, None)
+/// [`ActiveSet`] with preconditioners of a family `P`: [`ActiveSet::with_preconditioners`].
+#[derive(Clone, Debug, PartialEq)]
+pub struct Preconditioned<P> {
+    settings: ActiveSet,
+    family: P,
+}
+
+impl<T: Real, P: PreconditionerFamily<T>> InequalitySolver<T> for Preconditioned<P> {
+    fn name(&self) -> &'static str {
+        self.family.name()
     }
 
-    /// The active set method with preconditioned Krylov methods, without factors of the matrix.
-    ///
-    /// # Errors
-    /// [`Failure`] if another method must follow.
-    fn solve_inexactly<T: Real>(
-        &self,
-        inequality: &Inequality<T>,
-        guess: &InitialGuess<T>,
-    ) -> Result<Solution<T>, Failure> {
-        if self.check_definite && check_definite(inequality).is_err() {
-            return Err(Failure::default());
-        }
-        InexactDriver::new(self, inequality, guess).run()
+    fn solve(&self, inequality: &Inequality<T>) -> Solution<T> {
+        self.solve_from(inequality, &InitialGuess::default())
     }
 
-    /// The solution after a failure of the inexact method: by monotone multigrid if the active set
-    /// stagnated, the matrix is symmetric and the unknowns are conforming P1 on nested meshes; else, or
-    /// if monotone multigrid does not converge, with factors. Iterations of all methods are added.
-    fn fall_back<T: Real>(
-        &self,
-        inequality: &Inequality<T>,
-        guess: &InitialGuess<T>,
-        failure: Failure,
-    ) -> Solution<T> {
-        let Failure { mut outer, mut linear, last_active_set } = failure;
-        let mut found = None;
-        if last_active_set.is_some()
-            && inequality.symmetric
-            && matches!(guess.coarse_spaces, CoarseSpaces::CoarseLevel(_))
-        {
-            let solution = MonotoneMultigrid::default().solve_from(inequality, guess);
-            if solution.outcome == Outcome::Converged {
-                found = Some(solution);
-            } else {
-                (outer, linear) = (outer + solution.outer, linear + solution.linear);
-            }
-        }
-        let mut solution =
-            found.unwrap_or_else(|| self.solve_directly(inequality, last_active_set));
-        solution.outer += outer;
-        solution.linear += linear;
-        solution
+    fn solve_from(&self, inequality: &Inequality<T>, guess: &InitialGuess<T>) -> Solution<T> {
+        solve_by_stages(&self.settings, inequality, guess, &self.family)
     }
 
-    /// The active set method with factors of the matrix, from the active set `stagnated` of the inexact
-    /// method if it is given, else from the start of the inequality.
-    fn solve_directly<T: Real>(
-        &self,
-        inequality: &Inequality<T>,
-        stagnated: Option<Vec<Contact>>,
-    ) -> Solution<T> {
-        let mut iterate = DirectIterate::new(inequality);
-        let outcome = match (self.check(inequality), stagnated) {
-            (Ok(()), None) => DirectDriver::new(self, &mut iterate).run(),
-            (Ok(()), Some(states)) => {
-                iterate.states = states;
-                DirectDriver::new(self, &mut iterate).after_stagnation().run()
-            }
-            (Err(outcome), _) => outcome,
-        };
-        iterate.into_solution(outcome)
+    fn uses_coarse_spaces(&self, unknowns: usize) -> bool {
+        <ActiveSet as InequalitySolver<T>>::uses_coarse_spaces(&self.settings, unknowns)
     }
+}
 
-    /// Checks the input, and definiteness where a setting requires it; a cold start with a
-    /// symmetric matrix begins with a Cholesky factorisation on all free unknowns, which is such a
-    /// check itself.
-    ///
-    /// # Errors
-    /// The outcome that the solver returns.
-    fn check<T: Real>(&self, inequality: &Inequality<T>) -> Result<(), Outcome> {
-        check_input(inequality)?;
-        let is_checked_by_factors = inequality.start == Start::Cold && inequality.symmetric;
-        if self.check_definite && !is_checked_by_factors {
-            check_definite(inequality)?;
-        }
-        Ok(())
-    }
+fn solve_by_stages<T: Real>(
+    settings: &ActiveSet,
+    inequality: &Inequality<T>,
+    guess: &InitialGuess<T>,
+    family: &dyn PreconditionerFamily<T>,
+) -> Solution<T> {
+    compiled!(
+        T: fn(
+            &ActiveSet,
+            &Inequality<T>,
+            &InitialGuess<T>,
+            &dyn PreconditionerFamily<T>,
+        ) -> Solution<T>
+            = strategy::solve
+    )(settings, inequality, guess, family)
 }

@@ -40,30 +40,6 @@ pub(crate) struct ComplementarityPair {
     pub indicators: [f64; 2],
 }
 
-/// The state of a complementarity pair without the coefficients of the last step.
-#[derive(Debug)]
-pub(crate) struct StoredPair {
-    unknown: usize,
-    side: f64,
-    slack: f64,
-    dual: f64,
-    indicators: [f64; 2],
-}
-
-impl From<ComplementarityPair> for StoredPair {
-    fn from(
-        ComplementarityPair { unknown, side, slack, dual, indicators, .. }: ComplementarityPair,
-    ) -> Self {
-        Self { unknown, side, slack, dual, indicators }
-    }
-}
-
-impl From<StoredPair> for ComplementarityPair {
-    fn from(StoredPair { unknown, side, slack, dual, indicators }: StoredPair) -> Self {
-        Self { indicators, ..Self::new(unknown, side, slack, dual) }
-    }
-}
-
 impl ComplementarityPair {
     /// A pair before its first step: coefficients zero, indicators one.
     pub fn new(unknown: usize, side: f64, slack: f64, dual: f64) -> Self {

@@ -14,7 +14,7 @@ mod path_expansion;
 use crate::algebra::{Bound, Contact, Inequality};
 use crate::linear::direct::StaticCondensation;
 use crate::real::Real;
-use complementarity_pairs::{ComplementarityPair, MAX_ORDER, StoredPair, mean_complementarity};
+use complementarity_pairs::{ComplementarityPair, MAX_ORDER, mean_complementarity};
 use newton_system::{MixedVector, NewtonSystem};
 use path_expansion::{PREDICTOR_ORDER, PathExpansion};
 
@@ -30,10 +30,6 @@ const FINAL_COMPLEMENTARITY: f64 = 1e-18;
 /// separated and gave the same active set one step before.
 const IDENTIFICATION_TOL: f64 = 1e-10;
 
-/// Factor by which the identification tolerance is reduced at each restart, since the active set was
-/// identified too early.
-const IDENTIFICATION_TOL_REDUCTION: f64 = 1e-2;
-
 /// Relative complementarity above which stagnation counts as due to the starting point, not to
 /// rounding.
 const STAGNATION_TOL: f64 = 1e-8;
@@ -47,13 +43,13 @@ pub(crate) const MAX_STEPS: usize = 60;
 /// Steps that may pass without halving the relative complementarity before the method stagnates.
 const STAGNATION_STEPS: usize = 3;
 
-/// The data from which the method continues after it has identified an active set.
-#[derive(Debug)]
-pub(crate) struct Restart {
-    point: MixedVector,
-    pairs: Vec<StoredPair>,
-    /// See [`IDENTIFICATION_TOL`].
-    identification_tol: f64,
+/// When the method ends.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Identification {
+    /// As soon as the Tapia indicators tell the active set; see [`IDENTIFICATION_TOL`].
+    Early,
+    /// At the limit of rounding.
+    Final,
 }
 
 /// The predictor-corrector method of Mehrotra (SIAM J. Optim. 2 (1992) 575-601) for
@@ -85,64 +81,40 @@ pub(crate) struct InteriorPoint<'h, 'a, T> {
     pairs: Vec<ComplementarityPair>,
     /// Number of linear systems solved.
     pub steps: usize,
-    /// See [`IDENTIFICATION_TOL`].
-    identification_tol: f64,
-    /// Whether a further step cannot improve the point.
-    is_final: bool,
+    identification: Identification,
+    /// Whether the method ended because it had identified the active set.
+    pub is_identified: bool,
 }
 
 impl<'h, 'a, T: Real> InteriorPoint<'h, 'a, T> {
-    /// A method that starts near the central path, close to the given values and jump multipliers.
+    /// A method that starts near the central path, close to the given values and jump multipliers;
+    /// jump multipliers that are not given are zero.
     pub fn new(
         inequality: &'a Inequality<T>,
         condensation: Option<&'h StaticCondensation<'a, T>>,
-        values: &[T],
-        jump_multipliers: &[T],
+        (values, jump_multipliers): (&[T], &[T]),
+        identification: Identification,
     ) -> Self {
         let bounds = inequality.bounds.iter().zip(values);
         let values = bounds.map(|(bound, &x)| bound.fixed_value().unwrap_or(x).to_f64()).collect();
-        let jump_multipliers = jump_multipliers.iter().map(|p| p.to_f64()).collect();
-        let restart = Restart {
-            point: MixedVector { values, jump_multipliers },
-            pairs: Vec::new(),
-            identification_tol: IDENTIFICATION_TOL,
-        };
-        let mut method = Self::resume(inequality, condensation, restart);
-        method.move_to_central_path(INITIAL_COMPLEMENTARITY);
-        method
-    }
-
-    /// A method that continues from the point of an earlier one.
-    pub fn resume(
-        inequality: &'a Inequality<T>,
-        condensation: Option<&'h StaticCondensation<'a, T>>,
-        restart: Restart,
-    ) -> Self {
-        let Restart { point, pairs, identification_tol } = restart;
-        let pairs = pairs.into_iter().map(ComplementarityPair::from).collect();
+        let penalised = inequality.penalised.as_ref().filter(|_| condensation.is_some());
+        let n_jumps = penalised.map_or(0, |penalised| penalised.n_jumps());
+        let mut jump_multipliers: Vec<f64> = jump_multipliers.iter().map(|p| p.to_f64()).collect();
+        jump_multipliers.resize(n_jumps, 0.0);
         let system = NewtonSystem::new(inequality, condensation);
         let diagonal = (0..inequality.size()).map(|i| system.diagonal_scale(i)).collect();
-        Self {
+        let mut method = Self {
             inequality,
             system,
-            point,
+            point: MixedVector { values, jump_multipliers },
             diagonal,
-            pairs,
+            pairs: Vec::new(),
             steps: 0,
-            identification_tol,
-            is_final: false,
-        }
-    }
-
-    /// The restart with a smaller identification tolerance; `None` if no further step is possible.
-    pub fn into_restart(self) -> Option<Restart> {
-        let identification_tol = IDENTIFICATION_TOL_REDUCTION * self.identification_tol;
-        let pairs = self.pairs.into_iter().map(StoredPair::from);
-        (!self.is_final).then(|| Restart {
-            point: self.point,
-            pairs: pairs.collect(),
-            identification_tol,
-        })
+            identification,
+            is_identified: false,
+        };
+        method.move_to_central_path(INITIAL_COMPLEMENTARITY);
+        method
     }
 
     /// Iterates until the active set is identified, no step improves the point, or [`MAX_STEPS`]
@@ -153,9 +125,7 @@ impl<'h, 'a, T: Real> InteriorPoint<'h, 'a, T> {
         let (mut least, mut stagnant_steps) = (f64::INFINITY, 0);
         let mut previous_contact = Vec::new();
         let mut is_recentred = false;
-        // the pairs of a restart carry the indicators of its last step
-        let has_indicators = self.pairs.iter().any(|pair| pair.indicators != [1.0; 2]);
-        let mut last_contact = has_indicators.then(|| self.contact());
+        let mut last_contact = None;
         while self.steps < MAX_STEPS {
             let energy = self.residual(&mut residual);
             let mean = mean_complementarity(&self.pairs, 0.0, 0);
@@ -166,7 +136,8 @@ impl<'h, 'a, T: Real> InteriorPoint<'h, 'a, T> {
             stagnant_steps = if relative < 0.5 * least { 0 } else { stagnant_steps + 1 };
             least = if stagnant_steps == 0 { relative } else { least };
             let contact = self.contact();
-            let is_identified = relative <= self.identification_tol
+            self.is_identified = self.identification == Identification::Early
+                && relative <= IDENTIFICATION_TOL
                 && self.indicators_are_separated()
                 && contact == previous_contact;
             previous_contact = contact;
@@ -177,12 +148,10 @@ impl<'h, 'a, T: Real> InteriorPoint<'h, 'a, T> {
                 self.move_to_central_path(1.0);
                 continue;
             }
-            self.is_final = relative <= FINAL_COMPLEMENTARITY || stagnates;
-            if is_identified || self.is_final {
+            if self.is_identified || relative <= FINAL_COMPLEMENTARITY || stagnates {
                 break;
             }
             if !self.step(&residual, mean)? {
-                self.is_final = true;
                 return last_contact;
             }
             last_contact = Some(self.contact());
@@ -315,6 +284,7 @@ mod tests {
             load: vec![3e38; 2],
             supports: vec![],
             points: vec![],
+            conforming_linear: false,
             start: Start::Cold,
             penalised: None,
         }
@@ -323,25 +293,10 @@ mod tests {
     #[test]
     fn a_first_step_of_length_zero_gives_no_active_set() {
         let inequality = overflowing();
-        let mut method = InteriorPoint::new(&inequality, None, &[0.0; 2], &[]);
+        let start = (&[0.0; 2][..], &[][..]);
+        let mut method = InteriorPoint::new(&inequality, None, start, Identification::Early);
         let before = method.point.values.clone();
         assert_eq!(method.run(), None);
         assert_eq!((method.point.values.clone(), method.steps), (before, 1));
-        assert!(method.into_restart().is_none());
-    }
-
-    #[test]
-    fn a_later_step_of_length_zero_keeps_the_active_set() {
-        let inequality = overflowing();
-        let mut method = InteriorPoint::new(&inequality, None, &[0.0; 2], &[]);
-        let indicators = [[0.1, 1.0], [1.0, 0.1]];
-        method.pairs.iter_mut().zip(indicators).for_each(|(pair, values)| pair.indicators = values);
-        let restart = method.into_restart().unwrap();
-        let mut method = InteriorPoint::resume(&inequality, None, restart);
-        let before = method.point.values.clone();
-        assert_eq!(method.run(), Some(vec![Contact::Lower, Contact::Inactive]));
-        assert_eq!(method.steps, 1);
-        assert_eq!(method.point.values, before);
-        assert!(method.into_restart().is_none());
     }
 }

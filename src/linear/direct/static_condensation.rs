@@ -351,7 +351,7 @@ impl<'a, T: Real> StaticCondensation<'a, T> {
         }));
     }
 
-    /// Two sums of absolute values of terms of the residual `(c - K u - M^T p)_i`: first of the
+    /// Sums of the absolute values of terms of the residual `(c - K u - M^T p)_i`: first of the
     /// terms with free unknowns and jump multipliers `p`, then of the terms with fixed unknowns and
     /// of the load.
     pub fn residual_term_sizes(
@@ -360,7 +360,7 @@ impl<'a, T: Real> StaticCondensation<'a, T> {
         u: &dyn Fn(usize) -> f64,
         p: &[T],
         is_fixed: &dyn Fn(usize) -> bool,
-    ) -> (f64, f64) {
+    ) -> [f64; 2] {
         let n = self.penalised.block_size;
         let block = i / n;
         let (mut free, mut fixed) = (0.0, self.penalised.load[i].to_f64().abs());
@@ -371,7 +371,7 @@ impl<'a, T: Real> StaticCondensation<'a, T> {
         for side in self.sides(block) {
             free += (self.mean_coefficient(side, i) * p[side.jump as usize].to_f64()).abs();
         }
-        (free, fixed)
+        [free, fixed]
     }
 }
 

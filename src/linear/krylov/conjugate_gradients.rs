@@ -133,9 +133,16 @@ impl<'m, T: Real> ConjugateGradients<'m, T> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::linear::direct::FactorError;
 
     struct Identity;
     impl Preconditioner<f64> for Identity {
+        fn name(&self) -> &'static str {
+            "test"
+        }
+        fn set_fixed(&mut self, _fixed: &[bool]) -> Result<(), FactorError> {
+            Ok(())
+        }
         fn apply(&mut self, r: &[f64], z: &mut [f64]) {
             z.copy_from_slice(r);
         }

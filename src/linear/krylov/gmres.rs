@@ -274,9 +274,16 @@ impl HessenbergMatrix {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::linear::direct::FactorError;
 
     struct Diagonal([f64; 4]);
     impl Preconditioner<f64> for Diagonal {
+        fn name(&self) -> &'static str {
+            "test"
+        }
+        fn set_fixed(&mut self, _fixed: &[bool]) -> Result<(), FactorError> {
+            Ok(())
+        }
         fn apply(&mut self, r: &[f64], z: &mut [f64]) {
             for (i, z) in z.iter_mut().enumerate() {
                 *z = self.0[i] * r[i];

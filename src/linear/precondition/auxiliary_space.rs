@@ -37,18 +37,18 @@ impl<'a, T: Real> AuxiliarySpace<'a, T> {
     ) -> Option<Self> {
         Some(Self { blocks: BlockJacobi::new(matrix, unknowns_per_cell(supports)?)?, correction })
     }
-
-    /// Sets the fixed unknowns; must be called before the first use.
-    ///
-    /// # Errors
-    /// [`FactorError`] if a block, or the matrix of the coarsest level, is not positive definite.
-    pub fn set_fixed(&mut self, fixed: &[bool]) -> Result<(), FactorError> {
-        self.blocks.set_fixed(fixed)?;
-        self.correction.set_fixed(fixed)
-    }
 }
 
 impl<T: Real> Preconditioner<T> for AuxiliarySpace<'_, T> {
+    fn name(&self) -> &'static str {
+        "auxiliary-space"
+    }
+
+    fn set_fixed(&mut self, fixed: &[bool]) -> Result<(), FactorError> {
+        self.blocks.set_fixed(fixed)?;
+        self.correction.set_fixed(fixed)
+    }
+
     fn apply(&mut self, r: &[T], z: &mut [T]) {
         self.blocks.apply(r, z);
         self.correction.add(r, z);

@@ -1,8 +1,13 @@
 //! The conforming linear functions that are known for an inequality.
 
+use std::borrow::Cow;
 use std::sync::Arc;
 
 use super::coarse_level::{CoarseLevel, P1Level};
+use crate::algebra::{
+    Bound, Inequality, RectangularMatrix, SparseMatrix, Support, galerkin_product,
+};
+use crate::real::Real;
 
 /// Spaces of conforming linear functions for multigrid.
 #[derive(Clone, Debug, Default)]
@@ -17,4 +22,62 @@ pub enum CoarseSpaces<T> {
     /// The unknowns are those of another finite element, and the conforming linear functions on the
     /// same mesh are known.
     SameMesh(Arc<P1Level<T>>),
+}
+
+impl<T: Real> CoarseSpaces<T> {
+    /// These spaces if they fit an inequality, else spaces constructed from the symmetric part `matrix`
+    /// of its matrix and the supports of its unknowns; `None` if the inequality does not have a support
+    /// for each unknown.
+    pub(crate) fn complete(
+        &self,
+        matrix: &SparseMatrix<T>,
+        inequality: &Inequality<T>,
+    ) -> Option<Cow<'_, Self>> {
+        let Inequality { bounds, supports, conforming_linear, .. } = inequality;
+        if supports.len() != inequality.size() || supports.is_empty() {
+            return None;
+        }
+        let fixed: Vec<bool> = bounds.iter().map(|b| matches!(b, Bound::Fixed(_))).collect();
+        Some(match self {
+            Self::CoarseLevel(coarser) if coarser.prolongation.n_fine() == matrix.size() => {
+                Cow::Borrowed(self)
+            }
+            Self::SameMesh(_) => Cow::Borrowed(self),
+            _ if *conforming_linear => {
+                let coarser = CoarseLevel::aggregated(matrix, &fixed);
+                Cow::Owned(coarser.map_or(Self::Unknown, Self::CoarseLevel))
+            }
+            _ => Cow::Owned(Self::SameMesh(Arc::new(p1_level(matrix, supports, &fixed)?))),
+        })
+    }
+}
+
+/// The conforming linear functions on the mesh of another finite element, with the Galerkin matrix
+/// `P^T A P`, where an unknown of the element is the mean of the values at the vertices of its
+/// support. Vertices in the supports of fixed unknowns are fixed, and vertices whose diagonal entry
+/// is not positive. `None` without supports.
+fn p1_level<T: Real>(
+    matrix: &SparseMatrix<T>,
+    supports: &[Support],
+    fixed: &[bool],
+) -> Option<P1Level<T>> {
+    let last = supports.iter().flat_map(|p| p.vertices()).max()?;
+    let n = *last as usize + 1;
+    let mut rows = RectangularMatrix { starts: vec![0], columns: Vec::new(), values: Vec::new() };
+    let mut fixed_vertices = vec![false; n];
+    for (support, &fixed) in supports.iter().zip(fixed) {
+        let vertices = support.vertices();
+        let weight = T::lit(1.0 / vertices.len().max(1) as f64);
+        rows.columns.extend(vertices);
+        rows.values.extend(vertices.iter().map(|_| weight));
+        rows.starts.push(rows.columns.len() as u32);
+        if fixed {
+            vertices.iter().for_each(|&v| fixed_vertices[v as usize] = true);
+        }
+    }
+    let form = galerkin_product(matrix, &rows, n);
+    for (v, fixed) in fixed_vertices.iter_mut().enumerate() {
+        *fixed |= form.get(v, v) <= T::lit(0.0);
+    }
+    Some(P1Level::new(form, fixed_vertices, None))
 }

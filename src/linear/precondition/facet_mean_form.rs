@@ -1,13 +1,9 @@
-//! The form of an over-penalised discontinuous element on its facet mean functions, read from the
-//! matrix.
+//! The form of an over-penalised discontinuous linear element on its facet mean functions.
 
-use crate::algebra::{NO_INDEX, SparseMatrix, Support};
+use crate::algebra::{JumpTerm, NO_INDEX, PenalisedMatrix, Support};
 use crate::real::Real;
 
-/// Entries up to this multiple of machine epsilon times the largest entry of their block count as zero.
-const ROUNDING: f64 = 64.0;
-
-/// The entries of a symmetric form between the facet mean functions of the two sides of a facet.
+/// The entries of `K + M^T S M` between the facet mean functions of the two sides of a facet.
 ///
 /// The facet mean function of a side is the linear function on its cell with mean one on the facet
 /// and mean zero on the other facets of the cell: the Crouzeix-Raviart basis. Sides have the indices of
@@ -17,7 +13,7 @@ pub(crate) struct FacetMeanForm<T> {
     pub cell_size: usize,
     /// Whether the unknowns are the means over sides; else they are vertex values.
     pub are_means: bool,
-    /// The other side of the same facet, [`NO_INDEX`] if no entry couples the two cells.
+    /// The other side of the same facet, [`NO_INDEX`] if there is none with a jump.
     pub opposite: Vec<u32>,
     /// The form of the function of a side with itself.
     pub diagonal: Vec<T>,
@@ -33,15 +29,10 @@ pub(crate) fn cr_basis<T: Real>(cell_size: usize, vertex: usize, facet: usize) -
 }
 
 impl<T: Real> FacetMeanForm<T> {
-    /// The entries of a matrix; `None` if its unknowns are not those of discontinuous linear
-    /// functions in two or three dimensions, or cells are coupled by more than the means over their
-    /// common facet.
-    pub fn from_matrix(
-        matrix: &SparseMatrix<T>,
-        supports: &[Support],
-        cell_size: usize,
-    ) -> Option<Self> {
-        let n = matrix.size();
+    /// The entries of a penalised matrix; `None` if its unknowns are not those of discontinuous linear
+    /// functions in two or three dimensions, or a facet has jumps besides that of its mean.
+    pub fn new(penalised: &PenalisedMatrix<T>, supports: &[Support]) -> Option<Self> {
+        let (n, cell_size) = (penalised.load.len(), penalised.block_size);
         if !(3..=4).contains(&cell_size) || supports.len() != n {
             return None;
         }
@@ -55,105 +46,67 @@ impl<T: Real> FacetMeanForm<T> {
             cell_size,
             are_means,
             opposite: vec![NO_INDEX; n],
-            diagonal: vec![zero; n],
+            diagonal: (0..n).map(|side| stiffness(penalised, side, are_means)).collect(),
             coupling: vec![zero; n],
         };
-        for cell in 0..n / cell_size {
-            form.read_cell(matrix, supports, cell)?;
+        let mut has_jump = vec![false; n];
+        for jump in 0..penalised.n_jumps() {
+            let terms = penalised.terms_of(jump);
+            let here = form.side(terms, |t| t.here)?;
+            let there = form.side(terms, |t| t.there);
+            let weight = penalised.weights[jump];
+            let mean = terms.iter().fold(zero, |sum, t| sum + t.weight);
+            let product = weight * mean * mean;
+            for side in [Some(here), there].into_iter().flatten() {
+                // a second jump is a moment of higher degree
+                if std::mem::replace(&mut has_jump[side], true) {
+                    return None;
+                }
+                form.diagonal[side] += product;
+            }
+            if let Some(there) = there {
+                (form.opposite[here], form.opposite[there]) = (there as u32, here as u32);
+                (form.coupling[here], form.coupling[there]) = (-product, -product);
+            }
         }
         Some(form)
     }
 
-    /// Reads the rows of a cell; `None` as in [`FacetMeanForm::from_matrix`].
-    fn read_cell(
-        &mut self,
-        matrix: &SparseMatrix<T>,
-        supports: &[Support],
-        cell: usize,
-    ) -> Option<()> {
+    /// The side whose mean is the part of a jump with the unknowns `unknown` of its terms; `None` if the
+    /// part is not the mean over a side.
+    fn side(&self, terms: &[JumpTerm<T>], unknown: impl Fn(&JumpTerm<T>) -> u32) -> Option<usize> {
         let size = self.cell_size;
-        let columns = matrix.row(cell * size).0;
-        // All rows of a cell have the same columns, those of whole cells.
-        if !columns.len().is_multiple_of(size)
-            || (1..size).any(|i| matrix.row(cell * size + i).0 != columns)
-        {
+        if terms.iter().any(|t| unknown(t) == JumpTerm::<T>::NO_UNKNOWN) {
             return None;
         }
-        for (k, block) in columns.chunks_exact(size).enumerate() {
-            let other = block[0] as usize / size;
-            if block[0] as usize != other * size
-                || block[size - 1] as usize != other * size + size - 1
-            {
-                return None;
-            }
-            let entry = |i: usize, j: usize| matrix.row(cell * size + i).1[k * size + j];
-            if other == cell {
-                for facet in 0..size {
-                    self.diagonal[cell * size + facet] = self.form(&entry, facet, facet);
-                }
-                continue;
-            }
-            let largest = (0..size * size)
-                .map(|e| entry(e / size, e % size).to_f64().abs())
-                .fold(0.0, f64::max);
-            if largest == 0.0 {
-                continue;
-            }
-            let (here, there) = self.common_facet(supports, cell, other)?;
-            let tolerance = ROUNDING * T::EPSILON * largest;
-            // A product of the two means has these entries only.
-            let couples_means = |i: usize, j: usize| match self.are_means {
-                true => i == here && j == there,
-                false => i != here && j != there,
-            };
-            let is_other_coupling = |e: usize| {
-                let (i, j) = (e / size, e % size);
-                !couples_means(i, j) && entry(i, j).to_f64().abs() > tolerance
-            };
-            if (0..size * size).any(is_other_coupling) {
-                return None;
-            }
-            self.opposite[cell * size + here] = (other * size + there) as u32;
-            self.coupling[cell * size + here] = self.form(&entry, here, there);
-        }
-        Some(())
-    }
-
-    /// The form of the functions of the facets `here` and `there`, from the block of their cells.
-    fn form(&self, entry: &dyn Fn(usize, usize) -> T, here: usize, there: usize) -> T {
+        let mut unknowns = terms.iter().map(|t| unknown(t) as usize);
         if self.are_means {
-            return entry(here, there);
+            return unknowns.next().filter(|_| terms.len() == 1);
         }
-        let size = self.cell_size;
-        let mut sum = T::lit(0.0);
-        for i in 0..size {
-            for j in 0..size {
-                let weight: T = cr_basis::<T>(size, i, here) * cr_basis::<T>(size, j, there);
-                sum += weight * entry(i, j);
-            }
+        if terms.len() != size - 1 {
+            return None;
         }
-        sum
+        // The facet is opposite to the vertex without a term.
+        let cell = unknowns.next()? / size;
+        let has_term = |i: usize| terms.iter().any(|t| unknown(t) as usize == cell * size + i);
+        (0..size).find(|&i| !has_term(i)).map(|facet| cell * size + facet)
     }
+}
 
-    /// The local numbers of the common facet of two cells; `None` if it is not unique.
-    fn common_facet(
-        &self,
-        supports: &[Support],
-        cell: usize,
-        other: usize,
-    ) -> Option<(usize, usize)> {
-        let size = self.cell_size;
-        let of = |cell: usize| &supports[cell * size..(cell + 1) * size];
-        let (here, there) = (of(cell), of(other));
-        let is_shared =
-            |p: &Support, cell: &[Support]| cell.iter().any(|q| q.vertices() == p.vertices());
-        // With means as unknowns, the common facet is the one whose mean both cells have; with
-        // vertex values, the one opposite to the vertex that only one of the cells has.
-        let wanted = self.are_means;
-        let local = |from: &[Support], to: &[Support]| {
-            let mut found = (0..size).filter(|&i| is_shared(&from[i], to) == wanted);
-            found.next().filter(|_| found.next().is_none())
-        };
-        Some((local(here, there)?, local(there, here)?))
+/// The stiffness form of the facet mean function of a side with itself.
+fn stiffness<T: Real>(penalised: &PenalisedMatrix<T>, side: usize, are_means: bool) -> T {
+    let size = penalised.block_size;
+    let (first, facet) = (side / size * size, side % size);
+    let entry = |i: usize, j: usize| penalised.blocks[(first + i) * size + j];
+    if are_means {
+        return entry(facet, facet);
     }
+    let mut sum = T::lit(0.0);
+    for i in 0..size {
+        for j in 0..size {
+            let weight: T = cr_basis::<T>(size, i, facet) * cr_basis::<T>(size, j, facet);
+            sum += weight * entry(i, j);
+        }
+    }
+    sum
 }

@@ -6,10 +6,12 @@
 //! Crouzeix-Raviart functions, with conforming linear functions as auxiliary space. Source: B.
 //! Ayuso de Dios, L. Zikatanov, J. Sci. Comput. 40 (2009), 4-36.
 
-use super::auxiliary_space::{VertexCorrection, unknowns_per_cell};
+use super::auxiliary_space::VertexCorrection;
 use super::facet_mean_form::{FacetMeanForm, cr_basis};
 use super::preconditioner::Preconditioner;
-use crate::algebra::{NO_INDEX, RectangularMatrix, SparseMatrix, Support, galerkin_product};
+use crate::algebra::{
+    NO_INDEX, PenalisedMatrix, RectangularMatrix, SparseMatrix, Support, galerkin_product,
+};
 use crate::linear::direct::{FactorError, Factors};
 use crate::parallel::vectors::for_each_chunk_of_groups;
 use crate::real::Real;
@@ -57,15 +59,16 @@ struct MixedBlock<T> {
 }
 
 impl<'a, T: Real> MeanJumpSplitting<'a, T> {
-    /// The preconditioner of a symmetric matrix; `None` if its unknowns are not those of
-    /// discontinuous linear functions, or cells are coupled by more than facet means, or `correction`
-    /// returns `None`.
+    /// The preconditioner of `matrix`, which is `penalised` multiplied out; `None` if its unknowns are
+    /// not those of discontinuous linear functions, or cells are coupled by more than facet means, or
+    /// `correction` returns `None`.
     pub fn new(
         matrix: &'a SparseMatrix<T>,
+        penalised: &PenalisedMatrix<T>,
         supports: &[Support],
         correction: impl FnOnce() -> Option<VertexCorrection<'a, T>>,
     ) -> Option<Self> {
-        let form = FacetMeanForm::from_matrix(matrix, supports, unknowns_per_cell(supports)?)?;
+        let form = FacetMeanForm::new(penalised, supports)?;
         let zero = T::lit(0.0);
         let n = matrix.size();
         let no_correction =
@@ -84,53 +87,6 @@ impl<'a, T: Real> MeanJumpSplitting<'a, T> {
             mean_residuals: vec![zero; n],
             means: vec![zero; n],
         })
-    }
-
-    /// Sets the fixed unknowns.
-    ///
-    /// # Errors
-    /// [`FactorError`] if a diagonal entry, the mixed block or the matrix of the coarsest level is not
-    /// positive definite.
-    pub fn set_fixed(&mut self, fixed: &[bool]) -> Result<(), FactorError> {
-        let form = &self.form;
-        let size = form.cell_size;
-        let zero = T::lit(0.0);
-        self.mixed_block.vertex_values.clear();
-        self.mixed_block.sides.clear();
-        let is_free_cell = |cell: usize| !fixed[cell * size..(cell + 1) * size].contains(&true);
-        let is_fixed_cell = |cell: usize| !fixed[cell * size..(cell + 1) * size].contains(&false);
-        let has_mean = |s: usize| if form.are_means { !fixed[s] } else { is_free_cell(s / size) };
-        for s in 0..fixed.len() {
-            self.sides[s] =
-                SideCorrection { opposite: NO_INDEX, inverse_mean: zero, inverse_jump: zero };
-            if !has_mean(s) {
-                if !fixed[s] {
-                    self.mixed_block.vertex_values.push(s as u32);
-                }
-                continue;
-            }
-            let own = form.diagonal[s];
-            let opposite = form.opposite[s];
-            if opposite != NO_INDEX && has_mean(opposite as usize) {
-                let (other, coupling) = (form.diagonal[opposite as usize], form.coupling[s]);
-                let both = own + other;
-                let twice = coupling + coupling;
-                self.sides[s] = SideCorrection {
-                    opposite,
-                    inverse_mean: invert(both + twice)?,
-                    inverse_jump: invert(both - twice)?,
-                };
-            } else if opposite != NO_INDEX
-                && !form.are_means
-                && !is_fixed_cell(opposite as usize / size)
-            {
-                self.mixed_block.sides.push(s as u32);
-            } else {
-                self.sides[s].inverse_jump = invert(own)?;
-            }
-        }
-        self.mixed_block.factor(self.matrix, size)?;
-        self.correction.set_fixed(fixed)
     }
 }
 
@@ -198,6 +154,58 @@ impl<T: Real> MixedBlock<T> {
 }
 
 impl<T: Real> Preconditioner<T> for MeanJumpSplitting<'_, T> {
+    fn name(&self) -> &'static str {
+        "facet-split"
+    }
+
+    /// An error that is small in the energy norm can be large in single unknowns of an over-penalised
+    /// element, and change their contact states.
+    fn reduction(&self) -> f64 {
+        0.01
+    }
+
+    fn set_fixed(&mut self, fixed: &[bool]) -> Result<(), FactorError> {
+        let form = &self.form;
+        let size = form.cell_size;
+        let zero = T::lit(0.0);
+        self.mixed_block.vertex_values.clear();
+        self.mixed_block.sides.clear();
+        let is_free_cell = |cell: usize| !fixed[cell * size..(cell + 1) * size].contains(&true);
+        let is_fixed_cell = |cell: usize| !fixed[cell * size..(cell + 1) * size].contains(&false);
+        let has_mean = |s: usize| if form.are_means { !fixed[s] } else { is_free_cell(s / size) };
+        for s in 0..fixed.len() {
+            self.sides[s] =
+                SideCorrection { opposite: NO_INDEX, inverse_mean: zero, inverse_jump: zero };
+            if !has_mean(s) {
+                if !fixed[s] {
+                    self.mixed_block.vertex_values.push(s as u32);
+                }
+                continue;
+            }
+            let own = form.diagonal[s];
+            let opposite = form.opposite[s];
+            if opposite != NO_INDEX && has_mean(opposite as usize) {
+                let (other, coupling) = (form.diagonal[opposite as usize], form.coupling[s]);
+                let both = own + other;
+                let twice = coupling + coupling;
+                self.sides[s] = SideCorrection {
+                    opposite,
+                    inverse_mean: invert(both + twice)?,
+                    inverse_jump: invert(both - twice)?,
+                };
+            } else if opposite != NO_INDEX
+                && !form.are_means
+                && !is_fixed_cell(opposite as usize / size)
+            {
+                self.mixed_block.sides.push(s as u32);
+            } else {
+                self.sides[s].inverse_jump = invert(own)?;
+            }
+        }
+        self.mixed_block.factor(self.matrix, size)?;
+        self.correction.set_fixed(fixed)
+    }
+
     fn apply(&mut self, r: &[T], z: &mut [T]) {
         let (size, are_means, sides) = (self.form.cell_size, self.form.are_means, &self.sides);
         let zero = T::lit(0.0);

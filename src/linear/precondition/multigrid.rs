@@ -5,6 +5,7 @@
 
 use super::coarse_level::{CoarseLevel, MAX_COARSEST_FACTORED};
 use super::gauss_seidel::GaussSeidel;
+use super::preconditioner::Preconditioner;
 use super::prolongation::Prolongation;
 use crate::algebra::SparseMatrix;
 use crate::linear::direct::{FactorError, Factors};
@@ -311,6 +312,20 @@ impl<'a, T: Real> Multigrid<'a, T> {
             let pairs = values.iter_mut().zip(&single[range]);
             pairs.for_each(|(v, &s)| *v = T::lit(f64::from(s) * unit));
         });
+    }
+}
+
+impl<T: Real> Preconditioner<T> for Multigrid<'_, T> {
+    fn name(&self) -> &'static str {
+        "multigrid"
+    }
+
+    fn set_fixed(&mut self, fixed: &[bool]) -> Result<(), FactorError> {
+        Multigrid::set_fixed(self, fixed)
+    }
+
+    fn apply(&mut self, r: &[T], z: &mut [T]) {
+        Multigrid::apply(self, r, z);
     }
 }
 

@@ -117,7 +117,7 @@ mod tests {
     fn share_in_ball<const D: usize>() -> f64 {
         let mut corners = [Point::<f64, D>::zeros(); 4];
         (0..D).for_each(|k| corners[k + 1][k] = 1.0);
-        let ball: Field<D> = Box::new(|x| 0.5 - x.norm());
+        let ball: Field<D> = std::sync::Arc::new(|x| 0.5 - x.norm());
         let [mut all, mut within] = [0.0; 2];
         SubSimplex::whole(D).split(&corners, &ball, &mut |part| {
             all += part.share;

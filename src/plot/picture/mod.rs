@@ -16,7 +16,6 @@ mod line;
 mod map;
 mod panel;
 mod plane;
-mod run;
 mod section;
 mod svg;
 mod trace;
@@ -39,7 +38,6 @@ use crate::real::Real;
 use line::Line;
 use panel::Panel;
 use plane::{Plane, default_slice};
-pub use run::solve_level;
 pub use section::Slice;
 
 /// Most lines and areas of an SVG file; with more it would be large and slow to show.
@@ -67,12 +65,13 @@ struct PictureLayout<'a> {
 ///
 /// ```
 /// use unilateral::prelude::*;
-/// use unilateral::plot::{solve_level, Picture};
+/// use unilateral::plot::Picture;
 /// # fn main() -> Result<(), unilateral::error::Error> {
 /// let scene = scenes::radial::<2>(1.0);
-/// let (mesh, solved) = solve_level::<f64, 2>(&scene, &Wopsip::default(), 8)?;
-/// if let Some(fields) = &solved.fields {
-///     let picture = Picture::of("radial-2d, wopsip", &scene.problem, &mesh, fields, None)?;
+/// let meshes = Hierarchy::<f64, 2>::of_domain(&scene.domain, 8)?;
+/// let solved = solve(&scene.problem, &meshes, &Wopsip::default())?;
+/// if let Some(fields) = solved.fields() {
+///     let picture = Picture::of("wopsip", &scene.problem, solved.mesh(), &fields, None)?;
 ///     assert!(picture.to_svg()?.starts_with("<svg"));
 /// }
 /// # Ok(())

@@ -1,7 +1,8 @@
 //! No strict complementarity: gap and multiplier vanish together.
 
 use crate::error::Error;
-use crate::inequality::{Globalisation, Outcome};
+use crate::inequality::Globalisation;
+use crate::nested::Hierarchy;
 use crate::scenes;
 use crate::scenes::Scene;
 use crate::stability::choice::{Choice, compared};
@@ -77,16 +78,18 @@ fn steps<const D: usize>(
         ("active-sets-tried", "active sets tried, cold", Globalisation::Never, 2.0 * level as f64),
         ("interior-point-steps", "linear systems, cold", Globalisation::InteriorPointFirst, 40.0),
     ];
+    let meshes = Hierarchy::of_domain(&scene.domain, level)?;
     for (criterion, quantity, resort, most) in kinds {
-        let (_, found) = solved(&scene, choice, level, &solver_with(resort, 4 * level), false)?;
-        let steps = found.outer.filter(|_| found.outcome == Outcome::Converged);
+        let problem = choice.constrain(scene.problem.clone());
+        let found = solved(&problem, &meshes, choice, solver_with(resort, 4 * level), false)?;
+        let steps = found.outer().filter(|_| found.converged());
         sink(
             RowBuilder::new(criterion, choice)
                 .on(&scene.name)
                 .level(level)
                 .quantity(quantity)
                 .at_most(most)
-                .detail(format!("{} after {}", found.outcome, found.outer.unwrap_or(0)))
+                .detail(format!("{} after {}", found.outcome(), found.outer().unwrap_or(0)))
                 .measured(steps.map(|n| n as f64)),
         );
     }

@@ -2,6 +2,7 @@
 
 use crate::error::Error;
 use crate::mesh::{BoundaryPart, BoxDomain, Mesh};
+use crate::nested::Hierarchy;
 use crate::real::Point;
 use crate::scenes;
 use crate::scenes::Scene;
@@ -81,8 +82,11 @@ fn largest_on_contact(
     level: usize,
     end: f64,
 ) -> Result<Option<f64>, Error> {
-    let (mesh, found) = solved(scene, choice, level, &solver(), true)?;
-    let Some(fields) = found.fields else { return Ok(None) };
+    let meshes = Hierarchy::of_domain(&scene.domain, level)?;
+    let mesh = meshes.finest();
+    let problem = choice.constrain(scene.problem.clone());
+    let found = solved(&problem, &meshes, choice, solver(), true)?;
+    let Some(fields) = found.fields() else { return Ok(None) };
     let mut largest = 0.0_f64;
     for facet in mesh.boundary().iter().filter(|f| f.part == BoundaryPart::Contact) {
         let (cell, local) = (facet.cell as usize, facet.local as usize);
@@ -108,7 +112,9 @@ fn junction(choice: &Choice, sink: Sink<'_>) -> Result<(), Error> {
     let lower = Point::<f64, 2>::new(-1.1, 0.0);
     let domain = BoxDomain { lower, ..BoxDomain::above_contact() };
     let mesh: Mesh<f64, 2> = Mesh::kuhn_box(&domain, [20, 10])?;
-    let study = Study::<f64, 2>::new(scenes::signorini_2d()).on_mesh(mesh);
+    let mut scene = scenes::signorini_2d();
+    scene.problem = choice.constrain(scene.problem);
+    let study = Study::<f64, 2>::new(scene).on_mesh(mesh);
     let study = study.boxed_scheme(choice.make()).solver(solver());
     let (told, how) = match study.levels([0]).run() {
         Err(why) => (true, why.to_string()),

@@ -1,10 +1,10 @@
 //! Curved obstacles, on which an over-penalty with bounds at vertices lifts off in a pattern.
 
 use crate::algebra::{Contact, Inequality};
-use crate::assemble::DataQuadrature;
 use crate::error::Error;
 use crate::inequality::{Globalisation, InequalitySolver, Outcome, Solution};
 use crate::mesh::Mesh;
+use crate::nested::Hierarchy;
 use crate::real::{Point, Real};
 use crate::scenes;
 use crate::scenes::Scene;
@@ -101,14 +101,16 @@ fn single(
     );
     let mut silent = 0;
     let mut outcomes = Vec::new();
+    let meshes = Hierarchy::of_domain(&scene.domain, level)?;
     for resort in [Globalisation::Never, Globalisation::OnStagnation] {
-        let (_, solved) = solved(&scene, choice, level, &solver_with(resort, MOST_SETS), true)?;
-        let largest = solved.certificate.largest();
+        let problem = choice.constrain(scene.problem.clone());
+        let solved = solved(&problem, &meshes, choice, solver_with(resort, MOST_SETS), true)?;
+        let largest = solved.certificate().largest();
         let is_wrong = largest.is_nan() || largest > f64::CERTIFICATE_LIMIT;
-        silent += usize::from(solved.outcome == Outcome::Converged && is_wrong);
-        outcomes.push(format!("{} after {}", solved.outcome, solved.outer.unwrap_or(0)));
+        silent += usize::from(solved.converged() && is_wrong);
+        outcomes.push(format!("{} after {}", solved.outcome(), solved.outer().unwrap_or(0)));
         if resort == Globalisation::Never {
-            let sets = solved.outer.filter(|_| solved.outcome == Outcome::Converged);
+            let sets = solved.outer().filter(|_| solved.converged());
             sink(
                 claim("iterations")
                     .quantity("active sets tried, no last resort")
@@ -136,9 +138,7 @@ fn share_inside(
     choice: &Choice,
     radius: f64,
 ) -> Result<Option<f64>, Error> {
-    let scheme = choice.make::<f64, 2>();
-    let inequality: Inequality<f64> =
-        scheme.inequality(&scene.problem, mesh, DataQuadrature::default())?;
+    let inequality: Inequality<f64> = choice.inequality(&scene.problem, mesh)?;
     let solution: Solution<f64> = solver().solve(&inequality);
     if solution.outcome != Outcome::Converged {
         return Ok(None);

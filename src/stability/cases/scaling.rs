@@ -1,6 +1,7 @@
 //! Invariance under a change of units.
 
 use crate::error::Error;
+use crate::nested::Hierarchy;
 use crate::problem::Datum;
 use crate::scenes;
 use crate::scenes::Scene;
@@ -37,12 +38,14 @@ fn values(
     choice: &Choice,
     level: usize,
 ) -> Result<(Option<Vec<f64>>, String), Error> {
-    let (_, found) = solved(scene, choice, level, &solver(), true)?;
-    let is_solved = found.outcome == crate::inequality::Outcome::Converged;
-    let values = found.fields.filter(|_| is_solved).map(|f| f.u);
-    let error = found.error.h1.zip(found.error.l2);
+    let meshes = Hierarchy::of_domain(&scene.domain, level)?;
+    let problem = choice.constrain(scene.problem.clone());
+    let found = solved(&problem, &meshes, choice, solver(), true)?;
+    let values = found.fields().filter(|_| found.converged()).map(|f| f.u);
+    let error = found.errors()?;
+    let error = error.h1.zip(error.l2);
     let error = error.map_or(String::new(), |(h1, l2)| format!(", H1 {h1:.2e}, L2 {l2:.2e}"));
-    Ok((values, format!("{}{error}", found.outcome)))
+    Ok((values, format!("{}{error}", found.outcome())))
 }
 
 /// The largest difference over the largest value.
@@ -84,7 +87,7 @@ fn coefficient(
     for &factor in factors {
         let mut scene = scenes::radial::<2>(1.0);
         scene.problem.source = Some(Datum::Constant(-2.0 * factor));
-        scene.problem.coefficient = Some(Box::new(move |_| factor));
+        scene.problem = scene.problem.coefficient(move |_| factor);
         let (here, how) = values(&scene, choice, level)?;
         sink(
             RowBuilder::new("size-of-coefficient", choice)

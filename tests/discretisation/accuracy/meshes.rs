@@ -5,7 +5,8 @@ use crate::runs::{shared_mesh, small_mesh};
 use crate::support::checks::Checks;
 use crate::support::rows::label;
 use crate::support::scheme_lists::all_schemes;
-use crate::support::schemes::Boxed;
+use crate::support::scheme_lists::entry;
+use crate::support::schemes::Entry;
 use unilateral::mesh::{BoundaryFacet, Mesh, TaggedFacet};
 use unilateral::prelude::*;
 use unilateral::scenes::Scene;
@@ -15,11 +16,14 @@ use unilateral::study::{Row, check_fit};
 fn rows_on<const D: usize>(
     mesh: Mesh<f64, D>,
     scene: Scene<D>,
-    schemes: Vec<Boxed<f64, D>>,
+    schemes: Vec<Entry<f64, D>>,
     refinements: impl IntoIterator<Item = usize>,
 ) -> Vec<Row> {
     let study = Study::<f64, D>::new(scene).on_mesh(mesh).levels(refinements);
-    schemes.into_iter().fold(study, Study::boxed_scheme).run().unwrap().rows
+    let add = |study: Study<'static, f64, D>, entry: Entry<f64, D>| {
+        study.boxed_scheme_on(entry.scheme, entry.set)
+    };
+    schemes.into_iter().fold(study, add).run().unwrap().rows
 }
 
 /// Orders of the errors of two meshes, in the second of which edges are `1 / 2^halvings` of those in
@@ -56,7 +60,7 @@ fn on(mesh: Mesh<f64, 2>, scene: Scene<2>, levels: [usize; 2]) {
 }
 
 /// Runs schemes on a mesh in space and its refinement.
-fn on_refined(mesh: &Mesh<f64, 3>, build: fn() -> Scene<3>, schemes: fn() -> Vec<Boxed<f64, 3>>) {
+fn on_refined(mesh: &Mesh<f64, 3>, build: fn() -> Scene<3>, schemes: fn() -> Vec<Entry<f64, 3>>) {
     assert_eq!(check_fit(&build(), mesh).unwrap(), None, "the exact solution does not hold");
     let mut checks = Checks::default();
     let coarse = rows_on(mesh.clone(), build(), schemes(), [0]);
@@ -68,8 +72,8 @@ fn on_refined(mesh: &Mesh<f64, 3>, build: fn() -> Scene<3>, schemes: fn() -> Vec
 }
 
 /// The schemes with few unknowns.
-fn conforming_and_not() -> Vec<Boxed<f64, 3>> {
-    vec![Box::new(ConformingP1), Box::new(NonconformingP1)]
+fn conforming_and_not() -> Vec<Entry<f64, 3>> {
+    vec![entry(ConformingP1, Nodes), entry(NonconformingP1, Nodes)]
 }
 
 /// Certificates of every scheme on a mesh as it is.

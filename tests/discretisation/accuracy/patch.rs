@@ -122,7 +122,7 @@ fn reproduces<const D: usize>(
     tolerance: f64,
 ) {
     for scheme in consistent_schemes() {
-        let solved = solve(&*scheme, problem, mesh);
+        let solved = solve(&*scheme, &scheme.constrain(problem), mesh);
         let [value, gradient] = [solved.error.max, solved.error.h1].map(|e| e.unwrap_or(f64::NAN));
         let what = format!("{} ({}) on {on}", scheme.name(), scheme.constraint());
         checks.that(value <= tolerance && gradient <= tolerance / mesh.mesh_size(), || {

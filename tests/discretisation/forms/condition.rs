@@ -18,7 +18,16 @@ fn cube<const D: usize>(counts: [usize; D]) -> Mesh<f64, D> {
 }
 
 fn assemble<const D: usize, S: Scheme<f64, D>>(scheme: &S, mesh: &Mesh<f64, D>) -> Inequality<f64> {
-    let problem = Problem::new();
+    assemble_on(scheme, Nodes, mesh)
+}
+
+/// In the basis of a constraint set.
+fn assemble_on<const D: usize, S: Scheme<f64, D>>(
+    scheme: &S,
+    set: impl ConstraintSet + 'static,
+    mesh: &Mesh<f64, D>,
+) -> Inequality<f64> {
+    let problem = Problem::new().on(set);
     let quadrature = Default::default();
     unilateral::assemble::Discretisation::new(scheme, &problem, mesh, quadrature)
         .unwrap()
@@ -63,7 +72,7 @@ fn plain(matrix: &SparseMatrix<f64>) -> f64 {
 fn over_penalised<const D: usize>(mesh: &Mesh<f64, D>, eta: f64) -> [f64; 3] {
     let on_vertices = assemble(&wopsip(eta), mesh).matrix;
     let change = MeanJump::new(mesh);
-    let matrix = change.transform(&assemble(&FacetMeans(wopsip(eta)), mesh).matrix);
+    let matrix = change.transform(&assemble_on(&wopsip(eta), FacetMeans, mesh).matrix);
     let diagonal = Diagonal(matrix.diagonal());
     let blocks = change.block_diagonal(&matrix);
     let blocks = CholeskyMatrix::new(&blocks).unwrap();
@@ -155,7 +164,7 @@ fn over_factors() {
 fn eigenvalues_are_where_definiteness_ends() {
     fn on<const D: usize>(checks: &mut Checks, mesh: &Mesh<f64, D>, accuracy: f64) {
         let change = MeanJump::new(mesh);
-        let matrix = change.transform(&assemble(&FacetMeans(wopsip(1.0)), mesh).matrix);
+        let matrix = change.transform(&assemble_on(&wopsip(1.0), FacetMeans, mesh).matrix);
         let blocks = change.block_diagonal(&matrix);
         let (a, b) = (CholeskyMatrix::new(&matrix).unwrap(), CholeskyMatrix::new(&blocks).unwrap());
         let found = Lanczos::default().extremes(&a, &b).unwrap();

@@ -2,6 +2,7 @@
 
 use crate::runs::{own_scene, solve};
 use crate::support::checks::Checks;
+use crate::support::scheme_lists::entry;
 use crate::support::schemes::wopsip;
 use std::f64::consts::PI;
 use unilateral::algebra::Inequality;
@@ -29,12 +30,17 @@ fn assemble<T: Real, const D: usize, S: Scheme<T, D>>(
 /// The sum is the matrix and the load, in every basis and degree; no other scheme keeps it.
 #[test]
 fn the_penalised_form_is_the_matrix() {
-    fn check<const D: usize, S: Scheme<f64, D>>(checks: &mut Checks, scheme: &S) {
+    fn check<const D: usize, S: Scheme<f64, D>>(
+        checks: &mut Checks,
+        scheme: &S,
+        set: impl ConstraintSet + 'static,
+    ) {
         let problem = Problem::new()
             .source(|x: &Point<f64, D>| 1.0 + x[0])
             .dirichlet(|x: &Point<f64, D>| 2.0 - x[0] * x[D - 1])
             .coefficient(|x: &Point<f64, D>| 1.0 + x[0])
-            .reaction(3.0);
+            .reaction(3.0)
+            .on(set);
         let inequality = assemble(scheme, &problem, &cube::<f64, D>(2));
         let penalised = inequality.penalised.as_ref().unwrap();
         let n = inequality.size();
@@ -52,10 +58,10 @@ fn the_penalised_form_is_the_matrix() {
         }
     }
     fn dimension<const D: usize>(checks: &mut Checks) {
-        check::<D, _>(checks, &wopsip(3.0));
-        check::<D, _>(checks, &FacetMeans(wopsip(3.0)));
-        check::<D, _>(checks, &wopsip(3.0).on(P2));
-        check::<D, _>(checks, &CellMeans(wopsip(3.0).on(P2)));
+        check::<D, _>(checks, &wopsip(3.0), Nodes);
+        check::<D, _>(checks, &wopsip(3.0), FacetMeans);
+        check::<D, _>(checks, &wopsip(3.0).on(P2), Nodes);
+        check::<D, _>(checks, &wopsip(3.0).on(P2), CellMeans);
         let problem = Problem::new();
         let none = assemble(&Sipg::default(), &problem, &cube::<f64, D>(2)).penalised;
         checks.that(none.is_none(), || "interior penalty is no sum of jumps".to_owned());
@@ -167,16 +173,23 @@ const FACTORS: [f64; 6] = [1e-2, 1.0, 1e2, 1e4, 1e6, 1e8];
 #[test]
 fn rounding_is_small_for_every_factor() {
     let mut checks = Checks::default();
-    let [one, thirds] = [sines_in_units(1.0), sines_in_units(3.0)];
+    let in_units = [sines_in_units(1.0), sines_in_units(3.0)];
+    let on_means = in_units.clone().map(|mut scene| {
+        scene.problem = scene.problem.on(FacetMeans);
+        scene
+    });
     for eta in FACTORS {
         let w = wopsip(eta);
         type Pair<'s> = (&'s dyn AnyScheme<f64, 2>, Option<&'s dyn AnyScheme<f32, 2>>);
-        let (means, p2) = (FacetMeans(w), w.on(P2));
-        let pairs: [(Pair<'_>, usize); 3] =
-            [((&w, Some(&w)), 32), ((&means, Some(&means)), 32), ((&p2, None), 8)];
-        for (pair, level) in pairs {
+        let p2 = w.on(P2);
+        let pairs: [(Pair<'_>, &[Scene<2>; 2], usize); 3] = [
+            ((&w, Some(&w)), &in_units, 32),
+            ((&w, Some(&w)), &on_means, 32),
+            ((&p2, None), &in_units, 8),
+        ];
+        for (pair, [one, thirds], level) in pairs {
             let what = format!("{}, eta = {eta:e}", pair.0.name());
-            match rounding_over_error(pair, &one, &thirds, level) {
+            match rounding_over_error(pair, one, thirds, level) {
                 Ok(off) => checks.that(off.iter().all(|&x| x <= 0.01), || {
                     format!("{what}: {off:?} of the error is rounding")
                 }),
@@ -197,11 +210,13 @@ fn rounding_is_small_under_an_obstacle() {
     };
     let radial = || scenes::radial::<2>(1.0);
     for eta in FACTORS {
-        let (w, means) = (wopsip(eta), FacetMeans(wopsip(eta)));
-        let schemes: [&dyn AnyScheme<f64, 2>; 2] = [&w, &means];
-        for scheme in schemes {
-            let what = format!("{} ({}), eta = {eta:e}", scheme.name(), scheme.constraint());
-            match rounding_over_error((scheme, None), &radial(), &thirds(radial()), 16) {
+        for entry in [entry(wopsip(eta), Nodes), entry(wopsip(eta), FacetMeans)] {
+            let what = format!("{} ({}), eta = {eta:e}", entry.name(), entry.constraint());
+            let [one, thirds] = [radial(), thirds(radial())].map(|mut scene| {
+                scene.problem = entry.constrain(&scene.problem);
+                scene
+            });
+            match rounding_over_error((&*entry, None), &one, &thirds, 16) {
                 Ok([off, _]) => checks.that(off <= 0.01, || format!("{what}: {off:.1e}")),
                 Err(why) => checks.that(false, || format!("{what}: {why}")),
             }
@@ -318,9 +333,9 @@ fn table_under_an_obstacle() {
     for n in [16, 32, 64, 128] {
         for eta in [1.0, 1e4, 1e8] {
             let mesh = scene.domain.mesh::<f64>(n).unwrap();
-            let scheme = FacetMeans(wopsip(eta));
+            let problem = scene.problem.clone().on(FacetMeans);
             let space =
-                Discretisation::new(&scheme, &scene.problem, &mesh, Default::default()).unwrap();
+                Discretisation::new(&wopsip(eta), &problem, &mesh, Default::default()).unwrap();
             let clock = std::time::Instant::now();
             let inequality = space.inequality().unwrap();
             print!("| {n} | {eta:e} | {:.3}s", clock.elapsed().as_secs_f64());

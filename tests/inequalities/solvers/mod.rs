@@ -18,7 +18,7 @@ fn cold<T: Real>(inequality: &Inequality<T>) -> Solution<T> {
 
 /// The textbook method, which only notices that it runs in circles.
 fn without_resort() -> ActiveSet {
-    ActiveSet::default().max_condensations(0).globalisation(Globalisation::Never)
+    ActiveSet::default().globalisation(Globalisation::Never)
 }
 
 /// Solves from everywhere, asserts convergence and certificate, and the same solution each time.

@@ -2,9 +2,10 @@
 
 use std::collections::BTreeMap;
 
+use unilateral::constraint::constraint_set_by_name;
 use unilateral::prelude::*;
 use unilateral::scenes::{AnyScene, Parameters, Scene, catalogue};
-use unilateral::scheme::{Placement, SCHEMES, SchemeOptions, scheme_by_name};
+use unilateral::scheme::{SCHEMES, SchemeOptions, scheme_by_name};
 use unilateral::study::Row;
 
 /// Over-penalties from almost none to where rounding rules.
@@ -38,10 +39,11 @@ fn choices() -> Vec<Choice> {
 /// The rows of a scene under a choice, none where the scheme does not fit the scene.
 fn rows<const D: usize>(scene: Scene<D>, choice: Choice, levels: &[usize]) -> Vec<Row> {
     let (name, eta, placement) = choice;
-    let placement = Placement::by_name(placement).unwrap();
-    let options = SchemeOptions { eta, placement, ..SchemeOptions::default() };
+    let set = constraint_set_by_name(placement).unwrap();
+    let options = SchemeOptions { eta, ..SchemeOptions::default() };
     let scheme = scheme_by_name::<f64, D>(name, &options).unwrap();
-    let study = Study::<f64, D>::new(scene).boxed_scheme(scheme).levels(levels.iter().copied());
+    let study = Study::<f64, D>::new(scene).boxed_scheme_on(scheme, set);
+    let study = study.levels(levels.iter().copied());
     study.run().map(|report| report.rows).unwrap_or_default()
 }
 

@@ -3,7 +3,9 @@
 use unilateral::algebra::SparseMatrix;
 use unilateral::kit::spectrum::MeanJump;
 use unilateral::kit::spectrum::{CholeskyMatrix, Diagonal, Lanczos, SpectrumError};
-use unilateral::kit::{check_consistency, check_orders, check_scheme, check_symmetry};
+use unilateral::kit::{
+    check_consistency, check_orders, check_scheme, check_scheme_on, check_symmetry,
+};
 use unilateral::mesh::BoxDomain;
 use unilateral::mesh::Mesh;
 use unilateral::prelude::*;
@@ -33,8 +35,8 @@ fn declarations_are_reported_with_what_was_measured() {
     assert!(!wopsip.declared && wopsip.error > 1e-3, "{wopsip:?}");
     let sipg = check_consistency::<f64, 1, _>(&Sipg::default()).unwrap();
     assert!(sipg.declared && sipg.error < 1e-13, "{sipg:?}");
-    let means = check_consistency::<f64, 1, _>(&FacetMeans(Wopsip::default())).unwrap();
-    assert!(!means.declared, "the basis does not change consistency");
+    let means = check_scheme_on::<f64, 1, _>(&Wopsip::default(), FacetMeans).unwrap();
+    assert!(!means.consistency.declared, "the basis does not change consistency");
     let incomplete = check_symmetry::<f64, 3, _>(&Iipg {
         penalty: PenaltyRule::Diameter(10.0),
         ..Iipg::default()
@@ -111,14 +113,14 @@ fn means_and_jumps() {
             .side(0, 1, unilateral::mesh::BoundaryPart::Neumann)
             .side(D - 1, 0, unilateral::mesh::BoundaryPart::Contact);
         let mesh = Mesh::<f64, D>::kuhn_box(&domain, [3; D]).unwrap();
-        let assemble = |scheme: &FacetMeans<Wopsip>| {
-            let problem = Problem::new();
+        let assemble = |scheme: &Wopsip| {
+            let problem = Problem::new().on(FacetMeans);
             let quadrature = Default::default();
             let discretisation =
                 unilateral::assemble::Discretisation::new(scheme, &problem, &mesh, quadrature);
             discretisation.unwrap().matrix()
         };
-        let factor = |eta: f64| FacetMeans(Wopsip { eta: Eta::Absolute(eta), ..Wopsip::default() });
+        let factor = |eta: f64| Wopsip { eta: Eta::Absolute(eta), ..Wopsip::default() };
         let (one, many) = (assemble(&factor(1.0)), assemble(&factor(100.0)));
         let change = MeanJump::new(&mesh);
         let [small, large] = [&one, &many].map(|matrix| change.transform(matrix));

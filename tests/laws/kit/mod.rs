@@ -6,18 +6,21 @@ mod laws;
 mod quadratics;
 
 use unilateral::kit::{
-    check_coercivity, check_consistency, check_orders, check_scheme, check_symmetry,
+    check_coercivity, check_consistency, check_orders, check_scheme_on, check_symmetry,
 };
 use unilateral::prelude::*;
 
-/// A test for each line: a name, and how the scheme is made.
+/// A test for each line: a name, how the scheme is made, and the constraint set if not the nodes.
 macro_rules! schemes {
-    ($($name:ident: $scheme:expr;)*) => {
+    (@set) => { Nodes };
+    (@set $set:expr) => { $set };
+    ($($name:ident: $scheme:expr $(, $set:expr)?;)*) => {
         $(
             #[test]
             fn $name() {
                 fn on<T: Real, const D: usize, S: Scheme<T, D>>(scheme: &S) {
-                    let report = check_scheme::<T, D, S>(scheme).unwrap_or_else(|e| panic!("{e}"));
+                    let report = check_scheme_on::<T, D, S>(scheme, schemes!(@set $($set)?));
+                    let report = report.unwrap_or_else(|e| panic!("{e}"));
                     assert_eq!((report.dimension, report.scalar), (D, T::NAME));
                     println!("{report}");
                 }
@@ -38,17 +41,17 @@ schemes! {
     crouzeix_raviart: NonconformingP1;
     sipg: Sipg::default();
     sipg_by_diameter: Sipg { penalty: PenaltyRule::Diameter(10.0), ..Sipg::default() };
-    sipg_on_means: FacetMeans(Sipg::default());
+    sipg_on_means: Sipg::default(), FacetMeans;
     nipg: Nipg::default();
     iipg: Iipg::default();
     ldg: Ldg::default();
     ldg_one_sided: Ldg { switch: true, ..Ldg::default() };
     br2: Br2::default();
     bmmpr: Bmmpr::default();
-    bmmpr_on_means: FacetMeans(Bmmpr::default());
+    bmmpr_on_means: Bmmpr::default(), FacetMeans;
     wopsip: Wopsip::default();
     wopsip_anisotropic: Wopsip { weight: WeightRule::Anisotropic, ..Wopsip::default() };
-    wopsip_on_means: FacetMeans(Wopsip::default());
+    wopsip_on_means: Wopsip::default(), FacetMeans;
     conforming_quadratics: ConformingP2;
     sipg_on_quadratics: Sipg::default().on(P2);
     nipg_on_quadratics: Nipg::default().on(P2);

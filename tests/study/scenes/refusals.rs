@@ -42,7 +42,7 @@ fn the_check_refuses_a_multiplier_of_the_wrong_sign() {
 fn the_check_refuses_a_wrong_gradient() {
     let mut scene = hertz_2d();
     let Exact { value, gradient, .. } = scene.problem.exact.take().unwrap();
-    scene.problem = scene.problem.exact(value, move |x| gradient(x) * (1.0 + 1e-4));
+    scene.problem = scene.problem.exact(move |x| value(x), move |x| gradient(x) * (1.0 + 1e-4));
     assert_eq!(refused(&scene), Condition::Gradient);
 }
 
@@ -106,7 +106,8 @@ fn the_check_refuses_data_that_are_not_finite() {
     assert_eq!(refused(&scene), Condition::Finite("lower obstacle"));
     let mut scene = radial::<3>(1.0);
     let Exact { value, gradient, .. } = scene.problem.exact.take().unwrap();
-    scene.problem = scene.problem.exact(value, move |x| gradient(x) + x * (0.0 / x.norm()));
+    scene.problem =
+        scene.problem.exact(move |x| value(x), move |x| gradient(x) + x * (0.0 / x.norm()));
     let violation = check_scene(&scene, 300).unwrap_err();
     assert_eq!(violation.condition, Condition::Finite("gradient"));
     assert_eq!(violation.at, [0.0; 3]);
@@ -146,8 +147,9 @@ fn a_kink_passes_only_where_an_obstacle_holds_it() {
 fn the_check_refuses_a_jump_of_the_value() {
     let mut scene = radial::<2>(1.0);
     let Exact { value, gradient, .. } = scene.problem.exact.take().unwrap();
-    scene.problem =
-        scene.problem.exact(move |x| value(x) + f64::from(u8::from(x.norm() > 1.0)), gradient);
+    scene.problem = scene
+        .problem
+        .exact(move |x| value(x) + f64::from(u8::from(x.norm() > 1.0)), move |x| gradient(x));
     assert_eq!(refused(&scene), Condition::Continuity);
 }
 

@@ -125,7 +125,7 @@ fn an_interrupted_study_leaves_a_readable_report_of_what_is_finished() {
 #[test]
 fn a_tiny_study_measures_every_variant_alike() {
     let report = tiny()
-        .scheme(FacetMeans(Wopsip::default()))
+        .scheme_on(Wopsip::default(), FacetMeans)
         .linear([
             unilateral::linear::LinearMethod::Direct,
             unilateral::linear::LinearMethod::Iterative,

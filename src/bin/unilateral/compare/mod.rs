@@ -19,6 +19,7 @@ use crate::shared::{
     ORDER_TOLERANCE, Request, cannot_write, each_once, print, print_to, read, use_threads, write,
 };
 
+use unilateral::constraint::constraint_set_by_name;
 use unilateral::error::Error;
 use unilateral::inequality::ActiveSet;
 use unilateral::linear::LinearMethod;
@@ -172,9 +173,14 @@ fn prepare<'a, T: Real, const D: usize>(
         .fields_to(&options.out)
         .observer(|progress| watcher.tell(&progress));
     for name in schemes {
-        study = scheme_by_name(name, &scheme_options)
-            .map(|scheme| study.boxed_scheme(scheme))
+        let scheme = scheme_by_name::<T, D>(name, &scheme_options)
             .ok_or_else(|| format!("scheme {name} does not exist in dimension {D}"))?;
+        // schemes whose element has no such values keep the nodes of their own
+        let set = constraint_set_by_name(&options.constraint);
+        study = match set.filter(|set| scheme.constraint_on(set).is_some()) {
+            Some(set) => study.boxed_scheme_on(scheme, set),
+            None => study.boxed_scheme(scheme),
+        };
     }
     let mut place = format!("scene {name}");
     if let (Some((_, bytes)), Some(path)) = (mesh, &options.mesh) {

@@ -3,8 +3,9 @@
 use std::path::PathBuf;
 
 use clap::Args;
+use unilateral::constraint::CONSTRAINT_SETS;
 use unilateral::scenes;
-use unilateral::scheme::{Placement, SCHEMES};
+use unilateral::scheme::SCHEMES;
 
 use crate::shared::{Request, each_once};
 
@@ -42,7 +43,7 @@ pub struct Options {
     #[arg(long, value_name = "X", allow_negative_numbers = true, value_parser = number)]
     pub eta: Option<f64>,
     /// Where schemes that have the choice impose the inequality
-    #[arg(long, value_parser = Placement::ALL.map(|p| p.0), default_value = "vertices")]
+    #[arg(long, value_parser = CONSTRAINT_SETS.map(|set| set.0), default_value = "vertices")]
     pub constraint: String,
     /// Solver of the inequality
     #[arg(long, value_name = "NAME")]
@@ -111,7 +112,7 @@ pub fn list() -> String {
     };
     group("scenes", &mut scenes.iter().map(|(n, s)| (&n[..], &s[..])));
     group("schemes", &mut SCHEMES.iter().copied());
-    group("constraint placements", &mut Placement::ALL.iter().map(|p| (p.0, p.2)));
+    group("constraint placements", &mut CONSTRAINT_SETS.iter().copied());
     group("solvers", &mut SOLVERS.iter().copied());
     group("linear solvers", &mut LINEAR.iter().copied());
     text

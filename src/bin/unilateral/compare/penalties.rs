@@ -4,18 +4,14 @@ use unilateral::facet::PenaltyParameters;
 use unilateral::mesh::BoxDomain;
 use unilateral::mesh::Mesh;
 use unilateral::real::Point;
-use unilateral::scheme::{Placement, SchemeOptions, scheme_by_name};
+use unilateral::scheme::{SchemeOptions, scheme_by_name};
 
 use super::options::Options;
 use crate::shared::Request;
 
 /// What the options say of schemes.
 pub fn scheme_options(options: &Options) -> SchemeOptions {
-    SchemeOptions {
-        sigma: options.sigma,
-        eta: options.eta,
-        placement: Placement::by_name(&options.constraint).unwrap_or_default(),
-    }
+    SchemeOptions { sigma: options.sigma, eta: options.eta }
 }
 
 /// Refuses a penalty factor that none of the schemes chosen takes. A scheme takes a factor if its

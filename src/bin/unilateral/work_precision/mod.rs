@@ -16,7 +16,7 @@ use unilateral::linear::LinearMethod;
 use unilateral::real::Real;
 use unilateral::scenes;
 use unilateral::scenes::{AnyScene, Scene};
-use unilateral::scheme::scheme_by_name;
+use unilateral::scheme::{SchemeOptions, scheme_by_name};
 use unilateral::study::{Study, peak_memory_bytes};
 use unilateral::work_precision::{
     Case, Precision, WorkPrecision, WorkProgress, WorkReport, changes,
@@ -127,8 +127,8 @@ where
             // what is planned counts for nothing: the bar was made for all scenes
             _ => {}
         });
-    for (name, scheme_options) in options.schemes() {
-        study = study.scheme_by_name(&name, &scheme_options);
+    for (name, set) in options.schemes() {
+        study = study.scheme_by_name_on(&name, &SchemeOptions::default(), set);
     }
     study.run_into(report)
 }
@@ -194,9 +194,10 @@ fn once<T: Real, const D: usize>(options: &Options, scene: Scene<D>) -> Request<
     let mut study = Study::<T, D>::new(scene)
         .levels(options.levels(D))
         .solver(ActiveSet::default().linear(linear));
-    for (name, scheme_options) in options.schemes() {
-        let scheme = scheme_by_name(&name, &scheme_options);
-        study = study.boxed_scheme(scheme.ok_or_else(|| format!("there is no scheme {name}"))?);
+    for (name, set) in options.schemes() {
+        let scheme = scheme_by_name(&name, &SchemeOptions::default());
+        let scheme = scheme.ok_or_else(|| format!("there is no scheme {name}"))?;
+        study = study.boxed_scheme_on(scheme, set);
     }
     study.run().map(drop).map_err(|e| e.to_string())
 }

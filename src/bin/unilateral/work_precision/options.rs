@@ -1,14 +1,16 @@
 //! What the command line asks for.
 
 use std::path::PathBuf;
+use std::sync::Arc;
 
 use clap::Args;
+use unilateral::constraint::{ConstraintSet, Nodes, constraint_set_by_name};
 use unilateral::linear::LinearMethod;
 use unilateral::scenes;
-use unilateral::scheme::{Placement, SCHEMES, SchemeOptions};
+use unilateral::scheme::{SCHEMES, SchemeOptions, scheme_by_name};
 use unilateral::work_precision::Precision;
 
-use crate::shared::{Request, split};
+use crate::shared::{Request, constraint_set, split};
 
 const SCENES: [&str; 5] = ["radial-2d", "ball-2d", "signorini-2d", "hertz-2d", "radial-3d"];
 const CHOSEN: [&str; 6] = ["p1", "cr", "sipg", "wopsip", "wopsip:facet-means", "p2"];
@@ -79,9 +81,12 @@ impl Options {
                 let names: Vec<&str> = SCHEMES.iter().map(|s| s.0).collect();
                 return Err(format!("unknown scheme {name}; there are: {}", names.join(", ")));
             }
-            if place.is_some_and(|place| Placement::by_name(place).is_none()) {
-                let names = Placement::ALL.map(|p| p.0).join(", ");
-                return Err(format!("unknown placement in {choice}; there are: {names}"));
+            if let Some(place) = place {
+                let set = constraint_set(place).map_err(|e| format!("{choice}: {e}"))?;
+                let scheme = scheme_by_name::<f64, 2>(name, &SchemeOptions::default());
+                if scheme.is_some_and(|scheme| scheme.constraint_on(&set).is_none()) {
+                    return Err(format!("{choice}: the element of the scheme has no such values"));
+                }
             }
         }
         match self.limit > 0.0 {
@@ -105,11 +110,11 @@ impl Options {
     }
 
     /// Names of schemes, and where each imposes its bounds.
-    pub fn schemes(&self) -> Vec<(String, SchemeOptions)> {
+    pub fn schemes(&self) -> Vec<(String, Arc<dyn ConstraintSet>)> {
         let of = |choice: String| {
             let (name, place) = split(&choice);
-            let placement = place.and_then(Placement::by_name).unwrap_or_default();
-            (name.to_owned(), SchemeOptions { placement, ..SchemeOptions::default() })
+            let set = place.and_then(constraint_set_by_name).unwrap_or_else(|| Arc::new(Nodes));
+            (name.to_owned(), set)
         };
         self.asked().into_iter().map(of).collect()
     }

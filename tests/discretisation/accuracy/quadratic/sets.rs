@@ -10,10 +10,12 @@ use unilateral::prelude::*;
 
 fn bounds<const D: usize, S: Scheme<f64, D>>(
     scheme: &S,
+    set: impl ConstraintSet + 'static,
     problem: &Problem<D>,
     mesh: &Mesh<f64, D>,
 ) -> Result<Vec<(usize, Bound<f64>)>, Error> {
-    let space = Discretisation::new(scheme, problem, mesh, DataQuadrature::default())?;
+    let problem = problem.clone().on(set);
+    let space = Discretisation::new(scheme, &problem, mesh, DataQuadrature::default())?;
     let supports = space.supports();
     Ok(supports.iter().map(|p| p.vertices().len()).zip(space.bounds()?).collect())
 }
@@ -26,14 +28,14 @@ fn each_set_binds_its_own_nodes() {
         bounds.iter().filter(|(n, b)| *n == vertices && b.is_inequality()).count()
     };
     let obstacle = Problem::new().obstacle_below(|x| x[0] * x[0] - 5.0);
-    let nodes = bounds(&ConformingP2, &obstacle, &mesh).unwrap();
+    let nodes = bounds(&ConformingP2, Nodes, &obstacle, &mesh).unwrap();
     // 5 of 25 nodes lie on the lower end of the first axis, 5 on the upper one of the second
     assert_eq!([count(&nodes, 1), count(&nodes, 2)], [4, 12]);
-    let midpoints = bounds(&Midpoints(ConformingP2), &obstacle, &mesh).unwrap();
+    let midpoints = bounds(&ConformingP2, Midpoints, &obstacle, &mesh).unwrap();
     assert_eq!([count(&midpoints, 1), count(&midpoints, 2)], [0, 12]);
     let fixed = |b: &[(usize, Bound<f64>)]| b.iter().filter(|b| b.1 == Bound::Fixed(0.0)).count();
     assert_eq!([fixed(&nodes), fixed(&midpoints)], [9, 9]);
-    let means = bounds(&CellMeans(broken()), &obstacle, &mesh).unwrap();
+    let means = bounds(&broken(), CellMeans, &obstacle, &mesh).unwrap();
     assert_eq!([count(&means, 1), count(&means, 2), count(&means, 3)], [0, 0, 8]);
     // the mean of x^2 over the first cell, with corners (0, 0), (1/2, 0), (1/2, 1/2)
     let first = means.iter().find(|b| b.0 == 3).unwrap().1.lower().unwrap();
@@ -41,8 +43,8 @@ fn each_set_binds_its_own_nodes() {
 
     let signorini = Problem::<2>::new().signorini(|x| -2.0 - x[0]);
     for nodes in [
-        bounds(&ConformingP2, &signorini, &mesh).unwrap(),
-        bounds(&Midpoints(ConformingP2), &signorini, &mesh).unwrap(),
+        bounds(&ConformingP2, Nodes, &signorini, &mesh).unwrap(),
+        bounds(&ConformingP2, Midpoints, &signorini, &mesh).unwrap(),
     ] {
         // the vertex that the Dirichlet part shares is pinned
         assert_eq!([count(&nodes, 1), count(&nodes, 2)], [2, 2]);
@@ -51,15 +53,15 @@ fn each_set_binds_its_own_nodes() {
     }
     let cube = Mesh::<f64, 3>::kuhn_box(&mixed_box(), [1, 1, 1]).unwrap();
     let signorini = Problem::<3>::new().signorini(|_| -1.0);
-    let count = |scheme: &dyn AnyScheme<f64, 3>| {
-        let inequality = scheme.inequality(&signorini, &cube, Default::default()).unwrap();
-        inequality.bounds.iter().filter(|b| b.is_inequality()).count()
-    };
+    let count =
+        |bounds: Vec<(usize, Bound<f64>)>| bounds.iter().filter(|(_, b)| b.is_inequality()).count();
     // of the nine nodes of the side all but those at its middle and on its Neumann edge are pinned
-    assert_eq!([count(&ConformingP2), count(&Midpoints(ConformingP2))], [2, 2]);
+    let nodes = bounds(&ConformingP2, Nodes, &signorini, &cube).unwrap();
+    let midpoints = bounds(&ConformingP2, Midpoints, &signorini, &cube).unwrap();
+    assert_eq!([count(nodes), count(midpoints)], [2, 2]);
     let domain = BoxDomain::above_contact();
     let line = Mesh::<f64, 1>::kuhn_box(&domain, [3]).unwrap();
-    let end = bounds(&Midpoints(ConformingP2), &Problem::new().signorini(|_| 0.5), &line).unwrap();
+    let end = bounds(&ConformingP2, Midpoints, &Problem::new().signorini(|_| 0.5), &line).unwrap();
     assert_eq!(end.iter().filter(|b| b.1 == Bound::Lower(0.5) && b.0 == 1).count(), 1);
 }
 
@@ -67,17 +69,23 @@ fn each_set_binds_its_own_nodes() {
 fn what_a_set_cannot_impose_is_refused() {
     let mesh = Mesh::<f64, 2>::kuhn_box(&mixed_box(), [2, 2]).unwrap();
     let signorini = Problem::new().signorini(|_| 0.0);
-    let error = bounds(&CellMeans(broken()), &signorini, &mesh).unwrap_err();
-    assert!(matches!(error, Error::NothingToBound { constraint: "cell-means", .. }), "{error}");
+    let error = bounds(&broken(), CellMeans, &signorini, &mesh).unwrap_err();
+    assert!(
+        matches!(&error, Error::NothingToBound { constraint, .. } if constraint == "cell-means"),
+        "{error}"
+    );
     assert!(error.to_string().contains("Signorini"), "{error}");
     for problem in [signorini, Problem::new().obstacle_above(|_| 1.0)] {
-        let error = bounds(&Midpoints(ConformingP1), &problem, &mesh).unwrap_err();
-        assert!(matches!(error, Error::NothingToBound { constraint: "midpoints", .. }), "{error}");
+        let error = bounds(&ConformingP1, Midpoints, &problem, &mesh).unwrap_err();
+        assert!(
+            matches!(&error, Error::NothingToBound { constraint, .. } if constraint == "midpoints"),
+            "{error}"
+        );
     }
     // a datum below the obstacle at the midpoint of a single edge
     let tent = |x: &Point<f64, 2>| if (x[1] - 0.25).abs() < 0.1 { 1.0 } else { -1.0 };
     for scheme in conforming::<f64, 2>() {
-        let problem = Problem::new().obstacle_below(tent);
+        let problem = scheme.constrain(&Problem::new().obstacle_below(tent));
         let error = scheme.inequality(&problem, &mesh, Default::default()).unwrap_err();
         assert!(matches!(error, Error::EmptyConstraint { lower: 1.0, upper: 0.0, .. }), "{error}");
     }

@@ -1,11 +1,11 @@
-//! The linear system of an active set, `A_II u_I = b_I - A_IP u_P` on the inactive unknowns `I`,
-//! with the prescribed values of all others, `P`; solved with factors.
+//! Linear systems solved with factors: of the assembled matrix, or of a penalised matrix by static
+//! condensation.
 
-use super::contact_state::prescribed_value;
-use crate::algebra::{Contact, Inequality, PenalisedMatrix};
-use crate::linear::direct::EliminationOrder;
+use super::iterate::Iterate;
+use super::linear_solver::{Accuracy, LinearFailure, LinearSolver};
+use crate::algebra::{Inequality, PenalisedMatrix};
 use crate::linear::direct::{CondensedFactors, StaticCondensation};
-use crate::linear::direct::{FactorError, Factors};
+use crate::linear::direct::{EliminationOrder, FactorError, Factors};
 use crate::real::Real;
 
 /// Largest number of corrections of values and jump multipliers for one active set.
@@ -15,13 +15,15 @@ const MAX_CORRECTIONS: usize = 12;
 /// times the largest value.
 const CORRECTION_MULTIPLE: f64 = 16.0;
 
-/// The linear systems of an inequality for all active sets.
-pub(crate) struct InactiveSystem<'a, T> {
+/// The solver with factors for all active sets of an inequality.
+pub(crate) struct DirectSolver<'a, T> {
     inequality: &'a Inequality<T>,
-    /// The inactive unknowns of the last system, ascending.
+    /// Number of corrections after the first solution.
+    refinements: usize,
+    /// The inactive unknowns, ascending.
     inactive: Vec<u32>,
-    /// The last correction of their values.
-    correction: Vec<T>,
+    /// The factors for the inactive unknowns; `None` before the first system.
+    factors: Option<InactiveFactors<T>>,
     /// The static condensation of the penalised matrix, if the matrix is penalised.
     condensation: Option<StaticCondensation<'a, T>>,
     /// The elimination order of a symmetric matrix, which is the same for all active sets; `None`
@@ -29,13 +31,10 @@ pub(crate) struct InactiveSystem<'a, T> {
     elimination_order: Option<EliminationOrder>,
 }
 
-/// The unknowns of a linear system, and its residual.
-pub(crate) struct LinearUnknowns<'v, T> {
-    pub values: &'v mut [T],
-    /// The jump multipliers if the matrix is penalised; else empty.
-    pub jump_multipliers: &'v mut [T],
-    /// `b - A u`.
-    pub residual: &'v mut [f64],
+/// The factors of a matrix on the inactive unknowns.
+enum InactiveFactors<T> {
+    Assembled(Factors<T>),
+    Condensed(CondensedFactors<T>),
 }
 
 /// The sizes of a correction of values and jump multipliers.
@@ -52,72 +51,26 @@ struct CorrectionSize {
     diagonal_energy: f64,
 }
 
-impl<'a, T: Real> InactiveSystem<'a, T> {
-    /// The systems of an inequality. It may be malformed as long as no system is solved.
-    pub fn new(inequality: &'a Inequality<T>) -> Self {
-        let penalised = inequality.penalised.as_ref().filter(|_| inequality.is_well_formed());
-        let condensation = penalised.map(|penalised| {
+impl<'a, T: Real> DirectSolver<'a, T> {
+    /// The solver of an inequality, which must be well formed.
+    pub fn new(inequality: &'a Inequality<T>, refinements: usize) -> Self {
+        let condensation = inequality.penalised.as_ref().map(|penalised| {
             StaticCondensation::new(penalised)
                 .with_points(inequality.points_of_unknowns().as_deref())
         });
         Self {
             inequality,
+            refinements,
             inactive: Vec::new(),
-            correction: Vec::new(),
+            factors: None,
             condensation,
             elimination_order: None,
         }
     }
 
-    /// The number of jump multipliers; zero if the matrix is not penalised.
-    pub fn n_jumps(&self) -> usize {
-        let penalised = self.inequality.penalised.as_ref().filter(|_| self.condensation.is_some());
-        penalised.map_or(0, |penalised| penalised.n_jumps())
-    }
-
     /// The static condensation; `None` if the matrix is not penalised.
     pub fn condensation(&self) -> Option<&StaticCondensation<'a, T>> {
         self.condensation.as_ref()
-    }
-
-    /// Corrects the values of all inactive unknowns by the solution for the residual,
-    /// `1 + refinements` times (for a penalised matrix at least so often), and the jump multipliers
-    /// with them; then computes the residual. The values of fixed and active unknowns must have
-    /// been set.
-    ///
-    /// # Errors
-    /// See [`FactorError`].
-    pub fn solve(
-        &mut self,
-        states: &[Contact],
-        mut unknowns: LinearUnknowns<'_, T>,
-        refinements: usize,
-    ) -> Result<(), FactorError> {
-        let Inequality { matrix, load, bounds, penalised, .. } = self.inequality;
-        self.inactive.clear();
-        let all = bounds.iter().zip(states).enumerate();
-        let inactive = all.filter(|(_, (bound, state))| prescribed_value(bound, **state).is_none());
-        self.inactive.extend(inactive.map(|(i, _)| i as u32));
-        if let (Some(condensation), Some(penalised)) = (&self.condensation, penalised) {
-            let mut is_inactive = vec![false; unknowns.values.len()];
-            self.inactive.iter().for_each(|&i| is_inactive[i as usize] = true);
-            let factors = condensation.factor(&is_inactive)?;
-            let system = PenalisedSystem { penalised, condensation, factors, is_inactive };
-            return system.solve(&mut unknowns, refinements);
-        }
-        let factors = self.factor()?;
-        let LinearUnknowns { values, residual, .. } = unknowns;
-        for _ in 0..=refinements {
-            matrix.residual_f64(load, values, residual);
-            self.correction.clear();
-            self.correction.extend(self.inactive.iter().map(|&i| T::lit(residual[i as usize])));
-            factors.solve_in_place(&mut self.correction, 1);
-            for (&i, &correction) in self.inactive.iter().zip(&self.correction) {
-                values[i as usize] += correction;
-            }
-        }
-        matrix.residual_f64(load, values, residual);
-        Ok(())
     }
 
     /// Factors of `A_II`.
@@ -133,6 +86,82 @@ impl<'a, T: Real> InactiveSystem<'a, T> {
         let order = self.elimination_order.insert(order);
         Factors::in_order(matrix, &self.inactive, order)
     }
+
+    /// Corrects the values `1 + refinements` times; then computes the residual.
+    fn correct_assembled(&self, factors: &Factors<T>, iterate: &mut Iterate<'_, T>) {
+        let Inequality { matrix, load, .. } = self.inequality;
+        let Iterate { values, residual, .. } = iterate;
+        let mut correction = Vec::with_capacity(self.inactive.len());
+        for _ in 0..=self.refinements {
+            matrix.residual_f64(load, values, residual);
+            correction.clear();
+            correction.extend(self.inactive.iter().map(|&i| T::lit(residual[i as usize])));
+            factors.solve_in_place(&mut correction, 1);
+            for (&i, &correction) in self.inactive.iter().zip(&correction) {
+                values[i as usize] += correction;
+            }
+        }
+        matrix.residual_f64(load, values, residual);
+    }
+}
+
+impl<T: Real> LinearSolver<T> for DirectSolver<'_, T> {
+    fn tolerance(&self) -> f64 {
+        0.0
+    }
+
+    fn set_eliminated(&mut self, eliminated: &[bool]) -> Result<(), LinearFailure> {
+        self.inactive.clear();
+        let inactive = eliminated.iter().enumerate().filter(|(_, eliminated)| !**eliminated);
+        self.inactive.extend(inactive.map(|(i, _)| i as u32));
+        self.factors = None;
+        self.factors = Some(match &self.condensation {
+            Some(condensation) => {
+                let is_inactive: Vec<bool> = eliminated.iter().map(|&e| !e).collect();
+                InactiveFactors::Condensed(condensation.factor(&is_inactive)?)
+            }
+            None => InactiveFactors::Assembled(self.factor()?),
+        });
+        Ok(())
+    }
+
+    /// For a penalised matrix, corrects values and jump multipliers together, as often as corrections
+    /// halve.
+    fn correct(
+        &mut self,
+        iterate: &mut Iterate<'_, T>,
+        _accuracy: Accuracy,
+    ) -> Result<(), LinearFailure> {
+        match (&self.factors, &self.condensation, &self.inequality.penalised) {
+            (Some(InactiveFactors::Assembled(factors)), ..) => {
+                self.correct_assembled(factors, iterate);
+            }
+            (Some(InactiveFactors::Condensed(factors)), Some(condensation), Some(penalised)) => {
+                let is_inactive = iterate.eliminated.iter().map(|&e| !e).collect();
+                iterate.jump_multipliers.resize(penalised.n_jumps(), T::lit(0.0));
+                let system = PenalisedSystem { penalised, condensation, factors, is_inactive };
+                system.solve(iterate, self.refinements)?;
+            }
+            _ => return Err(LinearFailure::Unsuitable),
+        }
+        Ok(())
+    }
+
+    fn is_accurate(&self, _energy_norm: f64) -> bool {
+        true
+    }
+
+    fn residual_term_sizes(&self, i: usize, iterate: &Iterate<'_, T>) -> [f64; 2] {
+        match &self.condensation {
+            Some(condensation) => condensation.residual_term_sizes(
+                i,
+                &|j| iterate.values[j].to_f64(),
+                &iterate.jump_multipliers,
+                &|j| iterate.eliminated[j],
+            ),
+            None => iterate.residual_term_sizes(i),
+        }
+    }
 }
 
 /// The system `K u + M^T p = c`, `M u - S^-1 p = g` of a [`PenalisedMatrix`], for values `u` of the
@@ -140,7 +169,7 @@ impl<'a, T: Real> InactiveSystem<'a, T> {
 struct PenalisedSystem<'s, 'a, T> {
     penalised: &'a PenalisedMatrix<T>,
     condensation: &'s StaticCondensation<'a, T>,
-    factors: CondensedFactors<T>,
+    factors: &'s CondensedFactors<T>,
     is_inactive: Vec<bool>,
 }
 
@@ -151,17 +180,13 @@ impl<T: Real> PenalisedSystem<'_, '_, T> {
     /// # Errors
     /// [`FactorError::Singular`] if the last correction is not small in energy: the matrix is then
     /// singular in the precision of the scalar.
-    fn solve(
-        &self,
-        unknowns: &mut LinearUnknowns<'_, T>,
-        refinements: usize,
-    ) -> Result<(), FactorError> {
-        let mut mismatch = vec![0.0; unknowns.jump_multipliers.len()];
+    fn solve(&self, iterate: &mut Iterate<'_, T>, refinements: usize) -> Result<(), FactorError> {
+        let mut mismatch = vec![0.0; iterate.jump_multipliers.len()];
         let mut least = f64::INFINITY;
         let mut is_singular = false;
         let floor = (CORRECTION_MULTIPLE * T::EPSILON).powi(2);
         for correction in 0..MAX_CORRECTIONS {
-            let size = self.correct(unknowns, &mut mismatch);
+            let size = self.correct(iterate, &mut mismatch);
             let is_small = size.max_change <= CORRECTION_MULTIPLE * T::EPSILON * size.max_norm;
             // A quarter of the digits of the scalar in the energy norm: single unknowns of thin
             // cells may have fewer correct digits. The floor is for constants, whose energy is
@@ -175,27 +200,23 @@ impl<T: Real> PenalisedSystem<'_, '_, T> {
             }
             least = size.max_change;
         }
-        self.compute_residual(unknowns);
+        self.compute_residual(iterate);
         if is_singular { Err(FactorError::Singular) } else { Ok(()) }
     }
 
     /// One correction of values and jump multipliers by the solution for the residuals of both
     /// equations. The residual of the second equation is computed in `mismatch`; both residuals are
     /// overwritten by the corrections.
-    fn correct(
-        &self,
-        unknowns: &mut LinearUnknowns<'_, T>,
-        mismatch: &mut [f64],
-    ) -> CorrectionSize {
+    fn correct(&self, iterate: &mut Iterate<'_, T>, mismatch: &mut [f64]) -> CorrectionSize {
         let penalised = self.penalised;
         for (jump, out) in mismatch.iter_mut().enumerate() {
-            let multiplier = unknowns.jump_multipliers[jump].to_f64();
-            *out = penalised.jump_residual(jump, |i| unknowns.values[i].to_f64(), multiplier);
+            let multiplier = iterate.jump_multipliers[jump].to_f64();
+            *out = penalised.jump_residual(jump, |i| iterate.values[i].to_f64(), multiplier);
         }
-        self.compute_residual(unknowns);
-        let LinearUnknowns { values, jump_multipliers, residual } = unknowns;
+        self.compute_residual(iterate);
+        let Iterate { values, jump_multipliers, residual, .. } = iterate;
         let correction_energy =
-            self.condensation.solve(&self.factors, &self.is_inactive, residual, mismatch);
+            self.condensation.solve(self.factors, &self.is_inactive, residual, mismatch);
         let (mut max_change, mut max_norm, mut diagonal_energy) = (0.0_f64, 0.0_f64, 0.0);
         for (i, (x, correction)) in values.iter_mut().zip(residual.iter()).enumerate() {
             *x += T::lit(*correction);
@@ -212,8 +233,8 @@ impl<T: Real> PenalisedSystem<'_, '_, T> {
     }
 
     /// Sets the residual to `c - K u - M^T p`.
-    fn compute_residual(&self, unknowns: &mut LinearUnknowns<'_, T>) {
-        let LinearUnknowns { values, jump_multipliers, residual } = unknowns;
+    fn compute_residual(&self, iterate: &mut Iterate<'_, T>) {
+        let Iterate { values, jump_multipliers, residual, .. } = iterate;
         let multiplier = |jump: usize| jump_multipliers[jump].to_f64();
         self.penalised.residual_with_jump_multipliers(|i| values[i].to_f64(), multiplier, residual);
     }

@@ -1,0 +1,62 @@
+//! The element of a scheme in the basis that a constraint set needs.
+
+use super::shared_rows::CellLoops;
+use super::space::AnyElement;
+use crate::constraint::{CONSTRAINT_SETS, ConstraintSet, constraint_set_by_name};
+use crate::element::{ElementVisitor, ReferenceElement};
+use crate::real::Real;
+
+/// An element without its type, with the loops over its shared rows.
+pub(crate) struct ChosenElement<T: Real, const D: usize> {
+    pub element: AnyElement,
+    pub loops: Option<CellLoops<T, D>>,
+    /// The names of the constraint sets that the element of the scheme offers an obstacle, or a
+    /// Signorini condition.
+    pub offered: fn(contact: bool) -> Vec<String>,
+}
+
+impl<T: Real, const D: usize> ChosenElement<T, D> {
+    /// The element `E`, or the one of the same broken polynomials in the basis of the set, if the set
+    /// binds no node of `E`.
+    pub fn of<E: ReferenceElement<T, D>>(set: &dyn ConstraintSet) -> Self {
+        let own = Erase.visit::<E>();
+        let is_bound = own.element.nodes.iter().any(|node| set.in_domain(node, D).is_some());
+        let other = match set.basis() {
+            Some(basis) if !is_bound && E::LAYOUT.is_broken() => E::broken_in_basis(basis, Erase),
+            _ => None,
+        };
+        Self { offered: offered::<T, E, D>, ..other.unwrap_or(own) }
+    }
+}
+
+/// The visitor that removes the type.
+struct Erase;
+
+impl<T: Real, const D: usize> ElementVisitor<T, D> for Erase {
+    type Output = ChosenElement<T, D>;
+
+    fn visit<E: ReferenceElement<T, D>>(self) -> ChosenElement<T, D> {
+        ChosenElement {
+            element: AnyElement::of::<T, E, D>(),
+            loops: CellLoops::of::<E>(),
+            offered: offered::<T, E, D>,
+        }
+    }
+}
+
+fn offered<T: Real, E: ReferenceElement<T, D>, const D: usize>(contact: bool) -> Vec<String> {
+    let mut names: Vec<String> = Vec::new();
+    for set in CONSTRAINT_SETS.iter().filter_map(|(name, _)| constraint_set_by_name(name)) {
+        let AnyElement { nodes, .. } = ChosenElement::<T, D>::of::<E>(&set).element;
+        let is_bound = nodes.iter().any(|node| set.in_domain(node, D).is_some());
+        let is_bound_on_facets = nodes.iter().any(|node| {
+            set.on_contact(node, D).is_some() && (0..=D).any(|k| !node.entity().contains(D, k))
+        });
+        let name = set.name_on(&nodes);
+        if is_bound && (is_bound_on_facets || !contact) && !names.iter().any(|known| known == name)
+        {
+            names.push(name.to_owned());
+        }
+    }
+    names
+}

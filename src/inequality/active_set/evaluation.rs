@@ -1,0 +1,137 @@
+//! The evaluation of the KKT conditions at an iterate: violations, merit, and the prediction of the
+//! active set.
+
+use super::iterate::Iterate;
+use super::linear_solver::LinearSolver;
+use crate::algebra::Contact;
+use crate::parallel::vectors::map_chunks;
+use crate::real::Real;
+
+/// The violations of the KKT conditions, their scales, and the active set that they predict.
+#[derive(Default)]
+pub(crate) struct Evaluation {
+    /// The unknowns whose contact state changes, and the new states.
+    pub state_changes: Vec<(u32, Contact)>,
+    /// The square of the projected Jacobi step `u - P(u + r / d)`, `r = b - A u`, in the norm
+    /// `(sum d_i v_i^2)^(1/2)` of the diagonal `d` of `A`. It is zero at the solution only. It is
+    /// not divided by the size of the iterate, which would favour iterates that are far too large.
+    pub merit: f64,
+    /// The largest of all `|u_i|` and `|v_i|`, `v_i` the admissible value nearest to `u_i`; one if
+    /// all are zero.
+    pub max_norm: f64,
+    /// Energy norm `(u . A u)^(1/2)` of the iterate; if it is zero, the dual norm
+    /// `(sum b_i^2 / d_i)^(1/2)` of the load; one if the load is zero too.
+    pub energy_norm: f64,
+    /// Largest violation of a bound by an inactive unknown; violations within rounding do not count.
+    bound_violation: f64,
+    /// Dual norm `(sum r_i^2 / d_i)^(1/2)` of the multipliers of wrong sign; rounding is not
+    /// subtracted.
+    multiplier_violation: f64,
+}
+
+impl Evaluation {
+    /// Whether merit and norms are finite.
+    pub fn is_finite(&self) -> bool {
+        self.merit.is_finite() && self.energy_norm.is_finite() && self.max_norm.is_finite()
+    }
+
+    /// Whether the largest violation of a bound is at most `tolerance` times the largest value, and
+    /// the dual norm of the multipliers of wrong sign at most `tolerance` times the energy norm.
+    pub fn holds_to(&self, tolerance: f64) -> bool {
+        self.bound_violation <= tolerance * self.max_norm
+            && self.multiplier_violation <= tolerance * self.energy_norm
+    }
+}
+
+impl<T: Real> Iterate<'_, T> {
+    /// Evaluates the KKT conditions of every unknown, and stores the energy norm. The residual must be
+    /// current.
+    ///
+    /// An inactive unknown that violates a bound becomes active, an active unknown whose multiplier
+    /// has the wrong sign becomes inactive, both only beyond tolerances: the rounding band of
+    /// [`ActiveSet`](super::ActiveSet).
+    pub fn evaluate(&mut self, rounding_band: f64, solver: &dyn LinearSolver<T>) -> Evaluation {
+        let (mut energy, mut load_energy, mut max_norm) = (0.0, 0.0, 0.0_f64);
+        for [energy_part, load_part, norm_part] in map_chunks(self.values.len(), |range| {
+            let mut part = [0.0, 0.0, 0.0_f64];
+            for i in range {
+                let (x, b) = (self.values[i].to_f64(), self.inequality.load[i].to_f64());
+                let nearest = self.inequality.bounds[i].nearest(self.values[i]).to_f64();
+                part[0] += x * (b - self.residual[i]);
+                part[1] += b * b / self.diagonal[i];
+                part[2] = part[2].max(x.abs()).max(nearest.abs());
+            }
+            part
+        }) {
+            energy += energy_part;
+            load_energy += load_part;
+            max_norm = max_norm.max(norm_part);
+        }
+        let max_norm = if max_norm > 0.0 { max_norm } else { 1.0 };
+        let energy = if energy > 0.0 { energy } else { load_energy };
+        let energy_norm = if energy > 0.0 { energy.sqrt() } else { 1.0 };
+        let mut evaluation = Evaluation { max_norm, energy_norm, ..Evaluation::default() };
+        let bound_tolerance = rounding_band * T::EPSILON * max_norm;
+        let parts = map_chunks(self.values.len(), |range| {
+            let mut part = Evaluation::default();
+            range.for_each(|i| {
+                self.evaluate_at(i, bound_tolerance, rounding_band, solver, &mut part)
+            });
+            part
+        });
+        for part in parts {
+            evaluation.state_changes.extend(part.state_changes);
+            evaluation.merit += part.merit;
+            evaluation.bound_violation = evaluation.bound_violation.max(part.bound_violation);
+            evaluation.multiplier_violation += part.multiplier_violation;
+        }
+        evaluation.multiplier_violation = evaluation.multiplier_violation.sqrt();
+        self.energy_norm = energy_norm;
+        evaluation
+    }
+
+    /// Adds unknown `i` to an evaluation. Its square `r_i^2 / d_i` in `multiplier_violation`, of which
+    /// the caller takes the square root, is added without a tolerance.
+    #[inline(always)]
+    fn evaluate_at(
+        &self,
+        i: usize,
+        bound_tolerance: f64,
+        rounding_band: f64,
+        solver: &dyn LinearSolver<T>,
+        evaluation: &mut Evaluation,
+    ) {
+        let bound = &self.inequality.bounds[i];
+        let (x, r, d) = (self.values[i].to_f64(), self.residual[i], self.diagonal[i]);
+        let target = bound.nearest(T::lit(x + r / d)).to_f64();
+        evaluation.merit += d * (x - target).powi(2);
+        if bound.fixed_value().is_some() {
+            return;
+        }
+        let wrong_multiplier = match self.states[i] {
+            Contact::Inactive => {
+                let below = bound.lower().map_or(0.0, |l| l.to_f64() - x);
+                let above = bound.upper().map_or(0.0, |u| x - u.to_f64());
+                if below > bound_tolerance {
+                    evaluation.state_changes.push((i as u32, Contact::Lower));
+                    evaluation.bound_violation = evaluation.bound_violation.max(below);
+                } else if above > bound_tolerance {
+                    evaluation.state_changes.push((i as u32, Contact::Upper));
+                    evaluation.bound_violation = evaluation.bound_violation.max(above);
+                }
+                return;
+            }
+            Contact::Lower => r,
+            Contact::Upper => -r,
+        };
+        if wrong_multiplier > 0.0 {
+            evaluation.multiplier_violation += wrong_multiplier * wrong_multiplier / d;
+            // values of eliminated unknowns are exact
+            let [inactive, eliminated] = solver.residual_term_sizes(i, self);
+            let terms = T::EPSILON * inactive + f64::EPSILON * eliminated;
+            if wrong_multiplier > rounding_band * terms {
+                evaluation.state_changes.push((i as u32, Contact::Inactive));
+            }
+        }
+    }
+}

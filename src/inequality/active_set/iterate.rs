@@ -1,0 +1,187 @@
+//! The iterate of the active set method: values, contact states, residual, and the best values so far.
+
+use super::contact_state::{prescribed_value, starting_states};
+use crate::algebra::{Bound, Contact, Inequality};
+use crate::inequality::certificate::positive_diagonal;
+use crate::inequality::{Outcome, Solution};
+use crate::real::Real;
+
+/// The values and contact states of a step, and the best values of all steps.
+pub(crate) struct Iterate<'a, T> {
+    pub inequality: &'a Inequality<T>,
+    pub values: Vec<T>,
+    /// The jump multipliers, if a linear solver has them as unknowns
+    /// ([`PenalisedMatrix`](crate::algebra::PenalisedMatrix)); else empty.
+    pub jump_multipliers: Vec<T>,
+    pub states: Vec<Contact>,
+    /// Whether an unknown is eliminated from the linear system: fixed or active.
+    pub eliminated: Vec<bool>,
+    /// `b - A u`.
+    pub residual: Vec<f64>,
+    /// Whether `residual` is that of the present values.
+    pub residual_is_current: bool,
+    /// The diagonal of the matrix, positive; see [`positive_diagonal`].
+    pub diagonal: Vec<f64>,
+    /// The energy norm at the last evaluation; see
+    /// [`Evaluation::energy_norm`](super::evaluation::Evaluation::energy_norm).
+    pub energy_norm: f64,
+    /// Number of linear systems with a new active set, and of steps of the interior point method.
+    pub outer: usize,
+    /// Number of iterations of the linear solver.
+    pub linear: usize,
+    best: BestIterate<T>,
+}
+
+/// The iterate with the smallest merit; see
+/// [`Evaluation::merit`](super::evaluation::Evaluation::merit).
+struct BestIterate<T> {
+    merit: f64,
+    values: Vec<T>,
+    states: Vec<Contact>,
+    jump_multipliers: Vec<T>,
+}
+
+impl<'a, T: Real> Iterate<'a, T> {
+    /// The admissible values nearest to `guess`, zeros if it has another length, with the contact
+    /// states of the inequality's start.
+    pub fn new(inequality: &'a Inequality<T>, guess: &[T]) -> Self {
+        let bounds = &inequality.bounds;
+        let n = bounds.len();
+        let value = |i: usize| if guess.len() == n { guess[i] } else { T::lit(0.0) };
+        let values: Vec<T> = (0..n).map(|i| bounds[i].nearest(value(i))).collect();
+        let states = starting_states(bounds, &inequality.start);
+        let best = BestIterate {
+            merit: f64::INFINITY,
+            values: values.clone(),
+            states: states.clone(),
+            jump_multipliers: Vec::new(),
+        };
+        let mut iterate = Self {
+            inequality,
+            values,
+            jump_multipliers: Vec::new(),
+            states,
+            eliminated: vec![false; n],
+            residual: vec![0.0; n],
+            residual_is_current: false,
+            diagonal: (0..n).map(|i| positive_diagonal(inequality, i)).collect(),
+            energy_norm: 1.0,
+            outer: 0,
+            linear: 0,
+            best,
+        };
+        iterate.set_prescribed_values();
+        iterate
+    }
+
+    /// Replaces values, jump multipliers and contact states.
+    pub fn replace(&mut self, values: Vec<T>, jump_multipliers: Vec<T>, states: Vec<Contact>) {
+        (self.values, self.jump_multipliers, self.states) = (values, jump_multipliers, states);
+        self.set_prescribed_values();
+    }
+
+    /// Makes every unknown with a bound active, at its lower bound if it has two; false if nothing
+    /// changed.
+    pub fn activate_all(&mut self) -> bool {
+        let active = |bound: &Bound<T>| match (bound.lower(), bound.upper()) {
+            (Some(_), _) => Contact::Lower,
+            (None, Some(_)) => Contact::Upper,
+            (None, None) => Contact::Inactive,
+        };
+        let states: Vec<Contact> = self.inequality.bounds.iter().map(active).collect();
+        let is_changed = states != self.states;
+        self.states = states;
+        self.set_prescribed_values();
+        is_changed
+    }
+
+    /// Sets every fixed or active unknown to its prescribed value, exactly, and marks it as eliminated.
+    fn set_prescribed_values(&mut self) {
+        for (i, bound) in self.inequality.bounds.iter().enumerate() {
+            let prescribed = prescribed_value(bound, self.states[i]);
+            self.eliminated[i] = prescribed.is_some();
+            if let Some(value) = prescribed {
+                self.values[i] = value;
+            }
+        }
+        self.residual_is_current = false;
+    }
+
+    /// Changes contact states and sets the values that they prescribe. The residual of a symmetric
+    /// matrix without jump multipliers is updated by the columns of these values.
+    pub fn change_states(&mut self, changes: &[(u32, Contact)]) {
+        let is_updated = self.inequality.symmetric && self.jump_multipliers.is_empty();
+        self.residual_is_current &= is_updated;
+        for &(i, contact) in changes {
+            let i = i as usize;
+            self.states[i] = contact;
+            let prescribed = prescribed_value(&self.inequality.bounds[i], contact);
+            self.eliminated[i] = prescribed.is_some();
+            let Some(value) = prescribed else { continue };
+            let change = (value - self.values[i]).to_f64();
+            self.values[i] = value;
+            if self.residual_is_current {
+                // the column is the row
+                let (columns, entries) = self.inequality.matrix.row(i);
+                for (&j, a) in columns.iter().zip(entries) {
+                    self.residual[j as usize] -= a.to_f64() * change;
+                }
+            }
+        }
+    }
+
+    /// Computes the residual from the values.
+    pub fn compute_residual(&mut self) {
+        self.inequality.residual_f64(&self.values, &mut self.residual);
+        self.residual_is_current = true;
+    }
+
+    /// Keeps the iterate as the best one if its merit is the smallest so far; returns whether it is.
+    pub fn keep_if_best(&mut self, merit: f64) -> bool {
+        let is_best = merit < self.best.merit;
+        if is_best {
+            self.best.merit = merit;
+            self.best.values.copy_from_slice(&self.values);
+            self.best.states.copy_from_slice(&self.states);
+            self.best.jump_multipliers.clone_from(&self.jump_multipliers);
+        }
+        is_best
+    }
+
+    /// The values and jump multipliers of the best iterate.
+    pub fn best_values(&self) -> (&[T], &[T]) {
+        (&self.best.values, &self.best.jump_multipliers)
+    }
+
+    /// Sums of the absolute values of the terms of row `i` of `b - A u`: terms of inactive unknowns,
+    /// then terms of eliminated unknowns and of the load.
+    pub fn residual_term_sizes(&self, i: usize) -> [f64; 2] {
+        let (columns, entries) = self.inequality.matrix.row(i);
+        let (mut inactive, mut eliminated) = (0.0, self.inequality.load[i].to_f64().abs());
+        for (&j, a) in columns.iter().zip(entries) {
+            let j = j as usize;
+            let term = (a.to_f64() * self.values[j].to_f64()).abs();
+            *(if self.eliminated[j] { &mut eliminated } else { &mut inactive }) += term;
+        }
+        [inactive, eliminated]
+    }
+
+    /// The solution: the present iterate if it converged, else the best one.
+    pub fn into_solution(self, outcome: Outcome) -> Solution<T> {
+        let (values, contact, jump_multipliers) = if outcome == Outcome::Converged {
+            (self.values, self.states, self.jump_multipliers)
+        } else {
+            (self.best.values, self.best.states, self.best.jump_multipliers)
+        };
+        Solution::new(values, contact, outcome)
+            .iterations(self.outer, self.linear)
+            .jump_multipliers(jump_multipliers)
+    }
+
+    /// Replaces the iterate by the best one. The residual is then not current.
+    pub fn restore_best(&mut self) {
+        let BestIterate { values, states, jump_multipliers, .. } = &self.best;
+        let (values, jumps) = (values.clone(), jump_multipliers.clone());
+        self.replace(values, jumps, states.clone());
+    }
+}

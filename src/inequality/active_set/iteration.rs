@@ -1,0 +1,191 @@
+//! The active set iteration, for every linear solver.
+
+use super::iterate::Iterate;
+use super::linear_solver::{Accuracy, LinearFailure, LinearSolver};
+use super::progress::{Obstruction, Patience, ProgressMonitor};
+use super::settings::ActiveSet;
+use crate::algebra::Bound;
+use crate::inequality::Outcome;
+use crate::inequality::certificate::certify_with_rounding;
+use crate::linear::direct::FactorError;
+use crate::real::Real;
+
+/// The largest certificate that is attributed to rounding, divided by `rounding_band` times machine
+/// epsilon.
+const CERTIFICATE_FACTOR: f64 = 8.0;
+
+/// How an iteration ends.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum End {
+    /// With this outcome.
+    Outcome(Outcome),
+    /// The iteration does not progress.
+    Obstruction(Obstruction),
+    /// The linear solver does not fit the matrix.
+    Unsuitable,
+}
+
+impl From<Outcome> for End {
+    fn from(outcome: Outcome) -> Self {
+        Self::Outcome(outcome)
+    }
+}
+
+impl From<LinearFailure> for End {
+    fn from(failure: LinearFailure) -> Self {
+        match failure {
+            LinearFailure::Factors(error) => Self::Outcome(error.into()),
+            LinearFailure::Outcome(outcome) => Self::Outcome(outcome),
+            LinearFailure::Unsuitable => Self::Unsuitable,
+        }
+    }
+}
+
+/// The active set iteration from the contact states of an iterate.
+///
+/// Each step solves the linear system of the present active set and predicts a new one
+/// ([`Iterate::evaluate`]). It ends where the active set predicts itself, or all violations are
+/// within the tolerance of the linear solver; the certificate, which does not depend on contact
+/// states, then decides.
+pub(crate) struct Iteration<'s, 'i, 'a, T> {
+    pub settings: &'s ActiveSet,
+    pub iterate: &'i mut Iterate<'a, T>,
+    pub solver: &'i mut dyn LinearSolver<T>,
+    pub patience: Patience,
+    /// Whether the certificate must be within its limit. A solution that only provides a start for
+    /// another solve needs no small residual.
+    pub is_certified: bool,
+}
+
+impl<T: Real> Iteration<'_, '_, '_, T> {
+    /// Iterates until the solution is found or the iteration does not progress.
+    pub fn run(&mut self) -> End {
+        match self.iterate_to_end() {
+            Ok(()) => End::Outcome(Outcome::Converged),
+            Err(end) => end,
+        }
+    }
+
+    /// The iteration. `Ok` if it converged.
+    fn iterate_to_end(&mut self) -> Result<(), End> {
+        let tolerance = self.solver.tolerance();
+        let band = self.settings.rounding_band;
+        if tolerance > 0.0 {
+            // the tolerance is relative to the energy norm
+            self.iterate.compute_residual();
+            self.iterate.evaluate(band, &*self.solver);
+        }
+        let is_linear = !self.iterate.inequality.bounds.iter().any(Bound::is_inequality);
+        let mut progress = ProgressMonitor::new(&self.iterate.states, self.patience, is_linear);
+        let mut has_new_states = true;
+        loop {
+            if !self.solve_system(has_new_states, progress.accuracy())? {
+                let states = &self.iterate.states;
+                progress = ProgressMonitor::new(states, self.patience, is_linear);
+                has_new_states = true;
+                continue;
+            }
+            let evaluation = self.iterate.evaluate(band, &*self.solver);
+            if !evaluation.is_finite() {
+                return Err(Outcome::NotFinite.into());
+            }
+            let is_best = self.iterate.keep_if_best(evaluation.merit);
+            let is_accurate = self.solver.is_accurate(evaluation.energy_norm);
+            let changes = &evaluation.state_changes;
+            has_new_states = !changes.is_empty();
+            if is_accurate && (changes.is_empty() || evaluation.holds_to(tolerance)) {
+                if !self.is_certified || self.has_small_certificate() {
+                    return Ok(());
+                }
+                // rounding may have made the recursive residual of a Krylov method too small
+                if tolerance == 0.0 || !progress.may_repeat() {
+                    return Err(self.end_by_rounding());
+                }
+            }
+            progress
+                .note(changes, &self.iterate.states, is_best, is_accurate)
+                .map_err(End::Obstruction)?;
+            self.iterate.change_states(changes);
+        }
+    }
+
+    /// Solves the linear system of the present active set, which `has_new_states` if the solver has not
+    /// been prepared for it. `Ok(false)` if the first matrix of a solve is singular and every bound has
+    /// been made active instead.
+    fn solve_system(&mut self, has_new_states: bool, accuracy: Accuracy) -> Result<bool, End> {
+        if has_new_states {
+            if self.iterate.outer >= self.settings.max_outer {
+                return Err(Outcome::IterationLimit.into());
+            }
+            self.iterate.outer += 1;
+        }
+        let is_prepared = match has_new_states {
+            true => self.solver.set_eliminated(&self.iterate.eliminated),
+            false => Ok(()),
+        };
+        match is_prepared.and_then(|()| self.solver.correct(self.iterate, accuracy)) {
+            Ok(()) => Ok(true),
+            Err(LinearFailure::Factors(FactorError::Singular)) if self.iterate.outer == 1 => {
+                if self.settings.check_definite {
+                    Err(Outcome::NotCoercive.into())
+                } else if self.iterate.activate_all() {
+                    Ok(false)
+                } else {
+                    Err(Outcome::Singular.into())
+                }
+            }
+            Err(failure) => Err(failure.into()),
+        }
+    }
+
+    /// The end of an iteration whose certificate stays too large. Factors with jump multipliers as
+    /// unknowns have less rounding than a Krylov method with the assembled matrix.
+    fn end_by_rounding(&self) -> End {
+        let is_assembled = self.iterate.jump_multipliers.is_empty();
+        match self.iterate.inequality.penalised {
+            Some(_) if is_assembled => End::Unsuitable,
+            _ => Outcome::Stalled.into(),
+        }
+    }
+
+    /// Whether the certificate of the iterate is as small as rounding and the tolerance of the linear
+    /// solver allow.
+    fn has_small_certificate(&self) -> bool {
+        let Iterate { inequality, values, jump_multipliers, .. } = &*self.iterate;
+        let (certificate, amplification) =
+            certify_with_rounding(inequality, values, jump_multipliers);
+        if self.solver.tolerance() > 0.0 {
+            return certificate.largest() <= T::CERTIFICATE_LIMIT;
+        }
+        let rounding = CERTIFICATE_FACTOR * self.settings.rounding_band * T::EPSILON;
+        // large penalties amplify rounding; the limit of the certificate is respected nevertheless
+        let largest = (rounding * amplification.max(1.0)).min(T::CERTIFICATE_LIMIT);
+        certificate.feasibility <= rounding && certificate.largest() <= largest
+    }
+}
+
+/// The outcome of an iteration that ends with `outcome`, without a final active set. If the best
+/// iterate satisfies the complementarity conditions as well as rounding allows, it replaces the present
+/// one and the outcome is [`Outcome::Converged`], or, above the limit of the certificate,
+/// [`Outcome::Stalled`]; else `outcome`.
+pub(crate) fn outcome_of_best<T: Real>(
+    iterate: &mut Iterate<'_, T>,
+    rounding_band: f64,
+    outcome: Outcome,
+) -> Outcome {
+    if !matches!(outcome, Outcome::IterationLimit | Outcome::Cycling | Outcome::Stalled) {
+        return outcome;
+    }
+    let (best, jump_multipliers) = iterate.best_values();
+    let (certificate, amplification) =
+        certify_with_rounding(iterate.inequality, best, jump_multipliers);
+    let rounding = CERTIFICATE_FACTOR * rounding_band * T::EPSILON * amplification.max(1.0);
+    if certificate.largest() > rounding {
+        outcome
+    } else if certificate.largest() <= T::CERTIFICATE_LIMIT {
+        iterate.restore_best();
+        Outcome::Converged
+    } else {
+        Outcome::Stalled
+    }
+}

@@ -1,0 +1,190 @@
+//! Linear systems solved by a preconditioned Krylov method, without factors of the matrix.
+
+use super::iterate::Iterate;
+use super::linear_solver::{Accuracy, LinearFailure, LinearSolver};
+use crate::algebra::{Inequality, SparseMatrix};
+use crate::inequality::Outcome;
+use crate::inequality::validation::check_definite;
+use crate::linear::Preconditioner;
+use crate::linear::direct::FactorError;
+use crate::linear::krylov::{
+    ConjugateGradients, KrylovMethod, KrylovRun, StopReason, StoppingRule,
+};
+use crate::parallel::vectors::{for_each_chunk, pseudorandom_signs, zeros};
+use crate::real::Real;
+
+/// Estimated condition number of the preconditioned matrix (largest Ritz value divided by the
+/// smallest) above which the preconditioner counts as unsuitable: the preconditioned norm of a
+/// residual is then no measure of the error, and factors are better.
+const MAX_CONDITION: f64 = 1e4;
+
+/// Largest number of iterations for one linear system.
+const MAX_ITERATIONS: usize = 500;
+
+/// Relative tolerance of the linear system that is solved for its Ritz values alone.
+const EIGENVALUE_RUN_TOL: f64 = 1e-6;
+
+/// The factor by which the target of an accurate solution may exceed the tolerance after the energy
+/// norm has changed.
+const TARGET_MARGIN: f64 = 1.01;
+
+/// The solver with a Krylov method and a preconditioner for the symmetric part of the matrix.
+pub(crate) struct PreconditionedSolver<'a, T: Real> {
+    inequality: &'a Inequality<T>,
+    /// The symmetric part of the matrix.
+    symmetric_part: &'a SparseMatrix<T>,
+    pub(super) preconditioner: Box<dyn Preconditioner<T> + 'a>,
+    krylov: KrylovMethod<'a, T>,
+    /// The fixed unknowns of the preconditioner.
+    pub(super) eliminated: Vec<bool>,
+    /// See [`LinearSolver::tolerance`].
+    tolerance: f64,
+    /// The residual that the Krylov method updates, zero on eliminated unknowns.
+    residual: Vec<T>,
+    /// Smallest Ritz value of all systems so far, at most one.
+    pub(super) smallest_ritz_value: f64,
+    /// Preconditioned norm of the residual at the end of the last system.
+    pub(super) residual_norm: f64,
+    /// The norm at which the last system was to stop.
+    target: f64,
+}
+
+impl<'a, T: Real> PreconditionedSolver<'a, T> {
+    /// The solver of an inequality with a preconditioner for the symmetric part of its matrix.
+    pub fn new(
+        inequality: &'a Inequality<T>,
+        symmetric_part: &'a SparseMatrix<T>,
+        preconditioner: Box<dyn Preconditioner<T> + 'a>,
+        tolerance: f64,
+    ) -> Self {
+        Self {
+            inequality,
+            symmetric_part,
+            preconditioner,
+            krylov: KrylovMethod::new(inequality),
+            eliminated: Vec::new(),
+            tolerance,
+            residual: zeros(inequality.size()),
+            smallest_ritz_value: 1.0,
+            residual_norm: f64::INFINITY,
+            target: 0.0,
+        }
+    }
+
+    /// Updates `smallest_ritz_value` by a run of a Krylov method.
+    ///
+    /// # Errors
+    /// See [`LinearFailure`].
+    fn check(&mut self, run: &KrylovRun) -> Result<(), LinearFailure> {
+        let (low, high) = run.ritz.unwrap_or((1.0, 1.0));
+        self.smallest_ritz_value = self.smallest_ritz_value.min(low);
+        match run.reason {
+            StopReason::NotPositive if !self.inequality.symmetric => Err(self.not_coercive()),
+            _ if high > MAX_CONDITION * low => Err(LinearFailure::Unsuitable),
+            StopReason::Converged => Ok(()),
+            StopReason::NotPositive => Err(LinearFailure::Outcome(Outcome::NotCoercive)),
+            StopReason::NotFinite => Err(LinearFailure::Outcome(Outcome::NotFinite)),
+            StopReason::IterationLimit => Err(LinearFailure::Unsuitable),
+        }
+    }
+
+    /// The failure if the symmetric part of a matrix that is not symmetric seems not to be positive
+    /// definite. Rounding may be the reason, so that a Cholesky factorisation decides: LU factors of
+    /// the matrix would not detect an indefinite symmetric part.
+    fn not_coercive(&self) -> LinearFailure {
+        check_definite(self.inequality)
+            .err()
+            .map_or(LinearFailure::Unsuitable, LinearFailure::Outcome)
+    }
+
+    /// Estimates the smallest eigenvalue of the preconditioned symmetric part of a matrix that is not
+    /// symmetric, by the Ritz values of conjugate gradients for that part on the inactive unknowns;
+    /// stores the smallest Ritz value in `smallest_ritz_value` if it is smaller than the stored one.
+    ///
+    /// The Ritz values of GMRES, which solves the systems with the matrix itself, do not estimate this
+    /// eigenvalue: its Krylov space belongs to the whole matrix, so that they lie above the eigenvalue
+    /// but need not come close to it.
+    ///
+    /// # Errors
+    /// [`LinearFailure::Unsuitable`] if the preconditioner does not fit or the iterations do not
+    /// suffice, an outcome if the symmetric part is not positive definite.
+    pub fn estimate_smallest_eigenvalue(
+        &mut self,
+        iterate: &mut Iterate<'_, T>,
+    ) -> Result<(), LinearFailure> {
+        let n = iterate.values.len();
+        let mut load = zeros(n);
+        // pseudo-random signs, so that every eigenvector has a component
+        let inactive = (0..n).filter(|&i| !iterate.eliminated[i]);
+        for (i, is_positive) in inactive.zip(pseudorandom_signs()) {
+            let d = T::lit(iterate.diagonal[i]);
+            load[i] = if is_positive { d } else { -d };
+        }
+        let stop = StoppingRule {
+            norm: 0.0,
+            reduction: EIGENVALUE_RUN_TOL,
+            max_iterations: MAX_ITERATIONS,
+        };
+        let system = (&mut zeros(n)[..], &mut load[..]);
+        let mut method = ConjugateGradients::new(self.symmetric_part);
+        let run = method.solve(&iterate.eliminated, &mut *self.preconditioner, system, stop);
+        iterate.linear += run.iterations;
+        self.check(&run)
+    }
+}
+
+impl<T: Real> LinearSolver<T> for PreconditionedSolver<'_, T> {
+    fn tolerance(&self) -> f64 {
+        self.tolerance
+    }
+
+    fn set_eliminated(&mut self, eliminated: &[bool]) -> Result<(), LinearFailure> {
+        self.eliminated.clear();
+        self.eliminated.extend_from_slice(eliminated);
+        self.preconditioner.set_fixed(eliminated).map_err(|error| match error {
+            FactorError::OutOfMemory => LinearFailure::Outcome(Outcome::OutOfMemory),
+            FactorError::NotPositive if !self.inequality.symmetric => self.not_coercive(),
+            // factors of the whole matrix give the reason
+            _ => LinearFailure::Unsuitable,
+        })
+    }
+
+    fn correct(
+        &mut self,
+        iterate: &mut Iterate<'_, T>,
+        accuracy: Accuracy,
+    ) -> Result<(), LinearFailure> {
+        if !iterate.residual_is_current {
+            iterate.compute_residual();
+        }
+        let stop = StoppingRule {
+            norm: self.tolerance * iterate.energy_norm,
+            reduction: match accuracy {
+                Accuracy::Full => 0.0,
+                Accuracy::Reduced => self.preconditioner.reduction(),
+            },
+            max_iterations: MAX_ITERATIONS,
+        };
+        let Iterate { values, eliminated, residual, .. } = iterate;
+        for_each_chunk(&mut self.residual, |range, r| {
+            for (r, i) in r.iter_mut().zip(range) {
+                *r = T::lit(if eliminated[i] { 0.0 } else { residual[i] });
+            }
+        });
+        let system = (&mut values[..], &mut self.residual[..]);
+        let run = self.krylov.solve(eliminated, &mut *self.preconditioner, system, stop);
+        iterate.linear += run.iterations;
+        (self.residual_norm, self.target) = (run.norm, stop.norm);
+        self.check(&run)?;
+        iterate.compute_residual();
+        Ok(())
+    }
+
+    fn is_accurate(&self, energy_norm: f64) -> bool {
+        self.residual_norm <= self.target.min(TARGET_MARGIN * self.tolerance * energy_norm)
+    }
+
+    fn residual_term_sizes(&self, i: usize, iterate: &Iterate<'_, T>) -> [f64; 2] {
+        iterate.residual_term_sizes(i)
+    }
+}

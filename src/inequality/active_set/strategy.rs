@@ -1,0 +1,350 @@
+//! The stages of the active set method, in their order, with all thresholds.
+//!
+//! | stage | runs if | ends without a solution if |
+//! |---|---|---|
+//! | active set, preconditioned | coarse spaces are known and the problem has at least [`CROSSOVER`] unknowns, or the settings ask for it | the active set stagnates or cycles, or the preconditioner does not fit |
+//! | monotone multigrid | the preceding stage stagnated on conforming P1 with nested meshes and a symmetric matrix | its limit of cycles is reached |
+//! | active set, direct | no solution is known | the active set stagnates or cycles |
+//! | interior point | the preceding stage ended so, and the limit of linear systems leaves room | never: it provides the next starting active set |
+//!
+//! The direct active set and the interior point method alternate: the interior point method identifies
+//! the active set early, and a second time at its final accuracy. The active set iteration that follows
+//! the second one has no limit but `max_outer`.
+
+use super::contact_state::admissible_state;
+use super::direct_solver::DirectSolver;
+use super::iterate::Iterate;
+use super::iteration::{End, Iteration, outcome_of_best};
+use super::preconditioned_solver::PreconditionedSolver;
+use super::progress::{Obstruction, Patience};
+use super::settings::{ActiveSet, Globalisation};
+use crate::algebra::{Inequality, Start};
+use crate::inequality::initial_guess::InitialGuess;
+use crate::inequality::interior_point::{Identification, InteriorPoint, MAX_STEPS};
+use crate::inequality::monotone_multigrid::MonotoneMultigrid;
+use crate::inequality::validation::{check_definite, check_input};
+use crate::inequality::{InequalitySolver, Outcome, Solution, Stage, StageRun};
+use crate::linear::krylov::symmetric_part;
+use crate::linear::{CoarseSpaces, LinearMethod, PreconditionedSystem, PreconditionerFamily};
+use crate::real::Real;
+
+/// Number of unknowns from which preconditioned Krylov methods are faster than factors, given nested
+/// meshes: the times of conforming P1, Crouzeix-Raviart, SIPG and WOPSIP in the plane cross between
+/// 6 000 and 25 000 unknowns, in space earlier.
+pub(crate) const CROSSOVER: usize = 10_000;
+
+/// The cost of a step with factors divided by that of a step with a preconditioned Krylov method: 3 to
+/// 6 for SIPG in the plane at 16 000 to 100 000 unknowns.
+const DIRECT_STEP_COST: usize = 4;
+
+/// Relative tolerance of accurate solutions by Krylov methods, divided by the limit of the certificate.
+const TOLERANCE_TO_LIMIT: f64 = 0.1;
+
+/// The stages in their order.
+const STRATEGY: [Stage; 7] = [
+    Stage::PreconditionedActiveSet,
+    Stage::MonotoneMultigrid,
+    Stage::DirectActiveSet,
+    Stage::InteriorPoint,
+    Stage::DirectActiveSet,
+    Stage::InteriorPoint,
+    Stage::DirectActiveSet,
+];
+
+/// A solve by the stages.
+struct Solve<'s, 'a, T: Real> {
+    settings: &'s ActiveSet,
+    inequality: &'a Inequality<T>,
+    guess: &'s InitialGuess<T>,
+    family: &'s dyn PreconditionerFamily<T>,
+    iterate: Iterate<'a, T>,
+    /// The solver with factors; `None` before the first stage that needs it.
+    direct: Option<DirectSolver<'a, T>>,
+    /// The stages that ran.
+    stages: Vec<StageRun>,
+    /// How the last stage ended; `None` before the first one.
+    end: Option<End>,
+    /// The number of runs of the interior point method.
+    interior_point_runs: usize,
+    /// Whether another run of the interior point method may find a better active set: before the first
+    /// run, and after one that identified the active set before the limit of rounding.
+    interior_point_may_improve: bool,
+}
+
+/// What the last stage of a solve found, in addition to the iterate.
+struct Found {
+    outcome: Outcome,
+    /// See [`Solution::linear_solver`].
+    linear_solver: &'static str,
+    /// See [`Solution::algebraic_bound`].
+    algebraic_bound: Option<f64>,
+}
+
+impl Found {
+    /// An outcome of factors.
+    fn new(outcome: Outcome) -> Self {
+        Self { outcome, linear_solver: "direct", algebraic_bound: None }
+    }
+}
+
+/// Solves an inequality by the stages of [`STRATEGY`].
+pub(crate) fn solve<T: Real>(
+    settings: &ActiveSet,
+    inequality: &Inequality<T>,
+    guess: &InitialGuess<T>,
+    family: &dyn PreconditionerFamily<T>,
+) -> Solution<T> {
+    let is_preconditioned = is_preconditioned(settings, inequality, guess);
+    let values = match &guess.values {
+        Some(values) if is_preconditioned => values.as_slice(),
+        _ => &[],
+    };
+    if let Err(outcome) = check(settings, inequality, is_preconditioned) {
+        let values = inequality.bounds.iter().map(|bound| bound.nearest(T::lit(0.0))).collect();
+        return Solution::new(values, vec![Default::default(); inequality.bounds.len()], outcome);
+    }
+    let mut solve = Solve {
+        settings,
+        inequality,
+        guess,
+        family,
+        iterate: Iterate::new(inequality, values),
+        direct: None,
+        stages: Vec::new(),
+        end: None,
+        interior_point_runs: 0,
+        interior_point_may_improve: true,
+    };
+    let mut found = None;
+    for stage in STRATEGY {
+        let applies = match stage {
+            Stage::PreconditionedActiveSet => is_preconditioned,
+            Stage::MonotoneMultigrid => solve.may_run_monotone_multigrid(),
+            Stage::DirectActiveSet => solve.may_run_direct(),
+            Stage::InteriorPoint => solve.may_run_interior_point(),
+        };
+        if applies && found.is_none() {
+            found = solve.run(stage);
+        }
+    }
+    solve.into_solution(found.unwrap_or(Found::new(Outcome::Cycling)))
+}
+
+/// Whether the first stage solves linear systems by a preconditioned Krylov method.
+fn is_preconditioned<T: Real>(
+    settings: &ActiveSet,
+    inequality: &Inequality<T>,
+    guess: &InitialGuess<T>,
+) -> bool {
+    match settings.linear {
+        LinearMethod::Direct => false,
+        LinearMethod::Iterative => true,
+        LinearMethod::BySize => {
+            inequality.size() >= CROSSOVER && !matches!(guess.coarse_spaces, CoarseSpaces::Unknown)
+        }
+    }
+}
+
+/// Checks the input, and definiteness where a setting requires it; a cold start with a symmetric matrix
+/// and factors begins with a Cholesky factorisation on all free unknowns, which is such a check itself.
+///
+/// # Errors
+/// The outcome that the solver returns.
+fn check<T: Real>(
+    settings: &ActiveSet,
+    inequality: &Inequality<T>,
+    is_preconditioned: bool,
+) -> Result<(), Outcome> {
+    check_input(inequality)?;
+    let is_checked_by_factors =
+        !is_preconditioned && inequality.start == Start::Cold && inequality.symmetric;
+    if settings.check_definite && !is_checked_by_factors {
+        check_definite(inequality)?;
+    }
+    Ok(())
+}
+
+impl<'a, T: Real> Solve<'_, 'a, T> {
+    /// Whether monotone multigrid takes over: from a stagnating active set of conforming P1 on nested
+    /// meshes.
+    fn may_run_monotone_multigrid(&self) -> bool {
+        matches!(self.end, Some(End::Obstruction(_)))
+            && self.inequality.symmetric
+            && matches!(self.guess.coarse_spaces, CoarseSpaces::CoarseLevel(_))
+    }
+
+    /// Whether an active set iteration with factors comes next: not where the interior point method
+    /// comes first, and after an interior point method only where one ran.
+    fn may_run_direct(&self) -> bool {
+        let ran = |stage| self.stages.iter().filter(|run| run.stage == stage).count();
+        match self.settings.globalisation {
+            Globalisation::InteriorPointFirst => {
+                self.interior_point_runs > ran(Stage::DirectActiveSet)
+            }
+            _ => self.interior_point_runs == ran(Stage::DirectActiveSet),
+        }
+    }
+
+    /// Whether the interior point method comes next.
+    fn may_run_interior_point(&self) -> bool {
+        self.settings.globalisation != Globalisation::Never
+            && self.interior_point_may_improve
+            && self.iterate.outer + MAX_STEPS <= self.settings.max_outer
+    }
+
+    /// Runs a stage. Returns what it found if the solve ends with it; else stores how it ended.
+    fn run(&mut self, stage: Stage) -> Option<Found> {
+        let (outer, linear) = (self.iterate.outer, self.iterate.linear);
+        let mut found = None;
+        match stage {
+            Stage::PreconditionedActiveSet => match self.run_preconditioned() {
+                Ok(result) => found = Some(result),
+                Err(end) => self.end = Some(end),
+            },
+            Stage::MonotoneMultigrid => found = self.run_monotone_multigrid(),
+            Stage::DirectActiveSet => match self.run_direct() {
+                End::Outcome(outcome) => found = Some(Found::new(outcome)),
+                end => self.end = Some(end),
+            },
+            Stage::InteriorPoint => self.run_interior_point(),
+        }
+        let (outer, linear) = (self.iterate.outer - outer, self.iterate.linear - linear);
+        self.stages.push(StageRun { stage, outer, linear });
+        found
+    }
+
+    /// The active set iteration with a preconditioned Krylov method.
+    ///
+    /// # Errors
+    /// [`End`] if another stage must follow.
+    fn run_preconditioned(&mut self) -> Result<Found, End> {
+        let (inequality, guess) = (self.inequality, self.guess);
+        let matrix = symmetric_part(inequality);
+        let spaces = guess.coarse_spaces.complete(&matrix, inequality).ok_or(End::Unsuitable)?;
+        let system = PreconditionedSystem::new(&matrix, inequality, &spaces);
+        let preconditioner = self.family.preconditioner(system).ok_or(End::Unsuitable)?;
+        let linear_solver = preconditioner.name();
+        let least = TOLERANCE_TO_LIMIT * T::CERTIFICATE_LIMIT;
+        let tolerance = guess.energy_tolerance.unwrap_or(0.0).max(least);
+        let mut solver = PreconditionedSolver::new(inequality, &matrix, preconditioner, tolerance);
+        let patience = self.patience(Stage::PreconditionedActiveSet);
+        let mut iteration = Iteration {
+            settings: self.settings,
+            iterate: &mut self.iterate,
+            solver: &mut solver,
+            patience,
+            is_certified: guess.energy_tolerance.is_none(),
+        };
+        let mut outcome = match iteration.run() {
+            End::Outcome(outcome) => outcome,
+            end => return Err(end),
+        };
+        let mut algebraic_bound = None;
+        if outcome == Outcome::Converged && !inequality.symmetric {
+            outcome =
+                match solver.estimate_smallest_eigenvalue(&mut self.iterate).map_err(End::from) {
+                    Ok(()) => outcome,
+                    Err(End::Outcome(failure)) => failure,
+                    Err(end) => return Err(end),
+                };
+        }
+        if outcome == Outcome::Converged {
+            algebraic_bound = solver.error_bound(&mut self.iterate);
+        }
+        Ok(Found { outcome, linear_solver, algebraic_bound })
+    }
+
+    /// Monotone multigrid from the guess. The iterate is replaced if it converges.
+    fn run_monotone_multigrid(&mut self) -> Option<Found> {
+        let solution = MonotoneMultigrid::default().solve_from(self.inequality, self.guess);
+        let Solution { values, contact, outcome, linear_solver, outer, linear, .. } = solution;
+        self.iterate.outer += outer;
+        self.iterate.linear += linear;
+        (outcome == Outcome::Converged).then(|| {
+            self.iterate.replace(values, Vec::new(), contact);
+            Found { linear_solver, ..Found::new(outcome) }
+        })
+    }
+
+    /// The active set iteration with factors.
+    fn run_direct(&mut self) -> End {
+        let patience = self.patience(Stage::DirectActiveSet);
+        let refinements = self.settings.refinements;
+        let new = || DirectSolver::new(self.inequality, refinements);
+        let solver = self.direct.get_or_insert_with(new);
+        let iterate = &mut self.iterate;
+        let is_certified = true;
+        let mut iteration =
+            Iteration { settings: self.settings, iterate, solver, patience, is_certified };
+        iteration.run()
+    }
+
+    /// Replaces the iterate by the result of the interior point method, which starts from the best
+    /// iterate. If it finds no active set, only the number of linear systems changes.
+    fn run_interior_point(&mut self) {
+        let refinements = self.settings.refinements;
+        let new = || DirectSolver::new(self.inequality, refinements);
+        let condensation = self.direct.get_or_insert_with(new).condensation();
+        let identification = match self.interior_point_runs {
+            0 => Identification::Early,
+            _ => Identification::Final,
+        };
+        self.interior_point_runs += 1;
+        let (values, jump_multipliers) = self.iterate.best_values();
+        let start = (values, jump_multipliers);
+        let mut method = InteriorPoint::new(self.inequality, condensation, start, identification);
+        let contact = method.run();
+        let (values, jump_multipliers, steps) =
+            (method.values(), method.jump_multipliers(), method.steps);
+        self.interior_point_may_improve = method.is_identified;
+        self.iterate.outer += steps;
+        if let Some(contact) = contact {
+            let states = contact.iter().zip(&self.inequality.bounds);
+            let states = states.map(|(&contact, bound)| admissible_state(bound, contact)).collect();
+            self.iterate.replace(values, jump_multipliers, states);
+        }
+    }
+
+    /// The numbers of steps within which a stage must progress.
+    ///
+    /// From a cold start the number of state changes of a preconditioned stage need not halve: the
+    /// active set then grows layer by layer, in many steps that are cheap. From another start more of
+    /// its steps may pass than with factors, unless the stage that follows is cheap too: monotone
+    /// multigrid, or static condensation, which halves the number of unknowns. An active set that
+    /// stagnated there leads to the interior point method after one step with factors. After an
+    /// interior point method two steps suffice to tell that the active set was identified too early.
+    fn patience(&self, stage: Stage) -> Patience {
+        let ActiveSet { stagnation_steps, improvement_steps, globalisation, .. } = *self.settings;
+        if stage == Stage::PreconditionedActiveSet {
+            let is_nested = matches!(self.guess.coarse_spaces, CoarseSpaces::CoarseLevel(_));
+            let is_cheap = is_nested || self.inequality.penalised.is_some();
+            let steps = stagnation_steps * if is_cheap { 1 } else { DIRECT_STEP_COST } + 1;
+            let is_limited = globalisation == Globalisation::OnStagnation
+                && self.inequality.start != Start::Cold;
+            return Patience {
+                halving: is_limited.then_some(steps),
+                improvement: improvement_steps,
+            };
+        }
+        if !self.may_run_interior_point() {
+            return Patience { halving: None, improvement: usize::MAX };
+        }
+        let halving = match (self.interior_point_runs, self.end) {
+            (0, Some(End::Obstruction(Obstruction::Stagnation))) => 0,
+            (0, _) => stagnation_steps,
+            _ => 1,
+        };
+        Patience { halving: Some(halving), improvement: improvement_steps }
+    }
+
+    /// The solution: the iterate if it converged, else the best one.
+    fn into_solution(mut self, found: Found) -> Solution<T> {
+        let Found { outcome, linear_solver, algebraic_bound } = found;
+        let outcome = outcome_of_best(&mut self.iterate, self.settings.rounding_band, outcome);
+        self.iterate
+            .into_solution(outcome)
+            .linear_solver(linear_solver)
+            .algebraic_bound(algebraic_bound)
+            .stages(self.stages)
+    }
+}

@@ -1,0 +1,94 @@
+//! Values of discrete functions at points, and what errors are measured against.
+
+use crate::assemble::Discretisation;
+use crate::assemble::space::Space;
+use crate::assemble::space::tables::BasisAt;
+use crate::element::MAX_BASIS;
+use crate::instances::compiled;
+use crate::problem::Exact;
+use crate::real::{Point, Real, point_f64};
+
+/// A barycentric coordinate that is negative by no more than this counts as zero.
+const ROUNDING: f64 = 1e-10;
+
+/// The function against which errors are measured.
+pub(super) enum Reference<'r, T: Real, const D: usize> {
+    /// A function with its gradient.
+    Exact(&'r Exact<D>),
+    /// A discrete function on the mesh of which the mesh of the error is a refinement.
+    Coarse { space: &'r Space<'r, T, D>, values: &'r [T], refinements: usize },
+}
+
+impl<T: Real, const D: usize> Reference<'_, T, D> {
+    /// The value at a point of a cell.
+    pub fn value(&self, cell: usize, x: &Point<f64, D>) -> f64 {
+        match self {
+            Self::Exact(exact) => (exact.value)(x),
+            Self::Coarse { space, values, refinements } => {
+                let (basis, local) = space.evaluate(cell >> (D * refinements), x, values);
+                basis.value(&local)
+            }
+        }
+    }
+    /// The gradient at a point of a cell.
+    pub fn gradient(&self, cell: usize, x: &Point<f64, D>) -> Point<f64, D> {
+        match self {
+            Self::Exact(exact) => (exact.gradient)(x),
+            Self::Coarse { space, values, refinements } => {
+                let cell = cell >> (D * refinements);
+                let (basis, local) = space.evaluate(cell, x, values);
+                let geometry = space.mesh.geometry(cell);
+                (0..=D).fold(Point::zeros(), |sum: Point<f64, D>, k| {
+                    let slope: f64 =
+                        local.iter().zip(&basis.derivatives).map(|(c, d)| c * d[k]).sum();
+                    sum + point_f64(geometry.gradient(k)) * slope
+                })
+            }
+        }
+    }
+}
+
+impl<T: Real, const D: usize> Space<'_, T, D> {
+    /// The barycentric coordinates of a point in a cell.
+    fn barycentric(&self, cell: usize, x: &Point<f64, D>) -> [f64; 4] {
+        let geometry = self.mesh.geometry(cell);
+        let vertices = self.mesh.cell(cell);
+        let mut lambda = [0.0; 4];
+        for (k, coordinate) in lambda.iter_mut().enumerate().take(D + 1) {
+            let from = x - point_f64(&self.mesh.vertices()[vertices[k] as usize]);
+            *coordinate = 1.0 + point_f64(geometry.gradient(k)).dot(&from);
+        }
+        lambda
+    }
+    /// The basis at a point of a cell, and the unknowns of the cell.
+    fn evaluate(
+        &self,
+        cell: usize,
+        x: &Point<f64, D>,
+        u: &[T],
+    ) -> (BasisAt<f64>, [f64; MAX_BASIS]) {
+        (self.basis_at(&self.barycentric(cell, x)), self.local_values(cell, u))
+    }
+    fn value_at(&self, u: &[T], x: &Point<f64, D>) -> Option<f64> {
+        let contains = |&cell: &usize| {
+            self.barycentric(cell, x)[..=D].iter().all(|&lambda| lambda >= -ROUNDING)
+        };
+        let cell = (0..self.mesh.n_cells()).find(contains)?;
+        let (basis, local) = self.evaluate(cell, x, u);
+        Some(basis.value(&local))
+    }
+}
+
+impl<T: Real, const D: usize> Discretisation<'_, T, D> {
+    /// The value of a vector of unknowns at a point, in the first cell that contains the point; none
+    /// outside the mesh. The search takes a time proportional to the number of cells.
+    ///
+    /// # Panics
+    /// If `u` is shorter than the number of unknowns.
+    pub fn value_at(&self, u: &[T], point: &Point<f64, D>) -> Option<f64> {
+        compiled!(
+            T, D: fn(&Discretisation<'_, T, D>, &[T], &Point<f64, D>) -> Option<f64>
+                = |of, u, point| of.space.value_at(u, point)
+        )(self, u, point)
+    }
+}

@@ -1,0 +1,411 @@
+//! Nested iteration: one problem on one or several nested meshes, solved by any scheme.
+
+use std::fmt;
+use std::sync::Arc;
+use std::time::Instant;
+
+use super::hierarchy::Hierarchy;
+use super::p1_solution::P1Solution;
+use super::solved::Solved;
+use crate::algebra::{Bound, Contact, Inequality, Start, Support};
+use crate::assemble::{DataQuadrature, Discretisation};
+use crate::element::Layout;
+use crate::error::Error;
+use crate::inequality::{ActiveSet, InequalitySolver, InitialGuess, Outcome, Solution};
+use crate::instances::compiled;
+use crate::linear::{Prolongation, is_positive_definite};
+use crate::mesh::{Mesh, Refinement};
+use crate::problem::Problem;
+use crate::real::Real;
+use crate::scheme::AnyScheme;
+
+/// The meshes of a problem: one mesh, or nested ones.
+#[derive(Debug)]
+#[non_exhaustive]
+pub enum Meshes<'a, T, const D: usize> {
+    /// One mesh.
+    Flat(&'a Mesh<T, D>),
+    /// Nested meshes, of which the solution on a coarser one is the start on the next finer one.
+    Nested(&'a Hierarchy<T, D>),
+}
+
+impl<'a, T, const D: usize> From<&'a Mesh<T, D>> for Meshes<'a, T, D> {
+    fn from(mesh: &'a Mesh<T, D>) -> Self {
+        Self::Flat(mesh)
+    }
+}
+
+impl<'a, T, const D: usize> From<&'a Hierarchy<T, D>> for Meshes<'a, T, D> {
+    fn from(hierarchy: &'a Hierarchy<T, D>) -> Self {
+        Self::Nested(hierarchy)
+    }
+}
+
+impl<'a, T: Real, const D: usize> Meshes<'a, T, D> {
+    fn len(&self) -> usize {
+        match self {
+            Self::Flat(_) => 1,
+            Self::Nested(hierarchy) => hierarchy.n_meshes(),
+        }
+    }
+    /// A mesh by its position, zero for the coarsest.
+    pub(super) fn mesh(&self, position: usize) -> &'a Mesh<T, D> {
+        match self {
+            Self::Flat(mesh) => mesh,
+            Self::Nested(hierarchy) => hierarchy.mesh(position),
+        }
+    }
+    /// The refinement of the next coarser mesh and its prolongation, if there is one.
+    pub(super) fn refinement(
+        &self,
+        position: usize,
+    ) -> Option<(&'a Refinement, &'a Arc<Prolongation<T>>)> {
+        match self {
+            Self::Flat(_) => None,
+            Self::Nested(hierarchy) => hierarchy.refinement(position),
+        }
+    }
+}
+
+/// One problem on nested meshes: the settings of its solves, and the conforming P1 solutions from which
+/// they start.
+///
+/// Conforming P1 starts from its solution on the next coarser mesh, every other scheme from conforming
+/// P1 on the same mesh. On a large mesh without coarser ones conforming P1 starts from a rough solution
+/// by monotone multigrid with coarse spaces by aggregation. The P1 solutions are kept, so that several
+/// schemes on several meshes share them.
+///
+/// ```
+/// use unilateral::prelude::*;
+/// # fn main() -> Result<(), unilateral::error::Error> {
+/// let scene = scenes::radial::<2>(1.0);
+/// let meshes = Hierarchy::<f64, 2>::of_domain(&scene.domain, 16)?;
+/// let mut nested = NestedIteration::new(&scene.problem, &meshes);
+/// let p1 = nested.solve(&ConformingP1)?;
+/// let sipg = nested.solve(&Sipg::default())?;
+/// assert!(p1.difference(&sipg)?.l2 < Some(0.1));
+/// # Ok(())
+/// # }
+/// ```
+pub struct NestedIteration<'a, T: Real, const D: usize> {
+    pub(super) problem: &'a Problem<D>,
+    pub(super) meshes: Meshes<'a, T, D>,
+    pub(super) solver: Arc<dyn InequalitySolver<T> + 'a>,
+    pub(super) quadrature: DataQuadrature,
+    pub(super) repeat: usize,
+    has_cold_start: bool,
+    /// The P1 solution on each mesh, once computed.
+    pub(super) p1_solutions: Vec<Option<Arc<P1Solution<T>>>>,
+}
+
+impl<T: Real, const D: usize> fmt::Debug for NestedIteration<'_, T, D> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("NestedIteration")
+            .field("problem", self.problem)
+            .field("meshes", &self.meshes.len())
+            .field("solver", &self.solver.name())
+            .field("quadrature", &self.quadrature)
+            .field("repeat", &self.repeat)
+            .field("has_cold_start", &self.has_cold_start)
+            .finish_non_exhaustive()
+    }
+}
+
+impl<'a, T: Real, const D: usize> NestedIteration<'a, T, D> {
+    /// A problem on a mesh or a hierarchy, with the active set method and the usual quadrature.
+    #[must_use]
+    pub fn new(problem: &'a Problem<D>, meshes: impl Into<Meshes<'a, T, D>>) -> Self {
+        let meshes = meshes.into();
+        Self {
+            problem,
+            p1_solutions: vec![None; meshes.len()],
+            meshes,
+            solver: Arc::new(ActiveSet::default()),
+            quadrature: DataQuadrature::default(),
+            repeat: 1,
+            has_cold_start: false,
+        }
+    }
+    /// Sets the solver of the inequality.
+    #[must_use]
+    pub fn solver(self, solver: impl InequalitySolver<T> + 'a) -> Self {
+        self.shared_solver(Arc::new(solver))
+    }
+    /// Sets a solver of the inequality that others use too, or that was chosen at run time. P1
+    /// solutions by another solver are dropped.
+    #[must_use]
+    pub fn shared_solver(mut self, solver: Arc<dyn InequalitySolver<T> + 'a>) -> Self {
+        self.solver = solver;
+        self.p1_solutions.fill(None);
+        self
+    }
+    /// Sets the quadrature of data.
+    #[must_use]
+    pub fn quadrature(mut self, quadrature: DataQuadrature) -> Self {
+        self.quadrature = quadrature;
+        self.p1_solutions.fill(None);
+        self
+    }
+    /// Makes every time the smallest of this many runs.
+    #[must_use]
+    pub fn repeat(mut self, times: usize) -> Self {
+        self.repeat = times.max(1);
+        self
+    }
+    /// Sets whether schemes start without contact and without coarse spaces.
+    #[must_use]
+    pub fn cold_start(mut self, has_cold_start: bool) -> Self {
+        self.has_cold_start = has_cold_start;
+        self
+    }
+
+    /// Replaces the problem by one with another constraint set. The P1 solutions have bounds at vertices
+    /// and are kept.
+    pub(crate) fn replace_constraint_set(&mut self, problem: &'a Problem<D>) {
+        self.problem = problem;
+    }
+    /// The position of the mesh of a level, if the meshes are nested and have it.
+    pub(crate) fn position(&self, level: usize) -> Option<usize> {
+        match self.meshes {
+            Meshes::Flat(_) => None,
+            Meshes::Nested(hierarchy) => hierarchy.position(level),
+        }
+    }
+    /// The name of the solver.
+    pub(crate) fn solver_name(&self) -> &'static str {
+        self.solver.name()
+    }
+
+    /// The conforming P1 solution on a mesh, by its position: zero for the coarsest.
+    ///
+    /// # Errors
+    /// [`Error::Parameter`] if there is no such mesh, and those of assembly.
+    pub fn p1_solution(&mut self, position: usize) -> Result<Arc<P1Solution<T>>, Error> {
+        self.check_position(position)?;
+        compiled!(
+            T, D: fn(&mut NestedIteration<'_, T, D>, usize) -> Result<Arc<P1Solution<T>>, Error>
+                = |nested, position| nested.solve_p1(position)
+        )(self, position)
+    }
+
+    /// The solution of a scheme on the finest mesh.
+    ///
+    /// # Errors
+    /// Those of assembly: bad data. A solve that does not converge is no error: see
+    /// [`Solved::outcome`].
+    pub fn solve(&mut self, scheme: &dyn AnyScheme<T, D>) -> Result<Solved<'a, T, D>, Error> {
+        self.solve_on(self.meshes.len() - 1, scheme)
+    }
+
+    /// The solution of a scheme on a mesh, by its position: zero for the coarsest.
+    ///
+    /// # Errors
+    /// [`Error::Parameter`] if there is no such mesh, and those of [`NestedIteration::solve`].
+    pub fn solve_on(
+        &mut self,
+        position: usize,
+        scheme: &dyn AnyScheme<T, D>,
+    ) -> Result<Solved<'a, T, D>, Error> {
+        self.check_position(position)?;
+        compiled!(
+            T, D: for<'n, 'p, 's> fn(
+                &'n mut NestedIteration<'p, T, D>,
+                usize,
+                &'s dyn AnyScheme<T, D>,
+            ) -> Result<Solved<'p, T, D>, Error>
+                = |nested, position, scheme| nested.solve_scheme(position, scheme)
+        )(self, position, scheme)
+    }
+
+    fn check_position(&self, position: usize) -> Result<(), Error> {
+        match self.meshes.len() {
+            n if position < n => Ok(()),
+            n => Err(Error::Parameter {
+                parameter: "position",
+                value: position.to_string(),
+                allowed: format!("there are {n} meshes, of which the coarsest has position 0"),
+            }),
+        }
+    }
+
+    fn solve_scheme(
+        &mut self,
+        position: usize,
+        scheme: &dyn AnyScheme<T, D>,
+    ) -> Result<Solved<'a, T, D>, Error> {
+        let start = self.start(position, scheme)?;
+        let mesh = self.meshes.mesh(position);
+        let discretise = || Discretisation::new(scheme, self.problem, mesh, self.quadrature);
+        let clock = Instant::now();
+        let discretisation = discretise()?;
+        let mut inequality = discretisation.inequality()?;
+        let mut assemble_seconds = clock.elapsed().as_secs_f64();
+        for _ in 1..self.repeat {
+            let clock = Instant::now();
+            drop(discretise()?.inequality()?);
+            assemble_seconds = assemble_seconds.min(clock.elapsed().as_secs_f64());
+        }
+        let mut guess = InitialGuess::default();
+        if let Some(start) = &start {
+            // a start without contact stays cold: the solver must detect a body that only contact holds
+            if start.contact.iter().any(|&c| c != Contact::Inactive) {
+                let states = starting_contact(&start.contact, &inequality.supports);
+                inequality.start = Start::Contact(states);
+            }
+            guess.coarse_spaces = start.coarse_spaces.clone();
+            guess.values =
+                (!start.values.is_empty()).then(|| means(&start.values, &inequality.supports));
+        }
+        let mut warnings = Vec::new();
+        let penalty_below_bound = discretisation.penalty_below_bound();
+        warnings.extend(penalty_below_bound.as_ref().map(ToString::to_string));
+        let limit = discretisation.form().rounding_limit(T::EPSILON, mesh.domain_diameter());
+        let shortest = mesh.shortest_edge();
+        if shortest < limit {
+            warnings.push(format!(
+                "edges of length {shortest:.1e} are below {limit:.1e}, where rounding in {} may outweigh the discretisation error",
+                T::NAME
+            ));
+        }
+        let (solution, solve_seconds) =
+            self.run(&inequality, &guess, penalty_below_bound.is_some());
+        let hierarchy = match self.meshes {
+            Meshes::Flat(_) => None,
+            Meshes::Nested(hierarchy) => Some((hierarchy, position)),
+        };
+        let mut solved = Solved::new(discretisation, inequality, solution, hierarchy);
+        solved.warnings = warnings;
+        (solved.assemble_seconds, solved.solve_seconds) = (assemble_seconds, solve_seconds);
+        if let Some(start) = start {
+            // conforming P1 on the same mesh is no coarser level
+            let same_mesh = usize::from(!scheme.is_conforming_linear(mesh));
+            solved.coarser_levels = start.levels_solved.saturating_sub(same_mesh);
+            solved.start_cycles = start.start_cycles;
+            solved.start_seconds = start.seconds;
+        }
+        Ok(solved)
+    }
+
+    /// The start: that of P1 for schemes with its unknowns, P1 on the same mesh for all other schemes.
+    fn start(
+        &mut self,
+        position: usize,
+        scheme: &dyn AnyScheme<T, D>,
+    ) -> Result<Option<Arc<P1Solution<T>>>, Error> {
+        let mesh = self.meshes.mesh(position);
+        let unknowns = unknowns(mesh, scheme.layout());
+        let needs_none =
+            !self.problem.is_constrained() && !self.solver.uses_coarse_spaces(unknowns);
+        if self.has_cold_start || needs_none {
+            Ok(None)
+        } else if scheme.is_conforming_linear(mesh) {
+            self.start_of_p1(position)
+        } else {
+            self.solve_p1(position).map(Some)
+        }
+    }
+
+    /// Solves [`NestedIteration::repeat`] times and returns the last solution with the smallest time. A
+    /// penalty below its proven bound may still give a coercive form, and the size of an error does not
+    /// show whether it does: with `in_doubt` the matrix is first tested for definiteness. The time
+    /// includes this test.
+    fn run(
+        &self,
+        inequality: &Inequality<T>,
+        guess: &InitialGuess<T>,
+        in_doubt: bool,
+    ) -> (Solution<T>, f64) {
+        let clock = Instant::now();
+        let definite = || {
+            let free: Vec<u32> = (0..inequality.size() as u32)
+                .filter(|&i| !matches!(inequality.bounds[i as usize], Bound::Fixed(_)))
+                .collect();
+            is_positive_definite(&inequality.matrix, inequality.symmetric, &free)
+        };
+        if in_doubt && definite() == Ok(false) {
+            let values = vec![T::lit(0.0); inequality.size()];
+            let contact = vec![Contact::Inactive; inequality.size()];
+            let solution = Solution::new(values, contact, Outcome::NotCoercive);
+            return (solution, clock.elapsed().as_secs_f64());
+        }
+        let in_test = clock.elapsed().as_secs_f64();
+        let mut seconds = f64::INFINITY;
+        let mut last = None;
+        for _ in 0..self.repeat {
+            let clock = Instant::now();
+            last = Some(self.solver.solve_from(inequality, guess));
+            seconds = seconds.min(clock.elapsed().as_secs_f64());
+        }
+        match last {
+            Some(solution) => (solution, in_test + seconds),
+            None => unreachable!("at least one run"),
+        }
+    }
+}
+
+/// Solves a problem with a scheme on a mesh, or on the finest mesh of a hierarchy: nested iteration, the
+/// active set method, and the certificate of its result.
+///
+/// ```
+/// use unilateral::prelude::*;
+/// # fn main() -> Result<(), unilateral::error::Error> {
+/// let square = BoxDomain::dirichlet(Point::zeros(), Point::repeat(1.0));
+/// let mesh = Mesh::<f64, 2>::kuhn_box(&square, [16, 16])?;
+/// let membrane = Problem::new().constant_source(-8.0).obstacle_below(|_| -0.2);
+/// let u = solve(&membrane, &mesh, &ConformingP1)?;
+/// assert!(u.converged() && u.certificate().largest() < 1e-9);
+/// assert_eq!(u.value_at(&Point::repeat(0.5)), Some(-0.2));
+/// # Ok(())
+/// # }
+/// ```
+///
+/// [`NestedIteration`] has the settings: solver, quadrature, number of runs.
+///
+/// # Errors
+/// Those of [`NestedIteration::solve`].
+pub fn solve<'a, T: Real, const D: usize>(
+    problem: &'a Problem<D>,
+    meshes: impl Into<Meshes<'a, T, D>>,
+    scheme: &dyn AnyScheme<T, D>,
+) -> Result<Solved<'a, T, D>, Error> {
+    NestedIteration::new(problem, meshes).solve(scheme)
+}
+
+/// The starting contact of unknowns: an unknown starts in contact if more than half of the vertices
+/// of its support are in contact.
+fn starting_contact(contact: &[Contact], supports: &[Support]) -> Vec<Contact> {
+    let state = |support: &Support| {
+        let vertices = support.vertices();
+        [Contact::Lower, Contact::Upper]
+            .into_iter()
+            .find(|&side| {
+                let on = vertices.iter().filter(|&&v| contact[v as usize] == side).count();
+                2 * on > vertices.len()
+            })
+            .unwrap_or(Contact::Inactive)
+    };
+    supports.iter().map(state).collect()
+}
+
+/// The starting values of unknowns: the means of values over the vertices of each support.
+fn means<T: Real>(values: &[T], supports: &[Support]) -> Vec<T> {
+    let mean = |support: &Support| {
+        let vertices = support.vertices();
+        let sum = vertices.iter().fold(T::lit(0.0), |s, &v| s + values[v as usize]);
+        sum / T::lit(vertices.len().max(1) as f64)
+    };
+    supports.iter().map(mean).collect()
+}
+
+/// Number of unknowns of a layout on a mesh.
+fn unknowns<T: Real, const D: usize>(mesh: &Mesh<T, D>, layout: Layout) -> usize {
+    let facets = ((D + 1) * mesh.n_cells() + mesh.boundary().len()) / 2;
+    let (vertices, cells) = (mesh.vertices().len(), mesh.n_cells());
+    // in space by Euler's formula for a ball: near enough elsewhere
+    let edges = match D {
+        1 => cells,
+        2 => facets,
+        _ => (vertices + facets).saturating_sub(cells + 1),
+    };
+    layout.vertex * vertices + layout.edge * edges + layout.facet * facets + layout.cell * cells
+}

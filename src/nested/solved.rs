@@ -1,0 +1,256 @@
+//! The result of a solve.
+
+use std::fmt;
+
+use super::hierarchy::Hierarchy;
+use crate::algebra::{Contact, Inequality};
+use crate::assemble::Discretisation;
+use crate::error::Error;
+use crate::inequality::{
+    Certificate, Outcome, Solution, certify_with_jump_multipliers, count_active,
+};
+use crate::instances::compiled;
+use crate::measure::{ContactErrors, Errors, Fields};
+use crate::mesh::Mesh;
+#[cfg(feature = "report")]
+use crate::paraview::{CellFields, write_vtu};
+use crate::problem::Exact;
+use crate::real::{Point, Real};
+
+/// A discrete solution with the space, the algebraic inequality and the mesh to which it belongs.
+///
+/// Some outcomes have no iterate ([`Solved::has_iterate`]): then there are no errors, energies and
+/// fields, and the certificate is [`Certificate::INVALID`].
+pub struct Solved<'a, T: Real, const D: usize> {
+    discretisation: Discretisation<'a, T, D>,
+    inequality: Inequality<T>,
+    solution: Solution<T>,
+    certificate: Certificate,
+    has_iterate: bool,
+    /// The hierarchy that has the mesh, and its position there.
+    hierarchy: Option<(&'a Hierarchy<T, D>, usize)>,
+    /// Seconds for the mesh and all coarser ones, if it is the mesh of a hierarchy.
+    pub(crate) mesh_seconds: f64,
+    /// Seconds of assembly.
+    pub(crate) assemble_seconds: f64,
+    /// Seconds of the solve on this mesh.
+    pub(crate) solve_seconds: f64,
+    /// Seconds of the start: the P1 solutions on this and all coarser meshes.
+    pub(crate) start_seconds: f64,
+    pub(crate) coarser_levels: usize,
+    pub(crate) start_cycles: usize,
+    pub(crate) warnings: Vec<String>,
+}
+
+impl<T: Real, const D: usize> fmt::Debug for Solved<'_, T, D> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Solved")
+            .field("unknowns", &self.values().len())
+            .field("outcome", &self.outcome())
+            .field("certificate", &self.certificate)
+            .finish_non_exhaustive()
+    }
+}
+
+impl<'a, T: Real, const D: usize> Solved<'a, T, D> {
+    /// A solution with its certificate.
+    pub(super) fn new(
+        discretisation: Discretisation<'a, T, D>,
+        inequality: Inequality<T>,
+        solution: Solution<T>,
+        hierarchy: Option<(&'a Hierarchy<T, D>, usize)>,
+    ) -> Self {
+        let u = &solution.values;
+        let is_of_failure = matches!(
+            solution.outcome,
+            Outcome::NotCoercive
+                | Outcome::Singular
+                | Outcome::NotFinite
+                | Outcome::OutOfMemory
+                | Outcome::Malformed
+        );
+        let has_iterate = !is_of_failure && u.iter().all(|v| v.to_f64().is_finite());
+        let certificate = match has_iterate {
+            true => certify_with_jump_multipliers(&inequality, u, &solution.jump_multipliers)
+                .with_algebraic_bound(solution.algebraic_bound),
+            false => Certificate::INVALID,
+        };
+        Self {
+            mesh_seconds: hierarchy.map_or(0.0, |(h, position)| h.seconds(position)),
+            discretisation,
+            inequality,
+            solution,
+            certificate,
+            has_iterate,
+            hierarchy,
+            assemble_seconds: 0.0,
+            solve_seconds: 0.0,
+            start_seconds: 0.0,
+            coarser_levels: 0,
+            start_cycles: 0,
+            warnings: Vec::new(),
+        }
+    }
+
+    /// How the solve ended.
+    pub fn outcome(&self) -> Outcome {
+        self.solution.outcome
+    }
+    /// Whether the solve converged.
+    pub fn converged(&self) -> bool {
+        self.outcome() == Outcome::Converged
+    }
+    /// Whether there are values to evaluate; a solve without factors, for instance, has none.
+    pub fn has_iterate(&self) -> bool {
+        self.has_iterate
+    }
+    /// The unknowns.
+    pub fn values(&self) -> &[T] {
+        &self.solution.values
+    }
+    /// Which bound, if any, is active at each unknown.
+    pub fn contact(&self) -> &[Contact] {
+        &self.solution.contact
+    }
+    /// The multiplier of each unknown: its entry of `A u - b` where a bound is active, positive at
+    /// lower and negative at upper bounds; zero elsewhere. Its density is in [`Solved::fields`].
+    pub fn multiplier(&self) -> Vec<f64> {
+        let Inequality { matrix, load, .. } = &self.inequality;
+        let at = |(i, &state): (usize, &Contact)| match state {
+            Contact::Inactive => 0.0,
+            _ => matrix.row_dot_f64(i, self.values()) - load[i].to_f64(),
+        };
+        self.contact().iter().enumerate().map(at).collect()
+    }
+    /// Number of outer iterations on this mesh, by [`Solution::outer`]; none without an iterate.
+    pub fn outer(&self) -> Option<usize> {
+        self.has_iterate.then_some(self.solution.outer)
+    }
+    /// Number of constrained unknowns in contact; none without an iterate.
+    pub fn active(&self) -> Option<usize> {
+        self.has_iterate.then(|| count_active(&self.inequality, self.contact()))
+    }
+    /// The objective `a(u,u)/2 - l(u)` with all terms of the scheme; none for schemes that are not
+    /// symmetric and without an iterate.
+    pub fn objective(&self) -> Option<f64> {
+        let is_minimum = self.inequality.symmetric && self.has_iterate;
+        is_minimum.then(|| self.inequality.objective(self.values()))
+    }
+    /// The certificate: violations of the complementarity conditions.
+    pub fn certificate(&self) -> Certificate {
+        self.certificate
+    }
+    /// What the solver returned: values, contact states, numbers of iterations.
+    pub fn solution(&self) -> &Solution<T> {
+        &self.solution
+    }
+    /// The algebraic inequality.
+    pub fn inequality(&self) -> &Inequality<T> {
+        &self.inequality
+    }
+    /// The discretisation: scheme, problem and mesh joined.
+    pub fn discretisation(&self) -> &Discretisation<'a, T, D> {
+        &self.discretisation
+    }
+    /// The mesh.
+    pub fn mesh(&self) -> &'a Mesh<T, D> {
+        self.discretisation.mesh()
+    }
+    /// Warnings by type, as text: a penalty below its proven bound, say.
+    pub fn warnings(&self) -> &[String] {
+        &self.warnings
+    }
+
+    /// The value at a point, in the first cell that contains the point; none outside the mesh. The
+    /// search takes a time proportional to the number of cells.
+    pub fn value_at(&self, point: &Point<f64, D>) -> Option<f64> {
+        self.discretisation.value_at(self.values(), point)
+    }
+    /// Errors against the exact solution of the problem; none if the problem has no exact solution
+    /// or there is no iterate.
+    ///
+    /// # Errors
+    /// [`Error::DataNotFinite`].
+    pub fn errors(&self) -> Result<Errors, Error> {
+        match self.has_iterate {
+            true => self.discretisation.errors(self.values()),
+            false => Ok(Errors::default()),
+        }
+    }
+    /// Errors against a function with its gradient; none without an iterate.
+    ///
+    /// # Errors
+    /// [`Error::DataNotFinite`].
+    pub fn errors_against(&self, exact: &Exact<D>) -> Result<Errors, Error> {
+        match self.has_iterate {
+            true => self.discretisation.errors_against(exact, self.values()),
+            false => Ok(Errors::default()),
+        }
+    }
+    /// Norms of the difference from another solution on the same mesh or on another mesh of the same
+    /// hierarchy, computed on the finer mesh: L2 norm, broken H1 seminorm and the maximum over the
+    /// nodes of the finer space. None without two iterates.
+    ///
+    /// On a mesh whose refinement moves vertices, as on a disc, a coarse function is continued beyond its
+    /// cells as the polynomial that it is.
+    ///
+    /// # Errors
+    /// [`Error::NotNested`] if the two meshes do not belong to one hierarchy.
+    pub fn difference(&self, other: &Self) -> Result<Errors, Error> {
+        let refinements = match (self.hierarchy, other.hierarchy) {
+            _ if std::ptr::eq(self.mesh(), other.mesh()) => 0,
+            (Some((one, a)), Some((two, b))) if std::ptr::eq(one, two) => a as isize - b as isize,
+            _ => return Err(Error::NotNested),
+        };
+        let (fine, coarse) = if refinements < 0 { (other, self) } else { (self, other) };
+        if !(fine.has_iterate && coarse.has_iterate) {
+            return Ok(Errors::default());
+        }
+        let coarse = (&coarse.discretisation, coarse.values(), refinements.unsigned_abs());
+        fine.discretisation.difference(fine.values(), coarse)
+    }
+    /// Distances of multiplier and contact set from the exact ones; none without an iterate.
+    ///
+    /// # Errors
+    /// [`Error::DataNotFinite`].
+    pub fn contact_errors(&self) -> Result<ContactErrors, Error> {
+        match self.has_iterate {
+            true => self.discretisation.contact_errors(&self.inequality, &self.solution),
+            false => Ok(ContactErrors::default()),
+        }
+    }
+    /// Solution, obstacle, multiplier and contact set on cells; none without an iterate.
+    pub fn fields(&self) -> Option<Fields> {
+        self.has_iterate.then(|| self.discretisation.fields(&self.inequality, &self.solution))
+    }
+    /// Writes the fields to a `.vtu` file, as [`write_vtu`] does, and the folder of the file if there
+    /// is none.
+    ///
+    /// # Errors
+    /// [`Error::Write`], also without an iterate.
+    #[cfg(feature = "report")]
+    pub fn write_vtu(&self, path: impl AsRef<std::path::Path>) -> Result<(), Error> {
+        compiled!(
+            T, D: fn(&Solved<'_, T, D>, &std::path::Path) -> Result<(), Error>
+                = |solved, path| solved.write_fields(path)
+        )(self, path.as_ref())
+    }
+    #[cfg(feature = "report")]
+    fn write_fields(&self, path: &std::path::Path) -> Result<(), Error> {
+        use crate::error::write_error;
+        let Some(fields) = self.fields() else {
+            return Err(write_error(path, format!("no solution: {}", self.outcome())));
+        };
+        if let Some(folder) = path.parent() {
+            std::fs::create_dir_all(folder).map_err(|e| write_error(folder, e))?;
+        }
+        let is_constrained = self.inequality.bounds.iter().any(|b| b.is_inequality());
+        let fields = CellFields {
+            u: &fields.u,
+            obstacle: fields.obstacle.as_deref(),
+            multiplier: is_constrained.then_some(&fields.multiplier[..]),
+            contact: &fields.contact,
+        };
+        write_vtu(path, self.mesh(), &fields)
+    }
+}
