@@ -7,6 +7,9 @@ use crate::facet::{FacetForm, FacetView, Side, Trace};
 use crate::mesh::Mesh;
 use crate::real::Real;
 
+/// Most moments of fluxes on a facet: cubics on a triangle, for linears with a bubble in space.
+pub(crate) const MAX_FLUX_MOMENTS: usize = 10;
+
 /// A small dense matrix, of which an element uses the upper left corner.
 pub(crate) type Local<T> = [[T; MAX_BASIS]; MAX_BASIS];
 

@@ -302,7 +302,7 @@ fn check_form<T: Real, const D: usize>(
     }
     if owns_rows
         && form.uses_flux()
-        && polynomials(D - 1, element.basis_degree - 1) > owned_rows::MAX_FLUX_MOMENTS
+        && polynomials(D - 1, element.basis_degree - 1) > local::MAX_FLUX_MOMENTS
     {
         return refuse(
             "fluxes",

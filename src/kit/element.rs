@@ -101,10 +101,11 @@ impl ErasedElement {
         if owned != functions {
             return Err(KitError::LayoutCount { owned, functions, limit: MAX_BASIS });
         }
+        // means of basis functions are taken by rules for the degree of the basis
+        self.basis_degree(tolerance)?;
         let duality = self.duality(tolerance)?;
         self.owners()?;
         let interpolation = self.interpolation(tolerance)?;
-        self.basis_degree(tolerance)?;
         let derivatives = self.derivatives(tolerance)?;
         Ok(ElementReport { functions, degree, duality, interpolation, derivatives })
     }

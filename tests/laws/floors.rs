@@ -182,7 +182,7 @@ fn rooms_import_from_lower_floors_only() {
 const CIRCLES: [(&[&str], &str); 2] = [
     (
         &["assemble/owned_rows", "assemble/owned_rows/lifted"],
-        "the rows of a cell, and what lifted forms and closed formulas add to them",
+        "the rows of a cell, and what lifted forms add to them",
     ),
     (
         &["mesh/gmsh/source", "mesh/gmsh/text"],

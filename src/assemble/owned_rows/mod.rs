@@ -15,7 +15,7 @@ use std::convert::Infallible;
 
 use super::facet_coefficients::FacetCoefficients;
 use super::jump_products::JumpProducts;
-use super::local::{StiffnessTable, zero_local};
+use super::local::{MAX_FLUX_MOMENTS, StiffnessTable, zero_local};
 use super::space::Space;
 use super::space::metric::Metrics;
 use super::space::tables::FacetTable;
@@ -27,7 +27,6 @@ use crate::mesh::{Neighbour, Neighbours};
 use crate::parallel::cells;
 use crate::real::Real;
 use lifted::{LiftTable, Lifting};
-pub(crate) use rows::MAX_FLUX_MOMENTS;
 
 /// The cells coupled to a cell, itself included, ascending.
 pub(crate) struct Coupled {

@@ -12,9 +12,6 @@ use crate::facet::FacetKind;
 use crate::mesh::{BoundaryPart, Neighbour};
 use crate::real::Real;
 
-/// Most moments of fluxes on a facet: cubics on a triangle, for linears with a bubble in space.
-pub(crate) const MAX_FLUX_MOMENTS: usize = 10;
-
 /// A dense block of the rows of a cell, of which small elements use the upper left corner.
 type Block<T, const N: usize> = [[T; N]; N];
 

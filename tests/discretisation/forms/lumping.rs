@@ -2,6 +2,7 @@
 //! outside the crate.
 
 use crate::runs::own_scene;
+use crate::support::meshes::{Random, Raw};
 use unilateral::algebra::Inequality;
 use unilateral::assemble::{DataQuadrature, Discretisation};
 use unilateral::error::Error;
@@ -18,7 +19,7 @@ fn unit_box<const D: usize>() -> BoxDomain<D> {
 /// Triangles with equal sides, their inner vertices moved by up to a tenth of a side: no angle is
 /// obtuse, so that the triangulation is that of Delaunay.
 fn acute_mesh(n: usize) -> Mesh<f64, 2> {
-    let square = Mesh::<f64, 2>::kuhn_box(&unit_box(), [n; 2]).unwrap();
+    let mut raw = Raw::jittered(&unit_box(), n, 0.0, &mut Random(1));
     let is_inside = |x: &Point<f64, 2>| x.iter().all(|&x| x > 1e-9 && x < 1.0 - 1e-9);
     let place = |(k, x): (usize, &Point<f64, 2>)| {
         let shift = if is_inside(x) { 0.1 / n as f64 } else { 0.0 };
@@ -28,8 +29,8 @@ fn acute_mesh(n: usize) -> Mesh<f64, 2> {
             0.75_f64.sqrt() * x[1] + shift * angle.sin(),
         ])
     };
-    let vertices = square.vertices().iter().enumerate().map(place).collect();
-    Mesh::new(vertices, square.cells().to_vec(), &[]).unwrap()
+    raw.vertices = raw.vertices.iter().enumerate().map(place).collect();
+    raw.mesh()
 }
 
 /// `-Laplace u + c u = 0` with `u = 1` on the boundary and a large reaction: the solution lies
