@@ -128,7 +128,8 @@ impl<T: Real, const D: usize, S: Scheme<T, D>> AnyScheme<T, D> for S {
 }
 
 impl<'a, T: Real, const D: usize> Discretisation<'a, T, D> {
-    /// Joins scheme, problem and mesh, in the basis that the problem's constraint set needs; builds facets only if the scheme needs them.
+    /// Joins scheme, problem and mesh, in the basis that the problem's constraint set needs; builds
+    /// facets only if the scheme needs them.
     ///
     /// # Errors
     /// [`Error::CoefficientNotPositive`], [`Error::NothingToBound`], [`Error::UnsupportedForm`].
