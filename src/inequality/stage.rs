@@ -37,6 +37,7 @@ impl fmt::Display for Stage {
 
 /// A stage that ran.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "report", derive(serde::Serialize))]
 #[non_exhaustive]
 pub struct StageRun {
     /// The stage.
@@ -45,4 +46,11 @@ pub struct StageRun {
     pub outer: usize,
     /// The number of iterations of its linear solver.
     pub linear: usize,
+}
+
+#[cfg(feature = "report")]
+impl serde::Serialize for Stage {
+    fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.serialize_str(self.name())
+    }
 }

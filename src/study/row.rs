@@ -1,7 +1,7 @@
 //! Rows of a report: the figures of one scene, scheme and level each.
 
 use crate::facet::PenaltyParameters;
-use crate::inequality::{Certificate, Outcome};
+use crate::inequality::{Certificate, Outcome, StageRun};
 use crate::measure::{ContactErrors, Errors};
 use crate::nested::Solved;
 use crate::real::Real;
@@ -27,7 +27,7 @@ pub struct Orders {
 }
 
 /// Iteration counts.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "report", derive(serde::Serialize))]
 #[non_exhaustive]
 pub struct Iterations {
@@ -39,6 +39,8 @@ pub struct Iterations {
     pub levels: usize,
     /// Cycles of monotone multigrid for the initial guess on a large mesh without coarser ones.
     pub start_cycles: usize,
+    /// The stages of the solver that ran on this level, in their order.
+    pub stages: Vec<StageRun>,
 }
 
 /// Wall times in seconds.
@@ -176,6 +178,7 @@ impl Row {
                 linear: solution.linear,
                 levels: solved.coarser_levels,
                 start_cycles: solved.start_cycles,
+                stages: solution.stages.clone(),
             },
             certificate: solved.certificate(),
             seconds: Seconds::new(solved.mesh_seconds, solved.assemble_seconds, solve_seconds),

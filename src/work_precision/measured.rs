@@ -95,7 +95,7 @@ impl Measured {
 
     /// Adds a further run. Times may differ, counts may not: if they do, a warning says so.
     pub fn add(&mut self, again: &Row, phases: Phases) {
-        let counts = |r: &Row| (r.status, r.unknowns, r.nonzeros, r.iterations, r.active);
+        let counts = |r: &Row| (r.status, r.unknowns, r.nonzeros, r.iterations.clone(), r.active);
         if counts(again) != counts(&self.row) {
             let warning = "status or counts differ between runs";
             if !self.row.warnings.iter().any(|w| w == warning) {

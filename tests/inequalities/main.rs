@@ -6,6 +6,7 @@ mod iterative;
 mod monotone_multigrid;
 mod nonsymmetric;
 mod ordering;
+mod own_preconditioner;
 mod problems;
 mod solvers;
 

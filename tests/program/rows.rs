@@ -12,7 +12,7 @@ const INNER_KEYS: [(&str, &[&str], bool); 7] = [
     ("error", &["l2", "h1", "energy", "max"], true),
     ("order", &["l2", "h1", "energy", "max", "multiplier_l1", "multiplier_l2"], true),
     ("expected_order", &["l2", "h1"], true),
-    ("iterations", &["outer", "linear", "levels", "start_cycles"], false),
+    ("iterations", &["outer", "linear", "levels", "start_cycles", "stages"], false),
     ("certificate", &["feasibility", "multiplier", "complementarity", "residual"], false),
     ("seconds", &["mesh", "assemble", "solve", "total"], false),
 ];
@@ -40,7 +40,14 @@ fn check_row(row: &Value) {
         for key in keys {
             let value = row[outer].get(key).unwrap_or_else(|| panic!("no {outer}.{key}"));
             let null = value.is_null() && (may_be_null || !converged);
-            let fits = if *key == "rule" { value.is_string() } else { value.is_number() };
+            let fits = match *key {
+                "rule" => value.is_string(),
+                "stages" => value.as_array().is_some_and(|stages| {
+                    let is_run = |run: &Value| run["stage"].is_string() && run["outer"].is_u64();
+                    stages.iter().all(is_run) && (!converged || !stages.is_empty())
+                }),
+                _ => value.is_number(),
+            };
             assert!(null || fits, "{outer}.{key}: {value}");
         }
     }

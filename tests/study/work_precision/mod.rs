@@ -170,8 +170,8 @@ fn a_tiny_study_measures_every_variant_alike() {
         .unwrap();
     for (a, m) in alone.rows.iter().zip(&report.rows) {
         assert_eq!(
-            (a.error, a.nonzeros, a.iterations),
-            (m.row.error, m.row.nonzeros, m.row.iterations)
+            (a.error, a.nonzeros, a.iterations.clone()),
+            (m.row.error, m.row.nonzeros, m.row.iterations.clone())
         );
     }
 }

@@ -1,0 +1,130 @@
+//! Preconditioners made outside the library, and contact sets that do not depend on the linear solver.
+
+use unilateral::algebra::{Contact, Inequality};
+use unilateral::assemble::DataQuadrature;
+use unilateral::inequality::{ActiveSet, InequalitySolver, Solution, Stage};
+use unilateral::linear::{
+    FactorError, LinearMethod, PreconditionedSystem, Preconditioner, PreconditionerFamily,
+};
+use unilateral::prelude::*;
+use unilateral::scenes::Scene;
+use unilateral::scheme::{SchemeOptions, scheme_by_name};
+
+/// Division by the diagonal.
+#[derive(Clone, Debug)]
+struct Jacobi;
+
+struct JacobiOf {
+    diagonal: Vec<f64>,
+    fixed: Vec<bool>,
+}
+
+impl PreconditionerFamily<f64> for Jacobi {
+    fn name(&self) -> &'static str {
+        "active-set-jacobi"
+    }
+    fn preconditioner<'a>(
+        &self,
+        system: PreconditionedSystem<'a, f64>,
+    ) -> Option<Box<dyn Preconditioner<f64> + 'a>> {
+        Some(Box::new(JacobiOf { diagonal: system.matrix.diagonal(), fixed: Vec::new() }))
+    }
+}
+
+impl Preconditioner<f64> for JacobiOf {
+    fn name(&self) -> &'static str {
+        "jacobi"
+    }
+    fn set_fixed(&mut self, fixed: &[bool]) -> Result<(), FactorError> {
+        self.fixed = fixed.to_vec();
+        Ok(())
+    }
+    fn apply(&mut self, r: &[f64], z: &mut [f64]) {
+        for (i, z) in z.iter_mut().enumerate() {
+            *z = if self.fixed[i] { 0.0 } else { r[i] / self.diagonal[i] };
+        }
+    }
+}
+
+#[test]
+fn a_preconditioner_of_ones_own_runs_beside_the_built_in_ones() {
+    let iterative = || ActiveSet::default().linear(LinearMethod::Iterative);
+    let report = Study::<f64, 2>::new(scenes::radial(1.0))
+        .scheme(ConformingP1)
+        .scheme(Sipg::default())
+        .solver(iterative())
+        .solver(iterative().with_preconditioners(Jacobi))
+        .levels([8, 16, 32])
+        .run()
+        .unwrap();
+    let rows = |solver: &str| report.rows.iter().filter(|r| r.solver == solver).collect::<Vec<_>>();
+    let (built_in, own) = (rows("active-set"), rows("active-set-jacobi"));
+    assert_eq!((built_in.len(), own.len()), (6, 6));
+    for (a, b) in built_in.iter().zip(&own) {
+        assert!(a.converged() && b.converged());
+        assert_eq!((&a.scheme, a.level, a.active), (&b.scheme, b.level, b.active));
+        assert_eq!(b.linear, "jacobi");
+        let (x, y) = (a.error.l2.unwrap(), b.error.l2.unwrap());
+        assert!((x - y).abs() <= 1e-8, "{x} and {y}");
+        let stages: Vec<Stage> = b.iterations.stages.iter().map(|run| run.stage).collect();
+        assert_eq!(stages, [Stage::PreconditionedActiveSet]);
+    }
+    // the diagonal alone needs more iterations on finer meshes
+    let iterations = |rows: &[&unilateral::study::Row]| rows[2].iterations.linear;
+    assert!(iterations(&own) > iterations(&built_in));
+}
+
+/// The inequality of a scheme on a level of a scene.
+fn inequality(scene: &Scene<2>, scheme: &str, level: usize) -> Inequality<f64> {
+    let mesh = scene.domain.mesh::<f64>(level).unwrap();
+    let scheme = scheme_by_name::<f64, 2>(scheme, &SchemeOptions::default()).unwrap();
+    scheme.inequality(&scene.problem, &mesh, DataQuadrature::default()).unwrap()
+}
+
+/// The distance of an unknown from a change of its contact state, relative to the energy norm of the
+/// solution: its gap times the square root of its diagonal entry, or its multiplier divided by it.
+fn margin(q: &Inequality<f64>, u: &Solution<f64>, i: usize, energy_norm: f64) -> f64 {
+    let d = q.matrix.get(i, i);
+    let value = u.values[i];
+    let margin = match u.contact[i] {
+        Contact::Inactive => {
+            let gap = |bound: Option<f64>| bound.map_or(f64::INFINITY, |b| (value - b).abs());
+            gap(q.bounds[i].lower()).min(gap(q.bounds[i].upper())) * d.sqrt()
+        }
+        _ => (q.matrix.row_dot_f64(i, &u.values) - q.load[i]).abs() / d.sqrt(),
+    };
+    margin / energy_norm
+}
+
+/// The band in which states may differ: the tolerance of the linear systems of a Krylov method.
+const BAND: f64 = 1e-10;
+
+#[test]
+fn contact_sets_do_not_depend_on_the_linear_solver() {
+    let strictly_complementary = [
+        scenes::radial::<2>(1.0),
+        scenes::lshape_2d(),
+        scenes::signorini_shifted_2d(),
+        scenes::signorini_irrational_2d(),
+        scenes::hertz_2d(),
+    ];
+    for scene in &strictly_complementary {
+        for scheme in ["p1", "cr", "sipg", "nipg", "br2", "wopsip", "p2"] {
+            let q = inequality(scene, scheme, 16);
+            let [a, b] = [LinearMethod::Direct, LinearMethod::Iterative]
+                .map(|linear| ActiveSet::default().linear(linear).solve(&q));
+            let what = format!("{} {scheme}", scene.name);
+            assert_eq!(a.outcome, b.outcome, "{what}");
+            let energy: f64 =
+                (0..q.size()).map(|i| a.values[i] * q.matrix.row_dot_f64(i, &a.values)).sum();
+            for i in 0..q.size() {
+                let largest = [&a, &b].map(|u| margin(&q, u, i, energy.sqrt()));
+                let largest = largest[0].max(largest[1]);
+                assert!(
+                    a.contact[i] == b.contact[i] || largest <= 10.0 * BAND,
+                    "{what}: unknown {i}: {largest:e}"
+                );
+            }
+        }
+    }
+}
