@@ -19,7 +19,7 @@ impl<T: Real, const D: usize> FacetForm<T, D> for Incomplete {
     fn penalty(&self, facet: &FacetView<T, D>) -> T {
         T::lit(self.0) * facet.coefficient() / facet.diameter()
     }
-    fn integrand(&self, v: Trace<T>, u: Trace<T>, penalty: T) -> T {
+    fn integrand(&self, _: &FacetView<T, D>, v: Trace<T>, u: Trace<T>, penalty: T) -> T {
         penalty * u.jump * v.jump - u.flux * v.jump
     }
 }

@@ -1,13 +1,12 @@
 //! What a facet form comes down to: a few numbers for all facets, a few for each.
 
-use std::any::Any;
 use std::convert::Infallible;
 use std::ops::Range;
 
-use super::local::{CellSide, flux_weight, view};
+use super::local::flux_weight;
 use super::space::Space;
 use super::space::metric::Metrics;
-use crate::facet::{FacetForm, InteriorPenalty, OverPenalty, Trace};
+use crate::facet::{FacetForm, FacetKind, FacetView, Trace};
 use crate::memory::in_large_pages;
 use crate::mesh::{BoundaryPart, Neighbour};
 use crate::parallel::cells;
@@ -38,14 +37,18 @@ pub(crate) struct Coefficients<T> {
 }
 
 impl<T: Real> Coefficients<T> {
-    fn of<const D: usize>(form: &(impl FacetForm<T, D> + ?Sized)) -> Self {
+    /// The coefficients on a facet.
+    fn of<const D: usize>(form: &dyn FacetForm<T, D>, facet: &FacetView<T, D>) -> Self {
         // a form that reads fluxes it did not ask for shall fail its first test
         let none = T::lit(if form.uses_flux() { 0.0 } else { f64::NAN });
         let jump = Trace { jump: T::lit(1.0), flux: none };
         let flux = Trace { jump: T::lit(0.0), flux: T::lit(1.0) };
         let read = |v, u| {
-            let constant = form.integrand(v, u, T::lit(0.0));
-            Coefficient { constant, by_penalty: form.integrand(v, u, T::lit(1.0)) - constant }
+            let constant = form.integrand(facet, v, u, T::lit(0.0));
+            Coefficient {
+                constant,
+                by_penalty: form.integrand(facet, v, u, T::lit(1.0)) - constant,
+            }
         };
         Self {
             jump_jump: read(jump, jump),
@@ -54,13 +57,21 @@ impl<T: Real> Coefficients<T> {
             flux_flux: read(flux, flux),
         }
     }
+    /// Those of no form.
+    fn zero() -> Self {
+        let zero = Coefficient { constant: T::lit(0.0), by_penalty: T::lit(0.0) };
+        Self { jump_jump: zero, jump_flux: zero, flux_jump: zero, flux_flux: zero }
+    }
 }
 
 /// The penalty weight of every facet that carries the form and, where the form uses fluxes, the
 /// weights of the normal derivatives of its two cells in the flux. The numbers of a facet stand with
 /// the cell here, so that each is computed once.
 pub(crate) struct FacetCoefficients<T> {
-    pub coefficients: Coefficients<T>,
+    /// For a uniform form those on interior and on Dirichlet facets, else those of each facet of each
+    /// cell.
+    coefficients: Vec<Coefficients<T>>,
+    is_uniform: bool,
     entries: Vec<T>,
     /// Numbers for each facet of each cell.
     stride: usize,
@@ -68,7 +79,8 @@ pub(crate) struct FacetCoefficients<T> {
 
 /// The numbers of one facet.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct FacetWeight<T> {
+pub(crate) struct FacetWeight<'w, T> {
+    pub coefficients: &'w Coefficients<T>,
     pub penalty: T,
     /// The weight in the flux of the cell whose rows are made.
     pub own_flux_weight: T,
@@ -78,30 +90,11 @@ pub(crate) struct FacetWeight<T> {
 
 impl<T: Real> FacetCoefficients<T> {
     /// The weights of a form, in parallel.
-    ///
-    /// Many forms read a few numbers of a facet only. For forms whose formula the compiler sees it
-    /// leaves out all others, down to the metrics of cells: a quarter of the time of an assembly.
     pub fn of<const D: usize>(
         space: &Space<'_, T, D>,
         form: &dyn FacetForm<T, D>,
         metrics: &Metrics<T>,
     ) -> Self {
-        let known: &dyn Any = form;
-        if let Some(form) = known.downcast_ref::<InteriorPenalty>() {
-            Self::of_form(space, form, metrics)
-        } else if let Some(form) = known.downcast_ref::<OverPenalty>() {
-            Self::of_form(space, form, metrics)
-        } else {
-            Self::of_form(space, form, metrics)
-        }
-    }
-
-    fn of_form<const D: usize>(
-        space: &Space<'_, T, D>,
-        form: &(impl FacetForm<T, D> + ?Sized),
-        metrics: &Metrics<T>,
-    ) -> Self {
-        let neighbours = space.coupled_neighbours();
         let uses_flux = form.uses_flux();
         let stride = if uses_flux { 3 } else { 1 };
         let per_cell = stride * (D + 1);
@@ -109,24 +102,8 @@ impl<T: Real> FacetCoefficients<T> {
         let mut entries = in_large_pages(vec![T::lit(0.0); per_cell * n_cells]);
         let fill = |cells: Range<usize>, piece: &mut [T]| {
             for (cell, out) in cells.zip(piece.chunks_exact_mut(per_cell)) {
-                let metric = metrics.at(cell);
                 for (local, out) in out.chunks_exact_mut(stride).enumerate() {
-                    let here =
-                        CellSide { cell, local, metric: &metric, coefficient: space.alpha(cell) };
-                    let facet = match neighbours.across(cell, local) {
-                        Neighbour::Cell { cell: other, .. } if (other as usize) < cell => continue,
-                        Neighbour::Cell { cell: other, local } => {
-                            let (cell, local) = (other as usize, local as usize);
-                            let metric = metrics.at(cell);
-                            let coefficient = space.alpha(cell);
-                            let there = CellSide { cell, local, metric: &metric, coefficient };
-                            view(space.mesh, &here, Some(&there))
-                        }
-                        Neighbour::Boundary(BoundaryPart::Dirichlet) if !space.pins => {
-                            view(space.mesh, &here, None)
-                        }
-                        Neighbour::Boundary(_) => continue,
-                    };
+                    let Some(facet) = kept_view(space, metrics, cell, local) else { continue };
                     out[0] = form.penalty(&facet);
                     if uses_flux {
                         let average_weight = form.average_weight(&facet);
@@ -138,24 +115,59 @@ impl<T: Real> FacetCoefficients<T> {
             Ok::<(), Infallible>(())
         };
         let Ok(()) = cells::for_each(n_cells, &|c| c * per_cell, &mut entries, &fill);
-        Self { coefficients: Coefficients::of(form), entries, stride }
+        let is_uniform = form.is_uniform();
+        let facets = || (0..n_cells).flat_map(|cell| (0..=D).map(move |local| (cell, local)));
+        let view = |(cell, local)| kept_view(space, metrics, cell, local);
+        let of = |facet: FacetView<'_, T, D>| Coefficients::of(form, &facet);
+        let or_zero = |of: Option<Coefficients<T>>| of.unwrap_or_else(Coefficients::zero);
+        let coefficients = if is_uniform {
+            let interior = facets().filter_map(view).find(|f| f.kind() == FacetKind::Interior);
+            let dirichlet = space.facets_of(BoundaryPart::Dirichlet).find_map(view);
+            [interior, dirichlet].map(|facet| or_zero(facet.map(of))).into()
+        } else {
+            facets().map(|facet| or_zero(view(facet).map(of))).collect()
+        };
+        Self { coefficients, is_uniform, entries, stride }
     }
 
     /// The numbers of a facet, kept at facet `local` of the cell here, as asked for from that cell
     /// or from the one across.
     #[inline(always)]
-    pub fn at<const D: usize>(&self, here: (usize, usize), from_here: bool) -> FacetWeight<T> {
-        let start = (here.0 * (D + 1) + here.1) * self.stride;
+    pub fn at<const D: usize>(
+        &self,
+        here: (usize, usize),
+        from_here: bool,
+        kind: FacetKind,
+    ) -> FacetWeight<'_, T> {
+        let facet = here.0 * (D + 1) + here.1;
+        let coefficients = &self.coefficients[if self.is_uniform { kind as usize } else { facet }];
+        let start = facet * self.stride;
         let kept = &self.entries[start..start + self.stride];
-        if self.stride == 1 {
-            let zero = T::lit(0.0);
-            return FacetWeight {
-                penalty: kept[0],
-                own_flux_weight: zero,
-                other_flux_weight: zero,
-            };
+        let (mut own_flux_weight, mut other_flux_weight) = (T::lit(0.0), T::lit(0.0));
+        if self.stride > 1 {
+            (own_flux_weight, other_flux_weight) =
+                if from_here { (kept[1], kept[2]) } else { (kept[2], kept[1]) };
         }
-        let (own, other) = if from_here { (kept[1], kept[2]) } else { (kept[2], kept[1]) };
-        FacetWeight { penalty: kept[0], own_flux_weight: own, other_flux_weight: other }
+        FacetWeight { coefficients, penalty: kept[0], own_flux_weight, other_flux_weight }
     }
+}
+
+/// The view of a facet that carries a form, from the cell with the lower number: what was kept of the
+/// cells is read, and products of gradients are left out.
+#[inline(always)]
+fn kept_view<'a, T: Real, const D: usize>(
+    space: &Space<'a, T, D>,
+    metrics: &Metrics<T>,
+    cell: usize,
+    local: usize,
+) -> Option<FacetView<'a, T, D>> {
+    let side = |cell, local| metrics.side::<D>(cell, local, space.alpha(cell));
+    let there = match space.coupled_neighbours().across(cell, local) {
+        Neighbour::Cell { cell: other, .. } if (other as usize) < cell => return None,
+        Neighbour::Cell { cell: other, local } => Some(side(other as usize, local as usize).1),
+        Neighbour::Boundary(BoundaryPart::Dirichlet) if !space.pins => None,
+        Neighbour::Boundary(_) => return None,
+    };
+    let (measure, here) = side(cell, local);
+    Some(FacetView::new(space.mesh, (cell, local), measure, here, there))
 }

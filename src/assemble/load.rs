@@ -222,7 +222,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
                 let datum = Trace { jump: T::lit(value), flux: T::lit(0.0) };
                 let penalty = penalty * T::lit(form.moment_weight(table.degrees[k]));
                 for (out, &v) in out.iter_mut().zip(&test) {
-                    *out += facet.measure * form.integrand(v, datum, penalty);
+                    *out += facet.measure * form.integrand(&facet, v, datum, penalty);
                 }
             }
             data.push((cell, (local, values)));

@@ -10,7 +10,7 @@ use super::space::metric::Metrics;
 use super::space::tables::FacetTable;
 use crate::algebra::{JumpTerm, PenalisedMatrix};
 use crate::element::{MAX_BASIS, Node};
-use crate::facet::FacetForm;
+use crate::facet::{FacetForm, FacetKind};
 use crate::mesh::{BoundaryPart, Neighbour};
 use crate::parallel::cells;
 use crate::real::Real;
@@ -56,12 +56,12 @@ pub(crate) fn penalised_matrix<T: Real, const D: usize>(
     for cell in 0..space.mesh.n_cells() {
         let metric = metrics.at::<D>(cell);
         for local in 0..=D {
-            let (other, template) = match neighbours.across(cell, local) {
+            let (kind, other, template) = match neighbours.across(cell, local) {
                 Neighbour::Cell { cell: other, local: there } if cell < other as usize => {
-                    (other as usize, templates.between(local, there as usize))
+                    (FacetKind::Interior, other as usize, templates.between(local, there as usize))
                 }
                 Neighbour::Boundary(BoundaryPart::Dirichlet) if !space.pins => {
-                    (cell, templates.on_boundary(local))
+                    (FacetKind::Dirichlet, cell, templates.on_boundary(local))
                 }
                 _ => continue,
             };
@@ -71,12 +71,12 @@ pub(crate) fn penalised_matrix<T: Real, const D: usize>(
                 Some((_, (_, values))) => out.jump_data.extend(values.iter().map(|&v| T::lit(v))),
                 None => out.jump_data.extend(zeros),
             }
-            let penalty = weights.at::<D>((cell, local), true).penalty;
+            let weight = weights.at::<D>((cell, local), true, kind);
             let measure = metric.measures[local];
             for (terms, &factor) in template.iter().zip(&of_degree) {
                 out.terms.extend(terms.iter().map(|t| t.between(cell, other, out.block_size)));
                 out.term_starts.push(out.terms.len() as u32);
-                let jump_jump = weights.coefficients.jump_jump.at(penalty * factor);
+                let jump_jump = weight.coefficients.jump_jump.at(weight.penalty * factor);
                 out.weights.push(measure * jump_jump);
             }
         }

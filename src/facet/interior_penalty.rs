@@ -1,6 +1,6 @@
 //! Interior penalty.
 
-use super::{FacetForm, FacetView, PenaltyParameters, Trace, proven_bound};
+use super::{FacetForm, FacetView, FormTheory, PenaltyParameters, Trace, proven_bound};
 use crate::real::Real;
 
 /// How an interior penalty gets its weight.
@@ -64,21 +64,25 @@ impl<T: Real, const D: usize> FacetForm<T, D> for InteriorPenalty {
             PenaltyRule::Diameter(sigma) => T::lit(sigma) * facet.coefficient() / facet.diameter(),
         }
     }
-    fn least_penalty(&self, facet: &FacetView<T, D>) -> Option<T> {
-        match (self.rule, self.symmetry) {
-            (PenaltyRule::Proven(_), _) | (_, Symmetry::NonSymmetric) => None,
-            _ => Some(T::lit(self.part()) * proven_bound::<T, D>(self.degree, facet)),
-        }
-    }
-    fn parameters(&self) -> PenaltyParameters {
+    fn theory(&self) -> FormTheory<'_, T, D> {
         let (sigma, rule) = match self.rule {
             PenaltyRule::Proven(margin) => (None, format!("proven bound times {}", 1.0 + margin)),
             PenaltyRule::Diameter(sigma) => (Some(sigma), "sigma / h_F".to_owned()),
         };
-        PenaltyParameters { sigma, eta: None, rule: Some(rule) }
+        let parameters = PenaltyParameters { sigma, eta: None, rule: Some(rule) };
+        let theory = FormTheory::new().with_parameters(parameters);
+        match (self.rule, self.symmetry) {
+            (PenaltyRule::Proven(_), _) | (_, Symmetry::NonSymmetric) => theory,
+            _ => theory.with_least_penalty(|facet| {
+                T::lit(self.part()) * proven_bound::<T, D>(self.degree, facet)
+            }),
+        }
+    }
+    fn is_uniform(&self) -> bool {
+        true
     }
     #[inline(always)]
-    fn integrand(&self, v: Trace<T>, u: Trace<T>, penalty: T) -> T {
+    fn integrand(&self, _: &FacetView<T, D>, v: Trace<T>, u: Trace<T>, penalty: T) -> T {
         let theta = match self.symmetry {
             Symmetry::Symmetric => -1.0,
             Symmetry::Incomplete => 0.0,

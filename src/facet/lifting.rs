@@ -1,6 +1,6 @@
 //! Forms made of lifts of jumps.
 
-use super::{FacetForm, FacetView, PenaltyParameters, Trace};
+use super::{FacetForm, FacetView, FormTheory, PenaltyParameters, Trace};
 use crate::real::Real;
 
 /// `eta sum_F int alpha r_F(u) . r_F(v)` with the consistency terms of the symmetric interior
@@ -51,15 +51,20 @@ impl<T: Real, const D: usize> FacetForm<T, D> for FacetLifts {
         let [d, p, m] = [D, self.degree, moment].map(|k| k as f64);
         (p - m) * (p + m + d - 1.0) / d
     }
-    fn least_penalty(&self, facet: &FacetView<T, D>) -> Option<T> {
-        self.bounded.then(|| Self::weight((D + 1) as f64, facet))
+    fn theory(&self) -> FormTheory<'_, T, D> {
+        let (eta, rule) = (Some(self.eta), Some("eta int r_F . r_F".to_owned()));
+        let theory =
+            FormTheory::new().with_parameters(PenaltyParameters { sigma: None, eta, rule });
+        match self.bounded {
+            true => theory.with_least_penalty(|facet| Self::weight((D + 1) as f64, facet)),
+            false => theory,
+        }
     }
-    fn parameters(&self) -> PenaltyParameters {
-        let rule = Some("eta int r_F . r_F".to_owned());
-        PenaltyParameters { sigma: None, eta: Some(self.eta), rule }
+    fn is_uniform(&self) -> bool {
+        true
     }
     #[inline(always)]
-    fn integrand(&self, v: Trace<T>, u: Trace<T>, penalty: T) -> T {
+    fn integrand(&self, _: &FacetView<T, D>, v: Trace<T>, u: Trace<T>, penalty: T) -> T {
         penalty * u.jump * v.jump - u.flux * v.jump - v.flux * u.jump
     }
 }
@@ -95,17 +100,14 @@ impl<T: Real, const D: usize, F: FacetForm<T, D>> FacetForm<T, D> for Lifted<F> 
     fn moment_weight(&self, degree: usize) -> f64 {
         self.0.moment_weight(degree)
     }
-    fn least_penalty(&self, facet: &FacetView<T, D>) -> Option<T> {
-        self.0.least_penalty(facet)
+    fn theory(&self) -> FormTheory<'_, T, D> {
+        self.0.theory()
     }
-    fn rounding_limit(&self, epsilon: f64, length: f64) -> f64 {
-        self.0.rounding_limit(epsilon, length)
-    }
-    fn parameters(&self) -> PenaltyParameters {
-        self.0.parameters()
+    fn is_uniform(&self) -> bool {
+        self.0.is_uniform()
     }
     #[inline(always)]
-    fn integrand(&self, v: Trace<T>, u: Trace<T>, penalty: T) -> T {
-        self.0.integrand(v, u, penalty)
+    fn integrand(&self, facet: &FacetView<T, D>, v: Trace<T>, u: Trace<T>, penalty: T) -> T {
+        self.0.integrand(facet, v, u, penalty)
     }
 }

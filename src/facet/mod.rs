@@ -23,6 +23,7 @@ mod none;
 mod over_penalty;
 mod parameters;
 mod proven;
+mod theory;
 mod view;
 
 pub use dirichlet::DirichletBy;
@@ -32,7 +33,8 @@ pub use none::NoFacets;
 pub use over_penalty::{OverPenalty, WeightRule};
 pub use parameters::PenaltyParameters;
 pub use proven::proven_bound;
-pub use view::{FacetView, Side};
+pub use theory::{FormTheory, LeastPenalty};
+pub use view::{FacetKind, FacetView, Side};
 
 use std::any::Any;
 
@@ -89,27 +91,18 @@ pub trait FacetForm<T: Real, const D: usize>: Any + Send + Sync {
         let _ = degree;
         1.0
     }
-    /// The least weight with which the form is provably coercive; none if it always is, or if the
-    /// weight is chosen by that very bound.
-    fn least_penalty(&self, facet: &FacetView<T, D>) -> Option<T> {
-        let _ = facet;
-        None
+    /// What theory and reports say of the form: parameters in force, the least penalty.
+    fn theory(&self) -> FormTheory<'_, T, D> {
+        FormTheory::new()
     }
-    /// The length of an edge below which rounding, with this rounding unit and on a domain of this
-    /// diameter, may outweigh the discretisation error.
-    ///
-    /// By default for a condition number of `(h / length)^-2` against an error of
-    /// `(h / length)^2`; the factor of one half is measured. A penalty does not enter: interior penalty
-    /// has one of the size of the stiffness, an over-penalty is kept apart from it.
-    fn rounding_limit(&self, epsilon: f64, length: f64) -> f64 {
-        0.5 * length * epsilon.powf(0.25)
-    }
-    /// The factors in force, for reports.
-    fn parameters(&self) -> PenaltyParameters {
-        PenaltyParameters::default()
+    /// Whether the formula is the same on all interior facets and the same on all Dirichlet facets,
+    /// but for the penalty weight. It is then read off once for each kind, not once for each facet.
+    fn is_uniform(&self) -> bool {
+        false
     }
     /// The formula, per unit measure of the facet, for one moment of each trace: bilinear in the
-    /// traces, and at most linear in the penalty weight. The assembler reads it off at unit traces,
-    /// with the weights zero and one.
-    fn integrand(&self, v: Trace<T>, u: Trace<T>, penalty: T) -> T;
+    /// traces, and at most linear in the penalty weight. It may differ between facets, by their kind,
+    /// normal, diameter or coefficient. The assembler reads it off at unit traces, with the weights
+    /// zero and one.
+    fn integrand(&self, facet: &FacetView<T, D>, v: Trace<T>, u: Trace<T>, penalty: T) -> T;
 }

@@ -18,7 +18,7 @@ impl<T: Real, const D: usize> FacetForm<T, D> for NoFacets {
         T::lit(0.0)
     }
     #[inline(always)]
-    fn integrand(&self, _: Trace<T>, _: Trace<T>, _: T) -> T {
+    fn integrand(&self, _: &FacetView<T, D>, _: Trace<T>, _: Trace<T>, _: T) -> T {
         T::lit(0.0)
     }
 }

@@ -1,6 +1,6 @@
 //! The weak over-penalty.
 
-use super::{FacetForm, FacetView, PenaltyParameters, Trace};
+use super::{FacetForm, FacetView, FormTheory, PenaltyParameters, Trace};
 use crate::real::Real;
 
 /// How the over-penalty gets its weight.
@@ -62,16 +62,20 @@ impl<T: Real, const D: usize> FacetForm<T, D> for OverPenalty {
             }
         }
     }
-    fn parameters(&self) -> PenaltyParameters {
+    fn theory(&self) -> FormTheory<'_, T, D> {
         let k = self.degree;
         let rule = match self.rule {
             WeightRule::Isotropic => format!("eta / h_F^{}", 2 * k + 1),
             WeightRule::Anisotropic => format!("eta / (h^{} l_F)", 2 * k),
         };
-        PenaltyParameters { sigma: None, eta: Some(self.eta), rule: Some(rule) }
+        let eta = Some(self.eta);
+        FormTheory::new().with_parameters(PenaltyParameters { sigma: None, eta, rule: Some(rule) })
+    }
+    fn is_uniform(&self) -> bool {
+        true
     }
     #[inline(always)]
-    fn integrand(&self, v: Trace<T>, u: Trace<T>, penalty: T) -> T {
+    fn integrand(&self, _: &FacetView<T, D>, v: Trace<T>, u: Trace<T>, penalty: T) -> T {
         penalty * u.jump * v.jump
     }
 }

@@ -16,9 +16,18 @@ pub struct Side<T> {
     pub height: T,
 }
 
-/// A facet and its cells: what a penalty may depend on.
+/// The facets that carry a form.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum FacetKind {
+    /// Between two cells.
+    Interior,
+    /// On the Dirichlet part of the boundary.
+    Dirichlet,
+}
+
+/// A facet and its cells: what a form may depend on.
 ///
-/// Diameter, normal and coefficient are methods, computed only for penalties that call them.
+/// Diameter, normal and coefficient are methods, computed only for forms that call them.
 #[derive(Clone, Copy, Debug)]
 pub struct FacetView<'a, T: Real, const D: usize> {
     mesh: &'a Mesh<T, D>,
@@ -43,6 +52,11 @@ impl<'a, T: Real, const D: usize> FacetView<'a, T, D> {
         there: Option<Side<T>>,
     ) -> Self {
         Self { mesh, place, measure, here, there }
+    }
+    /// Whether the facet lies between two cells or on the Dirichlet part of the boundary.
+    #[inline(always)]
+    pub fn kind(&self) -> FacetKind {
+        if self.there.is_some() { FacetKind::Interior } else { FacetKind::Dirichlet }
     }
     /// The diameter `h_F` of the facet; in one dimension the mean length of the cells it joins.
     #[inline(always)]

@@ -19,6 +19,7 @@
 //! | `monotone_multigrid` | [`MonotoneMultigrid`]: truncated nonsmooth Newton multigrid |
 //! | `certificate` | [`Certificate`], [`certify`] |
 //! | `initial_guess` | [`InitialGuess`]: coarse spaces, starting values and tolerance of a solve |
+//! | `by_name` | [`solver_by_name`] |
 //! | `solution`, `outcome`, `stage` | [`Solution`], [`Outcome`], [`StageRun`]: the result of a solver |
 //!
 //! [`ActiveSet`] runs in stages, each only if the preceding one has not converged; its
@@ -26,6 +27,7 @@
 //! certificate decides between [`Outcome::Converged`] and [`Outcome::Stalled`] after every stage.
 
 mod active_set;
+mod by_name;
 mod certificate;
 mod initial_guess;
 mod interior_point;
@@ -36,6 +38,7 @@ mod stage;
 mod validation;
 
 pub use active_set::{ActiveSet, Globalisation, Preconditioned};
+pub use by_name::{SOLVERS, SolverOptions, solver_by_name};
 pub use certificate::{Certificate, certify, certify_with_jump_multipliers, count_active};
 pub use initial_guess::InitialGuess;
 pub use monotone_multigrid::MonotoneMultigrid;

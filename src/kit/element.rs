@@ -250,7 +250,7 @@ impl ErasedElement {
 }
 
 /// Whether a difference is at most the tolerance; false for one that is not a number.
-fn within(difference: f64, tolerance: f64) -> bool {
+pub(super) fn within(difference: f64, tolerance: f64) -> bool {
     difference.abs() <= tolerance
 }
 

@@ -1,5 +1,6 @@
 //! The law of a family of quadrature rules.
 
+use super::element::within;
 use super::error::{KitError, Law};
 use super::report::QuadratureReport;
 use crate::error::Error;
@@ -31,8 +32,7 @@ pub fn check_quadrature(
         let found: f64 = points.iter().zip(&weights).map(|(x, w)| w * value(x)).sum();
         let expected = mean(dimension, &powers);
         let difference = (found / expected - 1.0).abs();
-        // written so that a difference that is not a number is refused
-        if !(difference <= TOLERANCE) {
+        if !within(difference, TOLERANCE) {
             let family = family.name().to_owned();
             return Err(KitError::RuleNotExact {
                 family,

@@ -234,7 +234,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
                 for (jump, &degree) in jumps.into_iter().zip(&table.degrees) {
                     let trace = Trace { jump: T::lit(jump), flux: T::lit(0.0) };
                     let penalty = penalty * T::lit(form.moment_weight(degree));
-                    total += (view.measure * form.integrand(trace, trace, penalty)).to_f64();
+                    total += (view.measure * form.integrand(&view, trace, trace, penalty)).to_f64();
                 }
             }
         }

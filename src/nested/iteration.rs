@@ -4,68 +4,20 @@ use std::fmt;
 use std::sync::Arc;
 use std::time::Instant;
 
-use super::hierarchy::Hierarchy;
-use super::p1_solution::P1Solution;
+use super::meshes::Meshes;
+use super::p1::{P1Iteration, P1Solution};
 use super::solved::Solved;
-use crate::algebra::{Bound, Contact, Inequality, Start, Support};
+use crate::algebra::{Bound, Contact, Inequality, Start};
 use crate::assemble::{DataQuadrature, Discretisation};
 use crate::element::Layout;
 use crate::error::Error;
 use crate::inequality::{ActiveSet, InequalitySolver, InitialGuess, Outcome, Solution};
 use crate::instances::compiled;
-use crate::linear::{Prolongation, is_positive_definite};
-use crate::mesh::{Mesh, Refinement};
+use crate::linear::is_positive_definite;
+use crate::mesh::Mesh;
 use crate::problem::Problem;
 use crate::real::Real;
 use crate::scheme::AnyScheme;
-
-/// The meshes of a problem: one mesh, or nested ones.
-#[derive(Debug)]
-#[non_exhaustive]
-pub enum Meshes<'a, T, const D: usize> {
-    /// One mesh.
-    Flat(&'a Mesh<T, D>),
-    /// Nested meshes, of which the solution on a coarser one is the start on the next finer one.
-    Nested(&'a Hierarchy<T, D>),
-}
-
-impl<'a, T, const D: usize> From<&'a Mesh<T, D>> for Meshes<'a, T, D> {
-    fn from(mesh: &'a Mesh<T, D>) -> Self {
-        Self::Flat(mesh)
-    }
-}
-
-impl<'a, T, const D: usize> From<&'a Hierarchy<T, D>> for Meshes<'a, T, D> {
-    fn from(hierarchy: &'a Hierarchy<T, D>) -> Self {
-        Self::Nested(hierarchy)
-    }
-}
-
-impl<'a, T: Real, const D: usize> Meshes<'a, T, D> {
-    fn len(&self) -> usize {
-        match self {
-            Self::Flat(_) => 1,
-            Self::Nested(hierarchy) => hierarchy.n_meshes(),
-        }
-    }
-    /// A mesh by its position, zero for the coarsest.
-    pub(super) fn mesh(&self, position: usize) -> &'a Mesh<T, D> {
-        match self {
-            Self::Flat(mesh) => mesh,
-            Self::Nested(hierarchy) => hierarchy.mesh(position),
-        }
-    }
-    /// The refinement of the next coarser mesh and its prolongation, if there is one.
-    pub(super) fn refinement(
-        &self,
-        position: usize,
-    ) -> Option<(&'a Refinement, &'a Arc<Prolongation<T>>)> {
-        match self {
-            Self::Flat(_) => None,
-            Self::Nested(hierarchy) => hierarchy.refinement(position),
-        }
-    }
-}
 
 /// One problem on nested meshes: the settings of its solves, and the conforming P1 solutions from which
 /// they start.
@@ -88,24 +40,18 @@ impl<'a, T: Real, const D: usize> Meshes<'a, T, D> {
 /// # }
 /// ```
 pub struct NestedIteration<'a, T: Real, const D: usize> {
-    pub(super) problem: &'a Problem<D>,
-    pub(super) meshes: Meshes<'a, T, D>,
-    pub(super) solver: Arc<dyn InequalitySolver<T> + 'a>,
-    pub(super) quadrature: DataQuadrature,
-    pub(super) repeat: usize,
+    p1: P1Iteration<'a, T, D>,
     has_cold_start: bool,
-    /// The P1 solution on each mesh, once computed.
-    pub(super) p1_solutions: Vec<Option<Arc<P1Solution<T>>>>,
 }
 
 impl<T: Real, const D: usize> fmt::Debug for NestedIteration<'_, T, D> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.debug_struct("NestedIteration")
-            .field("problem", self.problem)
-            .field("meshes", &self.meshes.len())
-            .field("solver", &self.solver.name())
-            .field("quadrature", &self.quadrature)
-            .field("repeat", &self.repeat)
+            .field("problem", self.p1.problem)
+            .field("meshes", &self.p1.meshes.len())
+            .field("solver", &self.solver_name())
+            .field("quadrature", &self.p1.quadrature)
+            .field("repeat", &self.p1.repeat)
             .field("has_cold_start", &self.has_cold_start)
             .finish_non_exhaustive()
     }
@@ -116,15 +62,15 @@ impl<'a, T: Real, const D: usize> NestedIteration<'a, T, D> {
     #[must_use]
     pub fn new(problem: &'a Problem<D>, meshes: impl Into<Meshes<'a, T, D>>) -> Self {
         let meshes = meshes.into();
-        Self {
+        let p1 = P1Iteration {
             problem,
-            p1_solutions: vec![None; meshes.len()],
+            solutions: vec![None; meshes.len()],
             meshes,
             solver: Arc::new(ActiveSet::default()),
             quadrature: DataQuadrature::default(),
             repeat: 1,
-            has_cold_start: false,
-        }
+        };
+        Self { p1, has_cold_start: false }
     }
     /// Sets the solver of the inequality.
     #[must_use]
@@ -135,21 +81,21 @@ impl<'a, T: Real, const D: usize> NestedIteration<'a, T, D> {
     /// solutions by another solver are dropped.
     #[must_use]
     pub fn shared_solver(mut self, solver: Arc<dyn InequalitySolver<T> + 'a>) -> Self {
-        self.solver = solver;
-        self.p1_solutions.fill(None);
+        self.p1.solver = solver;
+        self.p1.solutions.fill(None);
         self
     }
     /// Sets the quadrature of data.
     #[must_use]
     pub fn quadrature(mut self, quadrature: DataQuadrature) -> Self {
-        self.quadrature = quadrature;
-        self.p1_solutions.fill(None);
+        self.p1.quadrature = quadrature;
+        self.p1.solutions.fill(None);
         self
     }
     /// Makes every time the smallest of this many runs.
     #[must_use]
     pub fn repeat(mut self, times: usize) -> Self {
-        self.repeat = times.max(1);
+        self.p1.repeat = times.max(1);
         self
     }
     /// Sets whether schemes start without contact and without coarse spaces.
@@ -162,18 +108,18 @@ impl<'a, T: Real, const D: usize> NestedIteration<'a, T, D> {
     /// Replaces the problem by one with another constraint set. The P1 solutions have bounds at vertices
     /// and are kept.
     pub(crate) fn replace_constraint_set(&mut self, problem: &'a Problem<D>) {
-        self.problem = problem;
+        self.p1.problem = problem;
     }
     /// The position of the mesh of a level, if the meshes are nested and have it.
     pub(crate) fn position(&self, level: usize) -> Option<usize> {
-        match self.meshes {
+        match self.p1.meshes {
             Meshes::Flat(_) => None,
             Meshes::Nested(hierarchy) => hierarchy.position(level),
         }
     }
     /// The name of the solver.
     pub(crate) fn solver_name(&self) -> &'static str {
-        self.solver.name()
+        self.p1.solver.name()
     }
 
     /// The conforming P1 solution on a mesh, by its position: zero for the coarsest.
@@ -184,7 +130,7 @@ impl<'a, T: Real, const D: usize> NestedIteration<'a, T, D> {
         self.check_position(position)?;
         compiled!(
             T, D: fn(&mut NestedIteration<'_, T, D>, usize) -> Result<Arc<P1Solution<T>>, Error>
-                = |nested, position| nested.solve_p1(position)
+                = |nested, position| nested.p1.solve(position)
         )(self, position)
     }
 
@@ -194,7 +140,7 @@ impl<'a, T: Real, const D: usize> NestedIteration<'a, T, D> {
     /// Those of assembly: bad data. A solve that does not converge is no error: see
     /// [`Solved::outcome`].
     pub fn solve(&mut self, scheme: &dyn AnyScheme<T, D>) -> Result<Solved<'a, T, D>, Error> {
-        self.solve_on(self.meshes.len() - 1, scheme)
+        self.solve_on(self.p1.meshes.len() - 1, scheme)
     }
 
     /// The solution of a scheme on a mesh, by its position: zero for the coarsest.
@@ -218,7 +164,7 @@ impl<'a, T: Real, const D: usize> NestedIteration<'a, T, D> {
     }
 
     fn check_position(&self, position: usize) -> Result<(), Error> {
-        match self.meshes.len() {
+        match self.p1.meshes.len() {
             n if position < n => Ok(()),
             n => Err(Error::Parameter {
                 parameter: "position",
@@ -234,13 +180,13 @@ impl<'a, T: Real, const D: usize> NestedIteration<'a, T, D> {
         scheme: &dyn AnyScheme<T, D>,
     ) -> Result<Solved<'a, T, D>, Error> {
         let start = self.start(position, scheme)?;
-        let mesh = self.meshes.mesh(position);
-        let discretise = || Discretisation::new(scheme, self.problem, mesh, self.quadrature);
+        let mesh = self.p1.meshes.mesh(position);
+        let discretise = || Discretisation::new(scheme, self.p1.problem, mesh, self.p1.quadrature);
         let clock = Instant::now();
         let discretisation = discretise()?;
         let mut inequality = discretisation.inequality()?;
         let mut assemble_seconds = clock.elapsed().as_secs_f64();
-        for _ in 1..self.repeat {
+        for _ in 1..self.p1.repeat {
             let clock = Instant::now();
             drop(discretise()?.inequality()?);
             assemble_seconds = assemble_seconds.min(clock.elapsed().as_secs_f64());
@@ -249,17 +195,16 @@ impl<'a, T: Real, const D: usize> NestedIteration<'a, T, D> {
         if let Some(start) = &start {
             // a start without contact stays cold: the solver must detect a body that only contact holds
             if start.contact.iter().any(|&c| c != Contact::Inactive) {
-                let states = starting_contact(&start.contact, &inequality.supports);
-                inequality.start = Start::Contact(states);
+                inequality.start = Start::Contact(start.contact_of(&inequality.supports));
             }
             guess.coarse_spaces = start.coarse_spaces.clone();
-            guess.values =
-                (!start.values.is_empty()).then(|| means(&start.values, &inequality.supports));
+            guess.values = start.values_of(&inequality.supports);
         }
         let mut warnings = Vec::new();
         let penalty_below_bound = discretisation.penalty_below_bound();
         warnings.extend(penalty_below_bound.as_ref().map(ToString::to_string));
-        let limit = discretisation.form().rounding_limit(T::EPSILON, mesh.domain_diameter());
+        let limit =
+            discretisation.form().theory().rounding_limit(T::EPSILON, mesh.domain_diameter());
         let shortest = mesh.shortest_edge();
         if shortest < limit {
             warnings.push(format!(
@@ -269,7 +214,7 @@ impl<'a, T: Real, const D: usize> NestedIteration<'a, T, D> {
         }
         let (solution, solve_seconds) =
             self.run(&inequality, &guess, penalty_below_bound.is_some());
-        let hierarchy = match self.meshes {
+        let hierarchy = match self.p1.meshes {
             Meshes::Flat(_) => None,
             Meshes::Nested(hierarchy) => Some((hierarchy, position)),
         };
@@ -292,16 +237,16 @@ impl<'a, T: Real, const D: usize> NestedIteration<'a, T, D> {
         position: usize,
         scheme: &dyn AnyScheme<T, D>,
     ) -> Result<Option<Arc<P1Solution<T>>>, Error> {
-        let mesh = self.meshes.mesh(position);
+        let mesh = self.p1.meshes.mesh(position);
         let unknowns = unknowns(mesh, scheme.layout());
         let needs_none =
-            !self.problem.is_constrained() && !self.solver.uses_coarse_spaces(unknowns);
+            !self.p1.problem.is_constrained() && !self.p1.solver.uses_coarse_spaces(unknowns);
         if self.has_cold_start || needs_none {
             Ok(None)
         } else if scheme.is_conforming_linear(mesh) {
-            self.start_of_p1(position)
+            self.p1.start(position)
         } else {
-            self.solve_p1(position).map(Some)
+            self.p1.solve(position).map(Some)
         }
     }
 
@@ -331,9 +276,9 @@ impl<'a, T: Real, const D: usize> NestedIteration<'a, T, D> {
         let in_test = clock.elapsed().as_secs_f64();
         let mut seconds = f64::INFINITY;
         let mut last = None;
-        for _ in 0..self.repeat {
+        for _ in 0..self.p1.repeat {
             let clock = Instant::now();
-            last = Some(self.solver.solve_from(inequality, guess));
+            last = Some(self.p1.solver.solve_from(inequality, guess));
             seconds = seconds.min(clock.elapsed().as_secs_f64());
         }
         match last {
@@ -369,32 +314,6 @@ pub fn solve<'a, T: Real, const D: usize>(
     scheme: &dyn AnyScheme<T, D>,
 ) -> Result<Solved<'a, T, D>, Error> {
     NestedIteration::new(problem, meshes).solve(scheme)
-}
-
-/// The starting contact of unknowns: an unknown starts in contact if more than half of the vertices
-/// of its support are in contact.
-fn starting_contact(contact: &[Contact], supports: &[Support]) -> Vec<Contact> {
-    let state = |support: &Support| {
-        let vertices = support.vertices();
-        [Contact::Lower, Contact::Upper]
-            .into_iter()
-            .find(|&side| {
-                let on = vertices.iter().filter(|&&v| contact[v as usize] == side).count();
-                2 * on > vertices.len()
-            })
-            .unwrap_or(Contact::Inactive)
-    };
-    supports.iter().map(state).collect()
-}
-
-/// The starting values of unknowns: the means of values over the vertices of each support.
-fn means<T: Real>(values: &[T], supports: &[Support]) -> Vec<T> {
-    let mean = |support: &Support| {
-        let vertices = support.vertices();
-        let sum = vertices.iter().fold(T::lit(0.0), |s, &v| s + values[v as usize]);
-        sum / T::lit(vertices.len().max(1) as f64)
-    };
-    supports.iter().map(mean).collect()
 }
 
 /// Number of unknowns of a layout on a mesh.

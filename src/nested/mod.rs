@@ -1,13 +1,17 @@
 //! One problem solved: nested meshes, the start from conforming P1, the result.
+//!
+//! [`solve`] is the whole of it for one problem and one scheme. [`NestedIteration`] has the settings and keeps
+//! what several schemes share; a [`Study`](crate::study::Study) is a loop over it.
 
 mod hierarchy;
 mod iteration;
+mod meshes;
 mod p1;
-mod p1_solution;
 mod solved;
 
 pub(crate) use hierarchy::Coarsest;
 pub use hierarchy::Hierarchy;
-pub use iteration::{Meshes, NestedIteration, solve};
-pub use p1_solution::P1Solution;
+pub use iteration::{NestedIteration, solve};
+pub use meshes::Meshes;
+pub use p1::P1Solution;
 pub use solved::Solved;

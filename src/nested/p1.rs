@@ -1,16 +1,16 @@
-//! The solution of conforming P1 on nested meshes, from which all schemes start.
+//! The conforming P1 solutions from which all schemes start.
 
 use std::sync::Arc;
 use std::time::Instant;
 
-use super::iteration::NestedIteration;
-use super::p1_solution::P1Solution;
-use crate::algebra::{Bound, Contact, Inequality, Start};
-use crate::assemble::Discretisation;
+use super::meshes::Meshes;
+use crate::algebra::{Bound, Contact, Inequality, Start, Support};
+use crate::assemble::{DataQuadrature, Discretisation};
 use crate::constraint::Nodes;
 use crate::error::Error;
 use crate::inequality::{InequalitySolver, InitialGuess, MonotoneMultigrid, Outcome};
 use crate::linear::{CoarseLevel, CoarseSpaces, P1Level};
+use crate::problem::Problem;
 use crate::real::Real;
 use crate::scheme::ConformingP1;
 
@@ -26,15 +26,72 @@ const FLAT_ENERGY_TOLERANCE: f64 = 1e-3;
 /// Largest number of cycles of that start; 22 to 27 are usual.
 const MAX_FLAT_CYCLES: usize = 60;
 
-impl<T: Real, const D: usize> NestedIteration<'_, T, D> {
+/// A conforming P1 function from which a solve starts: the solution on the same mesh, or the
+/// prolongation of the solution on the next coarser one.
+#[derive(Clone, Debug)]
+#[non_exhaustive]
+pub struct P1Solution<T> {
+    /// The contact state of every vertex.
+    pub contact: Vec<Contact>,
+    /// The value at every vertex; empty if the solve did not converge.
+    pub values: Vec<T>,
+    /// The conforming P1 spaces of this and all coarser levels.
+    pub coarse_spaces: CoarseSpaces<T>,
+    /// Seconds of assembly, solve and prolongation on this level and all coarser ones.
+    pub seconds: f64,
+    /// Number of levels on which conforming P1 was solved.
+    pub levels_solved: usize,
+    /// Cycles of monotone multigrid for the start on the coarsest mesh.
+    pub start_cycles: usize,
+}
+
+impl<T: Real> P1Solution<T> {
+    /// The starting contact of unknowns: an unknown starts in contact if more than half of the vertices
+    /// of its support are in contact.
+    pub(super) fn contact_of(&self, supports: &[Support]) -> Vec<Contact> {
+        let state = |support: &Support| {
+            let vertices = support.vertices();
+            [Contact::Lower, Contact::Upper]
+                .into_iter()
+                .find(|&side| {
+                    let on = vertices.iter().filter(|&&v| self.contact[v as usize] == side).count();
+                    2 * on > vertices.len()
+                })
+                .unwrap_or(Contact::Inactive)
+        };
+        supports.iter().map(state).collect()
+    }
+
+    /// The starting values of unknowns: the means of values over the vertices of each support; none
+    /// without values.
+    pub(super) fn values_of(&self, supports: &[Support]) -> Option<Vec<T>> {
+        let mean = |support: &Support| {
+            let vertices = support.vertices();
+            let sum = vertices.iter().fold(T::lit(0.0), |s, &v| s + self.values[v as usize]);
+            sum / T::lit(vertices.len().max(1) as f64)
+        };
+        (!self.values.is_empty()).then(|| supports.iter().map(mean).collect())
+    }
+}
+
+/// Conforming P1 solved by nested iteration: its settings, and the solutions that are known.
+pub(super) struct P1Iteration<'a, T: Real, const D: usize> {
+    pub problem: &'a Problem<D>,
+    pub meshes: Meshes<'a, T, D>,
+    pub solver: Arc<dyn InequalitySolver<T> + 'a>,
+    pub quadrature: DataQuadrature,
+    /// Times are the smallest of this many runs, at least one.
+    pub repeat: usize,
+    /// The solution on each mesh, once computed.
+    pub solutions: Vec<Option<Arc<P1Solution<T>>>>,
+}
+
+impl<T: Real, const D: usize> P1Iteration<'_, T, D> {
     /// The start of conforming P1 on a mesh: the prolongation of the coarser solution, where a new
     /// vertex is active if both ends of its edge are. On the coarsest mesh, if the solver uses coarse
     /// spaces for so many unknowns: spaces by aggregation, and a solution by monotone multigrid to
     /// [`FLAT_ENERGY_TOLERANCE`]; else `None`.
-    pub(super) fn start_of_p1(
-        &mut self,
-        position: usize,
-    ) -> Result<Option<Arc<P1Solution<T>>>, Error> {
+    pub fn start(&mut self, position: usize) -> Result<Option<Arc<P1Solution<T>>>, Error> {
         let Some((refinement, prolongation)) = self.meshes.refinement(position) else {
             let size = self.meshes.mesh(position).vertices().len();
             // in one dimension factors are as sparse as the matrix
@@ -43,7 +100,7 @@ impl<T: Real, const D: usize> NestedIteration<'_, T, D> {
                 false => Ok(None),
             };
         };
-        let coarse = self.solve_p1(position - 1)?;
+        let coarse = self.solve(position - 1)?;
         let clock = Instant::now();
         let contact = refinement
             .parents
@@ -69,7 +126,7 @@ impl<T: Real, const D: usize> NestedIteration<'_, T, D> {
     /// The start on a mesh without coarser ones.
     fn flat_start(&self, position: usize) -> Result<Option<Arc<P1Solution<T>>>, Error> {
         let clock = Instant::now();
-        let inequality = self.p1_inequality(position)?;
+        let inequality = self.inequality(position)?;
         let Some(coarser) = CoarseLevel::aggregated(&inequality.matrix, &fixed(&inequality)) else {
             return Ok(None);
         };
@@ -100,16 +157,16 @@ impl<T: Real, const D: usize> NestedIteration<'_, T, D> {
 
     /// The conforming P1 solution on a mesh, from its start; computed once. The seconds are the smallest
     /// of all runs.
-    pub(super) fn solve_p1(&mut self, position: usize) -> Result<Arc<P1Solution<T>>, Error> {
-        if let Some(known) = &self.p1_solutions[position] {
+    pub fn solve(&mut self, position: usize) -> Result<Arc<P1Solution<T>>, Error> {
+        if let Some(known) = &self.solutions[position] {
             return Ok(known.clone());
         }
-        let start = self.start_of_p1(position)?;
+        let start = self.start(position)?;
         let mut seconds = f64::INFINITY;
         let mut last = None;
         for _ in 0..self.repeat {
             let clock = Instant::now();
-            let mut inequality = self.p1_inequality(position)?;
+            let mut inequality = self.inequality(position)?;
             let mut guess = InitialGuess::default().energy_tolerance(P1_ENERGY_TOLERANCE);
             if let Some(start) = &start {
                 inequality.start = Start::Contact(start.contact.clone());
@@ -147,12 +204,12 @@ impl<T: Real, const D: usize> NestedIteration<'_, T, D> {
             levels_solved: before.1 + 1,
             start_cycles: before.2,
         });
-        self.p1_solutions[position] = Some(solution.clone());
+        self.solutions[position] = Some(solution.clone());
         Ok(solution)
     }
 
     /// The inequality of conforming P1 on a mesh.
-    fn p1_inequality(&self, position: usize) -> Result<Inequality<T>, Error> {
+    fn inequality(&self, position: usize) -> Result<Inequality<T>, Error> {
         let mesh = self.meshes.mesh(position);
         // the constraint set of the problem is for the scheme that starts from here
         let problem = self.problem.clone().on(Nodes);

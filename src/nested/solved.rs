@@ -9,6 +9,7 @@ use crate::error::Error;
 use crate::inequality::{
     Certificate, Outcome, Solution, certify_with_jump_multipliers, count_active,
 };
+#[cfg(feature = "report")]
 use crate::instances::compiled;
 use crate::measure::{ContactErrors, Errors, Fields};
 use crate::mesh::Mesh;

@@ -72,6 +72,7 @@ impl Quantity {
 pub(crate) struct Key {
     scheme: String,
     constraint: String,
+    solver: String,
     /// The text in the legend.
     pub label: String,
 }
@@ -79,23 +80,27 @@ pub(crate) struct Key {
 impl Key {
     /// A key that is known by its label alone.
     pub fn labelled(label: &str) -> Self {
-        Key { scheme: label.to_owned(), constraint: String::new(), label: label.to_owned() }
+        let [scheme, label] = [label.to_owned(), label.to_owned()];
+        Key { scheme, constraint: String::new(), solver: String::new(), label }
     }
 }
 
 /// The curves of a report, in the order in which they first occur. The place of the constraint is
-/// named where a scheme was run with more than one.
+/// named where a scheme was run with more than one, the solver where a report has more than one.
 pub(crate) fn keys(rows: &[Row]) -> Vec<Key> {
-    let pairs = distinct(rows.iter().map(|r| (r.scheme.as_str(), r.constraint.as_str())));
-    pairs
-        .iter()
-        .map(|&(scheme, constraint)| {
-            let ambiguous = pairs.iter().filter(|(s, _)| *s == scheme).count() > 1;
-            let label =
-                if ambiguous { format!("{scheme}, {constraint}") } else { scheme.to_owned() };
-            Key { scheme: scheme.to_owned(), constraint: constraint.to_owned(), label }
-        })
-        .collect()
+    let series = distinct(rows.iter().map(|r| [&r.scheme, &r.constraint, &r.solver]));
+    let key = |&[scheme, constraint, solver]: &[&String; 3]| {
+        let mut label = scheme.clone();
+        if series.iter().any(|[s, c, _]| *s == scheme && *c != constraint) {
+            label += &format!(", {constraint}");
+        }
+        if series.iter().any(|[_, _, s]| *s != solver) {
+            label += &format!(", {solver}");
+        }
+        let [scheme, constraint, solver] = [scheme, constraint, solver].map(String::clone);
+        Key { scheme, constraint, solver, label }
+    };
+    series.iter().map(key).collect()
 }
 
 /// The scenes of a report, in the order in which they first occur.
@@ -152,6 +157,7 @@ impl Panel {
                 .iter()
                 .filter(|r| r.scene == scene)
                 .filter(|r| r.scheme == key.scheme && r.constraint == key.constraint)
+                .filter(|r| r.solver == key.solver)
                 .collect();
             runs.sort_by_key(|r| r.level);
             let points: Vec<Point> = runs.iter().filter_map(|r| Point::of(r, x, y)).collect();

@@ -78,7 +78,7 @@ impl<T: Real, const D: usize> dyn AnyScheme<T, D> + '_ {
     }
     /// Penalty factors in force on a mesh.
     pub fn parameters(&self, mesh: &Mesh<T, D>) -> PenaltyParameters {
-        self.form(mesh).parameters()
+        self.form(mesh).theory().parameters
     }
     /// The algebraic inequality alone, for other solvers and exporters.
     ///
@@ -128,7 +128,8 @@ impl<T: Real, const D: usize, S: Scheme<T, D>> AnyScheme<T, D> for S {
 }
 
 impl<'a, T: Real, const D: usize> Discretisation<'a, T, D> {
-    /// Joins scheme, problem and mesh, in the basis that the problem's constraint set needs; builds facets only if the scheme needs them.
+    /// Joins scheme, problem and mesh, in the basis that the problem's constraint set needs; builds
+    /// facets only if the scheme needs them.
     ///
     /// # Errors
     /// [`Error::CoefficientNotPositive`], [`Error::NothingToBound`], [`Error::UnsupportedForm`].

@@ -5,7 +5,7 @@ use super::{
     name_of_degree, with_duality,
 };
 use crate::element::{Broken, P1, ReferenceElement};
-use crate::facet::{FacetForm, FacetView, Lifted, PenaltyParameters, Trace};
+use crate::facet::{FacetForm, FacetView, FormTheory, Lifted, PenaltyParameters, Trace};
 use crate::mesh::Mesh;
 use crate::real::{Real, point_f64};
 
@@ -94,13 +94,17 @@ impl<T: Real, const D: usize> FacetForm<T, D> for LocalFluxes {
     fn penalty(&self, facet: &FacetView<T, D>) -> T {
         T::lit(self.eta) * facet.coefficient() / facet.diameter()
     }
-    fn parameters(&self) -> PenaltyParameters {
+    fn theory(&self) -> FormTheory<'_, T, D> {
         let beta = if self.switch { "one-sided flux" } else { "mean flux" };
         let rule = Some(format!("eta / h_F, {beta}"));
-        PenaltyParameters { sigma: Some(self.eta), eta: None, rule }
+        let sigma = Some(self.eta);
+        FormTheory::new().with_parameters(PenaltyParameters { sigma, eta: None, rule })
+    }
+    fn is_uniform(&self) -> bool {
+        true
     }
     #[inline(always)]
-    fn integrand(&self, v: Trace<T>, u: Trace<T>, penalty: T) -> T {
+    fn integrand(&self, _: &FacetView<T, D>, v: Trace<T>, u: Trace<T>, penalty: T) -> T {
         penalty * u.jump * v.jump - u.flux * v.jump - v.flux * u.jump
     }
 }

@@ -26,8 +26,11 @@ impl<T: Real, const D: usize> FacetForm<T, D> for UnweightedPenalty {
     fn penalty(&self, facet: &FacetView<T, D>) -> T {
         self.0.penalty(facet) / facet.coefficient()
     }
+    fn is_uniform(&self) -> bool {
+        true
+    }
     #[inline(always)]
-    fn integrand(&self, v: Trace<T>, u: Trace<T>, penalty: T) -> T {
+    fn integrand(&self, _: &FacetView<T, D>, v: Trace<T>, u: Trace<T>, penalty: T) -> T {
         penalty * u.jump * v.jump
     }
 }

@@ -1,6 +1,7 @@
 //! Compatibility of a mesh and a scene.
 
 use crate::assemble::{DataQuadrature, Discretisation};
+use crate::constraint::Nodes;
 use crate::error::Error;
 use crate::mesh::{BoundaryPart, Mesh, describe_point};
 use crate::real::{Real, point_f64};
@@ -33,7 +34,7 @@ pub fn check_fit<T: Real, const D: usize>(
 /// Checks that the data of the scene are defined on the mesh, at vertices, on facets and at
 /// quadrature points.
 fn check_data<T: Real, const D: usize>(scene: &Scene<D>, mesh: &Mesh<T, D>) -> Result<(), Error> {
-    let (problem, quadrature) = (&scene.problem, DataQuadrature::default());
+    let (problem, quadrature) = (&scene.problem.clone().on(Nodes), DataQuadrature::default());
     let at_vertices = || {
         let space = Discretisation::new(&ConformingP1, problem, mesh, quadrature)?;
         space.load().and_then(|_| space.bounds()).map(|_| ())

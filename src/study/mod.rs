@@ -8,6 +8,7 @@ mod orders_table;
 pub(crate) mod report;
 pub(crate) mod row;
 mod runner;
+mod setting;
 pub(crate) mod table;
 
 pub use compatibility::check_fit;

@@ -164,11 +164,11 @@ impl ObservedOrders {
 
 impl Report {
     /// Observed orders of every scheme on every scene, in the order of the rows. A scheme counts
-    /// once for every placement of bounds and every penalty.
+    /// once for every placement of bounds, every penalty and every solver.
     pub fn observed_orders(&self) -> Vec<ObservedOrders> {
         let key = |row: &Row| {
-            let Row { scene, scheme, constraint, parameters, .. } = row.clone();
-            (scene, scheme, constraint, parameters)
+            let Row { scene, scheme, constraint, parameters, solver, .. } = row.clone();
+            (scene, scheme, constraint, parameters, solver)
         };
         let keys = distinct(self.rows.iter().map(key));
         let rows_of = |wanted| self.rows.iter().filter(|row| key(row) == wanted).collect();

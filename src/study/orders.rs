@@ -4,7 +4,7 @@ use super::row::{Orders, Row};
 use crate::measure::observed_order;
 
 /// Fills in the order of every row against the previous level: the row with the next smaller level
-/// of the same scene, scheme and constraint.
+/// of the same scene, scheme, constraint and solver.
 ///
 /// The order is none if one of the two rows did not converge or has no error. Rows further back are
 /// never used, since the table would not show it.
@@ -22,7 +22,10 @@ pub fn fill_orders(rows: &mut [Row]) {
 fn previous<'a>(rows: &'a [Row], row: &Row) -> Option<&'a Row> {
     rows.iter()
         .filter(|r| {
-            r.scene == row.scene && r.scheme == row.scheme && r.constraint == row.constraint
+            r.scene == row.scene
+                && r.scheme == row.scheme
+                && r.constraint == row.constraint
+                && r.solver == row.solver
         })
         // the same scheme with another penalty is another scheme; the dimensionless factor of one
         // rule resolves to the same number on all levels of a domain

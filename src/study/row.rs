@@ -3,6 +3,8 @@
 use crate::facet::PenaltyParameters;
 use crate::inequality::{Certificate, Outcome};
 use crate::measure::{ContactErrors, Errors};
+use crate::nested::Solved;
+use crate::real::Real;
 use crate::scheme::ExpectedOrders;
 
 /// Observed orders.
@@ -148,6 +150,37 @@ impl Row {
             seconds: Seconds::default(),
             peak_memory_bytes: None,
             warnings: Vec::new(),
+        }
+    }
+
+    /// The row of a solve without errors, expected orders and the names of constraint set and solver.
+    pub(super) fn of<T: Real, const D: usize>(
+        scene: &str,
+        scheme: &str,
+        level: usize,
+        solved: &Solved<'_, T, D>,
+    ) -> Self {
+        let (mesh, solution) = (solved.mesh(), solved.solution());
+        let solve_seconds = solved.solve_seconds + solved.start_seconds;
+        Self {
+            parameters: solved.discretisation().form().theory().parameters,
+            linear: solution.linear_solver.to_owned(),
+            cells: mesh.n_cells(),
+            unknowns: solution.values.len(),
+            nonzeros: solved.inequality().matrix.nonzeros(),
+            mesh_size: mesh.mesh_size(),
+            objective: solved.objective(),
+            active: solved.active(),
+            iterations: Iterations {
+                outer: solved.outer(),
+                linear: solution.linear,
+                levels: solved.coarser_levels,
+                start_cycles: solved.start_cycles,
+            },
+            certificate: solved.certificate(),
+            seconds: Seconds::new(solved.mesh_seconds, solved.assemble_seconds, solve_seconds),
+            warnings: solved.warnings().to_vec(),
+            ..Self::new(scene, D, scheme, level, solved.outcome())
         }
     }
 

@@ -1,6 +1,7 @@
 //! A study: schemes on a scene, level by level.
 
 use std::fmt;
+#[cfg(feature = "report")]
 use std::path::PathBuf;
 use std::sync::Arc;
 
@@ -10,19 +11,20 @@ use super::memory::{
 };
 use super::orders::fill_orders;
 use super::report::{Program, Report};
-use super::row::{Iterations, Row, Seconds};
+use super::row::Row;
+use super::setting::setting;
 use crate::assemble::DataQuadrature;
 use crate::constraint::ConstraintSet;
 use crate::element::Layout;
 use crate::error::Error;
 use crate::inequality::{ActiveSet, InequalitySolver};
 use crate::instances::compiled;
-use crate::mesh::{BoundaryPart, Domain, Mesh};
-use crate::nested::{Coarsest, Hierarchy, NestedIteration, Solved};
+use crate::mesh::Mesh;
+use crate::nested::{Coarsest, Hierarchy, NestedIteration};
 use crate::problem::Problem;
 use crate::real::Real;
 use crate::scenes::Scene;
-use crate::scheme::{AnyScheme, ExpectedOrders, Setting};
+use crate::scheme::{AnyScheme, ExpectedOrders};
 
 /// Progress of a study.
 #[derive(Debug)]
@@ -56,6 +58,7 @@ pub struct Study<'a, T: Real, const D: usize> {
     solvers: Vec<Arc<dyn InequalitySolver<T> + 'a>>,
     quadrature: DataQuadrature,
     repeat: usize,
+    #[cfg(feature = "report")]
     directory: Option<PathBuf>,
     observer: Box<dyn Fn(Progress<'_>) + 'a>,
 }
@@ -100,6 +103,7 @@ impl<'a, T: Real, const D: usize> Study<'a, T, D> {
             solvers: Vec::new(),
             quadrature: DataQuadrature::default(),
             repeat: 1,
+            #[cfg(feature = "report")]
             directory: None,
             observer: Box::new(|_| {}),
         }
@@ -208,21 +212,10 @@ impl<'a, T: Real, const D: usize> Study<'a, T, D> {
     /// Checks schemes, levels and mesh. Returns the point at which the exact solution of the scene
     /// breaks the contact condition of a given mesh.
     fn where_exact_fails(&self) -> Result<Option<String>, Error> {
-        let wrong = |parameter, value: &str, allowed: &str| {
-            Err(Error::Parameter {
-                parameter,
-                value: value.to_owned(),
-                allowed: allowed.to_owned(),
-            })
-        };
-        if self.entries.is_empty() {
-            return wrong("schemes", "none", "a study needs at least one scheme");
-        }
-        if self.levels.is_empty() {
-            return wrong("levels", "none", "a study needs at least one level");
-        }
-        if self.mesh.is_none() && self.levels.contains(&0) {
-            return wrong("level", "0", "a built-in mesh has at least one subdivision");
+        let lengths = [("schemes", self.entries.len()), ("levels", self.levels.len())];
+        if let Some(&(parameter, _)) = lengths.iter().find(|(_, length)| *length == 0) {
+            let allowed = format!("a study needs {parameter}: at least one");
+            return Err(Error::Parameter { parameter, value: "none".to_owned(), allowed });
         }
         self.levels.iter().try_for_each(|&level| self.coarsest().check(level))?;
         match &self.mesh {
@@ -378,7 +371,7 @@ impl<'a, T: Real, const D: usize> Study<'a, T, D> {
             solver: solver.to_owned(),
             expected_order: self.expected_orders(scheme, set, failure),
             peak_memory_bytes: peak_memory_bytes(),
-            ..row_of(&self.scene.name, scheme.name(), level, &solved)
+            ..Row::of(&self.scene.name, scheme.name(), level, &solved)
         };
         match failure {
             None => (row.error, row.contact) = (solved.errors()?, solved.contact_errors()?),
@@ -397,56 +390,10 @@ impl<'a, T: Real, const D: usize> Study<'a, T, D> {
         failure: Option<&str>,
     ) -> ExpectedOrders {
         match (failure, &self.scene.problem.exact) {
-            (None, Some(_)) => scheme.expected_orders_on(set, &self.setting()),
+            (None, Some(_)) => {
+                scheme.expected_orders_on(set, &setting(&self.scene, self.mesh.is_some()))
+            }
             _ => ExpectedOrders::default(),
         }
-    }
-
-    /// The assumptions of the proofs of orders.
-    fn setting(&self) -> Setting {
-        let problem = &self.scene.problem;
-        let domain = &self.scene.domain;
-        let is_convex = !matches!(domain, Domain::LShape { .. });
-        let all_dirichlet =
-            ![BoundaryPart::Neumann, BoundaryPart::Contact].iter().any(|&p| domain.has_part(p));
-        Setting {
-            dimension: D,
-            obstacle: problem.has_obstacle(),
-            contact: problem.gap.is_some(),
-            regularity: self.scene.regularity,
-            regular_dual: problem.coefficient.is_none()
-                && (D == 1 || self.mesh.is_none() && is_convex && all_dirichlet),
-        }
-    }
-}
-
-/// The row of a solve without errors, expected orders and the names of constraint set and solver.
-fn row_of<T: Real, const D: usize>(
-    scene: &str,
-    scheme: &str,
-    level: usize,
-    solved: &Solved<'_, T, D>,
-) -> Row {
-    let (mesh, solution) = (solved.mesh(), solved.solution());
-    let solve_seconds = solved.solve_seconds + solved.start_seconds;
-    Row {
-        parameters: solved.discretisation().form().parameters(),
-        linear: solution.linear_solver.to_owned(),
-        cells: mesh.n_cells(),
-        unknowns: solution.values.len(),
-        nonzeros: solved.inequality().matrix.nonzeros(),
-        mesh_size: mesh.mesh_size(),
-        objective: solved.objective(),
-        active: solved.active(),
-        iterations: Iterations {
-            outer: solved.outer(),
-            linear: solution.linear,
-            levels: solved.coarser_levels,
-            start_cycles: solved.start_cycles,
-        },
-        certificate: solved.certificate(),
-        seconds: Seconds::new(solved.mesh_seconds, solved.assemble_seconds, solve_seconds),
-        warnings: solved.warnings().to_vec(),
-        ..Row::new(scene, D, scheme, level, solved.outcome())
     }
 }

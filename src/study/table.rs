@@ -41,12 +41,13 @@ fn write_scene(f: &mut impl fmt::Write, scene: &str, rows: &[&Row]) -> fmt::Resu
     let widest = widths.iter().sum::<usize>() + 2 * (widths.len() - 1);
     let gap = if widest <= WIDTH { "  " } else { " " };
     write_line(f, &columns, &widths, gap, |c| c.name.to_owned())?;
-    let series = distinct(rows.iter().map(|r| (r.scheme.as_str(), r.constraint.as_str())));
-    for (i, key) in series.into_iter().enumerate() {
+    let key = |r: &Row| [&r.scheme, &r.constraint, &r.solver].map(String::clone);
+    let series = distinct(rows.iter().map(|r| key(r)));
+    for (i, of_series) in series.into_iter().enumerate() {
         if i > 0 {
             writeln!(f)?;
         }
-        for row in rows.iter().filter(|r| (r.scheme.as_str(), r.constraint.as_str()) == key) {
+        for row in rows.iter().filter(|r| key(r) == of_series) {
             write_line(f, &columns, &widths, gap, |c| (c.cell)(row))?;
             if !row.converged() {
                 writeln!(f, "  ^ did not converge: {}", row.status)?;
@@ -133,6 +134,9 @@ fn columns(rows: &[&Row]) -> Vec<Column> {
         columns.push(text("bound at", |r| {
             r.constraint.strip_suffix("-means").map_or(r.constraint.clone(), |s| format!("{s}s"))
         }));
+    }
+    if rows.iter().any(|r| r.solver != rows[0].solver) {
+        columns.push(text("solver", |r| r.solver.clone()));
     }
     columns.push(number("n", |r| r.level.to_string()));
     columns.push(number("h", |r| scientific(Some(r.mesh_size))));

@@ -12,7 +12,7 @@ const INNER_KEYS: [(&str, &[&str], bool); 7] = [
     ("error", &["l2", "h1", "energy", "max"], true),
     ("order", &["l2", "h1", "energy", "max", "multiplier_l1", "multiplier_l2"], true),
     ("expected_order", &["l2", "h1"], true),
-    ("iterations", &["outer", "linear", "levels"], false),
+    ("iterations", &["outer", "linear", "levels", "start_cycles"], false),
     ("certificate", &["feasibility", "multiplier", "complementarity", "residual"], false),
     ("seconds", &["mesh", "assemble", "solve", "total"], false),
 ];

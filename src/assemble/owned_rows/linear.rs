@@ -10,6 +10,7 @@ use super::{Filling, for_each_cell};
 use crate::assemble::count;
 use crate::assemble::facet_coefficients::FacetWeight;
 use crate::assemble::space::metric::CellMetric;
+use crate::facet::FacetKind;
 use crate::mesh::{BoundaryPart, Neighbour};
 use crate::real::Real;
 
@@ -102,7 +103,7 @@ impl<T: Real, const D: usize> Filling<'_, '_, T, D> {
                     let (other, other_local) = (other as usize, other_local as usize);
                     let from_here = cell < other;
                     let here = if from_here { (cell, local) } else { (other, other_local) };
-                    let weight = self.weights.at::<D>(here, from_here);
+                    let weight = self.weights.at::<D>(here, from_here, FacetKind::Interior);
                     let facet =
                         self.add_linear::<N, FLUX>(reference, &metric, local, &weight, &mut own);
                     let products = &reference.across[local][other_local & 3];
@@ -127,7 +128,7 @@ impl<T: Real, const D: usize> Filling<'_, '_, T, D> {
                     }
                 }
                 Neighbour::Boundary(BoundaryPart::Dirichlet) if !self.space.pins => {
-                    let weight = self.weights.at::<D>((cell, local), true);
+                    let weight = self.weights.at::<D>((cell, local), true, FacetKind::Dirichlet);
                     self.add_linear::<N, FLUX>(reference, &metric, local, &weight, &mut own);
                 }
                 Neighbour::Boundary(_) => {}
@@ -146,11 +147,11 @@ impl<T: Real, const D: usize> Filling<'_, '_, T, D> {
         reference: &Reference<T, N>,
         metric: &CellMetric<T, D>,
         local: usize,
-        weight: &FacetWeight<T>,
+        weight: &FacetWeight<'_, T>,
         own: &mut [[T; N]; N],
     ) -> OnFacet<T, N> {
         count::facets(1);
-        let form = &self.weights.coefficients;
+        let form = weight.coefficients;
         let measure = metric.measures[local];
         let penalty = weight.penalty * self.jumps.weights[0];
         let jump_jump = measure * form.jump_jump.at(penalty);

@@ -8,6 +8,7 @@ use crate::assemble::facet_coefficients::FacetWeight;
 use crate::assemble::local::CellSide;
 use crate::assemble::space::tables::BasisAt;
 use crate::element::MAX_BASIS;
+use crate::facet::FacetKind;
 use crate::mesh::{BoundaryPart, Neighbour};
 use crate::real::Real;
 
@@ -56,7 +57,7 @@ impl<'r, T: Real> Rows<'r, T> {
 /// Jumps and fluxes both flip their sign with the direction of the normal, so their products do not.
 struct OnFacet<'f, T, const D: usize, const N: usize, const M: usize> {
     me: CellSide<'f, T, D>,
-    weight: FacetWeight<T>,
+    weight: FacetWeight<'f, T>,
     /// What multiplies the products of jumps of the first class.
     jump_jump: T,
     /// By moment what multiplies fluxes of trial functions, for each test function.
@@ -121,12 +122,12 @@ impl<T: Real, const D: usize> Filling<'_, '_, T, D> {
                     let there = (other as usize, other_local as usize);
                     let from_here = cell < there.0;
                     let here = if from_here { (cell, local) } else { there };
-                    let weight = self.weights.at::<D>(here, from_here);
+                    let weight = self.weights.at::<D>(here, from_here, FacetKind::Interior);
                     let facet = self.add_facet::<N, M>(me, weight, &mut own);
                     self.write_across::<N, M>(&facet, there, &mut rows);
                 }
                 Neighbour::Boundary(BoundaryPart::Dirichlet) if !self.space.pins => {
-                    let weight = self.weights.at::<D>((cell, local), true);
+                    let weight = self.weights.at::<D>((cell, local), true, FacetKind::Dirichlet);
                     self.add_facet::<N, M>(me, weight, &mut own);
                 }
                 Neighbour::Boundary(_) => {}
@@ -140,13 +141,13 @@ impl<T: Real, const D: usize> Filling<'_, '_, T, D> {
     /// Adds what the form makes of a facet to the columns of the cell whose rows these are.
     #[inline(always)]
     fn add_facet<'f, const N: usize, const M: usize>(
-        &self,
+        &'f self,
         me: CellSide<'f, T, D>,
-        weight: FacetWeight<T>,
+        weight: FacetWeight<'f, T>,
         own: &mut Block<T, N>,
     ) -> OnFacet<'f, T, D, N, M> {
         count::facets(1);
-        let form = &self.weights.coefficients;
+        let form = weight.coefficients;
         let measure = me.metric.measures[me.local];
         let jump_jump = self.jump_scale(&me, &weight, self.jumps.weights[0]);
         let zero = [[T::lit(0.0); N]; M];
@@ -234,9 +235,8 @@ impl<T: Real, const D: usize> Filling<'_, '_, T, D> {
 
     /// What multiplies the products of jumps of a class.
     #[inline(always)]
-    fn jump_scale(&self, me: &CellSide<'_, T, D>, weight: &FacetWeight<T>, class: T) -> T {
-        me.metric.measures[me.local]
-            * self.weights.coefficients.jump_jump.at(weight.penalty * class)
+    fn jump_scale(&self, me: &CellSide<'_, T, D>, weight: &FacetWeight<'_, T>, class: T) -> T {
+        me.metric.measures[me.local] * weight.coefficients.jump_jump.at(weight.penalty * class)
     }
 
     /// The fluxes of the basis functions of a cell through one of its facets, of one moment: their

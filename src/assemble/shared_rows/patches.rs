@@ -237,7 +237,7 @@ fn facet_matrix<T: Real, const D: usize>(
         let size = if interior { 2 * n } else { n };
         for v in 0..size {
             for u in 0..size {
-                out[v * 2 * n + u] += view.measure * form.integrand(all[v], all[u], penalty);
+                out[v * 2 * n + u] += view.measure * form.integrand(&view, all[v], all[u], penalty);
             }
         }
     }

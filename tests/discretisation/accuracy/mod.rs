@@ -3,6 +3,7 @@
 mod family;
 mod meshes;
 mod orders;
+mod own_sets;
 mod patch;
 mod precision;
 mod quadratic;

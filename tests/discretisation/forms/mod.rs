@@ -4,5 +4,6 @@ mod assembly;
 mod condition;
 mod lifting;
 mod lumping;
+mod own_forms;
 mod rounding;
 mod shared_unknowns;

@@ -43,7 +43,7 @@ impl<T: Real, const D: usize, const SYMMETRIC: bool> FacetForm<T, D> for Form<SY
         let power = facet.diameter().to_f64().powi(self.power);
         T::lit(self.share * lean * power) * proven_bound::<T, D>(1, facet)
     }
-    fn integrand(&self, v: Trace<T>, u: Trace<T>, penalty: T) -> T {
+    fn integrand(&self, _: &FacetView<T, D>, v: Trace<T>, u: Trace<T>, penalty: T) -> T {
         let [flux, mirrored] = [self.flux, self.mirrored].map(T::lit);
         penalty * u.jump * v.jump - flux * u.flux * v.jump - mirrored * v.flux * u.jump
     }

@@ -88,7 +88,7 @@ impl<T: Real> FacetForm<T, 2> for MeansOnly {
     fn penalty(&self, facet: &FacetView<T, 2>) -> T {
         T::lit(20.0) / facet.diameter()
     }
-    fn integrand(&self, v: Trace<T>, u: Trace<T>, penalty: T) -> T {
+    fn integrand(&self, _: &FacetView<T, 2>, v: Trace<T>, u: Trace<T>, penalty: T) -> T {
         penalty * u.jump * v.jump - u.flux * v.jump - v.flux * u.jump
     }
 }

@@ -21,7 +21,7 @@ use crate::shared::{
 
 use unilateral::constraint::constraint_set_by_name;
 use unilateral::error::Error;
-use unilateral::inequality::ActiveSet;
+use unilateral::inequality::{SOLVERS, SolverOptions, solver_by_name};
 use unilateral::linear::LinearMethod;
 use unilateral::mesh::{Mesh, gmsh};
 use unilateral::real::Real;
@@ -52,6 +52,7 @@ pub fn run(options: &Options) -> Request<bool> {
 struct Chosen {
     scenes: Vec<AnyScene>,
     schemes: Vec<String>,
+    solvers: Vec<String>,
     mesh: Option<(usize, Vec<u8>)>,
 }
 
@@ -69,8 +70,10 @@ impl Chosen {
         let names: Vec<&str> = SCHEMES.iter().map(|s| s.0).collect();
         let schemes = choose("scheme", &options.schemes, &["p1", "sipg", "wopsip"], &names)?;
         check_penalties(options, &schemes, &names)?;
+        let solvers: Vec<&str> = SOLVERS.iter().map(|s| s.0).collect();
+        let solvers = choose("solver", &options.solvers, &["active-set"], &solvers)?;
         let scenes = Self::scenes(options, mesh.as_ref().map(|m| m.0))?;
-        Ok(Self { scenes, schemes, mesh })
+        Ok(Self { scenes, schemes, solvers, mesh })
     }
 
     fn scenes(options: &Options, mesh: Option<usize>) -> Request<Vec<AnyScene>> {
@@ -116,17 +119,16 @@ impl Chosen {
     }
 
     fn run<T: Real>(self, options: &Options) -> Request<Vec<Row>> {
-        let Self { scenes, schemes, mesh } = self;
+        let Self { scenes, schemes, solvers, mesh } = self;
+        let names = [&schemes[..], &solvers];
         let mesh = mesh.as_ref();
         let watcher = Watcher::new(options);
         let mut runs = Vec::new();
         for scene in scenes {
             runs.extend(match scene {
-                AnyScene::One(scene) => prepare::<T, 1>(scene, options, &schemes, mesh, &watcher)?,
-                AnyScene::Two(scene) => prepare::<T, 2>(scene, options, &schemes, mesh, &watcher)?,
-                AnyScene::Three(scene) => {
-                    prepare::<T, 3>(scene, options, &schemes, mesh, &watcher)?
-                }
+                AnyScene::One(scene) => prepare::<T, 1>(scene, options, names, mesh, &watcher)?,
+                AnyScene::Two(scene) => prepare::<T, 2>(scene, options, names, mesh, &watcher)?,
+                AnyScene::Three(scene) => prepare::<T, 3>(scene, options, names, mesh, &watcher)?,
             });
         }
         if runs.is_empty() {
@@ -150,7 +152,7 @@ type Run<'a> = Box<dyn FnOnce() -> Request<Vec<Row>> + 'a>;
 fn prepare<'a, T: Real, const D: usize>(
     scene: Scene<D>,
     options: &'a Options,
-    schemes: &[String],
+    [schemes, solvers]: [&[String]; 2],
     mesh: Option<&(usize, Vec<u8>)>,
     watcher: &'a Watcher,
 ) -> Request<Option<Run<'a>>> {
@@ -160,14 +162,13 @@ fn prepare<'a, T: Real, const D: usize>(
         [] => default_levels(D, mesh.is_some()),
         some => each_once(some),
     };
-    let n_runs = levels.len() * schemes.len();
+    let n_runs = levels.len() * schemes.len() * solvers.len();
     let linear = match options.linear.as_deref() {
         Some("direct") => LinearMethod::Direct,
         Some(_) => LinearMethod::Iterative,
         None => LinearMethod::BySize,
     };
     let mut study = Study::<T, D>::new(scene)
-        .solver(ActiveSet::default().linear(linear))
         .levels(levels)
         .repeat(options.repeat)
         .fields_to(&options.out)
@@ -181,6 +182,11 @@ fn prepare<'a, T: Real, const D: usize>(
             Some(set) => study.boxed_scheme_on(scheme, set),
             None => study.boxed_scheme(scheme),
         };
+    }
+    for name in solvers {
+        study = solver_by_name(name, &SolverOptions::default().linear(linear))
+            .map(|solver| study.boxed_solver(solver))
+            .ok_or_else(|| format!("there is no solver {name}"))?;
     }
     let mut place = format!("scene {name}");
     if let (Some((_, bytes)), Some(path)) = (mesh, &options.mesh) {

@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 use unilateral::constraint::CONSTRAINT_SETS;
+use unilateral::inequality::SOLVERS;
 use unilateral::scenes;
 use unilateral::scheme::SCHEMES;
 
@@ -45,9 +46,9 @@ pub struct Options {
     /// Where schemes that have the choice impose the inequality
     #[arg(long, value_parser = CONSTRAINT_SETS.map(|set| set.0), default_value = "vertices")]
     pub constraint: String,
-    /// Solver of the inequality
-    #[arg(long, value_name = "NAME")]
-    pub solver: Option<String>,
+    /// Solvers of the inequality, side by side where several; active-set by default
+    #[arg(long = "solver", value_delimiter = ',', value_name = "A[,B...]")]
+    pub solvers: Vec<String>,
     /// Linear solver inside it: direct or iterative; by default whichever is faster
     #[arg(long, value_name = "NAME")]
     pub linear: Option<String>,
@@ -81,9 +82,7 @@ impl Options {
     }
 }
 
-/// Solvers of the inequality and linear solvers inside them, with one line each.
-const SOLVERS: &[(&str, &str)] =
-    &[("active-set", "primal-dual active set, started from coarser levels in conforming P1")];
+/// Linear solvers inside those of the inequality, with one line each.
 const LINEAR: &[(&str, &str)] = &[
     ("direct", "sparse Cholesky or LU"),
     ("iterative", "conjugate gradients with multigrid on conforming P1, for symmetric schemes"),
@@ -161,9 +160,6 @@ pub fn check_numbers(options: &Options) -> Request<()> {
         return Err(format!("--threads {threads}: must be at most {MOST_THREADS}"));
     }
     let names = |list: &[(&'static str, &str)]| list.iter().map(|s| s.0).collect::<Vec<_>>();
-    if let Some(name) = &options.solver {
-        known("solver", name, &names(SOLVERS))?;
-    }
     if let Some(name) = &options.linear {
         known("linear solver", name, &names(LINEAR))?;
     }

@@ -1,0 +1,68 @@
+//! What is known of a form besides its formula, for warnings and reports.
+
+use std::fmt;
+
+use super::{FacetView, PenaltyParameters};
+use crate::real::Real;
+
+/// The least penalty weight of a facet with which a form is provably coercive.
+pub type LeastPenalty<'f, T, const D: usize> = Box<dyn Fn(&FacetView<'_, T, D>) -> T + 'f>;
+
+/// What theory and measurement say of a form: nothing of it enters matrix or load.
+#[non_exhaustive]
+pub struct FormTheory<'f, T: Real, const D: usize> {
+    /// The factors in force, for reports.
+    pub parameters: PenaltyParameters,
+    /// The least weight with which the form is provably coercive; none if it always is, or if the
+    /// weight is chosen by that very bound.
+    pub least_penalty: Option<LeastPenalty<'f, T, D>>,
+    /// By what [`Self::rounding_limit`] is scaled; one half by default, as measured for linears.
+    pub rounding_factor: f64,
+}
+
+impl<'f, T: Real, const D: usize> FormTheory<'f, T, D> {
+    /// No parameters, no least penalty.
+    #[must_use]
+    pub fn new() -> Self {
+        let parameters = PenaltyParameters::default();
+        Self { parameters, least_penalty: None, rounding_factor: 0.5 }
+    }
+    /// Sets the factors in force.
+    #[must_use]
+    pub fn with_parameters(self, parameters: PenaltyParameters) -> Self {
+        Self { parameters, ..self }
+    }
+    /// Sets the least weight of a facet with which the form is provably coercive.
+    #[must_use]
+    pub fn with_least_penalty(self, least: impl Fn(&FacetView<'_, T, D>) -> T + 'f) -> Self {
+        Self { least_penalty: Some(Box::new(least)), ..self }
+    }
+    /// Sets the factor of the rounding limit.
+    #[must_use]
+    pub fn with_rounding_factor(self, rounding_factor: f64) -> Self {
+        Self { rounding_factor, ..self }
+    }
+    /// The length of an edge below which rounding, with this rounding unit and on a domain of this
+    /// diameter, may outweigh the discretisation error: for a condition number of
+    /// `(h / length)^-2` against an error of `(h / length)^2`. A penalty does not enter: interior
+    /// penalty has one of the size of the stiffness, an over-penalty is kept apart from it.
+    pub fn rounding_limit(&self, epsilon: f64, length: f64) -> f64 {
+        self.rounding_factor * length * epsilon.powf(0.25)
+    }
+}
+
+impl<T: Real, const D: usize> Default for FormTheory<'_, T, D> {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+impl<T: Real, const D: usize> fmt::Debug for FormTheory<'_, T, D> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("FormTheory")
+            .field("parameters", &self.parameters)
+            .field("least_penalty", &self.least_penalty.is_some())
+            .field("rounding_factor", &self.rounding_factor)
+            .finish()
+    }
+}

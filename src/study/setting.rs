@@ -1,0 +1,21 @@
+//! The assumptions of the proofs of orders.
+
+use crate::mesh::{BoundaryPart, Domain};
+use crate::scenes::Scene;
+use crate::scheme::Setting;
+
+/// The setting of a scene on its own domain, or on a mesh in place of it.
+pub(super) fn setting<const D: usize>(scene: &Scene<D>, on_mesh: bool) -> Setting {
+    let Scene { problem, domain, .. } = scene;
+    let is_convex = !matches!(domain, Domain::LShape { .. });
+    let all_dirichlet =
+        ![BoundaryPart::Neumann, BoundaryPart::Contact].iter().any(|&p| domain.has_part(p));
+    Setting {
+        dimension: D,
+        obstacle: problem.has_obstacle(),
+        contact: problem.gap.is_some(),
+        regularity: scene.regularity,
+        regular_dual: problem.coefficient.is_none()
+            && (D == 1 || !on_mesh && is_convex && all_dirichlet),
+    }
+}

@@ -1,0 +1,158 @@
+//! Forms made outside the library whose formula depends on the facet.
+
+use unilateral::facet::FacetKind;
+use unilateral::kit::check_scheme;
+use unilateral::mesh::{BoundaryPart, BoxDomain, Mesh};
+use unilateral::prelude::*;
+
+/// Nothing or an over-penalty between cells, Nitsche's method on the Dirichlet boundary.
+struct NitscheAtBoundary {
+    between_cells: f64,
+}
+
+impl<T: Real, const D: usize> FacetForm<T, D> for NitscheAtBoundary {
+    fn uses_flux(&self) -> bool {
+        true
+    }
+    fn penalty(&self, facet: &FacetView<T, D>) -> T {
+        let h = facet.diameter();
+        match facet.kind() {
+            FacetKind::Interior => T::lit(self.between_cells) * facet.coefficient() / (h * h * h),
+            FacetKind::Dirichlet => T::lit(20.0) * facet.coefficient() / h,
+        }
+    }
+    fn integrand(&self, facet: &FacetView<T, D>, v: Trace<T>, u: Trace<T>, penalty: T) -> T {
+        let jumps = penalty * u.jump * v.jump;
+        match facet.kind() {
+            FacetKind::Interior => jumps,
+            FacetKind::Dirichlet => jumps - u.flux * v.jump - v.flux * u.jump,
+        }
+    }
+}
+
+/// Continuous linears with weak Dirichlet data: consistent.
+struct Nitsche;
+
+impl<T: Real, const D: usize> Scheme<T, D> for Nitsche {
+    type Element = P1;
+    type Facet = NitscheAtBoundary;
+    const DIRICHLET: DirichletBy = DirichletBy::FacetForm;
+    fn name(&self) -> &str {
+        "nitsche"
+    }
+    fn facet(&self, _: &Mesh<T, D>) -> NitscheAtBoundary {
+        NitscheAtBoundary { between_cells: 0.0 }
+    }
+}
+
+/// Broken linears, over-penalised between cells: consistent on the boundary only.
+struct OverPenaltyWithNitsche;
+
+impl<T: Real, const D: usize> Scheme<T, D> for OverPenaltyWithNitsche {
+    type Element = Broken<P1>;
+    type Facet = NitscheAtBoundary;
+    const DIRICHLET: DirichletBy = DirichletBy::FacetForm;
+    const CONSISTENT: bool = false;
+    fn name(&self) -> &str {
+        "over-penalty-with-nitsche"
+    }
+    fn facet(&self, _: &Mesh<T, D>) -> NitscheAtBoundary {
+        NitscheAtBoundary { between_cells: 10.0 }
+    }
+}
+
+/// All laws hold in every dimension; the patch test tells the two apart.
+#[test]
+fn no_flux_inside_and_nitsche_on_the_boundary_is_one_form() {
+    fn on<const D: usize>() {
+        let nitsche = check_scheme::<f64, D, _>(&Nitsche).unwrap_or_else(|e| panic!("{e}"));
+        assert!(nitsche.consistency.declared && nitsche.consistency.error < 1e-12, "{nitsche}");
+        let broken = check_scheme::<f64, D, _>(&OverPenaltyWithNitsche);
+        let broken = broken.unwrap_or_else(|e| panic!("{e}"));
+        assert!(!broken.consistency.declared && broken.orders.h1 > 0.75, "{broken}");
+    }
+    on::<1>();
+    on::<2>();
+    on::<3>();
+    let report = Study::<f64, 2>::new(scenes::radial(1.0))
+        .scheme(ConformingP1)
+        .scheme(Nitsche)
+        .scheme(OverPenaltyWithNitsche)
+        .levels([16, 32])
+        .run()
+        .unwrap();
+    for row in report.rows.iter().filter(|row| row.level == 32) {
+        assert!(row.converged() && row.certificate.largest() < 1e-9, "{}", row.scheme);
+        let order = row.order.h1.unwrap();
+        assert!((0.93..1.07).contains(&order), "{}: {order:.3}", row.scheme);
+    }
+}
+
+/// Interior penalty with the weight in the formula instead of in the penalty, so that it differs from
+/// facet to facet.
+struct WeightInFormula(f64);
+
+impl<T: Real, const D: usize> FacetForm<T, D> for WeightInFormula {
+    fn uses_flux(&self) -> bool {
+        true
+    }
+    fn penalty(&self, _: &FacetView<T, D>) -> T {
+        T::lit(1.0)
+    }
+    fn integrand(&self, facet: &FacetView<T, D>, v: Trace<T>, u: Trace<T>, penalty: T) -> T {
+        let weight = T::lit(self.0) * facet.coefficient() / facet.diameter();
+        weight * penalty * u.jump * v.jump - u.flux * v.jump - v.flux * u.jump
+    }
+}
+
+struct SipgByFormula<E>(E);
+
+impl<T: Real, const D: usize, E: ReferenceElement<T, D>> Scheme<T, D> for SipgByFormula<E> {
+    type Element = Broken<E>;
+    type Facet = WeightInFormula;
+    const DIRICHLET: DirichletBy = DirichletBy::FacetForm;
+    fn name(&self) -> &str {
+        "sipg-by-formula"
+    }
+    fn facet(&self, _: &Mesh<T, D>) -> WeightInFormula {
+        WeightInFormula(30.0)
+    }
+}
+
+/// A formula that differs between facets is read off on each of them: matrix, load and energy are
+/// those of the penalty.
+#[test]
+fn a_formula_may_differ_from_facet_to_facet() {
+    fn check<const D: usize, E: ReferenceElement<f64, D>>(element: E) {
+        let sides = [[BoundaryPart::Dirichlet, BoundaryPart::Neumann]; D];
+        let mut upper = Point::repeat(1.0);
+        upper[0] = 1.7;
+        let mesh = Mesh::<f64, D>::kuhn_box(&BoxDomain::new(Point::zeros(), upper, sides), [3; D])
+            .unwrap();
+        let problem = Problem::new()
+            .coefficient(|x: &Point<f64, D>| 1.0 + 3.0 * x[0])
+            .exact(|x: &Point<f64, D>| x[0] * x[D - 1], |_| Point::repeat(1.0));
+        let penalty = PenaltyRule::Diameter(30.0);
+        let known = Sipg { penalty, ..Sipg::default() }.on(element);
+        let known = Discretisation::new(&known, &problem, &mesh, Default::default()).unwrap();
+        let own = SipgByFormula(element);
+        let own = Discretisation::new(&own, &problem, &mesh, Default::default()).unwrap();
+        let [a, b] = [&known, &own].map(|d| d.inequality().unwrap());
+        let largest = a.matrix.values.iter().fold(0.0, |m: f64, v| m.max(v.abs()));
+        for (a, b) in a.matrix.values.iter().zip(&b.matrix.values) {
+            assert!((a - b).abs() < 1e-13 * largest, "{D}D: {a} and {b}");
+        }
+        for (a, b) in a.load.iter().zip(&b.load) {
+            assert!((a - b).abs() < 1e-13 * largest, "{D}D, load: {a} and {b}");
+        }
+        let u: Vec<f64> = (0..a.size()).map(|i| ((i * 7) % 5) as f64).collect();
+        let [a, b] = [&known, &own].map(|d| d.errors(&u).unwrap().energy.unwrap());
+        assert!((a / b - 1.0).abs() < 1e-12, "{D}D, energy: {a} and {b}");
+    }
+    check::<1, _>(P1);
+    check::<2, _>(P1);
+    check::<3, _>(P1);
+    check::<1, _>(P2);
+    check::<2, _>(P2);
+    check::<3, _>(P2);
+}
