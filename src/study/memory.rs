@@ -72,7 +72,8 @@ pub(super) fn estimate(
     let constant = if layout.is_broken() {
         constants[2] * (layout.cell as f64 / (dimension + 1) as f64).powi(2)
     } else if layout.edge > 0 {
-        constants[3]
+        let quadratics = (dimension + 1) * (dimension + 2) / 2;
+        constants[3] * (layout.per_cell(dimension) as f64 / quadratics as f64).powi(2)
     } else if layout.facet > 0 {
         constants[1]
     } else {

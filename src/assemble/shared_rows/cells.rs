@@ -2,7 +2,7 @@
 
 use std::marker::PhantomData;
 
-use crate::assemble::local::zero_local;
+use crate::assemble::local::{Local, zero_local};
 use crate::assemble::space::Space;
 use crate::assemble::space::metric::{CellMetric, shape};
 use crate::element::{MAX_BASIS, ReferenceElement};
@@ -74,7 +74,12 @@ impl<'s, 'a, T: Real, const D: usize> CellMatrices<'s, 'a, T, D> {
 
     /// Writes the matrix of a cell.
     #[inline(always)]
-    fn write<E: ReferenceElement<T, D>>(&self, cell: usize, out: &mut Triangle<T>) {
+    fn write<E: ReferenceElement<T, D>>(
+        &self,
+        cell: usize,
+        out: &mut Triangle<T>,
+        local: &mut Local<T>,
+    ) {
         let (volume, shape) = shape(self.space.mesh, cell, self.space.alpha(cell));
         let mut products = [T::lit(0.0); PAIRS];
         for (product, (k, l)) in products.iter_mut().zip(pairs_of::<D>()) {
@@ -88,8 +93,8 @@ impl<'s, 'a, T: Real, const D: usize> CellMatrices<'s, 'a, T, D> {
             out[place] = sum;
         }
         if let Some(reaction) = &self.space.reaction {
-            let mut local = zero_local();
-            reaction.add(self.space.mesh, cell, volume, &mut local);
+            local[..E::N].iter_mut().for_each(|row| row[..E::N].fill(T::lit(0.0)));
+            reaction.add(self.space.mesh, cell, volume, local);
             let mut place = 0;
             for i in 0..E::N {
                 for j in i..E::N {
@@ -136,12 +141,15 @@ impl<T: Real, const D: usize> CellMatrix<T> for Gradients<'_, '_, '_, T, D> {
 pub(crate) struct General<'c, 's, 'a, E, T: Real, const D: usize> {
     cells: &'c CellMatrices<'s, 'a, T, D>,
     triangle: Triangle<T>,
+    /// Workspace: the reaction term of a cell.
+    local: Local<T>,
     element: PhantomData<E>,
 }
 
 impl<'c, 's, 'a, E, T: Real, const D: usize> General<'c, 's, 'a, E, T, D> {
     pub fn new(cells: &'c CellMatrices<'s, 'a, T, D>) -> Self {
-        Self { cells, triangle: [T::lit(0.0); TRIANGLE], element: PhantomData }
+        let triangle = [T::lit(0.0); TRIANGLE];
+        Self { cells, triangle, local: zero_local(), element: PhantomData }
     }
 }
 
@@ -150,7 +158,7 @@ impl<E: ReferenceElement<T, D>, T: Real, const D: usize> CellMatrix<T>
 {
     #[inline(always)]
     fn of_cell(&mut self, cell: usize) {
-        self.cells.write::<E>(cell, &mut self.triangle);
+        self.cells.write::<E>(cell, &mut self.triangle, &mut self.local);
     }
     #[inline(always)]
     fn entry(&self, i: usize, j: usize) -> T {

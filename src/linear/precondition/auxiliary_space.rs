@@ -8,13 +8,11 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use super::multigrid::Multigrid;
 use super::preconditioner::Preconditioner;
 use crate::algebra::{RectangularMatrix, SparseMatrix, Support};
+use crate::element::MAX_BASIS;
 use crate::linear::direct::FactorError;
 use crate::memory::in_large_pages;
 use crate::parallel::vectors::{for_each_chunk, for_each_chunk_of_groups, zeros};
 use crate::real::Real;
-
-/// Largest number of unknowns of a cell.
-const MAX_CELL_SIZE: usize = 20;
 
 /// The preconditioner `D^-1 + P C P^T` of a symmetric matrix `A`.
 ///
@@ -57,7 +55,7 @@ impl<T: Real> Preconditioner<T> for AuxiliarySpace<'_, T> {
 
 /// One if cells share all unknowns. If cells own all unknowns: the number `n` of unknowns at the
 /// beginning of the list that belong to the first cell, provided that `n` is at most
-/// [`MAX_CELL_SIZE`] and the list consists of groups of `n` consecutive unknowns, each with the
+/// [`MAX_BASIS`] and the list consists of groups of `n` consecutive unknowns, each with the
 /// same cell. `None` for every other list, among them the empty one.
 ///
 /// Whether two groups belong to different cells is not examined.
@@ -72,7 +70,7 @@ pub(crate) fn unknowns_per_cell(supports: &[Support]) -> Option<usize> {
             && chunk[0].cell().is_some()
             && chunk.iter().all(|p| p.cell() == chunk[0].cell())
     };
-    (size <= MAX_CELL_SIZE && supports.chunks(size).all(is_one_cell)).then_some(size)
+    (size <= MAX_BASIS && supports.chunks(size).all(is_one_cell)).then_some(size)
 }
 
 /// The correction `P C P^T r` by conforming linear functions that vanish at the vertices in the
