@@ -23,7 +23,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     println!("{}, {} unknowns", u.outcome(), u.values().len());
     println!("{:?} of them in contact, {:?} active sets", u.active(), u.outer());
     println!("largest violation {:.1e}", u.certificate().largest());
-    println!("value in the middle: {:?}", u.value_at(&Point::from([1.0, 0.5])));
+    println!("value at (1, 0.5): {:?}", u.value_at(&Point::from([1.0, 0.5])));
     let sipg = solve(&plate, &meshes, &Sipg::default())?;
     println!("L2 distance to SIPG: {:?}", u.difference(&sipg)?.l2);
     u.write_vtu("target/one_problem/plate.vtu")?;

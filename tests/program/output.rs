@@ -25,6 +25,21 @@ fn the_list_names_everything() {
 }
 
 #[test]
+fn solvers_stand_side_by_side() {
+    let scratch = Scratch::new("solvers");
+    let solvers = ["active-set", "monotone-multigrid"];
+    let report = scratch.report(&format!(
+        "--scene radial-2d --scheme p1 --levels 4,8 --quiet --solver {}",
+        solvers.join(",")
+    ));
+    let found: Vec<&str> = rows(&report).iter().map(|r| r["solver"].as_str().unwrap()).collect();
+    assert_eq!(found, [solvers[0], solvers[0], solvers[1], solvers[1]]);
+    for solver in solvers {
+        assert!(scratch.0.join(format!("out/radial-2d-p1-{solver}.vtu")).exists(), "{solver}");
+    }
+}
+
+#[test]
 fn output_goes_where_it_is_asked_to() {
     let scratch = Scratch::new("output");
     let small = "--scene radial-1d --scheme p1 --levels 4";
