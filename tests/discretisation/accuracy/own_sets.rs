@@ -53,8 +53,8 @@ fn own_sets_stand_beside_those_of_the_library() {
     let mut checks = Checks::default();
     for row in &fine {
         checks.certified(row, 1e-9);
+        // measured: 1.022, 1.004, 1.008, 1.004, 0.986
         let order = row.order.h1.unwrap();
-        println!("{}: {order:.4}", label(row));
         checks.that((0.95..1.05).contains(&order), || format!("{}: {order:.3}", label(row)));
     }
     checks.finish();
