@@ -66,7 +66,14 @@ fn write_scene(f: &mut impl fmt::Write, scene: &str, rows: &[&Row]) -> fmt::Resu
 fn heading(rows: &[&Row]) -> String {
     let solvers = distinct(rows.iter().map(|r| format!("{}/{}", r.solver, r.linear)));
     let mut text = format!("solver {}", solvers.join(", "));
-    let mut promises: Vec<(String, Vec<&str>)> = Vec::new();
+    let name = |row: &Row| {
+        let is_other = |r: &&Row| r.scheme == row.scheme && r.constraint != row.constraint;
+        match rows.iter().any(is_other) {
+            true => format!("{}:{}", row.scheme, row.constraint),
+            false => row.scheme.clone(),
+        }
+    };
+    let mut promises: Vec<(String, Vec<String>)> = Vec::new();
     for row in rows {
         let expected = row.expected_order;
         let both = [("L2", expected.l2), ("H1", expected.h1)];
@@ -77,14 +84,13 @@ fn heading(rows: &[&Row]) -> String {
         }
         let known = known.join(" ");
         match promises.iter_mut().find(|(k, _)| *k == known) {
-            Some((_, schemes)) if schemes.contains(&row.scheme.as_str()) => {}
-            Some((_, schemes)) => schemes.push(&row.scheme),
-            None => promises.push((known, vec![&row.scheme])),
+            Some((_, schemes)) if schemes.contains(&name(row)) => {}
+            Some((_, schemes)) => schemes.push(name(row)),
+            None => promises.push((known, vec![name(row)])),
         }
     }
     // Schemes need naming only where some are promised something else, or nothing.
-    let all =
-        promises.len() == 1 && rows.iter().all(|r| promises[0].1.contains(&r.scheme.as_str()));
+    let all = promises.len() == 1 && rows.iter().all(|r| promises[0].1.contains(&name(r)));
     let promises: Vec<String> = promises
         .into_iter()
         .map(
