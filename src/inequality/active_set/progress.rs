@@ -13,7 +13,7 @@ const MAX_REPEATS: usize = 3;
 /// Why an active set iteration does not continue.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Obstruction {
-    /// The active set has occurred before, with an accurate solution.
+    /// The active set has occurred before, and its system was solved accurately.
     Cycle,
     /// The number of state changes has not halved, or the merit has not decreased, for too long.
     Stagnation,
@@ -33,8 +33,8 @@ pub(crate) struct ProgressMonitor {
     patience: Patience,
     /// The fingerprint of the present active set; see [`fingerprint`].
     fingerprint: u128,
-    /// The fingerprints of all active sets that have occurred.
-    seen: Vec<u128>,
+    /// The fingerprints of the preceding active sets, each with whether its system was solved accurately.
+    seen: Vec<(u128, bool)>,
     next_is_accurate: bool,
     all_are_accurate: bool,
     /// The number of systems since the smallest merit, or since all are solved accurately.
@@ -51,11 +51,10 @@ impl ProgressMonitor {
     /// The progress before the first system of contact states, which is solved accurately if
     /// `is_linear`: no unknown has an inequality as bound.
     pub fn new(states: &[Contact], patience: Patience, is_linear: bool) -> Self {
-        let fingerprint = fingerprint(states);
         Self {
             patience,
-            fingerprint,
-            seen: vec![fingerprint],
+            fingerprint: fingerprint(states),
+            seen: Vec::new(),
             next_is_accurate: is_linear,
             all_are_accurate: false,
             steps_without_improvement: 0,
@@ -97,10 +96,10 @@ impl ProgressMonitor {
         if changes.is_empty() {
             return Ok(());
         }
-        let has_returned = self.record(changes, before);
-        self.next_is_accurate |= has_returned;
-        if has_returned && is_accurate {
-            return Err(Obstruction::Cycle);
+        match self.record(changes, before, is_accurate) {
+            Some(true) => return Err(Obstruction::Cycle),
+            Some(false) => self.next_is_accurate = true,
+            None => {}
         }
         if self.has_stagnated(changes.len()) {
             return Err(Obstruction::Stagnation);
@@ -127,8 +126,16 @@ impl ProgressMonitor {
         self.patience.halving.is_some_and(|steps| self.steps_without_halving >= steps)
     }
 
-    /// Records the active set that follows from state changes; true if it has occurred before.
-    fn record(&mut self, changes: &[(u32, Contact)], before: &[Contact]) -> bool {
+    /// Records the present active set and the one that follows from state changes. If the latter has
+    /// occurred before: whether its system was solved accurately, so that the iteration would repeat
+    /// itself.
+    fn record(
+        &mut self,
+        changes: &[(u32, Contact)],
+        before: &[Contact],
+        is_accurate: bool,
+    ) -> Option<bool> {
+        self.seen.push((self.fingerprint, is_accurate));
         for &(i, contact) in changes {
             let i = i as usize;
             self.fingerprint = self
@@ -136,9 +143,8 @@ impl ProgressMonitor {
                 .wrapping_sub(state_key(i, before[i]))
                 .wrapping_add(state_key(i, contact));
         }
-        let has_returned = self.seen.contains(&self.fingerprint);
-        self.seen.push(self.fingerprint);
-        has_returned
+        let earlier = self.seen.iter().filter(|(seen, _)| *seen == self.fingerprint);
+        earlier.map(|(_, is_accurate)| *is_accurate).reduce(|a, b| a || b)
     }
 }
 
