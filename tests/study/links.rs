@@ -263,6 +263,11 @@ fn built_documentation_has_no_dead_link() {
             } else {
                 normal(&file.parent().unwrap().join(target))
             };
+            // no reader follows it: the script with implementors in other crates, which rustdoc writes
+            // only for traits that have implementors in this one
+            if path.starts_with(doc.join("trait.impl")) {
+                continue;
+            }
             let lives = path.starts_with(&doc) && path.is_file();
             let anchored =
                 wanted.is_empty() || pages.get(&path).is_none_or(|page| has_anchor(page, wanted));
