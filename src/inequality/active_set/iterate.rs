@@ -148,6 +148,11 @@ impl<'a, T: Real> Iterate<'a, T> {
         is_best
     }
 
+    /// Forgets the best iterate: the next one is the best.
+    pub fn forget_best(&mut self) {
+        self.best.merit = f64::INFINITY;
+    }
+
     /// The values and jump multipliers of the best iterate.
     pub fn best_values(&self) -> (&[T], &[T]) {
         (&self.best.values, &self.best.jump_multipliers)

@@ -269,6 +269,10 @@ impl<'a, T: Real> Solve<'_, 'a, T> {
     /// The active set iteration with factors.
     fn run_direct(&mut self) -> End {
         let patience = self.patience(Stage::DirectActiveSet);
+        if self.direct.is_none() {
+            // iterates of a Krylov method have no jump multipliers
+            self.iterate.forget_best();
+        }
         let refinements = self.settings.refinements;
         let new = || DirectSolver::new(self.inequality, refinements);
         let solver = self.direct.get_or_insert_with(new);
