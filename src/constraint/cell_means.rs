@@ -19,6 +19,6 @@ impl ConstraintSet for CellMeans {
         Some(Basis::CellMean)
     }
     fn in_domain(&self, node: &Node, _: usize) -> Option<BoundBy> {
-        (node.is_mean() && node.entity() == Entity::Cell).then_some(BoundBy::Mean)
+        (node.is_mean() && node.entity() == Entity::Cell).then_some(BoundBy::Functional)
     }
 }

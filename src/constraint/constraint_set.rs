@@ -13,7 +13,7 @@ pub enum BoundBy {
     Value,
     /// By the functional of the node, applied to the datum: the mean over the facet or cell, the sum
     /// of values at points times weights, at a node that is a point the value there.
-    Mean,
+    Functional,
 }
 
 /// A constraint set: which unknowns an inequality binds, and by what.
@@ -42,7 +42,7 @@ pub trait ConstraintSet: Send + Sync {
     /// By what a Signorini condition binds the unknown of a node, which lies on the contact facet;
     /// none if it does not. By default the nodes that obstacles bind, by the mean of the gap.
     fn on_contact(&self, node: &Node, dimension: usize) -> Option<BoundBy> {
-        self.in_domain(node, dimension).map(|_| BoundBy::Mean)
+        self.in_domain(node, dimension).map(|_| BoundBy::Functional)
     }
     /// Whether the orders that a scheme promises with bounds at all nodes remain proven with this
     /// set. By default only where no inequality binds.

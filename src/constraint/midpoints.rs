@@ -26,7 +26,7 @@ impl ConstraintSet for Midpoints {
     }
     fn on_contact(&self, node: &Node, dimension: usize) -> Option<BoundBy> {
         let is_vertex = matches!(node.entity(), Entity::Vertex(_));
-        (node.is_midpoint() || (dimension < 3 && is_vertex)).then_some(BoundBy::Mean)
+        (node.is_midpoint() || (dimension < 3 && is_vertex)).then_some(BoundBy::Functional)
     }
     fn keeps_orders(&self, setting: &Setting) -> bool {
         !(setting.obstacle && setting.dimension != 2 || setting.contact && setting.dimension == 3)

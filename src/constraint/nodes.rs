@@ -26,7 +26,7 @@ impl ConstraintSet for Nodes {
         }
     }
     fn in_domain(&self, node: &Node, _: usize) -> Option<BoundBy> {
-        Some(if node.is_facet_mean() { BoundBy::Value } else { BoundBy::Mean })
+        Some(if node.is_facet_mean() { BoundBy::Value } else { BoundBy::Functional })
     }
     fn keeps_orders(&self, _: &Setting) -> bool {
         true

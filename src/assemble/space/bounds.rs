@@ -92,7 +92,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         datum: &Field<D>,
     ) -> Result<f64, Error> {
         match by {
-            BoundBy::Mean => self.at_node(terms, cell, name, &**datum),
+            BoundBy::Functional => self.at_node(terms, cell, name, &**datum),
             BoundBy::Value => {
                 let x = self.node_point(cell, node);
                 data::finite(datum(&x), name, &x, cell)

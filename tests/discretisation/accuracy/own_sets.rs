@@ -29,7 +29,7 @@ impl ConstraintSet for ByMeans {
         Some(Basis::FacetMeans)
     }
     fn in_domain(&self, node: &Node, _: usize) -> Option<BoundBy> {
-        matches!(node.entity(), Entity::Facet(_)).then_some(BoundBy::Mean)
+        matches!(node.entity(), Entity::Facet(_)).then_some(BoundBy::Functional)
     }
 }
 
