@@ -189,11 +189,17 @@ impl<'a, T: Real> Solve<'_, 'a, T> {
         }
     }
 
-    /// Whether the interior point method comes next.
+    /// Whether the interior point method comes next: where it comes first whatever the limit of systems,
+    /// else only if the limit leaves room for all its steps.
     fn may_run_interior_point(&self) -> bool {
-        self.settings.globalisation != Globalisation::Never
-            && self.interior_point_may_improve
-            && self.iterate.outer + MAX_STEPS <= self.settings.max_outer
+        match self.settings.globalisation {
+            Globalisation::Never => false,
+            Globalisation::InteriorPointFirst if self.interior_point_runs == 0 => true,
+            _ => {
+                self.interior_point_may_improve
+                    && self.iterate.outer + MAX_STEPS <= self.settings.max_outer
+            }
+        }
     }
 
     /// Runs a stage. Returns what it found if the solve ends with it; else stores how it ended.

@@ -5,7 +5,7 @@ use unilateral::algebra::{Bound, Inequality};
 use unilateral::assemble::{DataQuadrature, Discretisation};
 use unilateral::constraint::constraint_set_by_name;
 use unilateral::inequality::{
-    ActiveSet, Globalisation, InequalitySolver, MonotoneMultigrid, Outcome, certify,
+    ActiveSet, Globalisation, InequalitySolver, MonotoneMultigrid, Outcome, Stage, certify,
 };
 use unilateral::linear::LinearMethod;
 use unilateral::prelude::*;
@@ -177,6 +177,18 @@ fn curved_obstacles_converge_on_fine_meshes() {
         converges(scenes::ball_2d(), wopsip(10.0), level, 25);
         converges(scenes::ball_2d(), Wopsip::default(), level, 25);
     }
+}
+
+/// A limit of systems below the largest number of its steps does not keep the interior point method from
+/// being the first stage.
+#[test]
+fn the_interior_point_method_comes_first_within_any_limit() {
+    let problem = of(&scenes::biactive_half_2d(), &Sipg::default(), 8);
+    let solver = ActiveSet::default().globalisation(Globalisation::InteriorPointFirst);
+    let found = solver.max_outer(30).solve(&problem);
+    assert_eq!(found.outcome, Outcome::Converged);
+    assert_eq!(found.stages[0].stage, Stage::InteriorPoint);
+    assert!((1..=30).contains(&found.outer), "{}", found.outer);
 }
 
 /// The interior point method, and what starts from it, do not mind large penalties. Quadratics have
