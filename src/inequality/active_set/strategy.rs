@@ -68,8 +68,6 @@ struct Solve<'s, 'a, T: Real> {
     stages: Vec<StageRun>,
     /// How the last stage ended; `None` before the first one.
     end: Option<End>,
-    /// The number of runs of the interior point method.
-    interior_point_runs: usize,
     /// Whether another run of the interior point method may find a better active set: before the first
     /// run, and after one that identified the active set before the limit of rounding.
     interior_point_may_improve: bool,
@@ -116,7 +114,6 @@ pub(crate) fn solve<T: Real>(
         direct: None,
         stages: Vec::new(),
         end: None,
-        interior_point_runs: 0,
         interior_point_may_improve: true,
     };
     let mut found = None;
@@ -180,13 +177,17 @@ impl<'a, T: Real> Solve<'_, 'a, T> {
     /// Whether an active set iteration with factors comes next: not where the interior point method
     /// comes first, and after an interior point method only where one ran.
     fn may_run_direct(&self) -> bool {
-        let ran = |stage| self.stages.iter().filter(|run| run.stage == stage).count();
+        let interior_point_runs = self.runs_of(Stage::InteriorPoint);
+        let direct_runs = self.runs_of(Stage::DirectActiveSet);
         match self.settings.globalisation {
-            Globalisation::InteriorPointFirst => {
-                self.interior_point_runs > ran(Stage::DirectActiveSet)
-            }
-            _ => self.interior_point_runs == ran(Stage::DirectActiveSet),
+            Globalisation::InteriorPointFirst => interior_point_runs > direct_runs,
+            _ => interior_point_runs == direct_runs,
         }
+    }
+
+    /// The number of finished runs of a stage.
+    fn runs_of(&self, stage: Stage) -> usize {
+        self.stages.iter().filter(|run| run.stage == stage).count()
     }
 
     /// Whether the interior point method comes next: where it comes first whatever the limit of systems,
@@ -194,7 +195,7 @@ impl<'a, T: Real> Solve<'_, 'a, T> {
     fn may_run_interior_point(&self) -> bool {
         match self.settings.globalisation {
             Globalisation::Never => false,
-            Globalisation::InteriorPointFirst if self.interior_point_runs == 0 => true,
+            Globalisation::InteriorPointFirst if self.runs_of(Stage::InteriorPoint) == 0 => true,
             _ => {
                 self.interior_point_may_improve
                     && self.iterate.outer + MAX_STEPS <= self.settings.max_outer
@@ -296,16 +297,14 @@ impl<'a, T: Real> Solve<'_, 'a, T> {
     /// Replaces the iterate by the result of the interior point method, which starts from the best
     /// iterate. If it finds no active set, only the number of linear systems changes.
     fn run_interior_point(&mut self) {
-        let refinements = self.settings.refinements;
-        let new = || DirectSolver::new(self.inequality, refinements);
-        let condensation = self.direct.get_or_insert_with(new).condensation();
-        let identification = match self.interior_point_runs {
+        let identification = match self.runs_of(Stage::InteriorPoint) {
             0 => Identification::Early,
             _ => Identification::Final,
         };
-        self.interior_point_runs += 1;
-        let (values, jump_multipliers) = self.iterate.best_values();
-        let start = (values, jump_multipliers);
+        let refinements = self.settings.refinements;
+        let new = || DirectSolver::new(self.inequality, refinements);
+        let condensation = self.direct.get_or_insert_with(new).condensation();
+        let start = self.iterate.best_values();
         let mut method = InteriorPoint::new(self.inequality, condensation, start, identification);
         let contact = method.run();
         let (values, jump_multipliers, steps) =
@@ -343,7 +342,7 @@ impl<'a, T: Real> Solve<'_, 'a, T> {
         if !self.may_run_interior_point() {
             return Patience { halving: None, improvement: usize::MAX };
         }
-        let halving = match (self.interior_point_runs, self.end) {
+        let halving = match (self.runs_of(Stage::InteriorPoint), self.end) {
             (0, Some(End::Obstruction(Obstruction::Stagnation))) => 0,
             (0, _) => stagnation_steps,
             _ => 1,
