@@ -77,8 +77,8 @@ pub struct Setting {
 }
 
 impl Setting {
-    /// The linear problem in this dimension, with a solution of this regularity, of whose dual
-    /// nothing is known.
+    /// The setting of a linear problem: dimension and regularity of the solution. The dual problem is
+    /// not assumed to be regular.
     #[must_use]
     pub const fn new(dimension: usize, regularity: Regularity) -> Self {
         let (obstacle, contact, regular_dual) = (false, false, false);

@@ -250,8 +250,8 @@ impl<'a, T: Real> MultigridIterate<'a, T> {
         Ok(curvature * length.to_f64().powi(2))
     }
 
-    /// Marks fixed and active unknowns as eliminated and computes the residual: zero on these,
-    /// `b - A u` on all others.
+    /// Marks fixed and active unknowns as eliminated and computes the residual: zero on eliminated
+    /// unknowns, `b - A u` on inactive ones.
     fn eliminate_active(&mut self) {
         let Inequality { matrix, load, bounds, .. } = self.inequality;
         for (i, bound) in bounds.iter().enumerate() {

@@ -320,7 +320,7 @@ pub fn solve<'a, T: Real, const D: usize>(
 fn unknowns<T: Real, const D: usize>(mesh: &Mesh<T, D>, layout: Layout) -> usize {
     let facets = ((D + 1) * mesh.n_cells() + mesh.boundary().len()) / 2;
     let (vertices, cells) = (mesh.vertices().len(), mesh.n_cells());
-    // in space by Euler's formula for a ball: near enough elsewhere
+    // in space Euler's formula for a ball, which estimates the number of edges of other domains
     let edges = match D {
         1 => cells,
         2 => facets,
