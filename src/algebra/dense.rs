@@ -1,4 +1,4 @@
-//! Inverse and rank of small dense matrices, stored by rows.
+//! The inverse of a small dense matrix, stored by rows, and orthonormal bases.
 
 /// Inverts an `n` by `n` matrix in place by Gauss-Jordan elimination with partial pivoting. Returns
 /// whether the determinant is positive, `None` if the matrix is singular or an entry is not finite.
@@ -42,23 +42,30 @@ pub(crate) fn invert_in_place(a: &mut [f64], n: usize) -> Option<bool> {
     Some(is_positive)
 }
 
-/// The rank of a matrix by Gaussian elimination with partial pivoting; pivots of absolute value up to
-/// `tolerance` are zero.
-pub(crate) fn rank(mut rows: Vec<Vec<f64>>, tolerance: f64) -> usize {
-    let mut rank = 0;
-    for column in 0..rows.first().map_or(0, Vec::len) {
-        let size = |row: &usize| rows[*row][column].abs();
-        let pivot = (rank..rows.len()).max_by(|a, b| size(a).total_cmp(&size(b)));
-        let Some(pivot) = pivot.filter(|row| size(row) > tolerance) else { continue };
-        rows.swap(rank, pivot);
-        let (done, rest) = rows.split_at_mut(rank + 1);
-        for row in rest {
-            let factor = row[column] / done[rank][column];
-            row.iter_mut().zip(&done[rank]).for_each(|(a, b)| *a -= factor * b);
+/// Appends a vector to the orthonormal vectors `basis`, one after the other, made orthonormal to them;
+/// leaves the basis as it is, and returns `false`, where the part of the vector orthogonal to the basis
+/// has a norm of at most `tolerance`. Gram-Schmidt orthogonalisation, twice for rounding.
+pub(crate) fn extend_basis(
+    basis: &mut Vec<f64>,
+    vector: impl Iterator<Item = f64>,
+    tolerance: f64,
+) -> bool {
+    let start = basis.len();
+    basis.extend(vector);
+    let (basis_vectors, rest) = basis.split_at_mut(start);
+    for _ in 0..2 {
+        for other in basis_vectors.chunks_exact(rest.len().max(1)) {
+            let product = rest.iter().zip(other).fold(0.0, |s, (a, b)| s + a * b);
+            rest.iter_mut().zip(other).for_each(|(a, b)| *a -= product * b);
         }
-        rank += 1;
     }
-    rank
+    let norm = rest.iter().fold(0.0, |s, a| s + a * a).sqrt();
+    let is_new = norm > tolerance;
+    rest.iter_mut().for_each(|a| *a /= norm);
+    if !is_new {
+        basis.truncate(start);
+    }
+    is_new
 }
 
 #[cfg(test)]
@@ -66,12 +73,16 @@ mod tests {
     use super::*;
 
     #[test]
-    fn dependent_rows_do_not_count() {
-        let rows = vec![vec![0.0, 1.0, 1.0], vec![1.0, 0.0, 1.0], vec![1.0, -1.0, 1e-12]];
-        assert_eq!(rank(rows.clone(), 1e-8), 2);
-        assert_eq!(rank(rows, 1e-14), 3);
-        assert_eq!(rank(vec![vec![0.0; 3]; 2], 0.0), 0);
-        assert_eq!(rank(Vec::new(), 0.0), 0);
+    fn dependent_vectors_do_not_count() {
+        let rank = |vectors: &[[f64; 3]], tolerance: f64| {
+            let mut basis = Vec::new();
+            let mut is_new = |v: &&[f64; 3]| extend_basis(&mut basis, v.iter().copied(), tolerance);
+            vectors.iter().filter(&mut is_new).count()
+        };
+        let vectors = [[0.0, 1.0, 1.0], [1.0, 0.0, 1.0], [1.0, -1.0, 1e-12]];
+        assert_eq!(rank(&vectors, 1e-8), 2);
+        assert_eq!(rank(&vectors, 1e-14), 3);
+        assert_eq!(rank(&[[0.0; 3]; 2], 0.0), 0);
     }
 
     #[test]

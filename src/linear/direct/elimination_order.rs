@@ -140,6 +140,27 @@ impl EliminationOrder {
         self.unknowns
     }
 
+    /// The order of all rows of a matrix, given by its lower triangle, whose first rows have this order:
+    /// every other row comes directly after the last of the first rows in whose columns it has an entry.
+    pub(crate) fn with_rows_after_their_columns<T: Real>(
+        &self,
+        lower: &SparseMatrix<T>,
+    ) -> Vec<u32> {
+        let n = self.unknowns.len();
+        let mut positions = vec![0; n];
+        self.unknowns.iter().enumerate().for_each(|(k, &i)| positions[i as usize] = k);
+        let mut rows: Vec<(usize, u32)> = (n..lower.size())
+            .map(|i| {
+                let columns = lower.row(i).0.iter().filter_map(|&j| positions.get(j as usize));
+                (columns.max().copied().unwrap_or(0), i as u32)
+            })
+            .collect();
+        rows.extend(self.unknowns.iter().enumerate().map(|(k, &i)| (k, i)));
+        // rows have larger numbers than the unknown they follow
+        rows.sort_unstable();
+        rows.into_iter().map(|(_, i)| i).collect()
+    }
+
     /// The restriction of the order to the unknowns `free` of a matrix with `size` rows: positions in
     /// `free` in the order of elimination. Unknowns of `free` that the order lacks come last.
     ///

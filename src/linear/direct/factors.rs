@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use faer::MatMut;
 use faer::dyn_stack::{MemBuffer, MemStack};
+use faer::linalg::cholesky::ldlt::factor::LdltError;
 use faer::linalg::cholesky::llt::factor::LltError;
 use faer::sparse::linalg::LuError;
 use faer::sparse::linalg::cholesky::{
@@ -40,6 +41,7 @@ pub struct Factors<T> {
 enum Factorisation<T> {
     Empty,
     Cholesky { symbolic: Arc<SymbolicCholesky<u32>>, values: Vec<T> },
+    Quasidefinite { symbolic: Arc<SymbolicCholesky<u32>>, values: Vec<T> },
     Lu { symbolic: Box<SymbolicLu<u32>>, numeric: Box<NumericLu<u32, T>> },
 }
 
@@ -123,7 +125,8 @@ impl<T: Real> Factors<T> {
     /// factors.
     pub fn entries(&self) -> usize {
         match &self.factorisation {
-            Factorisation::Cholesky { values, .. } => values.len(),
+            Factorisation::Cholesky { values, .. }
+            | Factorisation::Quasidefinite { values, .. } => values.len(),
             Factorisation::Empty | Factorisation::Lu { .. } => 0,
         }
     }
@@ -153,6 +156,11 @@ impl<T: Real> Factors<T> {
                 let mut memory = MemBuffer::new(scratch);
                 kernels::cholesky_solve(symbolic, values, x, MemStack::new(&mut memory));
             }
+            Factorisation::Quasidefinite { symbolic, values } => {
+                let scratch = symbolic.solve_in_place_scratch::<T>(right_sides, PAR);
+                let mut memory = MemBuffer::new(scratch);
+                kernels::quasidefinite_solve(symbolic, values, x, MemStack::new(&mut memory));
+            }
             Factorisation::Lu { symbolic, numeric } => {
                 let scratch = symbolic.solve_transpose_in_place_scratch::<T>(right_sides, PAR);
                 let mut memory = MemBuffer::new(scratch);
@@ -174,6 +182,42 @@ impl<T: Real> Factors<T> {
             .map_err(|LltError::NonPositivePivot { .. }| FactorError::NotPositive)?;
         if pivots_are_significant(&symbolic, &values, &lower.diagonal()) {
             let factorisation = Factorisation::Cholesky { symbolic, values };
+            Ok(Self { size: lower.size(), factorisation })
+        } else {
+            Err(FactorError::Singular)
+        }
+    }
+
+    /// The factors `L D L^T` of a quasidefinite matrix, given by its lower triangle and the symbolic
+    /// factor of its pattern, without pivoting: the first `n_positive` pivots are positive, the others
+    /// negative (R. J. Vanderbei, SIAM J. Optim. 5 (1995), 100-113).
+    ///
+    /// # Errors
+    /// [`FactorError::Singular`] if a pivot has another sign or no significant digit, or
+    /// [`FactorError::OutOfMemory`].
+    pub(crate) fn quasidefinite(
+        lower: &Submatrix<T>,
+        n_positive: usize,
+        symbolic: &SymbolicFactor,
+    ) -> Result<Self, FactorError> {
+        if lower.size() == 0 {
+            return Ok(Self { size: 0, factorisation: Factorisation::Empty });
+        }
+        let (a, symbolic) = (transpose_view(lower), symbolic.symbolic_cholesky());
+        let mut values = Vec::new();
+        values.try_reserve_exact(symbolic.len_val()).map_err(|_| FactorError::OutOfMemory)?;
+        values.resize(symbolic.len_val(), T::lit(0.0));
+        let scratch = symbolic.factorize_numeric_ldlt_scratch::<T>(PAR, Default::default());
+        let mut memory = MemBuffer::try_new(scratch).map_err(|_| FactorError::OutOfMemory)?;
+        kernels::quasidefinite(&symbolic, a, &mut values, MemStack::new(&mut memory))
+            .map_err(|LdltError::ZeroPivot { .. }| FactorError::Singular)?;
+        let diagonal = lower.diagonal();
+        let is_significant = |i: usize, pivot: f64| {
+            let least = PIVOT_TOLERANCE * T::EPSILON * diagonal[i].to_f64();
+            pivot.is_finite() && if i < n_positive { pivot > least } else { pivot < 0.0 }
+        };
+        if all_pivots(&symbolic, &values, |i, pivot| is_significant(i, pivot.to_f64())) {
+            let factorisation = Factorisation::Quasidefinite { symbolic, values };
             Ok(Self { size: lower.size(), factorisation })
         } else {
             Err(FactorError::Singular)
@@ -290,24 +334,33 @@ fn pivots_are_significant<T: Real>(
     values: &[T],
     diagonal: &[T],
 ) -> bool {
-    let original = symbolic.perm().map(|permutation| permutation.arrays().0);
-    let is_significant = |j: usize, root: T| {
-        let a = diagonal[original.map_or(j, |original| original[j] as usize)].to_f64();
-        let root = root.to_f64();
+    all_pivots(symbolic, values, |i, root| {
+        let (a, root) = (diagonal[i].to_f64(), root.to_f64());
         // The comparison is false for numbers that are not finite.
         root.is_finite() && root * root > PIVOT_TOLERANCE * T::EPSILON * a
-    };
+    })
+}
+
+/// Whether a condition holds for every row of a matrix and the diagonal entry of its factor.
+fn all_pivots<T: Real>(
+    symbolic: &SymbolicCholesky<u32>,
+    values: &[T],
+    condition: impl Fn(usize, T) -> bool,
+) -> bool {
+    let original = symbolic.perm().map(|permutation| permutation.arrays().0);
+    let holds = |j: usize, pivot: T| condition(original.map_or(j, |rows| rows[j] as usize), pivot);
     match symbolic.raw() {
         SymbolicCholeskyRaw::Simplicial(simplicial) => {
             let starts = &simplicial.col_ptr()[..simplicial.ncols()];
-            starts.iter().enumerate().all(|(j, &start)| is_significant(j, values[start as usize]))
+            starts.iter().enumerate().all(|(j, &start)| holds(j, values[start as usize]))
         }
         SymbolicCholeskyRaw::Supernodal(supernodal) => {
+            // factors `L D L^T` are stored alike, with `D` on the diagonal
             let factor = SupernodalLltRef::<'_, u32, T>::new(supernodal, values);
             (0..supernodal.n_supernodes()).all(|s| {
                 let supernode = factor.supernode(s);
                 let block = supernode.val();
-                (0..block.ncols()).all(|k| is_significant(supernode.start() + k, block[(k, k)]))
+                (0..block.ncols()).all(|k| holds(supernode.start() + k, block[(k, k)]))
             })
         }
     }

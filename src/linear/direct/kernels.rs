@@ -1,10 +1,11 @@
 //! The numeric kernels of faer's sparse factorisations.
 
 use faer::dyn_stack::MemStack;
+use faer::linalg::cholesky::ldlt::factor::{LdltError, LdltRegularization};
 use faer::linalg::cholesky::llt::factor::{LltError, LltRegularization};
 use faer::sparse::SparseColMatRef;
 use faer::sparse::linalg::LuError;
-use faer::sparse::linalg::cholesky::{LltRef, SymbolicCholesky};
+use faer::sparse::linalg::cholesky::{LdltRef, LltRef, SymbolicCholesky};
 use faer::sparse::linalg::lu::{LuRef, NumericLu, SymbolicLu};
 use faer::{Conj, MatMut, Par, Side};
 
@@ -37,6 +38,33 @@ pub(crate) fn cholesky_solve<T: Real>(
     memory: &mut MemStack,
 ) {
     let factor = LltRef::<'_, u32, T>::new(symbolic, values);
+    factor.solve_in_place_with_conj(Conj::No, x, PAR, memory);
+}
+
+/// Sets `values` to the factors `L D L^T` of a quasidefinite matrix, given by its upper triangle.
+///
+/// # Errors
+/// A pivot is zero or not finite.
+pub(crate) fn quasidefinite<T: Real>(
+    symbolic: &SymbolicCholesky<u32>,
+    a: SparseColMatRef<'_, u32, T>,
+    values: &mut [T],
+    memory: &mut MemStack,
+) -> Result<(), LdltError> {
+    let (side, none) = (Side::Upper, LdltRegularization::default());
+    symbolic
+        .factorize_numeric_ldlt(values, a, side, none, PAR, memory, Default::default())
+        .map(|_| ())
+}
+
+/// Replaces the right-hand sides `x` by solutions, with the factors of a quasidefinite matrix.
+pub(crate) fn quasidefinite_solve<T: Real>(
+    symbolic: &SymbolicCholesky<u32>,
+    values: &[T],
+    x: MatMut<'_, T>,
+    memory: &mut MemStack,
+) {
+    let factor = LdltRef::<'_, u32, T>::new(symbolic, values);
     factor.solve_in_place_with_conj(Conj::No, x, PAR, memory);
 }
 

@@ -2,14 +2,15 @@
 //!
 //! `factors`: Cholesky and LU factors of a submatrix; `symbolic_factor`: the symbolic part of Cholesky;
 //! `repeated_cholesky`: matrices with the same pattern. `elimination_order` and `nested_dissection`:
-//! orders of elimination. `static_condensation`: factors of `K + M^T S M`. `kernels`: the numeric
-//! kernels of faer.
+//! orders of elimination. `static_condensation`, `null_directions`: factors of `K + M^T S M`.
+//! `kernels`: the numeric kernels of faer.
 
 mod elimination_order;
 mod error;
 mod factors;
 mod kernels;
 mod nested_dissection;
+mod null_directions;
 mod repeated_cholesky;
 mod static_condensation;
 mod symbolic_factor;

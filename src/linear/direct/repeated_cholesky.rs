@@ -1,6 +1,6 @@
 //! Cholesky factors of several matrices with the same pattern.
 
-use std::sync::OnceLock;
+use std::sync::{Mutex, OnceLock};
 
 use super::elimination_order::EliminationOrder;
 use super::error::FactorError;
@@ -17,6 +17,11 @@ pub(crate) struct RepeatedCholesky {
     points: Option<Vec<[f32; 3]>>,
     /// The symbolic factor; empty before the first factorisation.
     symbolic: OnceLock<SymbolicFactor>,
+    /// The order of elimination of the rows with positive pivots; empty before the first quasidefinite
+    /// matrix.
+    order: OnceLock<EliminationOrder>,
+    /// The symbolic factor of the last quasidefinite matrix, with the blocks of its last rows.
+    last_symbolic: Mutex<Option<(Vec<u32>, SymbolicFactor)>>,
 }
 
 impl RepeatedCholesky {
@@ -29,7 +34,7 @@ impl RepeatedCholesky {
             let jumps = (0..penalised.n_jumps()).filter(is_shared);
             jumps.map(|jump| centre_of_jump(penalised, jump, points)).collect()
         };
-        Self { points: points.map(centres), symbolic: OnceLock::new() }
+        Self { points: points.map(centres), ..Self::default() }
     }
 
     /// The Cholesky factor of a symmetric matrix, given by its lower triangle. All matrices must
@@ -46,6 +51,42 @@ impl RepeatedCholesky {
         let mut lower = Submatrix::from(lower);
         let symbolic = SymbolicFactor::new(&lower, Some(order.into_unknowns()))?;
         Factors::cholesky(&mut lower, self.symbolic.get_or_init(|| symbolic))
+    }
+
+    /// The factors `L D L^T` of a quasidefinite matrix, given by its lower triangle, with positive pivots
+    /// in the rows of `first` and negative ones in the rows after them. Each of these is eliminated after
+    /// the last row of `first` with which it is coupled. All matrices must have the same `first` up to
+    /// values; `blocks` determines the pattern of the other rows.
+    ///
+    /// # Errors
+    /// See [`FactorError`].
+    pub fn factor_quasidefinite<T: Real>(
+        &self,
+        first: &SparseMatrix<T>,
+        lower: SparseMatrix<T>,
+        blocks: &[u32],
+    ) -> Result<Factors<T>, FactorError> {
+        let n_positive = first.size();
+        let mut last = self.last_symbolic.lock().unwrap_or_else(|error| error.into_inner());
+        let symbolic = match last.take().filter(|(last, _)| last == blocks) {
+            Some((_, symbolic)) => symbolic,
+            None => {
+                let order = match self.order.get() {
+                    Some(order) => order,
+                    None => {
+                        let all: Vec<u32> = (0..n_positive as u32).collect();
+                        let order = EliminationOrder::new(first, &all, self.points.as_deref())?;
+                        self.order.get_or_init(|| order)
+                    }
+                };
+                let order = order.with_rows_after_their_columns(&lower);
+                SymbolicFactor::new(&Submatrix::from(lower.clone()), Some(order))?
+            }
+        };
+        let lower = Submatrix::from(lower);
+        let factors = Factors::quasidefinite(&lower, n_positive, &symbolic);
+        *last = Some((blocks.to_vec(), symbolic));
+        factors
     }
 }
 

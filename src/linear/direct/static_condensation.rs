@@ -15,18 +15,21 @@
 //! up to `O(1/s)`, the matrix of Crouzeix-Raviart elements: on triangles it has half as many
 //! unknowns as `K`, and its condition number is `O(h^-2)` for all weights.
 //!
-//! Where the means over the sides of a block are linearly dependent functions of its free unknowns
-//! (blocks with fixed unknowns; quadratic functions that vanish at both Gauss points of every edge),
-//! the block inverse contains weights beside stiffnesses. Weights of such blocks are cut off; iterative
-//! refinement by the caller restores the solution for the true weights.
+//! Where the means over the sides of a block are linearly dependent functions of its free unknowns,
+//! the block inverse contains weights beside stiffnesses. If that is so with all unknowns free (quadratic
+//! functions vanish at both Gauss points of every edge), the multipliers of [`NullDirections`] are further
+//! unknowns of the condensed system, which is quasidefinite then. If it is so in a few blocks only,
+//! because of fixed unknowns, weights of these blocks are cut off; iterative refinement by the caller
+//! restores the solution for the true weights.
 //!
 //! Source: static condensation of hybridised methods, B. Cockburn, J. Gopalakrishnan, R. Lazarov, SIAM
 //! J. Numer. Anal. 47 (2009), 1319-1365.
 
 use super::error::FactorError;
 use super::factors::Factors;
+use super::null_directions::NullDirections;
 use super::repeated_cholesky::RepeatedCholesky;
-use crate::algebra::dense::{invert_in_place, rank};
+use crate::algebra::dense::{extend_basis, invert_in_place};
 use crate::algebra::{JumpTerm, NO_INDEX, PenalisedMatrix, SparseMatrix};
 use crate::real::Real;
 
@@ -34,11 +37,9 @@ use crate::real::Real;
 /// `k` is the least positive diagonal entry of the stiffness of the block, `eps` machine epsilon.
 const MAX_WEIGHT: f64 = 1e-3;
 
-/// Largest weight divided by `k / sqrt(eps)`, in a block with dependent means and no fixed unknown;
-/// `k` and `eps` as for [`MAX_WEIGHT`]. All blocks of a mesh can be of this kind, so that half the
-/// digits are kept for the stiffness; jump multipliers are of the size of stiffnesses there, and
-/// each refinement step gains half the digits of the jump multipliers.
-const MAX_WEIGHT_BY_ROOT: f64 = 4.0;
+/// Largest shift divided by `k / sqrt(eps)`, `k` and `eps` as for [`MAX_WEIGHT`], of an unknown that is
+/// not as good as fixed.
+const MAX_SHIFT_BY_ROOT: f64 = 4.0;
 
 /// One side of a jump, in the list of its block.
 struct JumpSide {
@@ -50,6 +51,13 @@ struct JumpSide {
     sign: f64,
 }
 
+impl JumpSide {
+    /// The factor of the right-hand side of the jump on this side.
+    fn share(&self) -> f64 {
+        if self.mean == NO_INDEX { self.sign } else { 0.5 * self.sign }
+    }
+}
+
 /// The adjacency of blocks and jumps, for all sets of free unknowns.
 pub(crate) struct StaticCondensation<'a, T> {
     penalised: &'a PenalisedMatrix<T>,
@@ -59,6 +67,8 @@ pub(crate) struct StaticCondensation<'a, T> {
     /// The lower triangle of the Schur complement on facet means, all values zero.
     pattern: SparseMatrix<T>,
     cholesky: RepeatedCholesky,
+    /// Whether the means over the sides of a block are dependent functions of all its unknowns.
+    has_null_directions: bool,
 }
 
 /// The inverses of all blocks with their jump multipliers, and the factors of the Schur complement.
@@ -67,6 +77,7 @@ pub(crate) struct CondensedFactors<T> {
     inverses: Vec<f64>,
     /// Start of each block's inverse in `inverses`, and its length at the end.
     starts: Vec<usize>,
+    null_directions: NullDirections,
     schur_complement: Factors<T>,
 }
 
@@ -100,8 +111,15 @@ impl<'a, T: Real> StaticCondensation<'a, T> {
             n_means += u32::from(is_shared);
         }
         let cholesky = RepeatedCholesky::default();
-        let mut condensation = Self { penalised, starts, sides, pattern: empty(), cholesky };
+        let pattern = empty();
+        let mut condensation =
+            Self { penalised, starts, sides, pattern, cholesky, has_null_directions: false };
         condensation.pattern = condensation.lower_pattern(n_means as usize);
+        let mut basis = Vec::new();
+        condensation.has_null_directions = (0..n_blocks).any(|block| {
+            let n_sides = condensation.sides(block).len();
+            condensation.rank_of_means(block, |_| true, &mut basis) < n_sides
+        });
         condensation
     }
 
@@ -169,11 +187,19 @@ impl<'a, T: Real> StaticCondensation<'a, T> {
     }
 
     /// The rank of the means over the sides of a block, as functions of the unknowns `may_move`.
-    fn rank_of_means(&self, block: usize, may_move: impl Fn(usize) -> bool) -> usize {
+    fn rank_of_means(
+        &self,
+        block: usize,
+        may_move: impl Fn(usize) -> bool,
+        basis: &mut Vec<f64>,
+    ) -> usize {
         let (n, sides) = (self.penalised.block_size, self.sides(block));
-        let moving = (block * n..(block + 1) * n).filter(|&i| may_move(i));
-        let means = |i: usize| sides.iter().map(|side| self.mean_coefficient(side, i)).collect();
-        rank(moving.map(means).collect(), T::EPSILON.sqrt())
+        basis.clear();
+        for i in (block * n..(block + 1) * n).filter(|&i| may_move(i)) {
+            let means = sides.iter().map(|side| self.mean_coefficient(side, i));
+            extend_basis(basis, means, T::EPSILON.sqrt());
+        }
+        basis.len() / sides.len().max(1)
     }
 
     /// Inverts the blocks on the free unknowns and factors the Schur complement.
@@ -197,8 +223,10 @@ impl<'a, T: Real> StaticCondensation<'a, T> {
         let mut matrix = self.pattern.clone();
         let (mut inverses, mut starts) = (Vec::new(), vec![0]);
         let mut inverse = Vec::new();
+        let mut null_directions = NullDirections::new();
         for block in 0..self.starts.len() - 1 {
-            let n_free = self.invert_block(block, is_free, shift, &mut inverse)?;
+            let n_free =
+                self.invert_block(block, is_free, shift, &mut inverse, &mut null_directions)?;
             let sides = self.sides(block);
             let n = n_free + sides.len();
             for (i, row) in sides.iter().enumerate().filter(|(_, s)| s.mean != NO_INDEX) {
@@ -214,8 +242,30 @@ impl<'a, T: Real> StaticCondensation<'a, T> {
             inverses.extend_from_slice(&inverse);
             starts.push(inverses.len());
         }
-        let schur_complement = self.cholesky.factor(matrix)?;
-        Ok(CondensedFactors { inverses, starts, schur_complement })
+        let schur_complement = if self.has_null_directions {
+            self.append_rows(&mut matrix, &null_directions);
+            self.cholesky.factor_quasidefinite(&self.pattern, matrix, null_directions.blocks())?
+        } else {
+            self.cholesky.factor(matrix)?
+        };
+        Ok(CondensedFactors { inverses, starts, null_directions, schur_complement })
+    }
+
+    /// Appends the rows of the multipliers of null directions to the lower triangle of the condensed
+    /// matrix.
+    fn append_rows(&self, matrix: &mut SparseMatrix<T>, null_directions: &NullDirections) {
+        let mut row: Vec<(u32, f64)> = Vec::new();
+        for (k, &block) in null_directions.blocks().iter().enumerate() {
+            let sides = self.sides(block as usize).iter().zip(null_directions.entries(k));
+            row.clear();
+            row.extend(sides.map(|(side, &y)| (side.mean, y)));
+            row.retain(|&(mean, _)| mean != NO_INDEX);
+            row.sort_unstable_by_key(|&(mean, _)| mean);
+            row.push((matrix.size() as u32, null_directions.diagonal(k)));
+            matrix.columns.extend(row.iter().map(|(column, _)| column));
+            matrix.values.extend(row.iter().map(|&(_, value)| T::lit(value)));
+            matrix.row_starts.push(matrix.columns.len() as u32);
+        }
     }
 
     /// Sets `out` to the inverse of a block with its jump multipliers; returns the number of free
@@ -229,6 +279,7 @@ impl<'a, T: Real> StaticCondensation<'a, T> {
         is_free: &[bool],
         shift: &[f64],
         out: &mut Vec<f64>,
+        null_directions: &mut NullDirections,
     ) -> Result<usize, FactorError> {
         let (size, sides) = (self.penalised.block_size, self.sides(block));
         let stiffness = |i: usize, j: usize| self.penalised.blocks[i * size + j % size].to_f64();
@@ -240,11 +291,9 @@ impl<'a, T: Real> StaticCondensation<'a, T> {
         let least = diagonal().filter(|&d| d > 0.0).fold(largest, f64::min);
         let unit = if largest > 0.0 { largest } else { 1.0 };
         // A shift above this limit acts like a fixed unknown.
-        let limit_by_root = least * MAX_WEIGHT_BY_ROOT / T::EPSILON.sqrt();
+        let max_shift = least * MAX_SHIFT_BY_ROOT / T::EPSILON.sqrt();
         let may_move =
-            |i: usize| is_free[i] && shift.get(i).is_none_or(|&shift| shift <= limit_by_root);
-        let all_move = (block * size..(block + 1) * size).all(may_move);
-        let limit = if all_move { limit_by_root } else { least * MAX_WEIGHT / T::EPSILON };
+            |i: usize| is_free[i] && shift.get(i).is_none_or(|&shift| shift <= max_shift);
         out.clear();
         out.resize(n * n, 0.0);
         for (k, i) in self.free(block, is_free).enumerate() {
@@ -261,11 +310,22 @@ impl<'a, T: Real> StaticCondensation<'a, T> {
             }
         }
         // The rank decides, and is computed only if some weight exceeds the limit.
-        let is_heavy = n_free > 0 && sides.iter().any(|side| self.side_weight(side) > limit);
-        let has_dependent_means = is_heavy && self.rank_of_means(block, may_move) < sides.len();
+        let limit = least * MAX_WEIGHT / T::EPSILON;
+        let has_null_directions = self.has_null_directions && n_free > 0;
+        let is_as_good_as_fixed = |i: usize| !may_move(i) && (is_free[i] || !has_null_directions);
+        let is_heavy = n_free > 0
+            && (block * size..(block + 1) * size).any(is_as_good_as_fixed)
+            && sides.iter().any(|side| self.side_weight(side) > limit);
+        let mut basis = Vec::new();
+        let has_dependent_means =
+            is_heavy && self.rank_of_means(block, may_move, &mut basis) < sides.len();
         let max_weight = if has_dependent_means { limit } else { f64::INFINITY };
         for (l, side) in (n_free..).zip(sides) {
             out[l * n + l] = -unit / self.side_weight(side).min(max_weight);
+        }
+        if has_null_directions {
+            let tolerance = T::EPSILON.sqrt();
+            null_directions.append(block as u32, out, (n_free, n), unit, tolerance);
         }
         let is_positive = invert_in_place(out, n).ok_or(FactorError::Singular)?;
         // With a positive definite stiffness there are as many negative eigenvalues as jumps.
@@ -294,7 +354,9 @@ impl<'a, T: Real> StaticCondensation<'a, T> {
         r: &mut [f64],
         t: &mut [f64],
     ) -> f64 {
-        let mut load = vec![0.0; self.pattern.size()];
+        let n_means = self.pattern.size();
+        let CondensedFactors { null_directions, .. } = factors;
+        let mut load = vec![0.0; n_means];
         let mut local = Vec::new();
         for block in 0..self.starts.len() - 1 {
             self.block_right_side(block, is_free, r, t, &|_| 0.0, &mut local);
@@ -305,6 +367,10 @@ impl<'a, T: Real> StaticCondensation<'a, T> {
                 }
             }
         }
+        load.extend(null_directions.blocks().iter().enumerate().map(|(k, &block)| {
+            let sides = self.sides(block as usize).iter().zip(null_directions.entries(k));
+            sides.fold(0.0, |s, (side, y)| s - y * side.share() * t[side.jump as usize])
+        }));
         let mut means: Vec<T> = load.into_iter().map(T::lit).collect();
         factors.schur_complement.solve_in_place(&mut means, 1);
         let mean = |k: u32| if k == NO_INDEX { 0.0 } else { means[k as usize].to_f64() };
@@ -329,6 +395,14 @@ impl<'a, T: Real> StaticCondensation<'a, T> {
                 }
             }
         }
+        for (k, (&block, q)) in null_directions.blocks().iter().zip(&means[n_means..]).enumerate() {
+            let sides = self.sides(block as usize).iter().zip(null_directions.entries(k));
+            for (side, y) in sides.filter(|(s, _)| s.sign > 0.0 || s.mean == NO_INDEX) {
+                let multiplier = -side.sign * y * q.to_f64();
+                energy -= multiplier * jump_right_side[side.jump as usize];
+                t[side.jump as usize] += multiplier;
+            }
+        }
         energy
     }
 
@@ -345,10 +419,8 @@ impl<'a, T: Real> StaticCondensation<'a, T> {
     ) {
         out.clear();
         out.extend(self.free(block, is_free).map(|i| r[i]));
-        out.extend(self.sides(block).iter().map(|side| {
-            let part = if side.mean == NO_INDEX { 1.0 } else { 0.5 };
-            mean(side.mean) + side.sign * part * t[side.jump as usize]
-        }));
+        let sides = self.sides(block).iter();
+        out.extend(sides.map(|side| mean(side.mean) + side.share() * t[side.jump as usize]));
     }
 
     /// Sums of the absolute values of terms of the residual `(c - K u - M^T p)_i`: first of the
