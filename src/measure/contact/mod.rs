@@ -3,7 +3,6 @@
 //! The functions use the supports of unknowns only (a vertex, a facet, an edge), so that schemes
 //! with different unknowns can be compared.
 
-mod bisected_simplices;
 mod contact_set;
 mod discrete_contact;
 mod entity;
@@ -15,6 +14,7 @@ pub use discrete_contact::DiscreteContact;
 use super::errors::ContactErrors;
 use crate::algebra::{Bound, Contact, Inequality};
 use crate::assemble::Discretisation;
+use crate::assemble::cut_simplices::SubSimplex;
 use crate::assemble::space::Space;
 use crate::error::Error;
 use crate::inequality::Solution;
@@ -22,7 +22,6 @@ use crate::instances::compiled;
 use crate::mesh::BoundaryPart;
 use crate::problem::ContactSet;
 use crate::real::{Point, Real, point_f64};
-use bisected_simplices::SubSimplex;
 use entity::ContactEntity;
 
 /// A Dirichlet datum this close to a bound, in units of the largest unknown, touches it.

@@ -1,8 +1,8 @@
 //! The multiplier as a density at vertices.
 
-use super::bisected_simplices::{SubSimplex, in_space};
 use super::entity::ContactEntity;
 use crate::algebra::{Contact, Inequality};
+use crate::assemble::cut_simplices::{SubSimplex, in_space};
 use crate::assemble::space::{Space, data};
 use crate::error::Error;
 use crate::inequality::Solution;
