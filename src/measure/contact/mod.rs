@@ -14,7 +14,7 @@ pub use discrete_contact::DiscreteContact;
 use super::errors::ContactErrors;
 use crate::algebra::{Bound, Contact, Inequality};
 use crate::assemble::Discretisation;
-use crate::assemble::cut_simplices::SubSimplex;
+use crate::assemble::cut_simplices::{CutRule, in_space};
 use crate::assemble::space::Space;
 use crate::error::Error;
 use crate::inequality::Solution;
@@ -201,19 +201,17 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         entities: &[ContactEntity],
         touching: &[bool],
     ) -> f64 {
+        let rules = [D - 1, D].map(|dimension| CutRule::new(dimension, 2));
         let mut error = 0.0;
         for (&entity, &touches) in entities.iter().zip(touching) {
             let corners = self.corner_points(entity);
+            let rule = &rules[usize::from(entity.facet.is_none())];
             let mut wrong = 0.0;
-            SubSimplex::whole(entity.dimension::<D>()).split(
-                &corners,
-                &set.indicator,
-                &mut |part| {
-                    if ((set.indicator)(&part.barycentre(&corners)) > 0.0) != touches {
-                        wrong += part.share;
-                    }
-                },
-            );
+            rule.visit(&corners, &set.indicator, &mut |point, weight| {
+                if ((set.indicator)(&in_space(point, &corners)) > 0.0) != touches {
+                    wrong += weight;
+                }
+            });
             error += wrong * self.measure_of(entity);
         }
         error
