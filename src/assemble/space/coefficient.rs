@@ -2,8 +2,8 @@
 //!
 //! Linear elements take one value in each cell, at its barycentre, which leaves an error of their own
 //! order. Elements whose basis functions have degree `b > 1` take values at the points of rules of
-//! degree `2 b - 1`: exact for products of gradients times a linear coefficient. Rules exact for the
-//! products alone keep the orders (P. G. Ciarlet, P.-A. Raviart, The combined effect of curved
+//! degree `2 b`: exact for products of gradients times a quadratic coefficient. Rules exact for the
+//! products alone keep the orders, with larger errors on coarse meshes (P. G. Ciarlet, P.-A. Raviart, The combined effect of curved
 //! boundaries and numerical integration, in A. K. Aziz (ed.), 1972, 409-474). On facets these are
 //! values from inside the cell, so that a coefficient may jump between cells.
 
@@ -14,7 +14,7 @@ use crate::assemble::local::StiffnessTable;
 use crate::element::MAX_BASIS;
 use crate::error::Error;
 use crate::mesh::Mesh;
-use crate::quadrature::{OrthonormalPolynomials, Rule, facet_to_cell};
+use crate::quadrature::{FullySymmetric, OrthonormalPolynomials, Quadrature, Rule, facet_to_cell};
 use crate::real::{Point, Real, point_f64};
 
 /// A cell and the number of a facet in it.
@@ -62,7 +62,9 @@ impl<T: Real> VaryingCoefficient<T> {
         basis_degree: usize,
         basis: fn(&[f64; 4]) -> BasisAt<f64>,
     ) -> Result<Option<Self>, Error> {
-        let [cell_rule, facet_rule] = [D, D - 1].map(|d| Rule::new(d, 2 * basis_degree - 1));
+        // the same whatever the order of vertices
+        let rule = |dimension| FullySymmetric.rule(dimension, 2 * basis_degree);
+        let (cell_rule, facet_rule) = (rule(D)?, rule(D - 1)?);
         let on_facets = (0..=D).flat_map(|local| {
             let middle = 1.0 / (D + 1) as f64;
             let inward = move |k: usize, b: f64| if k <= D { b + (middle - b) * INWARD } else { b };
