@@ -71,8 +71,13 @@ impl<T: Real, const D: usize> FacetForm<T, D> for InteriorPenalty {
         };
         let parameters = PenaltyParameters { sigma, eta: None, rule: Some(rule) };
         let theory = FormTheory::new().with_parameters(parameters);
+        let theory = match self.rule {
+            PenaltyRule::Proven(margin) => theory.with_margin(margin),
+            PenaltyRule::Diameter(_) => theory,
+        };
         match (self.rule, self.symmetry) {
-            (PenaltyRule::Proven(_), _) | (_, Symmetry::NonSymmetric) => theory,
+            (PenaltyRule::Proven(margin), _) if margin >= 0.0 => theory,
+            (_, Symmetry::NonSymmetric) => theory,
             _ => theory.with_least_penalty(|facet| {
                 T::lit(self.part()) * proven_bound::<T, D>(self.degree, facet)
             }),
