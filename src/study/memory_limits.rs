@@ -11,22 +11,25 @@ pub(super) fn kilobytes(text: &str, key: &str) -> Option<u64> {
     kilobytes.checked_mul(1024)
 }
 
+/// Address space that each thread reserves: 64 MiB for its allocations and 2 MiB for its stack.
+const PER_THREAD: u64 = 66 << 20;
+
 /// What is left below the limits on address space and data, in bytes; none without such limits.
 pub(super) fn left_to_process() -> Option<u64> {
     let [limits, status] =
         ["/proc/self/limits", "/proc/self/status"].map(|file| read_to_string(file).ok());
-    below_limits(&limits?, &status?)
+    below_limits(&limits?, &status?, rayon::current_num_threads() as u64 * PER_THREAD)
 }
 
-/// The same from the texts of `limits` and `status`.
-fn below_limits(limits: &str, status: &str) -> Option<u64> {
-    let left = |(limit, used): &(&str, &str)| {
+/// The same from the texts of `limits` and `status`, and the address space that is reserved besides.
+fn below_limits(limits: &str, status: &str, reserved: u64) -> Option<u64> {
+    let left = |&(limit, used, reserved): &(&str, &str, u64)| {
         let rest = limits.lines().find_map(|line| line.strip_prefix(limit))?;
         // the limit in force stands before the highest one that the process may set
         let most: u64 = rest.split_whitespace().next()?.parse().ok()?;
-        Some(most.saturating_sub(kilobytes(status, used)?))
+        Some(most.saturating_sub(kilobytes(status, used)? + reserved))
     };
-    let limits = [("Max address space", "VmSize:"), ("Max data size", "VmData:")];
+    let limits = [("Max address space", "VmSize:", reserved), ("Max data size", "VmData:", 0)];
     limits.iter().filter_map(left).min()
 }
 
@@ -84,13 +87,13 @@ mod tests {
             )
         };
         let status = "VmPeak:\t 9 kB\nVmSize:\t 3 kB\nVmData:\t 1 kB\n";
-        let left = |space: &str, data: &str| below_limits(&limits(space, data), status);
+        let left = |space: &str, data: &str| below_limits(&limits(space, data), status, 1024);
         assert_eq!(left("unlimited", "unlimited"), None);
-        assert_eq!(left("10240", "unlimited"), Some(7168));
+        assert_eq!(left("10240", "unlimited"), Some(6144));
         assert_eq!(left("10240", "5120"), Some(4096));
         assert_eq!(left("1024", "unlimited"), Some(0));
-        assert_eq!(below_limits("", status), None);
-        assert_eq!(below_limits(&limits("10240", "unlimited"), ""), None);
+        assert_eq!(below_limits("", status, 0), None);
+        assert_eq!(below_limits(&limits("10240", "unlimited"), "", 0), None);
     }
 
     #[test]

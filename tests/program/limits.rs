@@ -129,7 +129,7 @@ fn more_than_the_memory_is_refused() {
 fn a_limit_of_the_process_is_known_before_the_work() {
     let scratch = Scratch::new("limits");
     for limit in ["-v 500000", "-d 400000"] {
-        let options = "--scene radial-2d --scheme wopsip --levels 8,512";
+        let options = "--scene radial-2d --scheme wopsip --threads 2 --levels 8,512";
         let output = limited(&scratch, limit, options);
         check_message(&output, limit);
         let message = stderr(&output);
@@ -137,8 +137,11 @@ fn a_limit_of_the_process_is_known_before_the_work() {
             assert!(message.contains(part), "{limit}: no {part} in {message}");
         }
         assert!(!scratch.0.join("out").exists(), "{limit}");
-        let output =
-            limited(&scratch, limit, "--scene radial-2d --scheme wopsip --levels 8 --quiet");
+        let output = limited(
+            &scratch,
+            limit,
+            "--scene radial-2d --scheme wopsip --threads 2 --levels 8 --quiet",
+        );
         assert_eq!(output.status.code(), Some(0), "{limit}: {}", stderr(&output));
         std::fs::remove_dir_all(scratch.0.join("out")).unwrap();
     }

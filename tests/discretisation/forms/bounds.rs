@@ -38,7 +38,8 @@ fn contradictions_are_told_from_rounding() {
     type Contradiction = fn(f64) -> Problem<2>;
     let pairs: [(&str, Contradiction); 4] = [
         ("an obstacle above another", |by| {
-            Problem::new().obstacle_below(move |_| 1.0 + by).obstacle_above(|_| 1.0)
+            let one = Problem::new().dirichlet(|_| 1.0).obstacle_above(|_| 1.0);
+            one.obstacle_below(move |_| 1.0 + by)
         }),
         ("data below an obstacle", |by| {
             Problem::new().obstacle_below(move |_| 1.0 + by).dirichlet(|_| 1.0)
