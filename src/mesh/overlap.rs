@@ -63,7 +63,8 @@ pub(super) fn check_overlaps<const D: usize>(
     };
     let direction = Point::<f64, D>::from_fn(|k, _| DIRECTION[k]);
     let facets = boundary.len();
-    let lines = if D > 1 { LINES.max(PAIRS / facets).min(facets) } else { 1 };
+    let lines = if D > 1 { LINES.max(PAIRS / facets.max(1)) } else { 1 };
+    let lines = lines.min(facets);
     for line in 0..lines {
         let start = corners(&boundary[line * facets / lines]);
         let start = start.iter().fold(Point::zeros(), |s, x| s + x) / D as f64;
