@@ -72,7 +72,10 @@ impl<T: Real, const D: usize> FacetForm<T, D> for InteriorPenalty {
         let parameters = PenaltyParameters { sigma, eta: None, rule: Some(rule) };
         let theory = FormTheory::new().with_parameters(parameters);
         match (self.rule, self.symmetry) {
-            (PenaltyRule::Proven(_), _) | (_, Symmetry::NonSymmetric) => theory,
+            (PenaltyRule::Proven(margin), _) if margin >= 0.0 => theory.with_coercivity(true),
+            (PenaltyRule::Diameter(sigma), Symmetry::NonSymmetric) => {
+                theory.with_coercivity(sigma > 0.0)
+            }
             _ => theory.with_least_penalty(|facet| {
                 T::lit(self.part()) * proven_bound::<T, D>(self.degree, facet)
             }),

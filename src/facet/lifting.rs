@@ -57,7 +57,7 @@ impl<T: Real, const D: usize> FacetForm<T, D> for FacetLifts {
             FormTheory::new().with_parameters(PenaltyParameters { sigma: None, eta, rule });
         match self.bounded {
             true => theory.with_least_penalty(|facet| Self::weight((D + 1) as f64, facet)),
-            false => theory,
+            false => theory.with_coercivity(self.eta > 0.0),
         }
     }
     fn is_uniform(&self) -> bool {

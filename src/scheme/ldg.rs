@@ -98,7 +98,9 @@ impl<T: Real, const D: usize> FacetForm<T, D> for LocalFluxes {
         let beta = if self.switch { "one-sided flux" } else { "mean flux" };
         let rule = Some(format!("eta / h_F, {beta}"));
         let sigma = Some(self.eta);
-        FormTheory::new().with_parameters(PenaltyParameters { sigma, eta: None, rule })
+        FormTheory::new()
+            .with_parameters(PenaltyParameters { sigma, eta: None, rule })
+            .with_coercivity(self.eta > 0.0)
     }
     fn is_uniform(&self) -> bool {
         true

@@ -98,6 +98,8 @@ pub struct Row {
     pub mesh_size: f64,
     /// How the solve ended; its name in files.
     pub status: Outcome,
+    /// What the status says, in one sentence; none if the solve converged.
+    pub message: Option<String>,
     /// Errors against the exact solution.
     pub error: Errors,
     /// Distances of multiplier and contact set, keys of the row itself.
@@ -141,6 +143,7 @@ impl Row {
             nonzeros: 0,
             mesh_size: f64::NAN,
             status,
+            message: (status != Outcome::Converged).then(|| status.message().to_owned()),
             error: Errors::default(),
             contact: ContactErrors::default(),
             order: Orders::default(),

@@ -257,4 +257,26 @@ impl<T: Real, const D: usize> Lifting<'_, '_, T, D> {
             }
         }
     }
+
+    /// The product of the lifts of Dirichlet data on two facets of a centre, each given by the number of
+    /// the facet and the moments of the datum, of which lifts take the first.
+    pub fn product_of_data(
+        &self,
+        centre: usize,
+        (first, first_moments): &(usize, Vec<f64>),
+        (second, second_moments): &(usize, Vec<f64>),
+    ) -> T {
+        let metric = self.metrics.at::<D>(centre);
+        let facet =
+            |local| JumpFacet { local, across: None, flux_weight: self.space.alpha(centre) };
+        let scale = self.scale(centre, &metric, &facet(*first), &facet(*second));
+        let products = &self.table.products[*first][*second];
+        let mut sum = T::lit(0.0);
+        for (products, &a) in products.iter().zip(first_moments) {
+            for (&product, &b) in products.iter().zip(second_moments) {
+                sum += scale * T::lit(a) * product * T::lit(b);
+            }
+        }
+        sum
+    }
 }

@@ -2,6 +2,7 @@
 
 mod assembly;
 mod condition;
+mod dirichlet_energy;
 mod lifting;
 mod lumping;
 mod own_forms;

@@ -1,5 +1,6 @@
 //! The solvers of the algebraic inequality against slow ones, and on what can go wrong.
 
+mod certified;
 mod failures;
 mod last_resort;
 mod reach;
