@@ -262,13 +262,17 @@ impl<T: Real> Inequality<T> {
         let is_free = |&i: &u32| self.bounds[i as usize].fixed_value().is_none();
         (0..self.bounds.len() as u32).filter(is_free).collect()
     }
-    /// Whether matrix, load, bounds and penalised matrix have the same size, and the two matrices are
-    /// well formed. Supports and points are not checked.
+    /// Whether matrix, load, bounds, penalised matrix and the supports, if there are any, have the same
+    /// size, the two matrices are well formed, and the vertices of supports are among the points or,
+    /// without points, below four times the number of unknowns: an array by vertices is not larger.
     pub fn is_well_formed(&self) -> bool {
+        let n_vertices = if self.points.is_empty() { 4 * self.size() } else { self.points.len() };
         self.matrix.size() == self.size()
             && self.bounds.len() == self.size()
             && self.matrix.is_well_formed()
             && self.penalised.as_ref().is_none_or(|p| p.is_well_formed(self.size()))
+            && (self.supports.is_empty() || self.supports.len() == self.size())
+            && self.supports.iter().flat_map(Support::vertices).all(|&v| (v as usize) < n_vertices)
     }
     /// The node of each unknown, the barycentre of the vertices of its support; `None` if a support or
     /// the coordinates of a vertex are unknown.

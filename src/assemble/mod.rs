@@ -19,6 +19,7 @@ pub(crate) mod local;
 mod owned_rows;
 mod penalised;
 mod penalty_below_bound;
+mod penalty_factor;
 mod shared_rows;
 pub(crate) mod space;
 
@@ -57,7 +58,8 @@ impl<'a, T: Real, const D: usize> Discretisation<'a, T, D> {
     /// needed.
     ///
     /// # Errors
-    /// [`Error::CoefficientNotPositive`], [`Error::NothingToBound`], [`Error::UnsupportedForm`].
+    /// [`Error::CoefficientNotPositive`], [`Error::NothingToBound`], [`Error::UnsupportedForm`],
+    /// [`Error::Parameter`] for a penalty factor that makes no penalty.
     pub(crate) fn of<E: ReferenceElement<T, D>>(
         form: Box<dyn FacetForm<T, D>>,
         dirichlet: DirichletBy,
@@ -285,6 +287,7 @@ impl<T: Real, const D: usize> Parts<T, D> {
         let Self { element: ChosenElement { element, loops, offered }, form, pins } = self;
         check_form::<T, D>(&element, &*form)?;
         let space = Space::new(element, problem, mesh, quadrature, form.couples(), pins, offered)?;
+        space.check_penalty_factor(&*form)?;
         let shared_rows = SharedRows::new(loops);
         Ok(Discretisation { space, form, shared_rows, prepared: OnceLock::new() })
     }

@@ -71,6 +71,10 @@ impl<T: Real, const D: usize> FacetForm<T, D> for InteriorPenalty {
         };
         let parameters = PenaltyParameters { sigma, eta: None, rule: Some(rule) };
         let theory = FormTheory::new().with_parameters(parameters);
+        let theory = match self.rule {
+            PenaltyRule::Proven(margin) => theory.with_margin(margin),
+            PenaltyRule::Diameter(_) => theory,
+        };
         match (self.rule, self.symmetry) {
             (PenaltyRule::Proven(margin), _) if margin >= 0.0 => theory.with_coercivity(true),
             (PenaltyRule::Diameter(sigma), Symmetry::NonSymmetric) => {

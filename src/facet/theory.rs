@@ -20,6 +20,8 @@ pub struct FormTheory<'f, T: Real, const D: usize> {
     /// The least weight with which the form is provably coercive; none if its weights are positive and
     /// need no bound, or are chosen by that very bound.
     pub least_penalty: Option<LeastPenalty<'f, T, D>>,
+    /// The margin over a proven bound, where the weight is chosen by that bound.
+    pub margin: Option<f64>,
     /// By what [`Self::rounding_limit`] is scaled; one half by default, as measured for linears.
     pub rounding_factor: f64,
 }
@@ -29,7 +31,13 @@ impl<'f, T: Real, const D: usize> FormTheory<'f, T, D> {
     #[must_use]
     pub fn new() -> Self {
         let parameters = PenaltyParameters::default();
-        Self { parameters, is_coercive: false, least_penalty: None, rounding_factor: 0.5 }
+        Self {
+            parameters,
+            is_coercive: false,
+            least_penalty: None,
+            margin: None,
+            rounding_factor: 0.5,
+        }
     }
     /// Sets the factors in force.
     #[must_use]
@@ -40,6 +48,19 @@ impl<'f, T: Real, const D: usize> FormTheory<'f, T, D> {
     #[must_use]
     pub fn with_coercivity(self, is_coercive: bool) -> Self {
         Self { is_coercive, ..self }
+    }
+    /// Sets the margin over a proven bound.
+    #[must_use]
+    pub fn with_margin(self, margin: f64) -> Self {
+        Self { margin: Some(margin), ..self }
+    }
+    /// The parameter by which the penalty is chosen, its value, and the factor that it makes, which
+    /// is linear in the penalty; none for a form that states no such parameter.
+    pub(crate) fn factor(&self) -> Option<(&'static str, f64, f64)> {
+        let PenaltyParameters { sigma, eta, .. } = self.parameters;
+        let margin = self.margin.map(|margin| ("margin", margin, 1.0 + margin));
+        let stated = sigma.map(|x| ("sigma", x, x)).or(eta.map(|x| ("eta", x, x)));
+        margin.or(stated)
     }
     /// Sets the least weight of a facet with which the form is provably coercive.
     #[must_use]
@@ -72,6 +93,7 @@ impl<T: Real, const D: usize> fmt::Debug for FormTheory<'_, T, D> {
             .field("parameters", &self.parameters)
             .field("is_coercive", &self.is_coercive)
             .field("least_penalty", &self.least_penalty.is_some())
+            .field("margin", &self.margin)
             .field("rounding_factor", &self.rounding_factor)
             .finish()
     }

@@ -31,7 +31,8 @@ pub enum Outcome {
     OutOfRange,
     /// The lower bound of an unknown exceeds its upper bound.
     Infeasible,
-    /// Sizes of matrix, load and bounds do not match, or the matrix violates an invariant of its type.
+    /// Sizes of matrix, load, bounds and supports do not match, the matrix violates an invariant of its
+    /// type, or a support names a vertex that cannot exist.
     Malformed,
     /// The factors do not fit into memory.
     OutOfMemory,

@@ -4,7 +4,8 @@ use super::boundary::{BoundaryFacet, BoundaryPart};
 use super::components::Components;
 use super::error::MeshError;
 use super::facets::{CELL_LIMIT, Neighbours};
-use super::geometry::CellGeometry;
+use super::geometry::{CellGeometry, describe_point};
+use super::overlap::{check_folds, check_overlaps};
 use super::simplicial::Mesh;
 use crate::instances::compiled;
 use crate::real::{Point, Real, point_f64};
@@ -27,7 +28,9 @@ impl<T: Real, const D: usize> Mesh<T, D> {
     ///
     /// # Errors
     /// Every [`MeshError`] but [`MeshError::UnsupportedComponent`], which depends on the problem:
-    /// see [`Mesh::check_supported`]. Vertices in errors are numbered as given.
+    /// see [`Mesh::check_supported`]. Vertices in errors are numbered as given. Folds across a facet
+    /// are always found, other overlaps where one of the lines through boundary facets meets them:
+    /// through all up to 128, through eight from 2048 facets on.
     pub fn new(
         vertices: Vec<Point<f64, D>>,
         cells: Vec<u32>,
@@ -53,9 +56,11 @@ impl<T: Real, const D: usize> Mesh<T, D> {
         }
         let rounded: Vec<Point<T, D>> =
             vertices.iter().map(|x| Point::from_fn(|k, _| T::lit(x[k]))).collect();
-        check_volumes::<T, D>(&rounded, &cells)?;
+        let is_positive = check_volumes::<T, D>(&rounded, &cells)?;
         let neighbours = Neighbours::match_facets::<D>(&cells, vertices.len())?;
+        check_folds::<D>(&cells, &neighbours, &is_positive)?;
         let boundary = match_boundary(&vertices, &cells, &neighbours, boundary)?;
+        check_overlaps(&vertices, &cells, &boundary)?;
         let is_dirichlet = |part| part == BoundaryPart::Dirichlet;
         let is_supported = unsupported_component(&neighbours, &boundary, is_dirichlet).is_none();
         let (vertices, cells) = drop_unused(rounded, cells);
@@ -133,13 +138,16 @@ pub(super) fn check_size(cells: usize, vertices: usize) -> Result<(), MeshError>
 }
 
 /// Refuses cells whose volume is at the rounding level of its diameter: their gradients are lost.
+/// Returns whether the determinant of the edges of each cell is positive.
 fn check_volumes<T: Real, const D: usize>(
     vertices: &[Point<T, D>],
     cells: &[u32],
-) -> Result<(), MeshError> {
+) -> Result<Vec<bool>, MeshError> {
+    let mut is_positive = Vec::with_capacity(cells.len() / (D + 1));
     for (c, cell) in cells.chunks_exact(D + 1).enumerate() {
         let corner = |k: usize| point_f64(&vertices[cell[k] as usize]);
-        let volume = CellGeometry::new(corner).volume;
+        let geometry = CellGeometry::new(corner);
+        let volume = geometry.volume;
         let mut diameter = 0.0_f64;
         for i in 0..=D {
             for j in 0..i {
@@ -156,8 +164,9 @@ fn check_volumes<T: Real, const D: usize>(
                 diameter,
             });
         }
+        is_positive.push(geometry.is_positive());
     }
-    Ok(())
+    Ok(is_positive)
 }
 
 /// Gives every facet of the boundary its part.
@@ -210,12 +219,6 @@ fn match_boundary<const D: usize>(
     }
     boundary.sort_unstable_by_key(|f| (f.cell, f.local));
     Ok(boundary)
-}
-
-/// The coordinates of a point in parentheses, for messages.
-pub(crate) fn describe_point<const D: usize>(x: &Point<f64, D>) -> String {
-    let coordinates: Vec<String> = x.iter().map(|c| format!("{c:.6}")).collect();
-    format!("({})", coordinates.join(", "))
 }
 
 fn drop_unused<T: Real, const D: usize>(

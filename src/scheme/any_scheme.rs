@@ -132,7 +132,8 @@ impl<'a, T: Real, const D: usize> Discretisation<'a, T, D> {
     /// facets only if the scheme needs them.
     ///
     /// # Errors
-    /// [`Error::CoefficientNotPositive`], [`Error::NothingToBound`], [`Error::UnsupportedForm`].
+    /// [`Error::CoefficientNotPositive`], [`Error::NothingToBound`], [`Error::UnsupportedForm`],
+    /// [`Error::Parameter`] for a penalty factor that makes no penalty.
     pub fn new(
         scheme: &(impl AnyScheme<T, D> + ?Sized),
         problem: &'a Problem<D>,

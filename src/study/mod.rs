@@ -2,6 +2,7 @@
 
 mod compatibility;
 mod memory;
+mod memory_limits;
 mod order_check;
 mod orders;
 mod orders_table;

@@ -92,15 +92,3 @@ fn places_that_cannot_be_written_are_refused_before_the_work() {
     refused(&scratch, &["--json", &directory], &["cannot write", &directory]);
     assert!(std::fs::read(file).unwrap().is_empty());
 }
-
-#[test]
-fn more_than_the_memory_is_refused() {
-    let Some(memory) = unilateral::study::available_memory_bytes() else { return };
-    let needed = 150e9;
-    if memory as f64 > needed {
-        return;
-    }
-    let scratch = Scratch::new("memory");
-    let options = ["--scheme", "sipg", "--scene", "ball-2d", "--levels", "8,7000"];
-    refused(&scratch, &options, &["ball-2d", "sipg", "level 7000", "GB of memory", "lower level"]);
-}

@@ -7,6 +7,7 @@
 use std::path::PathBuf;
 
 use clap::Args;
+use unilateral::input::excerpt;
 use unilateral::nested::{Hierarchy, solve};
 use unilateral::paraview::write_pvd;
 use unilateral::plot::{Picture, Slice};
@@ -61,6 +62,7 @@ fn scheme<const D: usize>(
     }
     let scheme = scheme_by_name(name, &SchemeOptions::default()).ok_or_else(|| {
         let names: Vec<&str> = SCHEMES.iter().map(|s| s.0).collect();
+        let name = excerpt(name);
         format!("there is no scheme {name}; there are: {}", names.join(", "))
     })?;
     Ok((scheme, scene))

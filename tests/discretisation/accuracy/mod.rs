@@ -8,3 +8,4 @@ mod patch;
 mod precision;
 mod quadratic;
 mod reference;
+mod unstructured;

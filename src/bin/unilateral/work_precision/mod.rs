@@ -6,7 +6,6 @@
 
 mod options;
 
-use std::fs;
 use std::process::Command;
 
 use indicatif::ProgressBar;
@@ -22,7 +21,7 @@ use unilateral::work_precision::{
     Case, Precision, WorkPrecision, WorkProgress, WorkReport, changes,
 };
 
-use crate::shared::{Request, bar, print, scene, tick, use_threads, write};
+use crate::shared::{Request, bar, print, read, scene, tick, use_threads, write};
 
 /// Whether every run converged and nothing changed.
 pub fn run(options: &Options) -> Request<bool> {
@@ -34,7 +33,8 @@ pub fn run(options: &Options) -> Request<bool> {
     // what cannot be read or written is better known before the work
     let baseline = match &options.against {
         Some(path) => Some(
-            fs::read_to_string(path).map_err(|e| format!("cannot read {}: {e}", path.display()))?,
+            String::from_utf8(read(path)?)
+                .map_err(|e| format!("cannot read {}: {e}", path.display()))?,
         ),
         None => None,
     };

@@ -5,6 +5,7 @@ use std::sync::Arc;
 
 use clap::Args;
 use unilateral::constraint::{ConstraintSet, Nodes, constraint_set_by_name};
+use unilateral::input::excerpt;
 use unilateral::linear::LinearMethod;
 use unilateral::scenes;
 use unilateral::scheme::{SCHEMES, SchemeOptions, scheme_by_name};
@@ -72,6 +73,7 @@ impl Options {
         for name in self.scenes() {
             if !known.iter().any(|entry| entry.name == name) {
                 let names: Vec<&str> = known.iter().map(|e| &e.name[..]).collect();
+                let name = excerpt(name);
                 return Err(format!("unknown scene {name}; there are: {}", names.join(", ")));
             }
         }
@@ -79,10 +81,11 @@ impl Options {
             let (name, place) = split(&choice);
             if !SCHEMES.iter().any(|s| s.0 == name) {
                 let names: Vec<&str> = SCHEMES.iter().map(|s| s.0).collect();
+                let name = excerpt(name);
                 return Err(format!("unknown scheme {name}; there are: {}", names.join(", ")));
             }
             if let Some(place) = place {
-                let set = constraint_set(place).map_err(|e| format!("{choice}: {e}"))?;
+                let set = constraint_set(place).map_err(|e| format!("{name}: {e}"))?;
                 let scheme = scheme_by_name::<f64, 2>(name, &SchemeOptions::default());
                 if scheme.is_some_and(|scheme| scheme.constraint_on(&set).is_none()) {
                     return Err(format!("{choice}: the element of the scheme has no such values"));
