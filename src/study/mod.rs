@@ -13,9 +13,9 @@ pub(crate) mod table;
 
 pub use compatibility::check_fit;
 pub use memory::{MemoryEstimate, available_memory_bytes, peak_memory_bytes};
-pub use order_check::{ObservedOrders, OrderMissed, OrdersMissed};
+pub use order_check::{ObservedOrders, OrderMissed, OrderVerdict, OrdersMissed};
 pub use orders::fill_orders;
-pub use orders_table::orders_table;
+pub use orders_table::{orders_summary, orders_table};
 pub use report::{Program, Report};
 pub use row::{Iterations, Orders, Row, Seconds};
 pub use runner::{Progress, Study};
