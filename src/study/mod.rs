@@ -1,6 +1,8 @@
 //! Studies: schemes side by side on a scene, their rows and reports.
 
 mod compatibility;
+#[cfg(feature = "report")]
+mod file_name;
 mod memory;
 mod order_check;
 mod orders;
@@ -12,6 +14,8 @@ mod setting;
 pub(crate) mod table;
 
 pub use compatibility::check_fit;
+#[cfg(feature = "report")]
+pub use file_name::file_name;
 pub use memory::{MemoryEstimate, available_memory_bytes, peak_memory_bytes};
 pub use order_check::{ObservedOrders, OrderMissed, OrderVerdict, OrdersMissed};
 pub use orders::fill_orders;

@@ -81,8 +81,8 @@ impl OrderVerdict {
 pub struct ObservedOrders {
     /// Name of the scene.
     pub scene: String,
-    /// Name of the scheme.
-    pub scheme: String,
+    /// Label of the scheme.
+    pub label: String,
     /// Where the scheme imposes bounds.
     pub constraint: String,
     /// The levels that converged, the finest last.
@@ -108,8 +108,8 @@ pub(crate) const PROMISED: [ErrorNorm; 2] = [ErrorNorm::L2, ErrorNorm::H1];
 pub struct OrderMissed {
     /// Name of the scene.
     pub scene: String,
-    /// Name of the scheme.
-    pub scheme: String,
+    /// Label of the scheme.
+    pub label: String,
     /// Where the scheme imposes bounds.
     pub constraint: String,
     /// The levels that converged, the finest last.
@@ -126,9 +126,9 @@ pub struct OrderMissed {
 
 impl fmt::Display for OrderMissed {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { scene, scheme, constraint, norm, promised, verdict, .. } = self;
+        let Self { scene, label, constraint, norm, promised, verdict, .. } = self;
         let (verdict, levels) = (verdict.name(), levels_in_words(&self.levels));
-        write!(f, "{scheme} ({constraint}) on {scene}: {verdict}: ")?;
+        write!(f, "{label} ({constraint}) on {scene}: {verdict}: ")?;
         match (&self.fitted, self.verdict) {
             (Some(fitted), OrderVerdict::Missed | OrderVerdict::Undecided) => {
                 write!(f, "order {} in {norm} over levels {levels}", order_in_words(fitted))?;
@@ -199,7 +199,7 @@ impl ObservedOrders {
             let passes = [OrderVerdict::Kept, OrderVerdict::Exact, OrderVerdict::NothingPromised];
             Some(OrderMissed {
                 scene: self.scene.clone(),
-                scheme: self.scheme.clone(),
+                label: self.label.clone(),
                 constraint: self.constraint.clone(),
                 levels: self.levels.clone(),
                 norm,
@@ -230,7 +230,7 @@ impl ObservedOrders {
         };
         Some(Self {
             scene: finest.scene.clone(),
-            scheme: finest.scheme.clone(),
+            label: finest.label.clone(),
             constraint: finest.constraint.clone(),
             levels: sorted.iter().map(|row| row.level).collect(),
             l2: fit(|row| row.error.l2),
@@ -247,8 +247,8 @@ impl Report {
     /// once for every placement of bounds, every penalty and every solver.
     pub fn observed_orders(&self) -> Vec<ObservedOrders> {
         let key = |row: &Row| {
-            let Row { scene, scheme, constraint, parameters, solver, .. } = row.clone();
-            (scene, scheme, constraint, parameters, solver)
+            let Row { scene, label, constraint, parameters, solver, .. } = row.clone();
+            (scene, label, constraint, parameters, solver)
         };
         let keys = distinct(self.rows.iter().map(key));
         let rows_of = |wanted| self.rows.iter().filter(|row| key(row) == wanted).collect();

@@ -38,7 +38,7 @@ pub fn orders_table(orders: &[ObservedOrders], tolerance: f64) -> String {
             text,
             "| {} | {} | {} | {} | {} | {} |",
             line.scene,
-            line.scheme,
+            line.label,
             line.constraint,
             levels_in_words(&line.levels),
             norms.join(" | "),
@@ -59,9 +59,9 @@ pub fn orders_summary(orders: &[ObservedOrders], tolerance: f64) -> String {
         let verdicts = lines.flat_map(|o| PROMISED.map(|norm| o.verdict(norm, tolerance)));
         verdicts.filter(|v| *v == verdict).count().to_string()
     };
-    for scheme in distinct(orders.iter().map(|line| &line.scheme)) {
-        let counts = OrderVerdict::ALL.map(|v| count(&|line| line.scheme == *scheme, v));
-        let _ = writeln!(text, "| {scheme} | {} |", counts.join(" | "));
+    for label in distinct(orders.iter().map(|line| &line.label)) {
+        let counts = OrderVerdict::ALL.map(|v| count(&|line| line.label == *label, v));
+        let _ = writeln!(text, "| {label} | {} |", counts.join(" | "));
     }
     let all = OrderVerdict::ALL.map(|v| count(&|_| true, v));
     let _ = writeln!(text, "| all | {} |", all.join(" | "));
@@ -74,7 +74,7 @@ pub fn orders_summary(orders: &[ObservedOrders], tolerance: f64) -> String {
             text,
             "| {} | {} | {} | {} | {} | {} | {finest} | {} |",
             missed.scene,
-            missed.scheme,
+            missed.label,
             missed.norm,
             levels_in_words(&missed.levels),
             observed(missed.fitted.as_ref()),
@@ -98,7 +98,7 @@ fn promised(order: Option<f64>) -> String {
 }
 
 fn failures(line: &ObservedOrders) -> Vec<String> {
-    let of = |(level, why): &(usize, _)| format!("{} {} {level} {why}", line.scene, line.scheme);
+    let of = |(level, why): &(usize, _)| format!("{} {} {level} {why}", line.scene, line.label);
     line.failures.iter().map(of).collect()
 }
 

@@ -15,10 +15,10 @@ use clap::Args;
 use unilateral::prelude::{Report, Study};
 use unilateral::real::Real;
 use unilateral::scenes::{AnyScene, Parameters, Scene, catalogue};
-use unilateral::scheme::{SCHEMES, SchemeOptions, scheme_by_name};
+use unilateral::scheme::NamedScheme;
 use unilateral::study::{Program, Row, orders_summary, orders_table};
 
-use crate::shared::{ORDER_TOLERANCE, Request, complain, print, write};
+use crate::shared::{ORDER_TOLERANCE, Request, complain, print, schemes, write};
 
 /// Sets observed orders beside those that theory promises, every scheme on every scene
 #[derive(Args, Debug)]
@@ -28,6 +28,9 @@ pub struct Options {
     /// Only scenes whose names contain this
     #[arg(value_name = "WORD")]
     pattern: Option<String>,
+    /// Schemes as NAME[:PLACEMENT][@KEY=VALUE[,KEY=VALUE...]]; all by default
+    #[arg(long = "scheme", value_delimiter = ',', value_name = "A[,B...]")]
+    schemes: Vec<String>,
     /// Also write how many promises each scheme keeps, and those that it misses
     #[arg(long, value_name = "FILE")]
     summary: Option<PathBuf>,
@@ -38,7 +41,8 @@ pub struct Options {
 
 /// Whether the work came to its end.
 pub fn run(options: &Options) -> Request<bool> {
-    match make(options) {
+    let schemes = schemes(&options.schemes, &["all"])?;
+    match make(options, &schemes) {
         Ok(()) => Ok(true),
         Err(error) => {
             complain(&error.to_string());
@@ -47,7 +51,7 @@ pub fn run(options: &Options) -> Request<bool> {
     }
 }
 
-fn make(options: &Options) -> Result<(), Box<dyn Error>> {
+fn make(options: &Options, schemes: &[NamedScheme]) -> Result<(), Box<dyn Error>> {
     let quick = options.quick;
     let mut rows = Vec::new();
     for entry in catalogue() {
@@ -56,10 +60,15 @@ fn make(options: &Options) -> Result<(), Box<dyn Error>> {
         }
         eprintln!("{}", entry.name);
         for degree in [1, 2] {
+            let is_of_degree = |s: &&NamedScheme| s.name().ends_with("p2") == (degree == 2);
+            let schemes: Vec<&NamedScheme> = schemes.iter().filter(is_of_degree).collect();
+            if schemes.is_empty() {
+                continue;
+            }
             rows.extend(match entry.make(&Parameters::default())? {
-                AnyScene::One(scene) => study(scene, degree, quick)?,
-                AnyScene::Two(scene) => study(scene, degree, quick)?,
-                AnyScene::Three(scene) => study(scene, degree, quick)?,
+                AnyScene::One(scene) => study(scene, &schemes, degree, quick)?,
+                AnyScene::Two(scene) => study(scene, &schemes, degree, quick)?,
+                AnyScene::Three(scene) => study(scene, &schemes, degree, quick)?,
             });
         }
     }
@@ -76,10 +85,11 @@ fn make(options: &Options) -> Result<(), Box<dyn Error>> {
     }
 }
 
-/// All schemes of a degree on a scene, on five levels, in space on four; quadratics on coarser ones,
+/// Schemes of a degree on a scene, on five levels, in space on four; quadratics on coarser ones,
 /// since they have more unknowns.
 fn study<const D: usize>(
     scene: Scene<D>,
+    schemes: &[&NamedScheme],
     degree: usize,
     quick: bool,
 ) -> Result<Vec<Row>, Box<dyn Error>> {
@@ -91,9 +101,6 @@ fn study<const D: usize>(
         _ => &[2, 4, 6, 8],
     };
     let levels = levels.iter().map(|level| if quick { level / 2 } else { *level });
-    let options = SchemeOptions::default();
-    let names = SCHEMES.iter().filter(|(name, _)| name.ends_with("p2") == (degree == 2));
-    let schemes = names.filter_map(|(name, _)| scheme_by_name::<f64, D>(name, &options));
     let study = Study::<f64, D>::new(scene).levels(levels);
-    Ok(schemes.fold(study, Study::boxed_scheme).run()?.rows)
+    Ok(schemes.iter().fold(study, |study, scheme| study.named_scheme(scheme)).run()?.rows)
 }
