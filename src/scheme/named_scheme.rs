@@ -162,7 +162,7 @@ impl NamedScheme {
         SCHEMES.iter().map(of).collect()
     }
     /// The name of the scheme, without placement and choices.
-    pub fn name(&self) -> &'static str {
+    pub const fn name(&self) -> &'static str {
         self.name
     }
     /// The choices written.
