@@ -27,7 +27,7 @@ pub fn observed_order(
 }
 
 /// The order of a sequence of meshes: a power of the mesh size fitted to all errors.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct FittedOrder {
     /// The exponent `p` of the `C h^p` that is closest to the errors, by least squares of their
@@ -38,16 +38,26 @@ pub struct FittedOrder {
     /// the range of their local orders stays the same however many meshes there are, while the spread
     /// of the fit falls like their number to the power `-3/2`, so that further meshes decide.
     pub spread: f64,
-    /// The order from the last but one to the last mesh alone.
-    pub finest: f64,
-    /// The number of meshes.
-    pub meshes: usize,
+    /// The orders from each mesh to the next.
+    pub local: Vec<f64>,
+}
+
+impl FittedOrder {
+    /// Whether the local orders rise from mesh to mesh, so that one more rise like the last reaches a
+    /// limit: the fit over meshes that are still coarse is then below the order of small mesh sizes.
+    pub fn rises_to(&self, limit: f64) -> bool {
+        let rises = self.local.windows(2).all(|pair| pair[0] <= pair[1]);
+        match self.local[..] {
+            [.., before, last] => rises && 2.0 * last - before >= limit,
+            _ => false,
+        }
+    }
 }
 
 /// Fits an order to mesh sizes and errors, the finest mesh last.
 ///
 /// Nothing for fewer than two meshes, and nothing where a mesh size or error is not positive and
-/// finite or all mesh sizes are the same.
+/// finite or two meshes that follow each other have the same size.
 ///
 /// ```
 /// use unilateral::measure::fit_order;
@@ -55,12 +65,8 @@ pub struct FittedOrder {
 /// assert!((fitted.order - 2.0).abs() < 1e-12 && fitted.spread < 1e-12);
 /// ```
 pub fn fit_order(meshes: &[(f64, f64)]) -> Option<FittedOrder> {
-    let &[.., (coarse_h, coarse), (fine_h, fine)] = meshes else { return None };
-    let finest = observed_order(coarse, fine, coarse_h, fine_h)?;
-    let positive = |x: f64| x.is_finite() && x > 0.0;
-    if !meshes.iter().all(|&(h, error)| positive(h) && positive(error)) {
-        return None;
-    }
+    let of = |pair: &[(f64, f64)]| observed_order(pair[0].1, pair[1].1, pair[0].0, pair[1].0);
+    let local: Vec<f64> = meshes.windows(2).map(of).collect::<Option<_>>()?;
     let points: Vec<(f64, f64)> = meshes.iter().map(|(h, error)| (h.ln(), error.ln())).collect();
     let count = points.len() as f64;
     let mean_x = points.iter().map(|p| p.0).sum::<f64>() / count;
@@ -70,9 +76,10 @@ pub fn fit_order(meshes: &[(f64, f64)]) -> Option<FittedOrder> {
     let order = products / squares;
     let residual = |p: &(f64, f64)| (p.1 - mean_y - order * (p.0 - mean_x)).powi(2);
     let residuals: f64 = points.iter().map(residual).sum();
-    let spread = match points.len() {
-        2 => f64::INFINITY,
+    let spread = match local.len() {
+        0 => return None,
+        1 => f64::INFINITY,
         _ => 2.0 * (residuals / (count - 2.0) / squares).sqrt(),
     };
-    order.is_finite().then_some(FittedOrder { order, spread, finest, meshes: points.len() })
+    order.is_finite().then_some(FittedOrder { order, spread, local })
 }

@@ -26,8 +26,9 @@ pub enum OrderVerdict {
     Kept,
     /// It is.
     Missed,
-    /// The spread exceeds 0.3, and the promised order less the tolerance lies inside of it: further
-    /// levels decide.
+    /// Further levels decide: the spread exceeds 0.3 and the promised order less the tolerance lies
+    /// inside of it, or the fitted order is below it while the local orders
+    /// [rise](FittedOrder::rises_to) to it.
     Undecided,
     /// Fewer than four levels converged with an error.
     TooFewLevels,
@@ -63,13 +64,15 @@ impl OrderVerdict {
 
     /// The verdict on an order, promised for small mesh sizes as `e <= C h^promised`.
     fn on(fitted: Option<&FittedOrder>, promised: f64, tolerance: f64) -> Self {
-        let Some(fitted) = fitted.filter(|fitted| fitted.meshes >= LEAST_LEVELS) else {
+        let Some(fitted) = fitted.filter(|fitted| fitted.local.len() + 1 >= LEAST_LEVELS) else {
             return Self::TooFewLevels;
         };
-        let above = fitted.order - (promised - tolerance);
-        match fitted.spread > LARGEST_SPREAD && above.abs() < 0.5 * fitted.spread {
+        let limit = promised - tolerance;
+        let (above, half) = (fitted.order - limit, 0.5 * fitted.spread);
+        match above.abs() < half && fitted.spread > LARGEST_SPREAD {
             true => Self::Undecided,
-            false if above >= -0.5 * fitted.spread => Self::Kept,
+            false if above >= -half => Self::Kept,
+            false if fitted.rises_to(limit) => Self::Undecided,
             false => Self::Missed,
         }
     }
@@ -203,7 +206,7 @@ impl ObservedOrders {
                 constraint: self.constraint.clone(),
                 levels: self.levels.clone(),
                 norm,
-                fitted: self.fitted(norm).copied(),
+                fitted: self.fitted(norm).cloned(),
                 promised: self.promised(norm).filter(|_| !passes.contains(&verdict))?,
                 verdict,
             })

@@ -15,7 +15,8 @@ fn reading(tolerance: f64) -> String {
         "An order is the exponent of the power of the mesh size that is closest to the errors of all \
          levels that converged, by least squares of logarithms; `±` is one standard error, half of the \
          spread. A promise is `kept` if the order is at least the promised one less {tolerance} and half \
-         the spread, `undecided` if the spread exceeds 0.3 and that limit lies inside of it, `missed` \
+         the spread, `undecided` if the spread exceeds 0.3 and that limit lies inside of it or if the \
+         orders from level to level rise and one more rise like the last reaches it, `missed` \
          otherwise; with fewer than four levels there is no verdict.\n\n"
     )
 }
@@ -48,8 +49,8 @@ pub fn orders_table(orders: &[ObservedOrders], tolerance: f64) -> String {
     text
 }
 
-/// How many promises each scheme keeps, and every promise that it was not seen to keep, with the order
-/// of the two finest levels alone beside the fitted one; then the levels that did not converge.
+/// How many promises each scheme keeps, and every promise that it was not seen to keep, with the orders
+/// from level to level beside the fitted one; then the levels that did not converge.
 pub fn orders_summary(orders: &[ObservedOrders], tolerance: f64) -> String {
     let heads = OrderVerdict::ALL.map(OrderVerdict::name).join(" | ");
     let mut text = reading(tolerance)
@@ -65,20 +66,19 @@ pub fn orders_summary(orders: &[ObservedOrders], tolerance: f64) -> String {
     }
     let all = OrderVerdict::ALL.map(|v| count(&|_| true, v));
     let _ = writeln!(text, "| all | {} |", all.join(" | "));
-    text += "\n| scene | scheme | norm | levels | order | promised | finest two | verdict |\n\
+    text += "\n| scene | scheme | norm | levels | order | promised | level to level | verdict |\n\
              |---|---|---|---|---|---|---|---|\n";
     for missed in orders.iter().flat_map(|line| line.missed(tolerance)) {
-        let finest =
-            missed.fitted.map_or(NONE.to_owned(), |fitted| format!("{:.2}", fitted.finest));
         let _ = writeln!(
             text,
-            "| {} | {} | {} | {} | {} | {} | {finest} | {} |",
+            "| {} | {} | {} | {} | {} | {} | {} | {} |",
             missed.scene,
             missed.label,
             missed.norm,
             levels_in_words(&missed.levels),
             observed(missed.fitted.as_ref()),
             missed.promised,
+            missed.fitted.as_ref().map_or(NONE.to_owned(), local_orders),
             missed.verdict.name(),
         );
     }
@@ -91,6 +91,10 @@ pub fn orders_summary(orders: &[ObservedOrders], tolerance: f64) -> String {
 
 fn observed(fitted: Option<&FittedOrder>) -> String {
     fitted.map_or(NONE.to_owned(), order_in_words)
+}
+
+fn local_orders(fitted: &FittedOrder) -> String {
+    fitted.local.iter().map(|order| format!("{order:.2}")).collect::<Vec<_>>().join(", ")
 }
 
 fn promised(order: Option<f64>) -> String {
