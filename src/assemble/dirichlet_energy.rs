@@ -71,7 +71,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         data: &[FacetDatum],
         energy: &mut DirichletEnergy,
     ) {
-        let table = LiftTable::new(self);
+        let table = LiftTable::new(self, form.lift_degree(self.basis_degree));
         let lifting = Lifting { space: self, form, metrics, table: &table };
         let mut load = vec![T::lit(0.0); self.dofs.size()];
         for (cell, datum) in data {
