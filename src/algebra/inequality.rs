@@ -1,5 +1,6 @@
 //! The algebraic variational inequality.
 
+use super::dirichlet_energy::DirichletEnergy;
 use super::index::NO_INDEX;
 use super::matrix::SparseMatrix;
 use super::penalised_matrix::PenalisedMatrix;
@@ -177,6 +178,16 @@ pub struct Inequality<T> {
     /// `A` and `b` as the sums `K + M^T S M` and `c + M^T S g`, for schemes with such a penalty:
     /// residuals of the sums have smaller rounding errors.
     pub penalised: Option<PenalisedMatrix<T>>,
+    /// What weak Dirichlet data change in the energy `u.A u`; `None` if there are none, or if
+    /// `penalised` has them.
+    pub dirichlet_energy: Option<DirichletEnergy>,
+    /// The kernel of `A` on functions that satisfy the Dirichlet data, as vectors without common
+    /// unknowns, each by its nonzero entries: the constants on components of the domain that neither
+    /// Dirichlet data nor a reaction hold. Only bounds stop them. Empty if the kernel is zero or unknown.
+    pub kernel: Vec<Vec<(u32, T)>>,
+    /// Whether theory or a test says that `A`, or its symmetric part, is positive definite on all
+    /// unknowns that are not fixed, but for the kernel.
+    pub is_definite: bool,
 }
 
 impl<T: Real> Inequality<T> {
@@ -200,6 +211,9 @@ impl<T: Real> Inequality<T> {
             conforming_linear: false,
             start,
             penalised: None,
+            dirichlet_energy: None,
+            kernel: Vec::new(),
+            is_definite: false,
         }
     }
     /// Replaces the initial active set.
@@ -224,6 +238,19 @@ impl<T: Real> Inequality<T> {
     #[must_use]
     pub fn with_conforming_linear(mut self) -> Self {
         self.conforming_linear = true;
+        self
+    }
+    /// Sets the kernel of the matrix.
+    #[must_use]
+    pub fn with_kernel(mut self, kernel: Vec<Vec<(u32, T)>>) -> Self {
+        self.kernel = kernel;
+        self
+    }
+    /// States that the matrix is positive definite on all unknowns that are not fixed, but for the
+    /// kernel: solvers then need not test it.
+    #[must_use]
+    pub fn with_definite_matrix(mut self) -> Self {
+        self.is_definite = true;
         self
     }
     /// Number of unknowns, fixed ones included.

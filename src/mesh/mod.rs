@@ -11,6 +11,7 @@
 //! * A mesh is immutable once made, and what [`Mesh::new`] accepts carries a finite element space.
 
 mod boundary;
+mod components;
 mod domain;
 mod edges;
 mod error;
@@ -24,6 +25,7 @@ mod stars;
 mod validate;
 
 pub use boundary::{BoundaryFacet, BoundaryPart};
+pub(crate) use components::Components;
 pub use domain::{BoxDomain, Domain};
 #[doc(hidden)]
 pub use edges::Edges;

@@ -1,8 +1,9 @@
 //! The construction of a mesh from lists of vertices, cells and boundary facets, with all checks.
 
 use super::boundary::{BoundaryFacet, BoundaryPart};
+use super::components::Components;
 use super::error::MeshError;
-use super::facets::{CELL_LIMIT, Neighbour, Neighbours};
+use super::facets::{CELL_LIMIT, Neighbours};
 use super::geometry::{CellGeometry, describe_point};
 use super::overlap::{check_folds, check_overlaps};
 use super::simplicial::Mesh;
@@ -60,8 +61,10 @@ impl<T: Real, const D: usize> Mesh<T, D> {
         check_folds::<D>(&cells, &neighbours, &is_positive)?;
         let boundary = match_boundary(&vertices, &cells, &neighbours, boundary)?;
         check_overlaps(&vertices, &cells, &boundary)?;
+        let is_dirichlet = |part| part == BoundaryPart::Dirichlet;
+        let is_supported = unsupported_component(&neighbours, &boundary, is_dirichlet).is_none();
         let (vertices, cells) = drop_unused(rounded, cells);
-        Ok(Self { vertices, cells, boundary })
+        Ok(Self { vertices, cells, boundary, is_supported })
     }
 
     /// Checks that every component of the mesh, connected through facets, has a Dirichlet or a contact
@@ -73,35 +76,32 @@ impl<T: Real, const D: usize> Mesh<T, D> {
         compiled!(T, D: fn(&Mesh<T, D>) -> Result<(), MeshError> = Mesh::find_unsupported)(self)
     }
     fn find_unsupported(&self) -> Result<(), MeshError> {
-        let neighbours = Neighbours::new(self);
-        let mut seen = vec![false; self.n_cells()];
-        let mut front = Vec::new();
-        for first in 0..self.n_cells() {
-            if seen[first] {
-                continue;
-            }
-            seen[first] = true;
-            front.push(first);
-            let (mut supported, mut cells) = (false, 0);
-            while let Some(c) = front.pop() {
-                cells += 1;
-                for local in 0..=D {
-                    match neighbours.across(c, local) {
-                        Neighbour::Boundary(part) => supported |= part != BoundaryPart::Neumann,
-                        Neighbour::Cell { cell, .. } => {
-                            if !std::mem::replace(&mut seen[cell as usize], true) {
-                                front.push(cell as usize);
-                            }
-                        }
-                    }
-                }
-            }
-            if !supported {
-                return Err(MeshError::UnsupportedComponent { cell: first, cells });
-            }
+        let supports = |part| part != BoundaryPart::Neumann;
+        match unsupported_component(&Neighbours::new(self), &self.boundary, supports) {
+            Some((cell, cells)) => Err(MeshError::UnsupportedComponent { cell, cells }),
+            None => Ok(()),
         }
-        Ok(())
     }
+}
+
+/// The first component of a mesh, connected through facets, without a boundary facet whose part supports
+/// it: its first cell and its number of cells.
+fn unsupported_component(
+    neighbours: &Neighbours,
+    boundary: &[BoundaryFacet],
+    supports: impl Fn(BoundaryPart) -> bool,
+) -> Option<(usize, usize)> {
+    let n_cells = neighbours.n_cells();
+    let mut components = Components::new(n_cells);
+    for cell in 0..n_cells {
+        neighbours.cells_across(cell).for_each(|other| components.join(cell, other));
+    }
+    let mut is_supported = vec![false; n_cells];
+    for facet in boundary.iter().filter(|facet| supports(facet.part)) {
+        is_supported[components.find(facet.cell as usize)] = true;
+    }
+    let first = (0..n_cells).find(|&cell| !is_supported[components.find(cell)])?;
+    Some((first, (first..n_cells).filter(|&cell| components.find(cell) == first).count()))
 }
 
 fn check_lists<const D: usize>(vertices: &[Point<f64, D>], cells: &[u32]) -> Result<(), MeshError> {

@@ -224,3 +224,21 @@ fn the_bound_on_the_error_is_one() {
         check(&scene, &Sipg::default());
     }
 }
+
+/// The energy that scales the tolerance is that with Dirichlet data: for over-penalties the other one is
+/// larger by orders of magnitude, and the algebraic error with it.
+#[test]
+fn the_algebraic_error_is_a_small_part_of_the_error() {
+    for set in [false, true] {
+        let study = |linear| {
+            let study = Study::<f64, 2>::new(scenes::radial(1.0)).solver(with(linear));
+            let study = match set {
+                true => study.scheme_on(Wopsip::default(), FacetMeans),
+                false => study.scheme(Wopsip::default()),
+            };
+            study.levels([64]).run().unwrap().rows.remove(0).error.l2.unwrap()
+        };
+        let (found, exact) = (study(LinearMethod::Iterative), study(LinearMethod::Direct));
+        assert!((found - exact).abs() <= 1e-6 * exact, "{found} and {exact}");
+    }
+}

@@ -1,11 +1,12 @@
 //! What scripts rely on.
 
 /// The keys of a row, in order.
-pub const ROW_KEYS: [&str; 24] = [
+pub const ROW_KEYS: [&str; 25] = [
     "scene",
     "dimension",
     "scheme",
     "constraint",
+    "label",
     "level",
     "parameters",
     "cells",

@@ -5,7 +5,7 @@
 //! itself and from its neighbours as centres.
 //!
 //! On a centre `K` the jump `m` on facet `F` lifts to `-w/alpha n s`, `w` the weight of `K` in the flux and
-//! `s` of degree `p - 1` with `int_K s q = int_F m q`. With `|F||F'| n.n' = D^2 |K| int grad lambda
+//! `s` of the degree of lifts with `int_K s q = int_F m q`. With `|F||F'| n.n' = D^2 |K| int grad lambda
 //! . grad lambda'` the product of two lifts is `D^2 w w'/alpha` times that integral times a number
 //! of the reference cell.
 
@@ -20,8 +20,8 @@ use crate::mesh::{BoundaryPart, Neighbour, Neighbours};
 use crate::quadrature::{OrthonormalPolynomials, Rule, facet_to_cell};
 use crate::real::Real;
 
-/// Most moments a lift is made of: linears on a triangle.
-const MAX_MOMENTS: usize = 3;
+/// Most moments a lift is made of: quadratics on a triangle.
+const MAX_MOMENTS: usize = 6;
 
 type Moments<T> = [[T; MAX_MOMENTS]; MAX_BASIS];
 type Product<T> = [[T; MAX_MOMENTS]; MAX_MOMENTS];
@@ -30,14 +30,15 @@ type Product<T> = [[T; MAX_MOMENTS]; MAX_MOMENTS];
 pub(crate) struct LiftTable<T> {
     /// Moments of the basis, of degree up to that of lifts.
     pub facets: FacetTable<T>,
+    /// Number of moments on a facet.
+    moments: usize,
     /// For two facets, the products of the lifts of their moments, per measures and volume.
     products: [[Product<T>; 4]; 4],
 }
 
 impl<T: Real> LiftTable<T> {
-    /// The lifts of a space of degree one or two.
-    pub fn new<const D: usize>(space: &Space<'_, T, D>) -> Self {
-        let degree = space.basis_degree - 1;
+    /// The lifts of this degree of a space of degree one or two.
+    pub fn new<const D: usize>(space: &Space<'_, T, D>, degree: usize) -> Self {
         let mut products = [[[[T::lit(0.0); MAX_MOMENTS]; MAX_MOMENTS]; 4]; 4];
         let tests: Vec<Vec<Vec<f64>>> = (0..=D).map(|l| tests(D, degree, l)).collect();
         for l in 0..=D {
@@ -51,7 +52,8 @@ impl<T: Real> LiftTable<T> {
                 }
             }
         }
-        Self { facets: space.facet_table(degree), products }
+        let facets = space.facet_table(degree);
+        Self { moments: facets.degrees.len(), facets, products }
     }
 }
 
@@ -196,8 +198,8 @@ impl<T: Real, const D: usize> Lifting<'_, '_, T, D> {
         let products = &self.table.products[test][trial];
         let mut weighted = [[T::lit(0.0); MAX_MOMENTS]; MAX_BASIS];
         for i in 0..self.space.per_cell() {
-            for n in 0..MAX_MOMENTS {
-                for m in 0..MAX_MOMENTS {
+            for n in 0..self.table.moments {
+                for m in 0..self.table.moments {
                     weighted[i][n] += scale * tested[i][m] * products[m][n];
                 }
             }
@@ -218,7 +220,7 @@ impl<T: Real, const D: usize> Lifting<'_, '_, T, D> {
         for i in 0..n {
             let out = &mut rows[i * row + start..i * row + start + n];
             for j in 0..n {
-                for m in 0..MAX_MOMENTS {
+                for m in 0..self.table.moments {
                     out[j] += sign * tests[i][m] * trials[j][m];
                 }
             }
@@ -256,5 +258,27 @@ impl<T: Real, const D: usize> Lifting<'_, '_, T, D> {
                 add(other, other_local, T::lit(-1.0));
             }
         }
+    }
+
+    /// The product of the lifts of Dirichlet data on two facets of a centre, each given by the number of
+    /// the facet and the moments of the datum, of which lifts take the first.
+    pub fn product_of_data(
+        &self,
+        centre: usize,
+        (first, first_moments): &(usize, Vec<f64>),
+        (second, second_moments): &(usize, Vec<f64>),
+    ) -> T {
+        let metric = self.metrics.at::<D>(centre);
+        let facet =
+            |local| JumpFacet { local, across: None, flux_weight: self.space.alpha(centre) };
+        let scale = self.scale(centre, &metric, &facet(*first), &facet(*second));
+        let products = &self.table.products[*first][*second];
+        let mut sum = T::lit(0.0);
+        for (products, &a) in products.iter().zip(first_moments) {
+            for (&product, &b) in products.iter().zip(second_moments) {
+                sum += scale * T::lit(a) * product * T::lit(b);
+            }
+        }
+        sum
     }
 }

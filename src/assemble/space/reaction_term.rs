@@ -38,6 +38,17 @@ impl<'a, T: Real, const D: usize> ReactionTerm<'a, T, D> {
             }
         }
     }
+    /// Whether the datum is not negative at the points of the rule.
+    pub fn is_nonnegative(&self, mesh: &Mesh<T, D>) -> bool {
+        let at_point = |cell: usize, point: &[T; 4]| {
+            self.datum.at(&point_f64(&mesh.point(cell, &point[..=D]))) >= 0.0
+        };
+        match self.datum {
+            Datum::Constant(c) => *c >= 0.0,
+            Datum::Function(_) => (0..mesh.n_cells())
+                .all(|cell| self.table.points.iter().all(|point| at_point(cell, point))),
+        }
+    }
     /// Finds the point at which the datum is not finite.
     pub fn check(&self, mesh: &Mesh<T, D>) -> Result<(), Error> {
         for cell in 0..mesh.n_cells() {

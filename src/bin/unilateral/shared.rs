@@ -3,14 +3,13 @@
 use std::fs;
 use std::io::{ErrorKind, IsTerminal, Write};
 use std::path::Path;
-use std::sync::Arc;
 use std::time::Duration;
 
 use indicatif::{ProgressBar, ProgressStyle};
-use unilateral::constraint::{CONSTRAINT_SETS, ConstraintSet, constraint_set_by_name};
 use unilateral::input::{excerpt, read_file};
 use unilateral::scenes;
 use unilateral::scenes::{AnyScene, Parameters};
+use unilateral::scheme::NamedScheme;
 
 /// The error of a wrong request is one message.
 pub type Request<T> = Result<T, String>;
@@ -78,20 +77,13 @@ pub fn scene(name: &str) -> Request<AnyScene> {
     entry.make(&Parameters::default()).map_err(|e| e.to_string())
 }
 
-/// The name and, if there is a colon, the placement after it: `wopsip:facet-means`.
-pub fn split(choice: &str) -> (&str, Option<&str>) {
-    match choice.split_once(':') {
-        Some((name, place)) => (name, Some(place)),
-        None => (choice, None),
-    }
-}
-
-/// The constraint set of this name.
-pub fn constraint_set(name: &str) -> Request<Arc<dyn ConstraintSet>> {
-    constraint_set_by_name(name).ok_or_else(|| {
-        let names = CONSTRAINT_SETS.map(|set| set.0).join(", ");
-        format!("there is no placement {}; there are: {names}", excerpt(name))
-    })
+/// The schemes of an option whose value was cut at commas, or the default ones.
+pub fn schemes(asked: &[String], default: &[&'static str]) -> Request<Vec<NamedScheme>> {
+    let found = match asked {
+        [] => NamedScheme::list(default.iter().copied()),
+        asked => NamedScheme::list(asked.iter().map(String::as_str)),
+    };
+    found.map_err(|e| e.to_string())
 }
 
 /// Each item once, in order of first occurrence.

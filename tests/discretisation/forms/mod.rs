@@ -3,6 +3,7 @@
 mod assembly;
 mod bounds;
 mod condition;
+mod dirichlet_energy;
 mod lifting;
 mod lumping;
 mod own_forms;

@@ -72,7 +72,7 @@ fn penalties_on_two_triangles() {
 #[test]
 fn moments_of_lifts() {
     fn of<const D: usize>(degree: usize, moment: usize) -> f64 {
-        let form = Lifted(FacetLifts { eta: 1.0, degree, bounded: false });
+        let form = Lifted(FacetLifts { eta: 1.0, lift_degree: degree - 1, bounded: false });
         FacetForm::<f64, D>::moment_weight(&form, moment)
     }
     // means into constants: the lift is constant, of energy |F|^2 / |K|

@@ -1,6 +1,7 @@
 //! The solvers of the algebraic inequality against slow ones, and on what can go wrong.
 
 mod certificates;
+mod error_bound;
 mod failures;
 mod last_resort;
 mod out_of_memory;

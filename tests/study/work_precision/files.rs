@@ -38,7 +38,10 @@ fn csv_reads_back_to_the_same_numbers() {
     assert_eq!(lines[3][smallest].parse::<f64>().unwrap().to_bits(), expected.to_bits());
     let reach = report.reach_csv();
     assert_eq!(table(&reach).len(), 1 + report.reach().len());
-    assert!(reach.starts_with("scene,scheme,constraint,linear_asked,precision,norm,error,seconds"));
+    assert!(
+        reach
+            .starts_with("scene,scheme,constraint,label,linear_asked,precision,norm,error,seconds")
+    );
 }
 
 /// Rows of each table in Markdown: bars in each.
@@ -96,7 +99,7 @@ fn needs_pdflatex_to_compile_latex() {
         m.row.unknowns = 123_456;
     }
     let mut other = report.rows.clone();
-    other.iter_mut().for_each(|m| m.row.constraint = "facet-means".to_owned());
+    other.iter_mut().for_each(|m| m.row.label += ":facet-means");
     report.rows.extend(other);
     let document = format!(
         "\\documentclass{{article}}\n\\usepackage{{booktabs}}\n\\begin{{document}}\n{}\\end{{document}}\n",

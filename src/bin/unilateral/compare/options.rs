@@ -7,9 +7,9 @@ use unilateral::constraint::CONSTRAINT_SETS;
 use unilateral::inequality::SOLVERS;
 use unilateral::input::excerpt;
 use unilateral::scenes;
-use unilateral::scheme::SCHEMES;
+use unilateral::scheme::{NamedScheme, SCHEMES, SchemeOptions, keys_of_scheme};
 
-use crate::shared::{MOST_THREADS, Request, each_once};
+use crate::shared::{MOST_THREADS, Request, each_once, schemes};
 
 /// Compares finite element schemes on obstacle and Signorini problems
 #[derive(Args, Debug)]
@@ -20,7 +20,7 @@ pub struct Options {
     /// Scenes by name, or `all`
     #[arg(long = "scene", value_delimiter = ',', value_name = "A[,B...]")]
     pub scenes: Vec<String>,
-    /// Schemes by name, or `all`
+    /// Schemes as NAME[:PLACEMENT][@KEY=VALUE[,KEY=VALUE...]], or `all`; --list names the keys of each
     #[arg(long = "scheme", value_delimiter = ',', value_name = "A[,B...]")]
     pub schemes: Vec<String>,
     /// Subdivisions of the scene's shortest side; with --mesh: uniform refinements, from 0
@@ -38,13 +38,13 @@ pub struct Options {
     /// Load of scenes that have one
     #[arg(long, value_name = "X", allow_negative_numbers = true, value_parser = number)]
     pub load: Option<f64>,
-    /// Interior penalty X / h_F on every facet, instead of the scheme's own choice
+    /// Interior penalty X / h_F on every facet, for schemes named without a penalty
     #[arg(long, value_name = "X", allow_negative_numbers = true, value_parser = number)]
     pub sigma: Option<f64>,
-    /// WOPSIP weight X / h_F^3 on every facet (quadratics: h_F^5), instead of the dimensionless default
+    /// WOPSIP weight X / h_F^3 on every facet (quadratics: h_F^5), for schemes named without a penalty
     #[arg(long, value_name = "X", allow_negative_numbers = true, value_parser = number)]
     pub eta: Option<f64>,
-    /// Where schemes that have the choice impose the inequality
+    /// Where schemes named without a placement that have the choice impose the inequality
     #[arg(long, value_parser = CONSTRAINT_SETS.map(|set| set.0), default_value = "vertices")]
     pub constraint: String,
     /// Solvers of the inequality, side by side where several; active-set by default
@@ -111,11 +111,20 @@ pub fn list() -> String {
         }
     };
     group("scenes", &mut scenes.iter().map(|(n, s)| (&n[..], &s[..])));
-    group("schemes", &mut SCHEMES.iter().copied());
+    let schemes: Vec<(&str, String)> = SCHEMES.iter().map(|s| (s.0, with_keys(s))).collect();
+    group("schemes", &mut schemes.iter().map(|(n, s)| (*n, &s[..])));
     group("constraint placements", &mut CONSTRAINT_SETS.iter().copied());
     group("solvers", &mut SOLVERS.iter().copied());
     group("linear solvers", &mut LINEAR.iter().copied());
     text
+}
+
+/// The summary of a scheme with the keys that it takes.
+fn with_keys((name, summary): &(&str, &str)) -> String {
+    match keys_of_scheme(name) {
+        [] => (*summary).to_owned(),
+        keys => format!("{summary} (takes {})", keys.join(", ")),
+    }
 }
 
 /// A name of a list, or a message with the list.
@@ -142,6 +151,25 @@ pub fn choose(
     } else {
         each_once(asked)
     })
+}
+
+/// The schemes asked for; refuses a penalty factor that none of them takes.
+pub fn choose_schemes(options: &Options) -> Request<Vec<NamedScheme>> {
+    let chosen = schemes(&options.schemes, &["p1", "sipg", "wopsip"])?;
+    for (key, given) in [("sigma", options.sigma), ("eta", options.eta)] {
+        let takes = |name: &str| keys_of_scheme(name).contains(&key);
+        if let Some(x) = given.filter(|_| !chosen.iter().any(|scheme| takes(scheme.name()))) {
+            let takers = SCHEMES.iter().map(|s| s.0).filter(|name| takes(name));
+            return Err(format!(
+                "--{key} {x:?}: none of the schemes chosen takes it; there are: {}",
+                takers.collect::<Vec<_>>().join(", ")
+            ));
+        }
+    }
+    let (sigma, eta) = (options.sigma, options.eta);
+    let penalty = SchemeOptions { sigma, eta, ..SchemeOptions::default() };
+    let complete = |s: NamedScheme| s.or_penalty(&penalty).or_placement(&options.constraint);
+    Ok(chosen.into_iter().map(complete).collect())
 }
 
 pub fn check_numbers(options: &Options) -> Request<()> {
