@@ -178,3 +178,14 @@ fn data_whose_squares_underflow_are_refused_and_not_certified() {
         assert_eq!(cold(&scaled(factor)).outcome, Outcome::Converged);
     }
 }
+
+#[test]
+fn rounding_that_keeps_the_certificate_above_its_limit_is_told() {
+    // in f32 the condition number of a long chain exceeds the reciprocal of machine epsilon
+    let n = 3000;
+    let load: Vec<f64> = (0..n).map(|i| if i % 2 == 0 { 1.0 } else { -1.0 + 1e-6 }).collect();
+    let chain = inequality::<f32>(laplacian(n, 1, 2.0), &load, vec![Bound::Free; n]);
+    let solution = ActiveSet::default().refinements(0).solve(&chain);
+    assert!(certify(&chain, &solution.values).largest() > 1e-4);
+    assert_eq!(solution.outcome, Outcome::Stalled);
+}
