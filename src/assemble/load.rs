@@ -257,7 +257,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         data: &[FacetDatum],
         load: &mut [T],
     ) {
-        let table = LiftTable::new(self);
+        let table = LiftTable::new(self, form.lift_degree(self.basis_degree));
         let lifting = Lifting { space: self, form, metrics, table: &table };
         for (cell, datum) in data {
             lifting.add_load(self.coupled_neighbours(), *cell, datum, load);

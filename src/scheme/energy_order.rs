@@ -2,8 +2,9 @@
 //!
 //! A scheme states its promise itself, with the source of the proof: neither element nor form imply
 //! one, and a scheme of one's own is promised nothing before somebody has proven it. Inequalities are
-//! promised nothing in L2: duality needs a linear problem. Nothing is
-//! promised for solutions that are not better than `H^{3/2}`, where traces of the gradient, which
+//! promised nothing in L2: duality needs a linear problem, and what is proven without it, for conforming
+//! linears in the maximum norm and in L4, asks for acute meshes or for data of which a setting says nothing.
+//! Nothing is promised for solutions that are not better than `H^{3/2}`, where traces of the gradient, which
 //! all proofs for inequalities use, need not exist.
 
 use super::{ExpectedOrders, Setting};

@@ -5,7 +5,7 @@
 //! itself and from its neighbours as centres.
 //!
 //! On a centre `K` the jump `m` on facet `F` lifts to `-w/alpha n s`, `w` the weight of `K` in the flux and
-//! `s` of degree `p - 1` with `int_K s q = int_F m q`. With `|F||F'| n.n' = D^2 |K| int grad lambda
+//! `s` of the degree of lifts with `int_K s q = int_F m q`. With `|F||F'| n.n' = D^2 |K| int grad lambda
 //! . grad lambda'` the product of two lifts is `D^2 w w'/alpha` times that integral times a number
 //! of the reference cell.
 //!
@@ -24,8 +24,8 @@ use crate::mesh::{BoundaryPart, Neighbour, Neighbours};
 use crate::quadrature::{OrthonormalPolynomials, Rule, facet_to_cell};
 use crate::real::Real;
 
-/// Most moments a lift is made of: linears on a triangle.
-const MAX_MOMENTS: usize = 3;
+/// Most moments a lift is made of: quadratics on a triangle.
+const MAX_MOMENTS: usize = 6;
 
 type Moments<T> = [[T; MAX_MOMENTS]; MAX_BASIS];
 type Product<T> = [[T; MAX_MOMENTS]; MAX_MOMENTS];
@@ -34,14 +34,15 @@ type Product<T> = [[T; MAX_MOMENTS]; MAX_MOMENTS];
 pub(crate) struct LiftTable<T> {
     /// Moments of the basis, of degree up to that of lifts.
     pub facets: FacetTable<T>,
+    /// Number of moments on a facet.
+    moments: usize,
     /// For two facets, the products of the lifts of their moments, per measures and volume.
     products: [[Product<T>; 4]; 4],
 }
 
 impl<T: Real> LiftTable<T> {
-    /// The lifts of a space of degree one or two.
-    pub fn new<const D: usize>(space: &Space<'_, T, D>) -> Self {
-        let degree = space.basis_degree - 1;
+    /// The lifts of this degree of a space of degree one or two.
+    pub fn new<const D: usize>(space: &Space<'_, T, D>, degree: usize) -> Self {
         let mut products = [[[[T::lit(0.0); MAX_MOMENTS]; MAX_MOMENTS]; 4]; 4];
         let tests: Vec<Vec<Vec<f64>>> = (0..=D).map(|l| tests(D, degree, l)).collect();
         for l in 0..=D {
@@ -55,7 +56,8 @@ impl<T: Real> LiftTable<T> {
                 }
             }
         }
-        Self { facets: space.facet_table(degree), products }
+        let facets = space.facet_table(degree);
+        Self { moments: facets.degrees.len(), facets, products }
     }
 }
 
@@ -235,8 +237,8 @@ impl<T: Real, const D: usize> Lifting<'_, '_, T, D> {
         let products = &self.table.products[test][trial];
         let mut weighted = [[T::lit(0.0); MAX_MOMENTS]; MAX_BASIS];
         for i in 0..self.space.per_cell() {
-            for n in 0..MAX_MOMENTS {
-                for m in 0..MAX_MOMENTS {
+            for n in 0..self.table.moments {
+                for m in 0..self.table.moments {
                     weighted[i][n] += scale * tested[i][m] * products[m][n];
                 }
             }
@@ -257,7 +259,7 @@ impl<T: Real, const D: usize> Lifting<'_, '_, T, D> {
         for i in 0..n {
             let out = &mut rows[i * row + start..i * row + start + n];
             for j in 0..n {
-                for m in 0..MAX_MOMENTS {
+                for m in 0..self.table.moments {
                     out[j] += sign * tests[i][m] * trials[j][m];
                 }
             }
@@ -277,11 +279,7 @@ impl<T: Real, const D: usize> Lifting<'_, '_, T, D> {
         let Some(datum) = self.jump_facet(neighbours, centre, &metric, *datum_local) else {
             return;
         };
-        let mut lifted = [T::lit(0.0); MAX_MOMENTS];
-        lifted.iter_mut().zip(moments).for_each(|(to, &from)| *to = T::lit(from));
-        if let Some(products) = &datum.products {
-            lifted = weigh(products, &lifted);
-        }
+        let lifted = lifted_moments(&datum, moments);
         for local in 0..=D {
             let Some(test) = self.jump_facet(neighbours, centre, &metric, local) else { continue };
             let scale = self.scale(centre, &metric, &test, &datum);
@@ -302,4 +300,34 @@ impl<T: Real, const D: usize> Lifting<'_, '_, T, D> {
             }
         }
     }
+
+    /// The product of the lifts of Dirichlet data on two facets of a centre, each given by the number of
+    /// the facet and the moments of the datum, of which lifts take the first.
+    pub fn product_of_data(
+        &self,
+        neighbours: &Neighbours,
+        centre: usize,
+        (first, first_moments): &(usize, Vec<f64>),
+        (second, second_moments): &(usize, Vec<f64>),
+    ) -> T {
+        let metric = self.metrics.at::<D>(centre);
+        let facet = |local| self.jump_facet(neighbours, centre, &metric, local);
+        let (Some(a), Some(b)) = (facet(*first), facet(*second)) else { return T::lit(0.0) };
+        let scale = self.scale(centre, &metric, &a, &b);
+        let (a, b) = (lifted_moments(&a, first_moments), lifted_moments(&b, second_moments));
+        let mut sum = T::lit(0.0);
+        for (products, &a) in self.table.products[*first][*second].iter().zip(&a) {
+            for (&product, &b) in products.iter().zip(&b) {
+                sum += scale * a * product * b;
+            }
+        }
+        sum
+    }
+}
+
+/// The moments of a Dirichlet datum of which lifts are made, weighted where the coefficient varies.
+fn lifted_moments<T: Real>(facet: &JumpFacet<T>, moments: &[f64]) -> [T; MAX_MOMENTS] {
+    let mut lifted = [T::lit(0.0); MAX_MOMENTS];
+    lifted.iter_mut().zip(moments).for_each(|(to, &from)| *to = T::lit(from));
+    facet.products.as_ref().map_or(lifted, |products| weigh(products, &lifted))
 }

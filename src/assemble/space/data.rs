@@ -39,14 +39,16 @@ pub(crate) fn coefficient_at<T: Real, const D: usize>(
         });
     }
     let rounded = T::lit(value);
-    if (rounded.to_f64() / value - 1.0).abs() <= T::EPSILON {
+    // harmonic means multiply two coefficients
+    let square = (rounded * rounded).to_f64() / (value * value);
+    if (square - 1.0).abs() <= 4.0 * T::EPSILON {
         Ok(rounded)
     } else {
         Err(Error::Parameter {
             parameter: "precision",
             value: T::NAME.to_owned(),
             allowed: format!(
-                "cannot hold the coefficient {value:e} of cell {cell}; choose another precision or scale the coefficient"
+                "cannot hold the coefficient {value:e} of cell {cell} and its square; choose another precision or scale the coefficient"
             ),
         })
     }

@@ -61,24 +61,37 @@ impl<'a, T: Real, const D: usize> ReactionTerm<'a, T, D> {
             add(c, weight, basis);
         }
     }
+    /// Whether the datum is not negative at the points of the rule.
+    pub fn is_nonnegative(&self, mesh: &Mesh<T, D>) -> bool {
+        if let Datum::Constant(c) = self.datum {
+            return *c >= 0.0;
+        }
+        let mut is_nonnegative = true;
+        for cell in 0..mesh.n_cells() {
+            self.visit_points(mesh, cell, &mut |x| is_nonnegative &= self.datum.at(x) >= 0.0);
+        }
+        is_nonnegative
+    }
     /// Finds the point at which the datum is not finite.
     pub fn check(&self, mesh: &Mesh<T, D>) -> Result<(), Error> {
-        let check = |x: &Point<f64, D>, cell| finite(self.datum.at(x), "reaction", x, cell);
         for cell in 0..mesh.n_cells() {
             let mut outcome = Ok(0.0);
-            if self.visit_cut(mesh, cell, &mut |_, x, _| {
+            self.visit_points(mesh, cell, &mut |x| {
                 if outcome.is_ok() {
-                    outcome = check(x, cell);
+                    outcome = finite(self.datum.at(x), "reaction", x, cell);
                 }
-            }) {
-                outcome?;
-                continue;
-            }
-            for point in &self.table.points {
-                check(&point_f64(&mesh.point(cell, &point[..=D])), cell)?;
-            }
+            });
+            outcome?;
         }
         Ok(())
+    }
+    /// Visits the points of the rule on a cell, in space.
+    fn visit_points(&self, mesh: &Mesh<T, D>, cell: usize, visit: &mut dyn FnMut(&Point<f64, D>)) {
+        if !self.visit_cut(mesh, cell, &mut |_, x, _| visit(x)) {
+            for point in &self.table.points {
+                visit(&point_f64(&mesh.point(cell, &point[..=D])));
+            }
+        }
     }
     /// Whether a cell is cut; if it is, its points of the rule are visited: in barycentric coordinates, in
     /// space, and with their weights.

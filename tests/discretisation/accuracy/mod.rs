@@ -10,3 +10,4 @@ mod patch;
 mod precision;
 mod quadratic;
 mod reference;
+mod unstructured;
