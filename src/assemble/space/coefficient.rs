@@ -43,8 +43,10 @@ pub(crate) struct VaryingCoefficient<T> {
     stiffness: Vec<StiffnessTable<T>>,
     /// The weights of the rule on facets.
     facet_weights: Vec<T>,
-    /// By moment and point of the facet, the polynomial.
+    /// By moment and point of the facet, the polynomial, up to the degree of the basis functions.
     polynomials: Vec<T>,
+    /// The number of moments that have a flux: those below that degree.
+    flux_moments: usize,
     /// By facet, moment and point of the facet, the derivatives of the basis times polynomial and weight.
     derivatives: Vec<Derivatives<T>>,
 }
@@ -99,11 +101,12 @@ impl<T: Real> VaryingCoefficient<T> {
             let rule = Rule { points: vec![point], weights: vec![weight] };
             StiffnessTable::new(D, &CellTable::new(rule, basis))
         };
-        let polynomials = OrthonormalPolynomials::new(D - 1, basis_degree - 1);
+        let polynomials = OrthonormalPolynomials::new(D - 1, basis_degree);
         let moments = || 0..polynomials.len();
+        let flux_moments = moments().filter(|&k| polynomials.degree(k) < basis_degree).count();
         let mut derivatives = Vec::new();
         for local in 0..=D {
-            for k in moments() {
+            for k in 0..flux_moments {
                 for (point, weight) in facet_rule.iter() {
                     let scale = weight * polynomials.value(k, point);
                     let basis = basis(&facet_to_cell(point, local));
@@ -120,6 +123,7 @@ impl<T: Real> VaryingCoefficient<T> {
             stiffness: cell_rule.points.iter().zip(&cell_rule.weights).map(at_point).collect(),
             facet_weights: facet_rule.weights.iter().map(|&w| T::lit(w)).collect(),
             polynomials,
+            flux_moments,
             derivatives,
         }))
     }
@@ -172,10 +176,9 @@ impl<T: Real> VaryingCoefficient<T> {
         weight: impl Fn(usize) -> T,
     ) -> Derivatives<T> {
         let n = self.facet_weights.len();
-        let moments = self.polynomials.len() / n;
         let mut sum = [[T::lit(0.0); 4]; MAX_BASIS];
-        if k < moments {
-            let start = (local * moments + k) * n;
+        if k < self.flux_moments {
+            let start = (local * self.flux_moments + k) * n;
             for (q, table) in self.derivatives[start..start + n].iter().enumerate() {
                 let weight = weight(q);
                 for (sum, row) in sum.iter_mut().zip(table) {
@@ -187,10 +190,12 @@ impl<T: Real> VaryingCoefficient<T> {
         }
         sum
     }
-    /// Moment `k` of a weight times moment `l`, by the points of a facet.
+    /// Moment `k` of a weight times moment `l`, by the points of a facet. Moments with and without a flux
+    /// are not mixed: the lift of a jump tested with gradients is then its flux.
     pub fn weighted_product(&self, k: usize, l: usize, weight: impl Fn(usize) -> T) -> T {
         let n = self.facet_weights.len();
-        if (k + 1).max(l + 1) * n > self.polynomials.len() {
+        let is_beyond = k.max(l) >= self.polynomials.len() / n;
+        if is_beyond || (k < self.flux_moments) != (l < self.flux_moments) {
             return T::lit(0.0);
         }
         let term = |q: usize| {
