@@ -33,7 +33,8 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
                 let integrand =
                     |v, u| (facet.measure * form.integrand(&facet, v, u, penalty)).to_f64();
                 let datum = Trace { jump: T::lit(value), flux: T::lit(0.0) };
-                let functions = traces(form, &facet, &here, true, basis, n);
+                let weighted = self.flux_derivatives((*cell, *local), None, T::lit(1.0), k);
+                let functions = traces(form, &facet, &here, true, (basis, weighted.as_ref()), n);
                 for (i, &v) in functions.iter().enumerate().take(n) {
                     let tested = integrand(v, datum);
                     load[i] += tested;
@@ -85,10 +86,11 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         let mut by_cell: Vec<&FacetDatum> = data.iter().collect();
         by_cell.sort_by_key(|(cell, (local, _))| (*cell, *local));
         for of_cell in by_cell.chunk_by(|a, b| a.0 == b.0) {
+            let neighbours = self.coupled_neighbours();
             for (cell, first) in of_cell {
-                let products = of_cell
-                    .iter()
-                    .map(|(_, second)| lifting.product_of_data(*cell, first, second).to_f64());
+                let products = of_cell.iter().map(|(_, second)| {
+                    lifting.product_of_data(neighbours, *cell, first, second).to_f64()
+                });
                 energy.constant += products.sum::<f64>();
             }
         }

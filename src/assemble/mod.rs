@@ -9,6 +9,7 @@
 
 mod chosen_element;
 pub(crate) mod count;
+pub(crate) mod cut_simplices;
 mod data_quadrature;
 mod dirichlet_energy;
 mod facet_coefficients;

@@ -56,7 +56,8 @@ impl FacetLifts {
     fn weight<T: Real, const D: usize>(eta: f64, facet: &FacetView<T, D>) -> T {
         let average = T::lit(if facet.there.is_some() { 0.5 } else { 1.0 });
         let w = facet.coefficient() * average;
-        let energy = facet.sum(|side| w * w * facet.measure / (side.coefficient * side.volume));
+        let energy =
+            facet.sum(|side| w * w * facet.measure / (side.least_coefficient * side.volume));
         T::lit(eta) * energy
     }
 }

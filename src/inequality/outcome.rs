@@ -97,7 +97,7 @@ impl Outcome {
                 "the lower bound of an unknown exceeds its upper bound: no function is admissible"
             }
             Outcome::Malformed => {
-                "sizes of matrix, load and bounds do not match, or an entry of the matrix is out of place"
+                "sizes of matrix, load, bounds and supports do not match, an entry of the matrix is out of place, or a matrix declared symmetric is not"
             }
             Outcome::OutOfMemory => "the factors of the matrix do not fit into memory",
         }

@@ -152,7 +152,6 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
     ) -> Result<SquaredErrors, Error> {
         let geometry = self.mesh.geometry(cell);
         let volume = geometry.volume.to_f64();
-        let alpha = self.alpha(cell).to_f64();
         let local = self.local_values(cell, u);
         let n = self.per_cell();
         let mut sum = SquaredErrors::default();
@@ -169,6 +168,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
             let reaction = self.problem.reaction.as_ref().map_or(0.0, |c| c.at(&x));
             sum.l2 += weight * volume * difference * difference;
             sum.h1 += weight * volume * square;
+            let alpha = self.alpha_at(cell, &x);
             sum.energy += weight * volume * (alpha * square + reaction * difference * difference);
         }
         for ((node, terms), value) in self.nodes.iter().zip(terms).zip(&local) {

@@ -17,7 +17,7 @@ use crate::real::Real;
 /// ```
 /// use unilateral::scheme::NamedScheme;
 /// let schemes = NamedScheme::list(["sipg@factor=1.50", "br2@factor=2", "lifts=full"]).unwrap();
-/// assert_eq!(schemes.map(|s| s.to_string()), ["sipg", "br2@factor=2,lifts=full"]);
+/// assert_eq!(schemes.iter().map(|s| s.to_string()).collect::<Vec<_>>(), ["sipg", "br2@factor=2,lifts=full"]);
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct NamedScheme {

@@ -50,7 +50,7 @@ fn write_scene(f: &mut impl fmt::Write, scene: &str, rows: &[&Row]) -> fmt::Resu
         for row in rows.iter().filter(|r| key(r) == of_series) {
             write_line(f, &columns, &widths, gap, |c| (c.cell)(row))?;
             if !row.converged() {
-                let message = row.message.as_deref().unwrap_or_default();
+                let message = row.status.message();
                 write_wrapped(f, &format!("  ^ did not converge: {}: {message}", row.status))?;
             }
         }

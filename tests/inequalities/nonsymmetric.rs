@@ -201,9 +201,11 @@ fn without_coercivity_there_is_a_reason() {
         let scheme = Iipg { penalty: PenaltyRule::Diameter(sigma), ..Iipg::default() };
         named(&inequality(&scene, &scheme, 32), &format!("iipg {sigma}"));
     }
-    // without penalty the symmetric part ties nothing together
+    // without penalty the symmetric part of NIPG couples no cells
     let scheme = Nipg { penalty: PenaltyRule::Diameter(0.0), ..Nipg::default() };
-    named(&inequality(&scene, &scheme, 32), "nipg 0");
+    let mesh = scene.domain.mesh::<f64>(4).unwrap();
+    let refused = Discretisation::new(&scheme, &scene.problem, &mesh, DataQuadrature::default());
+    assert!(matches!(refused, Err(Error::Parameter { .. })), "{:?}", refused.err());
 }
 
 #[test]

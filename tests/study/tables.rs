@@ -79,7 +79,8 @@ p1     16 6.25e-2     1536     3 2.73e-3  2.00 1.25e-1  1.00     16 2.50e-15 2.0
 
 wopsip  8 1.25e-1      384     3 1.09e-2     - 2.50e-1     -      8 2.50e-15 2.0e-4 0.0125
 wopsip 16 6.25e-2     1536     3       -     -       -     -     16 2.50e-15 2.0e-4 0.0125
-  ^ did not converge: iteration-limit
+  ^ did not converge: iteration-limit: the limit of iterations was reached while the active set
+    still changed; raise it, or use another solver
   warning, wopsip: eta below its bound
 ";
     assert_eq!(report(rows).to_string(), expected);

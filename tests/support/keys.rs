@@ -1,7 +1,7 @@
 //! What scripts rely on.
 
 /// The keys of a row, in order.
-pub const ROW_KEYS: [&str; 25] = [
+pub const ROW_KEYS: [&str; 26] = [
     "scene",
     "dimension",
     "scheme",
@@ -14,6 +14,7 @@ pub const ROW_KEYS: [&str; 25] = [
     "nonzeros",
     "mesh_size",
     "status",
+    "message",
     "error",
     "multiplier_l1",
     "multiplier_l2",

@@ -128,7 +128,14 @@ pub(crate) fn solve<T: Real>(
             found = solve.run(stage);
         }
     }
-    solve.into_solution(found.unwrap_or(Found::new(Outcome::Cycling)))
+    let mut found = found.unwrap_or(Found::new(Outcome::Cycling));
+    if found.outcome != Outcome::Converged
+        && inequality.symmetric
+        && !inequality.matrix.is_symmetric()
+    {
+        found.outcome = Outcome::Malformed;
+    }
+    solve.into_solution(found)
 }
 
 /// Whether the first stage solves linear systems by a preconditioned Krylov method.

@@ -10,6 +10,7 @@ fn diagonal_and_side(mesh: &Mesh<f64, 2>, alpha: [f64; 2]) -> [FacetView<'_, f64
     let root = 2_f64.sqrt();
     let side = |cell: usize, height: f64| Side {
         coefficient: alpha[cell],
+        least_coefficient: alpha[cell],
         volume: 0.5,
         surface: 2.0 + root,
         height,
@@ -92,8 +93,13 @@ fn moments_of_lifts() {
 fn the_diameter_of_a_vertex() {
     let domain = BoxDomain::dirichlet(Point::zeros(), Point::repeat(1.0));
     let mesh = Mesh::<f64, 1>::kuhn_box(&domain, [2]).unwrap();
-    let side =
-        |length: f64| Side { coefficient: 1.0, volume: length, surface: 2.0, height: length };
+    let side = |length: f64| Side {
+        coefficient: 1.0,
+        least_coefficient: 1.0,
+        volume: length,
+        surface: 2.0,
+        height: length,
+    };
     let between = FacetView::new(&mesh, (0, 0), 1.0, side(0.2), Some(side(0.6)));
     let end = FacetView::new(&mesh, (0, 1), 1.0, side(0.2), None);
     assert_eq!((between.diameter(), end.diameter()), (0.4, 0.2));
