@@ -58,7 +58,8 @@ fn what_is_no_penalty_is_refused() {
     let mesh = Mesh::<f64, 2>::kuhn_box(&BoxDomain::centred(1.0), [2; 2]).unwrap();
     for (parameter, scheme) in with_factor::<f64, 2>(1e25) {
         let is_sum = scheme.name().starts_with("wopsip");
-        let made = scheme.discretise(&Problem::new(), &mesh, Default::default());
+        let problem = Problem::new();
+        let made = scheme.discretise(&problem, &mesh, Default::default());
         assert_eq!(made.is_ok(), is_sum, "{} with {parameter}", scheme.name());
     }
     // a margin cannot be so near to -1

@@ -71,7 +71,13 @@ fn penalties_on_two_triangles() {
 #[test]
 fn the_proven_bound_is_that_of_the_worse_cell() {
     let mesh = unit_square();
-    let side = |volume: f64| Side { coefficient: 1.0, volume, surface: 3.0, height: 1.0 };
+    let side = |volume: f64| Side {
+        coefficient: 1.0,
+        least_coefficient: 1.0,
+        volume,
+        surface: 3.0,
+        height: 1.0,
+    };
     let penalty = |here: f64, there: f64| {
         let view = FacetView::new(&mesh, (0, 1), 1.0, side(here), Some(side(there)));
         AnyScheme::<f64, 2>::form(&Sipg::default(), &mesh).penalty(&view)
