@@ -5,8 +5,11 @@ use unilateral::algebra::Bound;
 use unilateral::mesh::{BoxDomain, Mesh};
 use unilateral::prelude::*;
 
+/// Vertices with their bounds.
+type AtVertices = Vec<(Point<f64, 2>, Bound<f64>)>;
+
 /// The bounds of conforming linears on a box with contact at its lower end, by vertex.
-fn bounds(problem: &Problem<2>) -> Result<Vec<(Point<f64, 2>, Bound<f64>)>, Error> {
+fn bounds(problem: &Problem<2>) -> Result<AtVertices, Error> {
     let mesh = Mesh::<f64, 2>::kuhn_box(&mixed_box(), [3, 3]).unwrap();
     let of = ConformingP1.discretise(problem, &mesh, Default::default())?;
     Ok(mesh.vertices().iter().copied().zip(of.bounds()?).collect())
