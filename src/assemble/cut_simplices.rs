@@ -11,6 +11,10 @@ use crate::problem::Field;
 use crate::quadrature::{Rule, facet_to_cell};
 use crate::real::{Point, Real, point_f64};
 
+/// What is called with a point in barycentric coordinates, in space, and with its weight.
+pub(crate) type VisitInSpace<'v, const D: usize> =
+    &'v mut dyn FnMut(&[f64; 4], &Point<f64, D>, f64);
+
 /// A part of a simplex, by barycentric coordinates in it.
 #[derive(Clone, Copy, Debug)]
 struct Part {
@@ -57,7 +61,7 @@ impl CutRule {
         mesh: &Mesh<T, D>,
         cell: usize,
         level: &Field<D>,
-        visit: &mut dyn FnMut(&[f64; 4], &Point<f64, D>, f64),
+        visit: VisitInSpace<'_, D>,
     ) -> bool {
         let mut corners = [Point::zeros(); 4];
         for (corner, &v) in corners.iter_mut().zip(mesh.cell(cell)) {
