@@ -90,7 +90,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         let report = Study::<f64, 2>::new(scene)
             .scheme(ConformingP1)
             .scheme(WithBubble)
-            .levels([8, 16, 32])
+            .levels([4, 8, 16, 32])
             .run()?;
         print!("{report}");
         report.assert_orders(0.1)?;

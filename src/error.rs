@@ -34,10 +34,12 @@ pub enum Error {
         cell: u32,
     },
     /// A diffusion coefficient is not positive and finite.
-    #[error("coefficient is {value} in cell {cell}: it must be positive and finite")]
+    #[error("coefficient is {value} at {at} in cell {cell}: it must be positive and finite")]
     CoefficientNotPositive {
         /// The value found.
         value: f64,
+        /// The point, as coordinates in parentheses.
+        at: String,
         /// The cell.
         cell: u32,
     },

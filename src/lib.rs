@@ -16,6 +16,7 @@ pub mod error;
 pub mod facet;
 pub mod guide;
 pub mod inequality;
+pub mod input;
 mod instances;
 pub mod kit;
 pub mod linear;

@@ -5,7 +5,7 @@ pub use crate::constraint::{BoundBy, CellMeans, ConstraintSet, FacetMeans, Midpo
 pub use crate::element::{Broken, CrouzeixRaviart, Entity, Node, P1, P2, ReferenceElement};
 pub use crate::error::Error;
 pub use crate::facet::{
-    DirichletBy, FacetForm, FacetView, NoFacets, PenaltyRule, Trace, WeightRule,
+    DirichletBy, FacetForm, FacetView, Lifts, NoFacets, PenaltyRule, Trace, WeightRule,
 };
 pub use crate::mesh::{BoundaryPart, BoxDomain, Mesh};
 pub use crate::nested::{Hierarchy, NestedIteration, Solved, solve};

@@ -9,6 +9,11 @@
 //! ```
 //!
 //! `n` is the outward unit normal. An absent datum is `None`, and no loop runs for it.
+//!
+//! A datum is a pure function of its arguments: it is called any number of times, in any order and
+//! from several threads at once, and the discretisation is that of a problem only if it returns the
+//! same number each time. A value that is not finite ends the assembly with
+//! [`Error::DataNotFinite`](crate::error::Error::DataNotFinite), which names the datum and the point.
 
 use std::fmt;
 use std::sync::Arc;
@@ -24,22 +29,44 @@ pub type VectorField<const D: usize> = Arc<dyn Fn(&Point<f64, D>) -> Point<f64, 
 pub type BoundaryFlux<const D: usize> =
     Arc<dyn Fn(&Point<f64, D>, &Point<f64, D>) -> f64 + Send + Sync>;
 
-/// A coefficient or load: a constant, integrated exactly and without a quadrature loop, or a
-/// function.
+/// A reaction or load: a constant, integrated exactly and without a quadrature loop, or a function.
 #[derive(Clone)]
+#[non_exhaustive]
 pub enum Datum<const D: usize> {
     /// A constant.
     Constant(f64),
-    /// A function of space, integrated by quadrature.
+    /// A function of space that is smooth in every cell, integrated by quadrature.
     Function(Field<D>),
+    /// A function of space that may jump, or have a kink, where `level` changes its sign. Cells that
+    /// the zero set of `level` cuts are divided along it, see [`Problem::piecewise_source`].
+    Piecewise {
+        /// The function, whose value on the zero set itself is never asked for but by rounding.
+        value: Field<D>,
+        /// Positive on one side, negative on the other.
+        level: Field<D>,
+    },
 }
 
 impl<const D: usize> Datum<D> {
+    /// A function that may jump, or have a kink, where `level` changes its sign.
+    pub fn piecewise(
+        value: impl Fn(&Point<f64, D>) -> f64 + Send + Sync + 'static,
+        level: impl Fn(&Point<f64, D>) -> f64 + Send + Sync + 'static,
+    ) -> Self {
+        Datum::Piecewise { value: Arc::new(value), level: Arc::new(level) }
+    }
     /// The value at a point.
     pub fn at(&self, x: &Point<f64, D>) -> f64 {
         match self {
             Datum::Constant(c) => *c,
-            Datum::Function(f) => f(x),
+            Datum::Function(value) | Datum::Piecewise { value, .. } => value(x),
+        }
+    }
+    /// The function whose zero set divides cells, if there is one.
+    pub(crate) fn level(&self) -> Option<&Field<D>> {
+        match self {
+            Datum::Piecewise { level, .. } => Some(level),
+            _ => None,
         }
     }
 }
@@ -64,6 +91,7 @@ impl<const D: usize> fmt::Debug for Datum<D> {
         match self {
             Datum::Constant(c) => f.debug_tuple("Constant").field(c).finish(),
             Datum::Function(_) => f.write_str("Function(..)"),
+            Datum::Piecewise { .. } => f.write_str("Piecewise(..)"),
         }
     }
 }
@@ -175,7 +203,9 @@ pub struct Problem<const D: usize> {
     pub dirichlet: Option<Field<D>>,
     /// Neumann data `q = alpha du/dn`; zero where absent.
     pub neumann: Option<BoundaryFlux<D>>,
-    /// The diffusion coefficient, evaluated once per cell, at its barycentre; one where absent.
+    /// The diffusion coefficient; one where absent. Elements of degree one take its value at the barycentre
+    /// of each cell, others its values at the points of rules in the cells in which it varies, see
+    /// [`Problem::coefficient`].
     pub coefficient: Option<Field<D>>,
     /// The reaction coefficient `c >= 0`.
     pub reaction: Option<Datum<D>>,
@@ -251,10 +281,38 @@ impl<const D: usize> Problem<D> {
         self.source = Some(Datum::Constant(f));
         self
     }
-    /// Sets a load that is a function of space.
+    /// Sets a load that is a smooth function of space.
     #[must_use]
     pub fn source(mut self, f: impl Fn(&Point<f64, D>) -> f64 + Send + Sync + 'static) -> Self {
         self.source = Some(Datum::Function(Arc::new(f)));
+        self
+    }
+    /// Sets a load that may jump, or have a kink, where `level` changes its sign: a rule across a jump
+    /// would leave an error that is larger than that of the scheme. Several interfaces are the zeros
+    /// of a product.
+    ///
+    /// In one dimension the integral over a cut cell is divided at the zero. In the plane and in space
+    /// it is divided along the zero set, exactly along planes; on a sphere what goes to the wrong side has a
+    /// mean thickness of 1e-5 (plane) to 1e-3 (space) times `h^2`, below the error of every scheme.
+    /// A cell counts as cut if the sign of `level` differs between its vertices, the middles of its edges
+    /// and its barycentre; an interface that enters and leaves through one facet between these points
+    /// escapes. A smooth one does so in few cells, with a part of the cell of order `h`.
+    ///
+    /// ```
+    /// use unilateral::prelude::*;
+    /// // pressed down near the ends of (0, 1), lifted between
+    /// let away = |x: &Point<f64, 1>| (x[0] - 0.5).abs() - 0.3;
+    /// let load = move |x: &Point<f64, 1>| if away(x) > 0.0 { -16.0 } else { 8.0 };
+    /// let problem = Problem::new().piecewise_source(load, away);
+    /// # assert!(problem.source.is_some());
+    /// ```
+    #[must_use]
+    pub fn piecewise_source(
+        mut self,
+        f: impl Fn(&Point<f64, D>) -> f64 + Send + Sync + 'static,
+        level: impl Fn(&Point<f64, D>) -> f64 + Send + Sync + 'static,
+    ) -> Self {
+        self.source = Some(Datum::piecewise(f, level));
         self
     }
     /// Sets Dirichlet data.
@@ -273,6 +331,12 @@ impl<const D: usize> Problem<D> {
         self
     }
     /// Sets the diffusion coefficient.
+    ///
+    /// Elements whose basis functions are linear take one value in each cell, at its barycentre. Those with
+    /// basis functions of degree `b > 1` take its values at the points of a rule of degree `2 b`
+    /// in each cell, and on each facet from inside the cell; where these agree with the value at the
+    /// barycentre but for rounding, that one alone is used. The coefficient may jump between cells. Where it
+    /// jumps within them no element reaches more than the order 1/2 in H1.
     #[must_use]
     pub fn coefficient(
         mut self,
@@ -281,8 +345,8 @@ impl<const D: usize> Problem<D> {
         self.coefficient = Some(Arc::new(alpha));
         self
     }
-    /// Sets the reaction coefficient: a number, or a closure whose argument is written with its
-    /// type, `|x: &Point<f64, 2>| ..`.
+    /// Sets the reaction coefficient: a number, a closure whose argument is written with its
+    /// type, `|x: &Point<f64, 2>| ..`, or [`Datum::piecewise`].
     #[must_use]
     pub fn reaction(mut self, c: impl Into<Datum<D>>) -> Self {
         self.reaction = Some(c.into());

@@ -16,6 +16,9 @@ pub trait Real: nalgebra::RealField + sealed::Scalar + Copy {
     /// A certificate above this is not that of a solution, whatever the size of rounding: 1e-9, and
     /// 1e-4 in single precision.
     const CERTIFICATE_LIMIT: f64;
+    /// The largest bound on the relative algebraic error in the energy norm with which a solve counts
+    /// as converged, where the bound is known.
+    const ALGEBRAIC_BOUND_LIMIT: f64;
     /// The nearest scalar to a constant or datum.
     fn lit(x: f64) -> Self;
     /// The same number in `f64`, exactly.
@@ -33,6 +36,7 @@ impl Real for f64 {
     const NAME: &'static str = "f64";
     const EPSILON: f64 = f64::EPSILON;
     const CERTIFICATE_LIMIT: f64 = 1e-9;
+    const ALGEBRAIC_BOUND_LIMIT: f64 = 1e-6;
     #[inline(always)]
     fn lit(x: f64) -> Self {
         x
@@ -47,6 +51,7 @@ impl Real for f32 {
     const NAME: &'static str = "f32";
     const EPSILON: f64 = f32::EPSILON as f64;
     const CERTIFICATE_LIMIT: f64 = 1e-4;
+    const ALGEBRAIC_BOUND_LIMIT: f64 = 1e-2;
     #[inline(always)]
     fn lit(x: f64) -> Self {
         x as f32

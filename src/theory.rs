@@ -29,7 +29,7 @@ impl ExpectedOrders {
     }
 }
 
-/// Regularity of the exact solution, from which theory predicts orders.
+/// Regularity of the exact solution and of the coefficient, from which theory predicts orders.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Regularity {
@@ -37,12 +37,15 @@ pub struct Regularity {
     pub sobolev: f64,
     /// Gap and multiplier do not vanish together on a set of positive measure.
     pub strictly_complementary: bool,
+    /// Up to which order the coefficient, where the problem has one, has bounded derivatives in every
+    /// cell. One, unless more is stated: a function does not tell.
+    pub coefficient: f64,
 }
 
 impl Regularity {
     /// A solution in `H^s` for every `s` below `sobolev`, strictly complementary.
     pub const fn new(sobolev: f64) -> Self {
-        Self { sobolev, strictly_complementary: true }
+        Self { sobolev, strictly_complementary: true, coefficient: 1.0 }
     }
     /// A solution in every `H^s`, strictly complementary.
     pub const fn smooth() -> Self {
@@ -56,6 +59,11 @@ impl Regularity {
     #[must_use]
     pub const fn not_strictly_complementary(self) -> Self {
         Self { strictly_complementary: false, ..self }
+    }
+    /// States up to which order the coefficient has bounded derivatives in every cell.
+    #[must_use]
+    pub const fn with_coefficient(self, order: f64) -> Self {
+        Self { coefficient: order, ..self }
     }
 }
 
@@ -71,6 +79,8 @@ pub struct Setting {
     pub contact: bool,
     /// What is known of the solution.
     pub regularity: Regularity,
+    /// Whether the problem has a coefficient that is a function of space.
+    pub coefficient: bool,
     /// Whether the dual of the linear problem has solutions in `H^2`: with a coefficient that does
     /// not vary, on intervals and on convex domains with Dirichlet data on the whole boundary.
     pub regular_dual: bool,
@@ -81,8 +91,8 @@ impl Setting {
     /// not assumed to be regular.
     #[must_use]
     pub const fn new(dimension: usize, regularity: Regularity) -> Self {
-        let (obstacle, contact, regular_dual) = (false, false, false);
-        Self { dimension, obstacle, contact, regularity, regular_dual }
+        let (obstacle, contact, coefficient, regular_dual) = (false, false, false, false);
+        Self { dimension, obstacle, contact, regularity, coefficient, regular_dual }
     }
     /// Sets whether an obstacle binds in the domain.
     #[must_use]
@@ -93,6 +103,11 @@ impl Setting {
     #[must_use]
     pub const fn with_contact(self, contact: bool) -> Self {
         Self { contact, ..self }
+    }
+    /// Sets whether the problem has a coefficient that is a function of space.
+    #[must_use]
+    pub const fn with_coefficient(self, coefficient: bool) -> Self {
+        Self { coefficient, ..self }
     }
     /// Sets whether the dual of the linear problem has solutions in `H^2`.
     #[must_use]

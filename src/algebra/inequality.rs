@@ -1,5 +1,6 @@
 //! The algebraic variational inequality.
 
+use super::dirichlet_energy::DirichletEnergy;
 use super::index::NO_INDEX;
 use super::matrix::SparseMatrix;
 use super::penalised_matrix::PenalisedMatrix;
@@ -177,6 +178,16 @@ pub struct Inequality<T> {
     /// `A` and `b` as the sums `K + M^T S M` and `c + M^T S g`, for schemes with such a penalty:
     /// residuals of the sums have smaller rounding errors.
     pub penalised: Option<PenalisedMatrix<T>>,
+    /// What weak Dirichlet data change in the energy `u.A u`; `None` if there are none, or if
+    /// `penalised` has them.
+    pub dirichlet_energy: Option<DirichletEnergy>,
+    /// The kernel of `A` on functions that satisfy the Dirichlet data, as vectors without common
+    /// unknowns, each by its nonzero entries: the constants on components of the domain that neither
+    /// Dirichlet data nor a reaction hold. Only bounds stop them. Empty if the kernel is zero or unknown.
+    pub kernel: Vec<Vec<(u32, T)>>,
+    /// Whether theory or a test says that `A`, or its symmetric part, is positive definite on all
+    /// unknowns that are not fixed, but for the kernel.
+    pub is_definite: bool,
 }
 
 impl<T: Real> Inequality<T> {
@@ -200,6 +211,9 @@ impl<T: Real> Inequality<T> {
             conforming_linear: false,
             start,
             penalised: None,
+            dirichlet_energy: None,
+            kernel: Vec::new(),
+            is_definite: false,
         }
     }
     /// Replaces the initial active set.
@@ -226,6 +240,19 @@ impl<T: Real> Inequality<T> {
         self.conforming_linear = true;
         self
     }
+    /// Sets the kernel of the matrix.
+    #[must_use]
+    pub fn with_kernel(mut self, kernel: Vec<Vec<(u32, T)>>) -> Self {
+        self.kernel = kernel;
+        self
+    }
+    /// States that the matrix is positive definite on all unknowns that are not fixed, but for the
+    /// kernel: solvers then need not test it.
+    #[must_use]
+    pub fn with_definite_matrix(mut self) -> Self {
+        self.is_definite = true;
+        self
+    }
     /// Number of unknowns, fixed ones included.
     pub fn size(&self) -> usize {
         self.load.len()
@@ -235,13 +262,17 @@ impl<T: Real> Inequality<T> {
         let is_free = |&i: &u32| self.bounds[i as usize].fixed_value().is_none();
         (0..self.bounds.len() as u32).filter(is_free).collect()
     }
-    /// Whether matrix, load, bounds and penalised matrix have the same size, and the two matrices are
-    /// well formed. Supports and points are not checked.
+    /// Whether matrix, load, bounds, penalised matrix and the supports, if there are any, have the same
+    /// size, the two matrices are well formed, and the vertices of supports are among the points or,
+    /// without points, below four times the number of unknowns: an array by vertices is not larger.
     pub fn is_well_formed(&self) -> bool {
+        let n_vertices = if self.points.is_empty() { 4 * self.size() } else { self.points.len() };
         self.matrix.size() == self.size()
             && self.bounds.len() == self.size()
             && self.matrix.is_well_formed()
             && self.penalised.as_ref().is_none_or(|p| p.is_well_formed(self.size()))
+            && (self.supports.is_empty() || self.supports.len() == self.size())
+            && self.supports.iter().flat_map(Support::vertices).all(|&v| (v as usize) < n_vertices)
     }
     /// The node of each unknown, the barycentre of the vertices of its support; `None` if a support or
     /// the coordinates of a vertex are unknown.

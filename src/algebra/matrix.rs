@@ -50,6 +50,20 @@ impl<T: Real> SparseMatrix<T> {
         let (columns, values) = self.row(i);
         columns.binary_search(&(j as u32)).map_or_else(|_| T::lit(0.0), |k| values[k])
     }
+    /// Whether the matrix is symmetric: no two entries at (i, j) and (j, i) differ by more than the
+    /// square root of machine epsilon times the geometric mean of the diagonal entries.
+    pub fn is_symmetric(&self) -> bool {
+        let diagonal: Vec<f64> = self.diagonal().iter().map(|d| d.to_f64().abs().sqrt()).collect();
+        let tolerance = T::EPSILON.sqrt();
+        (0..self.size()).all(|i| {
+            let (columns, values) = self.row(i);
+            columns.iter().zip(values).all(|(&j, a)| {
+                let j = j as usize;
+                let difference = (a.to_f64() - self.get(j, i).to_f64()).abs();
+                difference <= tolerance * diagonal[i] * diagonal[j]
+            })
+        })
+    }
     /// The diagonal.
     pub fn diagonal(&self) -> Vec<T> {
         let mut diagonal = vec![T::lit(0.0); self.size()];

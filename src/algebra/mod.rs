@@ -4,9 +4,10 @@
 //! `matrix`: compressed sparse rows. `rectangular_matrix`: prolongations in compressed sparse rows, and
 //! `P^T A P`.
 //! `submatrix`: rows and columns of a matrix. `penalised_matrix`: `K + M^T S M`. `dense`: small dense
-//! matrices. `inequality`: bounds, supports of unknowns and the inequality. `index`: the missing index.
+//! matrices. `dirichlet_energy`: what weak data change in an energy. `inequality`: bounds, supports of unknowns and the inequality. `index`: the missing index.
 
 pub(crate) mod dense;
+mod dirichlet_energy;
 mod index;
 mod inequality;
 mod matrix;
@@ -14,6 +15,7 @@ mod penalised_matrix;
 mod rectangular_matrix;
 mod submatrix;
 
+pub use dirichlet_energy::{DirichletEnergy, DirichletTerm};
 pub(crate) use index::NO_INDEX;
 pub(crate) use inequality::barycentre;
 pub use inequality::{Bound, Contact, Inequality, Start, Support};

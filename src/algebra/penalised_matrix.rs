@@ -171,6 +171,25 @@ impl<T: Real> PenalisedMatrix<T> {
             + (0..self.n_jumps()).map(of_jump).sum::<f64>()
     }
 
+    /// The sum `p.g` of the jump multipliers `p = S (M u - g)`, or of the given ones if there are as many
+    /// as jumps, times the Dirichlet data.
+    pub fn work_on_data(&self, u: impl Fn(usize) -> f64, jump_multipliers: &[T]) -> f64 {
+        let is_given = jump_multipliers.len() == self.n_jumps();
+        let of_jump = |(k, g): (usize, &T)| {
+            let g = g.to_f64();
+            if g == 0.0 {
+                return 0.0;
+            }
+            let multiplier = if is_given {
+                jump_multipliers[k].to_f64()
+            } else {
+                self.weights[k].to_f64() * (self.jump(k, &u) - g)
+            };
+            multiplier * g
+        };
+        self.jump_data.iter().enumerate().map(of_jump).sum()
+    }
+
     /// The jump residual `g - M u + S^-1 p`, one entry, for the multiplier `p` of that jump.
     #[inline]
     pub fn jump_residual(&self, jump: usize, u: impl Fn(usize) -> f64, multiplier: f64) -> f64 {

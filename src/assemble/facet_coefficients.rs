@@ -65,7 +65,8 @@ impl<T: Real> Coefficients<T> {
 }
 
 /// The penalty weight of every facet that carries the form and, where the form uses fluxes, the
-/// weights of the normal derivatives of its two cells in the flux. The numbers of a facet stand with
+/// weights of the normal derivatives of its two cells in the flux; where the coefficient varies in one of
+/// these, their average weights. The numbers of a facet stand with
 /// the cell here, so that each is computed once.
 pub(crate) struct FacetCoefficients<T> {
     /// For a uniform form those on interior and on Dirichlet facets, else those of each facet of each
@@ -82,9 +83,10 @@ pub(crate) struct FacetCoefficients<T> {
 pub(crate) struct FacetWeight<'w, T> {
     pub coefficients: &'w Coefficients<T>,
     pub penalty: T,
-    /// The weight in the flux of the cell whose rows are made.
+    /// The weight in the flux of the cell whose rows are made; its average weight where the coefficient
+    /// varies in one of the cells.
     pub own_flux_weight: T,
-    /// The weight in the flux of the cell across.
+    /// The same of the cell across.
     pub other_flux_weight: T,
 }
 
@@ -100,6 +102,10 @@ impl<T: Real> FacetCoefficients<T> {
         let per_cell = stride * (D + 1);
         let n_cells = space.mesh.n_cells();
         let mut entries = in_large_pages(vec![T::lit(0.0); per_cell * n_cells]);
+        let across = |(cell, local)| match space.coupled_neighbours().across(cell, local) {
+            Neighbour::Cell { cell, local } => Some((cell as usize, local as usize)),
+            Neighbour::Boundary(_) => None,
+        };
         let fill = |cells: Range<usize>, piece: &mut [T]| {
             for (cell, out) in cells.zip(piece.chunks_exact_mut(per_cell)) {
                 for (local, out) in out.chunks_exact_mut(stride).enumerate() {
@@ -107,8 +113,13 @@ impl<T: Real> FacetCoefficients<T> {
                     out[0] = form.penalty(&facet);
                     if uses_flux {
                         let average_weight = form.average_weight(&facet);
-                        out[1] = flux_weight(&facet, average_weight, true);
-                        out[2] = flux_weight(&facet, average_weight, false);
+                        (out[1], out[2]) = if space.varies_at((cell, local), across((cell, local)))
+                        {
+                            (average_weight, T::lit(1.0) - average_weight)
+                        } else {
+                            let of = |is_here| flux_weight(&facet, average_weight, is_here);
+                            (of(true), of(false))
+                        };
                     }
                 }
             }
@@ -161,13 +172,13 @@ fn kept_view<'a, T: Real, const D: usize>(
     cell: usize,
     local: usize,
 ) -> Option<FacetView<'a, T, D>> {
-    let side = |cell, local| metrics.side::<D>(cell, local, space.alpha(cell));
+    let side = |place| metrics.side::<D>(place, space.extreme_coefficients(place));
     let there = match space.coupled_neighbours().across(cell, local) {
         Neighbour::Cell { cell: other, .. } if (other as usize) < cell => return None,
-        Neighbour::Cell { cell: other, local } => Some(side(other as usize, local as usize).1),
+        Neighbour::Cell { cell: other, local } => Some(side((other as usize, local as usize)).1),
         Neighbour::Boundary(BoundaryPart::Dirichlet) if !space.pins => None,
         Neighbour::Boundary(_) => return None,
     };
-    let (measure, here) = side(cell, local);
+    let (measure, here) = side((cell, local));
     Some(FacetView::new(space.mesh, (cell, local), measure, here, there))
 }

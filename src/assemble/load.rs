@@ -5,15 +5,17 @@
 use std::ops::Range;
 
 use super::count;
+use super::cut_simplices::CutRule;
 use super::local::{traces, view};
 use super::owned_rows::lifted::{LiftTable, Lifting};
 use super::space::metric::Metrics;
-use super::space::{Space, data};
+use super::space::tables::BasisAt;
+use super::space::{INWARD, Space, data};
 use crate::error::Error;
 use crate::facet::{FacetForm, Trace};
 use crate::mesh::BoundaryPart;
 use crate::parallel::cells;
-use crate::problem::{Datum, Field};
+use crate::problem::Datum;
 use crate::quadrature::{OrthonormalPolynomials, Rule, facet_to_cell};
 use crate::real::{Point, Real, point_f64};
 
@@ -42,7 +44,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         match &self.problem.source {
             None => {}
             Some(Datum::Constant(f)) => self.add_constant_source(*f, &mut load)?,
-            Some(Datum::Function(f)) => self.add_source(f, &mut load)?,
+            Some(f) => self.add_source(f, &mut load)?,
         }
         if flux {
             self.add_neumann(&mut load)?;
@@ -80,18 +82,32 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         })
     }
 
-    fn add_source(&self, f: &Field<D>, load: &mut [T]) -> Result<(), Error> {
+    fn add_source(&self, f: &Datum<D>, load: &mut [T]) -> Result<(), Error> {
         let table = self.cell_table(self.cell_rule.clone());
+        let cut_rule = f.level().map(|level| (level, CutRule::new(D, self.cell_degree)));
         self.for_each_cell(load, &|cell, out| {
             let volume = self.mesh.geometry(cell).volume.to_f64();
-            let samples = table.points.iter().zip(&table.basis).zip(&table.weights);
-            for ((point, basis), weight) in samples {
+            let mut add = |x: &Point<f64, D>, weight: f64, basis: &BasisAt<f64>| {
                 count::source(1);
-                let x = point_f64(&self.mesh.point(cell, &point.map(T::lit)[..=D]));
-                let value = weight * volume * data::finite(f(&x), "source", &x, cell)?;
+                let value = weight * volume * data::finite(f.at(x), "source", x, cell)?;
                 for (out, phi) in out.iter_mut().zip(&basis.values) {
                     *out += T::lit(value * phi);
                 }
+                Ok(())
+            };
+            if let Some((level, rule)) = &cut_rule {
+                let mut outcome = Ok(());
+                if rule.visit_if_cut(self.mesh, cell, level, &mut |point, x, weight| {
+                    if outcome.is_ok() {
+                        outcome = add(x, weight, &self.basis_at(point));
+                    }
+                }) {
+                    return outcome;
+                }
+            }
+            let samples = table.points.iter().zip(&table.basis).zip(&table.weights);
+            for ((point, basis), weight) in samples {
+                add(&self.cell_point(point, cell), *weight, basis)?;
             }
             Ok(())
         })
@@ -111,6 +127,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
 
     fn add_neumann(&self, load: &mut [T]) -> Result<(), Error> {
         let n = self.per_cell();
+        let middle = [1.0 / (D + 1) as f64; 4];
         for (cell, local) in self.facets_of(BoundaryPart::Neumann) {
             let geometry = self.mesh.geometry(cell);
             let normal = point_f64(&geometry.normal(local));
@@ -122,7 +139,8 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
                 let flux = match (&self.problem.neumann, &self.problem.exact) {
                     (Some(q), _) => q(&x, &normal),
                     (None, Some(exact)) => {
-                        self.alpha(cell).to_f64() * (exact.gradient)(&x).dot(&normal)
+                        let inward = x + (self.cell_point(&middle, cell) - x) * INWARD;
+                        self.alpha_at(cell, &inward) * (exact.gradient)(&x).dot(&normal)
                     }
                     (None, None) => 0.0,
                 };
@@ -218,7 +236,8 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
             let values = self.dirichlet_moments(&moments, cell, local)?;
             let out = &mut load[cell * n..(cell + 1) * n];
             for (k, (basis, &value)) in table.on(local).iter().zip(&values).enumerate() {
-                let test = traces(form, &facet, &here, true, basis, n);
+                let weighted = self.flux_derivatives((cell, local), None, T::lit(1.0), k);
+                let test = traces(form, &facet, &here, true, (basis, weighted.as_ref()), n);
                 let datum = Trace { jump: T::lit(value), flux: T::lit(0.0) };
                 let penalty = penalty * T::lit(form.moment_weight(table.degrees[k]));
                 for (out, &v) in out.iter_mut().zip(&test) {
@@ -238,7 +257,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         data: &[FacetDatum],
         load: &mut [T],
     ) {
-        let table = LiftTable::new(self);
+        let table = LiftTable::new(self, form.lift_degree(self.basis_degree));
         let lifting = Lifting { space: self, form, metrics, table: &table };
         for (cell, datum) in data {
             lifting.add_load(self.coupled_neighbours(), *cell, datum, load);

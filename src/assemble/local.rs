@@ -1,7 +1,7 @@
 //! What one cell and one facet contribute.
 
 use super::space::metric::CellMetric;
-use super::space::tables::{BasisAt, CellTable};
+use super::space::tables::{BasisAt, CellTable, Derivatives};
 use crate::element::MAX_BASIS;
 use crate::facet::{FacetForm, FacetView, Side, Trace};
 use crate::mesh::Mesh;
@@ -79,7 +79,10 @@ pub(crate) struct CellSide<'a, T, const D: usize> {
     pub cell: usize,
     pub local: usize,
     pub metric: &'a CellMetric<T, D>,
+    /// The largest coefficient on the facet.
     pub coefficient: T,
+    /// The least coefficient in the cell.
+    pub least_coefficient: T,
 }
 
 impl<T: Real, const D: usize> CellSide<'_, T, D> {
@@ -88,6 +91,7 @@ impl<T: Real, const D: usize> CellSide<'_, T, D> {
         let measure = self.metric.measures[self.local];
         Side {
             coefficient: self.coefficient,
+            least_coefficient: self.least_coefficient,
             volume: self.metric.volume,
             surface: self.metric.surface(),
             height: T::lit(D as f64) * self.metric.volume / measure,
@@ -96,14 +100,19 @@ impl<T: Real, const D: usize> CellSide<'_, T, D> {
     /// The derivatives of the first `n` basis functions along the outward normal, of one moment and
     /// times the measure of the facet and a factor.
     #[inline(always)]
-    pub fn normal_derivatives(&self, basis: &BasisAt<T>, n: usize, factor: T) -> [T; MAX_BASIS] {
+    pub fn normal_derivatives(
+        &self,
+        derivatives: &Derivatives<T>,
+        n: usize,
+        factor: T,
+    ) -> [T; MAX_BASIS] {
         super::count::normal_derivatives(n);
         let products = &self.metric.products[self.local];
         let scale = T::lit(-(D as f64)) * factor;
         vector(n, |i| {
-            let mut sum = basis.derivatives[i][0] * products[0];
+            let mut sum = derivatives[i][0] * products[0];
             for k in 1..=D {
-                sum += basis.derivatives[i][k] * products[k];
+                sum += derivatives[i][k] * products[k];
             }
             scale * sum
         })
@@ -148,7 +157,8 @@ pub(crate) fn flux_weight<T: Real, const D: usize>(
     }
 }
 
-/// Traces of the first `n` basis functions of a cell: one moment on a facet.
+/// Traces of the first `n` basis functions of a cell: one moment on a facet. Where the coefficient varies
+/// the derivatives with their weights in the flux are given.
 ///
 /// Fluxes are not numbers if the form does not use them, so that a form which reads what it did not
 /// ask for fails its first test.
@@ -157,7 +167,7 @@ pub(crate) fn traces<T: Real, const D: usize>(
     facet: &FacetView<T, D>,
     side: &CellSide<'_, T, D>,
     is_here: bool,
-    basis: &BasisAt<T>,
+    (basis, weighted): (&BasisAt<T>, Option<&Derivatives<T>>),
     n: usize,
 ) -> [Trace<T>; MAX_BASIS] {
     let sign = T::lit(if is_here { 1.0 } else { -1.0 });
@@ -166,8 +176,11 @@ pub(crate) fn traces<T: Real, const D: usize>(
         trace.jump = sign * value;
     }
     if form.uses_flux() {
-        let scale = sign * flux_weight(facet, form.average_weight(facet), is_here) / facet.measure;
-        let derivatives = side.normal_derivatives(basis, n, scale);
+        let (derivatives, weight) = match weighted {
+            Some(derivatives) => (derivatives, T::lit(1.0)),
+            None => (&basis.derivatives, flux_weight(facet, form.average_weight(facet), is_here)),
+        };
+        let derivatives = side.normal_derivatives(derivatives, n, sign * weight / facet.measure);
         for (trace, derivative) in out.iter_mut().zip(derivatives).take(n) {
             trace.flux = derivative;
         }

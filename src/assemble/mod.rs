@@ -9,14 +9,18 @@
 
 mod chosen_element;
 pub(crate) mod count;
+pub(crate) mod cut_simplices;
 mod data_quadrature;
+mod dirichlet_energy;
 mod facet_coefficients;
 mod jump_products;
+mod kernel;
 pub(crate) mod load;
 pub(crate) mod local;
 mod owned_rows;
 mod penalised;
 mod penalty_below_bound;
+mod penalty_factor;
 mod shared_rows;
 pub(crate) mod space;
 
@@ -55,7 +59,8 @@ impl<'a, T: Real, const D: usize> Discretisation<'a, T, D> {
     /// needed.
     ///
     /// # Errors
-    /// [`Error::CoefficientNotPositive`], [`Error::NothingToBound`], [`Error::UnsupportedForm`].
+    /// [`Error::CoefficientNotPositive`], [`Error::NothingToBound`], [`Error::UnsupportedForm`],
+    /// [`Error::Parameter`] for a penalty factor that makes no penalty.
     pub(crate) fn of<E: ReferenceElement<T, D>>(
         form: Box<dyn FacetForm<T, D>>,
         dirichlet: DirichletBy,
@@ -156,6 +161,8 @@ impl<'a, T: Real, const D: usize> Discretisation<'a, T, D> {
         let (load, own_load, data) = self.loads()?;
         let bounds = self.bounds()?;
         let matrix = self.matrix();
+        let dirichlet_energy = (own_load.is_none() && !data.is_empty())
+            .then(|| self.space.dirichlet_energy(self.form(), &|| &self.prepared().0, &data));
         let penalised = own_load.map(|own_load| {
             let (metrics, weights) = self.prepared();
             penalised::penalised_matrix(
@@ -188,6 +195,9 @@ impl<'a, T: Real, const D: usize> Discretisation<'a, T, D> {
             conforming_linear: self.space.is_conforming_linear(),
             start: Start::Cold,
             penalised,
+            dirichlet_energy,
+            kernel: self.space.kernel(self.form.couples()),
+            is_definite: false,
         })
     }
     /// The load; if the penalised form of the matrix is kept too, the load without Dirichlet data,
@@ -241,6 +251,13 @@ impl<'a, T: Real, const D: usize> Discretisation<'a, T, D> {
                 = |of| of.space.penalty_below_bound(of.form())
         )(self)
     }
+    /// Whether theory proves the form coercive for penalties above their bound
+    /// ([`Discretisation::penalty_below_bound`]), and the reaction is not negative at the points of its
+    /// quadrature rule.
+    pub fn is_coercive(&self) -> bool {
+        let reaction = self.space.reaction.as_ref();
+        self.form.theory().is_coercive && reaction.is_none_or(|r| r.is_nonnegative(self.mesh()))
+    }
     /// The load of all unknowns.
     ///
     /// # Errors
@@ -271,6 +288,7 @@ impl<T: Real, const D: usize> Parts<T, D> {
         let Self { element: ChosenElement { element, loops, offered }, form, pins } = self;
         check_form::<T, D>(&element, &*form)?;
         let space = Space::new(element, problem, mesh, quadrature, form.couples(), pins, offered)?;
+        space.check_penalty_factor(&*form)?;
         let shared_rows = SharedRows::new(loops);
         Ok(Discretisation { space, form, shared_rows, prepared: OnceLock::new() })
     }

@@ -94,7 +94,12 @@ fn blocks<T: Real, const D: usize>(space: &Space<'_, T, D>, metrics: &Metrics<T>
             let metric = metrics.at::<D>(cell);
             let coefficient = space.alpha(cell);
             for (k, out) in out.iter_mut().enumerate() {
-                *out = coefficient * stiffness.entry::<D>(&metric, k / n, k % n);
+                *out = match space.varying_in(cell) {
+                    None => coefficient * stiffness.entry::<D>(&metric, k / n, k % n),
+                    Some((varying, values)) => {
+                        varying.stiffness::<D>(values, &metric, k / n, k % n)
+                    }
+                };
             }
             if let Some(reaction) = &space.reaction {
                 let mut own = zero_local();

@@ -6,7 +6,8 @@ use crate::real::Real;
 /// How an interior penalty gets its weight.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum PenaltyRule {
-    /// The provable bound of the form times one plus this margin.
+    /// The provable bound of the form times one plus this margin; for the non-symmetric form, which
+    /// needs no bound, that of the symmetric one.
     Proven(f64),
     /// This factor times the coefficient over the facet's diameter.
     Diameter(f64),
@@ -71,8 +72,18 @@ impl<T: Real, const D: usize> FacetForm<T, D> for InteriorPenalty {
         };
         let parameters = PenaltyParameters { sigma, eta: None, rule: Some(rule) };
         let theory = FormTheory::new().with_parameters(parameters);
+        let theory = match self.rule {
+            PenaltyRule::Proven(margin) => theory.with_margin(margin),
+            PenaltyRule::Diameter(_) => theory,
+        };
         match (self.rule, self.symmetry) {
-            (PenaltyRule::Proven(_), _) | (_, Symmetry::NonSymmetric) => theory,
+            (PenaltyRule::Proven(margin), Symmetry::NonSymmetric) => {
+                theory.with_coercivity(margin > -1.0)
+            }
+            (PenaltyRule::Diameter(sigma), Symmetry::NonSymmetric) => {
+                theory.with_coercivity(sigma > 0.0)
+            }
+            (PenaltyRule::Proven(margin), _) if margin >= 0.0 => theory.with_coercivity(true),
             _ => theory.with_least_penalty(|facet| {
                 T::lit(self.part()) * proven_bound::<T, D>(self.degree, facet)
             }),

@@ -3,6 +3,34 @@
 use super::{FacetForm, FacetView, FormTheory, PenaltyParameters, Trace};
 use crate::real::Real;
 
+/// The degree of the polynomials that jumps are lifted to.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Lifts {
+    /// One less than that of the element, the least for which the form is consistent: D. N. Arnold,
+    /// F. Brezzi, B. Cockburn, L. D. Marini, SIAM J. Numer. Anal. 39 (2002), 1749-1779. A penalty made
+    /// of such lifts sees the moments of jumps up to this degree only, on linears their means; what
+    /// remains of a jump is bounded by the gradient on either side, so that orders stand.
+    #[default]
+    Reduced,
+    /// That of the element: a penalty made of such lifts bounds the whole jump, on which the proofs of
+    /// F. Wang, W. Han, X.-L. Cheng, SIAM J. Numer. Anal. 48 (2010), 708-733 rest.
+    Full,
+}
+
+impl Lifts {
+    /// The degree on an element whose basis functions have at most this degree.
+    pub fn degree(self, element: usize) -> usize {
+        match self {
+            Self::Reduced => element - 1,
+            Self::Full => element,
+        }
+    }
+    /// The choice, if it is not the default one.
+    pub(crate) fn unless_default(self) -> Option<Self> {
+        Some(self).filter(|&lifts| lifts != Self::default())
+    }
+}
+
 /// `eta sum_F int alpha r_F(u) . r_F(v)` with the consistency terms of the symmetric interior
 /// penalty: the lifts of single facets as a penalty.
 ///
@@ -18,8 +46,8 @@ use crate::real::Real;
 pub struct FacetLifts {
     /// The factor, without dimension.
     pub eta: f64,
-    /// Largest degree of a basis function of the element.
-    pub degree: usize,
+    /// The degree of the lifts.
+    pub lift_degree: usize,
     /// Whether the form needs `eta` above the number of facets of a cell.
     pub bounded: bool,
 }
@@ -28,7 +56,8 @@ impl FacetLifts {
     fn weight<T: Real, const D: usize>(eta: f64, facet: &FacetView<T, D>) -> T {
         let average = T::lit(if facet.there.is_some() { 0.5 } else { 1.0 });
         let w = facet.coefficient() * average;
-        let energy = facet.sum(|side| w * w * facet.measure / (side.coefficient * side.volume));
+        let energy =
+            facet.sum(|side| w * w * facet.measure / (side.least_coefficient * side.volume));
         T::lit(eta) * energy
     }
 }
@@ -37,8 +66,11 @@ impl<T: Real, const D: usize> FacetForm<T, D> for FacetLifts {
     fn uses_flux(&self) -> bool {
         true
     }
-    fn moments(&self, degree: usize) -> usize {
-        degree - 1
+    fn moments(&self, _: usize) -> usize {
+        self.lift_degree
+    }
+    fn lift_degree(&self, _: usize) -> usize {
+        self.lift_degree
     }
     fn penalty(&self, facet: &FacetView<T, D>) -> T {
         Self::weight(self.eta, facet)
@@ -48,7 +80,7 @@ impl<T: Real, const D: usize> FacetForm<T, D> for FacetLifts {
     /// the sum over `j < p - m` of `(2 j + 2 m + D) / D`, the squares on the facet of the orthonormal
     /// polynomials that are `e` times a Jacobi polynomial of degree `j` in the height.
     fn moment_weight(&self, moment: usize) -> f64 {
-        let [d, p, m] = [D, self.degree, moment].map(|k| k as f64);
+        let [d, p, m] = [D, self.lift_degree + 1, moment].map(|k| k as f64);
         (p - m) * (p + m + d - 1.0) / d
     }
     fn theory(&self) -> FormTheory<'_, T, D> {
@@ -57,7 +89,7 @@ impl<T: Real, const D: usize> FacetForm<T, D> for FacetLifts {
             FormTheory::new().with_parameters(PenaltyParameters { sigma: None, eta, rule });
         match self.bounded {
             true => theory.with_least_penalty(|facet| Self::weight((D + 1) as f64, facet)),
-            false => theory,
+            false => theory.with_coercivity(self.eta > 0.0),
         }
     }
     fn is_uniform(&self) -> bool {
@@ -86,6 +118,9 @@ impl<T: Real, const D: usize, F: FacetForm<T, D>> FacetForm<T, D> for Lifted<F> 
     }
     fn is_symmetric(&self) -> bool {
         self.0.is_symmetric()
+    }
+    fn lift_degree(&self, degree: usize) -> usize {
+        self.0.lift_degree(degree)
     }
     fn moments(&self, degree: usize) -> usize {
         self.0.moments(degree)

@@ -12,8 +12,8 @@
 //! polynomials up to a degree the form chooses. Up to the element's own degree nothing is lost,
 //! and the sum over moments is the integral over the facet.
 //!
-//! The lift `r(v)` of a jump is the piecewise polynomial field of degree one less than the element
-//! with `int r(v) . tau = - sum_F int_F [v] {tau . n}`, the mean with the average weights of the
+//! The lift `r(v)` of a jump is the piecewise polynomial field, of degree one less than the element
+//! unless the form asks for another, with `int r(v) . tau = - sum_F int_F [v] {tau . n}`, the mean with the average weights of the
 //! flux; `r_F(v)` is the part of one facet.
 
 mod dirichlet;
@@ -28,7 +28,7 @@ mod view;
 
 pub use dirichlet::DirichletBy;
 pub use interior_penalty::{InteriorPenalty, PenaltyRule, Symmetry};
-pub use lifting::{FacetLifts, Lifted};
+pub use lifting::{FacetLifts, Lifted, Lifts};
 pub use none::NoFacets;
 pub use over_penalty::{OverPenalty, WeightRule};
 pub use parameters::PenaltyParameters;
@@ -69,6 +69,10 @@ pub trait FacetForm<T: Real, const D: usize>: Any + Send + Sync {
     /// neighbours. Only broken elements of degree one or two carry such a form.
     fn is_lifted(&self) -> bool {
         false
+    }
+    /// The degree of lifts, at most that of the moments, for basis functions of this degree.
+    fn lift_degree(&self, degree: usize) -> usize {
+        degree - 1
     }
     /// Whether `integrand(v, u)` equals `integrand(u, v)`.
     fn is_symmetric(&self) -> bool {

@@ -69,7 +69,9 @@ impl<T: Real, const D: usize> FacetForm<T, D> for OverPenalty {
             WeightRule::Anisotropic => format!("eta / (h^{} l_F)", 2 * k),
         };
         let eta = Some(self.eta);
-        FormTheory::new().with_parameters(PenaltyParameters { sigma: None, eta, rule: Some(rule) })
+        FormTheory::new()
+            .with_parameters(PenaltyParameters { sigma: None, eta, rule: Some(rule) })
+            .with_coercivity(self.eta > 0.0)
     }
     fn is_uniform(&self) -> bool {
         true

@@ -10,7 +10,9 @@ use crate::real::Real;
 /// ```
 ///
 /// with `w_F` 1/2 on interior and 1 on Dirichlet facets, `|dK|` the measure of the boundary of cell
-/// `K` and `alpha_F` the harmonic mean of the coefficients. Derivation: the consistency terms are
+/// `K`, `alpha_F` the harmonic mean of the coefficients and `alpha_K` the coefficient of the cell. Where the
+/// coefficient varies in a cell, `alpha_F` is made of the largest values on the facet and `alpha_K` is
+/// the least value in the cell. Derivation: the consistency terms are
 /// bounded by `sum_K sum_{F in dK} w_F |F| alpha_F^2 (d_n v)^2 / sigma_F`, and on a simplex
 /// `||grad v||_F^2 <= C_p |F|/|K| ||grad v||_K^2` for `grad v` of degree `p - 1`
 /// (T. Warburton, J. S. Hesthaven, CMAME 192 (2003), 2765-2773).
@@ -19,6 +21,7 @@ pub fn proven_bound<T: Real, const D: usize>(degree: usize, facet: &FacetView<T,
     let weight = if facet.there.is_some() { 0.5 } else { 1.0 };
     let constant = (degree * (degree + D - 1)) as f64 / D as f64;
     let mean = facet.coefficient();
-    let ratio = facet.largest(|side| mean * mean / side.coefficient * side.surface / side.volume);
+    let ratio =
+        facet.largest(|side| mean * mean / side.least_coefficient * side.surface / side.volume);
     T::lit(weight * constant) * ratio
 }

@@ -13,29 +13,59 @@ pub type LeastPenalty<'f, T, const D: usize> = Box<dyn Fn(&FacetView<'_, T, D>) 
 pub struct FormTheory<'f, T: Real, const D: usize> {
     /// The factors in force, for reports.
     pub parameters: PenaltyParameters,
-    /// The least weight with which the form is provably coercive; none if it always is, or if the
-    /// weight is chosen by that very bound.
+    /// Whether theory proves the form coercive, for a reaction that is not negative and with penalties of
+    /// at least `least_penalty` where there is one. Where it does not, the matrix is tested before an
+    /// inequality is solved, since a solution does not show that its matrix is indefinite.
+    pub is_coercive: bool,
+    /// The least weight with which the form is provably coercive; none if its weights are positive and
+    /// need no bound, or are chosen by that very bound.
     pub least_penalty: Option<LeastPenalty<'f, T, D>>,
+    /// The margin over a proven bound, where the weight is chosen by that bound.
+    pub margin: Option<f64>,
     /// By what [`Self::rounding_limit`] is scaled; one half by default, as measured for linears.
     pub rounding_factor: f64,
 }
 
 impl<'f, T: Real, const D: usize> FormTheory<'f, T, D> {
-    /// No parameters, no least penalty.
+    /// No parameters, no proof of coercivity, no least penalty.
     #[must_use]
     pub fn new() -> Self {
         let parameters = PenaltyParameters::default();
-        Self { parameters, least_penalty: None, rounding_factor: 0.5 }
+        Self {
+            parameters,
+            is_coercive: false,
+            least_penalty: None,
+            margin: None,
+            rounding_factor: 0.5,
+        }
     }
     /// Sets the factors in force.
     #[must_use]
     pub fn with_parameters(self, parameters: PenaltyParameters) -> Self {
         Self { parameters, ..self }
     }
+    /// States whether theory proves the form coercive with its own weights.
+    #[must_use]
+    pub fn with_coercivity(self, is_coercive: bool) -> Self {
+        Self { is_coercive, ..self }
+    }
+    /// Sets the margin over a proven bound.
+    #[must_use]
+    pub fn with_margin(self, margin: f64) -> Self {
+        Self { margin: Some(margin), ..self }
+    }
+    /// The parameter by which the penalty is chosen, its value, and the factor that it makes, which
+    /// is linear in the penalty; none for a form that states no such parameter.
+    pub(crate) fn factor(&self) -> Option<(&'static str, f64, f64)> {
+        let PenaltyParameters { sigma, eta, .. } = self.parameters;
+        let margin = self.margin.map(|margin| ("margin", margin, 1.0 + margin));
+        let stated = sigma.map(|x| ("sigma", x, x)).or(eta.map(|x| ("eta", x, x)));
+        margin.or(stated)
+    }
     /// Sets the least weight of a facet with which the form is provably coercive.
     #[must_use]
     pub fn with_least_penalty(self, least: impl Fn(&FacetView<'_, T, D>) -> T + 'f) -> Self {
-        Self { least_penalty: Some(Box::new(least)), ..self }
+        Self { is_coercive: true, least_penalty: Some(Box::new(least)), ..self }
     }
     /// Sets the factor of the rounding limit.
     #[must_use]
@@ -61,7 +91,9 @@ impl<T: Real, const D: usize> fmt::Debug for FormTheory<'_, T, D> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.debug_struct("FormTheory")
             .field("parameters", &self.parameters)
+            .field("is_coercive", &self.is_coercive)
             .field("least_penalty", &self.least_penalty.is_some())
+            .field("margin", &self.margin)
             .field("rounding_factor", &self.rounding_factor)
             .finish()
     }

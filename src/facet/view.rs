@@ -6,8 +6,11 @@ use crate::real::{Point, Real};
 /// One cell as its facet sees it.
 #[derive(Clone, Copy, Debug)]
 pub struct Side<T> {
-    /// The diffusion coefficient of the cell.
+    /// The diffusion coefficient of the cell; where it varies within the cell and the element sees it, the
+    /// largest value on the facet.
     pub coefficient: T,
+    /// The least value of the diffusion coefficient in the cell.
+    pub least_coefficient: T,
     /// The volume of the cell.
     pub volume: T,
     /// The measure of the cell's whole boundary.

@@ -14,12 +14,12 @@
 //!
 //! # Generated tables
 //!
-//! Two pages are too long for a chapter. The program writes them, and the folder `docs` has a copy:
+//! The program writes two reports that are too long for a page. The folder `docs` has their summaries:
 //!
 //! | page | contents | command, after `cargo run --release --` |
 //! |---|---|---|
-//! | `docs/orders.md` | observed and promised orders of every scheme on every scene | `orders FILE` |
-//! | `docs/stability.md` | hard cases, each with its criterion and its measured figures | `stability --markdown FILE` |
+//! | `docs/orders.md` | observed and promised orders: what is kept, missed, undecided, and why | `orders FILE --summary FILE` |
+//! | `docs/stability.md` | hard cases: safe ranges of factors, verdicts, what is missed | `stability --markdown FILE` |
 
 // A page of the repository links to other pages, to source files and to pictures by labels, which it
 // defines at its end. The first definition of a label counts: `links.md` and `pictures.md` stand

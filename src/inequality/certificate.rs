@@ -1,13 +1,15 @@
 //! The certificate: violations of the complementarity conditions, computed from the data and `u` alone.
 
+use super::scales::Scales;
 use crate::algebra::{Bound, Contact, Inequality};
 use crate::instances::compiled;
 use crate::real::Real;
 
 /// Relative, dimensionless violations of the complementarity conditions of an [`Inequality`].
 ///
-/// Notation: `r = A u - b`; `d` the diagonal of `A`; `E` the energy norm `(u.A u)^(1/2)` of the
-/// solution; `v_i` the admissible value nearest to `u_i`; `U` the largest of all `|u_i|` and
+/// Notation: `r = A u - b`; `d` the diagonal of `A`; `E` the energy norm of the solution, with its
+/// Dirichlet data subtracted where they are imposed weakly
+/// ([`DirichletEnergy`](crate::algebra::DirichletEnergy)); `v_i` the admissible value nearest to `u_i`; `U` the largest of all `|u_i|` and
 /// `|v_i|`; the gap the distance of `u_i` from the nearer bound; the step `s_i = r_i / d_i`, its
 /// sign reversed if the upper bound is nearer: a Gauss-Seidel correction towards this bound. An
 /// unknown counts as active if its gap is at most `|s_i|`. No contact state of a solver enters.
@@ -25,9 +27,11 @@ use crate::real::Real;
 /// fine mesh each wrong multiplier is tiny, while all of them together may change the solution by
 /// as much as the solution itself. A sum is never below its largest term.
 ///
-/// Where `u.A u` is not positive beyond rounding (a constant, zero), `(sum d_i u_i^2)^(1/2)` replaces
-/// `E`, then `(sum b_i^2 / d_i)^(1/2)`, then one. All sums are in `f64`. If a number is not finite or
-/// sizes do not match, all four violations are infinite.
+/// Where the energy vanishes up to rounding (a constant, zero), the norm `(sum c_i^2 / d_i)^(1/2)` of the
+/// load `c` without Dirichlet data replaces `E`, then `(sum d_i u_i^2)^(1/2)`, then one. All sums are in
+/// `f64`, of numbers divided by a power of two near the largest, so that the certificate of
+/// multiples of data is that of the data. If a number is not finite or sizes do not match, all four
+/// violations are infinite.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "report", derive(serde::Serialize))]
 #[non_exhaustive]
@@ -68,6 +72,14 @@ impl Certificate {
     pub fn with_algebraic_bound(mut self, bound: Option<f64>) -> Self {
         self.algebraic_bound = bound;
         self
+    }
+
+    /// Whether the four violations are within [`Real::CERTIFICATE_LIMIT`], and the bound on the
+    /// algebraic error, where it is known, within [`Real::ALGEBRAIC_BOUND_LIMIT`].
+    #[must_use]
+    pub fn is_within_limits<T: Real>(&self) -> bool {
+        self.largest() <= T::CERTIFICATE_LIMIT
+            && self.algebraic_bound.is_none_or(|bound| bound <= T::ALGEBRAIC_BOUND_LIMIT)
     }
 
     /// The largest of the four violations.
@@ -120,38 +132,28 @@ pub(crate) fn certify_with_rounding<T: Real>(
     if !inequality.is_well_formed() || u.len() != n {
         return (Certificate::INVALID, 0.0);
     }
-    let Inequality { load, bounds, .. } = inequality;
-    let mut negative_r = vec![0.0; n];
-    let mismatch = residual_and_mismatch(inequality, u, jump_multipliers, &mut negative_r);
-
-    let mut max_norm = 0.0_f64;
-    let [mut work, mut energy, mut diagonal_energy, mut load_energy, mut stiffness] = [0.0; 5];
-    let [mut multiplier, mut complementarity, mut residual] = [0.0_f64; 3];
+    let bounds = &inequality.bounds;
+    let mut r = vec![0.0; n];
+    let mismatch = residual_and_mismatch(inequality, u, jump_multipliers, &mut r);
+    let diagonal = |i: usize| positive_diagonal(inequality, i);
+    let unit = unit(inequality, u, &r);
+    let scales = Scales::of(inequality, u, &r, jump_multipliers, &diagonal, unit);
+    let [mut multiplier, mut complementarity, mut residual, mut stiffness] = [0.0_f64; 4];
     let mut violation = 0.0_f64;
     for i in 0..n {
-        let (x, b, r) = (u[i].to_f64(), load[i].to_f64(), -negative_r[i]);
-        let d = positive_diagonal(inequality, i);
-        max_norm = max_norm.max(x.abs()).max(bounds[i].nearest(u[i]).to_f64().abs());
-        energy += x * (b + r);
-        work += (x * (b + r)).abs();
-        diagonal_energy += d * x * x;
-        load_energy += b * b / d;
+        let d = diagonal(i);
         stiffness += d;
-        let local = LocalViolation::new(&bounds[i], x, r / d);
+        let local = LocalViolation::new(&bounds[i], u[i].to_f64(), -r[i] / d);
         violation = violation.max(local.feasibility);
-        multiplier += d * local.multiplier.powi(2);
-        complementarity += d * local.complementarity.powi(2);
-        residual += d * local.residual.powi(2);
+        multiplier += d * (local.multiplier / unit).powi(2);
+        complementarity += d * (local.complementarity / unit).powi(2);
+        residual += d * (local.residual / unit).powi(2);
     }
-    if ![max_norm, work, load_energy, multiplier, residual, mismatch].iter().all(|x| x.is_finite())
-    {
+    let Scales { max_norm, energy_norm } = scales;
+    if ![max_norm, energy_norm, multiplier, residual, mismatch].iter().all(|x| x.is_finite()) {
         return (Certificate::INVALID, 0.0);
     }
-    let max_norm = if max_norm > 0.0 { max_norm } else { 1.0 };
-    let candidates = [energy, diagonal_energy, load_energy, 1.0];
-    let least = [8.0 * f64::EPSILON * work, 0.0, 0.0, 0.0];
-    let energy = (0..4).find(|&k| candidates[k] > least[k]).map_or(1.0, |k| candidates[k]);
-    let norm = |sum: f64| (sum / energy).sqrt();
+    let norm = |sum: f64| sum.sqrt() / (energy_norm / unit);
     let certificate = Certificate {
         feasibility: violation / max_norm,
         multiplier: norm(multiplier),
@@ -159,7 +161,18 @@ pub(crate) fn certify_with_rounding<T: Real>(
         residual: norm(residual).max(mismatch / max_norm),
         algebraic_bound: None,
     };
-    (certificate, max_norm * norm(stiffness))
+    (certificate, max_norm / unit * norm(stiffness))
+}
+
+/// A power of two near the largest of all values, admissible values and Jacobi corrections; one if all
+/// are zero or one is not finite.
+fn unit<T: Real>(inequality: &Inequality<T>, u: &[T], r: &[f64]) -> f64 {
+    let size = |i: usize| {
+        let nearest = inequality.bounds[i].nearest(u[i]).to_f64().abs();
+        u[i].to_f64().abs().max(nearest).max(r[i].abs() / positive_diagonal(inequality, i))
+    };
+    let largest = (0..u.len()).map(size).fold(0.0, f64::max);
+    if largest > 0.0 && largest.is_finite() { largest.log2().floor().exp2() } else { 1.0 }
 }
 
 /// Sets `residual` to `b - A u`, or to `c - K u - M^T p` if the jump multipliers `p` are given;

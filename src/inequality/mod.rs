@@ -18,6 +18,9 @@
 //! | `interior_point/` | the interior point method, which provides a start where the active set stagnates |
 //! | `monotone_multigrid` | [`MonotoneMultigrid`]: truncated nonsmooth Newton multigrid |
 //! | `certificate` | [`Certificate`], [`certify`] |
+//! | `energy_error_bound` | [`energy_error_bound`]: a proven bound for any values |
+//! | `scales` | the energy norm and the largest value to which violations are relative |
+//! | `recession` | whether a solution exists and is unique where only bounds hold the domain |
 //! | `initial_guess` | [`InitialGuess`]: coarse spaces, starting values and tolerance of a solve |
 //! | `by_name` | [`solver_by_name`] |
 //! | `solution`, `outcome`, `stage` | [`Solution`], [`Outcome`], [`StageRun`]: the result of a solver |
@@ -29,10 +32,13 @@
 mod active_set;
 mod by_name;
 mod certificate;
+mod energy_error_bound;
 mod initial_guess;
 mod interior_point;
 mod monotone_multigrid;
 mod outcome;
+mod recession;
+mod scales;
 mod solution;
 mod stage;
 mod validation;
@@ -40,11 +46,13 @@ mod validation;
 pub use active_set::{ActiveSet, Globalisation, Preconditioned};
 pub use by_name::{SOLVERS, SolverOptions, solver_by_name};
 pub use certificate::{Certificate, certify, certify_with_jump_multipliers, count_active};
+pub use energy_error_bound::energy_error_bound;
 pub use initial_guess::InitialGuess;
 pub use monotone_multigrid::MonotoneMultigrid;
 pub use outcome::Outcome;
 pub use solution::Solution;
 pub use stage::{Stage, StageRun};
+pub(crate) use validation::check_definite;
 
 use crate::algebra::Inequality;
 use crate::real::Real;

@@ -1,8 +1,10 @@
 //! Truncated nonsmooth Newton multigrid: a descent method that does not depend on strict
 //! complementarity.
 
-use super::certificate::certify;
+use super::certificate::{certify, positive_diagonal};
 use super::initial_guess::InitialGuess;
+use super::recession::solve_with_kernel;
+use super::scales::Scales;
 use super::validation::check_input;
 use super::{ActiveSet, InequalitySolver, Outcome, Solution};
 use crate::algebra::{Contact, Inequality};
@@ -78,7 +80,9 @@ impl<T: Real> InequalitySolver<T> for MonotoneMultigrid {
     fn solve_from(&self, inequality: &Inequality<T>, guess: &InitialGuess<T>) -> Solution<T> {
         compiled!(
             T: fn(&MonotoneMultigrid, &Inequality<T>, &InitialGuess<T>) -> Solution<T>
-                = MonotoneMultigrid::descend
+                = |method, inequality, guess| solve_with_kernel(inequality, |inequality| {
+                    method.descend(inequality, guess)
+                })
         )(self, inequality, guess)
     }
 
@@ -167,11 +171,11 @@ impl<'a, T: Real> MultigridIterate<'a, T> {
                 by_sweeps += self.gauss_seidel_sweep()?;
             }
             let by_correction = self.correct(&mut multigrid)?;
-            let energy = self.squared_energy_norm();
-            if !(energy.is_finite() && by_sweeps.is_finite()) {
+            let energy_norm = self.energy_norm();
+            if !(energy_norm.is_finite() && by_sweeps.is_finite()) {
                 return Err(Outcome::NotFinite);
             }
-            if (by_sweeps + by_correction).sqrt() <= tolerance * energy.sqrt()
+            if (by_sweeps + by_correction).sqrt() <= tolerance * energy_norm
                 && certify(self.inequality, &self.values).largest() <= limit
             {
                 return Ok(Outcome::Converged);
@@ -279,20 +283,13 @@ impl<'a, T: Real> MultigridIterate<'a, T> {
         longest.max(1.0)
     }
 
-    /// The square of the energy norm of the values; if it is zero, `sum b_i^2 / d_i` of the load;
-    /// if this is zero too, one.
-    fn squared_energy_norm(&self) -> f64 {
-        let Inequality { matrix, load, .. } = self.inequality;
-        let values = self.values.iter().enumerate();
-        let energy: f64 =
-            values.map(|(i, x)| x.to_f64() * matrix.row_dot_f64(i, &self.values)).sum();
-        if energy > 0.0 {
-            return energy;
-        }
-        let loads = load.iter().enumerate();
-        let sum: f64 =
-            loads.map(|(i, b)| b.to_f64().powi(2) / matrix.get(i, i).to_f64().abs()).sum();
-        if sum > 0.0 { sum } else { 1.0 }
+    /// The energy norm of the values; see [`Scales::energy_norm`].
+    fn energy_norm(&self) -> f64 {
+        let inequality = self.inequality;
+        let mut residual = vec![0.0; self.values.len()];
+        inequality.residual_f64(&self.values, &mut residual);
+        let diagonal = |i: usize| positive_diagonal(inequality, i);
+        Scales::of(inequality, &self.values, &residual, &[], &diagonal, 1.0).energy_norm
     }
 
     /// The solution, with the contact states of its values.

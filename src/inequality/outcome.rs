@@ -19,11 +19,20 @@ pub enum Outcome {
     NotCoercive,
     /// The matrix is singular on the inactive unknowns.
     Singular,
+    /// The load pulls a part of the domain, which only bounds hold, away from them: the energy has no
+    /// minimum.
+    NoSolution,
+    /// The load on a part of the domain that only bounds hold is balanced: the values are one of many
+    /// solutions, which differ by a constant there.
+    NotUnique,
     /// A number is not finite.
     NotFinite,
+    /// The squares of the data underflow or overflow.
+    OutOfRange,
     /// The lower bound of an unknown exceeds its upper bound.
     Infeasible,
-    /// Sizes of matrix, load and bounds do not match, or the matrix violates an invariant of its type.
+    /// Sizes of matrix, load, bounds and supports do not match, the matrix violates an invariant of its
+    /// type, or a support names a vertex that cannot exist.
     Malformed,
     /// The factors do not fit into memory.
     OutOfMemory,
@@ -40,10 +49,57 @@ impl Outcome {
             Outcome::Stalled => "stalled",
             Outcome::NotCoercive => "not-coercive",
             Outcome::Singular => "singular",
+            Outcome::NoSolution => "no-solution",
+            Outcome::NotUnique => "not-unique",
             Outcome::NotFinite => "not-finite",
+            Outcome::OutOfRange => "out-of-range",
             Outcome::Infeasible => "infeasible",
             Outcome::Malformed => "malformed",
             Outcome::OutOfMemory => "out-of-memory",
+        }
+    }
+}
+
+impl Outcome {
+    /// What the outcome says, in one sentence.
+    #[must_use]
+    pub fn message(self) -> &'static str {
+        match self {
+            Outcome::Converged => {
+                "the complementarity conditions hold to the limits of the certificate"
+            }
+            Outcome::IterationLimit => {
+                "the limit of iterations was reached while the active set still changed; raise it, or use another solver"
+            }
+            Outcome::Cycling => {
+                "the active set returned to an earlier one, and no later stage of the solver found a solution"
+            }
+            Outcome::Stalled => {
+                "rounding, or the tolerance of the solver, keeps the certificate above its limit; use f64, a smaller penalty, a coarser mesh or a tighter tolerance"
+            }
+            Outcome::NotCoercive => {
+                "the matrix is not positive definite: a penalty is too small, or a reaction too negative"
+            }
+            Outcome::Singular => {
+                "the matrix is singular to working precision on the inactive unknowns"
+            }
+            Outcome::NoSolution => {
+                "no solution: the load pulls a part of the domain, which only its bounds hold, away from them"
+            }
+            Outcome::NotUnique => {
+                "not unique: the load on a part of the domain that only its bounds hold is balanced; the values are one of the solutions, which differ there by a constant"
+            }
+            Outcome::NotFinite => "a number of the data or of an iterate is not finite",
+            Outcome::OutOfRange => {
+                "the data are so small or so large that their squares underflow or overflow; scale them"
+            }
+            Outcome::Infeasible => {
+                "the lower bound of an unknown exceeds its upper bound: no function is admissible"
+            }
+            Outcome::Malformed => {
+                "sizes of matrix, load, bounds and supports do not match, an entry of the matrix is out of place, or a matrix declared symmetric is not"
+            }
+            Outcome::OutOfMemory => "the factors of the matrix do not fit into memory",
         }
     }
 }

@@ -1,16 +1,22 @@
 //! Checks of an inequality before it is solved.
 
 use super::Outcome;
+use super::certificate::positive_diagonal;
 use crate::algebra::Inequality;
 use crate::linear::direct::StaticCondensation;
 use crate::linear::direct::is_positive_definite;
 use crate::real::Real;
 
-/// Checks that sizes match, that all numbers are finite, and that no lower bound exceeds its upper one.
+/// The largest and the smallest size of data, as values or energies, whose squares neither overflow nor
+/// underflow, with a margin for products with coefficients and volumes.
+const DATA_RANGE: [f64; 2] = [1e-120, 1e120];
+
+/// Checks that sizes match, that all numbers are finite, that no lower bound exceeds its upper one, and
+/// that squares of the data neither overflow nor underflow.
 ///
 /// # Errors
-/// The outcome that a solver returns: [`Outcome::Malformed`], [`Outcome::NotFinite`] or
-/// [`Outcome::Infeasible`].
+/// The outcome that a solver returns: [`Outcome::Malformed`], [`Outcome::NotFinite`],
+/// [`Outcome::Infeasible`] or [`Outcome::OutOfRange`].
 pub(crate) fn check_input<T: Real>(inequality: &Inequality<T>) -> Result<(), Outcome> {
     if !inequality.is_well_formed() {
         Err(Outcome::Malformed)
@@ -18,26 +24,46 @@ pub(crate) fn check_input<T: Real>(inequality: &Inequality<T>) -> Result<(), Out
         Err(Outcome::NotFinite)
     } else if !inequality.is_feasible() {
         Err(Outcome::Infeasible)
+    } else if !data_are_in_range(inequality) {
+        Err(Outcome::OutOfRange)
     } else {
         Ok(())
     }
 }
 
+/// Whether the largest of the loads and of the admissible values nearest to zero is zero or within
+/// [`DATA_RANGE`], as a value and as the square root of an energy.
+fn data_are_in_range<T: Real>(inequality: &Inequality<T>) -> bool {
+    let mut largest = [0.0_f64; 2];
+    for (i, (bound, load)) in inequality.bounds.iter().zip(&inequality.load).enumerate() {
+        let root = positive_diagonal(inequality, i).sqrt();
+        let value =
+            bound.nearest(T::lit(0.0)).to_f64().abs().max(load.to_f64().abs() / root / root);
+        largest = [largest[0].max(value), largest[1].max(value * root)];
+    }
+    let [least, most] = DATA_RANGE;
+    largest.iter().all(|&size| size == 0.0 || (size >= least && size <= most))
+}
+
 /// Checks by a Cholesky factorisation that the matrix, or its symmetric part if it is not symmetric, is
 /// positive definite on all unknowns that are not fixed. A penalised matrix is factored by static
-/// condensation.
+/// condensation. On the kernel, where it is known, the matrix need not be positive.
 ///
 /// # Errors
 /// The outcome that a solver returns: [`Outcome::NotCoercive`], or the reason why there are no factors.
 pub(crate) fn check_definite<T: Real>(inequality: &Inequality<T>) -> Result<(), Outcome> {
+    let mut free = inequality.free_unknowns();
+    // with one unknown of a kernel vector fixed the matrix is positive definite on the others
+    let of_kernel: Vec<u32> = inequality.kernel.iter().filter_map(|w| Some(w.first()?.0)).collect();
+    free.retain(|i| !of_kernel.contains(i));
     if let Some(penalised) = &inequality.penalised {
-        let is_free: Vec<bool> =
-            inequality.bounds.iter().map(|bound| bound.fixed_value().is_none()).collect();
+        let mut is_free = vec![false; inequality.size()];
+        free.iter().for_each(|&i| is_free[i as usize] = true);
         StaticCondensation::new(penalised).factor(&is_free)?;
         return Ok(());
     }
     let Inequality { matrix, symmetric, .. } = inequality;
-    if is_positive_definite(matrix, *symmetric, &inequality.free_unknowns())? {
+    if is_positive_definite(matrix, *symmetric, &free)? {
         Ok(())
     } else {
         Err(Outcome::NotCoercive)

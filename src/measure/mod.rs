@@ -12,4 +12,4 @@ pub use contact::DiscreteContact;
 pub use error_norm::ErrorNorm;
 pub use errors::{ContactErrors, Errors};
 pub use fields::Fields;
-pub use order::observed_order;
+pub use order::{FittedOrder, fit_order, observed_order};

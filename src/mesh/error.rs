@@ -97,6 +97,29 @@ pub enum MeshError {
         /// The first three cells of the facet.
         cells: [usize; 3],
     },
+    /// Two cells lie on the same side of the facet that they share.
+    #[error(
+        "cells {} and {} lie on the same side of their common facet {vertices:?}: the mesh folds over there; correct the coordinates or the cells",
+        cells[0], cells[1]
+    )]
+    FoldedCells {
+        /// Vertices of the facet.
+        vertices: Vec<u32>,
+        /// The two cells.
+        cells: [usize; 2],
+    },
+    /// Two cells contain one point.
+    #[error(
+        "cells {first} and {second} overlap at {at}: parts of the mesh lie on each other; leave one of them out, or mesh their union"
+    )]
+    OverlappingCells {
+        /// The first of the two.
+        first: usize,
+        /// The second.
+        second: usize,
+        /// A point of both, as coordinates in parentheses.
+        at: String,
+    },
     /// A facet of the boundary is in no part.
     #[error(
         "boundary facet {vertices:?} of cell {cell}, at {at}, is in no boundary part: put it in one of dirichlet, neumann, contact"
@@ -155,7 +178,9 @@ impl MeshError {
             | Self::DegenerateCell { cell, .. }
             | Self::UntaggedFacet { cell, .. }
             | Self::UnsupportedComponent { cell, .. } => vec![*cell],
-            Self::RepeatedCell { first, second, .. } => vec![*first, *second],
+            Self::RepeatedCell { first, second, .. }
+            | Self::OverlappingCells { first, second, .. } => vec![*first, *second],
+            Self::FoldedCells { cells, .. } => cells.to_vec(),
             Self::FacetOfThreeCells { cells, .. } => cells.to_vec(),
             _ => Vec::new(),
         }

@@ -94,6 +94,15 @@ impl Neighbours {
             _ => Neighbour::Cell { cell: code >> 2, local: (code & 3) as u8 },
         }
     }
+    /// Number of cells.
+    pub(super) fn n_cells(&self) -> usize {
+        self.codes.len() / self.per_cell
+    }
+    /// The cells that share a facet with a cell.
+    pub(super) fn cells_across(&self, cell: usize) -> impl Iterator<Item = usize> + '_ {
+        let codes = &self.codes[cell * self.per_cell..(cell + 1) * self.per_cell];
+        codes.iter().filter(|code| **code < BOUNDARY).map(|code| (code >> 2) as usize)
+    }
     /// Whether a facet has neither a second cell nor a boundary part yet.
     pub(super) fn is_unmatched(&self, cell: usize, local: usize) -> bool {
         self.codes[cell * self.per_cell + local] == UNKNOWN

@@ -10,6 +10,7 @@ pub struct CellGeometry<T, const D: usize> {
     /// The cell's `D`-dimensional measure.
     pub volume: T,
     gradients: [Point<T, D>; 4],
+    is_positive: bool,
 }
 
 impl<T: Real, const D: usize> CellGeometry<T, D> {
@@ -50,7 +51,14 @@ impl<T: Real, const D: usize> CellGeometry<T, D> {
             gradients[0] -= gradient;
         }
         let magnitude = if determinant < zero { -determinant } else { determinant };
-        Self { volume: magnitude / T::lit(FACTORIAL[D]), gradients }
+        let volume = magnitude / T::lit(FACTORIAL[D]);
+        Self { volume, gradients, is_positive: determinant > zero }
+    }
+
+    /// Whether the determinant of the edges from corner 0 to the others is positive.
+    #[inline(always)]
+    pub(super) fn is_positive(&self) -> bool {
+        self.is_positive
     }
 
     /// The gradient of barycentric coordinate `i`.
@@ -128,6 +136,12 @@ impl<T: Real, const D: usize> Mesh<T, D> {
         }
         nalgebra::ComplexField::sqrt(largest)
     }
+}
+
+/// The coordinates of a point in parentheses, for messages.
+pub(crate) fn describe_point<const D: usize>(x: &Point<f64, D>) -> String {
+    let coordinates: Vec<String> = x.iter().map(|c| format!("{c:.6}")).collect();
+    format!("({})", coordinates.join(", "))
 }
 
 #[cfg(test)]

@@ -11,18 +11,21 @@
 //! * A mesh is immutable once made, and what [`Mesh::new`] accepts carries a finite element space.
 
 mod boundary;
+mod components;
 mod domain;
 mod edges;
 mod error;
 mod facets;
 mod geometry;
 pub mod gmsh;
+mod overlap;
 mod refine;
 mod simplicial;
 mod stars;
 mod validate;
 
 pub use boundary::{BoundaryFacet, BoundaryPart};
+pub(crate) use components::Components;
 pub use domain::{BoxDomain, Domain};
 #[doc(hidden)]
 pub use edges::Edges;
@@ -30,7 +33,7 @@ pub(crate) use edges::edge_vertices;
 pub use error::MeshError;
 pub use facets::{Facets, Neighbour, Neighbours};
 pub use geometry::CellGeometry;
+pub(crate) use geometry::describe_point;
 pub use refine::Refinement;
 pub use simplicial::Mesh;
 pub use validate::TaggedFacet;
-pub(crate) use validate::describe_point;

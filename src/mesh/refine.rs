@@ -169,7 +169,8 @@ impl<T: Real, const D: usize> Mesh<T, D> {
             let first = range.start / group;
             cells.chunks_exact_mut(group).enumerate().for_each(|(k, out)| cut(first + k, out));
         });
-        Ok((Self { vertices, cells, boundary: self.refined_boundary() }, Refinement { parents }))
+        let (boundary, is_supported) = (self.refined_boundary(), self.is_supported);
+        Ok((Self { vertices, cells, boundary, is_supported }, Refinement { parents }))
     }
 
     /// The boundary facets of the refined mesh.

@@ -9,6 +9,8 @@ pub struct Mesh<T, const D: usize> {
     pub(in crate::mesh) vertices: Vec<Point<T, D>>,
     pub(in crate::mesh) cells: Vec<u32>,
     pub(in crate::mesh) boundary: Vec<BoundaryFacet>,
+    /// Whether every component of the mesh, connected through facets, has a Dirichlet facet.
+    pub(in crate::mesh) is_supported: bool,
 }
 
 impl<T: Real, const D: usize> Mesh<T, D> {
@@ -42,6 +44,10 @@ impl<T: Real, const D: usize> Mesh<T, D> {
     /// Whether some facet belongs to a part of the boundary.
     pub fn has_part(&self, part: BoundaryPart) -> bool {
         self.boundary.iter().any(|f| f.part == part)
+    }
+    /// Whether every component of the mesh, connected through facets, has a Dirichlet facet.
+    pub fn is_supported(&self) -> bool {
+        self.is_supported
     }
     /// Vertices of facet `local` of a cell, ascending: `D` of them.
     pub fn facet_vertices(&self, c: usize, local: usize) -> impl Iterator<Item = u32> + '_ {

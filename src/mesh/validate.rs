@@ -1,9 +1,11 @@
 //! The construction of a mesh from lists of vertices, cells and boundary facets, with all checks.
 
 use super::boundary::{BoundaryFacet, BoundaryPart};
+use super::components::Components;
 use super::error::MeshError;
-use super::facets::{CELL_LIMIT, Neighbour, Neighbours};
-use super::geometry::CellGeometry;
+use super::facets::{CELL_LIMIT, Neighbours};
+use super::geometry::{CellGeometry, describe_point};
+use super::overlap::{check_folds, check_overlaps};
 use super::simplicial::Mesh;
 use crate::instances::compiled;
 use crate::real::{Point, Real, point_f64};
@@ -26,7 +28,9 @@ impl<T: Real, const D: usize> Mesh<T, D> {
     ///
     /// # Errors
     /// Every [`MeshError`] but [`MeshError::UnsupportedComponent`], which depends on the problem:
-    /// see [`Mesh::check_supported`]. Vertices in errors are numbered as given.
+    /// see [`Mesh::check_supported`]. Vertices in errors are numbered as given. Folds across a facet
+    /// are always found, other overlaps where one of the lines through boundary facets meets them:
+    /// through all up to 64, through eight from 512 facets on.
     pub fn new(
         vertices: Vec<Point<f64, D>>,
         cells: Vec<u32>,
@@ -52,11 +56,15 @@ impl<T: Real, const D: usize> Mesh<T, D> {
         }
         let rounded: Vec<Point<T, D>> =
             vertices.iter().map(|x| Point::from_fn(|k, _| T::lit(x[k]))).collect();
-        check_volumes::<T, D>(&rounded, &cells)?;
+        let is_positive = check_volumes::<T, D>(&rounded, &cells)?;
         let neighbours = Neighbours::match_facets::<D>(&cells, vertices.len())?;
+        check_folds::<D>(&cells, &neighbours, &is_positive)?;
         let boundary = match_boundary(&vertices, &cells, &neighbours, boundary)?;
+        check_overlaps(&vertices, &cells, &boundary)?;
+        let is_dirichlet = |part| part == BoundaryPart::Dirichlet;
+        let is_supported = unsupported_component(&neighbours, &boundary, is_dirichlet).is_none();
         let (vertices, cells) = drop_unused(rounded, cells);
-        Ok(Self { vertices, cells, boundary })
+        Ok(Self { vertices, cells, boundary, is_supported })
     }
 
     /// Checks that every component of the mesh, connected through facets, has a Dirichlet or a contact
@@ -68,35 +76,32 @@ impl<T: Real, const D: usize> Mesh<T, D> {
         compiled!(T, D: fn(&Mesh<T, D>) -> Result<(), MeshError> = Mesh::find_unsupported)(self)
     }
     fn find_unsupported(&self) -> Result<(), MeshError> {
-        let neighbours = Neighbours::new(self);
-        let mut seen = vec![false; self.n_cells()];
-        let mut front = Vec::new();
-        for first in 0..self.n_cells() {
-            if seen[first] {
-                continue;
-            }
-            seen[first] = true;
-            front.push(first);
-            let (mut supported, mut cells) = (false, 0);
-            while let Some(c) = front.pop() {
-                cells += 1;
-                for local in 0..=D {
-                    match neighbours.across(c, local) {
-                        Neighbour::Boundary(part) => supported |= part != BoundaryPart::Neumann,
-                        Neighbour::Cell { cell, .. } => {
-                            if !std::mem::replace(&mut seen[cell as usize], true) {
-                                front.push(cell as usize);
-                            }
-                        }
-                    }
-                }
-            }
-            if !supported {
-                return Err(MeshError::UnsupportedComponent { cell: first, cells });
-            }
+        let supports = |part| part != BoundaryPart::Neumann;
+        match unsupported_component(&Neighbours::new(self), &self.boundary, supports) {
+            Some((cell, cells)) => Err(MeshError::UnsupportedComponent { cell, cells }),
+            None => Ok(()),
         }
-        Ok(())
     }
+}
+
+/// The first component of a mesh, connected through facets, without a boundary facet whose part supports
+/// it: its first cell and its number of cells.
+fn unsupported_component(
+    neighbours: &Neighbours,
+    boundary: &[BoundaryFacet],
+    supports: impl Fn(BoundaryPart) -> bool,
+) -> Option<(usize, usize)> {
+    let n_cells = neighbours.n_cells();
+    let mut components = Components::new(n_cells);
+    for cell in 0..n_cells {
+        neighbours.cells_across(cell).for_each(|other| components.join(cell, other));
+    }
+    let mut is_supported = vec![false; n_cells];
+    for facet in boundary.iter().filter(|facet| supports(facet.part)) {
+        is_supported[components.find(facet.cell as usize)] = true;
+    }
+    let first = (0..n_cells).find(|&cell| !is_supported[components.find(cell)])?;
+    Some((first, (first..n_cells).filter(|&cell| components.find(cell) == first).count()))
 }
 
 fn check_lists<const D: usize>(vertices: &[Point<f64, D>], cells: &[u32]) -> Result<(), MeshError> {
@@ -133,13 +138,16 @@ pub(super) fn check_size(cells: usize, vertices: usize) -> Result<(), MeshError>
 }
 
 /// Refuses cells whose volume is at the rounding level of its diameter: their gradients are lost.
+/// Returns whether the determinant of the edges of each cell is positive.
 fn check_volumes<T: Real, const D: usize>(
     vertices: &[Point<T, D>],
     cells: &[u32],
-) -> Result<(), MeshError> {
+) -> Result<Vec<bool>, MeshError> {
+    let mut is_positive = Vec::with_capacity(cells.len() / (D + 1));
     for (c, cell) in cells.chunks_exact(D + 1).enumerate() {
         let corner = |k: usize| point_f64(&vertices[cell[k] as usize]);
-        let volume = CellGeometry::new(corner).volume;
+        let geometry = CellGeometry::new(corner);
+        let volume = geometry.volume;
         let mut diameter = 0.0_f64;
         for i in 0..=D {
             for j in 0..i {
@@ -156,8 +164,9 @@ fn check_volumes<T: Real, const D: usize>(
                 diameter,
             });
         }
+        is_positive.push(geometry.is_positive());
     }
-    Ok(())
+    Ok(is_positive)
 }
 
 /// Gives every facet of the boundary its part.
@@ -210,12 +219,6 @@ fn match_boundary<const D: usize>(
     }
     boundary.sort_unstable_by_key(|f| (f.cell, f.local));
     Ok(boundary)
-}
-
-/// The coordinates of a point in parentheses, for messages.
-pub(crate) fn describe_point<const D: usize>(x: &Point<f64, D>) -> String {
-    let coordinates: Vec<String> = x.iter().map(|c| format!("{c:.6}")).collect();
-    format!("({})", coordinates.join(", "))
 }
 
 fn drop_unused<T: Real, const D: usize>(

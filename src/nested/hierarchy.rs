@@ -180,11 +180,19 @@ impl<T: Real, const D: usize> Coarsest<'_, T, D> {
 
     /// Checks the number and size of the cells of a level before any mesh is built.
     pub fn check(&self, level: usize) -> Result<(), Error> {
+        let refuse =
+            |parameter, value, allowed| Err(Error::Parameter { parameter, value, allowed });
+        if let Self::Domain(domain) = self {
+            let domain = domain.bounding_box();
+            let sides = domain.upper - domain.lower;
+            if let Some(side) = sides.iter().find(|side| !(**side > 0.0 && side.is_finite())) {
+                let allowed = "positive and finite, the upper corner less the lower one".to_owned();
+                return refuse("side of the domain", side.to_string(), allowed);
+            }
+        }
         let cells = self.cells(level);
         // 32-bit indices number the unknowns and matrix entries of a discontinuous space
         let limit = f64::from(u32::MAX) / ((D + 1) * (D + 1) * (D + 2)) as f64;
-        let refuse =
-            |parameter, value, allowed| Err(Error::Parameter { parameter, value, allowed });
         if cells > limit {
             let allowed =
                 format!("it would have {cells:.1e} cells, at most {limit:.1e} are possible");

@@ -7,13 +7,14 @@ use std::time::Instant;
 use super::meshes::Meshes;
 use super::p1::{P1Iteration, P1Solution};
 use super::solved::Solved;
-use crate::algebra::{Bound, Contact, Inequality, Start};
+use crate::algebra::{Contact, Inequality, Start};
 use crate::assemble::{DataQuadrature, Discretisation};
 use crate::element::Layout;
 use crate::error::Error;
-use crate::inequality::{ActiveSet, InequalitySolver, InitialGuess, Outcome, Solution};
+use crate::inequality::{
+    ActiveSet, InequalitySolver, InitialGuess, Outcome, Solution, check_definite,
+};
 use crate::instances::compiled;
-use crate::linear::is_positive_definite;
 use crate::mesh::Mesh;
 use crate::problem::Problem;
 use crate::real::Real;
@@ -212,8 +213,8 @@ impl<'a, T: Real, const D: usize> NestedIteration<'a, T, D> {
                 T::NAME
             ));
         }
-        let (solution, solve_seconds) =
-            self.run(&inequality, &guess, penalty_below_bound.is_some());
+        inequality.is_definite = penalty_below_bound.is_none() && discretisation.is_coercive();
+        let (solution, solve_seconds) = self.run(&mut inequality, &guess);
         let hierarchy = match self.p1.meshes {
             Meshes::Flat(_) => None,
             Meshes::Nested(hierarchy) => Some((hierarchy, position)),
@@ -251,27 +252,22 @@ impl<'a, T: Real, const D: usize> NestedIteration<'a, T, D> {
     }
 
     /// Solves [`NestedIteration::repeat`] times and returns the last solution with the smallest time. A
-    /// penalty below its proven bound may still give a coercive form, and the size of an error does not
-    /// show whether it does: with `in_doubt` the matrix is first tested for definiteness. The time
-    /// includes this test.
-    fn run(
-        &self,
-        inequality: &Inequality<T>,
-        guess: &InitialGuess<T>,
-        in_doubt: bool,
-    ) -> (Solution<T>, f64) {
+    /// matrix that is not known to be definite, for instance with a penalty below its proven bound, is
+    /// first tested: a solution does not show whether it is. The time includes this test.
+    fn run(&self, inequality: &mut Inequality<T>, guess: &InitialGuess<T>) -> (Solution<T>, f64) {
         let clock = Instant::now();
-        let definite = || {
-            let free: Vec<u32> = (0..inequality.size() as u32)
-                .filter(|&i| !matches!(inequality.bounds[i as usize], Bound::Fixed(_)))
-                .collect();
-            is_positive_definite(&inequality.matrix, inequality.symmetric, &free)
-        };
-        if in_doubt && definite() == Ok(false) {
-            let values = vec![T::lit(0.0); inequality.size()];
-            let contact = vec![Contact::Inactive; inequality.size()];
-            let solution = Solution::new(values, contact, Outcome::NotCoercive);
-            return (solution, clock.elapsed().as_secs_f64());
+        if !inequality.is_definite {
+            match check_definite(inequality) {
+                Ok(()) => inequality.is_definite = true,
+                // the solver says so itself, where it gets that far
+                Err(Outcome::OutOfMemory) => {}
+                Err(outcome) => {
+                    let values = vec![T::lit(0.0); inequality.size()];
+                    let contact = vec![Contact::Inactive; inequality.size()];
+                    let solution = Solution::new(values, contact, outcome);
+                    return (solution, clock.elapsed().as_secs_f64());
+                }
+            }
         }
         let in_test = clock.elapsed().as_secs_f64();
         let mut seconds = f64::INFINITY;

@@ -213,7 +213,10 @@ impl<T: Real, const D: usize> P1Iteration<'_, T, D> {
         let mesh = self.meshes.mesh(position);
         // the constraint set of the problem is for the scheme that starts from here
         let problem = self.problem.clone().on(Nodes);
-        Discretisation::new(&ConformingP1, &problem, mesh, self.quadrature)?.inequality()
+        let discretisation = Discretisation::new(&ConformingP1, &problem, mesh, self.quadrature)?;
+        let mut inequality = discretisation.inequality()?;
+        inequality.is_definite = discretisation.is_coercive();
+        Ok(inequality)
     }
 }
 

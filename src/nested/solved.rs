@@ -58,7 +58,7 @@ impl<'a, T: Real, const D: usize> Solved<'a, T, D> {
     pub(super) fn new(
         discretisation: Discretisation<'a, T, D>,
         inequality: Inequality<T>,
-        solution: Solution<T>,
+        mut solution: Solution<T>,
         hierarchy: Option<(&'a Hierarchy<T, D>, usize)>,
     ) -> Self {
         let u = &solution.values;
@@ -68,6 +68,8 @@ impl<'a, T: Real, const D: usize> Solved<'a, T, D> {
                 | Outcome::Singular
                 | Outcome::NotFinite
                 | Outcome::OutOfMemory
+                | Outcome::NoSolution
+                | Outcome::OutOfRange
                 | Outcome::Malformed
         );
         let has_iterate = !is_of_failure && u.iter().all(|v| v.to_f64().is_finite());
@@ -76,6 +78,10 @@ impl<'a, T: Real, const D: usize> Solved<'a, T, D> {
                 .with_algebraic_bound(solution.algebraic_bound),
             false => Certificate::INVALID,
         };
+        if solution.outcome == Outcome::Converged && !certificate.is_within_limits::<T>() {
+            // whatever a solver says of itself
+            solution.outcome = Outcome::Stalled;
+        }
         Self {
             mesh_seconds: hierarchy.map_or(0.0, |(h, position)| h.seconds(position)),
             discretisation,

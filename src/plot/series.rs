@@ -71,7 +71,6 @@ impl Quantity {
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Key {
     scheme: String,
-    constraint: String,
     solver: String,
     /// The text in the legend.
     pub label: String,
@@ -80,25 +79,20 @@ pub(crate) struct Key {
 impl Key {
     /// A key that is known by its label alone.
     pub fn labelled(label: &str) -> Self {
-        let [scheme, label] = [label.to_owned(), label.to_owned()];
-        Key { scheme, constraint: String::new(), solver: String::new(), label }
+        Key { scheme: label.to_owned(), solver: String::new(), label: label.to_owned() }
     }
 }
 
-/// The curves of a report, in the order in which they first occur. The place of the constraint is
-/// named where a scheme was run with more than one, the solver where a report has more than one.
+/// The curves of a report by their labels, in the order in which they first occur; the solver is named
+/// where a report has more than one.
 pub(crate) fn keys(rows: &[Row]) -> Vec<Key> {
-    let series = distinct(rows.iter().map(|r| [&r.scheme, &r.constraint, &r.solver]));
-    let key = |&[scheme, constraint, solver]: &[&String; 3]| {
+    let series = distinct(rows.iter().map(|r| [&r.label, &r.solver]));
+    let key = |&[scheme, solver]: &[&String; 2]| {
         let mut label = scheme.clone();
-        if series.iter().any(|[s, c, _]| *s == scheme && *c != constraint) {
-            label += &format!(", {constraint}");
-        }
-        if series.iter().any(|[_, _, s]| *s != solver) {
+        if series.iter().any(|[_, s]| *s != solver) {
             label += &format!(", {solver}");
         }
-        let [scheme, constraint, solver] = [scheme, constraint, solver].map(String::clone);
-        Key { scheme, constraint, solver, label }
+        Key { scheme: scheme.clone(), solver: solver.clone(), label }
     };
     series.iter().map(key).collect()
 }
@@ -156,8 +150,7 @@ impl Panel {
             let mut runs: Vec<&Row> = rows
                 .iter()
                 .filter(|r| r.scene == scene)
-                .filter(|r| r.scheme == key.scheme && r.constraint == key.constraint)
-                .filter(|r| r.solver == key.solver)
+                .filter(|r| r.label == key.scheme && r.solver == key.solver)
                 .collect();
             runs.sort_by_key(|r| r.level);
             let points: Vec<Point> = runs.iter().filter_map(|r| Point::of(r, x, y)).collect();

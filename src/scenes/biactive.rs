@@ -19,10 +19,13 @@ pub fn biactive_half_2d() -> Scene<2> {
         name: "biactive-half-2d".into(),
         summary: "half of the membrane touches a plane obstacle without force",
         domain: BoxDomain::centred(1.0).into(),
-        problem: Problem::new().source(move |x| -power(x)[2]).obstacle_below(|_| 0.0).solved_by(
-            Exact::new(move |x| power(x)[0], move |x| Point::from([power(x)[1], 0.0]))
-                .with_multiplier(|_| 0.0),
-        ),
+        problem: Problem::new()
+            .piecewise_source(move |x| -power(x)[2], |x| x[0])
+            .obstacle_below(|_| 0.0)
+            .solved_by(
+                Exact::new(move |x| power(x)[0], move |x| Point::from([power(x)[1], 0.0]))
+                    .with_multiplier(|_| 0.0),
+            ),
         regularity: Regularity::new(4.5).not_strictly_complementary(),
     }
 }
@@ -48,7 +51,10 @@ pub fn biactive_ring_2d() -> Scene<2> {
         name: "biactive-ring-2d".into(),
         summary: "a hill within a ring of contact without force within contact with force",
         domain: BoxDomain::centred(1.0).into(),
-        problem: Problem::new().source(source).obstacle_below(|_| 0.0).solved_by(exact),
+        problem: Problem::new()
+            .piecewise_source(source, |x| (x.norm_squared() - 0.25) * (x.norm_squared() - 0.75))
+            .obstacle_below(|_| 0.0)
+            .solved_by(exact),
         regularity: Regularity::new(4.5).not_strictly_complementary(),
     }
 }

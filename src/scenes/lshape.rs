@@ -55,7 +55,9 @@ pub fn lshape_2d() -> Scene<2> {
         summary: "L-shaped membrane over a plane: a corner singularity, contact outside a disc",
         domain: Domain::LShape { half: 2.0 },
         problem: Problem::new()
-            .source(source)
+            .piecewise_source(source, |x| {
+                [0.25, 0.75, 1.25].iter().map(|circle| x.norm() - circle).product()
+            })
             .obstacle_below(|_| 0.0)
             .solved_by(Exact::new(value, gradient).with_multiplier(pressed)),
         regularity: Regularity::new(5.0 / 3.0).not_strictly_complementary(),

@@ -35,7 +35,10 @@ pub fn polynomial<const D: usize>() -> Scene<D> {
         name: format!("polynomial-{D}d"),
         summary: "a polynomial over a plane obstacle, continuous load, contact in a ball",
         domain: BoxDomain::centred(1.0).into(),
-        problem: Problem::new().source(source).obstacle_below(|_| 0.0).solved_by(exact),
+        problem: Problem::new()
+            .piecewise_source(source, from_sphere)
+            .obstacle_below(|_| 0.0)
+            .solved_by(exact),
         regularity: Regularity::new(2.5),
     }
 }
@@ -53,7 +56,7 @@ pub fn degenerate(k: i32) -> Scene<2> {
         summary: "contact with a plane obstacle in a disc, without any force",
         domain: BoxDomain::centred(1.0).into(),
         problem: Problem::new()
-            .source(move |x| -power(x, k).laplacian)
+            .piecewise_source(move |x| -power(x, k).laplacian, from_sphere)
             .obstacle_below(|_| 0.0)
             .solved_by(
                 Exact::new(move |x| power(x, k).value, move |x| power(x, k).gradient)
@@ -63,10 +66,15 @@ pub fn degenerate(k: i32) -> Scene<2> {
     }
 }
 
+/// `r^2 - r0^2`.
+fn from_sphere<const D: usize>(x: &Point<f64, D>) -> f64 {
+    x.norm_squared() - R0 * R0
+}
+
 /// `max(r^2 - r0^2, 0)^k`: with `s = r^2 - r0^2`, `|grad s|^2 = 4 r^2` and `Laplace s = 2 D`.
 fn power<const D: usize>(x: &Point<f64, D>, k: i32) -> DualNumber<D> {
     let r_squared = x.norm_squared();
-    let [value, first, second] = positive_power(r_squared - R0 * R0, k);
+    let [value, first, second] = positive_power(from_sphere(x), k);
     let laplacian = second * 4.0 * r_squared + first * 2.0 * D as f64;
     DualNumber { value, gradient: x * (2.0 * first), laplacian }
 }

@@ -82,6 +82,10 @@ fn transition_at<const D: usize>(c: f64, name: &str, summary: &'static str) -> S
 const LEFT: f64 = -0.4;
 const RIGHT: f64 = 0.5;
 
+/// Half of the width of the step between the two halves of [`signorini_two_2d`], at whose ends the load
+/// has kinks.
+const STEP: f64 = 0.2;
+
 /// Two changes of contact: a segment `[-2/5, 1/2]` in contact, zero Dirichlet data, zero gap.
 ///
 /// With `uR = Re (x - 1/2 + iy)^{3/2}`, open to the right of 1/2, `uL = Re (-2/5 - x + iy)^{3/2}`,
@@ -113,7 +117,7 @@ pub fn signorini_two_2d() -> Scene<2> {
         summary: "Signorini, zero Dirichlet data, contact on a segment: two singularities",
         domain: BoxDomain::above_contact().into(),
         problem: Problem::new()
-            .source(move |x| -solution(x).laplacian)
+            .piecewise_source(move |x| -solution(x).laplacian, |x| x[0].abs() - STEP)
             .signorini(|_| 0.0)
             .solved_by(exact),
         regularity: Regularity::new(2.5),
@@ -123,7 +127,7 @@ pub fn signorini_two_2d() -> Scene<2> {
 /// `10 t^3 - 15 t^4 + 6 t^5` for `t` from 0 to 1 as `x` goes from -1/5 to 1/5, and its first two
 /// derivatives.
 fn step(x: f64) -> [f64; 3] {
-    let t = ((x + 0.2) / 0.4).clamp(0.0, 1.0);
+    let t = ((x + STEP) / 0.4).clamp(0.0, 1.0);
     let s = 1.0 - t;
     let value = t * t * t * (10.0 - 15.0 * t + 6.0 * t * t);
     [value, 30.0 * t * t * s * s / 0.4, 60.0 * t * s * (1.0 - 2.0 * t) / 0.16]

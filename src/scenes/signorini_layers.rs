@@ -40,7 +40,7 @@ pub fn signorini_layers_2d(contrast: f64) -> Scene<2> {
         domain: BoxDomain::above_contact().into(),
         problem: Problem::new()
             .coefficient(alpha)
-            .source(source)
+            .piecewise_source(source, |x| x[0] * (x[1] - 0.5))
             .signorini(|_| 0.0)
             .solved_by(exact),
         regularity: Regularity::new(1.5),

@@ -20,7 +20,7 @@ pub fn signorini_smooth(k: i32) -> Scene<2> {
         summary: "Signorini, gap and pressure vanish with the order in the name",
         domain: BoxDomain::above_contact().into(),
         problem: Problem::new()
-            .source(move |x| -wedge_solution(x, k, 0.0).laplacian)
+            .piecewise_source(move |x| -wedge_solution(x, k, 0.0).laplacian, |x| x[0])
             .signorini(|_| 0.0)
             .solved_by(exact),
         regularity: Regularity::new(f64::from(k) + 0.5),
@@ -37,7 +37,7 @@ pub fn signorini_biactive_2d() -> Scene<2> {
         summary: "Signorini, gap and pressure both vanish on a segment",
         domain: BoxDomain::above_contact().into(),
         problem: Problem::new()
-            .source(|x| -wedge_solution(x, 2, 0.25).laplacian)
+            .piecewise_source(|x| -wedge_solution(x, 2, 0.25).laplacian, |x| x[0].abs() - 0.25)
             .signorini(|_| 0.0)
             .solved_by(wedge(2, 0.25)),
         regularity: Regularity::new(2.5).not_strictly_complementary(),
@@ -79,7 +79,7 @@ pub fn signorini_disc(k: i32) -> Scene<3> {
         summary: "Signorini in space, contact in a disc, left with the order in the name",
         domain: BoxDomain::above_contact().into(),
         problem: Problem::new()
-            .source(move |x| -solution(x).laplacian)
+            .piecewise_source(move |x| -solution(x).laplacian, from_circle)
             .signorini(|_| 0.0)
             .solved_by(exact),
         regularity: Regularity::new(f64::from(k) + 0.5),

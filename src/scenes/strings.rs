@@ -48,8 +48,9 @@ pub fn icelike_1d() -> Scene<1> {
         (0.9, [7.29, -15.2, 8.0]),
         (f64::INFINITY, [0.0, 1.0, -1.0]),
     ];
+    let near_end = |x: &Point<f64, 1>| (x[0] - 0.5).abs() - 0.3;
     let problem = Problem::new()
-        .source(|x| if (x[0] - 0.5).abs() > 0.3 { -16.0 } else { 8.0 })
+        .piecewise_source(move |x| if near_end(x) > 0.0 { -16.0 } else { 8.0 }, near_end)
         .obstacle_below(|x: &Point<f64, 1>| x[0] * (1.0 - x[0]));
     let summary = "a string held down near its ends and lifted between, over a parabola";
     string("icelike-1d", summary, problem, &PARABOLAS, |x| (x - 0.5).abs() - 0.4, &[0.1, 0.9])

@@ -1,6 +1,6 @@
 //! A scheme without its type.
 
-use super::{ExpectedOrders, Scheme, Setting};
+use super::{ExpectedOrders, Scheme, SchemeOptions, Setting};
 use crate::algebra::Inequality;
 use crate::assemble::{ChosenElement, DataQuadrature, Discretisation};
 use crate::constraint::{ConstraintSet, Nodes};
@@ -18,6 +18,8 @@ use crate::real::Real;
 pub trait AnyScheme<T: Real, const D: usize>: Send + Sync {
     /// The scheme's name.
     fn name(&self) -> &str;
+    /// What distinguishes the scheme from the default one of its name.
+    fn choices(&self) -> SchemeOptions;
     /// The nodes of its element, in the basis that a constraint set needs.
     fn nodes_for(&self, set: &dyn ConstraintSet) -> Vec<Node>;
     /// Whether the exact solution satisfies the discrete equations.
@@ -60,6 +62,17 @@ impl<T: Real, const D: usize> dyn AnyScheme<T, D> + '_ {
         let binds = nodes.iter().any(|node| set.in_domain(node, D).is_some());
         binds.then(|| set.name_on(&nodes).to_owned())
     }
+    /// The label in tables, legends, files and rows: name, constraint set and choices without what is
+    /// default, as [`NamedScheme`](super::NamedScheme) reads it.
+    pub fn label_on(&self, set: &dyn ConstraintSet) -> String {
+        let (placement, own) = (self.constraint_on(set), self.constraint_on(&Nodes));
+        let mut label = self.name().to_owned();
+        if let Some(placement) = placement.filter(|placement| Some(placement) != own.as_ref()) {
+            label += &format!(":{placement}");
+        }
+        let choices = self.choices().to_string();
+        if choices.is_empty() { label } else { format!("{label}@{choices}") }
+    }
     /// Orders that theory proves in this setting with this constraint set: those with bounds at all
     /// nodes, if the set binds the same, or if it [keeps](ConstraintSet::keeps_orders) them.
     pub fn expected_orders_on(&self, set: &dyn ConstraintSet, setting: &Setting) -> ExpectedOrders {
@@ -99,6 +112,9 @@ impl<T: Real, const D: usize, S: Scheme<T, D>> AnyScheme<T, D> for S {
     fn name(&self) -> &str {
         Scheme::name(self)
     }
+    fn choices(&self) -> SchemeOptions {
+        Scheme::choices(self)
+    }
     fn nodes_for(&self, set: &dyn ConstraintSet) -> Vec<Node> {
         ChosenElement::<T, D>::of::<S::Element>(set).element.nodes
     }
@@ -132,7 +148,8 @@ impl<'a, T: Real, const D: usize> Discretisation<'a, T, D> {
     /// facets only if the scheme needs them.
     ///
     /// # Errors
-    /// [`Error::CoefficientNotPositive`], [`Error::NothingToBound`], [`Error::UnsupportedForm`].
+    /// [`Error::CoefficientNotPositive`], [`Error::NothingToBound`], [`Error::UnsupportedForm`],
+    /// [`Error::Parameter`] for a penalty factor that makes no penalty.
     pub fn new(
         scheme: &(impl AnyScheme<T, D> + ?Sized),
         problem: &'a Problem<D>,

@@ -32,8 +32,7 @@ impl<T: Real, const D: usize> Scheme<T, D> for ConformingP1 {
 
 /// Continuous piecewise quadratics, bounds at all nodes, Dirichlet values pinned.
 ///
-/// [`Midpoints`](crate::constraint::Midpoints) binds midpoints of edges only. The diffusion coefficient is a
-/// constant in each cell: the order two is that of problems whose coefficient is constant in each cell.
+/// [`Midpoints`](crate::constraint::Midpoints) binds midpoints of edges only.
 ///
 /// Orders in the energy norm, for a solution in `H^s`: `min(s - 1, 2)` by interpolation where no
 /// inequality binds; with an obstacle `min(s - 1, 3/2)` (F. Brezzi, W. W. Hager, P.-A. Raviart,

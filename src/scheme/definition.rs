@@ -5,6 +5,7 @@ use crate::facet::{DirichletBy, FacetForm};
 use crate::mesh::Mesh;
 use crate::real::Real;
 
+use super::SchemeOptions;
 use crate::theory::{ExpectedOrders, Setting};
 
 /// A discretisation of the bilinear form and of Dirichlet data.
@@ -24,6 +25,11 @@ pub trait Scheme<T: Real, const D: usize>: Send + Sync {
     const CONSISTENT: bool = true;
     /// The name users type and reports state.
     fn name(&self) -> &str;
+    /// What distinguishes the scheme from the default one of its name, for its label in reports; nothing
+    /// by default.
+    fn choices(&self) -> SchemeOptions {
+        SchemeOptions::default()
+    }
     /// The facet form on a mesh, its parameters resolved.
     fn facet(&self, mesh: &Mesh<T, D>) -> Self::Facet;
     /// Orders that theory proves in this setting, with bounds at all nodes; none by default.

@@ -2,8 +2,9 @@
 //!
 //! A scheme states its promise itself, with the source of the proof: neither element nor form imply
 //! one, and a scheme of one's own is promised nothing before somebody has proven it. Inequalities are
-//! promised nothing in L2: duality needs a linear problem. Nothing is
-//! promised for solutions that are not better than `H^{3/2}`, where traces of the gradient, which
+//! promised nothing in L2: duality needs a linear problem, and what is proven without it, for conforming
+//! linears in the maximum norm and in L4, asks for acute meshes or for data of which a setting says nothing.
+//! Nothing is promised for solutions that are not better than `H^{3/2}`, where traces of the gradient, which
 //! all proofs for inequalities use, need not exist.
 
 use super::{ExpectedOrders, Setting};
@@ -13,6 +14,11 @@ use super::{ExpectedOrders, Setting};
 /// nodes three halves up to any small number, because solutions are not better than `H^{5/2}` at a
 /// free boundary; with an obstacle this needs that a function which is not negative at the nodes has
 /// no negative mean over a cell, true on segments and triangles, false on tetrahedra.
+///
+/// With a coefficient that is a function, at most the order up to which it has bounded derivatives in every
+/// cell: elements of degree one see it at barycentres, others at the points of a rule that is exact for
+/// products of gradients (P. G. Ciarlet, The finite element method for elliptic problems, 1978, theorem
+/// 4.1.6).
 ///
 /// R. S. Falk, Math. Comp. 28 (1974), 963-971, F. Brezzi, W. W. Hager, P.-A. Raviart, Numer. Math. 28
 /// (1977), 431-443 and L.-H. Wang, Numer. Math. 92 (2002), 771-778 for obstacles; Z. Belhachmi, F. Ben
@@ -27,7 +33,10 @@ pub(crate) fn energy_order(setting: &Setting, degree: usize) -> ExpectedOrders {
         _ if setting.obstacle && setting.dimension == 3 => None,
         _ => Some(1.5),
     };
-    ExpectedOrders { l2: None, h1: most.filter(|_| s > 1.5).map(|most| (s - 1.0).min(most)) }
+    let of_coefficient =
+        if setting.coefficient { setting.regularity.coefficient } else { f64::INFINITY };
+    let order = |most: f64| (s - 1.0).min(most).min(of_coefficient);
+    ExpectedOrders { l2: None, h1: most.filter(|_| s > 1.5).map(order) }
 }
 
 /// What [`energy_order`] says, for schemes whose functions jump. Under an inequality their proofs ask for solutions in

@@ -54,8 +54,9 @@ impl<const THETA: i8> Default for InteriorPenaltyMethod<THETA, P1> {
 impl<const THETA: i8> InteriorPenaltyMethod<THETA, P1> {
     /// The scheme by name: with the penalty factor that the options give.
     pub(super) fn with_options(options: &SchemeOptions) -> Self {
-        let default = Self::default();
-        Self { penalty: options.sigma.map_or(default.penalty, PenaltyRule::Diameter), ..default }
+        let by_bound = options.factor.map(|factor| PenaltyRule::Proven(factor - 1.0));
+        let chosen = options.sigma.map(PenaltyRule::Diameter).or(by_bound);
+        Self { penalty: chosen.unwrap_or(Self::default().penalty), ..Self::default() }
     }
 }
 
@@ -86,6 +87,14 @@ impl<T: Real, const D: usize, const THETA: i8, E: ReferenceElement<T, D>> Scheme
             Symmetry::Symmetric => name_of_degree!("sipg", E::DEGREE),
             Symmetry::Incomplete => name_of_degree!("iipg", E::DEGREE),
             Symmetry::NonSymmetric => name_of_degree!("nipg", E::DEGREE),
+        }
+    }
+    fn choices(&self) -> SchemeOptions {
+        let none = SchemeOptions::default();
+        match self.penalty {
+            penalty if penalty == InteriorPenaltyMethod::<THETA>::default().penalty => none,
+            PenaltyRule::Proven(margin) => SchemeOptions { factor: Some(1.0 + margin), ..none },
+            PenaltyRule::Diameter(sigma) => SchemeOptions { sigma: Some(sigma), ..none },
         }
     }
     fn facet(&self, _: &Mesh<T, D>) -> InteriorPenalty {

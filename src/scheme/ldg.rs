@@ -5,12 +5,13 @@ use super::{
     name_of_degree, with_duality,
 };
 use crate::element::{Broken, P1, ReferenceElement};
-use crate::facet::{FacetForm, FacetView, FormTheory, Lifted, PenaltyParameters, Trace};
+use crate::facet::{FacetForm, FacetView, FormTheory, Lifted, Lifts, PenaltyParameters, Trace};
 use crate::mesh::Mesh;
 use crate::real::{Real, point_f64};
 
 /// `int alpha (grad u + r(u)) . (grad v + r(v)) + eta alpha_F / h_F [u][v]` on broken elements:
-/// coercive for every positive factor.
+/// coercive for every positive factor. The lifts are by default of degree `k - 1` on elements of degree
+/// `k`.
 ///
 /// Source: B. Cockburn, C.-W. Shu, SIAM J. Numer. Anal. 35 (1998), 2440-2463; without auxiliary
 /// variables D. N. Arnold, F. Brezzi, B. Cockburn, L. D. Marini, SIAM J. Numer. Anal. 39 (2002),
@@ -24,13 +25,15 @@ pub struct Ldg<E = P1> {
     /// The switch `beta`: off for the mean flux, on for the flux of one side, the side from which a
     /// fixed direction points to the other.
     pub switch: bool,
+    /// The degree of the lifts.
+    pub lifts: Lifts,
     /// The element whose broken version carries the scheme.
     pub element: E,
 }
 
 impl Default for Ldg {
     fn default() -> Self {
-        Self { eta: 1.0, switch: false, element: P1 }
+        Self { eta: 1.0, switch: false, lifts: Lifts::Reduced, element: P1 }
     }
 }
 
@@ -38,7 +41,8 @@ impl Ldg {
     /// The scheme by name: with the penalty factor that the options give.
     pub(super) fn with_options(options: &SchemeOptions, switch: bool) -> Self {
         let default = Self::default();
-        Self { eta: options.sigma.unwrap_or(default.eta), switch, ..default }
+        let lifts = options.lifts.unwrap_or_default();
+        Self { eta: options.sigma.unwrap_or(default.eta), switch, lifts, ..default }
     }
 }
 
@@ -46,7 +50,7 @@ impl<E> Ldg<E> {
     /// The scheme on the broken version of another element: `Ldg::default().on(P2)`.
     #[must_use]
     pub fn on<F>(self, element: F) -> Ldg<F> {
-        Ldg { eta: self.eta, switch: self.switch, element }
+        Ldg { eta: self.eta, switch: self.switch, lifts: self.lifts, element }
     }
 }
 
@@ -61,8 +65,12 @@ impl<T: Real, const D: usize, E: ReferenceElement<T, D>> Scheme<T, D> for Ldg<E>
             true => name_of_degree!("ldg-switch", E::DEGREE),
         }
     }
+    fn choices(&self) -> SchemeOptions {
+        let sigma = Some(self.eta).filter(|&eta| eta != Ldg::default().eta);
+        SchemeOptions { sigma, lifts: self.lifts.unless_default(), ..SchemeOptions::default() }
+    }
     fn facet(&self, _: &Mesh<T, D>) -> Lifted<LocalFluxes> {
-        Lifted(LocalFluxes { eta: self.eta, switch: self.switch })
+        Lifted(LocalFluxes { eta: self.eta, switch: self.switch, lifts: self.lifts })
     }
     fn expected_orders(&self, setting: &Setting) -> ExpectedOrders {
         with_duality(broken_energy_order(setting, E::DEGREE), setting)
@@ -74,6 +82,7 @@ impl<T: Real, const D: usize, E: ReferenceElement<T, D>> Scheme<T, D> for Ldg<E>
 pub struct LocalFluxes {
     eta: f64,
     switch: bool,
+    lifts: Lifts,
 }
 
 /// The direction of the switch: across no facet of a mesh along the axes or their diagonals.
@@ -82,6 +91,9 @@ const DIRECTION: [f64; 3] = [1.0, 0.377, 0.142];
 impl<T: Real, const D: usize> FacetForm<T, D> for LocalFluxes {
     fn uses_flux(&self) -> bool {
         true
+    }
+    fn lift_degree(&self, degree: usize) -> usize {
+        self.lifts.degree(degree)
     }
     fn average_weight(&self, facet: &FacetView<T, D>) -> T {
         if !self.switch {
@@ -98,7 +110,9 @@ impl<T: Real, const D: usize> FacetForm<T, D> for LocalFluxes {
         let beta = if self.switch { "one-sided flux" } else { "mean flux" };
         let rule = Some(format!("eta / h_F, {beta}"));
         let sigma = Some(self.eta);
-        FormTheory::new().with_parameters(PenaltyParameters { sigma, eta: None, rule })
+        FormTheory::new()
+            .with_parameters(PenaltyParameters { sigma, eta: None, rule })
+            .with_coercivity(self.eta > 0.0)
     }
     fn is_uniform(&self) -> bool {
         true

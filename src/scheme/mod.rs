@@ -9,8 +9,8 @@ mod energy_order;
 mod interior_penalty;
 mod ldg;
 mod lifting;
+mod named_scheme;
 mod options;
-
 mod wopsip;
 
 pub use any_scheme::AnyScheme;
@@ -20,6 +20,7 @@ pub use definition::Scheme;
 pub use interior_penalty::{Iipg, InteriorPenaltyMethod, Nipg, Sipg};
 pub use ldg::{Ldg, LocalFluxes};
 pub use lifting::{Bmmpr, Br2};
+pub use named_scheme::{NamedScheme, SchemeNameError};
 pub use options::SchemeOptions;
 pub use wopsip::{Eta, Wopsip};
 
@@ -51,11 +52,21 @@ macro_rules! name_of_degree {
 }
 use name_of_degree;
 
-/// Makes of one list the names with their summaries, and the function that finds a scheme.
+/// Makes of one list the names with their summaries, the keys of each, and the function that finds a
+/// scheme.
 macro_rules! schemes_by_name {
-    ($options:ident: $($name:literal, $summary:literal => $scheme:expr;)*) => {
+    ($options:ident: $($name:literal [$($key:literal),*], $summary:literal => $scheme:expr;)*) => {
         /// Names of the schemes, with one line each.
         pub const SCHEMES: &[(&str, &str)] = &[$(($name, $summary)),*];
+
+        /// The keys that the scheme of this name takes, of those that [`SchemeOptions`] has as fields;
+        /// none for an unknown name.
+        pub fn keys_of_scheme(name: &str) -> &'static [&'static str] {
+            match name {
+                $($name => &[$($key),*],)*
+                _ => &[],
+            }
+        }
 
         fn made<T: Real, const D: usize>(
             name: &str,
@@ -69,39 +80,47 @@ macro_rules! schemes_by_name {
     };
 }
 
-// A scheme gets its name by one entry here: name, summary, constructor from the options.
+// A scheme gets its name by one entry here: name, keys, summary, constructor from the options.
 schemes_by_name! { options:
-    "p1", "conforming linear elements" => ConformingP1;
-    "p2", "conforming quadratic elements" => ConformingP2;
-    "cr", "Crouzeix-Raviart elements, bounds on facet means" => NonconformingP1;
-    "sipg", "symmetric interior penalty on broken linears (takes --sigma)"
+    "p1" [], "conforming linear elements" => ConformingP1;
+    "p2" [], "conforming quadratic elements" => ConformingP2;
+    "cr" [], "Crouzeix-Raviart elements, bounds on facet means" => NonconformingP1;
+    "sipg" ["factor", "sigma"], "symmetric interior penalty on broken linears"
         => Sipg::with_options(options);
-    "nipg", "non-symmetric interior penalty on broken linears (takes --sigma)"
+    "nipg" ["factor", "sigma"], "non-symmetric interior penalty on broken linears"
         => Nipg::with_options(options);
-    "iipg", "incomplete interior penalty on broken linears (takes --sigma)"
+    "iipg" ["factor", "sigma"], "incomplete interior penalty on broken linears"
         => Iipg::with_options(options);
-    "ldg", "local discontinuous Galerkin on broken linears, mean fluxes (takes --sigma)"
+    "ldg" ["sigma", "lifts"],
+        "local discontinuous Galerkin on broken linears, mean fluxes, lifts of degree k-1"
         => Ldg::with_options(options, false);
-    "ldg-switch", "local discontinuous Galerkin on broken linears, one-sided fluxes (takes --sigma)"
+    "ldg-switch" ["sigma", "lifts"],
+        "local discontinuous Galerkin on broken linears, one-sided fluxes, lifts of degree k-1"
         => Ldg::with_options(options, true);
-    "br2", "second method of Bassi and Rebay on broken linears" => Br2::default();
-    "bmmpr", "method of Brezzi, Manzini, Marini, Pietra and Russo on broken linears"
-        => Bmmpr::default();
-    "wopsip", "weakly over-penalised symmetric interior penalty on broken linears (takes --eta)"
+    "br2" ["factor", "lifts"],
+        "second method of Bassi and Rebay on broken linears, lifts of degree k-1"
+        => Br2::with_options(options, D);
+    "bmmpr" ["factor", "lifts"],
+        "method of Brezzi, Manzini, Marini, Pietra and Russo on broken linears, lifts of degree k-1"
+        => Bmmpr::with_options(options);
+    "wopsip" ["factor", "eta", "weight"],
+        "weakly over-penalised symmetric interior penalty on broken linears"
         => Wopsip::with_options(options);
-    "sipg-p2", "sipg on broken quadratics (takes --sigma)"
+    "sipg-p2" ["factor", "sigma"], "sipg on broken quadratics"
         => Sipg::with_options(options).on(P2);
-    "nipg-p2", "nipg on broken quadratics (takes --sigma)"
+    "nipg-p2" ["factor", "sigma"], "nipg on broken quadratics"
         => Nipg::with_options(options).on(P2);
-    "iipg-p2", "iipg on broken quadratics (takes --sigma)"
+    "iipg-p2" ["factor", "sigma"], "iipg on broken quadratics"
         => Iipg::with_options(options).on(P2);
-    "ldg-p2", "ldg on broken quadratics (takes --sigma)"
+    "ldg-p2" ["sigma", "lifts"], "ldg on broken quadratics"
         => Ldg::with_options(options, false).on(P2);
-    "ldg-switch-p2", "ldg-switch on broken quadratics (takes --sigma)"
+    "ldg-switch-p2" ["sigma", "lifts"], "ldg-switch on broken quadratics"
         => Ldg::with_options(options, true).on(P2);
-    "br2-p2", "br2 on broken quadratics" => Br2::default().on(P2);
-    "bmmpr-p2", "bmmpr on broken quadratics" => Bmmpr::default().on(P2);
-    "wopsip-p2", "wopsip on broken quadratics, moments of degree one (takes --eta)"
+    "br2-p2" ["factor", "lifts"], "br2 on broken quadratics"
+        => Br2::with_options(options, D).on(P2);
+    "bmmpr-p2" ["factor", "lifts"], "bmmpr on broken quadratics"
+        => Bmmpr::with_options(options).on(P2);
+    "wopsip-p2" ["factor", "eta", "weight"], "wopsip on broken quadratics, moments of degree one"
         => Wopsip::with_options(options).on(P2);
 }
 

@@ -42,10 +42,15 @@ impl Default for Wopsip {
 }
 
 impl Wopsip {
-    /// The scheme by name: with the factor that the options give.
+    /// The scheme by name: with what the options give.
     pub(super) fn with_options(options: &SchemeOptions) -> Self {
+        let chosen = options.eta.map(Eta::Absolute).or(options.factor.map(Eta::Dimensionless));
         let default = Self::default();
-        Self { eta: options.eta.map_or(default.eta, Eta::Absolute), ..default }
+        Self {
+            eta: chosen.unwrap_or(default.eta),
+            weight: options.weight.unwrap_or(default.weight),
+            ..default
+        }
     }
 }
 
@@ -65,6 +70,15 @@ impl<T: Real, const D: usize, E: ReferenceElement<T, D>> Scheme<T, D> for Wopsip
 
     fn name(&self) -> &str {
         name_of_degree!("wopsip", E::DEGREE)
+    }
+    fn choices(&self) -> SchemeOptions {
+        let weight = Some(self.weight).filter(|&weight| weight != WeightRule::Isotropic);
+        let none = SchemeOptions { weight, ..SchemeOptions::default() };
+        match self.eta {
+            eta if eta == Wopsip::default().eta => none,
+            Eta::Dimensionless(factor) => SchemeOptions { factor: Some(factor), ..none },
+            Eta::Absolute(eta) => SchemeOptions { eta: Some(eta), ..none },
+        }
     }
     fn facet(&self, mesh: &Mesh<T, D>) -> OverPenalty {
         let eta = match self.eta {

@@ -3,56 +3,15 @@
 use super::unweighted::UnweightedWopsip;
 use crate::algebra::Inequality;
 use crate::assemble::DataQuadrature;
-use crate::constraint::FacetMeans;
 use crate::error::Error;
-use crate::facet::WeightRule;
 use crate::mesh::Mesh;
 use crate::problem::Problem;
 use crate::real::Real;
-use crate::scheme::{AnyScheme, SchemeOptions, Wopsip, scheme_by_name};
+use crate::scheme::{AnyScheme, NamedScheme};
 
-/// A scheme of the study.
-struct StudiedScheme {
-    /// The name that users type.
-    name: &'static str,
-    /// The name in the catalogue of schemes.
-    registered: &'static str,
-    /// Whether facet means are bound instead of nodes.
-    on_facet_means: bool,
-    /// Whether the penalty is of order `h^-3`.
-    is_over_penalised: bool,
-}
-
-const fn scheme(name: &'static str) -> StudiedScheme {
-    StudiedScheme { name, registered: name, on_facet_means: false, is_over_penalised: false }
-}
-
-/// The schemes of the study.
-const SCHEMES: [StudiedScheme; 7] = [
-    scheme("p1"),
-    scheme("cr"),
-    scheme("sipg"),
-    StudiedScheme { is_over_penalised: true, ..scheme("wopsip") },
-    StudiedScheme {
-        name: "wopsip:facet-means",
-        registered: "wopsip",
-        on_facet_means: true,
-        is_over_penalised: true,
-    },
-    scheme("p2"),
-    scheme("nipg"),
-];
-
-/// The schemes of the study, as users type them.
-pub(crate) const NAMES: [&str; 7] = {
-    let mut names = [""; 7];
-    let mut k = 0;
-    while k < names.len() {
-        names[k] = SCHEMES[k].name;
-        k += 1;
-    }
-    names
-};
+/// The schemes of the study, as users write them.
+pub(crate) const NAMES: [&str; 7] =
+    ["p1", "cr", "sipg", "wopsip", "wopsip:facet-means", "p2", "nipg"];
 
 /// The choice of a penalty.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -67,6 +26,8 @@ pub(crate) enum Penalty {
     ByHeights,
     /// WOPSIP: without the coefficient.
     Unweighted,
+    /// All that a user wrote, placement of bounds included.
+    Written(NamedScheme),
 }
 
 /// A scheme with the choice of its penalty.
@@ -85,15 +46,27 @@ impl Choice {
     pub const fn default(scheme: &'static str) -> Self {
         Self::new(scheme, Penalty::Default)
     }
-    fn studied(&self) -> &'static StudiedScheme {
-        match SCHEMES.iter().find(|known| known.name == self.scheme) {
-            Some(known) => known,
-            None => unreachable!("names are those of the list above"),
+    /// A scheme as a user wrote it.
+    pub const fn written(scheme: NamedScheme) -> Self {
+        Self::new(scheme.name(), Penalty::Written(scheme))
+    }
+    /// The scheme with its choices, but for a penalty without the coefficient.
+    fn named(&self) -> NamedScheme {
+        let choices = match self.penalty {
+            Penalty::Written(scheme) => return scheme,
+            Penalty::Default | Penalty::Unweighted => String::new(),
+            Penalty::Eta(eta) => format!("@eta={eta:e}"),
+            Penalty::Sigma(sigma) => format!("@sigma={sigma:e}"),
+            Penalty::ByHeights => "@weight=anisotropic".to_owned(),
+        };
+        match format!("{}{choices}", self.scheme).parse() {
+            Ok(scheme) => scheme,
+            Err(_) => unreachable!("cases give schemes penalties that they take"),
         }
     }
     /// Whether the penalty of the scheme is of order `h^-3`.
     pub fn is_over_penalised(&self) -> bool {
-        self.studied().is_over_penalised
+        self.scheme.starts_with("wopsip")
     }
     /// The penalty in words; empty for a scheme without a penalty.
     pub fn words(&self) -> String {
@@ -107,11 +80,17 @@ impl Choice {
             Penalty::Sigma(sigma) => format!("{sigma}/h_F"),
             Penalty::ByHeights => "eta = diam^2, eta/(h^2 l_F)".into(),
             Penalty::Unweighted => "eta = diam^2, eta/h_F^3, coefficient ignored".into(),
+            Penalty::Written(scheme) => {
+                scheme.to_string()[self.scheme.len()..].replacen('@', "", 1)
+            }
         }
     }
     /// The problem with the constraint set of the choice.
     pub fn constrain<const D: usize>(&self, problem: Problem<D>) -> Problem<D> {
-        if self.studied().on_facet_means { problem.on(FacetMeans) } else { problem }
+        match self.named().constraint_set() {
+            Some(set) => problem.on(set),
+            None => problem,
+        }
     }
     /// The inequality of a problem on a mesh.
     pub fn inequality<const D: usize>(
@@ -124,31 +103,9 @@ impl Choice {
     }
     /// The scheme.
     pub fn make<T: Real, const D: usize>(&self) -> Box<dyn AnyScheme<T, D>> {
-        let mut options = SchemeOptions::default();
         match self.penalty {
-            Penalty::Default => {}
-            Penalty::Eta(eta) => options.eta = Some(eta),
-            Penalty::Sigma(sigma) => options.sigma = Some(sigma),
-            Penalty::ByHeights => {
-                return Box::new(Wopsip { weight: WeightRule::Anisotropic, ..Wopsip::default() });
-            }
-            Penalty::Unweighted => return Box::new(UnweightedWopsip::default()),
-        }
-        match scheme_by_name(self.studied().registered, &options) {
-            Some(scheme) => scheme,
-            None => unreachable!("names are those of the list above"),
+            Penalty::Unweighted => Box::new(UnweightedWopsip::default()),
+            _ => self.named().make(),
         }
     }
-}
-
-/// The schemes that every case compares, with default penalties.
-pub(crate) fn compared() -> Vec<Choice> {
-    NAMES[..6].iter().map(|name| Choice::default(name)).collect()
-}
-
-/// The schemes that every case compares, with default penalties, followed by further choices.
-pub(crate) fn compared_and(further: &[Choice]) -> Vec<Choice> {
-    let mut all = compared();
-    all.extend_from_slice(further);
-    all
 }

@@ -24,6 +24,8 @@ use std::time::{Duration, Instant};
 
 use crate::error::Error;
 use crate::mesh::Mesh;
+use crate::scheme::NamedScheme;
+use choice::Choice;
 use plan::Plan;
 
 /// The least time between two writes of finished rows.
@@ -93,7 +95,8 @@ impl<'a> Stability<'a> {
         self.cases = names.into_iter().map(Into::into).collect();
         self
     }
-    /// Runs these schemes only: see [`Stability::SCHEMES`].
+    /// Runs these schemes only, written as [`NamedScheme`] reads them: [`Stability::SCHEMES`] with all
+    /// choices of penalties that cases make, others with their own in every case that compares schemes.
     pub fn schemes<S: Into<String>>(mut self, names: impl IntoIterator<Item = S>) -> Self {
         self.schemes = names.into_iter().map(Into::into).collect();
         self
@@ -123,7 +126,7 @@ impl<'a> Stability<'a> {
     /// Runs everything.
     ///
     /// # Errors
-    /// [`Error::Parameter`] for the name of a case or scheme that does not exist, before anything
+    /// [`Error::Parameter`] for a case that does not exist or a scheme that is wrong, before anything
     /// runs; [`Error::Write`]. Errors of a job are listed in [`StabilityReport::failures`].
     pub fn run(&self) -> Result<StabilityReport, Error> {
         let check = |parameter, names: &[String], known: &[&str]| match names
@@ -138,8 +141,7 @@ impl<'a> Stability<'a> {
             }),
         };
         check("case", &self.cases, &STABILITY_CASES)?;
-        check("scheme", &self.schemes, &Self::SCHEMES)?;
-        let plan = self.plan();
+        let plan = self.plan()?;
         (self.observer)(StabilityProgress::Planned(plan.jobs.len()));
         let mut report = StabilityReport::new(self.effort);
         let mut written = Instant::now();
@@ -173,9 +175,22 @@ impl<'a> Stability<'a> {
         }
     }
 
-    fn plan(&self) -> Plan<'_> {
-        let (schemes, given) = (&self.schemes, &self.given);
-        let mut plan = Plan { effort: self.effort, schemes, given, jobs: Vec::new() };
+    fn plan(&self) -> Result<Plan<'_>, Error> {
+        let wanted = NamedScheme::list(self.schemes.iter().map(String::as_str));
+        let wanted = wanted.map_err(|why| Error::Parameter {
+            parameter: "scheme",
+            value: self.schemes.join(","),
+            allowed: why.to_string(),
+        })?;
+        let (mut schemes, mut further) = (Vec::new(), Vec::new());
+        for scheme in wanted {
+            match Self::SCHEMES.into_iter().find(|known| *known == scheme.to_string()) {
+                Some(known) => schemes.push(known),
+                None => further.push(Choice::written(scheme)),
+            }
+        }
+        let (effort, given) = (self.effort, &self.given[..]);
+        let mut plan = Plan { effort, schemes, further, given, jobs: Vec::new() };
         for case in STABILITY_CASES {
             if !self.cases.is_empty() && !self.cases.iter().any(|c| c == case) {
                 continue;
@@ -201,6 +216,6 @@ impl<'a> Stability<'a> {
                 _ => cases::slivers::plan(&mut plan),
             }
         }
-        plan
+        Ok(plan)
     }
 }

@@ -1,6 +1,6 @@
 //! The jobs of a stability study.
 
-use super::choice::Choice;
+use super::choice::{Choice, NAMES};
 use super::row::StabilityRow;
 use crate::error::Error;
 use crate::mesh::Mesh;
@@ -33,7 +33,10 @@ pub(super) struct Job<'p> {
 /// The jobs of a study.
 pub(crate) struct Plan<'p> {
     pub(super) effort: Effort,
-    pub(super) schemes: &'p [String],
+    /// The schemes of the study that are wanted; all of them if there is neither one nor a further one.
+    pub(super) schemes: Vec<&'static str>,
+    /// Schemes as users wrote them, compared besides.
+    pub(super) further: Vec<Choice>,
     pub(super) given: &'p [(String, Mesh<f64, 3>)],
     pub(super) jobs: Vec<Job<'p>>,
 }
@@ -51,6 +54,17 @@ impl<'p> Plan<'p> {
     pub fn pick_of<T>(&self, trial: T, quick: T, full: T) -> T {
         if self.effort == Effort::Trial { trial } else { self.pick(quick, full) }
     }
+    /// The schemes that every case compares, with default penalties and as users wrote them.
+    pub fn compared(&self) -> Vec<Choice> {
+        let own = NAMES[..6].iter().map(|name| Choice::default(name));
+        own.chain(self.further.iter().copied()).collect()
+    }
+    /// The same, followed by further choices of this case.
+    pub fn compared_and(&self, of_case: &[Choice]) -> Vec<Choice> {
+        let mut all = self.compared();
+        all.extend_from_slice(of_case);
+        all
+    }
     /// Adds work on a scheme, if that scheme is wanted.
     pub fn add(
         &mut self,
@@ -59,7 +73,8 @@ impl<'p> Plan<'p> {
         what: &str,
         run: impl Fn(&Choice, Sink<'_>) -> Result<(), Error> + 'p,
     ) {
-        if self.schemes.is_empty() || self.schemes.iter().any(|s| s == choice.scheme) {
+        let all = self.schemes.is_empty() && self.further.is_empty();
+        if all || self.schemes.contains(&choice.scheme) || self.further.contains(&choice) {
             let label = format!("{} {} {what}", choice.scheme, choice.words());
             let run = Box::new(move |sink: Sink<'_>| run(&choice, sink));
             self.jobs.push(Job { case, label, run });

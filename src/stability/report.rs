@@ -8,7 +8,7 @@ use serde_json::json;
 use super::criteria::{CRITERIA, STABILITY_CASES};
 use super::plan::Effort;
 use super::row::{StabilityRow, Verdict, short};
-use super::summary::{by_criterion, by_scheme, missed, robust};
+use super::summary::{by_criterion, by_scheme, criteria, missed, robust, safe_ranges};
 use crate::error::Error;
 use crate::output::table::{Cell, latex, markdown};
 use crate::output::{Provenance, Table, csv, replace};
@@ -16,7 +16,7 @@ use crate::study::Program;
 
 /// Notes before the tables.
 const READING: [&str; 3] = [
-    "Every row has a figure, the limits it should keep, and the verdict that follows from the two. A row that fails as expected shows a choice of which theory or experience says that it is not enough there; a row that is missed is a failure that nobody announced. What is reported only has no limits. Several pages of rows follow the summary: one table for each case, the criteria in words below it.",
+    "Every row has a figure, the limits it should keep, and the verdict that follows from the two. A row that fails as expected shows a choice of which theory or experience says that it is not enough there; a row that is missed is a failure that nobody announced. What is reported only has no limits. Figures have the digits that decide. A safe range of a penalty factor is the longest part of its sweep in which every factor stays within the limits of errors and of definiteness; a penalty is robust in a case if all its figures stay within their limits.",
     "Schemes: p1 and p2, conforming linear and quadratic elements with bounds at nodes; cr, Crouzeix-Raviart elements with bounds on facet means; sipg and nipg, symmetric and non-symmetric interior penalty on broken linears; wopsip, the weakly over-penalised method on broken linears with bounds at vertices, wopsip:facet-means the same with bounds on facet means.",
     "Penalties: h_F is the diameter of a facet, l_F the height of its cells over it, h the mesh size, diam the diameter of the domain, and the proven bound the least interior penalty that is provably enough on each cell. All but what ignores it carry the coefficient of the problem. L2 and H1 are norms of the error (H1 broken and without values), energy is the scheme's own norm, with its penalty. Problems are those of the catalogue of scenes; sines-Dd is Poisson's equation solved by the product of sin(pi x_k).",
 ];
@@ -54,8 +54,14 @@ impl StabilityReport {
         self.rows.iter().filter(|row| row.verdict == verdict).count()
     }
 
-    /// The penalties that meet all criteria, for every case with several penalties of a scheme: a
-    /// sentence each, made from the verdicts.
+    /// The ranges of penalty factors within which a scheme stays in all limits of errors and of
+    /// definiteness: a line for every sweep of a factor.
+    pub fn safe_ranges(&self) -> Vec<String> {
+        safe_ranges(&self.rows)
+    }
+
+    /// The penalties that were measured within all limits, for every other case with several penalties
+    /// of a scheme: a sentence each, made from the verdicts.
     pub fn robust_choices(&self) -> Vec<String> {
         robust(&self.rows)
     }
@@ -71,11 +77,11 @@ impl StabilityReport {
         tables
     }
 
-    /// Verdicts, what was missed and which choices are robust, for a terminal: the report without
-    /// its rows.
+    /// Verdicts, what was missed, safe ranges of factors and robust choices, for a terminal: the report
+    /// without its rows.
     pub fn summary(&self) -> String {
         let mut text = format!("{}\n", self.heading());
-        for sentence in self.robust_choices() {
+        for sentence in self.safe_ranges().into_iter().chain(self.robust_choices()) {
             text += &format!("{sentence}\n");
         }
         for failure in &self.failures {
@@ -103,7 +109,7 @@ impl StabilityReport {
                 Cell::Words(sweep),
                 Cell::Words(row.quantity.clone()),
                 Cell::Words(row.expected.words()),
-                row.measured.map_or(Cell::Nothing, |x| Cell::Number(short(x), None)),
+                row.figure_in_words().map_or(Cell::Nothing, |x| Cell::Number(x, None)),
                 Cell::Words(row.verdict_words()),
                 Cell::Words(row.detail.clone()),
             ]
@@ -131,7 +137,7 @@ impl StabilityReport {
         }
     }
 
-    /// The report as JSON: `program`, `provenance`, `criteria`, `rows`, `failures` and
+    /// The report as JSON: `program`, `provenance`, `criteria`, `rows`, `failures`, `safe_ranges` and
     /// `robust_choices`. What does not apply is null.
     pub fn to_json(&self) -> String {
         let value = json!({
@@ -140,6 +146,7 @@ impl StabilityReport {
             "criteria": CRITERIA,
             "rows": self.rows,
             "failures": self.failures,
+            "safe_ranges": self.safe_ranges(),
             "robust_choices": self.robust_choices(),
         });
         format!("{value:#}\n")
@@ -152,36 +159,54 @@ impl StabilityReport {
 
     /// Tables for a terminal.
     pub fn to_text(&self) -> String {
-        self.document(Table::to_text, |line| format!("{line}\n"))
+        self.document(&self.tables(), Table::to_text, |line| format!("{line}\n"))
     }
 
     /// Tables, provenance and notes in Markdown.
     pub fn to_markdown(&self) -> String {
-        let text = self.document(Table::to_markdown, |line| format!("{}\n\n", markdown(line)));
-        format!("# Stability\n\n{text}")
+        self.markdown_with(&self.tables())
+    }
+
+    /// The same without the rows: verdicts, what was missed, the criteria in words.
+    pub fn summary_to_markdown(&self) -> String {
+        let mut tables = vec![by_scheme(&self.rows), by_criterion(&self.rows)];
+        tables.extend(missed(&self.rows));
+        tables.push(criteria(&self.rows));
+        self.markdown_with(&tables)
+    }
+
+    fn markdown_with(&self, tables: &[Table]) -> String {
+        let line = |line: &str| format!("{}\n\n", markdown(line));
+        format!("# Stability\n\n{}", self.document(tables, Table::to_markdown, line))
     }
 
     /// Tables, provenance and notes in LaTeX, for `\input`; it needs the package `booktabs`.
     pub fn to_latex(&self) -> String {
-        let text =
-            self.document(Table::to_latex, |line| format!("\\noindent {}\\par\n", latex(line)));
+        let text = self.document(&self.tables(), Table::to_latex, |line| {
+            format!("\\noindent {}\\par\n", latex(line))
+        });
         format!("% needs \\usepackage{{booktabs}}\n{text}")
     }
 
-    fn document(&self, table: fn(&Table) -> String, line: impl Fn(&str) -> String) -> String {
+    fn document(
+        &self,
+        tables: &[Table],
+        table: fn(&Table) -> String,
+        line: impl Fn(&str) -> String,
+    ) -> String {
         let mut text = line(&self.heading());
         for explained in READING {
             text += &line(explained);
         }
-        for sentence in self.robust_choices() {
+        for sentence in self.safe_ranges().into_iter().chain(self.robust_choices()) {
             text += &line(&sentence);
         }
         for failure in &self.failures {
             text += &line(&format!("Not run to the end: {failure}."));
         }
-        for t in self.tables() {
+        for t in tables {
             text += "\n";
-            text += &table(&t);
+            text += &table(t);
         }
         text
     }

@@ -37,6 +37,16 @@ impl ExpectedRange {
         (factor.is_finite() && factor > 0.0).then_some(factor)
     }
 
+    /// A figure with as many digits as it takes to see on which side of a limit it lies, three at
+    /// least.
+    pub fn deciding(&self, figure: f64) -> String {
+        let texts = (0..15).map(|more| with_digits(figure, more));
+        let agrees = |text: &String| {
+            text.parse().is_ok_and(|read: f64| self.holds(read) == self.holds(figure))
+        };
+        texts.into_iter().find(agrees).unwrap_or_else(|| short(figure))
+    }
+
     fn is_judged(&self) -> bool {
         self.at_least.is_some() || self.at_most.is_some()
     }
@@ -54,10 +64,16 @@ impl ExpectedRange {
 
 /// A number in three digits, without a power of ten where it needs none.
 pub(crate) fn short(x: f64) -> String {
+    with_digits(x, 0)
+}
+
+/// The same with so many digits more.
+fn with_digits(x: f64, more: usize) -> String {
     match x.abs() {
         0.0 => "0".to_owned(),
         a if !(1e-2..1e4).contains(&a) => {
-            let text = format!("{x:.2e}");
+            let places = 2 + more;
+            let text = format!("{x:.places$e}");
             match text.split_once('e') {
                 Some((digits, power)) => {
                     let digits = digits.trim_end_matches('0').trim_end_matches('.');
@@ -74,6 +90,7 @@ pub(crate) fn short(x: f64) -> String {
             } else {
                 3
             };
+            let places = places + more;
             let text = format!("{x:.places$}");
             text.trim_end_matches('0').trim_end_matches('.').to_owned()
         }
@@ -176,13 +193,18 @@ impl StabilityRow {
     pub fn verdict_words(&self) -> String {
         match (self.verdict, self.missed_by, self.measured) {
             (Verdict::Missed | Verdict::FailsAsExpected, Some(factor), _) => {
-                format!("{} (factor {})", self.verdict.name(), short(factor))
+                format!("{} (factor {})", self.verdict.name(), factor_in_words(factor))
             }
             (Verdict::Missed | Verdict::FailsAsExpected, None, None) => {
                 format!("{} (no figure)", self.verdict.name())
             }
             _ => self.verdict.name().to_owned(),
         }
+    }
+
+    /// The figure, with the digit that decides.
+    pub(crate) fn figure_in_words(&self) -> Option<String> {
+        self.measured.map(|figure| self.expected.deciding(figure))
     }
 
     /// Draws the verdict from the figures.
@@ -192,6 +214,11 @@ impl StabilityRow {
         self.missed_by = self.measured.and_then(|figure| self.expected.missed_by(figure));
         self
     }
+}
+
+/// A factor by which a limit is missed, with as many digits as it takes to see that it is above one.
+pub(crate) fn factor_in_words(factor: f64) -> String {
+    ExpectedRange { at_most: Some(1.0), ..ExpectedRange::default() }.deciding(factor)
 }
 
 #[cfg(test)]
@@ -213,6 +240,18 @@ mod tests {
         assert_eq!(least.missed_by(0.45), Some(2.0));
         assert_eq!(least.missed_by(-0.1), None);
         assert!(!least.holds(f64::NAN));
+    }
+
+    #[test]
+    fn the_digit_that_decides_is_shown() {
+        let most = ExpectedRange { at_most: Some(1.15), ..ExpectedRange::default() };
+        assert_eq!(most.deciding(1.149), "1.149");
+        assert_eq!(most.deciding(1.1500021), "1.150002");
+        assert_eq!(most.deciding(1.15), "1.15");
+        let tiny = ExpectedRange { at_most: Some(1e-9), ..ExpectedRange::default() };
+        assert_eq!(tiny.deciding(1.0004e-9), "1.0004e-9");
+        assert_eq!(tiny.deciding(3.21987e-9), "3.22e-9");
+        assert_eq!(super::factor_in_words(1.0000018), "1.000002");
     }
 
     #[test]

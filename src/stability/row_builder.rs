@@ -3,6 +3,7 @@
 use super::choice::Choice;
 use super::criteria::criterion;
 use super::row::{ExpectedRange, StabilityRow, Verdict, short};
+use crate::measure::fit_order;
 use crate::study::Row;
 
 /// A row under construction: criterion, scheme and limits first, then the figure.
@@ -129,40 +130,14 @@ pub(crate) fn jump(row: &Row) -> Option<f64> {
     Some((energy * energy - h1 * h1).max(0.0).sqrt())
 }
 
-/// Orders fitted by least squares to errors on levels; none with fewer than two.
+/// The order fitted to errors on levels; none with fewer than two.
 pub(crate) fn fitted_order(errors: &[(usize, f64)]) -> Option<f64> {
-    let points: Vec<(f64, f64)> = errors
-        .iter()
-        .filter(|(_, e)| *e > 0.0 && e.is_finite())
-        .map(|&(n, e)| ((n as f64).ln(), e.ln()))
-        .collect();
-    if points.len() < errors.len() || points.len() < 2 {
-        return None;
-    }
-    let count = points.len() as f64;
-    let mean_x = points.iter().map(|p| p.0).sum::<f64>() / count;
-    let mean_y = points.iter().map(|p| p.1).sum::<f64>() / count;
-    let above: f64 = points.iter().map(|p| (p.0 - mean_x) * (p.1 - mean_y)).sum();
-    let below: f64 = points.iter().map(|p| (p.0 - mean_x).powi(2)).sum();
-    Some(-above / below)
+    let points: Vec<(f64, f64)> = errors.iter().map(|&(n, e)| (1.0 / n as f64, e)).collect();
+    fit_order(&points).map(|fitted| fitted.order)
 }
 
 /// Errors on levels in a few words.
 pub(crate) fn listed(errors: &[(usize, f64)]) -> String {
     let parts: Vec<String> = errors.iter().map(|(n, e)| format!("{n}: {}", short(*e))).collect();
     parts.join(", ")
-}
-
-#[cfg(test)]
-mod tests {
-    use super::fitted_order;
-
-    #[test]
-    fn orders_of_power_laws_are_found() {
-        let errors: Vec<(usize, f64)> =
-            [8, 16, 32, 64].map(|n| (n, 3.0 * (n as f64).powf(-1.5))).into();
-        assert!((fitted_order(&errors).unwrap_or(0.0) - 1.5).abs() < 1e-12);
-        assert_eq!(fitted_order(&errors[..1]), None);
-        assert_eq!(fitted_order(&[(8, 1.0), (16, f64::NAN)]), None);
-    }
 }

@@ -1,7 +1,7 @@
 //! Counts of verdicts, and robust choices of penalties.
 
 use super::criteria::{CRITERIA, Criterion};
-use super::row::{StabilityRow, Verdict, short};
+use super::row::{StabilityRow, Verdict, factor_in_words, short};
 use crate::output::Table;
 use crate::output::table::Cell;
 use crate::study::table::distinct;
@@ -70,8 +70,8 @@ pub(crate) fn missed(rows: &[StabilityRow]) -> Option<Table> {
             Cell::whole(row.level),
             Cell::Words(sweep),
             Cell::Words(row.expected.words()),
-            row.measured.map_or(Cell::Nothing, |x| Cell::Number(short(x), None)),
-            row.missed_by.map_or(Cell::Nothing, |x| Cell::Number(short(x), None)),
+            row.figure_in_words().map_or(Cell::Nothing, |x| Cell::Number(x, None)),
+            row.missed_by.map_or(Cell::Nothing, |x| Cell::Number(factor_in_words(x), None)),
             Cell::Words(row.detail.clone()),
         ]
     };
@@ -95,16 +95,91 @@ pub(crate) fn missed(rows: &[StabilityRow]) -> Option<Table> {
     })
 }
 
-/// The penalties of a scheme that meet all criteria of a case, for schemes with several penalties.
+/// The criteria in words.
+pub(crate) fn criteria(rows: &[StabilityRow]) -> Table {
+    let asked = CRITERIA.iter().filter(|c| rows.iter().any(|r| r.criterion == c.name));
+    let words = |text: &str| Cell::Words(text.to_owned());
+    Table {
+        title: "The criteria".into(),
+        columns: ["criterion", "condition"].map(str::to_owned).into(),
+        rows: asked.map(|c| vec![words(c.name), words(c.sentence)]).collect(),
+        remarks: Vec::new(),
+    }
+}
+
+/// The criteria of errors and of definiteness over sweeps of a penalty factor.
+const OVER_FACTORS: [&str; 4] =
+    ["definite-for-every-factor", "error-of-large-factors", "inertia", "error-of-interior-penalty"];
+/// The cases of these sweeps.
+const SWEEPS: [&str; 2] = ["penalty-factor", "coercivity"];
+
+/// For every scheme whose penalty factor is swept, the longest part of the sweep in which each factor
+/// keeps the limits, and what the factors next to it miss.
+pub(crate) fn safe_ranges(rows: &[StabilityRow]) -> Vec<String> {
+    let swept = || {
+        let of_factor = |r: &&StabilityRow| r.parameter == "eta" || r.parameter == "sigma";
+        rows.iter().filter(|r| OVER_FACTORS.contains(&&r.criterion[..])).filter(of_factor)
+    };
+    let sentence = |(scheme, parameter): (&String, &String)| {
+        let mine = || swept().filter(|r| (&r.scheme, &r.parameter) == (scheme, parameter));
+        let mut factors = distinct(mine().filter_map(|r| r.value));
+        factors.sort_by(f64::total_cmp);
+        let misses = |factor: f64| {
+            let keeps = |r: &StabilityRow| r.measured.is_some_and(|x| r.expected.holds(x));
+            mine().find(|r| r.value == Some(factor) && !keeps(r))
+        };
+        let runs = factors.chunk_by(|a, b| misses(*a).is_none() == misses(*b).is_none());
+        let safe = runs.filter(|run| misses(run[0]).is_none()).max_by_key(|run| run.len());
+        let (first, last) = (factors.first()?, factors.last()?);
+        let measured = format!(
+            "{} factors measured from {} to {}",
+            factors.len(),
+            short(*first),
+            short(*last)
+        );
+        let Some((from, to)) = safe.and_then(|run| run.first().zip(run.last())) else {
+            return Some(format!("{scheme}: no safe {parameter}; {measured}."));
+        };
+        let mut text = format!(
+            "{scheme}: safe range of {parameter}: {} to {}; {measured}",
+            short(*from),
+            short(*to)
+        );
+        let below = factors.iter().rfind(|f| *f < from);
+        for factor in below.into_iter().chain(factors.iter().find(|f| *f > to)) {
+            if let Some(row) = misses(*factor) {
+                let figure = row.figure_in_words().unwrap_or_else(|| "no solution".to_owned());
+                text += &format!(
+                    "; at {} {} on {} is {figure}, {} allowed",
+                    short(*factor),
+                    row.quantity,
+                    row.problem,
+                    row.expected.words()
+                );
+            }
+        }
+        Some(text + ".")
+    };
+    let series = distinct(swept().map(|r| (&r.scheme, &r.parameter)));
+    series.into_iter().filter_map(sentence).collect()
+}
+
+/// The penalties of a scheme that stay within all limits of a case, for schemes with several
+/// penalties; sweeps of factors have their [`safe_ranges`].
 pub(crate) fn robust(rows: &[StabilityRow]) -> Vec<String> {
     let mut sentences = Vec::new();
-    for key in distinct(rows.iter().map(|r| (r.case.clone(), r.scheme.clone()))) {
+    let compared = rows.iter().filter(|r| !SWEEPS.contains(&&r.case[..]));
+    for key in distinct(compared.map(|r| (r.case.clone(), r.scheme.clone()))) {
         let mine = || rows.iter().filter(|r| (&r.case, &r.scheme) == (&key.0, &key.1));
         let choices = distinct(mine().map(|r| r.choice.clone()));
         let judged = |choice: &str| {
             let of = |v: Verdict| count(mine().filter(|r| r.choice == choice), v);
             let kept = of(Verdict::Met) + of(Verdict::BetterThanExpected);
-            (kept, kept + of(Verdict::Missed) + of(Verdict::FailsAsExpected))
+            let failed = |r: &&StabilityRow| {
+                r.choice == choice && r.verdict == Verdict::Reported && r.measured.is_none()
+            };
+            let other = of(Verdict::Missed) + of(Verdict::FailsAsExpected);
+            (kept, kept + other + mine().filter(failed).count())
         };
         let counts: Vec<(String, usize, usize)> = choices
             .into_iter()

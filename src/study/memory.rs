@@ -1,5 +1,6 @@
 //! Peak memory of the process, available memory, and an estimate of the memory of a run.
 
+use super::memory_limits::{kilobytes, left_to_group, left_to_process};
 use crate::element::Layout;
 
 /// The largest resident set of this process so far, if the system reports it: on Linux the peak the
@@ -16,19 +17,15 @@ fn peak_of_status(status: &str) -> Option<u64> {
     kilobytes(status, "VmHWM:")
 }
 
-fn kilobytes(text: &str, key: &str) -> Option<u64> {
-    let value = text.lines().find_map(|l| l.strip_prefix(key))?;
-    let kilobytes: u64 = value.trim().strip_suffix("kB")?.trim().parse().ok()?;
-    kilobytes.checked_mul(1024)
-}
-
-/// The memory available without swapping, if the system reports it: on Linux
-/// `MemAvailable`, elsewhere nothing. Limits of a container are not seen.
+/// The memory available to this process without swapping, if the system reports it: on Linux the least
+/// of `MemAvailable`, of what the limits on address space and data leave (`ulimit -v`, `ulimit -d`),
+/// and of what its control groups leave (containers, batch systems); elsewhere nothing.
 pub fn available_memory_bytes() -> Option<u64> {
     if !cfg!(target_os = "linux") {
         return None;
     }
-    kilobytes(&std::fs::read_to_string("/proc/meminfo").ok()?, "MemAvailable:")
+    let machine = kilobytes(&std::fs::read_to_string("/proc/meminfo").ok()?, "MemAvailable:");
+    [machine, left_to_process(), left_to_group()].into_iter().flatten().min()
 }
 
 /// Estimated memory of the largest run of a study.

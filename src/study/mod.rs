@@ -1,7 +1,10 @@
 //! Studies: schemes side by side on a scene, their rows and reports.
 
 mod compatibility;
+#[cfg(feature = "report")]
+mod file_name;
 mod memory;
+mod memory_limits;
 mod order_check;
 mod orders;
 mod orders_table;
@@ -12,10 +15,12 @@ mod setting;
 pub(crate) mod table;
 
 pub use compatibility::check_fit;
+#[cfg(feature = "report")]
+pub use file_name::file_name;
 pub use memory::{MemoryEstimate, available_memory_bytes, peak_memory_bytes};
-pub use order_check::{ObservedOrders, OrderMissed, OrdersMissed};
+pub use order_check::{ObservedOrders, OrderMissed, OrderVerdict, OrdersMissed};
 pub use orders::fill_orders;
-pub use orders_table::orders_table;
+pub use orders_table::{orders_summary, orders_table};
 pub use report::{Program, Report};
 pub use row::{Iterations, Orders, Row, Seconds};
 pub use runner::{Progress, Study};

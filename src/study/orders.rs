@@ -4,7 +4,7 @@ use super::row::{Orders, Row};
 use crate::measure::observed_order;
 
 /// Fills in the order of every row against the previous level: the row with the next smaller level
-/// of the same scene, scheme, constraint and solver.
+/// of the same scene, label, constraint and solver.
 ///
 /// The order is none if one of the two rows did not converge or has no error. Rows further back are
 /// never used, since the table would not show it.
@@ -23,12 +23,12 @@ fn previous<'a>(rows: &'a [Row], row: &Row) -> Option<&'a Row> {
     rows.iter()
         .filter(|r| {
             r.scene == row.scene
-                && r.scheme == row.scheme
+                && r.label == row.label
                 && r.constraint == row.constraint
                 && r.solver == row.solver
         })
-        // the same scheme with another penalty is another scheme; the dimensionless factor of one
-        // rule resolves to the same number on all levels of a domain
+        // a scheme of one's own with another penalty is another scheme; the dimensionless factor of
+        // one rule resolves to the same number on all levels of a domain
         .filter(|r| r.parameters == row.parameters)
         .filter(|r| r.level < row.level)
         .max_by_key(|r| r.level)

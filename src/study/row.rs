@@ -80,6 +80,9 @@ pub struct Row {
     /// Where the inequality is imposed: `vertices`, `facet-means`, `nodes`, `midpoints`,
     /// `cell-means`, or the name of a constraint set of one's own.
     pub constraint: String,
+    /// Scheme, constraint set and choices without what is default, as
+    /// [`NamedScheme`](crate::scheme::NamedScheme) reads it: what distinguishes the series of a report.
+    pub label: String,
     /// Subdivisions of the shortest side, or number of refinements of a mesh file.
     pub level: usize,
     /// Penalty factors in force.
@@ -98,12 +101,14 @@ pub struct Row {
     pub mesh_size: f64,
     /// How the solve ended; its name in files.
     pub status: Outcome,
+    /// What the status says, in one sentence; none if the solve converged.
+    pub message: Option<String>,
     /// Errors against the exact solution.
     pub error: Errors,
     /// Distances of multiplier and contact set, keys of the row itself.
     #[cfg_attr(feature = "report", serde(flatten))]
     pub contact: ContactErrors,
-    /// Observed order against the previous level of the same scene and scheme.
+    /// Observed order against the previous level of the same scene and label.
     pub order: Orders,
     /// Orders that theory promises.
     pub expected_order: ExpectedOrders,
@@ -124,7 +129,7 @@ pub struct Row {
 }
 
 impl Row {
-    /// A row without numbers, for a caller that fills them in.
+    /// A row without numbers, for a caller that fills them in; the label is the name of the scheme.
     #[must_use]
     pub fn new(scene: &str, dimension: usize, scheme: &str, level: usize, status: Outcome) -> Self {
         Self {
@@ -132,6 +137,7 @@ impl Row {
             dimension,
             scheme: scheme.to_owned(),
             constraint: String::new(),
+            label: scheme.to_owned(),
             level,
             parameters: PenaltyParameters::default(),
             solver: String::new(),
@@ -141,6 +147,7 @@ impl Row {
             nonzeros: 0,
             mesh_size: f64::NAN,
             status,
+            message: (status != Outcome::Converged).then(|| status.message().to_owned()),
             error: Errors::default(),
             contact: ContactErrors::default(),
             order: Orders::default(),

@@ -6,6 +6,8 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 use super::compatibility::{check_domain, check_fit};
+#[cfg(feature = "report")]
+use super::file_name::file_name;
 use super::memory::{
     MemoryEstimate, estimate, estimate_without_factors, peak_memory_bytes, unknowns_about,
 };
@@ -24,13 +26,13 @@ use crate::nested::{Coarsest, Hierarchy, NestedIteration};
 use crate::problem::Problem;
 use crate::real::Real;
 use crate::scenes::Scene;
-use crate::scheme::{AnyScheme, ExpectedOrders};
+use crate::scheme::{AnyScheme, ExpectedOrders, NamedScheme};
 
 /// Progress of a study.
 #[derive(Debug)]
 #[non_exhaustive]
 pub enum Progress<'a> {
-    /// A run begins: scene, scheme, level.
+    /// A run begins: scene, label of the scheme, level.
     Started(&'a str, &'a str, usize),
     /// A run ended.
     Finished(&'a Row),
@@ -137,6 +139,11 @@ impl<'a, T: Real, const D: usize> Study<'a, T, D> {
     ) -> Self {
         self.shared_scheme(scheme.into(), Some(Arc::new(set)))
     }
+    /// Adds a scheme as users write it; without a placement it has the constraint set of the problem.
+    #[must_use]
+    pub fn named_scheme(self, scheme: &NamedScheme) -> Self {
+        self.shared_scheme(scheme.make().into(), scheme.constraint_set())
+    }
     /// Adds a scheme that other studies have too.
     pub(crate) fn shared_scheme(
         mut self,
@@ -183,7 +190,7 @@ impl<'a, T: Real, const D: usize> Study<'a, T, D> {
         self
     }
     /// Writes the fields of every scheme on the finest level to this directory, as
-    /// `SCENE-SCHEME.vtu`; where a scheme stands twice, its constraint set follows its name.
+    /// `SCENE-LABEL.vtu`, with `-` for what is neither a letter, a digit, a dot, `_` nor `-`.
     #[cfg(feature = "report")]
     #[must_use]
     pub fn fields_to(mut self, directory: impl Into<PathBuf>) -> Self {
@@ -276,9 +283,9 @@ impl<'a, T: Real, const D: usize> Study<'a, T, D> {
         let mut rows = Vec::new();
         for (entry, problem) in self.entries.iter().zip(&problems) {
             for nested in &mut by_solver {
+                let label = entry.scheme.label_on(problem.constraint_set());
                 for &level in &self.levels {
-                    let name = entry.scheme.name();
-                    (self.observer)(Progress::Started(&self.scene.name, name, level));
+                    (self.observer)(Progress::Started(&self.scene.name, &label, level));
                     let (row, _) = self.row(nested, (entry, problem), level, failure.as_deref())?;
                     (self.observer)(Progress::Finished(&row));
                     rows.push(row);
@@ -349,25 +356,21 @@ impl<'a, T: Real, const D: usize> Study<'a, T, D> {
         nested.replace_constraint_set(problem);
         let solved = nested.solve_on(position, scheme)?;
         let solver = nested.solver_name();
+        let label = scheme.label_on(set);
         #[cfg(feature = "report")]
         if let Some(directory) = &self.directory
             && solved.has_iterate()
             && self.levels.iter().max() == Some(&level)
         {
-            let mut name = format!("{}-{}", self.scene.name, scheme.name());
-            let same_name = |e: &&Entry<'_, T, D>| e.scheme.name() == scheme.name();
-            if let Some(set) = &entry.set
-                && self.entries.iter().filter(same_name).count() > 1
-            {
-                name += &format!("-{}", set.name());
-            }
+            let mut name = format!("{}-{label}", self.scene.name);
             if self.solvers.len() > 1 {
                 name += &format!("-{solver}");
             }
-            solved.write_vtu(directory.join(name + ".vtu"))?;
+            solved.write_vtu(directory.join(file_name(&name) + ".vtu"))?;
         }
         let mut row = Row {
             constraint: scheme.constraint_on(set).unwrap_or_else(|| set.name().to_owned()),
+            label,
             solver: solver.to_owned(),
             expected_order: self.expected_orders(scheme, set, failure),
             peak_memory_bytes: peak_memory_bytes(),

@@ -15,6 +15,7 @@ pub(super) fn setting<const D: usize>(scene: &Scene<D>, on_mesh: bool) -> Settin
         obstacle: problem.has_obstacle(),
         contact: problem.gap.is_some(),
         regularity: scene.regularity,
+        coefficient: problem.coefficient.is_some(),
         regular_dual: problem.coefficient.is_none()
             && (D == 1 || !on_mesh && is_convex && all_dirichlet),
     }

@@ -41,7 +41,7 @@ fn write_scene(f: &mut impl fmt::Write, scene: &str, rows: &[&Row]) -> fmt::Resu
     let widest = widths.iter().sum::<usize>() + 2 * (widths.len() - 1);
     let gap = if widest <= WIDTH { "  " } else { " " };
     write_line(f, &columns, &widths, gap, |c| c.name.to_owned())?;
-    let key = |r: &Row| [&r.scheme, &r.constraint, &r.solver].map(String::clone);
+    let key = |r: &Row| [&r.label, &r.constraint, &r.solver].map(String::clone);
     let series = distinct(rows.iter().map(|r| key(r)));
     for (i, of_series) in series.into_iter().enumerate() {
         if i > 0 {
@@ -50,12 +50,13 @@ fn write_scene(f: &mut impl fmt::Write, scene: &str, rows: &[&Row]) -> fmt::Resu
         for row in rows.iter().filter(|r| key(r) == of_series) {
             write_line(f, &columns, &widths, gap, |c| (c.cell)(row))?;
             if !row.converged() {
-                writeln!(f, "  ^ did not converge: {}", row.status)?;
+                let message = row.status.message();
+                write_wrapped(f, &format!("  ^ did not converge: {}: {message}", row.status))?;
             }
         }
     }
     for warning in distinct(
-        rows.iter().flat_map(|r| r.warnings.iter().map(|w| (r.scheme.as_str(), w.as_str()))),
+        rows.iter().flat_map(|r| r.warnings.iter().map(|w| (r.label.as_str(), w.as_str()))),
     ) {
         write_wrapped(f, &format!("  warning, {}: {}", warning.0, warning.1))?;
     }
@@ -66,13 +67,6 @@ fn write_scene(f: &mut impl fmt::Write, scene: &str, rows: &[&Row]) -> fmt::Resu
 fn heading(rows: &[&Row]) -> String {
     let solvers = distinct(rows.iter().map(|r| format!("{}/{}", r.solver, r.linear)));
     let mut text = format!("solver {}", solvers.join(", "));
-    let name = |row: &Row| {
-        let is_other = |r: &&Row| r.scheme == row.scheme && r.constraint != row.constraint;
-        match rows.iter().any(is_other) {
-            true => format!("{}:{}", row.scheme, row.constraint),
-            false => row.scheme.clone(),
-        }
-    };
     let mut promises: Vec<(String, Vec<String>)> = Vec::new();
     for row in rows {
         let expected = row.expected_order;
@@ -84,13 +78,13 @@ fn heading(rows: &[&Row]) -> String {
         }
         let known = known.join(" ");
         match promises.iter_mut().find(|(k, _)| *k == known) {
-            Some((_, schemes)) if schemes.contains(&name(row)) => {}
-            Some((_, schemes)) => schemes.push(name(row)),
-            None => promises.push((known, vec![name(row)])),
+            Some((_, schemes)) if schemes.contains(&row.label) => {}
+            Some((_, schemes)) => schemes.push(row.label.clone()),
+            None => promises.push((known, vec![row.label.clone()])),
         }
     }
     // Schemes need naming only where some are promised something else, or nothing.
-    let all = promises.len() == 1 && rows.iter().all(|r| promises[0].1.contains(&name(r)));
+    let all = promises.len() == 1 && rows.iter().all(|r| promises[0].1.contains(&r.label));
     let promises: Vec<String> = promises
         .into_iter()
         .map(
@@ -133,14 +127,8 @@ struct Column {
 fn columns(rows: &[&Row]) -> Vec<Column> {
     let text = |name, cell| Column { name, left: true, cell };
     let number = |name, cell| Column { name, left: false, cell };
-    let varies = rows.iter().any(|r| r.constraint != rows[0].constraint);
     let any = |get: fn(&Row) -> Option<f64>| rows.iter().any(|r| get(r).is_some());
-    let mut columns = vec![text("scheme", |r| r.scheme.clone())];
-    if varies {
-        columns.push(text("bound at", |r| {
-            r.constraint.strip_suffix("-means").map_or(r.constraint.clone(), |s| format!("{s}s"))
-        }));
-    }
+    let mut columns = vec![text("scheme", |r| r.label.clone())];
     if rows.iter().any(|r| r.solver != rows[0].solver) {
         columns.push(text("solver", |r| r.solver.clone()));
     }

@@ -9,7 +9,7 @@ use crate::error::Error;
 use crate::real::Real;
 
 /// Keys that identify a row.
-const KEYS: [&str; 6] = ["scene", "scheme", "constraint", "linear_asked", "precision", "level"];
+const KEYS: [&str; 6] = ["scene", "label", "constraint", "linear_asked", "precision", "level"];
 /// Keys whose values must agree exactly.
 const COUNTS: [&str; 8] = [
     "/status",

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use crate::constraint::ConstraintSet;
 use crate::error::Error;
 use crate::real::Real;
-use crate::scheme::{AnyScheme, SchemeOptions, scheme_by_name};
+use crate::scheme::{AnyScheme, NamedScheme};
 use crate::study::{MemoryEstimate, Row, Study, peak_memory_bytes};
 
 use super::measured::Phases;
@@ -47,11 +47,10 @@ impl<'a, const D: usize> Candidate<'a, D> {
         let scheme = Arc::new(scheme);
         Self { double: scheme.clone(), single: scheme, set: None }
     }
-    /// The scheme of this name, if there is one.
-    pub fn by_name(name: &str, options: &SchemeOptions) -> Option<Self> {
-        let double = Arc::from(scheme_by_name::<f64, D>(name, options)?);
-        let single = Arc::from(scheme_by_name::<f32, D>(name, options)?);
-        Some(Self { double, single, set: None })
+    /// A scheme as users write it.
+    pub fn named(scheme: &NamedScheme) -> Self {
+        let (double, single) = (scheme.make().into(), scheme.make().into());
+        Self { double, single, set: scheme.constraint_set() }
     }
 }
 

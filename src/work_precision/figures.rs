@@ -10,7 +10,7 @@ pub(crate) fn figures(rows: &[Measured], scene: &str) -> Vec<(String, Figure)> {
     let curves: Vec<NamedCurve<'_>> = curves(rows, scene)
         .into_iter()
         .map(|(variant, levels)| NamedCurve {
-            label: variant.label(&variants),
+            label: variant.name_among(&variants),
             rows: levels.into_iter().map(|m| &m.row).collect(),
         })
         .collect();

@@ -14,6 +14,8 @@ pub struct Variant {
     pub scheme: String,
     /// Where the inequality is imposed.
     pub constraint: String,
+    /// Scheme, constraint set and choices without what is default.
+    pub label: String,
     /// The linear solver asked for: `direct`, `iterative` or `by-size`.
     pub linear_asked: String,
     /// Scalar of assembly and solve: `f64` or `f32`.
@@ -120,6 +122,7 @@ impl Measured {
             scene: self.row.scene.clone(),
             scheme: self.row.scheme.clone(),
             constraint: self.row.constraint.clone(),
+            label: self.row.label.clone(),
             linear_asked: self.linear_asked.clone(),
             precision: self.precision.clone(),
         }
@@ -151,15 +154,11 @@ impl Failure {
 }
 
 impl Variant {
-    /// A label that distinguishes the variant from the others of a report: the scheme, and the
-    /// parts that vary among them.
-    pub fn label(&self, all: &[Variant]) -> String {
+    /// The name of the variant among others of a report: the label of the scheme, and the linear solver
+    /// and the scalar where they vary.
+    pub fn name_among(&self, all: &[Variant]) -> String {
         let varies = |part: fn(&Variant) -> &str| all.iter().any(|v| part(v) != part(self));
-        let mut label = self.scheme.clone();
-        let same_scheme = all.iter().filter(|v| v.scheme == self.scheme);
-        if same_scheme.into_iter().any(|v| v.constraint != self.constraint) {
-            label += &format!(", {}", self.constraint);
-        }
+        let mut label = self.label.clone();
         if varies(|v| &v.linear_asked) {
             label += &format!(", {}", self.linear_asked);
         }

@@ -28,7 +28,7 @@ use crate::instances::compiled;
 use crate::linear::LinearMethod;
 use crate::real::Real;
 use crate::scenes::Scene;
-use crate::scheme::{AnyScheme, SchemeOptions};
+use crate::scheme::{AnyScheme, NamedScheme};
 use crate::study::{Study, available_memory_bytes};
 use case::{Candidate, OneStudy};
 
@@ -70,8 +70,7 @@ pub enum WorkProgress<'a> {
 /// ```
 pub struct WorkPrecision<'a, const D: usize> {
     scene: Box<dyn Fn() -> Scene<D> + 'a>,
-    /// None stands for a name that no scheme has.
-    candidates: Vec<Option<Candidate<'a, D>>>,
+    candidates: Vec<Candidate<'a, D>>,
     linear: Vec<LinearMethod>,
     precisions: Vec<Precision>,
     levels: Vec<usize>,
@@ -131,7 +130,7 @@ impl<'a, const D: usize> WorkPrecision<'a, D> {
     /// Adds a scheme.
     #[must_use]
     pub fn scheme(mut self, scheme: impl AnyScheme<f64, D> + AnyScheme<f32, D> + 'a) -> Self {
-        self.candidates.push(Some(Candidate::new(scheme)));
+        self.candidates.push(Candidate::new(scheme));
         self
     }
     /// Adds a scheme with a constraint set of its own.
@@ -142,27 +141,13 @@ impl<'a, const D: usize> WorkPrecision<'a, D> {
         set: impl ConstraintSet + 'static,
     ) -> Self {
         let set: Option<Arc<dyn ConstraintSet>> = Some(Arc::new(set));
-        self.candidates.push(Some(Candidate { set, ..Candidate::new(scheme) }));
+        self.candidates.push(Candidate { set, ..Candidate::new(scheme) });
         self
     }
-    /// Adds a scheme by its name; a name that no scheme has is an error of the run.
+    /// Adds a scheme as users write it.
     #[must_use]
-    pub fn scheme_by_name(mut self, name: &str, options: &SchemeOptions) -> Self {
-        self.candidates.push(Candidate::by_name(name, options));
-        self
-    }
-    /// Adds a scheme by its name with a constraint set of its own; a name that no scheme has is an
-    /// error of the run.
-    #[must_use]
-    pub fn scheme_by_name_on(
-        mut self,
-        name: &str,
-        options: &SchemeOptions,
-        set: impl ConstraintSet + 'static,
-    ) -> Self {
-        let set: Option<Arc<dyn ConstraintSet>> = Some(Arc::new(set));
-        let candidate = Candidate::by_name(name, options);
-        self.candidates.push(candidate.map(|candidate| Candidate { set, ..candidate }));
+    pub fn named_scheme(mut self, scheme: &NamedScheme) -> Self {
+        self.candidates.push(Candidate::named(scheme));
         self
     }
     /// Sets the linear solvers inside the active-set method; one chosen by size otherwise.
@@ -198,10 +183,10 @@ impl<'a, const D: usize> WorkPrecision<'a, D> {
         self.limit = seconds;
         self
     }
-    /// Sets the scheme that verdicts compare with the others; the fastest one by default.
+    /// Sets the label of the scheme that verdicts compare with the others; the fastest one by default.
     #[must_use]
-    pub fn subject(mut self, scheme: &str) -> Self {
-        self.subject = scheme.to_owned();
+    pub fn subject(mut self, label: &str) -> Self {
+        self.subject = label.to_owned();
         self
     }
     /// Writes the report to this directory after every round, and within one every second.
@@ -227,8 +212,8 @@ impl<'a, const D: usize> WorkPrecision<'a, D> {
     /// Runs everything.
     ///
     /// # Errors
-    /// The errors of [`Study::check`], before anything runs; [`Error::Parameter`] for an unknown
-    /// scheme and for two schemes of one name. An [`Error::Write`] ends the study. A case that
+    /// The errors of [`Study::check`], before anything runs; [`Error::Parameter`] for two schemes of one
+    /// label. An [`Error::Write`] ends the study. A case that
     /// fails is no error: the report lists it.
     pub fn run(&self) -> Result<WorkReport, Error> {
         let mut report = WorkReport::new("work-precision", self.rounds);
@@ -372,12 +357,12 @@ impl<'a, const D: usize> WorkPrecision<'a, D> {
                 for &precision in &self.precisions {
                     let mut coarser = None;
                     for &level in &self.levels {
-                        let slot = self.slot(candidate.as_ref(), linear, precision, level)?;
+                        let slot = self.slot(candidate, linear, precision, level);
                         slot.study.check()?;
                         if slots.iter().any(|s| s.case == slot.case) {
                             let variant = &slot.case.variant;
-                            let name = format!("{} on {}", variant.scheme, variant.constraint);
-                            return Err(wrong("schemes", name, "each must have its own name"));
+                            let name = format!("{} on {}", variant.label, variant.constraint);
+                            return Err(wrong("schemes", name, "each must have its own label"));
                         }
                         slots.push(Slot { coarser, ..slot });
                         coarser = Some(slots.len() - 1);
@@ -394,13 +379,11 @@ impl<'a, const D: usize> WorkPrecision<'a, D> {
 
     fn slot<'s>(
         &'s self,
-        candidate: Option<&Candidate<'s, D>>,
+        candidate: &Candidate<'s, D>,
         linear: LinearMethod,
         precision: Precision,
         level: usize,
-    ) -> Result<Slot<'s, D>, Error> {
-        let allowed = "there is no scheme of this name in this dimension";
-        let candidate = candidate.ok_or_else(|| wrong("scheme", "unknown".to_owned(), allowed))?;
+    ) -> Slot<'s, D> {
         let set = candidate.set.clone();
         let (case, study) = match precision {
             Precision::Double => {
@@ -412,7 +395,7 @@ impl<'a, const D: usize> WorkPrecision<'a, D> {
                 (case, OneStudy::Single(study))
             }
         };
-        Ok(Slot { case, study, coarser: None, measured: None, failure: None })
+        Slot { case, study, coarser: None, measured: None, failure: None }
     }
 
     fn one_study<'s, T: Real>(
@@ -430,6 +413,7 @@ impl<'a, const D: usize> WorkPrecision<'a, D> {
             scene: scene.name.clone(),
             scheme: scheme.name().to_owned(),
             constraint: constraint.unwrap_or_else(|| in_force.name().to_owned()),
+            label: scheme.label_on(in_force),
             linear_asked: name.to_owned(),
             precision: T::NAME.to_owned(),
         };

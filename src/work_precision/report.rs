@@ -24,7 +24,7 @@ pub struct WorkReport {
     pub program: Program,
     /// Time and machine.
     pub provenance: Provenance,
-    /// The scheme that verdicts compare with the others.
+    /// The label of the scheme that verdicts compare with the others.
     pub subject: String,
     /// One row for every scene, variant and level that gave one.
     pub rows: Vec<Measured>,

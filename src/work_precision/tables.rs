@@ -43,7 +43,7 @@ fn runs(failures: &[Failure], scene: &str, rows: &[&Measured], variants: &[Varia
         // what is not a number counts as larger than any
         let worse = |a: f64, b: f64| if a.is_nan() || a > b { a } else { b };
         vec![
-            Cell::Words(m.variant().label(variants)),
+            Cell::Words(m.variant().name_among(variants)),
             Cell::whole(Some(row.level)),
             Cell::whole(Some(row.unknowns)),
             Cell::whole(row.iterations.outer),
@@ -67,7 +67,7 @@ fn runs(failures: &[Failure], scene: &str, rows: &[&Measured], variants: &[Varia
         rows: rows.iter().map(line).collect(),
         remarks: failures
             .map(|f| {
-                let name = f.case.variant.label(variants);
+                let name = f.case.variant.name_among(variants);
                 format!("failed: {name}, level {}: {}", f.case.level, f.why)
             })
             .collect(),
@@ -79,7 +79,7 @@ fn phases(scene: &str, rows: &[&Measured], variants: &[Variant]) -> Table {
     let line = |m: &&Measured| {
         let Phases { mesh, assemble, coarse, solve, total } = m.smallest;
         let mut cells = vec![
-            Cell::Words(m.variant().label(variants)),
+            Cell::Words(m.variant().name_among(variants)),
             Cell::Words(m.row.linear.clone()),
             Cell::whole(Some(m.row.level)),
         ];
@@ -107,7 +107,7 @@ fn times(scene: &str, norm: ErrorNorm, reach: &[&WorkAtError], variants: &[Varia
     let errors: Vec<f64> =
         (0..n).map(|k| errors[(errors.len() - 1) * (k + 1) / n.max(1)]).collect();
     let line = |variant: Variant| {
-        let mut cells = vec![Cell::Words(variant.label(variants))];
+        let mut cells = vec![Cell::Words(variant.name_among(variants))];
         for &error in &errors {
             let at = reach.iter().find(|r| r.variant == variant && r.error == error);
             let number = at.and_then(|r| Some((r.seconds?, r.ratio?)));

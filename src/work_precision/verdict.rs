@@ -6,7 +6,7 @@ use crate::measure::ErrorNorm;
 
 /// What the figures say of a scene: at the smallest error in L2 that the most variants reach, how
 /// many times the time of each other one the subject takes. The subject is the first variant of
-/// the named scheme that gets there, otherwise the fastest. Nothing without errors in L2.
+/// that label that gets there, otherwise the fastest. Nothing without errors in L2.
 pub(crate) fn verdict(reach: &[WorkAtError], scene: &str, subject: &str) -> Option<String> {
     let of_scene: Vec<&WorkAtError> =
         reach.iter().filter(|r| r.variant.scene == scene && r.norm == ErrorNorm::L2).collect();
@@ -20,13 +20,13 @@ pub(crate) fn verdict(reach: &[WorkAtError], scene: &str, subject: &str) -> Opti
     let (there, missing): (Vec<&WorkAtError>, Vec<&WorkAtError>) =
         here.into_iter().partition(|r| r.seconds.is_some());
     let fastest = || there.iter().find(|r| r.ratio == Some(1.0));
-    let named = there.iter().find(|r| r.variant.scheme == subject);
+    let named = there.iter().find(|r| r.variant.label == subject);
     let chosen = *named.or_else(fastest)?;
     let others = there.iter().filter(|r| r.variant != chosen.variant).map(|r| {
         let ratio = chosen.seconds.unwrap_or(f64::NAN) / r.seconds.unwrap_or(f64::NAN);
-        (two_digits(ratio), r.variant.label(&variants))
+        (two_digits(ratio), r.variant.name_among(&variants))
     });
-    let name = chosen.variant.label(&variants);
+    let name = chosen.variant.name_among(&variants);
     let seconds = chosen.seconds.unwrap_or(f64::NAN);
     let mut text = format!("{scene}: at an L2 error of {error:e} {name} takes {seconds:.2e} s");
     for (k, (ratio, other)) in others.enumerate() {
@@ -35,7 +35,7 @@ pub(crate) fn verdict(reach: &[WorkAtError], scene: &str, subject: &str) -> Opti
         text += &format!("{comma}{ratio} times {time} of {other}");
     }
     if !missing.is_empty() {
-        let names: Vec<String> = missing.iter().map(|r| r.variant.label(&variants)).collect();
+        let names: Vec<String> = missing.iter().map(|r| r.variant.name_among(&variants)).collect();
         text += &format!("; outside the range measured of {}", names.join(", "));
     }
     Some(text + ".")

@@ -40,14 +40,11 @@ pub fn small_mesh<const D: usize>(name: &str) -> Mesh<f64, D> {
     read(&Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data").join(name))
 }
 
-/// A mesh of the folder beside the project; none, with a word on it, where there is no such folder.
-pub fn shared_mesh<const D: usize>(name: &str) -> Option<Mesh<f64, D>> {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared/meshes").join(name);
-    if path.is_file() {
-        return Some(read(&path));
-    }
-    eprintln!("skipped: there is no {}", path.display());
-    None
+/// A mesh of the folder that the variable `UNILATERAL_MESHES` names: for tests that are ignored because
+/// they need it.
+pub fn mesh_of_folder<const D: usize>(name: &str) -> Mesh<f64, D> {
+    let folder = std::env::var_os("UNILATERAL_MESHES");
+    read(&Path::new(&folder.expect("UNILATERAL_MESHES names the folder of meshes")).join(name))
 }
 
 fn read<const D: usize>(path: &Path) -> Mesh<f64, D> {

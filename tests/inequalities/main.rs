@@ -8,6 +8,7 @@ mod nonsymmetric;
 mod ordering;
 mod own_preconditioner;
 mod problems;
+mod recession;
 mod solvers;
 
 #[path = "../support"]

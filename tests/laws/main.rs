@@ -4,6 +4,7 @@ mod floors;
 mod gmsh;
 mod kit;
 mod mesh;
+mod overlaps;
 mod quadrature;
 
 #[path = "../support"]

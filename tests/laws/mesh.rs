@@ -148,6 +148,30 @@ fn refined_boxes_are_finer_boxes() {
     check::<3>();
 }
 
+/// The part of a fine boundary facet is that of the side on which it lies.
+#[test]
+fn refinement_keeps_the_parts_of_the_boundary() {
+    fn check<const D: usize>() {
+        let domain: BoxDomain<D> = mixed_box();
+        let mut mesh = Mesh::<f64, D>::kuhn_box(&domain, [2; D]).unwrap();
+        for _ in 0..2 {
+            mesh = mesh.refine().unwrap().0;
+            let mut seen = [0; 3];
+            for f in mesh.boundary() {
+                let x = mesh.facet_barycentre(f.cell as usize, f.local as usize);
+                let sides = (0..D).flat_map(|k| [(k, 0, x[k]), (k, 1, 1.0 - x[k])]);
+                let (axis, end, _) = sides.min_by(|a, b| a.2.total_cmp(&b.2)).unwrap();
+                assert_eq!(f.part, domain.sides[axis][end], "{x}");
+                seen[f.part as usize] += 1;
+            }
+            assert_eq!(seen.iter().filter(|&&n| n > 0).count(), if D > 1 { 3 } else { 2 });
+        }
+    }
+    check::<1>();
+    check::<2>();
+    check::<3>();
+}
+
 #[test]
 fn boxes_have_the_stated_cells_and_sides() {
     let domain = BoxDomain::dirichlet(Point::from([-1.0, 0.0]), Point::from([1.0, 1.0])).side(
@@ -262,6 +286,18 @@ fn wrong_cells() {
     let again: Vec<u32> = raw.cells[..3].iter().rev().copied().collect();
     raw.cells.extend(again);
     assert!(matches!(refused(&raw), MeshError::RepeatedCell { first: 0, second: 2, .. }));
+    // once more all cells of a mesh, and a cell with no other beside it
+    fn twice<const D: usize>(n: usize) {
+        let mut raw = Raw::<D>::jittered(&mixed_box(), n, 0.0, &mut Random(0));
+        let cells = raw.cells.clone();
+        raw.cells.extend(cells);
+        let error = Mesh::<f64, D>::new(raw.vertices, raw.cells, &raw.boundary).unwrap_err();
+        assert!(matches!(error, MeshError::RepeatedCell { .. }), "{error}");
+    }
+    twice::<1>(1);
+    twice::<1>(4);
+    twice::<2>(2);
+    twice::<3>(2);
     // a third triangle on the diagonal
     let mut raw = square();
     raw.vertices.push(Point::from([2.0, -1.0]));

@@ -2,6 +2,7 @@
 
 use unilateral::mesh::BoxDomain;
 use unilateral::prelude::*;
+use unilateral::problem::Datum;
 use unilateral::scenes::Scene;
 use unilateral::scheme::Regularity;
 use unilateral::study::Row;
@@ -34,6 +35,8 @@ fn data_that_are_not_finite_are_named_with_the_point() {
         for (name, problem) in [
             ("source", Problem::new().source(value)),
             ("source", Problem::new().constant_source(bad)),
+            ("source", Problem::new().piecewise_source(value, |x| x[0] - 0.5)),
+            ("source", Problem::new().piecewise_source(value, |x| x[0] - 0.6)),
             ("dirichlet", problem().dirichlet(value)),
             ("neumann", problem().neumann(move |x, _| value(x))),
             ("obstacle", problem().obstacle_below(value)),
@@ -41,6 +44,7 @@ fn data_that_are_not_finite_are_named_with_the_point() {
             ("gap", problem().signorini(value)),
             ("reaction", problem().reaction(value)),
             ("reaction", problem().reaction(bad)),
+            ("reaction", problem().reaction(Datum::piecewise(value, |x| x[0] - 0.6))),
         ] {
             match study(problem) {
                 Err(Error::DataNotFinite { datum, value, at, .. }) => {
@@ -59,7 +63,8 @@ fn data_that_are_not_finite_are_named_with_the_point() {
 fn coefficients_must_be_positive_and_obstacles_leave_room() {
     for bad in [0.0, -1.0, f64::NAN, f64::INFINITY] {
         let found = study(Problem::new().coefficient(partly(bad)));
-        assert!(matches!(found, Err(Error::CoefficientNotPositive { .. })), "{bad}");
+        let Err(Error::CoefficientNotPositive { at, .. }) = found else { panic!("{bad}") };
+        assert!(at.starts_with('(') && at.contains(", "), "{at}");
     }
     let crossed = Problem::new().obstacle_below(|_| 0.5).obstacle_above(|x| 1.0 - x[0]);
     let Err(Error::EmptyConstraint { lower, upper, .. }) = study(crossed) else {

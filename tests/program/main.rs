@@ -1,6 +1,7 @@
 //! The program `unilateral`, subcommand `compare`: wrong requests and right requests.
 
 mod data;
+mod limits;
 mod meshes;
 mod output;
 mod requests;

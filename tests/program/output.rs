@@ -5,7 +5,7 @@ use std::path::Path;
 use serde_json::Value;
 use unilateral::scenes;
 
-use super::run::{Scratch, program, read_json, rows, stderr, stdout};
+use super::run::{Scratch, command, program, read_json, rows, stderr, stdout};
 
 #[test]
 fn the_list_names_everything() {
@@ -84,11 +84,12 @@ fn options_show_in_the_report() {
 fn orders_are_written_beside_what_is_promised() {
     let scratch = Scratch::new("orders");
     let path = scratch.path("orders.md");
-    let output = scratch.run(&format!("--scene radial-2d --levels 16,32 --quiet --orders {path}"));
+    let output =
+        scratch.run(&format!("--scene radial-2d --levels 4,8,16,32 --quiet --orders {path}"));
     assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
     let text = std::fs::read_to_string(path).unwrap();
     let line = |scheme: &str| {
-        let start = format!("| radial-2d | {scheme} | vertices | 16, 32 | ");
+        let start = format!("| radial-2d | {scheme} | vertices | 4 to 32 (4) | ");
         text.lines().find(|l| l.starts_with(&start)).unwrap_or_else(|| panic!("{text}"))
     };
     for scheme in ["p1", "sipg", "wopsip"] {
@@ -106,4 +107,37 @@ fn a_closed_pipe_is_no_error() {
         program().args(["--list", "--out", &scratch.path("out")]).stdout(writer).output().unwrap();
     assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
     assert_eq!(stderr(&output), "");
+}
+
+/// The same scheme with two factors, in every command that takes schemes.
+#[test]
+fn all_commands_take_schemes_with_choices() {
+    let scratch = Scratch::new("choices");
+    let written = "sipg,sipg@factor=1.05,wopsip@factor=10,weight=anisotropic";
+    let labels = ["sipg", "sipg@factor=1.05", "wopsip@factor=10,weight=anisotropic"];
+    let report =
+        scratch.report(&format!("--scene radial-2d --scheme {written} --levels 4 --quiet"));
+    let found: Vec<&str> = rows(&report).iter().map(|r| r["label"].as_str().unwrap()).collect();
+    assert_eq!(found, labels);
+    assert!(scratch.0.join("out/radial-2d-wopsip-factor-10-weight-anisotropic.vtu").exists());
+
+    let run = |name: &str, options: &str| {
+        let output = command(name).args(options.split(' ')).output().unwrap();
+        assert_eq!(output.status.code(), Some(0), "{name}: {}", stderr(&output));
+        stdout(&output)
+    };
+    let out = scratch.path("work");
+    let options = format!("--scene radial-2d --scheme {written} --levels 4 --rounds 1 --out {out}");
+    let text = run("work-precision", &options);
+    assert!(labels.iter().all(|label| text.contains(label)), "{text}");
+
+    let out = scratch.path("pictures");
+    run("pictures", &format!("--level 4 --scheme {} --out {out}", labels[2]));
+    let name = "radial-2d-wopsip-factor-10-weight-anisotropic-4.svg";
+    assert!(Path::new(&out).join(name).exists());
+
+    let table = scratch.path("orders.md");
+    run("orders", &format!("{table} radial-1d --quick --scheme {written}"));
+    let text = std::fs::read_to_string(table).unwrap();
+    assert!(labels.iter().all(|label| text.contains(&format!("| {label} |"))), "{text}");
 }

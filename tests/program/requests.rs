@@ -13,6 +13,14 @@ fn wrong_options_are_refused() {
         ("--scene radial-2d,", &["unknown scene \"\"", "radial-2d"]),
         ("--scheme p7", &["unknown scheme \"p7\"", schemes, "wopsip"]),
         ("--scheme all,p7", &["unknown scheme \"p7\"", schemes]),
+        ("--scheme sipg@eta=3", &["sipg@eta=3", "does not take \"eta\"", "factor, sigma"]),
+        ("--scheme p1@factor=3", &["p1 does not take \"factor\"", "no key"]),
+        ("--scheme p1,factor=3", &["p1@factor=3"]),
+        ("--scheme sipg@factor=0", &["factor = 0", "positive and finite"]),
+        ("--scheme sipg@factor=2,sigma=3", &["factor and sigma", "same penalty"]),
+        ("--scheme br2@lifts=half", &["lifts = half", "reduced, full"]),
+        ("--scheme wopsip:edges", &["wopsip:edges", "no placement \"edges\"", "facet-means"]),
+        ("--scheme p1:facet-means", &["p1:facet-means", "no such values", "vertices, nodes"]),
         ("--solver magic", &["unknown solver \"magic\"", "active-set"]),
         ("--linear magic", &["unknown linear solver \"magic\"", "direct"]),
         ("--constraint edges", &["edges", "vertices", "facet-means"]),
@@ -91,16 +99,4 @@ fn places_that_cannot_be_written_are_refused_before_the_work() {
     let directory = scratch.0.display().to_string();
     refused(&scratch, &["--json", &directory], &["cannot write", &directory]);
     assert!(std::fs::read(file).unwrap().is_empty());
-}
-
-#[test]
-fn more_than_the_memory_is_refused() {
-    let Some(memory) = unilateral::study::available_memory_bytes() else { return };
-    let needed = 150e9;
-    if memory as f64 > needed {
-        return;
-    }
-    let scratch = Scratch::new("memory");
-    let options = ["--scheme", "sipg", "--scene", "ball-2d", "--levels", "8,7000"];
-    refused(&scratch, &options, &["ball-2d", "sipg", "level 7000", "GB of memory", "lower level"]);
 }

@@ -23,8 +23,9 @@ fn check_row(row: &Value) {
     for key in ROW_KEYS {
         let value = &row[key];
         let fits = match key {
-            "scene" | "scheme" | "constraint" | "status" => value.is_string(),
+            "scene" | "scheme" | "constraint" | "label" | "status" => value.is_string(),
             "dimension" | "level" | "cells" | "unknowns" | "nonzeros" => value.is_u64(),
+            "message" => value.is_string() != converged,
             "active" => value.is_u64() || (value.is_null() && !converged),
             "multiplier_l1" | "multiplier_l2" | "contact_area_error" | "free_boundary_distance" => {
                 value.is_number() || value.is_null()

@@ -5,11 +5,16 @@ use std::process::{Command, Output};
 
 use serde_json::Value;
 
-/// The command `compare` of the program, which cargo builds before the tests.
-pub fn program() -> Command {
+/// A command of the program, which cargo builds before the tests.
+pub fn command(name: &str) -> Command {
     let mut command = Command::new(env!("CARGO_BIN_EXE_unilateral"));
-    command.arg("compare");
+    command.arg(name);
     command
+}
+
+/// The command `compare`.
+pub fn program() -> Command {
+    command("compare")
 }
 
 /// A directory of its own for a test, gone when the test is over.

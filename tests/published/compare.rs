@@ -34,7 +34,7 @@ fn jump_norm<const D: usize>(problem: &Problem<D>, error: &Errors) -> f64 {
     let reaction = match problem.reaction {
         None => 0.0,
         Some(Datum::Constant(c)) => c,
-        Some(Datum::Function(_)) => unreachable!("no table has such a reaction"),
+        Some(_) => unreachable!("no table has such a reaction"),
     };
     (energy * energy - h1 * h1 - reaction * l2 * l2).sqrt()
 }

@@ -1,6 +1,7 @@
 //! Studies and what they write: scenes, reports, tables, pictures, files of fields.
 
 mod links;
+mod named_schemes;
 mod one_problem;
 mod pictures;
 mod report;

@@ -114,7 +114,7 @@ fn csv_reads_back_to_the_same_numbers_as_json() {
     let json = serde_json::to_value(&report).unwrap();
     assert_eq!(csv.len(), rows.len() + 1);
     let header = &csv[0];
-    assert_eq!(header[..6].join(" "), "scene dimension scheme constraint level parameters.sigma");
+    assert_eq!(header[..6].join(" "), "scene dimension scheme constraint label level");
     let ends = ["error.l2", "order.h1", "iterations.outer", "certificate.residual"];
     for key in ends.into_iter().chain(["seconds.total", "peak_memory_bytes", "warnings"]) {
         assert!(header.iter().any(|h| h == key), "{key}");

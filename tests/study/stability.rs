@@ -111,6 +111,47 @@ fn slivers_leave_the_schemes_definite() {
     assert!(absent.iter().all(|r| r.verdict == Verdict::NotApplicable), "{}", describe(absent[0]));
 }
 
+/// A factor that was measured outside of the limits is not safe, whatever else it keeps.
+#[test]
+fn factors_are_safe_within_what_was_measured() {
+    let study = Stability::new(Effort::Trial).cases(["penalty-factor", "coercivity"]);
+    let report = study.schemes(["wopsip", "sipg"]).run().unwrap();
+    let small: Vec<_> = of(&report, "error-of-large-factors")
+        .into_iter()
+        .filter(|r| r.value.is_some_and(|eta| eta < 1.0))
+        .collect();
+    assert!(!small.is_empty());
+    assert!(small.iter().all(|r| r.verdict == Verdict::FailsAsExpected), "{}", describe(small[0]));
+    let [wopsip, sipg] = &report.safe_ranges()[..] else { panic!("{:?}", report.safe_ranges()) };
+    let start = "wopsip: safe range of eta: 100 to 100; 2 factors measured from 1e-4 to 100; at 1e-4 \
+                 H1 error over that of cr on ";
+    assert!(wopsip.starts_with(start) && wopsip.ends_with(", at most 1.05 allowed."), "{wopsip}");
+    assert!(sipg.starts_with("sipg: safe range of sigma: 4 to 1000; 8 factors"), "{sipg}");
+    assert!(report.robust_choices().iter().all(|said| !said.contains("penalty-factor")));
+    assert!(report.summary().contains(wopsip));
+}
+
+/// Every factor that is swept has limits.
+#[test]
+fn no_factor_is_reported_without_a_limit() {
+    let study = Stability::new(Effort::Trial).cases(["penalty-factor", "coercivity", "round-off"]);
+    let report = study.schemes(["wopsip", "sipg"]).run().unwrap();
+    let swept = report.rows.iter().filter(|r| r.parameter == "eta" || r.parameter == "sigma");
+    for row in swept {
+        assert_ne!(row.verdict, Verdict::Reported, "{}", describe(row));
+    }
+}
+
+#[test]
+fn schemes_are_written_as_everywhere() {
+    let study = Stability::new(Effort::Trial).cases(["scaling"]);
+    let report = study.schemes(["sipg@factor=1.05", "br2@factor=2", "lifts=full"]).run().unwrap();
+    keeps(&report);
+    let shown: BTreeSet<(&str, &str)> =
+        report.rows.iter().map(|r| (&r.scheme[..], &r.choice[..])).collect();
+    assert_eq!(shown, BTreeSet::from([("br2", "factor=2,lifts=full"), ("sipg", "factor=1.05")]));
+}
+
 #[test]
 fn what_does_not_exist_is_refused_before_anything_runs() {
     let study = |case: &str, scheme: &str| {

@@ -1,11 +1,12 @@
 //! What scripts rely on.
 
 /// The keys of a row, in order.
-pub const ROW_KEYS: [&str; 24] = [
+pub const ROW_KEYS: [&str; 26] = [
     "scene",
     "dimension",
     "scheme",
     "constraint",
+    "label",
     "level",
     "parameters",
     "cells",
@@ -13,6 +14,7 @@ pub const ROW_KEYS: [&str; 24] = [
     "nonzeros",
     "mesh_size",
     "status",
+    "message",
     "error",
     "multiplier_l1",
     "multiplier_l2",

@@ -5,6 +5,7 @@ use unilateral::inequality::{Certificate, Outcome};
 use unilateral::measure::{Errors, Fields};
 use unilateral::mesh::Mesh;
 use unilateral::prelude::*;
+use unilateral::problem::Datum;
 use unilateral::quadrature::Rule;
 use unilateral::scenes::Scene;
 
@@ -40,7 +41,9 @@ pub fn solve_as_tables<const D: usize>(
     solve_by_rule(scene, scheme, level, DEGREE_OF_TABLES)
 }
 
-/// A scheme's solution on a level, with rules of this degree for data.
+/// A scheme's solution on a level, with rules of this degree for data. The programs behind the
+/// tables use their rules across jumps and kinks of the load too, as is done here for their sake; what
+/// cells that are cut gain is tested by itself.
 pub fn solve_by_rule<const D: usize>(
     scene: &Scene<D>,
     scheme: &dyn AnyScheme<f64, D>,
@@ -49,7 +52,11 @@ pub fn solve_by_rule<const D: usize>(
 ) -> (Mesh<f64, D>, Figures) {
     let meshes = Hierarchy::of_domain(&scene.domain, level).unwrap();
     let quadrature = DataQuadrature::default().cell(degree).facet(degree);
-    let mut nested = NestedIteration::new(&scene.problem, &meshes).quadrature(quadrature);
+    let mut problem = scene.problem.clone();
+    if let Some(Datum::Piecewise { value, .. }) = problem.source {
+        problem.source = Some(Datum::Function(value));
+    }
+    let mut nested = NestedIteration::new(&problem, &meshes).quadrature(quadrature);
     let solved = nested.solve(scheme).unwrap();
     (meshes.finest().clone(), Figures::of(&solved))
 }

@@ -5,23 +5,28 @@
 //! itself and from its neighbours as centres.
 //!
 //! On a centre `K` the jump `m` on facet `F` lifts to `-w/alpha n s`, `w` the weight of `K` in the flux and
-//! `s` of degree `p - 1` with `int_K s q = int_F m q`. With `|F||F'| n.n' = D^2 |K| int grad lambda
+//! `s` of the degree of lifts with `int_K s q = int_F m q`. With `|F||F'| n.n' = D^2 |K| int grad lambda
 //! . grad lambda'` the product of two lifts is `D^2 w w'/alpha` times that integral times a number
 //! of the reference cell.
+//!
+//! Where the coefficient varies on a facet, `w` is a function on it: `w m` is projected on polynomials of
+//! degree `p - 1`, and what `m` has of degree `p` on those of degree `p`. Where it varies in `K`, `1/alpha`
+//! is that of its least value. With the stiffness at the points of its rule the square is then completed
+//! still: the form is coercive for every penalty.
 
 use super::Coupled;
-use crate::assemble::local::{CellSide, flux_weight, view};
-use crate::assemble::space::Space;
+use crate::assemble::local::{flux_weight, view};
 use crate::assemble::space::metric::{CellMetric, Metrics};
 use crate::assemble::space::tables::{BasisAt, FacetTable};
+use crate::assemble::space::{Place, Space};
 use crate::element::MAX_BASIS;
 use crate::facet::FacetForm;
 use crate::mesh::{BoundaryPart, Neighbour, Neighbours};
 use crate::quadrature::{OrthonormalPolynomials, Rule, facet_to_cell};
 use crate::real::Real;
 
-/// Most moments a lift is made of: linears on a triangle.
-const MAX_MOMENTS: usize = 3;
+/// Most moments a lift is made of: quadratics on a triangle.
+const MAX_MOMENTS: usize = 6;
 
 type Moments<T> = [[T; MAX_MOMENTS]; MAX_BASIS];
 type Product<T> = [[T; MAX_MOMENTS]; MAX_MOMENTS];
@@ -30,14 +35,15 @@ type Product<T> = [[T; MAX_MOMENTS]; MAX_MOMENTS];
 pub(crate) struct LiftTable<T> {
     /// Moments of the basis, of degree up to that of lifts.
     pub facets: FacetTable<T>,
+    /// Number of moments on a facet.
+    moments: usize,
     /// For two facets, the products of the lifts of their moments, per measures and volume.
     products: [[Product<T>; 4]; 4],
 }
 
 impl<T: Real> LiftTable<T> {
-    /// The lifts of a space of degree one or two.
-    pub fn new<const D: usize>(space: &Space<'_, T, D>) -> Self {
-        let degree = space.basis_degree - 1;
+    /// The lifts of this degree of a space of degree one or two.
+    pub fn new<const D: usize>(space: &Space<'_, T, D>, degree: usize) -> Self {
         let mut products = [[[[T::lit(0.0); MAX_MOMENTS]; MAX_MOMENTS]; 4]; 4];
         let tests: Vec<Vec<Vec<f64>>> = (0..=D).map(|l| tests(D, degree, l)).collect();
         for l in 0..=D {
@@ -51,7 +57,8 @@ impl<T: Real> LiftTable<T> {
                 }
             }
         }
-        Self { facets: space.facet_table(degree), products }
+        let facets = space.facet_table(degree);
+        Self { moments: facets.degrees.len(), facets, products }
     }
 }
 
@@ -69,6 +76,14 @@ fn tests(dimension: usize, degree: usize, local: usize) -> Vec<Vec<f64>> {
     (0..on_facet.len()).map(|m| (0..in_cell.len()).map(|q| mean(m, q)).collect()).collect()
 }
 
+/// Moments of a weight times a function with these moments.
+fn weigh<T: Real>(products: &Product<T>, moments: &[T; MAX_MOMENTS]) -> [T; MAX_MOMENTS] {
+    let sum = |row: &[T; MAX_MOMENTS]| {
+        row.iter().zip(moments).fold(T::lit(0.0), |sum, (&p, &m)| sum + p * m)
+    };
+    std::array::from_fn(|k| sum(&products[k]))
+}
+
 /// The lifts of a discretisation.
 pub(crate) struct Lifting<'s, 'a, T: Real, const D: usize> {
     pub space: &'s Space<'a, T, D>,
@@ -82,8 +97,11 @@ struct JumpFacet<T> {
     local: usize,
     /// The cell across and the facet's number in it; none on the boundary.
     across: Option<(usize, usize)>,
-    /// The weight of the centre's normal derivative in the flux.
+    /// The weight of the centre's normal derivative in the flux; one where the coefficient varies in one
+    /// of the cells.
     flux_weight: T,
+    /// There, the products of moments with that weight at the points of the facet.
+    products: Option<Product<T>>,
 }
 
 impl<T: Real, const D: usize> Lifting<'_, '_, T, D> {
@@ -122,15 +140,15 @@ impl<T: Real, const D: usize> Lifting<'_, '_, T, D> {
                 Some((there, here)) if there == test.local => (T::lit(-1.0), here),
                 Some(_) => continue,
             };
-            let tested = self.moments(local);
+            let tested = self.moments(local, test);
             for trial in facets_with_jumps.iter().flatten() {
                 let scale = sign * self.scale(centre, &metric, test, trial);
                 let weighted = self.weighted(&tested, test.local, trial.local, scale);
-                let columns = self.moments(trial.local);
+                let columns = self.moments(trial.local, trial);
                 let start = coupled.position(centre) * n;
                 self.add_block(&weighted, &columns, T::lit(1.0), start, row, rows);
                 if let Some((other, other_local)) = trial.across {
-                    let columns = self.moments(other_local);
+                    let columns = self.moments(other_local, trial);
                     let start = coupled.position(other) * n;
                     self.add_block(&weighted, &columns, T::lit(-1.0), start, row, rows);
                 }
@@ -148,7 +166,7 @@ impl<T: Real, const D: usize> Lifting<'_, '_, T, D> {
     ) -> T {
         let product = metric.products[test.local][trial.local];
         T::lit((D * D) as f64) * test.flux_weight * trial.flux_weight * product
-            / self.space.alpha(centre)
+            / self.space.extreme_coefficients((centre, test.local))[1]
     }
 
     /// Facet `local` of a centre, if a form acts on its jumps.
@@ -160,27 +178,48 @@ impl<T: Real, const D: usize> Lifting<'_, '_, T, D> {
         local: usize,
     ) -> Option<JumpFacet<T>> {
         let mesh = self.space.mesh;
-        let coefficient = self.space.alpha(centre);
-        let me = CellSide { cell: centre, local, metric, coefficient };
+        let me = self.space.side(centre, local, metric);
         match neighbours.across(centre, local) {
             Neighbour::Cell { cell, local: other_local } => {
                 let (cell, other_local) = (cell as usize, other_local as usize);
-                let (metric, coefficient) = (self.metrics.at(cell), self.space.alpha(cell));
-                let other = CellSide { cell, local: other_local, metric: &metric, coefficient };
+                let metric = self.metrics.at(cell);
+                let other = self.space.side(cell, other_local, &metric);
                 let is_here = centre < cell;
                 let (here, there) = if is_here { (&me, &other) } else { (&other, &me) };
                 let facet = view(mesh, here, Some(there));
-                let flux_weight = flux_weight(&facet, self.form.average_weight(&facet), is_here);
-                Some(JumpFacet { local, across: Some((cell, other_local)), flux_weight })
+                let average_weight = self.form.average_weight(&facet);
+                let flux_weight = flux_weight(&facet, average_weight, is_here);
+                let own = if is_here { average_weight } else { T::lit(1.0) - average_weight };
+                let across = Some((cell, other_local));
+                Some(self.with_products((centre, local), across, flux_weight, own))
             }
             Neighbour::Boundary(BoundaryPart::Dirichlet) => {
-                Some(JumpFacet { local, across: None, flux_weight: coefficient })
+                let weight = me.coefficient;
+                Some(self.with_products((centre, local), None, weight, T::lit(1.0)))
             }
             Neighbour::Boundary(_) => None,
         }
     }
 
-    fn moments(&self, local: usize) -> Moments<T> {
+    /// A facet of a centre, with the products of moments where the coefficient varies.
+    fn with_products(
+        &self,
+        (centre, local): Place,
+        across: Option<Place>,
+        flux_weight: T,
+        own_weight: T,
+    ) -> JumpFacet<T> {
+        if !self.space.varies_at((centre, local), across) {
+            return JumpFacet { local, across, flux_weight, products: None };
+        }
+        let product = |k, l| self.space.flux_product((centre, local), across, own_weight, (k, l));
+        let or_zero = |k, l| product(k, l).unwrap_or_else(|| T::lit(0.0));
+        let products = std::array::from_fn(|k| std::array::from_fn(|l| or_zero(k, l)));
+        JumpFacet { local, across, flux_weight: T::lit(1.0), products: Some(products) }
+    }
+
+    /// The moments on facet `local` of a cell, which is this facet of a centre, of what is lifted.
+    fn moments(&self, local: usize, facet: &JumpFacet<T>) -> Moments<T> {
         let mut moments = [[T::lit(0.0); MAX_MOMENTS]; MAX_BASIS];
         for (m, basis) in self.table.facets.on(local).iter().enumerate() {
             let basis: &BasisAt<T> = basis;
@@ -188,7 +227,10 @@ impl<T: Real, const D: usize> Lifting<'_, '_, T, D> {
                 moments[i][m] = basis.values[i];
             }
         }
-        moments
+        match &facet.products {
+            Some(products) => moments.map(|moments| weigh(products, &moments)),
+            None => moments,
+        }
     }
 
     /// The moments of test functions times the products with the moments of another facet.
@@ -196,8 +238,8 @@ impl<T: Real, const D: usize> Lifting<'_, '_, T, D> {
         let products = &self.table.products[test][trial];
         let mut weighted = [[T::lit(0.0); MAX_MOMENTS]; MAX_BASIS];
         for i in 0..self.space.per_cell() {
-            for n in 0..MAX_MOMENTS {
-                for m in 0..MAX_MOMENTS {
+            for n in 0..self.table.moments {
+                for m in 0..self.table.moments {
                     weighted[i][n] += scale * tested[i][m] * products[m][n];
                 }
             }
@@ -218,7 +260,7 @@ impl<T: Real, const D: usize> Lifting<'_, '_, T, D> {
         for i in 0..n {
             let out = &mut rows[i * row + start..i * row + start + n];
             for j in 0..n {
-                for m in 0..MAX_MOMENTS {
+                for m in 0..self.table.moments {
                     out[j] += sign * tests[i][m] * trials[j][m];
                 }
             }
@@ -235,19 +277,21 @@ impl<T: Real, const D: usize> Lifting<'_, '_, T, D> {
         load: &mut [T],
     ) {
         let metric = self.metrics.at::<D>(centre);
-        let datum =
-            JumpFacet { local: *datum_local, across: None, flux_weight: self.space.alpha(centre) };
+        let Some(datum) = self.jump_facet(neighbours, centre, &metric, *datum_local) else {
+            return;
+        };
+        let lifted = lifted_moments(&datum, moments);
         for local in 0..=D {
             let Some(test) = self.jump_facet(neighbours, centre, &metric, local) else { continue };
             let scale = self.scale(centre, &metric, &test, &datum);
             let mut add = |cell: usize, local: usize, sign: T| {
-                let tested = self.moments(local);
+                let tested = self.moments(local, &test);
                 let weighted = self.weighted(&tested, test.local, *datum_local, scale);
                 let n = self.space.per_cell();
                 let out = &mut load[cell * n..(cell + 1) * n];
                 for (out, weighted) in out.iter_mut().zip(&weighted) {
-                    for (w, &moment) in weighted.iter().zip(moments) {
-                        *out += sign * *w * T::lit(moment);
+                    for (w, &moment) in weighted.iter().zip(&lifted) {
+                        *out += sign * *w * moment;
                     }
                 }
             };
@@ -257,4 +301,34 @@ impl<T: Real, const D: usize> Lifting<'_, '_, T, D> {
             }
         }
     }
+
+    /// The product of the lifts of Dirichlet data on two facets of a centre, each given by the number of
+    /// the facet and the moments of the datum, of which lifts take the first.
+    pub fn product_of_data(
+        &self,
+        neighbours: &Neighbours,
+        centre: usize,
+        (first, first_moments): &(usize, Vec<f64>),
+        (second, second_moments): &(usize, Vec<f64>),
+    ) -> T {
+        let metric = self.metrics.at::<D>(centre);
+        let facet = |local| self.jump_facet(neighbours, centre, &metric, local);
+        let (Some(a), Some(b)) = (facet(*first), facet(*second)) else { return T::lit(0.0) };
+        let scale = self.scale(centre, &metric, &a, &b);
+        let (a, b) = (lifted_moments(&a, first_moments), lifted_moments(&b, second_moments));
+        let mut sum = T::lit(0.0);
+        for (products, &a) in self.table.products[*first][*second].iter().zip(&a) {
+            for (&product, &b) in products.iter().zip(&b) {
+                sum += scale * a * product * b;
+            }
+        }
+        sum
+    }
+}
+
+/// The moments of a Dirichlet datum of which lifts are made, weighted where the coefficient varies.
+fn lifted_moments<T: Real>(facet: &JumpFacet<T>, moments: &[f64]) -> [T; MAX_MOMENTS] {
+    let mut lifted = [T::lit(0.0); MAX_MOMENTS];
+    lifted.iter_mut().zip(moments).for_each(|(to, &from)| *to = T::lit(from));
+    facet.products.as_ref().map_or(lifted, |products| weigh(products, &lifted))
 }

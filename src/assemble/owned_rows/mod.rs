@@ -202,7 +202,7 @@ pub(crate) fn fill<T: Real, const D: usize>(
         _ => filling.fill::<MAX_BASIS, MAX_FLUX_MOMENTS>(row_starts, values),
     }
     if form.is_lifted() {
-        let table = LiftTable::new(space);
+        let table = LiftTable::new(space, form.lift_degree(space.basis_degree));
         let lifting = Lifting { space, form, metrics, table: &table };
         filling.add_to_cells(row_starts, values, &|cell, coupled, rows| {
             lifting.add(filling.neighbours, cell, coupled, rows);

@@ -5,8 +5,9 @@
 use super::{Coupled, Filling, for_each_cell};
 use crate::assemble::count;
 use crate::assemble::facet_coefficients::FacetWeight;
-use crate::assemble::local::CellSide;
-use crate::assemble::space::tables::BasisAt;
+use crate::assemble::space::Place;
+use crate::assemble::space::metric::CellMetric;
+use crate::assemble::space::tables::Derivatives;
 use crate::element::MAX_BASIS;
 use crate::facet::FacetKind;
 use crate::mesh::{BoundaryPart, Neighbour};
@@ -52,11 +53,19 @@ impl<'r, T: Real> Rows<'r, T> {
     }
 }
 
+/// The cell whose rows are made, seen from one of its facets.
+#[derive(Clone, Copy)]
+struct Own<'f, T, const D: usize> {
+    cell: usize,
+    local: usize,
+    metric: &'f CellMetric<T, D>,
+}
+
 /// One facet of a cell, as it enters the rows of that cell: normals point out of it.
 ///
 /// Jumps and fluxes both flip their sign with the direction of the normal, so their products do not.
 struct OnFacet<'f, T, const D: usize, const N: usize, const M: usize> {
-    me: CellSide<'f, T, D>,
+    me: Own<'f, T, D>,
     weight: FacetWeight<'f, T>,
     /// What multiplies the products of jumps of the first class.
     jump_jump: T,
@@ -113,22 +122,24 @@ impl<T: Real, const D: usize> Filling<'_, '_, T, D> {
     fn write_cell<const N: usize, const M: usize>(&self, cell: usize, mut rows: Rows<'_, T>) {
         let metric = self.metrics.at(cell);
         let coefficient = self.space.alpha(cell);
-        let mut own: Block<T, N> =
-            block(|i, j| coefficient * self.stiffness.entry::<D>(&metric, i, j));
+        let mut own: Block<T, N> = match self.space.varying_in(cell) {
+            None => block(|i, j| coefficient * self.stiffness.entry::<D>(&metric, i, j)),
+            Some((varying, values)) => block(|i, j| varying.stiffness::<D>(values, &metric, i, j)),
+        };
         for local in 0..=D {
-            let me = CellSide { cell, local, metric: &metric, coefficient };
+            let me = Own { cell, local, metric: &metric };
             match self.neighbours.across(cell, local) {
                 Neighbour::Cell { cell: other, local: other_local } => {
                     let there = (other as usize, other_local as usize);
                     let from_here = cell < there.0;
                     let here = if from_here { (cell, local) } else { there };
                     let weight = self.weights.at::<D>(here, from_here, FacetKind::Interior);
-                    let facet = self.add_facet::<N, M>(me, weight, &mut own);
+                    let facet = self.add_facet::<N, M>(me, Some(there), weight, &mut own);
                     self.write_across::<N, M>(&facet, there, &mut rows);
                 }
                 Neighbour::Boundary(BoundaryPart::Dirichlet) if !self.space.pins => {
                     let weight = self.weights.at::<D>((cell, local), true, FacetKind::Dirichlet);
-                    self.add_facet::<N, M>(me, weight, &mut own);
+                    self.add_facet::<N, M>(me, None, weight, &mut own);
                 }
                 Neighbour::Boundary(_) => {}
             }
@@ -142,7 +153,8 @@ impl<T: Real, const D: usize> Filling<'_, '_, T, D> {
     #[inline(always)]
     fn add_facet<'f, const N: usize, const M: usize>(
         &'f self,
-        me: CellSide<'f, T, D>,
+        me: Own<'f, T, D>,
+        there: Option<Place>,
         weight: FacetWeight<'f, T>,
         own: &mut Block<T, N>,
     ) -> OnFacet<'f, T, D, N, M> {
@@ -160,7 +172,11 @@ impl<T: Real, const D: usize> Filling<'_, '_, T, D> {
             let (jump_flux, flux_jump) = (form.jump_flux.at(penalty), form.flux_jump.at(penalty));
             let mine = &moments[k];
             let products = &me.metric.products[me.local];
-            flux[k] = self.flux::<N>(mine, products, weight.own_flux_weight);
+            let own_weight = weight.own_flux_weight;
+            flux[k] = match self.space.flux_derivatives((me.cell, me.local), there, own_weight, k) {
+                None => self.flux::<N>(&mine.derivatives, products, own_weight),
+                Some(weighted) => self.flux::<N>(&weighted, products, T::lit(1.0)),
+            };
             facet.by_flux[k] =
                 std::array::from_fn(|i| jump_flux * mine.values[i] + flux_flux * flux[k][i]);
             facet.by_jump[k] = flux[k].map(|flux| flux_jump * flux);
@@ -194,17 +210,22 @@ impl<T: Real, const D: usize> Filling<'_, '_, T, D> {
     fn write_across<const N: usize, const M: usize>(
         &self,
         facet: &OnFacet<'_, T, D, N, M>,
-        (other, other_local): (usize, usize),
+        there: Place,
         rows: &mut Rows<'_, T>,
     ) {
-        let local = facet.me.local;
+        let Own { cell, local, .. } = facet.me;
+        let (other, other_local) = there;
         let mut flux = [[T::lit(0.0); N]; M];
         let moments = self.facets.on(other_local);
         if self.n_fluxes::<M>() > 0 {
             let of_theirs = self.metrics.products_of::<D>(other, other_local);
             for k in 0..self.n_fluxes::<M>() {
-                let factor = -facet.weight.other_flux_weight;
-                flux[k] = self.flux::<N>(&moments[k], &of_theirs, factor);
+                let weight = facet.weight.other_flux_weight;
+                let weighted = self.space.flux_derivatives(there, Some((cell, local)), weight, k);
+                flux[k] = match weighted {
+                    None => self.flux::<N>(&moments[k].derivatives, &of_theirs, -weight),
+                    Some(weighted) => self.flux::<N>(&weighted, &of_theirs, T::lit(-1.0)),
+                };
             }
         }
         let products = self.jumps.across(local, other_local);
@@ -235,7 +256,7 @@ impl<T: Real, const D: usize> Filling<'_, '_, T, D> {
 
     /// What multiplies the products of jumps of a class.
     #[inline(always)]
-    fn jump_scale(&self, me: &CellSide<'_, T, D>, weight: &FacetWeight<'_, T>, class: T) -> T {
+    fn jump_scale(&self, me: &Own<'_, T, D>, weight: &FacetWeight<'_, T>, class: T) -> T {
         me.metric.measures[me.local] * weight.coefficients.jump_jump.at(weight.penalty * class)
     }
 
@@ -243,12 +264,17 @@ impl<T: Real, const D: usize> Filling<'_, '_, T, D> {
     /// derivatives along the outward normal times the measure of the facet and a factor.
     /// `products`: those of the gradient opposite the facet with all gradients.
     #[inline(always)]
-    fn flux<const N: usize>(&self, basis: &BasisAt<T>, products: &[T; 4], factor: T) -> [T; N] {
+    fn flux<const N: usize>(
+        &self,
+        derivatives: &Derivatives<T>,
+        products: &[T; 4],
+        factor: T,
+    ) -> [T; N] {
         count::normal_derivatives(N);
         let scale = T::lit(-(D as f64)) * factor;
         std::array::from_fn(|i| {
-            let sum = |sum, k: usize| sum + basis.derivatives[i][k] * products[k];
-            scale * (1..=D).fold(basis.derivatives[i][0] * products[0], sum)
+            let sum = |sum, k: usize| sum + derivatives[i][k] * products[k];
+            scale * (1..=D).fold(derivatives[i][0] * products[0], sum)
         })
     }
 }

@@ -72,6 +72,18 @@ impl<'s, 'a, T: Real, const D: usize> CellMatrices<'s, 'a, T, D> {
         self.square.filter(|_| self.space.reaction.is_none())
     }
 
+    /// Writes the stiffness of a cell in which the coefficient varies.
+    #[inline(never)]
+    fn write_varying(&self, cell: usize, out: &mut Triangle<T>) {
+        let Some((varying, values)) = self.space.varying_in(cell) else { return };
+        let metric = self.space.metric(cell);
+        let n = self.space.per_cell();
+        let entries = (0..n).flat_map(|i| (i..n).map(move |j| (i, j)));
+        for (out, (i, j)) in out.iter_mut().zip(entries) {
+            *out = varying.stiffness::<D>(values, &metric, i, j);
+        }
+    }
+
     /// Writes the matrix of a cell.
     #[inline(always)]
     fn write<E: ReferenceElement<T, D>>(
@@ -85,12 +97,16 @@ impl<'s, 'a, T: Real, const D: usize> CellMatrices<'s, 'a, T, D> {
         for (product, (k, l)) in products.iter_mut().zip(pairs_of::<D>()) {
             *product = shape[k][l];
         }
-        for place in 0..E::N * (E::N + 1) / 2 {
-            let mut sum = products[0] * self.pairs[0][place];
-            for pair in 1..D * (D + 1) / 2 {
-                sum += products[pair] * self.pairs[pair][place];
+        if const { E::BASIS_DEGREE > 1 } && self.space.varying_in(cell).is_some() {
+            self.write_varying(cell, out);
+        } else {
+            for place in 0..E::N * (E::N + 1) / 2 {
+                let mut sum = products[0] * self.pairs[0][place];
+                for pair in 1..D * (D + 1) / 2 {
+                    sum += products[pair] * self.pairs[pair][place];
+                }
+                out[place] = sum;
             }
-            out[place] = sum;
         }
         if let Some(reaction) = &self.space.reaction {
             local[..E::N].iter_mut().for_each(|row| row[..E::N].fill(T::lit(0.0)));

@@ -183,7 +183,16 @@ fn local_matrices<T: Real, const D: usize>(patches: &Patches<'_, '_, T, D>) -> V
         for (cell, out) in range.zip(entries.chunks_exact_mut(n * n)) {
             let metric = space.metric(cell);
             let mut local = zero_local();
-            stiffness.add::<D>(n, &metric, space.alpha(cell), &mut local);
+            match space.varying_in(cell) {
+                None => stiffness.add::<D>(n, &metric, space.alpha(cell), &mut local),
+                Some((varying, values)) => {
+                    for i in 0..n {
+                        for j in 0..n {
+                            local[i][j] = varying.stiffness::<D>(values, &metric, i, j);
+                        }
+                    }
+                }
+            }
             if let Some(reaction) = &space.reaction {
                 reaction.add(space.mesh, cell, metric.volume, &mut local);
             }
@@ -225,13 +234,19 @@ fn facet_matrix<T: Real, const D: usize>(
     let (side_here, side_there) = (space.side(here, i, &m_here), space.side(there, j, &m_there));
     let view = view(space.mesh, &side_here, interior.then_some(&side_there));
     let penalty = form.penalty(&view);
-    let moments = table.on(i).iter().zip(table.on(j)).zip(&table.degrees);
-    for ((b_here, b_there), &degree) in moments {
+    let (own, other) = ((here, i), interior.then_some((there, j)));
+    let average_weight = form.average_weight(&view);
+    let moments = table.on(i).iter().zip(table.on(j)).zip(&table.degrees).enumerate();
+    for (k, ((b_here, b_there), &degree)) in moments {
         let mut all = [Trace { jump: T::lit(0.0), flux: T::lit(0.0) }; 2 * MAX_BASIS];
-        all[..n].copy_from_slice(&traces(form, &view, &side_here, true, b_here, n)[..n]);
+        let weighted = space.flux_derivatives(own, other, average_weight, k);
+        let basis = (b_here, weighted.as_ref());
+        all[..n].copy_from_slice(&traces(form, &view, &side_here, true, basis, n)[..n]);
         if interior {
-            all[n..2 * n]
-                .copy_from_slice(&traces(form, &view, &side_there, false, b_there, n)[..n]);
+            let weight = T::lit(1.0) - average_weight;
+            let weighted = space.flux_derivatives((there, j), Some(own), weight, k);
+            let basis = (b_there, weighted.as_ref());
+            all[n..2 * n].copy_from_slice(&traces(form, &view, &side_there, false, basis, n)[..n]);
         }
         let penalty = penalty * T::lit(form.moment_weight(degree));
         let size = if interior { 2 * n } else { n };

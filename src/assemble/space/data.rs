@@ -20,8 +20,41 @@ pub(crate) fn finite<const D: usize>(
     }
 }
 
-/// The diffusion coefficient at the barycentre of every cell, if there is one; a coefficient that
-/// would vanish or overflow when rounded is refused.
+/// A coefficient as a function of space.
+pub(crate) type CoefficientAt<'f, const D: usize> = &'f dyn Fn(&Point<f64, D>) -> f64;
+
+/// The diffusion coefficient at a point; one that would vanish or overflow when rounded is refused.
+pub(crate) fn coefficient_at<T: Real, const D: usize>(
+    alpha: CoefficientAt<'_, D>,
+    x: &Point<f64, D>,
+    cell: usize,
+) -> Result<T, Error> {
+    count::coefficient(1);
+    let value = alpha(x);
+    if !(value > 0.0 && value.is_finite()) {
+        return Err(Error::CoefficientNotPositive {
+            value,
+            at: describe_point(x),
+            cell: cell as u32,
+        });
+    }
+    let rounded = T::lit(value);
+    // harmonic means multiply two coefficients
+    let square = (rounded * rounded).to_f64() / (value * value);
+    if (square - 1.0).abs() <= 4.0 * T::EPSILON {
+        Ok(rounded)
+    } else {
+        Err(Error::Parameter {
+            parameter: "precision",
+            value: T::NAME.to_owned(),
+            allowed: format!(
+                "cannot hold the coefficient {value:e} of cell {cell} and its square; choose another precision or scale the coefficient"
+            ),
+        })
+    }
+}
+
+/// The diffusion coefficient at the barycentre of every cell, if there is one.
 pub(crate) fn coefficients<T: Real, const D: usize>(
     problem: &Problem<D>,
     mesh: &Mesh<T, D>,
@@ -29,24 +62,6 @@ pub(crate) fn coefficients<T: Real, const D: usize>(
     let Some(alpha) = &problem.coefficient else {
         return Ok(None);
     };
-    let at = |cell: usize| {
-        count::coefficient(1);
-        let value = alpha(&point_f64(&mesh.barycentre(cell)));
-        if !(value > 0.0 && value.is_finite()) {
-            return Err(Error::CoefficientNotPositive { value, cell: cell as u32 });
-        }
-        let rounded = T::lit(value);
-        if (rounded.to_f64() / value - 1.0).abs() <= T::EPSILON {
-            Ok(rounded)
-        } else {
-            Err(Error::Parameter {
-                parameter: "precision",
-                value: T::NAME.to_owned(),
-                allowed: format!(
-                    "cannot hold the coefficient {value:e} of cell {cell}; choose another precision or scale the coefficient"
-                ),
-            })
-        }
-    };
+    let at = |cell: usize| coefficient_at(&**alpha, &point_f64(&mesh.barycentre(cell)), cell);
     (0..mesh.n_cells()).map(at).collect::<Result<Vec<_>, _>>().map(Some)
 }

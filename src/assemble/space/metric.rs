@@ -216,14 +216,19 @@ impl<T: Real> Metrics<T> {
         let n = CellMetric::<T, D>::KEPT;
         CellMetric::read(&self.kept[cell * n..(cell + 1) * n])
     }
-    /// The measure of facet `local` of a cell, and the cell as the facet sees it.
+    /// The measure of facet `local` of a cell, and the cell as the facet sees it, with the largest
+    /// coefficient on the facet and the least in the cell.
     #[inline(always)]
-    pub fn side<const D: usize>(&self, cell: usize, local: usize, coefficient: T) -> (T, Side<T>) {
+    pub fn side<const D: usize>(
+        &self,
+        (cell, local): (usize, usize),
+        [coefficient, least_coefficient]: [T; 2],
+    ) -> (T, Side<T>) {
         let kept = &self.kept[cell * CellMetric::<T, D>::KEPT..][..D + 2];
         let (volume, measure) = (kept[0], kept[1 + local]);
         let surface = kept[1..].iter().fold(T::lit(0.0), |sum, &measure| sum + measure);
         let height = T::lit(D as f64) * volume / measure;
-        (measure, Side { coefficient, volume, surface, height })
+        (measure, Side { coefficient, least_coefficient, volume, surface, height })
     }
     /// The products of the gradient opposite facet `local` of a cell with all of its gradients.
     #[inline(always)]

@@ -5,6 +5,7 @@
 
 mod any_element;
 mod bounds;
+mod coefficient;
 pub(crate) mod data;
 pub(crate) mod dofs;
 pub(crate) mod metric;
@@ -23,10 +24,12 @@ use crate::problem::{Datum, Problem};
 use crate::quadrature::{Quadrature, QuadratureError, Rule, facet_to_cell};
 use crate::real::{Point, Real, point_f64};
 pub(crate) use any_element::AnyElement;
+use coefficient::VaryingCoefficient;
+pub(crate) use coefficient::{INWARD, Place};
 use dofs::Dofs;
 use metric::CellMetric;
 use reaction_term::ReactionTerm;
-use tables::{BasisAt, CellTable, FacetTable};
+use tables::{BasisAt, CellTable, Derivatives, FacetTable};
 
 /// A functional as barycentric points with weights.
 pub(crate) type Terms = Vec<([f64; 4], f64)>;
@@ -37,12 +40,17 @@ pub(crate) struct Space<'a, T: Real, const D: usize> {
     pub mesh: &'a Mesh<T, D>,
     /// The rule for data on cells.
     pub cell_rule: Rule,
+    /// Its degree.
+    pub cell_degree: usize,
     /// The rule for data on facets.
     pub facet_rule: Rule,
     pub reaction: Option<ReactionTerm<'a, T, D>>,
     pub neighbours: Option<Neighbours>,
     pub dofs: Dofs<'a>,
-    pub coefficients: Option<Vec<T>>,
+    /// The coefficient at the barycentre of each cell.
+    coefficients: Option<Vec<T>>,
+    /// The coefficient in the cells in which it varies, for elements of degree two and more.
+    varying: Option<VaryingCoefficient<T>>,
     /// What each of a cell's unknowns is the value of.
     pub nodes: Vec<Node>,
     /// By node, the vertices of the cell whose barycentre it is.
@@ -81,7 +89,8 @@ impl<'a, T: Real, const D: usize> Space<'a, T, D> {
             Neighbours::new(mesh)
         });
         let dofs = Dofs::new(layout, mesh, neighbours.as_ref());
-        let cell_degree = quadrature.cell.max((degree + basis_degree).saturating_sub(1));
+        let sum = degree + basis_degree;
+        let cell_degree = quadrature.cell.unwrap_or(sum + 3).max(sum.saturating_sub(1));
         let cell_rule = rule(quadrature.family, D, cell_degree)?;
         let facet_rule = rule(quadrature.family, D - 1, quadrature.facet)?;
         let reaction = match &problem.reaction {
@@ -90,21 +99,30 @@ impl<'a, T: Real, const D: usize> Space<'a, T, D> {
                 let products = 2 * basis_degree;
                 let degree = match datum {
                     Datum::Constant(_) => products,
-                    Datum::Function(_) => products.max(quadrature.cell),
+                    _ => products.max(cell_degree),
                 };
-                let table = CellTable::new(rule(quadrature.reaction, D, degree)?, basis);
-                Some(ReactionTerm::new(datum, &table, nodes.len()))
+                let rule = rule(quadrature.reaction, D, degree)?;
+                Some(ReactionTerm::new(datum, rule, degree, basis, nodes.len()))
             }
+        };
+        let coefficients = data::coefficients(problem, mesh)?;
+        let varying = match (&problem.coefficient, &coefficients) {
+            (Some(alpha), Some(constants)) if basis_degree > 1 => {
+                VaryingCoefficient::new(&**alpha, mesh, constants, basis_degree, basis)?
+            }
+            _ => None,
         };
         let space = Self {
             problem,
             mesh,
             cell_rule,
+            cell_degree,
             facet_rule,
             reaction,
             neighbours,
             dofs,
-            coefficients: data::coefficients(problem, mesh)?,
+            coefficients,
+            varying,
             in_domain: nodes.iter().map(|node| set.in_domain(node, D)).collect(),
             on_contact: nodes.iter().map(|node| set.on_contact(node, D)).collect(),
             around: nodes.iter().map(|node| Around::new(&node.centre(D))).collect(),
@@ -147,10 +165,83 @@ impl<'a, T: Real, const D: usize> Space<'a, T, D> {
     pub fn per_cell(&self) -> usize {
         self.nodes.len()
     }
-    /// The diffusion coefficient of a cell.
+    /// The diffusion coefficient at the barycentre of a cell.
     #[inline(always)]
     pub fn alpha(&self, cell: usize) -> T {
         self.coefficients.as_ref().map_or_else(|| T::lit(1.0), |a| a[cell])
+    }
+    /// The coefficient and its values in a cell, if it varies there and the element sees it.
+    #[inline(always)]
+    pub fn varying_in(&self, cell: usize) -> Option<(&VaryingCoefficient<T>, &[T])> {
+        let varying = self.varying.as_ref()?;
+        varying.in_cell(cell).map(|values| (varying, values))
+    }
+    /// The coefficient at a point of a cell.
+    pub fn alpha_at(&self, cell: usize, x: &Point<f64, D>) -> f64 {
+        match &self.problem.coefficient {
+            Some(alpha) if self.varying_in(cell).is_some() => alpha(x),
+            _ => self.alpha(cell).to_f64(),
+        }
+    }
+    /// The largest value of the coefficient on a facet from its cell, and the least in the cell, at the
+    /// points that the element sees.
+    #[inline(always)]
+    pub fn extreme_coefficients(&self, (cell, local): Place) -> [T; 2] {
+        let extremes = self.varying.as_ref().and_then(|varying| varying.extremes((cell, local)));
+        extremes.unwrap_or([self.alpha(cell); 2])
+    }
+    /// Whether the coefficient varies in one of the cells of a facet.
+    pub fn varies_at(&self, own: Place, other: Option<Place>) -> bool {
+        let varies = |cell| self.varying_in(cell).is_some();
+        varies(own.0) || other.is_some_and(|(cell, _)| varies(cell))
+    }
+    /// What multiplies the normal derivative of a cell in the flux at each point of a facet, where the
+    /// coefficient varies in one of its cells: the harmonic mean with the average weights, times the
+    /// weight of the cell; on the boundary the coefficient.
+    #[inline(always)]
+    fn flux_weights(
+        &self,
+        own: Place,
+        other: Option<Place>,
+        own_weight: T,
+    ) -> Option<(&VaryingCoefficient<T>, impl Fn(usize) -> T)> {
+        let varying = self.varying.as_ref().filter(|_| self.varies_at(own, other))?;
+        let at = move |place: Place, q: usize| match varying.on_facet(place) {
+            Some(values) => values[q],
+            None => self.alpha(place.0),
+        };
+        let weight = move |q: usize| {
+            let a = at(own, q);
+            let Some(other) = other else { return a };
+            let b = at(other, q);
+            own_weight * a * b / (own_weight * b + (T::lit(1.0) - own_weight) * a)
+        };
+        Some((varying, weight))
+    }
+    /// Moment `k` on a facet of the derivatives of its cell's basis with their weight in the flux, where
+    /// the coefficient varies in one of the two cells.
+    #[inline(always)]
+    pub fn flux_derivatives(
+        &self,
+        own: Place,
+        other: Option<Place>,
+        own_weight: T,
+        k: usize,
+    ) -> Option<Derivatives<T>> {
+        let (varying, weight) = self.flux_weights(own, other, own_weight)?;
+        Some(varying.weighted_derivatives(own.1, k, weight))
+    }
+    /// The products of two moments on a facet with the weight of a cell in the flux, where the
+    /// coefficient varies in one of the two cells.
+    pub fn flux_product(
+        &self,
+        own: Place,
+        other: Option<Place>,
+        own_weight: T,
+        (k, l): (usize, usize),
+    ) -> Option<T> {
+        let (varying, weight) = self.flux_weights(own, other, own_weight)?;
+        Some(varying.weighted_product(k, l, weight))
     }
     /// A cell seen from one of its facets.
     #[inline(always)]
@@ -160,7 +251,8 @@ impl<'a, T: Real, const D: usize> Space<'a, T, D> {
         local: usize,
         metric: &'g CellMetric<T, D>,
     ) -> CellSide<'g, T, D> {
-        CellSide { cell, local, metric, coefficient: self.alpha(cell) }
+        let [coefficient, least_coefficient] = self.extreme_coefficients((cell, local));
+        CellSide { cell, local, metric, coefficient, least_coefficient }
     }
     /// The basis at a point of the cell.
     pub fn basis_at(&self, point: &[f64; 4]) -> BasisAt<f64> {

@@ -4,11 +4,14 @@ use crate::element::{MAX_BASIS, ReferenceElement};
 use crate::quadrature::{OrthonormalPolynomials, Rule, facet_to_cell};
 use crate::real::Real;
 
+/// Derivatives of all basis functions along barycentric coordinates.
+pub(crate) type Derivatives<T> = [[T; 4]; MAX_BASIS];
+
 /// Values and derivatives of all basis functions at one point.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct BasisAt<T> {
     pub values: [T; MAX_BASIS],
-    pub derivatives: [[T; 4]; MAX_BASIS],
+    pub derivatives: Derivatives<T>,
 }
 
 impl<T: Real> BasisAt<T> {
@@ -100,7 +103,7 @@ impl<T: Real> FacetTable<T> {
 
 impl BasisAt<f64> {
     /// The values and derivatives, rounded to another scalar.
-    fn rounded<T: Real>(&self) -> BasisAt<T> {
+    pub fn rounded<T: Real>(&self) -> BasisAt<T> {
         BasisAt {
             values: self.values.map(T::lit),
             derivatives: self.derivatives.map(|row| row.map(T::lit)),

@@ -16,7 +16,8 @@ use std::process::ExitCode;
 
 use clap::error::ErrorKind;
 use clap::{CommandFactory, Parser, Subcommand};
-use shared::{Request, complain, print};
+use shared::{Request, check_environment, complain, print};
+use unilateral::input::excerpt;
 
 /// Finite element schemes on variational inequalities: comparisons, measurements, pictures.
 #[derive(Parser)]
@@ -51,6 +52,7 @@ fn main() -> ExitCode {
 
 /// Runs a command; false for exit code 1.
 fn run(command: Command) -> Request<bool> {
+    check_environment()?;
     match command {
         Command::Compare(options) => compare::run(&options),
         Command::WorkPrecision(options) => work_precision::run(&options),
@@ -85,7 +87,12 @@ fn words(mut words: Vec<OsString>) -> Vec<OsString> {
 
 /// What the parser of options finds wrong, without its hints on usage.
 fn one_line(wrong: &clap::Error, words: &[OsString]) -> String {
-    let text = wrong.to_string();
+    let words = || words.iter().map(|word| word.to_string_lossy());
+    let shortened = |text: String, word: &str| {
+        let foreign = word.split(['=', ',']).filter(|part| excerpt(part) != *part);
+        foreign.fold(text, |text, part| text.replace(part, &excerpt(part)))
+    };
+    let text = words().fold(wrong.to_string(), |text, word| shortened(text, &word));
     let hint = |line: &str| line.starts_with("Usage:") || line.starts_with("For more information");
     let lines: Vec<&str> =
         text.lines().map(str::trim).filter(|line| !line.is_empty() && !hint(line)).collect();
@@ -93,7 +100,7 @@ fn one_line(wrong: &clap::Error, words: &[OsString]) -> String {
     let program = Program::command();
     let names: Vec<String> = match wrong.kind() {
         ErrorKind::UnknownArgument => {
-            let command = words.get(1).and_then(|name| program.find_subcommand(name));
+            let command = words().nth(1).and_then(|name| program.find_subcommand(&*name));
             let arguments = command.unwrap_or(&program).get_arguments();
             let options = arguments.filter(|a| !a.is_hide_set()).filter_map(|a| a.get_long());
             options.chain(["help"]).map(|name| format!("--{name}")).collect()

@@ -1,7 +1,7 @@
 //! Every scheme on every scene, with observed orders beside those that theory promises:
 //!
 //! ```text
-//! cargo run --release -- orders docs/orders.md
+//! cargo run --release -- orders target/orders.md --summary target/orders-summary.md
 //! ```
 //!
 //! Without a file the table goes to standard output. A word after the file picks the scenes whose
@@ -13,12 +13,12 @@ use std::path::PathBuf;
 
 use clap::Args;
 use unilateral::prelude::{Report, Study};
+use unilateral::real::Real;
 use unilateral::scenes::{AnyScene, Parameters, Scene, catalogue};
-use unilateral::scheme::{SCHEMES, SchemeOptions, scheme_by_name};
-use unilateral::study::orders_table;
-use unilateral::study::{Program, Row};
+use unilateral::scheme::NamedScheme;
+use unilateral::study::{Program, Row, orders_summary, orders_table};
 
-use crate::shared::{ORDER_TOLERANCE, Request, complain, print, write};
+use crate::shared::{ORDER_TOLERANCE, Request, complain, print, schemes, write};
 
 /// Sets observed orders beside those that theory promises, every scheme on every scene
 #[derive(Args, Debug)]
@@ -28,6 +28,12 @@ pub struct Options {
     /// Only scenes whose names contain this
     #[arg(value_name = "WORD")]
     pattern: Option<String>,
+    /// Schemes as NAME[:PLACEMENT][@KEY=VALUE[,KEY=VALUE...]]; all by default
+    #[arg(long = "scheme", value_delimiter = ',', value_name = "A[,B...]")]
+    schemes: Vec<String>,
+    /// Also write how many promises each scheme keeps, and those that it misses
+    #[arg(long, value_name = "FILE")]
+    summary: Option<PathBuf>,
     /// Half the levels
     #[arg(long)]
     quick: bool,
@@ -35,7 +41,8 @@ pub struct Options {
 
 /// Whether the work came to its end.
 pub fn run(options: &Options) -> Request<bool> {
-    match make(options) {
+    let schemes = schemes(&options.schemes, &["all"])?;
+    match make(options, &schemes) {
         Ok(()) => Ok(true),
         Err(error) => {
             complain(&error.to_string());
@@ -44,7 +51,7 @@ pub fn run(options: &Options) -> Request<bool> {
     }
 }
 
-fn make(options: &Options) -> Result<(), Box<dyn Error>> {
+fn make(options: &Options, schemes: &[NamedScheme]) -> Result<(), Box<dyn Error>> {
     let quick = options.quick;
     let mut rows = Vec::new();
     for entry in catalogue() {
@@ -53,57 +60,47 @@ fn make(options: &Options) -> Result<(), Box<dyn Error>> {
         }
         eprintln!("{}", entry.name);
         for degree in [1, 2] {
+            let is_of_degree = |s: &&NamedScheme| s.name().ends_with("p2") == (degree == 2);
+            let schemes: Vec<&NamedScheme> = schemes.iter().filter(is_of_degree).collect();
+            if schemes.is_empty() {
+                continue;
+            }
             rows.extend(match entry.make(&Parameters::default())? {
-                AnyScene::One(scene) => study(scene, degree, quick)?,
-                AnyScene::Two(scene) => study(scene, degree, quick)?,
-                AnyScene::Three(scene) => study(scene, degree, quick)?,
+                AnyScene::One(scene) => study(scene, &schemes, degree, quick)?,
+                AnyScene::Two(scene) => study(scene, &schemes, degree, quick)?,
+                AnyScene::Three(scene) => study(scene, &schemes, degree, quick)?,
             });
         }
     }
-    let program = Program::new("orders", "f64", rayon::current_num_threads(), 1);
-    let report = Report::new(program, rows);
-    let table = orders_table(&report.observed_orders(), ORDER_TOLERANCE);
+    let program = Program::new("orders", f64::NAME, rayon::current_num_threads(), 1);
+    let observed = Report::new(program, rows).observed_orders();
+    let table = orders_table(&observed, ORDER_TOLERANCE);
     match &options.file {
-        Some(file) => write(file, page(&table, &report))?,
+        Some(file) => write(file, table)?,
         None => print(&table)?,
     }
-    Ok(())
+    match &options.summary {
+        Some(file) => Ok(write(file, orders_summary(&observed, ORDER_TOLERANCE))?),
+        None => Ok(()),
+    }
 }
 
-/// All schemes of a degree on a scene, quadratics on coarser levels: they have more unknowns.
+/// Schemes of a degree on a scene, on five levels, in space on four; quadratics on coarser ones,
+/// since they have more unknowns.
 fn study<const D: usize>(
     scene: Scene<D>,
+    schemes: &[&NamedScheme],
     degree: usize,
     quick: bool,
 ) -> Result<Vec<Row>, Box<dyn Error>> {
-    let finest = match D {
-        1 => 64,
-        2 => 32 / degree,
-        _ => 8 / degree,
+    let levels: &[usize] = match (D, degree) {
+        (1, _) => &[16, 32, 64, 128, 256],
+        (2, 1) => &[8, 16, 32, 64, 128],
+        (2, _) => &[4, 8, 16, 32, 64],
+        (_, 1) => &[2, 4, 8, 16],
+        _ => &[2, 4, 6, 8],
     };
-    let finest = if quick { finest / 2 } else { finest };
-    let levels = [4, 2, 1].map(|part| finest / part).into_iter().filter(|&n| n > 0);
-    let options = SchemeOptions::default();
-    let names = SCHEMES.iter().filter(|(name, _)| name.ends_with("p2") == (degree == 2));
-    let schemes = names.filter_map(|(name, _)| scheme_by_name::<f64, D>(name, &options));
+    let levels = levels.iter().map(|level| if quick { level / 2 } else { *level });
     let study = Study::<f64, D>::new(scene).levels(levels);
-    Ok(schemes.fold(study, Study::boxed_scheme).run()?.rows)
-}
-
-/// The table with what made it and what its words mean.
-fn page(table: &str, report: &Report) -> String {
-    format!(
-        "# Observed and promised orders\n\n\
-         Made by `cargo run --release -- orders docs/orders.md`, version {}, with the \
-         default penalties and constraint sets. The orders of coarse levels are those of coarse \
-         levels: a promise is for small mesh sizes, so `missed` here means not yet reached, or \
-         missed, and finer levels tell which (`compare --scene S --scheme A --levels 32,64,128`).\n\n\
-         Levels that end with another word than `converged` did so for a reason: \
-         `iteration-limit`, the active set did not settle; `cycling`, it came back to where it was; \
-         `stalled`, rounding keeps the certificate above its limit; `not-coercive`, the matrix is \
-         not positive definite; `singular`, nothing holds the body, or rounding hides what does; `infeasible`, no function lies \
-         between the bounds; `not-finite`, a number was not; \
-         `malformed`, matrix and data do not fit; `out-of-memory`, the factors were too large. See `inequality::Outcome`.\n\n{table}",
-        report.program.version
-    )
+    Ok(schemes.iter().fold(study, |study, scheme| study.named_scheme(scheme)).run()?.rows)
 }

@@ -11,9 +11,10 @@ use unilateral::nested::{Hierarchy, solve};
 use unilateral::paraview::write_pvd;
 use unilateral::plot::{Picture, Slice};
 use unilateral::scenes::{AnyScene, Scene};
-use unilateral::scheme::{AnyScheme, SCHEMES, SchemeOptions, scheme_by_name};
+use unilateral::scheme::{AnyScheme, NamedScheme};
+use unilateral::study::file_name;
 
-use crate::shared::{Request, constraint_set, print, scene, split};
+use crate::shared::{Request, print, scene};
 
 /// Draws the solution of a scheme on a scene
 #[derive(Args, Debug)]
@@ -21,9 +22,9 @@ pub struct Options {
     /// Scene by name
     #[arg(long, default_value = "radial-2d")]
     scene: String,
-    /// Scheme by name, with a placement of the bounds after a colon, as in wopsip:facet-means
+    /// Scheme as NAME[:PLACEMENT][@KEY=VALUE[,KEY=VALUE...]]
     #[arg(long, default_value = "wopsip")]
-    scheme: String,
+    scheme: NamedScheme,
     /// Subdivisions of the scene's shortest side; by default 16, in space 8
     #[arg(long, value_name = "N")]
     level: Option<usize>,
@@ -50,30 +51,11 @@ pub fn run(options: &Options) -> Request<bool> {
     }
 }
 
-/// The scheme, and the scene with the constraint set after the colon.
-fn scheme<const D: usize>(
-    choice: &str,
-    mut scene: Scene<D>,
-) -> Request<(Box<dyn AnyScheme<f64, D>>, Scene<D>)> {
-    let (name, set) = split(choice);
-    if let Some(set) = set {
-        scene.problem = scene.problem.on(constraint_set(set)?);
+fn draw<const D: usize>(options: &Options, mut scene: Scene<D>) -> Request<bool> {
+    let scheme = options.scheme.make::<f64, D>();
+    if let Some(set) = options.scheme.constraint_set() {
+        scene.problem = scene.problem.on(set);
     }
-    let scheme = scheme_by_name(name, &SchemeOptions::default()).ok_or_else(|| {
-        let names: Vec<&str> = SCHEMES.iter().map(|s| s.0).collect();
-        format!("there is no scheme {name}; there are: {}", names.join(", "))
-    })?;
-    Ok((scheme, scene))
-}
-
-/// The name of the constraint set in force.
-fn constraint<const D: usize>(scene: &Scene<D>, scheme: &dyn AnyScheme<f64, D>) -> String {
-    let set = scene.problem.constraint_set();
-    scheme.constraint_on(set).unwrap_or_else(|| set.name().to_owned())
-}
-
-fn draw<const D: usize>(options: &Options, scene: Scene<D>) -> Request<bool> {
-    let (scheme, scene) = scheme::<D>(&options.scheme, scene)?;
     let scene = &scene;
     let level = options.level.unwrap_or(if D == 3 { 8 } else { 16 });
     let slice = match (&options.across, options.at) {
@@ -88,13 +70,13 @@ fn draw<const D: usize>(options: &Options, scene: Scene<D>) -> Request<bool> {
         .fields()
         .ok_or_else(|| format!("level {level}: {}: there is nothing to draw", solved.outcome()))?;
     let converged = solved.converged();
-    let constraint = constraint(scene, &*scheme);
-    let mut title = format!("{}: {} ({constraint}), level {level}", scene.name, scheme.name());
+    let label = scheme.label_on(scene.problem.constraint_set());
+    let mut title = format!("{}: {label}, level {level}", scene.name);
     if !converged {
         title += &format!(", NOT CONVERGED: {}", solved.outcome());
     }
     let picture = Picture::of(&title, &scene.problem, solved.mesh(), &fields, slice);
-    let name = file_name(scene, &*scheme, level);
+    let name = name_of(scene, &*scheme, &format!("-{level}"));
     let written = picture
         .and_then(|picture| picture.write(&options.out, &name))
         .map_err(|e| e.to_string())?;
@@ -115,15 +97,13 @@ fn series<const D: usize>(
     for &level in &options.series {
         let meshes = meshes(scene, level)?;
         let solved = solve(&scene.problem, &meshes, scheme).map_err(|e| e.to_string())?;
-        let path = options.out.join(format!("{}.vtu", file_name(scene, scheme, level)));
+        let path = options.out.join(name_of(scene, scheme, &format!("-{level}.vtu")));
         solved.write_vtu(&path).map_err(|e| e.to_string())?;
         converged &= solved.converged();
         files.push((level as f64, path));
     }
     if !files.is_empty() {
-        let constraint = constraint(scene, scheme);
-        let name = format!("{}-{}-{constraint}.pvd", scene.name, scheme.name());
-        let path = options.out.join(name.replace(' ', "-"));
+        let path = options.out.join(name_of(scene, scheme, ".pvd"));
         write_pvd(&path, &files).map_err(|e| e.to_string())?;
         print(&format!("{}\n", path.display()))?;
     }
@@ -134,11 +114,8 @@ fn meshes<const D: usize>(scene: &Scene<D>, level: usize) -> Request<Hierarchy<f
     Hierarchy::of_domain(&scene.domain, level).map_err(|e| e.to_string())
 }
 
-fn file_name<const D: usize>(
-    scene: &Scene<D>,
-    scheme: &dyn AnyScheme<f64, D>,
-    level: usize,
-) -> String {
-    let constraint = constraint(scene, scheme);
-    format!("{}-{}-{constraint}-{level}", scene.name, scheme.name()).replace(' ', "-")
+/// `SCENE-LABEL` with what follows.
+fn name_of<const D: usize>(scene: &Scene<D>, scheme: &dyn AnyScheme<f64, D>, end: &str) -> String {
+    let label = scheme.label_on(scene.problem.constraint_set());
+    file_name(&format!("{}-{label}{end}", scene.name))
 }

@@ -3,13 +3,13 @@
 use std::fs;
 use std::io::{ErrorKind, IsTerminal, Write};
 use std::path::Path;
-use std::sync::Arc;
 use std::time::Duration;
 
 use indicatif::{ProgressBar, ProgressStyle};
-use unilateral::constraint::{CONSTRAINT_SETS, ConstraintSet, constraint_set_by_name};
+use unilateral::input::{excerpt, read_file};
 use unilateral::scenes;
 use unilateral::scenes::{AnyScene, Parameters};
+use unilateral::scheme::NamedScheme;
 
 /// The error of a wrong request is one message.
 pub type Request<T> = Result<T, String>;
@@ -36,7 +36,7 @@ pub fn complain(message: &str) {
 }
 
 pub fn read(path: &Path) -> Request<Vec<u8>> {
-    fs::read(path).map_err(|e| format!("cannot read {}: {e}", path.display()))
+    read_file(path).map_err(|e| format!("cannot read {}: {e}", path.display()))
 }
 
 pub fn write(path: &Path, text: impl AsRef<[u8]>) -> Request<()> {
@@ -46,6 +46,19 @@ pub fn write(path: &Path, text: impl AsRef<[u8]>) -> Request<()> {
 /// The message for a file that cannot be written.
 pub fn cannot_write(path: &Path, why: impl std::fmt::Display) -> String {
     format!("cannot write {}: {why}", path.display())
+}
+
+/// More threads than this hardly help anyone, and the system may fail to start them.
+pub const MOST_THREADS: usize = 1024;
+
+/// Refuses more threads in the variable that sets their number where no option does.
+pub fn check_environment() -> Request<()> {
+    const VARIABLE: &str = "RAYON_NUM_THREADS";
+    let threads = std::env::var(VARIABLE).ok().and_then(|text| text.parse::<usize>().ok());
+    match threads.filter(|&n| n > MOST_THREADS) {
+        Some(n) => Err(format!("{VARIABLE} {n}: must be at most {MOST_THREADS}")),
+        None => Ok(()),
+    }
 }
 
 /// Sets the number of threads; without one, all cores are used.
@@ -59,25 +72,18 @@ pub fn use_threads(threads: Option<usize>) -> Request<()> {
 pub fn scene(name: &str) -> Request<AnyScene> {
     let entry = scenes::by_name(name).ok_or_else(|| {
         let names: Vec<String> = scenes::catalogue().into_iter().map(|e| e.name).collect();
-        format!("there is no scene {name}; there are: {}", names.join(", "))
+        format!("there is no scene {}; there are: {}", excerpt(name), names.join(", "))
     })?;
     entry.make(&Parameters::default()).map_err(|e| e.to_string())
 }
 
-/// The name and, if there is a colon, the placement after it: `wopsip:facet-means`.
-pub fn split(choice: &str) -> (&str, Option<&str>) {
-    match choice.split_once(':') {
-        Some((name, place)) => (name, Some(place)),
-        None => (choice, None),
-    }
-}
-
-/// The constraint set of this name.
-pub fn constraint_set(name: &str) -> Request<Arc<dyn ConstraintSet>> {
-    constraint_set_by_name(name).ok_or_else(|| {
-        let names = CONSTRAINT_SETS.map(|set| set.0).join(", ");
-        format!("there is no placement {name}; there are: {names}")
-    })
+/// The schemes of an option whose value was cut at commas, or the default ones.
+pub fn schemes(asked: &[String], default: &[&'static str]) -> Request<Vec<NamedScheme>> {
+    let found = match asked {
+        [] => NamedScheme::list(default.iter().copied()),
+        asked => NamedScheme::list(asked.iter().map(String::as_str)),
+    };
+    found.map_err(|e| e.to_string())
 }
 
 /// Each item once, in order of first occurrence.

@@ -3,7 +3,7 @@
 
 use super::iterate::Iterate;
 use super::linear_solver::{Accuracy, LinearFailure, LinearSolver};
-use crate::algebra::{Inequality, PenalisedMatrix};
+use crate::algebra::{Contact, Inequality, PenalisedMatrix};
 use crate::linear::direct::{CondensedFactors, StaticCondensation};
 use crate::linear::direct::{EliminationOrder, FactorError, Factors};
 use crate::real::Real;
@@ -14,6 +14,9 @@ const MAX_CORRECTIONS: usize = 12;
 /// A correction is the last one if its largest entry is at most this multiple of machine epsilon
 /// times the largest value.
 const CORRECTION_MULTIPLE: f64 = 16.0;
+
+/// The share of the energy of a solution that a second correction may have.
+const LOST_SHARE: f64 = 0.01;
 
 /// The solver with factors for all active sets of an inequality.
 pub(crate) struct DirectSolver<'a, T> {
@@ -88,20 +91,96 @@ impl<'a, T: Real> DirectSolver<'a, T> {
     }
 
     /// Corrects the values `1 + refinements` times; then computes the residual.
-    fn correct_assembled(&self, factors: &Factors<T>, iterate: &mut Iterate<'_, T>) {
+    ///
+    /// # Errors
+    /// [`FactorError::Singular`] if the last of several corrections has more than [`LOST_SHARE`] of the
+    /// energy of the solution, whose factors then have no correct digit.
+    fn correct_assembled(
+        &self,
+        factors: &Factors<T>,
+        iterate: &mut Iterate<'_, T>,
+    ) -> Result<(), FactorError> {
         let Inequality { matrix, load, .. } = self.inequality;
         let Iterate { values, residual, .. } = iterate;
         let mut correction = Vec::with_capacity(self.inactive.len());
-        for _ in 0..=self.refinements {
+        let mut correction_energy = 0.0;
+        for step in 0..=self.refinements {
             matrix.residual_f64(load, values, residual);
             correction.clear();
             correction.extend(self.inactive.iter().map(|&i| T::lit(residual[i as usize])));
             factors.solve_in_place(&mut correction, 1);
+            correction_energy = 0.0;
             for (&i, &correction) in self.inactive.iter().zip(&correction) {
                 values[i as usize] += correction;
+                if step > 0 {
+                    correction_energy += correction.to_f64() * residual[i as usize];
+                }
             }
         }
         matrix.residual_f64(load, values, residual);
+        let terms = values.iter().zip(load).zip(residual.iter());
+        let energy: f64 = terms.map(|((x, b), r)| x.to_f64() * (b.to_f64() - r)).sum();
+        match correction_energy.abs() > LOST_SHARE * energy.abs() {
+            true => Err(FactorError::Singular),
+            false => Ok(()),
+        }
+    }
+}
+
+impl<T: Real> DirectSolver<'_, T> {
+    /// Projects the values onto their bounds and returns a bound on the energy norm of their error
+    /// divided by the energy norm of the iterate; `None` for a matrix that is not symmetric, or if an
+    /// active unknown is not strongly active.
+    ///
+    /// With the active unknowns held, the error `e` of admissible values satisfies
+    /// `||e||_A^2 <= r . inv(A_II) r`, `r` the residual on the inactive unknowns `I`: the energy of one more
+    /// correction. An active unknown whose multiplier exceeds `sqrt(d_i) ||e||_A` is strongly active: its
+    /// multiplier keeps its sign in the solution of that problem. If all are, this is the solution of
+    /// the inequality. The bound is proven but for rounding in the factors.
+    pub fn error_bound(&self, iterate: &mut Iterate<'_, T>) -> Option<f64> {
+        if !self.inequality.symmetric {
+            return None;
+        }
+        for (value, bound) in iterate.values.iter_mut().zip(&self.inequality.bounds) {
+            *value = bound.nearest(*value);
+        }
+        let error = self.correction_energy(iterate)?.max(0.0).sqrt();
+        let Iterate { states, residual, diagonal, .. } = &*iterate;
+        let is_strongly_active = |i: usize| {
+            let multiplier = match states[i] {
+                Contact::Inactive => return true,
+                Contact::Lower => -residual[i],
+                Contact::Upper => residual[i],
+            };
+            self.inequality.bounds[i].fixed_value().is_some()
+                || multiplier > diagonal[i].sqrt() * error
+        };
+        (0..states.len()).all(is_strongly_active).then(|| error / iterate.energy_norm)
+    }
+
+    /// The energy of the next correction, which is not made. The residual is then that of the values.
+    fn correction_energy(&self, iterate: &mut Iterate<'_, T>) -> Option<f64> {
+        match (&self.factors, &self.condensation, &self.inequality.penalised) {
+            (Some(InactiveFactors::Assembled(factors)), ..) => {
+                iterate.compute_residual();
+                let residual = &iterate.residual;
+                let of_inactive = |&i: &u32| T::lit(residual[i as usize]);
+                let mut correction: Vec<T> = self.inactive.iter().map(of_inactive).collect();
+                factors.solve_in_place(&mut correction, 1);
+                let terms = self.inactive.iter().zip(&correction);
+                Some(terms.map(|(&i, e)| residual[i as usize] * e.to_f64()).sum())
+            }
+            (Some(InactiveFactors::Condensed(factors)), Some(condensation), Some(penalised)) => {
+                let is_inactive = iterate.eliminated.iter().map(|&e| !e).collect();
+                let system = PenalisedSystem { penalised, condensation, factors, is_inactive };
+                let mut mismatch = vec![0.0; iterate.jump_multipliers.len()];
+                system.compute_residuals(iterate, &mut mismatch);
+                let mut residual = iterate.residual.clone();
+                let is_inactive = &system.is_inactive;
+                Some(condensation.solve(factors, is_inactive, &mut residual, &mut mismatch))
+            }
+            _ => None,
+        }
     }
 }
 
@@ -134,7 +213,7 @@ impl<T: Real> LinearSolver<T> for DirectSolver<'_, T> {
     ) -> Result<(), LinearFailure> {
         match (&self.factors, &self.condensation, &self.inequality.penalised) {
             (Some(InactiveFactors::Assembled(factors)), ..) => {
-                self.correct_assembled(factors, iterate);
+                self.correct_assembled(factors, iterate)?;
             }
             (Some(InactiveFactors::Condensed(factors)), Some(condensation), Some(penalised)) => {
                 let is_inactive = iterate.eliminated.iter().map(|&e| !e).collect();
@@ -209,11 +288,7 @@ impl<T: Real> PenalisedSystem<'_, '_, T> {
     /// overwritten by the corrections.
     fn correct(&self, iterate: &mut Iterate<'_, T>, mismatch: &mut [f64]) -> CorrectionSize {
         let penalised = self.penalised;
-        for (jump, out) in mismatch.iter_mut().enumerate() {
-            let multiplier = iterate.jump_multipliers[jump].to_f64();
-            *out = penalised.jump_residual(jump, |i| iterate.values[i].to_f64(), multiplier);
-        }
-        self.compute_residual(iterate);
+        self.compute_residuals(iterate, mismatch);
         let Iterate { values, jump_multipliers, residual, .. } = iterate;
         let correction_energy =
             self.condensation.solve(self.factors, &self.is_inactive, residual, mismatch);
@@ -230,6 +305,15 @@ impl<T: Real> PenalisedSystem<'_, '_, T> {
         let multiplier = |jump: usize| jump_multipliers[jump].to_f64();
         let energy = penalised.energy(|i| values[i].to_f64(), multiplier);
         CorrectionSize { correction_energy, max_change, max_norm, energy, diagonal_energy }
+    }
+
+    /// Sets the residual to `c - K u - M^T p`, and `mismatch` to `g - M u + S^-1 p`.
+    fn compute_residuals(&self, iterate: &mut Iterate<'_, T>, mismatch: &mut [f64]) {
+        for (jump, out) in mismatch.iter_mut().enumerate() {
+            let multiplier = iterate.jump_multipliers[jump].to_f64();
+            *out = self.penalised.jump_residual(jump, |i| iterate.values[i].to_f64(), multiplier);
+        }
+        self.compute_residual(iterate);
     }
 
     /// Sets the residual to `c - K u - M^T p`.

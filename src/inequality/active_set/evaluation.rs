@@ -4,6 +4,7 @@
 use super::iterate::Iterate;
 use super::linear_solver::LinearSolver;
 use crate::algebra::Contact;
+use crate::inequality::scales::Scales;
 use crate::parallel::vectors::map_chunks;
 use crate::real::Real;
 
@@ -16,11 +17,9 @@ pub(crate) struct Evaluation {
     /// `(sum d_i v_i^2)^(1/2)` of the diagonal `d` of `A`. It is zero at the solution only. It is
     /// not divided by the size of the iterate, which would favour iterates that are far too large.
     pub merit: f64,
-    /// The largest of all `|u_i|` and `|v_i|`, `v_i` the admissible value nearest to `u_i`; one if
-    /// all are zero.
+    /// See [`Scales::max_norm`].
     pub max_norm: f64,
-    /// Energy norm `(u . A u)^(1/2)` of the iterate; if it is zero, the dual norm
-    /// `(sum b_i^2 / d_i)^(1/2)` of the load; one if the load is zero too.
+    /// See [`Scales::energy_norm`].
     pub energy_norm: f64,
     /// Largest violation of a bound by an inactive unknown; violations within rounding do not count.
     bound_violation: f64,
@@ -51,25 +50,15 @@ impl<T: Real> Iterate<'_, T> {
     /// has the wrong sign becomes inactive, both only beyond tolerances: the rounding band of
     /// [`ActiveSet`](super::ActiveSet).
     pub fn evaluate(&mut self, rounding_band: f64, solver: &dyn LinearSolver<T>) -> Evaluation {
-        let (mut energy, mut load_energy, mut max_norm) = (0.0, 0.0, 0.0_f64);
-        for [energy_part, load_part, norm_part] in map_chunks(self.values.len(), |range| {
-            let mut part = [0.0, 0.0, 0.0_f64];
-            for i in range {
-                let (x, b) = (self.values[i].to_f64(), self.inequality.load[i].to_f64());
-                let nearest = self.inequality.bounds[i].nearest(self.values[i]).to_f64();
-                part[0] += x * (b - self.residual[i]);
-                part[1] += b * b / self.diagonal[i];
-                part[2] = part[2].max(x.abs()).max(nearest.abs());
-            }
-            part
-        }) {
-            energy += energy_part;
-            load_energy += load_part;
-            max_norm = max_norm.max(norm_part);
-        }
-        let max_norm = if max_norm > 0.0 { max_norm } else { 1.0 };
-        let energy = if energy > 0.0 { energy } else { load_energy };
-        let energy_norm = if energy > 0.0 { energy.sqrt() } else { 1.0 };
+        let diagonal = |i: usize| self.diagonal[i];
+        let Scales { max_norm, energy_norm } = Scales::of(
+            self.inequality,
+            &self.values,
+            &self.residual,
+            &self.jump_multipliers,
+            &diagonal,
+            1.0,
+        );
         let mut evaluation = Evaluation { max_norm, energy_norm, ..Evaluation::default() };
         let bound_tolerance = rounding_band * T::EPSILON * max_norm;
         let parts = map_chunks(self.values.len(), |range| {

@@ -97,6 +97,13 @@ impl<T: Real> Iteration<'_, '_, '_, T> {
                 if !self.is_certified || self.has_small_certificate() {
                     return Ok(());
                 }
+                if self.solver.determine_jump_multipliers(self.iterate)? {
+                    if self.has_small_certificate() {
+                        return Ok(());
+                    }
+                    self.iterate.jump_multipliers.clear();
+                    self.iterate.residual_is_current = false;
+                }
                 // rounding may have made the recursive residual of a Krylov method too small
                 if tolerance == 0.0 || !progress.may_repeat() {
                     return Err(self.end_by_rounding());

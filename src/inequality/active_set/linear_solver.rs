@@ -52,6 +52,19 @@ pub(crate) trait LinearSolver<T>: Sync {
         iterate: &mut Iterate<'_, T>,
         accuracy: Accuracy,
     ) -> Result<(), LinearFailure>;
+    /// Determines the jump multipliers of a penalised matrix, with the residual that belongs to them,
+    /// more accurately than they follow from the values; false if the solver cannot, or if its
+    /// corrections determine them already.
+    ///
+    /// # Errors
+    /// See [`LinearFailure`].
+    fn determine_jump_multipliers(
+        &mut self,
+        iterate: &mut Iterate<'_, T>,
+    ) -> Result<bool, LinearFailure> {
+        let _ = iterate;
+        Ok(false)
+    }
     /// Whether the energy norm of the error of the last solution is within the tolerance, relative to
     /// `energy_norm`.
     fn is_accurate(&self, energy_norm: f64) -> bool;

@@ -24,6 +24,9 @@ const MAX_ITERATIONS: usize = 500;
 /// Relative tolerance of the linear system that is solved for its Ritz values alone.
 const EIGENVALUE_RUN_TOL: f64 = 1e-6;
 
+/// Relative tolerance of the system that determines jump multipliers.
+const MULTIPLIER_REDUCTION: f64 = 1e-6;
+
 /// The factor by which the target of an accurate solution may exceed the tolerance after the energy
 /// norm has changed.
 const TARGET_MARGIN: f64 = 1.01;
@@ -69,6 +72,16 @@ impl<'a, T: Real> PreconditionedSolver<'a, T> {
             residual_norm: f64::INFINITY,
             target: 0.0,
         }
+    }
+
+    /// Copies the residual of an iterate, zero on eliminated unknowns.
+    fn restrict_residual(&mut self, iterate: &Iterate<'_, T>) {
+        let Iterate { eliminated, residual, .. } = iterate;
+        for_each_chunk(&mut self.residual, |range, r| {
+            for (r, i) in r.iter_mut().zip(range) {
+                *r = T::lit(if eliminated[i] { 0.0 } else { residual[i] });
+            }
+        });
     }
 
     /// Updates `smallest_ritz_value` by a run of a Krylov method.
@@ -165,12 +178,8 @@ impl<T: Real> LinearSolver<T> for PreconditionedSolver<'_, T> {
             },
             max_iterations: MAX_ITERATIONS,
         };
-        let Iterate { values, eliminated, residual, .. } = iterate;
-        for_each_chunk(&mut self.residual, |range, r| {
-            for (r, i) in r.iter_mut().zip(range) {
-                *r = T::lit(if eliminated[i] { 0.0 } else { residual[i] });
-            }
-        });
+        self.restrict_residual(iterate);
+        let Iterate { values, eliminated, .. } = iterate;
         let system = (&mut values[..], &mut self.residual[..]);
         let run = self.krylov.solve(eliminated, &mut *self.preconditioner, system, stop);
         iterate.linear += run.iterations;
@@ -178,6 +187,40 @@ impl<T: Real> LinearSolver<T> for PreconditionedSolver<'_, T> {
         self.check(&run)?;
         iterate.compute_residual();
         Ok(())
+    }
+
+    /// The multipliers are `S (M u - g) + S M e`, where `A e` is the residual of `u`: they belong to the
+    /// values `u + e`, whose jumps the rounded sum of `u` and `e` would lose.
+    fn determine_jump_multipliers(
+        &mut self,
+        iterate: &mut Iterate<'_, T>,
+    ) -> Result<bool, LinearFailure> {
+        let Some(penalised) = &self.inequality.penalised else { return Ok(false) };
+        iterate.compute_residual();
+        self.restrict_residual(iterate);
+        let stop = StoppingRule {
+            norm: 0.0,
+            reduction: MULTIPLIER_REDUCTION,
+            max_iterations: MAX_ITERATIONS,
+        };
+        let mut correction = zeros(iterate.values.len());
+        let system = (&mut correction[..], &mut self.residual[..]);
+        let run = self.krylov.solve(&iterate.eliminated, &mut *self.preconditioner, system, stop);
+        iterate.linear += run.iterations;
+        self.check(&run)?;
+        let of_values = penalised.jump_multipliers(|i| iterate.values[i].to_f64());
+        let multiplier = |(jump, &of_values): (usize, &f64)| {
+            let jump_of_correction = penalised.jump(jump, |i| correction[i].to_f64());
+            T::lit(of_values + penalised.weights[jump].to_f64() * jump_of_correction)
+        };
+        iterate.jump_multipliers = of_values.iter().enumerate().map(multiplier).collect();
+        let Iterate { values, jump_multipliers, residual, .. } = iterate;
+        penalised.residual_with_jump_multipliers(
+            |i| values[i].to_f64(),
+            |jump| jump_multipliers[jump].to_f64(),
+            residual,
+        );
+        Ok(true)
     }
 
     fn is_accurate(&self, energy_norm: f64) -> bool {

@@ -53,9 +53,11 @@ pub struct ActiveSet {
     pub improvement_steps: usize,
     /// The method that takes over from an active set that stagnates or cycles.
     pub globalisation: Globalisation,
-    /// Whether to check first that the matrix, or its symmetric part if it is not symmetric, is
-    /// positive definite on all unknowns that are not fixed. The size of an error does not reveal a
-    /// loss of coercivity. Free of cost for a cold start with a symmetric matrix.
+    /// Whether factors check first that the matrix, or its symmetric part if it is not symmetric, is
+    /// positive definite on all unknowns that are not fixed, unless this is known
+    /// ([`Inequality::is_definite`](crate::algebra::Inequality::is_definite)). A solution does not
+    /// reveal that its matrix is indefinite. A symmetric matrix is always checked from a start in
+    /// contact, and, free of cost, from a cold start with factors.
     pub check_definite: bool,
     /// The method for the linear systems.
     pub linear: LinearMethod,

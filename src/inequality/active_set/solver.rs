@@ -4,6 +4,7 @@
 use super::settings::ActiveSet;
 use super::strategy::{self, CROSSOVER};
 use crate::algebra::Inequality;
+use crate::inequality::recession::solve_with_kernel;
 use crate::inequality::{InequalitySolver, InitialGuess, Solution};
 use crate::instances::compiled;
 use crate::linear::{BuiltInPreconditioners, LinearMethod, PreconditionerFamily};
@@ -77,6 +78,8 @@ fn solve_by_stages<T: Real>(
             &InitialGuess<T>,
             &dyn PreconditionerFamily<T>,
         ) -> Solution<T>
-            = strategy::solve
+            = |settings, inequality, guess, family| solve_with_kernel(inequality, |inequality| {
+                strategy::solve(settings, inequality, guess, family)
+            })
     )(settings, inequality, guess, family)
 }

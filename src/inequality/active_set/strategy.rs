@@ -128,7 +128,14 @@ pub(crate) fn solve<T: Real>(
             found = solve.run(stage);
         }
     }
-    solve.into_solution(found.unwrap_or(Found::new(Outcome::Cycling)))
+    let mut found = found.unwrap_or(Found::new(Outcome::Cycling));
+    if found.outcome != Outcome::Converged
+        && inequality.symmetric
+        && !inequality.matrix.is_symmetric()
+    {
+        found.outcome = Outcome::Malformed;
+    }
+    solve.into_solution(found)
 }
 
 /// Whether the first stage solves linear systems by a preconditioned Krylov method.
@@ -146,8 +153,10 @@ fn is_preconditioned<T: Real>(
     }
 }
 
-/// Checks the input, and definiteness where a setting requires it; a cold start with a symmetric matrix
-/// and factors begins with a Cholesky factorisation on all free unknowns, which is such a check itself.
+/// Checks the input, and definiteness unless it is known: where a setting requires it, and for a symmetric
+/// matrix from a start in contact, where indefinite directions of active unknowns would remain unseen.
+/// From a cold start a symmetric matrix is factored on all free unknowns first, which is such a check
+/// itself.
 ///
 /// # Errors
 /// The outcome that the solver returns.
@@ -157,12 +166,12 @@ fn check<T: Real>(
     is_preconditioned: bool,
 ) -> Result<(), Outcome> {
     check_input(inequality)?;
-    let is_checked_by_factors =
-        !is_preconditioned && inequality.start == Start::Cold && inequality.symmetric;
-    if settings.check_definite && !is_checked_by_factors {
-        check_definite(inequality)?;
-    }
-    Ok(())
+    let is_cold = inequality.start == Start::Cold;
+    let is_required = match inequality.symmetric {
+        true => !is_cold || (settings.check_definite && is_preconditioned),
+        false => settings.check_definite,
+    };
+    if is_required && !inequality.is_definite { check_definite(inequality) } else { Ok(()) }
 }
 
 impl<'a, T: Real> Solve<'_, 'a, T> {
@@ -214,7 +223,13 @@ impl<'a, T: Real> Solve<'_, 'a, T> {
             },
             Stage::MonotoneMultigrid => found = self.run_monotone_multigrid(),
             Stage::DirectActiveSet => match self.run_direct() {
-                End::Outcome(outcome) => found = Some(Found::new(outcome)),
+                End::Outcome(outcome) => {
+                    let algebraic_bound = match (&self.direct, outcome) {
+                        (Some(solver), Outcome::Converged) => solver.error_bound(&mut self.iterate),
+                        _ => None,
+                    };
+                    found = Some(Found { algebraic_bound, ..Found::new(outcome) });
+                }
                 end => self.end = Some(end),
             },
             Stage::InteriorPoint => self.run_interior_point(),
@@ -261,6 +276,11 @@ impl<'a, T: Real> Solve<'_, 'a, T> {
         }
         if outcome == Outcome::Converged {
             algebraic_bound = solver.error_bound(&mut self.iterate);
+            if guess.energy_tolerance.is_none()
+                && algebraic_bound.is_some_and(|bound| bound > T::ALGEBRAIC_BOUND_LIMIT)
+            {
+                return Err(End::Unsuitable);
+            }
         }
         Ok(Found { outcome, linear_solver, algebraic_bound })
     }

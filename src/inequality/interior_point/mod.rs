@@ -271,23 +271,14 @@ impl<'h, 'a, T: Real> InteriorPoint<'h, 'a, T> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::algebra::{SparseMatrix, Start};
+    use crate::algebra::SparseMatrix;
 
     /// Two coupled unknowns with lower bounds zero, and a load twice which overflows the scalar: the
     /// direction of the first step is not finite.
     fn overflowing() -> Inequality<f32> {
         let (row_starts, columns) = (vec![0, 2, 4], vec![0, 1, 0, 1]);
-        Inequality {
-            matrix: SparseMatrix { row_starts, columns, values: vec![1.0, -0.9, -0.9, 1.0] },
-            symmetric: true,
-            bounds: vec![Bound::Lower(0.0); 2],
-            load: vec![3e38; 2],
-            supports: vec![],
-            points: vec![],
-            conforming_linear: false,
-            start: Start::Cold,
-            penalised: None,
-        }
+        let matrix = SparseMatrix { row_starts, columns, values: vec![1.0, -0.9, -0.9, 1.0] };
+        Inequality::new(matrix, true, vec![3e38; 2], vec![Bound::Lower(0.0); 2])
     }
 
     #[test]

@@ -3,8 +3,8 @@
 use crate::parallel::cells;
 use std::ops::Range;
 
-use super::bisected_simplices::in_space;
 use super::entity::ContactEntity;
+use crate::assemble::cut_simplices::in_space;
 use crate::assemble::space::Space;
 use crate::problem::ContactSet;
 use crate::real::{Point, Real, point_f64};

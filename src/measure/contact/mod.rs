@@ -3,7 +3,6 @@
 //! The functions use the supports of unknowns only (a vertex, a facet, an edge), so that schemes
 //! with different unknowns can be compared.
 
-mod bisected_simplices;
 mod contact_set;
 mod discrete_contact;
 mod entity;
@@ -15,6 +14,7 @@ pub use discrete_contact::DiscreteContact;
 use super::errors::ContactErrors;
 use crate::algebra::{Bound, Contact, Inequality};
 use crate::assemble::Discretisation;
+use crate::assemble::cut_simplices::{CutRule, in_space};
 use crate::assemble::space::Space;
 use crate::error::Error;
 use crate::inequality::Solution;
@@ -22,7 +22,6 @@ use crate::instances::compiled;
 use crate::mesh::BoundaryPart;
 use crate::problem::ContactSet;
 use crate::real::{Point, Real, point_f64};
-use bisected_simplices::SubSimplex;
 use entity::ContactEntity;
 
 /// A Dirichlet datum this close to a bound, in units of the largest unknown, touches it.
@@ -202,19 +201,17 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         entities: &[ContactEntity],
         touching: &[bool],
     ) -> f64 {
+        let rules = [D - 1, D].map(|dimension| CutRule::new(dimension, 2));
         let mut error = 0.0;
         for (&entity, &touches) in entities.iter().zip(touching) {
             let corners = self.corner_points(entity);
+            let rule = &rules[usize::from(entity.facet.is_none())];
             let mut wrong = 0.0;
-            SubSimplex::whole(entity.dimension::<D>()).split(
-                &corners,
-                &set.indicator,
-                &mut |part| {
-                    if ((set.indicator)(&part.barycentre(&corners)) > 0.0) != touches {
-                        wrong += part.share;
-                    }
-                },
-            );
+            rule.visit(&corners, &set.indicator, &mut |point, weight| {
+                if ((set.indicator)(&in_space(point, &corners)) > 0.0) != touches {
+                    wrong += weight;
+                }
+            });
             error += wrong * self.measure_of(entity);
         }
         error

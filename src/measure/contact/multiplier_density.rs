@@ -1,18 +1,16 @@
 //! The multiplier as a density at vertices.
 
-use super::bisected_simplices::{SubSimplex, in_space};
 use super::entity::ContactEntity;
 use crate::algebra::{Contact, Inequality};
+use crate::assemble::cut_simplices::{CutRule, in_space};
 use crate::assemble::space::{Space, data};
 use crate::error::Error;
 use crate::inequality::Solution;
 use crate::problem::{ContactSet, Field};
-use crate::quadrature::Rule;
 use crate::real::Real;
 
-/// Degree of the rule on a simplex that the free boundary does not cut, and on the parts of one
-/// that it does.
-const DEGREES: [usize; 2] = [5, 2];
+/// Degree of the rule on a simplex, or on the parts into which the free boundary cuts it.
+const DEGREE: usize = 5;
 
 impl<T: Real, const D: usize> Space<'_, T, D> {
     /// The errors of the density in L1 and lumped L2; none if no vertex counts.
@@ -27,10 +25,10 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         let mut weights = vec![0.0; self.mesh.vertices().len()];
         let mut multipliers = self.vertex_multipliers(inequality, solution);
         // for facets and for cells
-        let rules = [D - 1, D].map(|d| DEGREES.map(|degree| Rule::new(d, degree)));
+        let rules = [D - 1, D].map(|dimension| CutRule::new(dimension, DEGREE));
         for &entity in entities {
-            let rules = &rules[usize::from(entity.dimension::<D>() == D)];
-            self.subtract_exact((multiplier, set), entity, rules, &mut weights, &mut multipliers)?;
+            let rule = &rules[usize::from(entity.facet.is_none())];
+            self.subtract_exact((multiplier, set), entity, rule, &mut weights, &mut multipliers)?;
         }
         let given = self.on_dirichlet_part();
         let counted = |v: &usize| weights[*v] > 0.0 && !given[*v];
@@ -67,7 +65,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         &self,
         (multiplier, set): (&Field<D>, Option<&ContactSet<D>>),
         entity: ContactEntity,
-        rules: &[Rule; 2],
+        rule: &CutRule,
         weights: &mut [f64],
         multipliers: &mut [f64],
     ) -> Result<(), Error> {
@@ -75,22 +73,19 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         let corners = self.corner_points(entity);
         let mut tested = [0.0; 4];
         let mut failure = None;
-        let mut add = |part: &SubSimplex| {
-            for (point, weight) in rules[usize::from(!part.is_whole())].iter() {
-                let hats = part.point(point);
-                let x = in_space(&hats, &corners);
-                match data::finite(multiplier(&x), "exact multiplier", &x, entity.cell) {
-                    Ok(density) => tested
-                        .iter_mut()
-                        .zip(hats)
-                        .for_each(|(sum, hat)| *sum += weight * part.share * density * hat),
-                    Err(why) => failure = Some(why),
-                }
+        let mut add = |hats: &[f64; 4], weight: f64| {
+            let x = in_space(hats, &corners);
+            match data::finite(multiplier(&x), "exact multiplier", &x, entity.cell) {
+                Ok(density) => tested
+                    .iter_mut()
+                    .zip(hats)
+                    .for_each(|(sum, hat)| *sum += weight * density * hat),
+                Err(why) => failure = Some(why),
             }
         };
         match set {
-            Some(set) => SubSimplex::whole(dimension).split(&corners, &set.indicator, &mut add),
-            None => add(&SubSimplex::whole(dimension)),
+            Some(set) => rule.visit(&corners, &set.indicator, &mut add),
+            None => rule.visit_whole(&mut add),
         }
         if let Some(why) = failure {
             return Err(why);

@@ -127,7 +127,8 @@ impl<T: Real, const D: usize> Mesh<T, D> {
             .map(|v| Point::from_fn(|k, _| T::lit(coordinate(k, v / strides[k] % (counts[k] + 1)))))
             .collect();
         let (cells, boundary) = cells_and_boundary(domain, counts, strides, &paths);
-        Ok(Self { vertices, cells, boundary })
+        let is_supported = boundary.iter().any(|f| f.part == BoundaryPart::Dirichlet);
+        Ok(Self { vertices, cells, boundary, is_supported })
     }
 }
 

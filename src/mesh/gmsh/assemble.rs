@@ -4,6 +4,7 @@ use super::contents::{Contents, Membership};
 use super::element_types::Shape;
 use super::error::{GmshError, GmshWarning};
 use super::node_index::NodeIndex;
+use crate::input::excerpt;
 use crate::mesh::boundary::BoundaryPart;
 use crate::mesh::error::MeshError;
 use crate::mesh::simplicial::Mesh;
@@ -66,7 +67,7 @@ fn check_group_names(contents: &Contents, dimension: usize) -> Result<(), GmshEr
         }
         let meant = BoundaryPart::from_name(&group.name.trim().to_lowercase());
         let hint = meant.map_or(String::new(), |part| format!(": write {}", part.name()));
-        let (position, name) = (group.position, group.name.clone());
+        let (position, name) = (group.position, excerpt(&group.name));
         return Err(GmshError::UnknownGroup { position, dimension, tag, name, hint });
     }
     Ok(())

@@ -67,6 +67,7 @@ pub use assemble::GmshMesh;
 pub use error::{GmshError, GmshWarning};
 pub use position::{ElementPosition, FilePosition};
 
+use crate::input::read_file;
 use crate::instances::compiled;
 use crate::real::Real;
 use sections::{Wanted, read_contents};
@@ -77,8 +78,8 @@ use std::path::Path;
 /// # Errors
 /// Every [`GmshError`].
 pub fn read<T: Real, const D: usize>(path: &Path) -> Result<GmshMesh<T, D>, GmshError> {
-    let bytes = std::fs::read(path)
-        .map_err(|source| GmshError::Unreadable { path: path.into(), source })?;
+    let bytes =
+        read_file(path).map_err(|source| GmshError::Unreadable { path: path.into(), source })?;
     parse(&bytes)
 }
 

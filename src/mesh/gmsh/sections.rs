@@ -4,8 +4,8 @@ use super::contents::{Contents, Group};
 use super::error::GmshError;
 use super::position::FilePosition;
 use super::source::Source;
-use super::text::excerpt;
 use super::{version_four, version_two};
+use crate::input::excerpt;
 
 /// The revisions of the format that are read.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -125,7 +125,7 @@ fn read_header(source: &mut Source) -> Result<Version, GmshError> {
             return Err(if looks_like_a_version {
                 GmshError::UnsupportedVersion { position, version }
             } else {
-                let section = source.section.clone();
+                let section = source.section_name();
                 GmshError::NotANumber {
                     position,
                     section,
@@ -180,7 +180,7 @@ fn read_names(source: &mut Source, contents: &mut Contents) -> Result<(), GmshEr
         let line = source.rest_of_line().trim_ascii();
         let name = line.strip_prefix(b"\"").and_then(|rest| rest.strip_suffix(b"\""));
         let Some(name) = name else {
-            let (section, expected) = (source.section.clone(), "a name in double quotes".into());
+            let (section, expected) = (source.section_name(), "a name in double quotes".into());
             let found = format!("`{}`", excerpt(line));
             return Err(GmshError::Unexpected { position, section, expected, found });
         };

@@ -4,7 +4,7 @@
 
 use super::error::GmshError;
 use super::position::FilePosition;
-use super::text::excerpt;
+use crate::input::excerpt;
 
 /// The encoding of numbers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -25,7 +25,7 @@ pub(super) struct Source<'a> {
     pub(super) last: usize,
     /// The encoding of the numbers of the sections.
     pub(super) encoding: Encoding,
-    /// The section that is being read, for messages.
+    /// The section that is being read.
     pub(super) section: String,
 }
 
@@ -58,12 +58,17 @@ impl<'a> Source<'a> {
         self.bytes.get(self.at).copied()
     }
 
+    /// The name of the section that is being read, for messages.
+    pub(super) fn section_name(&self) -> String {
+        excerpt(&self.section)
+    }
+
     // Errors at the present position.
 
     pub(super) fn truncated(&self) -> GmshError {
         let position =
             self.position_of(if self.is_binary() { self.bytes.len() } else { self.line });
-        GmshError::Truncated { position, section: self.section.clone() }
+        GmshError::Truncated { position, section: self.section_name() }
     }
     pub(super) fn unexpected(
         &self,
@@ -72,7 +77,7 @@ impl<'a> Source<'a> {
     ) -> GmshError {
         GmshError::Unexpected {
             position: self.position(),
-            section: self.section.clone(),
+            section: self.section_name(),
             expected: expected.into(),
             found: found.into(),
         }
@@ -83,7 +88,7 @@ impl<'a> Source<'a> {
         announced: u64,
         found: impl Into<String>,
     ) -> GmshError {
-        let (position, section) = (self.position(), self.section.clone());
+        let (position, section) = (self.position(), self.section_name());
         GmshError::Count { position, section, what, announced, found: found.into() }
     }
 
@@ -209,7 +214,7 @@ impl<'a> Source<'a> {
             return Err(self.truncated());
         }
         if word[0] != b'$' {
-            let section = self.section.clone();
+            let section = self.section_name();
             return Err(GmshError::Count {
                 position,
                 section,
@@ -221,8 +226,8 @@ impl<'a> Source<'a> {
         let found = format!("`{}`", excerpt(word));
         Err(GmshError::Unexpected {
             position,
-            section: self.section.clone(),
-            expected: format!("`{end}`"),
+            section: self.section_name(),
+            expected: format!("`{}`", excerpt(&end)),
             found,
         })
     }

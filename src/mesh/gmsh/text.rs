@@ -2,6 +2,7 @@
 
 use super::error::GmshError;
 use super::source::Source;
+use crate::input::excerpt;
 
 impl<'a> Source<'a> {
     /// Skips blanks and ends of lines.
@@ -49,7 +50,7 @@ impl<'a> Source<'a> {
     pub(super) fn not_a_number(&self, expected: &'static str, word: &[u8]) -> GmshError {
         GmshError::NotANumber {
             position: self.position(),
-            section: self.section.clone(),
+            section: self.section_name(),
             expected,
             word: excerpt(word),
         }
@@ -96,16 +97,4 @@ fn parse_digits(word: &[u8]) -> Option<u64> {
         }
         value.checked_mul(10)?.checked_add(u64::from(digit))
     })
-}
-
-/// A word of the file for a message: at most 40 characters, without control characters.
-pub(super) fn excerpt(word: &[u8]) -> String {
-    const LONGEST: usize = 40;
-    let text = String::from_utf8_lossy(word);
-    let mut shown: String =
-        text.chars().take(LONGEST).map(|c| if c.is_control() { '\u{fffd}' } else { c }).collect();
-    if text.chars().nth(LONGEST).is_some() {
-        shown.push('…');
-    }
-    shown
 }

@@ -1,7 +1,7 @@
 //! Stretched cells.
 
 use crate::error::Error;
-use crate::stability::choice::{Choice, Penalty, compared_and};
+use crate::stability::choice::{Choice, Penalty};
 use crate::stability::meshes::stretched;
 use crate::stability::plan::{Plan, Sink};
 use crate::stability::row_builder::{RowBuilder, figures, jump, of, quotient};
@@ -19,7 +19,7 @@ pub(crate) fn plan(plan: &mut Plan<'_>) {
         Choice::new("wopsip", Penalty::Eta(1.0)),
         Choice::new("sipg", Penalty::Sigma(SIGMA)),
     ];
-    for choice in compared_and(&further) {
+    for choice in plan.compared_and(&further) {
         plan.add("stretched-cells", choice, "", move |c, sink| sweep(c, n, ratios, sink));
     }
 }

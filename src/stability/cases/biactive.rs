@@ -5,7 +5,7 @@ use crate::inequality::Globalisation;
 use crate::nested::Hierarchy;
 use crate::scenes;
 use crate::scenes::Scene;
-use crate::stability::choice::{Choice, compared};
+use crate::stability::choice::Choice;
 use crate::stability::plan::{Plan, Sink};
 use crate::stability::row_builder::{RowBuilder, figures, fitted_order, listed, of};
 use crate::stability::runs::{row, rows, solved, solver_with};
@@ -24,7 +24,7 @@ pub(crate) fn plan(plan: &mut Plan<'_>) {
     );
     let strings: &[usize] = plan.pick(&[64, 128, 256], &[64, 128, 256, 512]);
     let finest = plan.pick_of(8, 16, 32);
-    for choice in compared() {
+    for choice in plan.compared() {
         for make in plane {
             plan.add("biactive", choice, &make().name, move |c, sink| {
                 orders(make, c, levels, sink)?;

@@ -5,9 +5,9 @@ use crate::error::Error;
 use crate::inequality::Outcome;
 use crate::kit::spectrum::{CholeskyMatrix, Diagonal, Lanczos};
 use crate::scenes;
-use crate::stability::choice::{Choice, Penalty, compared};
+use crate::stability::choice::{Choice, Penalty};
 use crate::stability::plan::{Plan, Sink};
-use crate::stability::row_builder::{RowBuilder, figures, of};
+use crate::stability::row_builder::{RowBuilder, figures, of, quotient};
 use crate::stability::runs::{free_matrix, row, sines};
 
 /// The factor below which `sigma/h_F` is indefinite on right isosceles triangles.
@@ -19,7 +19,7 @@ pub(crate) fn plan(plan: &mut Plan<'_>) {
         let choice = Choice::new("sipg", Penalty::Sigma(sigma));
         plan.add("coercivity", choice, "", move |c, sink| factor(c, sigma, level, sink));
     }
-    for choice in compared() {
+    for choice in plan.compared() {
         plan.add("coercivity", choice, "", move |c, sink| {
             sink(inertia(c, level)?);
             Ok(())
@@ -56,14 +56,25 @@ fn factor(choice: &Choice, sigma: f64, level: usize, sink: Sink<'_>) -> Result<(
     let found = row::<f64, 2>(scenes::radial::<2>(1.0), choice, 2 * level)?;
     // on Dirichlet facets |dK|/|K| with |dK| = (2 + root 2) h and |K| = h^2 / 2
     let proven = 2.0 * (2.0 + 2.0_f64.sqrt());
+    let means = row::<f64, 2>(scenes::radial::<2>(1.0), &Choice::default("cr"), 2 * level)?;
+    sink(
+        RowBuilder::new("error-of-interior-penalty", choice)
+            .on(&found.scene)
+            .level(2 * level)
+            .at("sigma", sigma)
+            .quantity("H1 error over that of cr")
+            .at_most(1.25)
+            .known_to_fail(sigma < proven)
+            .detail(figures(&found))
+            .measured(quotient(of(&found, |r| r.error.h1), of(&means, |r| r.error.h1))),
+    );
     let told = found.status == Outcome::NotCoercive || !found.warnings.is_empty();
     let claim = RowBuilder::new("refused-or-warned", choice)
         .on(&found.scene)
         .level(2 * level)
         .at("sigma", sigma)
-        .quantity("refused to solve, or warned")
-        .at_least(1.0);
-    let claim = if sigma < proven { claim } else { claim.only_reported() };
+        .quantity("refused to solve, or warned");
+    let claim = if sigma < proven { claim.at_least(1.0) } else { claim.at_most(0.0) };
     let error = of(&found, |r| r.error.h1).is_some();
     let detail = match (error, found.warnings.is_empty()) {
         (true, false) => format!("warned, {}", figures(&found)),

@@ -6,7 +6,7 @@ use crate::nested::Hierarchy;
 use crate::real::Point;
 use crate::scenes;
 use crate::scenes::Scene;
-use crate::stability::choice::{Choice, compared};
+use crate::stability::choice::Choice;
 use crate::stability::plan::{Plan, Sink};
 use crate::stability::row_builder::{RowBuilder, figures, fitted_order, listed, of};
 use crate::stability::runs::{rows, solved, solver};
@@ -23,7 +23,7 @@ const PROBLEMS: [Ended; 3] = [
 
 pub(crate) fn plan(plan: &mut Plan<'_>) {
     let levels: &[usize] = plan.pick_of(&[4, 8], &[16, 32], &[16, 32, 64, 128]);
-    for choice in compared() {
+    for choice in plan.compared() {
         for ended in PROBLEMS {
             plan.add("contact-ends", choice, &ended.0().name, move |c, sink| {
                 sweep(ended, c, levels, sink)

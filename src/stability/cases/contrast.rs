@@ -5,7 +5,7 @@ use crate::error::Error;
 use crate::scenes;
 use crate::scenes::Scene;
 use crate::scheme::ConformingP1;
-use crate::stability::choice::{Choice, Penalty, compared, compared_and};
+use crate::stability::choice::{Choice, Penalty};
 use crate::stability::plan::{Plan, Sink};
 use crate::stability::row_builder::{RowBuilder, figures, fitted_order, listed, of, quotient};
 use crate::stability::runs::{row, rows};
@@ -22,17 +22,17 @@ pub(crate) fn plan(plan: &mut Plan<'_>) {
         Choice::new("wopsip:facet-means", Penalty::Unweighted),
         Choice::new("sipg", Penalty::Sigma(10.0)),
     ];
-    for choice in compared_and(&further) {
+    for choice in plan.compared_and(&further) {
         plan.add("contrast", choice, "two layers", move |c, sink| {
             aligned(c, level, exponents, sink)
         });
     }
     let middle = plan.pick_of(8, 32, 32);
-    for choice in compared() {
+    for choice in plan.compared() {
         plan.add("contrast", choice, "two materials", move |c, sink| across(c, middle, sink));
     }
     let levels: &[usize] = plan.pick_of(&[4, 8], &[8, 16, 32], &[8, 16, 32, 64]);
-    for choice in compared() {
+    for choice in plan.compared() {
         plan.add("contrast", choice, "disc of another material", move |c, sink| {
             inside_cells(c, levels, sink)
         });

@@ -8,7 +8,7 @@ use crate::nested::Hierarchy;
 use crate::real::{Point, Real};
 use crate::scenes;
 use crate::scenes::Scene;
-use crate::stability::choice::{Choice, Penalty, compared_and};
+use crate::stability::choice::{Choice, Penalty};
 use crate::stability::plan::{Plan, Sink};
 use crate::stability::row_builder::{RowBuilder, figures, fitted_order, listed, of};
 use crate::stability::runs::{row, rows, solved, solver, solver_with};
@@ -34,7 +34,7 @@ pub(crate) fn plan(plan: &mut Plan<'_>) {
         Choice::new("wopsip:facet-means", Penalty::Eta(100.0)),
     ];
     let fitted: &[usize] = plan.pick_of(&[4, 8], &FITTED, &FITTED);
-    for choice in compared_and(&further) {
+    for choice in plan.compared_and(&further) {
         for touched in PROBLEMS {
             plan.add("curved-obstacle", choice, &touched.0().name, move |c, sink| {
                 sweep(touched, c, levels, fitted, sink)

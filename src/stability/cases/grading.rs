@@ -2,7 +2,7 @@
 
 use crate::error::Error;
 use crate::scenes;
-use crate::stability::choice::{Choice, Penalty, compared_and};
+use crate::stability::choice::{Choice, Penalty};
 use crate::stability::meshes::graded;
 use crate::stability::plan::{Plan, Sink};
 use crate::stability::row_builder::{RowBuilder, figures, of, quotient};
@@ -15,7 +15,7 @@ pub(crate) fn plan(plan: &mut Plan<'_>) {
         Choice::new("wopsip:facet-means", Penalty::ByHeights),
         Choice::new("wopsip", Penalty::Eta(1.0)),
     ];
-    for choice in compared_and(&further) {
+    for choice in plan.compared_and(&further) {
         for power in [1, 2, 4, 8] {
             plan.add("graded-meshes", choice, &format!("power {power}"), move |c, sink| {
                 compare(c, n, power, sink)

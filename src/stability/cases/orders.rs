@@ -3,7 +3,7 @@
 use crate::error::Error;
 use crate::scenes;
 use crate::scenes::Scene;
-use crate::stability::choice::{Choice, Penalty, compared};
+use crate::stability::choice::{Choice, Penalty};
 use crate::stability::plan::{Plan, Sink};
 use crate::stability::row_builder::{
     RowBuilder, figures, fitted_order, jump, listed, of, quotient,
@@ -56,7 +56,7 @@ pub(crate) fn plan(plan: &mut Plan<'_>) {
         });
     }
     let norms: &[Norm] = &[("H1", Some(0.9), |r| r.error.h1), ("L2", None, |r| r.error.l2)];
-    for choice in compared() {
+    for choice in plan.compared() {
         plan.add("orders", choice, "icelike-1d", move |c, sink| {
             let levels = [8, 16, 32, 64, 128, 256];
             fit("strings", scenes::icelike_1d(), c, &levels, norms, sink)

@@ -2,7 +2,7 @@
 
 use crate::error::Error;
 use crate::real::Real;
-use crate::stability::choice::{Choice, Penalty, compared_and};
+use crate::stability::choice::{Choice, Penalty};
 use crate::stability::plan::{Plan, Sink};
 use crate::stability::row_builder::{RowBuilder, figures, of, quotient};
 use crate::stability::runs::{rows, sines};
@@ -15,7 +15,7 @@ pub(crate) fn plan(plan: &mut Plan<'_>) {
     let one = Penalty::Eta(1.0);
     let further = [Choice::new("wopsip", one), Choice::new("wopsip:facet-means", one)];
     let (strings, squares) = (plan.pick_of(7, 10, 15), plan.pick_of(4, 5, 7));
-    for choice in compared_and(&further) {
+    for choice in plan.compared_and(&further) {
         plan.add("round-off", choice, "string f64", move |c, sink| {
             sweep::<f64, 1>(c, strings, sink)
         });

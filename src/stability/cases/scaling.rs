@@ -5,7 +5,7 @@ use crate::nested::Hierarchy;
 use crate::problem::Datum;
 use crate::scenes;
 use crate::scenes::Scene;
-use crate::stability::choice::{Choice, Penalty, compared_and};
+use crate::stability::choice::{Choice, Penalty};
 use crate::stability::plan::{Plan, Sink};
 use crate::stability::row_builder::{RowBuilder, quotient};
 use crate::stability::runs::{solved, solver};
@@ -14,7 +14,7 @@ pub(crate) fn plan(plan: &mut Plan<'_>) {
     let level = plan.pick(8, 32);
     let lengths: &[f64] = plan.pick(&[1e-6, 1e6], &[1e-6, 1e-3, 1e3, 1e6]);
     let factors: &[f64] = plan.pick(&[1e-8, 1e8], &[1e-8, 1e-4, 1e4, 1e8]);
-    for choice in compared_and(&[
+    for choice in plan.compared_and(&[
         Choice::new("wopsip", Penalty::Eta(1.0)),
         Choice::new("wopsip:facet-means", Penalty::Eta(1.0)),
     ]) {
@@ -22,7 +22,7 @@ pub(crate) fn plan(plan: &mut Plan<'_>) {
             domain(c, level, lengths, sink)
         });
     }
-    for choice in compared_and(&[
+    for choice in plan.compared_and(&[
         Choice::new("wopsip", Penalty::Unweighted),
         Choice::new("wopsip:facet-means", Penalty::Unweighted),
     ]) {

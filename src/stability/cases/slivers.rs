@@ -2,7 +2,7 @@
 
 use crate::error::Error;
 use crate::scenes;
-use crate::stability::choice::{Choice, Penalty, compared_and};
+use crate::stability::choice::{Choice, Penalty};
 use crate::stability::meshes::{clamped, slivers};
 use crate::stability::plan::{Plan, Sink};
 use crate::stability::row_builder::{RowBuilder, figures, of, quotient};
@@ -17,7 +17,7 @@ pub(crate) fn plan(plan: &mut Plan<'_>) {
         Choice::new("sipg", Penalty::Sigma(10.0)),
     ];
     let given = plan.given;
-    for choice in compared_and(&further) {
+    for choice in plan.compared_and(&further) {
         plan.add("slivers", choice, "", move |c, sink| sweep(c, n, heights, sink));
         plan.add("slivers", choice, "meshes given", move |c, sink| {
             for (name, mesh) in given {

@@ -1,7 +1,7 @@
-//! Scenes on unstructured meshes: small ones of the test data, and those of the folder beside the
-//! project, where it exists.
+//! Scenes on meshes of Gmsh and their refinements: small ones of the test data, and those of a folder
+//! that the variable `UNILATERAL_MESHES` names.
 
-use crate::runs::{shared_mesh, small_mesh};
+use crate::runs::{mesh_of_folder, small_mesh};
 use crate::support::checks::Checks;
 use crate::support::rows::label;
 use crate::support::scheme_lists::all_schemes;
@@ -94,65 +94,16 @@ fn turned(mesh: &Mesh<f64, 3>) -> Mesh<f64, 3> {
     Mesh::new(vertices, mesh.cells().to_vec(), &boundary).unwrap()
 }
 
-#[test]
-fn radial_obstacle_on_a_disc() {
-    let Some(mesh) = shared_mesh("disc.msh") else { return };
-    on(mesh, scenes::radial::<2>(1.0), [0, 1]);
-}
-
-#[test]
-fn radial_obstacle_on_an_l_shape() {
-    let Some(mesh) = shared_mesh("lshape.msh") else { return };
-    on(mesh, scenes::radial::<2>(1.0), [0, 1]);
-}
-
-#[test]
-fn signorini_on_a_graded_mesh() {
-    let Some(mesh) = shared_mesh("half_square_graded.msh") else { return };
-    on(mesh.clone(), scenes::signorini_harmonic::<2>(), [0, 1]);
-    on(mesh.clone(), scenes::signorini_2d(), [0, 1]);
-    // contact changes inside facets, so that L2 errors oscillate from one level to the next
-    on(mesh, scenes::hertz_2d(), [0, 2]);
-}
-
-#[test]
-fn hertz_contact_on_a_plate_with_holes() {
-    let Some(mesh) = shared_mesh("plate_with_holes.msh") else { return };
-    on(mesh, scenes::hertz_2d(), [1, 2]);
-}
-
 fn radial_in_space() -> Scene<3> {
     scenes::radial(1.0)
 }
 
 /// The block of the folder, with contact at its lower end.
-fn block() -> Option<Mesh<f64, 3>> {
-    let mesh = shared_mesh("block.msh")?;
+fn block() -> Mesh<f64, 3> {
+    let mesh = mesh_of_folder("block.msh");
     // contact of the file is at y = 0, of the scene at z = 0
     assert!(check_fit(&scenes::signorini_harmonic::<3>(), &mesh).unwrap().is_some());
-    Some(turned(&mesh))
-}
-
-#[test]
-fn radial_obstacle_on_a_ball() {
-    let Some(mesh) = shared_mesh("ball.msh") else { return };
-    on_refined(&mesh, radial_in_space, conforming_and_not);
-    certified(mesh, radial_in_space());
-}
-
-#[test]
-fn signorini_on_a_block_with_neumann_sides() {
-    let Some(mesh) = block() else { return };
-    on_refined(&mesh, scenes::signorini_harmonic::<3>, conforming_and_not);
-    certified(mesh, scenes::signorini_harmonic::<3>());
-}
-
-#[test]
-#[ignore = "takes a minute"]
-fn every_scheme_on_refined_meshes_in_space() {
-    let (Some(ball), Some(block)) = (shared_mesh("ball.msh"), block()) else { return };
-    on_refined(&ball, radial_in_space, all_schemes);
-    on_refined(&block, scenes::signorini_harmonic::<3>, all_schemes);
+    turned(&mesh)
 }
 
 #[test]
@@ -168,22 +119,95 @@ fn signorini_on_small_meshes() {
 
 /// Refinement must not make cells much worse than they were: the volume over the cube of the
 /// diameter, at its least.
-#[test]
-fn refinement_keeps_the_shape_of_cells() {
+fn keeps_shape(mesh: &Mesh<f64, 3>) {
     let shape = |mesh: &Mesh<f64, 3>| {
         let of = |c| mesh.geometry(c).volume / mesh.cell_diameter(c).powi(3);
         (0..mesh.n_cells()).map(of).fold(f64::INFINITY, f64::min)
     };
     let mut checks = Checks::default();
-    for mesh in [Some(small_mesh("cube.msh")), shared_mesh("ball.msh"), shared_mesh("block.msh")] {
-        let Some(mesh) = mesh else { continue };
-        let fine = mesh.refine().unwrap().0;
-        let twice = fine.refine().unwrap().0;
-        let [before, after, last] = [&mesh, &fine, &twice].map(shape);
-        checks.that(after > 0.9 * before, || format!("shape from {before:.2e} to {after:.2e}"));
-        checks.that(last > 0.9 * before, || format!("shape from {before:.2e} to {last:.2e}"));
-        let ratio = fine.mesh_size() / mesh.mesh_size();
-        checks.that(ratio < 0.6, || format!("mesh size times {ratio:.2}"));
-    }
+    let fine = mesh.refine().unwrap().0;
+    let twice = fine.refine().unwrap().0;
+    let [before, after, last] = [mesh, &fine, &twice].map(shape);
+    checks.that(after > 0.9 * before, || format!("shape from {before:.2e} to {after:.2e}"));
+    checks.that(last > 0.9 * before, || format!("shape from {before:.2e} to {last:.2e}"));
+    let ratio = fine.mesh_size() / mesh.mesh_size();
+    checks.that(ratio < 0.6, || format!("mesh size times {ratio:.2}"));
     checks.finish();
+}
+
+#[test]
+fn refinement_keeps_the_shape_of_cells() {
+    for name in ["cube.msh", "unstructured_cube.msh", "unstructured_half_cube.msh"] {
+        keeps_shape(&small_mesh(name));
+    }
+}
+
+mod needs_meshes {
+    use super::*;
+
+    #[test]
+    #[ignore = "needs the folder of meshes"]
+    fn radial_obstacle_on_a_disc() {
+        let mesh = mesh_of_folder("disc.msh");
+        on(mesh, scenes::radial::<2>(1.0), [0, 1]);
+    }
+
+    #[test]
+    #[ignore = "needs the folder of meshes"]
+    fn radial_obstacle_on_an_l_shape() {
+        let mesh = mesh_of_folder("lshape.msh");
+        on(mesh, scenes::radial::<2>(1.0), [0, 1]);
+    }
+
+    #[test]
+    #[ignore = "needs the folder of meshes"]
+    fn signorini_on_a_graded_mesh() {
+        let mesh = mesh_of_folder("half_square_graded.msh");
+        on(mesh.clone(), scenes::signorini_harmonic::<2>(), [0, 1]);
+        on(mesh.clone(), scenes::signorini_2d(), [0, 1]);
+        // contact changes inside facets, so that L2 errors oscillate from one level to the next
+        on(mesh, scenes::hertz_2d(), [0, 2]);
+    }
+
+    #[test]
+    #[ignore = "needs the folder of meshes"]
+    fn hertz_contact_on_a_plate_with_holes() {
+        let mesh = mesh_of_folder("plate_with_holes.msh");
+        on(mesh, scenes::hertz_2d(), [1, 2]);
+    }
+
+    #[test]
+    #[ignore = "needs the folder of meshes"]
+    fn radial_obstacle_on_a_ball() {
+        let mesh = mesh_of_folder("ball.msh");
+        on_refined(&mesh, radial_in_space, conforming_and_not);
+        certified(mesh, radial_in_space());
+    }
+
+    #[test]
+    #[ignore = "needs the folder of meshes"]
+    fn signorini_on_a_block_with_neumann_sides() {
+        let mesh = block();
+        on_refined(&mesh, scenes::signorini_harmonic::<3>, conforming_and_not);
+        certified(mesh, scenes::signorini_harmonic::<3>());
+    }
+
+    #[test]
+    #[ignore = "needs the folder of meshes"]
+    fn refinement_keeps_the_shape_of_many_cells() {
+        keeps_shape(&mesh_of_folder("ball.msh"));
+        keeps_shape(&mesh_of_folder("block.msh"));
+    }
+}
+
+mod needs_meshes_and_time {
+    use super::*;
+
+    #[test]
+    #[ignore = "needs the folder of meshes and a minute"]
+    fn every_scheme_on_refined_meshes_in_space() {
+        let (ball, block) = (mesh_of_folder("ball.msh"), block());
+        on_refined(&ball, radial_in_space, all_schemes);
+        on_refined(&block, scenes::signorini_harmonic::<3>, all_schemes);
+    }
 }

@@ -1,6 +1,8 @@
 //! Errors of discrete solutions: orders, figures of other programs, exact cases.
 
+mod coefficient;
 mod family;
+mod loads;
 mod meshes;
 mod orders;
 mod own_sets;
@@ -8,3 +10,4 @@ mod patch;
 mod precision;
 mod quadratic;
 mod reference;
+mod unstructured;

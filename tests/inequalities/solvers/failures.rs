@@ -16,15 +16,15 @@ fn indefinite_matrix_is_not_coercive() {
         let solution = cold(&problem);
         assert_eq!(solution.outcome, Outcome::NotCoercive);
         assert!(solution.values.iter().all(|u| u.is_finite()));
-        // From contact everywhere nothing would be noticed without asking.
+        // from contact everywhere no iterate shows it
         let start = Start::Contact(vec![Contact::Lower; n * n]);
-        let careful = ActiveSet::default().check_definite(true);
-        assert_eq!(
-            careful.solve(&problem.clone().with_start(start.clone())).outcome,
-            Outcome::NotCoercive
-        );
+        let warm = problem.clone().with_start(start);
+        assert_eq!(ActiveSet::default().solve(&warm).outcome, Outcome::NotCoercive);
+        let trusted = ActiveSet::default().solve(&warm.with_definite_matrix());
+        assert_eq!(trusted.outcome, Outcome::Converged);
         let mut unsymmetric = problem.clone();
         unsymmetric.symmetric = false;
+        let careful = ActiveSet::default().check_definite(true);
         assert_eq!(careful.solve(&unsymmetric).outcome, Outcome::NotCoercive);
     }
 }
@@ -83,7 +83,7 @@ fn numbers_that_are_not_finite_are_noticed() {
     }
     let mut overflow = good.clone();
     overflow.load = vec![1e308; 25];
-    assert_eq!(cold(&overflow).outcome, Outcome::NotFinite);
+    assert_eq!(cold(&overflow).outcome, Outcome::OutOfRange);
 }
 
 #[test]
@@ -154,4 +154,46 @@ fn certificate_sees_every_violation() {
     u.iter_mut().for_each(|u| *u *= 1e-3);
     let certificate = certify(&scaled, &u);
     assert!((certificate.largest() / reference.largest() - 1.0).abs() < 1e-9);
+}
+
+#[test]
+fn data_whose_squares_underflow_are_refused_and_not_certified() {
+    let good = membrane::<f64>(20, 10.0, |_, _| -0.3);
+    let scaled = |factor: f64| {
+        let mut problem = good.clone();
+        problem.load.iter_mut().for_each(|b| *b *= factor);
+        problem.bounds = vec![Bound::Lower(-0.3 * factor); 400];
+        problem
+    };
+    let zero = vec![0.0; 400];
+    let of_zero = certify(&good, &zero).largest();
+    assert!(of_zero > 0.1);
+    for factor in [1e-300, 1e-170, 1e-130] {
+        let tiny = scaled(factor);
+        assert_eq!(cold(&tiny).outcome, Outcome::OutOfRange);
+        let certificate = certify(&tiny, &zero).largest();
+        assert!((certificate / of_zero - 1.0).abs() < 1e-12, "{factor}: {certificate}");
+    }
+    for factor in [1e-100, 1e100] {
+        assert_eq!(cold(&scaled(factor)).outcome, Outcome::Converged);
+    }
+}
+
+#[test]
+fn rounding_that_keeps_the_certificate_above_its_limit_is_told() {
+    // springs between values near one; a stiff one multiplies the rounding of its ends
+    let n = 50;
+    let stiffness = |k: usize| if k == 20 { 1e13 } else { 1.0 };
+    let mut dense = vec![vec![0.0; n]; n];
+    for k in 0..n - 1 {
+        for (i, j, sign) in [(k, k, 1.0), (k, k + 1, -1.0), (k + 1, k, -1.0), (k + 1, k + 1, 1.0)] {
+            dense[i][j] += sign * stiffness(k);
+        }
+    }
+    let mut bounds = vec![Bound::Free; n];
+    (bounds[0], bounds[n - 1]) = (Bound::Fixed(1.0), Bound::Fixed(1.001));
+    let chain = inequality::<f64>(sparse(&dense), &vec![0.0; n], bounds);
+    let solution = ActiveSet::default().solve(&chain);
+    assert!(certify(&chain, &solution.values).largest() > 1e-9);
+    assert_eq!(solution.outcome, Outcome::Stalled);
 }

@@ -1,8 +1,12 @@
 //! The solvers of the algebraic inequality against slow ones, and on what can go wrong.
 
+mod certificates;
+mod error_bound;
 mod failures;
 mod last_resort;
+mod out_of_memory;
 mod reach;
+mod wrong_promises;
 
 use crate::problems::*;
 use unilateral::algebra::{Bound, Contact, Inequality, Start};

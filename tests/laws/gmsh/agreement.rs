@@ -1,4 +1,4 @@
-//! The meshes of a folder beside the project, where it exists, and another reader as an oracle.
+//! Another reader as an oracle, and the meshes of a folder that the variable `UNILATERAL_MESHES` names.
 
 use super::forms::{parse, parts, volume};
 use super::writer::{FORMS, square, tetrahedron};
@@ -7,15 +7,10 @@ use unilateral::mesh::Mesh;
 use unilateral::mesh::gmsh;
 use unilateral::mesh::gmsh::GmshWarning;
 
-/// The folder of meshes, if there is one.
-fn folder() -> Option<PathBuf> {
-    // Tests run in the folder of the package.
-    let path = PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/../shared/meshes"));
-    let found = path.is_dir();
-    if !found {
-        eprintln!("skipped: there is no {}", path.display());
-    }
-    found.then_some(path)
+/// The folder of meshes.
+fn folder() -> PathBuf {
+    let folder = std::env::var_os("UNILATERAL_MESHES");
+    folder.expect("UNILATERAL_MESHES names the folder of meshes").into()
 }
 
 fn boundary_length(mesh: &Mesh<f64, 2>) -> f64 {
@@ -24,35 +19,6 @@ fn boundary_length(mesh: &Mesh<f64, 2>) -> f64 {
         (mesh.vertices()[v[0] as usize] - mesh.vertices()[v[1] as usize]).norm()
     };
     mesh.boundary().iter().map(|f| facet_length(f.cell, f.local)).sum()
-}
-
-#[test]
-fn the_disc_is_the_same_in_every_version() {
-    let Some(folder) = folder() else { return };
-    let read = |name: &str| {
-        gmsh::read::<f64, 2>(&folder.join(name)).unwrap_or_else(|e| panic!("{name}: {e}")).mesh
-    };
-    let discs = [
-        ("disc.msh", read("disc.msh")),
-        ("disc_binary.msh", read("disc_binary.msh")),
-        ("disc_v2.msh", read("disc_v2.msh")),
-    ];
-    // A polygon of n equal sides inscribed in a circle of radius 3/2.
-    for (name, mesh) in &discs {
-        let sides = mesh.boundary().len() as f64;
-        let angle = std::f64::consts::TAU / sides;
-        let (area, length) = (1.125 * sides * angle.sin(), 3.0 * sides * (angle / 2.0).sin());
-        assert!((volume(mesh) - area).abs() < 1e-9, "{name}: area {} of {area}", volume(mesh));
-        assert!((boundary_length(mesh) - length).abs() < 1e-9, "{name}");
-        assert_eq!(parts(mesh), [mesh.boundary().len(), 0, 0], "{name}");
-        // Euler: vertices - edges + cells = 1
-        let edges = (3 * mesh.n_cells() + mesh.boundary().len()) / 2;
-        assert_eq!(mesh.vertices().len() + mesh.n_cells(), edges + 1, "{name}");
-    }
-    let [(_, text), _, (_, old)] = &discs;
-    assert_eq!((text.n_cells(), text.vertices().len()), (old.n_cells(), old.vertices().len()));
-    assert!((volume(text) - volume(old)).abs() < 1e-12);
-    assert!((boundary_length(text) - boundary_length(old)).abs() < 1e-12);
 }
 
 fn check<const D: usize>(name: &str, bytes: &[u8]) {
@@ -69,27 +35,6 @@ fn check<const D: usize>(name: &str, bytes: &[u8]) {
         volume(&read.mesh),
         parts(&read.mesh)
     );
-}
-
-#[test]
-fn every_mesh_of_the_folder_reads() {
-    let Some(folder) = folder() else { return };
-    let mut files = 0;
-    for entry in std::fs::read_dir(folder).unwrap() {
-        let path = entry.unwrap().path();
-        if path.extension().is_none_or(|e| e != "msh") {
-            continue;
-        }
-        let name = path.file_name().unwrap().to_string_lossy().into_owned();
-        let bytes = std::fs::read(&path).unwrap();
-        match gmsh::dimension(&bytes).unwrap_or_else(|e| panic!("{name}: {e}")) {
-            1 => check::<1>(&name, &bytes),
-            2 => check::<2>(&name, &bytes),
-            _ => check::<3>(&name, &bytes),
-        }
-        files += 1;
-    }
-    assert!(files > 0);
 }
 
 /// Cells of dimension `D` by the coordinates of their corners, and the number of nodes, as another
@@ -140,52 +85,123 @@ fn another_reader_finds_the_same_cells() {
         agrees_with_oracle::<2>(&square().four(form));
         agrees_with_oracle::<3>(&tetrahedron().four(form));
     }
-    let Some(folder) = folder() else { return };
-    for name in ["disc.msh", "disc_binary.msh", "plate_with_holes.msh"] {
-        agrees_with_oracle::<2>(&std::fs::read(folder.join(name)).unwrap());
-    }
-    agrees_with_oracle::<3>(&std::fs::read(folder.join("block.msh")).unwrap());
+    let file = |name: &str| {
+        let data = PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/tests/data"));
+        std::fs::read(data.join(name)).unwrap()
+    };
+    agrees_with_oracle::<2>(&file("unstructured_square.msh"));
+    agrees_with_oracle::<3>(&file("unstructured_half_cube.msh"));
 }
 
-/// Prints the time per cell of a large mesh: run with `--ignored --nocapture`.
-#[test]
-#[ignore = "a measurement"]
-fn time_per_cell() {
-    let Some(folder) = folder() else { return };
-    for name in ["disc_fine.msh", "disc_binary.msh"] {
-        let bytes = std::fs::read(folder.join(name)).unwrap();
-        let time = |f: &dyn Fn() -> usize| {
-            let mut best = f64::INFINITY;
-            let mut cells = 0;
-            for _ in 0..20 {
-                let start = std::time::Instant::now();
-                cells = f();
-                best = best.min(start.elapsed().as_secs_f64());
-            }
-            (best, cells)
+mod needs_meshes {
+    use super::*;
+
+    #[test]
+    #[ignore = "needs the folder of meshes"]
+    fn the_disc_is_the_same_in_every_version() {
+        let folder = folder();
+        let read = |name: &str| {
+            gmsh::read::<f64, 2>(&folder.join(name)).unwrap_or_else(|e| panic!("{name}: {e}")).mesh
         };
-        let (seconds, cells) = time(&|| parse::<2>(&bytes).mesh.n_cells());
-        let (scan, _) = time(&|| gmsh::dimension(&bytes).unwrap());
-        let mesh = parse::<2>(&bytes).mesh;
-        let facets: Vec<_> = mesh
-            .boundary()
-            .iter()
-            .map(|f| {
-                let v: Vec<u32> = mesh.facet_vertices(f.cell as usize, f.local as usize).collect();
-                unilateral::mesh::TaggedFacet { vertices: [v[0], v[1]], part: f.part }
-            })
-            .collect();
-        let (new, _) = time(&|| {
-            Mesh::<f64, 2>::new(mesh.vertices().to_vec(), mesh.cells().to_vec(), &facets)
-                .unwrap()
-                .n_cells()
-        });
-        let each = 1e9 / cells as f64;
-        eprintln!(
-            "{name}: {cells} cells, {:.0} ns a cell, of which Mesh::new {:.0}; dimension alone {:.0}",
-            seconds * each,
-            new * each,
-            scan * each
-        );
+        let discs = [
+            ("disc.msh", read("disc.msh")),
+            ("disc_binary.msh", read("disc_binary.msh")),
+            ("disc_v2.msh", read("disc_v2.msh")),
+        ];
+        // A polygon of n equal sides inscribed in a circle of radius 3/2.
+        for (name, mesh) in &discs {
+            let sides = mesh.boundary().len() as f64;
+            let angle = std::f64::consts::TAU / sides;
+            let (area, length) = (1.125 * sides * angle.sin(), 3.0 * sides * (angle / 2.0).sin());
+            assert!((volume(mesh) - area).abs() < 1e-9, "{name}: area {} of {area}", volume(mesh));
+            assert!((boundary_length(mesh) - length).abs() < 1e-9, "{name}");
+            assert_eq!(parts(mesh), [mesh.boundary().len(), 0, 0], "{name}");
+            // Euler: vertices - edges + cells = 1
+            let edges = (3 * mesh.n_cells() + mesh.boundary().len()) / 2;
+            assert_eq!(mesh.vertices().len() + mesh.n_cells(), edges + 1, "{name}");
+        }
+        let [(_, text), _, (_, old)] = &discs;
+        assert_eq!((text.n_cells(), text.vertices().len()), (old.n_cells(), old.vertices().len()));
+        assert!((volume(text) - volume(old)).abs() < 1e-12);
+        assert!((boundary_length(text) - boundary_length(old)).abs() < 1e-12);
+    }
+
+    #[test]
+    #[ignore = "needs the folder of meshes"]
+    fn every_mesh_of_the_folder_reads() {
+        let folder = folder();
+        let mut files = 0;
+        for entry in std::fs::read_dir(folder).unwrap() {
+            let path = entry.unwrap().path();
+            if path.extension().is_none_or(|e| e != "msh") {
+                continue;
+            }
+            let name = path.file_name().unwrap().to_string_lossy().into_owned();
+            let bytes = std::fs::read(&path).unwrap();
+            match gmsh::dimension(&bytes).unwrap_or_else(|e| panic!("{name}: {e}")) {
+                1 => check::<1>(&name, &bytes),
+                2 => check::<2>(&name, &bytes),
+                _ => check::<3>(&name, &bytes),
+            }
+            files += 1;
+        }
+        assert!(files > 0);
+    }
+
+    #[test]
+    #[ignore = "needs the folder of meshes"]
+    fn another_reader_finds_the_same_cells() {
+        for name in ["disc.msh", "disc_binary.msh", "plate_with_holes.msh"] {
+            agrees_with_oracle::<2>(&std::fs::read(folder().join(name)).unwrap());
+        }
+        agrees_with_oracle::<3>(&std::fs::read(folder().join("block.msh")).unwrap());
+    }
+}
+
+mod needs_meshes_and_time {
+    use super::*;
+
+    /// Prints the time per cell of a large mesh: run with `--ignored --nocapture`.
+    #[test]
+    #[ignore = "needs the folder of meshes; a measurement"]
+    fn time_per_cell() {
+        let folder = folder();
+        for name in ["disc_fine.msh", "disc_binary.msh"] {
+            let bytes = std::fs::read(folder.join(name)).unwrap();
+            let time = |f: &dyn Fn() -> usize| {
+                let mut best = f64::INFINITY;
+                let mut cells = 0;
+                for _ in 0..20 {
+                    let start = std::time::Instant::now();
+                    cells = f();
+                    best = best.min(start.elapsed().as_secs_f64());
+                }
+                (best, cells)
+            };
+            let (seconds, cells) = time(&|| parse::<2>(&bytes).mesh.n_cells());
+            let (scan, _) = time(&|| gmsh::dimension(&bytes).unwrap());
+            let mesh = parse::<2>(&bytes).mesh;
+            let facets: Vec<_> = mesh
+                .boundary()
+                .iter()
+                .map(|f| {
+                    let v: Vec<u32> =
+                        mesh.facet_vertices(f.cell as usize, f.local as usize).collect();
+                    unilateral::mesh::TaggedFacet { vertices: [v[0], v[1]], part: f.part }
+                })
+                .collect();
+            let (new, _) = time(&|| {
+                Mesh::<f64, 2>::new(mesh.vertices().to_vec(), mesh.cells().to_vec(), &facets)
+                    .unwrap()
+                    .n_cells()
+            });
+            let each = 1e9 / cells as f64;
+            eprintln!(
+                "{name}: {cells} cells, {:.0} ns a cell, of which Mesh::new {:.0}; dimension alone {:.0}",
+                seconds * each,
+                new * each,
+                scan * each
+            );
+        }
     }
 }

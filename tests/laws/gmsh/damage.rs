@@ -31,7 +31,11 @@ fn survives(bytes: &[u8]) {
     for result in read_all(bytes) {
         match result {
             Ok(cells) => assert!(cells > 0),
-            Err(error) => assert!(!error.to_string().is_empty()),
+            Err(error) => {
+                let message = error.to_string();
+                assert!((1..1000).contains(&message.len()), "{} bytes: {message}", message.len());
+                assert!(!message.chars().any(char::is_control), "{message:?}");
+            }
         }
     }
 }
@@ -57,6 +61,24 @@ fn every_truncation_is_an_error() {
         for length in 0..bytes.len() {
             for result in read_all(&bytes[..length]) {
                 assert!(result.is_err() || length >= end, "cut at {length} of {end}");
+            }
+        }
+    }
+}
+
+/// Every word of a text in turn by one that is long and has control characters.
+#[test]
+fn long_words() {
+    let long = "\u{1b}[31mé\u{7}".repeat(2000);
+    for text in [SQUARE, SQUARE_V2, INTERVAL, TETRAHEDRON] {
+        let starts =
+            text.split_whitespace().map(|word| word.as_ptr() as usize - text.as_ptr() as usize);
+        for start in starts {
+            let length = text[start..].find(char::is_whitespace).unwrap_or(text.len() - start);
+            for new in [long.clone(), format!("${long}"), format!("\"{long}\"")] {
+                let mut damaged = text.to_owned();
+                damaged.replace_range(start..start + length, &new);
+                survives(damaged.as_bytes());
             }
         }
     }

@@ -88,6 +88,13 @@ fn not_flat() {
         matches!(error, GmshError::NotFlat { position: FilePosition::Line(l), node: 5, axis: 'z', dimension: 2, .. } if l == line)
     );
     says(&error, &[&format!("line {line}"), "node 5", "0.25", "plane of constant z", "turn"]);
+    // a billionth of the extent is rounding
+    let lifted = |z: &str| change(TWO, "5 0.5 0.5 0", &format!("5 0.5 0.5 {z}")).0;
+    for z in ["1e-2", "-1e-6", "1e-8"] {
+        let error = fail::<2>(lifted(z).as_bytes());
+        assert!(matches!(error, GmshError::NotFlat { node: 5, .. }), "{z}: {error}");
+    }
+    assert_eq!(gmsh::parse::<f64, 2>(lifted("1e-10").as_bytes()).unwrap().mesh.n_cells(), 4);
     let mut sample = interval();
     sample.nodes[2].1[1] = 1.0;
     let error = fail::<1>(&sample.four(Form::Little));

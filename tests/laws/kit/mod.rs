@@ -48,6 +48,9 @@ schemes! {
     ldg_one_sided: Ldg { switch: true, ..Ldg::default() };
     br2: Br2::default();
     bmmpr: Bmmpr::default();
+    ldg_full: Ldg { lifts: Lifts::Full, ..Ldg::default() };
+    br2_full: Br2 { lifts: Lifts::Full, ..Br2::default() };
+    bmmpr_full: Bmmpr { lifts: Lifts::Full, ..Bmmpr::default() };
     bmmpr_on_means: Bmmpr::default(), FacetMeans;
     wopsip: Wopsip::default();
     wopsip_anisotropic: Wopsip { weight: WeightRule::Anisotropic, ..Wopsip::default() };
@@ -60,6 +63,7 @@ schemes! {
     ldg_one_sided_on_quadratics: Ldg { switch: true, ..Ldg::default() }.on(P2);
     br2_on_quadratics: Br2::default().on(P2);
     bmmpr_on_quadratics: Bmmpr::default().on(P2);
+    bmmpr_full_on_quadratics: Bmmpr { lifts: Lifts::Full, ..Bmmpr::default() }.on(P2);
 }
 
 /// The weight of order `h^-5` makes a condition of order `h^-6`: the law that solutions do not depend

@@ -140,10 +140,10 @@ fn a_tiny_study_measures_every_variant_alike() {
     assert_eq!(report.failures(), []);
     assert_eq!(report.program.precision, "f64, f32");
     let labels: Vec<String> =
-        report.variants().iter().map(|v| v.label(&report.variants())).collect();
+        report.variants().iter().map(|v| v.name_among(&report.variants())).collect();
     assert_eq!(labels.len(), 12);
     assert_eq!(labels[0], "p1, direct, f64");
-    assert_eq!(labels[11], "wopsip, facet-means, iterative, f32");
+    assert_eq!(labels[11], "wopsip:facet-means, iterative, f32");
     for m in &report.rows {
         assert_eq!(m.runs, 3);
         assert!(m.smallest.total > 0.0 && m.smallest.total <= m.median.total);
@@ -181,9 +181,9 @@ fn wrong_requests_are_refused_before_anything_runs() {
     let message = |study: WorkPrecision<2>| study.run().unwrap_err().to_string();
     assert!(message(tiny()).contains("needs a scheme"));
     assert!(message(tiny().levels([0, 4])).contains("at least one subdivision"));
-    assert!(message(tiny().scheme(ConformingP1).levels([4])).contains("must have its own name"));
-    let unknown = tiny().scheme_by_name("nothing", &Default::default()).levels([4]);
-    assert!(message(unknown).contains("no scheme of this name"));
+    assert!(message(tiny().scheme(ConformingP1).levels([4])).contains("must have its own label"));
+    let named: NamedScheme = "wopsip@factor=1".parse().unwrap();
+    assert!(message(tiny().named_scheme(&named).levels([4])).contains("must have its own label"));
 }
 
 #[test]

@@ -9,6 +9,7 @@ pub fn measured(scheme: &str, level: usize, factor: f64) -> Measured {
         scene: "radial-2d".into(),
         scheme: scheme.into(),
         constraint: "vertices".into(),
+        label: scheme.into(),
         linear_asked: "direct".into(),
         precision: "f64".into(),
     };

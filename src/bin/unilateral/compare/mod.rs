@@ -4,29 +4,26 @@
 //! 1 if some did not, 2 if the request was wrong.
 
 mod options;
-mod penalties;
 mod watcher;
 
 use std::fs::{self, OpenOptions};
 use std::path::Path;
 
 pub use options::{Options, list};
-use options::{check_numbers, choose};
-use penalties::{check_penalties, scheme_options};
+use options::{check_numbers, choose, choose_schemes};
 use watcher::Watcher;
 
 use crate::shared::{
     ORDER_TOLERANCE, Request, cannot_write, each_once, print, print_to, read, use_threads, write,
 };
 
-use unilateral::constraint::constraint_set_by_name;
 use unilateral::error::Error;
 use unilateral::inequality::{SOLVERS, SolverOptions, solver_by_name};
 use unilateral::linear::LinearMethod;
 use unilateral::mesh::{Mesh, gmsh};
 use unilateral::real::Real;
 use unilateral::scenes::{self, AcceptedParameters, AnyScene, Parameters, Scene};
-use unilateral::scheme::{SCHEMES, scheme_by_name};
+use unilateral::scheme::NamedScheme;
 use unilateral::study::orders_table;
 use unilateral::study::{Program, Report, Row, Study, available_memory_bytes};
 
@@ -51,7 +48,7 @@ pub fn run(options: &Options) -> Request<bool> {
 /// What the options ask for, with every name found.
 struct Chosen {
     scenes: Vec<AnyScene>,
-    schemes: Vec<String>,
+    schemes: Vec<NamedScheme>,
     solvers: Vec<String>,
     mesh: Option<(usize, Vec<u8>)>,
 }
@@ -67,9 +64,7 @@ impl Chosen {
                 Some((dimension, bytes))
             }
         };
-        let names: Vec<&str> = SCHEMES.iter().map(|s| s.0).collect();
-        let schemes = choose("scheme", &options.schemes, &["p1", "sipg", "wopsip"], &names)?;
-        check_penalties(options, &schemes, &names)?;
+        let schemes = choose_schemes(options)?;
         let solvers: Vec<&str> = SOLVERS.iter().map(|s| s.0).collect();
         let solvers = choose("solver", &options.solvers, &["active-set"], &solvers)?;
         let scenes = Self::scenes(options, mesh.as_ref().map(|m| m.0))?;
@@ -120,7 +115,7 @@ impl Chosen {
 
     fn run<T: Real>(self, options: &Options) -> Request<Vec<Row>> {
         let Self { scenes, schemes, solvers, mesh } = self;
-        let names = [&schemes[..], &solvers];
+        let names = (&schemes[..], &solvers[..]);
         let mesh = mesh.as_ref();
         let watcher = Watcher::new(options);
         let mut runs = Vec::new();
@@ -152,11 +147,10 @@ type Run<'a> = Box<dyn FnOnce() -> Request<Vec<Row>> + 'a>;
 fn prepare<'a, T: Real, const D: usize>(
     scene: Scene<D>,
     options: &'a Options,
-    [schemes, solvers]: [&[String]; 2],
+    (schemes, solvers): (&[NamedScheme], &[String]),
     mesh: Option<&(usize, Vec<u8>)>,
     watcher: &'a Watcher,
 ) -> Request<Option<Run<'a>>> {
-    let scheme_options = scheme_options(options);
     let name = scene.name.clone();
     let levels = match &options.levels[..] {
         [] => default_levels(D, mesh.is_some()),
@@ -173,16 +167,7 @@ fn prepare<'a, T: Real, const D: usize>(
         .repeat(options.repeat)
         .fields_to(&options.out)
         .observer(|progress| watcher.tell(&progress));
-    for name in schemes {
-        let scheme = scheme_by_name::<T, D>(name, &scheme_options)
-            .ok_or_else(|| format!("scheme {name} does not exist in dimension {D}"))?;
-        // schemes whose element has no such values keep the nodes of their own
-        let set = constraint_set_by_name(&options.constraint);
-        study = match set.filter(|set| scheme.constraint_on(set).is_some()) {
-            Some(set) => study.boxed_scheme_on(scheme, set),
-            None => study.boxed_scheme(scheme),
-        };
-    }
+    study = schemes.iter().fold(study, Study::named_scheme);
     for name in solvers {
         study = solver_by_name(name, &SolverOptions::default().linear(linear))
             .map(|solver| study.boxed_solver(solver))

@@ -5,10 +5,11 @@ use std::path::PathBuf;
 use clap::Args;
 use unilateral::constraint::CONSTRAINT_SETS;
 use unilateral::inequality::SOLVERS;
+use unilateral::input::excerpt;
 use unilateral::scenes;
-use unilateral::scheme::SCHEMES;
+use unilateral::scheme::{NamedScheme, SCHEMES, SchemeOptions, keys_of_scheme};
 
-use crate::shared::{Request, each_once};
+use crate::shared::{MOST_THREADS, Request, each_once, schemes};
 
 /// Compares finite element schemes on obstacle and Signorini problems
 #[derive(Args, Debug)]
@@ -19,7 +20,7 @@ pub struct Options {
     /// Scenes by name, or `all`
     #[arg(long = "scene", value_delimiter = ',', value_name = "A[,B...]")]
     pub scenes: Vec<String>,
-    /// Schemes by name, or `all`
+    /// Schemes as NAME[:PLACEMENT][@KEY=VALUE[,KEY=VALUE...]], or `all`; --list names the keys of each
     #[arg(long = "scheme", value_delimiter = ',', value_name = "A[,B...]")]
     pub schemes: Vec<String>,
     /// Subdivisions of the scene's shortest side; with --mesh: uniform refinements, from 0
@@ -37,13 +38,13 @@ pub struct Options {
     /// Load of scenes that have one
     #[arg(long, value_name = "X", allow_negative_numbers = true, value_parser = number)]
     pub load: Option<f64>,
-    /// Interior penalty X / h_F on every facet, instead of the scheme's own choice
+    /// Interior penalty X / h_F on every facet, for schemes named without a penalty
     #[arg(long, value_name = "X", allow_negative_numbers = true, value_parser = number)]
     pub sigma: Option<f64>,
-    /// WOPSIP weight X / h_F^3 on every facet (quadratics: h_F^5), instead of the dimensionless default
+    /// WOPSIP weight X / h_F^3 on every facet (quadratics: h_F^5), for schemes named without a penalty
     #[arg(long, value_name = "X", allow_negative_numbers = true, value_parser = number)]
     pub eta: Option<f64>,
-    /// Where schemes that have the choice impose the inequality
+    /// Where schemes named without a placement that have the choice impose the inequality
     #[arg(long, value_parser = CONSTRAINT_SETS.map(|set| set.0), default_value = "vertices")]
     pub constraint: String,
     /// Solvers of the inequality, side by side where several; active-set by default
@@ -87,8 +88,8 @@ const LINEAR: &[(&str, &str)] = &[
     ("direct", "sparse Cholesky or LU"),
     ("iterative", "conjugate gradients with multigrid on conforming P1, for symmetric schemes"),
 ];
-/// More threads than this hardly help anyone, and the system may fail to start them.
-const MOST_THREADS: usize = 1024;
+/// The times of a thousand runs have no smaller least than those of more.
+const MOST_REPEATS: usize = 1000;
 
 fn whole(text: &str) -> Request<usize> {
     text.parse().map_err(|_| "expected a whole number, such as 16".to_owned())
@@ -110,11 +111,20 @@ pub fn list() -> String {
         }
     };
     group("scenes", &mut scenes.iter().map(|(n, s)| (&n[..], &s[..])));
-    group("schemes", &mut SCHEMES.iter().copied());
+    let schemes: Vec<(&str, String)> = SCHEMES.iter().map(|s| (s.0, with_keys(s))).collect();
+    group("schemes", &mut schemes.iter().map(|(n, s)| (*n, &s[..])));
     group("constraint placements", &mut CONSTRAINT_SETS.iter().copied());
     group("solvers", &mut SOLVERS.iter().copied());
     group("linear solvers", &mut LINEAR.iter().copied());
     text
+}
+
+/// The summary of a scheme with the keys that it takes.
+fn with_keys((name, summary): &(&str, &str)) -> String {
+    match keys_of_scheme(name) {
+        [] => (*summary).to_owned(),
+        keys => format!("{summary} (takes {})", keys.join(", ")),
+    }
 }
 
 /// A name of a list, or a message with the list.
@@ -122,7 +132,7 @@ fn known(kind: &str, name: &str, names: &[&str]) -> Request<()> {
     if names.contains(&name) {
         return Ok(());
     }
-    Err(format!("unknown {kind} \"{name}\"; there are: {}", names.join(", ")))
+    Err(format!("unknown {kind} \"{}\"; there are: {}", excerpt(name), names.join(", ")))
 }
 
 /// The names asked for, each once; all of them if one is `all`.
@@ -143,6 +153,25 @@ pub fn choose(
     })
 }
 
+/// The schemes asked for; refuses a penalty factor that none of them takes.
+pub fn choose_schemes(options: &Options) -> Request<Vec<NamedScheme>> {
+    let chosen = schemes(&options.schemes, &["p1", "sipg", "wopsip"])?;
+    for (key, given) in [("sigma", options.sigma), ("eta", options.eta)] {
+        let takes = |name: &str| keys_of_scheme(name).contains(&key);
+        if let Some(x) = given.filter(|_| !chosen.iter().any(|scheme| takes(scheme.name()))) {
+            let takers = SCHEMES.iter().map(|s| s.0).filter(|name| takes(name));
+            return Err(format!(
+                "--{key} {x:?}: none of the schemes chosen takes it; there are: {}",
+                takers.collect::<Vec<_>>().join(", ")
+            ));
+        }
+    }
+    let (sigma, eta) = (options.sigma, options.eta);
+    let penalty = SchemeOptions { sigma, eta, ..SchemeOptions::default() };
+    let complete = |s: NamedScheme| s.or_penalty(&penalty).or_placement(&options.constraint);
+    Ok(chosen.into_iter().map(complete).collect())
+}
+
 pub fn check_numbers(options: &Options) -> Request<()> {
     for (name, value) in [("--sigma", options.sigma), ("--eta", options.eta)] {
         if let Some(x) = value
@@ -151,13 +180,15 @@ pub fn check_numbers(options: &Options) -> Request<()> {
             return Err(format!("{name} {x:?}: a penalty factor must be positive and finite"));
         }
     }
-    for (name, value) in [("--repeat", Some(options.repeat)), ("--threads", options.threads)] {
-        if value == Some(0) {
-            return Err(format!("{name} 0: must be at least 1"));
+    for (name, value, most) in [
+        ("--repeat", Some(options.repeat), MOST_REPEATS),
+        ("--threads", options.threads, MOST_THREADS),
+    ] {
+        match value {
+            Some(0) => return Err(format!("{name} 0: must be at least 1")),
+            Some(n) if n > most => return Err(format!("{name} {n}: must be at most {most}")),
+            _ => {}
         }
-    }
-    if let Some(threads) = options.threads.filter(|&n| n > MOST_THREADS) {
-        return Err(format!("--threads {threads}: must be at most {MOST_THREADS}"));
     }
     let names = |list: &[(&'static str, &str)]| list.iter().map(|s| s.0).collect::<Vec<_>>();
     if let Some(name) = &options.linear {

@@ -59,8 +59,11 @@ pub fn run(options: &Options) -> Request<bool> {
         let title = "# Stability\n";
         let quick = if options.effort() == Effort::Full { "" } else { " --quick" };
         let command = format!("cargo run --release -- stability{quick} --markdown FILE{meshes}");
-        let text =
-            report.to_markdown().replacen(title, &format!("{title}\nMade by `{command}`.\n"), 1);
+        let text = report.summary_to_markdown().replacen(
+            title,
+            &format!("{title}\nMade by `{command}`.\n"),
+            1,
+        );
         write(path, text)?;
     }
     if !options.quiet {

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use unilateral::stability::{Effort, STABILITY_CASES, Stability};
+use unilateral::stability::{Effort, STABILITY_CASES};
 
 /// Runs the hard cases of variational inequalities and judges schemes by their criteria
 #[derive(Args, Debug)]
@@ -11,8 +11,9 @@ pub struct Options {
     /// Cases by name; all by default
     #[arg(long = "case", value_delimiter = ',', value_name = "A[,B...]", value_parser = STABILITY_CASES)]
     pub cases: Vec<String>,
-    /// Schemes by name, with the placement of bounds after a colon; all by default
-    #[arg(long = "scheme", value_delimiter = ',', value_name = "A[:PLACE][,B...]", value_parser = Stability::SCHEMES)]
+    /// Schemes as NAME[:PLACEMENT][@KEY=VALUE[,KEY=VALUE...]]; by default p1, cr, sipg, wopsip,
+    /// wopsip:facet-means, p2 and nipg
+    #[arg(long = "scheme", value_delimiter = ',', value_name = "A[,B...]")]
     pub schemes: Vec<String>,
     /// Gmsh files of tetrahedra for the case of slivers
     #[arg(long = "mesh", value_delimiter = ',', value_name = "FILE[,FILE...]")]
@@ -26,7 +27,7 @@ pub struct Options {
     /// Where the report goes
     #[arg(long, value_name = "DIR", default_value = "target/stability")]
     pub out: PathBuf,
-    /// Also write the report in Markdown to this file
+    /// Also write the summary of the report in Markdown to this file
     #[arg(long, value_name = "FILE")]
     pub markdown: Option<PathBuf>,
     /// No progress, no summary

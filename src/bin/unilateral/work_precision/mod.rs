@@ -6,7 +6,6 @@
 
 mod options;
 
-use std::fs;
 use std::process::Command;
 
 use indicatif::ProgressBar;
@@ -16,17 +15,18 @@ use unilateral::linear::LinearMethod;
 use unilateral::real::Real;
 use unilateral::scenes;
 use unilateral::scenes::{AnyScene, Scene};
-use unilateral::scheme::{SchemeOptions, scheme_by_name};
+use unilateral::scheme::NamedScheme;
 use unilateral::study::{Study, peak_memory_bytes};
 use unilateral::work_precision::{
     Case, Precision, WorkPrecision, WorkProgress, WorkReport, changes,
 };
 
-use crate::shared::{Request, bar, print, scene, tick, use_threads, write};
+use crate::shared::{Request, bar, print, read, scene, tick, use_threads, write};
 
 /// Whether every run converged and nothing changed.
 pub fn run(options: &Options) -> Request<bool> {
     options.check()?;
+    let schemes = options.schemes()?;
     if options.peak {
         return peak(options);
     }
@@ -34,7 +34,8 @@ pub fn run(options: &Options) -> Request<bool> {
     // what cannot be read or written is better known before the work
     let baseline = match &options.against {
         Some(path) => Some(
-            fs::read_to_string(path).map_err(|e| format!("cannot read {}: {e}", path.display()))?,
+            String::from_utf8(read(path)?)
+                .map_err(|e| format!("cannot read {}: {e}", path.display()))?,
         ),
         None => None,
     };
@@ -43,13 +44,13 @@ pub fn run(options: &Options) -> Request<bool> {
         changes(text, &report).map_err(|e| e.to_string())?;
     }
     let template = "{bar:24} {pos} of {len} runs, {elapsed}, {eta} to go: {wide_msg}";
-    let bar = bar(options.quiet, planned(options), template);
+    let bar = bar(options.quiet, planned(options, &schemes), template);
     tick(&bar);
     for name in options.scenes() {
         match scene(&name)? {
-            AnyScene::One(s) => study(options, &bar, s, &mut report),
-            AnyScene::Two(s) => study(options, &bar, s, &mut report),
-            AnyScene::Three(s) => study(options, &bar, s, &mut report),
+            AnyScene::One(s) => study(options, &schemes, &bar, s, &mut report),
+            AnyScene::Two(s) => study(options, &schemes, &bar, s, &mut report),
+            AnyScene::Three(s) => study(options, &schemes, &bar, s, &mut report),
         }
         .map_err(|e| format!("scene {name}: {e}"))?;
     }
@@ -75,8 +76,8 @@ pub fn run(options: &Options) -> Request<bool> {
 }
 
 /// How many runs there will be on all scenes, unless some take too long.
-fn planned(options: &Options) -> usize {
-    let variants = options.schemes().len() * options.linear().len() * options.precisions().len();
+fn planned(options: &Options, schemes: &[NamedScheme]) -> usize {
+    let variants = schemes.len() * options.linear().len() * options.precisions().len();
     let of_scene = |name: &String| {
         let levels = scenes::by_name(name).map(|entry| options.levels(entry.dimension));
         let mut levels = levels.unwrap_or_default();
@@ -90,6 +91,7 @@ fn planned(options: &Options) -> usize {
 /// Measures a scene and adds it to the report.
 fn study<const D: usize>(
     options: &Options,
+    schemes: &[NamedScheme],
     bar: &ProgressBar,
     first: Scene<D>,
     report: &mut WorkReport,
@@ -102,7 +104,7 @@ where
         Some(scene) => scene,
         None => unreachable!("it was made before"),
     };
-    let mut study = WorkPrecision::<D>::new(remake)
+    let study = WorkPrecision::<D>::new(remake)
         .linear(options.linear())
         .precisions(options.precisions())
         .levels(options.levels(D))
@@ -116,10 +118,9 @@ where
             WorkProgress::Started(case, round) => {
                 let v = &case.variant;
                 bar.set_message(format!(
-                    "{}, {} on {}, level {}, round {}",
+                    "{}, {}, level {}, round {}",
                     v.scene,
-                    v.scheme,
-                    v.constraint,
+                    v.label,
                     case.level,
                     round + 1
                 ));
@@ -127,9 +128,7 @@ where
             // what is planned counts for nothing: the bar was made for all scenes
             _ => {}
         });
-    for (name, set) in options.schemes() {
-        study = study.scheme_by_name_on(&name, &SchemeOptions::default(), set);
-    }
+    let study = schemes.iter().fold(study, WorkPrecision::named_scheme);
     study.run_into(report)
 }
 
@@ -161,7 +160,7 @@ fn memory_of(case: &Case, threads: Option<usize>) -> Option<u64> {
     let v = &case.variant;
     let mut command = Command::new(std::env::current_exe().ok()?);
     command.args(["work-precision", "--peak", "--scene", &v.scene]);
-    command.args(["--scheme", &format!("{}:{}", v.scheme, v.constraint)]);
+    command.args(["--scheme", &v.label]);
     command.args(["--linear", &v.linear_asked, "--precision", &v.precision]);
     command.args(["--levels", &case.level.to_string()]);
     if let Some(threads) = threads {
@@ -191,13 +190,10 @@ fn peak(options: &Options) -> Request<bool> {
 
 fn once<T: Real, const D: usize>(options: &Options, scene: Scene<D>) -> Request<()> {
     let linear = options.linear().first().copied().unwrap_or(LinearMethod::BySize);
-    let mut study = Study::<T, D>::new(scene)
+    let study = Study::<T, D>::new(scene)
         .levels(options.levels(D))
         .solver(ActiveSet::default().linear(linear));
-    for (name, set) in options.schemes() {
-        let scheme = scheme_by_name(&name, &SchemeOptions::default());
-        let scheme = scheme.ok_or_else(|| format!("there is no scheme {name}"))?;
-        study = study.boxed_scheme_on(scheme, set);
-    }
+    let schemes = options.schemes()?;
+    let study = schemes.iter().fold(study, Study::named_scheme);
     study.run().map(drop).map_err(|e| e.to_string())
 }

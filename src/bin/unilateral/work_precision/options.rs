@@ -1,16 +1,15 @@
 //! What the command line asks for.
 
 use std::path::PathBuf;
-use std::sync::Arc;
 
 use clap::Args;
-use unilateral::constraint::{ConstraintSet, Nodes, constraint_set_by_name};
+use unilateral::input::excerpt;
 use unilateral::linear::LinearMethod;
 use unilateral::scenes;
-use unilateral::scheme::{SCHEMES, SchemeOptions, scheme_by_name};
+use unilateral::scheme::NamedScheme;
 use unilateral::work_precision::Precision;
 
-use crate::shared::{Request, constraint_set, split};
+use crate::shared::{Request, schemes};
 
 const SCENES: [&str; 5] = ["radial-2d", "ball-2d", "signorini-2d", "hertz-2d", "radial-3d"];
 const CHOSEN: [&str; 6] = ["p1", "cr", "sipg", "wopsip", "wopsip:facet-means", "p2"];
@@ -21,8 +20,8 @@ pub struct Options {
     /// Scenes by name; by default radial-2d, ball-2d, signorini-2d, hertz-2d, radial-3d
     #[arg(long = "scene", value_delimiter = ',', value_name = "A[,B...]")]
     scenes: Vec<String>,
-    /// Schemes by name, with a placement of the bounds after a colon, as in wopsip:facet-means
-    #[arg(long = "scheme", value_delimiter = ',', value_name = "A[:PLACE][,B...]")]
+    /// Schemes as NAME[:PLACEMENT][@KEY=VALUE[,KEY=VALUE...]]
+    #[arg(long = "scheme", value_delimiter = ',', value_name = "A[,B...]")]
     schemes: Vec<String>,
     /// Linear solvers: direct, iterative, by-size
     #[arg(long, value_delimiter = ',', value_parser = LinearMethod::NAMES.map(|l| l.0), default_value = "by-size")]
@@ -39,7 +38,7 @@ pub struct Options {
     /// Runs longer than this many seconds are not repeated, and no finer level is tried
     #[arg(long, value_name = "S", default_value_t = 20.0)]
     pub limit: f64,
-    /// The scheme of which the verdicts speak
+    /// The scheme of which the verdicts speak, by its label
     #[arg(long, value_name = "NAME", default_value = "wopsip")]
     pub subject: String,
     /// Coarse levels and two rounds: within a minute
@@ -72,23 +71,11 @@ impl Options {
         for name in self.scenes() {
             if !known.iter().any(|entry| entry.name == name) {
                 let names: Vec<&str> = known.iter().map(|e| &e.name[..]).collect();
+                let name = excerpt(name);
                 return Err(format!("unknown scene {name}; there are: {}", names.join(", ")));
             }
         }
-        for choice in self.asked() {
-            let (name, place) = split(&choice);
-            if !SCHEMES.iter().any(|s| s.0 == name) {
-                let names: Vec<&str> = SCHEMES.iter().map(|s| s.0).collect();
-                return Err(format!("unknown scheme {name}; there are: {}", names.join(", ")));
-            }
-            if let Some(place) = place {
-                let set = constraint_set(place).map_err(|e| format!("{choice}: {e}"))?;
-                let scheme = scheme_by_name::<f64, 2>(name, &SchemeOptions::default());
-                if scheme.is_some_and(|scheme| scheme.constraint_on(&set).is_none()) {
-                    return Err(format!("{choice}: the element of the scheme has no such values"));
-                }
-            }
-        }
+        self.schemes()?;
         match self.limit > 0.0 {
             true => Ok(()),
             false => Err(format!("--limit {}: must be positive", self.limit)),
@@ -102,21 +89,8 @@ impl Options {
         }
     }
 
-    fn asked(&self) -> Vec<String> {
-        match self.schemes.is_empty() {
-            true => CHOSEN.map(str::to_owned).into(),
-            false => self.schemes.clone(),
-        }
-    }
-
-    /// Names of schemes, and where each imposes its bounds.
-    pub fn schemes(&self) -> Vec<(String, Arc<dyn ConstraintSet>)> {
-        let of = |choice: String| {
-            let (name, place) = split(&choice);
-            let set = place.and_then(constraint_set_by_name).unwrap_or_else(|| Arc::new(Nodes));
-            (name.to_owned(), set)
-        };
-        self.asked().into_iter().map(of).collect()
+    pub fn schemes(&self) -> Request<Vec<NamedScheme>> {
+        schemes(&self.schemes, &CHOSEN)
     }
 
     pub fn linear(&self) -> Vec<LinearMethod> {

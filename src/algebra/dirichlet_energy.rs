@@ -1,0 +1,27 @@
+//! What weak Dirichlet data change in the energy of a function.
+
+/// The quadratic function that turns `u.A u` into the squared energy norm of a scheme with weak
+/// Dirichlet data `u_D`.
+///
+/// `A` contains the penalty and consistency terms of the trace of `u` on Dirichlet facets. With
+/// `u - u_D` in place of this trace in both arguments of these terms, the form at `(u, u)` is
+/// `E^2 = u.A u - l.u + q`. In contrast to `u.A u`, which contains `penalty * |u_D|^2`, the energy `E^2` of
+/// a function that satisfies the data does not grow with the penalty.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct DirichletEnergy {
+    /// The terms of the unknowns next to Dirichlet facets.
+    pub terms: Vec<DirichletTerm>,
+    /// `q`: the form at `(u_D, u_D)`.
+    pub constant: f64,
+}
+
+/// What Dirichlet data contribute to one unknown.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct DirichletTerm {
+    /// The unknown.
+    pub unknown: u32,
+    /// The part of the load that comes from the data.
+    pub load: f64,
+    /// The coefficient `l_i`, twice `load` for a symmetric form.
+    pub linear: f64,
+}

@@ -1,0 +1,216 @@
+//! The diffusion coefficient in cells in which it varies, for elements of degree two and more.
+//!
+//! Linear elements take one value in each cell, at its barycentre, which leaves an error of their own
+//! order. Elements whose basis functions have degree `b > 1` take values at the points of rules of
+//! degree `2 b`: exact for products of gradients times a quadratic coefficient. Rules exact for the
+//! products alone keep the orders, with larger errors on coarse meshes (P. G. Ciarlet, P.-A. Raviart, The combined effect of curved
+//! boundaries and numerical integration, in A. K. Aziz (ed.), 1972, 409-474). On facets these are
+//! values from inside the cell, so that a coefficient may jump between cells.
+
+use super::data::{CoefficientAt, coefficient_at};
+use super::metric::CellMetric;
+use super::tables::{BasisAt, CellTable, Derivatives};
+use crate::assemble::local::StiffnessTable;
+use crate::element::MAX_BASIS;
+use crate::error::Error;
+use crate::mesh::Mesh;
+use crate::quadrature::{FullySymmetric, OrthonormalPolynomials, Quadrature, Rule, facet_to_cell};
+use crate::real::{Point, Real, point_f64};
+
+/// A cell and the number of a facet in it.
+pub(crate) type Place = (usize, usize);
+
+/// Samples that differ from the value at the barycentre by no more than this, in units of rounding, are
+/// those of a constant.
+const ROUNDINGS: f64 = 16.0;
+
+/// The share of the way to the barycentre by which a point of a facet is moved to see the cell's own side
+/// of a jump.
+pub(crate) const INWARD: f64 = 1e-8;
+
+/// The start of a cell in which the coefficient is a constant.
+const CONSTANT: u32 = u32::MAX;
+
+/// The values of a coefficient in the cells in which it varies, and the reference cell at the points of
+/// the rules.
+pub(crate) struct VaryingCoefficient<T> {
+    /// By cell, where its values start.
+    starts: Vec<u32>,
+    /// For each cell in which the coefficient varies the values at the points of the rule in the cell,
+    /// then facet by facet at those of the rule on facets.
+    values: Vec<T>,
+    /// By point of the rule in the cell, the stiffness of the reference element with its weight.
+    stiffness: Vec<StiffnessTable<T>>,
+    /// The weights of the rule on facets.
+    facet_weights: Vec<T>,
+    /// By moment and point of the facet, the polynomial, up to the degree of the basis functions.
+    polynomials: Vec<T>,
+    /// The number of moments that have a flux: those below that degree.
+    flux_moments: usize,
+    /// By facet, moment and point of the facet, the derivatives of the basis times polynomial and weight.
+    derivatives: Vec<Derivatives<T>>,
+}
+
+impl<T: Real> VaryingCoefficient<T> {
+    /// Samples a coefficient; none if it varies in no cell. `constants` are the values at the
+    /// barycentres.
+    ///
+    /// # Errors
+    /// [`Error::CoefficientNotPositive`], [`Error::Parameter`] for a value that the scalar cannot hold.
+    pub fn new<const D: usize>(
+        alpha: CoefficientAt<'_, D>,
+        mesh: &Mesh<T, D>,
+        constants: &[T],
+        basis_degree: usize,
+        basis: fn(&[f64; 4]) -> BasisAt<f64>,
+    ) -> Result<Option<Self>, Error> {
+        // the same whatever the order of vertices
+        let rule = |dimension| FullySymmetric.rule(dimension, 2 * basis_degree);
+        let (cell_rule, facet_rule) = (rule(D)?, rule(D - 1)?);
+        let on_facets = (0..=D).flat_map(|local| {
+            let middle = 1.0 / (D + 1) as f64;
+            let inward = move |k: usize, b: f64| if k <= D { b + (middle - b) * INWARD } else { b };
+            facet_rule.points.iter().map(move |point| {
+                let point = facet_to_cell(point, local);
+                std::array::from_fn(|k| inward(k, point[k]))
+            })
+        });
+        let points: Vec<[f64; 4]> = cell_rule.points.iter().copied().chain(on_facets).collect();
+        let mut starts = vec![CONSTANT; mesh.n_cells()];
+        let mut values: Vec<T> = Vec::new();
+        for (cell, start) in starts.iter_mut().enumerate() {
+            let corners = mesh.cell(cell).iter().map(|&v| point_f64(&mesh.vertices()[v as usize]));
+            let corners: [Point<f64, D>; 4] = padded(corners);
+            let first = values.len();
+            for point in &points {
+                let x = corners.iter().zip(point).map(|(corner, &b)| corner * b).sum();
+                values.push(coefficient_at(alpha, &x, cell)?);
+            }
+            let constant = constants[cell].to_f64();
+            let is_same = |v: &T| (v.to_f64() / constant - 1.0).abs() <= ROUNDINGS * T::EPSILON;
+            if values[first..].iter().all(is_same) {
+                values.truncate(first);
+            } else {
+                *start = first as u32;
+            }
+        }
+        if values.is_empty() {
+            return Ok(None);
+        }
+        let at_point = |(&point, &weight)| {
+            let rule = Rule { points: vec![point], weights: vec![weight] };
+            StiffnessTable::new(D, &CellTable::new(rule, basis))
+        };
+        let polynomials = OrthonormalPolynomials::new(D - 1, basis_degree);
+        let moments = || 0..polynomials.len();
+        let flux_moments = moments().filter(|&k| polynomials.degree(k) < basis_degree).count();
+        let mut derivatives = Vec::new();
+        for local in 0..=D {
+            for k in 0..flux_moments {
+                for (point, weight) in facet_rule.iter() {
+                    let scale = weight * polynomials.value(k, point);
+                    let basis = basis(&facet_to_cell(point, local));
+                    derivatives.push(basis.derivatives.map(|row| row.map(|d| T::lit(scale * d))));
+                }
+            }
+        }
+        let values_of = |k: usize| facet_rule.points.iter().map(move |p| (k, p));
+        let polynomials =
+            moments().flat_map(values_of).map(|(k, p)| T::lit(polynomials.value(k, p))).collect();
+        Ok(Some(Self {
+            starts,
+            values,
+            stiffness: cell_rule.points.iter().zip(&cell_rule.weights).map(at_point).collect(),
+            facet_weights: facet_rule.weights.iter().map(|&w| T::lit(w)).collect(),
+            polynomials,
+            flux_moments,
+            derivatives,
+        }))
+    }
+
+    /// The values in a cell in which the coefficient varies: at the points of the rule in the cell, and
+    /// after them on its facets.
+    #[inline(always)]
+    fn of_cell(&self, cell: usize) -> Option<&[T]> {
+        let start = self.starts[cell];
+        (start != CONSTANT).then(|| &self.values[start as usize..])
+    }
+    /// The values at the points of the rule in a cell, if the coefficient varies there.
+    #[inline(always)]
+    pub fn in_cell(&self, cell: usize) -> Option<&[T]> {
+        self.of_cell(cell).map(|values| &values[..self.stiffness.len()])
+    }
+    /// The values on a facet from its cell, if the coefficient varies in the cell.
+    #[inline(always)]
+    pub fn on_facet(&self, (cell, local): Place) -> Option<&[T]> {
+        let n = self.facet_weights.len();
+        self.of_cell(cell).map(|values| &values[self.stiffness.len() + local * n..][..n])
+    }
+    /// The largest value on a facet and the least in its cell, at the points of the rules, if the
+    /// coefficient varies in the cell.
+    pub fn extremes(&self, place: Place) -> Option<[T; 2]> {
+        let largest =
+            self.on_facet(place)?.iter().fold(T::lit(0.0), |a, &b| if b > a { b } else { a });
+        let values = self.in_cell(place.0)?;
+        let least = values.iter().fold(values[0], |a, &b| if b < a { b } else { a });
+        Some([largest, least])
+    }
+    /// Entry `(i, j)` of `(alpha grad phi_j, grad phi_i)` over a cell with these values.
+    pub fn stiffness<const D: usize>(
+        &self,
+        values: &[T],
+        metric: &CellMetric<T, D>,
+        i: usize,
+        j: usize,
+    ) -> T {
+        let points = self.stiffness.iter().zip(values);
+        points
+            .fold(T::lit(0.0), |sum, (table, &alpha)| sum + alpha * table.entry::<D>(metric, i, j))
+    }
+    /// Moment `k` on facet `local` of the derivatives of the basis, with a weight at each point. Moments
+    /// of the degree of the basis functions and above are left out of fluxes.
+    pub fn weighted_derivatives(
+        &self,
+        local: usize,
+        k: usize,
+        weight: impl Fn(usize) -> T,
+    ) -> Derivatives<T> {
+        let n = self.facet_weights.len();
+        let mut sum = [[T::lit(0.0); 4]; MAX_BASIS];
+        if k < self.flux_moments {
+            let start = (local * self.flux_moments + k) * n;
+            for (q, table) in self.derivatives[start..start + n].iter().enumerate() {
+                let weight = weight(q);
+                for (sum, row) in sum.iter_mut().zip(table) {
+                    for (sum, &d) in sum.iter_mut().zip(row) {
+                        *sum += weight * d;
+                    }
+                }
+            }
+        }
+        sum
+    }
+    /// Moment `k` of a weight times moment `l`, by the points of a facet. Moments with and without a flux
+    /// are not mixed: the lift of a jump tested with gradients is then its flux.
+    pub fn weighted_product(&self, k: usize, l: usize, weight: impl Fn(usize) -> T) -> T {
+        let n = self.facet_weights.len();
+        let is_beyond = k.max(l) >= self.polynomials.len() / n;
+        if is_beyond || (k < self.flux_moments) != (l < self.flux_moments) {
+            return T::lit(0.0);
+        }
+        let term = |q: usize| {
+            self.facet_weights[q]
+                * weight(q)
+                * self.polynomials[k * n + q]
+                * self.polynomials[l * n + q]
+        };
+        (0..n).fold(T::lit(0.0), |sum, q| sum + term(q))
+    }
+}
+
+/// The points, with zeros after them.
+fn padded<const D: usize>(points: impl Iterator<Item = Point<f64, D>>) -> [Point<f64, D>; 4] {
+    let mut all = [Point::zeros(); 4];
+    all.iter_mut().zip(points).for_each(|(to, from)| *to = from);
+    all
+}

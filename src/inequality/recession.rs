@@ -1,0 +1,138 @@
+//! Directions in which the energy does not grow: whether a solution exists, and whether there is one
+//! only.
+//!
+//! `A` is positive semidefinite with the kernel of [`Inequality::kernel`]: constants on components of
+//! the domain that neither Dirichlet data nor a reaction hold. A kernel vector `w` along which no bound
+//! stops the unknowns is a direction of recession. The energy along `u + t w` is linear in `t` with
+//! slope `-b.w`: a load with `b.w > 0` pulls the component away and there is no solution; for
+//! `b.w = 0` a solution may be moved along `w`; for `b.w < 0` the load presses the component against its
+//! bounds. (Fichera, Atti Accad. Naz. Lincei 7 (1964); Lions, Stampacchia, Comm. Pure Appl. Math. 20
+//! (1967) 493-519, section 5.)
+
+use super::{Outcome, Solution};
+use crate::algebra::{Bound, Contact, Inequality};
+use crate::real::Real;
+
+/// The multiple of machine epsilon times the sum of the absolute values of its terms below which a
+/// resultant of the load counts as zero.
+const ROUNDING: f64 = 64.0;
+
+/// What a load does along a kernel vector.
+enum Motion {
+    /// Bounds stop the load, or it presses against them.
+    Stopped,
+    /// The load pulls away from all bounds.
+    Unbounded,
+    /// The load is balanced, and bounds stop one direction at most.
+    Balanced,
+}
+
+/// Solves an inequality by `solve` if bounds stop every kernel vector along which the load acts. Else
+/// the outcome is [`Outcome::NoSolution`] with admissible values, or [`Outcome::NotUnique`] with a
+/// solution: that of the problem in which components with a balanced load have no bounds and one
+/// prescribed value, moved until all bounds hold.
+pub(crate) fn solve_with_kernel<T: Real>(
+    inequality: &Inequality<T>,
+    solve: impl FnOnce(&Inequality<T>) -> Solution<T>,
+) -> Solution<T> {
+    let is_consistent = inequality.is_well_formed() && has_valid_kernel(inequality);
+    if inequality.kernel.is_empty() || !is_consistent {
+        return solve(inequality);
+    }
+    let motions: Vec<Motion> = inequality.kernel.iter().map(|w| motion(inequality, w)).collect();
+    if motions.iter().any(|motion| matches!(motion, Motion::Unbounded)) {
+        let values: Vec<T> =
+            inequality.bounds.iter().map(|bound| bound.nearest(T::lit(0.0))).collect();
+        let contact = vec![Contact::Inactive; values.len()];
+        return Solution::new(values, contact, Outcome::NoSolution);
+    }
+    let is_balanced = |motion: &Motion| matches!(motion, Motion::Balanced);
+    let balanced: Vec<&Vec<(u32, T)>> = inequality
+        .kernel
+        .iter()
+        .zip(&motions)
+        .filter(|(_, m)| is_balanced(m))
+        .map(|(w, _)| w)
+        .collect();
+    if balanced.is_empty() {
+        return solve(inequality);
+    }
+    let mut held = inequality.clone();
+    held.kernel.clear();
+    for kernel_vector in &balanced {
+        for &(i, _) in *kernel_vector {
+            held.bounds[i as usize] = Bound::Free;
+        }
+        held.bounds[kernel_vector[0].0 as usize] = Bound::Fixed(T::lit(0.0));
+    }
+    let mut solution = solve(&held);
+    if solution.outcome == Outcome::Converged {
+        for kernel_vector in balanced {
+            move_within_bounds(inequality, kernel_vector, &mut solution.values);
+        }
+        solution.outcome = Outcome::NotUnique;
+        solution.algebraic_bound = None;
+    }
+    solution
+}
+
+fn has_valid_kernel<T: Real>(inequality: &Inequality<T>) -> bool {
+    let is_valid = |&(i, value): &(u32, T)| {
+        (i as usize) < inequality.size() && value.to_f64().is_finite() && value != T::lit(0.0)
+    };
+    inequality.kernel.iter().all(|w| !w.is_empty() && w.iter().all(is_valid))
+}
+
+fn motion<T: Real>(inequality: &Inequality<T>, kernel_vector: &[(u32, T)]) -> Motion {
+    let (mut resultant, mut terms) = (0.0, 0.0);
+    // whether a bound stops a motion along the vector, and against it
+    let (mut stops_along, mut stops_against) = (false, false);
+    for &(i, value) in kernel_vector {
+        let (i, value) = (i as usize, value.to_f64());
+        let bound = &inequality.bounds[i];
+        if bound.fixed_value().is_some() {
+            return Motion::Stopped;
+        }
+        let term = value * inequality.load[i].to_f64();
+        resultant += term;
+        terms += term.abs();
+        let (below, above) = (bound.lower().is_some(), bound.upper().is_some());
+        stops_along |= if value > 0.0 { above } else { below };
+        stops_against |= if value > 0.0 { below } else { above };
+    }
+    if stops_along && stops_against {
+        return Motion::Stopped;
+    }
+    let tolerance = ROUNDING * T::EPSILON * terms;
+    if resultant.abs() <= tolerance {
+        Motion::Balanced
+    } else if (resultant > 0.0 && stops_along) || (resultant < 0.0 && stops_against) {
+        Motion::Stopped
+    } else {
+        Motion::Unbounded
+    }
+}
+
+/// Adds the smallest multiple of a kernel vector with which all bounds of its unknowns hold.
+fn move_within_bounds<T: Real>(
+    inequality: &Inequality<T>,
+    kernel_vector: &[(u32, T)],
+    values: &mut [T],
+) {
+    let (mut least, mut most) = (f64::NEG_INFINITY, f64::INFINITY);
+    for &(i, value) in kernel_vector {
+        let (x, value) = (values[i as usize].to_f64(), value.to_f64());
+        let bound = &inequality.bounds[i as usize];
+        let ratio = |limit: Option<T>| limit.map(|limit| (limit.to_f64() - x) / value);
+        let (from_lower, from_upper) = (ratio(bound.lower()), ratio(bound.upper()));
+        let (low, high) =
+            if value > 0.0 { (from_lower, from_upper) } else { (from_upper, from_lower) };
+        least = least.max(low.unwrap_or(f64::NEG_INFINITY));
+        most = most.min(high.unwrap_or(f64::INFINITY));
+    }
+    let multiple = 0.0_f64.max(least).min(most);
+    for &(i, value) in kernel_vector {
+        let moved = values[i as usize] + T::lit(multiple * value.to_f64());
+        values[i as usize] = inequality.bounds[i as usize].nearest(moved);
+    }
+}

@@ -1,0 +1,119 @@
+//! The sizes to which violations of the complementarity conditions are relative: one largest value and
+//! one energy norm for the certificate and for every stopping test.
+
+use std::cmp::Ordering;
+
+use crate::algebra::Inequality;
+use crate::parallel::vectors::map_chunks;
+use crate::real::Real;
+
+/// The multiple of machine epsilon times the size of its terms below which an energy counts as
+/// vanishing.
+const VANISHING: f64 = 8.0;
+
+/// The sizes of values `u` of an inequality.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Scales {
+    /// The largest of all `|u_i|` and `|v_i|`, `v_i` the admissible value nearest to `u_i`; one if all
+    /// are zero.
+    pub max_norm: f64,
+    /// The energy norm `E`: the square root of the first of these numbers that does not vanish.
+    ///
+    /// 1. The energy with data: `u.A u`; with weak Dirichlet data `u.A u - l.u + q`
+    ///    ([`DirichletEnergy`](crate::algebra::DirichletEnergy)), for a penalised matrix
+    ///    `u.K u + p.(S^-1 p)`. It does not contain the penalty times the square of the data, which for
+    ///    an over-penalised scheme exceeds the energy by any factor on fine meshes. An energy below
+    ///    rounding of its terms counts as zero.
+    /// 2. `sum c_i^2 / d_i`, `c` the load without Dirichlet data.
+    /// 3. `sum d_i u_i^2`, for constants.
+    /// 4. One.
+    pub energy_norm: f64,
+}
+
+/// Sums over unknowns.
+#[derive(Default)]
+struct Sums {
+    max_norm: f64,
+    energy: f64,
+    /// The sum of the absolute values of the terms of `energy`.
+    terms: f64,
+    load_energy: f64,
+    diagonal_energy: f64,
+}
+
+impl Scales {
+    /// The sizes of `u`. `residual` is `b - A u`, or `c - K u - M^T p` with jump multipliers `p` if they
+    /// are not empty; `diagonal` the positive diagonal; `unit` a power of two by which values, loads
+    /// and residuals are divided before they are squared. Numbers that are not finite give norms that
+    /// are not finite.
+    pub fn of<T: Real>(
+        inequality: &Inequality<T>,
+        u: &[T],
+        residual: &[f64],
+        jump_multipliers: &[T],
+        diagonal: &(dyn Fn(usize) -> f64 + Sync),
+        unit: f64,
+    ) -> Self {
+        let scale = unit.recip();
+        let Inequality { load, bounds, penalised, dirichlet_energy, .. } = inequality;
+        // the load in the residual: without Dirichlet data if the matrix is penalised
+        let load = penalised.as_ref().map_or(load, |penalised| &penalised.load);
+        let mut sums = Sums::default();
+        for part in map_chunks(u.len(), |range| {
+            let mut part = Sums::default();
+            for i in range {
+                let (x, c, d) = (u[i].to_f64(), load[i].to_f64() * scale, diagonal(i));
+                let nearest = bounds[i].nearest(u[i]).to_f64();
+                part.max_norm = maximum(part.max_norm, maximum(x.abs(), nearest.abs()));
+                let x = x * scale;
+                let energy = x * (c - residual[i] * scale);
+                part.energy += energy;
+                part.terms += energy.abs();
+                part.load_energy += c * c / d;
+                part.diagonal_energy += d * x * x;
+            }
+            part
+        }) {
+            sums.max_norm = maximum(sums.max_norm, part.max_norm);
+            sums.energy += part.energy;
+            sums.terms += part.terms;
+            sums.load_energy += part.load_energy;
+            sums.diagonal_energy += part.diagonal_energy;
+        }
+        if let Some(penalised) = penalised {
+            // u.K u + p.(S^-1 p) = u.(c - r) - p.g, without the cancellation of penalties
+            let work = penalised.work_on_data(|i| u[i].to_f64(), jump_multipliers);
+            sums.add_energy(-work * scale * scale);
+        } else if let Some(data) = dirichlet_energy {
+            for term in &data.terms {
+                let i = term.unknown as usize;
+                let (x, c, d) = (u[i].to_f64() * scale, load[i].to_f64() * scale, diagonal(i));
+                sums.add_energy(-term.linear * scale * x);
+                sums.load_energy += ((c - term.load * scale).powi(2) - c * c) / d;
+            }
+            sums.add_energy(data.constant * scale * scale);
+        }
+        let least = VANISHING * T::EPSILON * sums.terms;
+        let energy = [(sums.energy, least), (sums.load_energy, 0.0), (sums.diagonal_energy, 0.0)]
+            .into_iter()
+            // true for numbers that are not finite
+            .find(|(energy, least)| energy.partial_cmp(least).is_none_or(Ordering::is_gt))
+            .map_or(1.0, |(energy, _)| energy);
+        Self {
+            max_norm: if sums.max_norm == 0.0 { 1.0 } else { sums.max_norm },
+            energy_norm: energy.sqrt() * unit,
+        }
+    }
+}
+
+impl Sums {
+    fn add_energy(&mut self, energy: f64) {
+        self.energy += energy;
+        self.terms += energy.abs();
+    }
+}
+
+/// The larger number; not a number if one of the two is not a number.
+fn maximum(a: f64, b: f64) -> f64 {
+    if a <= b || b.is_nan() { b } else { a }
+}

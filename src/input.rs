@@ -1,0 +1,62 @@
+//! What comes from outside: files of limited size, and foreign text in messages.
+
+use std::fs::{File, metadata};
+use std::io::{Error, ErrorKind, Read, Result};
+use std::path::Path;
+
+/// The most bytes that are read of a file, 2 GiB: a binary Gmsh mesh of forty million tetrahedra.
+pub const LARGEST_FILE: u64 = 1 << 31;
+
+/// Reads a regular file of at most [`LARGEST_FILE`] bytes. Devices and pipes, which may have no end,
+/// are not opened.
+///
+/// # Errors
+/// Those of the operating system, [`ErrorKind::InvalidInput`] for what is not a regular file,
+/// [`ErrorKind::FileTooLarge`].
+pub fn read_file(path: &Path) -> Result<Vec<u8>> {
+    let about = metadata(path)?;
+    if !about.is_file() {
+        let why = "not a regular file; directories, devices and pipes are not read";
+        return Err(Error::new(ErrorKind::InvalidInput, why));
+    }
+    let mut bytes = Vec::new();
+    // files of the system may state a length of zero
+    if about.len() <= LARGEST_FILE {
+        bytes.reserve_exact(about.len() as usize);
+        File::open(path)?.take(LARGEST_FILE + 1).read_to_end(&mut bytes)?;
+    }
+    if about.len().max(bytes.len() as u64) > LARGEST_FILE {
+        let why = format!("larger than {LARGEST_FILE} bytes, the most that are read");
+        return Err(Error::new(ErrorKind::FileTooLarge, why));
+    }
+    Ok(bytes)
+}
+
+/// Foreign text for a message: at most 40 characters, an ellipsis in place of the rest, control
+/// characters and bytes that are not UTF-8 replaced by U+FFFD.
+pub fn excerpt(text: impl AsRef<[u8]>) -> String {
+    const LONGEST: usize = 40;
+    let bytes = text.as_ref();
+    // no character is longer than four bytes
+    let text = String::from_utf8_lossy(&bytes[..bytes.len().min(4 * LONGEST + 4)]);
+    let shown = |c: char| if c.is_control() { '\u{fffd}' } else { c };
+    let rest = text.chars().nth(LONGEST).map(|_| '…');
+    text.chars().take(LONGEST).map(shown).chain(rest).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::excerpt;
+
+    #[test]
+    fn foreign_text_is_short_and_printable() {
+        assert_eq!(excerpt("contact"), "contact");
+        assert_eq!(excerpt("a\u{1b}[31m\nb\u{85}"), "a\u{fffd}[31m\u{fffd}b\u{fffd}");
+        assert_eq!(excerpt(b"\xffend"), "\u{fffd}end");
+        for c in ["x", "é", "漢", "🦀"] {
+            assert_eq!(excerpt(c.repeat(40)), c.repeat(40));
+            assert_eq!(excerpt(c.repeat(41)), c.repeat(40) + "…");
+            assert_eq!(excerpt(c.repeat(100_000)), c.repeat(40) + "…");
+        }
+    }
+}

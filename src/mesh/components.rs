@@ -1,0 +1,28 @@
+//! Connected components of cells or unknowns.
+
+/// A partition of `0..n` into sets that grow by joining two members (union and find with path halving).
+pub(crate) struct Components {
+    parents: Vec<u32>,
+}
+
+impl Components {
+    /// Sets of one member each.
+    pub fn new(n: usize) -> Self {
+        Self { parents: (0..n as u32).collect() }
+    }
+    /// The member that stands for the set of a member: the smallest one.
+    pub fn find(&mut self, member: usize) -> usize {
+        let mut at = member;
+        while self.parents[at] as usize != at {
+            let above = self.parents[at] as usize;
+            self.parents[at] = self.parents[above];
+            at = above;
+        }
+        at
+    }
+    /// Makes one set of the sets of two members.
+    pub fn join(&mut self, a: usize, b: usize) {
+        let (a, b) = (self.find(a), self.find(b));
+        self.parents[a.max(b)] = a.min(b) as u32;
+    }
+}

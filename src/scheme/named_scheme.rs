@@ -1,0 +1,245 @@
+//! Schemes as users write them: name, placement of bounds, choices.
+
+use std::fmt;
+use std::str::FromStr;
+use std::sync::Arc;
+
+use super::{AnyScheme, SCHEMES, SchemeOptions, keys_of_scheme, scheme_by_name};
+use crate::constraint::{CONSTRAINT_SETS, ConstraintSet, Nodes, constraint_set_by_name};
+use crate::input::excerpt;
+use crate::real::Real;
+
+/// A scheme as users write it, `NAME[:PLACEMENT][@KEY=VALUE[,KEY=VALUE...]]`: for instance
+/// `wopsip:facet-means@factor=10,weight=anisotropic`. The keys are the fields of [`SchemeOptions`];
+/// [`keys_of_scheme`] says which of them a scheme takes. Displayed as its label, in which nothing
+/// stands that is default, so that two ways to write one scheme have one label.
+///
+/// ```
+/// use unilateral::scheme::NamedScheme;
+/// let schemes = NamedScheme::list(["sipg@factor=1.50", "br2@factor=2", "lifts=full"]).unwrap();
+/// assert_eq!(schemes.iter().map(|s| s.to_string()).collect::<Vec<_>>(), ["sipg", "br2@factor=2,lifts=full"]);
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct NamedScheme {
+    name: &'static str,
+    placement: Option<&'static str>,
+    options: SchemeOptions,
+}
+
+/// What is wrong with a scheme as a user wrote it.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
+pub enum SchemeNameError {
+    /// No scheme has the name.
+    #[error("unknown scheme {:?}; there are: {}", excerpt(name), names(SCHEMES))]
+    Unknown {
+        /// What was written before colon and `@`.
+        name: String,
+    },
+    /// No constraint set has the name after the colon.
+    #[error("{}: there is no placement {:?}; there are: {}", excerpt(text), excerpt(placement), names(&CONSTRAINT_SETS))]
+    UnknownPlacement {
+        /// What was written.
+        text: String,
+        /// The name after the colon.
+        placement: String,
+    },
+    /// The element of the scheme has no values that the constraint set binds.
+    #[error("{}: the element of the scheme has no such values; it has: {allowed}", excerpt(text))]
+    UnfitPlacement {
+        /// What was written.
+        text: String,
+        /// The constraint sets that bind values of the element.
+        allowed: String,
+    },
+    /// The scheme does not take the key.
+    #[error("{}: {name} does not take {:?}; it takes: {allowed}", excerpt(text), excerpt(key))]
+    UnknownKey {
+        /// What was written.
+        text: String,
+        /// Name of the scheme.
+        name: &'static str,
+        /// The key.
+        key: String,
+        /// The keys that the scheme takes.
+        allowed: String,
+    },
+    /// A value of a key is out of its range.
+    #[error("{}: {key} = {}: {allowed}", excerpt(text), excerpt(value))]
+    Value {
+        /// What was written.
+        text: String,
+        /// The key.
+        key: String,
+        /// The value.
+        value: String,
+        /// The values allowed.
+        allowed: String,
+    },
+    /// Two keys choose the same thing.
+    #[error("{}: the keys {keys} choose the same penalty; give one of them", excerpt(text))]
+    Twice {
+        /// What was written.
+        text: String,
+        /// The keys.
+        keys: String,
+    },
+}
+
+fn names(known: &[(&str, &str)]) -> String {
+    known.iter().map(|entry| entry.0).collect::<Vec<_>>().join(", ")
+}
+
+impl FromStr for NamedScheme {
+    type Err = SchemeNameError;
+
+    fn from_str(text: &str) -> Result<Self, SchemeNameError> {
+        let (head, choices) = match text.split_once('@') {
+            Some((head, choices)) => (head, Some(choices)),
+            None => (text, None),
+        };
+        let (name, placement) = match head.split_once(':') {
+            Some((name, placement)) => (name, Some(placement)),
+            None => (head, None),
+        };
+        let Some(&(name, _)) = SCHEMES.iter().find(|known| known.0 == name) else {
+            return Err(SchemeNameError::Unknown { name: name.to_owned() });
+        };
+        let mut scheme = Self { name, placement: None, options: SchemeOptions::default() };
+        if let Some(placement) = placement {
+            scheme.placement = Some(scheme.placed(text, placement)?);
+        }
+        for choice in choices.into_iter().flat_map(|choices| choices.split(',')) {
+            scheme.choose(text, choice)?;
+        }
+        Ok(scheme)
+    }
+}
+
+impl fmt::Display for NamedScheme {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let set = self.constraint_set().unwrap_or_else(|| Arc::new(Nodes));
+        f.write_str(&self.make::<f64, 2>().label_on(&set))
+    }
+}
+
+impl NamedScheme {
+    /// The schemes of a list that was cut at its commas, each label once: an item with `=` and without
+    /// `@` continues the scheme before it, `all` stands for every scheme with its own choices.
+    ///
+    /// # Errors
+    /// [`SchemeNameError`], for the first item that is wrong.
+    pub fn list<'t>(
+        items: impl IntoIterator<Item = &'t str>,
+    ) -> Result<Vec<Self>, SchemeNameError> {
+        let mut texts: Vec<String> = Vec::new();
+        for item in items {
+            match texts.last_mut() {
+                Some(text) if item.contains('=') && !item.contains('@') => {
+                    let sign = if text.contains('@') { ',' } else { '@' };
+                    *text += &format!("{sign}{item}");
+                }
+                _ => texts.push(item.to_owned()),
+            }
+        }
+        let mut schemes: Vec<Self> = Vec::new();
+        for text in texts {
+            let found = if text == "all" { Self::all() } else { vec![text.parse()?] };
+            for scheme in found {
+                if schemes.iter().all(|known| known.to_string() != scheme.to_string()) {
+                    schemes.push(scheme);
+                }
+            }
+        }
+        Ok(schemes)
+    }
+    /// Every scheme with its own choices.
+    pub fn all() -> Vec<Self> {
+        let of = |known: &(&'static str, _)| Self {
+            name: known.0,
+            placement: None,
+            options: SchemeOptions::default(),
+        };
+        SCHEMES.iter().map(of).collect()
+    }
+    /// The name of the scheme, without placement and choices.
+    pub const fn name(&self) -> &'static str {
+        self.name
+    }
+    /// The choices written.
+    pub fn options(&self) -> &SchemeOptions {
+        &self.options
+    }
+    /// The scheme with the penalty of these options if none is written and the scheme takes it.
+    #[must_use]
+    pub fn or_penalty(mut self, options: &SchemeOptions) -> Self {
+        if !self.options.has_penalty() {
+            let takes = |key: &str| keys_of_scheme(self.name).contains(&key);
+            self.options.factor = options.factor.filter(|_| takes("factor"));
+            self.options.eta = options.eta.filter(|_| takes("eta"));
+            self.options.sigma = options.sigma.filter(|_| takes("sigma"));
+        }
+        self
+    }
+    /// The scheme with this placement of bounds if none is written and its element has such values.
+    #[must_use]
+    pub fn or_placement(mut self, placement: &str) -> Self {
+        self.placement = self.placement.or_else(|| self.placed("", placement).ok());
+        self
+    }
+    /// The scheme.
+    pub fn make<T: Real, const D: usize>(&self) -> Box<dyn AnyScheme<T, D>> {
+        match scheme_by_name(self.name, &self.options) {
+            Some(scheme) => scheme,
+            None => unreachable!("the name is one of the list"),
+        }
+    }
+    /// The constraint set of the placement; none if none is chosen.
+    pub fn constraint_set(&self) -> Option<Arc<dyn ConstraintSet>> {
+        self.placement.and_then(constraint_set_by_name)
+    }
+
+    /// The placement of this name, if the element has such values.
+    fn placed(&self, text: &str, placement: &str) -> Result<&'static str, SchemeNameError> {
+        let scheme = self.make::<f64, 2>();
+        let fits = |name: &str| {
+            constraint_set_by_name(name).is_some_and(|set| scheme.constraint_on(&set).is_some())
+        };
+        match CONSTRAINT_SETS.iter().find(|set| set.0 == placement) {
+            None => Err(SchemeNameError::UnknownPlacement {
+                text: text.to_owned(),
+                placement: placement.to_owned(),
+            }),
+            Some(set) if fits(set.0) => Ok(set.0),
+            Some(_) => {
+                let sets: Vec<_> = CONSTRAINT_SETS.into_iter().filter(|set| fits(set.0)).collect();
+                Err(SchemeNameError::UnfitPlacement {
+                    text: text.to_owned(),
+                    allowed: names(&sets),
+                })
+            }
+        }
+    }
+    /// Takes `KEY=VALUE`.
+    fn choose(&mut self, text: &str, choice: &str) -> Result<(), SchemeNameError> {
+        let (name, takes, text) = (self.name, keys_of_scheme(self.name), text.to_owned());
+        let (key, value) = choice.split_once('=').unwrap_or((choice, ""));
+        if !takes.contains(&key) {
+            let allowed = if takes.is_empty() { "no key".to_owned() } else { takes.join(", ") };
+            return Err(SchemeNameError::UnknownKey { text, name, key: key.to_owned(), allowed });
+        }
+        let is_penalty = |key: &str| ["factor", "eta", "sigma"].contains(&key);
+        let before = self.options.entries().map(|entry| entry.0);
+        if let Some(before) =
+            before.into_iter().find(|b| *b == key || is_penalty(b) && is_penalty(key))
+        {
+            return Err(SchemeNameError::Twice { text, keys: format!("{before} and {key}") });
+        }
+        self.options.set(key, value).map_err(|allowed| SchemeNameError::Value {
+            text,
+            key: key.to_owned(),
+            value: value.to_owned(),
+            allowed,
+        })
+    }
+}

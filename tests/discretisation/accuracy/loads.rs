@@ -1,0 +1,163 @@
+//! Loads that jump or have kinks within cells, and the degree of the rule for smooth ones.
+
+use std::f64::consts::PI;
+
+use crate::support::checks::Checks;
+use unilateral::assemble::{DataQuadrature, Discretisation};
+use unilateral::mesh::{BoxDomain, Mesh};
+use unilateral::prelude::*;
+use unilateral::problem::Datum;
+use unilateral::scheme::scheme_by_name;
+
+fn errors(report: &Report) -> impl Iterator<Item = (usize, f64, f64)> {
+    report.rows.iter().map(|row| (row.level, row.error.l2.unwrap(), row.error.h1.unwrap()))
+}
+
+/// Figures of an independent program with the exact load, to the digits printed.
+#[test]
+fn conforming_linears_on_a_load_with_jumps_have_the_errors_of_the_exact_load() {
+    const EXACT: [(usize, &str, &str); 4] = [
+        (8, "1.250e-2", "2.699e-1"),
+        (64, "4.065e-4", "4.255e-2"),
+        (256, "2.552e-5", "1.067e-2"),
+        (1024, "1.594e-6", "2.679e-3"),
+    ];
+    let levels = EXACT.map(|row| row.0);
+    let study = Study::<f64, 1>::new(scenes::icelike_1d()).scheme(ConformingP1).levels(levels);
+    let report = study.run().unwrap();
+    let mut checks = Checks::default();
+    for ((n, l2, h1), exact) in errors(&report).zip(EXACT) {
+        assert_eq!(n, exact.0);
+        checks.printed(&format!("L2, n = {n}"), l2, exact.1, 1.0);
+        checks.printed(&format!("H1, n = {n}"), h1, exact.2, 1.0);
+    }
+    checks.finish();
+}
+
+/// The order swings with the place of jumps and free boundary in their cells: over four levels it is
+/// three halves, where a rule across the jumps had one.
+#[test]
+fn quadratics_on_a_load_with_jumps_keep_their_order() {
+    let study = Study::<f64, 1>::new(scenes::icelike_1d()).scheme(ConformingP2);
+    let report = study.levels([16, 32, 64, 128, 256, 512]).run().unwrap();
+    let h1: Vec<f64> = errors(&report).map(|row| row.2).collect();
+    for four in h1.windows(4) {
+        // least squares of log e over equidistant log h
+        let log = |k: usize| four[k].log2();
+        let order = (3.0 * (log(0) - log(3)) + log(1) - log(2)) / 10.0;
+        assert!(order >= 1.4, "{order:.2} of {four:?}");
+    }
+}
+
+/// The sum of all entries of the load, which is the integral of the source.
+fn integral<T: Real, const D: usize>(
+    scheme: &dyn AnyScheme<T, D>,
+    n: usize,
+    load: Datum<D>,
+) -> f64 {
+    let domain = BoxDomain::dirichlet(Point::repeat(-1.0), Point::repeat(1.0));
+    let mesh = Mesh::<T, D>::kuhn_box(&domain, [n; D]).unwrap();
+    let mut problem = Problem::new();
+    problem.source = Some(load);
+    let discretisation =
+        Discretisation::new(scheme, &problem, &mesh, DataQuadrature::default()).unwrap();
+    discretisation.load().unwrap().iter().map(|x| x.to_f64()).sum()
+}
+
+/// One within the sphere of radius 0.7, minus two outside.
+fn jump_at_a_sphere<const D: usize>() -> Datum<D> {
+    let level = |x: &Point<f64, D>| x.norm_squared() - 0.49;
+    Datum::piecewise(move |x| if level(x) > 0.0 { -2.0 } else { 1.0 }, level)
+}
+
+#[test]
+fn a_load_that_jumps_at_a_sphere_is_integrated_along_it() {
+    let exact = |volume: f64, box_volume: f64| volume - 2.0 * (box_volume - volume);
+    let disc = exact(PI * 0.49, 4.0);
+    let error = |n| (integral::<f64, 2>(&ConformingP1, n, jump_at_a_sphere()) - disc).abs();
+    assert!(error(8) < 1e-4 && error(32) < 1e-6, "{:e} {:e}", error(8), error(32));
+    let ball = exact(4.0 / 3.0 * PI * 0.343, 8.0);
+    let error = |n| (integral::<f64, 3>(&ConformingP2, n, jump_at_a_sphere()) - ball).abs();
+    assert!(error(8) < 2e-3 && error(16) < 4e-4, "{:e} {:e}", error(8), error(16));
+    // in single precision what is left is its rounding
+    let single = integral::<f32, 2>(&Sipg::default(), 32, jump_at_a_sphere());
+    assert!((single - disc).abs() < 1e-5, "{:e}", single - disc);
+}
+
+/// Loads that are smooth within cells, on coarse meshes: with rules of twice the degree no error of
+/// linears or quadratics changes by more than one part in a thousand.
+#[test]
+fn the_rule_for_smooth_loads_limits_no_scheme() {
+    fn check<const D: usize>(checks: &mut Checks, n: usize) {
+        let value = |x: &Point<f64, D>| x.iter().map(|x| (PI * x).sin()).product::<f64>();
+        let gradient = |x: &Point<f64, D>| -> Point<f64, D> {
+            let wave =
+                |k, j: usize| if j == k { PI * (PI * x[j]).cos() } else { (PI * x[j]).sin() };
+            Point::from_fn(|k, _| (0..D).map(|j| wave(k, j)).product())
+        };
+        let load = move |x: &Point<f64, D>| D as f64 * PI * PI * value(x);
+        let domain = BoxDomain::dirichlet(Point::zeros(), Point::repeat(1.0));
+        let problem = Problem::new().source(load).exact(value, gradient);
+        let scene = scenes::Scene::new("smooth", domain, problem);
+        for (name, degree) in [("p1", 5), ("sipg", 5), ("wopsip", 5), ("p2", 7), ("sipg-p2", 7)] {
+            let run = |quadrature| {
+                let scheme = scheme_by_name::<f64, D>(name, &Default::default()).unwrap();
+                let study = Study::<f64, D>::new(scene.clone()).boxed_scheme(scheme).levels([n]);
+                let report = study.quadrature(quadrature).run().unwrap();
+                errors(&report).map(|(_, l2, h1)| [l2, h1]).next().unwrap()
+            };
+            let own = run(DataQuadrature::default());
+            assert_eq!(own, run(DataQuadrature::default().cell(degree)), "the default of {name}");
+            let fine = run(DataQuadrature::default().cell(2 * degree));
+            for (norm, own, fine) in [("L2", own[0], fine[0]), ("H1", own[1], fine[1])] {
+                let change = (own / fine - 1.0).abs();
+                checks.that(change < 1e-3, || format!("{norm} of {name} in {D}D: {change:.1e}"));
+            }
+        }
+    }
+    let mut checks = Checks::default();
+    check::<1>(&mut checks, 4);
+    check::<2>(&mut checks, 4);
+    check::<3>(&mut checks, 2);
+    checks.finish();
+}
+
+#[test]
+fn cells_that_are_not_cut_keep_their_loads_to_the_bit() {
+    let domain = BoxDomain::dirichlet(Point::repeat(-1.0), Point::repeat(1.0));
+    let mesh = Mesh::<f64, 2>::kuhn_box(&domain, [6, 6]).unwrap();
+    let smooth = |x: &Point<f64, 2>| (x[0] * 3.0).sin() + x[1];
+    let load = |problem: &Problem<2>| {
+        let quadrature = DataQuadrature::default();
+        Discretisation::new(&Sipg::default(), problem, &mesh, quadrature).unwrap().load().unwrap()
+    };
+    let whole = load(&Problem::new().source(smooth));
+    let cut = load(&Problem::new().piecewise_source(smooth, |x| x[0] + x[1] - 0.1));
+    let differ = |cell: usize| whole[3 * cell..3 * cell + 3] != cut[3 * cell..3 * cell + 3];
+    for cell in 0..mesh.n_cells() {
+        let level = |v: &u32| mesh.vertices()[*v as usize].sum() - 0.1;
+        let is_cut = mesh.cell(cell).iter().any(|v| level(v) > 0.0)
+            && mesh.cell(cell).iter().any(|v| level(v) < 0.0);
+        assert_eq!(differ(cell), is_cut, "cell {cell}");
+    }
+    let largest = whole.iter().zip(&cut).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+    assert!(largest < 1e-6, "the load is smooth: {largest:e}");
+}
+
+#[test]
+fn a_reaction_that_jumps_is_integrated_exactly() {
+    let domain = BoxDomain::dirichlet(Point::zeros(), Point::repeat(1.0));
+    let mesh = Mesh::<f64, 1>::kuhn_box(&domain, [4]).unwrap();
+    let level = |x: &Point<f64, 1>| x[0] - 0.3;
+    let jump = Datum::piecewise(move |x| if level(x) > 0.0 { 5.0 } else { 1.0 }, level);
+    let total = |scheme: &dyn AnyScheme<f64, 1>| {
+        let problem = Problem::new().reaction(jump.clone());
+        let of = Discretisation::new(scheme, &problem, &mesh, DataQuadrature::default()).unwrap();
+        let ones = vec![1.0; of.unknowns()];
+        let matrix = of.matrix();
+        (0..ones.len()).map(|i| matrix.row_dot(i, &ones)).sum::<f64>()
+    };
+    // constants have neither gradient nor jumps inside, and the penalty of the boundary is pinned
+    assert!((total(&ConformingP1) - (0.3 + 0.7 * 5.0)).abs() < 1e-13);
+    assert!((total(&ConformingP2) - (0.3 + 0.7 * 5.0)).abs() < 1e-13);
+}

@@ -1,0 +1,122 @@
+//! Domains that only their bounds hold: no solution, many solutions, or one.
+
+use unilateral::inequality::{MonotoneMultigrid, Outcome};
+use unilateral::mesh::BoundaryPart;
+use unilateral::nested::NestedIteration;
+use unilateral::prelude::*;
+
+/// A square that only a contact condition on its lower side holds.
+fn square<T: Real>(n: usize) -> Mesh<T, 2> {
+    let free = [BoundaryPart::Neumann; 2];
+    let sides = [free, [BoundaryPart::Contact, BoundaryPart::Neumann]];
+    let domain = BoxDomain::new(Point::zeros(), Point::repeat(1.0), sides);
+    Mesh::kuhn_box(&domain, [n, n]).unwrap()
+}
+
+fn body(load: f64) -> Problem<2> {
+    Problem::new().constant_source(load).signorini(|x| 0.1 * x[0])
+}
+
+fn balanced() -> Problem<2> {
+    Problem::new().source(|x| x[0] - 0.5).signorini(|x| 0.1 * x[0])
+}
+
+fn schemes() -> Vec<(Box<dyn AnyScheme<f64, 2>>, bool)> {
+    vec![
+        (Box::new(ConformingP1), false),
+        (Box::new(ConformingP2), false),
+        (Box::new(NonconformingP1), false),
+        (Box::new(Sipg::default()), false),
+        (Box::new(Nipg::default()), false),
+        (Box::new(Wopsip::default()), false),
+        (Box::new(Wopsip::default()), true),
+    ]
+}
+
+#[test]
+fn a_load_that_pulls_away_has_no_solution_and_a_balanced_one_many() {
+    for n in [3, 7, 12, 16, 27] {
+        let mesh = square::<f64>(n);
+        for (scheme, on_facet_means) in schemes() {
+            let place =
+                |problem: Problem<2>| if on_facet_means { problem.on(FacetMeans) } else { problem };
+            let pulled = place(body(1.0));
+            let solved = solve(&pulled, &mesh, &*scheme).unwrap();
+            assert_eq!(solved.outcome(), Outcome::NoSolution, "{} {n}", scheme.name());
+            assert!(solved.certificate().largest().is_infinite());
+
+            let problem = place(balanced());
+            let solved = solve(&problem, &mesh, &*scheme).unwrap();
+            assert_eq!(solved.outcome(), Outcome::NotUnique, "{} {n}", scheme.name());
+            // the values are one of the solutions
+            let largest = solved.certificate().largest();
+            assert!(largest < 1e-9, "{} {n}: {largest}", scheme.name());
+
+            let pressed = place(body(-1.0));
+            let solved = solve(&pressed, &mesh, &*scheme).unwrap();
+            assert_eq!(solved.outcome(), Outcome::Converged, "{} {n}", scheme.name());
+            let resultant: f64 = solved.multiplier().iter().sum();
+            assert!((resultant - 1.0).abs() < 1e-10, "{} {n}: {resultant}", scheme.name());
+        }
+    }
+}
+
+#[test]
+fn every_solver_says_so() {
+    let mesh = square::<f64>(8);
+    let (pulled, level) = (body(1.0), balanced());
+    for (problem, outcome) in [(&pulled, Outcome::NoSolution), (&level, Outcome::NotUnique)] {
+        let multigrid = MonotoneMultigrid::default();
+        let solved =
+            NestedIteration::new(problem, &mesh).solver(multigrid).solve(&ConformingP1).unwrap();
+        assert_eq!(solved.outcome(), outcome);
+    }
+    let single = square::<f32>(16);
+    for (problem, outcome) in [(&pulled, Outcome::NoSolution), (&level, Outcome::NotUnique)] {
+        assert_eq!(solve(problem, &single, &Sipg::default()).unwrap().outcome(), outcome);
+    }
+}
+
+#[test]
+fn a_reaction_or_two_obstacles_hold_a_body() {
+    let mesh = square::<f64>(8);
+    let reaction = body(1.0).reaction(1.0);
+    let obstacles = body(1.0).obstacle_above(|x| 2.0 + x[0]);
+    for problem in [reaction, obstacles] {
+        for (scheme, _) in schemes() {
+            let solved = solve(&problem, &mesh, &*scheme).unwrap();
+            assert_eq!(solved.outcome(), Outcome::Converged, "{}", scheme.name());
+        }
+    }
+}
+
+#[test]
+fn each_component_is_tested() {
+    // two intervals: the first is fixed at one end, nothing but the obstacle holds the second
+    let vertices = [0.0, 0.5, 1.0, 2.0, 2.5, 3.0].map(|x| Point::from([x])).to_vec();
+    let part = |vertex, part| unilateral::mesh::TaggedFacet { vertices: [vertex], part };
+    let boundary = [
+        part(0, BoundaryPart::Dirichlet),
+        part(2, BoundaryPart::Neumann),
+        part(3, BoundaryPart::Neumann),
+        part(5, BoundaryPart::Neumann),
+    ];
+    let cells = vec![0, 1, 1, 2, 3, 4, 4, 5];
+    let mesh = Mesh::<f64, 1>::new(vertices, cells, &boundary).unwrap();
+    assert!(!mesh.is_supported() && !mesh.refine().unwrap().0.is_supported());
+    let problem = |right: f64| {
+        let load = move |x: &Point<f64, 1>| if x[0] < 1.5 { 1.0 } else { right };
+        Problem::new().source(load).obstacle_below(|_| -1.0)
+    };
+    let schemes: [&dyn AnyScheme<f64, 1>; 4] =
+        [&ConformingP1, &NonconformingP1, &Sipg::default(), &Wopsip::default()];
+    for scheme in schemes {
+        for (right, outcome) in
+            [(1.0, Outcome::NoSolution), (0.0, Outcome::NotUnique), (-1.0, Outcome::Converged)]
+        {
+            let problem = problem(right);
+            let solved = solve(&problem, &mesh, scheme).unwrap();
+            assert_eq!(solved.outcome(), outcome, "{} {right}", scheme.name());
+        }
+    }
+}

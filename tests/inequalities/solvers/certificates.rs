@@ -1,0 +1,49 @@
+//! What the certificate must not see: rounding beside a bound, and forces that no room lets act.
+
+use super::cold;
+use crate::problems::*;
+use unilateral::algebra::{Bound, Contact};
+use unilateral::inequality::certify;
+
+#[test]
+fn values_at_a_bound_but_for_rounding_are_in_contact() {
+    let problem = membrane::<f64>(20, 10.0, |_, _| -0.3);
+    let solution = cold(&problem);
+    let closed = |i: &usize| solution.contact[*i] == Contact::Lower;
+    assert!((0..400).filter(closed).count() > 50);
+    for by in [1e-14, 1e-12, -1e-14, -1e-12] {
+        let mut u = solution.values.clone();
+        (0..400).filter(closed).for_each(|i| u[i] += by);
+        let certificate = certify(&problem, &u);
+        assert!(certificate.largest() < 1e-9, "moved by {by}: {certificate:?}");
+    }
+    // what is more than rounding is seen
+    let mut u = solution.values;
+    let closed: Vec<usize> = (0..400).filter(|&i| solution.contact[i] == Contact::Lower).collect();
+    closed.iter().for_each(|&i| u[i] += 1e-6);
+    assert!(certify(&problem, &u).largest() > 1e-7);
+}
+
+/// An unknown that its lower bound lets go, but that has hardly any room below its upper one, is wrong
+/// by that room at most.
+#[test]
+fn a_force_acts_as_far_as_the_opposite_bound() {
+    let n = 5;
+    let load = vec![-1.0; n * n];
+    let certificate = |room: f64, force: f64| {
+        let mut problem = inequality(laplacian(n, n, 4.0), &load, vec![Bound::Fixed(0.0); n * n]);
+        problem.bounds[12] = Bound::Both(0.0, room);
+        problem.load[12] = force;
+        certify(&problem, &vec![0.0; n * n])
+    };
+    let narrow = certificate(1e-13, 1.0);
+    assert!(narrow.largest() < 1e-12, "{narrow:?}");
+    let wide = certificate(1e-3, 1.0);
+    assert!(wide.multiplier > 1e-4 && wide.multiplier < 1e-2, "{wide:?}");
+    // with room enough the step of a force counts: one quarter of it
+    let free = certificate(1e3, 1.0);
+    let ratio = free.multiplier / wide.multiplier;
+    assert!((ratio - 250.0).abs() < 1e-6, "{ratio}");
+    // a force towards the bound is what holds the unknown there
+    assert_eq!(certificate(1e3, -1.0).largest(), 0.0);
+}

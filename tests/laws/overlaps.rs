@@ -1,0 +1,152 @@
+//! Meshes that fold or lie on themselves.
+
+use crate::support::meshes::{Random, Raw, mixed_box};
+use unilateral::mesh::{BoundaryPart, BoxDomain, Mesh, MeshError, TaggedFacet};
+use unilateral::prelude::*;
+
+fn boxes<const D: usize>(n: usize) -> Raw<D> {
+    let mut random = Random(5);
+    let held = BoxDomain::dirichlet(Point::zeros(), Point::repeat(1.0));
+    Raw::jittered(&held, n, 0.3, &mut random).shuffled(&mut random)
+}
+
+fn made<const D: usize>(raw: &Raw<D>) -> Result<Mesh<f64, D>, MeshError> {
+    Mesh::new(raw.vertices.clone(), raw.cells.clone(), &raw.boundary)
+}
+
+/// Two meshes as one, without common vertices.
+fn both<const D: usize>(mut first: Raw<D>, second: &Raw<D>) -> Raw<D> {
+    let shift = first.vertices.len() as u32;
+    first.vertices.extend(&second.vertices);
+    first.cells.extend(second.cells.iter().map(|v| v + shift));
+    first.boundary.extend(
+        second
+            .boundary
+            .iter()
+            .map(|f| TaggedFacet { vertices: f.vertices.map(|v| v + shift), part: f.part }),
+    );
+    first
+}
+
+fn moved<const D: usize>(mut raw: Raw<D>, factor: f64, by: impl Into<Point<f64, D>>) -> Raw<D> {
+    let by = by.into();
+    raw.vertices.iter_mut().for_each(|x| *x = *x * factor + by);
+    raw
+}
+
+/// The two cells of the error overlap: the volume of their common box is positive.
+fn check_overlap<const D: usize>(raw: &Raw<D>) {
+    let error = made(raw).unwrap_err();
+    let MeshError::OverlappingCells { first, second, .. } = error else { panic!("{error}") };
+    assert_ne!(first, second);
+    let corners = |c: usize| {
+        let cell = &raw.cells[c * (D + 1)..(c + 1) * (D + 1)];
+        cell.iter().map(|&v| raw.vertices[v as usize])
+    };
+    let bounds = |c: usize, axis: usize| {
+        let x = || corners(c).map(move |x| x[axis]);
+        (x().fold(f64::INFINITY, f64::min), x().fold(f64::NEG_INFINITY, f64::max))
+    };
+    for axis in 0..D {
+        let (a, b) = (bounds(first, axis), bounds(second, axis));
+        assert!(a.0 < b.1 && b.0 < a.1, "cells {first} and {second} are apart on axis {axis}");
+    }
+}
+
+#[test]
+fn a_vertex_beyond_its_star_folds_the_mesh() {
+    fn check<const D: usize>() {
+        let mut raw = boxes::<D>(3);
+        let inside = |x: &Point<f64, D>| (x - Point::repeat(1.0 / 3.0)).norm() < 0.2;
+        let vertex = raw.vertices.iter().position(inside).unwrap();
+        raw.vertices[vertex] = Point::repeat(0.97);
+        let error = made(&raw).unwrap_err();
+        let MeshError::FoldedCells { vertices, cells } = &error else { panic!("{error}") };
+        assert_eq!(vertices.len(), D);
+        for &c in cells {
+            let cell = &raw.cells[c * (D + 1)..(c + 1) * (D + 1)];
+            assert!(vertices.iter().all(|v| cell.contains(v)), "{error}");
+        }
+        assert_eq!(error.cells(), cells);
+        assert!(error.to_string().contains("the mesh folds over there"), "{error}");
+    }
+    check::<1>();
+    check::<2>();
+    check::<3>();
+}
+
+/// Two triangles over one edge, and the same with one of them on the other side.
+#[test]
+fn two_cells_on_one_side_of_their_facet() {
+    let mesh = |x: f64, order: [u32; 3]| {
+        let vertices = [[0.0, 0.0], [0.0, 1.0], [1.0, 0.4], [x, 0.5]].map(Point::<f64, 2>::from);
+        let part = BoundaryPart::Dirichlet;
+        let boundary =
+            [[0, 2], [1, 2], [0, 3], [1, 3]].map(|vertices| TaggedFacet { vertices, part });
+        let cells = [&[0, 1, 2], &order[..]].concat();
+        Mesh::<f64, 2>::new(vertices.to_vec(), cells, &boundary)
+    };
+    for order in [[0, 1, 3], [3, 1, 0], [1, 3, 0]] {
+        assert_eq!(mesh(-2.0, order).unwrap().n_cells(), 2);
+        let vertices = vec![0, 1];
+        let folded = MeshError::FoldedCells { vertices, cells: [0, 1] };
+        assert_eq!(mesh(2.0, order).unwrap_err(), folded);
+    }
+}
+
+#[test]
+fn components_that_overlap() {
+    fn check<const D: usize>() {
+        for shift in [0.0, 0.3, -0.6] {
+            check_overlap(&both(boxes::<D>(3), &moved(boxes(4), 1.0, Point::repeat(shift))));
+        }
+        // one inside another, far from its boundary
+        check_overlap(&both(boxes::<D>(4), &moved(boxes(2), 0.1, Point::repeat(0.44))));
+        // side by side, without and with a common side
+        for shift in [1.5, 1.0] {
+            let mut by = Point::<f64, D>::zeros();
+            by[0] = shift;
+            let mesh = made(&both(boxes::<D>(3), &moved(boxes(4), 1.0, by))).unwrap();
+            assert_eq!(
+                mesh.n_cells(),
+                boxes::<D>(3).mesh::<f64>().n_cells() + boxes::<D>(4).mesh::<f64>().n_cells()
+            );
+        }
+    }
+    check::<1>();
+    check::<2>();
+    check::<3>();
+}
+
+/// Ten triangles around a vertex whose angles add up to two turns: no facet is folded.
+#[test]
+fn a_star_of_two_turns() {
+    let turns = |turns: f64| {
+        let angle = |k: u32| f64::from(k) / 10.0 * turns * std::f64::consts::TAU;
+        let ring = (0..10).map(|k| Point::from([angle(k).cos(), angle(k).sin()]));
+        let vertices = std::iter::once(Point::zeros()).chain(ring).collect();
+        let cells = (0..10).flat_map(|k| [0, k + 1, (k + 1) % 10 + 1]).collect();
+        let outer = |k: u32| TaggedFacet {
+            vertices: [k + 1, (k + 1) % 10 + 1],
+            part: BoundaryPart::Dirichlet,
+        };
+        Raw { vertices, cells, boundary: (0..10).map(outer).collect() }
+    };
+    assert_eq!(made(&turns(1.0)).unwrap().n_cells(), 10);
+    check_overlap(&turns(2.0));
+}
+
+/// No sound mesh is refused: moved vertices, any numbering, holes, three parts.
+#[test]
+fn sound_meshes_are_accepted() {
+    fn check<const D: usize>(n: usize) {
+        for seed in 0..40 {
+            let mut random = Random(seed);
+            let raw = Raw::<D>::jittered(&mixed_box(), n, 0.4, &mut random).shuffled(&mut random);
+            assert!(made(&raw).is_ok(), "seed {seed}: {:?}", made(&raw).err());
+        }
+    }
+    check::<1>(9);
+    check::<2>(5);
+    check::<3>(3);
+}
