@@ -292,10 +292,11 @@ impl<const D: usize> Problem<D> {
     /// of a product.
     ///
     /// In one dimension the integral over a cut cell is divided at the zero. In the plane and in space
-    /// it is divided along the curved zero set, and keeps the order of the rule where `level` is smooth.
-    /// A cell counts as cut if the sign of `level` differs between its vertices and barycentre;
-    /// what escapes is an interface that enters and leaves through one facet: for a smooth one a part
-    /// of order `h^(D + 1)` of a cell.
+    /// it is divided along the zero set, exactly along planes; on a sphere what goes to the wrong side has a
+    /// mean thickness of 1e-5 (plane) to 1e-3 (space) times `h^2`, below the error of every scheme.
+    /// A cell counts as cut if the sign of `level` differs between its vertices, the middles of its edges
+    /// and its barycentre; an interface that enters and leaves through one facet between these points
+    /// escapes. A smooth one does so in few cells, with a part of the cell of order `h`.
     ///
     /// ```
     /// use unilateral::prelude::*;
@@ -332,7 +333,7 @@ impl<const D: usize> Problem<D> {
     /// Sets the diffusion coefficient.
     ///
     /// Elements whose basis functions are linear take one value in each cell, at its barycentre. Those with
-    /// basis functions of degree `b > 1` take its values at the points of a rule of degree `2 b - 1`
+    /// basis functions of degree `b > 1` take its values at the points of a rule of degree `2 b`
     /// in each cell, and on each facet from inside the cell; where these agree with the value at the
     /// barycentre but for rounding, that one alone is used. The coefficient may jump between cells. Where it
     /// jumps within them no element reaches more than the order 1/2 in H1.

@@ -7,10 +7,11 @@ use crate::quadrature::{ConicalProduct, Quadrature};
 #[derive(Clone, Copy, Debug)]
 #[non_exhaustive]
 pub struct DataQuadrature {
-    /// Degree of the cell rule for loads that vary; raised to `k + b - 1` for an element that
-    /// contains the polynomials of degree `k` and has basis functions of degree `b`, below which the
-    /// rule would limit the orders.
-    pub cell: usize,
+    /// Degree of the cell rule for loads and reactions that vary. Where absent it is `k + b + 3` for an
+    /// element that contains the polynomials of degree `k` and has basis functions of degree `b`: five
+    /// for linears, seven for quadratics. It is at least `k + b - 1`, below which the rule would limit the
+    /// orders.
+    pub cell: Option<usize>,
     /// Degree of the facet rule for Dirichlet and Neumann data.
     pub facet: usize,
     /// The family of the rules for loads, Dirichlet and Neumann data and means of data.
@@ -22,11 +23,12 @@ pub struct DataQuadrature {
 }
 
 impl Default for DataQuadrature {
-    /// Loads to degree 5, which leaves an error of higher order than linear and quadratic elements
-    /// have; boundary data to degree 15, because there are few boundary facets and the weak
+    /// Loads to the degree `k + b + 3`, with which doubling the degree changes the errors of linear and
+    /// quadratic elements on smooth loads by less than one part in a thousand on the coarsest meshes;
+    /// boundary data to degree 15, because there are few boundary facets and the weak
     /// Dirichlet data of an over-penalised scheme weigh much; all by [`ConicalProduct`].
     fn default() -> Self {
-        Self { cell: 5, facet: 15, family: &ConicalProduct, reaction: &ConicalProduct }
+        Self { cell: None, facet: 15, family: &ConicalProduct, reaction: &ConicalProduct }
     }
 }
 
@@ -35,7 +37,7 @@ impl DataQuadrature {
     /// Sets the degree of the cell rule.
     #[must_use]
     pub fn cell(self, degree: usize) -> Self {
-        Self { cell: degree, ..self }
+        Self { cell: Some(degree), ..self }
     }
     /// Sets the degree of the facet rule.
     #[must_use]

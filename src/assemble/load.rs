@@ -98,8 +98,9 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
             if let Some((level, rule)) = &cut_rule {
                 let mut outcome = Ok(());
                 if rule.visit_if_cut(self.mesh, cell, level, &mut |point, x, weight| {
-                    let added = add(x, weight, &self.basis_at(point));
-                    outcome = std::mem::replace(&mut outcome, Ok(())).and(added);
+                    if outcome.is_ok() {
+                        outcome = add(x, weight, &self.basis_at(point));
+                    }
                 }) {
                     return outcome;
                 }

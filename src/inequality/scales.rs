@@ -1,6 +1,8 @@
 //! The sizes to which violations of the complementarity conditions are relative: one largest value and
 //! one energy norm for the certificate and for every stopping test.
 
+use std::cmp::Ordering;
+
 use crate::algebra::Inequality;
 use crate::parallel::vectors::map_chunks;
 use crate::real::Real;
@@ -95,7 +97,7 @@ impl Scales {
         let energy = [(sums.energy, least), (sums.load_energy, 0.0), (sums.diagonal_energy, 0.0)]
             .into_iter()
             // true for numbers that are not finite
-            .find(|(energy, least)| !(energy <= least))
+            .find(|(energy, least)| energy.partial_cmp(least).is_none_or(Ordering::is_gt))
             .map_or(1.0, |(energy, _)| energy);
         Self {
             max_norm: if sums.max_norm == 0.0 { 1.0 } else { sums.max_norm },

@@ -50,8 +50,7 @@ pub(super) struct Judged {
 /// Rules for data: what a source that belongs to a polynomial of the element's degree needs, and
 /// what keeps the quadrature of a smooth one out of the orders.
 fn quadrature(degree: usize) -> DataQuadrature {
-    let default = DataQuadrature::default();
-    default.cell(default.cell.max(2 * degree + 2))
+    DataQuadrature::default().cell((2 * degree + 2).max(5))
 }
 
 /// Whether the form declares itself symmetric.

@@ -1,10 +1,12 @@
 //! Errors against the exact solution.
 
 use std::ops::Range;
+use std::sync::Arc;
 
 use super::errors::Errors;
 use super::evaluation::Reference;
 use crate::assemble::Discretisation;
+use crate::assemble::cut_simplices::CutRule;
 use crate::assemble::load::FacetMoments;
 use crate::assemble::space::tables::{BasisAt, CellTable};
 use crate::assemble::space::{Space, Terms, data};
@@ -14,12 +16,12 @@ use crate::facet::{FacetForm, Trace};
 use crate::instances::compiled;
 use crate::mesh::{BoundaryPart, Neighbour, Neighbours};
 use crate::parallel::cells;
-use crate::problem::Exact;
+use crate::problem::{Exact, Field};
 use crate::quadrature::Rule;
-use crate::real::{Real, point_f64};
+use crate::real::{Point, Real, point_f64};
 
 /// Degree of the rule for error norms: the exact solution is not polynomial, and the rule must not
-/// limit what it measures. For basis functions of degree `b` it is at least `2 b + 2`, the degree of the
+/// limit what it measures. Cells that the exact free boundary or a jump of the load cuts are divided. For basis functions of degree `b` it is at least `2 b + 2`, the degree of the
 /// square of the largest part of the error.
 const fn error_degree(dimension: usize) -> usize {
     match dimension {
@@ -125,14 +127,16 @@ impl<T: Real, const D: usize> Discretisation<'_, T, D> {
 impl<T: Real, const D: usize> Space<'_, T, D> {
     /// Squares of the errors over all cells.
     fn cell_errors(&self, exact: &Reference<'_, T, D>, u: &[T]) -> Result<SquaredErrors, Error> {
-        let cell_rule = Rule::new(D, error_degree(D).max(2 * self.basis_degree + 2));
+        let degree = error_degree(D).max(2 * self.basis_degree + 2);
+        let cell_rule = Rule::new(D, degree);
         let terms = self.node_terms(&Rule::new(D - 1, MEAN_DEGREE), &cell_rule);
         let table = self.cell_table(cell_rule);
+        let cut = self.kinks(exact).map(|level| (level, CutRule::new(D, degree)));
         // partial sums are added in order, so the result does not depend on threads
         let parts = cells::map(self.mesh.n_cells(), &|cells: Range<usize>| {
             let mut sum = SquaredErrors::default();
             for cell in cells {
-                sum.add(&self.cell_error(exact, (&table, &terms), cell, u)?);
+                sum.add(&self.cell_error(exact, (&table, &terms), cut.as_ref(), cell, u)?);
             }
             Ok::<_, Error>(sum)
         });
@@ -143,10 +147,24 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         Ok(total)
     }
 
+    /// The function whose zeros are those of the level of the load and, with an obstacle, the exact free
+    /// boundary: second derivatives of the exact solution jump there.
+    fn kinks(&self, exact: &Reference<'_, T, D>) -> Option<Field<D>> {
+        let Reference::Exact(exact) = exact else { return None };
+        let contact = exact.contact.as_ref().filter(|_| self.problem.has_obstacle());
+        let indicator = contact.map(|set| set.indicator.clone());
+        let level = self.problem.source.as_ref().and_then(|f| f.level()).cloned();
+        match (indicator, level) {
+            (Some(a), Some(b)) => Some(Arc::new(move |x| a(x) * b(x))),
+            (indicator, level) => indicator.or(level),
+        }
+    }
+
     fn cell_error(
         &self,
         exact: &Reference<'_, T, D>,
         (table, terms): (&CellTable<f64>, &[Terms]),
+        cut: Option<&(Field<D>, CutRule)>,
         cell: usize,
         u: &[T],
     ) -> Result<SquaredErrors, Error> {
@@ -155,21 +173,37 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         let local = self.local_values(cell, u);
         let n = self.per_cell();
         let mut sum = SquaredErrors::default();
-        for ((point, basis), &weight) in table.points.iter().zip(&table.basis).zip(&table.weights) {
-            let x = self.cell_point(point, cell);
-            let mut error = -exact.gradient(cell, &x);
+        let mut add = |x: &Point<f64, D>, weight: f64, basis: &BasisAt<f64>| {
+            let mut error = -exact.gradient(cell, x);
             for k in 0..=D {
                 let slope: f64 = (0..n).map(|i| local[i] * basis.derivatives[i][k]).sum();
                 error += point_f64(geometry.gradient(k)) * slope;
             }
-            let value = data::finite(exact.value(cell, &x), "exact solution", &x, cell)?;
+            let value = data::finite(exact.value(cell, x), "exact solution", x, cell)?;
             let difference = basis.value(&local) - value;
-            let square = data::finite(error.norm_squared(), "exact gradient", &x, cell)?;
-            let reaction = self.problem.reaction.as_ref().map_or(0.0, |c| c.at(&x));
+            let square = data::finite(error.norm_squared(), "exact gradient", x, cell)?;
+            let reaction = self.problem.reaction.as_ref().map_or(0.0, |c| c.at(x));
+            let alpha = self.alpha_at(cell, x);
             sum.l2 += weight * volume * difference * difference;
             sum.h1 += weight * volume * square;
-            let alpha = self.alpha_at(cell, &x);
             sum.energy += weight * volume * (alpha * square + reaction * difference * difference);
+            Ok::<(), Error>(())
+        };
+        let mut outcome = Ok(());
+        let is_cut = cut.is_some_and(|(level, rule)| {
+            rule.visit_if_cut(self.mesh, cell, level, &mut |point, x, weight| {
+                if outcome.is_ok() {
+                    outcome = add(x, weight, &self.basis_at(point));
+                }
+            })
+        });
+        outcome?;
+        if !is_cut {
+            for ((point, basis), &weight) in
+                table.points.iter().zip(&table.basis).zip(&table.weights)
+            {
+                add(&self.cell_point(point, cell), weight, basis)?;
+            }
         }
         for ((node, terms), value) in self.nodes.iter().zip(terms).zip(&local) {
             let exact_value: f64 =

@@ -38,14 +38,14 @@ pub(super) fn check_folds<const D: usize>(
 /// Fewest lines along which overlaps are looked for, fewer than the boundary has facets.
 const LINES: usize = 8;
 /// Most pairs of a line and a facet where there are more lines.
-const PAIRS: usize = 1 << 14;
+const PAIRS: usize = 1 << 12;
 /// The direction of the lines, along no facet of a mesh along the axes or their diagonals.
 const DIRECTION: [f64; 3] = [1.0, 0.381_966, 0.236_068];
 /// A point lies in a cell if its barycentric coordinates are above this.
 const INSIDE: f64 = 1e-6;
 
 /// Refuses a mesh without folds that covers a point twice, where a line meets such a point. The
-/// lines pass through boundary facets: through all up to 128, through eight from 2048 on, evenly
+/// lines pass through boundary facets: through all up to 64, through eight from 512 on, evenly
 /// spaced. In one dimension one line meets all points.
 ///
 /// Along a line the number of cells over a point changes at boundary facets only, by one. An overlap
@@ -59,18 +59,18 @@ pub(super) fn check_overlaps<const D: usize>(
     let geometry = |c: usize| CellGeometry::new(|k| vertices[cell(c)[k] as usize]);
     let corners = |f: &BoundaryFacet| -> [Point<f64, D>; D] {
         let (cell, local) = (cell(f.cell as usize), f.local as usize);
-        std::array::from_fn(|k| vertices[cell[k + usize::from(k >= local)] as usize])
+        std::array::from_fn(|k| sheared(&vertices[cell[k + usize::from(k >= local)] as usize]))
     };
+    let facets: Vec<_> = boundary.iter().map(corners).collect();
     let direction = Point::<f64, D>::from_fn(|k, _| DIRECTION[k]);
-    let facets = boundary.len();
-    let lines = if D > 1 { LINES.max(PAIRS / facets.max(1)) } else { 1 };
-    let lines = lines.min(facets);
+    let lines = if D > 1 { LINES.max(PAIRS / facets.len().max(1)) } else { 1 };
+    let lines = lines.min(facets.len());
     for line in 0..lines {
-        let start = corners(&boundary[line * facets / lines]);
+        let start = facets[line * facets.len() / lines];
         let start = start.iter().fold(Point::zeros(), |s, x| s + x) / D as f64;
         let mut crossings: Vec<(f64, i32)> = Vec::new();
-        for f in boundary {
-            let Some(place) = crossing(&corners(f), &start) else { continue };
+        for (corners, f) in facets.iter().zip(boundary) {
+            let Some(place) = crossing(corners, &start) else { continue };
             let inward = geometry(f.cell as usize).gradient(f.local as usize).dot(&direction);
             crossings.push((place, if inward > 0.0 { 1 } else { -1 }));
         }
@@ -84,15 +84,13 @@ pub(super) fn check_overlaps<const D: usize>(
             }
         }
         if widest.1 > 0.0 {
-            let x = start + direction * widest.0;
+            let x =
+                Point::from_fn(|k, _| DIRECTION[k] * widest.0 + if k > 0 { start[k] } else { 0.0 });
             let holds = |&c: &usize| {
-                let (geometry, last) = (geometry(c), vertices[cell(c)[0] as usize]);
-                let others: [f64; 4] = std::array::from_fn(|k| match k {
-                    k if (1..=D).contains(&k) => geometry.gradient(k).dot(&(x - last)),
-                    _ => 0.0,
-                });
-                let first = 1.0 - others.iter().sum::<f64>();
-                first > INSIDE && others[1..=D].iter().all(|&b| b > INSIDE)
+                let (geometry, corner) = (geometry(c), vertices[cell(c)[0] as usize]);
+                let others = (1..=D).map(|k| geometry.gradient(k).dot(&(x - corner)));
+                let first = 1.0 - others.clone().sum::<f64>();
+                others.chain([first]).all(|b| b > INSIDE)
             };
             let mut found = (0..cells.len() / (D + 1)).filter(holds);
             if let (Some(first), Some(second)) = (found.next(), found.next()) {
@@ -104,19 +102,26 @@ pub(super) fn check_overlaps<const D: usize>(
     Ok(())
 }
 
-/// Where the line through a point crosses a facet, in units of the direction. The signs by which two
-/// facets tell whether the line passes their common edge are the same to the last bit.
+/// The point under the shear that turns the direction of the lines onto the first axis: along a line
+/// the other coordinates are constant.
+fn sheared<const D: usize>(x: &Point<f64, D>) -> Point<f64, D> {
+    Point::from_fn(|k, _| if k == 0 { x[0] } else { x[k] - DIRECTION[k] * x[0] })
+}
+
+/// The first coordinate at which the line through a point crosses a facet, all sheared. The signs by
+/// which two facets tell on which side of their common edge the line passes are the same to the last
+/// bit.
+#[inline(always)]
 fn crossing<const D: usize>(corners: &[Point<f64, D>; D], start: &Point<f64, D>) -> Option<f64> {
-    // shear the direction onto the first axis: the line is where the other coordinates vanish
-    let along = corners.map(|x| x[0] - start[0]);
-    let across = |k: usize, axis: usize| {
-        let axis = axis.min(D - 1);
-        corners[k][axis] - start[axis] - DIRECTION[axis] * along[k]
-    };
+    let across = |k: usize, axis: usize| corners[k][axis % D] - start[axis % D];
     let weights = match D {
         1 => [1.0, 0.0, 0.0],
         2 => [-across(1, 1), across(0, 1), 0.0],
         _ => {
+            let above = (0..D).filter(|&k| across(k, 1) > 0.0).count();
+            if above == 0 || above == D {
+                return None;
+            }
             let edge = |a, b| across(a, 1) * across(b, 2) - across(a, 2) * across(b, 1);
             [edge(1, 2), edge(2, 0), edge(0, 1)]
         }
@@ -125,6 +130,6 @@ fn crossing<const D: usize>(corners: &[Point<f64, D>; D], start: &Point<f64, D>)
     let is_crossed = weights.iter().all(|&w| w > 0.0) || weights.iter().all(|&w| w < 0.0);
     is_crossed.then(|| {
         let sum: f64 = weights.iter().sum();
-        weights.iter().zip(along).map(|(w, x)| w * x).sum::<f64>() / sum
+        weights.iter().zip(corners).map(|(w, x)| w * x[0]).sum::<f64>() / sum
     })
 }

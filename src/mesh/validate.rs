@@ -30,7 +30,7 @@ impl<T: Real, const D: usize> Mesh<T, D> {
     /// Every [`MeshError`] but [`MeshError::UnsupportedComponent`], which depends on the problem:
     /// see [`Mesh::check_supported`]. Vertices in errors are numbered as given. Folds across a facet
     /// are always found, other overlaps where one of the lines through boundary facets meets them:
-    /// through all up to 128, through eight from 2048 facets on.
+    /// through all up to 64, through eight from 512 facets on.
     pub fn new(
         vertices: Vec<Point<f64, D>>,
         cells: Vec<u32>,

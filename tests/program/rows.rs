@@ -25,6 +25,7 @@ fn check_row(row: &Value) {
         let fits = match key {
             "scene" | "scheme" | "constraint" | "label" | "status" => value.is_string(),
             "dimension" | "level" | "cells" | "unknowns" | "nonzeros" => value.is_u64(),
+            "message" => value.is_string() != converged,
             "active" => value.is_u64() || (value.is_null() && !converged),
             "multiplier_l1" | "multiplier_l2" | "contact_area_error" | "free_boundary_distance" => {
                 value.is_number() || value.is_null()

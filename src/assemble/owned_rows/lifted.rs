@@ -9,9 +9,10 @@
 //! . grad lambda'` the product of two lifts is `D^2 w w'/alpha` times that integral times a number
 //! of the reference cell.
 //!
-//! Where the coefficient varies on a facet, `w` is a function on it and `w m` is projected on polynomials
-//! of degree `p - 1`; where it varies in `K`, `1/alpha` is that of its least value. With the stiffness at
-//! the points of its rule the square is then completed still: the form is coercive for every penalty.
+//! Where the coefficient varies on a facet, `w` is a function on it: `w m` is projected on polynomials of
+//! degree `p - 1`, and what `m` has of degree `p` on those of degree `p`. Where it varies in `K`, `1/alpha`
+//! is that of its least value. With the stiffness at the points of its rule the square is then completed
+//! still: the form is coercive for every penalty.
 
 use super::Coupled;
 use crate::assemble::local::{flux_weight, view};

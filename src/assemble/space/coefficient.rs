@@ -2,8 +2,8 @@
 //!
 //! Linear elements take one value in each cell, at its barycentre, which leaves an error of their own
 //! order. Elements whose basis functions have degree `b > 1` take values at the points of rules of
-//! degree `2 b - 1`: exact for products of gradients times a linear coefficient. Rules exact for the
-//! products alone keep the orders (P. G. Ciarlet, P.-A. Raviart, The combined effect of curved
+//! degree `2 b`: exact for products of gradients times a quadratic coefficient. Rules exact for the
+//! products alone keep the orders, with larger errors on coarse meshes (P. G. Ciarlet, P.-A. Raviart, The combined effect of curved
 //! boundaries and numerical integration, in A. K. Aziz (ed.), 1972, 409-474). On facets these are
 //! values from inside the cell, so that a coefficient may jump between cells.
 
@@ -14,7 +14,7 @@ use crate::assemble::local::StiffnessTable;
 use crate::element::MAX_BASIS;
 use crate::error::Error;
 use crate::mesh::Mesh;
-use crate::quadrature::{OrthonormalPolynomials, Rule, facet_to_cell};
+use crate::quadrature::{FullySymmetric, OrthonormalPolynomials, Quadrature, Rule, facet_to_cell};
 use crate::real::{Point, Real, point_f64};
 
 /// A cell and the number of a facet in it.
@@ -43,8 +43,10 @@ pub(crate) struct VaryingCoefficient<T> {
     stiffness: Vec<StiffnessTable<T>>,
     /// The weights of the rule on facets.
     facet_weights: Vec<T>,
-    /// By moment and point of the facet, the polynomial.
+    /// By moment and point of the facet, the polynomial, up to the degree of the basis functions.
     polynomials: Vec<T>,
+    /// The number of moments that have a flux: those below that degree.
+    flux_moments: usize,
     /// By facet, moment and point of the facet, the derivatives of the basis times polynomial and weight.
     derivatives: Vec<Derivatives<T>>,
 }
@@ -62,7 +64,9 @@ impl<T: Real> VaryingCoefficient<T> {
         basis_degree: usize,
         basis: fn(&[f64; 4]) -> BasisAt<f64>,
     ) -> Result<Option<Self>, Error> {
-        let [cell_rule, facet_rule] = [D, D - 1].map(|d| Rule::new(d, 2 * basis_degree - 1));
+        // the same whatever the order of vertices
+        let rule = |dimension| FullySymmetric.rule(dimension, 2 * basis_degree);
+        let (cell_rule, facet_rule) = (rule(D)?, rule(D - 1)?);
         let on_facets = (0..=D).flat_map(|local| {
             let middle = 1.0 / (D + 1) as f64;
             let inward = move |k: usize, b: f64| if k <= D { b + (middle - b) * INWARD } else { b };
@@ -97,11 +101,12 @@ impl<T: Real> VaryingCoefficient<T> {
             let rule = Rule { points: vec![point], weights: vec![weight] };
             StiffnessTable::new(D, &CellTable::new(rule, basis))
         };
-        let polynomials = OrthonormalPolynomials::new(D - 1, basis_degree - 1);
+        let polynomials = OrthonormalPolynomials::new(D - 1, basis_degree);
         let moments = || 0..polynomials.len();
+        let flux_moments = moments().filter(|&k| polynomials.degree(k) < basis_degree).count();
         let mut derivatives = Vec::new();
         for local in 0..=D {
-            for k in moments() {
+            for k in 0..flux_moments {
                 for (point, weight) in facet_rule.iter() {
                     let scale = weight * polynomials.value(k, point);
                     let basis = basis(&facet_to_cell(point, local));
@@ -118,6 +123,7 @@ impl<T: Real> VaryingCoefficient<T> {
             stiffness: cell_rule.points.iter().zip(&cell_rule.weights).map(at_point).collect(),
             facet_weights: facet_rule.weights.iter().map(|&w| T::lit(w)).collect(),
             polynomials,
+            flux_moments,
             derivatives,
         }))
     }
@@ -170,10 +176,9 @@ impl<T: Real> VaryingCoefficient<T> {
         weight: impl Fn(usize) -> T,
     ) -> Derivatives<T> {
         let n = self.facet_weights.len();
-        let moments = self.polynomials.len() / n;
         let mut sum = [[T::lit(0.0); 4]; MAX_BASIS];
-        if k < moments {
-            let start = (local * moments + k) * n;
+        if k < self.flux_moments {
+            let start = (local * self.flux_moments + k) * n;
             for (q, table) in self.derivatives[start..start + n].iter().enumerate() {
                 let weight = weight(q);
                 for (sum, row) in sum.iter_mut().zip(table) {
@@ -185,10 +190,12 @@ impl<T: Real> VaryingCoefficient<T> {
         }
         sum
     }
-    /// Moment `k` of a weight times moment `l`, by the points of a facet.
+    /// Moment `k` of a weight times moment `l`, by the points of a facet. Moments with and without a flux
+    /// are not mixed: the lift of a jump tested with gradients is then its flux.
     pub fn weighted_product(&self, k: usize, l: usize, weight: impl Fn(usize) -> T) -> T {
         let n = self.facet_weights.len();
-        if (k + 1).max(l + 1) * n > self.polynomials.len() {
+        let is_beyond = k.max(l) >= self.polynomials.len() / n;
+        if is_beyond || (k < self.flux_moments) != (l < self.flux_moments) {
             return T::lit(0.0);
         }
         let term = |q: usize| {

@@ -89,7 +89,8 @@ impl<'a, T: Real, const D: usize> Space<'a, T, D> {
             Neighbours::new(mesh)
         });
         let dofs = Dofs::new(layout, mesh, neighbours.as_ref());
-        let cell_degree = quadrature.cell.max((degree + basis_degree).saturating_sub(1));
+        let sum = degree + basis_degree;
+        let cell_degree = quadrature.cell.unwrap_or(sum + 3).max(sum.saturating_sub(1));
         let cell_rule = rule(quadrature.family, D, cell_degree)?;
         let facet_rule = rule(quadrature.family, D - 1, quadrature.facet)?;
         let reaction = match &problem.reaction {
@@ -98,7 +99,7 @@ impl<'a, T: Real, const D: usize> Space<'a, T, D> {
                 let products = 2 * basis_degree;
                 let degree = match datum {
                     Datum::Constant(_) => products,
-                    _ => products.max(quadrature.cell),
+                    _ => products.max(cell_degree),
                 };
                 let rule = rule(quadrature.reaction, D, degree)?;
                 Some(ReactionTerm::new(datum, rule, degree, basis, nodes.len()))

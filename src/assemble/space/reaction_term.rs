@@ -3,7 +3,7 @@
 use super::data::finite;
 use super::tables::{BasisAt, CellTable};
 use crate::assemble::count;
-use crate::assemble::cut_simplices::CutRule;
+use crate::assemble::cut_simplices::{CutRule, Visit};
 use crate::assemble::local::Local;
 use crate::error::Error;
 use crate::mesh::Mesh;
@@ -95,12 +95,7 @@ impl<'a, T: Real, const D: usize> ReactionTerm<'a, T, D> {
     }
     /// Whether a cell is cut; if it is, its points of the rule are visited: in barycentric coordinates, in
     /// space, and with their weights.
-    fn visit_cut(
-        &self,
-        mesh: &Mesh<T, D>,
-        cell: usize,
-        visit: &mut dyn FnMut(&[f64; 4], &Point<f64, D>, f64),
-    ) -> bool {
+    fn visit_cut(&self, mesh: &Mesh<T, D>, cell: usize, visit: Visit<'_, D>) -> bool {
         let cut = self.cut.as_ref();
         cut.is_some_and(|(level, rule)| rule.visit_if_cut(mesh, cell, level, visit))
     }

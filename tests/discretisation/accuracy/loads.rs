@@ -7,6 +7,7 @@ use unilateral::assemble::{DataQuadrature, Discretisation};
 use unilateral::mesh::{BoxDomain, Mesh};
 use unilateral::prelude::*;
 use unilateral::problem::Datum;
+use unilateral::scheme::scheme_by_name;
 
 fn errors(report: &Report) -> impl Iterator<Item = (usize, f64, f64)> {
     report.rows.iter().map(|row| (row.level, row.error.l2.unwrap(), row.error.h1.unwrap()))
@@ -70,17 +71,55 @@ fn jump_at_a_sphere<const D: usize>() -> Datum<D> {
 }
 
 #[test]
-fn a_load_that_jumps_at_a_sphere_is_integrated_with_high_order() {
+fn a_load_that_jumps_at_a_sphere_is_integrated_along_it() {
     let exact = |volume: f64, box_volume: f64| volume - 2.0 * (box_volume - volume);
     let disc = exact(PI * 0.49, 4.0);
     let error = |n| (integral::<f64, 2>(&ConformingP1, n, jump_at_a_sphere()) - disc).abs();
-    assert!(error(8) < 1e-7 && error(16) < 1e-9, "{:e} {:e}", error(8), error(16));
+    assert!(error(8) < 1e-4 && error(32) < 1e-6, "{:e} {:e}", error(8), error(32));
     let ball = exact(4.0 / 3.0 * PI * 0.343, 8.0);
     let error = |n| (integral::<f64, 3>(&ConformingP2, n, jump_at_a_sphere()) - ball).abs();
-    assert!(error(4) < 1e-4 && error(8) < 1e-6, "{:e} {:e}", error(4), error(8));
+    assert!(error(8) < 2e-3 && error(16) < 4e-4, "{:e} {:e}", error(8), error(16));
     // in single precision what is left is its rounding
-    let single = integral::<f32, 2>(&Sipg::default(), 8, jump_at_a_sphere());
+    let single = integral::<f32, 2>(&Sipg::default(), 32, jump_at_a_sphere());
     assert!((single - disc).abs() < 1e-5, "{:e}", single - disc);
+}
+
+/// Loads that are smooth within cells, on coarse meshes: with rules of twice the degree no error of
+/// linears or quadratics changes by more than one part in a thousand.
+#[test]
+fn the_rule_for_smooth_loads_limits_no_scheme() {
+    fn check<const D: usize>(checks: &mut Checks, n: usize) {
+        let value = |x: &Point<f64, D>| x.iter().map(|x| (PI * x).sin()).product::<f64>();
+        let gradient = |x: &Point<f64, D>| -> Point<f64, D> {
+            let wave =
+                |k, j: usize| if j == k { PI * (PI * x[j]).cos() } else { (PI * x[j]).sin() };
+            Point::from_fn(|k, _| (0..D).map(|j| wave(k, j)).product())
+        };
+        let load = move |x: &Point<f64, D>| D as f64 * PI * PI * value(x);
+        let domain = BoxDomain::dirichlet(Point::zeros(), Point::repeat(1.0));
+        let problem = Problem::new().source(load).exact(value, gradient);
+        let scene = scenes::Scene::new("smooth", domain, problem);
+        for (name, degree) in [("p1", 5), ("sipg", 5), ("wopsip", 5), ("p2", 7), ("sipg-p2", 7)] {
+            let run = |quadrature| {
+                let scheme = scheme_by_name::<f64, D>(name, &Default::default()).unwrap();
+                let study = Study::<f64, D>::new(scene.clone()).boxed_scheme(scheme).levels([n]);
+                let report = study.quadrature(quadrature).run().unwrap();
+                errors(&report).map(|(_, l2, h1)| [l2, h1]).next().unwrap()
+            };
+            let own = run(DataQuadrature::default());
+            assert_eq!(own, run(DataQuadrature::default().cell(degree)), "the default of {name}");
+            let fine = run(DataQuadrature::default().cell(2 * degree));
+            for (norm, own, fine) in [("L2", own[0], fine[0]), ("H1", own[1], fine[1])] {
+                let change = (own / fine - 1.0).abs();
+                checks.that(change < 1e-3, || format!("{norm} of {name} in {D}D: {change:.1e}"));
+            }
+        }
+    }
+    let mut checks = Checks::default();
+    check::<1>(&mut checks, 4);
+    check::<2>(&mut checks, 4);
+    check::<3>(&mut checks, 2);
+    checks.finish();
 }
 
 #[test]

@@ -5,8 +5,11 @@ use unilateral::algebra::Bound;
 use unilateral::mesh::{BoxDomain, Mesh};
 use unilateral::prelude::*;
 
+/// Vertices with their bounds.
+type AtVertices = Vec<(Point<f64, 2>, Bound<f64>)>;
+
 /// The bounds of conforming linears on a box with contact at its lower end, by vertex.
-fn bounds(problem: &Problem<2>) -> Result<Vec<(Point<f64, 2>, Bound<f64>)>, Error> {
+fn bounds(problem: &Problem<2>) -> Result<AtVertices, Error> {
     let mesh = Mesh::<f64, 2>::kuhn_box(&mixed_box(), [3, 3]).unwrap();
     let of = ConformingP1.discretise(problem, &mesh, Default::default())?;
     Ok(mesh.vertices().iter().copied().zip(of.bounds()?).collect())
@@ -62,6 +65,49 @@ fn contradictions_are_told_from_rounding() {
         for by in [0.0, 1e-12] {
             assert!(bounds(&problem(by)).is_ok(), "{what} by {by}");
         }
+    }
+}
+
+/// A Signorini condition binds the mean over a facet by the mean of the gap, an obstacle by its value
+/// at the barycentre.
+#[test]
+fn facet_means_are_bound_by_means_in_contact_and_by_values_inside() {
+    let mesh = Mesh::<f64, 2>::kuhn_box(&mixed_box(), [3, 3]).unwrap();
+    let gap = |x: &Point<f64, 2>| x[0] * x[0];
+    for scheme in [&Wopsip::default() as &dyn AnyScheme<f64, 2>, &NonconformingP1] {
+        let lower = |problem: &Problem<2>| -> Vec<f64> {
+            let of = scheme.discretise(problem, &mesh, Default::default()).unwrap();
+            of.bounds().unwrap().iter().filter_map(|bound| bound.lower()).collect()
+        };
+        let mut means = lower(&Problem::new().signorini(gap).on(FacetMeans));
+        means.sort_by(f64::total_cmp);
+        let expected = [1.0, 7.0, 19.0].map(|mean| mean / 27.0);
+        assert_eq!(means.len(), 3, "{}", scheme.name());
+        for (mean, expected) in means.iter().zip(expected) {
+            assert!((mean - expected).abs() < 1e-14, "{}: {mean}, {expected}", scheme.name());
+        }
+        let values = lower(&Problem::new().obstacle_below(gap).dirichlet(|_| 2.0).on(FacetMeans));
+        assert!(values.iter().any(|x| (x - 1.0 / 36.0).abs() < 1e-14), "{}", scheme.name());
+        assert!(values.iter().all(|x| (x - 1.0 / 27.0).abs() > 1e-3), "{}", scheme.name());
+    }
+}
+
+/// Midpoints in contact: vertices belong to Simpson's rule in the plane and not in space.
+#[test]
+fn what_midpoints_bind_in_contact_and_promise() {
+    let vertex = Node::vertex(0);
+    assert!(
+        Midpoints.on_contact(&vertex, 2).is_some() && Midpoints.on_contact(&vertex, 3).is_none()
+    );
+    assert!(Midpoints.in_domain(&vertex, 2).is_none());
+    assert!(Midpoints.on_contact(&Node::midpoint(0), 3).is_some());
+    for (dimension, obstacle, contact) in [(1, false, true), (2, true, true), (3, false, false)] {
+        let setting = Setting::new(dimension, Regularity::smooth());
+        assert!(Midpoints.keeps_orders(&setting.with_obstacle(obstacle).with_contact(contact)));
+    }
+    for (dimension, obstacle, contact) in [(1, true, false), (3, true, false), (3, false, true)] {
+        let setting = Setting::new(dimension, Regularity::smooth());
+        assert!(!Midpoints.keeps_orders(&setting.with_obstacle(obstacle).with_contact(contact)));
     }
 }
 

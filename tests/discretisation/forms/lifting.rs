@@ -244,8 +244,20 @@ fn check_on<const D: usize, E, S>(
     E: ReferenceElement<f64, D>,
     S: Scheme<f64, D, Element = Broken<E>>,
 {
-    let alpha = |x: &Point<f64, D>| if x[0] < 0.5 { 3.0 } else { 0.25 };
-    let problem = Problem::<D>::new().coefficient(alpha).dirichlet(|x| 1.0 + x[0] * x[D - 1]);
+    // a constant in each cell, by the side of its barycentre
+    let cells = mesh.clone();
+    let contains = move |cell: usize, x: &Point<f64, D>| {
+        let (geometry, corners) = (cells.geometry(cell), cells.cell(cell));
+        let from = |k: usize| x - cells.vertices()[corners[k] as usize];
+        (0..=D).all(|k| geometry.gradient(k).dot(&from(k)) > -1.0 - 1e-12)
+    };
+    let cells = mesh.clone();
+    let alpha = move |x: &Point<f64, D>| {
+        let cell = (0..cells.n_cells()).find(|&cell| contains(cell, x)).unwrap();
+        if cells.barycentre(cell)[0] < 0.5 { 3.0 } else { 0.25 }
+    };
+    let problem =
+        Problem::<D>::new().coefficient(alpha.clone()).dirichlet(|x| 1.0 + x[0] * x[D - 1]);
     let space = Discretisation::new(scheme, &problem, mesh, DataQuadrature::default()).unwrap();
     let matrix = space.matrix();
     assert!(matrix.is_well_formed());

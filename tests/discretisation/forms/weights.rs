@@ -67,6 +67,37 @@ fn penalties_on_two_triangles() {
     checks.finish();
 }
 
+/// Of two different cells the one that asks for more counts.
+#[test]
+fn the_proven_bound_is_that_of_the_worse_cell() {
+    let mesh = unit_square();
+    let side = |volume: f64| Side {
+        coefficient: 1.0,
+        least_coefficient: 1.0,
+        volume,
+        surface: 3.0,
+        height: 1.0,
+    };
+    let penalty = |here: f64, there: f64| {
+        let view = FacetView::new(&mesh, (0, 1), 1.0, side(here), Some(side(there)));
+        AnyScheme::<f64, 2>::form(&Sipg::default(), &mesh).penalty(&view)
+    };
+    assert!((penalty(0.5, 0.1) / (0.75 * 3.0 / 0.1) - 1.0).abs() < 1e-14);
+    assert_eq!(penalty(0.5, 0.1), penalty(0.1, 0.5));
+}
+
+/// The lifts of the facets of a triangle need a factor of three.
+#[test]
+fn the_bound_of_lifts_is_the_number_of_facets() {
+    let mesh = Mesh::<f64, 2>::kuhn_box(&BoxDomain::centred(1.0), [3, 3]).unwrap();
+    let problem = Problem::new();
+    for (eta, is_below) in [(2.5, true), (2.99, true), (3.01, false), (4.5, false)] {
+        let scheme = Br2 { eta: Some(eta), ..Br2::default() };
+        let of = scheme.discretise(&problem, &mesh, Default::default()).unwrap();
+        assert_eq!(of.penalty_below_bound().is_some(), is_below, "eta = {eta}");
+    }
+}
+
 /// The square of the lift of a moment of the jump of degree `m` into polynomials of degree `p - 1`:
 /// the weights of [`FacetLifts`] against those integrated on one interval, triangle, tetrahedron in
 /// their closed form, the first being `|F| / |K|` times one.
