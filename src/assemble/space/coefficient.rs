@@ -1,12 +1,13 @@
 //! The diffusion coefficient in cells in which it varies, for elements of degree two and more.
 //!
 //! Linear elements take one value in each cell, at its barycentre, which leaves an error of their own
-//! order, and so does every element in cells in which the samples differ by more than a factor of ten.
-//! Elements whose basis functions have degree `b > 1` take values at the points of rules of
+//! order. Elements whose basis functions have degree `b > 1` take values at the points of rules of
 //! degree `2 b`: exact for products of gradients times a quadratic coefficient. Rules exact for the
-//! products alone keep the orders, with larger errors on coarse meshes (P. G. Ciarlet, P.-A. Raviart, The combined effect of curved
-//! boundaries and numerical integration, in A. K. Aziz (ed.), 1972, 409-474). On facets these are
-//! values from inside the cell, so that a coefficient may jump between cells.
+//! products alone keep the orders, with larger errors on coarse meshes (P. G. Ciarlet, P.-A. Raviart, The
+//! combined effect of curved boundaries and numerical integration, in A. K. Aziz (ed.), 1972, 409-474).
+//! On facets these are values from inside the cell, so that a coefficient may jump between cells. In a
+//! cell in which the samples differ by more than a factor of ten every element takes the value at the
+//! barycentre.
 
 use super::data::{CoefficientAt, coefficient_at};
 use super::metric::CellMetric;
@@ -95,8 +96,8 @@ impl<T: Real> VaryingCoefficient<T> {
             let constant = constants[cell].to_f64();
             let is_same = |v: &T| (v.to_f64() / constant - 1.0).abs() <= ROUNDINGS * T::EPSILON;
             let samples = values[first..].iter().map(|v| v.to_f64());
-            let (least, largest) = samples
-                .fold((constant, constant), |(low, high), v| (low.min(v), high.max(v)));
+            let (least, largest) =
+                samples.fold((constant, constant), |(low, high), v| (low.min(v), high.max(v)));
             if largest > LARGEST_RATIO * least || values[first..].iter().all(is_same) {
                 values.truncate(first);
             } else {
