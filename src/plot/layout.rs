@@ -47,7 +47,6 @@ impl FigureLayout {
     /// Panels in a grid, the legend below them in as many lines as it takes.
     pub fn new(panels: usize, columns: usize, keys: &[Key], failures: bool) -> Self {
         let rows = panels.max(1).div_ceil(columns);
-        let width = 2.0 * MARGIN + columns as f64 * PANEL.0;
         let places = (0..panels).map(|i| {
             (MARGIN + (i % columns) as f64 * PANEL.0, MARGIN + (i / columns) as f64 * PANEL.1)
         });
@@ -57,6 +56,9 @@ impl FigureLayout {
         if failures {
             entries.push(Entry::Failed);
         }
+        // an entry of the legend may be wider than the panels
+        let widest = entries.iter().map(Entry::width).fold(columns as f64 * PANEL.0, f64::max);
+        let width = 2.0 * MARGIN + widest;
         let mut lines: Vec<Vec<Entry>> = vec![Vec::new()];
         let room = width - 4.0 * MARGIN;
         let line_width = |line: &[Entry]| line.iter().map(|e| e.width() + GAP).sum::<f64>() - GAP;

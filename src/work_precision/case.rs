@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use crate::constraint::ConstraintSet;
 use crate::error::Error;
+use crate::mesh::{BoundaryFacet, Mesh, TaggedFacet};
 use crate::real::Real;
 use crate::scheme::{AnyScheme, NamedScheme};
 use crate::study::{MemoryEstimate, Row, Study, peak_memory_bytes};
@@ -87,6 +88,20 @@ impl<const D: usize> OneStudy<'_, D> {
         let phases = Phases::new(&row.seconds, coarse);
         Ok((row, phases))
     }
+}
+
+/// The mesh with its vertices rounded.
+pub(crate) fn in_single_precision<const D: usize>(
+    mesh: &Mesh<f64, D>,
+) -> Result<Mesh<f32, D>, Error> {
+    let tagged = |facet: &BoundaryFacet| {
+        let mut vertices = [0; D];
+        let own = mesh.facet_vertices(facet.cell as usize, facet.local as usize);
+        vertices.iter_mut().zip(own).for_each(|(vertex, v)| *vertex = v);
+        TaggedFacet { vertices, part: facet.part }
+    };
+    let boundary: Vec<_> = mesh.boundary().iter().map(tagged).collect();
+    Ok(Mesh::new(mesh.vertices().to_vec(), mesh.cells().to_vec(), &boundary)?)
 }
 
 /// Resets the peak of the resident set that the kernel records; `true` if it was reset. Linux only.

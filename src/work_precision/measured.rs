@@ -77,6 +77,11 @@ pub struct Measured {
     pub smallest: Phases,
     /// The run whose total is in the middle, of two in the middle the slower.
     pub median: Phases,
+    /// The total of the median over the smallest: how far the usual run is from the fastest, which one
+    /// disturbed run does not change. None for a single run.
+    pub median_over_least: Option<f64>,
+    /// The largest total over the smallest. None for a single run.
+    pub largest_over_least: Option<f64>,
     #[serde(skip)]
     all: Vec<Phases>,
 }
@@ -91,6 +96,8 @@ impl Measured {
             runs: 1,
             smallest: phases,
             median: phases,
+            median_over_least: None,
+            largest_over_least: None,
             all: vec![phases],
         }
     }
@@ -109,6 +116,9 @@ impl Measured {
         self.runs = self.all.len();
         self.smallest = self.all[0];
         self.median = self.all[self.runs / 2];
+        let over_least = |p: &Phases| p.total / self.smallest.total;
+        self.median_over_least = Some(over_least(&self.median));
+        self.largest_over_least = self.all.last().map(over_least);
         self.row.seconds = self.smallest.seconds();
         if let Some(peak) = again.peak_memory_bytes {
             self.row.peak_memory_bytes =
@@ -154,6 +164,12 @@ impl Failure {
 }
 
 impl Variant {
+    /// Whether the other one is this scheme with these choices, perhaps on another scene.
+    pub(super) fn differs_in_scene_only(&self, other: &Variant) -> bool {
+        (&self.label, &self.linear_asked, &self.precision)
+            == (&other.label, &other.linear_asked, &other.precision)
+    }
+
     /// The name of the variant among others of a report: the label of the scheme, and the linear solver
     /// and the scalar where they vary.
     pub fn name_among(&self, all: &[Variant]) -> String {

@@ -14,7 +14,7 @@ pub use baseline::{Changes, changes};
 pub use case::Precision;
 pub use measured::{Case, Failure, Measured, Phases, Variant};
 pub use report::WorkReport;
-pub use work_at_error::{WorkAtError, WorkPoint, work_at};
+pub use work_at_error::{Standing, WorkAtError, WorkPoint, work_at};
 
 use std::fmt;
 use std::path::PathBuf;
@@ -26,11 +26,12 @@ use crate::error::Error;
 use crate::inequality::ActiveSet;
 use crate::instances::compiled;
 use crate::linear::LinearMethod;
+use crate::mesh::Mesh;
 use crate::real::Real;
 use crate::scenes::Scene;
 use crate::scheme::{AnyScheme, NamedScheme};
 use crate::study::{Study, available_memory_bytes};
-use case::{Candidate, OneStudy};
+use case::{Candidate, OneStudy, in_single_precision};
 
 /// The least time between two writes of finished rows within a round.
 const WRITE_INTERVAL: Duration = Duration::from_secs(1);
@@ -74,6 +75,7 @@ pub struct WorkPrecision<'a, const D: usize> {
     linear: Vec<LinearMethod>,
     precisions: Vec<Precision>,
     levels: Vec<usize>,
+    mesh: Option<Mesh<f64, D>>,
     rounds: usize,
     limit: f64,
     subject: String,
@@ -119,6 +121,7 @@ impl<'a, const D: usize> WorkPrecision<'a, D> {
             linear: vec![LinearMethod::BySize],
             precisions: vec![Precision::Double],
             levels: Vec::new(),
+            mesh: None,
             rounds: 3,
             limit: f64::INFINITY,
             subject: String::new(),
@@ -162,12 +165,18 @@ impl<'a, const D: usize> WorkPrecision<'a, D> {
         self.precisions = precisions.into_iter().collect();
         self
     }
-    /// Sets the levels: subdivisions of the shortest side.
+    /// Sets the levels: subdivisions of the shortest side, or refinements of a given mesh.
     #[must_use]
     pub fn levels(mut self, levels: impl IntoIterator<Item = usize>) -> Self {
         self.levels = levels.into_iter().collect();
         self.levels.sort_unstable();
         self.levels.dedup();
+        self
+    }
+    /// Runs on this mesh and refinements of it instead of the scene's own domain.
+    #[must_use]
+    pub fn on_mesh(mut self, mesh: Mesh<f64, D>) -> Self {
+        self.mesh = Some(mesh);
         self
     }
     /// Sets how often each case runs, at least once; three times otherwise.
@@ -357,7 +366,7 @@ impl<'a, const D: usize> WorkPrecision<'a, D> {
                 for &precision in &self.precisions {
                     let mut coarser = None;
                     for &level in &self.levels {
-                        let slot = self.slot(candidate, linear, precision, level);
+                        let slot = self.slot(candidate, linear, precision, level)?;
                         slot.study.check()?;
                         if slots.iter().any(|s| s.case == slot.case) {
                             let variant = &slot.case.variant;
@@ -383,19 +392,27 @@ impl<'a, const D: usize> WorkPrecision<'a, D> {
         linear: LinearMethod,
         precision: Precision,
         level: usize,
-    ) -> Slot<'s, D> {
+    ) -> Result<Slot<'s, D>, Error> {
         let set = candidate.set.clone();
         let (case, study) = match precision {
             Precision::Double => {
-                let (case, study) = self.one_study(candidate.double.clone(), set, linear, level);
+                let (case, mut study) =
+                    self.one_study(candidate.double.clone(), set, linear, level);
+                if let Some(mesh) = &self.mesh {
+                    study = study.on_mesh(mesh.clone());
+                }
                 (case, OneStudy::Double(study))
             }
             Precision::Single => {
-                let (case, study) = self.one_study(candidate.single.clone(), set, linear, level);
+                let (case, mut study) =
+                    self.one_study(candidate.single.clone(), set, linear, level);
+                if let Some(mesh) = &self.mesh {
+                    study = study.on_mesh(in_single_precision(mesh)?);
+                }
                 (case, OneStudy::Single(study))
             }
         };
-        Slot { case, study, coarser: None, measured: None, failure: None }
+        Ok(Slot { case, study, coarser: None, measured: None, failure: None })
     }
 
     fn one_study<'s, T: Real>(

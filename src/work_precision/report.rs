@@ -24,6 +24,9 @@ pub struct WorkReport {
     pub program: Program,
     /// Time and machine.
     pub provenance: Provenance,
+    /// What the scenes share and their names do not say, such as a mesh file or a parameter; empty if
+    /// there is nothing.
+    pub setting: String,
     /// The label of the scheme that verdicts compare with the others.
     pub subject: String,
     /// One row for every scene, variant and level that gave one.
@@ -38,6 +41,7 @@ impl WorkReport {
         WorkReport {
             program: Program::new(name, "", rayon::current_num_threads(), rounds),
             provenance: Provenance::now(rounds),
+            setting: String::new(),
             subject: String::new(),
             rows: Vec::new(),
             refused: Vec::new(),
@@ -46,7 +50,7 @@ impl WorkReport {
 
     /// Time, unknowns and memory at given errors.
     pub fn reach(&self) -> Vec<WorkAtError> {
-        work_at_errors(&self.rows)
+        work_at_errors(&self.rows, &self.refused)
     }
 
     /// One sentence for every scene whose errors are known.
@@ -77,12 +81,13 @@ impl WorkReport {
         tables(&self.rows, &self.failures(), &self.reach())
     }
 
-    /// The report as JSON: `program`, `provenance`, `rows`, `failures`, `reach` and `verdicts`.
-    /// What does not apply is null.
+    /// The report as JSON: `program`, `provenance`, `setting`, `rows`, `failures`, `reach` and
+    /// `verdicts`. What does not apply is null.
     pub fn to_json(&self) -> String {
         let value = json!({
             "program": self.program,
             "provenance": self.provenance,
+            "setting": self.setting,
             "rows": self.rows,
             "failures": self.failures(),
             "reach": self.reach(),
@@ -138,11 +143,15 @@ impl WorkReport {
         let Provenance { date, processor, rounds, complete } = &self.provenance;
         let known = |text: &Option<String>| text.clone().unwrap_or_else(|| "unknown".to_owned());
         let end = if *complete { "" } else { " (not all of them done)" };
-        format!(
+        let mut text = format!(
             "{name} {version}, {}; {target_cpu}, {}; {threads} threads; {precision}; {rounds} rounds{end}; times in seconds",
             known(date),
             known(processor),
-        )
+        );
+        if !self.setting.is_empty() {
+            text += &format!("; {}", self.setting);
+        }
+        text
     }
 
     /// Writes `report.json`, `report.csv`, `reach.csv`, `report.txt`, `report.md` and `report.tex`

@@ -1,8 +1,9 @@
-//! The tables of a report: for every scene what was run, where the time went, and what it takes to
-//! reach given errors.
+//! The tables of a report: for every scene what was run, where the time went, what it costs to reach one
+//! error, and how long it takes to reach others.
 
 use super::measured::{Failure, Measured, Phases, Variant, scenes, variants};
-use super::work_at_error::WorkAtError;
+use super::verdict::at_common_error;
+use super::work_at_error::{Standing, WorkAtError};
 use crate::measure::ErrorNorm;
 use crate::output::Table;
 use crate::output::table::Cell;
@@ -10,6 +11,11 @@ use crate::study::table::distinct;
 
 /// Columns of errors that fit into a line.
 const MOST_ERRORS: usize = 5;
+
+/// What stands in the place of a time.
+const MARKS: &str = "> t: not reached by the finest level, which takes t; < t: undercut by the coarsest \
+    level, which takes t; not run: the scheme was not run on this scene or on a finer level that was \
+    asked for; failed: the level that would decide did not converge";
 
 /// All tables, scene by scene.
 pub(crate) fn tables(all: &[Measured], failures: &[Failure], reach: &[WorkAtError]) -> Vec<Table> {
@@ -19,6 +25,7 @@ pub(crate) fn tables(all: &[Measured], failures: &[Failure], reach: &[WorkAtErro
         let rows: Vec<&Measured> = all.iter().filter(|m| m.row.scene == scene).collect();
         tables.push(runs(failures, scene, &rows, &variants));
         tables.push(phases(scene, &rows, &variants));
+        tables.extend(costs(scene, &at_common_error(reach, scene), &variants));
         for norm in ErrorNorm::ALL {
             let here = |r: &&WorkAtError| r.variant.scene == scene && r.norm == norm;
             let reach: Vec<&WorkAtError> = reach.iter().filter(here).collect();
@@ -53,15 +60,14 @@ fn runs(failures: &[Failure], scene: &str, rows: &[&Measured], variants: &[Varia
             Cell::scientific(row.error.energy),
             Cell::scientific(Some(certificate.into_iter().fold(0.0, worse))),
             Cell::scientific(Some(m.smallest.total)),
-            row.peak_memory_bytes
-                .map_or(Cell::Nothing, |b| Cell::Number(format!("{:.0}", b as f64 / 1e6), None)),
+            megabytes(row.peak_memory_bytes.map(|b| b as f64)),
         ]
     };
     let failures = failures.iter().filter(|f| f.case.variant.scene == scene);
     Table {
         title: format!("{scene}: runs"),
         columns: head(&[
-            "scheme", "n", "unknowns", "outer", "inner", "L2", "H1", "energy", "certif.", "best",
+            "scheme", "n", "unknowns", "outer", "inner", "L2", "H1", "energy", "certif.", "least",
             "MB",
         ]),
         rows: rows.iter().map(line).collect(),
@@ -74,7 +80,60 @@ fn runs(failures: &[Failure], scene: &str, rows: &[&Measured], variants: &[Varia
     }
 }
 
-/// Where the time of the fastest run went, and the time of the run in the middle.
+fn megabytes(bytes: Option<f64>) -> Cell {
+    bytes.map_or(Cell::Nothing, |b| Cell::Number(format!("{:.0}", b / 1e6), None))
+}
+
+/// Two decimals.
+fn decimals(x: Option<f64>) -> Cell {
+    x.map_or(Cell::Nothing, |x| Cell::Number(format!("{x:.2}"), None))
+}
+
+/// The column of the median over the least time.
+const SPREAD: &str = "spread";
+const WHAT_SPREAD_IS: &str =
+    "spread: the median time of repeated runs over the least; - for what ran once";
+
+/// Time, unknowns, stored entries and memory at one error in L2.
+fn costs(scene: &str, reach: &[&WorkAtError], variants: &[Variant]) -> Option<Table> {
+    let error = reach.first()?.error;
+    let whole = |x: Option<f64>| Cell::whole(x.map(|x| x.round() as usize));
+    let line = |r: &&WorkAtError| {
+        vec![
+            Cell::Words(r.variant.name_among(variants)),
+            time(r),
+            decimals(r.median_over_least),
+            whole(r.unknowns),
+            whole(r.entries),
+            megabytes(r.memory_bytes),
+        ]
+    };
+    Some(Table {
+        title: format!("{scene}: costs at an error of {error:e} in {}", ErrorNorm::L2.name()),
+        columns: head(&["scheme", "seconds", SPREAD, "unknowns", "entries", "MB"]),
+        rows: reach.iter().map(line).collect(),
+        remarks: vec![WHAT_SPREAD_IS.to_owned()],
+    })
+}
+
+/// The time to reach an error with the ratio to the fastest, or why there is none.
+fn time(at: &WorkAtError) -> Cell {
+    let bound = |sign: &str| {
+        at.seconds_bound.map_or(Cell::Nothing, |s| Cell::Number(format!("{sign} {s:.2e}"), None))
+    };
+    match at.standing {
+        Standing::Reached => at.seconds.zip(at.ratio).map_or(Cell::Nothing, |(seconds, ratio)| {
+            Cell::Number(format!("{seconds:.2e}"), Some(format!("{ratio:.2}")))
+        }),
+        Standing::NotReached => bound(">"),
+        Standing::Undercut => bound("<"),
+        Standing::Failed => Cell::Number("failed".to_owned(), None),
+        Standing::NotRun => Cell::Number("not run".to_owned(), None),
+        Standing::Unknown => Cell::Nothing,
+    }
+}
+
+/// Where the time of the fastest run went, and how far the run in the middle is from it.
 fn phases(scene: &str, rows: &[&Measured], variants: &[Variant]) -> Table {
     let line = |m: &&Measured| {
         let Phases { mesh, assemble, coarse, solve, total } = m.smallest;
@@ -83,19 +142,19 @@ fn phases(scene: &str, rows: &[&Measured], variants: &[Variant]) -> Table {
             Cell::Words(m.row.linear.clone()),
             Cell::whole(Some(m.row.level)),
         ];
-        let seconds = [mesh, assemble, coarse, solve, total, m.median.total];
+        let seconds = [mesh, assemble, coarse, solve, total];
         cells.extend(seconds.map(|s| Cell::scientific(Some(s))));
+        cells.push(decimals(m.median_over_least));
         cells.push(Cell::whole(Some(m.runs)));
         cells
     };
     Table {
-        title: format!("{scene}: phases of the fastest run, and the median of all"),
+        title: format!("{scene}: phases of the fastest run"),
         columns: head(&[
-            "scheme", "linear", "n", "mesh", "assembly", "start", "solve", "total", "median",
-            "runs",
+            "scheme", "linear", "n", "mesh", "assembly", "start", "solve", "total", SPREAD, "runs",
         ]),
         rows: rows.iter().map(line).collect(),
-        remarks: Vec::new(),
+        remarks: vec![WHAT_SPREAD_IS.to_owned()],
     }
 }
 
@@ -110,16 +169,21 @@ fn times(scene: &str, norm: ErrorNorm, reach: &[&WorkAtError], variants: &[Varia
         let mut cells = vec![Cell::Words(variant.name_among(variants))];
         for &error in &errors {
             let at = reach.iter().find(|r| r.variant == variant && r.error == error);
-            let number = at.and_then(|r| Some((r.seconds?, r.ratio?)));
-            cells.push(number.map_or(Cell::Nothing, |(seconds, ratio)| {
-                Cell::Number(format!("{seconds:.2e}"), Some(format!("{ratio:.2}")))
-            }));
+            cells.push(at.map_or(Cell::Nothing, |r| time(r)));
         }
         cells
     };
     let mut columns = head(&["scheme"]);
     columns.extend(errors.iter().map(|e| format!("{e:e}")));
-    let mut remarks = vec!["in parentheses the ratio to the fastest".to_owned()];
+    let mut remarks = vec![format!("in parentheses the ratio to the fastest; {MARKS}")];
+    let spreads = reach.iter().filter(|r| errors.contains(&r.error));
+    let largest = spreads.filter_map(|r| r.median_over_least).fold(0.0, f64::max);
+    if largest > 0.0 {
+        remarks.push(format!(
+            "the median of repeated runs is up to {largest:.2} times the least: a smaller ratio of two \
+             times is no difference"
+        ));
+    }
     if norm == ErrorNorm::Energy {
         remarks.push("every scheme measures its own norm".to_owned());
     }

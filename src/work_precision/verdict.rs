@@ -1,22 +1,30 @@
 //! One sentence for a scene, made from the figures.
 
 use super::measured::Variant;
-use super::work_at_error::WorkAtError;
+use super::work_at_error::{Standing, WorkAtError};
 use crate::measure::ErrorNorm;
 
-/// What the figures say of a scene: at the smallest error in L2 that the most variants reach, how
-/// many times the time of each other one the subject takes. The subject is the first variant of
-/// that label that gets there, otherwise the fastest. Nothing without errors in L2.
-pub(crate) fn verdict(reach: &[WorkAtError], scene: &str, subject: &str) -> Option<String> {
-    let of_scene: Vec<&WorkAtError> =
+/// What variants take in a scene at the smallest error in L2 that the most of them reach. Empty without
+/// errors in L2.
+pub(crate) fn at_common_error<'a>(reach: &'a [WorkAtError], scene: &str) -> Vec<&'a WorkAtError> {
+    let mut of_scene: Vec<&WorkAtError> =
         reach.iter().filter(|r| r.variant.scene == scene && r.norm == ErrorNorm::L2).collect();
-    let variants: Vec<Variant> = of_scene.iter().map(|r| r.variant.clone()).collect();
     let reached =
         |error: f64| of_scene.iter().filter(|r| r.error == error && r.seconds.is_some()).count();
-    let most = of_scene.iter().map(|r| reached(r.error)).max()?;
-    let errors = of_scene.iter().map(|r| r.error).filter(|&e| reached(e) == most);
+    let most = of_scene.iter().map(|r| reached(r.error)).max();
+    let errors = of_scene.iter().map(|r| r.error).filter(|&e| Some(reached(e)) == most);
     let error = errors.fold(f64::INFINITY, f64::min);
-    let here: Vec<&WorkAtError> = of_scene.into_iter().filter(|r| r.error == error).collect();
+    of_scene.retain(|r| r.error == error);
+    of_scene
+}
+
+/// What the figures say of a scene: at the error of [`at_common_error`], how many times the time of each
+/// other variant the subject takes. The subject is the first variant of that label that gets there,
+/// otherwise the fastest. Nothing without errors in L2.
+pub(crate) fn verdict(reach: &[WorkAtError], scene: &str, subject: &str) -> Option<String> {
+    let here = at_common_error(reach, scene);
+    let error = here.first()?.error;
+    let variants: Vec<Variant> = here.iter().map(|r| r.variant.clone()).collect();
     let (there, missing): (Vec<&WorkAtError>, Vec<&WorkAtError>) =
         here.into_iter().partition(|r| r.seconds.is_some());
     let fastest = || there.iter().find(|r| r.ratio == Some(1.0));
@@ -34,9 +42,17 @@ pub(crate) fn verdict(reach: &[WorkAtError], scene: &str, subject: &str) -> Opti
         let time = if k == 0 { "the time" } else { "that" };
         text += &format!("{comma}{ratio} times {time} of {other}");
     }
-    if !missing.is_empty() {
-        let names: Vec<String> = missing.iter().map(|r| r.variant.name_among(&variants)).collect();
-        text += &format!("; outside the range measured of {}", names.join(", "));
+    for (standing, words) in [
+        (Standing::NotReached, "not reached by"),
+        (Standing::Undercut, "undercut on the coarsest mesh by"),
+        (Standing::Failed, "lost with levels that failed by"),
+        (Standing::NotRun, "not run far enough for"),
+    ] {
+        let these = missing.iter().filter(|r| r.standing == standing);
+        let names: Vec<String> = these.map(|r| r.variant.name_among(&variants)).collect();
+        if !names.is_empty() {
+            text += &format!("; {words} {}", names.join(", "));
+        }
     }
     Some(text + ".")
 }

@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use super::measured::{Measured, Variant};
+use super::measured::{Failure, Measured, Variant};
 use crate::measure::ErrorNorm;
 use crate::study::table::distinct;
 
@@ -50,7 +50,27 @@ pub fn work_at(points: &[WorkPoint], error: f64) -> Option<f64> {
     })
 }
 
-/// Time, unknowns and memory with which a variant reaches an error.
+/// Where an error stands among the errors of the levels of a variant.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+#[non_exhaustive]
+pub enum Standing {
+    /// Between two neighbouring levels that converged.
+    Reached,
+    /// The finest level has a larger error, and no finer one was asked for.
+    NotReached,
+    /// The coarsest level has a smaller error already.
+    Undercut,
+    /// The level that would decide did not converge.
+    Failed,
+    /// The variant was not run on the scene, or a level that was asked for and is finer than those run
+    /// was not.
+    NotRun,
+    /// The variant has no error in this norm.
+    Unknown,
+}
+
+/// Time, unknowns, entries and memory with which a variant reaches an error.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[non_exhaustive]
 pub struct WorkAtError {
@@ -61,25 +81,42 @@ pub struct WorkAtError {
     pub norm: ErrorNorm,
     /// The error.
     pub error: f64,
-    /// Seconds, from the smallest times; none outside the range measured.
+    /// Where the error stands among those of the levels.
+    pub standing: Standing,
+    /// Seconds, from the smallest times; none unless the error is reached.
     pub seconds: Option<f64>,
+    /// Seconds of the coarsest level if that undercuts the error, of the finest one if the error is not
+    /// reached.
+    pub seconds_bound: Option<f64>,
+    /// The median of the times of repeated runs over the smallest one.
+    pub median_over_least: Option<f64>,
     /// Seconds over those of the fastest variant of the scene.
     pub ratio: Option<f64>,
     /// Number of unknowns.
     pub unknowns: Option<f64>,
+    /// Entries stored in the matrix.
+    pub entries: Option<f64>,
     /// Peak of memory.
     pub memory_bytes: Option<f64>,
 }
 
-/// All variants at all errors worth comparing at: for every scene and norm the numbers 1, 2 and 5
-/// times powers of ten that at least two variants reach, or the only one there is.
-pub(crate) fn work_at_errors(rows: &[Measured]) -> Vec<WorkAtError> {
+/// All variants of the report at all errors worth comparing at: for every scene and norm the numbers 1,
+/// 2 and 5 times powers of ten that at least two variants reach, or the only one there is.
+pub(crate) fn work_at_errors(rows: &[Measured], refused: &[Failure]) -> Vec<WorkAtError> {
     let mut all = Vec::new();
+    let of_refused = refused.iter().map(|f| f.case.variant.clone());
+    let variants = distinct(rows.iter().map(Measured::variant).chain(of_refused));
     for scene in distinct(rows.iter().map(|m| m.row.scene.as_str())) {
-        let curves = curves(rows, scene);
+        let run = curves(rows, scene);
+        let mut curves = run.clone();
+        for other in &variants {
+            if !curves.iter().any(|(v, _)| v.differs_in_scene_only(other)) {
+                curves.push((Variant { scene: scene.to_owned(), ..other.clone() }, Vec::new()));
+            }
+        }
         for norm in ErrorNorm::ALL {
-            for error in targets(&curves, norm) {
-                all.extend(work_of_variants_at(&curves, norm, error));
+            for error in targets(&run, norm) {
+                all.extend(work_of_variants_at(&curves, refused, norm, error));
             }
         }
     }
@@ -100,7 +137,12 @@ pub(crate) fn curves<'a>(rows: &'a [Measured], scene: &str) -> Vec<(Variant, Vec
 
 type Curves<'a> = [(Variant, Vec<&'a Measured>)];
 
-fn work_of_variants_at(curves: &Curves<'_>, norm: ErrorNorm, error: f64) -> Vec<WorkAtError> {
+fn work_of_variants_at(
+    curves: &Curves<'_>,
+    refused: &[Failure],
+    norm: ErrorNorm,
+    error: f64,
+) -> Vec<WorkAtError> {
     let at = |levels: &[&Measured], work: fn(&Measured) -> Option<f64>| {
         let point = |m: &&Measured| {
             let work = work(m);
@@ -114,17 +156,57 @@ fn work_of_variants_at(curves: &Curves<'_>, norm: ErrorNorm, error: f64) -> Vec<
     let seconds: Vec<Option<f64>> =
         curves.iter().map(|(_, levels)| at(levels, |m| Some(m.smallest.total))).collect();
     let best = seconds.iter().flatten().copied().fold(f64::INFINITY, f64::min);
-    let of =
-        |((variant, levels), seconds): (&(Variant, Vec<&Measured>), Option<f64>)| WorkAtError {
+    let of = |((variant, levels), seconds): (&(Variant, Vec<&Measured>), Option<f64>)| {
+        let finest = levels.last().map(|m| m.row.level);
+        let is_cut =
+            refused.iter().any(|f| f.case.variant == *variant && Some(f.case.level) > finest);
+        let standing = match seconds {
+            Some(_) => Standing::Reached,
+            None => standing(levels, is_cut, norm, error),
+        };
+        let bound = match standing {
+            Standing::Undercut => levels.first(),
+            Standing::NotReached => levels.last(),
+            _ => None,
+        };
+        WorkAtError {
             variant: variant.clone(),
             norm,
             error,
+            standing,
             seconds,
+            seconds_bound: bound.map(|m| m.smallest.total),
+            median_over_least: at(levels, |m| m.median_over_least),
             ratio: seconds.map(|s| s / best),
             unknowns: at(levels, |m| Some(m.row.unknowns as f64)),
+            entries: at(levels, |m| Some(m.row.nonzeros as f64)),
             memory_bytes: at(levels, |m| m.row.peak_memory_bytes.map(|b| b as f64)),
-        };
+        }
+    };
     curves.iter().zip(seconds).map(of).collect()
+}
+
+/// Where an error stands that is not between two neighbouring levels that converged. `is_cut` says that
+/// levels finer than these were asked for and not run.
+fn standing(levels: &[&Measured], is_cut: bool, norm: ErrorNorm, error: f64) -> Standing {
+    let (Some(&first), Some(&last)) = (levels.first(), levels.last()) else {
+        return Standing::NotRun;
+    };
+    let error_of = |m: &Measured| error_in(norm, m);
+    let is_below = |m: &Measured| error_of(m).is_some_and(|e| e <= error);
+    let without_error =
+        |mut some: std::slice::Iter<'_, &Measured>| match some.any(|m| !m.row.converged()) {
+            true => Standing::Failed,
+            false => Standing::Unknown,
+        };
+    match () {
+        () if is_below(first) => Standing::Undercut,
+        // no level that failed is bridged
+        () if levels.iter().any(|m| is_below(m)) => without_error(levels.iter()),
+        () if error_of(last).is_none() => without_error(levels[levels.len() - 1..].iter()),
+        () if is_cut => Standing::NotRun,
+        () => Standing::NotReached,
+    }
 }
 
 /// Errors to compare at, from large to small.
@@ -136,8 +218,9 @@ fn targets(curves: &Curves<'_>, norm: ErrorNorm) -> Vec<f64> {
         return Vec::new();
     }
     let reached = |error: &f64| {
-        let seconds =
-            work_of_variants_at(curves, norm, *error).into_iter().filter(|r| r.seconds.is_some());
+        let seconds = work_of_variants_at(curves, &[], norm, *error)
+            .into_iter()
+            .filter(|r| r.seconds.is_some());
         seconds.count() >= curves.len().min(2)
     };
     let (first, last) = (low.log10().floor() as i32, high.log10().ceil() as i32);

@@ -2,7 +2,7 @@
 
 use serde_json::Value;
 
-use super::run::{Scratch, refused, rows};
+use super::run::{Scratch, command, refused, rows, stderr};
 use super::square::Square;
 
 #[test]
@@ -108,4 +108,45 @@ fn meshes_of_gmsh_are_refined_and_choose_their_scenes() {
         assert_eq!(names.contains(&"radial-2d"), !signorini, "{names:?}");
         assert_eq!(names.contains(&"signorini-2d"), signorini, "{names:?}");
     }
+}
+
+/// Work-precision on a mesh has the errors of a comparison on it, in both scalars, and measures the memory
+/// of each case.
+#[test]
+fn work_precision_runs_on_refinements_of_a_mesh() {
+    let scratch = Scratch::new("work-mesh");
+    let mesh = scratch.file("sound.msh", &Square::sound());
+    let schemes = "--scheme p1,wopsip:facet-means@factor=10 --levels 0,1";
+    let out = scratch.path("work");
+    let run = |options: &str| {
+        let output = command("work-precision").args(options.split_whitespace()).output().unwrap();
+        (output.status.code(), stderr(&output))
+    };
+    let options = format!(
+        "--scene radial-2d --mesh {mesh} {schemes} --precision f64,f32 --rounds 2 --quiet --out {out}"
+    );
+    assert_eq!(run(&options), (Some(0), String::new()));
+    let text = std::fs::read_to_string(std::path::Path::new(&out).join("report.json")).unwrap();
+    let work: Value = serde_json::from_str(&text).unwrap();
+    assert_eq!(work["setting"], "refinements of sound.msh");
+    let compared = scratch.report(&format!("--scene radial-2d --mesh {mesh} {schemes} --quiet"));
+    for here in rows(&work) {
+        assert!(here["peak_memory_bytes"].as_u64() > Some(0), "{here}");
+        assert!(here["median_over_least"].as_f64() >= Some(1.0), "{here}");
+        let same = |row: &&Value| ["label", "level"].iter().all(|key| row[key] == here[key]);
+        let there = rows(&compared).iter().find(same).unwrap();
+        let l2 = |row: &Value| row["error"]["l2"].as_f64().unwrap();
+        let tolerance = if here["precision"] == "f32" { 1e-4 } else { 1e-12 };
+        assert!((l2(here) - l2(there)).abs() <= tolerance * l2(there), "{here} {there}");
+    }
+    assert_eq!(rows(&work).len(), 8);
+
+    let wrong = |options: &str| {
+        let (code, message) = run(options);
+        assert_eq!(code, Some(2), "{options}: {message}");
+        message
+    };
+    assert!(wrong(&format!("--mesh {mesh}")).contains("--scene"));
+    assert!(wrong(&format!("--scene radial-3d --mesh {mesh} --levels 0")).contains("sound.msh"));
+    assert!(wrong("--scene radial-2d --contrast 1e4").contains("none of the scenes chosen"));
 }

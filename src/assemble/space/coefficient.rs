@@ -3,9 +3,11 @@
 //! Linear elements take one value in each cell, at its barycentre, which leaves an error of their own
 //! order. Elements whose basis functions have degree `b > 1` take values at the points of rules of
 //! degree `2 b`: exact for products of gradients times a quadratic coefficient. Rules exact for the
-//! products alone keep the orders, with larger errors on coarse meshes (P. G. Ciarlet, P.-A. Raviart, The combined effect of curved
-//! boundaries and numerical integration, in A. K. Aziz (ed.), 1972, 409-474). On facets these are
-//! values from inside the cell, so that a coefficient may jump between cells.
+//! products alone keep the orders, with larger errors on coarse meshes (P. G. Ciarlet, P.-A. Raviart, The
+//! combined effect of curved boundaries and numerical integration, in A. K. Aziz (ed.), 1972, 409-474).
+//! On facets these are values from inside the cell, so that a coefficient may jump between cells. In a
+//! cell in which the samples differ by more than a factor of ten every element takes the value at the
+//! barycentre.
 
 use super::data::{CoefficientAt, coefficient_at};
 use super::metric::CellMetric;
@@ -23,6 +25,11 @@ pub(crate) type Place = (usize, usize);
 /// Samples that differ from the value at the barycentre by no more than this, in units of rounding, are
 /// those of a constant.
 const ROUNDINGS: f64 = 16.0;
+
+/// The largest ratio of two samples in a cell with which a coefficient counts as resolved. A coefficient
+/// that jumps in a cell by more has its value at the barycentre there: no rule keeps the order, and the
+/// penalty that the proof of coercivity asks for would grow like the square of the ratio.
+const LARGEST_RATIO: f64 = 10.0;
 
 /// The share of the way to the barycentre by which a point of a facet is moved to see the cell's own side
 /// of a jump.
@@ -88,7 +95,10 @@ impl<T: Real> VaryingCoefficient<T> {
             }
             let constant = constants[cell].to_f64();
             let is_same = |v: &T| (v.to_f64() / constant - 1.0).abs() <= ROUNDINGS * T::EPSILON;
-            if values[first..].iter().all(is_same) {
+            let samples = values[first..].iter().map(|v| v.to_f64());
+            let (least, largest) =
+                samples.fold((constant, constant), |(low, high), v| (low.min(v), high.max(v)));
+            if largest > LARGEST_RATIO * least || values[first..].iter().all(is_same) {
                 values.truncate(first);
             } else {
                 *start = first as u32;

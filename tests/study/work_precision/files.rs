@@ -39,8 +39,9 @@ fn csv_reads_back_to_the_same_numbers() {
     let reach = report.reach_csv();
     assert_eq!(table(&reach).len(), 1 + report.reach().len());
     assert!(
-        reach
-            .starts_with("scene,scheme,constraint,label,linear_asked,precision,norm,error,seconds")
+        reach.starts_with(
+            "scene,scheme,constraint,label,linear_asked,precision,norm,error,standing,"
+        )
     );
 }
 
@@ -55,7 +56,7 @@ fn bars(markdown: &str) -> Vec<Vec<usize>> {
 fn markdown_tables_have_as_many_cells_in_each_line() {
     let text = synthetic().to_markdown();
     let tables = bars(&text);
-    assert_eq!(tables.len(), 4, "{text}");
+    assert_eq!(tables.len(), 5, "{text}");
     for lines in &tables {
         assert!(lines.iter().all(|n| n == &lines[0]), "{lines:?}\n{text}");
     }
@@ -70,7 +71,7 @@ fn latex_tables_have_as_many_cells_as_columns_and_nothing_unescaped() {
     report.refused.push(Failure::new(case, "odd_reason & 100%"));
     let text = report.to_latex();
     let tables: Vec<&str> = text.split("\\begin{tabular}").skip(1).collect();
-    assert_eq!(tables.len(), 4);
+    assert_eq!(tables.len(), 5);
     for table in tables {
         let (columns, rest) = table[1..].split_once('}').unwrap();
         let body = rest.split("\\end{tabular}").next().unwrap();
@@ -171,4 +172,24 @@ fn failures_are_listed_and_drawn() {
     let hidden = std::fs::read_dir(&scratch.0).unwrap();
     let is_hidden = |e: std::fs::DirEntry| e.file_name().to_string_lossy().starts_with('.');
     assert!(!hidden.map(Result::unwrap).any(is_hidden));
+}
+
+#[test]
+fn figures_are_as_wide_as_their_longest_label() {
+    let width = |label: &str| {
+        let mut report = synthetic();
+        report.rows.iter_mut().for_each(|m| m.row.label = format!("{}{label}", m.row.scheme));
+        let scratch = Scratch::new(&format!("wide{}", label.len()));
+        std::fs::create_dir_all(&scratch.0).unwrap();
+        report.write_figures(&scratch.0, "radial-2d").unwrap();
+        let text = scratch.read("radial-2d-time.svg");
+        for scheme in ["p1", "sipg", "wopsip"] {
+            assert!(text.contains(&format!("{scheme}{label}\n")), "{scheme}{label}");
+        }
+        let start = text.split("width=\"").nth(1).unwrap();
+        start.split('"').next().unwrap().parse::<f64>().unwrap()
+    };
+    assert_eq!(width("@factor=1.05"), 400.0);
+    let long = ":cell-means@factor=10,weight=anisotropic, iterative, f32, and something else";
+    assert!(width(long) > 500.0);
 }

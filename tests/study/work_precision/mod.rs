@@ -8,10 +8,13 @@ use std::cell::RefCell;
 use crate::scratch::Scratch;
 use serde_json::Value;
 use synthetic::{measured, synthetic};
+use unilateral::inequality::Outcome;
 use unilateral::measure::ErrorNorm;
+use unilateral::output::Table;
 use unilateral::prelude::*;
 use unilateral::work_precision::{
-    Phases, Precision, WorkPoint, WorkPrecision, WorkProgress, work_at,
+    Failure, Phases, Precision, Standing, WorkPoint, WorkPrecision, WorkProgress, WorkReport,
+    work_at,
 };
 
 fn close(a: f64, b: f64) -> bool {
@@ -64,6 +67,87 @@ fn times_to_reach_an_error_come_with_the_ratio_to_the_best() {
     assert!(reach.iter().all(|r| r.norm != ErrorNorm::Energy), "rows without that error");
 }
 
+/// Where an error in L2 stands for a scheme, and the seconds of the level that bounds the time.
+fn standing(report: &WorkReport, scene: &str, label: &str, error: f64) -> (Standing, Option<f64>) {
+    let at = report.reach().into_iter().find(|r| {
+        (&r.variant.scene[..], &r.variant.label[..], r.norm, r.error)
+            == (scene, label, ErrorNorm::L2, error)
+    });
+    let at = at.unwrap();
+    assert_eq!(at.seconds.is_some(), at.standing == Standing::Reached);
+    (at.standing, at.seconds_bound)
+}
+
+#[test]
+fn errors_without_a_time_say_why() {
+    let mut report = synthetic();
+    report.rows.extend([32, 64].map(|level| measured("cr", level, 1e-6)));
+    let at =
+        |report: &WorkReport, label: &str, error: f64| standing(report, "radial-2d", label, error);
+    assert_eq!(at(&report, "wopsip", 5e-3), (Standing::Reached, None));
+    assert_eq!(at(&report, "wopsip", 2e-3), (Standing::NotReached, Some(4.5e-6 * 4096.0)));
+    assert_eq!(at(&report, "cr", 2e-3), (Standing::Undercut, Some(1e-6 * 32768.0)));
+    // a table states both bounds and what they mean
+    let text = report.to_text();
+    assert!(text.contains("> 1.84e-2") && text.contains("< 3.28e-2"), "{text}");
+    assert!(text.contains("> t: not reached by the finest level"), "{text}");
+
+    // a finer level was asked for and not run
+    let mut finer = report.rows[7].case();
+    assert_eq!((&finer.variant.label[..], finer.level), ("wopsip", 16));
+    finer.level = 32;
+    report.refused.push(Failure::new(finer, "not run: level 16 took 21.0 s"));
+    assert_eq!(at(&report, "wopsip", 2e-3), (Standing::NotRun, None));
+    assert_eq!(at(&report, "wopsip", 5e-3), (Standing::Reached, None));
+    // a level between did not converge, which says nothing of errors above it
+    report.rows[4].row.status = Outcome::Cycling;
+    assert_eq!((&report.rows[4].row.label[..], report.rows[4].row.level), ("sipg", 16));
+    assert_eq!(at(&report, "sipg", 5e-3), (Standing::Failed, None));
+    let text = report.to_text();
+    assert!(text.contains("  failed  "), "{text}");
+    assert!(
+        report.verdicts()[0].contains("; undercut on the coarsest mesh by cr"),
+        "{:?}",
+        report.verdicts()
+    );
+    // schemes of another scene
+    let elsewhere = ["p1", "sipg"].map(|scheme| [8, 16].map(|n| measured(scheme, n, 1e-6)));
+    report.rows.extend(elsewhere.into_iter().flatten().map(|mut m| {
+        m.row.scene = "signorini-2d".into();
+        m
+    }));
+    assert_eq!(standing(&report, "signorini-2d", "cr", 5e-3), (Standing::NotRun, None));
+    assert_eq!(standing(&report, "signorini-2d", "p1", 5e-3), (Standing::Reached, None));
+    let title = "signorini-2d: time to reach an error in L2\n";
+    let text = report.to_text();
+    let table = text.split(title).nth(1).unwrap();
+    let of_cr = table.lines().find(|line| line.starts_with("cr ")).unwrap();
+    let words: Vec<&str> = of_cr.split_whitespace().collect();
+    assert_eq!(words, ["cr", "not", "run", "not", "run"]);
+    // no errors in a norm are no failure
+    let mut report = synthetic();
+    report.rows.iter_mut().skip(6).for_each(|m| m.row.error.l2 = None);
+    assert_eq!(at(&report, "wopsip", 5e-3), (Standing::Unknown, None));
+}
+
+#[test]
+fn costs_at_an_error_are_time_entries_and_memory() {
+    let mut report = synthetic();
+    for m in &mut report.rows {
+        let row = m.row.clone();
+        let total = 1.25 * m.smallest.total;
+        m.add(&row, Phases { solve: total, total, ..Phases::default() });
+    }
+    let tables = report.tables();
+    let costs = tables.iter().map(Table::to_text).find(|t| t.contains("costs")).unwrap();
+    let lines: Vec<&str> = costs.lines().collect();
+    assert_eq!(lines[0], "radial-2d: costs at an error of 5e-3 in L2");
+    // level 200^(1/2): 6 unknowns, 70 entries and 1 MB to its square
+    let p1: Vec<&str> = lines[2].split_whitespace().collect();
+    assert_eq!(p1, ["p1", "2.83e-3", "(1.00)", "1.25", "1200", "14000", "200"]);
+    assert!(report.to_text().contains("is up to 1.25 times the least"));
+}
+
 #[test]
 fn the_verdict_is_a_sentence_made_from_the_figures() {
     let expected = "radial-2d: at an L2 error of 5e-3 wopsip takes 1.27e-2 s, 4.5 times the time of p1; 1.5 times that of sipg.";
@@ -78,11 +162,15 @@ fn the_verdict_is_a_sentence_made_from_the_figures() {
 #[test]
 fn smallest_and_median_are_those_of_all_runs() {
     let mut m = measured("p1", 8, 1.0);
+    assert_eq!((m.median_over_least, m.largest_over_least), (None, None));
     let row = m.row.clone();
     for total in [2.0, 9.0, 4.0, 7.0] {
         m.add(&row, Phases { solve: total, total, ..Phases::default() });
     }
     assert_eq!((m.runs, m.smallest.total, m.median.total), (5, 2.0, 7.0));
+    assert_eq!(m.median_over_least, Some(3.5));
+    let largest = m.largest_over_least.unwrap();
+    assert!(close(largest, 512.0 / 2.0), "{largest}");
     assert_eq!(m.row.seconds.total, 2.0);
     assert!(m.row.warnings.is_empty());
     let mut other = row.clone();

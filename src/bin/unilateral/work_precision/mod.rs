@@ -11,17 +11,18 @@ use std::process::Command;
 use indicatif::ProgressBar;
 pub use options::Options;
 use unilateral::inequality::ActiveSet;
+use unilateral::input::excerpt;
 use unilateral::linear::LinearMethod;
+use unilateral::mesh::{Mesh, gmsh};
 use unilateral::real::Real;
-use unilateral::scenes;
-use unilateral::scenes::{AnyScene, Scene};
+use unilateral::scenes::{self, AnyScene, Parameters, Scene};
 use unilateral::scheme::NamedScheme;
 use unilateral::study::{Study, peak_memory_bytes};
 use unilateral::work_precision::{
     Case, Precision, WorkPrecision, WorkProgress, WorkReport, changes,
 };
 
-use crate::shared::{Request, bar, print, read, scene, tick, use_threads, write};
+use crate::shared::{Request, bar, print, read, tick, use_threads, write};
 
 /// Whether every run converged and nothing changed.
 pub fn run(options: &Options) -> Request<bool> {
@@ -40,6 +41,7 @@ pub fn run(options: &Options) -> Request<bool> {
         None => None,
     };
     let mut report = WorkReport::new("work_precision", options.rounds());
+    report.setting = setting(options);
     if let Some(text) = &baseline {
         changes(text, &report).map_err(|e| e.to_string())?;
     }
@@ -47,7 +49,7 @@ pub fn run(options: &Options) -> Request<bool> {
     let bar = bar(options.quiet, planned(options, &schemes), template);
     tick(&bar);
     for name in options.scenes() {
-        match scene(&name)? {
+        match scene(options, &name)? {
             AnyScene::One(s) => study(options, &schemes, &bar, s, &mut report),
             AnyScene::Two(s) => study(options, &schemes, &bar, s, &mut report),
             AnyScene::Three(s) => study(options, &schemes, &bar, s, &mut report),
@@ -75,6 +77,28 @@ pub fn run(options: &Options) -> Request<bool> {
     Ok(same && report.failures().is_empty())
 }
 
+/// The mesh and the parameter of the scenes, for the heading of the report.
+fn setting(options: &Options) -> String {
+    let mesh = options.mesh.as_ref().and_then(|path| path.file_name());
+    let mesh = mesh.map(|name| format!("refinements of {}", excerpt(name.as_encoded_bytes())));
+    let contrast = options.contrast.map(|x| format!("contrast {x:e}"));
+    [mesh, contrast].into_iter().flatten().collect::<Vec<_>>().join(", ")
+}
+
+/// A scene by name with the parameter of the options, if it takes one.
+fn scene(options: &Options, name: &str) -> Request<AnyScene> {
+    let entry = scenes::by_name(name).ok_or_else(|| format!("there is no scene {name}"))?;
+    let contrast = options.contrast.filter(|_| entry.accepts.contrast);
+    entry.make(&Parameters::new().with_contrast(contrast)).map_err(|e| e.to_string())
+}
+
+/// The mesh of the options.
+fn mesh<T: Real, const D: usize>(options: &Options) -> Request<Option<Mesh<T, D>>> {
+    let Some(path) = &options.mesh else { return Ok(None) };
+    let read = gmsh::parse::<T, D>(&read(path)?);
+    read.map(|m| Some(m.mesh)).map_err(|e| format!("{}: {e}", path.display()))
+}
+
 /// How many runs there will be on all scenes, unless some take too long.
 fn planned(options: &Options, schemes: &[NamedScheme]) -> usize {
     let variants = schemes.len() * options.linear().len() * options.precisions().len();
@@ -95,12 +119,12 @@ fn study<const D: usize>(
     bar: &ProgressBar,
     first: Scene<D>,
     report: &mut WorkReport,
-) -> Result<(), unilateral::error::Error>
+) -> Request<()>
 where
     AnyScene: Pick<D>,
 {
     let name = first.name.clone();
-    let remake = move || match scene(&name).ok().and_then(Pick::<D>::pick) {
+    let remake = move || match scene(options, &name).ok().and_then(Pick::<D>::pick) {
         Some(scene) => scene,
         None => unreachable!("it was made before"),
     };
@@ -112,7 +136,7 @@ where
         .limit(options.limit)
         .subject(&options.subject)
         .write_to(&options.out)
-        .memory(|case| memory_of(case, options.threads()))
+        .memory(|case| memory_of(case, options))
         .observer(|progress| match progress {
             WorkProgress::Finished => bar.inc(1),
             WorkProgress::Started(case, round) => {
@@ -128,8 +152,11 @@ where
             // what is planned counts for nothing: the bar was made for all scenes
             _ => {}
         });
-    let study = schemes.iter().fold(study, WorkPrecision::named_scheme);
-    study.run_into(report)
+    let mut study = schemes.iter().fold(study, WorkPrecision::named_scheme);
+    if let Some(mesh) = mesh(options)? {
+        study = study.on_mesh(mesh);
+    }
+    study.run_into(report).map_err(|e| e.to_string())
 }
 
 /// The scene of a dimension, if it is of that dimension.
@@ -156,14 +183,20 @@ impl Pick<3> for AnyScene {
 }
 
 /// The peak of memory of a process that runs this case and nothing else.
-fn memory_of(case: &Case, threads: Option<usize>) -> Option<u64> {
+fn memory_of(case: &Case, options: &Options) -> Option<u64> {
     let v = &case.variant;
     let mut command = Command::new(std::env::current_exe().ok()?);
     command.args(["work-precision", "--peak", "--scene", &v.scene]);
     command.args(["--scheme", &v.label]);
     command.args(["--linear", &v.linear_asked, "--precision", &v.precision]);
     command.args(["--levels", &case.level.to_string()]);
-    if let Some(threads) = threads {
+    if let Some(path) = &options.mesh {
+        command.arg("--mesh").arg(path);
+    }
+    if let Some(x) = options.contrast {
+        command.args(["--contrast", &format!("{x:e}")]);
+    }
+    if let Some(threads) = options.threads() {
         command.env("RAYON_NUM_THREADS", threads.to_string());
     }
     let output = command.output().ok()?;
@@ -175,7 +208,7 @@ fn peak(options: &Options) -> Request<bool> {
     let one = "--peak runs one case";
     let name = options.scenes().pop().ok_or(one)?;
     let is_single = options.precisions().first() == Some(&Precision::Single);
-    match scene(&name)? {
+    match scene(options, &name)? {
         AnyScene::One(s) if is_single => once::<f32, 1>(options, s)?,
         AnyScene::One(s) => once::<f64, 1>(options, s)?,
         AnyScene::Two(s) if is_single => once::<f32, 2>(options, s)?,
@@ -190,9 +223,12 @@ fn peak(options: &Options) -> Request<bool> {
 
 fn once<T: Real, const D: usize>(options: &Options, scene: Scene<D>) -> Request<()> {
     let linear = options.linear().first().copied().unwrap_or(LinearMethod::BySize);
-    let study = Study::<T, D>::new(scene)
+    let mut study = Study::<T, D>::new(scene)
         .levels(options.levels(D))
         .solver(ActiveSet::default().linear(linear));
+    if let Some(mesh) = mesh(options)? {
+        study = study.on_mesh(mesh);
+    }
     let schemes = options.schemes()?;
     let study = schemes.iter().fold(study, Study::named_scheme);
     study.run().map(drop).map_err(|e| e.to_string())

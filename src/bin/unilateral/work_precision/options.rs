@@ -29,7 +29,13 @@ pub struct Options {
     /// Scalars
     #[arg(long, value_delimiter = ',', value_parser = Precision::NAMES.map(|p| p.0), default_value = "f64")]
     precision: Vec<String>,
-    /// Subdivisions of the scene's shortest side
+    /// Runs the scenes on this Gmsh mesh; levels are then refinements of it
+    #[arg(long, value_name = "FILE", requires = "scenes")]
+    pub mesh: Option<PathBuf>,
+    /// Ratio of coefficients, for scenes that take one
+    #[arg(long, value_name = "X", requires = "scenes")]
+    pub contrast: Option<f64>,
+    /// Subdivisions of the scene's shortest side, or refinements of the mesh
     #[arg(long, value_delimiter = ',', value_name = "N[,N...]")]
     levels: Vec<usize>,
     /// How often each case runs; 5, with --quick 2
@@ -76,6 +82,12 @@ impl Options {
             }
         }
         self.schemes()?;
+        let takes = |name: &String| known.iter().any(|e| e.name == *name && e.accepts.contrast);
+        if let Some(x) = self.contrast
+            && !self.scenes().iter().any(takes)
+        {
+            return Err(format!("--contrast {x:?}: none of the scenes chosen takes it"));
+        }
         match self.limit > 0.0 {
             true => Ok(()),
             false => Err(format!("--limit {}: must be positive", self.limit)),
@@ -114,6 +126,8 @@ impl Options {
     pub fn levels(&self, dimension: usize) -> Vec<usize> {
         match (dimension, self.quick) {
             _ if !self.levels.is_empty() => self.levels.clone(),
+            (_, true) if self.mesh.is_some() => vec![0, 1],
+            (_, false) if self.mesh.is_some() => vec![0, 1, 2],
             (3, true) => vec![2, 4, 8],
             (3, false) => vec![2, 4, 8, 16],
             (_, true) => vec![8, 16, 32],
