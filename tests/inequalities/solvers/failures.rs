@@ -178,23 +178,3 @@ fn data_whose_squares_underflow_are_refused_and_not_certified() {
         assert_eq!(cold(&scaled(factor)).outcome, Outcome::Converged);
     }
 }
-
-#[test]
-fn rounding_that_keeps_the_certificate_above_its_limit_is_told() {
-    // springs between values near one; a stiff one multiplies the rounding of its ends
-    let n = 50;
-    let stiffness = |k: usize| if k == 20 { 1e4 } else { 1.0 };
-    let mut dense = vec![vec![0.0; n]; n];
-    for k in 0..n - 1 {
-        for (i, j, sign) in [(k, k, 1.0), (k, k + 1, -1.0), (k + 1, k, -1.0), (k + 1, k + 1, 1.0)] {
-            dense[i][j] += sign * stiffness(k);
-        }
-    }
-    let mut bounds = vec![Bound::Free; n];
-    (bounds[0], bounds[n - 1]) = (Bound::Fixed(1.0), Bound::Fixed(1.001));
-    let chain = inequality::<f32>(sparse(&dense), &vec![0.0; n], bounds);
-    let solution = ActiveSet::default().solve(&chain);
-    let certificate = certify(&chain, &solution.values);
-    assert!(certificate.largest() > 1e-4, "{certificate:?}");
-    assert_eq!(solution.outcome, Outcome::Stalled);
-}
