@@ -37,7 +37,7 @@ pub(crate) struct DirectSolver<'a, T> {
 /// The factors of a matrix on the inactive unknowns.
 enum InactiveFactors<T> {
     Assembled(Factors<T>),
-    Condensed(CondensedFactors<T>),
+    Condensed(Box<CondensedFactors<T>>),
 }
 
 /// The sizes of a correction of values and jump multipliers.
@@ -197,7 +197,7 @@ impl<T: Real> LinearSolver<T> for DirectSolver<'_, T> {
         self.factors = Some(match &self.condensation {
             Some(condensation) => {
                 let is_inactive: Vec<bool> = eliminated.iter().map(|&e| !e).collect();
-                InactiveFactors::Condensed(condensation.factor(&is_inactive)?)
+                InactiveFactors::Condensed(Box::new(condensation.factor(&is_inactive)?))
             }
             None => InactiveFactors::Assembled(self.factor()?),
         });

@@ -52,7 +52,7 @@ pub(crate) enum NewtonFactors<T> {
     /// Factors of the assembled matrix.
     Assembled(Factors<T>),
     /// Factors of the penalised matrix by static condensation.
-    Condensed(CondensedFactors<T>),
+    Condensed(Box<CondensedFactors<T>>),
 }
 
 impl<'h, 'a, T: Real> NewtonSystem<'h, 'a, T> {
@@ -89,7 +89,7 @@ impl<'h, 'a, T: Real> NewtonSystem<'h, 'a, T> {
         if let Some(condensation) = self.condensation {
             return condensation
                 .factor_shifted(&self.is_free, diagonal)
-                .map(NewtonFactors::Condensed);
+                .map(|factors| NewtonFactors::Condensed(Box::new(factors)));
         }
         let factors = if self.inequality.symmetric {
             let triangle = match &mut self.lower_triangle {
