@@ -15,6 +15,13 @@ pub struct DirichletEnergy {
     pub constant: f64,
 }
 
+impl DirichletEnergy {
+    /// Whether all terms belong to one of `size` unknowns.
+    pub fn is_well_formed(&self, size: usize) -> bool {
+        self.terms.iter().all(|term| (term.unknown as usize) < size)
+    }
+}
+
 /// What Dirichlet data contribute to one unknown.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DirichletTerm {

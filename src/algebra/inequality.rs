@@ -247,7 +247,7 @@ impl<T: Real> Inequality<T> {
         self
     }
     /// States that the matrix is positive definite on all unknowns that are not fixed, but for the
-    /// kernel: solvers then need not test it.
+    /// kernel: solvers do not test such a matrix.
     #[must_use]
     pub fn with_definite_matrix(mut self) -> Self {
         self.is_definite = true;
@@ -265,6 +265,7 @@ impl<T: Real> Inequality<T> {
     /// Whether matrix, load, bounds, penalised matrix and the supports, if there are any, have the same
     /// size, the two matrices are well formed, and the vertices of supports are among the points or,
     /// without points, below four times the number of unknowns: an array by vertices is not larger.
+    /// Entries of the kernel and terms of Dirichlet data belong to unknowns.
     pub fn is_well_formed(&self) -> bool {
         let n_vertices = if self.points.is_empty() { 4 * self.size() } else { self.points.len() };
         self.matrix.size() == self.size()
@@ -273,6 +274,15 @@ impl<T: Real> Inequality<T> {
             && self.penalised.as_ref().is_none_or(|p| p.is_well_formed(self.size()))
             && (self.supports.is_empty() || self.supports.len() == self.size())
             && self.supports.iter().flat_map(Support::vertices).all(|&v| (v as usize) < n_vertices)
+            && self.kernel.iter().all(|w| self.is_kernel_vector(w))
+            && self.dirichlet_energy.as_ref().is_none_or(|e| e.is_well_formed(self.size()))
+    }
+    /// Whether a vector given by its nonzero entries has one, and all belong to unknowns.
+    fn is_kernel_vector(&self, entries: &[(u32, T)]) -> bool {
+        let is_valid = |&(i, value): &(u32, T)| {
+            (i as usize) < self.size() && value.to_f64().is_finite() && value != T::lit(0.0)
+        };
+        !entries.is_empty() && entries.iter().all(is_valid)
     }
     /// The node of each unknown, the barycentre of the vertices of its support; `None` if a support or
     /// the coordinates of a vertex are unknown.

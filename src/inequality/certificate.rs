@@ -9,10 +9,11 @@ use crate::real::Real;
 ///
 /// Notation: `r = A u - b`; `d` the diagonal of `A`; `E` the energy norm of the solution, with its
 /// Dirichlet data subtracted where they are imposed weakly
-/// ([`DirichletEnergy`](crate::algebra::DirichletEnergy)); `v_i` the admissible value nearest to `u_i`; `U` the largest of all `|u_i|` and
-/// `|v_i|`; the gap the distance of `u_i` from the nearer bound; the step `s_i = r_i / d_i`, its
-/// sign reversed if the upper bound is nearer: a Gauss-Seidel correction towards this bound. An
-/// unknown counts as active if its gap is at most `|s_i|`. No contact state of a solver enters.
+/// ([`DirichletEnergy`](crate::algebra::DirichletEnergy)); `v_i` the admissible value nearest to
+/// `u_i`; `U` the largest of all `|u_i|` and `|v_i|`; the gap the distance of `u_i` from the nearer
+/// bound; the step `s_i = r_i / d_i`, its sign reversed if the upper bound is nearer: a Gauss-Seidel
+/// correction towards this bound. An unknown counts as active if its gap is at most `|s_i|`. No
+/// contact state of a solver enters.
 ///
 /// Reasons for these scalings. *Violations of bounds* (`feasibility`) are relative to `U`: by the
 /// comparison principle a violation of a bound by `g` changes the solution by `g` at most. Bounds
@@ -135,13 +136,13 @@ pub(crate) fn certify_with_rounding<T: Real>(
     let bounds = &inequality.bounds;
     let mut r = vec![0.0; n];
     let mismatch = residual_and_mismatch(inequality, u, jump_multipliers, &mut r);
-    let diagonal = |i: usize| positive_diagonal(inequality, i);
-    let unit = unit(inequality, u, &r);
-    let scales = Scales::of(inequality, u, &r, jump_multipliers, &diagonal, unit);
+    let diagonal: Vec<f64> = (0..n).map(|i| positive_diagonal(inequality, i)).collect();
+    let unit = unit(bounds, u, &r, &diagonal);
+    let scales = Scales::of(inequality, u, &r, jump_multipliers, &|i| diagonal[i], unit);
     let [mut multiplier, mut complementarity, mut residual, mut stiffness] = [0.0_f64; 4];
     let mut violation = 0.0_f64;
     for i in 0..n {
-        let d = diagonal(i);
+        let d = diagonal[i];
         stiffness += d;
         let local = LocalViolation::new(&bounds[i], u[i].to_f64(), -r[i] / d);
         violation = violation.max(local.feasibility);
@@ -166,10 +167,10 @@ pub(crate) fn certify_with_rounding<T: Real>(
 
 /// A power of two near the largest of all values, admissible values and Jacobi corrections; one if all
 /// are zero or one is not finite.
-fn unit<T: Real>(inequality: &Inequality<T>, u: &[T], r: &[f64]) -> f64 {
+fn unit<T: Real>(bounds: &[Bound<T>], u: &[T], r: &[f64], diagonal: &[f64]) -> f64 {
     let size = |i: usize| {
-        let nearest = inequality.bounds[i].nearest(u[i]).to_f64().abs();
-        u[i].to_f64().abs().max(nearest).max(r[i].abs() / positive_diagonal(inequality, i))
+        let nearest = bounds[i].nearest(u[i]).to_f64().abs();
+        u[i].to_f64().abs().max(nearest).max(r[i].abs() / diagonal[i])
     };
     let largest = (0..u.len()).map(size).fold(0.0, f64::max);
     if largest > 0.0 && largest.is_finite() { largest.log2().floor().exp2() } else { 1.0 }

@@ -13,8 +13,8 @@ use crate::real::Real;
 /// symmetric positive definite matrix, divided by the energy norm of the values. It needs one
 /// factorisation of the matrix on all unknowns that are not fixed.
 ///
-/// The values are first projected onto the bounds, to `v`; the energy norm of this change is part of the
-/// bound. Then let `m_i = (A v - b)_i` where `v_i` is at a bound and `m_i` has the right sign there, or where
+/// Let `v` be the projection of the values onto the bounds; the energy norm of the difference of `v` and
+/// the values is part of the bound. Let `m_i = (A v - b)_i` where `v_i` is at a bound and `m_i` has the right sign there, or where
 /// `i` is fixed; zero elsewhere. With `e` the difference of the solution and `v`, both admissible,
 /// `||e||_A^2 <= e . (b + m - A v)`, because `e . m >= 0`; hence `||e||_A^2 <= r . inv(A) r` with the
 /// residual `r = b + m - A v` on the unknowns that are not fixed. Nothing is assumed of the active set.

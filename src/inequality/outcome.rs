@@ -58,9 +58,6 @@ impl Outcome {
             Outcome::OutOfMemory => "out-of-memory",
         }
     }
-}
-
-impl Outcome {
     /// What the outcome says, in one sentence.
     #[must_use]
     pub fn message(self) -> &'static str {

@@ -10,7 +10,7 @@
 //! (1967) 493-519, section 5.)
 
 use super::{Outcome, Solution};
-use crate::algebra::{Bound, Contact, Inequality};
+use crate::algebra::{Bound, Inequality};
 use crate::real::Real;
 
 /// The multiple of machine epsilon times the sum of the absolute values of its terms below which a
@@ -35,37 +35,31 @@ pub(crate) fn solve_with_kernel<T: Real>(
     inequality: &Inequality<T>,
     solve: impl FnOnce(&Inequality<T>) -> Solution<T>,
 ) -> Solution<T> {
-    let is_consistent = inequality.is_well_formed() && has_valid_kernel(inequality);
-    if inequality.kernel.is_empty() || !is_consistent {
+    // a solver names the fault of an inequality that is not well formed
+    if inequality.kernel.is_empty() || !inequality.is_well_formed() {
         return solve(inequality);
     }
     let motions: Vec<Motion> = inequality.kernel.iter().map(|w| motion(inequality, w)).collect();
     if motions.iter().any(|motion| matches!(motion, Motion::Unbounded)) {
-        let values: Vec<T> =
-            inequality.bounds.iter().map(|bound| bound.nearest(T::lit(0.0))).collect();
-        let contact = vec![Contact::Inactive; values.len()];
-        return Solution::new(values, contact, Outcome::NoSolution);
+        return Solution::without_iterate(inequality, Outcome::NoSolution);
     }
-    let is_balanced = |motion: &Motion| matches!(motion, Motion::Balanced);
-    let balanced: Vec<&Vec<(u32, T)>> = inequality
-        .kernel
-        .iter()
-        .zip(&motions)
-        .filter(|(_, m)| is_balanced(m))
-        .map(|(w, _)| w)
+    let of_kernel = inequality.kernel.iter().zip(&motions);
+    let balanced: Vec<&[(u32, T)]> = of_kernel
+        .filter(|(_, motion)| matches!(motion, Motion::Balanced))
+        .map(|(w, _)| w.as_slice())
         .collect();
     if balanced.is_empty() {
         return solve(inequality);
     }
-    let mut held = inequality.clone();
-    held.kernel.clear();
+    let mut fixed = inequality.clone();
+    fixed.kernel.clear();
     for kernel_vector in &balanced {
         for &(i, _) in *kernel_vector {
-            held.bounds[i as usize] = Bound::Free;
+            fixed.bounds[i as usize] = Bound::Free;
         }
-        held.bounds[kernel_vector[0].0 as usize] = Bound::Fixed(T::lit(0.0));
+        fixed.bounds[kernel_vector[0].0 as usize] = Bound::Fixed(T::lit(0.0));
     }
-    let mut solution = solve(&held);
+    let mut solution = solve(&fixed);
     if solution.outcome == Outcome::Converged {
         for kernel_vector in balanced {
             move_within_bounds(inequality, kernel_vector, &mut solution.values);
@@ -74,13 +68,6 @@ pub(crate) fn solve_with_kernel<T: Real>(
         solution.algebraic_bound = None;
     }
     solution
-}
-
-fn has_valid_kernel<T: Real>(inequality: &Inequality<T>) -> bool {
-    let is_valid = |&(i, value): &(u32, T)| {
-        (i as usize) < inequality.size() && value.to_f64().is_finite() && value != T::lit(0.0)
-    };
-    inequality.kernel.iter().all(|w| !w.is_empty() && w.iter().all(is_valid))
 }
 
 fn motion<T: Real>(inequality: &Inequality<T>, kernel_vector: &[(u32, T)]) -> Motion {

@@ -2,7 +2,8 @@
 
 use super::Outcome;
 use super::stage::StageRun;
-use crate::algebra::Contact;
+use crate::algebra::{Bound, Contact, Inequality};
+use crate::real::Real;
 
 /// The result of a solver of an inequality.
 #[derive(Clone, Debug, PartialEq)]
@@ -57,6 +58,17 @@ impl<T> Solution<T> {
             jump_multipliers: Vec::new(),
             stages: Vec::new(),
         }
+    }
+    /// The result of a solve that ends before the first iterate: the admissible values nearest to zero,
+    /// none of them active.
+    pub(crate) fn without_iterate(inequality: &Inequality<T>, outcome: Outcome) -> Self
+    where
+        T: Real,
+    {
+        let nearest = |bound: &Bound<T>| bound.nearest(T::lit(0.0));
+        let values: Vec<T> = inequality.bounds.iter().map(nearest).collect();
+        let contact = vec![Contact::Inactive; values.len()];
+        Self::new(values, contact, outcome)
     }
     /// Sets the numbers of outer iterations and of iterations of the linear solver.
     #[must_use]

@@ -262,9 +262,7 @@ impl<'a, T: Real, const D: usize> NestedIteration<'a, T, D> {
                 // the solver says so itself, where it gets that far
                 Err(Outcome::OutOfMemory) => {}
                 Err(outcome) => {
-                    let values = vec![T::lit(0.0); inequality.size()];
-                    let contact = vec![Contact::Inactive; inequality.size()];
-                    let solution = Solution::new(values, contact, outcome);
+                    let solution = Solution::without_iterate(inequality, outcome);
                     return (solution, clock.elapsed().as_secs_f64());
                 }
             }

@@ -120,3 +120,19 @@ fn each_component_is_tested() {
         }
     }
 }
+
+#[test]
+fn entries_of_the_kernel_and_of_data_belong_to_unknowns() {
+    use unilateral::algebra::{DirichletEnergy, DirichletTerm};
+    use unilateral::inequality::{ActiveSet, InequalitySolver};
+    let good = crate::problems::membrane::<f64>(3, 1.0, |_, _| -1.0);
+    let outcome = |inequality| ActiveSet::default().solve(&inequality).outcome;
+    assert_eq!(outcome(good.clone()), Outcome::Converged);
+    for kernel in [vec![(9, 1.0)], vec![(0, 0.0)], vec![(0, f64::NAN)], vec![]] {
+        assert_eq!(outcome(good.clone().with_kernel(vec![kernel])), Outcome::Malformed);
+    }
+    let mut beyond = good;
+    let terms = vec![DirichletTerm { unknown: 9, load: 1.0, linear: 2.0 }];
+    beyond.dirichlet_energy = Some(DirichletEnergy { terms, constant: 1.0 });
+    assert_eq!(outcome(beyond), Outcome::Malformed);
+}

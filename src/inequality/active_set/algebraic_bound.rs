@@ -2,7 +2,6 @@
 
 use super::iterate::Iterate;
 use super::preconditioned_solver::PreconditionedSolver;
-use crate::algebra::Contact;
 use crate::parallel::vectors::{dot, zeros};
 use crate::real::Real;
 
@@ -50,13 +49,7 @@ impl<T: Real> PreconditionedSolver<'_, T> {
     ///    that are neither fixed nor strongly active, a larger set with a smaller eigenvalue at most:
     ///    that the factor covers this difference too is assumed.
     pub(crate) fn error_bound(&mut self, iterate: &mut Iterate<'_, T>) -> Option<f64> {
-        let mut is_changed = false;
-        for (value, bound) in iterate.values.iter_mut().zip(&iterate.inequality.bounds) {
-            let nearest = bound.nearest(*value);
-            is_changed |= nearest != *value;
-            *value = nearest;
-        }
-        if is_changed {
+        if iterate.project_onto_bounds() {
             iterate.compute_residual();
         }
         let sqrt_eigenvalue = (EIGENVALUE_TO_RITZ_VALUE * self.smallest_ritz_value).sqrt();
@@ -80,11 +73,7 @@ impl<T: Real> PreconditionedSolver<'_, T> {
         let mut eliminated = vec![false; iterate.values.len()];
         for (i, bound) in iterate.inequality.bounds.iter().enumerate() {
             let residual = iterate.residual[i];
-            let multiplier = match iterate.states[i] {
-                Contact::Inactive => f64::NEG_INFINITY,
-                Contact::Lower => -residual,
-                Contact::Upper => residual,
-            };
+            let multiplier = iterate.multiplier(i).unwrap_or(f64::NEG_INFINITY);
             let is_fixed = bound.fixed_value().is_some();
             if !is_fixed && multiplier < 0.0 {
                 unbalanced[i] = T::lit(residual);

@@ -3,7 +3,7 @@
 
 use super::iterate::Iterate;
 use super::linear_solver::{Accuracy, LinearFailure, LinearSolver};
-use crate::algebra::{Contact, Inequality, PenalisedMatrix};
+use crate::algebra::{Inequality, PenalisedMatrix};
 use crate::linear::direct::{CondensedFactors, StaticCondensation};
 use crate::linear::direct::{EliminationOrder, FactorError, Factors};
 use crate::real::Real;
@@ -141,21 +141,15 @@ impl<T: Real> DirectSolver<'_, T> {
         if !self.inequality.symmetric {
             return None;
         }
-        for (value, bound) in iterate.values.iter_mut().zip(&self.inequality.bounds) {
-            *value = bound.nearest(*value);
-        }
+        iterate.project_onto_bounds();
         let error = self.correction_energy(iterate)?.max(0.0).sqrt();
-        let Iterate { states, residual, diagonal, .. } = &*iterate;
         let is_strongly_active = |i: usize| {
-            let multiplier = match states[i] {
-                Contact::Inactive => return true,
-                Contact::Lower => -residual[i],
-                Contact::Upper => residual[i],
-            };
+            let least = iterate.diagonal[i].sqrt() * error;
             self.inequality.bounds[i].fixed_value().is_some()
-                || multiplier > diagonal[i].sqrt() * error
+                || iterate.multiplier(i).is_none_or(|multiplier| multiplier > least)
         };
-        (0..states.len()).all(is_strongly_active).then(|| error / iterate.energy_norm)
+        let all = (0..iterate.states.len()).all(is_strongly_active);
+        all.then(|| error / iterate.energy_norm)
     }
 
     /// The energy of the next correction, which is not made. The residual is then that of the values.

@@ -136,6 +136,28 @@ impl<'a, T: Real> Iterate<'a, T> {
         self.residual_is_current = true;
     }
 
+    /// Replaces the values by the nearest admissible ones; returns whether one changed.
+    pub fn project_onto_bounds(&mut self) -> bool {
+        let mut is_changed = false;
+        for (value, bound) in self.values.iter_mut().zip(&self.inequality.bounds) {
+            let nearest = bound.nearest(*value);
+            is_changed |= nearest != *value;
+            *value = nearest;
+        }
+        self.residual_is_current &= !is_changed;
+        is_changed
+    }
+
+    /// The multiplier of an active unknown, not negative if its sign is right; `None` if the unknown is
+    /// inactive.
+    pub fn multiplier(&self, i: usize) -> Option<f64> {
+        match self.states[i] {
+            Contact::Inactive => None,
+            Contact::Lower => Some(-self.residual[i]),
+            Contact::Upper => Some(self.residual[i]),
+        }
+    }
+
     /// Keeps the iterate as the best one if its merit is the smallest so far; returns whether it is.
     pub fn keep_if_best(&mut self, merit: f64) -> bool {
         let is_best = merit < self.best.merit;

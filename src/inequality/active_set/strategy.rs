@@ -102,8 +102,7 @@ pub(crate) fn solve<T: Real>(
         _ => &[],
     };
     if let Err(outcome) = check(settings, inequality, is_preconditioned) {
-        let values = inequality.bounds.iter().map(|bound| bound.nearest(T::lit(0.0))).collect();
-        return Solution::new(values, vec![Default::default(); inequality.bounds.len()], outcome);
+        return Solution::without_iterate(inequality, outcome);
     }
     let mut solve = Solve {
         settings,

@@ -173,9 +173,7 @@ impl<T: Real> Factors<T> {
     /// pivot that is not positive.
     fn try_cholesky(lower: &Submatrix<T>, symbolic: &SymbolicFactor) -> Result<Self, FactorError> {
         let (a, symbolic) = (transpose_view(lower), symbolic.symbolic_cholesky());
-        let mut values = Vec::new();
-        values.try_reserve_exact(symbolic.len_val()).map_err(|_| FactorError::OutOfMemory)?;
-        values.resize(symbolic.len_val(), T::lit(0.0));
+        let mut values = zero_values(&symbolic)?;
         let scratch = symbolic.factorize_numeric_llt_scratch::<T>(PAR, Default::default());
         let mut memory = MemBuffer::try_new(scratch).map_err(|_| FactorError::OutOfMemory)?;
         kernels::cholesky(&symbolic, a, &mut values, MemStack::new(&mut memory))
@@ -204,9 +202,7 @@ impl<T: Real> Factors<T> {
             return Ok(Self { size: 0, factorisation: Factorisation::Empty });
         }
         let (a, symbolic) = (transpose_view(lower), symbolic.symbolic_cholesky());
-        let mut values = Vec::new();
-        values.try_reserve_exact(symbolic.len_val()).map_err(|_| FactorError::OutOfMemory)?;
-        values.resize(symbolic.len_val(), T::lit(0.0));
+        let mut values = zero_values(&symbolic)?;
         let scratch = symbolic.factorize_numeric_ldlt_scratch::<T>(PAR, Default::default());
         let mut memory = MemBuffer::try_new(scratch).map_err(|_| FactorError::OutOfMemory)?;
         kernels::quasidefinite(&symbolic, a, &mut values, MemStack::new(&mut memory))
@@ -269,6 +265,17 @@ impl<T: Real> Factors<T> {
         // The comparison is false for numbers that are not finite.
         x.iter().all(|x| x.to_f64().abs() * PIVOT_TOLERANCE * T::EPSILON < 1.0)
     }
+}
+
+/// Zeros for the values of a factor.
+///
+/// # Errors
+/// [`FactorError::OutOfMemory`].
+fn zero_values<T: Real>(symbolic: &SymbolicCholesky<u32>) -> Result<Vec<T>, FactorError> {
+    let mut values = Vec::new();
+    values.try_reserve_exact(symbolic.len_val()).map_err(|_| FactorError::OutOfMemory)?;
+    values.resize(symbolic.len_val(), T::lit(0.0));
+    Ok(values)
 }
 
 /// Whether a matrix is positive definite on the unknowns `free` (ascending): whether its symmetric
