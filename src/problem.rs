@@ -40,7 +40,7 @@ pub enum Datum<const D: usize> {
     /// A function of space that may jump, or have a kink, where `level` changes its sign. Cells that
     /// the zero set of `level` cuts are divided along it, see [`Problem::piecewise_source`].
     Piecewise {
-        /// The function, whose value on the zero set itself is never asked for but by rounding.
+        /// The function. No point of a rule lies on the zero set of `level`, except by rounding.
         value: Field<D>,
         /// Positive on one side, negative on the other.
         level: Field<D>,

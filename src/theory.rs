@@ -38,7 +38,7 @@ pub struct Regularity {
     /// Gap and multiplier do not vanish together on a set of positive measure.
     pub strictly_complementary: bool,
     /// Up to which order the coefficient, where the problem has one, has bounded derivatives in every
-    /// cell. One, unless more is stated: a function does not tell.
+    /// cell. One unless a problem states more: a function given by its values does not show its order.
     pub coefficient: f64,
 }
 

@@ -4,7 +4,8 @@
 //! `matrix`: compressed sparse rows. `rectangular_matrix`: prolongations in compressed sparse rows, and
 //! `P^T A P`.
 //! `submatrix`: rows and columns of a matrix. `penalised_matrix`: `K + M^T S M`. `dense`: small dense
-//! matrices. `dirichlet_energy`: what weak data change in an energy. `inequality`: bounds, supports of unknowns and the inequality. `index`: the missing index.
+//! matrices. `dirichlet_energy`: what weak data change in an energy. `inequality`: bounds, supports of
+//! unknowns and the inequality. `index`: the missing index.
 
 pub(crate) mod dense;
 mod dirichlet_energy;

@@ -164,8 +164,8 @@ impl CutRule {
         })
     }
 
-    /// The rule on the pieces into which the zeros on the edges of a part divide it. `signs` are those of
-    /// the function at its corners, zero at zeros found.
+    /// The rule on the parts into which the zeros of the function on the edges of `part` divide `part`.
+    /// `signs` are the signs of the function at the corners of `part`, zero at corners that are zeros.
     fn divide<const D: usize>(
         &self,
         part: &Part,
@@ -180,7 +180,7 @@ impl CutRule {
         let (Some(i), Some(j)) = (positive, negative) else {
             let Some(apex) = positive.or(negative) else { return };
             let corner = part.corners[apex];
-            // a point beyond a curved zero set moves to the side of its piece
+            // a point beyond a curved zero set moves back to the side of its part
             self.visit_uncut(part, &mut |point, weight| {
                 let to = |r: f64| between(point, &corner, r);
                 let at = |r: f64| level(&in_space(&to(r), corners));
@@ -198,19 +198,20 @@ impl CutRule {
         let r = zero_between(|r| level(&in_space(&between(&from, &to, r), corners)));
         let r = r.unwrap_or(0.5);
         for (replaced, share) in [(i, r), (j, 1.0 - r)] {
-            let mut piece = Part { share: share * part.share, ..*part };
+            let mut divided = Part { share: share * part.share, ..*part };
             let mut signs = signs;
-            piece.corners[replaced] = between(&from, &to, r);
+            divided.corners[replaced] = between(&from, &to, r);
             signs[replaced] = 0;
-            self.divide(&piece, signs, corners, level, visit);
+            self.divide(&divided, signs, corners, level, visit);
         }
     }
 
-    /// Moves what lies between the facet opposite a corner and the zero set to its side: by pairs of points
-    /// on both sides of the zero set, whose weights are the distance and its opposite.
+    /// Assigns the region between the facet opposite the corner `apex` and the zero set to the side of the
+    /// zero set on which the region lies: by pairs of points on both sides, with the distance from the
+    /// facet to the zero set as the weight of one point and its negative as that of the other.
     fn correct<const D: usize>(
         &self,
-        piece: &Part,
+        part: &Part,
         apex: usize,
         corners: &[Point<f64, D>; 4],
         level: &Field<D>,
@@ -220,14 +221,14 @@ impl CutRule {
             return;
         }
         for (point, weight) in self.facet.iter() {
-            let on_facet = piece.point(&facet_to_cell(point, apex));
+            let on_facet = part.point(&facet_to_cell(point, apex));
             // twice as far on the side of the corner and beyond
-            let end = |r: f64| between(&on_facet, &piece.corners[apex], r);
+            let end = |r: f64| between(&on_facet, &part.corners[apex], r);
             let along = |r: f64| level(&in_space(&end(2.0 * r - 1.0), corners));
             let Some(zero) = zero_between(along) else { continue };
             let distance = 2.0 * zero - 1.0;
-            // a facet moved by the whole way to the corner sweeps D times the piece
-            let weight = weight * distance * self.dimension as f64 * piece.share;
+            // a facet moved by the whole way to the corner sweeps D times the part
+            let weight = weight * distance * self.dimension as f64 * part.share;
             visit(&end(distance - BESIDE), weight);
             visit(&end(distance + BESIDE), -weight);
         }

@@ -6,13 +6,13 @@ use crate::real::Real;
 /// The degree of the polynomials that jumps are lifted to.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Lifts {
-    /// One less than that of the element, the least for which the form is consistent: D. N. Arnold,
+    /// The degree of the element less one, the least for which the form is consistent: D. N. Arnold,
     /// F. Brezzi, B. Cockburn, L. D. Marini, SIAM J. Numer. Anal. 39 (2002), 1749-1779. A penalty made
     /// of such lifts sees the moments of jumps up to this degree only, on linears their means; what
     /// remains of a jump is bounded by the gradient on either side, so that orders stand.
     #[default]
     Reduced,
-    /// That of the element: a penalty made of such lifts bounds the whole jump, on which the proofs of
+    /// The degree of the element: a penalty made of such lifts bounds the whole jump, on which the proofs of
     /// F. Wang, W. Han, X.-L. Cheng, SIAM J. Numer. Anal. 48 (2010), 708-733 rest.
     Full,
 }

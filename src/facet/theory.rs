@@ -14,8 +14,8 @@ pub struct FormTheory<'f, T: Real, const D: usize> {
     /// The factors in force, for reports.
     pub parameters: PenaltyParameters,
     /// Whether theory proves the form coercive, for a reaction that is not negative and with penalties of
-    /// at least `least_penalty` where there is one. Where it does not, the matrix is tested before an
-    /// inequality is solved, since a solution does not show that its matrix is indefinite.
+    /// at least `least_penalty` where there is one. The matrix of a form without such a proof is tested
+    /// before an inequality is solved: a solution does not show that its matrix is indefinite.
     pub is_coercive: bool,
     /// The least weight with which the form is provably coercive; none if its weights are positive and
     /// need no bound, or are chosen by that very bound.

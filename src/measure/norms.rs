@@ -21,8 +21,9 @@ use crate::quadrature::Rule;
 use crate::real::{Point, Real, point_f64};
 
 /// Degree of the rule for error norms: the exact solution is not polynomial, and the rule must not
-/// limit what it measures. Cells that the exact free boundary or a jump of the load cuts are divided. For basis functions of degree `b` it is at least `2 b + 2`, the degree of the
-/// square of the largest part of the error.
+/// limit what it measures. Cells that the exact free boundary or a jump of the load cuts are divided. For
+/// basis functions of degree `b` the degree of the rule is at least `2 b + 2`, that of the square of the
+/// largest part of the error.
 const fn error_degree(dimension: usize) -> usize {
     match dimension {
         1 | 2 => 19,

@@ -39,8 +39,8 @@ pub(crate) fn energy_order(setting: &Setting, degree: usize) -> ExpectedOrders {
     ExpectedOrders { l2: None, h1: most.filter(|_| s > 1.5).map(order) }
 }
 
-/// What [`energy_order`] says, for schemes whose functions jump. Under an inequality their proofs ask for solutions in
-/// `H^2`, and those for Signorini conditions cover linears only.
+/// The orders of [`energy_order`] for schemes whose functions jump. Under an inequality the proofs for
+/// these schemes ask for solutions in `H^2`, and the proofs for Signorini conditions cover linears only.
 pub(crate) fn broken_energy_order(setting: &Setting, degree: usize) -> ExpectedOrders {
     let is_smooth = setting.regularity.sobolev >= 2.0;
     let covered = is_smooth && (degree == 1 || !setting.contact);

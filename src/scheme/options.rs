@@ -10,8 +10,8 @@ use crate::facet::{Lifts, WeightRule};
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct SchemeOptions {
     /// A multiple of the scheme's own scale: of the proven bound of the form for interior penalties, for
-    /// NIPG of that of the symmetric form, of the number of facets of a cell for BR2, of one for BMMPR, of the diameter of the
-    /// domain to the power `2k` for WOPSIP. The scheme's own choice where absent.
+    /// NIPG of the bound of the symmetric form, of the number of facets of a cell for BR2, of one for
+    /// BMMPR, of the diameter of the domain to the power `2k` for WOPSIP. The scheme's own choice where absent.
     pub factor: Option<f64>,
     /// WOPSIP factor as it stands; the dimensionless default where absent.
     pub eta: Option<f64>,

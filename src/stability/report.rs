@@ -167,7 +167,8 @@ impl StabilityReport {
         self.markdown_with(&self.tables())
     }
 
-    /// The same without the rows: verdicts, what was missed, the criteria in words.
+    /// A summary in Markdown without the rows: verdicts, limits that were missed, criteria in words,
+    /// provenance and notes.
     pub fn summary_to_markdown(&self) -> String {
         let mut tables = vec![by_scheme(&self.rows), by_criterion(&self.rows)];
         tables.extend(missed(&self.rows));

@@ -67,7 +67,7 @@ pub(crate) fn short(x: f64) -> String {
     with_digits(x, 0)
 }
 
-/// The same with so many digits more.
+/// A number in three digits and some `more`, without a power of ten where the number needs none.
 fn with_digits(x: f64, more: usize) -> String {
     match x.abs() {
         0.0 => "0".to_owned(),

@@ -21,7 +21,8 @@ pub(super) fn left_to_process() -> Option<u64> {
     below_limits(&limits?, &status?, rayon::current_num_threads() as u64 * PER_THREAD)
 }
 
-/// The same from the texts of `limits` and `status`, and the address space that is reserved besides.
+/// The memory below the limits, in bytes, from the texts of the files `limits` and `status` of a process;
+/// `reserved` bytes of address space count as used.
 fn below_limits(limits: &str, status: &str, reserved: u64) -> Option<u64> {
     let left = |&(limit, used, reserved): &(&str, &str, u64)| {
         let rest = limits.lines().find_map(|line| line.strip_prefix(limit))?;
@@ -40,7 +41,8 @@ pub(super) fn left_to_group() -> Option<u64> {
     below_groups(Path::new("/sys/fs/cgroup"), &groups)
 }
 
-/// The same from the folder of control groups and the text that names those of a process: lines
+/// The memory left to control groups, in bytes, from the folder of all groups and the text that names
+/// the groups of a process: lines
 /// `0::GROUP` of version 2, `NUMBER:CONTROLLERS:GROUP` of version 1.
 fn below_groups(folder: &Path, groups: &str) -> Option<u64> {
     let of_line = |line: &str| {

@@ -261,9 +261,9 @@ impl Report {
             .collect()
     }
 
-    /// Tests every promise of theory: an order fitted over all levels of a scheme on a scene that
-    /// converged, at least four, may fall below the promised one by at most the tolerance and half
-    /// its spread. Where nothing is promised, nothing is tested; a promise that cannot be tested is
+    /// Tests every promise of theory. An order is fitted over the levels on which a scheme converged on a
+    /// scene, at least four; the fitted order may fall below the promised order by at most the tolerance
+    /// and half the spread of the fit. Where nothing is promised, nothing is tested; a promise that cannot be tested is
     /// missed.
     ///
     /// ```

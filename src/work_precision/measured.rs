@@ -77,8 +77,8 @@ pub struct Measured {
     pub smallest: Phases,
     /// The run whose total is in the middle, of two in the middle the slower.
     pub median: Phases,
-    /// The total of the median over the smallest: how far the usual run is from the fastest, which one
-    /// disturbed run does not change. None for a single run.
+    /// The total of the median run over that of the smallest: a measure of the spread that one disturbed
+    /// run does not change. None for a single run.
     pub median_over_least: Option<f64>,
     /// The largest total over the smallest. None for a single run.
     pub largest_over_least: Option<f64>,
