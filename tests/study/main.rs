@@ -1,5 +1,6 @@
 //! Studies and what they write: scenes, reports, tables, pictures, files of fields.
 
+mod journal;
 mod links;
 mod named_schemes;
 mod one_problem;
@@ -10,6 +11,7 @@ mod scenes;
 mod scratch;
 mod stability;
 mod tables;
+mod totals;
 mod vtu;
 mod work_precision;
 
