@@ -17,9 +17,13 @@
 
 mod datum;
 mod exact;
+mod named;
+mod on_mesh;
 
 pub use datum::{BoundaryFlux, Datum, Field, VectorField};
 pub use exact::{ContactSet, Exact, ReferenceEnergy};
+pub use named::NamedData;
+pub(crate) use on_mesh::{DataByGroup, DataOnMesh, DatumRef};
 
 use std::fmt;
 use std::sync::Arc;
@@ -50,6 +54,8 @@ pub struct Problem<const D: usize> {
     pub upper: Option<Field<D>>,
     /// Signorini gap `g` on the contact part.
     pub gap: Option<Field<D>>,
+    /// Data for named regions and boundary groups, which take precedence over those without a name.
+    pub named: NamedData<D>,
     /// Where obstacles and gap bind; at the [`Nodes`] of the element where absent.
     pub constraint_set: Option<Arc<dyn ConstraintSet>>,
     /// The exact solution.
@@ -70,6 +76,7 @@ impl<const D: usize> fmt::Debug for Problem<D> {
             lower,
             upper,
             gap,
+            named,
             constraint_set,
             exact,
             reference_energy,
@@ -91,6 +98,10 @@ impl<const D: usize> fmt::Debug for Problem<D> {
             if is_present {
                 out.field(name, &format_args!("Function(..)"));
             }
+        }
+        let names: Vec<&str> = named.names().map(|(name, _)| name).collect();
+        if !names.is_empty() {
+            out.field("named", &names);
         }
         if let Some(set) = constraint_set {
             out.field("constraint_set", &set.name());
@@ -272,19 +283,33 @@ impl<const D: usize> Problem<D> {
     }
     /// Whether the problem has an obstacle in the domain.
     pub fn has_obstacle(&self) -> bool {
-        self.lower.is_some() || self.upper.is_some()
+        self.lower.is_some()
+            || self.upper.is_some()
+            || !(self.named.lower.is_empty() && self.named.upper.is_empty())
+    }
+    /// Whether the problem has a Signorini condition on some part of the boundary.
+    pub fn has_gap(&self) -> bool {
+        self.gap.is_some() || !self.named.gap.is_empty()
+    }
+    /// Whether the problem has a diffusion coefficient other than one.
+    pub fn has_coefficient(&self) -> bool {
+        self.coefficient.is_some() || !self.named.coefficient.is_empty()
+    }
+    /// Whether the problem has a reaction term in some region.
+    pub fn has_reaction(&self) -> bool {
+        self.reaction.is_some() || !self.named.reaction.is_empty()
     }
     /// Whether the problem has an inequality constraint.
     pub fn is_constrained(&self) -> bool {
-        self.has_obstacle() || self.gap.is_some()
+        self.has_obstacle() || self.has_gap()
     }
     /// Whether Dirichlet data are given, by themselves or by the exact solution.
     pub fn has_dirichlet_data(&self) -> bool {
-        self.dirichlet.is_some() || self.exact.is_some()
+        self.dirichlet.is_some() || self.exact.is_some() || !self.named.dirichlet.is_empty()
     }
     /// Whether Neumann data are given, by themselves or by the exact solution.
     pub fn has_neumann_data(&self) -> bool {
-        self.neumann.is_some() || self.exact.is_some()
+        self.neumann.is_some() || self.exact.is_some() || !self.named.neumann.is_empty()
     }
 }
 
