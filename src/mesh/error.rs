@@ -124,7 +124,7 @@ pub enum MeshError {
     },
     /// A facet of the boundary is in no group.
     #[error(
-        "boundary facet {vertices:?} of cell {cell}, at {at}, is in no group: put it in one, of any name (dirichlet, neumann and contact say what holds there)"
+        "boundary facet {vertices:?} of cell {cell}, at {at}, is in no group: put it in one; the names dirichlet, neumann, contact say what holds there, for other names a problem does"
     )]
     UntaggedFacet {
         /// Vertices of the facet.

@@ -19,6 +19,7 @@ mod facets;
 mod geometry;
 pub mod gmsh;
 mod groups;
+mod names;
 mod overlap;
 mod refine;
 mod simplicial;
@@ -27,6 +28,8 @@ mod validate;
 
 pub use boundary::{BoundaryFacet, BoundaryPart};
 pub(crate) use components::Components;
+#[cfg(feature = "problem-files")]
+pub(crate) use domain::SIDES;
 pub use domain::{BoxDomain, Domain};
 #[doc(hidden)]
 pub use edges::Edges;
