@@ -132,6 +132,28 @@ pub enum Error {
         #[source]
         why: Box<dyn std::error::Error + Send + Sync>,
     },
+    /// A file could not be read.
+    #[error("cannot read {path}: {why}")]
+    Read {
+        /// The file.
+        path: String,
+        /// The cause: an [`std::io::Error`] where the operating system refuses, otherwise what the
+        /// parser says.
+        #[source]
+        why: Box<dyn std::error::Error + Send + Sync>,
+    },
+    /// A report is taken up by a run that asks for something else.
+    #[error(
+        "{path} has the report of another request: it has {found}, this run has {wanted}; repeat that request or choose another directory"
+    )]
+    OtherRequest {
+        /// The directory.
+        path: String,
+        /// What the report has and the run has not.
+        found: String,
+        /// What the run has and the report has not.
+        wanted: String,
+    },
 }
 
 debug_by_display!(Error);
@@ -143,6 +165,15 @@ pub(crate) fn write_error(
     why: impl Into<Box<dyn std::error::Error + Send + Sync>>,
 ) -> Error {
     Error::Write { path: path.display().to_string(), why: why.into() }
+}
+
+/// The error of a file that could not be read: from an [`std::io::Error`] or from a parser.
+#[cfg(feature = "report")]
+pub(crate) fn read_error(
+    path: &std::path::Path,
+    why: impl Into<Box<dyn std::error::Error + Send + Sync>>,
+) -> Error {
+    Error::Read { path: path.display().to_string(), why: why.into() }
 }
 
 #[cfg(test)]

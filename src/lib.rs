@@ -14,6 +14,8 @@ pub mod constraint;
 pub mod element;
 pub mod error;
 pub mod facet;
+#[cfg(feature = "report")]
+mod files;
 pub mod guide;
 pub mod inequality;
 pub mod input;

@@ -34,7 +34,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
 
     /// Source and Neumann data tested with each cell's basis functions; empty if neither they nor
     /// weak Dirichlet data are there.
-    fn load_by_cell(&self) -> Result<Vec<T>, Error> {
+    pub fn load_by_cell(&self) -> Result<Vec<T>, Error> {
         let flux = self.problem.has_neumann_data() && self.mesh.has_part(BoundaryPart::Neumann);
         let source = &self.data.source;
         if !source.is_given() && !self.has_weak_data() && !flux {

@@ -1,6 +1,7 @@
 //! Measures of a discrete solution: error norms, multiplier, contact set, free boundary, fields.
 
 mod contact;
+mod energy;
 mod error_norm;
 mod errors;
 mod evaluation;

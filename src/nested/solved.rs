@@ -143,6 +143,27 @@ impl<'a, T: Real, const D: usize> Solved<'a, T, D> {
         let is_minimum = self.inequality.symmetric && self.has_iterate;
         is_minimum.then(|| self.inequality.objective(self.values()))
     }
+    /// The energy of the solution, by one formula for every scheme: see [`Discretisation::energy`]. None
+    /// without an iterate.
+    ///
+    /// # Errors
+    /// [`Error::DataNotFinite`].
+    pub fn energy(&self) -> Result<Option<f64>, Error> {
+        let energy = || self.discretisation.energy(self.values());
+        self.has_iterate.then(energy).transpose()
+    }
+    /// The measure of the discrete contact set: see [`Discretisation::contact_measure`]. None without an
+    /// inequality and without an iterate.
+    pub fn contact_measure(&self) -> Option<f64> {
+        let measure = || self.discretisation.contact_measure(&self.inequality, &self.solution);
+        self.has_iterate.then(measure).flatten()
+    }
+    /// The total contact force, positive where a lower bound pushes upward: see
+    /// [`Discretisation::resultant`]. None without an inequality and without an iterate.
+    pub fn resultant(&self) -> Option<f64> {
+        let resultant = || self.discretisation.resultant(&self.inequality, &self.solution);
+        self.has_iterate.then(resultant).flatten()
+    }
     /// The certificate: violations of the complementarity conditions.
     pub fn certificate(&self) -> Certificate {
         self.certificate

@@ -2,11 +2,9 @@
 
 pub(crate) mod csv;
 mod provenance;
-mod replace;
 mod report;
 pub(crate) mod table;
 
 pub use csv::to_csv;
 pub use provenance::Provenance;
-pub(crate) use replace::replace;
 pub use table::Table;

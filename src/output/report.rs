@@ -3,21 +3,13 @@
 use std::path::{Path, PathBuf};
 
 use super::csv;
-use crate::error::{Error, write_error};
+use crate::error::Error;
+use crate::files::replace;
 #[cfg(feature = "plot")]
 use crate::plot::{convergence, work_precision};
 use crate::study::Report;
 
 impl Report {
-    /// The report as JSON. Numbers that do not apply, and numbers that are not finite, are null.
-    pub fn to_json(&self) -> String {
-        // `serde_json` writes every NaN and infinity as null: JSON has no other way. The value is
-        // plain data with string keys, which is all it takes for the serialisation to succeed.
-        let mut text = serde_json::to_string_pretty(self).unwrap_or_else(|_| "null".to_owned());
-        text.push('\n');
-        text
-    }
-
     /// The rows as comma-separated values: see [`to_csv`](super::to_csv).
     pub fn to_csv(&self) -> String {
         csv::to_csv(&self.rows)
@@ -25,18 +17,16 @@ impl Report {
 
     /// Writes `report.json`, `report.csv` and the plots `convergence` and `work_precision`, each as
     /// `.svg` and `.png`, into a directory, which is made if need be. Returns the files in order.
-    /// Without the feature `plot` there are no plots.
+    /// Without the feature `plot` there are no plots. Each file is replaced as a whole: a reader never
+    /// sees a part of it.
     ///
     /// # Errors
     /// [`Error::Write`] at the first file that cannot be written.
     pub fn write(&self, directory: impl AsRef<Path>) -> Result<Vec<PathBuf>, Error> {
         let directory = directory.as_ref();
-        std::fs::create_dir_all(directory).map_err(|e| write_error(directory, e))?;
         let mut written = Vec::new();
         let mut put = |name: &str, file: &dyn Fn(&Path) -> Result<(), String>| {
-            let path = directory.join(name);
-            file(&path).map_err(|why| write_error(&path, why))?;
-            written.push(path);
+            written.push(replace(&directory.join(name), file)?);
             Ok::<(), Error>(())
         };
         let text =

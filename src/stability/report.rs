@@ -10,8 +10,9 @@ use super::plan::Effort;
 use super::row::{StabilityRow, Verdict, short};
 use super::summary::{by_criterion, by_scheme, criteria, missed, robust, safe_ranges};
 use crate::error::Error;
+use crate::files::replace;
 use crate::output::table::{Cell, latex, markdown};
-use crate::output::{Provenance, Table, csv, replace};
+use crate::output::{Provenance, Table, csv};
 use crate::study::Program;
 
 /// Notes before the tables.
@@ -250,7 +251,7 @@ impl StabilityReport {
             ("stability.tex", self.to_latex()),
         ];
         let put = |(name, text): (&str, String)| {
-            replace(&directory.join(name), |path| fs::write(path, text).map_err(|e| e.to_string()))
+            replace(&directory.join(name), |path| fs::write(path, text))
         };
         files.into_iter().map(put).collect()
     }

@@ -3,11 +3,11 @@
 use crate::assemble::{DataQuadrature, Discretisation};
 use crate::constraint::Nodes;
 use crate::error::Error;
-use crate::mesh::{BoundaryPart, Mesh, describe_point};
-use crate::problem::DataOnMesh;
-use crate::real::{Real, point_f64};
+use crate::mesh::{BoundaryPart, BoxDomain, Mesh, describe_point};
+use crate::problem::{DataOnMesh, Problem};
+use crate::real::{Point, Real, point_f64};
 use crate::scenes::Scene;
-use crate::scheme::{ConformingP1, NonconformingP1};
+use crate::scheme::{AnyScheme, ConformingP1, NonconformingP1};
 
 /// Checks that a mesh is compatible with a scene. Returns the barycentre of a facet on which the
 /// exact solution of the scene breaks the contact condition, or none.
@@ -52,6 +52,29 @@ fn check_data<T: Real, const D: usize>(scene: &Scene<D>, mesh: &Mesh<T, D>) -> R
         }
         other => other,
     })
+}
+
+/// Checks that an element can impose the inequality of a problem and that the facet form is made for the
+/// element, on a cube and without evaluation of data.
+///
+/// # Errors
+/// [`Error::NothingToBound`], [`Error::UnsupportedForm`], [`Error::Quadrature`].
+pub(super) fn check_scheme<T: Real, const D: usize>(
+    scheme: &dyn AnyScheme<T, D>,
+    problem: Problem<D>,
+    quadrature: DataQuadrature,
+) -> Result<(), Error> {
+    let problem = Problem { coefficient: None, ..problem };
+    let cube = BoxDomain::dirichlet(Point::zeros(), Point::repeat(1.0));
+    let mesh = Mesh::<T, D>::kuhn_box(&cube, [1; D])?;
+    match scheme.discretise(&problem, &mesh, quadrature) {
+        Err(
+            why @ (Error::NothingToBound { .. }
+            | Error::UnsupportedForm { .. }
+            | Error::Quadrature(_)),
+        ) => Err(why),
+        _ => Ok(()),
+    }
 }
 
 /// Checks that the built-in domain of a scene has the parts its problem needs.

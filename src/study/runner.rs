@@ -5,24 +5,28 @@ use std::fmt;
 use std::path::PathBuf;
 use std::sync::Arc;
 
-use super::compatibility::{check_domain, check_fit};
+use super::compatibility::{check_domain, check_fit, check_scheme};
 #[cfg(feature = "report")]
 use super::file_name::file_name;
+#[cfg(feature = "report")]
+use super::journal::Journal;
 use super::memory::{
     MemoryEstimate, estimate, estimate_without_factors, peak_memory_bytes, unknowns_about,
 };
 use super::orders::fill_orders;
 use super::report::{Program, Report};
-use super::row::Row;
+use super::row::{Row, RowKey};
 use super::setting::setting;
 use crate::assemble::DataQuadrature;
 use crate::constraint::ConstraintSet;
 use crate::element::Layout;
 use crate::error::Error;
-use crate::inequality::{ActiveSet, InequalitySolver};
+#[cfg(feature = "report")]
+use crate::files::replace;
+use crate::inequality::{ActiveSet, InequalitySolver, Outcome};
 use crate::instances::compiled;
 use crate::mesh::Mesh;
-use crate::nested::{Coarsest, Hierarchy, NestedIteration};
+use crate::nested::{Coarsest, Hierarchy, NestedIteration, Phase, Solved};
 use crate::problem::Problem;
 use crate::real::Real;
 use crate::scenes::Scene;
@@ -34,8 +38,12 @@ use crate::scheme::{AnyScheme, ExpectedOrders, NamedScheme};
 pub enum Progress<'a> {
     /// A run begins: scene, label of the scheme, level.
     Started(&'a str, &'a str, usize),
+    /// The run, or the study before its first run, enters a phase.
+    Entered(Phase),
     /// A run ended.
     Finished(&'a Row),
+    /// The journal has the row of an earlier run.
+    Kept(&'a Row),
 }
 
 /// Schemes side by side on one scene.
@@ -62,6 +70,8 @@ pub struct Study<'a, T: Real, const D: usize> {
     repeat: usize,
     #[cfg(feature = "report")]
     directory: Option<PathBuf>,
+    #[cfg(feature = "report")]
+    journal: Option<&'a Journal>,
     observer: Box<dyn Fn(Progress<'_>) + 'a>,
 }
 
@@ -107,6 +117,8 @@ impl<'a, T: Real, const D: usize> Study<'a, T, D> {
             repeat: 1,
             #[cfg(feature = "report")]
             directory: None,
+            #[cfg(feature = "report")]
+            journal: None,
             observer: Box::new(|_| {}),
         }
     }
@@ -197,6 +209,14 @@ impl<'a, T: Real, const D: usize> Study<'a, T, D> {
         self.directory = Some(directory.into());
         self
     }
+    /// Adds each row to a journal as soon as it is finished, and takes those that the journal has from an
+    /// earlier run.
+    #[cfg(feature = "report")]
+    #[must_use]
+    pub fn journal(mut self, journal: &'a Journal) -> Self {
+        self.journal = Some(journal);
+        self
+    }
     /// Sets a function that receives the progress of the study.
     #[must_use]
     pub fn observer(mut self, observer: impl Fn(Progress<'_>) + 'a) -> Self {
@@ -208,7 +228,7 @@ impl<'a, T: Real, const D: usize> Study<'a, T, D> {
     ///
     /// # Errors
     /// [`Error::Parameter`] for an empty list of levels or schemes or a level of zero,
-    /// [`Error::UnfitMesh`], [`Error::Mesh`].
+    /// [`Error::NothingToBound`], [`Error::UnsupportedForm`], [`Error::UnfitMesh`], [`Error::Mesh`].
     pub fn check(&self) -> Result<(), Error> {
         compiled!(
             T, D: fn(&Study<'_, T, D>) -> Result<(), Error>
@@ -225,6 +245,9 @@ impl<'a, T: Real, const D: usize> Study<'a, T, D> {
             return Err(Error::Parameter { parameter, value: "none".to_owned(), allowed });
         }
         self.levels.iter().try_for_each(|&level| self.coarsest().check(level))?;
+        for (entry, problem) in self.entries.iter().zip(self.problems()) {
+            check_scheme(&*entry.scheme, problem, self.quadrature)?;
+        }
         match &self.mesh {
             Some(mesh) => check_fit(&self.scene, mesh),
             None => check_domain(&self.scene).map(|()| None),
@@ -262,8 +285,9 @@ impl<'a, T: Real, const D: usize> Study<'a, T, D> {
     /// Runs every scheme with every solver on every level.
     ///
     /// # Errors
-    /// Errors of [`Self::check`] and of assembly. A solve that does not converge is no error: its
-    /// row has the outcome.
+    /// Errors of [`Self::check`], and [`Error::Write`] for fields and journal. A run that fails is no
+    /// error: its row has the outcome and the message, also where data are not finite on a mesh, or leave
+    /// no room for a solution.
     pub fn run(&self) -> Result<Report, Error> {
         compiled!(
             T, D: fn(&Study<'_, T, D>) -> Result<Report, Error>
@@ -272,29 +296,77 @@ impl<'a, T: Real, const D: usize> Study<'a, T, D> {
     }
     fn run_all(&self) -> Result<Report, Error> {
         let failure = self.where_exact_fails()?;
-        let hierarchies = self.coarsest().build_all(&self.levels)?;
-        let problems: Vec<Problem<D>> =
-            self.entries.iter().map(|e| e.problem(&self.scene.problem)).collect();
+        let kept: Vec<Option<Row>> = self.keys().iter().map(|key| self.kept(key)).collect();
+        (self.observer)(Progress::Entered(Phase::Mesh));
+        let hierarchies = match kept.iter().all(Option::is_some) {
+            true => Vec::new(),
+            false => self.coarsest().build_all(&self.levels)?,
+        };
+        let problems = self.problems();
         let mut by_solver: Vec<Vec<NestedIteration<'_, T, D>>> = self
             .solvers()
             .iter()
             .map(|solver| hierarchies.iter().map(|h| self.nested(h, solver)).collect())
             .collect();
+        let mut kept = kept.into_iter();
         let mut rows = Vec::new();
         for (entry, problem) in self.entries.iter().zip(&problems) {
             for nested in &mut by_solver {
                 let label = entry.scheme.label_on(problem.constraint_set());
                 for &level in &self.levels {
+                    if let Some(row) = kept.next().flatten() {
+                        (self.observer)(Progress::Kept(&row));
+                        rows.push(row);
+                        continue;
+                    }
                     (self.observer)(Progress::Started(&self.scene.name, &label, level));
                     let (row, _) = self.row(nested, (entry, problem), level, failure.as_deref())?;
+                    #[cfg(feature = "report")]
+                    if let Some(journal) = self.journal {
+                        journal.add(&row)?;
+                    }
                     (self.observer)(Progress::Finished(&row));
                     rows.push(row);
                 }
             }
         }
         fill_orders(&mut rows);
-        let program = Program::new("study", T::NAME, rayon::current_num_threads(), self.repeat);
-        Ok(Report { program, rows })
+        let program = || Program::new("study", T::NAME, rayon::current_num_threads(), self.repeat);
+        #[cfg(feature = "report")]
+        let program = || self.journal.map_or_else(program, |journal| journal.program().clone());
+        Ok(Report::new(program(), rows))
+    }
+
+    /// The problem of the scene with the constraint set of each scheme.
+    fn problems(&self) -> Vec<Problem<D>> {
+        self.entries.iter().map(|e| e.problem(&self.scene.problem)).collect()
+    }
+
+    /// What tells the rows of the study apart, in the order in which they run.
+    pub fn keys(&self) -> Vec<RowKey> {
+        let mut keys = Vec::new();
+        for (entry, problem) in self.entries.iter().zip(&self.problems()) {
+            let label = entry.scheme.label_on(problem.constraint_set());
+            for solver in self.solvers() {
+                keys.extend(self.levels.iter().map(|&level| RowKey {
+                    scene: self.scene.name.clone(),
+                    label: label.clone(),
+                    solver: solver.name().to_owned(),
+                    level,
+                }));
+            }
+        }
+        keys
+    }
+
+    /// The row that the journal has from an earlier run.
+    #[cfg(feature = "report")]
+    fn kept(&self, key: &RowKey) -> Option<Row> {
+        self.journal?.take(key)
+    }
+    #[cfg(not(feature = "report"))]
+    fn kept(&self, _: &RowKey) -> Option<Row> {
+        None
     }
 
     /// Runs the first scheme with the first solver on the first level with a new hierarchy, so that no
@@ -337,6 +409,7 @@ impl<'a, T: Real, const D: usize> Study<'a, T, D> {
             .shared_solver(solver.clone())
             .quadrature(self.quadrature)
             .repeat(self.repeat)
+            .observer(|phase| (self.observer)(Progress::Entered(phase)))
     }
 
     /// Solves one scheme on one level of these hierarchies. Returns the row, and the seconds of its start
@@ -353,10 +426,32 @@ impl<'a, T: Real, const D: usize> Study<'a, T, D> {
             unreachable!("a hierarchy has the level")
         };
         let (scheme, set) = (&*entry.scheme, problem.constraint_set());
+        let (solver, label) = (nested.solver_name(), scheme.label_on(set));
+        let complete = |row: Row| Row {
+            constraint: scheme.constraint_on(set).unwrap_or_else(|| set.name().to_owned()),
+            label: label.clone(),
+            solver: solver.to_owned(),
+            expected_order: self.expected_orders(scheme, set, failure),
+            peak_memory_bytes: peak_memory_bytes(),
+            ..row
+        };
         nested.replace_constraint_set(problem);
-        let solved = nested.solve_on(position, scheme)?;
-        let solver = nested.solver_name();
-        let label = scheme.label_on(set);
+        let solved = match nested.solve_on(position, scheme) {
+            Ok(solved) => solved,
+            Err(error) => {
+                let mesh = nested.mesh(position);
+                let (name, outcome) = (scheme.name(), Outcome::Malformed);
+                let space = scheme.discretise(problem, mesh, self.quadrature);
+                let row = Row {
+                    parameters: scheme.parameters(mesh),
+                    unknowns: space.ok().map(|space| space.unknowns()),
+                    cells: mesh.n_cells(),
+                    mesh_size: mesh.mesh_size(),
+                    ..Row::new(&self.scene.name, D, name, level, outcome)
+                };
+                return Ok((complete(row).with_error(error)?, 0.0));
+            }
+        };
         #[cfg(feature = "report")]
         if let Some(directory) = &self.directory
             && solved.has_iterate()
@@ -366,22 +461,20 @@ impl<'a, T: Real, const D: usize> Study<'a, T, D> {
             if self.solvers.len() > 1 {
                 name += &format!("-{solver}");
             }
-            solved.write_vtu(directory.join(file_name(&name) + ".vtu"))?;
+            let path = directory.join(file_name(&name) + ".vtu");
+            replace(&path, |draft| solved.write_vtu(draft))?;
         }
-        let mut row = Row {
-            constraint: scheme.constraint_on(set).unwrap_or_else(|| set.name().to_owned()),
-            label,
-            solver: solver.to_owned(),
-            expected_order: self.expected_orders(scheme, set, failure),
-            peak_memory_bytes: peak_memory_bytes(),
-            ..Row::of(&self.scene.name, scheme.name(), level, &solved)
-        };
-        match failure {
-            None => (row.error, row.contact) = (solved.errors()?, solved.contact_errors()?),
-            Some(at) => row.warnings.push(format!(
+        (self.observer)(Progress::Entered(Phase::Measures));
+        let mut row = complete(Row::of(&self.scene.name, scheme.name(), level, &solved));
+        if let Some(at) = failure {
+            row.warnings.push(format!(
                 "the scene's solution breaks the contact condition of this mesh at {at}: no errors"
-            )),
+            ));
         }
+        let row = match measure(&mut row, &solved, failure.is_none()) {
+            Ok(()) => row,
+            Err(error) => row.with_error(error)?,
+        };
         Ok((row, solved.start_seconds))
     }
 
@@ -399,4 +492,17 @@ impl<'a, T: Real, const D: usize> Study<'a, T, D> {
             _ => ExpectedOrders::default(),
         }
     }
+}
+
+/// Fills in energy and errors.
+fn measure<T: Real, const D: usize>(
+    row: &mut Row,
+    solved: &Solved<'_, T, D>,
+    has_exact: bool,
+) -> Result<(), Error> {
+    row.energy = solved.energy()?;
+    if has_exact {
+        (row.error, row.contact) = (solved.errors()?, solved.contact_errors()?);
+    }
+    Ok(())
 }

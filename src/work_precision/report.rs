@@ -12,8 +12,9 @@ use super::tables::tables;
 use super::verdict::verdict;
 use super::work_at_error::{WorkAtError, work_at_errors};
 use crate::error::Error;
+use crate::files::replace;
 use crate::output::table::{latex, markdown};
-use crate::output::{Provenance, Table, csv, replace};
+use crate::output::{Provenance, Table, csv};
 use crate::study::Program;
 
 /// The results of a work-precision study on any number of scenes.
@@ -170,7 +171,7 @@ impl WorkReport {
             ("report.tex", self.to_latex()),
         ];
         let put = |(name, text): (&str, String)| {
-            replace(&directory.join(name), |path| fs::write(path, text).map_err(|e| e.to_string()))
+            replace(&directory.join(name), |path| fs::write(path, text))
         };
         files.into_iter().map(put).collect()
     }

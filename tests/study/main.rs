@@ -1,5 +1,6 @@
 //! Studies and what they write: scenes, reports, tables, pictures, files of fields.
 
+mod journal;
 mod links;
 mod named_schemes;
 mod one_problem;
@@ -11,6 +12,7 @@ mod scenes;
 mod scratch;
 mod stability;
 mod tables;
+mod totals;
 mod vtu;
 mod work_precision;
 

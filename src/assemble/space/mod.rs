@@ -178,6 +178,10 @@ impl<'a, T: Real, const D: usize> Space<'a, T, D> {
         let varying = self.varying.as_ref()?;
         varying.in_cell(cell).map(|values| (varying, values))
     }
+    /// Whether the element sees the coefficient vary in some cell.
+    pub fn has_varying_coefficient(&self) -> bool {
+        self.varying.is_some()
+    }
     /// The coefficient at a point of a cell.
     pub fn alpha_at(&self, cell: usize, x: &Point<f64, D>) -> f64 {
         match self.data.coefficient.of(self.mesh.region(cell)) {

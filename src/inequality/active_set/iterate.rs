@@ -81,8 +81,11 @@ impl<'a, T: Real> Iterate<'a, T> {
     }
 
     /// Makes every unknown with a bound active, at its lower bound if it has two; false if nothing
-    /// changed.
+    /// changed. The other values are zero again: factors of a singular matrix that rounding made regular
+    /// leave values so large that no later correction has a correct digit.
     pub fn activate_all(&mut self) -> bool {
+        self.values.fill(T::lit(0.0));
+        self.jump_multipliers.clear();
         let active = |bound: &Bound<T>| match (bound.lower(), bound.upper()) {
             (Some(_), _) => Contact::Lower,
             (None, Some(_)) => Contact::Upper,

@@ -23,6 +23,7 @@ use crate::mesh::BoundaryPart;
 use crate::problem::ContactSet;
 use crate::real::{Point, Real, point_f64};
 use entity::ContactEntity;
+use multiplier_density::nodal_multipliers;
 
 /// A Dirichlet datum this close to a bound, in units of the largest unknown, touches it.
 const TOUCHING: f64 = 1e-9;
@@ -73,6 +74,39 @@ impl<T: Real, const D: usize> Discretisation<'_, T, D> {
                 = |of, inequality, solution| of.space.contact_errors(inequality, solution)
         )(self, inequality, solution)
     }
+
+    /// The measure of the discrete contact set: the volume of the cells in contact where there are
+    /// obstacles, else the area of the facets in contact (the number of points in one dimension), with the
+    /// definitions of [`Discretisation::contact_errors`]; none without an inequality.
+    ///
+    /// # Panics
+    /// If the solution has fewer values than there are unknowns.
+    pub fn contact_measure(
+        &self,
+        inequality: &Inequality<T>,
+        solution: &Solution<T>,
+    ) -> Option<f64> {
+        compiled!(
+            T, D: fn(&Discretisation<'_, T, D>, &Inequality<T>, &Solution<T>) -> Option<f64>
+                = |of, inequality, solution| of.space.contact_measure(inequality, solution)
+        )(self, inequality, solution)
+    }
+
+    /// The total contact force: the multiplier tested with the function one, which is the sum of the
+    /// entries of `A u - b` at the constrained unknowns in contact, because every unknown is the value or a
+    /// mean of the function. It is positive where a lower bound pushes upward. None without an inequality.
+    ///
+    /// Where only contact holds the body, without Dirichlet part and reaction, it is the negative of the
+    /// total load, for every scheme: constants have no energy. It approximates the integral of the
+    /// multiplier over domain and contact boundary.
+    ///
+    /// # Panics
+    /// If the solution has fewer values than there are unknowns.
+    pub fn resultant(&self, inequality: &Inequality<T>, solution: &Solution<T>) -> Option<f64> {
+        let multipliers = || nodal_multipliers(inequality, solution);
+        let sum = || multipliers().fold(0.0, |sum, (_, multiplier)| sum + multiplier);
+        self.space.problem.is_constrained().then(sum)
+    }
 }
 
 impl<T: Real, const D: usize> Space<'_, T, D> {
@@ -99,6 +133,13 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
             errors.free_boundary_distance = self.free_boundary_distance(set, &entities, &touching);
         }
         Ok(errors)
+    }
+
+    fn contact_measure(&self, inequality: &Inequality<T>, solution: &Solution<T>) -> Option<f64> {
+        let entities = self.problem.is_constrained().then(|| self.entities())?;
+        let touching = self.in_contact(&entities, inequality, solution);
+        let in_contact = entities.iter().zip(touching).filter(|(_, touches)| *touches);
+        Some(in_contact.fold(0.0, |sum, (entity, _)| sum + self.measure_of(*entity)))
     }
 
     fn entities(&self) -> Vec<ContactEntity> {

@@ -12,6 +12,20 @@ use crate::real::Real;
 /// Degree of the rule on a simplex, or on the parts into which the free boundary cuts it.
 const DEGREE: usize = 5;
 
+/// The constrained unknowns in contact with their multipliers, the entries of `A u - b`.
+pub(super) fn nodal_multipliers<T: Real>(
+    inequality: &Inequality<T>,
+    solution: &Solution<T>,
+) -> impl Iterator<Item = (usize, f64)> {
+    let mut residual = vec![0.0; inequality.size()];
+    inequality.residual_f64(&solution.values, &mut residual);
+    let touches = |unknown: &usize| {
+        solution.contact[*unknown] != Contact::Inactive
+            && inequality.bounds[*unknown].is_inequality()
+    };
+    (0..inequality.size()).filter(touches).map(move |unknown| (unknown, -residual[unknown]))
+}
+
 impl<T: Real, const D: usize> Space<'_, T, D> {
     /// The errors of the density in L1 and lumped L2; none if no vertex counts.
     pub(super) fn multiplier_errors(
@@ -45,16 +59,11 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         inequality: &Inequality<T>,
         solution: &Solution<T>,
     ) -> Vec<f64> {
-        let mut residual = vec![0.0; inequality.size()];
-        inequality.residual_f64(&solution.values, &mut residual);
         let mut multipliers = vec![0.0; self.mesh.vertices().len()];
-        for (unknown, &residual) in residual.iter().enumerate() {
-            let touches = solution.contact[unknown] != Contact::Inactive;
-            if touches && inequality.bounds[unknown].is_inequality() {
-                let around = inequality.supports[unknown].vertices();
-                let share = -residual / around.len() as f64;
-                around.iter().for_each(|&v| multipliers[v as usize] += share);
-            }
+        for (unknown, multiplier) in nodal_multipliers(inequality, solution) {
+            let around = inequality.supports[unknown].vertices();
+            let share = multiplier / around.len() as f64;
+            around.iter().for_each(|&v| multipliers[v as usize] += share);
         }
         multipliers
     }

@@ -1,20 +1,24 @@
 //! Schemes side by side on the same inequality: errors, observed orders, times and a certificate.
 //!
 //! `cargo run --release -- compare --help` lists the options. Exit codes: 0 if every row converged,
-//! 1 if some did not, 2 if the request was wrong.
+//! 1 if some did not or the run could not go on, 2 if the request was wrong, 130 if it was interrupted.
 
+mod interrupt;
 mod options;
 mod watcher;
 
 use std::fs::{self, OpenOptions};
+use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::Path;
 
+use interrupt::Interrupt;
 pub use options::{Options, list};
 use options::{check_numbers, choose, choose_schemes};
 use watcher::Watcher;
 
 use crate::shared::{
-    ORDER_TOLERANCE, Request, cannot_write, each_once, print, print_to, read, use_threads, write,
+    ORDER_TOLERANCE, Request, cannot_write, complain, each_once, print, print_to, read,
+    use_threads, write,
 };
 
 use unilateral::error::Error;
@@ -25,7 +29,7 @@ use unilateral::real::Real;
 use unilateral::scenes::{self, AcceptedParameters, AnyScene, Parameters, Scene};
 use unilateral::scheme::NamedScheme;
 use unilateral::study::orders_table;
-use unilateral::study::{Program, Report, Row, Study, available_memory_bytes};
+use unilateral::study::{Journal, Program, Report, Row, RowKey, Study, available_memory_bytes};
 
 /// Whether every row converged.
 pub fn run(options: &Options) -> Request<bool> {
@@ -34,15 +38,36 @@ pub fn run(options: &Options) -> Request<bool> {
     }
     check_numbers(options)?;
     use_threads(options.threads)?;
+    let copy = options.clone();
+    let interrupt = Interrupt::install(move |report| write_all(&copy, report))?;
     let chosen = Chosen::new(options)?;
-    let (precision, rows) = match &options.precision[..] {
-        "f32" => (f32::NAME, chosen.run::<f32>(options)?),
-        _ => (f64::NAME, chosen.run::<f64>(options)?),
-    };
-    let program = Program::new("compare", precision, rayon::current_num_threads(), options.repeat);
-    let report = Report::new(program, rows);
-    write_all(options, &report)?;
-    Ok(report.rows.iter().all(Row::converged))
+    match &options.precision[..] {
+        "f32" => chosen.run::<f32>(options, &interrupt),
+        _ => chosen.run::<f64>(options, &interrupt),
+    }
+}
+
+/// The program, with all that its rows depend on and do not say.
+fn program<T: Real>(options: &Options, mesh: Option<&[u8]>) -> Program {
+    let threads = rayon::current_num_threads();
+    let mut program = Program::new("compare", T::NAME, threads, options.repeat);
+    for (name, value) in
+        [("scale", options.scale), ("contrast", options.contrast), ("load", options.load)]
+    {
+        if let Some(x) = value {
+            program = program.with_request(name, format!("{x:?}"));
+        }
+    }
+    if let Some(linear) = &options.linear {
+        program = program.with_request("linear", linear);
+    }
+    if let Some(bytes) = mesh {
+        // the hash of Fowler, Noll and Vo, which has the same value on every machine
+        let step = |hash: u64, &byte: &u8| (hash ^ u64::from(byte)).wrapping_mul(0x100_0000_01b3);
+        let hash = bytes.iter().fold(0xcbf2_9ce4_8422_2325, step);
+        program = program.with_request("mesh", format!("{} bytes {hash:016x}", bytes.len()));
+    }
+    program
 }
 
 /// What the options ask for, with every name found.
@@ -113,7 +138,9 @@ impl Chosen {
         scenes.into_iter().collect::<Result<_, _>>().map_err(|e| e.to_string())
     }
 
-    fn run<T: Real>(self, options: &Options) -> Request<Vec<Row>> {
+    /// Whether every row converged. Nothing runs and nothing is written before everything has been
+    /// checked; afterwards no finished row is lost.
+    fn run<T: Real>(self, options: &Options, interrupt: &Interrupt) -> Request<bool> {
         let Self { scenes, schemes, solvers, mesh } = self;
         let names = (&schemes[..], &solvers[..]);
         let mesh = mesh.as_ref();
@@ -129,19 +156,47 @@ impl Chosen {
         if runs.is_empty() {
             return Err("no scene fits the mesh; name one to be told why".to_owned());
         }
-        // nothing runs before everything has been checked
-        let is_new = check_output(options)?;
-        let rows: Request<Vec<Vec<Row>>> = runs.into_iter().map(|run| run()).collect();
+        let program = program::<T>(options, mesh.map(|(_, bytes)| &bytes[..]));
+        let journal = start(options, program.clone(), &runs)?;
+        interrupt.watch(journal);
+        let all = || -> Request<Vec<Vec<Row>>> {
+            runs.into_iter().map(|Run { run, .. }| run(journal)).collect()
+        };
+        // a panic has printed its message
+        let rows = catch_unwind(AssertUnwindSafe(all)).unwrap_or_else(|_| Err(String::new()));
         watcher.clear();
-        if rows.is_err() && is_new {
-            let _ = fs::remove_dir_all(&options.out);
-        }
-        Ok(rows?.concat())
+        let report = match &rows {
+            Ok(rows) => Report::new(program, rows.concat()),
+            Err(_) => journal.report(),
+        };
+        let messages = [rows.err(), interrupt.at_end(|| write_all(options, &report)).err()];
+        messages.iter().flatten().filter(|text| !text.is_empty()).for_each(|text| complain(text));
+        Ok(messages == [None, None] && report.rows.iter().all(Row::converged))
     }
 }
 
-/// What runs a study that has been checked.
-type Run<'a> = Box<dyn FnOnce() -> Request<Vec<Row>> + 'a>;
+/// Makes sure that the files can be written and starts the journal. With `--resume` it has the rows that
+/// are there, of which the runs must ask for every one.
+fn start(options: &Options, program: Program, runs: &[Run<'_>]) -> Request<&'static Journal> {
+    check_output(options)?;
+    let journal = match options.resume {
+        true => {
+            let keys: Vec<RowKey> = runs.iter().flat_map(|run| run.keys.clone()).collect();
+            Journal::resume(&options.out, program, &keys)
+        }
+        false => Journal::create(&options.out, program),
+    };
+    let journal = journal.map_err(|e| e.to_string())?;
+    // the thread that ends an interrupted run may need the journal as long as the process lives
+    Ok(Box::leak(Box::new(journal)))
+}
+
+/// A study that has been checked.
+struct Run<'a> {
+    /// What tells its rows apart.
+    keys: Vec<RowKey>,
+    run: Box<dyn FnOnce(&'a Journal) -> Request<Vec<Row>> + 'a>,
+}
 
 /// Checks a study. Nothing is left of one that does not fit the mesh and was not asked for by name.
 fn prepare<'a, T: Real, const D: usize>(
@@ -156,7 +211,6 @@ fn prepare<'a, T: Real, const D: usize>(
         [] => default_levels(D, mesh.is_some()),
         some => each_once(some),
     };
-    let n_runs = levels.len() * schemes.len() * solvers.len();
     let linear = match options.linear.as_deref() {
         Some("direct") => LinearMethod::Direct,
         Some(_) => LinearMethod::Iterative,
@@ -193,11 +247,13 @@ fn prepare<'a, T: Real, const D: usize>(
             free as f64 / 1e9
         ));
     }
-    watcher.expect(n_runs);
-    Ok(Some(Box::new(move || match study.run() {
+    let keys = study.keys();
+    watcher.expect(D, keys.iter().map(|key| key.level));
+    let run = move |journal| match study.journal(journal).run() {
         Ok(report) => Ok(report.rows),
         Err(e) => Err(format!("{place}: {e}")),
-    })))
+    };
+    Ok(Some(Run { keys, run: Box::new(run) }))
 }
 
 fn read_mesh<T: Real, const D: usize>(
@@ -220,10 +276,8 @@ fn default_levels(dimension: usize, on_mesh: bool) -> Vec<usize> {
     }
 }
 
-/// Makes sure before the work, not after it, that the report can be written. Tells whether its
-/// directory is new.
-fn check_output(options: &Options) -> Request<bool> {
-    let is_new = !options.out.exists();
+/// Makes sure before the work, not after it, that the report can be written.
+fn check_output(options: &Options) -> Request<()> {
     let json = options.json.as_ref().filter(|p| p.as_os_str() != "-");
     for path in json.into_iter().chain(&options.orders) {
         let file_is_new = !path.exists();
@@ -236,15 +290,10 @@ fn check_output(options: &Options) -> Request<bool> {
             fs::remove_file(path).map_err(|e| cannot_write(path, e))?;
         }
     }
-    fs::create_dir_all(&options.out).map_err(|e| cannot_write(&options.out, e))?;
-    let probe = options.out.join(format!(".compare-{}", std::process::id()));
-    fs::write(&probe, "")
-        .and_then(|()| fs::remove_file(&probe))
-        .map_err(|e| cannot_write(&probe, e))?;
-    Ok(is_new)
+    Ok(())
 }
 
-/// Writes the report and prints its tables.
+/// Writes the report and prints its tables, of an incomplete one the files only.
 fn write_all(options: &Options, report: &Report) -> Request<()> {
     let to_stdout = options.json.as_deref().is_some_and(|p| p.as_os_str() == "-");
     report.write(&options.out).map_err(|e| e.to_string())?;
@@ -256,7 +305,7 @@ fn write_all(options: &Options, report: &Report) -> Request<()> {
     if let Some(path) = &options.orders {
         write(path, orders_table(&report.observed_orders(), ORDER_TOLERANCE))?;
     }
-    if options.quiet {
+    if options.quiet || !report.complete {
         return Ok(());
     }
     let out = options.out.display();

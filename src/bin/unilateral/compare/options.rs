@@ -12,7 +12,7 @@ use unilateral::scheme::{NamedScheme, SCHEMES, SchemeOptions, keys_of_scheme};
 use crate::shared::{MOST_THREADS, Request, each_once, schemes};
 
 /// Compares finite element schemes on obstacle and Signorini problems
-#[derive(Args, Debug)]
+#[derive(Args, Clone, Debug)]
 pub struct Options {
     /// Name every scene, scheme, constraint placement and solver, and end
     #[arg(long)]
@@ -65,6 +65,9 @@ pub struct Options {
     /// Where the report goes
     #[arg(long, value_name = "DIR", default_value = "target/compare")]
     pub out: PathBuf,
+    /// Keep the rows of this request that the report in DIR has, and run the others
+    #[arg(long)]
+    pub resume: bool,
     /// Also write the JSON report here; `-` for standard output
     #[arg(long, value_name = "FILE")]
     pub json: Option<PathBuf>,
