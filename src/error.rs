@@ -77,6 +77,28 @@ pub enum Error {
         /// For which elements it is made.
         allowed: &'static str,
     },
+    /// The problem has data for a region or boundary group that the mesh does not have.
+    #[error("the problem has data for {kind} {name}, which the mesh does not have: {known}")]
+    UnknownGroup {
+        /// "region" or "boundary group".
+        kind: &'static str,
+        /// The name.
+        name: String,
+        /// The names that the mesh has.
+        known: String,
+    },
+    /// The data of a boundary group are of another kind than its facets.
+    #[error(
+        "the problem has {given} data on boundary group {group}, whose facets are {part} in the mesh: give the mesh its parts by Problem::bind_boundary"
+    )]
+    UnboundBoundary {
+        /// A name of the group.
+        group: String,
+        /// The part to which the data belong.
+        given: &'static str,
+        /// The part of the facets.
+        part: &'static str,
+    },
     /// Mesh and scene disagree.
     #[error("mesh does not fit scene {scene}: {why}")]
     UnfitMesh {

@@ -35,6 +35,8 @@ pub mod paraview;
 pub mod plot;
 pub mod prelude;
 pub mod problem;
+#[cfg(feature = "problem-files")]
+pub mod problem_file;
 pub mod quadrature;
 mod readable_debug;
 pub mod real;

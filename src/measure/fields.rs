@@ -48,7 +48,12 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
     pub fn fields(&self, inequality: &Inequality<T>, solution: &Solution<T>) -> Fields {
         let u = &solution.values;
         let corner = |&v: &u32| point_f64(&self.mesh.vertices()[v as usize]);
-        let obstacle = self.problem.lower.as_ref().or(self.problem.upper.as_ref());
+        let obstacle = |cell: usize| {
+            let region = self.mesh.region(cell);
+            let psi = self.data.lower.of(region).or(self.data.upper.of(region));
+            let at = move |v| psi.map_or(f64::NAN, |psi| psi.at(&corner(v)));
+            self.mesh.cell(cell).iter().map(at)
+        };
         let measures = self.constrained_measures();
         let n_cells = self.mesh.n_cells();
         let mut multiplier = Vec::with_capacity(n_cells);
@@ -73,8 +78,10 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         }
         Fields {
             u: self.vertex_values(u),
-            obstacle: obstacle
-                .map(|psi| self.mesh.cells().iter().map(|v| psi(&corner(v))).collect()),
+            obstacle: self
+                .problem
+                .has_obstacle()
+                .then(|| (0..n_cells).flat_map(obstacle).collect()),
             multiplier,
             contact,
             midpoints: self.midpoint_values(u),
@@ -113,7 +120,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
                     measures[self.dofs.of(cell, i)] += share;
                 }
             }
-        } else if self.problem.gap.is_some() {
+        } else if self.problem.has_gap() {
             for (cell, local) in self.facets_of(BoundaryPart::Contact) {
                 let measure = self.mesh.geometry(cell).facet_measure(local).to_f64();
                 let share = measure / self.bounded_nodes_on(local).count() as f64;

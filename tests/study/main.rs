@@ -5,6 +5,7 @@ mod links;
 mod named_schemes;
 mod one_problem;
 mod pictures;
+mod problem_files;
 mod report;
 mod rows;
 mod scenes;

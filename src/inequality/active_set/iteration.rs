@@ -150,6 +150,13 @@ impl<T: Real> Iteration<'_, '_, '_, T> {
                     Err(Outcome::Singular.into())
                 }
             }
+            // bounds alone hold a part of the domain, and the active set has released all of them there
+            Err(LinearFailure::Factors(FactorError::Singular))
+                if !self.iterate.inequality.kernel.is_empty()
+                    && self.patience.halving.is_some() =>
+            {
+                Err(End::Obstruction(Obstruction::Stagnation))
+            }
             Err(failure) => Err(failure.into()),
         }
     }

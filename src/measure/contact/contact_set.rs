@@ -27,7 +27,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
             }
         }
         // with both an obstacle and a contact boundary there are two multipliers of different kind
-        if self.problem.has_obstacle() && self.problem.gap.is_some() {
+        if self.problem.has_obstacle() && self.problem.has_gap() {
             return contact;
         }
         let mut weights = vec![0.0; self.mesh.vertices().len()];
@@ -38,9 +38,10 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
             }
         }
         let multipliers = self.vertex_multipliers(inequality, solution);
-        let given = self.on_dirichlet_part();
-        let density =
-            |v: usize| (weights[v] > 0.0 && !given[v]).then(|| multipliers[v] / weights[v]);
+        let given = self.dirichlet_groups();
+        let density = |v: usize| {
+            (weights[v] > 0.0 && given[v].is_none()).then(|| multipliers[v] / weights[v])
+        };
         contact.density = (0..weights.len()).map(density).collect();
         contact
     }

@@ -117,7 +117,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
     ) -> Result<ContactErrors, Error> {
         let Some(exact) = &self.problem.exact else { return Ok(ContactErrors::default()) };
         // with both an obstacle and a contact boundary there are two multipliers of different kind
-        if self.problem.has_obstacle() == self.problem.gap.is_some() {
+        if self.problem.has_obstacle() == self.problem.has_gap() {
             return Ok(ContactErrors::default());
         }
         let entities = self.entities();
@@ -152,11 +152,15 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         contact.map(|(cell, local)| ContactEntity { cell, facet: Some(local) }).collect()
     }
 
-    /// Whether each vertex lies on the Dirichlet part, where values are given.
-    fn on_dirichlet_part(&self) -> Vec<bool> {
-        let mut given = vec![false; self.mesh.vertices().len()];
-        for (cell, local) in self.facets_of(BoundaryPart::Dirichlet) {
-            self.mesh.facet_vertices(cell, local).for_each(|v| given[v as usize] = true);
+    /// For each vertex on the Dirichlet part the boundary group whose datum is given there.
+    fn dirichlet_groups(&self) -> Vec<Option<usize>> {
+        let mut given: Vec<Option<usize>> = vec![None; self.mesh.vertices().len()];
+        let rank = |group: usize| self.data.dirichlet_rank[group];
+        for ((cell, local), group) in self.grouped_facets_of(BoundaryPart::Dirichlet) {
+            for v in self.mesh.facet_vertices(cell, local) {
+                let old = &mut given[v as usize];
+                *old = old.filter(|&old| rank(old) <= rank(group)).or(Some(group));
+            }
         }
         given
     }
@@ -207,32 +211,44 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
             .collect();
         supports.sort_unstable();
         supports.dedup();
-        let given = self.on_dirichlet_part();
+        let given = self.dirichlet_groups();
         let largest = solution.values.iter().map(|u| u.to_f64().abs()).fold(0.0, f64::max);
         let slack = largest * TOUCHING.max(64.0 * T::EPSILON);
-        let support_touches = |unknown: usize| {
+        let support_touches = |entity: ContactEntity, unknown: usize| {
             let support = inequality.supports[unknown].vertices();
-            if support.iter().all(|&v| given[v as usize]) {
-                self.datum_touches(support, slack)
+            let groups = support.iter().map(|&v| given[v as usize]);
+            let rank = |group: &usize| self.data.dirichlet_rank[*group];
+            let group = groups.clone().flatten().min_by_key(rank);
+            if let Some(group) = group.filter(|_| groups.clone().all(|g| g.is_some())) {
+                self.datum_touches(entity, group, support, slack)
             } else {
                 supports.binary_search(&support).is_ok()
             }
         };
         let state = |&entity: &ContactEntity| {
             let mut unknowns = self.bound_unknowns(entity, inequality).peekable();
-            unknowns.peek().is_some() && unknowns.all(support_touches)
+            unknowns.peek().is_some() && unknowns.all(|unknown| support_touches(entity, unknown))
         };
         entities.iter().map(state).collect()
     }
 
-    /// Whether the Dirichlet datum at the barycentre of a support differs from a bound by at most
-    /// the slack.
-    fn datum_touches(&self, support: &[u32], slack: f64) -> bool {
+    /// Whether the Dirichlet datum of a boundary group at the barycentre of a support differs from a bound
+    /// on an entity by at most the slack.
+    fn datum_touches(
+        &self,
+        entity: ContactEntity,
+        group: usize,
+        support: &[u32],
+        slack: f64,
+    ) -> bool {
         let corner = |&v: &u32| point_f64(&self.mesh.vertices()[v as usize]);
         let x = support.iter().map(corner).sum::<Point<f64, D>>() / support.len() as f64;
-        let bounds = [&self.problem.lower, &self.problem.upper, &self.problem.gap];
-        let value = self.problem.dirichlet_at(&x);
-        bounds.into_iter().flatten().any(|bound| (value - bound(&x)).abs() <= slack)
+        let region = self.mesh.region(entity.cell);
+        let contact = entity.facet.and_then(|local| self.mesh.boundary_group(entity.cell, local));
+        let gap = contact.and_then(|group| self.data.gap.of(group));
+        let bounds = [self.data.lower.of(region), self.data.upper.of(region), gap];
+        let value = self.dirichlet_at(group, &x);
+        bounds.into_iter().flatten().any(|bound| (value - bound.at(&x)).abs() <= slack)
     }
 
     /// The measure of the symmetric difference of entities in contact and the exact contact set.

@@ -44,8 +44,8 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
             let rule = &rules[usize::from(entity.facet.is_none())];
             self.subtract_exact((multiplier, set), entity, rule, &mut weights, &mut multipliers)?;
         }
-        let given = self.on_dirichlet_part();
-        let counted = |v: &usize| weights[*v] > 0.0 && !given[*v];
+        let given = self.dirichlet_groups();
+        let counted = |v: &usize| weights[*v] > 0.0 && given[*v].is_none();
         let vertices = || (0..weights.len()).filter(counted);
         let squares: f64 = vertices().map(|v| multipliers[v] * multipliers[v] / weights[v]).sum();
         let sum: f64 = vertices().map(|v| multipliers[v].abs()).sum();
