@@ -16,6 +16,7 @@ pub use options::{Options, list};
 use options::{check_numbers, choose, choose_schemes};
 use watcher::Watcher;
 
+use crate::judge::write_requests;
 use crate::shared::{
     ORDER_TOLERANCE, Request, cannot_write, complain, each_once, print, print_to, read,
     use_threads, write,
@@ -160,6 +161,7 @@ impl Chosen {
         let journal = start(options, program.clone(), &runs)?;
         interrupt.watch(journal);
         let all = || -> Request<Vec<Vec<Row>>> {
+            runs.iter().try_for_each(|run| write_requests(options, &run.keys))?;
             runs.into_iter().map(|Run { run, .. }| run(journal)).collect()
         };
         // a panic has printed its message
@@ -222,6 +224,9 @@ fn prepare<'a, T: Real, const D: usize>(
         .fields_to(&options.out)
         .observer(|progress| watcher.tell(&progress));
     study = schemes.iter().fold(study, Study::named_scheme);
+    if let Some(directory) = &options.dump {
+        study = study.inequalities_to(directory);
+    }
     for name in solvers {
         study = solver_by_name(name, &SolverOptions::default().linear(linear))
             .map(|solver| study.boxed_solver(solver))

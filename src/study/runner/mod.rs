@@ -1,36 +1,31 @@
 //! A study: schemes on a scene, level by level.
 
+mod rows;
+
 use std::fmt;
 #[cfg(feature = "report")]
 use std::path::PathBuf;
 use std::sync::Arc;
 
-use super::compatibility::{check_domain, check_fit, check_scheme};
-#[cfg(feature = "report")]
-use super::file_name::file_name;
-#[cfg(feature = "report")]
-use super::journal::Journal;
-use super::memory::{
-    MemoryEstimate, estimate, estimate_without_factors, peak_memory_bytes, unknowns_about,
-};
-use super::orders::fill_orders;
-use super::report::{Program, Report};
-use super::row::{Row, RowKey};
-use super::setting::setting;
 use crate::assemble::DataQuadrature;
 use crate::constraint::ConstraintSet;
 use crate::element::Layout;
 use crate::error::Error;
-#[cfg(feature = "report")]
-use crate::files::replace;
-use crate::inequality::{ActiveSet, InequalitySolver, Outcome};
+use crate::inequality::{ActiveSet, InequalitySolver};
 use crate::instances::compiled;
 use crate::mesh::Mesh;
-use crate::nested::{Coarsest, Hierarchy, NestedIteration, Phase, Solved};
+use crate::nested::{Coarsest, Hierarchy, NestedIteration, Phase};
 use crate::problem::Problem;
 use crate::real::Real;
 use crate::scenes::Scene;
-use crate::scheme::{AnyScheme, ExpectedOrders, NamedScheme};
+use crate::scheme::{AnyScheme, NamedScheme};
+use crate::study::compatibility::{check_domain, check_fit, check_scheme};
+#[cfg(feature = "report")]
+use crate::study::journal::Journal;
+use crate::study::memory::{MemoryEstimate, estimate, estimate_without_factors, unknowns_about};
+use crate::study::orders::fill_orders;
+use crate::study::report::{Program, Report};
+use crate::study::row::{Row, RowKey};
 
 /// Progress of a study.
 #[derive(Debug)]
@@ -70,6 +65,8 @@ pub struct Study<'a, T: Real, const D: usize> {
     repeat: usize,
     #[cfg(feature = "report")]
     directory: Option<PathBuf>,
+    #[cfg(feature = "report")]
+    inequalities: Option<PathBuf>,
     #[cfg(feature = "report")]
     journal: Option<&'a Journal>,
     observer: Box<dyn Fn(Progress<'_>) + 'a>,
@@ -117,6 +114,8 @@ impl<'a, T: Real, const D: usize> Study<'a, T, D> {
             repeat: 1,
             #[cfg(feature = "report")]
             directory: None,
+            #[cfg(feature = "report")]
+            inequalities: None,
             #[cfg(feature = "report")]
             journal: None,
             observer: Box::new(|_| {}),
@@ -207,6 +206,14 @@ impl<'a, T: Real, const D: usize> Study<'a, T, D> {
     #[must_use]
     pub fn fields_to(mut self, directory: impl Into<PathBuf>) -> Self {
         self.directory = Some(directory.into());
+        self
+    }
+    /// Writes the inequality of every scheme on every level to this directory, each to its folder
+    /// `SCENE-LABEL-LEVEL`, by [`write_inequality`](crate::exchange::write_inequality).
+    #[cfg(feature = "report")]
+    #[must_use]
+    pub fn inequalities_to(mut self, directory: impl Into<PathBuf>) -> Self {
+        self.inequalities = Some(directory.into());
         self
     }
     /// Adds each row to a journal as soon as it is finished, and takes those that the journal has from an
@@ -383,6 +390,33 @@ impl<'a, T: Real, const D: usize> Study<'a, T, D> {
         self.row(&mut nested, (entry, &problem), level, failure.as_deref())
     }
 
+    /// The row of the first scheme on the first level for values of its unknowns that another program
+    /// found: their certificate, errors and totals. Solver and linear solver of the row are `none`.
+    ///
+    /// # Errors
+    /// Those of [`Study::run`], and [`Error::Parameter`] for another number of values than of unknowns.
+    pub fn judge(&self, values: &[f64]) -> Result<Row, Error> {
+        compiled!(
+            T, D: fn(&Study<'_, T, D>, &[f64]) -> Result<Row, Error>
+                = |study, values| study.judge_values(values)
+        )(self, values)
+    }
+    fn judge_values(&self, values: &[f64]) -> Result<Row, Error> {
+        let failure = self.where_exact_fails()?;
+        let (Some(entry), Some(&level)) = (self.entries.first(), self.levels.first()) else {
+            unreachable!("checked above")
+        };
+        let problem = entry.problem(&self.scene.problem);
+        let hierarchy = self.coarsest().build(level)?;
+        let nested = NestedIteration::new(&problem, &hierarchy).quadrature(self.quadrature);
+        let solved = nested.judge_on(hierarchy.n_meshes() - 1, &*entry.scheme, values)?;
+        let row = Row {
+            solver: "none".to_owned(),
+            ..self.measured(entry, level, &solved, failure.as_deref())?
+        };
+        Ok(row)
+    }
+
     /// From which the meshes of all levels are refined.
     fn coarsest(&self) -> Coarsest<'_, T, D> {
         match &self.mesh {
@@ -411,98 +445,4 @@ impl<'a, T: Real, const D: usize> Study<'a, T, D> {
             .repeat(self.repeat)
             .observer(|phase| (self.observer)(Progress::Entered(phase)))
     }
-
-    /// Solves one scheme on one level of these hierarchies. Returns the row, and the seconds of its start
-    /// from coarser levels.
-    fn row<'p>(
-        &self,
-        nested: &mut [NestedIteration<'p, T, D>],
-        (entry, problem): (&Entry<'_, T, D>, &'p Problem<D>),
-        level: usize,
-        failure: Option<&str>,
-    ) -> Result<(Row, f64), Error> {
-        let mut on_level = nested.iter_mut().filter_map(|n| Some((n.position(level)?, n)));
-        let Some((position, nested)) = on_level.next() else {
-            unreachable!("a hierarchy has the level")
-        };
-        let (scheme, set) = (&*entry.scheme, problem.constraint_set());
-        let (solver, label) = (nested.solver_name(), scheme.label_on(set));
-        let complete = |row: Row| Row {
-            constraint: scheme.constraint_on(set).unwrap_or_else(|| set.name().to_owned()),
-            label: label.clone(),
-            solver: solver.to_owned(),
-            expected_order: self.expected_orders(scheme, set, failure),
-            peak_memory_bytes: peak_memory_bytes(),
-            ..row
-        };
-        nested.replace_constraint_set(problem);
-        let solved = match nested.solve_on(position, scheme) {
-            Ok(solved) => solved,
-            Err(error) => {
-                let mesh = nested.mesh(position);
-                let (name, outcome) = (scheme.name(), Outcome::Malformed);
-                let space = scheme.discretise(problem, mesh, self.quadrature);
-                let row = Row {
-                    parameters: scheme.parameters(mesh),
-                    unknowns: space.ok().map(|space| space.unknowns()),
-                    cells: mesh.n_cells(),
-                    mesh_size: mesh.mesh_size(),
-                    ..Row::new(&self.scene.name, D, name, level, outcome)
-                };
-                return Ok((complete(row).with_error(error)?, 0.0));
-            }
-        };
-        #[cfg(feature = "report")]
-        if let Some(directory) = &self.directory
-            && solved.has_iterate()
-            && self.levels.iter().max() == Some(&level)
-        {
-            let mut name = format!("{}-{label}", self.scene.name);
-            if self.solvers.len() > 1 {
-                name += &format!("-{solver}");
-            }
-            let path = directory.join(file_name(&name) + ".vtu");
-            replace(&path, |draft| solved.write_vtu(draft))?;
-        }
-        (self.observer)(Progress::Entered(Phase::Measures));
-        let mut row = complete(Row::of(&self.scene.name, scheme.name(), level, &solved));
-        if let Some(at) = failure {
-            row.warnings.push(format!(
-                "the scene's solution breaks the contact condition of this mesh at {at}: no errors"
-            ));
-        }
-        let row = match measure(&mut row, &solved, failure.is_none()) {
-            Ok(()) => row,
-            Err(error) => row.with_error(error)?,
-        };
-        Ok((row, solved.start_seconds))
-    }
-
-    /// The orders that theory proves; none without an exact solution that holds on the mesh.
-    fn expected_orders(
-        &self,
-        scheme: &dyn AnyScheme<T, D>,
-        set: &dyn ConstraintSet,
-        failure: Option<&str>,
-    ) -> ExpectedOrders {
-        match (failure, &self.scene.problem.exact) {
-            (None, Some(_)) => {
-                scheme.expected_orders_on(set, &setting(&self.scene, self.mesh.is_some()))
-            }
-            _ => ExpectedOrders::default(),
-        }
-    }
-}
-
-/// Fills in energy and errors.
-fn measure<T: Real, const D: usize>(
-    row: &mut Row,
-    solved: &Solved<'_, T, D>,
-    has_exact: bool,
-) -> Result<(), Error> {
-    row.energy = solved.energy()?;
-    if has_exact {
-        (row.error, row.contact) = (solved.errors()?, solved.contact_errors()?);
-    }
-    Ok(())
 }

@@ -1,0 +1,155 @@
+//! The rows of a study: one scheme on one level each.
+
+use super::{Entry, Progress, Study};
+use crate::constraint::ConstraintSet;
+use crate::error::Error;
+#[cfg(feature = "report")]
+use crate::exchange::write_inequality;
+#[cfg(feature = "report")]
+use crate::files::replace;
+use crate::inequality::Outcome;
+use crate::nested::{NestedIteration, Phase, Solved};
+use crate::problem::Problem;
+use crate::real::Real;
+use crate::scheme::{AnyScheme, ExpectedOrders};
+#[cfg(feature = "report")]
+use crate::study::file_name::file_name;
+use crate::study::memory::peak_memory_bytes;
+use crate::study::row::Row;
+use crate::study::setting::setting;
+
+impl<T: Real, const D: usize> Study<'_, T, D> {
+    /// Solves one scheme on one level of these hierarchies. Returns the row, and the seconds of its start
+    /// from coarser levels.
+    pub(super) fn row<'p>(
+        &self,
+        nested: &mut [NestedIteration<'p, T, D>],
+        (entry, problem): (&Entry<'_, T, D>, &'p Problem<D>),
+        level: usize,
+        failure: Option<&str>,
+    ) -> Result<(Row, f64), Error> {
+        let mut on_level = nested.iter_mut().filter_map(|n| Some((n.position(level)?, n)));
+        let Some((position, nested)) = on_level.next() else {
+            unreachable!("a hierarchy has the level")
+        };
+        let scheme = &*entry.scheme;
+        let solver = nested.solver_name();
+        nested.replace_constraint_set(problem);
+        let row = |row: Row| Row {
+            solver: solver.to_owned(),
+            peak_memory_bytes: peak_memory_bytes(),
+            ..row
+        };
+        let solved = match nested.solve_on(position, scheme) {
+            Ok(solved) => solved,
+            Err(error) => {
+                let mesh = nested.mesh(position);
+                let space = scheme.discretise(problem, mesh, self.quadrature);
+                let without_solution = Row {
+                    parameters: scheme.parameters(mesh),
+                    unknowns: space.ok().map(|space| space.unknowns()),
+                    cells: mesh.n_cells(),
+                    mesh_size: mesh.mesh_size(),
+                    ..Row::new(&self.scene.name, D, scheme.name(), level, Outcome::Malformed)
+                };
+                let named = self.named(entry, problem, without_solution, failure);
+                return Ok((row(named).with_error(error)?, 0.0));
+            }
+        };
+        #[cfg(feature = "report")]
+        self.write_files(&solved, &scheme.label_on(problem.constraint_set()), solver, level)?;
+        (self.observer)(Progress::Entered(Phase::Measures));
+        Ok((row(self.measured(entry, level, &solved, failure)?), solved.start_seconds))
+    }
+
+    /// Writes the files that are asked for of one run.
+    #[cfg(feature = "report")]
+    fn write_files(
+        &self,
+        solved: &Solved<'_, T, D>,
+        label: &str,
+        solver: &str,
+        level: usize,
+    ) -> Result<(), Error> {
+        let name = format!("{}-{label}", self.scene.name);
+        if let Some(directory) = &self.inequalities {
+            let folder = directory.join(file_name(&format!("{name}-{level}")));
+            write_inequality(folder, solved.inequality(), solved.mesh())?;
+        }
+        if let Some(directory) = &self.directory
+            && solved.has_iterate()
+            && self.levels.iter().max() == Some(&level)
+        {
+            let solver = if self.solvers.len() > 1 { format!("-{solver}") } else { String::new() };
+            let path = directory.join(file_name(&(name + &solver)) + ".vtu");
+            replace(&path, |draft| solved.write_vtu(draft))?;
+        }
+        Ok(())
+    }
+
+    /// The row of a solution with its errors and totals, without solver and memory.
+    pub(super) fn measured(
+        &self,
+        entry: &Entry<'_, T, D>,
+        level: usize,
+        solved: &Solved<'_, T, D>,
+        failure: Option<&str>,
+    ) -> Result<Row, Error> {
+        let row = Row::of(&self.scene.name, entry.scheme.name(), level, solved);
+        let mut row = self.named(entry, solved.discretisation().space.problem, row, failure);
+        if let Some(at) = failure {
+            row.warnings.push(format!(
+                "the scene's solution breaks the contact condition of this mesh at {at}: no errors"
+            ));
+        }
+        match measure(&mut row, solved, failure.is_none()) {
+            Ok(()) => Ok(row),
+            Err(error) => row.with_error(error),
+        }
+    }
+
+    /// The row with the names of constraint set and label and the promised orders.
+    fn named(
+        &self,
+        entry: &Entry<'_, T, D>,
+        problem: &Problem<D>,
+        row: Row,
+        failure: Option<&str>,
+    ) -> Row {
+        let (scheme, set) = (&*entry.scheme, problem.constraint_set());
+        Row {
+            constraint: scheme.constraint_on(set).unwrap_or_else(|| set.name().to_owned()),
+            label: scheme.label_on(set),
+            expected_order: self.expected_orders(scheme, set, failure),
+            ..row
+        }
+    }
+
+    /// The orders that theory proves; none without an exact solution that holds on the mesh.
+    fn expected_orders(
+        &self,
+        scheme: &dyn AnyScheme<T, D>,
+        set: &dyn ConstraintSet,
+        failure: Option<&str>,
+    ) -> ExpectedOrders {
+        match (failure, &self.scene.problem.exact) {
+            (None, Some(_)) => {
+                scheme.expected_orders_on(set, &setting(&self.scene, self.mesh.is_some()))
+            }
+            _ => ExpectedOrders::default(),
+        }
+    }
+}
+
+/// Fills in energy and errors.
+fn measure<T: Real, const D: usize>(
+    row: &mut Row,
+    solved: &Solved<'_, T, D>,
+    has_exact: bool,
+) -> Result<(), Error> {
+    row.energy = solved.energy()?;
+    if has_exact {
+        (row.error, row.contact) = (solved.errors()?, solved.contact_errors()?);
+    }
+    Ok(())
+}
