@@ -2,6 +2,8 @@
 
 mod compatibility;
 #[cfg(feature = "report")]
+mod fields;
+#[cfg(feature = "report")]
 mod file_name;
 mod memory;
 mod memory_limits;

@@ -37,7 +37,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
                 weights[self.mesh.cell(entity.cell)[local] as usize] += share;
             }
         }
-        let multipliers = self.vertex_multipliers(inequality, solution);
+        let multipliers = self.vertex_multipliers(inequality, solution, |_| true);
         let given = self.on_dirichlet_part();
         let density =
             |v: usize| (weights[v] > 0.0 && !given[v]).then(|| multipliers[v] / weights[v]);

@@ -23,7 +23,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         solution: &Solution<T>,
     ) -> Result<Option<[f64; 2]>, Error> {
         let mut weights = vec![0.0; self.mesh.vertices().len()];
-        let mut multipliers = self.vertex_multipliers(inequality, solution);
+        let mut multipliers = self.vertex_multipliers(inequality, solution, |_| true);
         // for facets and for cells
         let rules = [D - 1, D].map(|dimension| CutRule::new(dimension, DEGREE));
         for &entity in entities {
@@ -38,19 +38,20 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         Ok(vertices().next().map(|_| [sum, squares.sqrt()]))
     }
 
-    /// Nodal multipliers at vertices: the residual of every constrained unknown in contact, divided
-    /// equally among the vertices around its node.
+    /// Nodal multipliers at vertices: the residual of every constrained unknown in contact that counts,
+    /// divided equally among the vertices around its node.
     pub(crate) fn vertex_multipliers(
         &self,
         inequality: &Inequality<T>,
         solution: &Solution<T>,
+        counts: impl Fn(usize) -> bool,
     ) -> Vec<f64> {
         let mut residual = vec![0.0; inequality.size()];
         inequality.residual_f64(&solution.values, &mut residual);
         let mut multipliers = vec![0.0; self.mesh.vertices().len()];
         for (unknown, &residual) in residual.iter().enumerate() {
             let touches = solution.contact[unknown] != Contact::Inactive;
-            if touches && inequality.bounds[unknown].is_inequality() {
+            if touches && inequality.bounds[unknown].is_inequality() && counts(unknown) {
                 let around = inequality.supports[unknown].vertices();
                 let share = -residual / around.len() as f64;
                 around.iter().for_each(|&v| multipliers[v as usize] += share);

@@ -182,6 +182,14 @@ impl Picture {
         draw_png(self, path).map_err(|why| write_error(path, why))
     }
 
+    /// Writes the picture as an SVG file.
+    ///
+    /// # Errors
+    /// [`Error::Write`], and those of [`Self::to_svg`].
+    pub fn write_svg(&self, path: &Path) -> Result<(), Error> {
+        fs::write(path, self.to_svg()?).map_err(|e| write_error(path, e))
+    }
+
     /// Writes `NAME.png` and `NAME.svg` to a directory, which is made if need be.
     ///
     /// # Errors
@@ -190,7 +198,7 @@ impl Picture {
         fs::create_dir_all(directory).map_err(|e| write_error(directory, e))?;
         let [png, svg] = ["png", "svg"].map(|end| directory.join(format!("{name}.{end}")));
         self.write_png(&png)?;
-        fs::write(&svg, self.to_svg()?).map_err(|e| write_error(&svg, e))?;
+        self.write_svg(&svg)?;
         Ok([png, svg])
     }
 
