@@ -20,3 +20,8 @@ pub(crate) fn replace(
     fs::rename(&draft, path).map_err(|e| write_error(path, e))?;
     Ok(path.to_owned())
 }
+
+/// Writes a text in this way.
+pub(crate) fn replace_text(path: &Path, text: &str) -> Result<PathBuf, Error> {
+    replace(path, |path| fs::write(path, text).map_err(|e| e.to_string()))
+}
