@@ -3,6 +3,8 @@
 mod compatibility;
 mod extrapolate;
 #[cfg(feature = "report")]
+mod fields;
+#[cfg(feature = "report")]
 mod file_name;
 #[cfg(feature = "report")]
 mod journal;

@@ -7,7 +7,7 @@ use std::sync::Arc;
 
 use super::compatibility::{check_domain, check_fit, check_scheme};
 #[cfg(feature = "report")]
-use super::file_name::file_name;
+use super::fields::FieldFiles;
 #[cfg(feature = "report")]
 use super::journal::Journal;
 use super::memory::{
@@ -21,12 +21,12 @@ use crate::assemble::DataQuadrature;
 use crate::constraint::ConstraintSet;
 use crate::element::Layout;
 use crate::error::Error;
-#[cfg(feature = "report")]
-use crate::files::replace;
 use crate::inequality::{ActiveSet, InequalitySolver, Outcome};
 use crate::instances::compiled;
 use crate::mesh::Mesh;
 use crate::nested::{Coarsest, Hierarchy, NestedIteration, Phase, Solved};
+#[cfg(feature = "report")]
+use crate::paraview::FieldScalar;
 use crate::problem::Problem;
 use crate::real::Real;
 use crate::scenes::Scene;
@@ -69,11 +69,16 @@ pub struct Study<'a, T: Real, const D: usize> {
     quadrature: DataQuadrature,
     repeat: usize,
     #[cfg(feature = "report")]
-    directory: Option<PathBuf>,
-    #[cfg(feature = "report")]
     journal: Option<&'a Journal>,
+    #[cfg(feature = "report")]
+    fields: FieldFiles,
+    each_solution: Option<EachSolution<'a, T, D>>,
     observer: Box<dyn Fn(Progress<'_>) + 'a>,
 }
+
+/// Receives a solution with its label and level.
+type EachSolution<'a, T, const D: usize> =
+    Box<dyn Fn(&str, usize, &Solved<'_, T, D>) -> Result<(), Error> + 'a>;
 
 /// A scheme, with its constraint set if that is not the problem's.
 struct Entry<'a, T: Real, const D: usize> {
@@ -116,9 +121,10 @@ impl<'a, T: Real, const D: usize> Study<'a, T, D> {
             quadrature: DataQuadrature::default(),
             repeat: 1,
             #[cfg(feature = "report")]
-            directory: None,
-            #[cfg(feature = "report")]
             journal: None,
+            #[cfg(feature = "report")]
+            fields: FieldFiles::default(),
+            each_solution: None,
             observer: Box::new(|_| {}),
         }
     }
@@ -206,7 +212,31 @@ impl<'a, T: Real, const D: usize> Study<'a, T, D> {
     #[cfg(feature = "report")]
     #[must_use]
     pub fn fields_to(mut self, directory: impl Into<PathBuf>) -> Self {
-        self.directory = Some(directory.into());
+        self.fields.directory = Some(directory.into());
+        self
+    }
+    /// Sets the scalar of coordinates and fields in files; 32 bits otherwise.
+    #[cfg(feature = "report")]
+    #[must_use]
+    pub fn field_scalar(mut self, scalar: FieldScalar) -> Self {
+        self.fields.scalar = scalar;
+        self
+    }
+    /// Writes the fields of every level, and `SCENE-LABEL.pvd`, which lists the files.
+    #[cfg(feature = "report")]
+    #[must_use]
+    pub fn fields_of_all_levels(mut self) -> Self {
+        self.fields.all_levels = true;
+        self
+    }
+    /// Sets a function that receives every solution that has values, with its label and level, before the
+    /// row of the solution is complete. An error ends the study.
+    #[must_use]
+    pub fn each_solution(
+        mut self,
+        f: impl Fn(&str, usize, &Solved<'_, T, D>) -> Result<(), Error> + 'a,
+    ) -> Self {
+        self.each_solution = Some(Box::new(f));
         self
     }
     /// Adds each row to a journal as soon as it is finished, and takes those that the journal has from an
@@ -453,16 +483,13 @@ impl<'a, T: Real, const D: usize> Study<'a, T, D> {
             }
         };
         #[cfg(feature = "report")]
-        if let Some(directory) = &self.directory
-            && solved.has_iterate()
-            && self.levels.iter().max() == Some(&level)
         {
-            let mut name = format!("{}-{label}", self.scene.name);
-            if self.solvers.len() > 1 {
-                name += &format!("-{solver}");
-            }
-            let path = directory.join(file_name(&name) + ".vtu");
-            replace(&path, |draft| solved.write_vtu(draft))?;
+            let with_solver = format!("{label}-{solver}");
+            let name = if self.solvers.len() > 1 { &with_solver } else { &label };
+            self.fields.write((&self.scene.name, name), level, &self.levels, &solved)?;
+        }
+        if let Some(f) = self.each_solution.as_ref().filter(|_| solved.has_iterate()) {
+            f(&label, level, &solved)?;
         }
         (self.observer)(Progress::Entered(Phase::Measures));
         let mut row = complete(Row::of(&self.scene.name, scheme.name(), level, &solved));

@@ -37,7 +37,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
                 weights[self.mesh.cell(entity.cell)[local] as usize] += share;
             }
         }
-        let multipliers = self.vertex_multipliers(inequality, solution);
+        let multipliers = self.vertex_multipliers(inequality, solution, |_| true);
         let given = self.dirichlet_groups();
         let density = |v: usize| {
             (weights[v] > 0.0 && given[v].is_none()).then(|| multipliers[v] / weights[v])

@@ -25,11 +25,16 @@ use unilateral::error::Error;
 use unilateral::inequality::{SOLVERS, SolverOptions, solver_by_name};
 use unilateral::linear::LinearMethod;
 use unilateral::mesh::{Mesh, gmsh};
+use unilateral::nested::Solved;
+use unilateral::paraview::FieldScalar;
+use unilateral::plot::Picture;
 use unilateral::real::Real;
 use unilateral::scenes::{self, AcceptedParameters, AnyScene, Parameters, Scene};
 use unilateral::scheme::NamedScheme;
 use unilateral::study::orders_table;
-use unilateral::study::{Journal, Program, Report, Row, RowKey, Study, available_memory_bytes};
+use unilateral::study::{
+    Journal, Program, Report, Row, RowKey, Study, available_memory_bytes, file_name,
+};
 
 /// Whether every row converged.
 pub fn run(options: &Options) -> Request<bool> {
@@ -198,6 +203,9 @@ struct Run<'a> {
     run: Box<dyn FnOnce(&'a Journal) -> Request<Vec<Row>> + 'a>,
 }
 
+/// Most cells of a solution that is drawn: pictures of more are large and show no more.
+const MOST_CELLS: usize = 5000;
+
 /// Checks a study. Nothing is left of one that does not fit the mesh and was not asked for by name.
 fn prepare<'a, T: Real, const D: usize>(
     scene: Scene<D>,
@@ -219,8 +227,19 @@ fn prepare<'a, T: Real, const D: usize>(
     let mut study = Study::<T, D>::new(scene)
         .levels(levels)
         .repeat(options.repeat)
-        .fields_to(&options.out)
         .observer(|progress| watcher.tell(&progress));
+    let scene_name = name.clone();
+    study = study.each_solution(move |label, level, solved| {
+        draw(&format!("{scene_name}-{label}"), level, solved, &options.out)
+    });
+    if !options.no_fields {
+        let is_double = options.fields == "f64";
+        let scalar = if is_double { FieldScalar::Double } else { FieldScalar::Single };
+        study = study.fields_to(&options.out).field_scalar(scalar);
+    }
+    if options.fields_of_all_levels {
+        study = study.fields_of_all_levels();
+    }
     study = schemes.iter().fold(study, Study::named_scheme);
     for name in solvers {
         study = solver_by_name(name, &SolverOptions::default().linear(linear))
@@ -254,6 +273,22 @@ fn prepare<'a, T: Real, const D: usize>(
         Err(e) => Err(format!("{place}: {e}")),
     };
     Ok(Some(Run { keys, run: Box::new(run) }))
+}
+
+/// Draws a solution with few cells as `NAME.svg`; one on a finer mesh takes the place of a coarser one.
+fn draw<T: Real, const D: usize>(
+    name: &str,
+    level: usize,
+    solved: &Solved<'_, T, D>,
+    directory: &Path,
+) -> Result<(), Error> {
+    let Some(fields) = solved.fields().filter(|_| solved.mesh().n_cells() <= MOST_CELLS) else {
+        return Ok(());
+    };
+    let title = format!("{name}, level {level}");
+    let problem = solved.discretisation().problem();
+    let picture = Picture::of(&title, problem, solved.mesh(), &fields, None)?;
+    picture.write_svg(&directory.join(file_name(name) + ".svg"))
 }
 
 fn read_mesh<T: Real, const D: usize>(

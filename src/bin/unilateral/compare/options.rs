@@ -74,6 +74,15 @@ pub struct Options {
     /// Also write a table of observed against promised orders here, in Markdown
     #[arg(long, value_name = "FILE")]
     pub orders: Option<PathBuf>,
+    /// Scalar of coordinates and fields in .vtu files
+    #[arg(long, value_parser = ["f32", "f64"], default_value = "f32")]
+    pub fields: String,
+    /// No .vtu files
+    #[arg(long, conflicts_with = "fields_of_all_levels")]
+    pub no_fields: bool,
+    /// The fields of every level, and a .pvd file that lists those of each scheme
+    #[arg(long)]
+    pub fields_of_all_levels: bool,
     /// No progress, no tables
     #[arg(long)]
     pub quiet: bool,
