@@ -49,6 +49,7 @@ struct Rows {
     finished: Vec<Row>,
     /// The rows of an earlier run that this run has not asked for yet.
     kept: Vec<Row>,
+    is_closed: bool,
 }
 
 impl Journal {
@@ -114,7 +115,7 @@ impl Journal {
             OpenOptions::new().append(true).open(&path).map_err(|e| write_error(&path, e))?;
         let length = text.len() as u64;
         let Report { program, rows: kept, .. } = report;
-        let rows = Mutex::new(Rows { file, length, finished: Vec::new(), kept });
+        let rows = Mutex::new(Rows { file, length, finished: Vec::new(), kept, is_closed: false });
         Ok(Self { path, program, rows })
     }
 
@@ -131,9 +132,12 @@ impl Journal {
     /// Adds a finished row. The row is in the system's hands when the call returns.
     ///
     /// # Errors
-    /// [`Error::Write`]; the lines before stay whole.
+    /// [`Error::Write`], also after [`Journal::close`]; the lines before stay whole.
     pub fn add(&self, row: &Row) -> Result<(), Error> {
         let mut rows = self.rows();
+        if rows.is_closed {
+            return Err(write_error(&self.path, "the journal is closed"));
+        }
         rows.finished.push(row.clone());
         let line = line(row);
         if let Err(why) = rows.file.write_all(line.as_bytes()) {
@@ -157,6 +161,13 @@ impl Journal {
         let row = rows.kept.remove(at);
         rows.finished.push(row.clone());
         Some(row)
+    }
+
+    /// The incomplete report, to which no row is added any more: a study that runs in another thread ends
+    /// with an error at its next row.
+    pub fn close(&self) -> Report {
+        self.rows().is_closed = true;
+        self.report()
     }
 
     /// The rows that are finished and those of an earlier run, as an incomplete report.

@@ -75,10 +75,8 @@ fn coefficients_must_be_positive_and_obstacles_leave_room() {
     }
     let crossed = Problem::new().obstacle_below(|_| 0.5).obstacle_above(|x| 1.0 - x[0]);
     let over_datum = Problem::new().obstacle_below(|_| 0.5);
-    for (problem, n) in [(crossed, 2), (over_datum, 1)] {
+    for problem in [crossed, over_datum] {
         let messages = failed(problem, Outcome::Infeasible);
-        // SIPG imposes the datum by its form, which leaves room
-        assert_eq!(messages.len(), n, "{messages:?}");
         assert!(messages.iter().all(|m| m.contains("lower bound") && m.contains("exceeds upper")));
     }
 }

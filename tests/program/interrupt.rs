@@ -14,7 +14,7 @@ use super::rows::without_times;
 use super::run::{Scratch, program, read_json, refused, stderr};
 
 const REQUEST: &str =
-    "--scene radial-2d,signorini-1d --scheme p1,sipg,wopsip --levels 4,8,16,32 --threads 1";
+    "--scene radial-2d,signorini-2d --scheme p1,sipg,wopsip --levels 4,8,16 --threads 1";
 
 /// Scene, label, solver and level of the lines of finished rows.
 fn told(progress: &str) -> BTreeSet<String> {

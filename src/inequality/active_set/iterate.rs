@@ -81,11 +81,8 @@ impl<'a, T: Real> Iterate<'a, T> {
     }
 
     /// Makes every unknown with a bound active, at its lower bound if it has two; false if nothing
-    /// changed. The other values are zero again: factors of a singular matrix that rounding made regular
-    /// leave values so large that no later correction has a correct digit.
+    /// changed.
     pub fn activate_all(&mut self) -> bool {
-        self.values.fill(T::lit(0.0));
-        self.jump_multipliers.clear();
         let active = |bound: &Bound<T>| match (bound.lower(), bound.upper()) {
             (Some(_), _) => Contact::Lower,
             (None, Some(_)) => Contact::Upper,
@@ -96,6 +93,13 @@ impl<'a, T: Real> Iterate<'a, T> {
         self.states = states;
         self.set_prescribed_values();
         is_changed
+    }
+
+    /// Sets all values that are not prescribed to zero.
+    pub fn forget_values(&mut self) {
+        self.values.fill(T::lit(0.0));
+        self.jump_multipliers.clear();
+        self.set_prescribed_values();
     }
 
     /// Sets every fixed or active unknown to its prescribed value, exactly, and marks it as eliminated.

@@ -61,7 +61,8 @@ impl Interrupt {
     fn end(&self, write: &dyn Fn(&Report) -> Request<()>) -> ! {
         let state = self.0.lock().unwrap_or_else(PoisonError::into_inner);
         if let (Some(journal), false) = (state.journal, state.is_written) {
-            let report = journal.report();
+            // the run ends at its next row and waits for the lock
+            let report = journal.close();
             if let Err(message) = write(&report) {
                 complain(&message);
             }
