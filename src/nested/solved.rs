@@ -15,7 +15,7 @@ use crate::inequality::{
 };
 #[cfg(feature = "report")]
 use crate::instances::compiled;
-use crate::measure::{ContactErrors, Errors, Fields};
+use crate::measure::{ContactErrors, Errors, Fields, contact_difference};
 use crate::mesh::Mesh;
 #[cfg(feature = "report")]
 use crate::paraview::VtuFile;
@@ -244,6 +244,27 @@ impl<'a, T: Real, const D: usize> Solved<'a, T, D> {
         }
         let coarse = (&coarse.discretisation, coarse.values(), refinements.unsigned_abs());
         fine.discretisation.difference(fine.values(), coarse)
+    }
+    /// Distances of multiplier and contact set from those of a solution on a finer mesh of the same
+    /// hierarchy, or on the same mesh; the distance of free boundaries is not computed. None without two
+    /// iterates.
+    ///
+    /// # Errors
+    /// [`Error::NotNested`] if the mesh of `reference` is not a refinement of this one.
+    pub fn contact_difference(&self, reference: &Self) -> Result<ContactErrors, Error> {
+        let refinements: Vec<_> = match (self.hierarchy, reference.hierarchy) {
+            _ if std::ptr::eq(self.mesh(), reference.mesh()) => Vec::new(),
+            (Some((one, a)), Some((two, b))) if std::ptr::eq(one, two) && a <= b => {
+                (a + 1..=b).filter_map(|k| one.refinement(k)).map(|(by, _)| by).collect()
+            }
+            _ => return Err(Error::NotNested),
+        };
+        if !(self.has_iterate && reference.has_iterate) {
+            return Ok(ContactErrors::default());
+        }
+        let own = (&self.discretisation, &self.inequality, &self.solution);
+        let fine = (&reference.discretisation, &reference.inequality, &reference.solution);
+        Ok(contact_difference(own, fine, &refinements))
     }
     /// Distances of multiplier and contact set from the exact ones; none without an iterate.
     ///

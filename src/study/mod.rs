@@ -13,6 +13,7 @@ mod memory_limits;
 mod order_check;
 mod orders;
 mod orders_table;
+mod reference;
 pub(crate) mod report;
 pub(crate) mod row;
 mod runner;

@@ -14,6 +14,7 @@ use super::memory::{
     MemoryEstimate, estimate, estimate_without_factors, peak_memory_bytes, unknowns_about,
 };
 use super::orders::fill_orders;
+use super::reference::Reference;
 use super::report::{Program, Report};
 use super::row::{Row, RowKey};
 use super::setting::setting;
@@ -23,7 +24,7 @@ use crate::element::Layout;
 use crate::error::Error;
 use crate::inequality::{ActiveSet, InequalitySolver, Outcome};
 use crate::instances::compiled;
-use crate::mesh::Mesh;
+use crate::mesh::{BoxDomain, Mesh};
 use crate::nested::{Coarsest, Hierarchy, NestedIteration, Phase, Solved};
 #[cfg(feature = "report")]
 use crate::paraview::FieldScalar;
@@ -65,6 +66,7 @@ pub struct Study<'a, T: Real, const D: usize> {
     entries: Vec<Entry<'a, T, D>>,
     levels: Vec<usize>,
     mesh: Option<Mesh<T, D>>,
+    reference: Option<Reference<'a, T, D>>,
     solvers: Vec<Arc<dyn InequalitySolver<T> + 'a>>,
     quadrature: DataQuadrature,
     repeat: usize,
@@ -117,6 +119,7 @@ impl<'a, T: Real, const D: usize> Study<'a, T, D> {
             entries: Vec::new(),
             levels: Vec::new(),
             mesh: None,
+            reference: None,
             solvers: Vec::new(),
             quadrature: DataQuadrature::default(),
             repeat: 1,
@@ -127,6 +130,46 @@ impl<'a, T: Real, const D: usize> Study<'a, T, D> {
             each_solution: None,
             observer: Box::new(|_| {}),
         }
+    }
+    /// A study of a problem of one's own on a mesh and its refinements. The data of the problem give the
+    /// boundary its parts ([`Problem::bind_boundary`]).
+    ///
+    /// # Errors
+    /// [`Error::Mesh`] where two data claim one boundary group.
+    pub fn of_problem(name: &str, problem: Problem<D>, mesh: Mesh<T, D>) -> Result<Self, Error> {
+        let mesh = problem.bind_boundary(mesh)?;
+        // the domain of a scene is not used where there is a mesh
+        let domain = BoxDomain::centred(1.0);
+        Ok(Self::new(Scene::new(name, domain, problem)).on_mesh(mesh))
+    }
+    /// Measures all rows against the solution of this scheme on a level, in place of the exact one: errors,
+    /// orders, multiplier and contact set. On a domain the level is a power of two times every other level
+    /// and at least four times the finest; on a mesh it is at least two refinements finer.
+    ///
+    /// ```
+    /// use unilateral::prelude::*;
+    /// # fn main() -> Result<(), Error> {
+    /// let report = Study::<f64, 2>::new(scenes::radial(1.0))
+    ///     .scheme(ConformingP1)
+    ///     .levels([8, 16])
+    ///     .reference(ConformingP2, 64)
+    ///     .run()?;
+    /// assert_eq!(report.rows[1].against.as_deref(), Some("p2 at level 64"));
+    /// assert!(report.rows[1].order.h1 > Some(0.9));
+    /// # Ok(())
+    /// # }
+    /// ```
+    #[must_use]
+    pub fn reference(mut self, scheme: impl AnyScheme<T, D> + 'a, level: usize) -> Self {
+        self.reference = Some(Reference { scheme: Arc::new(scheme), set: None, level });
+        self
+    }
+    /// As [`Study::reference`], with a scheme as users write it.
+    #[must_use]
+    pub fn named_reference(mut self, scheme: &NamedScheme, level: usize) -> Self {
+        let (set, scheme) = (scheme.constraint_set(), scheme.make().into());
+        self.reference = Some(Reference { scheme, set, level });
+        self
     }
     /// Adds a scheme, with the constraint set of the problem.
     #[must_use]
@@ -278,6 +321,11 @@ impl<'a, T: Real, const D: usize> Study<'a, T, D> {
         for (entry, problem) in self.entries.iter().zip(self.problems()) {
             check_scheme(&*entry.scheme, problem, self.quadrature)?;
         }
+        if let Some(reference) = &self.reference {
+            let domain = self.mesh.is_none().then_some(&self.scene.domain);
+            reference.check(domain, &self.levels)?;
+            self.coarsest().check(reference.level)?;
+        }
         match &self.mesh {
             Some(mesh) => check_fit(&self.scene, mesh),
             None => check_domain(&self.scene).map(|()| None),
@@ -293,23 +341,24 @@ impl<'a, T: Real, const D: usize> Study<'a, T, D> {
         )(self)
     }
     fn estimate_memory(&self) -> Option<MemoryEstimate> {
-        let level = self.levels.iter().copied().max()?;
-        let cells = self.coarsest().cells(level);
         let obstacle = self.scene.problem.has_obstacle();
         let solvers = self.solvers();
-        let bytes = |layout: Layout| {
+        let bytes = |layout: Layout, cells: f64| {
             let unknowns = unknowns_about(D, layout, cells) as usize;
             match D > 1 && solvers.iter().all(|s| s.uses_coarse_spaces(unknowns)) {
                 true => estimate_without_factors(D, layout, cells, size_of::<T>()),
                 false => estimate(D, layout, cells, obstacle, size_of::<T>()),
             }
         };
-        let of = |scheme: &dyn AnyScheme<T, D>| MemoryEstimate {
-            bytes: bytes(scheme.layout()),
+        let of = |scheme: &dyn AnyScheme<T, D>, level: usize| MemoryEstimate {
+            bytes: bytes(scheme.layout(), self.coarsest().cells(level)),
             scheme: scheme.name().to_owned(),
             level,
         };
-        self.entries.iter().map(|e| of(&*e.scheme)).max_by(|a, b| a.bytes.total_cmp(&b.bytes))
+        let finest = self.levels.iter().copied().max()?;
+        let reference = self.reference.iter().map(|r| of(&*r.scheme, r.level));
+        let runs = self.entries.iter().map(|e| of(&*e.scheme, finest));
+        runs.chain(reference).max_by(|a, b| a.bytes.total_cmp(&b.bytes))
     }
 
     /// Runs every scheme with every solver on every level.
@@ -330,9 +379,19 @@ impl<'a, T: Real, const D: usize> Study<'a, T, D> {
         (self.observer)(Progress::Entered(Phase::Mesh));
         let hierarchies = match kept.iter().all(Option::is_some) {
             true => Vec::new(),
-            false => self.coarsest().build_all(&self.levels)?,
+            false => self.hierarchies()?,
         };
         let problems = self.problems();
+        let reference_problem = self.reference.as_ref().map(|reference| {
+            let set = reference.set.clone().or(self.scene.problem.constraint_set.clone());
+            Problem { constraint_set: set, ..self.scene.problem.clone() }
+        });
+        let reference = match (&self.reference, &reference_problem, hierarchies.first()) {
+            (Some(reference), Some(problem), Some(hierarchy)) => {
+                Some(self.solve_reference(reference, problem, hierarchy)?)
+            }
+            _ => None,
+        };
         let mut by_solver: Vec<Vec<NestedIteration<'_, T, D>>> = self
             .solvers()
             .iter()
@@ -350,7 +409,11 @@ impl<'a, T: Real, const D: usize> Study<'a, T, D> {
                         continue;
                     }
                     (self.observer)(Progress::Started(&self.scene.name, &label, level));
-                    let (row, _) = self.row(nested, (entry, problem), level, failure.as_deref())?;
+                    let (row, _) = {
+                        let measured =
+                            Measured { failure: failure.as_deref(), reference: reference.as_ref() };
+                        self.row(nested, (entry, problem), level, measured)?
+                    };
                     #[cfg(feature = "report")]
                     if let Some(journal) = self.journal {
                         journal.add(&row)?;
@@ -410,7 +473,39 @@ impl<'a, T: Real, const D: usize> Study<'a, T, D> {
         let problem = entry.problem(&self.scene.problem);
         let hierarchy = self.coarsest().build(level)?;
         let mut nested = [self.nested(&hierarchy, &self.solvers()[0])];
-        self.row(&mut nested, (entry, &problem), level, failure.as_deref())
+        let measured = Measured { failure: failure.as_deref(), reference: None };
+        self.row(&mut nested, (entry, &problem), level, measured)
+    }
+
+    /// The meshes of all levels: in one hierarchy with those of a reference.
+    fn hierarchies(&self) -> Result<Vec<Hierarchy<T, D>>, Error> {
+        match &self.reference {
+            None => self.coarsest().build_all(&self.levels),
+            Some(reference) => {
+                let coarsest = self.levels.iter().copied().min().unwrap_or(1);
+                Ok(vec![self.coarsest().build_from(reference.level, coarsest)?])
+            }
+        }
+    }
+
+    /// The reference, and its name in rows.
+    fn solve_reference<'h>(
+        &'h self,
+        reference: &Reference<'_, T, D>,
+        problem: &'h Problem<D>,
+        hierarchy: &'h Hierarchy<T, D>,
+    ) -> Result<(Solved<'h, T, D>, String), Error> {
+        let name = reference.name(self.scene.problem.constraint_set());
+        (self.observer)(Progress::Started(&self.scene.name, &name, reference.level));
+        let mut nested = NestedIteration::new(problem, hierarchy)
+            .shared_solver(self.solvers()[0].clone())
+            .quadrature(self.quadrature);
+        let solved = nested.solve(&*reference.scheme)?;
+        if !solved.converged() {
+            let why = solved.outcome().message().to_owned();
+            return Err(Error::NoReference { reference: name, why });
+        }
+        Ok((solved, name))
     }
 
     /// From which the meshes of all levels are refined.
@@ -449,8 +544,9 @@ impl<'a, T: Real, const D: usize> Study<'a, T, D> {
         nested: &mut [NestedIteration<'p, T, D>],
         (entry, problem): (&Entry<'_, T, D>, &'p Problem<D>),
         level: usize,
-        failure: Option<&str>,
+        measured: Measured<'_, 'p, T, D>,
     ) -> Result<(Row, f64), Error> {
+        let failure = measured.failure;
         let mut on_level = nested.iter_mut().filter_map(|n| Some((n.position(level)?, n)));
         let Some((position, nested)) = on_level.next() else {
             unreachable!("a hierarchy has the level")
@@ -493,12 +589,12 @@ impl<'a, T: Real, const D: usize> Study<'a, T, D> {
         }
         (self.observer)(Progress::Entered(Phase::Measures));
         let mut row = complete(Row::of(&self.scene.name, scheme.name(), level, &solved));
-        if let Some(at) = failure {
+        if let Some(at) = failure.filter(|_| measured.reference.is_none()) {
             row.warnings.push(format!(
                 "the scene's solution breaks the contact condition of this mesh at {at}: no errors"
             ));
         }
-        let row = match measure(&mut row, &solved, failure.is_none()) {
+        let row = match measured.measure(&mut row, &solved) {
             Ok(()) => row,
             Err(error) => row.with_error(error)?,
         };
@@ -521,15 +617,27 @@ impl<'a, T: Real, const D: usize> Study<'a, T, D> {
     }
 }
 
-/// Fills in energy and errors.
-fn measure<T: Real, const D: usize>(
-    row: &mut Row,
-    solved: &Solved<'_, T, D>,
-    has_exact: bool,
-) -> Result<(), Error> {
-    row.energy = solved.energy()?;
-    if has_exact {
-        (row.error, row.contact) = (solved.errors()?, solved.contact_errors()?);
+/// Against what rows are measured.
+#[derive(Clone, Copy)]
+struct Measured<'m, 'p, T: Real, const D: usize> {
+    /// Where the exact solution breaks the contact condition of the mesh.
+    failure: Option<&'m str>,
+    /// A solution in place of the exact one, and its name.
+    reference: Option<&'m (Solved<'p, T, D>, String)>,
+}
+
+impl<T: Real, const D: usize> Measured<'_, '_, T, D> {
+    /// Fills in energy and errors.
+    fn measure(&self, row: &mut Row, solved: &Solved<'_, T, D>) -> Result<(), Error> {
+        row.energy = solved.energy()?;
+        if let Some((reference, name)) = self.reference {
+            row.error = solved.difference(reference)?;
+            row.contact = solved.contact_difference(reference)?;
+            row.against = Some(name.clone());
+        } else if self.failure.is_none() && solved.discretisation().problem().exact.is_some() {
+            (row.error, row.contact) = (solved.errors()?, solved.contact_errors()?);
+            row.against = Some("exact".to_owned());
+        }
+        Ok(())
     }
-    Ok(())
 }
