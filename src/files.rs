@@ -23,6 +23,12 @@ pub(crate) fn replace<E: Into<Box<dyn std::error::Error + Send + Sync>>>(
     written.map(|()| path.to_owned())
 }
 
+/// Writes a text in this way.
+#[cfg(feature = "report")]
+pub(crate) fn replace_text(path: &Path, text: &str) -> Result<PathBuf, Error> {
+    replace(path, |path| fs::write(path, text))
+}
+
 /// The beginning of the names of drafts; the number of the process separates those of two processes.
 fn mark() -> String {
     format!(".{}-", std::process::id())

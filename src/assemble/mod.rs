@@ -98,6 +98,10 @@ impl<'a, T: Real, const D: usize> Discretisation<'a, T, D> {
     pub fn mesh(&self) -> &'a Mesh<T, D> {
         self.space.mesh
     }
+    /// The problem.
+    pub fn problem(&self) -> &'a Problem<D> {
+        self.space.problem
+    }
     /// Whether each row belongs to one cell, which then writes it in place.
     fn owns_rows(&self) -> bool {
         self.form.couples() && self.space.broken

@@ -8,7 +8,8 @@ pub enum ErrorNorm {
     L2,
     /// The broken H1 seminorm.
     H1,
-    /// The scheme's own norm. It differs between schemes, so that a comparison needs care.
+    /// The broken energy norm, the same for all schemes: `broken_energy` of
+    /// [`Errors`](super::Errors).
     Energy,
 }
 

@@ -11,6 +11,9 @@ pub struct Errors {
     pub h1: Option<f64>,
     /// The scheme's own norm, penalty included.
     pub energy: Option<f64>,
+    /// The broken energy norm, by one formula for every scheme: the root of the integral of
+    /// `alpha |grad e|^2 + c e^2` over the cells.
+    pub broken_energy: Option<f64>,
     /// Maximum over nodes.
     pub max: Option<f64>,
 }

@@ -7,6 +7,7 @@ use crate::assemble::space::Space;
 use crate::inequality::Solution;
 use crate::instances::compiled;
 use crate::mesh::{BoundaryPart, edge_vertices};
+use crate::quadrature::facet_to_cell;
 use crate::real::{Real, point_f64};
 
 /// Fields on the cells of the mesh, for pictures.
@@ -27,6 +28,26 @@ pub struct Fields {
     pub midpoints: Vec<f64>,
     /// The discrete contact set, and the multiplier's density at vertices.
     pub discrete_contact: DiscreteContact,
+    /// The facets of the contact boundary: cell, and number in the cell.
+    pub contact_boundary: Vec<(usize, usize)>,
+    /// The contact pressure on each of these facets: the mean over the vertices of the facet of the nodal
+    /// multipliers, gathered at vertices, over the integrals of hat functions. Its integral over the
+    /// contact boundary is the sum of the multipliers, the total contact force.
+    pub pressure: Vec<f64>,
+    /// The gap that is left on each of these facets: the mean of `u - g`.
+    pub gap: Vec<f64>,
+}
+
+impl Fields {
+    /// The values of the solution cell by cell: at the vertices, then at the midpoints of the edges unless
+    /// the solution is linear. An element of higher degree is interpolated in degree two.
+    #[cfg(feature = "report")]
+    pub(crate) fn values_by_cell(&self, dimension: usize) -> Vec<f64> {
+        let n_edges = dimension * (dimension + 1) / 2;
+        let mut midpoints = self.midpoints.chunks_exact(n_edges);
+        let of_cell = |corners: &[f64]| [corners, midpoints.next().unwrap_or_default()].concat();
+        self.u.chunks_exact(dimension + 1).flat_map(of_cell).collect()
+    }
 }
 
 impl<T: Real, const D: usize> Discretisation<'_, T, D> {
@@ -76,6 +97,10 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
             multiplier.push(density / f64::from(with_measure.max(1)));
             contact.push(touching as f64 / f64::from(constrained.max(1)));
         }
+        let contact_boundary: Vec<(usize, usize)> = match self.problem.has_gap() {
+            true => self.facets_of(BoundaryPart::Contact).collect(),
+            false => Vec::new(),
+        };
         Fields {
             u: self.vertex_values(u),
             obstacle: self
@@ -86,7 +111,47 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
             contact,
             midpoints: self.midpoint_values(u),
             discrete_contact: self.discrete_contact(inequality, solution),
+            pressure: self.contact_pressure(&contact_boundary, inequality, solution),
+            gap: contact_boundary.iter().map(|&place| self.mean_gap(place, u)).collect(),
+            contact_boundary,
         }
+    }
+
+    /// The contact pressure on facets; see [`Fields::pressure`].
+    fn contact_pressure(
+        &self,
+        facets: &[(usize, usize)],
+        inequality: &Inequality<T>,
+        solution: &Solution<T>,
+    ) -> Vec<f64> {
+        let mut bound = vec![false; self.dofs.size()];
+        let mut hats = vec![0.0; self.mesh.vertices().len()];
+        for &(cell, local) in facets {
+            self.bounded_nodes_on(local).for_each(|(i, _)| bound[self.dofs.of(cell, i)] = true);
+            let share = self.mesh.geometry(cell).facet_measure(local).to_f64() / D as f64;
+            self.mesh.facet_vertices(cell, local).for_each(|v| hats[v as usize] += share);
+        }
+        let multipliers = match facets {
+            [] => Vec::new(),
+            _ => self.vertex_multipliers(inequality, solution, |unknown| bound[unknown]),
+        };
+        let density = |v: u32| multipliers[v as usize] / hats[v as usize];
+        let mean = |&(cell, local): &(usize, usize)| {
+            self.mesh.facet_vertices(cell, local).map(density).sum::<f64>() / D as f64
+        };
+        facets.iter().map(mean).collect()
+    }
+
+    /// The mean of `u - g` over a facet.
+    fn mean_gap(&self, (cell, local): (usize, usize), u: &[T]) -> f64 {
+        let values = self.local_values(cell, u);
+        let group = self.mesh.boundary_group(cell, local);
+        let gap = group.and_then(|group| self.data.gap.of(group));
+        let at = |point: &[f64; 4]| {
+            let gap = gap.map_or(0.0, |gap| gap.at(&self.facet_point(point, cell, local)));
+            self.basis_at(&facet_to_cell(point, local)).value(&values) - gap
+        };
+        self.facet_rule.iter().map(|(point, weight)| weight * at(point)).sum()
     }
 
     /// The values of a function that is not linear on cells at the midpoints of each cell's edges, in

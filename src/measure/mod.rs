@@ -10,6 +10,7 @@ mod norms;
 mod order;
 
 pub use contact::DiscreteContact;
+pub(crate) use contact::contact_difference;
 pub use error_norm::ErrorNorm;
 pub use errors::{ContactErrors, Errors};
 pub use fields::Fields;

@@ -1,22 +1,30 @@
 //! The result of a solve.
 
 use std::fmt;
+#[cfg(feature = "report")]
+use std::path::Path;
 
 use super::hierarchy::Hierarchy;
 use crate::algebra::{Contact, Inequality};
 use crate::assemble::Discretisation;
 use crate::error::Error;
+#[cfg(feature = "report")]
+use crate::error::write_error;
 use crate::inequality::{
     Certificate, Outcome, Solution, certify_with_jump_multipliers, count_active,
 };
 #[cfg(feature = "report")]
 use crate::instances::compiled;
-use crate::measure::{ContactErrors, Errors, Fields};
+use crate::measure::{ContactErrors, Errors, Fields, contact_difference};
 use crate::mesh::Mesh;
 #[cfg(feature = "report")]
-use crate::paraview::{CellFields, write_vtu};
-use crate::problem::Exact;
+use crate::paraview::VtuFile;
+use crate::problem::{DataOnMesh, Exact};
 use crate::real::{Point, Real};
+
+/// Adds to a file of fields.
+#[cfg(feature = "report")]
+type Complete<'c, T, const D: usize> = &'c dyn for<'f> Fn(VtuFile<'f, T, D>) -> VtuFile<'f, T, D>;
 
 /// A discrete solution with the space, the algebraic inequality and the mesh to which it belongs.
 ///
@@ -237,6 +245,27 @@ impl<'a, T: Real, const D: usize> Solved<'a, T, D> {
         let coarse = (&coarse.discretisation, coarse.values(), refinements.unsigned_abs());
         fine.discretisation.difference(fine.values(), coarse)
     }
+    /// Distances of multiplier and contact set from those of a solution on a finer mesh of the same
+    /// hierarchy, or on the same mesh; the distance of free boundaries is not computed. None without two
+    /// iterates.
+    ///
+    /// # Errors
+    /// [`Error::NotNested`] if the mesh of `reference` is not a refinement of this one.
+    pub fn contact_difference(&self, reference: &Self) -> Result<ContactErrors, Error> {
+        let refinements: Vec<_> = match (self.hierarchy, reference.hierarchy) {
+            _ if std::ptr::eq(self.mesh(), reference.mesh()) => Vec::new(),
+            (Some((one, a)), Some((two, b))) if std::ptr::eq(one, two) && a <= b => {
+                (a + 1..=b).filter_map(|k| one.refinement(k)).map(|(by, _)| by).collect()
+            }
+            _ => return Err(Error::NotNested),
+        };
+        if !(self.has_iterate && reference.has_iterate) {
+            return Ok(ContactErrors::default());
+        }
+        let own = (&self.discretisation, &self.inequality, &self.solution);
+        let fine = (&reference.discretisation, &reference.inequality, &reference.solution);
+        Ok(contact_difference(own, fine, &refinements))
+    }
     /// Distances of multiplier and contact set from the exact ones; none without an iterate.
     ///
     /// # Errors
@@ -251,34 +280,82 @@ impl<'a, T: Real, const D: usize> Solved<'a, T, D> {
     pub fn fields(&self) -> Option<Fields> {
         self.has_iterate.then(|| self.discretisation.fields(&self.inequality, &self.solution))
     }
-    /// Writes the fields to a `.vtu` file, as [`write_vtu`] does, and the folder of the file if there
-    /// is none.
+    /// Writes a `.vtu` file, and its folder if there is none, with 32-bit numbers: see
+    /// [`Self::write_vtu_with`].
     ///
     /// # Errors
     /// [`Error::Write`], also without an iterate.
     #[cfg(feature = "report")]
-    pub fn write_vtu(&self, path: impl AsRef<std::path::Path>) -> Result<(), Error> {
+    pub fn write_vtu(&self, path: impl AsRef<Path>) -> Result<(), Error> {
+        self.write_vtu_with(path, |file| file)
+    }
+    /// Writes a `.vtu` file to which `complete` adds fields or sets the scalar, and its folder if there is
+    /// none.
+    ///
+    /// The solution `u` is written in its degree; above two it is interpolated in degree two. Point data:
+    /// `obstacle` (the lower one, or the upper one where there is no lower one), `upper_obstacle` where
+    /// there are both, `error`, which is `u` less the exact solution where that is known. Cell data of
+    /// obstacle problems: `multiplier` and `contact` of [`Fields`]. Signorini problems have the facets of
+    /// the contact boundary as further cells with `pressure` and `gap` of [`Fields`] and `contact`, which is
+    /// one on facets in contact as a whole; the integral of `pressure` over the cells of `dimension`
+    /// `D - 1` is the total contact force.
+    ///
+    /// # Errors
+    /// [`Error::Write`], also without an iterate.
+    #[cfg(feature = "report")]
+    pub fn write_vtu_with(
+        &self,
+        path: impl AsRef<Path>,
+        complete: impl for<'f> Fn(VtuFile<'f, T, D>) -> VtuFile<'f, T, D>,
+    ) -> Result<(), Error> {
         compiled!(
-            T, D: fn(&Solved<'_, T, D>, &std::path::Path) -> Result<(), Error>
-                = |solved, path| solved.write_fields(path)
-        )(self, path.as_ref())
+            T, D: fn(&Solved<'_, T, D>, &Path, Complete<'_, T, D>) -> Result<(), Error>
+                = |solved, path, complete| solved.write_fields(path, complete)
+        )(self, path.as_ref(), &complete)
     }
     #[cfg(feature = "report")]
-    fn write_fields(&self, path: &std::path::Path) -> Result<(), Error> {
-        use crate::error::write_error;
+    fn write_fields(&self, path: &Path, complete: Complete<'_, T, D>) -> Result<(), Error> {
         let Some(fields) = self.fields() else {
             return Err(write_error(path, format!("no solution: {}", self.outcome())));
         };
         if let Some(folder) = path.parent() {
             std::fs::create_dir_all(folder).map_err(|e| write_error(folder, e))?;
         }
-        let is_constrained = self.inequality.bounds.iter().any(|b| b.is_inequality());
-        let fields = CellFields {
-            u: &fields.u,
-            obstacle: fields.obstacle.as_deref(),
-            multiplier: is_constrained.then_some(&fields.multiplier[..]),
-            contact: &fields.contact,
+        let problem = self.discretisation.problem();
+        let u = fields.values_by_cell(D);
+        // facets in contact are listed in the order of the contact boundary
+        let mut touching = fields.discrete_contact.facets.iter().peekable();
+        let state = |place| if touching.next_if_eq(&place).is_some() { 1.0 } else { 0.0 };
+        let in_contact: Vec<f64> = fields.contact_boundary.iter().map(state).collect();
+        let (mesh, data) = (self.mesh(), DataOnMesh::new(problem, self.mesh())?);
+        let regions: Vec<f64> = match mesh.regions().len() {
+            1 => Vec::new(),
+            _ => (0..mesh.n_cells()).map(|cell| mesh.region(cell) as f64).collect(),
         };
-        write_vtu(path, self.mesh(), &fields)
+        let mut file = VtuFile::new(mesh, &u);
+        let bounds = [&data.lower, &data.upper].into_iter().filter(|bound| bound.is_given());
+        for (name, bound) in ["obstacle", "upper_obstacle"].into_iter().zip(bounds) {
+            file = file.function_in_cells(name, |cell, x| {
+                bound.of(mesh.region(cell)).map_or(f64::NAN, |bound| bound.at(x))
+            });
+        }
+        if !regions.is_empty() {
+            file = file.on_cells("region", &regions);
+        }
+        if let Some(exact) = &problem.exact {
+            file = file.error_from(&*exact.value);
+        }
+        if problem.has_obstacle() {
+            file = file.on_cells("multiplier", &fields.multiplier);
+            file = file.on_cells("contact", &fields.contact);
+        }
+        if problem.has_gap() {
+            file = file.facets(&fields.contact_boundary).on_facets("pressure", &fields.pressure);
+            file = file.on_facets("gap", &fields.gap);
+        }
+        if problem.has_gap() && !problem.has_obstacle() {
+            file = file.on_facets("contact", &in_contact);
+        }
+        complete(file).write(path)
     }
 }

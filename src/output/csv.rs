@@ -31,7 +31,7 @@ pub(crate) fn lines<R: Serialize>(rows: &[R]) -> String {
 }
 
 /// Keys and cells of a value, depth first.
-fn flatten(prefix: &str, value: &Value, columns: &mut Vec<(String, String)>) {
+pub(super) fn flatten(prefix: &str, value: &Value, columns: &mut Vec<(String, String)>) {
     if let Value::Object(map) = value {
         for (key, inner) in map {
             let joined = if prefix.is_empty() { key.clone() } else { format!("{prefix}.{key}") };

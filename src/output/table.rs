@@ -1,4 +1,4 @@
-//! Tables as text, Markdown or LaTeX.
+//! Tables, as text and in Markdown.
 
 /// A cell.
 #[derive(Clone, Debug, PartialEq)]
@@ -30,26 +30,25 @@ impl Cell {
         x.map_or(Cell::Nothing, |x| Cell::Number(format!("{x:.2e}"), None))
     }
 
-    fn plain(&self) -> String {
+    pub(super) fn plain(&self) -> String {
         match self {
             Cell::Words(text) | Cell::Number(text, None) => text.clone(),
             Cell::Number(text, Some(remark)) => format!("{text} ({remark})"),
             Cell::Nothing => "-".to_owned(),
         }
     }
-
-    fn latex(&self) -> String {
-        match self {
-            Cell::Nothing => "--".to_owned(),
-            // numbers as `1.37e-2`: written out as powers they would not fit into the line
-            _ => latex(&self.plain()),
-        }
-    }
 }
 
 impl Table {
-    fn is_left(&self, column: usize) -> bool {
+    pub(super) fn is_left(&self, column: usize) -> bool {
         self.rows.iter().any(|row| matches!(row[column], Cell::Words(_)))
+    }
+
+    /// The title as a name of files and labels: letters and digits, and `-` for all else.
+    pub fn slug(&self) -> String {
+        let plain = |c: char| if c.is_ascii_alphanumeric() { c.to_ascii_lowercase() } else { ' ' };
+        let text: String = self.title.chars().map(plain).collect();
+        text.split_whitespace().collect::<Vec<_>>().join("-")
     }
 
     /// Aligned columns for a terminal.
@@ -95,49 +94,6 @@ impl Table {
         }
         text
     }
-
-    /// A `table` with rules of the package `booktabs`, small and tight so that a dozen columns fit
-    /// into the width of the text.
-    pub fn to_latex(&self) -> String {
-        let columns: String =
-            (0..self.columns.len()).map(|k| if self.is_left(k) { 'l' } else { 'r' }).collect();
-        let line = |cells: Vec<String>| format!("{} \\\\\n", cells.join(" & "));
-        let mut text = format!(
-            "\\begin{{table}}\n\\centering\\scriptsize\\setlength{{\\tabcolsep}}{{2pt}}\n\\caption{{{}}}\n\\begin{{tabular}}{{{columns}}}\n\\toprule\n",
-            latex(&self.title)
-        );
-        text += &line(self.columns.iter().map(|c| latex(c)).collect());
-        text += "\\midrule\n";
-        for row in &self.rows {
-            text += &line(row.iter().map(Cell::latex).collect());
-        }
-        text += "\\bottomrule\n\\end{tabular}\n";
-        for remark in &self.remarks {
-            text += &format!("\\par\\footnotesize {}\n", latex(remark));
-        }
-        text + "\\end{table}\n"
-    }
-}
-
-/// A text with the special characters of LaTeX escaped.
-pub(crate) fn latex(text: &str) -> String {
-    let mut escaped = String::new();
-    for c in text.chars() {
-        match c {
-            '\\' => escaped += "\\textbackslash{}",
-            '~' => escaped += "\\textasciitilde{}",
-            '^' => escaped += "\\textasciicircum{}",
-            '<' => escaped += "\\textless{}",
-            '>' => escaped += "\\textgreater{}",
-            '|' => escaped += "\\textbar{}",
-            '&' | '%' | '$' | '#' | '_' | '{' | '}' => {
-                escaped.push('\\');
-                escaped.push(c);
-            }
-            _ => escaped.push(c),
-        }
-    }
-    escaped
 }
 
 /// A text with the markup characters of Markdown escaped.
@@ -154,17 +110,7 @@ pub(crate) fn markdown(text: &str) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::{Cell, Table, latex, markdown};
-
-    #[test]
-    fn special_characters_are_written_as_they_look() {
-        assert_eq!(
-            latex("a_b & 50% {x} \\ ~^"),
-            "a\\_b \\& 50\\% \\{x\\} \\textbackslash{} \\textasciitilde{}\\textasciicircum{}"
-        );
-        assert_eq!(latex("$1 #2"), "\\$1 \\#2");
-        assert_eq!(markdown("a|b_c*d"), "a\\|b\\_c\\*d");
-    }
+    use super::{Cell, Table, markdown};
 
     #[test]
     fn words_stand_left_and_numbers_right() {
@@ -182,7 +128,6 @@ mod tests {
                     cr      1e-3 (1.5)\n  100% of _all_\n";
         assert_eq!(table.to_text(), text);
         assert!(table.to_markdown().contains("| :-- | --: |\n| p1 | 8 |\n| wopsip | - |\n"));
-        assert!(table.to_latex().contains("\\begin{tabular}{lr}\n\\toprule\nscheme & n \\\\\n"));
-        assert!(table.to_latex().contains("cr & 1e-3 (1.5) \\\\\n\\bottomrule"));
+        assert_eq!(markdown("a|b_c*d"), "a\\|b\\_c\\*d");
     }
 }

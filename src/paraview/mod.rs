@@ -1,7 +1,9 @@
 //! Fields on meshes as files that ParaView opens.
 
+mod encode;
+mod grid;
 mod pvd;
 mod vtu;
 
 pub use pvd::write_pvd;
-pub use vtu::{CellFields, write_vtu};
+pub use vtu::{FieldScalar, VtuFile};

@@ -32,7 +32,7 @@ pub fn write_pvd(path: &Path, series: &[(f64, PathBuf)]) -> Result<(), Error> {
 }
 
 /// A text as the value of an attribute.
-fn escape(text: &str) -> String {
+pub(super) fn escape(text: &str) -> String {
     let text = text.replace('&', "&amp;").replace('<', "&lt;");
     text.replace('>', "&gt;").replace('"', "&quot;")
 }

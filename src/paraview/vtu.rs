@@ -1,212 +1,293 @@
 //! Fields on a mesh as a VTK XML file of an unstructured grid.
 //!
-//! Every cell has points of its own, so that jumps of discontinuous fields are visible. Arrays
-//! follow each other in the file, base64 with a 64-bit length before the data: of the encodings of
-//! the format this is the one that is valid XML, that loses no digit and that nearly all readers
-//! take.
+//! A function is written in its own degree, one or two, on cells of that degree. Arrays follow each
+//! other in the file, compressed by zlib in base64: of the encodings of the format this is the one that
+//! is valid XML and that nearly all readers take.
 
-use crate::error::Error;
-use crate::error::write_error;
-use crate::instances::compiled;
-use crate::mesh::Mesh;
-use crate::real::{Real, point_f64};
-use base64::engine::general_purpose::STANDARD;
-use base64::write::EncoderWriter;
-use std::fs::File;
-use std::io;
-use std::io::{BufWriter, Write};
+use std::fmt;
+use std::fs::{self, File};
+use std::io::{self, BufWriter, Write};
 use std::path::Path;
 
-/// Fields on the cells of a mesh.
-#[derive(Clone, Copy, Debug)]
-pub struct CellFields<'a> {
-    /// The solution: `D + 1` values for each cell, one for each of its vertices in order.
-    pub u: &'a [f64],
-    /// The obstacle, in the order of `u`.
-    pub obstacle: Option<&'a [f64]>,
-    /// The multiplier: one value for each cell.
-    pub multiplier: Option<&'a [f64]>,
-    /// Contact: one value for each cell, by convention from 0 (none) to 1 (all of it).
-    pub contact: &'a [f64],
+use super::encode::{bytes, write_array};
+use super::grid::{Grid, values_per_cell};
+use super::pvd::escape;
+use crate::error::{Error, write_error};
+use crate::instances::compiled;
+use crate::mesh::Mesh;
+use crate::real::{Point, Real};
+
+/// The scalar of the numbers in a file of fields.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum FieldScalar {
+    /// 32 bits: enough for pictures, and a quarter of the size.
+    #[default]
+    Single,
+    /// 64 bits: no digit is lost.
+    Double,
 }
 
-/// Writes fields to a `.vtu` file: point data `u` and, if there is one, `obstacle`; cell data
-/// `multiplier`, if there is one, and `contact`. Points have three coordinates, missing ones zero.
+/// A function of space.
+type Function<'a, const D: usize> = &'a (dyn Fn(&Point<f64, D>) -> f64 + 'a);
+
+/// A function of space that may jump between cells: of the number of a cell and a point in it.
+type InCell<'a, const D: usize> = Box<dyn Fn(usize, &Point<f64, D>) -> f64 + 'a>;
+
+/// A function on the cells of a mesh with further fields, to be written as a `.vtu` file.
 ///
-/// # Errors
-/// [`Error::Write`] if a field has not the length the mesh needs, or the file cannot be written.
-pub fn write_vtu<T: Real, const D: usize>(
-    path: &Path,
-    mesh: &Mesh<T, D>,
-    fields: &CellFields,
-) -> Result<(), Error> {
-    compiled!(
-        T, D: fn(&Path, &Mesh<T, D>, &CellFields) -> Result<(), Error>
-            = write_cells
-    )(path, mesh, fields)
+/// ```
+/// use unilateral::mesh::{BoxDomain, Mesh};
+/// use unilateral::paraview::VtuFile;
+/// use unilateral::real::Point;
+/// # fn main() -> Result<(), unilateral::error::Error> {
+/// let square = BoxDomain::dirichlet(Point::from([0.0, 0.0]), Point::from([1.0, 1.0]));
+/// let mesh = Mesh::<f64, 2>::kuhn_box(&square, [1, 1])?;
+/// let u = [0.0, 1.0, 2.0, 0.0, 1.5, 2.0];
+/// let path = std::env::temp_dir().join(format!("unilateral-{}.vtu", std::process::id()));
+/// VtuFile::new(&mesh, &u).function("distance", &|x| x.norm()).write(&path)?;
+/// # let _ = std::fs::remove_file(path);
+/// # Ok(())
+/// # }
+/// ```
+#[must_use]
+pub struct VtuFile<'a, T: Real, const D: usize> {
+    mesh: &'a Mesh<T, D>,
+    u: &'a [f64],
+    functions: Vec<(&'a str, InCell<'a, D>)>,
+    exact: Option<Function<'a, D>>,
+    on_cells: Vec<(&'a str, &'a [f64])>,
+    facets: &'a [(usize, usize)],
+    on_facets: Vec<(&'a str, &'a [f64])>,
+    texts: Vec<(String, String)>,
+    numbers: Vec<(String, f64)>,
+    scalar: FieldScalar,
 }
 
-fn write_cells<T: Real, const D: usize>(
-    path: &Path,
-    mesh: &Mesh<T, D>,
-    fields: &CellFields,
-) -> Result<(), Error> {
-    let mut points = Vec::with_capacity(mesh.cells().len());
-    for &v in mesh.cells() {
-        let x = point_f64(&mesh.vertices()[v as usize]);
-        points.push(std::array::from_fn(|k| if k < D { x[k] } else { 0.0 }));
+impl<T: Real, const D: usize> fmt::Debug for VtuFile<'_, T, D> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("VtuFile")
+            .field("cells", &self.mesh.n_cells())
+            .field("facets", &self.facets.len())
+            .field("scalar", &self.scalar)
+            .finish_non_exhaustive()
     }
-    write_simplices(path, D, &points, fields).map_err(|why| write_error(path, why))
 }
 
-/// Writes simplices, each with its own `dimension + 1` points.
-fn write_simplices(
-    path: &Path,
-    dimension: usize,
-    points: &[[f64; 3]],
-    fields: &CellFields,
-) -> io::Result<()> {
-    let (n_points, n_cells) = (points.len(), points.len() / (dimension + 1));
-    check_length("u", Some(fields.u), n_points)?;
-    check_length("obstacle", fields.obstacle, n_points)?;
-    check_length("multiplier", fields.multiplier, n_cells)?;
-    check_length("contact", Some(fields.contact), n_cells)?;
-
-    let mut w = BufWriter::new(File::create(path)?);
-    writeln!(
-        w,
-        "<?xml version=\"1.0\"?>\n<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" \
-         byte_order=\"LittleEndian\" header_type=\"UInt64\">\n<UnstructuredGrid>\n\
-         <Piece NumberOfPoints=\"{n_points}\" NumberOfCells=\"{n_cells}\">"
-    )?;
-    writeln!(w, "<PointData Scalars=\"u\">")?;
-    floats(&mut w, "u", fields.u)?;
-    if let Some(obstacle) = fields.obstacle {
-        floats(&mut w, "obstacle", obstacle)?;
-    }
-    writeln!(w, "</PointData>\n<CellData Scalars=\"contact\">")?;
-    if let Some(multiplier) = fields.multiplier {
-        floats(&mut w, "multiplier", multiplier)?;
-    }
-    floats(&mut w, "contact", fields.contact)?;
-    writeln!(w, "</CellData>\n<Points>")?;
-    let coordinates = points.as_flattened().iter().map(|x| x.to_le_bytes());
-    array(&mut w, "Float64", "Points", 3, coordinates)?;
-    writeln!(w, "</Points>\n<Cells>")?;
-    let corners = connectivity(dimension, points);
-    array(&mut w, "Int64", "connectivity", 1, corners.iter().map(|i| i.to_le_bytes()))?;
-    let ends = (0..n_cells).map(|c| (((c + 1) * (dimension + 1)) as i64).to_le_bytes());
-    array(&mut w, "Int64", "offsets", 1, ends)?;
-    // The format's numbers of line, triangle and tetrahedron.
-    let cell_type = [3u8, 5, 10][dimension - 1];
-    array(&mut w, "UInt8", "types", 1, std::iter::repeat_n([cell_type], n_cells))?;
-    writeln!(w, "</Cells>\n</Piece>\n</UnstructuredGrid>\n</VTKFile>")?;
-    w.flush()
-}
-
-/// The points of every cell. Cells of a mesh list their vertices by number, those of the format
-/// counterclockwise, or seen from the fourth: otherwise volumes come out negative and surfaces look
-/// inwards. Two points of such a cell are exchanged, in the list and not in the fields.
-fn connectivity(dimension: usize, points: &[[f64; 3]]) -> Vec<i64> {
-    let mut list: Vec<i64> = (0..points.len() as i64).collect();
-    if dimension == 1 {
-        return list;
-    }
-    let corners = dimension + 1;
-    for (cell, x) in list.chunks_exact_mut(corners).zip(points.chunks_exact(corners)) {
-        let edge = |i: usize| -> [f64; 3] { std::array::from_fn(|k| x[i][k] - x[0][k]) };
-        let (a, b) = (edge(1), edge(2));
-        let c = if dimension == 3 { edge(3) } else { [0.0, 0.0, 1.0] };
-        let volume = c[0] * (a[1] * b[2] - a[2] * b[1])
-            + c[1] * (a[2] * b[0] - a[0] * b[2])
-            + c[2] * (a[0] * b[1] - a[1] * b[0]);
-        if volume < 0.0 {
-            cell.swap(corners - 2, corners - 1);
+impl<'a, T: Real, const D: usize> VtuFile<'a, T, D> {
+    /// A file with a function as the point data `u`. The function has `D + 1` values for each cell, at
+    /// its vertices in order, or `(D + 1)(D + 2)/2`, then those at the midpoints of its edges in the order
+    /// of [`Layout::edge`](crate::element::Layout::edge): linear cells (types 3, 5, 10) or quadratic ones
+    /// (21, 22, 24). Cells share their points if the values of all cells agree at every point up to
+    /// rounding; otherwise each cell has its own points, so that jumps are visible.
+    pub fn new(mesh: &'a Mesh<T, D>, u: &'a [f64]) -> Self {
+        Self {
+            mesh,
+            u,
+            functions: Vec::new(),
+            exact: None,
+            on_cells: Vec::new(),
+            facets: &[],
+            on_facets: Vec::new(),
+            texts: Vec::new(),
+            numbers: Vec::new(),
+            scalar: FieldScalar::default(),
         }
     }
-    list
-}
-
-/// Refuses a field whose length does not fit the mesh.
-fn check_length(name: &str, field: Option<&[f64]>, expected: usize) -> io::Result<()> {
-    match field {
-        Some(values) if values.len() != expected => Err(io::Error::new(
-            io::ErrorKind::InvalidInput,
-            format!("field {name} has {} values, the mesh needs {expected}", values.len()),
-        )),
-        _ => Ok(()),
+    /// Adds a function of space as point data.
+    pub fn function(self, name: &'a str, f: Function<'a, D>) -> Self {
+        self.function_in_cells(name, move |_, x| f(x))
     }
-}
-
-/// A field of numbers.
-fn floats(w: &mut impl Write, name: &str, values: &[f64]) -> io::Result<()> {
-    array(w, "Float64", name, 1, values.iter().map(|x| x.to_le_bytes()))
-}
-
-/// One array: its length in bytes and its items, encoded as one stream.
-fn array<const BYTES: usize>(
-    w: &mut impl Write,
-    kind: &str,
-    name: &str,
-    components: usize,
-    items: impl ExactSizeIterator<Item = [u8; BYTES]>,
-) -> io::Result<()> {
-    write!(w, "<DataArray type=\"{kind}\" Name=\"{name}\"")?;
-    // Some readers take an attribute of one component for one column of a matrix.
-    if components > 1 {
-        write!(w, " NumberOfComponents=\"{components}\"")?;
+    /// Adds a function of cell and point as point data. Points that cells share have the value from one of
+    /// them.
+    #[must_use]
+    pub fn function_in_cells(
+        mut self,
+        name: &'a str,
+        f: impl Fn(usize, &Point<f64, D>) -> f64 + 'a,
+    ) -> Self {
+        self.functions.push((name, Box::new(f)));
+        self
     }
-    writeln!(w, " format=\"binary\">")?;
-    let mut encoder = EncoderWriter::new(&mut *w, &STANDARD);
-    encoder.write_all(&((items.len() * BYTES) as u64).to_le_bytes())?;
-    for item in items {
-        encoder.write_all(&item)?;
+    /// Adds the difference of `u` from this function as the point data `error`.
+    pub fn error_from(mut self, exact: Function<'a, D>) -> Self {
+        self.exact = Some(exact);
+        self
     }
-    encoder.finish()?;
-    drop(encoder);
-    writeln!(w, "\n</DataArray>")
-}
-
-#[cfg(test)]
-mod tests {
-    use super::{CellFields, write_simplices};
-
-    fn in_temporary_file(
-        name: &str,
-        f: impl Fn(&std::path::Path) -> std::io::Result<()>,
-    ) -> std::io::Result<String> {
-        let name = format!("unilateral-{}-{name}.vtu", std::process::id());
-        let path = std::env::temp_dir().join(name);
-        let text = f(&path).and_then(|()| std::fs::read_to_string(&path));
-        let _ = std::fs::remove_file(&path);
-        text
+    /// Adds cell data, one value for each cell.
+    pub fn on_cells(mut self, name: &'a str, values: &'a [f64]) -> Self {
+        self.on_cells.push((name, values));
+        self
+    }
+    /// Adds facets (cell, number in the cell) as linear cells of dimension `D - 1` after those of the mesh.
+    pub fn facets(mut self, facets: &'a [(usize, usize)]) -> Self {
+        self.facets = facets;
+        self
+    }
+    /// Adds cell data with one value for each of the [`facets`](Self::facets).
+    pub fn on_facets(mut self, name: &'a str, values: &'a [f64]) -> Self {
+        self.on_facets.push((name, values));
+        self
+    }
+    /// Adds a text to the field data.
+    pub fn text(mut self, name: &str, text: &str) -> Self {
+        self.texts.push((name.to_owned(), text.to_owned()));
+        self
+    }
+    /// Adds a number to the field data.
+    pub fn number(mut self, name: &str, value: f64) -> Self {
+        self.numbers.push((name.to_owned(), value));
+        self
+    }
+    /// Sets the scalar of coordinates and fields; 32 bits otherwise.
+    pub fn scalar(mut self, scalar: FieldScalar) -> Self {
+        self.scalar = scalar;
+        self
     }
 
-    #[test]
-    fn a_segment_is_a_line_without_fields_that_are_not_there() {
-        let fields =
-            CellFields { u: &[1.0, 2.0], obstacle: None, multiplier: None, contact: &[0.0] };
-        let points = [[0.0; 3], [1.0, 0.0, 0.0]];
-        let text =
-            in_temporary_file("line", |path| write_simplices(path, 1, &points, &fields)).unwrap();
-        // Length 1 as 64 bits, then the number 3: nine bytes, twelve characters, no padding.
-        assert!(text.contains("\nAQAAAAAAAAAD\n"), "{text}");
-        // Sixteen bytes of 1.0 and 2.0 after their length.
-        assert!(text.contains("\nEAAAAAAAAAAAAAAAAADwPwAAAAAAAABA\n"), "{text}");
-        assert!(!text.contains("obstacle") && !text.contains("multiplier"), "{text}");
+    /// Writes the file, which takes the place of an earlier one when it is whole. Points have three
+    /// coordinates, missing ones zero. The cell data `dimension` is that of each cell, `D` for the cells
+    /// of the mesh and `D - 1` for facets. Cell data of one name on cells and on facets are one array;
+    /// where there is no value they are not a number.
+    ///
+    /// # Errors
+    /// [`Error::Write`] if a field has not the length that the mesh needs, or the file cannot be written.
+    pub fn write(&self, path: &Path) -> Result<(), Error> {
+        compiled!(
+            T, D: fn(&VtuFile<'_, T, D>, &Path) -> Result<(), Error>
+                = |file, path| file.write_checked(path)
+        )(self, path)
+    }
+    fn write_checked(&self, path: &Path) -> Result<(), Error> {
+        let mut draft = path.as_os_str().to_owned();
+        draft.push(format!(".{}", std::process::id()));
+        let draft = Path::new(&draft);
+        let written = self
+            .check()
+            .and_then(|n| {
+                let mut file = BufWriter::new(File::create(draft)?);
+                self.write_grid(&mut file, &Grid::new(self.mesh, self.u, n, self.facets))?;
+                file.flush()?;
+                fs::rename(draft, path)
+            })
+            .inspect_err(|_| drop(fs::remove_file(draft)));
+        written.map_err(|why| write_error(path, why))
     }
 
-    #[test]
-    fn a_field_of_the_wrong_length_is_refused_by_name_before_anything_is_written() {
-        let fields = CellFields {
-            u: &[1.0, 2.0],
-            obstacle: None,
-            multiplier: Some(&[0.0, 0.0]),
-            contact: &[0.0],
+    /// Number of values of each cell. Refuses a field whose length does not fit the mesh, and facets that
+    /// the mesh does not have.
+    fn check(&self) -> io::Result<usize> {
+        let refuse = |why: String| Err(io::Error::new(io::ErrorKind::InvalidInput, why));
+        let wrong = |name: &str, length: usize, needed: usize| {
+            refuse(format!("field {name} has {length} values, the mesh needs {needed}"))
         };
-        let points = [[0.0; 3], [1.0, 0.0, 0.0]];
-        let error = in_temporary_file("wrong", |path| write_simplices(path, 1, &points, &fields))
-            .unwrap_err();
-        assert_eq!(error.to_string(), "field multiplier has 2 values, the mesh needs 1");
+        let cells = self.mesh.n_cells();
+        let [linear, quadratic] = [1, 2].map(|degree| values_per_cell(D, degree));
+        let n = if self.u.len() == cells * quadratic { quadratic } else { linear };
+        if self.u.len() != cells * n {
+            return wrong("u", self.u.len(), cells * n);
+        }
+        for (fields, needed) in [(&self.on_cells, cells), (&self.on_facets, self.facets.len())] {
+            if let Some((name, values)) = fields.iter().find(|(_, v)| v.len() != needed) {
+                return wrong(name, values.len(), needed);
+            }
+        }
+        match self.facets.iter().find(|&&(cell, local)| cell >= cells || local > D) {
+            Some((cell, local)) => refuse(format!("the mesh has no facet {local} of cell {cell}")),
+            None => Ok(n),
+        }
+    }
+
+    fn write_grid(&self, w: &mut impl Write, grid: &Grid<D>) -> io::Result<()> {
+        let (n_points, n_cells) = (grid.points.len(), grid.types.len());
+        writeln!(
+            w,
+            "<?xml version=\"1.0\"?>\n<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" \
+             byte_order=\"LittleEndian\" header_type=\"UInt64\" \
+             compressor=\"vtkZLibDataCompressor\">\n<UnstructuredGrid>"
+        )?;
+        self.write_field_data(w)?;
+        writeln!(w, "<Piece NumberOfPoints=\"{n_points}\" NumberOfCells=\"{n_cells}\">")?;
+        writeln!(w, "<PointData Scalars=\"u\">")?;
+        let u: Vec<f64> = grid.sources.iter().map(|&k| self.u[k]).collect();
+        let per_cell = self.u.len() / self.mesh.n_cells();
+        for (name, f) in &self.functions {
+            let places = grid.sources.iter().map(|k| k / per_cell).zip(&grid.points);
+            self.write_floats(w, name, 1, places.map(|(cell, x)| f(cell, x)))?;
+        }
+        if let Some(exact) = self.exact {
+            let error = u.iter().zip(&grid.points).map(|(u, x)| u - exact(x));
+            self.write_floats(w, "error", 1, error)?;
+        }
+        self.write_floats(w, "u", 1, u.iter().copied())?;
+        writeln!(w, "</PointData>\n<CellData>")?;
+        self.write_cell_data(w)?;
+        writeln!(w, "</CellData>\n<Points>")?;
+        let coordinates = |x: &Point<f64, D>| [0, 1, 2].map(|k| if k < D { x[k] } else { 0.0 });
+        self.write_floats(w, "Points", 3, grid.points.iter().flat_map(coordinates))?;
+        writeln!(w, "</Points>\n<Cells>")?;
+        let integers = |list: &mut dyn Iterator<Item = i64>| bytes(list.map(i64::to_le_bytes));
+        let corners = integers(&mut grid.connectivity.iter().map(|&k| i64::from(k)));
+        write_array(w, "Int64", "connectivity", 1, &corners)?;
+        let ends = integers(&mut grid.ends.iter().map(|&k| k as i64));
+        write_array(w, "Int64", "offsets", 1, &ends)?;
+        write_array(w, "UInt8", "types", 1, &grid.types)?;
+        writeln!(w, "</Cells>\n</Piece>\n</UnstructuredGrid>\n</VTKFile>")
+    }
+
+    fn write_field_data(&self, w: &mut impl Write) -> io::Result<()> {
+        writeln!(w, "<FieldData>")?;
+        for (name, text) in &self.texts {
+            // a text is a list of its bytes, with a zero at the end
+            let codes: Vec<String> = text.bytes().chain([0]).map(|b| b.to_string()).collect();
+            let (name, codes) = (escape(name), codes.join(" "));
+            writeln!(
+                w,
+                "<DataArray type=\"String\" Name=\"{name}\" NumberOfTuples=\"1\" \
+                 format=\"ascii\">\n{codes}\n</DataArray>"
+            )?;
+        }
+        for (name, value) in &self.numbers {
+            let name = escape(name);
+            writeln!(
+                w,
+                "<DataArray type=\"Float64\" Name=\"{name}\" NumberOfTuples=\"1\" \
+                 format=\"ascii\">\n{value}\n</DataArray>"
+            )?;
+        }
+        writeln!(w, "</FieldData>")
+    }
+
+    fn write_cell_data(&self, w: &mut impl Write) -> io::Result<()> {
+        let (cells, facets) = (self.mesh.n_cells(), self.facets.len());
+        let mut names: Vec<&str> = Vec::new();
+        for (name, _) in self.on_cells.iter().chain(&self.on_facets) {
+            if !names.contains(name) {
+                names.push(name);
+            }
+        }
+        let of = |fields: &[(&str, &'a [f64])], name: &str, length: usize| {
+            let found = fields.iter().find(|(other, _)| *other == name).map(|(_, v)| *v);
+            found.map_or_else(|| vec![f64::NAN; length], <[f64]>::to_vec)
+        };
+        for name in names {
+            let values = [of(&self.on_cells, name, cells), of(&self.on_facets, name, facets)];
+            self.write_floats(w, name, 1, values.concat().into_iter())?;
+        }
+        let dimensions = [vec![D as u8; cells], vec![D as u8 - 1; facets]].concat();
+        write_array(w, "UInt8", "dimension", 1, &dimensions)
+    }
+
+    fn write_floats(
+        &self,
+        w: &mut impl Write,
+        name: &str,
+        components: usize,
+        values: impl Iterator<Item = f64>,
+    ) -> io::Result<()> {
+        let (kind, bytes) = match self.scalar {
+            FieldScalar::Single => ("Float32", bytes(values.map(|x| (x as f32).to_le_bytes()))),
+            FieldScalar::Double => ("Float64", bytes(values.map(f64::to_le_bytes))),
+        };
+        write_array(w, kind, &escape(name), components, &bytes)
     }
 }

@@ -22,16 +22,20 @@ impl Tick {
         f64::from(self.digit).log10() + f64::from(self.exponent)
     }
 
-    /// The label: a base and a raised exponent.
-    pub fn label(self) -> (String, String) {
-        match (self.digit, self.exponent) {
-            (d, 0) => (d.to_string(), String::new()),
-            (1, 1) => ("10".to_owned(), String::new()),
-            (d, e) => {
-                let factor = if d == 1 { String::new() } else { format!("{d}·") };
-                (format!("{factor}10"), e.to_string().replace('-', "\u{2212}"))
-            }
+    /// The label: a base and a raised exponent, or a plain number.
+    pub fn label(self, plain: bool) -> (String, String) {
+        let (d, e) = (self.digit, self.exponent);
+        if plain {
+            let zeros = usize::try_from(e).unwrap_or(0);
+            let decimals = usize::try_from(-e).unwrap_or(0);
+            let number = match e >= 0 {
+                true => format!("{d}{}", "0".repeat(zeros)),
+                false => format!("{:.decimals$}", f64::from(d) * 10.0_f64.powi(e)),
+            };
+            return (number, String::new());
         }
+        let factor = if d == 1 { String::new() } else { format!("{d}·") };
+        (format!("{factor}10"), e.to_string().replace('-', "\u{2212}"))
     }
 }
 
@@ -46,6 +50,11 @@ impl LogAxis {
         }
         let room = (0.07 * (high - low)).max((1.0 - (high - low)) / 2.0);
         LogAxis { low: low - room, high: high + room }
+    }
+
+    /// Whether all labels are plain numbers; else all are powers of ten.
+    pub fn is_plain(&self) -> bool {
+        self.low > -3.5 && self.high < 4.0
     }
 
     /// Position of a logarithm on the axis: 0 at the low end, 1 at the high end.
@@ -81,28 +90,31 @@ impl LogAxis {
 
 #[cfg(test)]
 mod tests {
-    use super::{LogAxis, Tick};
+    use super::LogAxis;
 
     fn labels(axis: LogAxis, most: usize) -> Vec<String> {
         let labelled = axis.ticks(most).into_iter().filter(|t| t.labelled);
-        labelled.map(Tick::label).map(|(base, exponent)| base + &exponent).collect()
+        let plain = axis.is_plain();
+        labelled.map(|t| t.label(plain)).map(|(base, exponent)| base + &exponent).collect()
     }
 
     #[test]
     fn powers_of_ten_are_labelled_and_thinned_out() {
         assert_eq!(
             labels(LogAxis { low: -3.2, high: 1.1 }, 8),
-            ["10−3", "10−2", "10−1", "1", "10"]
+            ["0.001", "0.01", "0.1", "1", "10"]
         );
         assert_eq!(
             labels(LogAxis { low: -16.0, high: 0.0 }, 5),
-            ["10−16", "10−12", "10−8", "10−4", "1"]
+            ["10−16", "10−12", "10−8", "10−4", "100"]
         );
     }
 
     #[test]
     fn a_short_axis_labels_digits_too() {
-        assert_eq!(labels(LogAxis { low: -1.4, high: -0.5 }, 8), ["5·10−2", "10−1", "2·10−1"]);
+        assert_eq!(labels(LogAxis { low: -1.4, high: -0.5 }, 8), ["0.05", "0.1", "0.2"]);
+        assert_eq!(labels(LogAxis { low: 0.6, high: 1.4 }, 8), ["5", "10", "20"]);
+        assert_eq!(labels(LogAxis { low: -6.4, high: -5.5 }, 8), ["5·10−7", "10−6", "2·10−6"]);
     }
 
     #[test]

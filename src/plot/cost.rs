@@ -1,7 +1,7 @@
 //! Errors against cost: one column of panels, as wide as a column of text.
 
 use super::figure::Figure;
-use super::series::{Curve, Key, Panel, Point, Quantity};
+use super::series::{Curve, Key, Orders, Panel, Point, Quantity, with_curves};
 use crate::study::row::Row;
 
 /// A measure of the cost of a run.
@@ -45,21 +45,18 @@ pub(crate) fn cost_figure(scene: &str, named: &[NamedCurve<'_>], cost: Cost) -> 
             key,
             points: curve.rows.iter().filter_map(|row| Point::of(row, x, y)).collect(),
         });
-        let curves = curves.filter(|c| !c.points.is_empty()).collect();
         let rows = || named.iter().flat_map(|c| &c.rows).copied();
         // an order in the mesh size is that order over the dimension in the number of unknowns
         let dimension = rows().next().map(|r| r.dimension as u32);
-        let falls_over = dimension.filter(|_| cost == Cost::Unknowns);
-        let slopes = if falls_over.is_some() { y.slopes(rows()) } else { Vec::new() };
-        Panel { title: scene.to_owned(), x, y, curves, slopes, falls_over }
+        let orders = match dimension.filter(|_| cost == Cost::Unknowns) {
+            None => Orders::default(),
+            falls_over => Orders { falls_over, ..y.orders(rows()) },
+        };
+        Panel::of(scene, (x.label(), y.label()), curves, orders)
     };
-    let mut panels: Vec<Panel> = [Quantity::L2, Quantity::H1, Quantity::Energy].map(panel).into();
-    // without errors one empty panel is kept
-    let any = panels.iter().any(Panel::has_errors);
-    let mut seen = 0;
-    panels.retain(|p| {
-        seen += 1;
-        p.has_errors() || (!any && seen == 1)
-    });
-    Figure { panels, keys: named.iter().map(|c| Key::labelled(&c.label)).collect(), columns: 1 }
+    Figure {
+        panels: with_curves([Quantity::L2, Quantity::H1, Quantity::Energy].map(panel).into()),
+        keys: named.iter().map(|c| Key::labelled(&c.label)).collect(),
+        columns: 1,
+    }
 }

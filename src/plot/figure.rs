@@ -1,7 +1,7 @@
 //! Figures of a report: error against mesh size, and error against time.
 
-use super::layout::FigureLayout;
-use super::series::{Key, Panel, Quantity, keys, scenes};
+use super::layout::{FigureLayout, Sign};
+use super::series::{Key, Panel, Quantity, keys, scenes, with_curves};
 use crate::study::Row;
 
 /// A drawing that can be written as SVG or PNG.
@@ -27,8 +27,10 @@ pub fn convergence(rows: &[Row]) -> Figure {
     };
     let panels = scenes
         .iter()
-        .flat_map(|scene| [Quantity::L2, Quantity::H1].map(|error| (scene, error)))
-        .map(|(scene, error)| Panel::new(rows, &keys, scene, Quantity::MeshSize, error))
+        .flat_map(|scene| {
+            let panel = |error| Panel::new(rows, &keys, scene, Quantity::MeshSize, error);
+            with_curves([Quantity::L2, Quantity::H1].map(panel).into())
+        })
         .collect();
     Figure { panels, keys, columns }
 }
@@ -49,7 +51,7 @@ pub fn work_precision(rows: &[Row]) -> Figure {
         .iter()
         .map(|scene| Panel::new(rows, &keys, scene, Quantity::Seconds, Quantity::L2))
         .collect();
-    Figure { panels, keys, columns }
+    Figure { panels: with_curves(panels), keys, columns }
 }
 
 impl Figure {
@@ -58,8 +60,22 @@ impl Figure {
         self.panels.iter().any(|p| p.curves.iter().any(|c| c.points.iter().any(|q| !q.converged)))
     }
 
+    /// Whether a panel with curves shows orders that theory promises.
+    fn has_promises(&self) -> bool {
+        self.panels.iter().any(|p| p.has_curves() && p.orders.are_promised)
+    }
+
+    /// Whether a panel shows limits.
+    fn has_limits(&self) -> bool {
+        self.panels.iter().any(|p| !p.limits.is_empty())
+    }
+
     /// Positions of panels and legend.
     pub(super) fn layout(&self) -> FigureLayout {
-        FigureLayout::new(self.panels.len(), self.columns, &self.keys, self.has_failures())
+        let mut signs = Vec::new();
+        signs.extend(self.has_failures().then_some(Sign::Failed));
+        signs.extend(self.has_promises().then_some(Sign::Promised));
+        signs.extend(self.has_limits().then_some(Sign::Limit));
+        FigureLayout::new(self.panels.len(), self.columns, &self.keys, &signs)
     }
 }

@@ -2,7 +2,7 @@
 
 use super::pen::{Align, Drawn, Pen, ScreenPoint, text_width};
 use super::series::Key;
-use super::style::{INK, draw_failed, draw_mark, segment};
+use super::style::{GREY, INK, draw_failed, draw_limit, draw_mark, segment};
 use plotters::prelude::DrawingBackend;
 
 /// Width and height of a panel with its labels.
@@ -14,18 +14,51 @@ const SYMBOL: f64 = 34.0;
 const GAP: f64 = 22.0;
 const TEXT: f64 = 15.0;
 
+/// What of a figure is drawn.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Layer {
+    /// All of it.
+    All,
+    /// All but the curves.
+    Frame,
+    /// The curve of a key in all panels and in the legend.
+    Curve(usize),
+}
+
+impl Layer {
+    pub fn has_frame(self) -> bool {
+        !matches!(self, Layer::Curve(_))
+    }
+    pub fn has_curve(self, key: usize) -> bool {
+        self == Layer::All || self == Layer::Curve(key)
+    }
+}
+
+/// A sign that the legend explains.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Sign {
+    /// The cross of a run that did not converge.
+    Failed,
+    /// A triangle with the slopes of promised orders.
+    Promised,
+    /// The line of a limit.
+    Limit,
+}
+
 /// An entry of the legend.
 #[derive(Clone, Debug, PartialEq)]
 enum Entry {
     Curve(usize, String),
-    Failed,
+    Sign(Sign),
 }
 
 impl Entry {
     fn label(&self) -> &str {
         match self {
             Entry::Curve(_, label) => label,
-            Entry::Failed => "did not converge",
+            Entry::Sign(Sign::Failed) => "did not converge",
+            Entry::Sign(Sign::Promised) => "orders promised by theory",
+            Entry::Sign(Sign::Limit) => "limit",
         }
     }
     fn width(&self) -> f64 {
@@ -45,7 +78,7 @@ pub(crate) struct FigureLayout {
 
 impl FigureLayout {
     /// Panels in a grid, the legend below them in as many lines as it takes.
-    pub fn new(panels: usize, columns: usize, keys: &[Key], failures: bool) -> Self {
+    pub fn new(panels: usize, columns: usize, keys: &[Key], signs: &[Sign]) -> Self {
         let rows = panels.max(1).div_ceil(columns);
         let places = (0..panels).map(|i| {
             (MARGIN + (i % columns) as f64 * PANEL.0, MARGIN + (i / columns) as f64 * PANEL.1)
@@ -53,9 +86,7 @@ impl FigureLayout {
 
         let mut entries: Vec<Entry> =
             keys.iter().enumerate().map(|(k, key)| Entry::Curve(k, key.label.clone())).collect();
-        if failures {
-            entries.push(Entry::Failed);
-        }
+        entries.extend(signs.iter().copied().map(Entry::Sign));
         // an entry of the legend may be wider than the panels
         let widest = entries.iter().map(Entry::width).fold(columns as f64 * PANEL.0, f64::max);
         let width = 2.0 * MARGIN + widest;
@@ -84,16 +115,30 @@ impl FigureLayout {
         FigureLayout { size: (width, y - LINE / 2.0 + MARGIN), panels: places.collect(), legend }
     }
 
-    /// Draws the legend.
-    pub fn draw_legend<DB: DrawingBackend>(&self, pen: &Pen<DB>) -> Drawn {
+    /// Draws the legend of a layer.
+    pub fn draw_legend<DB: DrawingBackend>(&self, pen: &Pen<DB>, layer: Layer) -> Drawn {
         for ((x, y), entry) in &self.legend {
+            let is_shown = match entry {
+                Entry::Curve(key, _) => layer.has_curve(*key),
+                Entry::Sign(_) => layer.has_frame(),
+            };
+            if !is_shown {
+                continue;
+            }
             let middle = (x + SYMBOL / 2.0, *y);
             match entry {
                 Entry::Curve(key, _) => {
                     segment(pen, *key, (*x, *y), (x + SYMBOL, *y))?;
                     draw_mark(pen, *key, middle, 1.0)?;
                 }
-                Entry::Failed => draw_failed(pen, middle)?,
+                Entry::Sign(Sign::Failed) => draw_failed(pen, middle)?,
+                Entry::Sign(Sign::Promised) => {
+                    let (tip, right) = ((x + 4.0, y + 6.0), x + SYMBOL - 4.0);
+                    pen.line(tip, (right, y + 6.0), 0.8, GREY)?;
+                    pen.line((right, y + 6.0), (right, y - 6.0), 0.8, GREY)?;
+                    pen.line(tip, (right, y - 6.0), 0.8, GREY)?;
+                }
+                Entry::Sign(Sign::Limit) => draw_limit(pen, (*x, *y), (x + SYMBOL, *y))?,
             }
             pen.text(entry.label(), (x + SYMBOL + 6.0, *y), TEXT, INK, Align::Left)?;
         }

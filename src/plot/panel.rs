@@ -1,11 +1,11 @@
 //! One panel: frame, ticks, curves, marks.
 
 use super::axis::{LogAxis, Tick};
-use super::layout::PANEL;
+use super::layout::{Layer, PANEL};
 use super::pen::{Align, Drawn, Pen, ScreenPoint, text_width};
 use super::series::{Panel, Point};
 use super::slopes::Slopes;
-use super::style::{GRID, INK, draw_failed, draw_mark, segment};
+use super::style::{GRID, INK, draw_failed, draw_limit, draw_mark, segment};
 use plotters::prelude::DrawingBackend;
 
 /// Room around the data for title, labels and ticks.
@@ -38,11 +38,10 @@ impl<'a> Frame<'a> {
         let x = LogAxis::over(&panel.points().map(|p| p.x).collect::<Vec<_>>());
         let y = LogAxis::over(&panel.errors());
         let mut frame = Frame { panel, x, y, slopes: None };
-        if panel.has_errors() && !panel.slopes.is_empty() {
+        if panel.has_curves() && !panel.orders.orders.is_empty() {
             for _ in 0..8 {
                 let axes = (&frame.x, &frame.y);
-                let slopes = (&panel.slopes[..], panel.falls_over);
-                frame.slopes = Slopes::place(slopes, axes, SIZE, &frame.occupied());
+                frame.slopes = Slopes::place(&panel.orders, axes, SIZE, &frame.occupied());
                 if frame.slopes.is_some() {
                     return frame;
                 }
@@ -112,20 +111,44 @@ pub(crate) fn draw_panel<DB: DrawingBackend>(
     pen: &Pen<DB>,
     panel: &Panel,
     at: ScreenPoint,
+    layer: Layer,
 ) -> Drawn {
     let frame = Frame::new(panel);
     let origin = (at.0 + LEFT, at.1 + TOP);
+    if layer.has_frame() {
+        draw_frame(pen, &frame, at, origin)?;
+    }
+    if panel.has_curves() { draw_curves(pen, &frame, origin, layer) } else { Ok(()) }
+}
+
+/// Title, labels, ticks, slopes and limits; or why there are no curves.
+fn draw_frame<DB: DrawingBackend>(
+    pen: &Pen<DB>,
+    frame: &Frame,
+    at: ScreenPoint,
+    origin: ScreenPoint,
+) -> Drawn {
+    let panel = frame.panel;
     let middle = (origin.0 + SIZE.0 / 2.0, origin.1 + SIZE.1 / 2.0);
     pen.text(&panel.title, (middle.0, at.1 + TOP / 2.0 + 1.0), TITLE, INK, Align::Centre)?;
-    pen.text(panel.x.label(), (middle.0, at.1 + PANEL.1 - 14.0), LABEL, INK, Align::Centre)?;
-    pen.text(panel.y.label(), (at.0 + 12.0, middle.1), LABEL, INK, Align::Upwards)?;
-    draw_ticks(pen, &frame, origin)?;
+    pen.text(&panel.x, (middle.0, at.1 + PANEL.1 - 14.0), LABEL, INK, Align::Centre)?;
+    pen.text(&panel.y, (at.0 + 12.0, middle.1), LABEL, INK, Align::Upwards)?;
+    let why = match panel.has_errors() {
+        _ if panel.has_curves() => None,
+        true => Some("one level: no curve"),
+        false => Some("no exact solution: no errors"),
+    };
+    if let Some(why) = why {
+        pen.text(why, middle, LABEL, INK, Align::Centre)?;
+    } else {
+        draw_ticks(pen, frame, origin)?;
+        for limit in &panel.limits {
+            let y = origin.1 + SIZE.1 * (1.0 - frame.y.position(limit.log10()));
+            draw_limit(pen, (origin.0, y), (origin.0 + SIZE.0, y))?;
+        }
+    }
     if let Some(slopes) = &frame.slopes {
         slopes.draw(pen, origin)?;
-    }
-    draw_curves(pen, &frame, origin)?;
-    if !panel.has_errors() {
-        pen.text("no exact solution: no errors", middle, LABEL, INK, Align::Centre)?;
     }
     let (right, bottom) = (origin.0 + SIZE.0, origin.1 + SIZE.1);
     pen.outline(&[origin, (right, origin.1), (right, bottom), (origin.0, bottom)], 1.0, INK)
@@ -135,37 +158,29 @@ pub(crate) fn draw_panel<DB: DrawingBackend>(
 fn draw_ticks<DB: DrawingBackend>(pen: &Pen<DB>, frame: &Frame, (left, top): ScreenPoint) -> Drawn {
     let (right, bottom) = (left + SIZE.0, top + SIZE.1);
     let length = |tick: Tick| if tick.digit == 1 { 5.0 } else { 2.5 };
-    if !frame.panel.curves.is_empty() {
-        for tick in frame.x.ticks(6) {
-            let x = left + SIZE.0 * frame.x.position(tick.log());
-            if tick.digit == 1 {
-                pen.line((x, top), (x, bottom), 0.8, GRID)?;
-            }
-            pen.line((x, bottom), (x, bottom - length(tick)), 0.8, INK)?;
-            if tick.labelled {
-                let (base, exponent) = tick.label();
-                let half = (text_width(&base, TICK) + text_width(&exponent, 0.75 * TICK)) / 2.0;
-                let at = (x - half + text_width(&base, TICK), bottom + 12.0);
-                draw_label(pen, &base, &exponent, at)?;
-            }
+    for tick in frame.x.ticks(6) {
+        let x = left + SIZE.0 * frame.x.position(tick.log());
+        if tick.digit == 1 {
+            pen.line((x, top), (x, bottom), 0.8, GRID)?;
+        }
+        pen.line((x, bottom), (x, bottom - length(tick)), 0.8, INK)?;
+        if tick.labelled {
+            let (base, exponent) = tick.label(frame.x.is_plain());
+            let half = (text_width(&base, TICK) + text_width(&exponent, 0.75 * TICK)) / 2.0;
+            let at = (x - half + text_width(&base, TICK), bottom + 12.0);
+            draw_label(pen, &base, &exponent, at)?;
         }
     }
-    if frame.panel.has_errors() {
-        for tick in frame.y.ticks(8) {
-            let y = bottom - SIZE.1 * frame.y.position(tick.log());
-            if tick.digit == 1 {
-                pen.line((left, y), (right, y), 0.8, GRID)?;
-            }
-            pen.line((left, y), (left + length(tick), y), 0.8, INK)?;
-            if tick.labelled {
-                let (base, exponent) = tick.label();
-                draw_label(
-                    pen,
-                    &base,
-                    &exponent,
-                    (left - 6.0 - text_width(&exponent, 0.75 * TICK), y),
-                )?;
-            }
+    for tick in frame.y.ticks(8) {
+        let y = bottom - SIZE.1 * frame.y.position(tick.log());
+        if tick.digit == 1 {
+            pen.line((left, y), (right, y), 0.8, GRID)?;
+        }
+        pen.line((left, y), (left + length(tick), y), 0.8, INK)?;
+        if tick.labelled {
+            let (base, exponent) = tick.label(frame.y.is_plain());
+            let at = (left - 6.0 - text_width(&exponent, 0.75 * TICK), y);
+            draw_label(pen, &base, &exponent, at)?;
         }
     }
     Ok(())
@@ -187,13 +202,18 @@ fn draw_label<DB: DrawingBackend>(
 
 /// Lines first, then marks, then failures: what matters most is on top. A line ends where a run
 /// did not converge.
-fn draw_curves<DB: DrawingBackend>(pen: &Pen<DB>, frame: &Frame, origin: ScreenPoint) -> Drawn {
+fn draw_curves<DB: DrawingBackend>(
+    pen: &Pen<DB>,
+    frame: &Frame,
+    origin: ScreenPoint,
+    layer: Layer,
+) -> Drawn {
     let places: Vec<Vec<ScreenPoint>> = frame
         .places()
         .into_iter()
         .map(|c| c.into_iter().map(|(x, y)| (origin.0 + x, origin.1 + y)).collect())
         .collect();
-    let curves = || frame.panel.curves.iter().zip(&places);
+    let curves = || frame.panel.curves.iter().zip(&places).filter(|(c, _)| layer.has_curve(c.key));
     for (curve, places) in curves() {
         for (points, ends) in curve.points.windows(2).zip(places.windows(2)) {
             if points[0].converged && points[1].converged {

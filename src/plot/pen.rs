@@ -59,24 +59,29 @@ impl<DB: DrawingBackend> Pen<'_, DB> {
         self.area.draw(&line).map_err(|e| e.to_string())
     }
 
-    /// A line of dashes and gaps of these lengths.
+    /// A line of dashes and gaps of these lengths in turn; a full one without any.
     pub fn dashes(
         &self,
         from: ScreenPoint,
         to: ScreenPoint,
         width: f64,
         colour: RGBColor,
-        (dash, gap): (f64, f64),
+        lengths: &[f64],
     ) -> Drawn {
         let (dx, dy) = (to.0 - from.0, to.1 - from.1);
         let length = dx.hypot(dy);
         let at = |s: f64| (from.0 + dx * s / length, from.1 + dy * s / length);
         let mut start = 0.0;
-        while start < length {
-            self.line(at(start), at((start + dash).min(length)), width, colour)?;
-            start += dash + gap;
+        for (k, &step) in lengths.iter().cycle().enumerate() {
+            if start >= length || length.is_nan() {
+                return Ok(());
+            }
+            if k % 2 == 0 {
+                self.line(at(start), at((start + step).min(length)), width, colour)?;
+            }
+            start += step;
         }
-        Ok(())
+        self.line(from, to, width, colour)
     }
 
     /// A closed outline.

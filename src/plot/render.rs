@@ -1,6 +1,7 @@
 //! Drawings as SVG and PNG files.
 
 use super::figure::Figure;
+use super::layout::Layer;
 use super::panel::draw_panel;
 use super::pen::{Drawn, FAMILY, Pen};
 use super::style::PAPER;
@@ -45,17 +46,20 @@ pub(crate) trait Drawing {
     }
 }
 
-impl Drawing for Figure {
+/// A layer of a figure.
+struct Part<'a>(&'a Figure, Layer);
+
+impl Drawing for Part<'_> {
     fn size(&self) -> (f64, f64) {
-        self.layout().size
+        self.0.layout().size
     }
 
     fn draw<DB: DrawingBackend>(&self, pen: &Pen<DB>) -> Drawn {
-        let layout = self.layout();
-        for (panel, &at) in self.panels.iter().zip(&layout.panels) {
-            draw_panel(pen, panel, at)?;
+        let layout = self.0.layout();
+        for (panel, &at) in self.0.panels.iter().zip(&layout.panels) {
+            draw_panel(pen, panel, at, self.1)?;
         }
-        layout.draw_legend(pen)
+        layout.draw_legend(pen, self.1)
     }
 }
 
@@ -65,7 +69,30 @@ impl Figure {
     /// # Errors
     /// The backend's reason, as text.
     pub fn to_svg(&self) -> Result<String, String> {
-        draw_svg(self)
+        draw_svg(&Part(self, Layer::All))
+    }
+
+    /// The entries of the legend.
+    pub(crate) fn labels(&self) -> impl Iterator<Item = &String> {
+        self.keys.iter().map(|key| &key.label)
+    }
+
+    /// The figure as the text of an SVG file in which the curve of an entry of the legend is a group of the
+    /// class `s` and the place of the entry in a list, so that a page can hide it.
+    ///
+    /// # Errors
+    /// The backend's reason, as text.
+    pub(crate) fn to_svg_in_groups(&self, series: &[String]) -> Result<String, String> {
+        let mut text = draw_svg(&Part(self, Layer::Frame))?.replacen("</svg>", "", 1);
+        for (key, label) in self.labels().enumerate() {
+            let class = series.iter().position(|name| name == label).unwrap_or(series.len());
+            let curve = draw_svg(&Part(self, Layer::Curve(key)))?;
+            // the first element is the file itself, the second one the paper
+            let drawn = curve.split_inclusive("/>").skip(1).collect::<String>();
+            let drawn = drawn.replacen("</svg>", "", 1);
+            text += &format!("<g class=\"s{class}\">{}</g>\n", drawn.trim());
+        }
+        Ok(text + "</svg>\n")
     }
 
     /// Writes the figure as a PNG file, two pixels to the unit where its size allows.
@@ -73,7 +100,7 @@ impl Figure {
     /// # Errors
     /// The backend's reason, as text.
     pub fn write_png(&self, path: &Path) -> Result<(), String> {
-        draw_png(self, path)
+        draw_png(&Part(self, Layer::All), path)
     }
 }
 

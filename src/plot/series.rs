@@ -12,13 +12,13 @@ pub(crate) enum Quantity {
     Seconds,
     /// Number of unknowns.
     Unknowns,
-    /// Peak of memory in megabytes.
+    /// Peak of memory in megabytes, less that of an empty run.
     Memory,
     /// L2 error.
     L2,
     /// Error in the broken H1 seminorm.
     H1,
-    /// Error in the scheme's own norm.
+    /// Error in the broken energy norm, the same for all schemes.
     Energy,
 }
 
@@ -29,10 +29,10 @@ impl Quantity {
             Quantity::MeshSize => "mesh size h",
             Quantity::Seconds => "time in s",
             Quantity::Unknowns => "number of unknowns",
-            Quantity::Memory => "peak memory in MB",
+            Quantity::Memory => "peak memory above that of an empty run in MB",
             Quantity::L2 => "L2 error",
             Quantity::H1 => "broken H1 error",
-            Quantity::Energy => "error in the scheme's own norm",
+            Quantity::Energy => "error in the broken energy norm",
         }
     }
 
@@ -46,25 +46,39 @@ impl Quantity {
             Quantity::Memory => row.peak_memory_bytes.map(|bytes| bytes as f64 / 1e6),
             Quantity::L2 => row.error.l2,
             Quantity::H1 => row.error.h1,
-            Quantity::Energy => row.error.energy,
+            Quantity::Energy => row.error.broken_energy,
         };
         value.filter(|x| x.is_finite() && *x > 0.0)
     }
 
-    /// The order that theory promises for this quantity.
+    /// The order that theory promises for this quantity. The broken energy norm and the broken H1
+    /// seminorm of a problem are equivalent.
     fn expected(self, row: &Row) -> Option<f64> {
         match self {
             Quantity::L2 => row.expected_order.l2,
-            Quantity::H1 => row.expected_order.h1,
+            Quantity::H1 | Quantity::Energy => row.expected_order.h1,
             _ => None,
         }
     }
 
-    /// Orders worth comparing with.
-    pub fn slopes<'a>(self, rows: impl Iterator<Item = &'a Row>) -> Vec<u32> {
-        let promised = rows.filter_map(|r| self.expected(r)).fold(0.0, f64::max);
-        if promised > 2.0 { vec![1, 2, 3] } else { vec![1, 2] }
+    /// The orders that theory promises, ascending; one and two if it promises none.
+    pub fn orders<'a>(self, rows: impl Iterator<Item = &'a Row>) -> Orders {
+        let mut promised = distinct(rows.filter_map(|r| self.expected(r)).filter(|p| *p > 0.0));
+        promised.sort_by(f64::total_cmp);
+        let are_promised = !promised.is_empty();
+        let orders = if are_promised { promised } else { vec![1.0, 2.0] };
+        Orders { orders, are_promised, falls_over: None }
     }
+}
+
+/// Orders to compare with, drawn as slopes.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(crate) struct Orders {
+    pub orders: Vec<f64>,
+    /// Whether theory promises them.
+    pub are_promised: bool,
+    /// Whether the slopes fall, each over this dimension.
+    pub falls_over: Option<u32>,
 }
 
 /// A curve's name: one colour and one mark in all panels.
@@ -129,38 +143,50 @@ pub(crate) struct Curve {
     pub points: Vec<Point>,
 }
 
-/// One panel: a scene, and two numbers against each other.
+/// One panel: two numbers against each other.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Panel {
     pub title: String,
-    pub x: Quantity,
-    pub y: Quantity,
+    /// Labels of the axes.
+    pub x: String,
+    pub y: String,
     pub curves: Vec<Curve>,
-    /// Slopes to compare with.
-    pub slopes: Vec<u32>,
-    /// Whether these slopes fall, each over this dimension.
-    pub falls_over: Option<u32>,
+    /// Orders to compare with.
+    pub orders: Orders,
+    /// Limits of the second number.
+    pub limits: Vec<f64>,
 }
 
 impl Panel {
     /// The panel of a scene.
     pub fn new(rows: &[Row], keys: &[Key], scene: &str, x: Quantity, y: Quantity) -> Self {
-        let mut curves = Vec::new();
-        for (k, key) in keys.iter().enumerate() {
+        let curves = keys.iter().enumerate().map(|(key, of)| {
             let mut runs: Vec<&Row> = rows
                 .iter()
                 .filter(|r| r.scene == scene)
-                .filter(|r| r.label == key.scheme && r.solver == key.solver)
+                .filter(|r| r.label == of.scheme && r.solver == of.solver)
                 .collect();
             runs.sort_by_key(|r| r.level);
-            let points: Vec<Point> = runs.iter().filter_map(|r| Point::of(r, x, y)).collect();
-            if !points.is_empty() {
-                curves.push(Curve { key: k, points });
-            }
-        }
+            Curve { key, points: runs.iter().filter_map(|r| Point::of(r, x, y)).collect() }
+        });
         let of_scene = rows.iter().filter(|r| r.scene == scene);
-        let slopes = if x == Quantity::MeshSize { y.slopes(of_scene) } else { Vec::new() };
-        Panel { title: scene.to_owned(), x, y, curves, slopes, falls_over: None }
+        let orders = match x {
+            Quantity::MeshSize => y.orders(of_scene),
+            _ => Orders::default(),
+        };
+        Self::of(scene, (x.label(), y.label()), curves, orders)
+    }
+
+    /// A panel of curves, of which those without points are left out.
+    pub fn of(
+        title: &str,
+        (x, y): (&str, &str),
+        curves: impl Iterator<Item = Curve>,
+        orders: Orders,
+    ) -> Self {
+        let curves = curves.filter(|c| !c.points.is_empty()).collect();
+        let (title, x, y) = (title.to_owned(), x.to_owned(), y.to_owned());
+        Panel { title, x, y, curves, orders, limits: Vec::new() }
     }
 
     /// Whether some run has an error.
@@ -168,12 +194,17 @@ impl Panel {
         self.points().any(|p| p.y.is_some())
     }
 
+    /// Whether there is more to see than single points.
+    pub fn has_curves(&self) -> bool {
+        self.has_errors() && self.curves.iter().any(|c| c.points.len() > 1)
+    }
+
     /// All runs.
     pub fn points(&self) -> impl Iterator<Item = Point> + '_ {
         self.curves.iter().flat_map(|c| c.points.iter().copied())
     }
 
-    /// The errors the axis has to show. A run that failed may have any error at all: one far off
+    /// The numbers the axis has to show. A run that failed may have any error at all: one far off
     /// would squeeze the others into a line, and goes to the edge instead.
     pub fn errors(&self) -> Vec<f64> {
         let converged = || self.points().filter(|p| p.converged).filter_map(|p| p.y);
@@ -183,6 +214,14 @@ impl Panel {
         self.points()
             .filter_map(|p| p.y)
             .filter(|y| none_converged || (low..=high).contains(y))
+            .chain(self.limits.iter().copied())
             .collect()
     }
+}
+
+/// The panels with curves; of several without any the first, which says why there is none.
+pub(crate) fn with_curves(panels: Vec<Panel>) -> Vec<Panel> {
+    let any = panels.iter().any(Panel::has_curves);
+    let shown = panels.into_iter().filter(|p| !any || p.has_curves());
+    shown.take(if any { usize::MAX } else { 1 }).collect()
 }

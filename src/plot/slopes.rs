@@ -2,6 +2,7 @@
 
 use super::axis::LogAxis;
 use super::pen::{Align, Drawn, Pen, ScreenPoint};
+use super::series::Orders;
 use super::style::GREY;
 use plotters::prelude::DrawingBackend;
 
@@ -24,33 +25,35 @@ pub(crate) struct Slopes {
 }
 
 /// An order over a dimension, as short as it goes.
-fn fraction(order: u32, dimension: u32) -> String {
-    match order % dimension {
-        0 => (order / dimension).to_string(),
-        _ => format!("{order}/{dimension}"),
+fn fraction(order: f64, dimension: u32) -> String {
+    let quotient = order / f64::from(dimension);
+    let hundredths = (100.0 * quotient).round();
+    match 100.0 * quotient == hundredths || order.fract() != 0.0 {
+        true => (hundredths / 100.0).to_string(),
+        false => format!("{order}/{dimension}"),
     }
 }
 
 impl Slopes {
-    /// The triangle in the lower right or the upper left corner of an area of this size, the first
+    /// The triangle of ascending orders in the lower right or the upper left corner of an area of this size, the first
     /// that is free of data (given in pixels of the area). Falling slopes, each over a dimension,
     /// are placed in the lower left or the upper right corner.
     pub fn place(
-        (slopes, falls_over): (&[u32], Option<u32>),
+        Orders { orders, falls_over, .. }: &Orders,
         (x, y): (&LogAxis, &LogAxis),
         size: (f64, f64),
         data: &[ScreenPoint],
     ) -> Option<Self> {
-        let steepest = f64::from(*slopes.iter().max()?);
+        let steepest = *orders.last()?;
         let dimension = falls_over.unwrap_or(1).max(1);
         // Height over width of a line of slope 1, or 1 over the dimension.
         let unit = (size.1 / (y.high - y.low)) / (size.0 / (x.high - x.low)) / f64::from(dimension);
         // Wide enough for labels on top of each other to be read apart, not higher than a third.
-        let apart = (slopes.len() as f64) * LABEL;
+        let apart = (orders.len() as f64) * LABEL;
         let width = (0.22 * size.0).max(apart / (steepest * unit)).min(0.4 * size.0);
         let width = width.min(size.1 / 3.0 / (steepest * unit));
         let rises: Vec<_> =
-            slopes.iter().map(|&s| (fraction(s, dimension), f64::from(s) * unit * width)).collect();
+            orders.iter().map(|&p| (fraction(p, dimension), p * unit * width)).collect();
         let height = steepest * unit * width;
 
         let falls = falls_over.is_some();

@@ -1,5 +1,5 @@
-//! Colours and marks of curves. Curves differ in both, so that they remain distinct in grey; some
-//! marks are open, so that curves on top of each other are both visible.
+//! Colours, dashes and marks of curves. Curves differ in all of them, so that they remain distinct in
+//! grey; some marks are open, so that curves on top of each other are both visible.
 
 use super::pen::{Drawn, Pen, ScreenPoint};
 use plotters::prelude::{DrawingBackend, RGBColor};
@@ -59,19 +59,18 @@ pub(crate) fn colour(key: usize) -> RGBColor {
     COLOURS[key % COLOURS.len()]
 }
 
-/// The part of a curve between two marks: full for the first seven curves, whose colours differ,
-/// then dashed, then dotted.
+/// Lengths of dashes and gaps in turn; none for a full line. Their number and that of the colours have no
+/// common divisor.
+const DASHES: [&[f64]; 4] = [&[], &[7.0, 3.0], &[1.8, 2.4], &[9.0, 2.6, 1.8, 2.6]];
+
+/// The part of a curve between two marks.
 pub(crate) fn segment<DB: DrawingBackend>(
     pen: &Pen<DB>,
     key: usize,
     from: ScreenPoint,
     to: ScreenPoint,
 ) -> Drawn {
-    match key / COLOURS.len() {
-        0 => pen.line(from, to, 1.4, colour(key)),
-        1 => pen.dashes(from, to, 1.4, colour(key), (6.0, 3.0)),
-        _ => pen.dashes(from, to, 1.4, colour(key), (1.6, 2.6)),
-    }
+    pen.dashes(from, to, 1.4, colour(key), DASHES[key % DASHES.len()])
 }
 
 /// The mark of a curve, `size` times its usual size.
@@ -94,6 +93,15 @@ pub(crate) fn draw_mark<DB: DrawingBackend>(
     } else {
         pen.outline(&corners, 1.3, colour(key))
     }
+}
+
+/// The line of a limit.
+pub(crate) fn draw_limit<DB: DrawingBackend>(
+    pen: &Pen<DB>,
+    from: ScreenPoint,
+    to: ScreenPoint,
+) -> Drawn {
+    pen.dashes(from, to, 1.0, GREY, &[2.0, 2.0])
 }
 
 /// The mark of a run that did not converge: a hollow cross.

@@ -109,6 +109,23 @@ pub enum AnyOwnProblem {
     Three(OwnProblem<3>),
 }
 
+impl AnyOwnProblem {
+    /// The contents of the mesh file, if there is one.
+    pub fn mesh_bytes(&self) -> Option<&[u8]> {
+        fn of<const D: usize>(own: &OwnProblem<D>) -> Option<&[u8]> {
+            match &own.geometry {
+                Geometry::File { bytes, .. } => Some(bytes),
+                Geometry::Box(_) => None,
+            }
+        }
+        match self {
+            Self::One(own) => of(own),
+            Self::Two(own) => of(own),
+            Self::Three(own) => of(own),
+        }
+    }
+}
+
 /// Reads a problem and holds its data against its mesh: names, and values at vertices and barycentres.
 ///
 /// # Errors

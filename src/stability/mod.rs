@@ -3,6 +3,8 @@
 mod cases;
 mod choice;
 mod criteria;
+#[cfg(feature = "plot")]
+mod figures;
 mod limit;
 mod meshes;
 mod plan;
@@ -165,6 +167,10 @@ impl<'a> Stability<'a> {
         }
         report.provenance.complete = true;
         self.save(&report)?;
+        #[cfg(feature = "plot")]
+        if let Some(directory) = &self.directory {
+            report.write_figures(directory)?;
+        }
         Ok(report)
     }
 

@@ -1,6 +1,5 @@
 //! The report of a stability study and the files it is written to.
 
-use std::fs;
 use std::path::{Path, PathBuf};
 
 use serde_json::json;
@@ -10,10 +9,21 @@ use super::plan::Effort;
 use super::row::{StabilityRow, Verdict, short};
 use super::summary::{by_criterion, by_scheme, criteria, missed, robust, safe_ranges};
 use crate::error::Error;
+#[cfg(feature = "plot")]
+use crate::error::write_error;
+#[cfg(feature = "plot")]
 use crate::files::replace;
-use crate::output::table::{Cell, latex, markdown};
+use crate::files::replace_text;
+#[cfg(feature = "plot")]
+use crate::output::html::HtmlPage;
+use crate::output::latex::latex_files;
+use crate::output::table::{Cell, markdown};
 use crate::output::{Provenance, Table, csv};
+#[cfg(feature = "plot")]
+use crate::plot::Figure;
 use crate::study::Program;
+#[cfg(feature = "plot")]
+use crate::study::row::distinct;
 
 /// Notes before the tables.
 const READING: [&str; 3] = [
@@ -70,12 +80,21 @@ impl StabilityReport {
     /// All tables: verdicts by scheme and by criterion, what was missed, then the rows case by
     /// case.
     pub fn tables(&self) -> Vec<Table> {
+        let mut tables = self.verdict_tables();
+        tables.extend(self.case_tables());
+        tables
+    }
+
+    fn verdict_tables(&self) -> Vec<Table> {
         let mut tables = vec![by_scheme(&self.rows), by_criterion(&self.rows)];
         tables.extend(missed(&self.rows));
+        tables
+    }
+
+    fn case_tables(&self) -> impl Iterator<Item = Table> + '_ {
         let cases =
             STABILITY_CASES.iter().filter(|case| self.rows.iter().any(|r| r.case == **case));
-        tables.extend(cases.map(|case| self.case_table(case)));
-        tables
+        cases.map(|case| self.case_table(case))
     }
 
     /// Verdicts, what was missed, safe ranges of factors and robust choices, for a terminal: the report
@@ -88,8 +107,7 @@ impl StabilityReport {
         for failure in &self.failures {
             text += &format!("Not run to the end: {failure}.\n");
         }
-        let counted = [by_scheme(&self.rows), by_criterion(&self.rows)];
-        for table in counted.into_iter().chain(missed(&self.rows)) {
+        for table in self.verdict_tables() {
             text += &format!("\n{}", table.to_text());
         }
         text
@@ -171,8 +189,7 @@ impl StabilityReport {
     /// A summary in Markdown without the rows: verdicts, limits that were missed, criteria in words,
     /// provenance and notes.
     pub fn summary_to_markdown(&self) -> String {
-        let mut tables = vec![by_scheme(&self.rows), by_criterion(&self.rows)];
-        tables.extend(missed(&self.rows));
+        let mut tables = self.verdict_tables();
         tables.push(criteria(&self.rows));
         self.markdown_with(&tables)
     }
@@ -182,12 +199,53 @@ impl StabilityReport {
         format!("# Stability\n\n{}", self.document(tables, Table::to_markdown, line))
     }
 
-    /// Tables, provenance and notes in LaTeX, for `\input`; it needs the package `booktabs`.
-    pub fn to_latex(&self) -> String {
-        let text = self.document(&self.tables(), Table::to_latex, |line| {
-            format!("\\noindent {}\\par\n", latex(line))
-        });
-        format!("% needs \\usepackage{{booktabs}}\n{text}")
+    /// Files in LaTeX, for `\input`, by name and text: `stability.tex` with provenance, notes, verdicts, what
+    /// was missed and the criteria, and every table, those of the rows too, alone; see
+    /// [`LATEX_PACKAGES`](crate::output::LATEX_PACKAGES).
+    pub fn to_latex(&self) -> Vec<(String, String)> {
+        let mut summary = self.verdict_tables();
+        summary.push(criteria(&self.rows));
+        let further: Vec<Table> = self.case_tables().collect();
+        latex_files("stability", &self.paragraphs(), &summary, &further)
+    }
+
+    /// The sweeps of every case over a parameter, drawn, each with the name of its file.
+    #[cfg(feature = "plot")]
+    pub fn figures(&self) -> Vec<(String, Figure)> {
+        super::figures::figures(&self.rows)
+    }
+
+    /// Writes the figures, each as `.svg` and `.png`, and `stability.html`, one page with them and all
+    /// tables, into a directory.
+    ///
+    /// # Errors
+    /// [`Error::Write`] at the first file that cannot be written.
+    #[cfg(feature = "plot")]
+    pub fn write_figures(&self, directory: &Path) -> Result<Vec<PathBuf>, Error> {
+        let figures = self.figures();
+        let series = distinct(figures.iter().flat_map(|(_, f)| f.labels()).cloned());
+        let mut page = HtmlPage::of_tables("Stability", self.paragraphs(), &series, &self.tables());
+        let mut written = Vec::new();
+        for (name, figure) in &figures {
+            let path = directory.join(name);
+            let wrong = |why| write_error(&path, why);
+            let svg = figure.to_svg().map_err(wrong)?;
+            written.push(replace_text(&path.with_extension("svg"), &svg)?);
+            let png = path.with_extension("png");
+            written.push(replace(&png, |path| figure.write_png(path))?);
+            page.draw(name, figure).map_err(wrong)?;
+        }
+        written.push(replace_text(&directory.join("stability.html"), &page.to_html())?);
+        Ok(written)
+    }
+
+    /// What stands before the tables.
+    fn paragraphs(&self) -> Vec<String> {
+        let mut paragraphs = vec![self.heading()];
+        paragraphs.extend(READING.map(str::to_owned));
+        paragraphs.extend(self.safe_ranges().into_iter().chain(self.robust_choices()));
+        paragraphs.extend(self.failures.iter().map(|f| format!("Not run to the end: {f}.")));
+        paragraphs
     }
 
     fn document(
@@ -196,16 +254,7 @@ impl StabilityReport {
         table: fn(&Table) -> String,
         line: impl Fn(&str) -> String,
     ) -> String {
-        let mut text = line(&self.heading());
-        for explained in READING {
-            text += &line(explained);
-        }
-        for sentence in self.safe_ranges().into_iter().chain(self.robust_choices()) {
-            text += &line(&sentence);
-        }
-        for failure in &self.failures {
-            text += &line(&format!("Not run to the end: {failure}."));
-        }
+        let mut text: String = self.paragraphs().iter().map(|paragraph| line(paragraph)).collect();
         for t in tables {
             text += "\n";
             text += &table(t);
@@ -237,8 +286,8 @@ impl StabilityReport {
         )
     }
 
-    /// Writes `stability.json`, `.csv`, `.txt`, `.md` and `.tex` into a directory, which is made if
-    /// need be. Each file takes the place of an earlier one only when it is whole.
+    /// Writes `stability.json`, `.csv`, `.txt`, `.md` and the files of [`Self::to_latex`] into a directory,
+    /// which is made if need be. Each file takes the place of an earlier one only when it is whole.
     ///
     /// # Errors
     /// [`Error::Write`] at the first file that cannot be written.
@@ -248,11 +297,9 @@ impl StabilityReport {
             ("stability.csv", self.to_csv()),
             ("stability.txt", self.to_text()),
             ("stability.md", self.to_markdown()),
-            ("stability.tex", self.to_latex()),
         ];
-        let put = |(name, text): (&str, String)| {
-            replace(&directory.join(name), |path| fs::write(path, text))
-        };
-        files.into_iter().map(put).collect()
+        let mut files: Vec<_> = files.map(|(name, text)| (name.to_owned(), text)).into();
+        files.extend(self.to_latex());
+        files.iter().map(|(name, text)| replace_text(&directory.join(name), text)).collect()
     }
 }

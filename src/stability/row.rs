@@ -180,6 +180,10 @@ pub struct StabilityRow {
     pub expected: ExpectedRange,
     /// The figure; none if nothing was solved.
     pub measured: Option<f64>,
+    /// The error or condition number itself, where the figure is a ratio of two.
+    pub underlying: Option<f64>,
+    /// Name of that number.
+    pub underlying_quantity: String,
     /// Further figures, or why there is none.
     pub detail: String,
     /// What follows.
@@ -210,6 +214,7 @@ impl StabilityRow {
     /// Draws the verdict from the figures.
     pub(crate) fn judged(mut self) -> Self {
         self.measured = self.measured.filter(|figure| figure.is_finite());
+        self.underlying = self.underlying.filter(|figure| figure.is_finite());
         self.verdict = Verdict::on(&self.expected, self.measured);
         self.missed_by = self.measured.and_then(|figure| self.expected.missed_by(figure));
         self

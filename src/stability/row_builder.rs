@@ -26,6 +26,8 @@ impl RowBuilder {
             quantity: String::new(),
             expected: ExpectedRange::default(),
             measured: None,
+            underlying: None,
+            underlying_quantity: String::new(),
             detail: String::new(),
             verdict: Verdict::Reported,
             missed_by: None,
@@ -79,6 +81,12 @@ impl RowBuilder {
     /// Removes the limits, so that the figure is reported without a verdict.
     pub fn only_reported(mut self) -> Self {
         self.0.expected = ExpectedRange::default();
+        self
+    }
+    /// The error or condition number itself, of which the figure is a ratio.
+    pub fn underlying(mut self, quantity: &str, value: Option<f64>) -> Self {
+        self.0.underlying_quantity = quantity.to_owned();
+        self.0.underlying = value;
         self
     }
     /// Further figures.

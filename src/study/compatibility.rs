@@ -1,10 +1,12 @@
 //! Compatibility of a mesh and a scene.
 
+use std::sync::Arc;
+
 use crate::assemble::{DataQuadrature, Discretisation};
 use crate::constraint::Nodes;
 use crate::error::Error;
 use crate::mesh::{BoundaryPart, BoxDomain, Mesh, describe_point};
-use crate::problem::{DataOnMesh, Problem};
+use crate::problem::{DataOnMesh, Field, NamedData, Problem};
 use crate::real::{Point, Real, point_f64};
 use crate::scenes::Scene;
 use crate::scheme::{AnyScheme, ConformingP1, NonconformingP1};
@@ -64,7 +66,20 @@ pub(super) fn check_scheme<T: Real, const D: usize>(
     problem: Problem<D>,
     quadrature: DataQuadrature,
 ) -> Result<(), Error> {
-    let problem = Problem { coefficient: None, ..problem };
+    // bounds without names, which the cube does not have
+    let zero = |is_given: bool, old: Option<Field<D>>| {
+        old.or_else(|| is_given.then(|| -> Field<D> { Arc::new(|_| 0.0) }))
+    };
+    let (lower, gap) = (!problem.named.lower.is_empty(), !problem.named.gap.is_empty());
+    let upper = !problem.named.upper.is_empty();
+    let problem = Problem {
+        coefficient: None,
+        lower: zero(lower, problem.lower),
+        upper: zero(upper, problem.upper),
+        gap: zero(gap, problem.gap),
+        named: NamedData::default(),
+        ..problem
+    };
     let cube = BoxDomain::dirichlet(Point::zeros(), Point::repeat(1.0));
     let mesh = Mesh::<T, D>::kuhn_box(&cube, [1; D])?;
     match scheme.discretise(&problem, &mesh, quadrature) {

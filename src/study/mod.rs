@@ -3,14 +3,16 @@
 mod compatibility;
 mod extrapolate;
 #[cfg(feature = "report")]
+mod fields;
+#[cfg(feature = "report")]
 mod file_name;
 #[cfg(feature = "report")]
 mod journal;
 mod memory;
-mod memory_limits;
 mod order_check;
 mod orders;
 mod orders_table;
+mod reference;
 pub(crate) mod report;
 pub(crate) mod row;
 mod runner;

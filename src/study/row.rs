@@ -120,7 +120,9 @@ pub struct Row {
     pub status: Outcome,
     /// What the status says, in one sentence; none if the solve converged.
     pub message: Option<String>,
-    /// Errors against the exact solution.
+    /// Against what the errors are: `exact`, or scheme and level of a reference; none without errors.
+    pub against: Option<String>,
+    /// Errors against the exact solution, or against a reference.
     pub error: Errors,
     /// Distances of multiplier and contact set, keys of the row itself.
     #[cfg_attr(feature = "report", serde(flatten))]
@@ -173,6 +175,7 @@ impl Row {
             mesh_size: f64::NAN,
             status,
             message: (status != Outcome::Converged).then(|| status.message().to_owned()),
+            against: None,
             error: Errors::default(),
             contact: ContactErrors::default(),
             order: Orders::default(),

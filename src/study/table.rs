@@ -22,14 +22,19 @@ impl fmt::Display for Report {
 /// certificate. A row that did not converge is followed by the reason. Where no error is known there are
 /// columns of energy, contact measure and resultant, and their limits below.
 fn write_tables(f: &mut impl fmt::Write, rows: &[Row]) -> fmt::Result {
-    for (i, scene) in distinct(rows.iter().map(|r| r.scene.as_str())).into_iter().enumerate() {
+    for (i, (scene, rows)) in scenes(rows).into_iter().enumerate() {
         if i > 0 {
             writeln!(f)?;
         }
-        let rows: Vec<&Row> = rows.iter().filter(|r| r.scene == scene).collect();
         write_scene(f, scene, &rows)?;
     }
     Ok(())
+}
+
+/// The rows of each scene, in the order in which scenes first occur.
+pub(crate) fn scenes(rows: &[Row]) -> Vec<(&str, Vec<&Row>)> {
+    let of = |scene| (scene, rows.iter().filter(|r| r.scene == scene).collect());
+    distinct(rows.iter().map(|r| r.scene.as_str())).into_iter().map(of).collect()
 }
 
 /// The table of one scene.
@@ -98,7 +103,7 @@ fn write_limits(f: &mut impl fmt::Write, rows: &[&Row]) -> fmt::Result {
 }
 
 /// The heading after the name of the scene: solvers, and the orders that theory promises.
-fn heading(rows: &[&Row]) -> String {
+pub(crate) fn heading(rows: &[&Row]) -> String {
     let solvers = distinct(rows.iter().map(|r| format!("{}/{}", r.solver, r.linear)));
     let mut text = format!("solver {}", solvers.join(", "));
     let mut promises: Vec<(String, Vec<String>)> = Vec::new();
@@ -148,17 +153,17 @@ fn write_wrapped(f: &mut impl fmt::Write, text: &str) -> fmt::Result {
 }
 
 /// One column of a table.
-struct Column {
+pub(crate) struct Column {
     /// Head of the column.
-    name: &'static str,
+    pub name: &'static str,
     /// Whether cells are aligned to the left, as texts are; numbers are aligned to the right.
-    left: bool,
+    pub left: bool,
     /// The cell of a row.
-    cell: fn(&Row) -> String,
+    pub cell: fn(&Row) -> String,
 }
 
 /// The columns of the table of `rows`: those in which at least one row has an entry.
-fn columns(rows: &[&Row]) -> Vec<Column> {
+pub(crate) fn columns(rows: &[&Row]) -> Vec<Column> {
     let text = |name, cell| Column { name, left: true, cell };
     let number = |name, cell| Column { name, left: false, cell };
     let any = |get: fn(&Row) -> Option<f64>| rows.iter().any(|r| get(r).is_some());

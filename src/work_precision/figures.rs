@@ -4,9 +4,20 @@ use super::measured::{Measured, variants};
 use super::work_at_error::curves;
 use crate::plot::{Cost, Figure, NamedCurve, cost_figure};
 
-/// The figures `SCENE-time`, `SCENE-unknowns` and `SCENE-memory` of a scene.
-pub(crate) fn figures(rows: &[Measured], scene: &str) -> Vec<(String, Figure)> {
+/// The figures `SCENE-time`, `SCENE-unknowns` and `SCENE-memory` of a scene. Memory is that above the
+/// memory of an empty run.
+pub(crate) fn figures(
+    rows: &[Measured],
+    scene: &str,
+    empty_memory: Option<u64>,
+) -> Vec<(String, Figure)> {
     let variants = variants(rows);
+    let mut rows = rows.to_vec();
+    for m in &mut rows {
+        let above = |peak: u64| peak.saturating_sub(empty_memory.unwrap_or(0));
+        m.row.peak_memory_bytes = m.row.peak_memory_bytes.map(above);
+    }
+    let rows = &rows[..];
     let curves: Vec<NamedCurve<'_>> = curves(rows, scene)
         .into_iter()
         .map(|(variant, levels)| NamedCurve {

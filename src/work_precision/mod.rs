@@ -31,7 +31,7 @@ use crate::real::Real;
 use crate::scenes::Scene;
 use crate::scheme::{AnyScheme, NamedScheme};
 use crate::study::{Study, available_memory_bytes};
-use case::{Candidate, OneStudy, in_single_precision};
+use case::{Candidate, OneStudy, in_single_precision, resident_memory_bytes};
 
 /// The least time between two writes of finished rows within a round.
 const WRITE_INTERVAL: Duration = Duration::from_secs(1);
@@ -81,6 +81,7 @@ pub struct WorkPrecision<'a, const D: usize> {
     subject: String,
     directory: Option<PathBuf>,
     memory: Option<MemoryOf<'a>>,
+    empty_memory: Option<u64>,
     observer: Box<dyn Fn(WorkProgress<'_>) + 'a>,
 }
 
@@ -127,6 +128,7 @@ impl<'a, const D: usize> WorkPrecision<'a, D> {
             subject: String::new(),
             directory: None,
             memory: None,
+            empty_memory: None,
             observer: Box::new(|_| {}),
         }
     }
@@ -211,6 +213,12 @@ impl<'a, const D: usize> WorkPrecision<'a, D> {
         self.memory = Some(Box::new(memory));
         self
     }
+    /// States the peak of memory of a run without a case, where [`Self::memory`] measures other processes.
+    #[must_use]
+    pub fn empty_memory(mut self, bytes: Option<u64>) -> Self {
+        self.empty_memory = bytes;
+        self
+    }
     /// Sets a function that receives the progress of the study.
     #[must_use]
     pub fn observer(mut self, observer: impl Fn(WorkProgress<'_>) + 'a) -> Self {
@@ -248,6 +256,8 @@ impl<'a, const D: usize> WorkPrecision<'a, D> {
     fn run_cases(&self, report: &mut WorkReport) -> Result<(), Error> {
         let mut slots = self.slots()?;
         report.subject.clone_from(&self.subject);
+        let of_this_process = || resident_memory_bytes().filter(|_| self.memory.is_none());
+        report.empty_memory_bytes = self.empty_memory.or_else(of_this_process);
         for precision in self.precisions.iter().map(|p| p.name()) {
             if !report.program.precision.split(", ").any(|p| p == precision) {
                 let comma = if report.program.precision.is_empty() { "" } else { ", " };

@@ -1,6 +1,5 @@
 //! The report of a work-precision study and the files it is written to.
 
-use std::fs;
 use std::path::{Path, PathBuf};
 
 use serde_json::json;
@@ -8,14 +7,17 @@ use serde_json::json;
 #[cfg(feature = "plot")]
 use super::figures::figures;
 use super::measured::{Failure, Measured, Variant, scenes, variants};
-use super::tables::tables;
+use super::tables::{details, summary};
 use super::verdict::verdict;
 use super::work_at_error::{WorkAtError, work_at_errors};
-use crate::error::Error;
-use crate::files::replace;
-use crate::output::table::{latex, markdown};
+use crate::error::{Error, write_error};
+use crate::files::replace_text;
+use crate::output::html::HtmlPage;
+use crate::output::latex::latex_files;
+use crate::output::table::markdown;
 use crate::output::{Provenance, Table, csv};
 use crate::study::Program;
+use crate::study::row::distinct;
 
 /// The results of a work-precision study on any number of scenes.
 #[derive(Clone, Debug, PartialEq)]
@@ -30,6 +32,10 @@ pub struct WorkReport {
     pub setting: String,
     /// The label of the scheme that verdicts compare with the others.
     pub subject: String,
+    /// Peak of memory of a run without a case: of the process before the first one, or what
+    /// [`WorkPrecision::empty_memory`](super::WorkPrecision::empty_memory) states. Plots show memory above
+    /// it.
+    pub empty_memory_bytes: Option<u64>,
     /// One row for every scene, variant and level that gave one.
     pub rows: Vec<Measured>,
     /// Cases that were not run or ended in an error.
@@ -44,6 +50,7 @@ impl WorkReport {
             provenance: Provenance::now(rounds),
             setting: String::new(),
             subject: String::new(),
+            empty_memory_bytes: None,
             rows: Vec::new(),
             refused: Vec::new(),
         }
@@ -77,18 +84,29 @@ impl WorkReport {
         variants(&self.rows)
     }
 
-    /// All tables, scene by scene.
-    pub fn tables(&self) -> Vec<Table> {
-        tables(&self.rows, &self.failures(), &self.reach())
+    /// Costs and times to reach errors, scene by scene.
+    pub fn summary_tables(&self) -> Vec<Table> {
+        summary(&self.rows, &self.failures(), &self.reach())
     }
 
-    /// The report as JSON: `program`, `provenance`, `setting`, `rows`, `failures`, `reach` and
+    /// What was run and where the time went, scene by scene.
+    pub fn detail_tables(&self) -> Vec<Table> {
+        details(&self.rows, &self.failures())
+    }
+
+    /// All tables: details, then the summary.
+    pub fn tables(&self) -> Vec<Table> {
+        [self.detail_tables(), self.summary_tables()].concat()
+    }
+
+    /// The report as JSON: `program`, `provenance`, `setting`, `empty_memory_bytes`, `rows`, `failures`, `reach` and
     /// `verdicts`. What does not apply is null.
     pub fn to_json(&self) -> String {
         let value = json!({
             "program": self.program,
             "provenance": self.provenance,
             "setting": self.setting,
+            "empty_memory_bytes": self.empty_memory_bytes,
             "rows": self.rows,
             "failures": self.failures(),
             "reach": self.reach(),
@@ -117,12 +135,33 @@ impl WorkReport {
         self.document(Table::to_markdown, |line| format!("{}\n\n", markdown(line)))
     }
 
-    /// Tables, provenance and verdicts in LaTeX, for `\input`; it needs the package `booktabs`.
-    pub fn to_latex(&self) -> String {
-        let text = self.document(Table::to_latex, |line| {
-            format!("{{\\raggedright\\noindent {}\\par}}\n", latex(line))
-        });
-        format!("% needs \\usepackage{{booktabs}}\n{text}")
+    /// Files in LaTeX, for `\input`, by name and text: `report.tex` with provenance, verdicts and the
+    /// tables of the summary, and every table alone; see
+    /// [`LATEX_PACKAGES`](crate::output::LATEX_PACKAGES).
+    pub fn to_latex(&self) -> Vec<(String, String)> {
+        latex_files("report", &self.paragraphs(), &self.summary_tables(), &self.detail_tables())
+    }
+
+    fn paragraphs(&self) -> Vec<String> {
+        [self.heading()].into_iter().chain(self.verdicts()).collect()
+    }
+
+    /// The report as one page, with its figures.
+    fn page(&self) -> Result<String, String> {
+        let variants = self.variants();
+        let series: Vec<String> = variants.iter().map(|v| v.name_among(&variants)).collect();
+        let tables = [self.summary_tables(), self.detail_tables()].concat();
+        let title = "Work against precision";
+        #[cfg_attr(not(feature = "plot"), expect(unused_mut))]
+        let mut page =
+            HtmlPage::of_tables(title, self.paragraphs(), &distinct(series.into_iter()), &tables);
+        #[cfg(feature = "plot")]
+        for scene in self.scenes() {
+            for (name, figure) in figures(&self.rows, scene, self.empty_memory_bytes) {
+                page.draw(&name, &figure)?;
+            }
+        }
+        Ok(page.to_html())
     }
 
     fn document(&self, table: fn(&Table) -> String, line: impl Fn(&str) -> String) -> String {
@@ -155,9 +194,9 @@ impl WorkReport {
         text
     }
 
-    /// Writes `report.json`, `report.csv`, `reach.csv`, `report.txt`, `report.md` and `report.tex`
-    /// into a directory, which is made if need be. Each file takes the place of an earlier one only
-    /// when it is whole.
+    /// Writes `report.json`, `report.csv`, `reach.csv`, `report.txt`, `report.md`, the files of
+    /// [`Self::to_latex`] and, if the report is complete, `report.html` into a directory, which is made if
+    /// need be. Each file takes the place of an earlier one only when it is whole.
     ///
     /// # Errors
     /// [`Error::Write`] at the first file that cannot be written.
@@ -168,12 +207,15 @@ impl WorkReport {
             ("reach.csv", self.reach_csv()),
             ("report.txt", self.to_text()),
             ("report.md", self.to_markdown()),
-            ("report.tex", self.to_latex()),
         ];
-        let put = |(name, text): (&str, String)| {
-            replace(&directory.join(name), |path| fs::write(path, text))
-        };
-        files.into_iter().map(put).collect()
+        let mut files: Vec<_> = files.map(|(name, text)| (name.to_owned(), text)).into();
+        files.extend(self.to_latex());
+        if self.provenance.complete {
+            let path = directory.join("report.html");
+            let page = self.page().map_err(|why| write_error(&path, why))?;
+            files.push(("report.html".to_owned(), page));
+        }
+        files.iter().map(|(name, text)| replace_text(&directory.join(name), text)).collect()
     }
 
     /// Writes the errors of a scene against time, unknowns and memory as `SCENE-time`,
@@ -184,13 +226,12 @@ impl WorkReport {
     #[cfg(feature = "plot")]
     pub fn write_figures(&self, directory: &Path, scene: &str) -> Result<Vec<PathBuf>, Error> {
         let mut written = Vec::new();
-        for (name, figure) in figures(&self.rows, scene) {
+        for (name, figure) in figures(&self.rows, scene, self.empty_memory_bytes) {
             let svg = directory.join(format!("{name}.svg"));
-            written.push(replace(&svg, |path| {
-                fs::write(path, figure.to_svg()?).map_err(|e| e.to_string())
-            })?);
+            let text = figure.to_svg().map_err(|why| write_error(&svg, why))?;
+            written.push(replace_text(&svg, &text)?);
             let png = directory.join(format!("{name}.png"));
-            written.push(replace(&png, |path| figure.write_png(path))?);
+            written.push(crate::files::replace(&png, |path| figure.write_png(path))?);
         }
         Ok(written)
     }

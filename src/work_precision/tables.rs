@@ -17,14 +17,11 @@ const MARKS: &str = "> t: not reached by the finest level, which takes t; < t: u
     level, which takes t; not run: the scheme was not run on this scene or on a finer level that was \
     asked for; failed: the level that would decide did not converge";
 
-/// All tables, scene by scene.
-pub(crate) fn tables(all: &[Measured], failures: &[Failure], reach: &[WorkAtError]) -> Vec<Table> {
+/// Costs and times to reach errors, scene by scene: the summary of a report.
+pub(crate) fn summary(all: &[Measured], failures: &[Failure], reach: &[WorkAtError]) -> Vec<Table> {
     let variants = variants(all);
     let mut tables = Vec::new();
     for scene in scenes(all, failures) {
-        let rows: Vec<&Measured> = all.iter().filter(|m| m.row.scene == scene).collect();
-        tables.push(runs(failures, scene, &rows, &variants));
-        tables.push(phases(scene, &rows, &variants));
         tables.extend(costs(scene, &at_common_error(reach, scene), &variants));
         for norm in ErrorNorm::ALL {
             let here = |r: &&WorkAtError| r.variant.scene == scene && r.norm == norm;
@@ -35,6 +32,16 @@ pub(crate) fn tables(all: &[Measured], failures: &[Failure], reach: &[WorkAtErro
         }
     }
     tables
+}
+
+/// What was run and where the time went, scene by scene.
+pub(crate) fn details(all: &[Measured], failures: &[Failure]) -> Vec<Table> {
+    let variants = variants(all);
+    let of_scene = |scene| {
+        let rows: Vec<&Measured> = all.iter().filter(|m| m.row.scene == scene).collect();
+        [runs(failures, scene, &rows, &variants), phases(scene, &rows, &variants)]
+    };
+    scenes(all, failures).into_iter().flat_map(of_scene).collect()
 }
 
 fn head(names: &[&str]) -> Vec<String> {
@@ -57,7 +64,7 @@ fn runs(failures: &[Failure], scene: &str, rows: &[&Measured], variants: &[Varia
             Cell::whole(Some(row.iterations.linear)),
             Cell::scientific(row.error.l2),
             Cell::scientific(row.error.h1),
-            Cell::scientific(row.error.energy),
+            Cell::scientific(row.error.broken_energy),
             Cell::scientific(Some(certificate.into_iter().fold(0.0, worse))),
             Cell::scientific(Some(m.smallest.total)),
             megabytes(row.peak_memory_bytes.map(|b| b as f64)),
@@ -183,9 +190,6 @@ fn times(scene: &str, norm: ErrorNorm, reach: &[&WorkAtError], variants: &[Varia
             "the median of repeated runs is up to {largest:.2} times the least: a smaller ratio of two \
              times is no difference"
         ));
-    }
-    if norm == ErrorNorm::Energy {
-        remarks.push("every scheme measures its own norm".to_owned());
     }
     Table {
         title: format!("{scene}: time to reach an error in {}", norm.name()),

@@ -12,7 +12,7 @@ fn error_in(norm: ErrorNorm, measured: &Measured) -> Option<f64> {
     let value = match norm {
         ErrorNorm::L2 => error.l2,
         ErrorNorm::H1 => error.h1,
-        ErrorNorm::Energy => error.energy,
+        ErrorNorm::Energy => error.broken_energy,
     };
     value.filter(|e| measured.row.converged() && e.is_finite() && *e > 0.0)
 }

@@ -25,8 +25,10 @@ fn solution(scheme: &dyn AnyScheme<f64, 2>, level: usize) -> Vec<f64> {
 fn a_vector_that_comes_back_has_the_row_of_the_run() {
     let scratch = Scratch::new("dump");
     let dump = scratch.path("dump");
-    let schemes: [(&str, &dyn AnyScheme<f64, 2>); 2] =
-        [("p1", &ConformingP1), ("wopsip@factor=10", &Wopsip { eta: Eta::Dimensionless(10.0), ..Wopsip::default() })];
+    let schemes: [(&str, &dyn AnyScheme<f64, 2>); 2] = [
+        ("p1", &ConformingP1),
+        ("wopsip@factor=10", &Wopsip { eta: Eta::Dimensionless(10.0), ..Wopsip::default() }),
+    ];
     let report = scratch.report(&format!(
         "--scene radial-2d --scheme p1,wopsip@factor=10 --levels 8 --quiet --dump {dump}"
     ));
@@ -92,7 +94,8 @@ fn needs_scipy() {
     scratch.report(&format!("--scene {scenes} --scheme p1,sipg --levels 16 --quiet --dump {dump}"));
     let script = concat!(env!("CARGO_MANIFEST_DIR"), "/examples/solve_elsewhere.py");
     let python = std::env::var("PYTHON").unwrap_or_else(|_| "python3".to_owned());
-    for name in ["radial-2d-p1-16", "radial-2d-sipg-16", "signorini-2d-p1-16", "signorini-2d-sipg-16"]
+    for name in
+        ["radial-2d-p1-16", "radial-2d-sipg-16", "signorini-2d-p1-16", "signorini-2d-sipg-16"]
     {
         let folder = Path::new(&dump).join(name);
         for solver in ["active-set", "clarabel"] {

@@ -9,7 +9,7 @@ use crate::support::keys::ROW_KEYS;
 /// Keys of inner objects, and which of their values may be null in a row that converged.
 const INNER_KEYS: [(&str, &[&str], bool); 7] = [
     ("parameters", &["sigma", "eta", "rule"], true),
-    ("error", &["l2", "h1", "energy", "max"], true),
+    ("error", &["l2", "h1", "energy", "broken_energy", "max"], true),
     ("order", &["l2", "h1", "energy", "max", "multiplier_l1", "multiplier_l2"], true),
     ("expected_order", &["l2", "h1"], true),
     ("iterations", &["outer", "linear", "levels", "start_cycles", "stages"], false),
@@ -90,12 +90,16 @@ fn the_report_has_every_key_and_file() {
     }
     assert_eq!(csv.lines().count(), 1 + rows(&report).len());
 
-    let mut files = ["json", "jsonl", "csv"].map(|ending| format!("report.{ending}")).to_vec();
+    let endings = ["json", "jsonl", "csv", "md", "tex", "html"];
+    let mut files: Vec<String> = endings.map(|ending| format!("report.{ending}")).into();
     for plot in ["convergence", "work_precision"] {
         files.extend(["svg", "png"].map(|ending| format!("{plot}.{ending}")));
     }
     for scene in ["radial-2d", "signorini-2d"] {
-        files.extend(["p1", "sipg", "wopsip"].map(|scheme| format!("{scene}-{scheme}.vtu")));
+        files.push(format!("table-{scene}.tex"));
+        for ending in ["vtu", "svg"] {
+            files.extend(["p1", "sipg", "wopsip"].map(|s| format!("{scene}-{s}.{ending}")));
+        }
     }
     let mut found: Vec<String> = std::fs::read_dir(scratch.0.join("out"))
         .unwrap()

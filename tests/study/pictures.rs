@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use unilateral::measure::Fields;
 use unilateral::mesh::BoxDomain;
 use unilateral::mesh::{BoundaryPart, Mesh};
-use unilateral::paraview::{CellFields, write_pvd, write_vtu};
+use unilateral::paraview::{VtuFile, write_pvd};
 use unilateral::plot::{Picture, Slice};
 use unilateral::prelude::*;
 use unilateral::scenes::Scene;
@@ -280,9 +280,7 @@ fn a_series_lists_every_level_and_its_files_are_there() {
         .map(|&level| {
             let mesh = cube::<2>(level);
             let path = directory.join(format!("square-{level}.vtu"));
-            let (u, contact) = (vec![1.0; 3 * mesh.n_cells()], vec![0.0; mesh.n_cells()]);
-            let fields = CellFields { u: &u, obstacle: None, multiplier: None, contact: &contact };
-            write_vtu(&path, &mesh, &fields).unwrap();
+            VtuFile::new(&mesh, &vec![1.0; 3 * mesh.n_cells()]).write(&path).unwrap();
             (level as f64, path)
         })
         .collect();

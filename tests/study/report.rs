@@ -28,7 +28,7 @@ fn json_has_the_keys_that_scripts_rely_on() {
     assert_eq!(present, ROW_KEYS);
     assert_eq!(keys(row).len(), ROW_KEYS.len() + added.len());
     assert_eq!(keys(&row["parameters"]), ["sigma", "eta", "rule"]);
-    assert_eq!(keys(&row["error"]), ["l2", "h1", "energy", "max"]);
+    assert_eq!(keys(&row["error"]), ["l2", "h1", "energy", "broken_energy", "max"]);
     let orders = ["l2", "h1", "energy", "max", "multiplier_l1", "multiplier_l2"];
     assert_eq!(keys(&row["order"]), orders);
     assert_eq!(keys(&row["expected_order"]), ["l2", "h1"]);
@@ -162,13 +162,18 @@ fn all_files_are_written_and_plots_show_what_they_should() {
     let expected = [
         "report.json",
         "report.csv",
+        "report.md",
+        "report.tex",
+        "table-radial-2d.tex",
+        "table-signorini-2d.tex",
         "convergence.svg",
         "convergence.png",
         "work_precision.svg",
         "work_precision.png",
+        "report.html",
     ];
     assert_eq!(names, expected);
-    for (svg, x) in [(&written[2], "mesh size h"), (&written[4], "time in s")] {
+    for (svg, x) in [(&written[6], "mesh size h"), (&written[8], "time in s")] {
         let text = std::fs::read_to_string(svg).unwrap();
         let labels = ["L2 error", "radial-2d", "signorini-2d", "p1", "sipg", "wopsip"];
         let notes = ["did not converge", "no exact solution: no errors"];
@@ -178,17 +183,111 @@ fn all_files_are_written_and_plots_show_what_they_should() {
         // Shown at a fraction of the size at which it is drawn.
         assert!(text.starts_with("<svg width=\"780\""), "{}", &text[..80]);
     }
-    let (width, height) = png_size(&written[3]);
+    let (width, height) = png_size(&written[7]);
     assert!(width == 1560 && height > 1200, "{width} x {height}");
-    png_size(&written[5]);
+    png_size(&written[9]);
 }
 
 #[test]
 fn a_report_of_one_row_or_none_is_written_too() {
     for rows in [vec![row("radial-1d", "p1", 4)], Vec::new()] {
         let scratch = Scratch::new(&format!("few-{}", rows.len()));
-        assert_eq!(report(rows).write(&scratch.0).unwrap().len(), 6);
+        let tables = rows.len();
+        assert_eq!(report(rows).write(&scratch.0).unwrap().len(), 9 + tables);
     }
+}
+
+/// Opening tags less closing ones, of elements that have both.
+fn open_elements(html: &str, name: &str) -> isize {
+    let opened =
+        html.matches(&format!("<{name} ")).count() + html.matches(&format!("<{name}>")).count();
+    opened as isize - html.matches(&format!("</{name}>")).count() as isize
+}
+
+#[test]
+fn the_page_has_every_number_and_needs_no_network() {
+    let scratch = Scratch::new("page");
+    let mut rows = rows();
+    rows[4].label = "a<b & \"c\"".into();
+    rows[0].error.l2 = Some(1.234_567_891_2e-3);
+    std::fs::create_dir_all(&scratch.0).unwrap();
+    std::fs::write(scratch.0.join("radial-2d-p1.svg"), "<svg id=\"picture\"></svg>\n").unwrap();
+    let report = report(rows);
+    report.write(&scratch.0).unwrap();
+    let html = scratch.read("report.html");
+    for foreign in ["<script", "http:", "https:", "@import", "url(", "src="] {
+        let found = html.replace("http://www.w3.org/2000/svg", "").contains(foreign);
+        assert!(!found, "{foreign}");
+    }
+    for name in
+        ["svg", "g", "table", "tr", "td", "th", "label", "fieldset", "figure", "div", "text"]
+    {
+        assert_eq!(open_elements(&html, name), 0, "{name}");
+    }
+    assert_eq!(html.matches("<svg").count(), 3, "two plots and a picture");
+    assert!(html.contains("id=\"picture\""));
+    // a number is written short, with all its digits beside it
+    assert!(html.contains("title=\"0.0012345678912\">1.235e-3</td>"));
+    assert!(html.contains("a&lt;b &amp; &quot;c&quot;") && !html.contains("a<b"));
+    // every value of every row is there, in full
+    let csv = read_csv(&report.to_csv());
+    let cells =
+        csv[1..].iter().flat_map(|line| line[3..].iter()).filter(|c| c.parse::<f64>().is_ok());
+    for cell in cells {
+        assert!(
+            html.contains(&format!(">{cell}<")) || html.contains(&format!("\"{cell}\"")),
+            "{cell}"
+        );
+    }
+    // boxes for every series and every column, and rules that heed them
+    let labels = ["p1", "sipg", "wopsip"];
+    for (k, label) in labels.iter().enumerate() {
+        assert!(html.contains(&format!("id=\"show-s{k}\" autocomplete=\"off\" checked> {label}")));
+        assert!(
+            html.contains(&format!("body:has(#show-s{k}:not(:checked)) .s{k}{{display:none}}"))
+        );
+        assert!(
+            html.contains(&format!("<tr class=\"s{k}\">"))
+                && html.contains(&format!("<g class=\"s{k}\">"))
+        );
+    }
+}
+
+/// A browser shows the page, with a series and without it. `UNILATERAL_CHROMIUM` names the browser,
+/// `UNILATERAL_KEEP` a directory that keeps the photographs.
+#[test]
+#[ignore = "needs chromium"]
+fn needs_chromium_to_photograph_the_page() {
+    let scratch = Scratch::new("photograph");
+    let scene = unilateral::scenes::signorini_2d();
+    let schemes = unilateral::scheme::NamedScheme::list(["p1", "sipg", "wopsip"]).unwrap();
+    let study = unilateral::study::Study::<f64, 2>::new(scene).levels([4, 8, 16]);
+    let report = schemes.iter().fold(study, unilateral::study::Study::named_scheme).run().unwrap();
+    report.write(&scratch.0).unwrap();
+    let keep = std::env::var_os("UNILATERAL_KEEP").map_or(scratch.0.clone(), Into::into);
+    let browser = std::env::var("UNILATERAL_CHROMIUM").unwrap_or_else(|_| "chromium".to_owned());
+    let html = scratch.read("report.html");
+    let without = html.replace("id=\"show-s1\" autocomplete=\"off\" checked", "id=\"show-s1\"");
+    assert_ne!(html, without);
+    let photograph = |name: &str, html: &str| {
+        let page = scratch.0.join(format!("{name}.html"));
+        std::fs::write(&page, html).unwrap();
+        let picture = keep.join(format!("{name}.png"));
+        let output = std::process::Command::new(&browser)
+            .args(["--headless", "--no-sandbox", "--disable-gpu", "--hide-scrollbars"])
+            .args(["--window-size=1300,1600", "--virtual-time-budget=5000"])
+            .arg(format!("--screenshot={}", picture.display()))
+            .arg(format!("file://{}", page.display()))
+            .output()
+            .unwrap();
+        let said = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert!(output.status.success(), "{said}");
+        assert_eq!(png_size(&picture), (1300, 1600), "{said}");
+        std::fs::read(picture).unwrap()
+    };
+    let all = photograph("all", &html);
+    assert!(all.len() > 40_000, "{} bytes are a blank page", all.len());
+    assert_ne!(all, photograph("without", &without), "the series is switched off");
 }
 
 #[test]

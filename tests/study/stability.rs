@@ -190,7 +190,16 @@ fn reports_read_back() {
     for row in &report.rows {
         assert!(texts.iter().all(|text| text.contains(row.verdict.name())), "{}", describe(row));
     }
-    assert!(texts[2].contains("\\begin{tabular}") && texts[2].contains("\\bottomrule"));
+    assert!(texts[2].contains("\\begin{longtable}") && texts[2].contains("\\bottomrule"));
+    // the rows have tables of their own
+    assert!(!texts[2].contains("Case scaling"));
+    assert!(read("table-case-scaling.tex").contains("\\caption{Case scaling}"));
+    for drawn in ["stability-scaling.svg", "stability.html"] {
+        let text = read(drawn);
+        assert!(text.contains("relative difference of solutions"), "{drawn}");
+        assert!(text.contains("limit"), "{drawn}");
+    }
+    assert!(scratch.0.join("stability-scaling.png").exists());
 }
 
 #[test]

@@ -1,71 +1,127 @@
-//! Files of fields, read back.
+//! Files of fields, read back: encoding, cells, points, fields on cells and on the contact boundary.
 
-use std::path::PathBuf;
+use std::io::Read;
+use std::path::{Path, PathBuf};
+use std::process::Command;
 
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
+use flate2::read::ZlibDecoder;
+use unilateral::element::{P2, ReferenceElement};
 use unilateral::mesh::{BoxDomain, Mesh};
-use unilateral::paraview::{CellFields, write_vtu};
+use unilateral::paraview::{FieldScalar, VtuFile};
+use unilateral::prelude::*;
 use unilateral::real::{Point, Real};
+use unilateral::scenes::Scene;
+use unilateral::study::file_name;
 
-/// Where a test writes; kept if `UNILATERAL_KEEP` names a directory, to look at it with other tools.
-fn path(name: &str) -> PathBuf {
-    std::env::var_os("UNILATERAL_KEEP")
-        .map_or_else(std::env::temp_dir, PathBuf::from)
-        .join(format!("unilateral-{}-{name}.vtu", std::process::id()))
-}
+use crate::scratch::Scratch;
 
-/// The arrays of a file, by name, as bytes; with those of points and cells apart.
-struct Piece {
+/// A file, with its arrays by section and name.
+struct Grid {
     text: String,
 }
 
-fn read(path: &PathBuf) -> Piece {
+fn read(path: impl AsRef<Path>) -> Grid {
     let text = std::fs::read_to_string(path).unwrap();
     assert_eq!(text.matches("<Piece").count(), 1);
-    assert!(
-        text.contains("byte_order=\"LittleEndian\"") && text.contains("header_type=\"UInt64\"")
-    );
-    Piece { text }
+    for said in ["\"LittleEndian\"", "header_type=\"UInt64\"", "\"vtkZLibDataCompressor\""] {
+        assert!(text.contains(said), "{said}");
+    }
+    Grid { text }
 }
 
-impl Piece {
+/// The numbers of a header or of an array.
+fn integers(bytes: &[u8], width: usize) -> Vec<usize> {
+    let number = |b: &[u8]| b.iter().rev().fold(0, |n, &byte| n << 8 | usize::from(byte));
+    bytes.chunks(width).map(number).collect()
+}
+
+/// What is compressed in the text of an array.
+fn decode(text: &str) -> Vec<u8> {
+    // the first eight bytes are the number of blocks, which tells the length of the header
+    let first = STANDARD.decode(&text[..12]).unwrap();
+    let header_bytes = 8 * (3 + integers(&first[..8], 8)[0]);
+    let (header, data) = text.split_at(header_bytes.div_ceil(3) * 4);
+    let header = integers(&STANDARD.decode(header).unwrap(), 8);
+    let data = STANDARD.decode(data).unwrap();
+    let (mut start, mut decoded) = (0, Vec::new());
+    for (k, length) in header[3..].iter().enumerate() {
+        let before = decoded.len();
+        ZlibDecoder::new(&data[start..start + length]).read_to_end(&mut decoded).unwrap();
+        start += length;
+        let is_last = k + 4 == header.len();
+        let expected = if is_last && header[2] > 0 { header[2] } else { header[1] };
+        assert_eq!(decoded.len() - before, expected);
+    }
+    assert_eq!(start, data.len());
+    decoded
+}
+
+impl Grid {
     /// What stands between two tags.
     fn section(&self, name: &str) -> &str {
-        let start = self.text.find(&format!("<{name}")).unwrap();
+        let start =
+            self.text.find(&format!("<{name}>")).or_else(|| self.text.find(&format!("<{name} ")));
         let end = self.text.find(&format!("</{name}>")).unwrap();
-        &self.text[start..end]
+        &self.text[start.unwrap()..end]
     }
-    /// Type and bytes of an array of a section, if it is there.
-    fn bytes(&self, section: &str, name: &str) -> Option<(String, Vec<u8>)> {
-        let arrays = self.section(section).split("<DataArray").skip(1);
+    fn names(&self, section: &str) -> Vec<&str> {
+        let parts = self.section(section).split("Name=\"").skip(1);
+        parts.map(|part| part.split('"').next().unwrap()).collect()
+    }
+    /// Type and content of an array.
+    fn array(&self, section: &str, name: &str) -> (&str, &str) {
         let wanted = format!("Name=\"{name}\"");
-        let array = arrays.into_iter().find(|a| name.is_empty() || a.contains(&wanted))?;
-        let kind = array.split("type=\"").nth(1)?.split('"').next()?.to_owned();
-        let data = array.split('>').nth(1)?.split('<').next()?.trim();
-        let decoded = STANDARD.decode(data).unwrap();
-        let (length, bytes) = decoded.split_at(8);
-        assert_eq!(u64::from_le_bytes(length.try_into().unwrap()) as usize, bytes.len());
-        Some((kind, bytes.to_vec()))
+        let array = self.section(section).split("<DataArray").find(|a| a.contains(&wanted));
+        let array = array.unwrap_or_else(|| panic!("no {name} in {section}"));
+        let kind = array.split("type=\"").nth(1).unwrap().split('"').next().unwrap();
+        (kind, array.split('>').nth(1).unwrap().split('<').next().unwrap().trim())
     }
-    fn floats(&self, section: &str, name: &str) -> Option<Vec<f64>> {
-        let (kind, bytes) = self.bytes(section, name)?;
-        assert_eq!(kind, "Float64");
-        Some(bytes.chunks(8).map(|b| f64::from_le_bytes(b.try_into().unwrap())).collect())
+    fn floats(&self, section: &str, name: &str) -> Vec<f64> {
+        let (kind, text) = self.array(section, name);
+        let bytes = decode(text);
+        match kind {
+            "Float64" => {
+                bytes.chunks(8).map(|b| f64::from_le_bytes(b.try_into().unwrap())).collect()
+            }
+            "Float32" => {
+                let number = |b: &[u8]| f32::from_le_bytes(b.try_into().unwrap());
+                bytes.chunks(4).map(|b| f64::from(number(b))).collect()
+            }
+            other => panic!("{name} is {other}"),
+        }
     }
-    fn integers(&self, name: &str) -> Vec<u64> {
-        let (kind, bytes) = self.bytes("Cells", name).unwrap();
-        let width = match &kind[..] {
-            "UInt8" => 1,
-            "Int32" | "UInt32" => 4,
-            "Int64" | "UInt64" => 8,
-            other => panic!("{other}"),
-        };
-        let number = |b: &[u8]| b.iter().rev().fold(0, |n, &byte| n << 8 | u64::from(byte));
-        bytes.chunks(width).map(number).collect()
+    fn integers(&self, section: &str, name: &str) -> Vec<usize> {
+        let (kind, text) = self.array(section, name);
+        integers(&decode(text), if kind == "UInt8" { 1 } else { 8 })
     }
-    fn count(&self, section: &str) -> usize {
-        self.section(section).matches("<DataArray").count()
+    fn text(&self, name: &str) -> String {
+        let (kind, codes) = self.array("FieldData", name);
+        assert_eq!(kind, "String");
+        let mut bytes: Vec<u8> = codes.split(' ').map(|code| code.parse().unwrap()).collect();
+        assert_eq!(bytes.pop(), Some(0));
+        String::from_utf8(bytes).unwrap()
+    }
+    /// The points of each cell.
+    fn cells(&self) -> Vec<Vec<usize>> {
+        let corners = self.integers("Cells", "connectivity");
+        let mut start = 0;
+        let of = |end: usize| corners[std::mem::replace(&mut start, end)..end].to_vec();
+        self.integers("Cells", "offsets").into_iter().map(of).collect()
+    }
+    fn points(&self) -> Vec<Point<f64, 3>> {
+        self.floats("Points", "Points").chunks(3).map(Point::from_column_slice).collect()
+    }
+    /// The measure of a cell by its vertices: length, area or volume, signed except that of a facet.
+    fn measure(&self, points: &[Point<f64, 3>], cell: &[usize], dimension: usize) -> f64 {
+        let edge = |i: usize| points[cell[i]] - points[cell[0]];
+        match dimension {
+            0 => 1.0,
+            1 => edge(1).norm(),
+            2 => edge(1).cross(&edge(2)).norm() / 2.0,
+            _ => edge(1).cross(&edge(2)).dot(&edge(3)) / 6.0,
+        }
     }
 }
 
@@ -73,82 +129,266 @@ fn cube<const D: usize>(lower: f64, upper: f64) -> BoxDomain<D> {
     BoxDomain::dirichlet(Point::repeat(lower), Point::repeat(upper))
 }
 
-/// Writes a field that jumps from cell to cell on a box, and reads it back.
-fn round_trip<T: Real, const D: usize>(counts: [usize; D], cell_type: u64) {
-    let domain = cube::<D>(-1.0, 0.5);
-    let mesh = Mesh::<T, D>::kuhn_box(&domain, counts).unwrap();
-    let (cells, corners) = (mesh.n_cells(), D + 1);
-    let u: Vec<f64> = (0..cells * corners).map(|i| (i as f64).sqrt() - 1e-17).collect();
-    let obstacle: Vec<f64> = u.iter().map(|u| -u / 3.0).collect();
+/// Writes a field that jumps from cell to cell on a box, and reads it back without a digit lost.
+fn round_trip<T: Real, const D: usize>(counts: [usize; D], degree: usize, cell_type: usize) {
+    let mesh = Mesh::<T, D>::kuhn_box(&cube::<D>(-1.0, 0.5), counts).unwrap();
+    let cells = mesh.n_cells();
+    let n = [D + 1, (D + 1) * (D + 2) / 2][degree - 1];
+    let u: Vec<f64> = (0..cells * n).map(|i| (i as f64).sqrt() - 1e-17).collect();
     let multiplier: Vec<f64> = (0..cells).map(|c| 1.0 / (1.0 + c as f64)).collect();
-    let contact: Vec<f64> = (0..cells).map(|c| (c % 2) as f64).collect();
-    let fields = CellFields {
-        u: &u,
-        obstacle: Some(&obstacle),
-        multiplier: Some(&multiplier),
-        contact: &contact,
-    };
-    let path = path(&format!("{D}d-{}", T::NAME));
-    write_vtu(&path, &mesh, &fields).unwrap();
+    let scratch = Scratch::new(&format!("vtu-{D}-{degree}-{}", T::NAME));
+    std::fs::create_dir_all(&scratch.0).unwrap();
+    let path = scratch.0.join("fields.vtu");
+    let file = VtuFile::new(&mesh, &u).function("sum", &|x| x.sum()).scalar(FieldScalar::Double);
+    file.on_cells("multiplier", &multiplier).text("scheme", "a<b").write(&path).unwrap();
 
-    let piece = read(&path);
-    let points = piece.floats("Points", "").unwrap();
-    let expected: Vec<f64> = mesh
-        .cells()
-        .iter()
-        .flat_map(|&v| {
-            let x = mesh.vertices()[v as usize];
-            [0, 1, 2].map(|k| if k < D { x[k].to_f64() } else { 0.0 })
-        })
-        .collect();
-    assert_eq!(points, expected);
-    let (connectivity, offsets) = (piece.integers("connectivity"), piece.integers("offsets"));
-    for (c, cell) in connectivity.chunks(corners).enumerate() {
-        let mut sorted = cell.to_vec();
+    let grid = read(&path);
+    let points = grid.points();
+    assert_eq!(points.len(), cells * n, "every cell has points of its own");
+    assert_eq!(grid.floats("PointData", "u"), u);
+    let sums = grid.floats("PointData", "sum");
+    assert!(sums.iter().zip(&points).all(|(sum, x)| (sum - x.sum()).abs() < 1e-15));
+    assert_eq!(grid.floats("CellData", "multiplier"), multiplier);
+    assert_eq!(grid.text("scheme"), "a<b");
+    assert_eq!(grid.integers("Cells", "types"), vec![cell_type; cells]);
+    assert_eq!(grid.integers("CellData", "dimension"), vec![D; cells]);
+    let of_edges = [vec![[0, 1]], vec![[0, 1], [1, 2], [0, 2]]];
+    let mut of_edges = of_edges[usize::from(D > 1)].clone();
+    if D == 3 {
+        of_edges.extend([[0, 3], [1, 3], [2, 3]]);
+    }
+    let mut total = 0.0;
+    for (c, cell) in grid.cells().iter().enumerate() {
+        let mut sorted = cell.clone();
         sorted.sort_unstable();
-        let own: Vec<_> = (c * corners..(c + 1) * corners).map(|i| i as u64).collect();
-        assert_eq!(sorted, own, "every cell has points of its own");
-        let x = |i: usize| Point::<f64, 3>::from_column_slice(&points[3 * cell[i] as usize..][..3]);
-        let edge = |i: usize| x(i) - x(0);
-        let volume = match D {
-            1 => edge(1).x,
-            2 => edge(1).cross(&edge(2)).z,
-            _ => edge(1).cross(&edge(2)).dot(&edge(3)),
-        };
-        assert!(volume > 0.0, "cell {c} is inside out");
+        assert_eq!(sorted, (c * n..(c + 1) * n).collect::<Vec<_>>());
+        let measure = grid.measure(&points, cell, D);
+        assert!(measure > 0.0, "cell {c} is inside out");
+        total += measure;
+        if degree == 2 {
+            for (k, [i, j]) in of_edges.iter().enumerate() {
+                let middle = (points[cell[*i]] + points[cell[*j]]) / 2.0;
+                assert!((points[cell[D + 1 + k]] - middle).norm() < 1e-15, "edge {k} of cell {c}");
+            }
+        }
+        for (k, &v) in mesh.cell(c).iter().enumerate() {
+            let x = mesh.vertices()[v as usize];
+            assert!((0..D).all(|i| points[c * n + k][i] == x[i].to_f64()));
+        }
     }
-    assert_eq!(offsets, (1..=cells).map(|c| (c * corners) as u64).collect::<Vec<_>>());
-    assert_eq!(piece.integers("types"), vec![cell_type; cells]);
-    assert_eq!(piece.floats("PointData", "u").unwrap(), u);
-    assert_eq!(piece.floats("PointData", "obstacle").unwrap(), obstacle);
-    assert_eq!(piece.floats("CellData", "multiplier").unwrap(), multiplier);
-    assert_eq!(piece.floats("CellData", "contact").unwrap(), contact);
-    if std::env::var_os("UNILATERAL_KEEP").is_none() {
-        std::fs::remove_file(&path).unwrap();
-    }
+    assert!((total - 1.5_f64.powi(D as i32)).abs() < 1e-12);
 }
 
 #[test]
-fn fields_read_back_in_every_dimension() {
-    round_trip::<f64, 1>([7], 3);
-    round_trip::<f64, 2>([3, 2], 5);
-    round_trip::<f64, 3>([2, 1, 2], 10);
-    round_trip::<f32, 2>([3, 3], 5);
+fn fields_read_back_in_every_dimension_and_degree() {
+    round_trip::<f64, 1>([7], 1, 3);
+    round_trip::<f64, 2>([3, 2], 1, 5);
+    round_trip::<f64, 3>([2, 1, 2], 1, 10);
+    round_trip::<f32, 2>([3, 3], 1, 5);
+    round_trip::<f64, 1>([7], 2, 21);
+    round_trip::<f64, 2>([3, 2], 2, 22);
+    round_trip::<f64, 3>([2, 1, 2], 2, 24);
+}
+
+/// More than one block of an array.
+#[test]
+fn long_arrays_are_cut_into_blocks() {
+    let mesh = Mesh::<f64, 2>::kuhn_box(&cube::<2>(0.0, 1.0), [128, 128]).unwrap();
+    let u: Vec<f64> = (0..3 * mesh.n_cells()).map(|i| (i as f64).sin()).collect();
+    let scratch = Scratch::new("vtu-blocks");
+    std::fs::create_dir_all(&scratch.0).unwrap();
+    let path = scratch.0.join("fields.vtu");
+    VtuFile::new(&mesh, &u).scalar(FieldScalar::Double).write(&path).unwrap();
+    assert_eq!(read(&path).floats("PointData", "u"), u);
+    // thirty-two bits unless more are asked for
+    VtuFile::new(&mesh, &u).write(&path).unwrap();
+    let rounded: Vec<f64> = u.iter().map(|&x| f64::from(x as f32)).collect();
+    assert_eq!(read(&path).floats("PointData", "u"), rounded);
+    assert_eq!(std::fs::read_dir(&scratch.0).unwrap().count(), 1, "no draft is left");
 }
 
 #[test]
-fn fields_that_are_not_there_are_not_written() {
-    let domain = cube::<2>(0.0, 1.0);
-    let mesh = Mesh::<f64, 2>::kuhn_box(&domain, [1, 1]).unwrap();
-    let path = path("absent");
-    let fields = CellFields { u: &[1.0; 6], obstacle: None, multiplier: None, contact: &[0.0; 2] };
-    write_vtu(&path, &mesh, &fields).unwrap();
-    let piece = read(&path);
-    std::fs::remove_file(&path).unwrap();
-    assert_eq!((piece.count("PointData"), piece.count("CellData")), (1, 1));
+fn fields_of_the_wrong_length_are_refused_by_name() {
+    let mesh = Mesh::<f64, 2>::kuhn_box(&cube::<2>(0.0, 1.0), [1, 1]).unwrap();
+    let scratch = Scratch::new("vtu-refused");
+    std::fs::create_dir_all(&scratch.0).unwrap();
+    let path = scratch.0.join("fields.vtu");
+    let said = |file: VtuFile<'_, f64, 2>| file.write(&path).unwrap_err().to_string();
+    let u = [1.0; 6];
+    let wrong = said(VtuFile::new(&mesh, &u[..5]));
+    assert!(wrong.ends_with("field u has 5 values, the mesh needs 6"), "{wrong}");
+    let wrong = said(VtuFile::new(&mesh, &u).on_cells("contact", &[0.0]));
+    assert!(wrong.ends_with("field contact has 1 values, the mesh needs 2"), "{wrong}");
+    let wrong = said(VtuFile::new(&mesh, &u).facets(&[(0, 1)]).on_facets("gap", &[]));
+    assert!(wrong.ends_with("field gap has 0 values, the mesh needs 1"), "{wrong}");
+    let wrong = said(VtuFile::new(&mesh, &u).facets(&[(2, 0)]));
+    assert!(wrong.ends_with("the mesh has no facet 0 of cell 2"), "{wrong}");
+    assert_eq!(std::fs::read_dir(&scratch.0).unwrap().count(), 0, "nothing is written");
+}
 
-    let short = CellFields { contact: &[0.0], ..fields };
-    let error = write_vtu(&path, &mesh, &short).unwrap_err().to_string();
-    assert!(error.ends_with("field contact has 1 values, the mesh needs 2"), "{error}");
-    assert!(!path.exists(), "nothing is written");
+/// The file of a scheme on a scene, and the sum of the multipliers.
+fn solution<const D: usize>(
+    scene: &Scene<D>,
+    scheme: &dyn AnyScheme<f64, D>,
+    level: usize,
+) -> (Grid, f64) {
+    let scratch =
+        Scratch::new(&format!("vtu-{}", file_name(&format!("{}-{}", scene.name, scheme.name()))));
+    let meshes = Hierarchy::<f64, _>::of_domain(&scene.domain, level).unwrap();
+    let solved = solve(&scene.problem, &meshes, scheme).unwrap();
+    assert!(solved.converged());
+    let path = scratch.0.join("fields.vtu");
+    solved.write_vtu_with(&path, |file| file.scalar(FieldScalar::Double)).unwrap();
+    (read(&path), solved.multiplier().iter().sum())
+}
+
+#[test]
+fn points_are_shared_where_the_space_shares_them() {
+    let scene = scenes::radial::<2>(1.0);
+    let size = |scheme: &dyn AnyScheme<f64, 2>| {
+        let (grid, _) = solution(&scene, scheme, 4);
+        (grid.points().len(), grid.integers("Cells", "types")[0])
+    };
+    // 5 by 5 vertices, 56 edges, 32 cells
+    assert_eq!(size(&ConformingP1), (25, 5));
+    assert_eq!(size(&ConformingP2), (81, 22));
+    assert_eq!(size(&NonconformingP1), (96, 5));
+    assert_eq!(size(&Sipg::default()), (96, 5));
+    let quadratic = size(&*NamedScheme::list(["sipg-p2"]).unwrap()[0].make::<f64, 2>());
+    assert_eq!(quadratic, (192, 22));
+}
+
+/// The solution at points inside a quadratic cell is that of the file.
+#[test]
+fn quadratics_are_written_as_quadratics() {
+    let scene = scenes::radial::<2>(1.0);
+    let meshes = Hierarchy::<f64, _>::of_domain(&scene.domain, 4).unwrap();
+    let solved = solve(&scene.problem, &meshes, &ConformingP2).unwrap();
+    let (grid, _) = solution(&scene, &ConformingP2, 4);
+    let (points, u) = (grid.points(), grid.floats("PointData", "u"));
+    let error = grid.floats("PointData", "error");
+    let exact = scene.problem.exact.as_ref().unwrap();
+    let lambda = [0.2, 0.3, 0.5];
+    for cell in grid.cells() {
+        let x: Point<f64, 3> = (0..3).map(|k| points[cell[k]] * lambda[k]).sum();
+        // the format has the edges (0, 1), (1, 2), (0, 2), the element (0, 1), (0, 2), (1, 2)
+        let own = [0, 1, 2, 3, 5, 4].map(|k| u[cell[k]]);
+        let mut basis = [0.0; 6];
+        <P2 as ReferenceElement<f64, 2>>::values(&lambda, &mut basis);
+        let value: f64 = own.iter().zip(basis).map(|(u, phi)| u * phi).sum();
+        let expected = solved.value_at(&Point::from([x[0], x[1]])).unwrap();
+        assert!((value - expected).abs() < 1e-12);
+    }
+    for (x, (u, error)) in points.iter().zip(u.iter().zip(&error)) {
+        let expected = u - (exact.value)(&Point::from([x[0], x[1]]));
+        assert!((error - expected).abs() < 1e-14);
+    }
+}
+
+/// Whether the solution does not touch on both sides of every facet in contact.
+fn is_broken(scheme: &str) -> bool {
+    scheme.contains("sip")
+}
+
+/// The integral of the pressure over the contact boundary, as a reader of the file computes it, is the
+/// total contact force, here the sum of the multipliers.
+fn integrates<const D: usize>(scene: &Scene<D>, scheme: &dyn AnyScheme<f64, D>, level: usize) {
+    let (grid, force) = solution(scene, scheme, level);
+    let (points, dimensions) = (grid.points(), grid.integers("CellData", "dimension"));
+    let [pressure, gap, contact] =
+        ["pressure", "gap", "contact"].map(|n| grid.floats("CellData", n));
+    let (mut total, mut touching) = (0.0, 0);
+    for (c, cell) in grid.cells().iter().enumerate() {
+        if dimensions[c] == D {
+            assert!(pressure[c].is_nan() && gap[c].is_nan() && contact[c].is_nan());
+            continue;
+        }
+        // quadratic lines would not be integrated
+        assert_eq!((dimensions[c], cell.len()), (D - 1, D));
+        total += pressure[c] * grid.measure(&points, cell, D - 1);
+        if contact[c] == 1.0 {
+            touching += 1;
+            let bound = if is_broken(scheme.name()) { 0.01 } else { 1e-9 };
+            assert!(gap[c].abs() < bound, "{} {}: gap {}", scene.name, scheme.name(), gap[c]);
+        }
+    }
+    assert!(touching > 0 && force > 0.0);
+    let name = (&scene.name, scheme.name());
+    assert!((total - force).abs() < 1e-10 * force, "{name:?}: {total} {force}");
+}
+
+#[test]
+fn the_pressure_integrates_to_the_contact_force() {
+    let names = ["p1", "p2", "cr", "sipg", "wopsip", "wopsip:facet-means", "sipg-p2"];
+    for scheme in NamedScheme::list(names).unwrap() {
+        let mut scene = scenes::signorini_2d();
+        if let Some(set) = scheme.constraint_set() {
+            scene.problem = scene.problem.on(set);
+        }
+        integrates(&scene, &*scheme.make(), 8);
+    }
+    integrates(&scenes::signorini_harmonic::<3>(), &Sipg::default(), 4);
+    integrates(&scenes::signorini_closed_1d(), &ConformingP1, 8);
+}
+
+#[test]
+fn a_study_writes_all_levels_on_request() {
+    let scratch = Scratch::new("vtu-levels");
+    let study = Study::<f64, 2>::new(scenes::radial(1.0)).scheme(Wopsip::default()).levels([4, 8]);
+    study.fields_to(&scratch.0).fields_of_all_levels().run().unwrap();
+    let list = scratch.read("radial-2d-wopsip.pvd");
+    assert!(list.contains("timestep=\"4\"") && list.contains("file=\"radial-2d-wopsip-4.vtu\""));
+    assert!(list.contains("timestep=\"8\"") && list.contains("file=\"radial-2d-wopsip.vtu\""));
+    let grid = read(scratch.0.join("radial-2d-wopsip-4.vtu"));
+    assert_eq!((grid.text("scene"), grid.text("scheme")), ("radial-2d".into(), "wopsip".into()));
+    assert_eq!(grid.array("FieldData", "level").1, "4");
+    assert_eq!(grid.names("PointData"), ["obstacle", "error", "u"]);
+    assert_eq!(grid.names("CellData"), ["multiplier", "contact", "dimension"]);
+}
+
+/// What VTK itself reads: `python3 -m pip install pyvista`, or another Python by
+/// `UNILATERAL_PYTHON=/path/to/python`.
+#[test]
+#[ignore = "needs pyvista"]
+fn needs_pyvista_to_read_files() {
+    let scratch = Scratch::new("vtu-pyvista");
+    let scheme = |name: &str| NamedScheme::list([name]).unwrap()[0];
+    let mut forces = Vec::new();
+    let mut put = |name: &str, scene: &Scene<2>| {
+        let meshes = Hierarchy::<f64, _>::of_domain(&scene.domain, 8).unwrap();
+        let solved = solve(&scene.problem, &meshes, &*scheme(name).make::<f64, 2>()).unwrap();
+        let path: PathBuf = scratch.0.join(format!("{}-{name}.vtu", scene.name));
+        solved
+            .write_vtu_with(&path, |file| file.text("scheme", name).scalar(FieldScalar::Double))
+            .unwrap();
+        forces.push(solved.multiplier().iter().sum::<f64>());
+        path
+    };
+    let scenes = [scenes::signorini_2d(), scenes::radial(1.0)];
+    let mut lines = Vec::new();
+    for scene in &scenes {
+        for name in ["p1", "p2", "sipg-p2"] {
+            lines.push((put(name, scene), scene.problem.gap.is_some(), name));
+        }
+    }
+    let mut script = String::from("import pyvista, numpy as np\n");
+    for ((path, is_contact, name), force) in lines.iter().zip(forces) {
+        let path = path.display();
+        script += &format!("g = pyvista.read({:?})\n", path.to_string());
+        script +=
+            &format!("assert g.field_data['scheme'][0] == {name:?}, g.field_data['scheme']\n");
+        script += "cells = g.extract_cells(g.cell_data['dimension'] == 2)\n";
+        script += "assert cells.compute_cell_sizes()['Area'].min() > 0\n";
+        // the L2 error of files that state the error, by VTK's own quadrature of a linear function
+        script += "assert abs(g['error']).max() < 0.2\n";
+        if *is_contact {
+            script += "b = g.extract_cells(g.cell_data['dimension'] == 1)\n";
+            script += "force = float(b.integrate_data()['pressure'][0])\n";
+            script +=
+                &format!("assert abs(force - {force:?}) < 1e-10 * {force:?}, (force, {force:?})\n");
+        }
+    }
+    let python = std::env::var("UNILATERAL_PYTHON").unwrap_or_else(|_| "python3".to_owned());
+    let output = Command::new(python).args(["-c", &script]).output().unwrap();
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
 }

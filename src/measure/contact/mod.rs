@@ -4,11 +4,13 @@
 //! with different unknowns can be compared.
 
 mod contact_set;
+mod difference;
 mod discrete_contact;
 mod entity;
 mod free_boundary;
 mod multiplier_density;
 
+pub(crate) use difference::contact_difference;
 pub use discrete_contact::DiscreteContact;
 
 use super::errors::ContactErrors;

@@ -37,7 +37,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         solution: &Solution<T>,
     ) -> Result<Option<[f64; 2]>, Error> {
         let mut weights = vec![0.0; self.mesh.vertices().len()];
-        let mut multipliers = self.vertex_multipliers(inequality, solution);
+        let mut multipliers = self.vertex_multipliers(inequality, solution, |_| true);
         // for facets and for cells
         let rules = [D - 1, D].map(|dimension| CutRule::new(dimension, DEGREE));
         for &entity in entities {
@@ -52,15 +52,19 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         Ok(vertices().next().map(|_| [sum, squares.sqrt()]))
     }
 
-    /// Nodal multipliers at vertices: the residual of every constrained unknown in contact, divided
-    /// equally among the vertices around its node.
+    /// Nodal multipliers at vertices: the residual of every constrained unknown in contact that counts,
+    /// divided equally among the vertices around its node.
     pub(crate) fn vertex_multipliers(
         &self,
         inequality: &Inequality<T>,
         solution: &Solution<T>,
+        counts: impl Fn(usize) -> bool,
     ) -> Vec<f64> {
         let mut multipliers = vec![0.0; self.mesh.vertices().len()];
-        for (unknown, multiplier) in nodal_multipliers(inequality, solution) {
+        let counted = nodal_multipliers(inequality, solution)
+            .into_iter()
+            .filter(|&(unknown, _)| counts(unknown));
+        for (unknown, multiplier) in counted {
             let around = inequality.supports[unknown].vertices();
             let share = multiplier / around.len() as f64;
             around.iter().for_each(|&v| multipliers[v as usize] += share);

@@ -30,6 +30,7 @@ use super::render::{Drawing, draw_png, draw_svg};
 use super::style::INK;
 use crate::error::Error;
 use crate::error::write_error;
+use crate::files::replace_text;
 use crate::instances::compiled;
 use crate::measure::Fields;
 use crate::mesh::{Mesh, edge_vertices};
@@ -182,6 +183,15 @@ impl Picture {
         draw_png(self, path).map_err(|why| write_error(path, why))
     }
 
+    /// Writes the picture as an SVG file.
+    ///
+    /// # Errors
+    /// [`Error::Write`], and those of [`Self::to_svg`].
+    pub fn write_svg(&self, path: &Path) -> Result<(), Error> {
+        let svg = self.to_svg()?;
+        replace_text(path, &svg).map(|_| ())
+    }
+
     /// Writes `NAME.png` and `NAME.svg` to a directory, which is made if need be.
     ///
     /// # Errors
@@ -190,7 +200,7 @@ impl Picture {
         fs::create_dir_all(directory).map_err(|e| write_error(directory, e))?;
         let [png, svg] = ["png", "svg"].map(|end| directory.join(format!("{name}.{end}")));
         self.write_png(&png)?;
-        fs::write(&svg, self.to_svg()?).map_err(|e| write_error(&svg, e))?;
+        self.write_svg(&svg)?;
         Ok([png, svg])
     }
 

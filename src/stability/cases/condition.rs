@@ -69,6 +69,7 @@ fn factors(choice: &Choice, exponent: i32, level: usize, sink: Sink<'_>) -> Resu
             .quantity("condition number over that at eta = 1")
             .at_most(2.0)
             .known_to_fail(k == 0 || exponent < 0)
+            .underlying("condition number", here[k])
             .detail(here[k].map_or(String::new(), |c| format!("condition number {c:.3e}")));
         sink(claim.measured(here[k].zip(at_one[k]).map(|(a, b)| a / b)));
     }

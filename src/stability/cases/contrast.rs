@@ -71,6 +71,7 @@ fn aligned(choice: &Choice, level: usize, exponents: &[i32], sink: Sink<'_>) -> 
             claim("error-over-contrast")
                 .quantity("relative energy error over that at contrast 1")
                 .at_most(1.5)
+                .underlying("relative error in the scheme's own norm", error)
                 // below one it is larger than it need be, which harms less
                 .known_to_fail(choice.penalty == Penalty::Unweighted && contrast > 1.0)
                 .measured(quotient(error, at_one)),

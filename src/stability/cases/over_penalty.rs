@@ -48,6 +48,7 @@ fn factor(
         .quantity("H1 error over that of cr")
         .at_most(1.05)
         .known_to_fail(exponent < 0)
+        .underlying("broken H1 error", of(&ours, |r| r.error.h1))
         .detail(figures(&ours));
     sink(error.measured(quotient(of(&ours, |r| r.error.h1), of(&means, |r| r.error.h1))));
     let middle = Choice::new(choice.scheme, Penalty::Eta(100.0));
@@ -58,6 +59,7 @@ fn factor(
         .at_least(1.0 / 1.5)
         .at_most(1.5)
         .known_to_fail(exponent < 0)
+        .underlying("jump part of the error", of(&ours, jump))
         .detail(of(&ours, jump).map_or_else(|| figures(&ours), |j| format!("jump part {j:.2e}")));
     sink(jumps.measured(scaled));
     Ok(())

@@ -55,6 +55,7 @@ fn sweep<T: Real, const D: usize>(
                     .level(level)
                     .at("h", size)
                     .quantity("L2 error over that on twice h")
+                    .underlying("L2 error", of(&row, error))
                     .detail(figures(&row))
                     .at_most(HALVING)
             };

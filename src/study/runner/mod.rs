@@ -13,19 +13,25 @@ use crate::element::Layout;
 use crate::error::Error;
 use crate::inequality::{ActiveSet, InequalitySolver};
 use crate::instances::compiled;
-use crate::mesh::Mesh;
-use crate::nested::{Coarsest, Hierarchy, NestedIteration, Phase};
+use crate::mesh::{BoxDomain, Mesh};
+use crate::nested::{Coarsest, Hierarchy, NestedIteration, Phase, Solved};
+#[cfg(feature = "report")]
+use crate::paraview::FieldScalar;
 use crate::problem::Problem;
 use crate::real::Real;
 use crate::scenes::Scene;
 use crate::scheme::{AnyScheme, NamedScheme};
 use crate::study::compatibility::{check_domain, check_fit, check_scheme};
 #[cfg(feature = "report")]
+use crate::study::fields::FieldFiles;
+#[cfg(feature = "report")]
 use crate::study::journal::Journal;
 use crate::study::memory::{MemoryEstimate, estimate, estimate_without_factors, unknowns_about};
 use crate::study::orders::fill_orders;
+use crate::study::reference::Reference;
 use crate::study::report::{Program, Report};
 use crate::study::row::{Row, RowKey};
+use rows::Measured;
 
 /// Progress of a study.
 #[derive(Debug)]
@@ -60,17 +66,23 @@ pub struct Study<'a, T: Real, const D: usize> {
     entries: Vec<Entry<'a, T, D>>,
     levels: Vec<usize>,
     mesh: Option<Mesh<T, D>>,
+    reference: Option<Reference<'a, T, D>>,
     solvers: Vec<Arc<dyn InequalitySolver<T> + 'a>>,
     quadrature: DataQuadrature,
     repeat: usize,
     #[cfg(feature = "report")]
-    directory: Option<PathBuf>,
+    journal: Option<&'a Journal>,
+    #[cfg(feature = "report")]
+    fields: FieldFiles,
     #[cfg(feature = "report")]
     inequalities: Option<PathBuf>,
-    #[cfg(feature = "report")]
-    journal: Option<&'a Journal>,
+    each_solution: Option<EachSolution<'a, T, D>>,
     observer: Box<dyn Fn(Progress<'_>) + 'a>,
 }
+
+/// Receives a solution with its label and level.
+type EachSolution<'a, T, const D: usize> =
+    Box<dyn Fn(&str, usize, &Solved<'_, T, D>) -> Result<(), Error> + 'a>;
 
 /// A scheme, with its constraint set if that is not the problem's.
 struct Entry<'a, T: Real, const D: usize> {
@@ -109,17 +121,59 @@ impl<'a, T: Real, const D: usize> Study<'a, T, D> {
             entries: Vec::new(),
             levels: Vec::new(),
             mesh: None,
+            reference: None,
             solvers: Vec::new(),
             quadrature: DataQuadrature::default(),
             repeat: 1,
             #[cfg(feature = "report")]
-            directory: None,
+            journal: None,
+            #[cfg(feature = "report")]
+            fields: FieldFiles::default(),
             #[cfg(feature = "report")]
             inequalities: None,
-            #[cfg(feature = "report")]
-            journal: None,
+            each_solution: None,
             observer: Box::new(|_| {}),
         }
+    }
+    /// A study of a problem of one's own on a mesh and its refinements. The data of the problem give the
+    /// boundary its parts ([`Problem::bind_boundary`]).
+    ///
+    /// # Errors
+    /// [`Error::Mesh`] where two data claim one boundary group.
+    pub fn of_problem(name: &str, problem: Problem<D>, mesh: Mesh<T, D>) -> Result<Self, Error> {
+        let mesh = problem.bind_boundary(mesh)?;
+        // the domain of a scene is not used where there is a mesh
+        let domain = BoxDomain::centred(1.0);
+        Ok(Self::new(Scene::new(name, domain, problem)).on_mesh(mesh))
+    }
+    /// Measures all rows against the solution of this scheme on a level, in place of the exact one: errors,
+    /// orders, multiplier and contact set. On a domain the level is a power of two times every other level
+    /// and at least four times the finest; on a mesh it is at least two refinements finer.
+    ///
+    /// ```
+    /// use unilateral::prelude::*;
+    /// # fn main() -> Result<(), Error> {
+    /// let report = Study::<f64, 2>::new(scenes::radial(1.0))
+    ///     .scheme(ConformingP1)
+    ///     .levels([8, 16])
+    ///     .reference(ConformingP2, 64)
+    ///     .run()?;
+    /// assert_eq!(report.rows[1].against.as_deref(), Some("p2 at level 64"));
+    /// assert!(report.rows[1].order.h1 > Some(0.9));
+    /// # Ok(())
+    /// # }
+    /// ```
+    #[must_use]
+    pub fn reference(mut self, scheme: impl AnyScheme<T, D> + 'a, level: usize) -> Self {
+        self.reference = Some(Reference { scheme: Arc::new(scheme), set: None, level });
+        self
+    }
+    /// As [`Study::reference`], with a scheme as users write it.
+    #[must_use]
+    pub fn named_reference(mut self, scheme: &NamedScheme, level: usize) -> Self {
+        let (set, scheme) = (scheme.constraint_set(), scheme.make().into());
+        self.reference = Some(Reference { scheme, set, level });
+        self
     }
     /// Adds a scheme, with the constraint set of the problem.
     #[must_use]
@@ -205,7 +259,31 @@ impl<'a, T: Real, const D: usize> Study<'a, T, D> {
     #[cfg(feature = "report")]
     #[must_use]
     pub fn fields_to(mut self, directory: impl Into<PathBuf>) -> Self {
-        self.directory = Some(directory.into());
+        self.fields.directory = Some(directory.into());
+        self
+    }
+    /// Sets the scalar of coordinates and fields in files; 32 bits otherwise.
+    #[cfg(feature = "report")]
+    #[must_use]
+    pub fn field_scalar(mut self, scalar: FieldScalar) -> Self {
+        self.fields.scalar = scalar;
+        self
+    }
+    /// Writes the fields of every level, and `SCENE-LABEL.pvd`, which lists the files.
+    #[cfg(feature = "report")]
+    #[must_use]
+    pub fn fields_of_all_levels(mut self) -> Self {
+        self.fields.all_levels = true;
+        self
+    }
+    /// Sets a function that receives every solution that has values, with its label and level, before the
+    /// row of the solution is complete. An error ends the study.
+    #[must_use]
+    pub fn each_solution(
+        mut self,
+        f: impl Fn(&str, usize, &Solved<'_, T, D>) -> Result<(), Error> + 'a,
+    ) -> Self {
+        self.each_solution = Some(Box::new(f));
         self
     }
     /// Writes the inequality of every scheme on every level to this directory, each to its folder
@@ -255,6 +333,11 @@ impl<'a, T: Real, const D: usize> Study<'a, T, D> {
         for (entry, problem) in self.entries.iter().zip(self.problems()) {
             check_scheme(&*entry.scheme, problem, self.quadrature)?;
         }
+        if let Some(reference) = &self.reference {
+            let domain = self.mesh.is_none().then_some(&self.scene.domain);
+            reference.check(domain, &self.levels)?;
+            self.coarsest().check(reference.level)?;
+        }
         match &self.mesh {
             Some(mesh) => check_fit(&self.scene, mesh),
             None => check_domain(&self.scene).map(|()| None),
@@ -270,23 +353,24 @@ impl<'a, T: Real, const D: usize> Study<'a, T, D> {
         )(self)
     }
     fn estimate_memory(&self) -> Option<MemoryEstimate> {
-        let level = self.levels.iter().copied().max()?;
-        let cells = self.coarsest().cells(level);
         let obstacle = self.scene.problem.has_obstacle();
         let solvers = self.solvers();
-        let bytes = |layout: Layout| {
+        let bytes = |layout: Layout, cells: f64| {
             let unknowns = unknowns_about(D, layout, cells) as usize;
             match D > 1 && solvers.iter().all(|s| s.uses_coarse_spaces(unknowns)) {
                 true => estimate_without_factors(D, layout, cells, size_of::<T>()),
                 false => estimate(D, layout, cells, obstacle, size_of::<T>()),
             }
         };
-        let of = |scheme: &dyn AnyScheme<T, D>| MemoryEstimate {
-            bytes: bytes(scheme.layout()),
+        let of = |scheme: &dyn AnyScheme<T, D>, level: usize| MemoryEstimate {
+            bytes: bytes(scheme.layout(), self.coarsest().cells(level)),
             scheme: scheme.name().to_owned(),
             level,
         };
-        self.entries.iter().map(|e| of(&*e.scheme)).max_by(|a, b| a.bytes.total_cmp(&b.bytes))
+        let finest = self.levels.iter().copied().max()?;
+        let reference = self.reference.iter().map(|r| of(&*r.scheme, r.level));
+        let runs = self.entries.iter().map(|e| of(&*e.scheme, finest));
+        runs.chain(reference).max_by(|a, b| a.bytes.total_cmp(&b.bytes))
     }
 
     /// Runs every scheme with every solver on every level.
@@ -307,9 +391,19 @@ impl<'a, T: Real, const D: usize> Study<'a, T, D> {
         (self.observer)(Progress::Entered(Phase::Mesh));
         let hierarchies = match kept.iter().all(Option::is_some) {
             true => Vec::new(),
-            false => self.coarsest().build_all(&self.levels)?,
+            false => self.hierarchies()?,
         };
         let problems = self.problems();
+        let reference_problem = self.reference.as_ref().map(|reference| {
+            let set = reference.set.clone().or(self.scene.problem.constraint_set.clone());
+            Problem { constraint_set: set, ..self.scene.problem.clone() }
+        });
+        let reference = match (&self.reference, &reference_problem, hierarchies.first()) {
+            (Some(reference), Some(problem), Some(hierarchy)) => {
+                Some(self.solve_reference(reference, problem, hierarchy)?)
+            }
+            _ => None,
+        };
         let mut by_solver: Vec<Vec<NestedIteration<'_, T, D>>> = self
             .solvers()
             .iter()
@@ -327,7 +421,9 @@ impl<'a, T: Real, const D: usize> Study<'a, T, D> {
                         continue;
                     }
                     (self.observer)(Progress::Started(&self.scene.name, &label, level));
-                    let (row, _) = self.row(nested, (entry, problem), level, failure.as_deref())?;
+                    let (failure, reference) = (failure.as_deref(), reference.as_ref());
+                    let measured = Measured { failure, reference };
+                    let (row, _) = self.row(nested, (entry, problem), level, measured)?;
                     #[cfg(feature = "report")]
                     if let Some(journal) = self.journal {
                         journal.add(&row)?;
@@ -387,7 +483,8 @@ impl<'a, T: Real, const D: usize> Study<'a, T, D> {
         let problem = entry.problem(&self.scene.problem);
         let hierarchy = self.coarsest().build(level)?;
         let mut nested = [self.nested(&hierarchy, &self.solvers()[0])];
-        self.row(&mut nested, (entry, &problem), level, failure.as_deref())
+        let measured = Measured { failure: failure.as_deref(), reference: None };
+        self.row(&mut nested, (entry, &problem), level, measured)
     }
 
     /// The row of the first scheme on the first level for values of its unknowns that another program
@@ -410,11 +507,40 @@ impl<'a, T: Real, const D: usize> Study<'a, T, D> {
         let hierarchy = self.coarsest().build(level)?;
         let nested = NestedIteration::new(&problem, &hierarchy).quadrature(self.quadrature);
         let solved = nested.judge_on(hierarchy.n_meshes() - 1, &*entry.scheme, values)?;
-        let row = Row {
-            solver: "none".to_owned(),
-            ..self.measured(entry, level, &solved, failure.as_deref())?
-        };
-        Ok(row)
+        let measured = Measured { failure: failure.as_deref(), reference: None };
+        let row = self.measured_row(entry, level, &solved, measured)?;
+        Ok(Row { solver: "none".to_owned(), ..row })
+    }
+
+    /// The meshes of all levels: in one hierarchy with those of a reference.
+    fn hierarchies(&self) -> Result<Vec<Hierarchy<T, D>>, Error> {
+        match &self.reference {
+            None => self.coarsest().build_all(&self.levels),
+            Some(reference) => {
+                let coarsest = self.levels.iter().copied().min().unwrap_or(1);
+                Ok(vec![self.coarsest().build_from(reference.level, coarsest)?])
+            }
+        }
+    }
+
+    /// The reference, and its name in rows.
+    fn solve_reference<'h>(
+        &'h self,
+        reference: &Reference<'_, T, D>,
+        problem: &'h Problem<D>,
+        hierarchy: &'h Hierarchy<T, D>,
+    ) -> Result<(Solved<'h, T, D>, String), Error> {
+        let name = reference.name(self.scene.problem.constraint_set());
+        (self.observer)(Progress::Started(&self.scene.name, &name, reference.level));
+        let mut nested = NestedIteration::new(problem, hierarchy)
+            .shared_solver(self.solvers()[0].clone())
+            .quadrature(self.quadrature);
+        let solved = nested.solve(&*reference.scheme)?;
+        if !solved.converged() {
+            let why = solved.outcome().message().to_owned();
+            return Err(Error::NoReference { reference: name, why });
+        }
+        Ok((solved, name))
     }
 
     /// From which the meshes of all levels are refined.

@@ -5,8 +5,6 @@ use crate::constraint::ConstraintSet;
 use crate::error::Error;
 #[cfg(feature = "report")]
 use crate::exchange::write_inequality;
-#[cfg(feature = "report")]
-use crate::files::replace;
 use crate::inequality::Outcome;
 use crate::nested::{NestedIteration, Phase, Solved};
 use crate::problem::Problem;
@@ -26,7 +24,7 @@ impl<T: Real, const D: usize> Study<'_, T, D> {
         nested: &mut [NestedIteration<'p, T, D>],
         (entry, problem): (&Entry<'_, T, D>, &'p Problem<D>),
         level: usize,
-        failure: Option<&str>,
+        measured: Measured<'_, 'p, T, D>,
     ) -> Result<(Row, f64), Error> {
         let mut on_level = nested.iter_mut().filter_map(|n| Some((n.position(level)?, n)));
         let Some((position, nested)) = on_level.next() else {
@@ -52,57 +50,46 @@ impl<T: Real, const D: usize> Study<'_, T, D> {
                     mesh_size: mesh.mesh_size(),
                     ..Row::new(&self.scene.name, D, scheme.name(), level, Outcome::Malformed)
                 };
-                let named = self.named(entry, problem, without_solution, failure);
+                let named = self.named(entry, problem, without_solution, measured.failure);
                 return Ok((row(named).with_error(error)?, 0.0));
             }
         };
+        let label = scheme.label_on(problem.constraint_set());
         #[cfg(feature = "report")]
-        self.write_files(&solved, &scheme.label_on(problem.constraint_set()), solver, level)?;
-        (self.observer)(Progress::Entered(Phase::Measures));
-        Ok((row(self.measured(entry, level, &solved, failure)?), solved.start_seconds))
-    }
-
-    /// Writes the files that are asked for of one run.
-    #[cfg(feature = "report")]
-    fn write_files(
-        &self,
-        solved: &Solved<'_, T, D>,
-        label: &str,
-        solver: &str,
-        level: usize,
-    ) -> Result<(), Error> {
-        let name = format!("{}-{label}", self.scene.name);
-        if let Some(directory) = &self.inequalities {
-            let folder = directory.join(file_name(&format!("{name}-{level}")));
-            write_inequality(folder, solved.inequality(), solved.mesh())?;
-        }
-        if let Some(directory) = &self.directory
-            && solved.has_iterate()
-            && self.levels.iter().max() == Some(&level)
         {
-            let solver = if self.solvers.len() > 1 { format!("-{solver}") } else { String::new() };
-            let path = directory.join(file_name(&(name + &solver)) + ".vtu");
-            replace(&path, |draft| solved.write_vtu(draft))?;
+            let with_solver = format!("{label}-{solver}");
+            let name = if self.solvers.len() > 1 { &with_solver } else { &label };
+            self.fields.write((&self.scene.name, name), level, &self.levels, &solved)?;
+            if let Some(directory) = &self.inequalities {
+                let name = format!("{}-{label}-{level}", self.scene.name);
+                let folder = directory.join(file_name(&name));
+                write_inequality(folder, solved.inequality(), solved.mesh())?;
+            }
         }
-        Ok(())
+        if let Some(f) = self.each_solution.as_ref().filter(|_| solved.has_iterate()) {
+            f(&label, level, &solved)?;
+        }
+        (self.observer)(Progress::Entered(Phase::Measures));
+        Ok((row(self.measured_row(entry, level, &solved, measured)?), solved.start_seconds))
     }
 
     /// The row of a solution with its errors and totals, without solver and memory.
-    pub(super) fn measured(
+    pub(super) fn measured_row<'p>(
         &self,
         entry: &Entry<'_, T, D>,
         level: usize,
-        solved: &Solved<'_, T, D>,
-        failure: Option<&str>,
+        solved: &Solved<'p, T, D>,
+        measured: Measured<'_, 'p, T, D>,
     ) -> Result<Row, Error> {
         let row = Row::of(&self.scene.name, entry.scheme.name(), level, solved);
-        let mut row = self.named(entry, solved.discretisation().space.problem, row, failure);
-        if let Some(at) = failure {
+        let problem = solved.discretisation().problem();
+        let mut row = self.named(entry, problem, row, measured.failure);
+        if let Some(at) = measured.failure.filter(|_| measured.reference.is_none()) {
             row.warnings.push(format!(
                 "the scene's solution breaks the contact condition of this mesh at {at}: no errors"
             ));
         }
-        match measure(&mut row, solved, failure.is_none()) {
+        match measured.measure(&mut row, solved) {
             Ok(()) => Ok(row),
             Err(error) => row.with_error(error),
         }
@@ -141,15 +128,27 @@ impl<T: Real, const D: usize> Study<'_, T, D> {
     }
 }
 
-/// Fills in energy and errors.
-fn measure<T: Real, const D: usize>(
-    row: &mut Row,
-    solved: &Solved<'_, T, D>,
-    has_exact: bool,
-) -> Result<(), Error> {
-    row.energy = solved.energy()?;
-    if has_exact {
-        (row.error, row.contact) = (solved.errors()?, solved.contact_errors()?);
+/// Against what rows are measured.
+#[derive(Clone, Copy)]
+pub(super) struct Measured<'m, 'p, T: Real, const D: usize> {
+    /// Where the exact solution breaks the contact condition of the mesh.
+    pub failure: Option<&'m str>,
+    /// A solution in place of the exact one, and its name.
+    pub reference: Option<&'m (Solved<'p, T, D>, String)>,
+}
+
+impl<T: Real, const D: usize> Measured<'_, '_, T, D> {
+    /// Fills in energy and errors.
+    fn measure(&self, row: &mut Row, solved: &Solved<'_, T, D>) -> Result<(), Error> {
+        row.energy = solved.energy()?;
+        if let Some((reference, name)) = self.reference {
+            row.error = solved.difference(reference)?;
+            row.contact = solved.contact_difference(reference)?;
+            row.against = Some(name.clone());
+        } else if self.failure.is_none() && solved.discretisation().problem().exact.is_some() {
+            (row.error, row.contact) = (solved.errors()?, solved.contact_errors()?);
+            row.against = Some("exact".to_owned());
+        }
+        Ok(())
     }
-    Ok(())
 }

@@ -5,6 +5,8 @@ use std::process::Command;
 use super::synthetic::{measured, synthetic};
 use crate::scratch::Scratch;
 use unilateral::inequality::Outcome;
+use unilateral::output::LATEX_PACKAGES;
+use unilateral::stability::{Effort, Stability};
 use unilateral::work_precision::{Failure, changes};
 
 /// Cells of a line without quoted commas.
@@ -69,52 +71,84 @@ fn latex_tables_have_as_many_cells_as_columns_and_nothing_unescaped() {
     let mut report = synthetic();
     let case = report.rows[0].case();
     report.refused.push(Failure::new(case, "odd_reason & 100%"));
-    let text = report.to_latex();
-    let tables: Vec<&str> = text.split("\\begin{tabular}").skip(1).collect();
+    let files = report.to_latex();
+    let names: Vec<&str> = files.iter().map(|(name, _)| &name[..]).collect();
+    let scene = |what: &str| format!("table-radial-2d-{what}.tex");
+    assert_eq!(names[0], "report.tex");
+    for what in ["runs", "phases-of-the-fastest-run", "time-to-reach-an-error-in-l2"] {
+        assert!(names.contains(&&*scene(what)), "{names:?}");
+    }
+    let summary = &files[0].1;
+    assert!(!summary.contains(": runs") && summary.contains("longtable"), "{summary}");
+    let all: String = files[1..].iter().map(|(_, text)| &text[..]).collect();
+    let tables: Vec<&str> = all.split("\\begin{longtable}{").skip(1).collect();
     assert_eq!(tables.len(), 5);
     for table in tables {
-        let (columns, rest) = table[1..].split_once('}').unwrap();
-        let body = rest.split("\\end{tabular}").next().unwrap();
-        let lines: Vec<&str> = body.lines().filter(|l| l.ends_with("\\\\")).collect();
+        let (columns, rest) = table.split_once("}\n\\caption").unwrap();
+        let columns =
+            columns.matches(['l', 'r', 'p']).count() - 4 * columns.matches("ragged").count();
+        let body = rest.split("\\end{longtable}").next().unwrap();
+        let lines: Vec<&str> = body.lines().filter(|l| l.contains(" & ")).collect();
         assert!(lines.len() > 3);
         for line in lines {
-            assert_eq!(line.matches(" & ").count() + 1, columns.len(), "{line}");
+            assert_eq!(line.matches(" & ").count() + 1, columns, "{line}");
+            assert!(line.ends_with("\\\\"), "{line}");
         }
-        for rule in ["\\toprule", "\\midrule", "\\bottomrule"] {
-            assert_eq!(body.matches(rule).count(), 1);
-        }
+        let count = |rule: &str| body.matches(rule).count();
+        assert_eq!((count("\\toprule"), count("\\label{tab:"), count("\\bottomrule")), (2, 1, 1));
     }
-    assert!(text.contains("odd\\_reason \\& 100\\%"), "{text}");
-    assert_eq!(text.matches("\\begin{table}").count(), text.matches("\\end{table}").count());
+    assert!(all.contains("odd\\_reason \\& 100\\%") && all.contains("\\num{1.02e-3}"), "{all}");
 }
 
 #[test]
 #[ignore = "needs pdflatex"]
 fn needs_pdflatex_to_compile_latex() {
-    let scratch = Scratch::new("latex");
-    std::fs::create_dir_all(&scratch.0).unwrap();
-    // as wide as tables get: all errors, and a scheme told apart by where its bounds are
+    // as wide as tables get: all errors, and schemes told apart by their choices
     let mut report = synthetic();
     for m in &mut report.rows {
-        m.row.error.energy = Some(1.23e-4);
+        m.row.error.broken_energy = Some(1.23e-4);
         m.row.unknowns = Some(123_456);
     }
     let mut other = report.rows.clone();
-    other.iter_mut().for_each(|m| m.row.label += ":facet-means");
+    other.iter_mut().for_each(|m| m.row.label += ":facet-means@factor=10,weight=anisotropic");
     report.rows.extend(other);
+    let case = report.rows[0].case();
+    report.refused.push(Failure::new(case, "not run: would need about 12.5 GB of memory"));
+    let stability = Stability::new(Effort::Trial).run().unwrap();
+    let mut rows = crate::rows::rows();
+    rows[3].label += ":facet-means@factor=10,weight=anisotropic";
+    rows[5].status = Outcome::Stalled;
+    let scratch = Scratch::new("latex");
+    crate::rows::report(rows).write(&scratch.0).unwrap();
+    let comparison = scratch.read("report.tex");
+    let summaries =
+        [&report.to_latex()[0].1, &stability.to_latex()[0].1, &comparison].map(Clone::clone);
+    let alone = report.to_latex().into_iter().chain(stability.to_latex());
+    let texts = summaries
+        .into_iter()
+        .chain(alone.filter(|(name, _)| name.starts_with("table-")).map(|(_, text)| text));
     let document = format!(
-        "\\documentclass{{article}}\n\\usepackage{{booktabs}}\n\\begin{{document}}\n{}\\end{{document}}\n",
-        report.to_latex()
+        "\\documentclass{{article}}\n{LATEX_PACKAGES}\n\\begin{{document}}\n{}\\end{{document}}\n",
+        texts.collect::<Vec<_>>().join("\\clearpage\n")
     );
-    std::fs::write(scratch.0.join("report.tex"), document).unwrap();
-    let output = Command::new("pdflatex")
-        .args(["-interaction=nonstopmode", "-halt-on-error", "report.tex"])
-        .current_dir(&scratch.0)
-        .output()
-        .unwrap();
-    let log = String::from_utf8_lossy(&output.stdout);
-    assert!(output.status.success(), "{log}");
-    assert!(!log.contains("Overfull"), "wider than the text:\n{log}");
+    std::fs::write(scratch.0.join("all.tex"), document).unwrap();
+    let mut log = String::new();
+    // the widths of a longtable are known in the second run
+    for _ in 0..2 {
+        let output = Command::new("pdflatex")
+            .args(["-interaction=nonstopmode", "-halt-on-error", "all.tex"])
+            .current_dir(&scratch.0)
+            .output()
+            .unwrap();
+        log = String::from_utf8_lossy(&output.stdout).into_owned();
+        assert!(output.status.success(), "{log}");
+    }
+    let points = |line: &str| -> f64 {
+        line.split('(').nth(1).unwrap().split("pt").next().unwrap().parse().unwrap()
+    };
+    let overfull: Vec<&str> =
+        log.lines().filter(|l| l.starts_with("Overfull") && points(l) > 3.0).collect();
+    assert!(overfull.is_empty(), "wider or higher than the text: {overfull:#?}\n{log}");
 }
 
 #[test]
@@ -160,14 +194,22 @@ fn failures_are_listed_and_drawn() {
     assert!(report.to_text().contains("failed: p1, level 32: cycling"));
     let scratch = Scratch::new("drawn");
     let written = report.write(&scratch.0).unwrap();
-    assert_eq!(written.len(), 6 + 2 * 3);
+    let tables = report.tables().len();
+    assert_eq!(written.len(), 6 + tables + 2 * 3);
     for plot in ["time", "unknowns", "memory"] {
         let text = scratch.read(&format!("radial-2d-{plot}.svg"));
         assert!(text.contains("did not converge"), "{plot}");
         let png = std::fs::read(scratch.0.join(format!("radial-2d-{plot}.png"))).unwrap();
         assert_eq!(png[1..4], *b"PNG");
     }
-    assert!(scratch.read("radial-2d-memory.svg").contains("peak memory in MB"));
+    let memory = scratch.read("radial-2d-memory.svg");
+    assert!(memory.contains("peak memory above that of an empty run in MB"));
+    // a page comes with the last round
+    assert!(!scratch.0.join("report.html").exists());
+    report.provenance.complete = true;
+    report.write(&scratch.0).unwrap();
+    let page = scratch.read("report.html");
+    assert!(page.contains("<g class=\"s2\">") && page.contains("<tr class=\"s2\">"));
     // nothing is left of what was on its way
     let hidden = std::fs::read_dir(&scratch.0).unwrap();
     let is_hidden = |e: std::fs::DirEntry| e.file_name().to_string_lossy().starts_with('.');

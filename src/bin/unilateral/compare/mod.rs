@@ -5,32 +5,31 @@
 
 mod interrupt;
 mod options;
+mod prepare;
 mod watcher;
 
 use std::fs::{self, OpenOptions};
 use std::panic::{AssertUnwindSafe, catch_unwind};
-use std::path::Path;
 
 use interrupt::Interrupt;
 pub use options::{Options, list};
 use options::{check_numbers, choose, choose_schemes};
+use prepare::{Run, prepare};
 use watcher::Watcher;
 
 use crate::judge::write_requests;
 use crate::shared::{
-    ORDER_TOLERANCE, Request, cannot_write, complain, each_once, print, print_to, read,
-    use_threads, write,
+    ORDER_TOLERANCE, Request, cannot_write, complain, print, print_to, read, use_threads, write,
 };
 
-use unilateral::error::Error;
-use unilateral::inequality::{SOLVERS, SolverOptions, solver_by_name};
-use unilateral::linear::LinearMethod;
-use unilateral::mesh::{Mesh, gmsh};
+use unilateral::inequality::SOLVERS;
+use unilateral::mesh::gmsh;
+use unilateral::problem_file::{self, AnyOwnProblem};
 use unilateral::real::Real;
-use unilateral::scenes::{self, AcceptedParameters, AnyScene, Parameters, Scene};
+use unilateral::scenes::{self, AcceptedParameters, AnyScene, Parameters};
 use unilateral::scheme::NamedScheme;
 use unilateral::study::orders_table;
-use unilateral::study::{Journal, Program, Report, Row, RowKey, Study, available_memory_bytes};
+use unilateral::study::{Journal, Program, Report, Row, RowKey};
 
 /// Whether every row converged.
 pub fn run(options: &Options) -> Request<bool> {
@@ -49,7 +48,7 @@ pub fn run(options: &Options) -> Request<bool> {
 }
 
 /// The program, with all that its rows depend on and do not say.
-fn program<T: Real>(options: &Options, mesh: Option<&[u8]>) -> Program {
+fn program<T: Real>(options: &Options, files: &[(&str, &[u8])]) -> Program {
     let threads = rayon::current_num_threads();
     let mut program = Program::new("compare", T::NAME, threads, options.repeat);
     for (name, value) in
@@ -62,11 +61,17 @@ fn program<T: Real>(options: &Options, mesh: Option<&[u8]>) -> Program {
     if let Some(linear) = &options.linear {
         program = program.with_request("linear", linear);
     }
-    if let Some(bytes) = mesh {
+    if let Some((scheme, level)) = &options.reference {
+        program = program.with_request("reference", format!("{scheme} at level {level}"));
+    }
+    for (name, part) in &options.boundary {
+        program = program.with_request(&format!("boundary {name}"), part.name());
+    }
+    for (name, bytes) in files {
         // the hash of Fowler, Noll and Vo, which has the same value on every machine
         let step = |hash: u64, &byte: &u8| (hash ^ u64::from(byte)).wrapping_mul(0x100_0000_01b3);
         let hash = bytes.iter().fold(0xcbf2_9ce4_8422_2325, step);
-        program = program.with_request("mesh", format!("{} bytes {hash:016x}", bytes.len()));
+        program = program.with_request(name, format!("{} bytes {hash:016x}", bytes.len()));
     }
     program
 }
@@ -77,6 +82,8 @@ struct Chosen {
     schemes: Vec<NamedScheme>,
     solvers: Vec<String>,
     mesh: Option<(usize, Vec<u8>)>,
+    /// A problem of a file, in place of scenes, and the contents of the file.
+    own: Option<(AnyOwnProblem, Vec<u8>)>,
 }
 
 impl Chosen {
@@ -93,8 +100,18 @@ impl Chosen {
         let schemes = choose_schemes(options)?;
         let solvers: Vec<&str> = SOLVERS.iter().map(|s| s.0).collect();
         let solvers = choose("solver", &options.solvers, &["active-set"], &solvers)?;
-        let scenes = Self::scenes(options, mesh.as_ref().map(|m| m.0))?;
-        Ok(Self { scenes, schemes, solvers, mesh })
+        let own = match &options.problem {
+            None => None,
+            Some(path) => {
+                let own = problem_file::read(path).map_err(|e| e.to_string())?;
+                Some((own, read(path)?))
+            }
+        };
+        let scenes = match own {
+            Some(_) => Vec::new(),
+            None => Self::scenes(options, mesh.as_ref().map(|m| m.0))?,
+        };
+        Ok(Self { scenes, schemes, solvers, mesh, own })
     }
 
     fn scenes(options: &Options, mesh: Option<usize>) -> Request<Vec<AnyScene>> {
@@ -142,22 +159,40 @@ impl Chosen {
     /// Whether every row converged. Nothing runs and nothing is written before everything has been
     /// checked; afterwards no finished row is lost.
     fn run<T: Real>(self, options: &Options, interrupt: &Interrupt) -> Request<bool> {
-        let Self { scenes, schemes, solvers, mesh } = self;
+        let Self { scenes, schemes, solvers, mesh, own } = self;
         let names = (&schemes[..], &solvers[..]);
         let mesh = mesh.as_ref();
         let watcher = Watcher::new(options);
         let mut runs = Vec::new();
         for scene in scenes {
             runs.extend(match scene {
-                AnyScene::One(scene) => prepare::<T, 1>(scene, options, names, mesh, &watcher)?,
-                AnyScene::Two(scene) => prepare::<T, 2>(scene, options, names, mesh, &watcher)?,
-                AnyScene::Three(scene) => prepare::<T, 3>(scene, options, names, mesh, &watcher)?,
+                AnyScene::One(of) => prepare::<T, 1>(of.into(), options, names, mesh, &watcher)?,
+                AnyScene::Two(of) => prepare::<T, 2>(of.into(), options, names, mesh, &watcher)?,
+                AnyScene::Three(of) => prepare::<T, 3>(of.into(), options, names, mesh, &watcher)?,
+            });
+        }
+        let mut files: Vec<(&str, &[u8])> =
+            mesh.iter().map(|(_, bytes)| ("mesh", &bytes[..])).collect();
+        let copies;
+        if let Some((own, text)) = own {
+            copies = (text, own.mesh_bytes().map(<[u8]>::to_vec).unwrap_or_default());
+            files = vec![("problem", &copies.0), ("mesh", &copies.1)];
+            runs.extend(match own {
+                AnyOwnProblem::One(of) => {
+                    prepare::<T, 1>(of.into(), options, names, None, &watcher)?
+                }
+                AnyOwnProblem::Two(of) => {
+                    prepare::<T, 2>(of.into(), options, names, None, &watcher)?
+                }
+                AnyOwnProblem::Three(of) => {
+                    prepare::<T, 3>(of.into(), options, names, None, &watcher)?
+                }
             });
         }
         if runs.is_empty() {
             return Err("no scene fits the mesh; name one to be told why".to_owned());
         }
-        let program = program::<T>(options, mesh.map(|(_, bytes)| &bytes[..]));
+        let program = program::<T>(options, &files);
         let journal = start(options, program.clone(), &runs)?;
         interrupt.watch(journal);
         let all = || -> Request<Vec<Vec<Row>>> {
@@ -191,94 +226,6 @@ fn start(options: &Options, program: Program, runs: &[Run<'_>]) -> Request<&'sta
     let journal = journal.map_err(|e| e.to_string())?;
     // the thread that ends an interrupted run may need the journal as long as the process lives
     Ok(Box::leak(Box::new(journal)))
-}
-
-/// A study that has been checked.
-struct Run<'a> {
-    /// What tells its rows apart.
-    keys: Vec<RowKey>,
-    run: Box<dyn FnOnce(&'a Journal) -> Request<Vec<Row>> + 'a>,
-}
-
-/// Checks a study. Nothing is left of one that does not fit the mesh and was not asked for by name.
-fn prepare<'a, T: Real, const D: usize>(
-    scene: Scene<D>,
-    options: &'a Options,
-    (schemes, solvers): (&[NamedScheme], &[String]),
-    mesh: Option<&(usize, Vec<u8>)>,
-    watcher: &'a Watcher,
-) -> Request<Option<Run<'a>>> {
-    let name = scene.name.clone();
-    let levels = match &options.levels[..] {
-        [] => default_levels(D, mesh.is_some()),
-        some => each_once(some),
-    };
-    let linear = match options.linear.as_deref() {
-        Some("direct") => LinearMethod::Direct,
-        Some(_) => LinearMethod::Iterative,
-        None => LinearMethod::BySize,
-    };
-    let mut study = Study::<T, D>::new(scene)
-        .levels(levels)
-        .repeat(options.repeat)
-        .fields_to(&options.out)
-        .observer(|progress| watcher.tell(&progress));
-    study = schemes.iter().fold(study, Study::named_scheme);
-    if let Some(directory) = &options.dump {
-        study = study.inequalities_to(directory);
-    }
-    for name in solvers {
-        study = solver_by_name(name, &SolverOptions::default().linear(linear))
-            .map(|solver| study.boxed_solver(solver))
-            .ok_or_else(|| format!("there is no solver {name}"))?;
-    }
-    let mut place = format!("scene {name}");
-    if let (Some((_, bytes)), Some(path)) = (mesh, &options.mesh) {
-        place = format!("{}, {place}", path.display());
-        study = study.on_mesh(read_mesh(bytes, path, watcher)?);
-    }
-    match study.check() {
-        Err(Error::UnfitMesh { .. }) if !options.scenes_are_named() => return Ok(None),
-        other => other.map_err(|e| format!("{place}: {e}"))?,
-    }
-    if let (Some(need), Some(free)) = (study.memory_estimate(), available_memory_bytes())
-        && need.bytes > free as f64
-    {
-        return Err(format!(
-            "scene {name}, scheme {}, level {}: would need about {:.1} GB of memory, {:.1} GB are available; choose a lower level",
-            need.scheme,
-            need.level,
-            need.bytes / 1e9,
-            free as f64 / 1e9
-        ));
-    }
-    let keys = study.keys();
-    watcher.expect(D, keys.iter().map(|key| key.level));
-    let run = move |journal| match study.journal(journal).run() {
-        Ok(report) => Ok(report.rows),
-        Err(e) => Err(format!("{place}: {e}")),
-    };
-    Ok(Some(Run { keys, run: Box::new(run) }))
-}
-
-fn read_mesh<T: Real, const D: usize>(
-    bytes: &[u8],
-    path: &Path,
-    watcher: &Watcher,
-) -> Request<Mesh<T, D>> {
-    let read = gmsh::parse::<T, D>(bytes).map_err(|e| format!("{}: {e}", path.display()))?;
-    for warning in &read.warnings {
-        watcher.warn_once(format!("warning: {}: {warning}", path.display()));
-    }
-    Ok(read.mesh)
-}
-
-fn default_levels(dimension: usize, on_mesh: bool) -> Vec<usize> {
-    match dimension {
-        _ if on_mesh => vec![0, 1],
-        3 => vec![2, 4, 8],
-        _ => vec![16, 32, 64, 128, 256],
-    }
 }
 
 /// Makes sure before the work, not after it, that the report can be written.

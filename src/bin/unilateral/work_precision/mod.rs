@@ -137,6 +137,7 @@ where
         .subject(&options.subject)
         .write_to(&options.out)
         .memory(|case| memory_of(case, options))
+        .empty_memory(empty_memory(options))
         .observer(|progress| match progress {
             WorkProgress::Finished => bar.inc(1),
             WorkProgress::Started(case, round) => {
@@ -185,9 +186,8 @@ impl Pick<3> for AnyScene {
 /// The peak of memory of a process that runs this case and nothing else.
 fn memory_of(case: &Case, options: &Options) -> Option<u64> {
     let v = &case.variant;
-    let mut command = Command::new(std::env::current_exe().ok()?);
-    command.args(["work-precision", "--peak", "--scene", &v.scene]);
-    command.args(["--scheme", &v.label]);
+    let mut command = peak_command(options)?;
+    command.args(["--scene", &v.scene, "--scheme", &v.label]);
     command.args(["--linear", &v.linear_asked, "--precision", &v.precision]);
     command.args(["--levels", &case.level.to_string()]);
     if let Some(path) = &options.mesh {
@@ -196,29 +196,53 @@ fn memory_of(case: &Case, options: &Options) -> Option<u64> {
     if let Some(x) = options.contrast {
         command.args(["--contrast", &format!("{x:e}")]);
     }
+    printed_number(command)
+}
+
+/// The peak of memory of a process that runs nothing.
+fn empty_memory(options: &Options) -> Option<u64> {
+    let mut command = peak_command(options)?;
+    command.arg("--empty");
+    printed_number(command)
+}
+
+/// This program, to print a peak of memory.
+fn peak_command(options: &Options) -> Option<Command> {
+    let mut command = Command::new(std::env::current_exe().ok()?);
+    command.args(["work-precision", "--peak"]);
     if let Some(threads) = options.threads() {
         command.env("RAYON_NUM_THREADS", threads.to_string());
     }
+    Some(command)
+}
+
+fn printed_number(mut command: Command) -> Option<u64> {
     let output = command.output().ok()?;
     String::from_utf8(output.stdout).ok()?.trim().parse().ok()
 }
 
-/// Runs one case and prints what memory it took.
+/// Runs one case, or none, and prints what memory it took.
 fn peak(options: &Options) -> Request<bool> {
-    let one = "--peak runs one case";
-    let name = options.scenes().pop().ok_or(one)?;
-    let is_single = options.precisions().first() == Some(&Precision::Single);
-    match scene(options, &name)? {
-        AnyScene::One(s) if is_single => once::<f32, 1>(options, s)?,
-        AnyScene::One(s) => once::<f64, 1>(options, s)?,
-        AnyScene::Two(s) if is_single => once::<f32, 2>(options, s)?,
-        AnyScene::Two(s) => once::<f64, 2>(options, s)?,
-        AnyScene::Three(s) if is_single => once::<f32, 3>(options, s)?,
-        AnyScene::Three(s) => once::<f64, 3>(options, s)?,
+    if !options.empty {
+        run_one(options)?;
     }
     let bytes = peak_memory_bytes().ok_or("the system does not tell")?;
     print(&format!("{bytes}\n"))?;
     Ok(true)
+}
+
+fn run_one(options: &Options) -> Request<()> {
+    let one = "--peak runs one case";
+    let name = options.scenes().pop().ok_or(one)?;
+    let is_single = options.precisions().first() == Some(&Precision::Single);
+    match scene(options, &name)? {
+        AnyScene::One(s) if is_single => once::<f32, 1>(options, s),
+        AnyScene::One(s) => once::<f64, 1>(options, s),
+        AnyScene::Two(s) if is_single => once::<f32, 2>(options, s),
+        AnyScene::Two(s) => once::<f64, 2>(options, s),
+        AnyScene::Three(s) if is_single => once::<f32, 3>(options, s),
+        AnyScene::Three(s) => once::<f64, 3>(options, s),
+    }
 }
 
 fn once<T: Real, const D: usize>(options: &Options, scene: Scene<D>) -> Request<()> {

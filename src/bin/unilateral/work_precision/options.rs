@@ -68,6 +68,9 @@ pub struct Options {
     /// Run one case and print the memory it took
     #[arg(long, hide = true)]
     pub peak: bool,
+    /// With --peak: run no case
+    #[arg(long, hide = true, requires = "peak")]
+    pub empty: bool,
 }
 
 impl Options {

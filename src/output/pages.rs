@@ -1,0 +1,179 @@
+//! The tables and the page of a report.
+
+use std::path::Path;
+
+use serde_json::Value;
+
+use super::csv::flatten;
+use super::html::{HtmlCell, HtmlPage, HtmlTable};
+use super::table::{Cell, Table};
+use crate::study::row::distinct;
+use crate::study::table::{columns, heading, scenes};
+use crate::study::{Program, Report, Row, file_name};
+
+/// Columns of the page that are shown at first, by their keys.
+const SHOWN: [&str; 16] = [
+    "label",
+    "level",
+    "mesh_size",
+    "unknowns",
+    "status",
+    "message",
+    "error.l2",
+    "order.l2",
+    "error.h1",
+    "order.h1",
+    "energy",
+    "contact_measure",
+    "resultant",
+    "active",
+    "iterations.outer",
+    "seconds.total",
+];
+/// Columns of tables in LaTeX: what fits into the width of a page.
+const PRINTED: [&str; 11] = [
+    "scheme", "solver", "n", "unknowns", "L2", "order", "H1", "energy", "contact", "outer", "solve",
+];
+
+impl Report {
+    /// Program and settings in one line.
+    fn heading(&self) -> String {
+        let Program { name, version, threads, precision, repeat, target_cpu, .. } = &self.program;
+        format!(
+            "{name} {version}, {target_cpu}; {threads} threads; {precision}; every time is the least of \
+             {repeat} runs, in seconds"
+        )
+    }
+
+    /// One table for each scene, with the columns of the tables for a terminal.
+    pub fn tables(&self) -> Vec<Table> {
+        scenes(&self.rows).into_iter().map(|(scene, rows)| table(scene, &rows)).collect()
+    }
+
+    /// The tables in Markdown.
+    pub fn to_markdown(&self) -> String {
+        let tables: Vec<String> = self.tables().iter().map(Table::to_markdown).collect();
+        format!("# Comparison\n\n{}\n\n{}", self.heading(), tables.join("\n"))
+    }
+
+    /// The tables in LaTeX, with the columns that fit into the width of a page; see
+    /// [`LATEX_PACKAGES`](super::LATEX_PACKAGES).
+    pub fn latex_tables(&self) -> Vec<Table> {
+        let mut tables = self.tables();
+        for table in &mut tables {
+            let kept: Vec<bool> =
+                table.columns.iter().map(|name| PRINTED.contains(&&**name)).collect();
+            let retain = |cells: &mut Vec<_>| {
+                let mut kept = kept.iter();
+                cells.retain(|_| kept.next() == Some(&true));
+            };
+            table.rows.iter_mut().for_each(retain);
+            let mut kept = kept.iter();
+            table.columns.retain(|_| kept.next() == Some(&true));
+        }
+        tables
+    }
+
+    /// The report as a page: every number of every row, and the pictures `SCENE-LABEL.svg` that are in the
+    /// directory.
+    pub(super) fn page(&self, directory: &Path) -> HtmlPage {
+        let series = distinct(self.rows.iter().map(|r| [&r.label, &r.solver]));
+        let name =
+            |&[label, solver]: &[&String; 2]| match self.rows.iter().all(|r| r.solver == *solver) {
+                true => label.clone(),
+                false => format!("{label}, {solver}"),
+            };
+        let mut keys = Vec::new();
+        let mut tables = Vec::new();
+        for (scene, rows) in scenes(&self.rows) {
+            let mut cells = Vec::new();
+            for row in &rows {
+                let place = series.iter().position(|s| *s == [&row.label, &row.solver]);
+                // plain data with string keys: its serialisation cannot fail
+                let value = serde_json::to_value(row).unwrap_or(Value::Null);
+                let mut found = Vec::new();
+                flatten("", &value, &mut found);
+                cells.push((place, found));
+            }
+            // constant columns are in the title of the table, empty ones nowhere
+            let names = cells.first().map_or(Vec::new(), |(_, row)| {
+                row.iter().map(|(key, _)| key.clone()).enumerate().collect::<Vec<_>>()
+            });
+            let is_there = |at: usize| cells.iter().any(|(_, row)| !row[at].1.is_empty());
+            let names: Vec<(usize, String)> = names
+                .into_iter()
+                .filter(|(at, key)| is_there(*at) && key != "scene" && key != "dimension")
+                .collect();
+            let columns = names.iter().map(|(_, key)| place_of(&mut keys, key)).collect();
+            let rows_of_table = cells.iter().map(|(place, row)| {
+                (*place, names.iter().map(|(at, _)| html_cell(&row[*at].1)).collect())
+            });
+            tables.push(HtmlTable {
+                title: format!("{scene} in {} dimensions", rows[0].dimension),
+                columns,
+                rows: rows_of_table.collect(),
+                remarks: vec![heading(&rows)],
+            });
+        }
+        let mut pictures = Vec::new();
+        for (scene, label) in distinct(self.rows.iter().map(|r| (&r.scene, &r.label))) {
+            let path = directory.join(file_name(&format!("{scene}-{label}")) + ".svg");
+            if let Ok(svg) = std::fs::read_to_string(path) {
+                pictures.push((format!("{label} on {scene}"), svg));
+            }
+        }
+        HtmlPage {
+            title: "Comparison of schemes".to_owned(),
+            paragraphs: vec![self.heading()],
+            columns: keys.iter().map(|key| (key.clone(), SHOWN.contains(&&**key))).collect(),
+            series: series.iter().map(name).collect(),
+            tables,
+            drawings: Vec::new(),
+            pictures,
+        }
+    }
+}
+
+/// The place of a key in a list, to which it is added if need be.
+fn place_of(keys: &mut Vec<String>, key: &str) -> usize {
+    keys.iter().position(|k| k == key).unwrap_or_else(|| {
+        keys.push(key.to_owned());
+        keys.len() - 1
+    })
+}
+
+/// The cell of a value: numbers in four digits, with all digits beside the pointer.
+fn html_cell(text: &str) -> HtmlCell {
+    let is_whole = text.bytes().all(|b| b.is_ascii_digit());
+    let number = text.parse::<f64>().ok();
+    let short = number.filter(|_| !is_whole).map(|x| match x.abs() {
+        0.0 => "0".to_owned(),
+        a if (0.01..1e4).contains(&a) => format!("{x:.4}"),
+        _ => format!("{x:.3e}"),
+    });
+    let full = short.is_some().then(|| text.to_owned());
+    HtmlCell { text: short.unwrap_or_else(|| text.to_owned()), full, is_number: number.is_some() }
+}
+
+/// The table of a scene.
+fn table(scene: &str, rows: &[&Row]) -> Table {
+    let columns = columns(rows);
+    let cell = |text: String, left: bool| match (left, &text[..]) {
+        (true, _) => Cell::Words(text),
+        (_, "-") => Cell::Nothing,
+        _ => Cell::Number(text, None),
+    };
+    let line = |row: &&Row| columns.iter().map(|c| cell((c.cell)(row), c.left)).collect();
+    let failed = rows.iter().filter(|r| !r.converged());
+    let remarks = failed.map(|r| {
+        let why = r.status.message();
+        format!("{}, level {}: did not converge: {}: {why}", r.label, r.level, r.status)
+    });
+    let warnings = rows.iter().flat_map(|r| r.warnings.iter().map(|w| format!("{}: {w}", r.label)));
+    Table {
+        title: scene.to_owned(),
+        columns: columns.iter().map(|c| c.name.to_owned()).collect(),
+        rows: rows.iter().map(line).collect(),
+        remarks: distinct([heading(rows)].into_iter().chain(remarks).chain(warnings)),
+    }
+}

@@ -1,0 +1,53 @@
+//! Numbers over the parameter of a sweep.
+
+use super::figure::Figure;
+use super::series::{Curve, Key, Orders, Panel, Point};
+use crate::study::row::distinct;
+
+/// A number at a place of a sweep.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct SweepPoint {
+    /// Title of the panel.
+    pub title: String,
+    /// Names of parameter and number.
+    pub axes: [String; 2],
+    /// The curve.
+    pub series: String,
+    /// Value of the parameter.
+    pub at: f64,
+    /// The number; none if there is none.
+    pub value: Option<f64>,
+    /// The largest number allowed.
+    pub limit: Option<f64>,
+}
+
+/// Panels of the same title and axes side by side; none without a panel that has a curve. Only positive
+/// numbers are drawn.
+pub(crate) fn sweep_figure(points: &[SweepPoint]) -> Option<Figure> {
+    let series = distinct(points.iter().map(|p| &p.series));
+    let panel = |(title, axes): (&String, &[String; 2])| {
+        let here = || points.iter().filter(|p| (&p.title, &p.axes) == (title, axes));
+        let curves = series.iter().enumerate().map(|(key, name)| {
+            let point = |p: &SweepPoint| Point {
+                x: p.at,
+                y: p.value.filter(|y| *y > 0.0),
+                converged: p.value.is_some(),
+            };
+            let mine = here().filter(|p| p.series == **name).map(point);
+            let mut points: Vec<Point> = mine.filter(|p| p.y.is_some() || !p.converged).collect();
+            points.sort_by(|a, b| a.x.total_cmp(&b.x));
+            Curve { key, points }
+        });
+        let mut panel = Panel::of(title, (&axes[0], &axes[1]), curves, Orders::default());
+        panel.limits = distinct(here().filter_map(|p| p.limit).filter(|limit| *limit > 0.0));
+        panel
+    };
+    let panels: Vec<Panel> = distinct(points.iter().map(|p| (&p.title, &p.axes)))
+        .into_iter()
+        .map(panel)
+        .filter(Panel::has_curves)
+        .collect();
+    let columns = panels.len().clamp(1, 3);
+    let keys = series.iter().map(|name| Key::labelled(name)).collect();
+    (!panels.is_empty()).then_some(Figure { panels, keys, columns })
+}
