@@ -14,6 +14,7 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use interrupt::Interrupt;
 pub use options::{Options, list};
 use options::{check_numbers, choose, choose_schemes};
+pub use prepare::Posed;
 use prepare::{Run, prepare};
 use watcher::Watcher;
 

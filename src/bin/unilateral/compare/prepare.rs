@@ -48,8 +48,8 @@ impl<const D: usize> Posed<D> {
     fn has_mesh(&self) -> bool {
         matches!(self, Self::Own(OwnProblem { geometry: Geometry::File { .. }, .. }))
     }
-    /// A study of it, without schemes.
-    fn study<'a, T: Real>(self, watcher: &Watcher) -> Request<Study<'a, T, D>> {
+    /// A study of it, without schemes; warnings of the mesh file are told.
+    pub fn study<'a, T: Real>(self, warn: &dyn Fn(String)) -> Request<Study<'a, T, D>> {
         let own = match self {
             Self::Scene(scene) => return Ok(Study::new(scene)),
             Self::Own(own) => own,
@@ -58,7 +58,7 @@ impl<const D: usize> Posed<D> {
         match (own.geometry, read) {
             (Geometry::File { path, .. }, Some(read)) => {
                 for warning in &read.warnings {
-                    watcher.warn_once(format!("warning: {}: {warning}", path.display()));
+                    warn(format!("warning: {}: {warning}", path.display()));
                 }
                 Study::of_problem(&own.name, own.problem, read.mesh)
                     .map_err(|e| format!("{}: {e}", path.display()))
@@ -99,7 +99,7 @@ pub fn prepare<'a, T: Real, const D: usize>(
         None => LinearMethod::BySize,
     };
     let mut study = posed
-        .study::<T>(watcher)?
+        .study::<T>(&|warning| watcher.warn_once(warning))?
         .levels(levels)
         .repeat(options.repeat)
         .observer(|progress| watcher.tell(&progress));
