@@ -170,11 +170,13 @@ impl Panel {
             Curve { key, points: runs.iter().filter_map(|r| Point::of(r, x, y)).collect() }
         });
         let of_scene = rows.iter().filter(|r| r.scene == scene);
+        let reference = of_scene.clone().find_map(Row::reference);
+        let against = reference.map_or_else(String::new, |r| format!(", against {r}"));
         let orders = match x {
             Quantity::MeshSize => y.orders(of_scene),
             _ => Orders::default(),
         };
-        Self::of(scene, (x.label(), y.label()), curves, orders)
+        Self::of(&format!("{scene}{against}"), (x.label(), y.label()), curves, orders)
     }
 
     /// A panel of curves, of which those without points are left out.

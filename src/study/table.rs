@@ -106,6 +106,10 @@ fn write_limits(f: &mut impl fmt::Write, rows: &[&Row]) -> fmt::Result {
 pub(crate) fn heading(rows: &[&Row]) -> String {
     let solvers = distinct(rows.iter().map(|r| format!("{}/{}", r.solver, r.linear)));
     let mut text = format!("solver {}", solvers.join(", "));
+    let references = distinct(rows.iter().filter_map(|r| r.reference()));
+    if !references.is_empty() {
+        text += &format!("; errors against {}", references.join(", "));
+    }
     let mut promises: Vec<(String, Vec<String>)> = Vec::new();
     for row in rows {
         let expected = row.expected_order;
