@@ -111,7 +111,7 @@ pub(crate) fn round_step(length: f64) -> f64 {
 /// which all are divided.
 pub(crate) fn labels(low: f64, high: f64, most: usize) -> (Vec<(f64, String)>, i32) {
     let mut step = round_step((high - low) / most as f64);
-    while ((high / step).floor() - (low / step).ceil()) as usize + 1 > most {
+    while (high / step).floor() - (low / step).ceil() + 1.0 > most as f64 {
         step = round_step(2.5 * step);
     }
     let largest = low.abs().max(high.abs());
