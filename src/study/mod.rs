@@ -9,7 +9,6 @@ mod file_name;
 #[cfg(feature = "report")]
 mod journal;
 mod memory;
-mod memory_limits;
 mod orders;
 mod reference;
 pub(crate) mod report;

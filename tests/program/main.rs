@@ -1,6 +1,7 @@
 //! The program `unilateral`, subcommand `compare`: wrong requests and right requests.
 
 mod data;
+mod dump;
 #[cfg(unix)]
 mod interrupt;
 mod limits;

@@ -75,6 +75,9 @@ pub struct Options {
     /// Where the report goes
     #[arg(long, value_name = "DIR", default_value = "target/compare")]
     pub out: PathBuf,
+    /// Write every algebraic inequality to a folder of DIR, for other solvers; `judge` reads their results
+    #[arg(long, value_name = "DIR")]
+    pub dump: Option<PathBuf>,
     /// Keep the rows of this request that the report in DIR has, and run the others
     #[arg(long)]
     pub resume: bool,

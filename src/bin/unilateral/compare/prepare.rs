@@ -116,6 +116,9 @@ pub fn prepare<'a, T: Real, const D: usize>(
         study = study.fields_of_all_levels();
     }
     study = schemes.iter().fold(study, Study::named_scheme);
+    if let Some(directory) = &options.dump {
+        study = study.inequalities_to(directory);
+    }
     for name in solvers {
         study = solver_by_name(name, &SolverOptions::default().linear(linear))
             .map(|solver| study.boxed_solver(solver))

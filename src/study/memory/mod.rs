@@ -1,7 +1,9 @@
 //! Peak memory of the process, available memory, and an estimate of the memory of a run.
 
-use super::memory_limits::{kilobytes, left_to_group, left_to_process};
+mod limits;
+
 use crate::element::Layout;
+use limits::{kilobytes, left_to_group, left_to_process};
 
 /// The largest resident set of this process so far, if the system reports it: on Linux the peak the
 /// kernel keeps (`VmHWM`), elsewhere nothing.
