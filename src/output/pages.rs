@@ -108,7 +108,7 @@ impl Report {
                 (*place, names.iter().map(|(at, _)| html_cell(&row[*at].1)).collect())
             });
             tables.push(HtmlTable {
-                title: format!("{scene} in {} dimensions", rows[0].dimension),
+                title: format!("{scene}, dimension {}", rows[0].dimension),
                 columns,
                 rows: rows_of_table.collect(),
                 remarks: vec![heading(&rows)],

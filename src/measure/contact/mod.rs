@@ -10,6 +10,7 @@ mod free_boundary;
 mod multiplier_density;
 
 pub use discrete_contact::DiscreteContact;
+pub(super) use entity::Place;
 
 use super::errors::ContactErrors;
 use crate::algebra::{Bound, Contact, Inequality};

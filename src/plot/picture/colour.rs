@@ -111,10 +111,11 @@ pub(crate) fn round_step(length: f64) -> f64 {
 /// which all are divided.
 pub(crate) fn labels(low: f64, high: f64, most: usize) -> (Vec<(f64, String)>, i32) {
     let mut step = round_step((high - low) / most as f64);
-    while ((high / step).floor() - (low / step).ceil()) as usize + 1 > most {
+    while ((high / step).floor() - (low / step).ceil()) as usize >= most {
         step = round_step(2.5 * step);
     }
-    let largest = low.abs().max(high.abs());
+    // rounding can leave numbers so small that no power of ten is as small
+    let largest = low.abs().max(high.abs()).max(f64::MIN_POSITIVE);
     let magnitude = largest.log10().floor() as i32;
     let power = if (-2..4).contains(&magnitude) { 0 } else { magnitude };
     let unit = 10.0_f64.powi(power);
