@@ -77,6 +77,36 @@ pub enum Error {
         /// For which elements it is made.
         allowed: &'static str,
     },
+    /// The problem has data for a region or boundary group that the mesh does not have.
+    #[error("the problem has data for {kind} {name}, which the mesh does not have: {known}")]
+    UnknownGroup {
+        /// "region" or "boundary group".
+        kind: &'static str,
+        /// The name.
+        name: String,
+        /// The names that the mesh has.
+        known: String,
+    },
+    /// The data of a boundary group are of another kind than its facets.
+    #[error(
+        "the problem has {given} data on boundary group {group}, whose facets are {part} in the mesh: give the mesh its parts by Problem::bind_boundary"
+    )]
+    UnboundBoundary {
+        /// A name of the group.
+        group: String,
+        /// The part to which the data belong.
+        given: &'static str,
+        /// The part of the facets.
+        part: &'static str,
+    },
+    /// The fine solution against which rows are to be measured was not found.
+    #[error("there is no reference: {reference} did not converge: {why}")]
+    NoReference {
+        /// Scheme and level.
+        reference: String,
+        /// What the outcome says.
+        why: String,
+    },
     /// Mesh and scene disagree.
     #[error("mesh does not fit scene {scene}: {why}")]
     UnfitMesh {
@@ -110,6 +140,28 @@ pub enum Error {
         #[source]
         why: Box<dyn std::error::Error + Send + Sync>,
     },
+    /// A file could not be read.
+    #[error("cannot read {path}: {why}")]
+    Read {
+        /// The file.
+        path: String,
+        /// The cause: an [`std::io::Error`] where the operating system refuses, otherwise what the
+        /// parser says.
+        #[source]
+        why: Box<dyn std::error::Error + Send + Sync>,
+    },
+    /// A report is taken up by a run that asks for something else.
+    #[error(
+        "{path} has the report of another request: it has {found}, this run has {wanted}; repeat that request or choose another directory"
+    )]
+    OtherRequest {
+        /// The directory.
+        path: String,
+        /// What the report has and the run has not.
+        found: String,
+        /// What the run has and the report has not.
+        wanted: String,
+    },
 }
 
 debug_by_display!(Error);
@@ -121,6 +173,15 @@ pub(crate) fn write_error(
     why: impl Into<Box<dyn std::error::Error + Send + Sync>>,
 ) -> Error {
     Error::Write { path: path.display().to_string(), why: why.into() }
+}
+
+/// The error of a file that could not be read: from an [`std::io::Error`] or from a parser.
+#[cfg(feature = "report")]
+pub(crate) fn read_error(
+    path: &std::path::Path,
+    why: impl Into<Box<dyn std::error::Error + Send + Sync>>,
+) -> Error {
+    Error::Read { path: path.display().to_string(), why: why.into() }
 }
 
 #[cfg(test)]

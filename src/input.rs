@@ -44,6 +44,22 @@ pub fn excerpt(text: impl AsRef<[u8]>) -> String {
     text.chars().take(LONGEST).map(shown).chain(rest).collect()
 }
 
+/// A number, NaN for null: reports have null for numbers that are not finite.
+#[cfg(feature = "report")]
+pub(crate) fn number_or_nan<'de, D: serde::Deserializer<'de>>(
+    deserializer: D,
+) -> std::result::Result<f64, D::Error> {
+    serde::Deserialize::deserialize(deserializer).map(|x: Option<f64>| x.unwrap_or(f64::NAN))
+}
+
+/// A number, infinity for null.
+#[cfg(feature = "report")]
+pub(crate) fn number_or_infinity<'de, D: serde::Deserializer<'de>>(
+    deserializer: D,
+) -> std::result::Result<f64, D::Error> {
+    serde::Deserialize::deserialize(deserializer).map(|x: Option<f64>| x.unwrap_or(f64::INFINITY))
+}
+
 #[cfg(test)]
 mod tests {
     use super::excerpt;

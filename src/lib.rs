@@ -14,6 +14,8 @@ pub mod constraint;
 pub mod element;
 pub mod error;
 pub mod facet;
+#[cfg(feature = "report")]
+mod files;
 pub mod guide;
 pub mod inequality;
 pub mod input;
@@ -33,6 +35,8 @@ pub mod paraview;
 pub mod plot;
 pub mod prelude;
 pub mod problem;
+#[cfg(feature = "problem-files")]
+pub mod problem_file;
 pub mod quadrature;
 mod readable_debug;
 pub mod real;

@@ -13,4 +13,6 @@ pub use crate::problem::Problem;
 pub use crate::real::{Point, Real};
 pub use crate::scenes;
 pub use crate::scheme::*;
+#[cfg(feature = "report")]
+pub use crate::study::Journal;
 pub use crate::study::{Report, Study};

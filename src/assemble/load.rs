@@ -10,12 +10,11 @@ use super::local::{traces, view};
 use super::owned_rows::lifted::{LiftTable, Lifting};
 use super::space::metric::Metrics;
 use super::space::tables::BasisAt;
-use super::space::{INWARD, Space, data};
+use super::space::{INWARD, Place, Space, data};
 use crate::error::Error;
 use crate::facet::{FacetForm, Trace};
 use crate::mesh::BoundaryPart;
 use crate::parallel::cells;
-use crate::problem::Datum;
 use crate::quadrature::{OrthonormalPolynomials, Rule, facet_to_cell};
 use crate::real::{Point, Real, point_f64};
 
@@ -35,16 +34,18 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
 
     /// Source and Neumann data tested with each cell's basis functions; empty if neither they nor
     /// weak Dirichlet data are there.
-    fn load_by_cell(&self) -> Result<Vec<T>, Error> {
+    pub fn load_by_cell(&self) -> Result<Vec<T>, Error> {
         let flux = self.problem.has_neumann_data() && self.mesh.has_part(BoundaryPart::Neumann);
-        if self.problem.source.is_none() && !self.has_weak_data() && !flux {
+        let source = &self.data.source;
+        if !source.is_given() && !self.has_weak_data() && !flux {
             return Ok(Vec::new());
         }
         let mut load = vec![T::lit(0.0); self.mesh.n_cells() * self.per_cell()];
-        match &self.problem.source {
+        let constant = source.all().next().and_then(|f| f.constant());
+        match constant.filter(|_| !source.has_names()) {
+            Some(f) => self.add_constant_source(f, &mut load)?,
+            None if source.is_given() => self.add_source(&mut load)?,
             None => {}
-            Some(Datum::Constant(f)) => self.add_constant_source(*f, &mut load)?,
-            Some(f) => self.add_source(f, &mut load)?,
         }
         if flux {
             self.add_neumann(&mut load)?;
@@ -82,10 +83,12 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         })
     }
 
-    fn add_source(&self, f: &Datum<D>, load: &mut [T]) -> Result<(), Error> {
+    fn add_source(&self, load: &mut [T]) -> Result<(), Error> {
         let table = self.cell_table(self.cell_rule.clone());
-        let cut_rule = f.level().map(|level| (level, CutRule::new(D, self.cell_degree)));
+        let has_level = self.data.source.all().any(|f| f.level().is_some());
+        let cut_rule = has_level.then(|| CutRule::new(D, self.cell_degree));
         self.for_each_cell(load, &|cell, out| {
+            let Some(f) = self.data.source.of(self.mesh.region(cell)) else { return Ok(()) };
             let volume = self.mesh.geometry(cell).volume.to_f64();
             let mut add = |x: &Point<f64, D>, weight: f64, basis: &BasisAt<f64>| {
                 count::source(1);
@@ -95,7 +98,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
                 }
                 Ok(())
             };
-            if let Some((level, rule)) = &cut_rule {
+            if let Some((level, rule)) = f.level().zip(cut_rule.as_ref()) {
                 let mut outcome = Ok(());
                 if rule.visit_if_cut(self.mesh, cell, level, &mut |point, x, weight| {
                     if outcome.is_ok() {
@@ -128,7 +131,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
     fn add_neumann(&self, load: &mut [T]) -> Result<(), Error> {
         let n = self.per_cell();
         let middle = [1.0 / (D + 1) as f64; 4];
-        for (cell, local) in self.facets_of(BoundaryPart::Neumann) {
+        for ((cell, local), group) in self.grouped_facets_of(BoundaryPart::Neumann) {
             let geometry = self.mesh.geometry(cell);
             let normal = point_f64(&geometry.normal(local));
             let measure = geometry.facet_measure(local).to_f64();
@@ -136,7 +139,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
             for (point, weight) in self.facet_rule.iter() {
                 count::neumann(1);
                 let x = self.facet_point(point, cell, local);
-                let flux = match (&self.problem.neumann, &self.problem.exact) {
+                let flux = match (self.data.neumann.of(group), &self.problem.exact) {
                     (Some(q), _) => q(&x, &normal),
                     (None, Some(exact)) => {
                         let inward = x + (self.cell_point(&middle, cell) - x) * INWARD;
@@ -158,14 +161,14 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
     pub fn dirichlet_moments(
         &self,
         moments: &FacetMoments<'_>,
-        cell: usize,
-        local: usize,
+        (cell, local): Place,
+        group: usize,
     ) -> Result<Vec<f64>, Error> {
         let mut sums = vec![0.0; moments.polynomials.len()];
         for (point, w) in moments.rule.iter() {
             count::dirichlet(1);
             let x = self.facet_point(point, cell, local);
-            let value = data::finite(self.problem.dirichlet_at(&x), "dirichlet", &x, cell)?;
+            let value = data::finite(self.dirichlet_at(group, &x), "dirichlet", &x, cell)?;
             for (k, sum) in sums.iter_mut().enumerate() {
                 *sum += w * value * moments.polynomials.value(k, point);
             }
@@ -228,12 +231,12 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         let table = self.facet_table(degree);
         let moments = FacetMoments::new(D, degree, &self.facet_rule);
         let mut data = Vec::new();
-        for (cell, local) in self.facets_of(BoundaryPart::Dirichlet) {
+        for ((cell, local), group) in self.grouped_facets_of(BoundaryPart::Dirichlet) {
             let metric = self.metric(cell);
             let here = self.side(cell, local, &metric);
             let facet = view(self.mesh, &here, None);
             let penalty = form.penalty(&facet);
-            let values = self.dirichlet_moments(&moments, cell, local)?;
+            let values = self.dirichlet_moments(&moments, (cell, local), group)?;
             let out = &mut load[cell * n..(cell + 1) * n];
             for (k, (basis, &value)) in table.on(local).iter().zip(&values).enumerate() {
                 let weighted = self.flux_derivatives((cell, local), None, T::lit(1.0), k);

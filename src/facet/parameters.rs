@@ -2,7 +2,7 @@
 
 /// Penalty factors in force.
 #[derive(Clone, Debug, Default, PartialEq)]
-#[cfg_attr(feature = "report", derive(serde::Serialize))]
+#[cfg_attr(feature = "report", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub struct PenaltyParameters {
     /// Interior penalty factor.

@@ -34,21 +34,25 @@ use crate::real::Real;
 /// multiples of data is that of the data. If a number is not finite or sizes do not match, all four
 /// violations are infinite.
 #[derive(Clone, Copy, Debug, PartialEq)]
-#[cfg_attr(feature = "report", derive(serde::Serialize))]
+#[cfg_attr(feature = "report", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub struct Certificate {
     /// Largest violation of a bound or Dirichlet value, divided by `U`.
+    #[cfg_attr(feature = "report", serde(deserialize_with = "crate::input::number_or_infinity"))]
     pub feasibility: f64,
     /// Dual norm, divided by `E`, of the multipliers of active unknowns with the wrong sign. Each
     /// counts at most with the multiplier whose step reaches the opposite bound, where its sign
     /// would be right.
+    #[cfg_attr(feature = "report", serde(deserialize_with = "crate::input::number_or_infinity"))]
     pub multiplier: f64,
     /// `(sum d_i min(gap_i, s_i)^2)^(1/2)` divided by `E`, the sum over all `i` with positive gap
     /// and step.
+    #[cfg_attr(feature = "report", serde(deserialize_with = "crate::input::number_or_infinity"))]
     pub complementarity: f64,
     /// Dual norm of the residual on inactive unknowns divided by `E`; or, if larger, the largest
     /// difference between a jump and the jump that its multiplier determines, divided by `U`
     /// ([`certify_with_jump_multipliers`]).
+    #[cfg_attr(feature = "report", serde(deserialize_with = "crate::input::number_or_infinity"))]
     pub residual: f64,
     /// Bound on the relative algebraic error in the energy norm, if the solver computes one; else
     /// `None`. It rests on an estimate of the smallest eigenvalue of the preconditioned matrix and,

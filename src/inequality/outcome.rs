@@ -5,6 +5,8 @@ use crate::linear::direct::FactorError;
 /// The outcome of a solve. Only [`Outcome::Converged`] is a success; for the values that come with
 /// any other outcome see [`Solution::values`](super::Solution::values).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "report", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "report", serde(rename_all = "kebab-case"))]
 #[non_exhaustive]
 pub enum Outcome {
     /// The complementarity conditions hold to the tolerance.
@@ -114,12 +116,5 @@ impl From<FactorError> for Outcome {
             FactorError::Singular => Outcome::Singular,
             FactorError::OutOfMemory => Outcome::OutOfMemory,
         }
-    }
-}
-
-#[cfg(feature = "report")]
-impl serde::Serialize for Outcome {
-    fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        serializer.serialize_str(self.name())
     }
 }

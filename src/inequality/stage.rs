@@ -4,6 +4,8 @@ use std::fmt;
 
 /// A stage of a solve.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "report", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "report", serde(rename_all = "kebab-case"))]
 #[non_exhaustive]
 pub enum Stage {
     /// The active set method with a preconditioned Krylov method.
@@ -37,7 +39,7 @@ impl fmt::Display for Stage {
 
 /// A stage that ran.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[cfg_attr(feature = "report", derive(serde::Serialize))]
+#[cfg_attr(feature = "report", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub struct StageRun {
     /// The stage.
@@ -46,11 +48,4 @@ pub struct StageRun {
     pub outer: usize,
     /// The number of iterations of its linear solver.
     pub linear: usize,
-}
-
-#[cfg(feature = "report")]
-impl serde::Serialize for Stage {
-    fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        serializer.serialize_str(self.name())
-    }
 }

@@ -2,7 +2,7 @@
 
 /// Errors against the exact solution.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-#[cfg_attr(feature = "report", derive(serde::Serialize))]
+#[cfg_attr(feature = "report", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub struct Errors {
     /// L2 norm.
@@ -21,7 +21,7 @@ pub struct Errors {
 /// Distances of multiplier and contact set from the exact ones, comparable across schemes; see
 /// [`Discretisation::contact_errors`](crate::assemble::Discretisation::contact_errors).
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-#[cfg_attr(feature = "report", derive(serde::Serialize))]
+#[cfg_attr(feature = "report", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub struct ContactErrors {
     /// Error of the multiplier as a density at vertices, in L1.

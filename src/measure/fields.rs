@@ -65,7 +65,12 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
     pub fn fields(&self, inequality: &Inequality<T>, solution: &Solution<T>) -> Fields {
         let u = &solution.values;
         let corner = |&v: &u32| point_f64(&self.mesh.vertices()[v as usize]);
-        let obstacle = self.problem.lower.as_ref().or(self.problem.upper.as_ref());
+        let obstacle = |cell: usize| {
+            let region = self.mesh.region(cell);
+            let psi = self.data.lower.of(region).or(self.data.upper.of(region));
+            let at = move |v| psi.map_or(f64::NAN, |psi| psi.at(&corner(v)));
+            self.mesh.cell(cell).iter().map(at)
+        };
         let share = |cell| {
             let unknowns = (0..self.per_cell()).map(|i| self.dofs.of(cell, i));
             let constrained = unknowns.filter(|&k| inequality.bounds[k].is_inequality());
@@ -76,9 +81,10 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
             }
             touching as f64 / f64::from(all.max(1))
         };
-        let contact_boundary: Vec<(usize, usize)> = match self.problem.gap {
-            Some(_) => self.facets_of(BoundaryPart::Contact).collect(),
-            None => Vec::new(),
+        let n_cells = self.mesh.n_cells();
+        let contact_boundary: Vec<(usize, usize)> = match self.problem.has_gap() {
+            true => self.facets_of(BoundaryPart::Contact).collect(),
+            false => Vec::new(),
         };
         let mut on_boundary = vec![false; self.dofs.size()];
         for &(cell, local) in &contact_boundary {
@@ -95,10 +101,12 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         };
         Fields {
             u: self.vertex_values(u),
-            obstacle: obstacle
-                .map(|psi| self.mesh.cells().iter().map(|v| psi(&corner(v))).collect()),
+            obstacle: self
+                .problem
+                .has_obstacle()
+                .then(|| (0..n_cells).flat_map(obstacle).collect()),
             multiplier: densities(&cells, false),
-            contact: (0..self.mesh.n_cells()).map(share).collect(),
+            contact: (0..n_cells).map(share).collect(),
             midpoints: self.midpoint_values(u),
             discrete_contact: self.discrete_contact(inequality, solution),
             pressure: densities(&facets, true),
@@ -110,12 +118,10 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
     /// The mean of `u - g` over a facet.
     fn mean_gap(&self, (cell, local): (usize, usize), u: &[T]) -> f64 {
         let values = self.local_values(cell, u);
+        let group = self.mesh.boundary_group(cell, local);
+        let gap = group.and_then(|group| self.data.gap.of(group));
         let at = |point: &[f64; 4]| {
-            let gap = self
-                .problem
-                .gap
-                .as_ref()
-                .map_or(0.0, |gap| gap(&self.facet_point(point, cell, local)));
+            let gap = gap.map_or(0.0, |gap| gap.at(&self.facet_point(point, cell, local)));
             self.basis_at(&facet_to_cell(point, local)).value(&values) - gap
         };
         self.facet_rule.iter().map(|(point, weight)| weight * at(point)).sum()

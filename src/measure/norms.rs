@@ -157,11 +157,9 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         let Reference::Exact(exact) = exact else { return None };
         let contact = exact.contact.as_ref().filter(|_| self.problem.has_obstacle());
         let indicator = contact.map(|set| set.indicator.clone());
-        let level = self.problem.source.as_ref().and_then(|f| f.level()).cloned();
-        match (indicator, level) {
-            (Some(a), Some(b)) => Some(Arc::new(move |x| a(x) * b(x))),
-            (indicator, level) => indicator.or(level),
-        }
+        let levels = self.data.source.all().filter_map(|f| f.level()).cloned();
+        let product = |a: Field<D>, b: Field<D>| -> Field<D> { Arc::new(move |x| a(x) * b(x)) };
+        indicator.into_iter().chain(levels).reduce(product)
     }
 
     fn cell_error(
@@ -186,7 +184,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
             let value = data::finite(exact.value(cell, x), "exact solution", x, cell)?;
             let difference = basis.value(&local) - value;
             let square = data::finite(error.norm_squared(), "exact gradient", x, cell)?;
-            let reaction = self.problem.reaction.as_ref().map_or(0.0, |c| c.at(x));
+            let reaction = self.in_region(&self.data.reaction, cell, x).unwrap_or(0.0);
             let alpha = self.alpha_at(cell, x);
             sum.l2 += weight * volume * difference * difference;
             sum.h1 += weight * volume * square;
@@ -263,7 +261,8 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
                         sides.map(|(a, b)| value(a, &mine) - value(b, &theirs)).collect()
                     }
                     Neighbour::Boundary(BoundaryPart::Dirichlet) if !self.pins => {
-                        let data = self.dirichlet_moments(&moments, cell, local)?;
+                        let group = self.mesh.boundary_group(cell, local).unwrap_or(0);
+                        let data = self.dirichlet_moments(&moments, (cell, local), group)?;
                         let sides = table.on(local).iter().zip(data);
                         sides.map(|(basis, g)| value(basis, &mine) - g).collect()
                     }

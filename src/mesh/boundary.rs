@@ -12,6 +12,9 @@ pub enum BoundaryPart {
 }
 
 impl BoundaryPart {
+    /// The parts.
+    pub const ALL: [Self; 3] = [Self::Dirichlet, Self::Neumann, Self::Contact];
+
     /// The name of the physical group in a mesh file.
     pub fn name(self) -> &'static str {
         match self {
@@ -22,17 +25,19 @@ impl BoundaryPart {
     }
     /// The part of this name.
     pub fn from_name(name: &str) -> Option<Self> {
-        [Self::Dirichlet, Self::Neumann, Self::Contact].into_iter().find(|p| p.name() == name)
+        Self::ALL.into_iter().find(|p| p.name() == name)
     }
 }
 
-/// A facet of the boundary: its cell, its number in the cell, its part.
+/// A facet of the boundary: its cell, its number in the cell, its part, its group.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct BoundaryFacet {
     /// The cell.
     pub cell: u32,
     /// The facet is opposite this vertex of the cell.
     pub local: u8,
-    /// The part of the boundary.
+    /// The part of the boundary; [`BoundaryPart::Neumann`] as long as that of its group is not decided.
     pub part: BoundaryPart,
+    /// Number of its group, see [`Mesh::boundary_groups`](super::Mesh::boundary_groups).
+    pub group: u16,
 }

@@ -1,5 +1,7 @@
 //! Errors of meshes.
 
+use super::boundary::BoundaryPart;
+use crate::input::excerpt;
 use crate::readable_debug::debug_by_display;
 
 /// The reason why lists of vertices and cells are not a mesh, with the place. `Debug` prints the
@@ -120,9 +122,9 @@ pub enum MeshError {
         /// A point of both, as coordinates in parentheses.
         at: String,
     },
-    /// A facet of the boundary is in no part.
+    /// A facet of the boundary is in no group.
     #[error(
-        "boundary facet {vertices:?} of cell {cell}, at {at}, is in no boundary part: put it in one of dirichlet, neumann, contact"
+        "boundary facet {vertices:?} of cell {cell}, at {at}, is in no group: put it in one; the names dirichlet, neumann, contact say what holds there, for other names a problem does"
     )]
     UntaggedFacet {
         /// Vertices of the facet.
@@ -144,17 +146,38 @@ pub enum MeshError {
         /// Position of the second mention in the list of tagged facets.
         tag: usize,
     },
-    /// A tagged facet is not a facet of the boundary.
-    #[error("facet {vertices:?} is in part {part} but {why}")]
+    /// A facet in a group is not a facet of the boundary.
+    #[error("facet {vertices:?} is in group {group} but {why}")]
     NotABoundaryFacet {
         /// Vertices of the facet.
         vertices: Vec<u32>,
-        /// The part.
-        part: &'static str,
+        /// The name of the group.
+        group: String,
         /// "lies between two cells" or "belongs to no cell".
         why: &'static str,
         /// Position in the list of tagged facets.
         tag: usize,
+    },
+    /// Two groups of a boundary facet are given different parts.
+    #[error(
+        "boundary groups {} and {} share facets, but the first is {} and the second {}: give them facets of their own",
+        groups[0], groups[1], parts[0], parts[1]
+    )]
+    GroupInTwoParts {
+        /// The two groups.
+        groups: [String; 2],
+        /// Their parts.
+        parts: [&'static str; 2],
+    },
+    /// Neither the name of a boundary group nor the problem says what holds there.
+    #[error(
+        "nothing says what holds on boundary group {group}: give the problem data there (dirichlet_on, neumann_on, signorini_on) and its parts to the mesh (Problem::bind_boundary), or name the group dirichlet, neumann or contact{hint}"
+    )]
+    UndecidedGroup {
+        /// The names of the group.
+        group: String,
+        /// A name that is meant, or nothing.
+        hint: String,
     },
     /// A connected component has neither a Dirichlet nor a contact facet.
     #[error(
@@ -171,6 +194,13 @@ pub enum MeshError {
 debug_by_display!(MeshError);
 
 impl MeshError {
+    /// The error for a boundary group of undecided part with these names.
+    pub(crate) fn undecided(names: &[String]) -> Self {
+        let meant = |name: &String| BoundaryPart::from_name(&name.trim().to_lowercase());
+        let hint = names.iter().find_map(meant).map(|part| format!("; write {}", part.name()));
+        let names: Vec<String> = names.iter().map(|name| excerpt(name)).collect();
+        Self::UndecidedGroup { group: names.join(", "), hint: hint.unwrap_or_default() }
+    }
     /// The cells in the message.
     pub fn cells(&self) -> Vec<usize> {
         match self {

@@ -226,8 +226,7 @@ impl Facets {
             }
         }
         let mut starts = [0, half_facets.len(), 0, 0, 0];
-        let parts = [BoundaryPart::Dirichlet, BoundaryPart::Neumann, BoundaryPart::Contact];
-        for (k, part) in parts.into_iter().enumerate() {
+        for (k, part) in BoundaryPart::ALL.into_iter().enumerate() {
             let of_part = mesh.boundary().iter().filter(|f| f.part == part);
             half_facets.extend(of_part.map(|f| {
                 let code = half_facet_code(f.cell as usize, f.local as usize);

@@ -18,6 +18,8 @@ mod error;
 mod facets;
 mod geometry;
 pub mod gmsh;
+mod groups;
+mod names;
 mod overlap;
 mod refine;
 mod simplicial;
@@ -26,6 +28,8 @@ mod validate;
 
 pub use boundary::{BoundaryFacet, BoundaryPart};
 pub(crate) use components::Components;
+#[cfg(feature = "problem-files")]
+pub(crate) use domain::SIDES;
 pub use domain::{BoxDomain, Domain};
 #[doc(hidden)]
 pub use edges::Edges;
@@ -34,6 +38,7 @@ pub use error::MeshError;
 pub use facets::{Facets, Neighbour, Neighbours};
 pub use geometry::CellGeometry;
 pub(crate) use geometry::describe_point;
+pub use groups::BoundaryGroup;
 pub use refine::Refinement;
 pub use simplicial::Mesh;
-pub use validate::TaggedFacet;
+pub use validate::{GroupedFacet, TaggedFacet};

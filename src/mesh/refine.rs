@@ -130,7 +130,7 @@ fn midpoints<const D: usize>(edges: &Edges, cell: &[u32], numbers: &[u32]) -> [[
 }
 
 impl<T: Real, const D: usize> Mesh<T, D> {
-    /// Cuts every cell into `2^D` of equal volume; boundary parts are inherited.
+    /// Cuts every cell into `2^D` of equal volume; regions, boundary parts and groups are inherited.
     ///
     /// # Errors
     /// [`MeshError::TooLarge`].
@@ -169,8 +169,19 @@ impl<T: Real, const D: usize> Mesh<T, D> {
             let first = range.start / group;
             cells.chunks_exact_mut(group).enumerate().for_each(|(k, out)| cut(first + k, out));
         });
-        let (boundary, is_supported) = (self.refined_boundary(), self.is_supported);
-        Ok((Self { vertices, cells, boundary, is_supported }, Refinement { parents }))
+        let fine = Self {
+            vertices,
+            cells,
+            boundary: self.refined_boundary(),
+            is_supported: self.is_supported,
+            groups: self.groups.clone(),
+            cell_regions: self
+                .cell_regions
+                .iter()
+                .flat_map(|&region| std::iter::repeat_n(region, n_children))
+                .collect(),
+        };
+        Ok((fine, Refinement { parents }))
     }
 
     /// The boundary facets of the refined mesh.
@@ -183,7 +194,7 @@ impl<T: Real, const D: usize> Mesh<T, D> {
                 for local in 0..=D {
                     if child.iter().enumerate().all(|(i, v)| i == local || !off(v)) {
                         let cell = (facet.cell << D) + k as u32;
-                        boundary.push(BoundaryFacet { cell, local: local as u8, part: facet.part });
+                        boundary.push(BoundaryFacet { cell, local: local as u8, ..*facet });
                     }
                 }
             }

@@ -1,6 +1,9 @@
 //! The mesh: vertices, cells and boundary facets.
 
+use std::sync::Arc;
+
 use super::boundary::{BoundaryFacet, BoundaryPart};
+use super::groups::Groups;
 use crate::real::{Point, Real, point_f64};
 
 /// A conforming simplicial mesh of a domain in `D` dimensions (1, 2 or 3).
@@ -11,6 +14,10 @@ pub struct Mesh<T, const D: usize> {
     pub(in crate::mesh) boundary: Vec<BoundaryFacet>,
     /// Whether every component of the mesh, connected through facets, has a Dirichlet facet.
     pub(in crate::mesh) is_supported: bool,
+    /// The names of regions and boundary groups.
+    pub(in crate::mesh) groups: Arc<Groups>,
+    /// The number of the region of each cell; empty if all cells are in the first.
+    pub(in crate::mesh) cell_regions: Vec<u16>,
 }
 
 impl<T: Real, const D: usize> Mesh<T, D> {

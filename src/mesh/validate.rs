@@ -1,12 +1,16 @@
 //! The construction of a mesh from lists of vertices, cells and boundary facets, with all checks.
 
+use std::sync::Arc;
+
 use super::boundary::{BoundaryFacet, BoundaryPart};
 use super::components::Components;
 use super::error::MeshError;
 use super::facets::{CELL_LIMIT, Neighbours};
 use super::geometry::{CellGeometry, describe_point};
+use super::groups::{BoundaryGroup, Groups, NameSets};
 use super::overlap::{check_folds, check_overlaps};
 use super::simplicial::Mesh;
+use crate::input::excerpt;
 use crate::instances::compiled;
 use crate::real::{Point, Real, point_f64};
 
@@ -17,6 +21,15 @@ pub struct TaggedFacet<const D: usize> {
     pub vertices: [u32; D],
     /// The part.
     pub part: BoundaryPart,
+}
+
+/// A facet of the boundary by its `D` vertices, in any order, and the number of a named group.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct GroupedFacet<const D: usize> {
+    /// The vertices.
+    pub vertices: [u32; D],
+    /// Number of the group.
+    pub group: u16,
 }
 
 impl<T: Real, const D: usize> Mesh<T, D> {
@@ -36,19 +49,40 @@ impl<T: Real, const D: usize> Mesh<T, D> {
         cells: Vec<u32>,
         boundary: &[TaggedFacet<D>],
     ) -> Result<Self, MeshError> {
+        let grouped =
+            |f: &TaggedFacet<D>| GroupedFacet { vertices: f.vertices, group: f.part as u16 };
+        let facets: Vec<_> = boundary.iter().map(grouped).collect();
+        Self::with_groups(vertices, cells, &facets, &BoundaryPart::ALL.map(|p| p.name().to_owned()))
+    }
+
+    /// A mesh as [`Mesh::new`] makes it, with boundary facets in named groups, of which each may be in
+    /// several. The names `dirichlet`, `neumann` and `contact` say to which part their facets belong; the
+    /// part of other groups is decided by [`Mesh::with_boundary_parts`]. Facets between two cells are
+    /// left out of groups with other names.
+    ///
+    /// # Errors
+    /// As [`Mesh::new`], and [`MeshError::Parameter`] for a number of a group without a name.
+    pub fn with_groups(
+        vertices: Vec<Point<f64, D>>,
+        cells: Vec<u32>,
+        boundary: &[GroupedFacet<D>],
+        names: &[String],
+    ) -> Result<Self, MeshError> {
         compiled!(
             T, D: fn(
                 Vec<Point<f64, D>>,
                 Vec<u32>,
-                &[TaggedFacet<D>],
+                &[GroupedFacet<D>],
+                &[String],
             ) -> Result<Mesh<T, D>, MeshError>
                 = Mesh::from_lists
-        )(vertices, cells, boundary)
+        )(vertices, cells, boundary, names)
     }
     fn from_lists(
         vertices: Vec<Point<f64, D>>,
         mut cells: Vec<u32>,
-        boundary: &[TaggedFacet<D>],
+        boundary: &[GroupedFacet<D>],
+        names: &[String],
     ) -> Result<Self, MeshError> {
         check_lists(&vertices, &cells)?;
         for cell in cells.chunks_exact_mut(D + 1) {
@@ -59,12 +93,13 @@ impl<T: Real, const D: usize> Mesh<T, D> {
         let is_positive = check_volumes::<T, D>(&rounded, &cells)?;
         let neighbours = Neighbours::match_facets::<D>(&cells, vertices.len())?;
         check_folds::<D>(&cells, &neighbours, &is_positive)?;
-        let boundary = match_boundary(&vertices, &cells, &neighbours, boundary)?;
+        let (boundary, groups) = match_boundary(&vertices, &cells, &neighbours, (boundary, names))?;
         check_overlaps(&vertices, &cells, &boundary)?;
         let is_dirichlet = |part| part == BoundaryPart::Dirichlet;
         let is_supported = unsupported_component(&neighbours, &boundary, is_dirichlet).is_none();
         let (vertices, cells) = drop_unused(rounded, cells);
-        Ok(Self { vertices, cells, boundary, is_supported })
+        let groups = Arc::new(Groups { regions: vec![Vec::new()], boundary: groups });
+        Ok(Self { vertices, cells, boundary, is_supported, groups, cell_regions: Vec::new() })
     }
 
     /// Checks that every component of the mesh, connected through facets, has a Dirichlet or a contact
@@ -86,7 +121,7 @@ impl<T: Real, const D: usize> Mesh<T, D> {
 
 /// The first component of a mesh, connected through facets, without a boundary facet whose part supports
 /// it: its first cell and its number of cells.
-fn unsupported_component(
+pub(super) fn unsupported_component(
     neighbours: &Neighbours,
     boundary: &[BoundaryFacet],
     supports: impl Fn(BoundaryPart) -> bool,
@@ -169,56 +204,96 @@ fn check_volumes<T: Real, const D: usize>(
     Ok(is_positive)
 }
 
-/// Gives every facet of the boundary its part.
+/// A boundary facet by its ascending vertices, its cell and its number in the cell.
+type OpenFacet<const D: usize> = ([u32; D], usize, usize);
+
+/// The part that one of the names of a group stands for.
+fn part_of(names: &[String]) -> Option<BoundaryPart> {
+    names.iter().find_map(|name| BoundaryPart::from_name(name))
+}
+
+/// Gives every facet of the boundary its group and part.
 fn match_boundary<const D: usize>(
     vertices: &[Point<f64, D>],
     cells: &[u32],
     neighbours: &Neighbours,
-    tagged: &[TaggedFacet<D>],
-) -> Result<Vec<BoundaryFacet>, MeshError> {
+    (grouped, names): (&[GroupedFacet<D>], &[String]),
+) -> Result<(Vec<BoundaryFacet>, Vec<BoundaryGroup>), MeshError> {
     let facet = |c: usize, local: usize| -> [u32; D] {
         let cell = &cells[c * (D + 1)..(c + 1) * (D + 1)];
         std::array::from_fn(|k| cell[k + usize::from(k >= local)])
     };
     let half_facets = || (0..cells.len()).map(|k| (k / (D + 1), k % (D + 1)));
-    let mut unmatched: Vec<([u32; D], usize, usize)> = half_facets()
+    let mut open: Vec<OpenFacet<D>> = half_facets()
         .filter(|&(c, local)| neighbours.is_unmatched(c, local))
         .map(|(c, local)| (facet(c, local), c, local))
         .collect();
-    unmatched.sort_unstable();
-    let mut parts: Vec<Option<BoundaryPart>> = vec![None; unmatched.len()];
-    for (tag, t) in tagged.iter().enumerate() {
+    open.sort_unstable();
+    let mut sets = NameSets::new(names);
+    let mut set_of: Vec<Option<usize>> = vec![None; open.len()];
+    let mut inside: Option<Vec<[u32; D]>> = None;
+    for (tag, t) in grouped.iter().enumerate() {
+        let group = usize::from(t.group);
+        let Some(name) = names.get(group) else {
+            return Err(MeshError::Parameter {
+                parameter: "group of a facet",
+                value: group.to_string(),
+                allowed: format!("less than {}, the number of names", names.len()),
+            });
+        };
         let mut key = t.vertices;
         key.sort_unstable();
-        let Ok(k) = unmatched.binary_search_by(|o| o.0.cmp(&key)) else {
-            let inside = half_facets().any(|(c, local)| facet(c, local) == key);
-            let why = if inside { "lies between two cells" } else { "belongs to no cell" };
-            let (vertices, part) = (key.to_vec(), t.part.name());
-            return Err(MeshError::NotABoundaryFacet { vertices, part, why, tag });
-        };
-        match parts[k] {
-            Some(first) if first != t.part => {
-                return Err(MeshError::FacetInTwoParts {
-                    vertices: key.to_vec(),
-                    first: first.name(),
-                    second: t.part.name(),
-                    tag,
-                });
+        let Ok(k) = open.binary_search_by(|o| o.0.cmp(&key)) else {
+            let inside = inside.get_or_insert_with(|| {
+                let mut all: Vec<_> = half_facets().map(|(c, local)| facet(c, local)).collect();
+                all.sort_unstable();
+                all
+            });
+            let is_inside = inside.binary_search(&key).is_ok();
+            if is_inside && BoundaryPart::from_name(name).is_none() {
+                continue;
             }
-            _ => parts[k] = Some(t.part),
+            let why = if is_inside { "lies between two cells" } else { "belongs to no cell" };
+            let (vertices, group) = (key.to_vec(), excerpt(name));
+            return Err(MeshError::NotABoundaryFacet { vertices, group, why, tag });
+        };
+        let Some(first) = set_of[k] else {
+            set_of[k] = Some(group);
+            continue;
+        };
+        if let (Some(one), Some(two)) = (part_of(sets.names(first)), BoundaryPart::from_name(name))
+            && one != two
+        {
+            let (first, second) = (one.name(), two.name());
+            return Err(MeshError::FacetInTwoParts { vertices: key.to_vec(), first, second, tag });
         }
+        set_of[k] = Some(sets.union(first, group));
     }
-    let mut boundary = Vec::with_capacity(unmatched.len());
-    for (&(key, cell, local), part) in unmatched.iter().zip(parts) {
-        let Some(part) = part else {
+    let mut boundary = Vec::with_capacity(open.len());
+    // sets without a facet are left out
+    let mut sets_used: Vec<Option<u16>> = Vec::new();
+    let mut groups = Vec::new();
+    for (&(key, cell, local), set) in open.iter().zip(set_of) {
+        let Some(set) = set else {
             let sum = key.iter().fold(Point::<f64, D>::zeros(), |s, &v| s + vertices[v as usize]);
             let at = describe_point(&(sum / D as f64));
             return Err(MeshError::UntaggedFacet { vertices: key.to_vec(), cell, at });
         };
-        boundary.push(BoundaryFacet { cell: cell as u32, local: local as u8, part });
+        sets_used.resize(sets_used.len().max(set + 1), None);
+        let group = *sets_used[set].get_or_insert_with(|| {
+            let names = sets.names(set).to_vec();
+            groups.push(BoundaryGroup { part: part_of(&names), names });
+            (groups.len() - 1) as u16
+        });
+        let part = groups[usize::from(group)].part.unwrap_or(BoundaryPart::Neumann);
+        boundary.push(BoundaryFacet { cell: cell as u32, local: local as u8, part, group });
+    }
+    if groups.len() > usize::from(u16::MAX) {
+        let (what, count, limit) = ("boundary groups", groups.len(), usize::from(u16::MAX));
+        return Err(MeshError::TooLarge { what, count, limit });
     }
     boundary.sort_unstable_by_key(|f| (f.cell, f.local));
-    Ok(boundary)
+    Ok((boundary, groups))
 }
 
 fn drop_unused<T: Real, const D: usize>(

@@ -105,13 +105,14 @@ pub(crate) enum Coarsest<'a, T, const D: usize> {
 }
 
 impl<T: Real, const D: usize> Coarsest<'_, T, D> {
-    /// The levels of the hierarchy that ends with a level, coarsest first.
-    fn levels(&self, level: usize) -> Vec<usize> {
+    /// The levels of the hierarchy that ends with a level, coarsest first; no level of a domain but the last
+    /// is less than `coarsest`.
+    fn levels(&self, level: usize, coarsest: usize) -> Vec<usize> {
         let mut levels = vec![level];
         let coarser = |level: usize| match self {
             Self::Mesh(_) => level.checked_sub(1),
             Self::Domain(_) => {
-                (level.is_multiple_of(2) && level / 2 >= COARSEST).then_some(level / 2)
+                (level.is_multiple_of(2) && level / 2 >= coarsest).then_some(level / 2)
             }
         };
         while let Some(next) = levels.last().and_then(|&l| coarser(l)) {
@@ -142,15 +143,24 @@ impl<T: Real, const D: usize> Coarsest<'_, T, D> {
     /// # Errors
     /// Those of [`Coarsest::check`] and of refinement.
     pub fn build(&self, level: usize) -> Result<Hierarchy<T, D>, Error> {
-        compiled!(
-            T, D: fn(&Coarsest<'_, T, D>, usize) -> Result<Hierarchy<T, D>, Error>
-                = |coarsest, level| coarsest.build_meshes(level)
-        )(self, level)
+        self.build_from(level, COARSEST)
     }
-    fn build_meshes(&self, level: usize) -> Result<Hierarchy<T, D>, Error> {
+
+    /// The hierarchy that ends with a level; no mesh of a domain but the last has a level less than
+    /// `coarsest`.
+    ///
+    /// # Errors
+    /// Those of [`Coarsest::check`] and of refinement.
+    pub fn build_from(&self, level: usize, coarsest: usize) -> Result<Hierarchy<T, D>, Error> {
+        compiled!(
+            T, D: fn(&Coarsest<'_, T, D>, usize, usize) -> Result<Hierarchy<T, D>, Error>
+                = |of, level, coarsest| of.build_meshes(level, coarsest)
+        )(self, level, coarsest)
+    }
+    fn build_meshes(&self, level: usize, coarsest: usize) -> Result<Hierarchy<T, D>, Error> {
         self.check(level)?;
         let mut meshes: Vec<NestedMesh<T, D>> = Vec::new();
-        for level in self.levels(level) {
+        for level in self.levels(level, coarsest) {
             let clock = Instant::now();
             let (mesh, refinement) = match (meshes.last(), self) {
                 (None, Self::Mesh(mesh)) => ((*mesh).clone(), None),

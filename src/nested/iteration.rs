@@ -43,6 +43,35 @@ use crate::scheme::AnyScheme;
 pub struct NestedIteration<'a, T: Real, const D: usize> {
     p1: P1Iteration<'a, T, D>,
     has_cold_start: bool,
+    observer: Box<dyn Fn(Phase) + 'a>,
+}
+
+/// A phase of a run.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Phase {
+    /// The meshes are made.
+    Mesh,
+    /// Conforming P1 is solved on this and coarser meshes, from which the scheme starts.
+    Start,
+    /// Matrix, load and bounds are assembled.
+    Assembly,
+    /// The inequality is solved.
+    Solve,
+    /// Energy and errors of the solution are computed.
+    Measures,
+}
+
+impl fmt::Display for Phase {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Mesh => "mesh",
+            Self::Start => "start",
+            Self::Assembly => "assembly",
+            Self::Solve => "solve",
+            Self::Measures => "measures",
+        })
+    }
 }
 
 impl<T: Real, const D: usize> fmt::Debug for NestedIteration<'_, T, D> {
@@ -71,7 +100,7 @@ impl<'a, T: Real, const D: usize> NestedIteration<'a, T, D> {
             quadrature: DataQuadrature::default(),
             repeat: 1,
         };
-        Self { p1, has_cold_start: false }
+        Self { p1, has_cold_start: false, observer: Box::new(|_| {}) }
     }
     /// Sets the solver of the inequality.
     #[must_use]
@@ -106,6 +135,13 @@ impl<'a, T: Real, const D: usize> NestedIteration<'a, T, D> {
         self
     }
 
+    /// Sets a function that receives each phase of a solve as it begins.
+    #[must_use]
+    pub fn observer(mut self, observer: impl Fn(Phase) + 'a) -> Self {
+        self.observer = Box::new(observer);
+        self
+    }
+
     /// Replaces the problem by one with another constraint set. The P1 solutions have bounds at vertices
     /// and are kept.
     pub(crate) fn replace_constraint_set(&mut self, problem: &'a Problem<D>) {
@@ -117,6 +153,10 @@ impl<'a, T: Real, const D: usize> NestedIteration<'a, T, D> {
             Meshes::Flat(_) => None,
             Meshes::Nested(hierarchy) => hierarchy.position(level),
         }
+    }
+    /// A mesh, by its position.
+    pub(crate) fn mesh(&self, position: usize) -> &'a Mesh<T, D> {
+        self.p1.meshes.mesh(position)
     }
     /// The name of the solver.
     pub(crate) fn solver_name(&self) -> &'static str {
@@ -180,7 +220,9 @@ impl<'a, T: Real, const D: usize> NestedIteration<'a, T, D> {
         position: usize,
         scheme: &dyn AnyScheme<T, D>,
     ) -> Result<Solved<'a, T, D>, Error> {
+        (self.observer)(Phase::Start);
         let start = self.start(position, scheme)?;
+        (self.observer)(Phase::Assembly);
         let mesh = self.p1.meshes.mesh(position);
         let discretise = || Discretisation::new(scheme, self.p1.problem, mesh, self.p1.quadrature);
         let clock = Instant::now();
@@ -214,6 +256,7 @@ impl<'a, T: Real, const D: usize> NestedIteration<'a, T, D> {
             ));
         }
         inequality.is_definite = penalty_below_bound.is_none() && discretisation.is_coercive();
+        (self.observer)(Phase::Solve);
         let (solution, solve_seconds) = self.run(&mut inequality, &guess);
         let hierarchy = match self.p1.meshes {
             Meshes::Flat(_) => None,

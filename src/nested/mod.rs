@@ -11,7 +11,7 @@ mod solved;
 
 pub(crate) use hierarchy::Coarsest;
 pub use hierarchy::Hierarchy;
-pub use iteration::{NestedIteration, solve};
+pub use iteration::{NestedIteration, Phase, solve};
 pub use meshes::Meshes;
 pub use p1::P1Solution;
 pub use solved::Solved;

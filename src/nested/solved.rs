@@ -15,11 +15,11 @@ use crate::inequality::{
 };
 #[cfg(feature = "report")]
 use crate::instances::compiled;
-use crate::measure::{ContactErrors, Errors, Fields};
+use crate::measure::{ContactErrors, Errors, Fields, contact_difference};
 use crate::mesh::Mesh;
 #[cfg(feature = "report")]
 use crate::paraview::VtuFile;
-use crate::problem::Exact;
+use crate::problem::{DataOnMesh, Exact};
 use crate::real::{Point, Real};
 
 /// Adds to a file of fields.
@@ -151,6 +151,27 @@ impl<'a, T: Real, const D: usize> Solved<'a, T, D> {
         let is_minimum = self.inequality.symmetric && self.has_iterate;
         is_minimum.then(|| self.inequality.objective(self.values()))
     }
+    /// The energy of the solution, by one formula for every scheme: see [`Discretisation::energy`]. None
+    /// without an iterate.
+    ///
+    /// # Errors
+    /// [`Error::DataNotFinite`].
+    pub fn energy(&self) -> Result<Option<f64>, Error> {
+        let energy = || self.discretisation.energy(self.values());
+        self.has_iterate.then(energy).transpose()
+    }
+    /// The measure of the discrete contact set: see [`Discretisation::contact_measure`]. None without an
+    /// inequality and without an iterate.
+    pub fn contact_measure(&self) -> Option<f64> {
+        let measure = || self.discretisation.contact_measure(&self.inequality, &self.solution);
+        self.has_iterate.then(measure).flatten()
+    }
+    /// The total contact force, positive where a lower bound pushes upward: see
+    /// [`Discretisation::resultant`]. None without an inequality and without an iterate.
+    pub fn resultant(&self) -> Option<f64> {
+        let resultant = || self.discretisation.resultant(&self.inequality, &self.solution);
+        self.has_iterate.then(resultant).flatten()
+    }
     /// The certificate: violations of the complementarity conditions.
     pub fn certificate(&self) -> Certificate {
         self.certificate
@@ -224,6 +245,27 @@ impl<'a, T: Real, const D: usize> Solved<'a, T, D> {
         let coarse = (&coarse.discretisation, coarse.values(), refinements.unsigned_abs());
         fine.discretisation.difference(fine.values(), coarse)
     }
+    /// Distances of multiplier and contact set from those of a solution on a finer mesh of the same
+    /// hierarchy, or on the same mesh; the distance of free boundaries is not computed. None without two
+    /// iterates.
+    ///
+    /// # Errors
+    /// [`Error::NotNested`] if the mesh of `reference` is not a refinement of this one.
+    pub fn contact_difference(&self, reference: &Self) -> Result<ContactErrors, Error> {
+        let refinements: Vec<_> = match (self.hierarchy, reference.hierarchy) {
+            _ if std::ptr::eq(self.mesh(), reference.mesh()) => Vec::new(),
+            (Some((one, a)), Some((two, b))) if std::ptr::eq(one, two) && a <= b => {
+                (a + 1..=b).filter_map(|k| one.refinement(k)).map(|(by, _)| by).collect()
+            }
+            _ => return Err(Error::NotNested),
+        };
+        if !(self.has_iterate && reference.has_iterate) {
+            return Ok(ContactErrors::default());
+        }
+        let own = (&self.discretisation, &self.inequality, &self.solution);
+        let fine = (&reference.discretisation, &reference.inequality, &reference.solution);
+        Ok(contact_difference(own, fine, &refinements))
+    }
     /// Distances of multiplier and contact set from the exact ones; none without an iterate.
     ///
     /// # Errors
@@ -276,19 +318,26 @@ impl<'a, T: Real, const D: usize> Solved<'a, T, D> {
         let Some(fields) = self.fields() else {
             return Err(write_error(path, format!("no solution: {}", self.outcome())));
         };
-        if let Some(folder) = path.parent() {
-            std::fs::create_dir_all(folder).map_err(|e| write_error(folder, e))?;
-        }
         let problem = self.discretisation.problem();
         let u = fields.values_by_cell(D);
         // facets in contact are listed in the order of the contact boundary
         let mut touching = fields.discrete_contact.facets.iter().peekable();
         let state = |place| if touching.next_if_eq(&place).is_some() { 1.0 } else { 0.0 };
         let in_contact: Vec<f64> = fields.contact_boundary.iter().map(state).collect();
-        let mut file = VtuFile::new(self.mesh(), &u);
-        let bounds = [&problem.lower, &problem.upper].into_iter().flatten();
+        let (mesh, data) = (self.mesh(), DataOnMesh::new(problem, self.mesh())?);
+        let regions: Vec<f64> = match mesh.regions().len() {
+            1 => Vec::new(),
+            _ => (0..mesh.n_cells()).map(|cell| mesh.region(cell) as f64).collect(),
+        };
+        let mut file = VtuFile::new(mesh, &u);
+        let bounds = [&data.lower, &data.upper].into_iter().filter(|bound| bound.is_given());
         for (name, bound) in ["obstacle", "upper_obstacle"].into_iter().zip(bounds) {
-            file = file.function(name, &**bound);
+            file = file.function_in_cells(name, |cell, x| {
+                bound.of(mesh.region(cell)).map_or(f64::NAN, |bound| bound.at(x))
+            });
+        }
+        if !regions.is_empty() {
+            file = file.on_cells("region", &regions);
         }
         if let Some(exact) = &problem.exact {
             file = file.error_from(&*exact.value);
@@ -297,11 +346,11 @@ impl<'a, T: Real, const D: usize> Solved<'a, T, D> {
             file = file.on_cells("multiplier", &fields.multiplier);
             file = file.on_cells("contact", &fields.contact);
         }
-        if problem.gap.is_some() {
+        if problem.has_gap() {
             file = file.facets(&fields.contact_boundary).on_facets("pressure", &fields.pressure);
             file = file.on_facets("gap", &fields.gap);
         }
-        if problem.gap.is_some() && !problem.has_obstacle() {
+        if problem.has_gap() && !problem.has_obstacle() {
             file = file.on_facets("contact", &in_contact);
         }
         complete(file).write(path)

@@ -5,12 +5,10 @@ pub(crate) mod html;
 pub(crate) mod latex;
 mod pages;
 mod provenance;
-mod replace;
 mod report;
 pub(crate) mod table;
 
 pub use csv::to_csv;
 pub use latex::LATEX_PACKAGES;
 pub use provenance::Provenance;
-pub(crate) use replace::{replace, replace_text};
 pub use table::Table;

@@ -7,7 +7,8 @@ use serde_json::Value;
 use super::csv::flatten;
 use super::html::{HtmlCell, HtmlPage, HtmlTable};
 use super::table::{Cell, Table};
-use crate::study::table::{columns, distinct, heading, scenes};
+use crate::study::row::distinct;
+use crate::study::table::{columns, heading, scenes};
 use crate::study::{Program, Report, Row, file_name};
 
 /// Columns of the page that are shown at first, by their keys.
@@ -37,7 +38,7 @@ const PRINTED: [&str; 11] = [
 impl Report {
     /// Program and settings in one line.
     fn heading(&self) -> String {
-        let Program { name, version, threads, precision, repeat, target_cpu } = &self.program;
+        let Program { name, version, threads, precision, repeat, target_cpu, .. } = &self.program;
         format!(
             "{name} {version}, {target_cpu}; {threads} threads; {precision}; every time is the least of \
              {repeat} runs, in seconds"

@@ -4,24 +4,17 @@ use std::path::{Path, PathBuf};
 
 use super::csv;
 use super::latex::latex_files;
-use super::replace::{replace, replace_text};
 use crate::error::Error;
 #[cfg(feature = "plot")]
 use crate::error::write_error;
+#[cfg(feature = "plot")]
+use crate::files::replace;
+use crate::files::replace_text;
 #[cfg(feature = "plot")]
 use crate::plot::{convergence, work_precision};
 use crate::study::Report;
 
 impl Report {
-    /// The report as JSON. Numbers that do not apply, and numbers that are not finite, are null.
-    pub fn to_json(&self) -> String {
-        // `serde_json` writes every NaN and infinity as null: JSON has no other way. The value is
-        // plain data with string keys, which is all it takes for the serialisation to succeed.
-        let mut text = serde_json::to_string_pretty(self).unwrap_or_else(|_| "null".to_owned());
-        text.push('\n');
-        text
-    }
-
     /// The rows as comma-separated values: see [`to_csv`](super::to_csv).
     pub fn to_csv(&self) -> String {
         csv::to_csv(&self.rows)
@@ -31,7 +24,8 @@ impl Report {
     /// `table-TITLE.tex`, the plots `convergence` and `work_precision`, each as `.svg` and `.png`, and
     /// `report.html` into a directory, which is made if need be. Returns the files in order. The page has
     /// the pictures `SCENE-LABEL.svg` that are in the directory. Without the feature `plot` there are no
-    /// plots.
+    /// plots. Each file is replaced as a whole: a
+    /// reader never sees a part of it.
     ///
     /// # Errors
     /// [`Error::Write`] at the first file that cannot be written.

@@ -5,14 +5,15 @@
 //! writes itself.
 
 use std::fmt;
-use std::fs::{self, File};
+use std::fs::File;
 use std::io::{self, BufWriter, Write};
 use std::path::Path;
 
 use super::encode::{Arrays, bytes};
 use super::grid::{Grid, values_per_cell};
 use super::pvd::escape;
-use crate::error::{Error, write_error};
+use crate::error::Error;
+use crate::files::replace;
 use crate::instances::compiled;
 use crate::mesh::Mesh;
 use crate::real::{Point, Real};
@@ -29,6 +30,9 @@ pub enum FieldScalar {
 
 /// A function of space.
 type Function<'a, const D: usize> = &'a (dyn Fn(&Point<f64, D>) -> f64 + 'a);
+
+/// A function of space that may jump between cells: of the number of a cell and a point in it.
+type InCell<'a, const D: usize> = Box<dyn Fn(usize, &Point<f64, D>) -> f64 + 'a>;
 
 /// A function on the cells of a mesh with further fields, to be written as a `.vtu` file.
 ///
@@ -50,7 +54,7 @@ type Function<'a, const D: usize> = &'a (dyn Fn(&Point<f64, D>) -> f64 + 'a);
 pub struct VtuFile<'a, T: Real, const D: usize> {
     mesh: &'a Mesh<T, D>,
     u: &'a [f64],
-    functions: Vec<(&'a str, Function<'a, D>)>,
+    functions: Vec<(&'a str, InCell<'a, D>)>,
     exact: Option<Function<'a, D>>,
     on_cells: Vec<(&'a str, &'a [f64])>,
     facets: &'a [(usize, usize)],
@@ -91,8 +95,18 @@ impl<'a, T: Real, const D: usize> VtuFile<'a, T, D> {
         }
     }
     /// Adds a function of space as point data.
-    pub fn function(mut self, name: &'a str, f: Function<'a, D>) -> Self {
-        self.functions.push((name, f));
+    pub fn function(self, name: &'a str, f: Function<'a, D>) -> Self {
+        self.function_in_cells(name, move |_, x| f(x))
+    }
+    /// Adds a function of cell and point as point data. Points that cells share have the value from one of
+    /// them.
+    #[must_use]
+    pub fn function_in_cells(
+        mut self,
+        name: &'a str,
+        f: impl Fn(usize, &Point<f64, D>) -> f64 + 'a,
+    ) -> Self {
+        self.functions.push((name, Box::new(f)));
         self
     }
     /// Adds the difference of `u` from this function as the point data `error`.
@@ -131,7 +145,8 @@ impl<'a, T: Real, const D: usize> VtuFile<'a, T, D> {
         self
     }
 
-    /// Writes the file, which takes the place of an earlier one when it is whole. Points have three
+    /// Writes the file, and its folder if there is none; it takes the place of an earlier one when it is
+    /// whole. Points have three
     /// coordinates, missing ones zero. The cell data `dimension` is that of each cell, `D` for the cells
     /// of the mesh and `D - 1` for facets. Cell data of one name on cells and on facets are one array;
     /// where there is no value they are not a number.
@@ -145,20 +160,14 @@ impl<'a, T: Real, const D: usize> VtuFile<'a, T, D> {
         )(self, path)
     }
     fn write_checked(&self, path: &Path) -> Result<(), Error> {
-        let mut draft = path.as_os_str().to_owned();
-        draft.push(format!(".{}", std::process::id()));
-        let draft = Path::new(&draft);
-        let written = self
-            .check()
-            .and_then(|n| {
-                let arrays = self.arrays(&Grid::new(self.mesh, self.u, n, self.facets))?;
-                let mut file = BufWriter::new(File::create(draft)?);
-                arrays.write(&mut file)?;
-                file.flush()?;
-                fs::rename(draft, path)
-            })
-            .inspect_err(|_| drop(fs::remove_file(draft)));
-        written.map_err(|why| write_error(path, why))
+        let written = replace(path, |draft| {
+            let n = self.check()?;
+            let arrays = self.arrays(&Grid::new(self.mesh, self.u, n, self.facets))?;
+            let mut file = BufWriter::new(File::create(draft)?);
+            arrays.write(&mut file)?;
+            file.flush()
+        });
+        written.map(drop)
     }
 
     /// Number of values of each cell. Refuses a field whose length does not fit the mesh, and facets that
@@ -200,8 +209,10 @@ impl<'a, T: Real, const D: usize> VtuFile<'a, T, D> {
         writeln!(to.text, "<Piece NumberOfPoints=\"{n_points}\" NumberOfCells=\"{n_cells}\">")?;
         writeln!(to.text, "<PointData Scalars=\"u\">")?;
         let u: Vec<f64> = grid.sources.iter().map(|&k| self.u[k]).collect();
+        let per_cell = self.u.len() / self.mesh.n_cells();
         for (name, f) in &self.functions {
-            self.push_floats(to, name, 1, grid.points.iter().map(f))?;
+            let places = grid.sources.iter().map(|k| k / per_cell).zip(&grid.points);
+            self.push_floats(to, name, 1, places.map(|(cell, x)| f(cell, x)))?;
         }
         if let Some(exact) = self.exact {
             let error = u.iter().zip(&grid.points).map(|(u, x)| u - exact(x));

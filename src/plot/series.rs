@@ -1,7 +1,7 @@
 //! Curves of points, taken from rows.
 
 use crate::study::row::Row;
-use crate::study::table::distinct;
+use crate::study::row::distinct;
 
 /// A number of a row that an axis shows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -42,7 +42,7 @@ impl Quantity {
             Quantity::MeshSize => Some(row.mesh_size),
             // no clock is finer: a smaller number is a time that was not measured
             Quantity::Seconds => Some(row.seconds.total.max(1e-6)),
-            Quantity::Unknowns => Some(row.unknowns as f64),
+            Quantity::Unknowns => row.unknowns.map(|n| n as f64),
             Quantity::Memory => row.peak_memory_bytes.map(|bytes| bytes as f64 / 1e6),
             Quantity::L2 => row.error.l2,
             Quantity::H1 => row.error.h1,

@@ -2,7 +2,7 @@
 
 use super::figure::Figure;
 use super::series::{Curve, Key, Orders, Panel, Point};
-use crate::study::table::distinct;
+use crate::study::row::distinct;
 
 /// A number at a place of a sweep.
 #[derive(Clone, Debug, PartialEq)]

@@ -3,7 +3,7 @@
 use super::criteria::STABILITY_CASES;
 use super::row::{StabilityRow, Verdict};
 use crate::plot::{Figure, SweepPoint, sweep_figure};
-use crate::study::table::distinct;
+use crate::study::row::distinct;
 
 /// Scheme and penalty, without the factor where that is the parameter of the sweep.
 fn series(row: &StabilityRow) -> String {

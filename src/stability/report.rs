@@ -12,17 +12,18 @@ use crate::error::Error;
 #[cfg(feature = "plot")]
 use crate::error::write_error;
 #[cfg(feature = "plot")]
+use crate::files::replace;
+use crate::files::replace_text;
+#[cfg(feature = "plot")]
 use crate::output::html::HtmlPage;
 use crate::output::latex::latex_files;
-#[cfg(feature = "plot")]
-use crate::output::replace;
 use crate::output::table::{Cell, markdown};
-use crate::output::{Provenance, Table, csv, replace_text};
+use crate::output::{Provenance, Table, csv};
 #[cfg(feature = "plot")]
 use crate::plot::Figure;
 use crate::study::Program;
 #[cfg(feature = "plot")]
-use crate::study::table::distinct;
+use crate::study::row::distinct;
 
 /// Notes before the tables.
 const READING: [&str; 3] = [

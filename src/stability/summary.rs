@@ -4,7 +4,7 @@ use super::criteria::{CRITERIA, Criterion};
 use super::row::{StabilityRow, Verdict, factor_in_words, short};
 use crate::output::Table;
 use crate::output::table::Cell;
-use crate::study::table::distinct;
+use crate::study::row::distinct;
 
 fn count<'r>(rows: impl Iterator<Item = &'r StabilityRow>, verdict: Verdict) -> usize {
     rows.filter(|row| row.verdict == verdict).count()

@@ -1,12 +1,15 @@
 //! Compatibility of a mesh and a scene.
 
+use std::sync::Arc;
+
 use crate::assemble::{DataQuadrature, Discretisation};
 use crate::constraint::Nodes;
 use crate::error::Error;
-use crate::mesh::{BoundaryPart, Mesh, describe_point};
-use crate::real::{Real, point_f64};
+use crate::mesh::{BoundaryPart, BoxDomain, Mesh, describe_point};
+use crate::problem::{DataOnMesh, Field, NamedData, Problem};
+use crate::real::{Point, Real, point_f64};
 use crate::scenes::Scene;
-use crate::scheme::{ConformingP1, NonconformingP1};
+use crate::scheme::{AnyScheme, ConformingP1, NonconformingP1};
 
 /// Checks that a mesh is compatible with a scene. Returns the barycentre of a facet on which the
 /// exact solution of the scene breaks the contact condition, or none.
@@ -24,7 +27,7 @@ pub fn check_fit<T: Real, const D: usize>(
     mesh: &Mesh<T, D>,
 ) -> Result<Option<String>, Error> {
     check_contact(scene, mesh.has_part(BoundaryPart::Contact))?;
-    if scene.problem.reaction.is_none() {
+    if !scene.problem.has_reaction() {
         mesh.check_supported()?;
     }
     check_data(scene, mesh)?;
@@ -53,6 +56,42 @@ fn check_data<T: Real, const D: usize>(scene: &Scene<D>, mesh: &Mesh<T, D>) -> R
     })
 }
 
+/// Checks that an element can impose the inequality of a problem and that the facet form is made for the
+/// element, on a cube and without evaluation of data.
+///
+/// # Errors
+/// [`Error::NothingToBound`], [`Error::UnsupportedForm`], [`Error::Quadrature`].
+pub(super) fn check_scheme<T: Real, const D: usize>(
+    scheme: &dyn AnyScheme<T, D>,
+    problem: Problem<D>,
+    quadrature: DataQuadrature,
+) -> Result<(), Error> {
+    // bounds without names, which the cube does not have
+    let zero = |is_given: bool, old: Option<Field<D>>| {
+        old.or_else(|| is_given.then(|| -> Field<D> { Arc::new(|_| 0.0) }))
+    };
+    let (lower, gap) = (!problem.named.lower.is_empty(), !problem.named.gap.is_empty());
+    let upper = !problem.named.upper.is_empty();
+    let problem = Problem {
+        coefficient: None,
+        lower: zero(lower, problem.lower),
+        upper: zero(upper, problem.upper),
+        gap: zero(gap, problem.gap),
+        named: NamedData::default(),
+        ..problem
+    };
+    let cube = BoxDomain::dirichlet(Point::zeros(), Point::repeat(1.0));
+    let mesh = Mesh::<T, D>::kuhn_box(&cube, [1; D])?;
+    match scheme.discretise(&problem, &mesh, quadrature) {
+        Err(
+            why @ (Error::NothingToBound { .. }
+            | Error::UnsupportedForm { .. }
+            | Error::Quadrature(_)),
+        ) => Err(why),
+        _ => Ok(()),
+    }
+}
+
 /// Checks that the built-in domain of a scene has the parts its problem needs.
 ///
 /// # Errors
@@ -61,7 +100,7 @@ pub(crate) fn check_domain<const D: usize>(scene: &Scene<D>) -> Result<(), Error
     let has = |part| scene.domain.has_part(part);
     check_contact(scene, has(BoundaryPart::Contact))?;
     let held = has(BoundaryPart::Contact) || has(BoundaryPart::Dirichlet);
-    if !held && scene.problem.reaction.is_none() {
+    if !held && !scene.problem.has_reaction() {
         let why = "its domain has neither a dirichlet nor a contact side: the problem is singular";
         return Err(Error::UnfitMesh { scene: scene.name.clone(), why: why.to_owned() });
     }
@@ -70,11 +109,11 @@ pub(crate) fn check_domain<const D: usize>(scene: &Scene<D>) -> Result<(), Error
 
 /// Checks that there is a contact part if and only if there is a Signorini condition.
 fn check_contact<const D: usize>(scene: &Scene<D>, contact: bool) -> Result<(), Error> {
-    let why = match (&scene.problem.gap, contact) {
-        (Some(_), false) => {
+    let why = match (scene.problem.has_gap(), contact) {
+        (true, false) => {
             "the scene has a Signorini condition, but no facet of the mesh is in a group named \"contact\""
         }
-        (None, true) => {
+        (false, true) => {
             "the mesh has facets in the group \"contact\", but the scene has no Signorini condition"
         }
         _ => return Ok(()),
@@ -84,20 +123,18 @@ fn check_contact<const D: usize>(scene: &Scene<D>, contact: bool) -> Result<(), 
 
 /// The first contact facet on which the exact solution breaks the contact condition.
 fn first_failure<T: Real, const D: usize>(scene: &Scene<D>, mesh: &Mesh<T, D>) -> Option<String> {
-    let gap = scene.problem.gap.as_ref()?;
+    let data = DataOnMesh::new(&scene.problem, mesh).ok()?;
     let exact = scene.problem.exact.as_ref()?;
     let slack = 1e3 * T::EPSILON;
     for facet in mesh.boundary().iter().filter(|f| f.part == BoundaryPart::Contact) {
         let (cell, local) = (facet.cell as usize, facet.local as usize);
         let x = point_f64(&mesh.facet_barycentre(cell, local));
         let normal = point_f64(&mesh.geometry(cell).normal(local));
-        let alpha = scene
-            .problem
-            .coefficient
-            .as_ref()
-            .map_or(1.0, |a| a(&point_f64(&mesh.barycentre(cell))));
+        let Some(gap) = data.gap.of(usize::from(facet.group)) else { continue };
+        let middle = point_f64(&mesh.barycentre(cell));
+        let alpha = data.coefficient.of(mesh.region(cell)).map_or(1.0, |a| a.at(&middle));
         let gradient = (exact.gradient)(&x);
-        let opening = (exact.value)(&x) - gap(&x);
+        let opening = (exact.value)(&x) - gap.at(&x);
         let pressure = alpha * gradient.dot(&normal);
         let size = 1.0 + opening.abs() + alpha * gradient.norm();
         // the smaller of two non-negative numbers must vanish

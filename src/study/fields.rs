@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use super::file_name::file_name;
 use crate::error::Error;
+use crate::files::replace;
 use crate::nested::Solved;
 use crate::paraview::{FieldScalar, write_pvd};
 use crate::real::Real;
@@ -37,9 +38,11 @@ impl FieldFiles {
             true => directory.join(format!("{stem}.vtu")),
             false => directory.join(format!("{stem}-{level}.vtu")),
         };
-        solved.write_vtu_with(path(level), |file| {
-            let file = file.text("scene", scene).text("scheme", label);
-            file.number("level", level as f64).scalar(self.scalar)
+        replace(&path(level), |draft| {
+            solved.write_vtu_with(draft, |file| {
+                let file = file.text("scene", scene).text("scheme", label);
+                file.number("level", level as f64).scalar(self.scalar)
+            })
         })?;
         if !self.all_levels {
             return Ok(());
@@ -48,6 +51,7 @@ impl FieldFiles {
         done.sort_unstable();
         let series: Vec<(f64, PathBuf)> =
             done.into_iter().map(|level| (level as f64, path(level))).collect();
-        write_pvd(&directory.join(format!("{stem}.pvd")), &series)
+        let list = directory.join(format!("{stem}.pvd"));
+        replace(&list, |draft| write_pvd(draft, &series)).map(|_| ())
     }
 }

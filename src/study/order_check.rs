@@ -4,7 +4,7 @@ use std::fmt;
 
 use super::report::Report;
 use super::row::Row;
-use super::table::distinct;
+use super::row::distinct;
 use crate::inequality::Outcome;
 use crate::measure::{ErrorNorm, FittedOrder, fit_order};
 use crate::readable_debug::debug_by_display;

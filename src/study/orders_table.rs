@@ -3,7 +3,7 @@
 use std::fmt::Write;
 
 use super::order_check::{ObservedOrders, OrderVerdict, PROMISED, levels_in_words, order_in_words};
-use super::table::distinct;
+use super::row::distinct;
 use crate::measure::{ErrorNorm, FittedOrder};
 
 /// The cell of a number that does not apply.

@@ -1,10 +1,13 @@
 //! A report: rows, and the program that ran them.
 
+use std::collections::BTreeMap;
+
+use super::extrapolate::{Extrapolated, extrapolate};
 use super::row::Row;
 
 /// The program that made a report, and its settings.
 #[derive(Clone, Debug, PartialEq, Eq)]
-#[cfg_attr(feature = "report", derive(serde::Serialize))]
+#[cfg_attr(feature = "report", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub struct Program {
     /// Name of the program.
@@ -19,6 +22,8 @@ pub struct Program {
     pub repeat: usize,
     /// Architecture and vector instructions for which the program was compiled.
     pub target_cpu: String,
+    /// What else the rows depend on and do not say, by name: parameters of scenes, a mesh file.
+    pub request: BTreeMap<String, String>,
 }
 
 impl Program {
@@ -33,7 +38,14 @@ impl Program {
             precision: precision.to_owned(),
             repeat,
             target_cpu: target_cpu(),
+            request: BTreeMap::new(),
         }
+    }
+    /// States something else on which the rows depend.
+    #[must_use]
+    pub fn with_request(mut self, name: &str, value: impl ToString) -> Self {
+        self.request.insert(name.to_owned(), value.to_string());
+        self
     }
 }
 
@@ -62,11 +74,13 @@ fn target_cpu() -> String {
 
 /// Rows in the order run, and the program that ran them.
 #[derive(Clone, Debug, PartialEq)]
-#[cfg_attr(feature = "report", derive(serde::Serialize))]
+#[cfg_attr(feature = "report", derive(serde::Deserialize))]
 #[non_exhaustive]
 pub struct Report {
     /// The program.
     pub program: Program,
+    /// Whether every row that was asked for is there; false in the report of a run that was interrupted.
+    pub complete: bool,
     /// One row for every scene, scheme and level.
     pub rows: Vec<Row>,
 }
@@ -75,6 +89,34 @@ impl Report {
     /// A report of rows that a program ran.
     #[must_use]
     pub fn new(program: Program, rows: Vec<Row>) -> Self {
-        Self { program, rows }
+        Self { program, complete: true, rows }
+    }
+    /// The report as JSON. Numbers that do not apply, and numbers that are not finite, are null.
+    #[cfg(feature = "report")]
+    pub fn to_json(&self) -> String {
+        // `serde_json` writes every NaN and infinity as null: JSON has no other way. The value is
+        // plain data with string keys, which is all it takes for the serialisation to succeed.
+        let mut text = serde_json::to_string_pretty(self).unwrap_or_else(|_| "null".to_owned());
+        text.push('\n');
+        text
+    }
+    /// The limits of energy, contact measure and resultant: see [`extrapolate`].
+    #[must_use]
+    pub fn extrapolated(&self) -> Vec<Extrapolated> {
+        extrapolate(&self.rows)
+    }
+}
+
+/// The fields, and the limits of the rows as `extrapolated`.
+#[cfg(feature = "report")]
+impl serde::Serialize for Report {
+    fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        use serde::ser::SerializeStruct;
+        let mut report = serializer.serialize_struct("Report", 4)?;
+        report.serialize_field("program", &self.program)?;
+        report.serialize_field("complete", &self.complete)?;
+        report.serialize_field("rows", &self.rows)?;
+        report.serialize_field("extrapolated", &self.extrapolated())?;
+        report.end()
     }
 }

@@ -1,5 +1,6 @@
 //! Rows of a report: the figures of one scene, scheme and level each.
 
+use crate::error::Error;
 use crate::facet::PenaltyParameters;
 use crate::inequality::{Certificate, Outcome, StageRun};
 use crate::measure::{ContactErrors, Errors};
@@ -9,7 +10,7 @@ use crate::scheme::ExpectedOrders;
 
 /// Observed orders.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-#[cfg_attr(feature = "report", derive(serde::Serialize))]
+#[cfg_attr(feature = "report", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub struct Orders {
     /// Of the error in the L2 norm.
@@ -28,7 +29,7 @@ pub struct Orders {
 
 /// Iteration counts.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
-#[cfg_attr(feature = "report", derive(serde::Serialize))]
+#[cfg_attr(feature = "report", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub struct Iterations {
     /// Number of active sets on this level; none without an iterate.
@@ -45,7 +46,7 @@ pub struct Iterations {
 
 /// Wall times in seconds.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-#[cfg_attr(feature = "report", derive(serde::Serialize))]
+#[cfg_attr(feature = "report", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub struct Seconds {
     /// Making the mesh.
@@ -66,9 +67,23 @@ impl Seconds {
     }
 }
 
+/// What tells the rows of a report apart.
+#[derive(Clone, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub struct RowKey {
+    /// Name of the scene.
+    pub scene: String,
+    /// Scheme, constraint set and choices.
+    pub label: String,
+    /// Name of the solver.
+    pub solver: String,
+    /// Subdivisions, or number of refinements.
+    pub level: usize,
+}
+
 /// One row of a report. Keys are binding for scripts; a number that does not apply is null.
 #[derive(Clone, Debug, PartialEq)]
-#[cfg_attr(feature = "report", derive(serde::Serialize))]
+#[cfg_attr(feature = "report", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub struct Row {
     /// Name of the scene.
@@ -93,17 +108,21 @@ pub struct Row {
     pub linear: String,
     /// Number of cells.
     pub cells: usize,
-    /// Number of unknowns before Dirichlet values are eliminated.
-    pub unknowns: usize,
-    /// Entries stored in the matrix of all unknowns.
-    pub nonzeros: usize,
+    /// Number of unknowns before Dirichlet values are eliminated; none if the data ended the assembly
+    /// before.
+    pub unknowns: Option<usize>,
+    /// Entries stored in the matrix of all unknowns; none where none was assembled.
+    pub nonzeros: Option<usize>,
     /// Largest cell diameter.
+    #[cfg_attr(feature = "report", serde(deserialize_with = "crate::input::number_or_nan"))]
     pub mesh_size: f64,
     /// How the solve ended; its name in files.
     pub status: Outcome,
     /// What the status says, in one sentence; none if the solve converged.
     pub message: Option<String>,
-    /// Errors against the exact solution.
+    /// Against what the errors are: `exact`, or scheme and level of a reference; none without errors.
+    pub against: Option<String>,
+    /// Errors against the exact solution, or against a reference.
     pub error: Errors,
     /// Distances of multiplier and contact set, keys of the row itself.
     #[cfg_attr(feature = "report", serde(flatten))]
@@ -112,10 +131,18 @@ pub struct Row {
     pub order: Orders,
     /// Orders that theory promises.
     pub expected_order: ExpectedOrders,
-    /// `a(u,u)/2 - l(u)`; null for non-symmetric schemes.
+    /// `a(u,u)/2 - l(u)` with all terms of the scheme, which no other scheme has; null for non-symmetric
+    /// schemes.
     pub objective: Option<f64>,
+    /// The energy by one formula for every scheme: [`Discretisation::energy`](crate::assemble::Discretisation::energy).
+    pub energy: Option<f64>,
     /// Constrained unknowns in contact, Dirichlet ones not counted; none where there is no iterate.
     pub active: Option<usize>,
+    /// Measure of the contact set: a volume with obstacles, else an area of the boundary; null without an
+    /// inequality.
+    pub contact_measure: Option<f64>,
+    /// Total contact force, positive where a lower bound pushes upward; null without an inequality.
+    pub resultant: Option<f64>,
     /// Iteration counts.
     pub iterations: Iterations,
     /// The certificate.
@@ -143,17 +170,21 @@ impl Row {
             solver: String::new(),
             linear: String::new(),
             cells: 0,
-            unknowns: 0,
-            nonzeros: 0,
+            unknowns: None,
+            nonzeros: None,
             mesh_size: f64::NAN,
             status,
             message: (status != Outcome::Converged).then(|| status.message().to_owned()),
+            against: None,
             error: Errors::default(),
             contact: ContactErrors::default(),
             order: Orders::default(),
             expected_order: ExpectedOrders::default(),
             objective: None,
+            energy: None,
             active: None,
+            contact_measure: None,
+            resultant: None,
             iterations: Iterations::default(),
             certificate: Certificate::INVALID,
             seconds: Seconds::default(),
@@ -162,7 +193,7 @@ impl Row {
         }
     }
 
-    /// The row of a solve without errors, expected orders and the names of constraint set and solver.
+    /// The row of a solve without errors, energy, expected orders and the names of constraint set and solver.
     pub(super) fn of<T: Real, const D: usize>(
         scene: &str,
         scheme: &str,
@@ -175,11 +206,13 @@ impl Row {
             parameters: solved.discretisation().form().theory().parameters,
             linear: solution.linear_solver.to_owned(),
             cells: mesh.n_cells(),
-            unknowns: solution.values.len(),
-            nonzeros: solved.inequality().matrix.nonzeros(),
+            unknowns: Some(solution.values.len()),
+            nonzeros: Some(solved.inequality().matrix.nonzeros()),
             mesh_size: mesh.mesh_size(),
             objective: solved.objective(),
             active: solved.active(),
+            contact_measure: solved.contact_measure(),
+            resultant: solved.resultant(),
             iterations: Iterations {
                 outer: solved.outer(),
                 linear: solution.linear,
@@ -194,8 +227,45 @@ impl Row {
         }
     }
 
+    /// The row with the outcome that an error of the data stands for, and the message of the error.
+    ///
+    /// # Errors
+    /// The error itself if another run, with the same data on another mesh, would have it too.
+    pub(super) fn with_error(mut self, error: Error) -> Result<Self, Error> {
+        self.status = match &error {
+            Error::CoefficientNotPositive { value, .. } if value.is_finite() => {
+                Outcome::NotCoercive
+            }
+            Error::DataNotFinite { .. } | Error::CoefficientNotPositive { .. } => {
+                Outcome::NotFinite
+            }
+            Error::EmptyConstraint { .. } => Outcome::Infeasible,
+            Error::Parameter { .. } => Outcome::OutOfRange,
+            _ => return Err(error),
+        };
+        self.message = Some(error.to_string());
+        Ok(self)
+    }
+
+    /// What tells the row apart from the others of its report.
+    pub fn key(&self) -> RowKey {
+        let [scene, label, solver] = [&self.scene, &self.label, &self.solver].map(String::clone);
+        RowKey { scene, label, solver, level: self.level }
+    }
+
     /// Whether the solve of this row converged.
     pub fn converged(&self) -> bool {
         self.status == Outcome::Converged
     }
+}
+
+/// Each item once, in order of first occurrence.
+pub(crate) fn distinct<T: PartialEq>(items: impl Iterator<Item = T>) -> Vec<T> {
+    let mut once = Vec::new();
+    for item in items {
+        if !once.contains(&item) {
+            once.push(item);
+        }
+    }
+    once
 }

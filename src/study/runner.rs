@@ -5,24 +5,27 @@ use std::fmt;
 use std::path::PathBuf;
 use std::sync::Arc;
 
-use super::compatibility::{check_domain, check_fit};
+use super::compatibility::{check_domain, check_fit, check_scheme};
 #[cfg(feature = "report")]
 use super::fields::FieldFiles;
+#[cfg(feature = "report")]
+use super::journal::Journal;
 use super::memory::{
     MemoryEstimate, estimate, estimate_without_factors, peak_memory_bytes, unknowns_about,
 };
 use super::orders::fill_orders;
+use super::reference::Reference;
 use super::report::{Program, Report};
-use super::row::Row;
+use super::row::{Row, RowKey};
 use super::setting::setting;
 use crate::assemble::DataQuadrature;
 use crate::constraint::ConstraintSet;
 use crate::element::Layout;
 use crate::error::Error;
-use crate::inequality::{ActiveSet, InequalitySolver};
+use crate::inequality::{ActiveSet, InequalitySolver, Outcome};
 use crate::instances::compiled;
-use crate::mesh::Mesh;
-use crate::nested::{Coarsest, Hierarchy, NestedIteration, Solved};
+use crate::mesh::{BoxDomain, Mesh};
+use crate::nested::{Coarsest, Hierarchy, NestedIteration, Phase, Solved};
 #[cfg(feature = "report")]
 use crate::paraview::FieldScalar;
 use crate::problem::Problem;
@@ -36,8 +39,12 @@ use crate::scheme::{AnyScheme, ExpectedOrders, NamedScheme};
 pub enum Progress<'a> {
     /// A run begins: scene, label of the scheme, level.
     Started(&'a str, &'a str, usize),
+    /// The run, or the study before its first run, enters a phase.
+    Entered(Phase),
     /// A run ended.
     Finished(&'a Row),
+    /// The journal has the row of an earlier run.
+    Kept(&'a Row),
 }
 
 /// Schemes side by side on one scene.
@@ -59,9 +66,12 @@ pub struct Study<'a, T: Real, const D: usize> {
     entries: Vec<Entry<'a, T, D>>,
     levels: Vec<usize>,
     mesh: Option<Mesh<T, D>>,
+    reference: Option<Reference<'a, T, D>>,
     solvers: Vec<Arc<dyn InequalitySolver<T> + 'a>>,
     quadrature: DataQuadrature,
     repeat: usize,
+    #[cfg(feature = "report")]
+    journal: Option<&'a Journal>,
     #[cfg(feature = "report")]
     fields: FieldFiles,
     each_solution: Option<EachSolution<'a, T, D>>,
@@ -109,14 +119,57 @@ impl<'a, T: Real, const D: usize> Study<'a, T, D> {
             entries: Vec::new(),
             levels: Vec::new(),
             mesh: None,
+            reference: None,
             solvers: Vec::new(),
             quadrature: DataQuadrature::default(),
             repeat: 1,
+            #[cfg(feature = "report")]
+            journal: None,
             #[cfg(feature = "report")]
             fields: FieldFiles::default(),
             each_solution: None,
             observer: Box::new(|_| {}),
         }
+    }
+    /// A study of a problem of one's own on a mesh and its refinements. The data of the problem give the
+    /// boundary its parts ([`Problem::bind_boundary`]).
+    ///
+    /// # Errors
+    /// [`Error::Mesh`] where two data claim one boundary group.
+    pub fn of_problem(name: &str, problem: Problem<D>, mesh: Mesh<T, D>) -> Result<Self, Error> {
+        let mesh = problem.bind_boundary(mesh)?;
+        // the domain of a scene is not used where there is a mesh
+        let domain = BoxDomain::centred(1.0);
+        Ok(Self::new(Scene::new(name, domain, problem)).on_mesh(mesh))
+    }
+    /// Measures all rows against the solution of this scheme on a level, in place of the exact one: errors,
+    /// orders, multiplier and contact set. On a domain the level is a power of two times every other level
+    /// and at least four times the finest; on a mesh it is at least two refinements finer.
+    ///
+    /// ```
+    /// use unilateral::prelude::*;
+    /// # fn main() -> Result<(), Error> {
+    /// let report = Study::<f64, 2>::new(scenes::radial(1.0))
+    ///     .scheme(ConformingP1)
+    ///     .levels([8, 16])
+    ///     .reference(ConformingP2, 64)
+    ///     .run()?;
+    /// assert_eq!(report.rows[1].against.as_deref(), Some("p2 at level 64"));
+    /// assert!(report.rows[1].order.h1 > Some(0.9));
+    /// # Ok(())
+    /// # }
+    /// ```
+    #[must_use]
+    pub fn reference(mut self, scheme: impl AnyScheme<T, D> + 'a, level: usize) -> Self {
+        self.reference = Some(Reference { scheme: Arc::new(scheme), set: None, level });
+        self
+    }
+    /// As [`Study::reference`], with a scheme as users write it.
+    #[must_use]
+    pub fn named_reference(mut self, scheme: &NamedScheme, level: usize) -> Self {
+        let (set, scheme) = (scheme.constraint_set(), scheme.make().into());
+        self.reference = Some(Reference { scheme, set, level });
+        self
     }
     /// Adds a scheme, with the constraint set of the problem.
     #[must_use]
@@ -229,6 +282,14 @@ impl<'a, T: Real, const D: usize> Study<'a, T, D> {
         self.each_solution = Some(Box::new(f));
         self
     }
+    /// Adds each row to a journal as soon as it is finished, and takes those that the journal has from an
+    /// earlier run.
+    #[cfg(feature = "report")]
+    #[must_use]
+    pub fn journal(mut self, journal: &'a Journal) -> Self {
+        self.journal = Some(journal);
+        self
+    }
     /// Sets a function that receives the progress of the study.
     #[must_use]
     pub fn observer(mut self, observer: impl Fn(Progress<'_>) + 'a) -> Self {
@@ -240,7 +301,7 @@ impl<'a, T: Real, const D: usize> Study<'a, T, D> {
     ///
     /// # Errors
     /// [`Error::Parameter`] for an empty list of levels or schemes or a level of zero,
-    /// [`Error::UnfitMesh`], [`Error::Mesh`].
+    /// [`Error::NothingToBound`], [`Error::UnsupportedForm`], [`Error::UnfitMesh`], [`Error::Mesh`].
     pub fn check(&self) -> Result<(), Error> {
         compiled!(
             T, D: fn(&Study<'_, T, D>) -> Result<(), Error>
@@ -257,6 +318,14 @@ impl<'a, T: Real, const D: usize> Study<'a, T, D> {
             return Err(Error::Parameter { parameter, value: "none".to_owned(), allowed });
         }
         self.levels.iter().try_for_each(|&level| self.coarsest().check(level))?;
+        for (entry, problem) in self.entries.iter().zip(self.problems()) {
+            check_scheme(&*entry.scheme, problem, self.quadrature)?;
+        }
+        if let Some(reference) = &self.reference {
+            let domain = self.mesh.is_none().then_some(&self.scene.domain);
+            reference.check(domain, &self.levels)?;
+            self.coarsest().check(reference.level)?;
+        }
         match &self.mesh {
             Some(mesh) => check_fit(&self.scene, mesh),
             None => check_domain(&self.scene).map(|()| None),
@@ -272,30 +341,32 @@ impl<'a, T: Real, const D: usize> Study<'a, T, D> {
         )(self)
     }
     fn estimate_memory(&self) -> Option<MemoryEstimate> {
-        let level = self.levels.iter().copied().max()?;
-        let cells = self.coarsest().cells(level);
         let obstacle = self.scene.problem.has_obstacle();
         let solvers = self.solvers();
-        let bytes = |layout: Layout| {
+        let bytes = |layout: Layout, cells: f64| {
             let unknowns = unknowns_about(D, layout, cells) as usize;
             match D > 1 && solvers.iter().all(|s| s.uses_coarse_spaces(unknowns)) {
                 true => estimate_without_factors(D, layout, cells, size_of::<T>()),
                 false => estimate(D, layout, cells, obstacle, size_of::<T>()),
             }
         };
-        let of = |scheme: &dyn AnyScheme<T, D>| MemoryEstimate {
-            bytes: bytes(scheme.layout()),
+        let of = |scheme: &dyn AnyScheme<T, D>, level: usize| MemoryEstimate {
+            bytes: bytes(scheme.layout(), self.coarsest().cells(level)),
             scheme: scheme.name().to_owned(),
             level,
         };
-        self.entries.iter().map(|e| of(&*e.scheme)).max_by(|a, b| a.bytes.total_cmp(&b.bytes))
+        let finest = self.levels.iter().copied().max()?;
+        let reference = self.reference.iter().map(|r| of(&*r.scheme, r.level));
+        let runs = self.entries.iter().map(|e| of(&*e.scheme, finest));
+        runs.chain(reference).max_by(|a, b| a.bytes.total_cmp(&b.bytes))
     }
 
     /// Runs every scheme with every solver on every level.
     ///
     /// # Errors
-    /// Errors of [`Self::check`] and of assembly. A solve that does not converge is no error: its
-    /// row has the outcome.
+    /// Errors of [`Self::check`], and [`Error::Write`] for fields and journal. A run that fails is no
+    /// error: its row has the outcome and the message, also where data are not finite on a mesh, or leave
+    /// no room for a solution.
     pub fn run(&self) -> Result<Report, Error> {
         compiled!(
             T, D: fn(&Study<'_, T, D>) -> Result<Report, Error>
@@ -304,29 +375,91 @@ impl<'a, T: Real, const D: usize> Study<'a, T, D> {
     }
     fn run_all(&self) -> Result<Report, Error> {
         let failure = self.where_exact_fails()?;
-        let hierarchies = self.coarsest().build_all(&self.levels)?;
-        let problems: Vec<Problem<D>> =
-            self.entries.iter().map(|e| e.problem(&self.scene.problem)).collect();
+        let kept: Vec<Option<Row>> = self.keys().iter().map(|key| self.kept(key)).collect();
+        (self.observer)(Progress::Entered(Phase::Mesh));
+        let hierarchies = match kept.iter().all(Option::is_some) {
+            true => Vec::new(),
+            false => self.hierarchies()?,
+        };
+        let problems = self.problems();
+        let reference_problem = self.reference.as_ref().map(|reference| {
+            let set = reference.set.clone().or(self.scene.problem.constraint_set.clone());
+            Problem { constraint_set: set, ..self.scene.problem.clone() }
+        });
+        let reference = match (&self.reference, &reference_problem, hierarchies.first()) {
+            (Some(reference), Some(problem), Some(hierarchy)) => {
+                Some(self.solve_reference(reference, problem, hierarchy)?)
+            }
+            _ => None,
+        };
         let mut by_solver: Vec<Vec<NestedIteration<'_, T, D>>> = self
             .solvers()
             .iter()
             .map(|solver| hierarchies.iter().map(|h| self.nested(h, solver)).collect())
             .collect();
+        let mut kept = kept.into_iter();
         let mut rows = Vec::new();
         for (entry, problem) in self.entries.iter().zip(&problems) {
             for nested in &mut by_solver {
                 let label = entry.scheme.label_on(problem.constraint_set());
                 for &level in &self.levels {
+                    if let Some(row) = kept.next().flatten() {
+                        (self.observer)(Progress::Kept(&row));
+                        rows.push(row);
+                        continue;
+                    }
                     (self.observer)(Progress::Started(&self.scene.name, &label, level));
-                    let (row, _) = self.row(nested, (entry, problem), level, failure.as_deref())?;
+                    let (row, _) = {
+                        let measured =
+                            Measured { failure: failure.as_deref(), reference: reference.as_ref() };
+                        self.row(nested, (entry, problem), level, measured)?
+                    };
+                    #[cfg(feature = "report")]
+                    if let Some(journal) = self.journal {
+                        journal.add(&row)?;
+                    }
                     (self.observer)(Progress::Finished(&row));
                     rows.push(row);
                 }
             }
         }
         fill_orders(&mut rows);
-        let program = Program::new("study", T::NAME, rayon::current_num_threads(), self.repeat);
-        Ok(Report { program, rows })
+        let program = || Program::new("study", T::NAME, rayon::current_num_threads(), self.repeat);
+        #[cfg(feature = "report")]
+        let program = || self.journal.map_or_else(program, |journal| journal.program().clone());
+        Ok(Report::new(program(), rows))
+    }
+
+    /// The problem of the scene with the constraint set of each scheme.
+    fn problems(&self) -> Vec<Problem<D>> {
+        self.entries.iter().map(|e| e.problem(&self.scene.problem)).collect()
+    }
+
+    /// What tells the rows of the study apart, in the order in which they run.
+    pub fn keys(&self) -> Vec<RowKey> {
+        let mut keys = Vec::new();
+        for (entry, problem) in self.entries.iter().zip(&self.problems()) {
+            let label = entry.scheme.label_on(problem.constraint_set());
+            for solver in self.solvers() {
+                keys.extend(self.levels.iter().map(|&level| RowKey {
+                    scene: self.scene.name.clone(),
+                    label: label.clone(),
+                    solver: solver.name().to_owned(),
+                    level,
+                }));
+            }
+        }
+        keys
+    }
+
+    /// The row that the journal has from an earlier run.
+    #[cfg(feature = "report")]
+    fn kept(&self, key: &RowKey) -> Option<Row> {
+        self.journal?.take(key)
+    }
+    #[cfg(not(feature = "report"))]
+    fn kept(&self, _: &RowKey) -> Option<Row> {
+        None
     }
 
     /// Runs the first scheme with the first solver on the first level with a new hierarchy, so that no
@@ -340,7 +473,39 @@ impl<'a, T: Real, const D: usize> Study<'a, T, D> {
         let problem = entry.problem(&self.scene.problem);
         let hierarchy = self.coarsest().build(level)?;
         let mut nested = [self.nested(&hierarchy, &self.solvers()[0])];
-        self.row(&mut nested, (entry, &problem), level, failure.as_deref())
+        let measured = Measured { failure: failure.as_deref(), reference: None };
+        self.row(&mut nested, (entry, &problem), level, measured)
+    }
+
+    /// The meshes of all levels: in one hierarchy with those of a reference.
+    fn hierarchies(&self) -> Result<Vec<Hierarchy<T, D>>, Error> {
+        match &self.reference {
+            None => self.coarsest().build_all(&self.levels),
+            Some(reference) => {
+                let coarsest = self.levels.iter().copied().min().unwrap_or(1);
+                Ok(vec![self.coarsest().build_from(reference.level, coarsest)?])
+            }
+        }
+    }
+
+    /// The reference, and its name in rows.
+    fn solve_reference<'h>(
+        &'h self,
+        reference: &Reference<'_, T, D>,
+        problem: &'h Problem<D>,
+        hierarchy: &'h Hierarchy<T, D>,
+    ) -> Result<(Solved<'h, T, D>, String), Error> {
+        let name = reference.name(self.scene.problem.constraint_set());
+        (self.observer)(Progress::Started(&self.scene.name, &name, reference.level));
+        let mut nested = NestedIteration::new(problem, hierarchy)
+            .shared_solver(self.solvers()[0].clone())
+            .quadrature(self.quadrature);
+        let solved = nested.solve(&*reference.scheme)?;
+        if !solved.converged() {
+            let why = solved.outcome().message().to_owned();
+            return Err(Error::NoReference { reference: name, why });
+        }
+        Ok((solved, name))
     }
 
     /// From which the meshes of all levels are refined.
@@ -369,6 +534,7 @@ impl<'a, T: Real, const D: usize> Study<'a, T, D> {
             .shared_solver(solver.clone())
             .quadrature(self.quadrature)
             .repeat(self.repeat)
+            .observer(|phase| (self.observer)(Progress::Entered(phase)))
     }
 
     /// Solves one scheme on one level of these hierarchies. Returns the row, and the seconds of its start
@@ -378,17 +544,40 @@ impl<'a, T: Real, const D: usize> Study<'a, T, D> {
         nested: &mut [NestedIteration<'p, T, D>],
         (entry, problem): (&Entry<'_, T, D>, &'p Problem<D>),
         level: usize,
-        failure: Option<&str>,
+        measured: Measured<'_, 'p, T, D>,
     ) -> Result<(Row, f64), Error> {
+        let failure = measured.failure;
         let mut on_level = nested.iter_mut().filter_map(|n| Some((n.position(level)?, n)));
         let Some((position, nested)) = on_level.next() else {
             unreachable!("a hierarchy has the level")
         };
         let (scheme, set) = (&*entry.scheme, problem.constraint_set());
+        let (solver, label) = (nested.solver_name(), scheme.label_on(set));
+        let complete = |row: Row| Row {
+            constraint: scheme.constraint_on(set).unwrap_or_else(|| set.name().to_owned()),
+            label: label.clone(),
+            solver: solver.to_owned(),
+            expected_order: self.expected_orders(scheme, set, failure),
+            peak_memory_bytes: peak_memory_bytes(),
+            ..row
+        };
         nested.replace_constraint_set(problem);
-        let solved = nested.solve_on(position, scheme)?;
-        let solver = nested.solver_name();
-        let label = scheme.label_on(set);
+        let solved = match nested.solve_on(position, scheme) {
+            Ok(solved) => solved,
+            Err(error) => {
+                let mesh = nested.mesh(position);
+                let (name, outcome) = (scheme.name(), Outcome::Malformed);
+                let space = scheme.discretise(problem, mesh, self.quadrature);
+                let row = Row {
+                    parameters: scheme.parameters(mesh),
+                    unknowns: space.ok().map(|space| space.unknowns()),
+                    cells: mesh.n_cells(),
+                    mesh_size: mesh.mesh_size(),
+                    ..Row::new(&self.scene.name, D, name, level, outcome)
+                };
+                return Ok((complete(row).with_error(error)?, 0.0));
+            }
+        };
         #[cfg(feature = "report")]
         {
             let with_solver = format!("{label}-{solver}");
@@ -398,20 +587,17 @@ impl<'a, T: Real, const D: usize> Study<'a, T, D> {
         if let Some(f) = self.each_solution.as_ref().filter(|_| solved.has_iterate()) {
             f(&label, level, &solved)?;
         }
-        let mut row = Row {
-            constraint: scheme.constraint_on(set).unwrap_or_else(|| set.name().to_owned()),
-            label,
-            solver: solver.to_owned(),
-            expected_order: self.expected_orders(scheme, set, failure),
-            peak_memory_bytes: peak_memory_bytes(),
-            ..Row::of(&self.scene.name, scheme.name(), level, &solved)
-        };
-        match failure {
-            None => (row.error, row.contact) = (solved.errors()?, solved.contact_errors()?),
-            Some(at) => row.warnings.push(format!(
+        (self.observer)(Progress::Entered(Phase::Measures));
+        let mut row = complete(Row::of(&self.scene.name, scheme.name(), level, &solved));
+        if let Some(at) = failure.filter(|_| measured.reference.is_none()) {
+            row.warnings.push(format!(
                 "the scene's solution breaks the contact condition of this mesh at {at}: no errors"
-            )),
+            ));
         }
+        let row = match measured.measure(&mut row, &solved) {
+            Ok(()) => row,
+            Err(error) => row.with_error(error)?,
+        };
         Ok((row, solved.start_seconds))
     }
 
@@ -428,5 +614,30 @@ impl<'a, T: Real, const D: usize> Study<'a, T, D> {
             }
             _ => ExpectedOrders::default(),
         }
+    }
+}
+
+/// Against what rows are measured.
+#[derive(Clone, Copy)]
+struct Measured<'m, 'p, T: Real, const D: usize> {
+    /// Where the exact solution breaks the contact condition of the mesh.
+    failure: Option<&'m str>,
+    /// A solution in place of the exact one, and its name.
+    reference: Option<&'m (Solved<'p, T, D>, String)>,
+}
+
+impl<T: Real, const D: usize> Measured<'_, '_, T, D> {
+    /// Fills in energy and errors.
+    fn measure(&self, row: &mut Row, solved: &Solved<'_, T, D>) -> Result<(), Error> {
+        row.energy = solved.energy()?;
+        if let Some((reference, name)) = self.reference {
+            row.error = solved.difference(reference)?;
+            row.contact = solved.contact_difference(reference)?;
+            row.against = Some(name.clone());
+        } else if self.failure.is_none() && solved.discretisation().problem().exact.is_some() {
+            (row.error, row.contact) = (solved.errors()?, solved.contact_errors()?);
+            row.against = Some("exact".to_owned());
+        }
+        Ok(())
     }
 }

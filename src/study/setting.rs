@@ -13,10 +13,10 @@ pub(super) fn setting<const D: usize>(scene: &Scene<D>, on_mesh: bool) -> Settin
     Setting {
         dimension: D,
         obstacle: problem.has_obstacle(),
-        contact: problem.gap.is_some(),
+        contact: problem.has_gap(),
         regularity: scene.regularity,
-        coefficient: problem.coefficient.is_some(),
-        regular_dual: problem.coefficient.is_none()
+        coefficient: problem.has_coefficient(),
+        regular_dual: !problem.has_coefficient()
             && (D == 1 || !on_mesh && is_convex && all_dirichlet),
     }
 }

@@ -1,8 +1,10 @@
 //! Reports as text for a terminal: one table for each scene.
 
-use crate::study::report::Report;
-use crate::study::row::Row;
 use std::fmt;
+
+use super::extrapolate::{Limit, extrapolate};
+use super::report::Report;
+use super::row::{Row, distinct};
 
 /// The cell of a number that does not apply.
 const NONE: &str = "-";
@@ -17,7 +19,8 @@ impl fmt::Display for Report {
 
 /// Writes one table for each scene, in the order in which scenes first occur, with a blank line
 /// between schemes; times are in seconds. `certif.` is the largest of the four numbers of the
-/// certificate. A row that did not converge is followed by the reason.
+/// certificate. A row that did not converge is followed by the reason. Where no error is known there are
+/// columns of energy, contact measure and resultant, and their limits below.
 fn write_tables(f: &mut impl fmt::Write, rows: &[Row]) -> fmt::Result {
     for (i, (scene, rows)) in scenes(rows).into_iter().enumerate() {
         if i > 0 {
@@ -55,7 +58,7 @@ fn write_scene(f: &mut impl fmt::Write, scene: &str, rows: &[&Row]) -> fmt::Resu
         for row in rows.iter().filter(|r| key(r) == of_series) {
             write_line(f, &columns, &widths, gap, |c| (c.cell)(row))?;
             if !row.converged() {
-                let message = row.status.message();
+                let message = row.message.as_deref().unwrap_or(row.status.message());
                 write_wrapped(f, &format!("  ^ did not converge: {}: {message}", row.status))?;
             }
         }
@@ -64,6 +67,37 @@ fn write_scene(f: &mut impl fmt::Write, scene: &str, rows: &[&Row]) -> fmt::Resu
         rows.iter().flat_map(|r| r.warnings.iter().map(|w| (r.label.as_str(), w.as_str()))),
     ) {
         write_wrapped(f, &format!("  warning, {}: {}", warning.0, warning.1))?;
+    }
+    if has_errors(rows) { Ok(()) } else { write_limits(f, rows) }
+}
+
+/// Whether an error in L2 or H1 is known.
+fn has_errors(rows: &[&Row]) -> bool {
+    rows.iter().any(|r| r.error.l2.is_some() || r.error.h1.is_some())
+}
+
+/// Writes the limits of energy, contact measure and resultant of each series.
+fn write_limits(f: &mut impl fmt::Write, rows: &[&Row]) -> fmt::Result {
+    let rows: Vec<Row> = rows.iter().map(|&row| row.clone()).collect();
+    let has_solvers = rows.iter().any(|r| r.solver != rows[0].solver);
+    for series in extrapolate(&rows) {
+        let limit = |name: &str, limit: Option<Limit>| {
+            let Limit { value, order } = limit?;
+            let order =
+                order.map_or_else(|| "on three levels".to_owned(), |p| format!("order {p:.2}"));
+            Some(format!("{name} {value:.6e} ({order})"))
+        };
+        let limits = [
+            limit("energy", series.energy),
+            limit("contact", series.contact_measure),
+            limit("resultant", series.resultant),
+        ];
+        let limits: Vec<String> = limits.into_iter().flatten().collect();
+        if !limits.is_empty() {
+            let solver = if has_solvers { format!(", {}", series.solver) } else { String::new() };
+            let name = format!("{}{solver}", series.label);
+            write_wrapped(f, &format!("  extrapolated, {name}: {}", limits.join(", ")))?;
+        }
     }
     Ok(())
 }
@@ -139,7 +173,7 @@ pub(crate) fn columns(rows: &[&Row]) -> Vec<Column> {
     }
     columns.push(number("n", |r| r.level.to_string()));
     columns.push(number("h", |r| scientific(Some(r.mesh_size))));
-    columns.push(number("unknowns", |r| r.unknowns.to_string()));
+    columns.push(number("unknowns", |r| whole(r.unknowns)));
     columns.push(number("outer", |r| whole(r.iterations.outer)));
     if any(|r| r.error.l2) {
         columns.push(number("L2", |r| scientific(r.error.l2)));
@@ -148,6 +182,15 @@ pub(crate) fn columns(rows: &[&Row]) -> Vec<Column> {
     if any(|r| r.error.h1) {
         columns.push(number("H1", |r| scientific(r.error.h1)));
         columns.push(number("order", |r| fixed(r.order.h1)));
+    }
+    if !has_errors(rows) {
+        if any(|r| r.energy) {
+            columns.push(number("energy", |r| digits(r.energy)));
+        }
+        if any(|r| r.contact_measure) {
+            columns.push(number("contact", |r| digits(r.contact_measure)));
+            columns.push(number("resultant", |r| digits(r.resultant)));
+        }
     }
     columns.push(number("active", |r| whole(r.active)));
     columns.push(number("certif.", |r| {
@@ -194,6 +237,14 @@ fn scientific(x: Option<f64>) -> String {
     }
 }
 
+/// Six digits and the power of ten: `1.37281e-2`.
+fn digits(x: Option<f64>) -> String {
+    match x {
+        Some(x) if x != 0.0 && x.is_finite() => format!("{x:.5e}"),
+        x => scientific(x),
+    }
+}
+
 /// Two digits after the point: `1.98`.
 fn fixed(x: Option<f64>) -> String {
     x.map_or_else(|| NONE.to_owned(), |x| format!("{x:.2}"))
@@ -208,15 +259,4 @@ fn seconds(x: f64) -> String {
         x if x < 1000.0 => format!("{x:.2}"),
         x => format!("{x:.1}"),
     }
-}
-
-/// Each item once, in order of first occurrence.
-pub(crate) fn distinct<T: PartialEq>(items: impl Iterator<Item = T>) -> Vec<T> {
-    let mut once = Vec::new();
-    for item in items {
-        if !once.contains(&item) {
-            once.push(item);
-        }
-    }
-    once
 }

@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use crate::study::table::distinct;
+use crate::study::row::distinct;
 use crate::study::{Row, Seconds};
 
 /// A scheme on a scene with constraint set, linear solver and scalar: one curve of a plot.

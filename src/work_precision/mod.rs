@@ -459,7 +459,7 @@ fn wrong(parameter: &'static str, value: String, allowed: &str) -> Error {
 
 /// Observed orders, variant by variant.
 fn fill_orders(rows: &mut [Measured]) {
-    for variant in crate::study::table::distinct(rows.iter().map(Measured::variant)) {
+    for variant in crate::study::row::distinct(rows.iter().map(Measured::variant)) {
         let mut own: Vec<&mut Measured> =
             rows.iter_mut().filter(|m| m.variant() == variant).collect();
         let mut plain: Vec<_> = own.iter().map(|m| m.row.clone()).collect();

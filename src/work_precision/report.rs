@@ -11,12 +11,13 @@ use super::tables::{details, summary};
 use super::verdict::verdict;
 use super::work_at_error::{WorkAtError, work_at_errors};
 use crate::error::{Error, write_error};
+use crate::files::replace_text;
 use crate::output::html::HtmlPage;
 use crate::output::latex::latex_files;
 use crate::output::table::markdown;
-use crate::output::{Provenance, Table, csv, replace_text};
+use crate::output::{Provenance, Table, csv};
 use crate::study::Program;
-use crate::study::table::distinct;
+use crate::study::row::distinct;
 
 /// The results of a work-precision study on any number of scenes.
 #[derive(Clone, Debug, PartialEq)]
@@ -230,7 +231,7 @@ impl WorkReport {
             let text = figure.to_svg().map_err(|why| write_error(&svg, why))?;
             written.push(replace_text(&svg, &text)?);
             let png = directory.join(format!("{name}.png"));
-            written.push(crate::output::replace(&png, |path| figure.write_png(path))?);
+            written.push(crate::files::replace(&png, |path| figure.write_png(path))?);
         }
         Ok(written)
     }

@@ -7,7 +7,7 @@ use super::work_at_error::{Standing, WorkAtError};
 use crate::measure::ErrorNorm;
 use crate::output::Table;
 use crate::output::table::Cell;
-use crate::study::table::distinct;
+use crate::study::row::distinct;
 
 /// Columns of errors that fit into a line.
 const MOST_ERRORS: usize = 5;
@@ -59,7 +59,7 @@ fn runs(failures: &[Failure], scene: &str, rows: &[&Measured], variants: &[Varia
         vec![
             Cell::Words(m.variant().name_among(variants)),
             Cell::whole(Some(row.level)),
-            Cell::whole(Some(row.unknowns)),
+            Cell::whole(row.unknowns),
             Cell::whole(row.iterations.outer),
             Cell::whole(Some(row.iterations.linear)),
             Cell::scientific(row.error.l2),

@@ -4,7 +4,7 @@ use serde::Serialize;
 
 use super::measured::{Failure, Measured, Variant};
 use crate::measure::ErrorNorm;
-use crate::study::table::distinct;
+use crate::study::row::distinct;
 
 /// The error of a row in a norm; none where the run did not converge.
 fn error_in(norm: ErrorNorm, measured: &Measured) -> Option<f64> {
@@ -178,8 +178,8 @@ fn work_of_variants_at(
             seconds_bound: bound.map(|m| m.smallest.total),
             median_over_least: at(levels, |m| m.median_over_least),
             ratio: seconds.map(|s| s / best),
-            unknowns: at(levels, |m| Some(m.row.unknowns as f64)),
-            entries: at(levels, |m| Some(m.row.nonzeros as f64)),
+            unknowns: at(levels, |m| m.row.unknowns.map(|n| n as f64)),
+            entries: at(levels, |m| m.row.nonzeros.map(|n| n as f64)),
             memory_bytes: at(levels, |m| m.row.peak_memory_bytes.map(|b| b as f64)),
         }
     };

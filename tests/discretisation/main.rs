@@ -3,6 +3,7 @@
 mod accuracy;
 mod elements;
 mod forms;
+mod named_data;
 mod runs;
 
 #[path = "../support"]

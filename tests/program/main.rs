@@ -1,6 +1,8 @@
 //! The program `unilateral`, subcommand `compare`: wrong requests and right requests.
 
 mod data;
+#[cfg(unix)]
+mod interrupt;
 mod limits;
 mod meshes;
 mod output;

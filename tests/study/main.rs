@@ -1,15 +1,18 @@
 //! Studies and what they write: scenes, reports, tables, pictures, files of fields.
 
+mod journal;
 mod links;
 mod named_schemes;
 mod one_problem;
 mod pictures;
+mod problem_files;
 mod report;
 mod rows;
 mod scenes;
 mod scratch;
 mod stability;
 mod tables;
+mod totals;
 mod vtu;
 mod work_precision;
 

@@ -14,8 +14,8 @@ pub fn row(scene: &str, scheme: &str, level: usize) -> Row {
     row.solver = "active-set".into();
     row.linear = "direct".into();
     row.cells = 2 * level * level;
-    row.unknowns = 6 * level * level;
-    row.nonzeros = 70 * level * level;
+    row.unknowns = Some(6 * level * level);
+    row.nonzeros = Some(70 * level * level);
     row.mesh_size = h;
     row.error.l2 = Some(0.7 * h * h);
     row.error.h1 = Some(2.0 * h);

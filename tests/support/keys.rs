@@ -1,7 +1,7 @@
 //! What scripts rely on.
 
 /// The keys of a row, in order.
-pub const ROW_KEYS: [&str; 26] = [
+pub const ROW_KEYS: [&str; 29] = [
     "scene",
     "dimension",
     "scheme",
@@ -23,7 +23,10 @@ pub const ROW_KEYS: [&str; 26] = [
     "order",
     "expected_order",
     "objective",
+    "energy",
     "active",
+    "contact_measure",
+    "resultant",
     "iterations",
     "certificate",
     "seconds",

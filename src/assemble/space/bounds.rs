@@ -7,7 +7,7 @@ use crate::constraint::BoundBy;
 use crate::element::Node;
 use crate::error::Error;
 use crate::mesh::{BoundaryPart, describe_point};
-use crate::problem::Field;
+use crate::problem::DatumRef;
 use crate::real::{Point, Real};
 
 /// Two bounds contradict each other if they do so by more than this share of their size: less is
@@ -22,8 +22,8 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         if self.problem.has_obstacle() {
             self.bound_by_obstacles(&mut bounds, &mut conflicts)?;
         }
-        if let Some(gap) = &self.problem.gap {
-            self.bound_by_contact(gap, &mut bounds, &mut conflicts)?;
+        if self.problem.has_gap() {
+            self.bound_by_contact(&mut bounds, &mut conflicts)?;
         }
         if self.pins {
             self.pin(&mut bounds, &mut conflicts)?;
@@ -39,20 +39,30 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
     ) -> Result<(), Error> {
         let bounded: Vec<(usize, BoundBy)> = self.bounded_nodes().collect();
         let terms = self.node_terms(&self.facet_rule, &self.cell_rule);
+        let (lowers, uppers) = (&self.data.lower, &self.data.upper);
+        let by_region = lowers.has_names() || uppers.has_names();
         for cell in 0..self.mesh.n_cells() {
+            let region = self.mesh.region(cell);
             for &(i, by) in &bounded {
                 let unknown = self.dofs.of(cell, i);
-                if bounds[unknown] != Bound::Free {
+                let old = bounds[unknown];
+                if old != Bound::Free && !by_region {
                     continue;
                 }
                 count::bounds(1);
                 let node = &self.nodes[i];
                 let x = self.node_point(cell, node);
-                let at = |psi: &Option<Field<D>>| {
+                let at = |psi: Option<DatumRef<'_, D>>| {
                     let bound = |psi| self.bound(by, &terms[i], (cell, node), "obstacle", psi);
-                    psi.as_ref().map(bound).transpose()
+                    psi.map(bound).transpose()
                 };
-                let (lower, upper) = (at(&self.problem.lower)?, at(&self.problem.upper)?);
+                // of the obstacles of two regions both hold
+                let both = |old: Option<T>, new: Option<f64>, choose: fn(f64, f64) -> f64| {
+                    let old = old.map(Real::to_f64);
+                    new.map(|new| old.map_or(new, |old| choose(old, new))).or(old)
+                };
+                let lower = both(old.lower(), at(lowers.of(region))?, f64::max);
+                let upper = both(old.upper(), at(uppers.of(region))?, f64::min);
                 bounds[unknown] = between(lower, upper, unknown, x, conflicts);
             }
         }
@@ -61,12 +71,12 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
 
     fn bound_by_contact(
         &self,
-        gap: &Field<D>,
         bounds: &mut [Bound<T>],
         conflicts: &mut Vec<Conflict<D>>,
     ) -> Result<(), Error> {
         let terms = self.node_terms(&self.facet_rule, &self.cell_rule);
-        for (cell, local) in self.facets_of(BoundaryPart::Contact) {
+        for ((cell, local), group) in self.grouped_facets_of(BoundaryPart::Contact) {
+            let Some(gap) = self.data.gap.of(group) else { continue };
             for (i, by) in self.bounded_nodes_on(local) {
                 count::bounds(1);
                 let node = &self.nodes[i];
@@ -89,13 +99,13 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         terms: &Terms,
         (cell, node): (usize, &Node),
         name: &'static str,
-        datum: &Field<D>,
+        datum: DatumRef<'_, D>,
     ) -> Result<f64, Error> {
         match by {
-            BoundBy::Functional => self.at_node(terms, cell, name, &**datum),
+            BoundBy::Functional => self.at_node(terms, cell, name, &|x| datum.at(x)),
             BoundBy::Value => {
                 let x = self.node_point(cell, node);
-                data::finite(datum(&x), name, &x, cell)
+                data::finite(datum.at(&x), name, &x, cell)
             }
         }
     }
@@ -103,8 +113,13 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
     fn pin(&self, bounds: &mut [Bound<T>], conflicts: &mut Vec<Conflict<D>>) -> Result<(), Error> {
         let terms = self.node_terms(&self.facet_rule, &self.cell_rule);
         let zero = !self.problem.has_dirichlet_data();
-        let datum = |x: &Point<f64, D>| self.problem.dirichlet_at(x);
-        for (cell, local) in self.facets_of(BoundaryPart::Dirichlet) {
+        let (lowers, uppers) = (&self.data.lower, &self.data.upper);
+        let mut facets: Vec<_> = self.grouped_facets_of(BoundaryPart::Dirichlet).collect();
+        // the first facet decides on an unknown
+        facets.sort_by_key(|&(_, group)| self.data.dirichlet_rank[group]);
+        for ((cell, local), group) in facets {
+            let region = self.mesh.region(cell);
+            let datum = |x: &Point<f64, D>| self.dirichlet_at(group, x);
             for i in self.nodes_on(local) {
                 let unknown = self.dofs.of(cell, i);
                 if let Bound::Fixed(_) = bounds[unknown] {
@@ -116,11 +131,11 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
                 // obstacles must leave room for the datum; a mean is compared with a mean: over a
                 // curved obstacle the value at the barycentre may lie above the mean of a datum
                 // that touches it
-                if let Some(psi) = &self.problem.lower {
-                    note(at("obstacle", &**psi)?, value, unknown, x, conflicts);
+                if let Some(psi) = lowers.of(region) {
+                    note(at("obstacle", &|x| psi.at(x))?, value, unknown, x, conflicts);
                 }
-                if let Some(psi) = &self.problem.upper {
-                    note(value, at("obstacle", &**psi)?, unknown, x, conflicts);
+                if let Some(psi) = uppers.of(region) {
+                    note(value, at("obstacle", &|x| psi.at(x))?, unknown, x, conflicts);
                 }
                 bounds[unknown] = Bound::Fixed(T::lit(value));
             }

@@ -9,13 +9,14 @@
 //! cell in which the samples differ by more than a factor of ten every element takes the value at the
 //! barycentre.
 
-use super::data::{CoefficientAt, coefficient_at};
+use super::data::coefficient_at;
 use super::metric::CellMetric;
 use super::tables::{BasisAt, CellTable, Derivatives};
 use crate::assemble::local::StiffnessTable;
 use crate::element::MAX_BASIS;
 use crate::error::Error;
 use crate::mesh::Mesh;
+use crate::problem::DataByGroup;
 use crate::quadrature::{FullySymmetric, OrthonormalPolynomials, Quadrature, Rule, facet_to_cell};
 use crate::real::{Point, Real, point_f64};
 
@@ -65,7 +66,7 @@ impl<T: Real> VaryingCoefficient<T> {
     /// # Errors
     /// [`Error::CoefficientNotPositive`], [`Error::Parameter`] for a value that the scalar cannot hold.
     pub fn new<const D: usize>(
-        alpha: CoefficientAt<'_, D>,
+        alpha: &DataByGroup<'_, D>,
         mesh: &Mesh<T, D>,
         constants: &[T],
         basis_degree: usize,
@@ -91,7 +92,7 @@ impl<T: Real> VaryingCoefficient<T> {
             let first = values.len();
             for point in &points {
                 let x = corners.iter().zip(point).map(|(corner, &b)| corner * b).sum();
-                values.push(coefficient_at(alpha, &x, cell)?);
+                values.push(coefficient_at(alpha, mesh.region(cell), &x, cell)?);
             }
             let constant = constants[cell].to_f64();
             let is_same = |v: &T| (v.to_f64() / constant - 1.0).abs() <= ROUNDINGS * T::EPSILON;

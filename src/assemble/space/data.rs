@@ -3,7 +3,7 @@
 use crate::assemble::count;
 use crate::error::Error;
 use crate::mesh::{Mesh, describe_point};
-use crate::problem::Problem;
+use crate::problem::DataByGroup;
 use crate::real::{Point, Real, point_f64};
 
 /// A datum that must be finite.
@@ -20,17 +20,19 @@ pub(crate) fn finite<const D: usize>(
     }
 }
 
-/// A coefficient as a function of space.
-pub(crate) type CoefficientAt<'f, const D: usize> = &'f dyn Fn(&Point<f64, D>) -> f64;
-
-/// The diffusion coefficient at a point; one that would vanish or overflow when rounded is refused.
+/// The diffusion coefficient at a point of a cell of a region; one that would vanish or overflow when
+/// rounded is refused.
 pub(crate) fn coefficient_at<T: Real, const D: usize>(
-    alpha: CoefficientAt<'_, D>,
+    alpha: &DataByGroup<'_, D>,
+    region: usize,
     x: &Point<f64, D>,
     cell: usize,
 ) -> Result<T, Error> {
+    let Some(alpha) = alpha.of(region) else {
+        return Ok(T::lit(1.0));
+    };
     count::coefficient(1);
-    let value = alpha(x);
+    let value = alpha.at(x);
     if !(value > 0.0 && value.is_finite()) {
         return Err(Error::CoefficientNotPositive {
             value,
@@ -56,12 +58,14 @@ pub(crate) fn coefficient_at<T: Real, const D: usize>(
 
 /// The diffusion coefficient at the barycentre of every cell, if there is one.
 pub(crate) fn coefficients<T: Real, const D: usize>(
-    problem: &Problem<D>,
+    alpha: &DataByGroup<'_, D>,
     mesh: &Mesh<T, D>,
 ) -> Result<Option<Vec<T>>, Error> {
-    let Some(alpha) = &problem.coefficient else {
+    if !alpha.is_given() {
         return Ok(None);
+    }
+    let at = |cell: usize| {
+        coefficient_at(alpha, mesh.region(cell), &point_f64(&mesh.barycentre(cell)), cell)
     };
-    let at = |cell: usize| coefficient_at(&**alpha, &point_f64(&mesh.barycentre(cell)), cell);
     (0..mesh.n_cells()).map(at).collect::<Result<Vec<_>, _>>().map(Some)
 }

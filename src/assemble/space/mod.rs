@@ -20,7 +20,7 @@ use crate::element::{Entity, MAX_BASIS, Node};
 use crate::error::Error;
 use crate::memory::in_large_pages;
 use crate::mesh::{BoundaryFacet, BoundaryPart, Mesh, Neighbours};
-use crate::problem::{Datum, Problem};
+use crate::problem::{DataByGroup, DataOnMesh, Problem};
 use crate::quadrature::{Quadrature, QuadratureError, Rule, facet_to_cell};
 use crate::real::{Point, Real, point_f64};
 pub(crate) use any_element::AnyElement;
@@ -38,6 +38,8 @@ pub(crate) type Terms = Vec<([f64; 4], f64)>;
 pub(crate) struct Space<'a, T: Real, const D: usize> {
     pub problem: &'a Problem<D>,
     pub mesh: &'a Mesh<T, D>,
+    /// The data of the problem, by region and boundary group.
+    pub data: DataOnMesh<'a, D>,
     /// The rule for data on cells.
     pub cell_rule: Rule,
     /// Its degree.
@@ -84,6 +86,7 @@ impl<'a, T: Real, const D: usize> Space<'a, T, D> {
     ) -> Result<Self, Error> {
         let AnyElement { degree, basis_degree, layout, nodes, basis } = element;
         let set = problem.constraint_set();
+        let data = DataOnMesh::new(problem, mesh)?;
         let neighbours = (with_facets || layout.facet > 0).then(|| {
             count::facet_topologies(1);
             Neighbours::new(mesh)
@@ -93,28 +96,27 @@ impl<'a, T: Real, const D: usize> Space<'a, T, D> {
         let cell_degree = quadrature.cell.unwrap_or(sum + 3).max(sum.saturating_sub(1));
         let cell_rule = rule(quadrature.family, D, cell_degree)?;
         let facet_rule = rule(quadrature.family, D - 1, quadrature.facet)?;
-        let reaction = match &problem.reaction {
-            None => None,
-            Some(datum) => {
+        let reaction = match data.reaction.is_given() {
+            false => None,
+            true => {
                 let products = 2 * basis_degree;
-                let degree = match datum {
-                    Datum::Constant(_) => products,
-                    _ => products.max(cell_degree),
-                };
+                let is_constant = data.reaction.all().all(|datum| datum.constant().is_some());
+                let degree = if is_constant { products } else { products.max(cell_degree) };
                 let rule = rule(quadrature.reaction, D, degree)?;
-                Some(ReactionTerm::new(datum, rule, degree, basis, nodes.len()))
+                Some(ReactionTerm::new(data.reaction.clone(), rule, degree, basis, nodes.len()))
             }
         };
-        let coefficients = data::coefficients(problem, mesh)?;
-        let varying = match (&problem.coefficient, &coefficients) {
-            (Some(alpha), Some(constants)) if basis_degree > 1 => {
-                VaryingCoefficient::new(&**alpha, mesh, constants, basis_degree, basis)?
+        let coefficients = data::coefficients(&data.coefficient, mesh)?;
+        let varying = match &coefficients {
+            Some(constants) if basis_degree > 1 => {
+                VaryingCoefficient::new(&data.coefficient, mesh, constants, basis_degree, basis)?
             }
             _ => None,
         };
         let space = Self {
             problem,
             mesh,
+            data,
             cell_rule,
             cell_degree,
             facet_rule,
@@ -148,10 +150,10 @@ impl<'a, T: Real, const D: usize> Space<'a, T, D> {
             Err(Error::NothingToBound { constraint, condition, allowed })
         };
         if self.problem.is_constrained() && self.bounded_nodes().next().is_none() {
-            return refuse("an inequality", self.problem.gap.is_some());
+            return refuse("an inequality", self.problem.has_gap());
         }
         let on_facets = || (0..=D).any(|local| self.bounded_nodes_on(local).next().is_some());
-        if self.problem.gap.is_some() && !on_facets() {
+        if self.problem.has_gap() && !on_facets() {
             return refuse("a Signorini condition", true);
         }
         Ok(())
@@ -176,10 +178,14 @@ impl<'a, T: Real, const D: usize> Space<'a, T, D> {
         let varying = self.varying.as_ref()?;
         varying.in_cell(cell).map(|values| (varying, values))
     }
+    /// Whether the element sees the coefficient vary in some cell.
+    pub fn has_varying_coefficient(&self) -> bool {
+        self.varying.is_some()
+    }
     /// The coefficient at a point of a cell.
     pub fn alpha_at(&self, cell: usize, x: &Point<f64, D>) -> f64 {
-        match &self.problem.coefficient {
-            Some(alpha) if self.varying_in(cell).is_some() => alpha(x),
+        match self.data.coefficient.of(self.mesh.region(cell)) {
+            Some(alpha) if self.varying_in(cell).is_some() => alpha.at(x),
             _ => self.alpha(cell).to_f64(),
         }
     }
@@ -297,9 +303,27 @@ impl<'a, T: Real, const D: usize> Space<'a, T, D> {
         local
     }
     /// The boundary facets of a part: cell and number in the cell.
-    pub fn facets_of(&self, part: BoundaryPart) -> impl Iterator<Item = (usize, usize)> {
+    pub fn facets_of(&self, part: BoundaryPart) -> impl Iterator<Item = Place> {
+        self.grouped_facets_of(part).map(|(place, _)| place)
+    }
+    /// The boundary facets of a part with the numbers of their groups.
+    pub fn grouped_facets_of(&self, part: BoundaryPart) -> impl Iterator<Item = (Place, usize)> {
         let of_part = move |f: &&BoundaryFacet| f.part == part;
-        self.mesh.boundary().iter().filter(of_part).map(|f| (f.cell as usize, f.local as usize))
+        let facet = |f: &BoundaryFacet| ((f.cell as usize, f.local as usize), usize::from(f.group));
+        self.mesh.boundary().iter().filter(of_part).map(facet)
+    }
+    /// The value of a datum in the region of a cell, if there is one.
+    pub fn in_region(
+        &self,
+        data: &DataByGroup<'a, D>,
+        cell: usize,
+        x: &Point<f64, D>,
+    ) -> Option<f64> {
+        data.of(self.mesh.region(cell)).map(|datum| datum.at(x))
+    }
+    /// The Dirichlet value at a point of a boundary group.
+    pub fn dirichlet_at(&self, group: usize, x: &Point<f64, D>) -> f64 {
+        self.data.dirichlet.of(group).map_or(0.0, |u| u.at(x))
     }
     /// The metric of a cell, computed.
     pub fn metric(&self, cell: usize) -> CellMetric<T, D> {

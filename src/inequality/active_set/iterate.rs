@@ -95,6 +95,13 @@ impl<'a, T: Real> Iterate<'a, T> {
         is_changed
     }
 
+    /// Sets all values that are not prescribed to zero.
+    pub fn forget_values(&mut self) {
+        self.values.fill(T::lit(0.0));
+        self.jump_multipliers.clear();
+        self.set_prescribed_values();
+    }
+
     /// Sets every fixed or active unknown to its prescribed value, exactly, and marks it as eliminated.
     fn set_prescribed_values(&mut self) {
         for (i, bound) in self.inequality.bounds.iter().enumerate() {

@@ -130,7 +130,16 @@ impl<T: Real> Iteration<'_, '_, '_, T> {
             true => self.solver.set_eliminated(&self.iterate.eliminated),
             false => Ok(()),
         };
-        match is_prepared.and_then(|()| self.solver.correct(self.iterate, accuracy)) {
+        let mut corrected = is_prepared.and_then(|()| self.solver.correct(self.iterate, accuracy));
+        if let Err(LinearFailure::Factors(FactorError::Singular)) = corrected
+            && is_prepared.is_ok()
+        {
+            // an earlier matrix, singular but for rounding, may have left values so large that
+            // corrections by this one have no correct digit
+            self.iterate.forget_values();
+            corrected = self.solver.correct(self.iterate, accuracy);
+        }
+        match corrected {
             Ok(()) => Ok(true),
             Err(LinearFailure::Factors(FactorError::Singular)) if self.iterate.outer == 1 => {
                 if self.settings.check_definite {
@@ -140,6 +149,13 @@ impl<T: Real> Iteration<'_, '_, '_, T> {
                 } else {
                     Err(Outcome::Singular.into())
                 }
+            }
+            // bounds alone hold a part of the domain, and the active set has released all of them there
+            Err(LinearFailure::Factors(FactorError::Singular))
+                if !self.iterate.inequality.kernel.is_empty()
+                    && self.patience.halving.is_some() =>
+            {
+                Err(End::Obstruction(Obstruction::Stagnation))
             }
             Err(failure) => Err(failure.into()),
         }

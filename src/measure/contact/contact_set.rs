@@ -1,6 +1,7 @@
 //! The discrete contact set and the density of the multiplier, for pictures.
 
 use super::discrete_contact::DiscreteContact;
+use super::entity::ContactEntity;
 use crate::algebra::Inequality;
 use crate::assemble::space::Space;
 use crate::inequality::Solution;
@@ -27,21 +28,28 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
             }
         }
         // with both an obstacle and a contact boundary there are two multipliers of different kind
-        if self.problem.has_obstacle() && self.problem.gap.is_some() {
+        if self.problem.has_obstacle() && self.problem.has_gap() {
             return contact;
         }
-        let mut weights = vec![0.0; self.mesh.vertices().len()];
-        for entity in entities {
-            let share = self.measure_of(entity) / (entity.dimension::<D>() + 1) as f64;
-            for local in entity.corners::<D>() {
-                weights[self.mesh.cell(entity.cell)[local] as usize] += share;
-            }
-        }
+        let weights = self.hat_integrals(&entities);
         let multipliers = self.vertex_multipliers(inequality, solution, |_| true);
-        let given = self.on_dirichlet_part();
-        let density =
-            |v: usize| (weights[v] > 0.0 && !given[v]).then(|| multipliers[v] / weights[v]);
+        let given = self.dirichlet_groups();
+        let density = |v: usize| {
+            (weights[v] > 0.0 && given[v].is_none()).then(|| multipliers[v] / weights[v])
+        };
         contact.density = (0..weights.len()).map(density).collect();
         contact
+    }
+
+    /// The integral of each hat function over these entities.
+    pub(super) fn hat_integrals(&self, entities: &[ContactEntity]) -> Vec<f64> {
+        let mut integrals = vec![0.0; self.mesh.vertices().len()];
+        for &entity in entities {
+            let share = self.measure_of(entity) / (entity.dimension::<D>() + 1) as f64;
+            for local in entity.corners::<D>() {
+                integrals[self.mesh.cell(entity.cell)[local] as usize] += share;
+            }
+        }
+        integrals
     }
 }

@@ -4,11 +4,13 @@
 //! with different unknowns can be compared.
 
 mod contact_set;
+mod difference;
 mod discrete_contact;
 mod entity;
 mod free_boundary;
 mod multiplier_density;
 
+pub(crate) use difference::contact_difference;
 pub use discrete_contact::DiscreteContact;
 pub(super) use entity::Place;
 
@@ -24,6 +26,7 @@ use crate::mesh::BoundaryPart;
 use crate::problem::ContactSet;
 use crate::real::{Point, Real, point_f64};
 use entity::ContactEntity;
+use multiplier_density::nodal_multipliers;
 
 /// A Dirichlet datum this close to a bound, in units of the largest unknown, touches it.
 const TOUCHING: f64 = 1e-9;
@@ -74,6 +77,39 @@ impl<T: Real, const D: usize> Discretisation<'_, T, D> {
                 = |of, inequality, solution| of.space.contact_errors(inequality, solution)
         )(self, inequality, solution)
     }
+
+    /// The measure of the discrete contact set: the volume of the cells in contact where there are
+    /// obstacles, else the area of the facets in contact (the number of points in one dimension), with the
+    /// definitions of [`Discretisation::contact_errors`]; none without an inequality.
+    ///
+    /// # Panics
+    /// If the solution has fewer values than there are unknowns.
+    pub fn contact_measure(
+        &self,
+        inequality: &Inequality<T>,
+        solution: &Solution<T>,
+    ) -> Option<f64> {
+        compiled!(
+            T, D: fn(&Discretisation<'_, T, D>, &Inequality<T>, &Solution<T>) -> Option<f64>
+                = |of, inequality, solution| of.space.contact_measure(inequality, solution)
+        )(self, inequality, solution)
+    }
+
+    /// The total contact force: the multiplier tested with the function one, which is the sum of the
+    /// entries of `A u - b` at the constrained unknowns in contact, because every unknown is the value or a
+    /// mean of the function. It is positive where a lower bound pushes upward. None without an inequality.
+    ///
+    /// Where only contact holds the body, without Dirichlet part and reaction, it is the negative of the
+    /// total load, for every scheme: constants have no energy. It approximates the integral of the
+    /// multiplier over domain and contact boundary.
+    ///
+    /// # Panics
+    /// If the solution has fewer values than there are unknowns.
+    pub fn resultant(&self, inequality: &Inequality<T>, solution: &Solution<T>) -> Option<f64> {
+        let multipliers = || nodal_multipliers(inequality, solution);
+        let sum = || multipliers().fold(0.0, |sum, (_, multiplier)| sum + multiplier);
+        self.space.problem.is_constrained().then(sum)
+    }
 }
 
 impl<T: Real, const D: usize> Space<'_, T, D> {
@@ -84,7 +120,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
     ) -> Result<ContactErrors, Error> {
         let Some(exact) = &self.problem.exact else { return Ok(ContactErrors::default()) };
         // with both an obstacle and a contact boundary there are two multipliers of different kind
-        if self.problem.has_obstacle() == self.problem.gap.is_some() {
+        if self.problem.has_obstacle() == self.problem.has_gap() {
             return Ok(ContactErrors::default());
         }
         let entities = self.entities();
@@ -102,6 +138,13 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         Ok(errors)
     }
 
+    fn contact_measure(&self, inequality: &Inequality<T>, solution: &Solution<T>) -> Option<f64> {
+        let entities = self.problem.is_constrained().then(|| self.entities())?;
+        let touching = self.in_contact(&entities, inequality, solution);
+        let in_contact = entities.iter().zip(touching).filter(|(_, touches)| *touches);
+        Some(in_contact.fold(0.0, |sum, (entity, _)| sum + self.measure_of(*entity)))
+    }
+
     fn entities(&self) -> Vec<ContactEntity> {
         if self.problem.has_obstacle() {
             return (0..self.mesh.n_cells())
@@ -112,11 +155,15 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         contact.map(|(cell, local)| ContactEntity { cell, facet: Some(local) }).collect()
     }
 
-    /// Whether each vertex lies on the Dirichlet part, where values are given.
-    fn on_dirichlet_part(&self) -> Vec<bool> {
-        let mut given = vec![false; self.mesh.vertices().len()];
-        for (cell, local) in self.facets_of(BoundaryPart::Dirichlet) {
-            self.mesh.facet_vertices(cell, local).for_each(|v| given[v as usize] = true);
+    /// For each vertex on the Dirichlet part the boundary group whose datum is given there.
+    fn dirichlet_groups(&self) -> Vec<Option<usize>> {
+        let mut given: Vec<Option<usize>> = vec![None; self.mesh.vertices().len()];
+        let rank = |group: usize| self.data.dirichlet_rank[group];
+        for ((cell, local), group) in self.grouped_facets_of(BoundaryPart::Dirichlet) {
+            for v in self.mesh.facet_vertices(cell, local) {
+                let old = &mut given[v as usize];
+                *old = old.filter(|&old| rank(old) <= rank(group)).or(Some(group));
+            }
         }
         given
     }
@@ -167,32 +214,44 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
             .collect();
         supports.sort_unstable();
         supports.dedup();
-        let given = self.on_dirichlet_part();
+        let given = self.dirichlet_groups();
         let largest = solution.values.iter().map(|u| u.to_f64().abs()).fold(0.0, f64::max);
         let slack = largest * TOUCHING.max(64.0 * T::EPSILON);
-        let support_touches = |unknown: usize| {
+        let support_touches = |entity: ContactEntity, unknown: usize| {
             let support = inequality.supports[unknown].vertices();
-            if support.iter().all(|&v| given[v as usize]) {
-                self.datum_touches(support, slack)
+            let groups = support.iter().map(|&v| given[v as usize]);
+            let rank = |group: &usize| self.data.dirichlet_rank[*group];
+            let group = groups.clone().flatten().min_by_key(rank);
+            if let Some(group) = group.filter(|_| groups.clone().all(|g| g.is_some())) {
+                self.datum_touches(entity, group, support, slack)
             } else {
                 supports.binary_search(&support).is_ok()
             }
         };
         let state = |&entity: &ContactEntity| {
             let mut unknowns = self.bound_unknowns(entity, inequality).peekable();
-            unknowns.peek().is_some() && unknowns.all(support_touches)
+            unknowns.peek().is_some() && unknowns.all(|unknown| support_touches(entity, unknown))
         };
         entities.iter().map(state).collect()
     }
 
-    /// Whether the Dirichlet datum at the barycentre of a support differs from a bound by at most
-    /// the slack.
-    fn datum_touches(&self, support: &[u32], slack: f64) -> bool {
+    /// Whether the Dirichlet datum of a boundary group at the barycentre of a support differs from a bound
+    /// on an entity by at most the slack.
+    fn datum_touches(
+        &self,
+        entity: ContactEntity,
+        group: usize,
+        support: &[u32],
+        slack: f64,
+    ) -> bool {
         let corner = |&v: &u32| point_f64(&self.mesh.vertices()[v as usize]);
         let x = support.iter().map(corner).sum::<Point<f64, D>>() / support.len() as f64;
-        let bounds = [&self.problem.lower, &self.problem.upper, &self.problem.gap];
-        let value = self.problem.dirichlet_at(&x);
-        bounds.into_iter().flatten().any(|bound| (value - bound(&x)).abs() <= slack)
+        let region = self.mesh.region(entity.cell);
+        let contact = entity.facet.and_then(|local| self.mesh.boundary_group(entity.cell, local));
+        let gap = contact.and_then(|group| self.data.gap.of(group));
+        let bounds = [self.data.lower.of(region), self.data.upper.of(region), gap];
+        let value = self.dirichlet_at(group, &x);
+        bounds.into_iter().flatten().any(|bound| (value - bound.at(&x)).abs() <= slack)
     }
 
     /// The measure of the symmetric difference of entities in contact and the exact contact set.

@@ -12,6 +12,20 @@ use crate::real::Real;
 /// Degree of the rule on a simplex, or on the parts into which the free boundary cuts it.
 const DEGREE: usize = 5;
 
+/// The constrained unknowns in contact with their multipliers, the entries of `A u - b`.
+pub(super) fn nodal_multipliers<T: Real>(
+    inequality: &Inequality<T>,
+    solution: &Solution<T>,
+) -> impl Iterator<Item = (usize, f64)> {
+    let mut residual = vec![0.0; inequality.size()];
+    inequality.residual_f64(&solution.values, &mut residual);
+    let touches = |unknown: &usize| {
+        solution.contact[*unknown] != Contact::Inactive
+            && inequality.bounds[*unknown].is_inequality()
+    };
+    (0..inequality.size()).filter(touches).map(move |unknown| (unknown, -residual[unknown]))
+}
+
 impl<T: Real, const D: usize> Space<'_, T, D> {
     /// The errors of the density in L1 and lumped L2; none if no vertex counts.
     pub(super) fn multiplier_errors(
@@ -30,8 +44,8 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
             let rule = &rules[usize::from(entity.facet.is_none())];
             self.subtract_exact((multiplier, set), entity, rule, &mut weights, &mut multipliers)?;
         }
-        let given = self.on_dirichlet_part();
-        let counted = |v: &usize| weights[*v] > 0.0 && !given[*v];
+        let given = self.dirichlet_groups();
+        let counted = |v: &usize| weights[*v] > 0.0 && given[*v].is_none();
         let vertices = || (0..weights.len()).filter(counted);
         let squares: f64 = vertices().map(|v| multipliers[v] * multipliers[v] / weights[v]).sum();
         let sum: f64 = vertices().map(|v| multipliers[v].abs()).sum();
@@ -46,16 +60,14 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         solution: &Solution<T>,
         counts: impl Fn(usize) -> bool,
     ) -> Vec<f64> {
-        let mut residual = vec![0.0; inequality.size()];
-        inequality.residual_f64(&solution.values, &mut residual);
         let mut multipliers = vec![0.0; self.mesh.vertices().len()];
-        for (unknown, &residual) in residual.iter().enumerate() {
-            let touches = solution.contact[unknown] != Contact::Inactive;
-            if touches && inequality.bounds[unknown].is_inequality() && counts(unknown) {
-                let around = inequality.supports[unknown].vertices();
-                let share = -residual / around.len() as f64;
-                around.iter().for_each(|&v| multipliers[v as usize] += share);
-            }
+        let counted = nodal_multipliers(inequality, solution)
+            .into_iter()
+            .filter(|&(unknown, _)| counts(unknown));
+        for (unknown, multiplier) in counted {
+            let around = inequality.supports[unknown].vertices();
+            let share = multiplier / around.len() as f64;
+            around.iter().for_each(|&v| multipliers[v as usize] += share);
         }
         multipliers
     }

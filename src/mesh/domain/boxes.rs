@@ -1,13 +1,22 @@
 //! Boxes and their Kuhn triangulations.
 
+use std::sync::Arc;
+
 use crate::instances::compiled;
 use crate::mesh::boundary::{BoundaryFacet, BoundaryPart};
 use crate::mesh::error::MeshError;
+use crate::mesh::groups::Groups;
 use crate::mesh::simplicial::Mesh;
 use crate::mesh::validate::check_size;
 use crate::real::{Point, Real};
 
-/// An axis-parallel box and the part of the boundary each of its sides belongs to.
+/// The names of the sides `x_k = lower_k` and `x_k = upper_k`, axis after axis: the boundary groups of the
+/// meshes of a box.
+pub(crate) const SIDES: [&str; 6] = ["left", "right", "bottom", "top", "back", "front"];
+
+/// An axis-parallel box and the part of the boundary each of its sides belongs to. The boundary groups of
+/// its meshes are called `left` and `right` (first axis), `bottom` and `top` (second), `back` and `front`
+/// (third).
 #[derive(Clone, Debug)]
 #[non_exhaustive]
 pub struct BoxDomain<const D: usize> {
@@ -128,7 +137,9 @@ impl<T: Real, const D: usize> Mesh<T, D> {
             .collect();
         let (cells, boundary) = cells_and_boundary(domain, counts, strides, &paths);
         let is_supported = boundary.iter().any(|f| f.part == BoundaryPart::Dirichlet);
-        Ok(Self { vertices, cells, boundary, is_supported })
+        let side = |k: usize| (SIDES[k].to_owned(), domain.sides[k / 2][k % 2]);
+        let groups = Arc::new(Groups::of_boundary((0..2 * D).map(side)));
+        Ok(Self { vertices, cells, boundary, is_supported, groups, cell_regions: Vec::new() })
     }
 }
 
@@ -155,11 +166,17 @@ fn cells_and_boundary<const D: usize>(
             // all vertices but the first are on the upper side of the first axis of the path,
             // all but the last on the lower side of the last axis
             let (first, last) = (path[0], path[D - 1]);
+            let facet = |local: usize, axis: usize, end: usize| BoundaryFacet {
+                cell,
+                local: local as u8,
+                part: domain.sides[axis][end],
+                group: (2 * axis + end) as u16,
+            };
             if index[first] + 1 == counts[first] {
-                boundary.push(BoundaryFacet { cell, local: 0, part: domain.sides[first][1] });
+                boundary.push(facet(0, first, 1));
             }
             if index[last] == 0 {
-                boundary.push(BoundaryFacet { cell, local: D as u8, part: domain.sides[last][0] });
+                boundary.push(facet(D, last, 0));
             }
         }
         for k in 0..D {

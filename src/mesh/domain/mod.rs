@@ -5,6 +5,8 @@ mod disc;
 mod lshape;
 
 pub use boxes::BoxDomain;
+#[cfg(feature = "problem-files")]
+pub(crate) use boxes::SIDES;
 
 use super::boundary::BoundaryPart;
 use super::error::MeshError;

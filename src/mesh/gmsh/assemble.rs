@@ -4,11 +4,9 @@ use super::contents::{Contents, Membership};
 use super::element_types::Shape;
 use super::error::{GmshError, GmshWarning};
 use super::node_index::NodeIndex;
-use crate::input::excerpt;
-use crate::mesh::boundary::BoundaryPart;
 use crate::mesh::error::MeshError;
 use crate::mesh::simplicial::Mesh;
-use crate::mesh::validate::TaggedFacet;
+use crate::mesh::validate::GroupedFacet;
 use crate::real::{Point, Real};
 
 /// A mesh read from a file, and the warnings of the reader.
@@ -26,17 +24,19 @@ pub(super) fn assemble<T: Real, const D: usize>(
     contents: &Contents,
 ) -> Result<GmshMesh<T, D>, GmshError> {
     check_dimension(contents, D)?;
-    check_group_names(contents, D - 1)?;
     let index = NodeIndex::new(contents)?;
-    let (cells, elements) = cells_of::<D>(contents, &index)?;
-    check_flat::<D>(contents, &cells)?;
-    let (boundary, facets) = tagged_facets::<D>(contents, &index)?;
+    let cells = cells_of::<D>(contents, &index)?;
+    check_flat::<D>(contents, &cells.vertices)?;
+    let boundary = grouped_facets::<D>(contents, &index)?;
     let vertices = contents.nodes.points.iter().map(|x| Point::from_fn(|k, _| x[k])).collect();
-    let mesh = Mesh::new(vertices, cells, &boundary).map_err(|source| {
+    let Cells { vertices: corners, elements, regions, of_cells } = cells;
+    let mesh = Mesh::with_groups(vertices, corners, &boundary.facets, &boundary.names);
+    let mesh = mesh.and_then(|mesh| mesh.with_regions(regions, of_cells)).map_err(|source| {
         let cells =
             source.cells().into_iter().filter_map(|cell| contents.element(D, *elements.get(cell)?));
-        let facet =
-            source.tagged_facet().and_then(|tag| contents.element(D - 1, *facets.get(tag)?));
+        let facet = source
+            .tagged_facet()
+            .and_then(|tag| contents.element(D - 1, *boundary.elements.get(tag)?));
         let nodes = vertices_of(&source)
             .iter()
             .filter_map(|&v| contents.nodes.tags.get(v).copied())
@@ -59,29 +59,59 @@ fn check_dimension(contents: &Contents, asked: usize) -> Result<(), GmshError> {
     Err(GmshError::WrongDimension { asked, found, advice })
 }
 
-/// An error if a named group of boundary elements does not name a part of the boundary.
-fn check_group_names(contents: &Contents, dimension: usize) -> Result<(), GmshError> {
-    for (&(of, tag), group) in &contents.groups {
-        if of != dimension || BoundaryPart::from_name(&group.name).is_some() {
-            continue;
-        }
-        let meant = BoundaryPart::from_name(&group.name.trim().to_lowercase());
-        let hint = meant.map_or(String::new(), |part| format!(": write {}", part.name()));
-        let (position, name) = (group.position, excerpt(&group.name));
-        return Err(GmshError::UnknownGroup { position, dimension, tag, name, hint });
-    }
-    Ok(())
+/// The name of a physical group; its number if it has none.
+fn group_name(contents: &Contents, dimension: usize, tag: i64) -> String {
+    contents.groups.get(&(dimension, tag)).cloned().unwrap_or_else(|| tag.to_string())
 }
 
-/// The vertices of the cells, and the index of the element of each cell.
-fn cells_of<const D: usize>(
-    contents: &Contents,
-    index: &NodeIndex,
-) -> Result<(Vec<u32>, Vec<usize>), GmshError> {
+/// The names of all groups of a run of elements.
+fn names_of(contents: &Contents, dimension: usize, membership: Membership) -> Vec<String> {
+    let name = |&tag: &i64| group_name(contents, dimension, tag);
+    match membership {
+        Membership::Entity(entity) => contents
+            .entities
+            .get(&(dimension, entity))
+            .map_or(Vec::new(), |tags| tags.iter().map(name).collect()),
+        Membership::Group(0) => Vec::new(),
+        Membership::Group(tag) => vec![name(&tag)],
+    }
+}
+
+/// The cells of a file.
+struct Cells {
+    vertices: Vec<u32>,
+    /// The index of the element of each cell.
+    elements: Vec<usize>,
+    /// The names of each region.
+    regions: Vec<Vec<String>>,
+    /// The region of each cell.
+    of_cells: Vec<u16>,
+}
+
+impl Cells {
+    /// The number of the region with these names.
+    fn region(&mut self, names: Vec<String>) -> Result<u16, GmshError> {
+        let known = self.regions.iter().position(|region| *region == names);
+        let number = known.unwrap_or(self.regions.len());
+        if known.is_none() {
+            self.regions.push(names);
+        }
+        u16::try_from(number).map_err(|_| GmshError::TooManyGroups { limit: u16::MAX.into() })
+    }
+}
+
+/// The cells, their elements and their regions.
+fn cells_of<const D: usize>(contents: &Contents, index: &NodeIndex) -> Result<Cells, GmshError> {
     let simplices = &contents.simplices[D];
-    let mut cells: Vec<u32> = Vec::with_capacity(simplices.corners.len());
-    let mut elements = Vec::with_capacity(simplices.tags.len());
+    let mut cells = Cells {
+        vertices: Vec::with_capacity(simplices.corners.len()),
+        elements: Vec::with_capacity(simplices.tags.len()),
+        regions: Vec::new(),
+        of_cells: Vec::with_capacity(simplices.tags.len()),
+    };
     for (run, membership) in simplices.runs() {
+        let names = names_of(contents, D, membership);
+        let region = cells.region(names.clone())?;
         for element in run.clone() {
             let corners = &simplices.corners[element * (D + 1)..(element + 1) * (D + 1)];
             // MSH 2.2 lists an element that is in several groups once for each of them.
@@ -89,18 +119,25 @@ fn cells_of<const D: usize>(
                 && element == run.start
                 && element > 0
                 && simplices.corners[(element - 1) * (D + 1)..element * (D + 1)] == *corners
+                && let Some(&last) = cells.of_cells.last()
             {
+                let both = [&cells.regions[usize::from(last)][..], &names].concat();
+                let region = cells.region(both)?;
+                cells.of_cells.pop();
+                cells.of_cells.push(region);
                 continue;
             }
             for &node in corners {
-                cells.push(
-                    index.find(node).ok_or_else(|| unknown_node(contents, D, element, node))?,
-                );
+                let vertex = index.find(node);
+                cells
+                    .vertices
+                    .push(vertex.ok_or_else(|| unknown_node(contents, D, element, node))?);
             }
-            elements.push(element);
+            cells.elements.push(element);
+            cells.of_cells.push(region);
         }
     }
-    Ok((cells, elements))
+    Ok(cells)
 }
 
 fn unknown_node(contents: &Contents, dimension: usize, element: usize, node: u64) -> GmshError {
@@ -109,61 +146,47 @@ fn unknown_node(contents: &Contents, dimension: usize, element: usize, node: u64
     GmshError::UnknownNode { position, element: simplices.tags[element], node }
 }
 
-/// The facets of the boundary that are in a group, and the index of the element of each facet.
-fn tagged_facets<const D: usize>(
+/// The boundary facets that are in a group, the index of the element of each, and the names of the groups.
+struct GroupedFacets<const D: usize> {
+    facets: Vec<GroupedFacet<D>>,
+    elements: Vec<usize>,
+    names: Vec<String>,
+}
+
+fn grouped_facets<const D: usize>(
     contents: &Contents,
     index: &NodeIndex,
-) -> Result<(Vec<TaggedFacet<D>>, Vec<usize>), GmshError> {
+) -> Result<GroupedFacets<D>, GmshError> {
     let simplices = &contents.simplices[D - 1];
-    let mut boundary = Vec::new();
-    let mut elements = Vec::new();
+    let (mut facets, mut elements, mut names) = (Vec::new(), Vec::new(), Vec::<String>::new());
     for (run, membership) in simplices.runs() {
-        let of_element;
-        let groups: &[i64] = match membership {
-            Membership::Entity(entity) => {
-                contents.entities.get(&(D - 1, entity)).map_or(&[], Vec::as_slice)
+        let mut groups = Vec::new();
+        for name in names_of(contents, D - 1, membership) {
+            let number = names.iter().position(|known| *known == name).unwrap_or(names.len());
+            if number == names.len() {
+                names.push(name);
             }
-            Membership::Group(0) => &[],
-            Membership::Group(group) => {
-                of_element = [group];
-                &of_element
-            }
-        };
-        let mut parts = Vec::new();
-        for &tag in groups {
-            // Other names are refused by `check_group_names`.
-            let named = contents
-                .groups
-                .get(&(D - 1, tag))
-                .and_then(|group| BoundaryPart::from_name(&group.name));
-            let part = named.ok_or_else(|| GmshError::UnnamedGroup {
-                position: contents.position_of(simplices.marks[run.start]),
-                element: simplices.tags[run.start],
-                dimension: D - 1,
-                tag,
-            })?;
-            if !parts.contains(&part) {
-                parts.push(part);
-            }
+            let group = u16::try_from(number);
+            groups.push(group.map_err(|_| GmshError::TooManyGroups { limit: u16::MAX.into() })?);
         }
-        for element in run.filter(|_| !parts.is_empty()) {
+        for element in run.filter(|_| !groups.is_empty()) {
             let mut vertices = [0; D];
             for (vertex, &node) in vertices.iter_mut().zip(&simplices.corners[element * D..]) {
                 *vertex =
                     index.find(node).ok_or_else(|| unknown_node(contents, D - 1, element, node))?;
             }
-            for &part in &parts {
-                boundary.push(TaggedFacet { vertices, part });
+            for &group in &groups {
+                facets.push(GroupedFacet { vertices, group });
                 elements.push(element);
             }
         }
     }
-    if boundary.is_empty() {
+    if facets.is_empty() {
         let (elements, entity) =
             [("point", "Point"), ("line", "Curve"), ("triangle", "Surface")][D - 1];
         return Err(GmshError::NoPhysicalGroups { elements, entity });
     }
-    Ok((boundary, elements))
+    Ok(GroupedFacets { facets, elements, names })
 }
 
 /// An error unless a mesh of lines lies in a line along x, a mesh of triangles in a plane of constant z.

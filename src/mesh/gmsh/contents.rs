@@ -6,14 +6,6 @@ use super::position::{ElementPosition, FilePosition};
 use super::source::Source;
 use std::collections::{BTreeMap, HashMap};
 
-/// A named physical group.
-pub(super) struct Group {
-    /// The name, without its quotes.
-    pub(super) name: String,
-    /// The position of the name.
-    pub(super) position: FilePosition,
-}
-
 /// The source of the physical groups of an element.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Membership {
@@ -108,8 +100,8 @@ impl Simplices {
 pub(super) struct Contents {
     /// Whether positions are bytes, otherwise lines.
     pub(super) binary: bool,
-    /// The named groups, by dimension and tag.
-    pub(super) groups: BTreeMap<(usize, i64), Group>,
+    /// The names of the physical groups, by dimension and tag.
+    pub(super) groups: BTreeMap<(usize, i64), String>,
     /// The groups of the entities, by dimension and tag of the entity.
     pub(super) entities: HashMap<(usize, i64), Vec<i64>>,
     pub(super) nodes: Nodes,

@@ -225,7 +225,7 @@ pub enum GmshError {
     },
     /// No boundary element is in a physical group.
     #[error(
-        "no {elements} of the file is in a physical group, so the boundary conditions are unknown; name the boundary parts in Gmsh, e.g. `Physical {entity}(\"dirichlet\") = {{1, 2}};`, with the names dirichlet, neumann and contact, put the domain in a group too, and save without `Mesh.SaveAll`"
+        "no {elements} of the file is in a physical group, so the boundary conditions are unknown; name the boundary parts in Gmsh, e.g. `Physical {entity}(\"dirichlet\") = {{1, 2}};`, with the names dirichlet, neumann and contact or with others, for which the problem says what holds there; put the domain in a group too, and save without `Mesh.SaveAll`"
     )]
     NoPhysicalGroups {
         /// "point", "line" or "triangle".
@@ -233,35 +233,13 @@ pub enum GmshError {
         /// The keyword of a Gmsh script for groups of such elements.
         entity: &'static str,
     },
-    /// A group of boundary elements with a name that is no boundary part.
+    /// The physical groups of one dimension are too many.
     #[error(
-        "{position}: physical group {tag} of dimension {dimension} is named \"{name}\"; allowed are dirichlet, neumann and contact, in lower case{hint}"
+        "the file has more than {limit} groups, or intersections of groups, of one dimension; leave out those that are not needed"
     )]
-    UnknownGroup {
-        /// Position of the name.
-        position: FilePosition,
-        /// Dimension of the group.
-        dimension: usize,
-        /// Its tag.
-        tag: i64,
-        /// Its name.
-        name: String,
-        /// The name probably meant, as the end of the message.
-        hint: String,
-    },
-    /// A group of boundary elements without a name.
-    #[error(
-        "{position}: element {element} is in physical group {tag} of dimension {dimension}, which has no name in $PhysicalNames; name it dirichlet, neumann or contact"
-    )]
-    UnnamedGroup {
-        /// Position of the element.
-        position: FilePosition,
-        /// Tag of the element.
-        element: u64,
-        /// Dimension of the group.
-        dimension: usize,
-        /// Tag of the group.
-        tag: i64,
+    TooManyGroups {
+        /// The largest number.
+        limit: usize,
     },
     /// The contents of the file are not a mesh.
     #[error("{source}{}", in_file(elements, nodes))]

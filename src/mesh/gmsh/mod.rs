@@ -1,10 +1,13 @@
 //! Reader of Gmsh meshes: MSH 4.1 and 2.2, text and binary.
 //!
-//! The cells of the mesh are the elements of the largest dimension in the file, whatever physical
-//! group they are in. The parts of its boundary are the elements of one dimension less in the
-//! physical groups `dirichlet`, `neumann` and `contact`; elements in no group are ignored, so a
-//! boundary without a name is reported by [`Mesh::new`](crate::mesh::Mesh::new) as such. Elements of higher order are read
-//! as straight ones, with a [`GmshWarning`].
+//! The cells of the mesh are the elements of the largest dimension in the file; the names of their
+//! physical groups make the regions of the mesh. The groups of its boundary are the elements of one
+//! dimension less in physical groups; elements in no group are ignored, so a boundary facet in no group
+//! is reported by [`Mesh::with_groups`](crate::mesh::Mesh::with_groups). Groups may have any names, a group
+//! without a name is called by its number. The names `dirichlet`, `neumann` and `contact` say what holds on
+//! a part of the boundary; for others the data of a problem do, see
+//! [`Problem::bind_boundary`](crate::problem::Problem::bind_boundary). Elements of higher order are read as
+//! straight ones, with a [`GmshWarning`].
 //!
 //! In Gmsh the groups are made by lines such as
 //!

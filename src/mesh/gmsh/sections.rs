@@ -1,6 +1,6 @@
 //! The header of a file and the sections that follow.
 
-use super::contents::{Contents, Group};
+use super::contents::Contents;
 use super::error::GmshError;
 use super::position::FilePosition;
 use super::source::Source;
@@ -185,7 +185,7 @@ fn read_names(source: &mut Source, contents: &mut Contents) -> Result<(), GmshEr
             return Err(GmshError::Unexpected { position, section, expected, found });
         };
         let name = String::from_utf8_lossy(name).into_owned();
-        contents.groups.insert((dimension, tag), Group { name, position });
+        contents.groups.insert((dimension, tag), name);
     }
     source.end_section("physical names", announced)
 }

@@ -4,7 +4,7 @@ use super::axes::{CONTACT, Stroke, Symbol};
 use super::graph::Graph;
 use crate::measure::Fields;
 use crate::mesh::Mesh;
-use crate::problem::{Field, Problem};
+use crate::problem::{DataOnMesh, DatumRef, Problem};
 use crate::real::{Point, Real, point_f64};
 
 /// Parts of a cell on which given functions are drawn as linear.
@@ -55,14 +55,19 @@ impl<'a, T: Real, const D: usize> Line<'a, T, D> {
         cells.chain(points).collect()
     }
 
-    /// Segments of a function that is given.
-    fn given(&self, function: &Field<D>, stroke: Stroke) -> Vec<(Stroke, [[f64; 2]; 2])> {
+    /// Segments of data that are given, by cell.
+    fn given(
+        &self,
+        of: &dyn Fn(usize) -> Option<DatumRef<'a, D>>,
+        stroke: Stroke,
+    ) -> Vec<(Stroke, [[f64; 2]; 2])> {
         let mut lines = Vec::new();
         for cell in 0..self.mesh.n_cells() {
+            let Some(datum) = of(cell) else { continue };
             let [a, b] = self.ends(cell);
             let at = |k: usize| {
                 let x = a + (b - a) * k as f64 / PARTS as f64;
-                [x, function(&Point::repeat(x))]
+                [x, datum.at(&Point::repeat(x))]
             };
             lines.extend((0..PARTS).map(|k| (stroke, [at(k), at(k + 1)])));
         }
@@ -88,9 +93,12 @@ impl<'a, T: Real, const D: usize> Line<'a, T, D> {
             legend: vec![(Symbol::Line(Stroke::Solution), "u".to_owned())],
             ..Graph::default()
         };
-        let obstacles = [&self.problem.lower, &self.problem.upper];
-        for obstacle in obstacles.into_iter().flatten() {
-            graph.lines.extend(self.given(obstacle, Stroke::Given));
+        // a problem that was solved on the mesh has its data there
+        if let Ok(data) = DataOnMesh::new(self.problem, self.mesh) {
+            for obstacle in [&data.lower, &data.upper] {
+                let of = |cell| obstacle.of(self.mesh.region(cell));
+                graph.lines.extend(self.given(&of, Stroke::Given));
+            }
         }
         if self.problem.has_obstacle() {
             graph.legend.push((Symbol::Line(Stroke::Given), "obstacle".to_owned()));
@@ -150,7 +158,9 @@ impl<'a, T: Real, const D: usize> Line<'a, T, D> {
         }
         let exact = self.problem.exact.as_ref();
         if let Some(multiplier) = exact.and_then(|e| e.multiplier.as_ref()) {
-            graph.lines.extend(self.given(multiplier, Stroke::Exact));
+            graph
+                .lines
+                .extend(self.given(&|_| Some(DatumRef::Function(multiplier)), Stroke::Exact));
             graph.legend.push((Symbol::Line(Stroke::Exact), "exact density".to_owned()));
         }
         self.mark_contact(&mut graph);

@@ -30,6 +30,7 @@ use super::render::{Drawing, draw_png, draw_svg};
 use super::style::INK;
 use crate::error::Error;
 use crate::error::write_error;
+use crate::files::replace_text;
 use crate::instances::compiled;
 use crate::measure::Fields;
 use crate::mesh::{Mesh, edge_vertices};
@@ -187,7 +188,8 @@ impl Picture {
     /// # Errors
     /// [`Error::Write`], and those of [`Self::to_svg`].
     pub fn write_svg(&self, path: &Path) -> Result<(), Error> {
-        fs::write(path, self.to_svg()?).map_err(|e| write_error(path, e))
+        let svg = self.to_svg()?;
+        replace_text(path, &svg).map(|_| ())
     }
 
     /// Writes `NAME.png` and `NAME.svg` to a directory, which is made if need be.

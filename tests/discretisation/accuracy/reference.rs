@@ -20,7 +20,7 @@ fn close(what: &str, row: &Row, ours: f64, theirs: f64, tolerance: f64) {
 
 fn check(row: &Row, reference: &Value) {
     let number = |key: &str| reference[key].as_f64().expect(key);
-    assert_eq!(row.unknowns as f64, number("unknowns"));
+    assert_eq!(row.unknowns.unwrap() as f64, number("unknowns"));
     assert!(row.converged());
     close("L2 error", row, row.error.l2.unwrap(), number("error_l2"), 1e-4);
     close("H1 error", row, row.error.h1.unwrap(), number("error_h1"), 1e-4);

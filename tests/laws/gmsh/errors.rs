@@ -2,6 +2,7 @@
 
 use super::files::{SQUARE, SQUARE_V2};
 use super::writer::{FORMS, Form, Sample, interval, square, tetrahedron};
+use unilateral::mesh::MeshError;
 use unilateral::mesh::gmsh;
 use unilateral::mesh::gmsh::{FilePosition, GmshError};
 
@@ -197,24 +198,17 @@ fn no_physical_groups() {
 }
 
 #[test]
-fn unknown_group() {
-    let (text, line) = change(TWO, "1 2 \"neumann\"", "1 2 \"outer wall\"");
-    let error = fail::<2>(text.as_bytes());
-    assert!(
-        matches!(&error, GmshError::UnknownGroup { position: FilePosition::Line(l), dimension: 1, tag: 2, name, .. } if *l == line && name == "outer wall")
-    );
-    says(&error, &[&format!("line {line}"), "\"outer wall\"", "dirichlet, neumann and contact"]);
-    let (text, line) = change(FOUR, "1 1 \"dirichlet\"", "1 1 \"Dirichlet\"");
-    let error = fail::<2>(text.as_bytes());
-    says(&error, &[&format!("line {line}"), "\"Dirichlet\"", "lower case: write dirichlet"]);
-}
-
-#[test]
-fn unnamed_group() {
-    let (text, line) = change(TWO, "3 1 2 2 3 3 4", "3 1 2 6 3 3 4");
-    let error = fail::<2>(text.as_bytes());
-    assert!(
-        matches!(error, GmshError::UnnamedGroup { position: FilePosition::Line(l), element: 3, dimension: 1, tag: 6 } if l == line)
-    );
-    says(&error, &[&format!("line {line}"), "element 3", "group 6", "$PhysicalNames", "name it"]);
+fn a_group_of_undecided_part() {
+    let undecided = |text: &str| {
+        let read = gmsh::parse::<f64, 2>(text.as_bytes()).unwrap();
+        read.mesh.check_boundary_parts().unwrap_err()
+    };
+    let error = undecided(&change(TWO, "1 2 \"neumann\"", "1 2 \"outer wall\"").0);
+    assert!(matches!(&error, MeshError::UndecidedGroup { group, .. } if group == "outer wall"));
+    assert!(error.to_string().contains("dirichlet_on, neumann_on, signorini_on"), "{error}");
+    // a group without a name is called by its number
+    let error = undecided(&change(TWO, "3 1 2 2 3 3 4", "3 1 2 6 3 3 4").0);
+    assert!(matches!(&error, MeshError::UndecidedGroup { group, .. } if group == "6"));
+    let error = undecided(&change(FOUR, "1 1 \"dirichlet\"", "1 1 \"Dirichlet\"").0);
+    assert!(error.to_string().ends_with("; write dirichlet"), "{error}");
 }

@@ -107,7 +107,7 @@ fn needs_pdflatex_to_compile_latex() {
     let mut report = synthetic();
     for m in &mut report.rows {
         m.row.error.broken_energy = Some(1.23e-4);
-        m.row.unknowns = 123_456;
+        m.row.unknowns = Some(123_456);
     }
     let mut other = report.rows.clone();
     other.iter_mut().for_each(|m| m.row.label += ":facet-means@factor=10,weight=anisotropic");

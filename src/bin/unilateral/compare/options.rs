@@ -6,14 +6,18 @@ use clap::Args;
 use unilateral::constraint::CONSTRAINT_SETS;
 use unilateral::inequality::SOLVERS;
 use unilateral::input::excerpt;
+use unilateral::mesh::BoundaryPart;
 use unilateral::scenes;
-use unilateral::scheme::{NamedScheme, SCHEMES, SchemeOptions, keys_of_scheme};
+use unilateral::scheme::{NamedScheme, SCHEMES, SchemeNameError, SchemeOptions, keys_of_scheme};
 
 use crate::shared::{MOST_THREADS, Request, each_once, schemes};
 
 /// Compares finite element schemes on obstacle and Signorini problems
-#[derive(Args, Debug)]
+#[derive(Args, Clone, Debug)]
 pub struct Options {
+    /// A problem of your own: a TOML file with mesh or box, data by name and boundary conditions
+    #[arg(value_name = "PROBLEM.toml", conflicts_with_all = ["scenes", "mesh", "boundary"])]
+    pub problem: Option<PathBuf>,
     /// Name every scene, scheme, constraint placement and solver, and end
     #[arg(long)]
     pub list: bool,
@@ -29,6 +33,12 @@ pub struct Options {
     /// Run on this Gmsh mesh; physical groups dirichlet, neumann, contact name the boundary parts
     #[arg(long, value_name = "FILE")]
     pub mesh: Option<PathBuf>,
+    /// The parts of other groups of the mesh, as bore=neumann
+    #[arg(long, value_delimiter = ',', value_name = "NAME=PART[,...]", requires = "mesh", value_parser = boundary)]
+    pub boundary: Vec<(String, BoundaryPart)>,
+    /// Measure against one fine solution in place of the exact one, by p2 where no scheme is named
+    #[arg(long, value_name = "[SCHEME@level=]N", value_parser = reference)]
+    pub reference: Option<(NamedScheme, usize)>,
     /// Length scale of scenes that have one
     #[arg(long, value_name = "L", allow_negative_numbers = true, value_parser = number)]
     pub scale: Option<f64>,
@@ -65,6 +75,9 @@ pub struct Options {
     /// Where the report goes
     #[arg(long, value_name = "DIR", default_value = "target/compare")]
     pub out: PathBuf,
+    /// Keep the rows of this request that the report in DIR has, and run the others
+    #[arg(long)]
+    pub resume: bool,
     /// Also write the JSON report here; `-` for standard output
     #[arg(long, value_name = "FILE")]
     pub json: Option<PathBuf>,
@@ -88,7 +101,8 @@ pub struct Options {
 impl Options {
     /// Whether the user named scenes, not all or whichever are the default.
     pub fn scenes_are_named(&self) -> bool {
-        !self.scenes.is_empty() && !self.scenes.iter().any(|name| name == "all")
+        let all = self.scenes.is_empty() || self.scenes.iter().any(|name| name == "all");
+        self.problem.is_some() || !all
     }
 }
 
@@ -102,6 +116,24 @@ const MOST_REPEATS: usize = 1000;
 
 fn whole(text: &str) -> Request<usize> {
     text.parse().map_err(|_| "expected a whole number, such as 16".to_owned())
+}
+
+/// A boundary group and its part.
+fn boundary(text: &str) -> Request<(String, BoundaryPart)> {
+    let found = text.rsplit_once('=');
+    let found =
+        found.and_then(|(name, part)| Some((name.to_owned(), BoundaryPart::from_name(part)?)));
+    found.ok_or_else(|| "expected NAME=dirichlet, NAME=neumann or NAME=contact".to_owned())
+}
+
+/// The scheme and the level of a reference: `6`, `sipg-p2@level=6`, `wopsip@eta=1e2,level=6`.
+fn reference(text: &str) -> Request<(NamedScheme, usize)> {
+    let (scheme, level) = match text.rsplit_once("level=") {
+        Some((scheme, level)) => (scheme.trim_end_matches(['@', ',']), level),
+        None => ("p2", text),
+    };
+    let level = level.parse().map_err(|_| "expected a level, or SCHEME@level=N".to_owned())?;
+    Ok((scheme.parse().map_err(|e: SchemeNameError| e.to_string())?, level))
 }
 
 fn number(text: &str) -> Request<f64> {

@@ -15,182 +15,21 @@
 //! same number each time. A value that is not finite ends the assembly with
 //! [`Error::DataNotFinite`](crate::error::Error::DataNotFinite), which names the datum and the point.
 
+mod datum;
+mod exact;
+mod named;
+mod on_mesh;
+
+pub use datum::{BoundaryFlux, Datum, Field, VectorField};
+pub use exact::{ContactSet, Exact, ReferenceEnergy};
+pub use named::NamedData;
+pub(crate) use on_mesh::{DataByGroup, DataOnMesh, DatumRef};
+
 use std::fmt;
 use std::sync::Arc;
 
 use crate::constraint::{ConstraintSet, Nodes};
 use crate::real::Point;
-
-/// A scalar function of space, shared by the clones of a problem.
-pub type Field<const D: usize> = Arc<dyn Fn(&Point<f64, D>) -> f64 + Send + Sync>;
-/// A vector function of space.
-pub type VectorField<const D: usize> = Arc<dyn Fn(&Point<f64, D>) -> Point<f64, D> + Send + Sync>;
-/// A flux through the boundary: a function of the point and the outward unit normal.
-pub type BoundaryFlux<const D: usize> =
-    Arc<dyn Fn(&Point<f64, D>, &Point<f64, D>) -> f64 + Send + Sync>;
-
-/// A reaction or load: a constant, integrated exactly and without a quadrature loop, or a function.
-#[derive(Clone)]
-#[non_exhaustive]
-pub enum Datum<const D: usize> {
-    /// A constant.
-    Constant(f64),
-    /// A function of space that is smooth in every cell, integrated by quadrature.
-    Function(Field<D>),
-    /// A function of space that may jump, or have a kink, where `level` changes its sign. Cells that
-    /// the zero set of `level` cuts are divided along it, see [`Problem::piecewise_source`].
-    Piecewise {
-        /// The function. No point of a rule lies on the zero set of `level`, except by rounding.
-        value: Field<D>,
-        /// Positive on one side, negative on the other.
-        level: Field<D>,
-    },
-}
-
-impl<const D: usize> Datum<D> {
-    /// A function that may jump, or have a kink, where `level` changes its sign.
-    pub fn piecewise(
-        value: impl Fn(&Point<f64, D>) -> f64 + Send + Sync + 'static,
-        level: impl Fn(&Point<f64, D>) -> f64 + Send + Sync + 'static,
-    ) -> Self {
-        Datum::Piecewise { value: Arc::new(value), level: Arc::new(level) }
-    }
-    /// The value at a point.
-    pub fn at(&self, x: &Point<f64, D>) -> f64 {
-        match self {
-            Datum::Constant(c) => *c,
-            Datum::Function(value) | Datum::Piecewise { value, .. } => value(x),
-        }
-    }
-    /// The function whose zero set divides cells, if there is one.
-    pub(crate) fn level(&self) -> Option<&Field<D>> {
-        match self {
-            Datum::Piecewise { level, .. } => Some(level),
-            _ => None,
-        }
-    }
-}
-
-impl<const D: usize> From<f64> for Datum<D> {
-    fn from(c: f64) -> Self {
-        Datum::Constant(c)
-    }
-}
-
-impl<const D: usize, F> From<F> for Datum<D>
-where
-    F: Fn(&Point<f64, D>) -> f64 + Send + Sync + 'static,
-{
-    fn from(f: F) -> Self {
-        Datum::Function(Arc::new(f))
-    }
-}
-
-impl<const D: usize> fmt::Debug for Datum<D> {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Datum::Constant(c) => f.debug_tuple("Constant").field(c).finish(),
-            Datum::Function(_) => f.write_str("Function(..)"),
-            Datum::Piecewise { .. } => f.write_str("Piecewise(..)"),
-        }
-    }
-}
-
-/// The exact solution, for error norms, and for Dirichlet and Neumann data where the problem has
-/// none.
-#[derive(Clone)]
-#[non_exhaustive]
-pub struct Exact<const D: usize> {
-    /// The solution.
-    pub value: Field<D>,
-    /// The gradient of the solution.
-    pub gradient: VectorField<D>,
-    /// Density of the multiplier: with obstacles `lambda = -div(alpha grad u) + c u - f` per unit
-    /// volume, negative where the upper obstacle is active; with the Signorini condition
-    /// `sigma = alpha du/dn` per unit area of the contact part, undefined elsewhere. None where the
-    /// multiplier is a measure without density, or unknown.
-    pub multiplier: Option<Field<D>>,
-    /// The contact set; none where data and solution do not determine it.
-    pub contact: Option<ContactSet<D>>,
-}
-
-/// The set where the exact solution equals a bound: with obstacles a subset of the domain, with the
-/// Signorini condition a subset of the contact part of the boundary.
-#[derive(Clone)]
-#[non_exhaustive]
-pub struct ContactSet<const D: usize> {
-    /// Positive inside the contact set, negative outside, zero on its free boundary.
-    pub indicator: Field<D>,
-    /// Points of the free boundary: all of them in one dimension and for a Signorini condition in
-    /// two, otherwise a sample whose distances are far below mesh sizes. Empty where the free
-    /// boundary is empty.
-    pub free_boundary: Vec<Point<f64, D>>,
-}
-
-/// The minimum of the energy `J(v) = a(v, v)/2 - l(v)` of a problem without a known solution.
-///
-/// The energies of the catalogue were extrapolated from conforming linear elements on uniform meshes
-/// with up to 256 (or 512) subdivisions, by an independent program.
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[non_exhaustive]
-pub struct ReferenceEnergy {
-    /// The energy.
-    pub value: f64,
-    /// Bound on the error of the energy.
-    pub uncertainty: f64,
-}
-
-impl<const D: usize> Exact<D> {
-    /// A solution and its gradient, without multiplier and contact set.
-    pub fn new(
-        value: impl Fn(&Point<f64, D>) -> f64 + Send + Sync + 'static,
-        gradient: impl Fn(&Point<f64, D>) -> Point<f64, D> + Send + Sync + 'static,
-    ) -> Self {
-        Self {
-            value: Arc::new(value),
-            gradient: Arc::new(gradient),
-            multiplier: None,
-            contact: None,
-        }
-    }
-    /// Sets the density of the multiplier.
-    #[must_use]
-    pub fn with_multiplier(
-        mut self,
-        lambda: impl Fn(&Point<f64, D>) -> f64 + Send + Sync + 'static,
-    ) -> Self {
-        self.multiplier = Some(Arc::new(lambda));
-        self
-    }
-    /// Sets the contact set: a function positive inside and negative outside, and points of the
-    /// free boundary.
-    #[must_use]
-    pub fn with_contact(
-        mut self,
-        indicator: impl Fn(&Point<f64, D>) -> f64 + Send + Sync + 'static,
-        free_boundary: Vec<Point<f64, D>>,
-    ) -> Self {
-        self.contact = Some(ContactSet { indicator: Arc::new(indicator), free_boundary });
-        self
-    }
-}
-
-impl<const D: usize> fmt::Debug for Exact<D> {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_struct("Exact")
-            .field("multiplier", &self.multiplier.is_some())
-            .field("contact", &self.contact)
-            .finish_non_exhaustive()
-    }
-}
-
-impl<const D: usize> fmt::Debug for ContactSet<D> {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_struct("ContactSet")
-            .field("free_boundary_points", &self.free_boundary.len())
-            .finish_non_exhaustive()
-    }
-}
 
 /// A variational inequality: data, the constraint set and, where known, its solution. A clone shares
 /// the functions.
@@ -215,6 +54,8 @@ pub struct Problem<const D: usize> {
     pub upper: Option<Field<D>>,
     /// Signorini gap `g` on the contact part.
     pub gap: Option<Field<D>>,
+    /// Data for named regions and boundary groups, which take precedence over those without a name.
+    pub named: NamedData<D>,
     /// Where obstacles and gap bind; at the [`Nodes`] of the element where absent.
     pub constraint_set: Option<Arc<dyn ConstraintSet>>,
     /// The exact solution.
@@ -235,6 +76,7 @@ impl<const D: usize> fmt::Debug for Problem<D> {
             lower,
             upper,
             gap,
+            named,
             constraint_set,
             exact,
             reference_energy,
@@ -256,6 +98,10 @@ impl<const D: usize> fmt::Debug for Problem<D> {
             if is_present {
                 out.field(name, &format_args!("Function(..)"));
             }
+        }
+        let names: Vec<&str> = named.names().map(|(name, _)| name).collect();
+        if !names.is_empty() {
+            out.field("named", &names);
         }
         if let Some(set) = constraint_set {
             out.field("constraint_set", &set.name());
@@ -437,19 +283,33 @@ impl<const D: usize> Problem<D> {
     }
     /// Whether the problem has an obstacle in the domain.
     pub fn has_obstacle(&self) -> bool {
-        self.lower.is_some() || self.upper.is_some()
+        self.lower.is_some()
+            || self.upper.is_some()
+            || !(self.named.lower.is_empty() && self.named.upper.is_empty())
+    }
+    /// Whether the problem has a Signorini condition on some part of the boundary.
+    pub fn has_gap(&self) -> bool {
+        self.gap.is_some() || !self.named.gap.is_empty()
+    }
+    /// Whether the problem has a diffusion coefficient other than one.
+    pub fn has_coefficient(&self) -> bool {
+        self.coefficient.is_some() || !self.named.coefficient.is_empty()
+    }
+    /// Whether the problem has a reaction term in some region.
+    pub fn has_reaction(&self) -> bool {
+        self.reaction.is_some() || !self.named.reaction.is_empty()
     }
     /// Whether the problem has an inequality constraint.
     pub fn is_constrained(&self) -> bool {
-        self.has_obstacle() || self.gap.is_some()
+        self.has_obstacle() || self.has_gap()
     }
     /// Whether Dirichlet data are given, by themselves or by the exact solution.
     pub fn has_dirichlet_data(&self) -> bool {
-        self.dirichlet.is_some() || self.exact.is_some()
+        self.dirichlet.is_some() || self.exact.is_some() || !self.named.dirichlet.is_empty()
     }
     /// Whether Neumann data are given, by themselves or by the exact solution.
     pub fn has_neumann_data(&self) -> bool {
-        self.neumann.is_some() || self.exact.is_some()
+        self.neumann.is_some() || self.exact.is_some() || !self.named.neumann.is_empty()
     }
 }
 

@@ -1,0 +1,107 @@
+//! Distances of contact set and multiplier from those of a solution on a refinement of the mesh.
+
+use super::entity::ContactEntity;
+use crate::algebra::Inequality;
+use crate::assemble::Discretisation;
+use crate::assemble::space::Space;
+use crate::inequality::Solution;
+use crate::instances::compiled;
+use crate::measure::errors::ContactErrors;
+use crate::mesh::Refinement;
+use crate::real::{Real, point_f64};
+
+/// A solution with its space and inequality.
+type Solved<'s, 'a, T, const D: usize> =
+    (&'s Discretisation<'a, T, D>, &'s Inequality<T>, &'s Solution<T>);
+
+/// Distances of multiplier and contact set of a solution from those of another one, on the mesh that
+/// these refinements make of its own, coarsest first. The definitions are those of
+/// [`Discretisation::contact_errors`]. The measure of the symmetric difference is that of the cells (or contact
+/// facets) of the finer mesh; the multiplier of the finer solution is tested with the hat functions of the
+/// coarser mesh, exactly.
+pub(crate) fn contact_difference<T: Real, const D: usize>(
+    solved: Solved<'_, '_, T, D>,
+    reference: Solved<'_, '_, T, D>,
+    refinements: &[&Refinement],
+) -> ContactErrors {
+    compiled!(
+        T, D: fn(Solved<'_, '_, T, D>, Solved<'_, '_, T, D>, &[&Refinement]) -> ContactErrors
+            = |solved, reference, refinements| {
+                let own = (&solved.0.space, solved.1, solved.2);
+                difference(own, (&reference.0.space, reference.1, reference.2), refinements)
+            }
+    )(solved, reference, refinements)
+}
+
+/// A solution with its space and inequality.
+type OnSpace<'s, 'a, T, const D: usize> = (&'s Space<'a, T, D>, &'s Inequality<T>, &'s Solution<T>);
+
+fn difference<T: Real, const D: usize>(
+    (space, inequality, solution): OnSpace<'_, '_, T, D>,
+    (fine, fine_inequality, fine_solution): OnSpace<'_, '_, T, D>,
+    refinements: &[&Refinement],
+) -> ContactErrors {
+    let mut errors = ContactErrors::default();
+    // with both an obstacle and a contact boundary there are two multipliers of different kind
+    if space.problem.has_obstacle() == space.problem.has_gap() {
+        return errors;
+    }
+    let (entities, fine_entities) = (space.entities(), fine.entities());
+    let touching = space.in_contact(&entities, inequality, solution);
+    let fine_touching = fine.in_contact(&fine_entities, fine_inequality, fine_solution);
+    let area = fine_entities.iter().zip(fine_touching).map(|(&entity, touches)| {
+        let ancestor = ancestor(space, &entities, (fine, entity), refinements.len());
+        let differs = ancestor.is_some_and(|k| touching[k] != touches);
+        if differs { fine.measure_of(entity) } else { 0.0 }
+    });
+    errors.contact_area_error = Some(area.sum());
+
+    let mut multipliers = fine.vertex_multipliers(fine_inequality, fine_solution, |_| true);
+    for refinement in refinements.iter().rev() {
+        multipliers = tested_with_coarser_hats(&multipliers, refinement);
+    }
+    let own = space.vertex_multipliers(inequality, solution, |_| true);
+    multipliers.iter_mut().zip(own).for_each(|(m, own)| *m -= own);
+    let weights = space.hat_integrals(&entities);
+    let given = space.dirichlet_groups();
+    let vertices = || (0..weights.len()).filter(|&v| weights[v] > 0.0 && given[v].is_none());
+    if vertices().next().is_some() {
+        let squares: f64 = vertices().map(|v| multipliers[v].powi(2) / weights[v]).sum();
+        errors.multiplier_l1 = Some(vertices().map(|v| multipliers[v].abs()).sum());
+        errors.multiplier_l2 = Some(squares.sqrt());
+    }
+    errors
+}
+
+/// The position of the entity that contains an entity of a refinement.
+fn ancestor<T: Real, const D: usize>(
+    space: &Space<'_, T, D>,
+    entities: &[ContactEntity],
+    (fine, entity): (&Space<'_, T, D>, ContactEntity),
+    refinements: usize,
+) -> Option<usize> {
+    let cell = entity.cell >> (D * refinements);
+    let first = entities.partition_point(|e| e.cell < cell);
+    let of_cell = || (first..entities.len()).take_while(|&k| entities[k].cell == cell);
+    let Some(local) = entity.facet else { return of_cell().next() };
+    let x = point_f64(&fine.mesh.facet_barycentre(entity.cell, local));
+    let geometry = space.mesh.geometry(cell);
+    // the barycentric coordinate of a facet vanishes on it
+    let coordinate = |k: &usize| {
+        let facet = entities[*k].facet.unwrap_or(0);
+        let on_facet = point_f64(&space.mesh.facet_barycentre(cell, facet));
+        point_f64(geometry.gradient(facet)).dot(&(x - on_facet)).abs()
+    };
+    of_cell().min_by(|a, b| coordinate(a).total_cmp(&coordinate(b)))
+}
+
+/// What is tested with the hat functions of a refined mesh, tested with those of its parent.
+fn tested_with_coarser_hats(fine: &[f64], refinement: &Refinement) -> Vec<f64> {
+    let n = refinement.parents.iter().flatten().max().map_or(0, |&v| v as usize + 1);
+    let mut coarse = vec![0.0; n];
+    for (&value, &[a, b]) in fine.iter().zip(&refinement.parents) {
+        coarse[a as usize] += 0.5 * value;
+        coarse[b as usize] += 0.5 * value;
+    }
+    coarse
+}

@@ -1,0 +1,89 @@
+//! The energy of a discrete function, by one formula for every scheme.
+
+use std::ops::Range;
+
+use crate::assemble::Discretisation;
+use crate::assemble::local::zero_local;
+use crate::assemble::space::Space;
+use crate::error::Error;
+use crate::instances::compiled;
+use crate::parallel::cells;
+use crate::quadrature::{FullySymmetric, Quadrature, Rule};
+use crate::real::{Point, Real, point_f64};
+
+impl<T: Real, const D: usize> Discretisation<'_, T, D> {
+    /// The energy of a vector of unknowns,
+    ///
+    /// ```text
+    /// 1/2 int alpha |grad u|^2 + 1/2 int c u^2 - int f u - int_N q u
+    /// ```
+    ///
+    /// with the gradient in each cell and the Neumann part `N`. No facet form enters, so that a function
+    /// has the same energy in every scheme; the minimum over the admissible functions is that of the
+    /// continuous problem, and a discontinuous function may lie below it. Coefficient, reaction and loads
+    /// are integrated by the rules of the assembly.
+    ///
+    /// # Errors
+    /// [`Error::DataNotFinite`].
+    ///
+    /// # Panics
+    /// If `u` is shorter than the number of unknowns.
+    pub fn energy(&self, u: &[T]) -> Result<f64, Error> {
+        compiled!(
+            T, D: fn(&Discretisation<'_, T, D>, &[T]) -> Result<f64, Error>
+                = |of, u| of.space.energy(u)
+        )(self, u)
+    }
+}
+
+impl<T: Real, const D: usize> Space<'_, T, D> {
+    fn energy(&self, u: &[T]) -> Result<f64, Error> {
+        let load = self.load_by_cell()?;
+        let rule = match self.has_varying_coefficient() {
+            // the rule at whose points the stiffness has the coefficient
+            true => FullySymmetric.rule(D, 2 * self.basis_degree)?,
+            false => Rule::new(D, 2 * self.basis_degree.saturating_sub(1)),
+        };
+        let table = self.cell_table(rule);
+        let n = self.per_cell();
+        // partial sums are added in order, so the result does not depend on threads
+        let parts = cells::map(self.mesh.n_cells(), &|cells: Range<usize>| {
+            let mut sum = 0.0;
+            for cell in cells {
+                let geometry = self.mesh.geometry(cell);
+                let local = self.local_values(cell, u);
+                let mut gradients = 0.0;
+                for ((point, basis), weight) in
+                    table.points.iter().zip(&table.basis).zip(&table.weights)
+                {
+                    let slope = |k: usize| -> f64 {
+                        (0..n).map(|i| local[i] * basis.derivatives[i][k]).sum()
+                    };
+                    // the gradients of barycentric coordinates sum to zero: without the common part of
+                    // the slopes a constant adds no rounding
+                    let gradient = (1..=D).fold(Point::zeros(), |sum: Point<f64, D>, k| {
+                        sum + point_f64(geometry.gradient(k)) * (slope(k) - slope(0))
+                    });
+                    let alpha = self.alpha_at(cell, &self.cell_point(point, cell));
+                    gradients += weight * alpha * gradient.norm_squared();
+                }
+                let mut reaction = 0.0;
+                if let Some(term) = &self.reaction {
+                    let mut products = zero_local();
+                    term.add(self.mesh, cell, geometry.volume, &mut products);
+                    for i in 0..n {
+                        for j in 0..n {
+                            reaction += local[i] * products[i][j].to_f64() * local[j];
+                        }
+                    }
+                }
+                sum += 0.5 * (geometry.volume.to_f64() * gradients + reaction);
+                // without sources the list is empty
+                let of_cell = load.iter().skip(cell * n).zip(&local[..n]);
+                sum -= of_cell.map(|(b, u)| b.to_f64() * u).sum::<f64>();
+            }
+            sum
+        });
+        Ok(parts.iter().sum())
+    }
+}

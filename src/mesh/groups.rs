@@ -1,0 +1,62 @@
+//! Names of regions of cells and of groups of boundary facets.
+//!
+//! A cell or a boundary facet may be in several named groups. Cells with the same names form a *region*,
+//! boundary facets with the same names a *boundary group*; the mesh stores one number for each cell
+//! and boundary facet. Refinement keeps both.
+
+use super::boundary::BoundaryPart;
+
+/// The names that a set of boundary facets has in common, and its part of the boundary.
+#[derive(Clone, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub struct BoundaryGroup {
+    /// The names.
+    pub names: Vec<String>,
+    /// The part; none as long as neither a name (`dirichlet`, `neumann`, `contact`) nor a problem
+    /// decides.
+    pub part: Option<BoundaryPart>,
+}
+
+/// The regions and boundary groups of a mesh, by number.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub(in crate::mesh) struct Groups {
+    /// The names of each region; a mesh without names has one region without names.
+    pub regions: Vec<Vec<String>>,
+    /// The boundary groups.
+    pub boundary: Vec<BoundaryGroup>,
+}
+
+impl Groups {
+    /// One region without names, and boundary groups of one name each with these parts.
+    pub fn of_boundary(boundary: impl IntoIterator<Item = (String, BoundaryPart)>) -> Self {
+        let group = |(name, part)| BoundaryGroup { names: vec![name], part: Some(part) };
+        Self { regions: vec![Vec::new()], boundary: boundary.into_iter().map(group).collect() }
+    }
+}
+
+/// Sets of names, each with a number.
+#[derive(Debug)]
+pub(in crate::mesh) struct NameSets(Vec<Vec<String>>);
+
+impl NameSets {
+    /// One set for each name.
+    pub fn new(names: &[String]) -> Self {
+        Self(names.iter().map(|name| vec![name.clone()]).collect())
+    }
+    /// The number of the union of two sets.
+    pub fn union(&mut self, a: usize, b: usize) -> usize {
+        let mut union = self.0[a].clone();
+        union.extend(self.0[b].iter().filter(|name| !self.0[a].contains(name)).cloned());
+        let is_union = |set: &Vec<String>| {
+            set.len() == union.len() && set.iter().all(|name| union.contains(name))
+        };
+        self.0.iter().position(is_union).unwrap_or_else(|| {
+            self.0.push(union);
+            self.0.len() - 1
+        })
+    }
+    /// The names of a set.
+    pub fn names(&self, set: usize) -> &[String] {
+        &self.0[set]
+    }
+}

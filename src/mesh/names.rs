@@ -1,0 +1,120 @@
+//! The names of the regions and boundary groups of a mesh.
+
+use std::sync::Arc;
+
+use super::boundary::BoundaryPart;
+use super::error::MeshError;
+use super::facets::Neighbours;
+use super::groups::BoundaryGroup;
+use super::simplicial::Mesh;
+use super::validate::unsupported_component;
+use crate::instances::compiled;
+use crate::real::Real;
+
+impl<T: Real, const D: usize> Mesh<T, D> {
+    /// The names of each region, by number.
+    pub fn regions(&self) -> &[Vec<String>] {
+        &self.groups.regions
+    }
+    /// The number of the region of a cell.
+    #[inline(always)]
+    pub fn region(&self, cell: usize) -> usize {
+        self.cell_regions.get(cell).map_or(0, |&region| usize::from(region))
+    }
+    /// The number of the boundary group of a facet of a cell; none between two cells.
+    pub fn boundary_group(&self, cell: usize, local: usize) -> Option<usize> {
+        let key = (cell as u32, local as u8);
+        let found =
+            self.boundary.binary_search_by_key(&key, |facet| (facet.cell, facet.local)).ok()?;
+        Some(usize::from(self.boundary[found].group))
+    }
+    /// The boundary groups, by number.
+    pub fn boundary_groups(&self) -> &[BoundaryGroup] {
+        &self.groups.boundary
+    }
+
+    /// The mesh with these regions: the names of each, and the number of the region of each cell.
+    ///
+    /// # Errors
+    /// [`MeshError::Parameter`] unless there is one number for each cell, less than that of regions.
+    pub fn with_regions(
+        mut self,
+        regions: Vec<Vec<String>>,
+        of_cells: Vec<u16>,
+    ) -> Result<Self, MeshError> {
+        let refuse = |parameter, value: String, allowed: String| {
+            Err(MeshError::Parameter { parameter, value, allowed })
+        };
+        if of_cells.len() != self.n_cells() {
+            let allowed = format!("one for each of {} cells", self.n_cells());
+            return refuse("numbers of regions of cells", of_cells.len().to_string(), allowed);
+        }
+        if let Some(region) = of_cells.iter().find(|&&k| usize::from(k) >= regions.len()) {
+            let allowed = format!("less than {}, the number of regions", regions.len());
+            return refuse("region of a cell", region.to_string(), allowed);
+        }
+        Arc::make_mut(&mut self.groups).regions = regions;
+        self.cell_regions = of_cells;
+        Ok(self)
+    }
+
+    /// The mesh with the part of each boundary group decided by its names; a group that has no name for
+    /// which `part_of` knows a part keeps the part that it has.
+    ///
+    /// # Errors
+    /// [`MeshError::GroupInTwoParts`].
+    pub fn with_boundary_parts(
+        self,
+        part_of: &dyn Fn(&str) -> Option<BoundaryPart>,
+    ) -> Result<Self, MeshError> {
+        compiled!(
+            T, D: fn(
+                Mesh<T, D>,
+                &dyn Fn(&str) -> Option<BoundaryPart>,
+            ) -> Result<Mesh<T, D>, MeshError>
+                = Mesh::decide_parts
+        )(self, part_of)
+    }
+    fn decide_parts(
+        mut self,
+        part_of: &dyn Fn(&str) -> Option<BoundaryPart>,
+    ) -> Result<Self, MeshError> {
+        let groups = Arc::make_mut(&mut self.groups);
+        for BoundaryGroup { names, part } in &mut groups.boundary {
+            let mut known: Option<(&str, BoundaryPart)> = None;
+            for (name, found) in names.iter().filter_map(|name| Some((name, part_of(name)?))) {
+                match known {
+                    Some((first, other)) if other != found => {
+                        return Err(MeshError::GroupInTwoParts {
+                            groups: [first.to_owned(), name.clone()],
+                            parts: [other.name(), found.name()],
+                        });
+                    }
+                    _ => known = Some((name, found)),
+                }
+            }
+            *part = known.map(|(_, part)| part).or(*part);
+        }
+        for facet in &mut self.boundary {
+            if let Some(part) = groups.boundary[usize::from(facet.group)].part {
+                facet.part = part;
+            }
+        }
+        let is_dirichlet = |part| part == BoundaryPart::Dirichlet;
+        let neighbours = Neighbours::new(&self);
+        self.is_supported =
+            unsupported_component(&neighbours, &self.boundary, is_dirichlet).is_none();
+        Ok(self)
+    }
+
+    /// Checks that the part of every boundary group is decided.
+    ///
+    /// # Errors
+    /// [`MeshError::UndecidedGroup`].
+    pub fn check_boundary_parts(&self) -> Result<(), MeshError> {
+        match self.groups.boundary.iter().find(|group| group.part.is_none()) {
+            Some(group) => Err(MeshError::undecided(&group.names)),
+            None => Ok(()),
+        }
+    }
+}

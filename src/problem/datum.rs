@@ -1,0 +1,81 @@
+//! Functions of space, and data that are constants or functions.
+
+use std::fmt;
+use std::sync::Arc;
+
+use crate::real::Point;
+
+/// A scalar function of space, shared by the clones of a problem.
+pub type Field<const D: usize> = Arc<dyn Fn(&Point<f64, D>) -> f64 + Send + Sync>;
+/// A vector function of space.
+pub type VectorField<const D: usize> = Arc<dyn Fn(&Point<f64, D>) -> Point<f64, D> + Send + Sync>;
+/// A flux through the boundary: a function of the point and the outward unit normal.
+pub type BoundaryFlux<const D: usize> =
+    Arc<dyn Fn(&Point<f64, D>, &Point<f64, D>) -> f64 + Send + Sync>;
+
+/// A reaction or load: a constant, integrated exactly and without a quadrature loop, or a function.
+#[derive(Clone)]
+#[non_exhaustive]
+pub enum Datum<const D: usize> {
+    /// A constant.
+    Constant(f64),
+    /// A function of space that is smooth in every cell, integrated by quadrature.
+    Function(Field<D>),
+    /// A function of space that may jump, or have a kink, where `level` changes its sign. Cells that
+    /// the zero set of `level` cuts are divided along it, see [`Problem::piecewise_source`].
+    Piecewise {
+        /// The function. No point of a rule lies on the zero set of `level`, except by rounding.
+        value: Field<D>,
+        /// Positive on one side, negative on the other.
+        level: Field<D>,
+    },
+}
+
+impl<const D: usize> Datum<D> {
+    /// A function that may jump, or have a kink, where `level` changes its sign.
+    pub fn piecewise(
+        value: impl Fn(&Point<f64, D>) -> f64 + Send + Sync + 'static,
+        level: impl Fn(&Point<f64, D>) -> f64 + Send + Sync + 'static,
+    ) -> Self {
+        Datum::Piecewise { value: Arc::new(value), level: Arc::new(level) }
+    }
+    /// The value at a point.
+    pub fn at(&self, x: &Point<f64, D>) -> f64 {
+        match self {
+            Datum::Constant(c) => *c,
+            Datum::Function(value) | Datum::Piecewise { value, .. } => value(x),
+        }
+    }
+    /// The function whose zero set divides cells, if there is one.
+    pub(crate) fn level(&self) -> Option<&Field<D>> {
+        match self {
+            Datum::Piecewise { level, .. } => Some(level),
+            _ => None,
+        }
+    }
+}
+
+impl<const D: usize> From<f64> for Datum<D> {
+    fn from(c: f64) -> Self {
+        Datum::Constant(c)
+    }
+}
+
+impl<const D: usize, F> From<F> for Datum<D>
+where
+    F: Fn(&Point<f64, D>) -> f64 + Send + Sync + 'static,
+{
+    fn from(f: F) -> Self {
+        Datum::Function(Arc::new(f))
+    }
+}
+
+impl<const D: usize> fmt::Debug for Datum<D> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Datum::Constant(c) => f.debug_tuple("Constant").field(c).finish(),
+            Datum::Function(_) => f.write_str("Function(..)"),
+            Datum::Piecewise { .. } => f.write_str("Piecewise(..)"),
+        }
+    }
+}

@@ -1,0 +1,180 @@
+//! Tables and values of a TOML file, with their places.
+
+use std::path::{Path, PathBuf};
+
+use toml::Spanned;
+use toml::de::{DeTable, DeValue};
+
+use super::error::{ProblemFileError, ProblemFileFault};
+use super::expression::Expression;
+use crate::input::{excerpt, read_file};
+use crate::mesh::gmsh;
+
+/// A value with its place.
+pub(super) type Value<'t> = Spanned<DeValue<'t>>;
+
+/// A number or an expression.
+#[derive(Clone, Debug)]
+pub(super) enum Formula {
+    Number(f64),
+    Expression(Expression),
+}
+
+/// Where the problem of a file is posed.
+pub(super) enum Place {
+    Box { corners: [Vec<f64>; 2] },
+    File { path: PathBuf, bytes: Vec<u8>, dimension: usize },
+}
+
+impl Place {
+    pub fn dimension(&self) -> usize {
+        match self {
+            Self::Box { corners } => corners[0].len(),
+            Self::File { dimension, .. } => *dimension,
+        }
+    }
+}
+
+/// A problem file.
+pub(super) struct Source<'t> {
+    pub path: &'t Path,
+    pub text: &'t str,
+}
+
+type Found<V> = Result<V, ProblemFileError>;
+
+impl<'t> Source<'t> {
+    /// The error at an offset in bytes.
+    pub fn error(&self, offset: usize, fault: ProblemFileFault) -> ProblemFileError {
+        let offset =
+            (0..=offset.min(self.text.len())).rev().find(|&k| self.text.is_char_boundary(k));
+        let before = &self.text[..offset.unwrap_or(0)];
+        let line_start = before.rfind('\n').map_or(0, |k| k + 1);
+        ProblemFileError::At {
+            path: self.path.into(),
+            line: before.matches('\n').count() + 1,
+            column: before[line_start..].chars().count() + 1,
+            fault,
+        }
+    }
+
+    /// The table of the file.
+    pub fn root(&self) -> Found<DeTable<'t>> {
+        let syntax = |e: toml::de::Error| {
+            let offset = e.span().map_or(0, |span| span.start);
+            self.error(offset, ProblemFileFault::Syntax(e.message().to_owned()))
+        };
+        Ok(DeTable::parse(self.text).map_err(syntax)?.into_inner())
+    }
+
+    /// Mesh file or box.
+    pub fn place(&self, root: &DeTable<'t>) -> Found<Place> {
+        let missing = ProblemFileFault::Missing {
+            key: "mesh",
+            purpose: "the Gmsh file of the domain, or `box` with its two corners",
+        };
+        match (root.get("mesh"), root.get("box")) {
+            (Some(file), None) => self.mesh_file(file),
+            (None, Some(corners)) => self.corners(corners),
+            (None, None) => Err(self.error(0, missing)),
+            (Some(_), Some(second)) => Err(self.error(
+                second.span().start,
+                ProblemFileFault::UnknownKey {
+                    key: "box".to_owned(),
+                    allowed: "`mesh` or `box`, not both".to_owned(),
+                },
+            )),
+        }
+    }
+
+    fn mesh_file(&self, value: &Value<'t>) -> Found<Place> {
+        let name = self.string("mesh", value)?;
+        let path = self.path.parent().unwrap_or(Path::new("")).join(name);
+        let failed = |source| ProblemFileError::Mesh { path: path.clone(), source };
+        let unreadable =
+            |source| failed(gmsh::GmshError::Unreadable { path: path.clone(), source });
+        let bytes = read_file(&path).map_err(unreadable)?;
+        let dimension = gmsh::dimension(&bytes).map_err(failed)?;
+        Ok(Place::File { path, bytes, dimension })
+    }
+
+    fn corners(&self, value: &Value<'t>) -> Found<Place> {
+        let wrong = || self.wrong_type("box", value, "two corners of one to three numbers each");
+        let corner = |corner: &Value<'t>| -> Found<Vec<f64>> {
+            let numbers = corner.get_ref().as_array().ok_or_else(wrong)?;
+            numbers.iter().map(|x| self.number(x).ok_or_else(wrong)).collect()
+        };
+        let corners = value.get_ref().as_array().ok_or_else(wrong)?;
+        let corners = corners.iter().map(corner).collect::<Found<Vec<_>>>()?;
+        let Ok([lower, upper]) = <[Vec<f64>; 2]>::try_from(corners) else { return Err(wrong()) };
+        if lower.len() != upper.len() || !(1..=3).contains(&lower.len()) {
+            return Err(wrong());
+        }
+        Ok(Place::Box { corners: [lower, upper] })
+    }
+
+    /// Refuses a key that is not in the list.
+    pub fn allow(&self, table: &DeTable<'t>, allowed: &[&str]) -> Found<()> {
+        match table.keys().find(|key| !allowed.contains(&&**key.get_ref())) {
+            Some(key) => Err(self.error(
+                key.span().start,
+                ProblemFileFault::UnknownKey {
+                    key: excerpt(&**key.get_ref()),
+                    allowed: allowed.join(", "),
+                },
+            )),
+            None => Ok(()),
+        }
+    }
+
+    /// The error for a value of another type.
+    pub fn wrong_type(
+        &self,
+        key: &str,
+        value: &Value<'t>,
+        expected: &'static str,
+    ) -> ProblemFileError {
+        let found = excerpt(&self.text[value.span()]);
+        let key = key.to_owned();
+        self.error(value.span().start, ProblemFileFault::WrongType { key, expected, found })
+    }
+
+    /// A table within a table.
+    pub fn table<'v>(&self, key: &str, value: &'v Value<'t>) -> Found<&'v DeTable<'t>> {
+        value.get_ref().as_table().ok_or_else(|| self.wrong_type(key, value, "a table"))
+    }
+
+    /// A string.
+    pub fn string<'v>(&self, key: &str, value: &'v Value<'t>) -> Found<&'v str> {
+        value.get_ref().as_str().ok_or_else(|| self.wrong_type(key, value, "a string"))
+    }
+
+    fn number(&self, value: &Value<'t>) -> Option<f64> {
+        match value.get_ref() {
+            DeValue::Float(float) => float.as_str().parse().ok(),
+            DeValue::Integer(integer) => {
+                Some(i64::from_str_radix(integer.as_str(), integer.radix()).ok()? as f64)
+            }
+            _ => None,
+        }
+    }
+
+    /// A number, or an expression in these variables.
+    pub fn formula(&self, key: &str, value: &Value<'t>, variables: &[&str]) -> Found<Formula> {
+        if let Some(number) = self.number(value) {
+            return Ok(Formula::Number(number));
+        }
+        let Some(text) = value.get_ref().as_str() else {
+            return Err(self.wrong_type(key, value, "a number, or an expression as a string"));
+        };
+        let expression = Expression::parse(text, variables).map_err(|error| {
+            let raw = &self.text[value.span()];
+            let quotes = raw.len() - raw.trim_start_matches(['"', '\'']).len();
+            // an empty string is all quotes
+            let quotes = if text.is_empty() { quotes / 2 } else { quotes };
+            let offset = value.span().start + quotes + error.offset;
+            self.error(offset, ProblemFileFault::Expression(error.message))
+        })?;
+        Ok(Formula::Expression(expression))
+    }
+}

@@ -1,0 +1,104 @@
+//! Limits of figures that have no exact value, from three levels.
+
+use super::row::{Row, distinct};
+
+/// The limit of a figure as the mesh size tends to zero.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "report", derive(serde::Serialize))]
+#[non_exhaustive]
+pub struct Limit {
+    /// The limit.
+    pub value: f64,
+    /// The order `p` of the error `C h^p` of the three figures; none for figures that are equal up to
+    /// rounding.
+    pub order: Option<f64>,
+}
+
+/// Two differences below this share of the figures are those of the accuracy of a solve.
+const EQUAL: f64 = 1e-9;
+/// The orders that are searched; differences that fall more slowly or faster have no limit.
+const ORDERS: [f64; 2] = [0.1, 12.0];
+
+/// The limit of three figures, coarsest mesh first, whose error is `C h^p`: Richardson extrapolation with
+/// the order that the figures themselves show (for halved mesh sizes the formula of Aitken). None where the
+/// figures do not tend to a limit like a power of the mesh size: where the differences change their sign or
+/// do not fall.
+///
+/// ```
+/// use unilateral::study::limit;
+/// let [h, figures] = [[0.5, 0.25, 0.125], [2.25, 2.0625, 2.015625]];
+/// let found = limit(figures, h).unwrap();
+/// assert!((found.value - 2.0).abs() < 1e-12 && (found.order.unwrap() - 2.0).abs() < 1e-12);
+/// ```
+#[must_use]
+pub fn limit(figures: [f64; 3], mesh_sizes: [f64; 3]) -> Option<Limit> {
+    let ([a, b, c], [h, k, l]) = (figures, mesh_sizes);
+    if ![a, b, c].iter().all(|x| x.is_finite()) || !(h > k && k > l && l > 0.0) {
+        return None;
+    }
+    let size = a.abs().max(b.abs()).max(c.abs());
+    if (a - b).abs().max((b - c).abs()) <= EQUAL * size {
+        return Some(Limit { value: c, order: None });
+    }
+    // mesh sizes over the finest one: their powers do not underflow
+    let [h, k] = [h / l, k / l];
+    let quotient = |p: f64| (h.powf(p) - k.powf(p)) / (k.powf(p) - 1.0);
+    let wanted = (a - b) / (b - c);
+    let [mut low, mut high] = ORDERS;
+    // the quotient grows with the order
+    if !(quotient(low) < wanted && wanted < quotient(high)) {
+        return None;
+    }
+    for _ in 0..60 {
+        let middle = 0.5 * (low + high);
+        if quotient(middle) < wanted { low = middle } else { high = middle }
+    }
+    let value = c - (b - c) / (k.powf(low) - 1.0);
+    Some(Limit { value, order: Some(low) })
+}
+
+/// The limits of the figures of one series of rows.
+#[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "report", derive(serde::Serialize))]
+#[non_exhaustive]
+pub struct Extrapolated {
+    /// Name of the scene.
+    pub scene: String,
+    /// Label of the rows.
+    pub label: String,
+    /// Solver of the rows.
+    pub solver: String,
+    /// Limit of the energy.
+    pub energy: Option<Limit>,
+    /// Limit of the measure of the contact set.
+    pub contact_measure: Option<Limit>,
+    /// Limit of the total contact force.
+    pub resultant: Option<Limit>,
+}
+
+/// The limits of energy, contact measure and resultant of every series with three levels that converged,
+/// from the three finest of them. Rows of one scene, label, constraint set and solver are a series.
+#[must_use]
+pub fn extrapolate(rows: &[Row]) -> Vec<Extrapolated> {
+    let key = |r: &Row| [&r.scene, &r.label, &r.constraint, &r.solver].map(String::clone);
+    let of_series = |series: [String; 4]| {
+        let mut levels: Vec<&Row> =
+            rows.iter().filter(|r| key(r) == series && r.converged()).collect();
+        levels.sort_by(|a, b| b.mesh_size.total_cmp(&a.mesh_size));
+        let three: &[&Row; 3] = levels.last_chunk()?;
+        let of = |figure: fn(&Row) -> Option<f64>| {
+            let [a, b, c] = three.map(figure);
+            limit([a?, b?, c?], three.map(|r| r.mesh_size))
+        };
+        let [scene, label, _, solver] = series;
+        Some(Extrapolated {
+            scene,
+            label,
+            solver,
+            energy: of(|r| r.energy),
+            contact_measure: of(|r| r.contact_measure),
+            resultant: of(|r| r.resultant),
+        })
+    };
+    distinct(rows.iter().map(key)).into_iter().filter_map(of_series).collect()
+}

@@ -1,0 +1,80 @@
+//! A fine solution in place of the exact one.
+
+use std::fmt;
+use std::sync::Arc;
+
+use crate::constraint::ConstraintSet;
+use crate::error::Error;
+use crate::mesh::Domain;
+use crate::real::Real;
+use crate::scheme::AnyScheme;
+
+/// How many times as fine as every other level of a domain a reference is at least.
+const FINER: usize = 4;
+
+/// How many refinements finer than every other level of a mesh a reference is at least.
+const REFINEMENTS: usize = 2;
+
+/// The scheme and the level whose solution takes the place of the exact one.
+pub(super) struct Reference<'a, T: Real, const D: usize> {
+    pub scheme: Arc<dyn AnyScheme<T, D> + 'a>,
+    pub set: Option<Arc<dyn ConstraintSet>>,
+    pub level: usize,
+}
+
+impl<T: Real, const D: usize> fmt::Debug for Reference<'_, T, D> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Reference")
+            .field("scheme", &self.scheme.name())
+            .field("level", &self.level)
+            .finish_non_exhaustive()
+    }
+}
+
+impl<T: Real, const D: usize> Reference<'_, T, D> {
+    /// The name in rows, for the constraint set of a problem.
+    pub fn name(&self, of_problem: &dyn ConstraintSet) -> String {
+        let set = self.set.as_deref().unwrap_or(of_problem);
+        format!("{} at level {}", self.scheme.label_on(set), self.level)
+    }
+
+    /// Checks that the reference is fine enough, and its mesh a refinement of all others.
+    ///
+    /// # Errors
+    /// [`Error::Parameter`].
+    pub fn check(&self, domain: Option<&Domain<D>>, levels: &[usize]) -> Result<(), Error> {
+        let refuse = |allowed: String| {
+            let (parameter, value) = ("level of the reference", self.level.to_string());
+            Err(Error::Parameter { parameter, value, allowed })
+        };
+        let finest = levels.iter().copied().max().unwrap_or(0);
+        let Some(domain) = domain else {
+            let least = finest + REFINEMENTS;
+            return match self.level >= least {
+                true => Ok(()),
+                false => refuse(format!(
+                    "at least {least}, {REFINEMENTS} refinements finer than the finest level"
+                )),
+            };
+        };
+        if matches!(domain, Domain::Disc { .. }) {
+            return refuse(
+                "none: meshes of a disc are refined towards the circle and are not nested"
+                    .to_owned(),
+            );
+        }
+        let is_refined = |&level: &usize| {
+            level > 0 && self.level % level == 0 && (self.level / level).is_power_of_two()
+        };
+        match levels.iter().find(|level| !is_refined(level)) {
+            Some(level) => refuse(format!(
+                "a power of two times every level, which {} is not of {level}",
+                self.level
+            )),
+            None if self.level < FINER * finest => {
+                refuse(format!("at least {}, {FINER} times the finest level", FINER * finest))
+            }
+            None => Ok(()),
+        }
+    }
+}

@@ -1,0 +1,213 @@
+//! Data by the names of regions and boundary groups.
+
+use unilateral::algebra::Bound;
+use unilateral::error::Error;
+use unilateral::mesh::{BoundaryGroup, MeshError};
+use unilateral::prelude::*;
+
+fn boxed<const D: usize>(names: &[&str]) -> Vec<Box<dyn AnyScheme<f64, D>>> {
+    names.iter().map(|name| name.parse::<NamedScheme>().unwrap().make()).collect()
+}
+
+/// The box `(-1, 1)^D` in two regions, divided at zero along the first axis, and a third one that both
+/// intersect, above zero along the last one.
+fn divided<const D: usize>(n: usize) -> Mesh<f64, D> {
+    let mesh = Mesh::kuhn_box(&BoxDomain::<D>::centred(1.0), [n; D]).unwrap();
+    let of = |c: usize| {
+        let x = mesh.barycentre(c);
+        u16::from(x[0] > 0.0) + 2 * u16::from(x[D - 1] > 0.0)
+    };
+    let of_cells = (0..mesh.n_cells()).map(of).collect();
+    let names = |names: &[&str]| names.iter().map(|&n| n.to_owned()).collect::<Vec<_>>();
+    let regions = vec![
+        names(&["left"]),
+        names(&["right"]),
+        names(&["left", "high"]),
+        names(&["right", "high"]),
+    ];
+    mesh.clone().with_regions(regions, of_cells).unwrap()
+}
+
+fn regions_are_inherited<const D: usize>() {
+    let mut mesh = divided::<D>(2);
+    let volume = |mesh: &Mesh<f64, D>, region: usize| -> f64 {
+        let cells = (0..mesh.n_cells()).filter(|&c| mesh.region(c) == region);
+        cells.map(|c| mesh.geometry(c).volume).sum()
+    };
+    for _ in 0..3 {
+        let fine = mesh.refine().unwrap().0;
+        assert_eq!(fine.regions(), mesh.regions());
+        assert!((0..fine.n_cells()).all(|c| fine.region(c) == mesh.region(c >> D)));
+        for region in 0..4 {
+            let (a, b) = (volume(&mesh, region), volume(&fine, region));
+            assert!((a - b).abs() < 1e-12, "{a} {b}");
+        }
+        assert_eq!(fine.boundary_groups(), mesh.boundary_groups());
+        for facet in fine.boundary() {
+            let x = fine.facet_barycentre(facet.cell as usize, facet.local as usize);
+            let side = usize::from(facet.group);
+            assert!((x[side / 2] - [-1.0, 1.0][side % 2]).abs() < 1e-12);
+        }
+        mesh = fine;
+    }
+}
+
+#[test]
+fn regions_and_groups_are_inherited_by_refinement() {
+    regions_are_inherited::<1>();
+    regions_are_inherited::<2>();
+    regions_are_inherited::<3>();
+}
+
+/// Data by name make the inequality that functions of space make.
+fn names_agree_with_functions<const D: usize>(n: usize) {
+    let mesh = divided::<D>(n);
+    let is_right = |x: &Point<f64, D>| x[0] > 0.0;
+    let lower = |x: &Point<f64, D>| if x[0] > 0.0 { x[0] - 2.0 } else { -0.5 * x[0] - 2.0 };
+    let load = |x: &Point<f64, D>| x[0] * x[0];
+    let plain = Problem::new()
+        .coefficient(move |x| if is_right(x) { 100.0 } else { 1.0 })
+        .source(move |x: &Point<f64, D>| if is_right(x) { 2.0 } else { load(x) })
+        .reaction(move |x: &Point<f64, D>| if is_right(x) { 0.5 } else { 0.0 })
+        .dirichlet(|x| if x[0] < 0.5 { 1.0 } else { 0.25 })
+        .obstacle_below(lower);
+    let named = Problem::new()
+        .coefficient_in("right", 100.0)
+        .source_in("right", 2.0)
+        .source(load)
+        .reaction_in("right", 0.5)
+        .obstacle_below_in("left", |x: &Point<f64, D>| -0.5 * x[0] - 2.0)
+        .obstacle_below_in("right", |x: &Point<f64, D>| x[0] - 2.0);
+    // by sides in one dimension, where no side lies on both values
+    let (plain, named) = match D {
+        1 => (plain, named.dirichlet_on("left", 1.0).dirichlet_on("right", 0.25)),
+        _ => (plain.dirichlet(|_| 0.75), named.dirichlet(|_| 0.75)),
+    };
+    for scheme in boxed::<D>(&["p1", "p2", "cr", "sipg", "wopsip", "sipg-p2"]) {
+        let name = scheme.name();
+        let assemble = |problem: &Problem<D>| {
+            let of = Discretisation::new(&*scheme, problem, &mesh, Default::default()).unwrap();
+            of.inequality().unwrap()
+        };
+        let (a, b) = (assemble(&plain), assemble(&named));
+        let close = |a: &[f64], b: &[f64], what: &str| {
+            let size = a.iter().fold(0.0_f64, |s, x| s.max(x.abs()));
+            let far = a.iter().zip(b).find(|(x, y)| (*x - *y).abs() > 1e-13 * size);
+            assert!(a.len() == b.len() && far.is_none(), "{name}, {D}D, {what}: {far:?}");
+        };
+        close(&a.matrix.values, &b.matrix.values, "matrix");
+        close(&a.load, &b.load, "load");
+        let values = |bounds: &[Bound<f64>]| -> Vec<f64> {
+            bounds.iter().map(|b| b.lower().unwrap_or(9.0)).collect()
+        };
+        close(&values(&a.bounds), &values(&b.bounds), "bounds");
+    }
+}
+
+#[test]
+fn names_and_functions_make_the_same_inequality() {
+    names_agree_with_functions::<1>(8);
+    names_agree_with_functions::<2>(4);
+    names_agree_with_functions::<3>(2);
+}
+
+#[test]
+fn the_first_datum_takes_precedence() {
+    let mesh = divided::<2>(4);
+    // cells of region "high" are in "left" or "right" too
+    let problem = Problem::new().coefficient_in("high", 5.0).coefficient_in("left", 7.0);
+    let other = Problem::new().coefficient_in("left", 7.0).coefficient_in("high", 5.0);
+    let trace = |problem: &Problem<2>| {
+        let of = Discretisation::new(&Wopsip::default(), problem, &mesh, Default::default());
+        let matrix = of.unwrap().matrix();
+        matrix.values.iter().map(|v| v.abs()).sum::<f64>()
+    };
+    assert!((trace(&problem) - trace(&other)).abs() > 1.0);
+
+    // the corner of two Dirichlet sides
+    let corner = mesh.vertices().iter().position(|x| x[0] == -1.0 && x[1] == -1.0).unwrap();
+    let value = |problem: Problem<2>| {
+        let of = Discretisation::new(&ConformingP1, &problem, &mesh, Default::default());
+        match of.unwrap().inequality().unwrap().bounds[corner] {
+            Bound::Fixed(value) => value,
+            other => panic!("{other:?}"),
+        }
+    };
+    assert_eq!(value(Problem::new().dirichlet_on("left", 1.0).dirichlet_on("bottom", 2.0)), 1.0);
+    assert_eq!(value(Problem::new().dirichlet_on("bottom", 2.0).dirichlet_on("left", 1.0)), 2.0);
+}
+
+#[test]
+fn of_the_obstacles_of_two_regions_the_higher_holds_where_they_meet() {
+    let mesh = divided::<2>(4);
+    let problem = Problem::new()
+        .obstacle_below_in("left", -1.0)
+        .obstacle_below_in("right", -0.5)
+        .obstacle_above_in("left", 3.0);
+    let of = Discretisation::new(&ConformingP1, &problem, &mesh, Default::default()).unwrap();
+    for (x, bound) in mesh.vertices().iter().zip(of.inequality().unwrap().bounds) {
+        if let Bound::Fixed(_) = bound {
+            continue;
+        }
+        let expected = if x[0] < 0.0 { Some(-1.0) } else { Some(-0.5) };
+        let above = (x[0] <= 0.0).then_some(3.0);
+        assert_eq!((bound.lower(), bound.upper()), (expected, above), "at {x}");
+    }
+}
+
+fn refusal(problem: &Problem<2>, mesh: &Mesh<f64, 2>) -> Error {
+    Discretisation::new(&ConformingP1, problem, mesh, Default::default()).map(|_| ()).unwrap_err()
+}
+
+#[test]
+fn wrong_names_are_refused() {
+    let mesh = divided::<2>(2);
+    let error = refusal(&Problem::new().coefficient_in("steel", 2.0), &mesh);
+    assert!(matches!(&error, Error::UnknownGroup { kind: "region", name, .. } if name == "steel"));
+    assert!(error.to_string().ends_with("it has high, left, right"), "{error}");
+    let error = refusal(&Problem::new().dirichlet_on("foot", 2.0), &mesh);
+    assert!(matches!(&error, Error::UnknownGroup { kind: "boundary group", .. }), "{error}");
+    let error = refusal(&Problem::new().signorini_on("left", 2.0), &mesh);
+    assert!(
+        matches!(&error, Error::UnboundBoundary { given: "contact", part: "dirichlet", .. }),
+        "{error}"
+    );
+    let twice = Problem::new().signorini_on("left", 2.0).neumann_on("left", |_, _| 0.0);
+    let error = twice.bind_boundary(mesh.clone()).unwrap_err();
+    assert!(matches!(&error, MeshError::GroupInTwoParts { .. }), "{error}");
+}
+
+#[test]
+fn a_problem_gives_the_boundary_its_parts() {
+    let problem = Problem::new()
+        .constant_source(-4.0)
+        .signorini_on("bottom", |x: &Point<f64, 2>| 0.1 * x[0] - 0.1)
+        .neumann_on("left", |x, n| x[1] * n[0]);
+    let mesh = problem.bind_boundary(divided::<2>(8)).unwrap();
+    let part = |BoundaryGroup { names, part, .. }: &BoundaryGroup| (names[0].clone(), *part);
+    let parts: Vec<_> = mesh.boundary_groups().iter().map(part).collect();
+    let expected = [
+        ("left", BoundaryPart::Neumann),
+        ("right", BoundaryPart::Dirichlet),
+        ("bottom", BoundaryPart::Contact),
+        ("top", BoundaryPart::Dirichlet),
+    ];
+    assert!(parts.iter().zip(expected).all(|(a, b)| a.0 == b.0 && a.1 == Some(b.1)), "{parts:?}");
+    // as by a domain with these sides and functions for whole parts
+    let domain = BoxDomain::<2>::centred(1.0).side(0, 0, BoundaryPart::Neumann).side(
+        1,
+        0,
+        BoundaryPart::Contact,
+    );
+    let plain = Problem::new()
+        .constant_source(-4.0)
+        .signorini(|x| 0.1 * x[0] - 0.1)
+        .neumann(|x, n| x[1] * n[0]);
+    let same = Mesh::<f64, 2>::kuhn_box(&domain, [8, 8]).unwrap();
+    for scheme in boxed::<2>(&["p1", "cr", "sipg", "wopsip", "p2"]) {
+        let a = solve(&problem, &mesh, &*scheme).unwrap();
+        let b = solve(&plain, &same, &*scheme).unwrap();
+        assert!(a.converged() && a.active() > Some(0));
+        assert_eq!(a.values(), b.values(), "{}", scheme.name());
+    }
+}

@@ -1,0 +1,178 @@
+//! Rows that are on disk as soon as they are finished.
+
+use std::fs;
+use std::panic::{AssertUnwindSafe, catch_unwind};
+
+use unilateral::inequality::Outcome;
+use unilateral::prelude::*;
+use unilateral::scenes::Scene;
+use unilateral::study::{Journal, Program, Progress, Row, fill_orders};
+
+use crate::rows;
+use crate::scratch::Scratch;
+
+fn program() -> Program {
+    Program::new("test", "f64", 1, 1).with_request("load", 5)
+}
+
+/// A study of six rows.
+fn study<'a>() -> Study<'a, f64, 2> {
+    let study = Study::new(scenes::radial::<2>(1.0)).scheme(ConformingP1).scheme(Sipg::default());
+    study.levels([4, 8, 16])
+}
+
+/// Rows without what may differ from run to run.
+fn without_times(rows: &[Row]) -> Vec<Row> {
+    let plain = |row: &Row| {
+        let mut row = row.clone();
+        row.seconds = Default::default();
+        row.peak_memory_bytes = None;
+        row
+    };
+    rows.iter().map(plain).collect()
+}
+
+#[test]
+fn rows_are_read_as_they_were_written() {
+    let mut rows = rows::rows();
+    rows[0].mesh_size = 1.0 / 3.0;
+    rows[1].status = Outcome::NoSolution;
+    rows[1].message = Some("two\nlines and \"quotes\"".into());
+    rows[1].certificate = unilateral::inequality::Certificate::INVALID;
+    let report = rows::report(rows.clone());
+    let scratch = Scratch::new("journal-rows");
+    report.write(&scratch.0).unwrap();
+    assert!(Report::read(&scratch.0).unwrap() == report);
+
+    let journal = Journal::create(&scratch.0, program()).unwrap();
+    rows.iter().for_each(|row| journal.add(row).unwrap());
+    // orders are those of the rows that are there
+    fill_orders(&mut rows);
+    let read = Report::read(&scratch.0).unwrap();
+    assert!(read.rows == rows && !read.complete);
+    assert_eq!(scratch.read("report.jsonl").lines().count(), 18);
+    // a run that failed has a mesh size of NaN, which is null in the file
+    let failed = Row::new("a", 2, "p1", 4, Outcome::NotFinite);
+    journal.add(&failed).unwrap();
+    let read = Report::read(&scratch.0).unwrap();
+    let last = read.rows.last().unwrap();
+    assert!(last.mesh_size.is_nan() && last.certificate == failed.certificate);
+    assert!(
+        !fs::read_dir(&scratch.0)
+            .unwrap()
+            .any(|f| { f.unwrap().file_name().to_string_lossy().starts_with('.') })
+    );
+}
+
+#[test]
+fn an_outcome_has_one_name() {
+    for outcome in [Outcome::Converged, Outcome::IterationLimit, Outcome::OutOfMemory] {
+        assert_eq!(serde_json::to_value(outcome).unwrap(), outcome.name());
+    }
+}
+
+#[test]
+fn a_study_goes_on_from_its_journal() {
+    let scratch = Scratch::new("journal-resume");
+    let whole = study().run().unwrap();
+    let journal = Journal::create(&scratch.0, program()).unwrap();
+    study().levels([4, 8]).journal(&journal).run().unwrap();
+    // what a kill leaves of a line
+    let path = scratch.0.join("report.jsonl");
+    let mut text = fs::read_to_string(&path).unwrap();
+    text += "{\"scene\":\"radial-2d\",\"dim";
+    fs::write(&path, text).unwrap();
+    assert_eq!(Report::read(&scratch.0).unwrap().rows.len(), 4);
+
+    let journal = Journal::resume(&scratch.0, program(), &study().keys()).unwrap();
+    let told = std::cell::RefCell::new(Vec::new());
+    let note = |progress: Progress<'_>| match progress {
+        Progress::Kept(row) => told.borrow_mut().push((true, row.level)),
+        Progress::Finished(row) => told.borrow_mut().push((false, row.level)),
+        _ => {}
+    };
+    let report = study().journal(&journal).observer(note).run().unwrap();
+    let each = [(true, 4), (true, 8), (false, 16)];
+    assert_eq!(*told.borrow(), [each, each].concat());
+    for (found, expected) in without_times(&report.rows).iter().zip(without_times(&whole.rows)) {
+        assert_eq!(*found, expected);
+    }
+    assert_eq!(Report::read(&scratch.0).unwrap().rows.len(), 6);
+    // nothing is left to do
+    report.write(&scratch.0).unwrap();
+    let journal = Journal::resume(&scratch.0, program(), &study().keys()).unwrap();
+    let again = study().journal(&journal).run().unwrap();
+    assert!(again.rows == report.rows);
+}
+
+#[test]
+fn another_request_is_refused_and_nothing_changes() {
+    let scratch = Scratch::new("journal-other");
+    let journal = Journal::create(&scratch.0, program()).unwrap();
+    study().levels([4]).journal(&journal).run().unwrap();
+    let files = || ["report.json", "report.jsonl"].map(|name| scratch.read(name));
+    let before = files();
+    let other = |program: Program, keys: &[_], expected: [&str; 2]| {
+        let error = Journal::resume(&scratch.0, program, keys).unwrap_err();
+        let Error::OtherRequest { found, wanted, .. } = &error else { panic!("{error}") };
+        assert_eq!([&found[..], &wanted[..]], expected);
+        assert_eq!(files(), before);
+    };
+    let keys = study().keys();
+    let single = Program::new("test", "f32", 1, 1).with_request("load", 5);
+    other(single, &keys, ["precision f64", "precision f32"]);
+    let load = program().with_request("load", 6);
+    other(load, &keys, ["load 5", "load 6"]);
+    let mesh = program().with_request("mesh", "a");
+    other(mesh, &keys, ["nothing of that", "mesh a"]);
+    let row = "a row of sipg by active-set on radial-2d at level 4";
+    let others: Vec<_> = keys.iter().filter(|key| key.label == "p1").cloned().collect();
+    other(program(), &others, [row, "nothing of that"]);
+    // threads change times only
+    let mut threads = program();
+    threads.threads = 7;
+    Journal::resume(&scratch.0, threads, &keys).unwrap();
+    fs::write(scratch.0.join("report.json"), "{\"program\"").unwrap();
+    let error = Journal::resume(&scratch.0, program(), &keys).unwrap_err();
+    assert!(matches!(error, Error::Read { .. }), "{error}");
+}
+
+#[test]
+fn a_panic_in_a_datum_leaves_the_finished_rows() {
+    let scratch = Scratch::new("journal-panic");
+    let journal = Journal::create(&scratch.0, program()).unwrap();
+    let source = |x: &Point<f64, 2>| {
+        // a level-16 mesh evaluates the load nearer to the corner than a coarser one
+        assert!(x.norm() > 0.01, "the load has no value at the corner");
+        -1.0
+    };
+    let problem = Problem::new().source(source).obstacle_below(|_| -0.05);
+    let domain = BoxDomain::dirichlet(Point::zeros(), Point::repeat(1.0));
+    let study = Study::<f64, 2>::new(Scene::new("mine", domain, problem)).scheme(ConformingP1);
+    let study = study.levels([4, 8, 64]).journal(&journal);
+    assert!(catch_unwind(AssertUnwindSafe(|| study.run())).is_err());
+    let report = Report::read(&scratch.0).unwrap();
+    assert!(!report.complete);
+    assert_eq!(report.rows.iter().map(|r| r.level).collect::<Vec<_>>(), [4, 8]);
+    assert!(journal.report().rows == report.rows);
+}
+
+/// The rows before and after a level at which a datum has no value.
+#[test]
+fn a_run_that_fails_is_a_row_with_its_message() {
+    let source = |x: &Point<f64, 2>| if x.norm() > 0.01 { -1.0 } else { f64::NAN };
+    let problem = Problem::new().source(source).obstacle_below(|_| -0.05);
+    let domain = BoxDomain::dirichlet(Point::zeros(), Point::repeat(1.0));
+    let study = Study::<f64, 2>::new(Scene::new("mine", domain, problem));
+    let study = study.scheme(ConformingP1).scheme(Sipg::default()).levels([4, 64, 8]);
+    let rows = study.run().unwrap().rows;
+    for series in rows.chunks(3) {
+        let [good, bad, again] = series else { unreachable!() };
+        assert!(good.converged() && again.converged());
+        assert_eq!(bad.status, Outcome::NotFinite);
+        let message = bad.message.as_ref().unwrap();
+        assert!(message.starts_with("source is NaN at (0.0"), "{message}");
+        assert_eq!((bad.cells, bad.energy, bad.nonzeros), (8192, None, None));
+        assert!(bad.unknowns.is_some() && bad.mesh_size > 0.0 && bad.active.is_none());
+    }
+}

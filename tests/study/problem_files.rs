@@ -1,0 +1,213 @@
+//! Problems from TOML files.
+
+use super::scratch::Scratch;
+use std::path::Path;
+use unilateral::mesh::{BoundaryPart, Mesh};
+use unilateral::prelude::*;
+use unilateral::problem_file::{
+    AnyOwnProblem, Geometry, OwnProblem, ProblemFileError, ProblemFileFault, read,
+};
+
+fn example(name: &str) -> AnyOwnProblem {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/problems");
+    read(&folder.join(name)).unwrap()
+}
+
+/// Solves a problem on its mesh and one refinement of it with several schemes; the sums of the multipliers
+/// of each.
+fn solve_all<const D: usize>(own: &OwnProblem<D>) -> Vec<f64> {
+    let mesh = own.mesh::<f64>().unwrap().unwrap().mesh;
+    let meshes = Hierarchy::refine(&mesh, 1).unwrap();
+    let mut forces = Vec::new();
+    for name in ["p1", "cr", "sipg", "nipg", "wopsip", "wopsip:facet-means", "p2", "br2"] {
+        let scheme: NamedScheme = name.parse().unwrap();
+        let mut problem = own.problem.clone();
+        problem.constraint_set = scheme.constraint_set();
+        let solved = solve(&problem, &meshes, &*scheme.make()).unwrap();
+        assert!(solved.converged(), "{}, {name}: {}", own.name, solved.outcome());
+        assert!(solved.active() > Some(0), "{}, {name}: no contact", own.name);
+        forces.push(solved.multiplier().iter().sum());
+    }
+    forces
+}
+
+#[test]
+fn the_plate_has_its_materials_on_every_level() {
+    let AnyOwnProblem::Two(own) = example("plate.toml") else { panic!("a problem in the plane") };
+    assert_eq!(own.name, "plate");
+    let mut mesh = own.mesh::<f64>().unwrap().unwrap().mesh;
+    let stiff = mesh.regions().iter().position(|names| names == &["inclusion"]).unwrap();
+    let cells = |mesh: &Mesh<f64, 2>| -> Vec<bool> {
+        (0..mesh.n_cells()).map(|c| mesh.region(c) == stiff).collect()
+    };
+    let coarse = cells(&mesh);
+    assert!(coarse.iter().any(|&c| c) && coarse.iter().any(|&c| !c));
+    for level in 1..=4 {
+        mesh = mesh.refine().unwrap().0;
+        let wrong = cells(&mesh)
+            .iter()
+            .enumerate()
+            .filter(|(c, m)| coarse[c >> (2 * level)] != **m)
+            .count();
+        assert_eq!(wrong, 0, "level {level}");
+    }
+    // the region is what the mesh generator meant: an ellipse around (0.8, 0)
+    for c in 0..mesh.n_cells() {
+        let x = mesh.barycentre(c);
+        let r = ((x[0] - 0.8) / 0.7).powi(2) + (x[1] / 0.45).powi(2);
+        assert!(mesh.region(c) != stiff || r < 1.0);
+        assert!(mesh.region(c) == stiff || r > 0.8);
+    }
+    solve_all(&own);
+}
+
+#[test]
+fn the_foot_carries_the_load_of_the_bracket() {
+    let AnyOwnProblem::Three(own) = example("bracket.toml") else { panic!("a problem in space") };
+    let mesh = own.mesh::<f64>().unwrap().unwrap().mesh;
+    assert!(mesh.has_part(BoundaryPart::Contact) && !mesh.has_part(BoundaryPart::Dirichlet));
+    // weight, and the traction on the head, whose mean over the head is -2
+    let load = -(0.6 * 0.3 + 0.3 * 0.6 * 0.9) - 2.0 * 0.3 * 0.6;
+    for force in solve_all(&own) {
+        assert!((force + load).abs() < 1e-8 * load.abs(), "{force} {load}");
+    }
+}
+
+#[test]
+fn the_membrane_touches_both_obstacles() {
+    let AnyOwnProblem::Two(own) = example("membrane.toml") else {
+        panic!("a problem in the plane")
+    };
+    let mesh = own.mesh::<f64>().unwrap().unwrap().mesh;
+    let solved = solve(&own.problem, &mesh, &ConformingP1).unwrap();
+    let multiplier = solved.multiplier();
+    assert!(multiplier.iter().any(|&m| m > 0.0) && multiplier.iter().any(|&m| m < 0.0));
+    solve_all(&own);
+}
+
+const BOX: &str = "box = [[-1, 0], [1, 1]]\n";
+const SIDES: &str = "[boundary.left]\nkind = \"dirichlet\"\nvalue = \"x * y\"\n\
+    [boundary.right]\nkind = \"dirichlet\"\nvalue = \"x * y\"\n\
+    [boundary.top]\nkind = \"neumann\"\nflux = \"x * ny\"\n\
+    [boundary.bottom]\nkind = \"contact\"\ngap = -1\n";
+
+#[test]
+fn a_box_has_sides_and_an_exact_solution() {
+    let folder = Scratch::new("problem-box");
+    std::fs::create_dir_all(&folder.0).unwrap();
+    let path = folder.0.join("harmonic.toml");
+    let exact = "[exact]\nvalue = \"x * y\"\ngradient = [\"y\", \"x\"]\n";
+    std::fs::write(&path, format!("{BOX}{SIDES}{exact}[reaction]\ndefault = 0\n")).unwrap();
+    let AnyOwnProblem::Two(own) = read(&path).unwrap() else { panic!("a problem in the plane") };
+    assert_eq!(own.name, "harmonic");
+    let Geometry::Box(domain) = &own.geometry else { panic!("a box") };
+    assert_eq!(domain.sides[1], [BoundaryPart::Contact, BoundaryPart::Neumann]);
+    let mesh = Mesh::<f64, 2>::kuhn_box(domain, domain.counts(4)).unwrap();
+    let solved = solve(&own.problem, &mesh, &ConformingP2).unwrap();
+    assert!(
+        solved.errors().unwrap().l2.unwrap() > 1e-3,
+        "the flux -x on the bottom is held by nothing"
+    );
+    let flux = "[boundary.bottom]\nkind = \"neumann\"\nflux = \"x * ny\"\n";
+    let sides = SIDES.split("[boundary.bottom]").next().unwrap();
+    std::fs::write(&path, format!("{BOX}{sides}{flux}{exact}")).unwrap();
+    let AnyOwnProblem::Two(own) = read(&path).unwrap() else { panic!("a problem in the plane") };
+    let Geometry::Box(domain) = &own.geometry else { panic!("a box") };
+    let mesh = Mesh::<f64, 2>::kuhn_box(domain, domain.counts(4)).unwrap();
+    let solved = solve(&own.problem, &mesh, &ConformingP2).unwrap();
+    assert!(solved.errors().unwrap().l2.unwrap() < 1e-12);
+}
+
+#[test]
+fn mistakes_are_found_where_they_are() {
+    let folder = Scratch::new("problem-mistakes");
+    std::fs::create_dir_all(&folder.0).unwrap();
+    let plate = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/problems/plate.msh");
+    std::fs::copy(plate, folder.0.join("plate.msh")).unwrap();
+    let on_plate = |rest: &str| format!("mesh = \"plate.msh\"\n{rest}");
+    let ends = "[boundary.ends]\nkind = \"dirichlet\"\n[boundary.bore]\nkind = \"dirichlet\"\n";
+    let all = format!("{ends}[boundary.edges]\nkind = \"neumann\"\n");
+    let cases = [
+        ("name = ".to_owned(), (1, 8), "value"),
+        ("name = 3\nbox = [[0], [1]]".to_owned(), (1, 8), "`name` must be a string, not 3"),
+        ("name = \"a\"\n".to_owned(), (1, 1), "`mesh` is missing"),
+        (format!("{BOX}mesh = \"a.msh\""), (1, 7), "not both"),
+        ("box = [[0, 1], [1]]".to_owned(), (1, 7), "two corners"),
+        ("box = [[0], [\"1\"]]".to_owned(), (1, 7), "two corners"),
+        (format!("{BOX}sources = 1\n"), (2, 1), "unknown key `sources`; allowed are name, mesh"),
+        (format!("{BOX}source = 1\n"), (2, 10), "`source` must be a table"),
+        (
+            format!("{BOX}[source]\ndefault = \"2 * w\"\n"),
+            (3, 16),
+            "there is no `w`; there are x, y, e, pi",
+        ),
+        (format!("{BOX}[source]\ndefault = \"2 * (x\"\n"), (3, 18), "ends where"),
+        (format!("{BOX}[source]\ndefault = [1]\n"), (3, 11), "a number, or an expression"),
+        (
+            format!("{BOX}[source]\ndefault = \"ln(x)\"\n{SIDES}"),
+            (3, 11),
+            "source.default is NaN at (-0.",
+        ),
+        (format!("{BOX}[coefficient]\ndefault = 0\n{SIDES}"), (3, 11), "finite and positive"),
+        (format!("{BOX}[reaction]\ndefault = \"-1\"\n{SIDES}"), (3, 11), "not negative"),
+        (format!("{BOX}[obstacle]\ndefault = 1\n"), (3, 1), "allowed are lower, upper"),
+        (format!("{BOX}[obstacle]\nlower.default = inf\n{SIDES}"), (3, 17), "must be finite"),
+        (format!("{BOX}[boundary.left]\nvalue = 1\n"), (2, 11), "`kind` is missing"),
+        (
+            format!("{BOX}[boundary.left]\nkind = \"robin\"\n"),
+            (3, 8),
+            "\"dirichlet\", \"neumann\" or",
+        ),
+        (
+            format!("{BOX}[boundary.left]\nkind = \"neumann\"\nvalue = 1\n"),
+            (4, 1),
+            "allowed are kind, flux",
+        ),
+        (
+            format!("{BOX}[boundary.left]\nkind = \"dirichlet\"\nvalue = \"nx\"\n"),
+            (4, 10),
+            "no `nx`",
+        ),
+        (
+            format!("{BOX}{SIDES}[boundary.front]\nkind = \"neumann\"\n"),
+            (14, 11),
+            "no boundary group `front`; it has bottom, left, right, top",
+        ),
+        (format!("{BOX}[source]\nsteel = 1\n{SIDES}"), (3, 1), "no region `steel`; it has none"),
+        (on_plate(ends), (1, 1), "boundary group `edges` of the mesh is missing"),
+        (
+            on_plate(&format!("{all}[source]\nsteel = 1\n")),
+            (9, 1),
+            "no region `steel`; it has inclusion, matrix",
+        ),
+        (format!("{BOX}{SIDES}[exact]\nvalue = 0\n"), (14, 1), "`gradient` is missing"),
+        (
+            format!("{BOX}{SIDES}[exact]\nvalue = 0\ngradient = [0]\n"),
+            (16, 12),
+            "for each coordinate",
+        ),
+    ];
+    for (text, place, words) in cases {
+        let path = folder.0.join("wrong.toml");
+        std::fs::write(&path, &text).unwrap();
+        let error = read(&path).unwrap_err();
+        let message = error.to_string();
+        let ProblemFileError::At { line, column, .. } = error else { panic!("{text}\n{message}") };
+        assert_eq!((line, column), place, "{text}\n{message}");
+        assert!(
+            message.contains(words) && message.starts_with(&path.display().to_string()),
+            "{message}"
+        );
+    }
+    std::fs::write(folder.0.join("lost.toml"), "mesh = \"lost.msh\"").unwrap();
+    let error = read(&folder.0.join("lost.toml")).unwrap_err();
+    assert!(
+        matches!(error, ProblemFileError::Mesh { .. }) && error.to_string().contains("lost.msh")
+    );
+    let error = read(&folder.0.join("nothing.toml")).unwrap_err();
+    assert!(matches!(error, ProblemFileError::Unreadable { .. }));
+    std::fs::write(folder.0.join("two.toml"), format!("{BOX}{SIDES}[boundary.dirichlet]\n"))
+        .unwrap();
+    let error = read(&folder.0.join("two.toml")).unwrap_err();
+    assert!(matches!(error, ProblemFileError::At { fault: ProblemFileFault::Missing { .. }, .. }));
+}
