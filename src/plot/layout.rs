@@ -60,7 +60,7 @@ impl Entry {
             Entry::Curve(_, label) => label,
             Entry::Sign(Sign::Failed) => "did not converge",
             Entry::Sign(Sign::Promised) => "orders promised by theory",
-            Entry::Sign(Sign::Compared) => "orders to compare with, not promised",
+            Entry::Sign(Sign::Compared) => "slopes for comparison",
             Entry::Sign(Sign::Limit) => "limit",
         }
     }

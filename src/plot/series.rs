@@ -2,6 +2,7 @@
 
 use crate::study::row::Row;
 use crate::study::row::distinct;
+use crate::study::table::references;
 
 /// A number of a row that an axis shows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -169,12 +170,12 @@ impl Panel {
             runs.sort_by_key(|r| r.level);
             Curve { key, points: runs.iter().filter_map(|r| Point::of(r, x, y)).collect() }
         });
-        let of_scene = rows.iter().filter(|r| r.scene == scene);
+        let of_scene = || rows.iter().filter(|r| r.scene == scene);
         let orders = match x {
-            Quantity::MeshSize => y.orders(of_scene),
+            Quantity::MeshSize => y.orders(of_scene()),
             _ => Orders::default(),
         };
-        Self::of(scene, (x.label(), y.label()), curves, orders)
+        Self::of(&title(scene, of_scene()), (x.label(), y.label()), curves, orders)
     }
 
     /// A panel of curves, of which those without points are left out.
@@ -217,6 +218,11 @@ impl Panel {
             .chain(self.limits.iter().copied())
             .collect()
     }
+}
+
+/// The scene, and what its errors are measured against unless that is the exact solution.
+pub(crate) fn title<'r>(scene: &str, rows: impl IntoIterator<Item = &'r Row>) -> String {
+    references(rows).iter().fold(scene.to_owned(), |text, a| format!("{text}, against {a}"))
 }
 
 /// The panels with curves; of several without any the first, which says why there is none.

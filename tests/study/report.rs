@@ -205,7 +205,7 @@ fn plots_show_promised_orders_and_no_single_points() {
     assert!(has(&lines(all.clone()), "1.5"));
     all.iter_mut().for_each(|r| r.expected_order = ExpectedOrders::none());
     assert!(!has(&lines(all.clone()), "orders promised by theory"));
-    assert!(has(&lines(all.clone()), "orders to compare with, not promised"));
+    assert!(has(&lines(all.clone()), "slopes for comparison"));
     // labels of an axis are of one kind: numbers for mesh sizes from 1/32 to 1/8
     assert!(has(&drawn, "0.1") && has(&drawn, "0.05"), "{drawn:?}");
     all.retain(|r| r.level == 8);
