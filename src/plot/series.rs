@@ -2,7 +2,6 @@
 
 use crate::study::row::Row;
 use crate::study::row::distinct;
-use crate::study::table::references;
 
 /// A number of a row that an axis shows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -222,7 +221,8 @@ impl Panel {
 
 /// The scene, and what its errors are measured against unless that is the exact solution.
 pub(crate) fn title<'r>(scene: &str, rows: impl IntoIterator<Item = &'r Row>) -> String {
-    references(rows).iter().fold(scene.to_owned(), |text, a| format!("{text}, against {a}"))
+    let reference = rows.into_iter().find_map(Row::reference);
+    reference.map_or_else(|| scene.to_owned(), |r| format!("{scene}, against {r}"))
 }
 
 /// The panels with curves; of several without any the first, which says why there is none.

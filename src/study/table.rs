@@ -106,18 +106,13 @@ pub(crate) fn limits(rows: &[&Row]) -> Vec<String> {
     lines
 }
 
-/// What errors are measured against, unless that is the exact solution.
-pub(crate) fn references<'r>(rows: impl IntoIterator<Item = &'r Row>) -> Vec<&'r str> {
-    let against = rows.into_iter().filter_map(|r| r.against.as_deref());
-    distinct(against.filter(|a| *a != "exact"))
-}
-
 /// The heading after the name of the scene: solvers, and the orders that theory promises.
 pub(crate) fn heading(rows: &[&Row]) -> String {
     let solvers = distinct(rows.iter().map(|r| format!("{}/{}", r.solver, r.linear)));
     let mut text = format!("solver {}", solvers.join(", "));
-    for reference in references(rows.iter().copied()) {
-        text += &format!("; errors against {reference}");
+    let references = distinct(rows.iter().filter_map(|r| r.reference()));
+    if !references.is_empty() {
+        text += &format!("; errors against {}", references.join(", "));
     }
     let mut promises: Vec<(String, Vec<String>)> = Vec::new();
     for row in rows {
