@@ -5,6 +5,7 @@
 //! | chapter | contents |
 //! |---|---|
 //! | [`choosing`] | what each scheme costs and gives, and where it fails |
+//! | [`own_problems`] | a mesh of one's own, materials, boundary names, errors without an exact solution |
 //! | [`conventions`] | signs, scalings, norms, the certificate |
 //! | [`reproduce`] | published tables beside ours |
 //! | [`solvers`] | how inequalities are solved, up to which size, in which time |
@@ -30,6 +31,11 @@
 #[cfg_attr(doc, doc = "", doc = include_str!("links.md"), doc = include_str!("pictures.md"))]
 #[cfg_attr(doc, doc = include_str!("../../docs/choosing.md"))]
 pub mod choosing {}
+
+/// A problem of one's own: from a file or a program, with names, measured against a fine solution.
+#[cfg_attr(doc, doc = "", doc = include_str!("links.md"))]
+#[cfg_attr(doc, doc = include_str!("../../docs/own_problems.md"))]
+pub mod own_problems {}
 
 /// Signs, scalings, norms and the certificate, each with the test that asserts it.
 #[cfg_attr(doc, doc = "", doc = include_str!("links.md"))]

@@ -18,6 +18,17 @@ pub struct Errors {
     pub max: Option<f64>,
 }
 
+impl Errors {
+    /// Whether the broken energy norm is the broken H1 seminorm, as without coefficient and reaction.
+    #[cfg(feature = "report")]
+    pub(crate) fn is_energy_h1(&self) -> bool {
+        match (self.h1, self.broken_energy) {
+            (Some(h1), Some(energy)) => (h1 - energy).abs() <= 1e-12 * h1,
+            (_, energy) => energy.is_none(),
+        }
+    }
+}
+
 /// Distances of multiplier and contact set from the exact ones, comparable across schemes; see
 /// [`Discretisation::contact_errors`](crate::assemble::Discretisation::contact_errors).
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

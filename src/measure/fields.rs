@@ -1,6 +1,6 @@
 //! Solution, obstacle, multiplier and contact set on cells, for pictures.
 
-use super::contact::DiscreteContact;
+use super::contact::{DiscreteContact, Place};
 use crate::algebra::{Contact, Inequality};
 use crate::assemble::Discretisation;
 use crate::assemble::space::Space;
@@ -18,8 +18,9 @@ pub struct Fields {
     pub u: Vec<f64>,
     /// The obstacle at the vertices of each cell.
     pub obstacle: Option<Vec<f64>>,
-    /// Density of the multiplier in each cell: nodal multipliers over the volume for an obstacle,
-    /// over the measure of the contact boundary for Signorini.
+    /// Density of an obstacle's multiplier in each cell: the mean over the vertices of the cell of the
+    /// nodal multipliers, gathered at vertices, over the integrals of hat functions. Its integral over the
+    /// domain is the sum of the multipliers. Empty without an obstacle.
     pub multiplier: Vec<f64>,
     /// Share of each cell's constrained unknowns in contact.
     pub contact: Vec<f64>,
@@ -30,9 +31,8 @@ pub struct Fields {
     pub discrete_contact: DiscreteContact,
     /// The facets of the contact boundary: cell, and number in the cell.
     pub contact_boundary: Vec<(usize, usize)>,
-    /// The contact pressure on each of these facets: the mean over the vertices of the facet of the nodal
-    /// multipliers, gathered at vertices, over the integrals of hat functions. Its integral over the
-    /// contact boundary is the sum of the multipliers, the total contact force.
+    /// The contact pressure on each of these facets: as `multiplier`, of the unknowns that the Signorini
+    /// condition binds. Its integral over the contact boundary is the total contact force.
     pub pressure: Vec<f64>,
     /// The gap that is left on each of these facets: the mean of `u - g`.
     pub gap: Vec<f64>,
@@ -52,10 +52,6 @@ impl Fields {
 
 impl<T: Real, const D: usize> Discretisation<'_, T, D> {
     /// Solution, obstacle, multiplier and contact set on cells, for pictures.
-    ///
-    /// A nodal multiplier over the measure that belongs to its unknown is a density, of volume for
-    /// obstacles and of the contact boundary for Signorini. A cell shows the mean over its unknowns
-    /// that have such a measure.
     pub fn fields(&self, inequality: &Inequality<T>, solution: &Solution<T>) -> Fields {
         compiled!(
             T, D: fn(&Discretisation<'_, T, D>, &Inequality<T>, &Solution<T>) -> Fields
@@ -75,31 +71,33 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
             let at = move |v| psi.map_or(f64::NAN, |psi| psi.at(&corner(v)));
             self.mesh.cell(cell).iter().map(at)
         };
-        let measures = self.constrained_measures();
-        let n_cells = self.mesh.n_cells();
-        let mut multiplier = Vec::with_capacity(n_cells);
-        let mut contact = Vec::with_capacity(n_cells);
-        for cell in 0..n_cells {
-            let (mut density, mut with_measure, mut constrained, mut touching) = (0.0, 0, 0, 0);
-            for i in 0..self.per_cell() {
-                let k = self.dofs.of(cell, i);
-                if measures[k] > 0.0 && inequality.bounds[k].is_inequality() {
-                    let residual = inequality.matrix.row_dot(k, u) - inequality.load[k];
-                    let in_contact = solution.contact[k] != Contact::Inactive;
-                    if in_contact {
-                        density += residual.to_f64() / measures[k];
-                    }
-                    with_measure += 1;
-                    constrained += 1;
-                    touching += usize::from(in_contact);
-                }
+        let share = |cell| {
+            let unknowns = (0..self.per_cell()).map(|i| self.dofs.of(cell, i));
+            let constrained = unknowns.filter(|&k| inequality.bounds[k].is_inequality());
+            let (mut all, mut touching) = (0, 0);
+            for k in constrained {
+                all += 1;
+                touching += usize::from(solution.contact[k] != Contact::Inactive);
             }
-            multiplier.push(density / f64::from(with_measure.max(1)));
-            contact.push(touching as f64 / f64::from(constrained.max(1)));
-        }
+            touching as f64 / f64::from(all.max(1))
+        };
+        let n_cells = self.mesh.n_cells();
         let contact_boundary: Vec<(usize, usize)> = match self.problem.has_gap() {
             true => self.facets_of(BoundaryPart::Contact).collect(),
             false => Vec::new(),
+        };
+        let mut on_boundary = vec![false; self.dofs.size()];
+        for &(cell, local) in &contact_boundary {
+            let bound = self.bounded_nodes_on(local).map(|(i, _)| self.dofs.of(cell, i));
+            bound.for_each(|unknown| on_boundary[unknown] = true);
+        }
+        let facets: Vec<Place> = contact_boundary.iter().map(|&(c, k)| (c, Some(k))).collect();
+        let cells: Vec<Place> = match self.problem.has_obstacle() {
+            true => (0..self.mesh.n_cells()).map(|cell| (cell, None)).collect(),
+            false => Vec::new(),
+        };
+        let densities = |places: &[Place], of_boundary: bool| {
+            self.mean_densities(places, inequality, solution, |k| on_boundary[k] == of_boundary)
         };
         Fields {
             u: self.vertex_values(u),
@@ -107,39 +105,14 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
                 .problem
                 .has_obstacle()
                 .then(|| (0..n_cells).flat_map(obstacle).collect()),
-            multiplier,
-            contact,
+            multiplier: densities(&cells, false),
+            contact: (0..n_cells).map(share).collect(),
             midpoints: self.midpoint_values(u),
             discrete_contact: self.discrete_contact(inequality, solution),
-            pressure: self.contact_pressure(&contact_boundary, inequality, solution),
+            pressure: densities(&facets, true),
             gap: contact_boundary.iter().map(|&place| self.mean_gap(place, u)).collect(),
             contact_boundary,
         }
-    }
-
-    /// The contact pressure on facets; see [`Fields::pressure`].
-    fn contact_pressure(
-        &self,
-        facets: &[(usize, usize)],
-        inequality: &Inequality<T>,
-        solution: &Solution<T>,
-    ) -> Vec<f64> {
-        let mut bound = vec![false; self.dofs.size()];
-        let mut hats = vec![0.0; self.mesh.vertices().len()];
-        for &(cell, local) in facets {
-            self.bounded_nodes_on(local).for_each(|(i, _)| bound[self.dofs.of(cell, i)] = true);
-            let share = self.mesh.geometry(cell).facet_measure(local).to_f64() / D as f64;
-            self.mesh.facet_vertices(cell, local).for_each(|v| hats[v as usize] += share);
-        }
-        let multipliers = match facets {
-            [] => Vec::new(),
-            _ => self.vertex_multipliers(inequality, solution, |unknown| bound[unknown]),
-        };
-        let density = |v: u32| multipliers[v as usize] / hats[v as usize];
-        let mean = |&(cell, local): &(usize, usize)| {
-            self.mesh.facet_vertices(cell, local).map(density).sum::<f64>() / D as f64
-        };
-        facets.iter().map(mean).collect()
     }
 
     /// The mean of `u - g` over a facet.
@@ -171,29 +144,5 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
             midpoints.iter().map(move |basis| basis.value(&local))
         };
         (0..self.mesh.n_cells()).flat_map(of_cell).collect()
-    }
-
-    /// The measure of domain or contact boundary that belongs to each unknown of the constraint
-    /// set.
-    fn constrained_measures(&self) -> Vec<f64> {
-        let mut measures = vec![0.0; self.dofs.size()];
-        if self.problem.has_obstacle() {
-            for cell in 0..self.mesh.n_cells() {
-                let volume = self.mesh.geometry(cell).volume.to_f64();
-                let share = volume / self.bounded_nodes().count() as f64;
-                for (i, _) in self.bounded_nodes() {
-                    measures[self.dofs.of(cell, i)] += share;
-                }
-            }
-        } else if self.problem.has_gap() {
-            for (cell, local) in self.facets_of(BoundaryPart::Contact) {
-                let measure = self.mesh.geometry(cell).facet_measure(local).to_f64();
-                let share = measure / self.bounded_nodes_on(local).count() as f64;
-                for (i, _) in self.bounded_nodes_on(local) {
-                    measures[self.dofs.of(cell, i)] += share;
-                }
-            }
-        }
-        measures
     }
 }

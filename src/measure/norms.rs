@@ -131,7 +131,11 @@ impl<T: Real, const D: usize> Discretisation<'_, T, D> {
 impl<T: Real, const D: usize> Space<'_, T, D> {
     /// Squares of the errors over all cells.
     fn cell_errors(&self, exact: &Reference<'_, T, D>, u: &[T]) -> Result<SquaredErrors, Error> {
-        let degree = error_degree(D).max(2 * self.basis_degree + 2);
+        let degree = match exact {
+            Reference::Exact(_) => error_degree(D).max(2 * self.basis_degree + 2),
+            // the square of a difference of polynomials
+            Reference::Coarse { space, .. } => 2 * self.basis_degree.max(space.basis_degree),
+        };
         let cell_rule = Rule::new(D, degree);
         let terms = self.node_terms(&Rule::new(D - 1, MEAN_DEGREE), &cell_rule);
         let table = self.cell_table(cell_rule);

@@ -318,9 +318,6 @@ impl<'a, T: Real, const D: usize> Solved<'a, T, D> {
         let Some(fields) = self.fields() else {
             return Err(write_error(path, format!("no solution: {}", self.outcome())));
         };
-        if let Some(folder) = path.parent() {
-            std::fs::create_dir_all(folder).map_err(|e| write_error(folder, e))?;
-        }
         let problem = self.discretisation.problem();
         let u = fields.values_by_cell(D);
         // facets in contact are listed in the order of the contact boundary

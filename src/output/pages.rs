@@ -8,11 +8,12 @@ use super::csv::flatten;
 use super::html::{HtmlCell, HtmlPage, HtmlTable};
 use super::table::{Cell, Table};
 use crate::study::row::distinct;
-use crate::study::table::{columns, heading, scenes};
+use crate::study::table::{columns, heading, limits, scenes};
 use crate::study::{Program, Report, Row, file_name};
 
 /// Columns of the page that are shown at first, by their keys.
-const SHOWN: [&str; 16] = [
+const SHOWN: [&str; 17] = [
+    "against",
     "label",
     "level",
     "mesh_size",
@@ -31,18 +32,31 @@ const SHOWN: [&str; 16] = [
     "seconds.total",
 ];
 /// Columns of tables in LaTeX: what fits into the width of a page.
-const PRINTED: [&str; 11] = [
-    "scheme", "solver", "n", "unknowns", "L2", "order", "H1", "energy", "contact", "outer", "solve",
+const PRINTED: [&str; 12] = [
+    "scheme",
+    "solver",
+    "n",
+    "unknowns",
+    "L2",
+    "order",
+    "H1",
+    "energy",
+    "contact",
+    "resultant",
+    "outer",
+    "solve",
 ];
 
 impl Report {
     /// Program and settings in one line.
     fn heading(&self) -> String {
         let Program { name, version, threads, precision, repeat, target_cpu, .. } = &self.program;
-        format!(
-            "{name} {version}, {target_cpu}; {threads} threads; {precision}; every time is the least of \
-             {repeat} runs, in seconds"
-        )
+        let times = match repeat {
+            1 => "times in seconds".to_owned(),
+            _ => format!("every time is the least of {repeat} runs, in seconds"),
+        };
+        let end = if self.complete { "" } else { "; not complete: the run was interrupted" };
+        format!("{name} {version}, {target_cpu}; {threads} threads; {precision}; {times}{end}")
     }
 
     /// One table for each scene, with the columns of the tables for a terminal.
@@ -109,10 +123,10 @@ impl Report {
                 (*place, names.iter().map(|(at, _)| html_cell(&row[*at].1)).collect())
             });
             tables.push(HtmlTable {
-                title: format!("{scene} in {} dimensions", rows[0].dimension),
+                title: format!("{scene}, dimension {}", rows[0].dimension),
                 columns,
                 rows: rows_of_table.collect(),
-                remarks: vec![heading(&rows)],
+                remarks: [heading(&rows)].into_iter().chain(limits(&rows)).collect(),
             });
         }
         let mut pictures = Vec::new();
@@ -166,7 +180,7 @@ fn table(scene: &str, rows: &[&Row]) -> Table {
     let line = |row: &&Row| columns.iter().map(|c| cell((c.cell)(row), c.left)).collect();
     let failed = rows.iter().filter(|r| !r.converged());
     let remarks = failed.map(|r| {
-        let why = r.status.message();
+        let why = r.message.as_deref().unwrap_or(r.status.message());
         format!("{}, level {}: did not converge: {}: {why}", r.label, r.level, r.status)
     });
     let warnings = rows.iter().flat_map(|r| r.warnings.iter().map(|w| format!("{}: {w}", r.label)));
@@ -174,6 +188,8 @@ fn table(scene: &str, rows: &[&Row]) -> Table {
         title: scene.to_owned(),
         columns: columns.iter().map(|c| c.name.to_owned()).collect(),
         rows: rows.iter().map(line).collect(),
-        remarks: distinct([heading(rows)].into_iter().chain(remarks).chain(warnings)),
+        remarks: distinct(
+            [heading(rows)].into_iter().chain(remarks).chain(warnings).chain(limits(rows)),
+        ),
     }
 }

@@ -1,9 +1,7 @@
-//! Arrays of a VTK file: little-endian numbers, compressed in blocks, in base64.
+//! Arrays of a VTK file: little-endian numbers, compressed in blocks, after the text that describes them.
 
 use std::io::{self, Write};
 
-use base64::Engine;
-use base64::engine::general_purpose::STANDARD;
 use flate2::Compression;
 use flate2::write::ZlibEncoder;
 
@@ -17,33 +15,54 @@ pub(super) fn bytes<const B: usize>(items: impl Iterator<Item = [u8; B]>) -> Vec
     items.flatten().collect()
 }
 
-/// Writes an array: the number of blocks, the length of a block and of the last one if that is shorter,
-/// the compressed length of each, all with 64 bits and encoded apart from the blocks that follow.
-pub(super) fn write_array(
-    w: &mut impl Write,
-    kind: &str,
-    name: &str,
-    components: usize,
-    bytes: &[u8],
-) -> io::Result<()> {
-    let compress = |range: std::ops::Range<usize>| {
-        let mut encoder = ZlibEncoder::new(Vec::new(), Compression::default());
-        encoder.write_all(&bytes[range])?;
-        encoder.finish()
-    };
-    let blocks: io::Result<Vec<Vec<u8>>> =
-        map_groups(bytes.len(), BLOCK, &compress).into_iter().collect();
-    let blocks = blocks?;
-    let lengths = [blocks.len(), BLOCK, bytes.len() % BLOCK];
-    let lengths = lengths.into_iter().chain(blocks.iter().map(Vec::len));
-    let header = self::bytes(lengths.map(|n| (n as u64).to_le_bytes()));
-    write!(w, "<DataArray type=\"{kind}\" Name=\"{name}\"")?;
-    // Some readers take an attribute of one component for one column of a matrix.
-    if components > 1 {
-        write!(w, " NumberOfComponents=\"{components}\"")?;
+/// A file under construction: its text, and the arrays that follow it.
+pub(super) struct Arrays {
+    pub text: Vec<u8>,
+    data: Vec<u8>,
+}
+
+impl Arrays {
+    pub fn new() -> Self {
+        Self { text: Vec::new(), data: Vec::new() }
     }
-    writeln!(w, " format=\"binary\">")?;
-    w.write_all(STANDARD.encode(header).as_bytes())?;
-    w.write_all(STANDARD.encode(blocks.concat()).as_bytes())?;
-    writeln!(w, "\n</DataArray>")
+
+    /// Adds an array: in the text its name and where its data begin; in the data the number of blocks, the
+    /// length of a block and of the last one if that is shorter, the compressed length of each, all with 64
+    /// bits, and the blocks.
+    pub fn push(
+        &mut self,
+        kind: &str,
+        name: &str,
+        components: usize,
+        bytes: &[u8],
+    ) -> io::Result<()> {
+        let compress = |range: std::ops::Range<usize>| {
+            let mut encoder = ZlibEncoder::new(Vec::new(), Compression::default());
+            encoder.write_all(&bytes[range])?;
+            encoder.finish()
+        };
+        let blocks: io::Result<Vec<Vec<u8>>> =
+            map_groups(bytes.len(), BLOCK, &compress).into_iter().collect();
+        let blocks = blocks?;
+        write!(self.text, "<DataArray type=\"{kind}\" Name=\"{name}\"")?;
+        // Some readers take an attribute of one component for one column of a matrix.
+        if components > 1 {
+            write!(self.text, " NumberOfComponents=\"{components}\"")?;
+        }
+        writeln!(self.text, " format=\"appended\" offset=\"{}\"/>", self.data.len())?;
+        let lengths = [blocks.len(), BLOCK, bytes.len() % BLOCK];
+        for length in lengths.into_iter().chain(blocks.iter().map(Vec::len)) {
+            self.data.extend((length as u64).to_le_bytes());
+        }
+        self.data.extend(blocks.into_iter().flatten());
+        Ok(())
+    }
+
+    /// Writes the text, the data after an underscore, and the end of the file.
+    pub fn write(&self, w: &mut impl Write) -> io::Result<()> {
+        w.write_all(&self.text)?;
+        w.write_all(b"<AppendedData encoding=\"raw\">\n_")?;
+        w.write_all(&self.data)?;
+        w.write_all(b"\n</AppendedData>\n</VTKFile>\n")
+    }
 }

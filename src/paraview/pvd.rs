@@ -4,7 +4,7 @@ use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
 use crate::error::Error;
-use crate::error::write_error;
+use crate::files::replace_text;
 
 /// Writes a `.pvd` file that lists files of fields, each with its level where the format has a
 /// time, so that a slider goes from coarse to fine. Files in its own directory are named relative
@@ -28,7 +28,7 @@ pub fn write_pvd(path: &Path, series: &[(f64, PathBuf)]) -> Result<(), Error> {
         );
     }
     text += "</Collection>\n</VTKFile>\n";
-    std::fs::write(path, text).map_err(|e| write_error(path, e))
+    replace_text(path, &text).map(drop)
 }
 
 /// A text as the value of an attribute.

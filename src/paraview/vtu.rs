@@ -1,18 +1,19 @@
 //! Fields on a mesh as a VTK XML file of an unstructured grid.
 //!
-//! A function is written in its own degree, one or two, on cells of that degree. Arrays follow each
-//! other in the file, compressed by zlib in base64: of the encodings of the format this is the one that
-//! is valid XML and that nearly all readers take.
+//! A function is written in its own degree, one or two, on cells of that degree. Arrays follow the text of
+//! the file as raw bytes, compressed by zlib: the smallest encoding of the format, and the one that ParaView
+//! writes itself.
 
 use std::fmt;
-use std::fs::{self, File};
+use std::fs::File;
 use std::io::{self, BufWriter, Write};
 use std::path::Path;
 
-use super::encode::{bytes, write_array};
+use super::encode::{Arrays, bytes};
 use super::grid::{Grid, values_per_cell};
 use super::pvd::escape;
-use crate::error::{Error, write_error};
+use crate::error::Error;
+use crate::files::replace;
 use crate::instances::compiled;
 use crate::mesh::Mesh;
 use crate::real::{Point, Real};
@@ -20,7 +21,7 @@ use crate::real::{Point, Real};
 /// The scalar of the numbers in a file of fields.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum FieldScalar {
-    /// 32 bits: enough for pictures, and a quarter of the size.
+    /// 32 bits, and four digits of the field `error`: enough for pictures.
     #[default]
     Single,
     /// 64 bits: no digit is lost.
@@ -144,7 +145,8 @@ impl<'a, T: Real, const D: usize> VtuFile<'a, T, D> {
         self
     }
 
-    /// Writes the file, which takes the place of an earlier one when it is whole. Points have three
+    /// Writes the file, and its folder if there is none; it takes the place of an earlier one when it is
+    /// whole. Points have three
     /// coordinates, missing ones zero. The cell data `dimension` is that of each cell, `D` for the cells
     /// of the mesh and `D - 1` for facets. Cell data of one name on cells and on facets are one array;
     /// where there is no value they are not a number.
@@ -158,19 +160,14 @@ impl<'a, T: Real, const D: usize> VtuFile<'a, T, D> {
         )(self, path)
     }
     fn write_checked(&self, path: &Path) -> Result<(), Error> {
-        let mut draft = path.as_os_str().to_owned();
-        draft.push(format!(".{}", std::process::id()));
-        let draft = Path::new(&draft);
-        let written = self
-            .check()
-            .and_then(|n| {
-                let mut file = BufWriter::new(File::create(draft)?);
-                self.write_grid(&mut file, &Grid::new(self.mesh, self.u, n, self.facets))?;
-                file.flush()?;
-                fs::rename(draft, path)
-            })
-            .inspect_err(|_| drop(fs::remove_file(draft)));
-        written.map_err(|why| write_error(path, why))
+        let written = replace(path, |draft| {
+            let n = self.check()?;
+            let arrays = self.arrays(&Grid::new(self.mesh, self.u, n, self.facets))?;
+            let mut file = BufWriter::new(File::create(draft)?);
+            arrays.write(&mut file)?;
+            file.flush()
+        });
+        written.map(drop)
     }
 
     /// Number of values of each cell. Refuses a field whose length does not fit the mesh, and facets that
@@ -197,51 +194,55 @@ impl<'a, T: Real, const D: usize> VtuFile<'a, T, D> {
         }
     }
 
-    fn write_grid(&self, w: &mut impl Write, grid: &Grid<D>) -> io::Result<()> {
+    /// The text of the file and its arrays.
+    fn arrays(&self, grid: &Grid<D>) -> io::Result<Arrays> {
+        let mut arrays = Arrays::new();
+        let to = &mut arrays;
         let (n_points, n_cells) = (grid.points.len(), grid.types.len());
         writeln!(
-            w,
+            to.text,
             "<?xml version=\"1.0\"?>\n<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" \
              byte_order=\"LittleEndian\" header_type=\"UInt64\" \
              compressor=\"vtkZLibDataCompressor\">\n<UnstructuredGrid>"
         )?;
-        self.write_field_data(w)?;
-        writeln!(w, "<Piece NumberOfPoints=\"{n_points}\" NumberOfCells=\"{n_cells}\">")?;
-        writeln!(w, "<PointData Scalars=\"u\">")?;
+        self.push_field_data(to)?;
+        writeln!(to.text, "<Piece NumberOfPoints=\"{n_points}\" NumberOfCells=\"{n_cells}\">")?;
+        writeln!(to.text, "<PointData Scalars=\"u\">")?;
         let u: Vec<f64> = grid.sources.iter().map(|&k| self.u[k]).collect();
         let per_cell = self.u.len() / self.mesh.n_cells();
         for (name, f) in &self.functions {
             let places = grid.sources.iter().map(|k| k / per_cell).zip(&grid.points);
-            self.write_floats(w, name, 1, places.map(|(cell, x)| f(cell, x)))?;
+            self.push_floats(to, name, 1, places.map(|(cell, x)| f(cell, x)))?;
         }
         if let Some(exact) = self.exact {
             let error = u.iter().zip(&grid.points).map(|(u, x)| u - exact(x));
-            self.write_floats(w, "error", 1, error)?;
+            self.push_floats(to, "error", 1, error.map(|e| self.shortened(e)))?;
         }
-        self.write_floats(w, "u", 1, u.iter().copied())?;
-        writeln!(w, "</PointData>\n<CellData>")?;
-        self.write_cell_data(w)?;
-        writeln!(w, "</CellData>\n<Points>")?;
+        self.push_floats(to, "u", 1, u.iter().copied())?;
+        writeln!(to.text, "</PointData>\n<CellData>")?;
+        self.push_cell_data(to)?;
+        writeln!(to.text, "</CellData>\n<Points>")?;
         let coordinates = |x: &Point<f64, D>| [0, 1, 2].map(|k| if k < D { x[k] } else { 0.0 });
-        self.write_floats(w, "Points", 3, grid.points.iter().flat_map(coordinates))?;
-        writeln!(w, "</Points>\n<Cells>")?;
+        self.push_floats(to, "Points", 3, grid.points.iter().flat_map(coordinates))?;
+        writeln!(to.text, "</Points>\n<Cells>")?;
         let integers = |list: &mut dyn Iterator<Item = i64>| bytes(list.map(i64::to_le_bytes));
         let corners = integers(&mut grid.connectivity.iter().map(|&k| i64::from(k)));
-        write_array(w, "Int64", "connectivity", 1, &corners)?;
+        to.push("Int64", "connectivity", 1, &corners)?;
         let ends = integers(&mut grid.ends.iter().map(|&k| k as i64));
-        write_array(w, "Int64", "offsets", 1, &ends)?;
-        write_array(w, "UInt8", "types", 1, &grid.types)?;
-        writeln!(w, "</Cells>\n</Piece>\n</UnstructuredGrid>\n</VTKFile>")
+        to.push("Int64", "offsets", 1, &ends)?;
+        to.push("UInt8", "types", 1, &grid.types)?;
+        writeln!(to.text, "</Cells>\n</Piece>\n</UnstructuredGrid>")?;
+        Ok(arrays)
     }
 
-    fn write_field_data(&self, w: &mut impl Write) -> io::Result<()> {
-        writeln!(w, "<FieldData>")?;
+    fn push_field_data(&self, to: &mut Arrays) -> io::Result<()> {
+        writeln!(to.text, "<FieldData>")?;
         for (name, text) in &self.texts {
             // a text is a list of its bytes, with a zero at the end
             let codes: Vec<String> = text.bytes().chain([0]).map(|b| b.to_string()).collect();
             let (name, codes) = (escape(name), codes.join(" "));
             writeln!(
-                w,
+                to.text,
                 "<DataArray type=\"String\" Name=\"{name}\" NumberOfTuples=\"1\" \
                  format=\"ascii\">\n{codes}\n</DataArray>"
             )?;
@@ -249,15 +250,15 @@ impl<'a, T: Real, const D: usize> VtuFile<'a, T, D> {
         for (name, value) in &self.numbers {
             let name = escape(name);
             writeln!(
-                w,
+                to.text,
                 "<DataArray type=\"Float64\" Name=\"{name}\" NumberOfTuples=\"1\" \
                  format=\"ascii\">\n{value}\n</DataArray>"
             )?;
         }
-        writeln!(w, "</FieldData>")
+        writeln!(to.text, "</FieldData>")
     }
 
-    fn write_cell_data(&self, w: &mut impl Write) -> io::Result<()> {
+    fn push_cell_data(&self, to: &mut Arrays) -> io::Result<()> {
         let (cells, facets) = (self.mesh.n_cells(), self.facets.len());
         let mut names: Vec<&str> = Vec::new();
         for (name, _) in self.on_cells.iter().chain(&self.on_facets) {
@@ -271,15 +272,25 @@ impl<'a, T: Real, const D: usize> VtuFile<'a, T, D> {
         };
         for name in names {
             let values = [of(&self.on_cells, name, cells), of(&self.on_facets, name, facets)];
-            self.write_floats(w, name, 1, values.concat().into_iter())?;
+            self.push_floats(to, name, 1, values.concat().into_iter())?;
         }
         let dimensions = [vec![D as u8; cells], vec![D as u8 - 1; facets]].concat();
-        write_array(w, "UInt8", "dimension", 1, &dimensions)
+        to.push("UInt8", "dimension", 1, &dimensions)
     }
 
-    fn write_floats(
+    /// A number with four digits if files have 32 bits: an error is not known better, and digits that mean
+    /// nothing cannot be compressed.
+    fn shortened(&self, x: f64) -> f64 {
+        const DROPPED: u64 = (1 << 39) - 1;
+        match self.scalar {
+            FieldScalar::Single => f64::from_bits(x.to_bits().wrapping_add(DROPPED / 2) & !DROPPED),
+            FieldScalar::Double => x,
+        }
+    }
+
+    fn push_floats(
         &self,
-        w: &mut impl Write,
+        to: &mut Arrays,
         name: &str,
         components: usize,
         values: impl Iterator<Item = f64>,
@@ -288,6 +299,6 @@ impl<'a, T: Real, const D: usize> VtuFile<'a, T, D> {
             FieldScalar::Single => ("Float32", bytes(values.map(|x| (x as f32).to_le_bytes()))),
             FieldScalar::Double => ("Float64", bytes(values.map(f64::to_le_bytes))),
         };
-        write_array(w, kind, &escape(name), components, &bytes)
+        to.push(kind, &escape(name), components, &bytes)
     }
 }

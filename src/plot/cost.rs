@@ -1,7 +1,7 @@
 //! Errors against cost: one column of panels, as wide as a column of text.
 
 use super::figure::Figure;
-use super::series::{Curve, Key, Orders, Panel, Point, Quantity, with_curves};
+use super::series::{Curve, Key, Orders, Panel, Point, Quantity, title, with_curves};
 use crate::study::row::Row;
 
 /// A measure of the cost of a run.
@@ -37,7 +37,8 @@ pub(crate) struct NamedCurve<'a> {
     pub rows: Vec<&'a Row>,
 }
 
-/// The panels of a scene, one for each norm in which there are errors, below each other.
+/// The panels of a scene, one for each norm in which there are errors, below each other; energy only where
+/// it is not the H1 seminorm.
 pub(crate) fn cost_figure(scene: &str, named: &[NamedCurve<'_>], cost: Cost) -> Figure {
     let x = cost.quantity();
     let panel = |y: Quantity| {
@@ -52,10 +53,14 @@ pub(crate) fn cost_figure(scene: &str, named: &[NamedCurve<'_>], cost: Cost) -> 
             None => Orders::default(),
             falls_over => Orders { falls_over, ..y.orders(rows()) },
         };
-        Panel::of(scene, (x.label(), y.label()), curves, orders)
+        Panel::of(&title(scene, rows()), (x.label(), y.label()), curves, orders)
     };
+    let mut shown = vec![Quantity::L2, Quantity::H1, Quantity::Energy];
+    if named.iter().flat_map(|c| &c.rows).all(|row| row.error.is_energy_h1()) {
+        shown.pop();
+    }
     Figure {
-        panels: with_curves([Quantity::L2, Quantity::H1, Quantity::Energy].map(panel).into()),
+        panels: with_curves(shown.into_iter().map(panel).collect()),
         keys: named.iter().map(|c| Key::labelled(&c.label)).collect(),
         columns: 1,
     }

@@ -50,8 +50,9 @@ pub fn work_precision(rows: &[Row]) -> Figure {
     let panels = scenes
         .iter()
         .map(|scene| Panel::new(rows, &keys, scene, Quantity::Seconds, Quantity::L2))
+        .flat_map(|panel| with_curves(vec![panel]))
         .collect();
-    Figure { panels: with_curves(panels), keys, columns }
+    Figure { panels, keys, columns }
 }
 
 impl Figure {
@@ -60,9 +61,10 @@ impl Figure {
         self.panels.iter().any(|p| p.curves.iter().any(|c| c.points.iter().any(|q| !q.converged)))
     }
 
-    /// Whether a panel with curves shows orders that theory promises.
-    fn has_promises(&self) -> bool {
-        self.panels.iter().any(|p| p.has_curves() && p.orders.are_promised)
+    /// Whether a panel with curves shows orders, which theory promises or not.
+    fn has_orders(&self, are_promised: bool) -> bool {
+        let shows = |p: &Panel| p.has_curves() && !p.orders.orders.is_empty();
+        self.panels.iter().any(|p| shows(p) && p.orders.are_promised == are_promised)
     }
 
     /// Whether a panel shows limits.
@@ -74,7 +76,8 @@ impl Figure {
     pub(super) fn layout(&self) -> FigureLayout {
         let mut signs = Vec::new();
         signs.extend(self.has_failures().then_some(Sign::Failed));
-        signs.extend(self.has_promises().then_some(Sign::Promised));
+        signs.extend(self.has_orders(true).then_some(Sign::Promised));
+        signs.extend(self.has_orders(false).then_some(Sign::Compared));
         signs.extend(self.has_limits().then_some(Sign::Limit));
         FigureLayout::new(self.panels.len(), self.columns, &self.keys, &signs)
     }

@@ -2,7 +2,7 @@
 
 use super::pen::{Align, Drawn, Pen, ScreenPoint, text_width};
 use super::series::Key;
-use super::style::{GREY, INK, draw_failed, draw_limit, draw_mark, segment};
+use super::style::{GREY, INK, draw_failed, draw_limit, draw_mark, draw_slope, segment};
 use plotters::prelude::DrawingBackend;
 
 /// Width and height of a panel with its labels.
@@ -41,6 +41,8 @@ pub(crate) enum Sign {
     Failed,
     /// A triangle with the slopes of promised orders.
     Promised,
+    /// A dotted triangle with slopes to compare with.
+    Compared,
     /// The line of a limit.
     Limit,
 }
@@ -58,6 +60,7 @@ impl Entry {
             Entry::Curve(_, label) => label,
             Entry::Sign(Sign::Failed) => "did not converge",
             Entry::Sign(Sign::Promised) => "orders promised by theory",
+            Entry::Sign(Sign::Compared) => "slopes for comparison",
             Entry::Sign(Sign::Limit) => "limit",
         }
     }
@@ -132,11 +135,11 @@ impl FigureLayout {
                     draw_mark(pen, *key, middle, 1.0)?;
                 }
                 Entry::Sign(Sign::Failed) => draw_failed(pen, middle)?,
-                Entry::Sign(Sign::Promised) => {
+                Entry::Sign(sign @ (Sign::Promised | Sign::Compared)) => {
                     let (tip, right) = ((x + 4.0, y + 6.0), x + SYMBOL - 4.0);
                     pen.line(tip, (right, y + 6.0), 0.8, GREY)?;
                     pen.line((right, y + 6.0), (right, y - 6.0), 0.8, GREY)?;
-                    pen.line(tip, (right, y - 6.0), 0.8, GREY)?;
+                    draw_slope(pen, tip, (right, y - 6.0), *sign == Sign::Promised)?;
                 }
                 Entry::Sign(Sign::Limit) => draw_limit(pen, (*x, *y), (x + SYMBOL, *y))?,
             }

@@ -169,12 +169,12 @@ impl Panel {
             runs.sort_by_key(|r| r.level);
             Curve { key, points: runs.iter().filter_map(|r| Point::of(r, x, y)).collect() }
         });
-        let of_scene = rows.iter().filter(|r| r.scene == scene);
+        let of_scene = || rows.iter().filter(|r| r.scene == scene);
         let orders = match x {
-            Quantity::MeshSize => y.orders(of_scene),
+            Quantity::MeshSize => y.orders(of_scene()),
             _ => Orders::default(),
         };
-        Self::of(scene, (x.label(), y.label()), curves, orders)
+        Self::of(&title(scene, of_scene()), (x.label(), y.label()), curves, orders)
     }
 
     /// A panel of curves, of which those without points are left out.
@@ -217,6 +217,12 @@ impl Panel {
             .chain(self.limits.iter().copied())
             .collect()
     }
+}
+
+/// The scene, and what its errors are measured against unless that is the exact solution.
+pub(crate) fn title<'r>(scene: &str, rows: impl IntoIterator<Item = &'r Row>) -> String {
+    let reference = rows.into_iter().find_map(Row::reference);
+    reference.map_or_else(|| scene.to_owned(), |r| format!("{scene}, against {r}"))
 }
 
 /// The panels with curves; of several without any the first, which says why there is none.

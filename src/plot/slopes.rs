@@ -3,7 +3,7 @@
 use super::axis::LogAxis;
 use super::pen::{Align, Drawn, Pen, ScreenPoint};
 use super::series::Orders;
-use super::style::GREY;
+use super::style::{GREY, draw_slope};
 use plotters::prelude::DrawingBackend;
 
 /// Room to keep from data and frame.
@@ -22,6 +22,7 @@ pub(crate) struct Slopes {
     rises: Vec<(String, f64)>,
     /// Whether lines fall to the common point instead of rising from it.
     falls: bool,
+    are_promised: bool,
 }
 
 /// An order over a dimension, as short as it goes.
@@ -39,7 +40,7 @@ impl Slopes {
     /// that is free of data (given in pixels of the area). Falling slopes, each over a dimension,
     /// are placed in the lower left or the upper right corner.
     pub fn place(
-        Orders { orders, falls_over, .. }: &Orders,
+        Orders { orders, falls_over, are_promised }: &Orders,
         (x, y): (&LogAxis, &LogAxis),
         size: (f64, f64),
         data: &[ScreenPoint],
@@ -72,7 +73,7 @@ impl Slopes {
                 };
                 !data.iter().any(inside)
             })
-            .map(|corner| Slopes { corner, width, rises, falls })
+            .map(|corner| Slopes { corner, width, rises, falls, are_promised: *are_promised })
     }
 
     /// Draws the slopes, with the upper left corner of the area at `origin`.
@@ -88,7 +89,7 @@ impl Slopes {
         let step = top / self.rises.len() as f64;
         for (label, rise) in &self.rises {
             let end = (steep, bottom - rise);
-            pen.line((tip, bottom), end, 0.8, GREY)?;
+            draw_slope(pen, (tip, bottom), end, self.are_promised)?;
             // labels on flat triangles would overlap: only the steepest slope has one
             if step >= 10.0 || *rise == top {
                 pen.text(label, (beside, end.1), 13.0, GREY, align)?;

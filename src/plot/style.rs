@@ -95,6 +95,16 @@ pub(crate) fn draw_mark<DB: DrawingBackend>(
     }
 }
 
+/// The slope of an order: a full line if theory promises it.
+pub(crate) fn draw_slope<DB: DrawingBackend>(
+    pen: &Pen<DB>,
+    from: ScreenPoint,
+    to: ScreenPoint,
+    is_promised: bool,
+) -> Drawn {
+    pen.dashes(from, to, 0.8, GREY, if is_promised { &[] } else { &[1.5, 2.5] })
+}
+
 /// The line of a limit.
 pub(crate) fn draw_limit<DB: DrawingBackend>(
     pen: &Pen<DB>,

@@ -42,12 +42,22 @@ pub(crate) fn sweep_figure(points: &[SweepPoint]) -> Option<Figure> {
         panel.limits = distinct(here().filter_map(|p| p.limit).filter(|limit| *limit > 0.0));
         panel
     };
-    let panels: Vec<Panel> = distinct(points.iter().map(|p| (&p.title, &p.axes)))
+    let mut panels: Vec<Panel> = distinct(points.iter().map(|p| (&p.title, &p.axes)))
         .into_iter()
         .map(panel)
         .filter(Panel::has_curves)
         .collect();
-    let columns = panels.len().clamp(1, 3);
-    let keys = series.iter().map(|name| Key::labelled(name)).collect();
+    // the legend names the curves that are drawn
+    let is_drawn = |key: usize| panels.iter().any(|p| p.curves.iter().any(|c| c.key == key));
+    let drawn: Vec<usize> = (0..series.len()).filter(|&key| is_drawn(key)).collect();
+    for curve in panels.iter_mut().flat_map(|panel| &mut panel.curves) {
+        curve.key = drawn.iter().position(|&key| key == curve.key).unwrap_or(0);
+    }
+    let columns = match panels.len() {
+        0 | 1 => 1,
+        2 | 4 => 2,
+        _ => 3,
+    };
+    let keys = drawn.iter().map(|&key| Key::labelled(series[key])).collect();
     (!panels.is_empty()).then_some(Figure { panels, keys, columns })
 }

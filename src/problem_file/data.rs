@@ -3,8 +3,8 @@
 use toml::de::DeTable;
 
 use super::error::{ProblemFileError, ProblemFileFault};
+use super::own_problem::{Geometry, OwnProblem};
 use super::table::{Formula, Place, Source, Value};
-use super::{Geometry, OwnProblem};
 use crate::error::Error;
 use crate::input::excerpt;
 use crate::mesh::{BoundaryPart, BoxDomain, Mesh, SIDES, describe_point};

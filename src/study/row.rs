@@ -253,6 +253,10 @@ impl Row {
         RowKey { scene, label, solver, level: self.level }
     }
 
+    /// The reference against which the errors are; none where they are against the exact solution.
+    pub fn reference(&self) -> Option<&str> {
+        self.against.as_deref().filter(|against| *against != "exact")
+    }
     /// Whether the solve of this row converged.
     pub fn converged(&self) -> bool {
         self.status == Outcome::Converged

@@ -68,7 +68,7 @@ fn write_scene(f: &mut impl fmt::Write, scene: &str, rows: &[&Row]) -> fmt::Resu
     ) {
         write_wrapped(f, &format!("  warning, {}: {}", warning.0, warning.1))?;
     }
-    if has_errors(rows) { Ok(()) } else { write_limits(f, rows) }
+    limits(rows).iter().try_for_each(|line| write_wrapped(f, &format!("  {line}")))
 }
 
 /// Whether an error in L2 or H1 is known.
@@ -76,8 +76,12 @@ fn has_errors(rows: &[&Row]) -> bool {
     rows.iter().any(|r| r.error.l2.is_some() || r.error.h1.is_some())
 }
 
-/// Writes the limits of energy, contact measure and resultant of each series.
-fn write_limits(f: &mut impl fmt::Write, rows: &[&Row]) -> fmt::Result {
+/// The limits of energy, contact measure and resultant of each series, where no error is known.
+pub(crate) fn limits(rows: &[&Row]) -> Vec<String> {
+    let mut lines = Vec::new();
+    if has_errors(rows) {
+        return lines;
+    }
     let rows: Vec<Row> = rows.iter().map(|&row| row.clone()).collect();
     let has_solvers = rows.iter().any(|r| r.solver != rows[0].solver);
     for series in extrapolate(&rows) {
@@ -96,16 +100,20 @@ fn write_limits(f: &mut impl fmt::Write, rows: &[&Row]) -> fmt::Result {
         if !limits.is_empty() {
             let solver = if has_solvers { format!(", {}", series.solver) } else { String::new() };
             let name = format!("{}{solver}", series.label);
-            write_wrapped(f, &format!("  extrapolated, {name}: {}", limits.join(", ")))?;
+            lines.push(format!("extrapolated, {name}: {}", limits.join(", ")));
         }
     }
-    Ok(())
+    lines
 }
 
 /// The heading after the name of the scene: solvers, and the orders that theory promises.
 pub(crate) fn heading(rows: &[&Row]) -> String {
     let solvers = distinct(rows.iter().map(|r| format!("{}/{}", r.solver, r.linear)));
     let mut text = format!("solver {}", solvers.join(", "));
+    let references = distinct(rows.iter().filter_map(|r| r.reference()));
+    if !references.is_empty() {
+        text += &format!("; errors against {}", references.join(", "));
+    }
     let mut promises: Vec<(String, Vec<String>)> = Vec::new();
     for row in rows {
         let expected = row.expected_order;

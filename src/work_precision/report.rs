@@ -194,9 +194,9 @@ impl WorkReport {
         text
     }
 
-    /// Writes `report.json`, `report.csv`, `reach.csv`, `report.txt`, `report.md`, the files of
-    /// [`Self::to_latex`] and, if the report is complete, `report.html` into a directory, which is made if
-    /// need be. Each file takes the place of an earlier one only when it is whole.
+    /// Writes `report.json`, `report.csv`, `reach.csv`, `report.txt`, `report.md`, `report.tex` and, if the
+    /// report is complete, the further files of [`Self::to_latex`] and `report.html` into a directory, which
+    /// is made if need be. Each file takes the place of an earlier one only when it is whole.
     ///
     /// # Errors
     /// [`Error::Write`] at the first file that cannot be written.
@@ -209,7 +209,9 @@ impl WorkReport {
             ("report.md", self.to_markdown()),
         ];
         let mut files: Vec<_> = files.map(|(name, text)| (name.to_owned(), text)).into();
-        files.extend(self.to_latex());
+        // the titles of tables change while errors are added
+        let is_kept = |name: &str| self.provenance.complete || name == "report.tex";
+        files.extend(self.to_latex().into_iter().filter(|(name, _)| is_kept(name)));
         if self.provenance.complete {
             let path = directory.join("report.html");
             let page = self.page().map_err(|why| write_error(&path, why))?;

@@ -26,7 +26,10 @@ pub(crate) fn summary(all: &[Measured], failures: &[Failure], reach: &[WorkAtErr
         for norm in ErrorNorm::ALL {
             let here = |r: &&WorkAtError| r.variant.scene == scene && r.norm == norm;
             let reach: Vec<&WorkAtError> = reach.iter().filter(here).collect();
-            if !reach.is_empty() {
+            let of_scene = || all.iter().filter(|m| m.row.scene == scene);
+            let says_nothing =
+                norm == ErrorNorm::Energy && of_scene().all(|m| m.row.error.is_energy_h1());
+            if !reach.is_empty() && !says_nothing {
                 tables.push(times(scene, norm, &reach, &variants));
             }
         }

@@ -93,7 +93,7 @@ fn needs_scipy() {
     let scenes = "radial-2d,signorini-2d";
     scratch.report(&format!("--scene {scenes} --scheme p1,sipg --levels 16 --quiet --dump {dump}"));
     let script = concat!(env!("CARGO_MANIFEST_DIR"), "/examples/solve_elsewhere.py");
-    let python = std::env::var("PYTHON").unwrap_or_else(|_| "python3".to_owned());
+    let python = std::env::var("UNILATERAL_PYTHON").unwrap_or_else(|_| "python3".to_owned());
     for name in
         ["radial-2d-p1-16", "radial-2d-sipg-16", "signorini-2d-p1-16", "signorini-2d-sipg-16"]
     {

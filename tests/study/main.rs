@@ -6,6 +6,7 @@ mod named_schemes;
 mod one_problem;
 mod pictures;
 mod problem_files;
+mod references;
 mod report;
 mod rows;
 mod scenes;

@@ -8,7 +8,9 @@ use std::path::Path;
 use unilateral::facet::PenaltyParameters;
 use unilateral::inequality::Outcome;
 use unilateral::measure::Errors;
-use unilateral::study::peak_memory_bytes;
+use unilateral::plot::convergence;
+use unilateral::scheme::ExpectedOrders;
+use unilateral::study::{Row, peak_memory_bytes};
 
 fn keys(value: &Value) -> Vec<&str> {
     value.as_object().expect("an object").keys().map(String::as_str).collect()
@@ -189,6 +191,30 @@ fn all_files_are_written_and_plots_show_what_they_should() {
 }
 
 #[test]
+fn plots_show_promised_orders_and_no_single_points() {
+    let lines = |rows: Vec<Row>| -> Vec<String> {
+        let svg = convergence(&rows).to_svg().unwrap();
+        svg.lines().map(|line| line.trim().to_owned()).collect()
+    };
+    let has = |lines: &[String], text: &str| lines.iter().any(|line| line == text);
+    let mut all = rows();
+    let drawn = lines(all.clone());
+    assert!(has(&drawn, "orders promised by theory"));
+    // an order that is no whole number has its own slope
+    all.iter_mut().for_each(|r| r.expected_order = ExpectedOrders::none().with_h1(1.5));
+    assert!(has(&lines(all.clone()), "1.5"));
+    all.iter_mut().for_each(|r| r.expected_order = ExpectedOrders::none());
+    assert!(!has(&lines(all.clone()), "orders promised by theory"));
+    assert!(has(&lines(all.clone()), "slopes for comparison"));
+    // labels of an axis are of one kind: numbers for mesh sizes from 1/32 to 1/8
+    assert!(has(&drawn, "0.1") && has(&drawn, "0.05"), "{drawn:?}");
+    all.retain(|r| r.level == 8);
+    let single = lines(all);
+    assert!(has(&single, "one level: no curve"));
+    assert!(!has(&single, "broken H1 error"), "one panel says so");
+}
+
+#[test]
 fn a_report_of_one_row_or_none_is_written_too() {
     for rows in [vec![row("radial-1d", "p1", 4)], Vec::new()] {
         let scratch = Scratch::new(&format!("few-{}", rows.len()));
@@ -240,8 +266,7 @@ fn the_page_has_every_number_and_needs_no_network() {
         );
     }
     // boxes for every series and every column, and rules that heed them
-    let labels = ["p1", "sipg", "wopsip"];
-    for (k, label) in labels.iter().enumerate() {
+    for (k, label) in [(0, "p1"), (1, "sipg"), (3, "wopsip")] {
         assert!(html.contains(&format!("id=\"show-s{k}\" autocomplete=\"off\" checked> {label}")));
         assert!(
             html.contains(&format!("body:has(#show-s{k}:not(:checked)) .s{k}{{display:none}}"))

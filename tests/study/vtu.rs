@@ -4,8 +4,6 @@ use std::io::Read;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use base64::Engine;
-use base64::engine::general_purpose::STANDARD;
 use flate2::read::ZlibDecoder;
 use unilateral::element::{P2, ReferenceElement};
 use unilateral::mesh::{BoxDomain, Mesh};
@@ -17,18 +15,24 @@ use unilateral::study::file_name;
 
 use crate::scratch::Scratch;
 
-/// A file, with its arrays by section and name.
+/// A file: its text, and the arrays that follow.
 struct Grid {
     text: String,
+    data: Vec<u8>,
 }
 
 fn read(path: impl AsRef<Path>) -> Grid {
-    let text = std::fs::read_to_string(path).unwrap();
+    let bytes = std::fs::read(path).unwrap();
+    let start = b"<AppendedData encoding=\"raw\">\n_";
+    let at = bytes.windows(start.len()).position(|w| w == start).unwrap() + start.len();
+    let text = String::from_utf8(bytes[..at].to_vec()).unwrap();
     assert_eq!(text.matches("<Piece").count(), 1);
     for said in ["\"LittleEndian\"", "header_type=\"UInt64\"", "\"vtkZLibDataCompressor\""] {
         assert!(text.contains(said), "{said}");
     }
-    Grid { text }
+    let end = b"\n</AppendedData>\n</VTKFile>\n";
+    assert!(bytes.ends_with(end));
+    Grid { text, data: bytes[at..bytes.len() - end.len()].to_vec() }
 }
 
 /// The numbers of a header or of an array.
@@ -37,24 +41,19 @@ fn integers(bytes: &[u8], width: usize) -> Vec<usize> {
     bytes.chunks(width).map(number).collect()
 }
 
-/// What is compressed in the text of an array.
-fn decode(text: &str) -> Vec<u8> {
-    // the first eight bytes are the number of blocks, which tells the length of the header
-    let first = STANDARD.decode(&text[..12]).unwrap();
-    let header_bytes = 8 * (3 + integers(&first[..8], 8)[0]);
-    let (header, data) = text.split_at(header_bytes.div_ceil(3) * 4);
-    let header = integers(&STANDARD.decode(header).unwrap(), 8);
-    let data = STANDARD.decode(data).unwrap();
-    let (mut start, mut decoded) = (0, Vec::new());
+/// The array that begins here.
+fn decode(data: &[u8]) -> Vec<u8> {
+    let blocks = integers(&data[..8], 8)[0];
+    let header = integers(&data[..8 * (3 + blocks)], 8);
+    let (mut start, mut decoded) = (8 * (3 + blocks), Vec::new());
     for (k, length) in header[3..].iter().enumerate() {
         let before = decoded.len();
         ZlibDecoder::new(&data[start..start + length]).read_to_end(&mut decoded).unwrap();
         start += length;
-        let is_last = k + 4 == header.len();
+        let is_last = k + 1 == blocks;
         let expected = if is_last && header[2] > 0 { header[2] } else { header[1] };
         assert_eq!(decoded.len() - before, expected);
     }
-    assert_eq!(start, data.len());
     decoded
 }
 
@@ -70,7 +69,14 @@ impl Grid {
         let parts = self.section(section).split("Name=\"").skip(1);
         parts.map(|part| part.split('"').next().unwrap()).collect()
     }
-    /// Type and content of an array.
+    /// Type and bytes of an array.
+    fn bytes(&self, section: &str, name: &str) -> (&str, Vec<u8>) {
+        let (kind, _) = self.array(section, name);
+        let tag = self.section(section).split(&format!("Name=\"{name}\"")).nth(1).unwrap();
+        let offset = tag.split("offset=\"").nth(1).unwrap().split('"').next().unwrap();
+        (kind, decode(&self.data[offset.parse().unwrap()..]))
+    }
+    /// Type and text of an array.
     fn array(&self, section: &str, name: &str) -> (&str, &str) {
         let wanted = format!("Name=\"{name}\"");
         let array = self.section(section).split("<DataArray").find(|a| a.contains(&wanted));
@@ -79,8 +85,7 @@ impl Grid {
         (kind, array.split('>').nth(1).unwrap().split('<').next().unwrap().trim())
     }
     fn floats(&self, section: &str, name: &str) -> Vec<f64> {
-        let (kind, text) = self.array(section, name);
-        let bytes = decode(text);
+        let (kind, bytes) = self.bytes(section, name);
         match kind {
             "Float64" => {
                 bytes.chunks(8).map(|b| f64::from_le_bytes(b.try_into().unwrap())).collect()
@@ -93,8 +98,8 @@ impl Grid {
         }
     }
     fn integers(&self, section: &str, name: &str) -> Vec<usize> {
-        let (kind, text) = self.array(section, name);
-        integers(&decode(text), if kind == "UInt8" { 1 } else { 8 })
+        let (kind, bytes) = self.bytes(section, name);
+        integers(&bytes, if kind == "UInt8" { 1 } else { 8 })
     }
     fn text(&self, name: &str) -> String {
         let (kind, codes) = self.array("FieldData", name);
@@ -204,6 +209,10 @@ fn long_arrays_are_cut_into_blocks() {
     VtuFile::new(&mesh, &u).write(&path).unwrap();
     let rounded: Vec<f64> = u.iter().map(|&x| f64::from(x as f32)).collect();
     assert_eq!(read(&path).floats("PointData", "u"), rounded);
+    // of an error four digits
+    VtuFile::new(&mesh, &u).error_from(&|_| 0.0).write(&path).unwrap();
+    let error = read(&path).floats("PointData", "error");
+    assert!(u.iter().zip(error).all(|(u, e)| (u - e).abs() <= 1.3e-4 * u.abs()));
     assert_eq!(std::fs::read_dir(&scratch.0).unwrap().count(), 1, "no draft is left");
 }
 
@@ -329,6 +338,23 @@ fn the_pressure_integrates_to_the_contact_force() {
     }
     integrates(&scenes::signorini_harmonic::<3>(), &Sipg::default(), 4);
     integrates(&scenes::signorini_closed_1d(), &ConformingP1, 8);
+}
+
+#[test]
+fn the_multiplier_of_an_obstacle_integrates_to_the_sum_of_nodal_multipliers() {
+    for scheme in NamedScheme::list(["p1", "cr", "sipg", "wopsip:facet-means", "p2"]).unwrap() {
+        let mut scene = scenes::radial::<2>(1.0);
+        if let Some(set) = scheme.constraint_set() {
+            scene.problem = scene.problem.on(set);
+        }
+        let (grid, sum) = solution(&scene, &*scheme.make(), 8);
+        let (points, multiplier) = (grid.points(), grid.floats("CellData", "multiplier"));
+        let cells = grid.cells();
+        let of_cell =
+            |(cell, density): (&Vec<usize>, &f64)| grid.measure(&points, cell, 2) * density;
+        let total: f64 = cells.iter().zip(&multiplier).map(of_cell).sum();
+        assert!((total - sum).abs() < 1e-10 * sum, "{}: {total} {sum}", scheme.name());
+    }
 }
 
 #[test]

@@ -1,7 +1,7 @@
 //! What scripts rely on.
 
 /// The keys of a row, in order.
-pub const ROW_KEYS: [&str; 29] = [
+pub const ROW_KEYS: [&str; 30] = [
     "scene",
     "dimension",
     "scheme",
@@ -15,6 +15,7 @@ pub const ROW_KEYS: [&str; 29] = [
     "mesh_size",
     "status",
     "message",
+    "against",
     "error",
     "multiplier_l1",
     "multiplier_l2",

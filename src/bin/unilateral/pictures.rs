@@ -98,7 +98,12 @@ fn series<const D: usize>(
         let meshes = meshes(scene, level)?;
         let solved = solve(&scene.problem, &meshes, scheme).map_err(|e| e.to_string())?;
         let path = options.out.join(name_of(scene, scheme, &format!("-{level}.vtu")));
-        solved.write_vtu(&path).map_err(|e| e.to_string())?;
+        let label = scheme.label_on(scene.problem.constraint_set());
+        let written = solved.write_vtu_with(&path, |file| {
+            let file = file.text("scene", &scene.name).text("scheme", &label);
+            file.number("level", level as f64)
+        });
+        written.map_err(|e| e.to_string())?;
         converged &= solved.converged();
         files.push((level as f64, path));
     }

@@ -12,6 +12,7 @@ mod multiplier_density;
 
 pub(crate) use difference::contact_difference;
 pub use discrete_contact::DiscreteContact;
+pub(super) use entity::Place;
 
 use super::errors::ContactErrors;
 use crate::algebra::{Bound, Contact, Inequality};

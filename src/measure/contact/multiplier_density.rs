@@ -1,6 +1,6 @@
 //! The multiplier as a density at vertices.
 
-use super::entity::ContactEntity;
+use super::entity::{ContactEntity, Place};
 use crate::algebra::{Contact, Inequality};
 use crate::assemble::cut_simplices::{CutRule, in_space};
 use crate::assemble::space::{Space, data};
@@ -70,6 +70,34 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
             around.iter().for_each(|&v| multipliers[v as usize] += share);
         }
         multipliers
+    }
+
+    /// The density of the multiplier on cells or on facets: the mean over their vertices of the nodal
+    /// multipliers of the unknowns that count over the integrals of the hat functions on these places.
+    pub(crate) fn mean_densities(
+        &self,
+        places: &[Place],
+        inequality: &Inequality<T>,
+        solution: &Solution<T>,
+        counts: impl Fn(usize) -> bool,
+    ) -> Vec<f64> {
+        if places.is_empty() {
+            return Vec::new();
+        }
+        let entities = || places.iter().map(|&(cell, facet)| ContactEntity { cell, facet });
+        let vertex = |entity: ContactEntity, k: usize| self.mesh.cell(entity.cell)[k] as usize;
+        let mut densities = self.vertex_multipliers(inequality, solution, counts);
+        let mut hats = vec![0.0; densities.len()];
+        for entity in entities() {
+            let share = self.measure_of(entity) / (entity.dimension::<D>() + 1) as f64;
+            entity.corners::<D>().for_each(|k| hats[vertex(entity, k)] += share);
+        }
+        densities.iter_mut().zip(hats).for_each(|(density, hat)| *density /= hat);
+        let mean = |entity: ContactEntity| {
+            let sum: f64 = entity.corners::<D>().map(|k| densities[vertex(entity, k)]).sum();
+            sum / (entity.dimension::<D>() + 1) as f64
+        };
+        entities().map(mean).collect()
     }
 
     /// Subtracts the exact multiplier tested with the hat functions of an entity, and adds their

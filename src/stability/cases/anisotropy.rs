@@ -53,7 +53,7 @@ fn sweep(choice: &Choice, n: usize, ratios: &[usize], sink: Sink<'_>) -> Result<
             claim("error-on-stretched-cells")
                 .quantity("energy error over that of cr, over the same at ratio 1")
                 .at_most(1.5)
-                .underlying("error in the scheme's own norm", of(&ours, |r| r.error.energy))
+                .underlying("error in the broken energy norm", of(&ours, |r| r.error.broken_energy))
                 .known_to_fail(is_scarce || is_by_edge && ratio > 4)
                 .detail(format!("{}{jumps}", figures(&ours)))
                 .measured(quotient(share, at_one)),

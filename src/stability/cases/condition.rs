@@ -15,7 +15,7 @@ const PARTS: [&str; 2] = ["not preconditioned", "diagonal of means and jumps"];
 
 pub(crate) fn plan(plan: &mut Plan<'_>) {
     let level = plan.pick(8, 16);
-    let exponents: &[i32] = plan.pick(&[2], &[-4, -2, 2, 4, 6]);
+    let exponents: &[i32] = plan.pick(&[-2, 2, 6], &[-4, -2, 2, 4, 6]);
     for &exponent in exponents {
         let choice = Choice::new("wopsip", Penalty::Eta(10.0_f64.powi(exponent)));
         plan.add("penalty-factor", choice, "condition number", move |c, sink| {

@@ -48,17 +48,18 @@ fn norm(scene: &Scene<2>, level: usize) -> Result<Option<f64>, Error> {
 }
 
 fn aligned(choice: &Choice, level: usize, exponents: &[i32], sink: Sink<'_>) -> Result<(), Error> {
-    let relative = |contrast: f64| -> Result<(Row, Option<f64>), Error> {
+    let relative = |contrast: f64| -> Result<(Row, [Option<f64>; 2]), Error> {
         let scene = scenes::signorini_layers_2d(contrast);
         let norm = norm(&scene, level)?;
         let row = row::<f64, 2>(scene, choice, level)?;
         let error = quotient(of(&row, |r| r.error.energy), norm);
-        Ok((row, error))
+        let broken = quotient(of(&row, |r| r.error.broken_energy), norm);
+        Ok((row, [error, broken]))
     };
-    let (_, at_one) = relative(1.0)?;
+    let (_, [at_one, _]) = relative(1.0)?;
     for &exponent in exponents {
         let contrast = 10.0_f64.powi(exponent);
-        let (row, error) = relative(contrast)?;
+        let (row, [error, broken]) = relative(contrast)?;
         let relative = error.map_or(String::new(), |e| format!(", relative energy error {e:.2e}"));
         let claim = |name| {
             RowBuilder::new(name, choice)
@@ -71,7 +72,7 @@ fn aligned(choice: &Choice, level: usize, exponents: &[i32], sink: Sink<'_>) -> 
             claim("error-over-contrast")
                 .quantity("relative energy error over that at contrast 1")
                 .at_most(1.5)
-                .underlying("relative error in the scheme's own norm", error)
+                .underlying("relative error in the broken energy norm", broken)
                 // below one it is larger than it need be, which harms less
                 .known_to_fail(choice.penalty == Penalty::Unweighted && contrast > 1.0)
                 .measured(quotient(error, at_one)),

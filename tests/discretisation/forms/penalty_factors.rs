@@ -74,7 +74,9 @@ fn a_study_names_the_factor() {
     let wopsip = Wopsip { eta: Eta::Absolute(-1.0), ..Wopsip::default() };
     let study = Study::<f64, 2>::new(scenes::radial(1.0)).scheme(wopsip).levels([4]);
     let expected = "eta = -1: the penalty factor is -1, it must be positive and finite";
-    assert_eq!(study.run().unwrap_err().to_string(), expected);
+    let row = &study.run().unwrap().rows[0];
+    assert_eq!(row.status, Outcome::OutOfRange);
+    assert_eq!(row.message.as_deref(), Some(expected));
 }
 
 /// Small positive factors are the user's choice: schemes that are coercive with every factor converge,

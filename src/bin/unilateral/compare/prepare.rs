@@ -9,7 +9,7 @@ use crate::shared::{Request, each_once};
 use unilateral::error::Error;
 use unilateral::inequality::{SolverOptions, solver_by_name};
 use unilateral::linear::LinearMethod;
-use unilateral::mesh::{Mesh, gmsh};
+use unilateral::mesh::{Mesh, MeshError, gmsh};
 use unilateral::nested::Solved;
 use unilateral::paraview::FieldScalar;
 use unilateral::plot::Picture;
@@ -146,8 +146,13 @@ pub fn prepare<'a, T: Real, const D: usize>(
             ));
         }
         let mesh = mesh.with_boundary_parts(&part_of).map_err(|e| format!("{place}: {e}"))?;
-        mesh.check_boundary_parts()
-            .map_err(|e| format!("{place}: {e}, or give its part by --boundary"))?;
+        mesh.check_boundary_parts().map_err(|e| match e {
+            MeshError::UndecidedGroup { group, .. } => format!(
+                "{place}: nothing says what holds on boundary group {group}: \
+                 --boundary {group}=dirichlet, {group}=neumann or {group}=contact does"
+            ),
+            other => format!("{place}: {other}"),
+        })?;
         study = study.on_mesh(mesh);
     }
     match study.check() {

@@ -1,0 +1,112 @@
+//! Rows measured against a fine solution.
+
+use unilateral::error::Error;
+use unilateral::mesh::BoundaryPart;
+use unilateral::prelude::*;
+use unilateral::scenes::Scene;
+use unilateral::study::Row;
+
+/// The H1 errors of linears against quadratics two refinements finer, over the true ones.
+fn ratios<const D: usize>(scene: Scene<D>, levels: &[usize]) -> Vec<f64> {
+    let finest = levels.iter().max().unwrap();
+    let study = || {
+        let study = Study::<f64, D>::new(scene.clone()).levels(levels.iter().copied());
+        study.scheme(ConformingP1).scheme(NonconformingP1).scheme(Wopsip::default())
+    };
+    let measured = study().reference(ConformingP2, 4 * finest).run().unwrap();
+    let exact = study().run().unwrap();
+    let name = format!("p2 at level {}", 4 * finest);
+    let ratio = |(a, b): (&Row, &Row)| {
+        assert!(a.converged() && b.converged());
+        assert_eq!(a.against.as_deref(), Some(&name[..]));
+        assert_eq!(b.against.as_deref(), Some("exact"));
+        assert_eq!(a.error.energy, None);
+        assert_eq!(a.objective, b.objective);
+        a.error.h1.unwrap() / b.error.h1.unwrap()
+    };
+    measured.rows.iter().zip(&exact.rows).map(ratio).collect()
+}
+
+#[track_caller]
+fn within(ratios: Vec<f64>, tolerance: f64) {
+    assert!(ratios.iter().all(|r| (r - 1.0).abs() < tolerance), "{ratios:?}");
+}
+
+#[test]
+fn a_reference_stands_for_the_exact_solution() {
+    within(ratios(scenes::radial::<1>(1.0), &[8, 16]), 0.08);
+    within(ratios(scenes::radial::<2>(1.0), &[8, 16]), 0.08);
+    within(ratios(scenes::radial::<3>(1.0), &[4]), 0.08);
+    within(ratios(scenes::signorini_2d(), &[8, 16]), 0.08);
+}
+
+#[test]
+fn multiplier_and_contact_set_are_measured_too() {
+    let study = |reference: bool| {
+        let study =
+            Study::<f64, 2>::new(scenes::signorini_2d()).scheme(ConformingP1).levels([8, 16]);
+        let study = if reference { study.reference(ConformingP2, 64) } else { study };
+        study.run().unwrap().rows
+    };
+    for (row, exact) in study(true).iter().zip(study(false)) {
+        let ratio = row.contact.multiplier_l2.unwrap() / exact.contact.multiplier_l2.unwrap();
+        assert!((0.5..2.0).contains(&ratio), "{ratio}");
+        assert!(row.contact.contact_area_error.unwrap() <= 2.0 * row.mesh_size);
+    }
+    // nothing differs from itself
+    let scene = scenes::radial::<2>(1.0);
+    let meshes = Hierarchy::<f64, 2>::of_domain(&scene.domain, 8).unwrap();
+    let solved = solve(&scene.problem, &meshes, &Sipg::default()).unwrap();
+    let none = solved.contact_difference(&solved).unwrap();
+    assert_eq!(none.contact_area_error, Some(0.0));
+    assert_eq!(none.multiplier_l1, Some(0.0));
+}
+
+#[test]
+fn a_reference_that_is_too_coarse_or_not_nested_is_refused() {
+    let study = |levels: &[usize], reference: usize| {
+        let study = Study::<f64, 2>::new(scenes::radial(1.0)).scheme(ConformingP1);
+        study.levels(levels.iter().copied()).reference(ConformingP2, reference).check()
+    };
+    assert!(study(&[8, 16], 64).is_ok());
+    for (levels, reference, words) in [
+        (&[8, 16][..], 32, "at least 64"),
+        (&[8, 12], 64, "power of two times every level, which 64 is not of 12"),
+        (&[8], 40, "power of two"),
+    ] {
+        let error = study(levels, reference).unwrap_err();
+        assert!(matches!(error, Error::Parameter { parameter: "level of the reference", .. }));
+        assert!(error.to_string().contains(words), "{error}");
+    }
+    let disc = Study::<f64, 2>::new(scenes::disc_2d()).scheme(ConformingP1).levels([4]);
+    let error = disc.reference(ConformingP2, 16).check().unwrap_err();
+    assert!(error.to_string().contains("not nested"), "{error}");
+}
+
+#[test]
+fn a_problem_of_ones_own_needs_a_name_and_a_mesh() {
+    let mesh = Mesh::<f64, 2>::kuhn_box(&BoxDomain::centred(1.0), [4, 4]).unwrap();
+    let problem = Problem::new()
+        .constant_source(-4.0)
+        .signorini_on("bottom", -0.1)
+        .neumann_on("left", |_, _| 0.0);
+    let report = Study::of_problem("own", problem, mesh)
+        .unwrap()
+        .scheme(ConformingP1)
+        .scheme(Sipg::default())
+        .levels([0, 1, 2])
+        .reference(ConformingP2, 4)
+        .run()
+        .unwrap();
+    assert!(report.to_string().contains("errors against p2 at level 4"));
+    for row in &report.rows {
+        assert!(row.converged());
+        assert!(row.active > Some(0) && row.resultant > Some(0.0));
+        assert!(row.level == 0 || (0.7..1.2).contains(&row.order.h1.unwrap()), "{:?}", row.order);
+    }
+    let first = Mesh::<f64, 2>::kuhn_box(&BoxDomain::centred(1.0), [4, 4]).unwrap();
+    assert!(first.has_part(BoundaryPart::Dirichlet));
+    let early = Study::of_problem("own", Problem::new(), first).unwrap().scheme(ConformingP1);
+    let error = early.levels([0, 1]).reference(ConformingP2, 2).check().unwrap_err();
+    assert!(error.to_string().contains("at least 3"), "{error}");
+}
