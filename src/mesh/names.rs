@@ -86,7 +86,7 @@ impl<T: Real, const D: usize> Mesh<T, D> {
                 match known {
                     Some((first, other)) if other != found => {
                         return Err(MeshError::GroupInTwoParts {
-                            groups: [first.to_owned(), name.clone()],
+                            groups: Box::new([first.to_owned(), name.clone()]),
                             parts: [other.name(), found.name()],
                         });
                     }

@@ -62,7 +62,6 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
     ) -> Vec<f64> {
         let mut multipliers = vec![0.0; self.mesh.vertices().len()];
         let counted = nodal_multipliers(inequality, solution)
-            .into_iter()
             .filter(|&(unknown, _)| counts(unknown));
         for (unknown, multiplier) in counted {
             let around = inequality.supports[unknown].vertices();
