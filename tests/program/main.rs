@@ -7,6 +7,7 @@ mod interrupt;
 mod limits;
 mod meshes;
 mod output;
+mod own_problems;
 mod requests;
 mod rows;
 mod run;

@@ -170,8 +170,16 @@ impl<'a, T: Real, const D: usize> Study<'a, T, D> {
     }
     /// As [`Study::reference`], with a scheme as users write it.
     #[must_use]
-    pub fn named_reference(mut self, scheme: &NamedScheme, level: usize) -> Self {
-        let (set, scheme) = (scheme.constraint_set(), scheme.make().into());
+    pub fn named_reference(self, scheme: &NamedScheme, level: usize) -> Self {
+        self.shared_reference(scheme.make().into(), scheme.constraint_set(), level)
+    }
+    /// As [`Study::reference`], with a scheme that other studies have too.
+    pub(crate) fn shared_reference(
+        mut self,
+        scheme: Arc<dyn AnyScheme<T, D> + 'a>,
+        set: Option<Arc<dyn ConstraintSet>>,
+        level: usize,
+    ) -> Self {
         self.reference = Some(Reference { scheme, set, level });
         self
     }
