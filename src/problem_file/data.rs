@@ -368,7 +368,7 @@ pub(super) fn problem<'t, const D: usize>(
     let own = OwnProblem { name, problem: builder.problem.clone(), geometry };
     let failed = |error: Error| match (error, place) {
         (Error::Gmsh(source), Place::File { path, .. }) => {
-            ProblemFileError::Mesh { path: path.clone(), source }
+            ProblemFileError::Mesh { path: path.clone(), source: Box::new(source) }
         }
         (error, _) => {
             ProblemFileError::Problem { path: source.path.into(), source: Box::new(error) }
