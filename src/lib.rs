@@ -13,6 +13,8 @@ pub mod assemble;
 pub mod constraint;
 pub mod element;
 pub mod error;
+#[cfg(feature = "report")]
+pub mod exchange;
 pub mod facet;
 #[cfg(feature = "report")]
 mod files;

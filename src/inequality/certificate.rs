@@ -250,6 +250,30 @@ impl LocalViolation {
     }
 }
 
+/// The contact states of values that a solver without them found: active at the nearer bound is an unknown
+/// whose gap is at most the Gauss-Seidel step `r_i / d_i` towards this bound.
+#[must_use]
+pub fn contact_of<T: Real>(inequality: &Inequality<T>, u: &[T]) -> Vec<Contact> {
+    let mut residual = vec![0.0; inequality.size()];
+    inequality.residual_f64(u, &mut residual);
+    let state = |(i, bound): (usize, &Bound<T>)| {
+        if !bound.is_inequality() {
+            return Contact::Inactive;
+        }
+        let (x, step) = (u[i].to_f64(), -residual[i] / positive_diagonal(inequality, i));
+        let to_lower = bound.lower().map_or(f64::INFINITY, |l| x - l.to_f64());
+        let to_upper = bound.upper().map_or(f64::INFINITY, |u| u.to_f64() - x);
+        if to_lower <= to_upper && to_lower <= step {
+            Contact::Lower
+        } else if to_upper < to_lower && to_upper <= -step {
+            Contact::Upper
+        } else {
+            Contact::Inactive
+        }
+    };
+    inequality.bounds.iter().enumerate().map(state).collect()
+}
+
 /// The number of active unknowns; fixed ones do not count.
 #[must_use]
 pub fn count_active<T: Real>(inequality: &Inequality<T>, contact: &[Contact]) -> usize {

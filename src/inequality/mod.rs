@@ -45,7 +45,9 @@ mod validation;
 
 pub use active_set::{ActiveSet, Globalisation, Preconditioned};
 pub use by_name::{SOLVERS, SolverOptions, solver_by_name};
-pub use certificate::{Certificate, certify, certify_with_jump_multipliers, count_active};
+pub use certificate::{
+    Certificate, certify, certify_with_jump_multipliers, contact_of, count_active,
+};
 pub use energy_error_bound::energy_error_bound;
 pub use initial_guess::InitialGuess;
 pub use monotone_multigrid::MonotoneMultigrid;

@@ -165,7 +165,7 @@ pub enum MeshError {
     )]
     GroupInTwoParts {
         /// The two groups.
-        groups: [String; 2],
+        groups: Box<[String; 2]>,
         /// Their parts.
         parts: [&'static str; 2],
     },
@@ -198,7 +198,7 @@ impl MeshError {
     pub(crate) fn undecided(names: &[String]) -> Self {
         let meant = |name: &String| BoundaryPart::from_name(&name.trim().to_lowercase());
         let hint = names.iter().find_map(meant).map(|part| format!("; write {}", part.name()));
-        let names: Vec<String> = names.iter().map(|name| excerpt(name)).collect();
+        let names: Vec<String> = names.iter().map(excerpt).collect();
         Self::UndecidedGroup { group: names.join(", "), hint: hint.unwrap_or_default() }
     }
     /// The cells in the message.

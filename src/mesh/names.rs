@@ -33,6 +33,14 @@ impl<T: Real, const D: usize> Mesh<T, D> {
         &self.groups.boundary
     }
 
+    /// The mesh with the regions and boundary groups of another one, which has the same cells.
+    pub(crate) fn with_names_of<S>(mut self, other: &Mesh<S, D>) -> Self {
+        self.groups = other.groups.clone();
+        self.cell_regions.clone_from(&other.cell_regions);
+        self.boundary.clone_from(&other.boundary);
+        self
+    }
+
     /// The mesh with these regions: the names of each, and the number of the region of each cell.
     ///
     /// # Errors
@@ -86,7 +94,7 @@ impl<T: Real, const D: usize> Mesh<T, D> {
                 match known {
                     Some((first, other)) if other != found => {
                         return Err(MeshError::GroupInTwoParts {
-                            groups: [first.to_owned(), name.clone()],
+                            groups: Box::new([first.to_owned(), name.clone()]),
                             parts: [other.name(), found.name()],
                         });
                     }

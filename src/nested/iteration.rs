@@ -4,6 +4,7 @@ use std::fmt;
 use std::sync::Arc;
 use std::time::Instant;
 
+use super::hierarchy::Hierarchy;
 use super::meshes::Meshes;
 use super::p1::{P1Iteration, P1Solution};
 use super::solved::Solved;
@@ -12,7 +13,7 @@ use crate::assemble::{DataQuadrature, Discretisation};
 use crate::element::Layout;
 use crate::error::Error;
 use crate::inequality::{
-    ActiveSet, InequalitySolver, InitialGuess, Outcome, Solution, check_definite,
+    ActiveSet, InequalitySolver, InitialGuess, Outcome, Solution, check_definite, contact_of,
 };
 use crate::instances::compiled;
 use crate::mesh::Mesh;
@@ -204,6 +205,59 @@ impl<'a, T: Real, const D: usize> NestedIteration<'a, T, D> {
         )(self, position, scheme)
     }
 
+    /// The result on a mesh, by its position, for values that another program found: certificate, errors and
+    /// totals. Its outcome is `converged` if the certificate is within its limits, else `stalled`.
+    ///
+    /// # Errors
+    /// [`Error::Parameter`] if there is no such mesh or another number of values than of unknowns, and those
+    /// of assembly.
+    pub fn judge_on(
+        &self,
+        position: usize,
+        scheme: &dyn AnyScheme<T, D>,
+        values: &[f64],
+    ) -> Result<Solved<'a, T, D>, Error> {
+        self.check_position(position)?;
+        compiled!(
+            T, D: for<'n, 'p, 's, 'v> fn(
+                &'n NestedIteration<'p, T, D>,
+                usize,
+                &'s dyn AnyScheme<T, D>,
+                &'v [f64],
+            ) -> Result<Solved<'p, T, D>, Error>
+                = |nested, position, scheme, values| nested.judge_values(position, scheme, values)
+        )(self, position, scheme, values)
+    }
+    fn judge_values(
+        &self,
+        position: usize,
+        scheme: &dyn AnyScheme<T, D>,
+        values: &[f64],
+    ) -> Result<Solved<'a, T, D>, Error> {
+        let mesh = self.p1.meshes.mesh(position);
+        let discretisation =
+            Discretisation::new(scheme, self.p1.problem, mesh, self.p1.quadrature)?;
+        let inequality = discretisation.inequality()?;
+        if values.len() != inequality.size() {
+            let allowed =
+                format!("{} has {} unknowns on this mesh", scheme.name(), inequality.size());
+            let value = values.len().to_string();
+            return Err(Error::Parameter { parameter: "number of values", value, allowed });
+        }
+        let values: Vec<T> = values.iter().map(|&x| T::lit(x)).collect();
+        let contact = contact_of(&inequality, &values);
+        let solution = Solution::new(values, contact, Outcome::Converged).linear_solver("none");
+        Ok(Solved::new(discretisation, inequality, solution, self.hierarchy(position)))
+    }
+
+    /// The hierarchy that has the mesh, and its position there.
+    fn hierarchy(&self, position: usize) -> Option<(&'a Hierarchy<T, D>, usize)> {
+        match self.p1.meshes {
+            Meshes::Flat(_) => None,
+            Meshes::Nested(hierarchy) => Some((hierarchy, position)),
+        }
+    }
+
     fn check_position(&self, position: usize) -> Result<(), Error> {
         match self.p1.meshes.len() {
             n if position < n => Ok(()),
@@ -258,10 +312,7 @@ impl<'a, T: Real, const D: usize> NestedIteration<'a, T, D> {
         inequality.is_definite = penalty_below_bound.is_none() && discretisation.is_coercive();
         (self.observer)(Phase::Solve);
         let (solution, solve_seconds) = self.run(&mut inequality, &guess);
-        let hierarchy = match self.p1.meshes {
-            Meshes::Flat(_) => None,
-            Meshes::Nested(hierarchy) => Some((hierarchy, position)),
-        };
+        let hierarchy = self.hierarchy(position);
         let mut solved = Solved::new(discretisation, inequality, solution, hierarchy);
         solved.warnings = warnings;
         (solved.assemble_seconds, solved.solve_seconds) = (assemble_seconds, solve_seconds);

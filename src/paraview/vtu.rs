@@ -100,7 +100,6 @@ impl<'a, T: Real, const D: usize> VtuFile<'a, T, D> {
     }
     /// Adds a function of cell and point as point data. Points that cells share have the value from one of
     /// them.
-    #[must_use]
     pub fn function_in_cells(
         mut self,
         name: &'a str,

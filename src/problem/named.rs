@@ -155,7 +155,7 @@ impl<const D: usize> Problem<D> {
             let own = BoundaryPart::from_name(name).map(|part| (name, part));
             let first = own.or_else(|| all.iter().copied().find(|(other, _)| *other == name));
             if let Some((first, other)) = first.filter(|(_, other)| *other != part) {
-                let groups = [first.to_owned(), name.to_owned()];
+                let groups = Box::new([first.to_owned(), name.to_owned()]);
                 return Err(MeshError::GroupInTwoParts {
                     groups,
                     parts: [other.name(), part.name()],

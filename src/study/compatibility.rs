@@ -26,6 +26,7 @@ pub fn check_fit<T: Real, const D: usize>(
     scene: &Scene<D>,
     mesh: &Mesh<T, D>,
 ) -> Result<Option<String>, Error> {
+    mesh.check_boundary_parts()?;
     check_contact(scene, mesh.has_part(BoundaryPart::Contact))?;
     if !scene.problem.has_reaction() {
         mesh.check_supported()?;

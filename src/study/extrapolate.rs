@@ -33,7 +33,8 @@ const ORDERS: [f64; 2] = [0.1, 12.0];
 #[must_use]
 pub fn limit(figures: [f64; 3], mesh_sizes: [f64; 3]) -> Option<Limit> {
     let ([a, b, c], [h, k, l]) = (figures, mesh_sizes);
-    if ![a, b, c].iter().all(|x| x.is_finite()) || !(h > k && k > l && l > 0.0) {
+    let is_refined = h > k && k > l && l > 0.0;
+    if !is_refined || ![a, b, c].iter().all(|x| x.is_finite()) {
         return None;
     }
     let size = a.abs().max(b.abs()).max(c.abs());

@@ -9,10 +9,7 @@ mod file_name;
 #[cfg(feature = "report")]
 mod journal;
 mod memory;
-mod memory_limits;
-mod order_check;
 mod orders;
-mod orders_table;
 mod reference;
 pub(crate) mod report;
 pub(crate) mod row;
@@ -28,9 +25,10 @@ pub use file_name::file_name;
 #[cfg(feature = "report")]
 pub use journal::Journal;
 pub use memory::{MemoryEstimate, available_memory_bytes, peak_memory_bytes};
-pub use order_check::{ObservedOrders, OrderMissed, OrderVerdict, OrdersMissed};
-pub use orders::fill_orders;
-pub use orders_table::{orders_summary, orders_table};
+pub use orders::{
+    ObservedOrders, OrderMissed, OrderVerdict, OrdersMissed, fill_orders, orders_summary,
+    orders_table,
+};
 pub use report::{Program, Report};
 pub use row::{Iterations, Orders, Row, RowKey, Seconds};
 pub use runner::{Progress, Study};

@@ -64,7 +64,7 @@ impl<T: Real, const D: usize> Reference<'_, T, D> {
             );
         }
         let is_refined = |&level: &usize| {
-            level > 0 && self.level % level == 0 && (self.level / level).is_power_of_two()
+            level > 0 && self.level.is_multiple_of(level) && (self.level / level).is_power_of_two()
         };
         match levels.iter().find(|level| !is_refined(level)) {
             Some(level) => refuse(format!(

@@ -101,7 +101,8 @@ pub(crate) fn in_single_precision<const D: usize>(
         TaggedFacet { vertices, part: facet.part }
     };
     let boundary: Vec<_> = mesh.boundary().iter().map(tagged).collect();
-    Ok(Mesh::new(mesh.vertices().to_vec(), mesh.cells().to_vec(), &boundary)?)
+    let rounded = Mesh::new(mesh.vertices().to_vec(), mesh.cells().to_vec(), &boundary)?;
+    Ok(rounded.with_names_of(mesh))
 }
 
 /// The resident set of the process, where the system tells.

@@ -26,11 +26,12 @@ use crate::error::Error;
 use crate::inequality::ActiveSet;
 use crate::instances::compiled;
 use crate::linear::LinearMethod;
-use crate::mesh::Mesh;
+use crate::mesh::{BoxDomain, Mesh};
+use crate::problem::Problem;
 use crate::real::Real;
 use crate::scenes::Scene;
 use crate::scheme::{AnyScheme, NamedScheme};
-use crate::study::{Study, available_memory_bytes};
+use crate::study::{Row, Study, available_memory_bytes};
 use case::{Candidate, OneStudy, in_single_precision, resident_memory_bytes};
 
 /// The least time between two writes of finished rows within a round.
@@ -76,6 +77,8 @@ pub struct WorkPrecision<'a, const D: usize> {
     precisions: Vec<Precision>,
     levels: Vec<usize>,
     mesh: Option<Mesh<f64, D>>,
+    /// The scheme and the level of the solution against which errors are.
+    reference: Option<(Candidate<'a, D>, usize)>,
     rounds: usize,
     limit: f64,
     subject: String,
@@ -123,6 +126,7 @@ impl<'a, const D: usize> WorkPrecision<'a, D> {
             precisions: vec![Precision::Double],
             levels: Vec::new(),
             mesh: None,
+            reference: None,
             rounds: 3,
             limit: f64::INFINITY,
             subject: String::new(),
@@ -131,6 +135,35 @@ impl<'a, const D: usize> WorkPrecision<'a, D> {
             empty_memory: None,
             observer: Box::new(|_| {}),
         }
+    }
+    /// A study of a problem of one's own on a mesh and its refinements, as
+    /// [`Study::of_problem`](crate::study::Study::of_problem) makes it. Without a reference it has no errors.
+    ///
+    /// # Errors
+    /// [`Error::Mesh`] where two data claim one boundary group.
+    pub fn of_problem(name: &str, problem: Problem<D>, mesh: Mesh<f64, D>) -> Result<Self, Error> {
+        let mesh = problem.bind_boundary(mesh)?;
+        // the domain of a scene is not used where there is a mesh
+        let scene = Scene::new(name, BoxDomain::centred(1.0), problem);
+        Ok(Self::new(move || scene.clone()).on_mesh(mesh))
+    }
+    /// Takes errors against the solution of this scheme on a level, as
+    /// [`Study::reference`](crate::study::Study::reference) does, for cases over `f64`. Every case is solved once
+    /// more for its errors, outside the clock.
+    #[must_use]
+    pub fn reference(
+        mut self,
+        scheme: impl AnyScheme<f64, D> + AnyScheme<f32, D> + 'a,
+        level: usize,
+    ) -> Self {
+        self.reference = Some((Candidate::new(scheme), level));
+        self
+    }
+    /// As [`Self::reference`], with a scheme as users write it.
+    #[must_use]
+    pub fn named_reference(mut self, scheme: &NamedScheme, level: usize) -> Self {
+        self.reference = Some((Candidate::named(scheme), level));
+        self
     }
     /// Adds a scheme.
     #[must_use]
@@ -264,6 +297,7 @@ impl<'a, const D: usize> WorkPrecision<'a, D> {
                 report.program.precision += &format!("{comma}{precision}");
             }
         }
+        let measured = self.rows_against_reference()?;
         let before = (report.rows.len(), report.refused.len());
         (self.observer)(WorkProgress::Planned(slots.len() * self.rounds));
         // threads, pages and instructions are there when the clock starts
@@ -280,7 +314,7 @@ impl<'a, const D: usize> WorkPrecision<'a, D> {
             }
             for k in order {
                 (self.observer)(WorkProgress::Started(&slots[k].case, round));
-                self.run_slot(&mut slots, k, round);
+                self.run_slot(&mut slots, k, round, &measured);
                 (self.observer)(WorkProgress::Finished);
                 if written.elapsed() > WRITE_INTERVAL {
                     self.save(report, before, &slots)?;
@@ -298,7 +332,13 @@ impl<'a, const D: usize> WorkPrecision<'a, D> {
     }
 
     /// Runs a case, unless it has failed, takes too long or would not fit.
-    fn run_slot(&self, slots: &mut [Slot<'_, D>], k: usize, round: usize) {
+    fn run_slot(
+        &self,
+        slots: &mut [Slot<'_, D>],
+        k: usize,
+        round: usize,
+        against_reference: &[Row],
+    ) {
         if let Some(measured) = &slots[k].measured {
             let is_slow = measured.smallest.total > self.limit;
             if is_slow || !measured.row.converged() {
@@ -323,12 +363,35 @@ impl<'a, const D: usize> WorkPrecision<'a, D> {
                     let known = slot.measured.as_ref().map(|m| m.row.peak_memory_bytes);
                     row.peak_memory_bytes = known.unwrap_or_else(|| memory(&slot.case));
                 }
+                let is_same = |other: &&Row| {
+                    slot.case.variant.precision == f64::NAME
+                        && other.label == row.label
+                        && other.level == row.level
+                };
+                if let Some(known) = against_reference.iter().find(is_same) {
+                    row.against.clone_from(&known.against);
+                    (row.error, row.contact) = (known.error, known.contact);
+                }
                 match &mut slot.measured {
                     Some(measured) => measured.add(&row, phases),
                     None => slot.measured = Some(Measured::new(row, phases, &slot.case)),
                 }
             }
         }
+    }
+
+    /// Every scheme on every level with its errors against the reference; empty without a reference.
+    fn rows_against_reference(&self) -> Result<Vec<Row>, Error> {
+        let Some((reference, level)) = &self.reference else { return Ok(Vec::new()) };
+        let mut study = Study::<f64, D>::new((self.scene)()).levels(self.levels.iter().copied());
+        if let Some(mesh) = &self.mesh {
+            study = study.on_mesh(mesh.clone());
+        }
+        for candidate in &self.candidates {
+            study = study.shared_scheme(candidate.double.clone(), candidate.set.clone());
+        }
+        let (scheme, set) = (reference.double.clone(), reference.set.clone());
+        Ok(study.shared_reference(scheme, set, *level).run()?.rows)
     }
 
     /// The reason for which a case is not run.

@@ -44,7 +44,10 @@ fn check_files(out: &Path) {
             (_, "json") => serde_json::from_slice::<Value>(&bytes).is_ok(),
             (_, "csv") => bytes.is_empty() || bytes.ends_with(b"\n"),
             (_, "svg") => ends_with("</svg>"),
-            (_, "vtu") => ends_with("</VTKFile>"),
+            (_, "vtu" | "pvd") => ends_with("</VTKFile>"),
+            (_, "html") => ends_with("</html>"),
+            (_, "md") => bytes.ends_with(b"\n"),
+            (_, "tex") => bytes.ends_with(b"\n"),
             (_, "png") => bytes.ends_with(b"IEND\xaeB`\x82"),
             _ => panic!("{name}"),
         };

@@ -1,11 +1,13 @@
 //! The program `unilateral`, subcommand `compare`: wrong requests and right requests.
 
 mod data;
+mod dump;
 #[cfg(unix)]
 mod interrupt;
 mod limits;
 mod meshes;
 mod output;
+mod own_problems;
 mod requests;
 mod rows;
 mod run;

@@ -31,7 +31,7 @@ fn wrong_meshes_are_refused() {
             "radial-2d",
             "wall",
             Square::with(|s| s.names[0] = "1 1 \"wall\""),
-            &["\"wall\"", "dirichlet, neumann and contact"],
+            &["boundary group wall", "--boundary wall=dirichlet, wall=neumann or wall=contact"],
         ),
         ("radial-2d", "words", Square::with(|s| s.nodes[0] = "1 zero 0 0"), &["`zero`", "line 1"]),
         ("radial-2d", "nan", Square::with(|s| s.nodes[0] = "1 nan 0 0"), &["NaN", "finite"]),

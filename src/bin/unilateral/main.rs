@@ -5,6 +5,7 @@
 //! check failed, 2 if the request was wrong.
 
 mod compare;
+mod judge;
 mod orders;
 mod pictures;
 mod shared;
@@ -35,6 +36,7 @@ enum Command {
     Stability(stability::Options),
     Pictures(pictures::Options),
     Orders(orders::Options),
+    Judge(judge::Options),
     /// Names every scene, scheme, constraint placement and solver, as `compare --list` does
     List,
 }
@@ -59,6 +61,7 @@ fn run(command: Command) -> Request<bool> {
         Command::Stability(options) => stability::run(&options),
         Command::Pictures(options) => pictures::run(&options),
         Command::Orders(options) => orders::run(&options),
+        Command::Judge(options) => judge::run(&options),
         Command::List => print(&compare::list()).map(|()| true),
     }
 }

@@ -115,3 +115,13 @@ pub fn tick(bar: &ProgressBar) {
         bar.enable_steady_tick(Duration::from_millis(200));
     }
 }
+
+/// The scheme and the level of a reference: `6`, `sipg-p2@level=6`, `wopsip@eta=1e2,level=6`.
+pub fn reference(text: &str) -> Request<(NamedScheme, usize)> {
+    let (scheme, level) = match text.rsplit_once("level=") {
+        Some((scheme, level)) => (scheme.trim_end_matches(['@', ',']), level),
+        None => ("p2", text),
+    };
+    let level = level.parse().map_err(|_| "expected a level, or SCHEME@level=N".to_owned())?;
+    Ok((scheme.parse().map_err(|e: unilateral::scheme::SchemeNameError| e.to_string())?, level))
+}

@@ -61,9 +61,8 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         counts: impl Fn(usize) -> bool,
     ) -> Vec<f64> {
         let mut multipliers = vec![0.0; self.mesh.vertices().len()];
-        let counted = nodal_multipliers(inequality, solution)
-            .into_iter()
-            .filter(|&(unknown, _)| counts(unknown));
+        let counted =
+            nodal_multipliers(inequality, solution).filter(|&(unknown, _)| counts(unknown));
         for (unknown, multiplier) in counted {
             let around = inequality.supports[unknown].vertices();
             let share = multiplier / around.len() as f64;

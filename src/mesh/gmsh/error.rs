@@ -233,6 +233,14 @@ pub enum GmshError {
         /// The keyword of a Gmsh script for groups of such elements.
         entity: &'static str,
     },
+    /// The file cannot be written.
+    #[error("cannot write {}: {source}", path.display())]
+    Unwritable {
+        /// The file.
+        path: PathBuf,
+        /// Why.
+        source: std::io::Error,
+    },
     /// The physical groups of one dimension are too many.
     #[error(
         "the file has more than {limit} groups, or intersections of groups, of one dimension; leave out those that are not needed"

@@ -1,4 +1,4 @@
-//! Reader of Gmsh meshes: MSH 4.1 and 2.2, text and binary.
+//! Reader of Gmsh meshes: MSH 4.1 and 2.2, text and binary. Writer: MSH 4.1, text.
 //!
 //! The cells of the mesh are the elements of the largest dimension in the file; the names of their
 //! physical groups make the regions of the mesh. The groups of its boundary are the elements of one
@@ -65,10 +65,12 @@ mod source;
 mod text;
 mod version_four;
 mod version_two;
+mod write;
 
 pub use assemble::GmshMesh;
 pub use error::{GmshError, GmshWarning};
 pub use position::{ElementPosition, FilePosition};
+pub use write::{to_text, write};
 
 use crate::input::read_file;
 use crate::instances::compiled;

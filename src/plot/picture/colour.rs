@@ -97,9 +97,12 @@ fn range(values: impl Iterator<Item = f64>) -> Option<(f64, f64)> {
     })
 }
 
-/// The largest of 1, 2 and 5 times a power of ten that is not above a length.
+/// The least length that is told from zero: powers of ten below it lose digits.
+const LEAST: f64 = 1e-290;
+
+/// The largest of 1, 2 and 5 times a power of ten that is not above a length; one for a length that is none.
 pub(crate) fn round_step(length: f64) -> f64 {
-    if !(length > 0.0 && length.is_finite()) {
+    if !(length > LEAST && length.is_finite()) {
         return 1.0;
     }
     let power = 10.0_f64.powi(length.log10().floor() as i32);
@@ -111,12 +114,11 @@ pub(crate) fn round_step(length: f64) -> f64 {
 /// which all are divided.
 pub(crate) fn labels(low: f64, high: f64, most: usize) -> (Vec<(f64, String)>, i32) {
     let mut step = round_step((high - low) / most as f64);
-    while ((high / step).floor() - (low / step).ceil()) as usize >= most {
+    while (high / step).floor() - (low / step).ceil() + 1.0 > most as f64 {
         step = round_step(2.5 * step);
     }
-    // rounding can leave numbers so small that no power of ten is as small
-    let largest = low.abs().max(high.abs()).max(f64::MIN_POSITIVE);
-    let magnitude = largest.log10().floor() as i32;
+    let largest = low.abs().max(high.abs());
+    let magnitude = if largest > LEAST { largest.log10().floor() as i32 } else { 0 };
     let power = if (-2..4).contains(&magnitude) { 0 } else { magnitude };
     let unit = 10.0_f64.powi(power);
     let decimals = (-(step / unit).log10().floor()).max(0.0) as usize;
@@ -131,6 +133,14 @@ pub(crate) fn labels(low: f64, high: f64, most: usize) -> (Vec<(f64, String)>, i
 #[cfg(test)]
 mod tests {
     use super::{Scale, colour, labels};
+
+    #[test]
+    fn numbers_that_vanish_have_labels() {
+        for high in [0.0, f64::from_bits(1), 1e-300] {
+            let (labels, power) = labels(0.0, high, 6);
+            assert_eq!((labels[0].0, labels[0].1.as_str(), power), (0.0, "0", 0));
+        }
+    }
 
     #[test]
     fn lightness_grows_evenly() {

@@ -9,3 +9,4 @@ mod forms;
 mod mesh_errors;
 mod structure_errors;
 mod writer;
+mod written;

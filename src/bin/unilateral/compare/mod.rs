@@ -14,9 +14,11 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use interrupt::Interrupt;
 pub use options::{Options, list};
 use options::{check_numbers, choose, choose_schemes};
+pub use prepare::Posed;
 use prepare::{Run, prepare};
 use watcher::Watcher;
 
+use crate::judge::write_requests;
 use crate::shared::{
     ORDER_TOLERANCE, Request, cannot_write, complain, print, print_to, read, use_threads, write,
 };
@@ -195,6 +197,7 @@ impl Chosen {
         let journal = start(options, program.clone(), &runs)?;
         interrupt.watch(journal);
         let all = || -> Request<Vec<Vec<Row>>> {
+            runs.iter().try_for_each(|run| write_requests(options, &run.keys))?;
             runs.into_iter().map(|Run { run, .. }| run(journal)).collect()
         };
         // a panic has printed its message

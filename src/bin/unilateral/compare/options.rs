@@ -8,9 +8,9 @@ use unilateral::inequality::SOLVERS;
 use unilateral::input::excerpt;
 use unilateral::mesh::BoundaryPart;
 use unilateral::scenes;
-use unilateral::scheme::{NamedScheme, SCHEMES, SchemeNameError, SchemeOptions, keys_of_scheme};
+use unilateral::scheme::{NamedScheme, SCHEMES, SchemeOptions, keys_of_scheme};
 
-use crate::shared::{MOST_THREADS, Request, each_once, schemes};
+use crate::shared::{MOST_THREADS, Request, each_once, reference, schemes};
 
 /// Compares finite element schemes on obstacle and Signorini problems
 #[derive(Args, Clone, Debug)]
@@ -75,6 +75,9 @@ pub struct Options {
     /// Where the report goes
     #[arg(long, value_name = "DIR", default_value = "target/compare")]
     pub out: PathBuf,
+    /// Write every algebraic inequality to a folder of DIR, for other solvers; `judge` reads their results
+    #[arg(long, value_name = "DIR")]
+    pub dump: Option<PathBuf>,
     /// Keep the rows of this request that the report in DIR has, and run the others
     #[arg(long)]
     pub resume: bool,
@@ -124,16 +127,6 @@ fn boundary(text: &str) -> Request<(String, BoundaryPart)> {
     let found =
         found.and_then(|(name, part)| Some((name.to_owned(), BoundaryPart::from_name(part)?)));
     found.ok_or_else(|| "expected NAME=dirichlet, NAME=neumann or NAME=contact".to_owned())
-}
-
-/// The scheme and the level of a reference: `6`, `sipg-p2@level=6`, `wopsip@eta=1e2,level=6`.
-fn reference(text: &str) -> Request<(NamedScheme, usize)> {
-    let (scheme, level) = match text.rsplit_once("level=") {
-        Some((scheme, level)) => (scheme.trim_end_matches(['@', ',']), level),
-        None => ("p2", text),
-    };
-    let level = level.parse().map_err(|_| "expected a level, or SCHEME@level=N".to_owned())?;
-    Ok((scheme.parse().map_err(|e: SchemeNameError| e.to_string())?, level))
 }
 
 fn number(text: &str) -> Request<f64> {

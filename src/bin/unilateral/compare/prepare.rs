@@ -9,7 +9,7 @@ use crate::shared::{Request, each_once};
 use unilateral::error::Error;
 use unilateral::inequality::{SolverOptions, solver_by_name};
 use unilateral::linear::LinearMethod;
-use unilateral::mesh::{Mesh, gmsh};
+use unilateral::mesh::{Mesh, MeshError, gmsh};
 use unilateral::nested::Solved;
 use unilateral::paraview::FieldScalar;
 use unilateral::plot::Picture;
@@ -48,8 +48,8 @@ impl<const D: usize> Posed<D> {
     fn has_mesh(&self) -> bool {
         matches!(self, Self::Own(OwnProblem { geometry: Geometry::File { .. }, .. }))
     }
-    /// A study of it, without schemes.
-    fn study<'a, T: Real>(self, watcher: &Watcher) -> Request<Study<'a, T, D>> {
+    /// A study of it, without schemes; warnings of the mesh file are told.
+    pub fn study<'a, T: Real>(self, warn: &dyn Fn(String)) -> Request<Study<'a, T, D>> {
         let own = match self {
             Self::Scene(scene) => return Ok(Study::new(scene)),
             Self::Own(own) => own,
@@ -58,7 +58,7 @@ impl<const D: usize> Posed<D> {
         match (own.geometry, read) {
             (Geometry::File { path, .. }, Some(read)) => {
                 for warning in &read.warnings {
-                    watcher.warn_once(format!("warning: {}: {warning}", path.display()));
+                    warn(format!("warning: {}: {warning}", path.display()));
                 }
                 Study::of_problem(&own.name, own.problem, read.mesh)
                     .map_err(|e| format!("{}: {e}", path.display()))
@@ -99,7 +99,7 @@ pub fn prepare<'a, T: Real, const D: usize>(
         None => LinearMethod::BySize,
     };
     let mut study = posed
-        .study::<T>(watcher)?
+        .study::<T>(&|warning| watcher.warn_once(warning))?
         .levels(levels)
         .repeat(options.repeat)
         .observer(|progress| watcher.tell(&progress));
@@ -116,6 +116,9 @@ pub fn prepare<'a, T: Real, const D: usize>(
         study = study.fields_of_all_levels();
     }
     study = schemes.iter().fold(study, Study::named_scheme);
+    if let Some(directory) = &options.dump {
+        study = study.inequalities_to(directory);
+    }
     for name in solvers {
         study = solver_by_name(name, &SolverOptions::default().linear(linear))
             .map(|solver| study.boxed_solver(solver))
@@ -143,8 +146,13 @@ pub fn prepare<'a, T: Real, const D: usize>(
             ));
         }
         let mesh = mesh.with_boundary_parts(&part_of).map_err(|e| format!("{place}: {e}"))?;
-        mesh.check_boundary_parts()
-            .map_err(|e| format!("{place}: {e}, or give its part by --boundary"))?;
+        mesh.check_boundary_parts().map_err(|e| match e {
+            MeshError::UndecidedGroup { group, .. } => format!(
+                "{place}: nothing says what holds on boundary group {group}: \
+                 --boundary {group}=dirichlet, {group}=neumann or {group}=contact does"
+            ),
+            other => format!("{place}: {other}"),
+        })?;
         study = study.on_mesh(mesh);
     }
     match study.check() {

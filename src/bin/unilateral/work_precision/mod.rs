@@ -14,6 +14,7 @@ use unilateral::inequality::ActiveSet;
 use unilateral::input::excerpt;
 use unilateral::linear::LinearMethod;
 use unilateral::mesh::{Mesh, gmsh};
+use unilateral::problem_file::{self, AnyOwnProblem, Geometry, OwnProblem};
 use unilateral::real::Real;
 use unilateral::scenes::{self, AnyScene, Parameters, Scene};
 use unilateral::scheme::NamedScheme;
@@ -55,6 +56,14 @@ pub fn run(options: &Options) -> Request<bool> {
             AnyScene::Three(s) => study(options, &schemes, &bar, s, &mut report),
         }
         .map_err(|e| format!("scene {name}: {e}"))?;
+    }
+    if let Some(path) = &options.problem {
+        match problem_file::read(path).map_err(|e| e.to_string())? {
+            AnyOwnProblem::One(own) => study_own(options, &schemes, &bar, own, &mut report),
+            AnyOwnProblem::Two(own) => study_own(options, &schemes, &bar, own, &mut report),
+            AnyOwnProblem::Three(own) => study_own(options, &schemes, &bar, own, &mut report),
+        }
+        .map_err(|e| format!("{}: {e}", path.display()))?;
     }
     report.provenance.complete = true;
     report.write_data(&options.out).map_err(|e| e.to_string())?;
@@ -103,7 +112,8 @@ fn mesh<T: Real, const D: usize>(options: &Options) -> Request<Option<Mesh<T, D>
 fn planned(options: &Options, schemes: &[NamedScheme]) -> usize {
     let variants = schemes.len() * options.linear().len() * options.precisions().len();
     let of_scene = |name: &String| {
-        let levels = scenes::by_name(name).map(|entry| options.levels(entry.dimension));
+        let has_mesh = options.mesh.is_some();
+        let levels = scenes::by_name(name).map(|entry| options.levels(entry.dimension, has_mesh));
         let mut levels = levels.unwrap_or_default();
         levels.sort_unstable();
         levels.dedup();
@@ -128,10 +138,53 @@ where
         Some(scene) => scene,
         None => unreachable!("it was made before"),
     };
-    let study = WorkPrecision::<D>::new(remake)
+    let mut study = WorkPrecision::<D>::new(remake);
+    let on_mesh = mesh(options)?;
+    let has_mesh = on_mesh.is_some();
+    if let Some(mesh) = on_mesh {
+        study = study.on_mesh(mesh);
+    }
+    run_study(options, schemes, bar, study.levels(options.levels(D, has_mesh)), report)
+}
+
+/// Measures a problem of a file and adds it to the report.
+fn study_own<const D: usize>(
+    options: &Options,
+    schemes: &[NamedScheme],
+    bar: &ProgressBar,
+    own: OwnProblem<D>,
+    report: &mut WorkReport,
+) -> Request<()> {
+    let (study, has_mesh) = match own.mesh::<f64>().map_err(|e| e.to_string())? {
+        Some(read) => {
+            let study = WorkPrecision::of_problem(&own.name, own.problem, read.mesh);
+            (study.map_err(|e| e.to_string())?, true)
+        }
+        None => {
+            let Geometry::Box(domain) = own.geometry else {
+                return Err("a problem has a mesh or a box".to_owned());
+            };
+            let scene = Scene::new(own.name, domain, own.problem);
+            (WorkPrecision::new(move || scene.clone()), false)
+        }
+    };
+    let levels = options.levels(D, has_mesh);
+    let variants = schemes.len() * options.linear().len() * options.precisions().len();
+    bar.inc_length((variants * options.rounds() * levels.len()) as u64);
+    run_study(options, schemes, bar, study.levels(levels), report)
+}
+
+/// Runs a study with the settings of the options and adds it to the report.
+fn run_study<const D: usize>(
+    options: &Options,
+    schemes: &[NamedScheme],
+    bar: &ProgressBar,
+    study: WorkPrecision<'_, D>,
+    report: &mut WorkReport,
+) -> Request<()> {
+    let study = study
         .linear(options.linear())
         .precisions(options.precisions())
-        .levels(options.levels(D))
         .rounds(options.rounds())
         .limit(options.limit)
         .subject(&options.subject)
@@ -154,8 +207,8 @@ where
             _ => {}
         });
     let mut study = schemes.iter().fold(study, WorkPrecision::named_scheme);
-    if let Some(mesh) = mesh(options)? {
-        study = study.on_mesh(mesh);
+    if let Some((scheme, level)) = &options.reference {
+        study = study.named_reference(scheme, *level);
     }
     study.run_into(report).map_err(|e| e.to_string())
 }
@@ -187,7 +240,11 @@ impl Pick<3> for AnyScene {
 fn memory_of(case: &Case, options: &Options) -> Option<u64> {
     let v = &case.variant;
     let mut command = peak_command(options)?;
-    command.args(["--scene", &v.scene, "--scheme", &v.label]);
+    match &options.problem {
+        Some(path) => command.arg(path),
+        None => command.args(["--scene", &v.scene]),
+    };
+    command.args(["--scheme", &v.label]);
     command.args(["--linear", &v.linear_asked, "--precision", &v.precision]);
     command.args(["--levels", &case.level.to_string()]);
     if let Some(path) = &options.mesh {
@@ -233,8 +290,18 @@ fn peak(options: &Options) -> Request<bool> {
 
 fn run_one(options: &Options) -> Request<()> {
     let one = "--peak runs one case";
-    let name = options.scenes().pop().ok_or(one)?;
     let is_single = options.precisions().first() == Some(&Precision::Single);
+    if let Some(path) = &options.problem {
+        return match problem_file::read(path).map_err(|e| e.to_string())? {
+            AnyOwnProblem::One(own) if is_single => once_own::<f32, 1>(options, own),
+            AnyOwnProblem::One(own) => once_own::<f64, 1>(options, own),
+            AnyOwnProblem::Two(own) if is_single => once_own::<f32, 2>(options, own),
+            AnyOwnProblem::Two(own) => once_own::<f64, 2>(options, own),
+            AnyOwnProblem::Three(own) if is_single => once_own::<f32, 3>(options, own),
+            AnyOwnProblem::Three(own) => once_own::<f64, 3>(options, own),
+        };
+    }
+    let name = options.scenes().pop().ok_or(one)?;
     match scene(options, &name)? {
         AnyScene::One(s) if is_single => once::<f32, 1>(options, s),
         AnyScene::One(s) => once::<f64, 1>(options, s),
@@ -246,13 +313,35 @@ fn run_one(options: &Options) -> Request<()> {
 }
 
 fn once<T: Real, const D: usize>(options: &Options, scene: Scene<D>) -> Request<()> {
-    let linear = options.linear().first().copied().unwrap_or(LinearMethod::BySize);
-    let mut study = Study::<T, D>::new(scene)
-        .levels(options.levels(D))
-        .solver(ActiveSet::default().linear(linear));
-    if let Some(mesh) = mesh(options)? {
-        study = study.on_mesh(mesh);
+    let study = Study::<T, D>::new(scene);
+    match mesh(options)? {
+        Some(mesh) => once_study(options, study.on_mesh(mesh), true),
+        None => once_study(options, study, false),
     }
+}
+
+fn once_own<T: Real, const D: usize>(options: &Options, own: OwnProblem<D>) -> Request<()> {
+    match (own.mesh::<T>().map_err(|e| e.to_string())?, own.geometry) {
+        (Some(read), _) => {
+            let study = Study::of_problem(&own.name, own.problem, read.mesh);
+            once_study(options, study.map_err(|e| e.to_string())?, true)
+        }
+        (None, Geometry::Box(domain)) => {
+            let scene = Scene::new(own.name, domain, own.problem);
+            once_study(options, Study::<T, D>::new(scene), false)
+        }
+        _ => Err("a problem has a mesh or a box".to_owned()),
+    }
+}
+
+fn once_study<T: Real, const D: usize>(
+    options: &Options,
+    study: Study<'_, T, D>,
+    has_mesh: bool,
+) -> Request<()> {
+    let linear = options.linear().first().copied().unwrap_or(LinearMethod::BySize);
+    let study =
+        study.levels(options.levels(D, has_mesh)).solver(ActiveSet::default().linear(linear));
     let schemes = options.schemes()?;
     let study = schemes.iter().fold(study, Study::named_scheme);
     study.run().map(drop).map_err(|e| e.to_string())

@@ -9,7 +9,7 @@ use unilateral::scenes;
 use unilateral::scheme::NamedScheme;
 use unilateral::work_precision::Precision;
 
-use crate::shared::{Request, schemes};
+use crate::shared::{Request, reference, schemes};
 
 const SCENES: [&str; 5] = ["radial-2d", "ball-2d", "signorini-2d", "hertz-2d", "radial-3d"];
 const CHOSEN: [&str; 6] = ["p1", "cr", "sipg", "wopsip", "wopsip:facet-means", "p2"];
@@ -17,6 +17,9 @@ const CHOSEN: [&str; 6] = ["p1", "cr", "sipg", "wopsip", "wopsip:facet-means", "
 /// Measures what schemes take to reach a given error
 #[derive(Args, Debug)]
 pub struct Options {
+    /// A problem of your own, as for compare; with --reference, for without errors there is nothing to reach
+    #[arg(value_name = "PROBLEM.toml", conflicts_with_all = ["scenes", "mesh"])]
+    pub problem: Option<PathBuf>,
     /// Scenes by name; by default radial-2d, ball-2d, signorini-2d, hertz-2d, radial-3d
     #[arg(long = "scene", value_delimiter = ',', value_name = "A[,B...]")]
     scenes: Vec<String>,
@@ -32,6 +35,9 @@ pub struct Options {
     /// Runs the scenes on this Gmsh mesh; levels are then refinements of it
     #[arg(long, value_name = "FILE", requires = "scenes")]
     pub mesh: Option<PathBuf>,
+    /// Take errors against one fine solution in place of the exact one, by p2 where no scheme is named
+    #[arg(long, value_name = "[SCHEME@level=]N", value_parser = reference)]
+    pub reference: Option<(NamedScheme, usize)>,
     /// Ratio of coefficients, for scenes that take one
     #[arg(long, value_name = "X", requires = "scenes")]
     pub contrast: Option<f64>,
@@ -97,8 +103,10 @@ impl Options {
         }
     }
 
+    /// The names of scenes; none for a problem of a file.
     pub fn scenes(&self) -> Vec<String> {
         match self.scenes.is_empty() {
+            _ if self.problem.is_some() => Vec::new(),
             true => SCENES.map(str::to_owned).into(),
             false => self.scenes.clone(),
         }
@@ -126,11 +134,11 @@ impl Options {
         self.threads.map(usize::from)
     }
 
-    pub fn levels(&self, dimension: usize) -> Vec<usize> {
+    pub fn levels(&self, dimension: usize, has_mesh: bool) -> Vec<usize> {
         match (dimension, self.quick) {
             _ if !self.levels.is_empty() => self.levels.clone(),
-            (_, true) if self.mesh.is_some() => vec![0, 1],
-            (_, false) if self.mesh.is_some() => vec![0, 1, 2],
+            (_, true) if has_mesh => vec![0, 1],
+            (_, false) if has_mesh => vec![0, 1, 2],
             (3, true) => vec![2, 4, 8],
             (3, false) => vec![2, 4, 8, 16],
             (_, true) => vec![8, 16, 32],

@@ -2,9 +2,9 @@
 
 use std::fmt::Write;
 
-use super::order_check::{ObservedOrders, OrderVerdict, PROMISED, levels_in_words, order_in_words};
-use super::row::distinct;
+use super::check::{ObservedOrders, OrderVerdict, PROMISED, levels_in_words, order_in_words};
 use crate::measure::{ErrorNorm, FittedOrder};
+use crate::study::row::distinct;
 
 /// The cell of a number that does not apply.
 const NONE: &str = "-";

@@ -1,28 +1,17 @@
 //! A study: schemes on a scene, level by level.
 
+mod rows;
+
 use std::fmt;
 #[cfg(feature = "report")]
 use std::path::PathBuf;
 use std::sync::Arc;
 
-use super::compatibility::{check_domain, check_fit, check_scheme};
-#[cfg(feature = "report")]
-use super::fields::FieldFiles;
-#[cfg(feature = "report")]
-use super::journal::Journal;
-use super::memory::{
-    MemoryEstimate, estimate, estimate_without_factors, peak_memory_bytes, unknowns_about,
-};
-use super::orders::fill_orders;
-use super::reference::Reference;
-use super::report::{Program, Report};
-use super::row::{Row, RowKey};
-use super::setting::setting;
 use crate::assemble::DataQuadrature;
 use crate::constraint::ConstraintSet;
 use crate::element::Layout;
 use crate::error::Error;
-use crate::inequality::{ActiveSet, InequalitySolver, Outcome};
+use crate::inequality::{ActiveSet, InequalitySolver};
 use crate::instances::compiled;
 use crate::mesh::{BoxDomain, Mesh};
 use crate::nested::{Coarsest, Hierarchy, NestedIteration, Phase, Solved};
@@ -31,7 +20,18 @@ use crate::paraview::FieldScalar;
 use crate::problem::Problem;
 use crate::real::Real;
 use crate::scenes::Scene;
-use crate::scheme::{AnyScheme, ExpectedOrders, NamedScheme};
+use crate::scheme::{AnyScheme, NamedScheme};
+use crate::study::compatibility::{check_domain, check_fit, check_scheme};
+#[cfg(feature = "report")]
+use crate::study::fields::FieldFiles;
+#[cfg(feature = "report")]
+use crate::study::journal::Journal;
+use crate::study::memory::{MemoryEstimate, estimate, estimate_without_factors, unknowns_about};
+use crate::study::orders::fill_orders;
+use crate::study::reference::Reference;
+use crate::study::report::{Program, Report};
+use crate::study::row::{Row, RowKey};
+use rows::Measured;
 
 /// Progress of a study.
 #[derive(Debug)]
@@ -74,6 +74,8 @@ pub struct Study<'a, T: Real, const D: usize> {
     journal: Option<&'a Journal>,
     #[cfg(feature = "report")]
     fields: FieldFiles,
+    #[cfg(feature = "report")]
+    inequalities: Option<PathBuf>,
     each_solution: Option<EachSolution<'a, T, D>>,
     observer: Box<dyn Fn(Progress<'_>) + 'a>,
 }
@@ -127,6 +129,8 @@ impl<'a, T: Real, const D: usize> Study<'a, T, D> {
             journal: None,
             #[cfg(feature = "report")]
             fields: FieldFiles::default(),
+            #[cfg(feature = "report")]
+            inequalities: None,
             each_solution: None,
             observer: Box::new(|_| {}),
         }
@@ -166,8 +170,16 @@ impl<'a, T: Real, const D: usize> Study<'a, T, D> {
     }
     /// As [`Study::reference`], with a scheme as users write it.
     #[must_use]
-    pub fn named_reference(mut self, scheme: &NamedScheme, level: usize) -> Self {
-        let (set, scheme) = (scheme.constraint_set(), scheme.make().into());
+    pub fn named_reference(self, scheme: &NamedScheme, level: usize) -> Self {
+        self.shared_reference(scheme.make().into(), scheme.constraint_set(), level)
+    }
+    /// As [`Study::reference`], with a scheme that other studies have too.
+    pub(crate) fn shared_reference(
+        mut self,
+        scheme: Arc<dyn AnyScheme<T, D> + 'a>,
+        set: Option<Arc<dyn ConstraintSet>>,
+        level: usize,
+    ) -> Self {
         self.reference = Some(Reference { scheme, set, level });
         self
     }
@@ -280,6 +292,14 @@ impl<'a, T: Real, const D: usize> Study<'a, T, D> {
         f: impl Fn(&str, usize, &Solved<'_, T, D>) -> Result<(), Error> + 'a,
     ) -> Self {
         self.each_solution = Some(Box::new(f));
+        self
+    }
+    /// Writes the inequality of every scheme on every level to this directory, each to its folder
+    /// `SCENE-LABEL-LEVEL`, by [`write_inequality`](crate::exchange::write_inequality).
+    #[cfg(feature = "report")]
+    #[must_use]
+    pub fn inequalities_to(mut self, directory: impl Into<PathBuf>) -> Self {
+        self.inequalities = Some(directory.into());
         self
     }
     /// Adds each row to a journal as soon as it is finished, and takes those that the journal has from an
@@ -409,11 +429,9 @@ impl<'a, T: Real, const D: usize> Study<'a, T, D> {
                         continue;
                     }
                     (self.observer)(Progress::Started(&self.scene.name, &label, level));
-                    let (row, _) = {
-                        let measured =
-                            Measured { failure: failure.as_deref(), reference: reference.as_ref() };
-                        self.row(nested, (entry, problem), level, measured)?
-                    };
+                    let (failure, reference) = (failure.as_deref(), reference.as_ref());
+                    let measured = Measured { failure, reference };
+                    let (row, _) = self.row(nested, (entry, problem), level, measured)?;
                     #[cfg(feature = "report")]
                     if let Some(journal) = self.journal {
                         journal.add(&row)?;
@@ -477,6 +495,31 @@ impl<'a, T: Real, const D: usize> Study<'a, T, D> {
         self.row(&mut nested, (entry, &problem), level, measured)
     }
 
+    /// The row of the first scheme on the first level for values of its unknowns that another program
+    /// found: their certificate, errors and totals. Solver and linear solver of the row are `none`.
+    ///
+    /// # Errors
+    /// Those of [`Study::run`], and [`Error::Parameter`] for another number of values than of unknowns.
+    pub fn judge(&self, values: &[f64]) -> Result<Row, Error> {
+        compiled!(
+            T, D: fn(&Study<'_, T, D>, &[f64]) -> Result<Row, Error>
+                = |study, values| study.judge_values(values)
+        )(self, values)
+    }
+    fn judge_values(&self, values: &[f64]) -> Result<Row, Error> {
+        let failure = self.where_exact_fails()?;
+        let (Some(entry), Some(&level)) = (self.entries.first(), self.levels.first()) else {
+            unreachable!("checked above")
+        };
+        let problem = entry.problem(&self.scene.problem);
+        let hierarchy = self.coarsest().build(level)?;
+        let nested = NestedIteration::new(&problem, &hierarchy).quadrature(self.quadrature);
+        let solved = nested.judge_on(hierarchy.n_meshes() - 1, &*entry.scheme, values)?;
+        let measured = Measured { failure: failure.as_deref(), reference: None };
+        let row = self.measured_row(entry, level, &solved, measured)?;
+        Ok(Row { solver: "none".to_owned(), ..row })
+    }
+
     /// The meshes of all levels: in one hierarchy with those of a reference.
     fn hierarchies(&self) -> Result<Vec<Hierarchy<T, D>>, Error> {
         match &self.reference {
@@ -535,109 +578,5 @@ impl<'a, T: Real, const D: usize> Study<'a, T, D> {
             .quadrature(self.quadrature)
             .repeat(self.repeat)
             .observer(|phase| (self.observer)(Progress::Entered(phase)))
-    }
-
-    /// Solves one scheme on one level of these hierarchies. Returns the row, and the seconds of its start
-    /// from coarser levels.
-    fn row<'p>(
-        &self,
-        nested: &mut [NestedIteration<'p, T, D>],
-        (entry, problem): (&Entry<'_, T, D>, &'p Problem<D>),
-        level: usize,
-        measured: Measured<'_, 'p, T, D>,
-    ) -> Result<(Row, f64), Error> {
-        let failure = measured.failure;
-        let mut on_level = nested.iter_mut().filter_map(|n| Some((n.position(level)?, n)));
-        let Some((position, nested)) = on_level.next() else {
-            unreachable!("a hierarchy has the level")
-        };
-        let (scheme, set) = (&*entry.scheme, problem.constraint_set());
-        let (solver, label) = (nested.solver_name(), scheme.label_on(set));
-        let complete = |row: Row| Row {
-            constraint: scheme.constraint_on(set).unwrap_or_else(|| set.name().to_owned()),
-            label: label.clone(),
-            solver: solver.to_owned(),
-            expected_order: self.expected_orders(scheme, set, failure),
-            peak_memory_bytes: peak_memory_bytes(),
-            ..row
-        };
-        nested.replace_constraint_set(problem);
-        let solved = match nested.solve_on(position, scheme) {
-            Ok(solved) => solved,
-            Err(error) => {
-                let mesh = nested.mesh(position);
-                let (name, outcome) = (scheme.name(), Outcome::Malformed);
-                let space = scheme.discretise(problem, mesh, self.quadrature);
-                let row = Row {
-                    parameters: scheme.parameters(mesh),
-                    unknowns: space.ok().map(|space| space.unknowns()),
-                    cells: mesh.n_cells(),
-                    mesh_size: mesh.mesh_size(),
-                    ..Row::new(&self.scene.name, D, name, level, outcome)
-                };
-                return Ok((complete(row).with_error(error)?, 0.0));
-            }
-        };
-        #[cfg(feature = "report")]
-        {
-            let with_solver = format!("{label}-{solver}");
-            let name = if self.solvers.len() > 1 { &with_solver } else { &label };
-            self.fields.write((&self.scene.name, name), level, &self.levels, &solved)?;
-        }
-        if let Some(f) = self.each_solution.as_ref().filter(|_| solved.has_iterate()) {
-            f(&label, level, &solved)?;
-        }
-        (self.observer)(Progress::Entered(Phase::Measures));
-        let mut row = complete(Row::of(&self.scene.name, scheme.name(), level, &solved));
-        if let Some(at) = failure.filter(|_| measured.reference.is_none()) {
-            row.warnings.push(format!(
-                "the scene's solution breaks the contact condition of this mesh at {at}: no errors"
-            ));
-        }
-        let row = match measured.measure(&mut row, &solved) {
-            Ok(()) => row,
-            Err(error) => row.with_error(error)?,
-        };
-        Ok((row, solved.start_seconds))
-    }
-
-    /// The orders that theory proves; none without an exact solution that holds on the mesh.
-    fn expected_orders(
-        &self,
-        scheme: &dyn AnyScheme<T, D>,
-        set: &dyn ConstraintSet,
-        failure: Option<&str>,
-    ) -> ExpectedOrders {
-        match (failure, &self.scene.problem.exact) {
-            (None, Some(_)) => {
-                scheme.expected_orders_on(set, &setting(&self.scene, self.mesh.is_some()))
-            }
-            _ => ExpectedOrders::default(),
-        }
-    }
-}
-
-/// Against what rows are measured.
-#[derive(Clone, Copy)]
-struct Measured<'m, 'p, T: Real, const D: usize> {
-    /// Where the exact solution breaks the contact condition of the mesh.
-    failure: Option<&'m str>,
-    /// A solution in place of the exact one, and its name.
-    reference: Option<&'m (Solved<'p, T, D>, String)>,
-}
-
-impl<T: Real, const D: usize> Measured<'_, '_, T, D> {
-    /// Fills in energy and errors.
-    fn measure(&self, row: &mut Row, solved: &Solved<'_, T, D>) -> Result<(), Error> {
-        row.energy = solved.energy()?;
-        if let Some((reference, name)) = self.reference {
-            row.error = solved.difference(reference)?;
-            row.contact = solved.contact_difference(reference)?;
-            row.against = Some(name.clone());
-        } else if self.failure.is_none() && solved.discretisation().problem().exact.is_some() {
-            (row.error, row.contact) = (solved.errors()?, solved.contact_errors()?);
-            row.against = Some("exact".to_owned());
-        }
-        Ok(())
     }
 }

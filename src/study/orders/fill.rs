@@ -1,7 +1,7 @@
 //! Observed orders of convergence.
 
-use super::row::{Orders, Row};
 use crate::measure::observed_order;
+use crate::study::row::{Orders, Row};
 
 /// Fills in the order of every row against the previous level: the row with the next smaller level
 /// of the same scene, label, constraint and solver.

@@ -2,13 +2,12 @@
 
 use std::fmt;
 
-use super::report::Report;
-use super::row::Row;
-use super::row::distinct;
 use crate::inequality::Outcome;
 use crate::measure::{ErrorNorm, FittedOrder, fit_order};
 use crate::readable_debug::debug_by_display;
 use crate::scheme::ExpectedOrders;
+use crate::study::report::Report;
+use crate::study::row::{Row, distinct};
 
 /// An error of this share of the mesh size, of solutions whose size is one, is rounding.
 const ROUNDING: f64 = 1e-8;

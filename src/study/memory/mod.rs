@@ -1,29 +1,42 @@
 //! Peak memory of the process, available memory, and an estimate of the memory of a run.
 
-use super::memory_limits::{kilobytes, left_to_group, left_to_process};
+#[cfg(any(test, target_os = "linux"))]
+mod limits;
+
 use crate::element::Layout;
+#[cfg(any(test, target_os = "linux"))]
+use limits::kilobytes;
+#[cfg(target_os = "linux")]
+use limits::{left_to_group, left_to_process};
 
 /// The largest resident set of this process so far, if the system reports it: on Linux the peak the
 /// kernel keeps (`VmHWM`), elsewhere nothing.
 pub fn peak_memory_bytes() -> Option<u64> {
-    if !cfg!(target_os = "linux") {
-        return None;
-    }
-    peak_of_status(&std::fs::read_to_string("/proc/self/status").ok()?)
+    #[cfg(target_os = "linux")]
+    return peak_of_status(&std::fs::read_to_string("/proc/self/status").ok()?);
+    #[cfg(not(target_os = "linux"))]
+    None
 }
 
 /// The peak in the text of a status file, which gives it in units of 1024 bytes and calls them kB.
+#[cfg(any(test, target_os = "linux"))]
 fn peak_of_status(status: &str) -> Option<u64> {
     kilobytes(status, "VmHWM:")
 }
 
-/// The memory available to this process without swapping, if the system reports it: on Linux the least
-/// of `MemAvailable`, of what the limits on address space and data leave (`ulimit -v`, `ulimit -d`),
-/// and of what its control groups leave (containers, batch systems); elsewhere nothing.
+/// The memory available to this process, as the crate `sysinfo` finds it.
+#[cfg(not(target_os = "linux"))]
 pub fn available_memory_bytes() -> Option<u64> {
-    if !cfg!(target_os = "linux") {
-        return None;
-    }
+    let mut system = sysinfo::System::new();
+    system.refresh_memory();
+    Some(system.available_memory()).filter(|bytes| *bytes > 0)
+}
+
+/// The memory available to this process without swapping, if the system reports it: the least of
+/// `MemAvailable`, of what the limits on address space and data leave (`ulimit -v`, `ulimit -d`), and of what
+/// its control groups leave (containers, batch systems).
+#[cfg(target_os = "linux")]
+pub fn available_memory_bytes() -> Option<u64> {
     let machine = kilobytes(&std::fs::read_to_string("/proc/meminfo").ok()?, "MemAvailable:");
     [machine, left_to_process(), left_to_group()].into_iter().flatten().min()
 }

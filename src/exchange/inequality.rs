@@ -1,0 +1,131 @@
+//! An algebraic inequality as files.
+
+use std::fs::{self, File};
+use std::io::{BufWriter, Write};
+use std::path::Path;
+
+use super::npy::{array, scalar};
+use super::npz::archive;
+use crate::algebra::{Bound, Inequality, SparseMatrix, Support};
+use crate::error::{Error, write_error};
+use crate::files::replace;
+use crate::instances::compiled;
+use crate::mesh::Mesh;
+use crate::real::{Real, point_f64};
+
+/// Writes the inequality "find `u` within the bounds with `(A u - b) . (v - u) >= 0` for all `v` within the
+/// bounds" to a directory, which is made if need be:
+///
+/// * `matrix.mtx`: `A` in Matrix Market format, all entries, numbered from one;
+/// * `load.npy`, `lower.npy`, `upper.npy`: `b` and the bounds, infinite where there is none, equal for
+///   Dirichlet values;
+/// * `inequality.npz`: all of these, of which `scipy.sparse.load_npz` reads the matrix and `numpy.load` the
+///   arrays `load`, `lower`, `upper`;
+/// * `places.csv`: for each unknown the cell that owns it, if one does, and its place: coordinates of the
+///   barycentre of the vertices around its node, and these vertices.
+///
+/// Numbers are 64-bit whatever the scalar.
+///
+/// # Errors
+/// [`Error::Write`].
+///
+/// # Panics
+/// If a support of the inequality names a vertex that the mesh does not have.
+pub fn write_inequality<T: Real, const D: usize>(
+    directory: impl AsRef<Path>,
+    inequality: &Inequality<T>,
+    mesh: &Mesh<T, D>,
+) -> Result<(), Error> {
+    compiled!(
+        T, D: fn(&Path, &Inequality<T>, &Mesh<T, D>) -> Result<(), Error>
+            = write_files
+    )(directory.as_ref(), inequality, mesh)
+}
+
+fn write_files<T: Real, const D: usize>(
+    directory: &Path,
+    inequality: &Inequality<T>,
+    mesh: &Mesh<T, D>,
+) -> Result<(), Error> {
+    fs::create_dir_all(directory).map_err(|e| write_error(directory, e))?;
+    let Inequality { matrix, load, bounds, supports, .. } = inequality;
+    let text = |name: &str, write: &dyn Fn(&mut dyn Write) -> std::io::Result<()>| {
+        replace(&directory.join(name), |draft| {
+            let mut file = BufWriter::new(File::create(draft)?);
+            write(&mut file).and_then(|()| file.flush())
+        })
+    };
+    text("matrix.mtx", &|file| write_matrix(file, matrix))?;
+    text("places.csv", &|file| write_places(file, supports, mesh))?;
+    let numbers = |values: &mut dyn ExactSizeIterator<Item = f64>| {
+        array("<f8", values.len(), values.flat_map(f64::to_le_bytes))
+    };
+    let lower = |bound: &Bound<T>| bound.lower().or(bound.fixed_value());
+    let upper = |bound: &Bound<T>| bound.upper().or(bound.fixed_value());
+    let vectors = [
+        ("load.npy", numbers(&mut load.iter().map(|b| b.to_f64()))),
+        (
+            "lower.npy",
+            numbers(&mut bounds.iter().map(|b| lower(b).map_or(f64::NEG_INFINITY, Real::to_f64))),
+        ),
+        (
+            "upper.npy",
+            numbers(&mut bounds.iter().map(|b| upper(b).map_or(f64::INFINITY, Real::to_f64))),
+        ),
+    ];
+    for (name, bytes) in &vectors {
+        replace(&directory.join(name), |draft| fs::write(draft, bytes))?;
+    }
+    let indices = |values: &[u32]| {
+        array("<i8", values.len(), values.iter().flat_map(|&i| i64::from(i).to_le_bytes()))
+    };
+    let n = matrix.size() as i64;
+    let mut files = vec![
+        ("format.npy", scalar("|S3", b"csr".iter().copied())),
+        ("shape.npy", array("<i8", 2, [n, n].into_iter().flat_map(i64::to_le_bytes))),
+        ("indptr.npy", indices(&matrix.row_starts)),
+        ("indices.npy", indices(&matrix.columns)),
+        ("data.npy", numbers(&mut matrix.values.iter().map(|a| a.to_f64()))),
+    ];
+    files.extend(vectors);
+    let path = directory.join("inequality.npz");
+    let Some(bytes) = archive(&files) else {
+        return Err(write_error(&path, "more than 4 GiB; matrix.mtx has the matrix"));
+    };
+    replace(&path, |draft| fs::write(draft, bytes)).map(|_| ())
+}
+
+fn write_matrix<T: Real>(file: &mut dyn Write, matrix: &SparseMatrix<T>) -> std::io::Result<()> {
+    let n = matrix.size();
+    writeln!(file, "%%MatrixMarket matrix coordinate real general")?;
+    writeln!(file, "{n} {n} {}", matrix.nonzeros())?;
+    for i in 0..n {
+        let (columns, values) = matrix.row(i);
+        for (j, a) in columns.iter().zip(values) {
+            writeln!(file, "{} {} {:e}", i + 1, j + 1, a.to_f64())?;
+        }
+    }
+    Ok(())
+}
+
+fn write_places<T: Real, const D: usize>(
+    file: &mut dyn Write,
+    supports: &[Support],
+    mesh: &Mesh<T, D>,
+) -> std::io::Result<()> {
+    let axes = &["x", "y", "z"][..D];
+    writeln!(file, "unknown,cell,{},vertices", axes.join(","))?;
+    for (unknown, support) in supports.iter().enumerate() {
+        let vertices = support.vertices();
+        let cell = support.cell().map_or_else(String::new, |cell| cell.to_string());
+        write!(file, "{unknown},{cell}")?;
+        for k in 0..D {
+            let sum: f64 =
+                vertices.iter().map(|&v| point_f64(&mesh.vertices()[v as usize])[k]).sum();
+            write!(file, ",{:?}", sum / vertices.len() as f64)?;
+        }
+        let names: Vec<String> = vertices.iter().map(u32::to_string).collect();
+        writeln!(file, ",{}", names.join(" "))?;
+    }
+    Ok(())
+}

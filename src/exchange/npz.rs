@@ -1,0 +1,64 @@
+//! Several arrays in one file: an archive in the format ZIP without compression.
+
+/// The table of the checksum CRC-32 (ISO 3309).
+const TABLE: [u32; 256] = {
+    let mut table = [0; 256];
+    let mut i = 0;
+    while i < 256 {
+        let (mut c, mut k) = (i as u32, 0);
+        while k < 8 {
+            c = if c & 1 == 1 { 0xedb8_8320 ^ (c >> 1) } else { c >> 1 };
+            k += 1;
+        }
+        table[i] = c;
+        i += 1;
+    }
+    table
+};
+
+fn checksum(bytes: &[u8]) -> u32 {
+    let step = |crc: u32, &byte: &u8| TABLE[usize::from(crc as u8 ^ byte)] ^ (crc >> 8);
+    !bytes.iter().fold(!0, step)
+}
+
+/// The archive of files with these names. None if it would have more than 4 GiB, for which the format needs
+/// its extension.
+pub(super) fn archive(files: &[(&str, Vec<u8>)]) -> Option<Vec<u8>> {
+    let (mut bytes, mut directory) = (Vec::new(), Vec::new());
+    for (name, data) in files {
+        let (length, start) = (u32::try_from(data.len()).ok()?, u32::try_from(bytes.len()).ok()?);
+        let mut entry = Vec::new();
+        // version, flags, method (stored); time and date: 1 January 1980
+        entry.extend([20_u16, 0, 0, 0, 0x21].iter().flat_map(|x| x.to_le_bytes()));
+        entry.extend([checksum(data), length, length].iter().flat_map(|x| x.to_le_bytes()));
+        entry.extend([name.len() as u16, 0].iter().flat_map(|x| x.to_le_bytes()));
+        bytes.extend(*b"PK\x03\x04");
+        bytes.extend(&entry);
+        bytes.extend(name.bytes());
+        bytes.extend(data);
+        directory.extend(*b"PK\x01\x02\x14\x00");
+        directory.extend(&entry);
+        // comment, disk, attributes
+        directory.extend([0; 10]);
+        directory.extend(start.to_le_bytes());
+        directory.extend(name.bytes());
+    }
+    let (start, length) = (u32::try_from(bytes.len()).ok()?, directory.len() as u32);
+    bytes.extend(directory);
+    bytes.extend(*b"PK\x05\x06\x00\x00\x00\x00");
+    let n = files.len() as u16;
+    bytes.extend([n, n].iter().flat_map(|x| x.to_le_bytes()));
+    bytes.extend([length, start].iter().flat_map(|x| x.to_le_bytes()));
+    bytes.extend([0; 2]);
+    Some(bytes)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::checksum;
+
+    #[test]
+    fn the_checksum_is_that_of_the_standard() {
+        assert_eq!(checksum(b"123456789"), 0xcbf4_3926);
+    }
+}

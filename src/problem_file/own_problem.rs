@@ -1,0 +1,84 @@
+//! A problem from a file.
+
+use std::path::PathBuf;
+
+use crate::error::Error;
+use crate::mesh::gmsh::{self, GmshMesh};
+use crate::mesh::{BoxDomain, Mesh};
+use crate::problem::Problem;
+use crate::real::Real;
+
+/// Where a problem is posed.
+#[derive(Clone, Debug)]
+#[non_exhaustive]
+pub enum Geometry<const D: usize> {
+    /// A box, with the parts of its sides.
+    Box(BoxDomain<D>),
+    /// A Gmsh file.
+    File {
+        /// Its path.
+        path: PathBuf,
+        /// Its contents.
+        bytes: Vec<u8>,
+    },
+}
+
+/// A problem from a file.
+#[derive(Clone, Debug)]
+#[non_exhaustive]
+pub struct OwnProblem<const D: usize> {
+    /// Its name; that of the file if the file gives none.
+    pub name: String,
+    /// The data.
+    pub problem: Problem<D>,
+    /// Mesh file or box.
+    pub geometry: Geometry<D>,
+}
+
+impl<const D: usize> OwnProblem<D> {
+    /// The mesh of the file, with the parts of its boundary as the problem says; none for a box.
+    ///
+    /// # Errors
+    /// [`Error::Gmsh`] and [`Error::Mesh`], in a scalar in which the mesh degenerates, say.
+    pub fn mesh<T: Real>(&self) -> Result<Option<GmshMesh<T, D>>, Error> {
+        let Geometry::File { bytes, .. } = &self.geometry else { return Ok(None) };
+        let mut read = gmsh::parse::<T, D>(bytes)?;
+        read.mesh = self.problem.bind_boundary(read.mesh)?;
+        Ok(Some(read))
+    }
+    /// A mesh to hold the data against.
+    pub(super) fn sample_mesh(&self) -> Result<Mesh<f64, D>, Error> {
+        match &self.geometry {
+            Geometry::Box(domain) => Ok(Mesh::kuhn_box(domain, domain.counts(4))?),
+            Geometry::File { bytes, .. } => Ok(gmsh::parse::<f64, D>(bytes)?.mesh),
+        }
+    }
+}
+
+/// A problem from a file, of any dimension.
+#[derive(Clone, Debug)]
+pub enum AnyOwnProblem {
+    /// In one dimension.
+    One(OwnProblem<1>),
+    /// In the plane.
+    Two(OwnProblem<2>),
+    /// In space.
+    Three(OwnProblem<3>),
+}
+
+impl AnyOwnProblem {
+    /// The contents of the mesh file, if there is one.
+    pub fn mesh_bytes(&self) -> Option<&[u8]> {
+        fn of<const D: usize>(own: &OwnProblem<D>) -> Option<&[u8]> {
+            match &own.geometry {
+                Geometry::File { bytes, .. } => Some(bytes),
+                Geometry::Box(_) => None,
+            }
+        }
+        match self {
+            Self::One(own) => of(own),
+            Self::Two(own) => of(own),
+            Self::Three(own) => of(own),
+        }
+    }
+}

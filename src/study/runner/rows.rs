@@ -1,0 +1,154 @@
+//! The rows of a study: one scheme on one level each.
+
+use super::{Entry, Progress, Study};
+use crate::constraint::ConstraintSet;
+use crate::error::Error;
+#[cfg(feature = "report")]
+use crate::exchange::write_inequality;
+use crate::inequality::Outcome;
+use crate::nested::{NestedIteration, Phase, Solved};
+use crate::problem::Problem;
+use crate::real::Real;
+use crate::scheme::{AnyScheme, ExpectedOrders};
+#[cfg(feature = "report")]
+use crate::study::file_name::file_name;
+use crate::study::memory::peak_memory_bytes;
+use crate::study::row::Row;
+use crate::study::setting::setting;
+
+impl<T: Real, const D: usize> Study<'_, T, D> {
+    /// Solves one scheme on one level of these hierarchies. Returns the row, and the seconds of its start
+    /// from coarser levels.
+    pub(super) fn row<'p>(
+        &self,
+        nested: &mut [NestedIteration<'p, T, D>],
+        (entry, problem): (&Entry<'_, T, D>, &'p Problem<D>),
+        level: usize,
+        measured: Measured<'_, 'p, T, D>,
+    ) -> Result<(Row, f64), Error> {
+        let mut on_level = nested.iter_mut().filter_map(|n| Some((n.position(level)?, n)));
+        let Some((position, nested)) = on_level.next() else {
+            unreachable!("a hierarchy has the level")
+        };
+        let scheme = &*entry.scheme;
+        let solver = nested.solver_name();
+        nested.replace_constraint_set(problem);
+        let row = |row: Row| Row {
+            solver: solver.to_owned(),
+            peak_memory_bytes: peak_memory_bytes(),
+            ..row
+        };
+        let solved = match nested.solve_on(position, scheme) {
+            Ok(solved) => solved,
+            Err(error) => {
+                let mesh = nested.mesh(position);
+                let space = scheme.discretise(problem, mesh, self.quadrature);
+                let without_solution = Row {
+                    parameters: scheme.parameters(mesh),
+                    unknowns: space.ok().map(|space| space.unknowns()),
+                    cells: mesh.n_cells(),
+                    mesh_size: mesh.mesh_size(),
+                    ..Row::new(&self.scene.name, D, scheme.name(), level, Outcome::Malformed)
+                };
+                let named = self.named(entry, problem, without_solution, measured.failure);
+                return Ok((row(named).with_error(error)?, 0.0));
+            }
+        };
+        let label = scheme.label_on(problem.constraint_set());
+        #[cfg(feature = "report")]
+        {
+            let with_solver = format!("{label}-{solver}");
+            let name = if self.solvers.len() > 1 { &with_solver } else { &label };
+            self.fields.write((&self.scene.name, name), level, &self.levels, &solved)?;
+            if let Some(directory) = &self.inequalities {
+                let name = format!("{}-{label}-{level}", self.scene.name);
+                let folder = directory.join(file_name(&name));
+                write_inequality(folder, solved.inequality(), solved.mesh())?;
+            }
+        }
+        if let Some(f) = self.each_solution.as_ref().filter(|_| solved.has_iterate()) {
+            f(&label, level, &solved)?;
+        }
+        (self.observer)(Progress::Entered(Phase::Measures));
+        Ok((row(self.measured_row(entry, level, &solved, measured)?), solved.start_seconds))
+    }
+
+    /// The row of a solution with its errors and totals, without solver and memory.
+    pub(super) fn measured_row<'p>(
+        &self,
+        entry: &Entry<'_, T, D>,
+        level: usize,
+        solved: &Solved<'p, T, D>,
+        measured: Measured<'_, 'p, T, D>,
+    ) -> Result<Row, Error> {
+        let row = Row::of(&self.scene.name, entry.scheme.name(), level, solved);
+        let problem = solved.discretisation().problem();
+        let mut row = self.named(entry, problem, row, measured.failure);
+        if let Some(at) = measured.failure.filter(|_| measured.reference.is_none()) {
+            row.warnings.push(format!(
+                "the scene's solution breaks the contact condition of this mesh at {at}: no errors"
+            ));
+        }
+        match measured.measure(&mut row, solved) {
+            Ok(()) => Ok(row),
+            Err(error) => row.with_error(error),
+        }
+    }
+
+    /// The row with the names of constraint set and label and the promised orders.
+    fn named(
+        &self,
+        entry: &Entry<'_, T, D>,
+        problem: &Problem<D>,
+        row: Row,
+        failure: Option<&str>,
+    ) -> Row {
+        let (scheme, set) = (&*entry.scheme, problem.constraint_set());
+        Row {
+            constraint: scheme.constraint_on(set).unwrap_or_else(|| set.name().to_owned()),
+            label: scheme.label_on(set),
+            expected_order: self.expected_orders(scheme, set, failure),
+            ..row
+        }
+    }
+
+    /// The orders that theory proves; none without an exact solution that holds on the mesh.
+    fn expected_orders(
+        &self,
+        scheme: &dyn AnyScheme<T, D>,
+        set: &dyn ConstraintSet,
+        failure: Option<&str>,
+    ) -> ExpectedOrders {
+        match (failure, &self.scene.problem.exact) {
+            (None, Some(_)) => {
+                scheme.expected_orders_on(set, &setting(&self.scene, self.mesh.is_some()))
+            }
+            _ => ExpectedOrders::default(),
+        }
+    }
+}
+
+/// Against what rows are measured.
+#[derive(Clone, Copy)]
+pub(super) struct Measured<'m, 'p, T: Real, const D: usize> {
+    /// Where the exact solution breaks the contact condition of the mesh.
+    pub failure: Option<&'m str>,
+    /// A solution in place of the exact one, and its name.
+    pub reference: Option<&'m (Solved<'p, T, D>, String)>,
+}
+
+impl<T: Real, const D: usize> Measured<'_, '_, T, D> {
+    /// Fills in energy and errors.
+    fn measure(&self, row: &mut Row, solved: &Solved<'_, T, D>) -> Result<(), Error> {
+        row.energy = solved.energy()?;
+        if let Some((reference, name)) = self.reference {
+            row.error = solved.difference(reference)?;
+            row.contact = solved.contact_difference(reference)?;
+            row.against = Some(name.clone());
+        } else if self.failure.is_none() && solved.discretisation().problem().exact.is_some() {
+            (row.error, row.contact) = (solved.errors()?, solved.contact_errors()?);
+            row.against = Some("exact".to_owned());
+        }
+        Ok(())
+    }
+}

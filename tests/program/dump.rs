@@ -1,0 +1,113 @@
+//! Inequalities as files, and vectors of other programs judged.
+
+use std::fs;
+use std::path::Path;
+use std::process::{Command, Output};
+
+use serde_json::Value;
+use unilateral::exchange::read_vector;
+use unilateral::prelude::*;
+
+use super::run::{Scratch, command, rows, stderr, stdout};
+
+fn judge(folder: &Path, vector: &str, options: &[&str]) -> Output {
+    command("judge").arg(folder).arg(folder.join(vector)).args(options).output().unwrap()
+}
+
+/// The values of a scheme on a scene as text.
+fn solution(scheme: &dyn AnyScheme<f64, 2>, level: usize) -> Vec<f64> {
+    let scene = scenes::radial::<2>(1.0);
+    let meshes = Hierarchy::of_domain(&scene.domain, level).unwrap();
+    solve(&scene.problem, &meshes, scheme).unwrap().values().to_vec()
+}
+
+#[test]
+fn a_vector_that_comes_back_has_the_row_of_the_run() {
+    let scratch = Scratch::new("dump");
+    let dump = scratch.path("dump");
+    let schemes: [(&str, &dyn AnyScheme<f64, 2>); 2] = [
+        ("p1", &ConformingP1),
+        ("wopsip@factor=10", &Wopsip { eta: Eta::Dimensionless(10.0), ..Wopsip::default() }),
+    ];
+    let report = scratch.report(&format!(
+        "--scene radial-2d --scheme p1,wopsip@factor=10 --levels 8 --quiet --dump {dump}"
+    ));
+    for ((label, scheme), expected) in schemes.into_iter().zip(rows(&report)) {
+        let name = format!("radial-2d-{}-8", label.replace(['@', '='], "-"));
+        let folder = Path::new(&dump).join(name);
+        let values = solution(scheme, 8);
+        let n = values.len();
+        let load = read_vector(folder.join("load.npy")).unwrap();
+        let [lower, upper] =
+            ["lower.npy", "upper.npy"].map(|name| read_vector(folder.join(name)).unwrap());
+        assert_eq!([load.len(), lower.len(), upper.len()], [n; 3]);
+        let within = |(x, (l, u)): (&f64, (&f64, &f64))| *x >= l - 1e-9 && *x <= u + 1e-9;
+        assert!(values.iter().zip(lower.iter().zip(&upper)).all(within));
+        let matrix = fs::read_to_string(folder.join("matrix.mtx")).unwrap();
+        let size = format!("{n} {n} {}", expected["nonzeros"]);
+        assert_eq!(matrix.lines().nth(1), Some(&size[..]));
+        assert_eq!(matrix.lines().count(), 2 + expected["nonzeros"].as_u64().unwrap() as usize);
+        let places = fs::read_to_string(folder.join("places.csv")).unwrap();
+        assert!(places.starts_with("unknown,cell,x,y,vertices\n"), "{places}");
+        assert_eq!(places.lines().count(), n + 1);
+
+        let text: Vec<String> = values.iter().map(|x| format!("{x:e}")).collect();
+        fs::write(folder.join("u.txt"), text.join("\n")).unwrap();
+        let output = judge(&folder, "u.txt", &["--json"]);
+        assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+        let judged: Value = serde_json::from_str(&stdout(&output)).unwrap();
+        let row = &rows(&judged)[0];
+        for (outer, inner) in [("error", "l2"), ("error", "energy"), ("error", "max")] {
+            let [a, b] = [row, expected].map(|r| r[outer][inner].as_f64().unwrap());
+            assert!((a / b - 1.0).abs() < 1e-9, "{label} {outer}.{inner}: {a} and {b}");
+        }
+        for key in ["energy", "resultant", "contact_measure"] {
+            let [a, b] = [row, expected].map(|r| r[key].as_f64().unwrap());
+            assert!((a / b - 1.0).abs() < 1e-9, "{label} {key}: {a} and {b}");
+        }
+        assert_eq!(row["active"], expected["active"]);
+        assert_eq!([&row["label"], &row["solver"]], [label, "none"]);
+        let output = judge(&folder, "u.txt", &[]);
+        assert!(stdout(&output).contains("certificate: feasibility"), "{}", stdout(&output));
+
+        let wrong: Vec<String> = values.iter().map(|x| format!("{:e}", x + 1e-3)).collect();
+        fs::write(folder.join("wrong.txt"), wrong.join(" ")).unwrap();
+        assert_eq!(judge(&folder, "wrong.txt", &[]).status.code(), Some(1));
+        fs::write(folder.join("short.txt"), "1 2 3").unwrap();
+        let output = judge(&folder, "short.txt", &[]);
+        assert_eq!(output.status.code(), Some(2));
+        let message = format!("number of values = 3: {} has {n} unknowns", scheme.name());
+        assert!(stderr(&output).contains(&message), "{}", stderr(&output));
+        let output = judge(&folder, "nowhere.npy", &[]);
+        assert_eq!(output.status.code(), Some(2));
+        assert!(stderr(&output).contains("cannot read"), "{}", stderr(&output));
+    }
+}
+
+/// The Python program of the examples, with the active set method and with Clarabel.
+#[test]
+#[ignore = "needs Python with SciPy and Clarabel"]
+fn needs_scipy() {
+    let scratch = Scratch::new("scipy");
+    let dump = scratch.path("dump");
+    let scenes = "radial-2d,signorini-2d";
+    scratch.report(&format!("--scene {scenes} --scheme p1,sipg --levels 16 --quiet --dump {dump}"));
+    let script = concat!(env!("CARGO_MANIFEST_DIR"), "/examples/solve_elsewhere.py");
+    let python = std::env::var("UNILATERAL_PYTHON").unwrap_or_else(|_| "python3".to_owned());
+    for name in
+        ["radial-2d-p1-16", "radial-2d-sipg-16", "signorini-2d-p1-16", "signorini-2d-sipg-16"]
+    {
+        let folder = Path::new(&dump).join(name);
+        for solver in ["active-set", "clarabel"] {
+            let run = Command::new(&python).arg(script).arg(&folder).arg(solver).output().unwrap();
+            assert!(run.status.success(), "{name}, {solver}: {}", stderr(&run));
+            let output = judge(&folder, "u.npy", &["--json"]);
+            let judged: Value = serde_json::from_str(&stdout(&output)).unwrap();
+            let certificate = &rows(&judged)[0]["certificate"];
+            println!("{name}, {solver}: {certificate}");
+            let keys = ["feasibility", "multiplier", "complementarity", "residual"];
+            let limit = if solver == "clarabel" { 1e-6 } else { 1e-10 };
+            assert!(keys.iter().all(|key| certificate[key].as_f64().unwrap() < limit), "{name}");
+        }
+    }
+}

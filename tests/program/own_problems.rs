@@ -1,0 +1,132 @@
+//! Problems of one's own, boundary groups by name, and references.
+
+use super::run::{Scratch, command, read_json, refused, rows, stderr};
+use super::square::Square;
+use serde_json::Value;
+
+fn example(name: &str) -> String {
+    format!("{}/examples/problems/{name}.toml", env!("CARGO_MANIFEST_DIR"))
+}
+
+fn number(row: &Value, keys: &[&str]) -> f64 {
+    let value = keys.iter().fold(row, |value, key| &value[*key]);
+    value.as_f64().unwrap_or_else(|| panic!("{keys:?} is {value}"))
+}
+
+#[test]
+fn a_membrane_from_a_file_is_measured_against_a_reference() {
+    let scratch = Scratch::new("membrane");
+    let options = "--scheme p1,cr,wopsip:facet-means --levels 0,1,2 --reference 4";
+    let report = scratch.report(&format!("{} {options}", example("membrane")));
+    assert_eq!(rows(&report).len(), 9);
+    for row in rows(&report) {
+        assert_eq!(row["scene"], "membrane");
+        assert_eq!(row["against"], "p2 at level 4");
+        assert_eq!(row["status"], "converged");
+        assert!(number(row, &["energy"]) < 0.0 && number(row, &["contact_measure"]) > 0.0);
+        for key in ["multiplier_l1", "multiplier_l2", "contact_area_error"] {
+            assert!(number(row, &[key]) > 0.0, "{key}");
+        }
+        if row["level"] != 0 {
+            let order = number(row, &["order", "h1"]);
+            assert!((0.85..1.15).contains(&order), "{order}");
+        }
+    }
+    for file in ["membrane-p1.vtu", "report.html", "convergence.svg"] {
+        assert!(scratch.0.join("out").join(file).exists(), "{file}");
+    }
+    let plot = std::fs::read_to_string(scratch.0.join("out/convergence.svg")).unwrap();
+    assert!(plot.contains("against p2 at level 4"));
+}
+
+#[test]
+fn the_foot_of_the_bracket_carries_the_load() {
+    let scratch = Scratch::new("bracket");
+    let schemes = "p1,cr,sipg,nipg,iipg,ldg,br2,wopsip,wopsip:facet-means,p2,sipg-p2";
+    let report = scratch.report(&format!("{} --scheme {schemes} --levels 0", example("bracket")));
+    let load = 0.6 * 0.3 + 0.3 * 0.6 * 0.9 + 2.0 * 0.3 * 0.6;
+    for row in rows(&report) {
+        let resultant = number(row, &["resultant"]);
+        assert!((resultant - load).abs() < 1e-8 * load, "{}: {resultant}", row["label"]);
+        let measure = number(row, &["contact_measure"]);
+        assert!((0.0..0.6).contains(&measure), "{}: {measure}", row["label"]);
+        assert!(row["against"].is_null() && row["error"]["l2"].is_null());
+    }
+}
+
+#[test]
+fn the_work_of_a_problem_of_ones_own() {
+    let scratch = Scratch::new("own-work");
+    let out = scratch.path("out");
+    let mut work = command("work-precision");
+    work.args([&example("plate"), "--scheme", "p1,sipg", "--levels", "0,1", "--reference", "3"]);
+    let output = work.args(["--rounds", "1", "--subject", "p1", "--out", &out]).output().unwrap();
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    let report = read_json(&scratch.0.join("out/report.json"));
+    assert_eq!(rows(&report).len(), 4);
+    for row in rows(&report) {
+        assert_eq!(row["against"], "p2 at level 3");
+        assert!(number(row, &["error", "h1"]) > 0.0 && number(row, &["seconds", "total"]) > 0.0);
+    }
+}
+
+#[test]
+fn a_box_of_ones_own() {
+    let scratch = Scratch::new("own-box");
+    let text = "box = [[0], [2]]\n[source]\ndefault = \"-(2 * x)^2\"\n\
+        [obstacle]\nlower.default = -0.2\n[boundary.left]\nkind = \"dirichlet\"\n\
+        [boundary.right]\nkind = \"neumann\"\nflux = \"0.1 * nx\"\n";
+    let path = scratch.file("rod.toml", text);
+    let report = scratch.report(&format!("{path} --scheme p1,sipg --levels 8,16 --reference 64"));
+    assert_eq!(rows(&report)[0]["scene"], "rod");
+    assert!(rows(&report).iter().all(|row| row["against"] == "p2 at level 64"));
+}
+
+#[test]
+fn wrong_problems_and_references_are_refused() {
+    let scratch = Scratch::new("wrong-problems");
+    let wrong = scratch.file("wrong.toml", "box = [[0], [1]]\n[source]\ndefault = \"2 * y\"\n");
+    refused(&scratch, &[&wrong], &["wrong.toml:3:16: there is no `y`; there are x, e, pi"]);
+    refused(&scratch, &["nowhere.toml"], &["nowhere.toml"]);
+    let plate = example("plate");
+    refused(&scratch, &[&plate, "--scene", "radial-2d"], &["--scene"]);
+    let coarse = [&plate[..], "--levels", "0,1", "--reference", "2"];
+    refused(&scratch, &coarse, &["level of the reference", "at least 3"]);
+    refused(&scratch, &[&plate, "--reference", "p3@level=4"], &["p3"]);
+    refused(&scratch, &[&plate, "--reference", "fine"], &["--reference", "SCHEME@level=N"]);
+    let disc = ["--scene", "disc-2d", "--levels", "4", "--reference", "16"];
+    refused(&scratch, &disc, &["not nested"]);
+}
+
+#[test]
+fn groups_of_a_mesh_are_given_their_part() {
+    let scratch = Scratch::new("boundary");
+    let text = Square::with(|s| s.names[0] = "1 1 \"wall\"");
+    let mesh = scratch.file("wall.msh", &text);
+    let options = format!("--scene radial-2d --scheme p1 --levels 1 --mesh {mesh}");
+    let report = scratch.report(&format!("{options} --boundary wall=dirichlet"));
+    assert_eq!(rows(&report).len(), 1);
+    std::fs::remove_dir_all(scratch.0.join("out")).unwrap();
+    let with = |boundary: &'static str| {
+        ["--scene", "radial-2d", "--mesh", &mesh, "--boundary", boundary].map(str::to_owned)
+    };
+    for (boundary, words) in [
+        ("gate=dirichlet", "has no group gate; it has wall"),
+        ("wall=robin", "NAME=dirichlet, NAME=neumann or NAME=contact"),
+    ] {
+        let options = with(boundary);
+        let options: Vec<&str> = options.iter().map(String::as_str).collect();
+        refused(&scratch, &options, &[words]);
+    }
+}
+
+#[test]
+fn a_report_against_another_reference_is_not_resumed() {
+    let scratch = Scratch::new("resume-reference");
+    let options = format!("{} --scheme p1 --levels 0 --reference", example("membrane"));
+    scratch.report(&format!("{options} 2"));
+    let output = scratch.run(&format!("{options} 3 --resume"));
+    assert_eq!(output.status.code(), Some(2), "{}", stderr(&output));
+    assert!(stderr(&output).contains("reference p2 at level"), "{}", stderr(&output));
+    scratch.report(&format!("{options} 2 --resume"));
+}
