@@ -17,6 +17,8 @@ const KEYS: [&str; 9] =
 const VARIABLES: [[&str; 3]; 2] = [["x", "y", "z"], ["nx", "ny", "nz"]];
 /// The group of cells in no group with data.
 const DEFAULT: &str = "default";
+/// The data that may be given with a level, where they jump.
+const PIECEWISE: [&str; 2] = ["source", "reaction"];
 
 /// The values that a datum may have.
 #[derive(Clone, Copy)]
@@ -89,12 +91,23 @@ fn datum<const D: usize>(formula: &Formula) -> Datum<D> {
     }
 }
 
+/// A number or expression as a datum that may jump where the level vanishes.
+fn piecewise<const D: usize>(formula: &Formula, level: Option<&Formula>) -> Datum<D> {
+    let value = datum::<D>(formula);
+    match level.map(datum::<D>) {
+        None => value,
+        Some(level) => Datum::piecewise(move |x| value.at(x), move |x| level.at(x)),
+    }
+}
+
 /// The data that have been read, and what is to be checked.
 struct Builder<'s, 't, const D: usize> {
     source: &'s Source<'t>,
     problem: Problem<D>,
     entries: Vec<Entry<D>>,
     parts: Vec<(String, BoundaryPart)>,
+    /// Whether the file has the exact solution.
+    has_exact: bool,
 }
 
 type Done<V = ()> = Result<V, ProblemFileError>;
@@ -111,9 +124,26 @@ impl<'t, const D: usize> Builder<'_, 't, D> {
         let groups: Vec<String> = table.keys().map(|key| key.get_ref().to_string()).collect();
         for (key, value) in table.iter() {
             let group = key.get_ref().to_string();
-            let formula = self.source.formula(&group, value, &VARIABLES[0][..D])?;
+            let variables = &VARIABLES[0][..D];
+            let parts = value.get_ref().as_table().filter(|_| PIECEWISE.contains(&name));
+            let (formula, level) = match parts {
+                None => (self.source.formula(&group, value, variables)?, None),
+                Some(parts) => {
+                    self.source.allow(parts, &["value", "level"])?;
+                    let part = |key: &'static str, purpose: &'static str| {
+                        let missing = ProblemFileFault::Missing { key, purpose };
+                        let found = parts.get(key);
+                        let found =
+                            found.ok_or_else(|| self.source.error(value.span().start, missing))?;
+                        self.source.formula(key, found, variables)
+                    };
+                    let level = part("level", "an expression that vanishes where the datum jumps")?;
+                    (part("value", "the datum")?, Some(level))
+                }
+            };
             let region = (group != DEFAULT).then_some(&group[..]);
-            self.problem = set(std::mem::take(&mut self.problem), region, datum(&formula));
+            let given = piecewise(&formula, level.as_ref());
+            self.problem = set(std::mem::take(&mut self.problem), region, given);
             self.entries.push(Entry {
                 datum: format!("{name}.{group}"),
                 group: region.map(str::to_owned),
@@ -172,6 +202,11 @@ impl<'t, const D: usize> Builder<'_, 't, D> {
             };
             let formula = match table.get(name) {
                 Some(value) => self.source.formula(name, value, &variables)?,
+                None if self.has_exact && part != BoundaryPart::Contact => {
+                    let purpose = "the exact solution does not stand for data that are left out";
+                    let missing = ProblemFileFault::Missing { key: name, purpose };
+                    return Err(self.source.error(key.span().start, missing));
+                }
                 None => Formula::Number(0.0),
             };
             let problem = std::mem::take(&mut self.problem);
@@ -311,8 +346,13 @@ pub(super) fn problem<'t, const D: usize>(
         Some(name) => source.string("name", name)?.to_owned(),
         None => source.path.file_stem().unwrap_or_default().to_string_lossy().into_owned(),
     };
-    let mut builder =
-        Builder { source, problem: Problem::<D>::new(), entries: Vec::new(), parts: Vec::new() };
+    let mut builder = Builder {
+        source,
+        problem: Problem::<D>::new(),
+        entries: Vec::new(),
+        parts: Vec::new(),
+        has_exact: root.contains_key("exact"),
+    };
     for (key, value) in root.iter() {
         match &**key.get_ref() {
             "coefficient" => {

@@ -8,6 +8,7 @@
 //! inclusion = 100.0
 //! [source]
 //! default = "-10 * sin(pi * x) * y"  # numbers, or expressions in x, y, z
+//! inclusion = { value = "sign(x)", level = "x" }  # jumps where the level vanishes: cells are cut there
 //! [reaction]
 //! default = 0.5
 //! [obstacle]                         # lower, upper, or both

@@ -97,6 +97,36 @@ fn orders_are_written_beside_what_is_promised() {
     }
 }
 
+#[test]
+fn fields_are_written_as_asked_for() {
+    let small = "--scene radial-1d --scheme p1 --levels 4,8 --quiet";
+    let files = |options: &str| -> Vec<String> {
+        let scratch = Scratch::new("fields");
+        let output = scratch.run(&format!("{small} {options}"));
+        assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+        let found = std::fs::read_dir(scratch.0.join("out")).unwrap();
+        let names = found.map(|f| f.unwrap().file_name().into_string().unwrap());
+        let mut names: Vec<String> =
+            names.filter(|n| n.ends_with(".vtu") || n.ends_with(".pvd")).collect();
+        names.sort();
+        for name in names.iter().filter(|n| n.ends_with(".vtu")) {
+            let bytes = std::fs::read(scratch.0.join("out").join(name)).unwrap();
+            let kind = if options.contains("f64") { "Float64" } else { "Float32" };
+            let tag = format!("type=\"{kind}\" Name=\"u\"");
+            assert!(String::from_utf8_lossy(&bytes).contains(&tag), "{name}: no {tag}");
+        }
+        names
+    };
+    assert_eq!(files(""), ["radial-1d-p1.vtu"]);
+    assert_eq!(files("--fields f64"), ["radial-1d-p1.vtu"]);
+    assert_eq!(files("--no-fields"), [""; 0]);
+    let all = ["radial-1d-p1-4.vtu", "radial-1d-p1.pvd", "radial-1d-p1.vtu"];
+    assert_eq!(files("--fields-of-all-levels"), all);
+    let scratch = Scratch::new("no-fields");
+    let output = scratch.run(&format!("{small} --no-fields --fields-of-all-levels"));
+    assert_eq!(output.status.code(), Some(2), "{}", stderr(&output));
+}
+
 /// As in `compare --list | head -1`: nobody reads on.
 #[test]
 fn a_closed_pipe_is_no_error() {

@@ -142,6 +142,12 @@ fn mistakes_are_found_where_they_are() {
             "there is no `w`; there are x, y, e, pi",
         ),
         (format!("{BOX}[source]\ndefault = \"2 * (x\"\n"), (3, 18), "ends where"),
+        (
+            format!("{BOX}[source]\ndefault = {{ value = 1, jump = \"x\" }}\n"),
+            (3, 24),
+            "unknown key `jump`; allowed are value, level",
+        ),
+        (format!("{BOX}[source]\ndefault = {{ value = 1 }}\n"), (3, 11), "`level` is missing"),
         (format!("{BOX}[source]\ndefault = [1]\n"), (3, 11), "a number, or an expression"),
         (
             format!("{BOX}[source]\ndefault = \"ln(x)\"\n{SIDES}"),
@@ -210,4 +216,21 @@ fn mistakes_are_found_where_they_are() {
         .unwrap();
     let error = read(&folder.0.join("two.toml")).unwrap_err();
     assert!(matches!(error, ProblemFileError::At { fault: ProblemFileFault::Missing { .. }, .. }));
+}
+
+#[test]
+fn a_source_that_jumps_says_where() {
+    let folder = Scratch::new("problem-jump");
+    std::fs::create_dir_all(&folder.0).unwrap();
+    let path = folder.0.join("jump.toml");
+    let ends = "[boundary.left]\nkind = \"dirichlet\"\n[boundary.right]\nkind = \"dirichlet\"\n";
+    let load = "[source]\ndefault = { value = \"if(x < 0.3, 1, -1)\", level = \"x - 0.3\" }\n";
+    std::fs::write(&path, format!("box = [[0], [1]]\n{ends}{load}")).unwrap();
+    let AnyOwnProblem::One(own) = read(&path).unwrap() else { panic!("a problem on an interval") };
+    let Geometry::Box(domain) = &own.geometry else { panic!("a box") };
+    let mesh = Mesh::<f64, 1>::kuhn_box(domain, [7]).unwrap();
+    let of = Discretisation::new(&ConformingP1, &own.problem, &mesh, Default::default()).unwrap();
+    // hat functions sum to one: the integral of the load
+    let total: f64 = of.load().unwrap().iter().sum();
+    assert!((total - (0.3 - 0.7)).abs() < 1e-12, "{total}");
 }
