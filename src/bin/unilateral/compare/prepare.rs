@@ -105,7 +105,11 @@ pub fn prepare<'a, T: Real, const D: usize>(
         .observer(|progress| watcher.tell(&progress));
     let scene_name = name.clone();
     study = study.each_solution(move |label, level, solved| {
-        draw(&format!("{scene_name}-{label}"), level, solved, &options.out)
+        // a picture that cannot be drawn or written is no reason to end the study
+        if let Err(why) = draw(&format!("{scene_name}-{label}"), level, solved, &options.out) {
+            watcher.warn_once(format!("warning: {why}"));
+        }
+        Ok(())
     });
     if !options.no_fields {
         let is_double = options.fields == "f64";
