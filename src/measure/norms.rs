@@ -139,12 +139,20 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         let cell_rule = Rule::new(D, degree);
         let terms = self.node_terms(&Rule::new(D - 1, MEAN_DEGREE), &cell_rule);
         let table = self.cell_table(cell_rule);
-        let cut = self.kinks(exact).map(|level| (level, CutRule::new(D, degree)));
+        let cuts: Vec<Option<(Field<D>, CutRule)>> = (0..self.mesh.regions().len())
+            .map(|region| Some((self.kinks(exact, region)?, CutRule::new(D, degree))))
+            .collect();
         // partial sums are added in order, so the result does not depend on threads
         let parts = cells::map(self.mesh.n_cells(), &|cells: Range<usize>| {
             let mut sum = SquaredErrors::default();
             for cell in cells {
-                sum.add(&self.cell_error(exact, (&table, &terms), cut.as_ref(), cell, u)?);
+                sum.add(&self.cell_error(
+                    exact,
+                    (&table, &terms),
+                    cuts[self.mesh.region(cell)].as_ref(),
+                    cell,
+                    u,
+                )?);
             }
             Ok::<_, Error>(sum)
         });
@@ -155,13 +163,13 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         Ok(total)
     }
 
-    /// The function whose zeros are those of the level of the load and, with an obstacle, the exact free
+    /// The function whose zeros are those of the level of the load of a region and, with an obstacle, the exact free
     /// boundary: second derivatives of the exact solution jump there.
-    fn kinks(&self, exact: &Reference<'_, T, D>) -> Option<Field<D>> {
+    fn kinks(&self, exact: &Reference<'_, T, D>, region: usize) -> Option<Field<D>> {
         let Reference::Exact(exact) = exact else { return None };
         let contact = exact.contact.as_ref().filter(|_| self.problem.has_obstacle());
         let indicator = contact.map(|set| set.indicator.clone());
-        let levels = self.data.source.all().filter_map(|f| f.level()).cloned();
+        let levels = self.data.source.of(region).and_then(|f| f.level()).cloned();
         let product = |a: Field<D>, b: Field<D>| -> Field<D> { Arc::new(move |x| a(x) * b(x)) };
         indicator.into_iter().chain(levels).reduce(product)
     }

@@ -90,7 +90,8 @@ impl<T: Real, const D: usize> Mesh<T, D> {
         let groups = Arc::make_mut(&mut self.groups);
         for BoundaryGroup { names, part } in &mut groups.boundary {
             let mut known: Option<(&str, BoundaryPart)> = None;
-            for (name, found) in names.iter().filter_map(|name| Some((name, part_of(name)?))) {
+            let decided = |name: &str| part_of(name).or_else(|| BoundaryPart::from_name(name));
+            for (name, found) in names.iter().filter_map(|name| Some((name, decided(name)?))) {
                 match known {
                     Some((first, other)) if other != found => {
                         return Err(MeshError::GroupInTwoParts {

@@ -99,13 +99,15 @@ impl<const D: usize> Problem<D> {
         self.named.reaction.push((region.to_owned(), c.into()));
         self
     }
-    /// Sets an obstacle from below in a region. Where regions meet the higher obstacle holds.
+    /// Sets an obstacle from below in a region. Where regions meet the higher obstacle holds for
+    /// unknowns that cells share.
     #[must_use]
     pub fn obstacle_below_in(mut self, region: &str, psi: impl Into<Datum<D>>) -> Self {
         self.named.lower.push((region.to_owned(), psi.into()));
         self
     }
-    /// Sets an obstacle from above in a region. Where regions meet the lower obstacle holds.
+    /// Sets an obstacle from above in a region. Where regions meet the lower obstacle holds for
+    /// unknowns that cells share.
     #[must_use]
     pub fn obstacle_above_in(mut self, region: &str, psi: impl Into<Datum<D>>) -> Self {
         self.named.upper.push((region.to_owned(), psi.into()));

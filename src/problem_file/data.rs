@@ -106,6 +106,8 @@ struct Builder<'s, 't, const D: usize> {
     problem: Problem<D>,
     entries: Vec<Entry<D>>,
     parts: Vec<(String, BoundaryPart)>,
+    /// Whether the file has the exact solution.
+    has_exact: bool,
 }
 
 type Done<V = ()> = Result<V, ProblemFileError>;
@@ -200,6 +202,11 @@ impl<'t, const D: usize> Builder<'_, 't, D> {
             };
             let formula = match table.get(name) {
                 Some(value) => self.source.formula(name, value, &variables)?,
+                None if self.has_exact && part != BoundaryPart::Contact => {
+                    let purpose = "the exact solution does not stand for data that are left out";
+                    let missing = ProblemFileFault::Missing { key: name, purpose };
+                    return Err(self.source.error(key.span().start, missing));
+                }
                 None => Formula::Number(0.0),
             };
             let problem = std::mem::take(&mut self.problem);
@@ -339,8 +346,13 @@ pub(super) fn problem<'t, const D: usize>(
         Some(name) => source.string("name", name)?.to_owned(),
         None => source.path.file_stem().unwrap_or_default().to_string_lossy().into_owned(),
     };
-    let mut builder =
-        Builder { source, problem: Problem::<D>::new(), entries: Vec::new(), parts: Vec::new() };
+    let mut builder = Builder {
+        source,
+        problem: Problem::<D>::new(),
+        entries: Vec::new(),
+        parts: Vec::new(),
+        has_exact: root.contains_key("exact"),
+    };
     for (key, value) in root.iter() {
         match &**key.get_ref() {
             "coefficient" => {
@@ -396,7 +408,7 @@ pub(super) fn problem<'t, const D: usize>(
     let own = OwnProblem { name, problem: builder.problem.clone(), geometry };
     let failed = |error: Error| match (error, place) {
         (Error::Gmsh(source), Place::File { path, .. }) => {
-            ProblemFileError::Mesh { path: path.clone(), source }
+            ProblemFileError::Mesh { path: path.clone(), source: Box::new(source) }
         }
         (error, _) => {
             ProblemFileError::Problem { path: source.path.into(), source: Box::new(error) }

@@ -37,7 +37,7 @@ pub enum ProblemFileError {
         /// The mesh file.
         path: PathBuf,
         /// Why.
-        source: GmshError,
+        source: Box<GmshError>,
     },
     /// Its data do not make a problem.
     #[error("{}: {source}", path.display())]

@@ -167,7 +167,7 @@ fn nesting(text: &str) -> usize {
         most_signs = most_signs.max(signs);
         deepest = deepest.max(depth);
     }
-    deepest + powers + most_signs
+    deepest + powers + text.matches("**").count() + most_signs
 }
 
 fn two(operation: Two, a: Node, b: Node) -> Node {
@@ -421,7 +421,13 @@ mod tests {
     #[test]
     fn long_and_deep_expressions_are_refused() {
         let deep = "(".repeat(500) + "x" + &")".repeat(500);
-        for text in [deep, "x^".repeat(300) + "x", "-".repeat(300) + "x", "x+".repeat(2000) + "x"] {
+        for text in [
+            deep,
+            "x^".repeat(300) + "x",
+            "x**".repeat(300) + "x",
+            "-".repeat(300) + "x",
+            "x+".repeat(2000) + "x",
+        ] {
             assert!(Expression::parse(&text, &VARIABLES).is_err());
         }
         let sum = "x+".repeat(450) + "x";

@@ -90,7 +90,8 @@ impl<'t> Source<'t> {
     fn mesh_file(&self, value: &Value<'t>) -> Found<Place> {
         let name = self.string("mesh", value)?;
         let path = self.path.parent().unwrap_or(Path::new("")).join(name);
-        let failed = |source| ProblemFileError::Mesh { path: path.clone(), source };
+        let failed =
+            |source| ProblemFileError::Mesh { path: path.clone(), source: Box::new(source) };
         let unreadable =
             |source| failed(gmsh::GmshError::Unreadable { path: path.clone(), source });
         let bytes = read_file(&path).map_err(unreadable)?;

@@ -1,4 +1,4 @@
-//! A fine solution in place of the exact one.
+//! Against what rows are measured: the exact solution, or a fine solution in place of it.
 
 use std::fmt;
 use std::sync::Arc;
@@ -6,8 +6,10 @@ use std::sync::Arc;
 use crate::constraint::ConstraintSet;
 use crate::error::Error;
 use crate::mesh::Domain;
+use crate::nested::Solved;
 use crate::real::Real;
 use crate::scheme::AnyScheme;
+use crate::study::row::Row;
 
 /// How many times as fine as every other level of a domain a reference is at least.
 const FINER: usize = 4;
@@ -76,5 +78,30 @@ impl<T: Real, const D: usize> Reference<'_, T, D> {
             }
             None => Ok(()),
         }
+    }
+}
+
+/// Against what rows are measured.
+#[derive(Clone, Copy)]
+pub(super) struct Measured<'m, 'p, T: Real, const D: usize> {
+    /// Where the exact solution breaks the contact condition of the mesh.
+    pub failure: Option<&'m str>,
+    /// A solution in place of the exact one, and its name.
+    pub reference: Option<&'m (Solved<'p, T, D>, String)>,
+}
+
+impl<T: Real, const D: usize> Measured<'_, '_, T, D> {
+    /// Fills in energy and errors.
+    pub fn measure(&self, row: &mut Row, solved: &Solved<'_, T, D>) -> Result<(), Error> {
+        row.energy = solved.energy()?;
+        if let Some((reference, name)) = self.reference {
+            row.error = solved.difference(reference)?;
+            row.contact = solved.contact_difference(reference)?;
+            row.against = Some(name.clone());
+        } else if self.failure.is_none() && solved.discretisation().problem().exact.is_some() {
+            (row.error, row.contact) = (solved.errors()?, solved.contact_errors()?);
+            row.against = Some("exact".to_owned());
+        }
+        Ok(())
     }
 }

@@ -149,7 +149,7 @@ impl<'a, const D: usize> WorkPrecision<'a, D> {
     }
     /// Takes errors against the solution of this scheme on a level, as
     /// [`Study::reference`](crate::study::Study::reference) does, for cases over `f64`. Every case is solved once
-    /// more for its errors, outside the clock.
+    /// more for its errors, outside the clock, also those above the limit of seconds.
     #[must_use]
     pub fn reference(
         mut self,
@@ -390,8 +390,22 @@ impl<'a, const D: usize> WorkPrecision<'a, D> {
         for candidate in &self.candidates {
             study = study.shared_scheme(candidate.double.clone(), candidate.set.clone());
         }
+        if self.precisions.contains(&Precision::Single) {
+            let allowed =
+                "a reference is computed over f64, and errors of f32 would be no like ones";
+            return Err(wrong("precision", f32::NAME.to_owned(), allowed));
+        }
         let (scheme, set) = (reference.double.clone(), reference.set.clone());
-        Ok(study.shared_reference(scheme, set, *level).run()?.rows)
+        let study = study.shared_reference(scheme, set, *level);
+        if let (Some(need), Some(free)) = (study.memory_estimate(), available_memory_bytes())
+            && need.bytes > free as f64
+        {
+            let (need, free) = (need.bytes / 1e9, free as f64 / 1e9);
+            let allowed =
+                format!("it would need about {need:.1} GB of memory, {free:.1} GB are available");
+            return Err(wrong("level of the reference", level.to_string(), &allowed));
+        }
+        Ok(study.run()?.rows)
     }
 
     /// The reason for which a case is not run.

@@ -51,7 +51,7 @@ fn wrong_meshes_are_refused() {
             "radial-2d",
             "untagged",
             Square::with(|s| s.elements.retain(|e| !e.starts_with("1 "))),
-            &["no boundary part", "dirichlet, neumann, contact"],
+            &["is in no group", "dirichlet, neumann, contact"],
         ),
         (
             "radial-2d",

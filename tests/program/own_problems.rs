@@ -16,12 +16,13 @@ fn number(row: &Value, keys: &[&str]) -> f64 {
 #[test]
 fn a_membrane_from_a_file_is_measured_against_a_reference() {
     let scratch = Scratch::new("membrane");
-    let options = "--scheme p1,cr,wopsip:facet-means --levels 0,1,2 --reference 4";
+    let options =
+        "--scheme p1,cr,wopsip:facet-means --levels 0,1,2 --reference p2:midpoints@level=4";
     let report = scratch.report(&format!("{} {options}", example("membrane")));
     assert_eq!(rows(&report).len(), 9);
     for row in rows(&report) {
         assert_eq!(row["scene"], "membrane");
-        assert_eq!(row["against"], "p2 at level 4");
+        assert_eq!(row["against"], "p2:midpoints at level 4");
         assert_eq!(row["status"], "converged");
         assert!(number(row, &["energy"]) < 0.0 && number(row, &["contact_measure"]) > 0.0);
         for key in ["multiplier_l1", "multiplier_l2", "contact_area_error"] {
@@ -30,13 +31,15 @@ fn a_membrane_from_a_file_is_measured_against_a_reference() {
         if row["level"] != 0 {
             let order = number(row, &["order", "h1"]);
             assert!((0.85..1.15).contains(&order), "{order}");
+            let area = number(row, &["contact_area_error"]) / number(row, &["contact_measure"]);
+            assert!(area < 0.5, "{area}");
         }
     }
     for file in ["membrane-p1.vtu", "report.html", "convergence.svg"] {
         assert!(scratch.0.join("out").join(file).exists(), "{file}");
     }
     let plot = std::fs::read_to_string(scratch.0.join("out/convergence.svg")).unwrap();
-    assert!(plot.contains("against p2 at level 4"));
+    assert!(plot.contains("against p2:midpoints at level 4"));
 }
 
 #[test]
@@ -88,6 +91,7 @@ fn wrong_problems_and_references_are_refused() {
     let wrong = scratch.file("wrong.toml", "box = [[0], [1]]\n[source]\ndefault = \"2 * y\"\n");
     refused(&scratch, &[&wrong], &["wrong.toml:3:16: there is no `y`; there are x, e, pi"]);
     refused(&scratch, &["nowhere.toml"], &["nowhere.toml"]);
+    refused(&scratch, &["radial-2d"], &["no file radial-2d", "--scene"]);
     let plate = example("plate");
     refused(&scratch, &[&plate, "--scene", "radial-2d"], &["--scene"]);
     let coarse = [&plate[..], "--levels", "0,1", "--reference", "2"];

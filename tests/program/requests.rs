@@ -63,7 +63,7 @@ fn wrong_options_are_refused() {
         ("--load 3 --scene ball-2d", &["--load 3", "none of the scenes chosen"]),
         ("--levles 4", &["--levles", "--levels"]),
         ("--nonsense", &["--nonsense", "there are: --list, --scene", "--quiet"]),
-        ("radial-2d", &["radial-2d", "there are: --list, --scene"]),
+        ("radial-2d", &["there is no file radial-2d", "--scene"]),
     ];
     for (options, expected) in cases {
         let options: Vec<&str> = options.split(' ').collect();

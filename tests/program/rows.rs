@@ -24,6 +24,7 @@ fn check_row(row: &Value) {
         let value = &row[key];
         let fits = match key {
             "scene" | "scheme" | "constraint" | "label" | "status" => value.is_string(),
+            "against" => value.is_string() || value.is_null(),
             "dimension" | "level" | "cells" => value.is_u64(),
             "unknowns" | "nonzeros" => value.is_u64() || !converged,
             "message" => value.is_string() != converged,

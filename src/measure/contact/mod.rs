@@ -147,7 +147,12 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
 
     fn entities(&self) -> Vec<ContactEntity> {
         if self.problem.has_obstacle() {
+            let is_bounded = |cell: &usize| {
+                let region = self.mesh.region(*cell);
+                self.data.lower.of(region).is_some() || self.data.upper.of(region).is_some()
+            };
             return (0..self.mesh.n_cells())
+                .filter(is_bounded)
                 .map(|cell| ContactEntity { cell, facet: None })
                 .collect();
         }

@@ -28,10 +28,9 @@ use crate::study::fields::FieldFiles;
 use crate::study::journal::Journal;
 use crate::study::memory::{MemoryEstimate, estimate, estimate_without_factors, unknowns_about};
 use crate::study::orders::fill_orders;
-use crate::study::reference::Reference;
+use crate::study::reference::{Measured, Reference};
 use crate::study::report::{Program, Report};
 use crate::study::row::{Row, RowKey};
-use rows::Measured;
 
 /// Progress of a study.
 #[derive(Debug)]

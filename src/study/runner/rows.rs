@@ -13,6 +13,7 @@ use crate::scheme::{AnyScheme, ExpectedOrders};
 #[cfg(feature = "report")]
 use crate::study::file_name::file_name;
 use crate::study::memory::peak_memory_bytes;
+use crate::study::reference::Measured;
 use crate::study::row::Row;
 use crate::study::setting::setting;
 
@@ -125,30 +126,5 @@ impl<T: Real, const D: usize> Study<'_, T, D> {
             }
             _ => ExpectedOrders::default(),
         }
-    }
-}
-
-/// Against what rows are measured.
-#[derive(Clone, Copy)]
-pub(super) struct Measured<'m, 'p, T: Real, const D: usize> {
-    /// Where the exact solution breaks the contact condition of the mesh.
-    pub failure: Option<&'m str>,
-    /// A solution in place of the exact one, and its name.
-    pub reference: Option<&'m (Solved<'p, T, D>, String)>,
-}
-
-impl<T: Real, const D: usize> Measured<'_, '_, T, D> {
-    /// Fills in energy and errors.
-    fn measure(&self, row: &mut Row, solved: &Solved<'_, T, D>) -> Result<(), Error> {
-        row.energy = solved.energy()?;
-        if let Some((reference, name)) = self.reference {
-            row.error = solved.difference(reference)?;
-            row.contact = solved.contact_difference(reference)?;
-            row.against = Some(name.clone());
-        } else if self.failure.is_none() && solved.discretisation().problem().exact.is_some() {
-            (row.error, row.contact) = (solved.errors()?, solved.contact_errors()?);
-            row.against = Some("exact".to_owned());
-        }
-        Ok(())
     }
 }

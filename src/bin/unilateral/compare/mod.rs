@@ -24,6 +24,7 @@ use crate::shared::{
 };
 
 use unilateral::inequality::SOLVERS;
+use unilateral::input::excerpt;
 use unilateral::mesh::gmsh;
 use unilateral::problem_file::{self, AnyOwnProblem};
 use unilateral::real::Real;
@@ -104,6 +105,10 @@ impl Chosen {
         let own = match &options.problem {
             None => None,
             Some(path) => {
+                if !path.exists() {
+                    let path = excerpt(path.as_os_str().as_encoded_bytes());
+                    return Err(format!("there is no file {path}; scenes are named by --scene"));
+                }
                 let own = problem_file::read(path).map_err(|e| e.to_string())?;
                 Some((own, read(path)?))
             }

@@ -79,7 +79,7 @@ pub struct Options {
     #[arg(long, value_name = "DIR")]
     pub dump: Option<PathBuf>,
     /// Keep the rows of this request that the report in DIR has, and run the others
-    #[arg(long)]
+    #[arg(long, conflicts_with = "dump")]
     pub resume: bool,
     /// Also write the JSON report here; `-` for standard output
     #[arg(long, value_name = "FILE")]

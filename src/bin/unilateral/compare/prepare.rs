@@ -105,9 +105,11 @@ pub fn prepare<'a, T: Real, const D: usize>(
         .observer(|progress| watcher.tell(&progress));
     let scene_name = name.clone();
     study = study.each_solution(move |label, level, solved| {
-        // a picture that cannot be drawn or written is no reason to end the study
-        if let Err(why) = draw(&format!("{scene_name}-{label}"), level, solved, &options.out) {
-            watcher.warn_once(format!("warning: {why}"));
+        if solved.mesh().n_cells() <= MOST_CELLS {
+            let name = format!("{scene_name}-{label}");
+            if let Err(why) = draw(&name, level, solved, &options.out) {
+                watcher.warn_once(format!("warning: no picture of {name}: {why}"));
+            }
         }
         Ok(())
     });
@@ -190,9 +192,7 @@ fn draw<T: Real, const D: usize>(
     solved: &Solved<'_, T, D>,
     directory: &Path,
 ) -> Result<(), Error> {
-    let Some(fields) = solved.fields().filter(|_| solved.mesh().n_cells() <= MOST_CELLS) else {
-        return Ok(());
-    };
+    let Some(fields) = solved.fields() else { return Ok(()) };
     let title = format!("{name}, level {level}");
     let problem = solved.discretisation().problem();
     let picture = Picture::of(&title, problem, solved.mesh(), &fields, None)?;
