@@ -20,6 +20,7 @@ use crate::real::{Point, Real};
 
 /// The scalar of the numbers in a file of fields.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum FieldScalar {
     /// 32 bits, and four digits of the field `error`: enough for pictures.
     #[default]
