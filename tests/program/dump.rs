@@ -112,3 +112,21 @@ fn needs_scipy() {
         }
     }
 }
+
+#[test]
+fn a_problem_that_changed_since_the_dump_is_noticed() {
+    let scratch = Scratch::new("changed");
+    let text = "box = [[0], [1]]\n[boundary.left]\nkind = \"dirichlet\"\n[boundary.right]\n\
+        kind = \"dirichlet\"\n[obstacle]\nlower.default = -0.1\n[source]\ndefault = -4\n";
+    let path = scratch.file("rod.toml", text);
+    let dump = scratch.path("dump");
+    scratch.report(&format!("{path} --scheme p1 --levels 8 --dump {dump}"));
+    let folder = Path::new(&dump).join("rod-p1-8");
+    fs::write(folder.join("u.txt"), "0 0 0 0 0 0 0 0 0").unwrap();
+    // the values violate nothing but the residual
+    assert_eq!(judge(&folder, "u.txt", &[]).status.code(), Some(1));
+    scratch.file("rod.toml", &text.replace("-4", "-5"));
+    let output = judge(&folder, "u.txt", &[]);
+    assert_eq!(output.status.code(), Some(2));
+    assert!(stderr(&output).contains("is not what it was"), "{}", stderr(&output));
+}

@@ -17,7 +17,7 @@ use unilateral::scheme::NamedScheme;
 use unilateral::study::{Program, Report, Row, RowKey, file_name};
 
 use crate::compare::{self, Posed};
-use crate::shared::{Request, cannot_write, print, read, write};
+use crate::shared::{Request, cannot_write, fingerprint, print, read, write};
 
 /// Judges a vector that another program found for an inequality of `compare --dump`
 #[derive(Args, Debug)]
@@ -43,6 +43,7 @@ pub fn write_requests(options: &compare::Options, keys: &[RowKey]) -> Request<()
     let files = [absolute(&options.mesh), absolute(&options.problem)];
     let [mesh, problem] = files.map(|file| file.map_err(|e| format!("cannot find a file: {e}")));
     let (mesh, problem) = (mesh?, problem?);
+    let contents = fingerprints(mesh.as_deref(), problem.as_deref())?;
     let part = |(name, part): &(String, BoundaryPart)| (name.clone(), part.name());
     let boundary: BTreeMap<String, &str> = options.boundary.iter().map(part).collect();
     for RowKey { scene, label, level, .. } in keys {
@@ -50,12 +51,25 @@ pub fn write_requests(options: &compare::Options, keys: &[RowKey]) -> Request<()
         let request = json!({
             "scene": scene, "label": label, "level": level, "precision": options.precision,
             "scale": options.scale, "contrast": options.contrast, "load": options.load,
-            "mesh": mesh, "problem": problem, "boundary": boundary,
+            "mesh": mesh, "problem": problem, "contents": contents, "boundary": boundary,
         });
         std::fs::create_dir_all(&folder).map_err(|e| cannot_write(&folder, e))?;
         write(&folder.join(REQUEST), format!("{request:#}\n"))?;
     }
     Ok(())
+}
+
+/// The fingerprints of a mesh file, of a problem file, and of the mesh file that this names.
+fn fingerprints(mesh: Option<&Path>, problem: Option<&Path>) -> Request<Vec<String>> {
+    let mut found = Vec::new();
+    for path in mesh.into_iter().chain(problem) {
+        found.push(fingerprint(&read(path)?));
+    }
+    if let Some(path) = problem {
+        let own = problem_file::read(path).map_err(|e| e.to_string())?;
+        found.extend(own.mesh_bytes().map(fingerprint));
+    }
+    Ok(found)
 }
 
 /// Whether the certificate is within its limits.
@@ -76,6 +90,16 @@ fn judge<T: Real>(options: &Options, path: &Path, request: &Value) -> Request<bo
     let scheme = scheme.map_err(|e| format!("{}: {e}", path.display()))?;
     let level = request["level"].as_u64().ok_or_else(|| wrong("level"))? as usize;
     let mesh = request["mesh"].as_str().map(PathBuf::from);
+    let problem = request["problem"].as_str().map(Path::new);
+    if json!(fingerprints(mesh.as_deref(), problem)?) != request["contents"] {
+        let files = [mesh.as_deref(), problem];
+        let files: Vec<String> = files.iter().flatten().map(|p| p.display().to_string()).collect();
+        return Err(format!(
+            "{} (or its mesh) is not what it was when {} was written: dump the inequality again",
+            files.join(", "),
+            path.display()
+        ));
+    }
     let values = read_vector(&options.vector).map_err(|e| e.to_string())?;
     let mesh = mesh.map(|mesh| (mesh, &request["boundary"]));
     let of = (&scheme, level, mesh, &values[..]);

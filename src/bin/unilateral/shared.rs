@@ -125,3 +125,11 @@ pub fn reference(text: &str) -> Request<(NamedScheme, usize)> {
     let level = level.parse().map_err(|_| "expected a level, or SCHEME@level=N".to_owned())?;
     Ok((scheme.parse().map_err(|e: unilateral::scheme::SchemeNameError| e.to_string())?, level))
 }
+
+/// The length and a hash of the contents of a file.
+pub fn fingerprint(bytes: &[u8]) -> String {
+    // the hash of Fowler, Noll and Vo, which has the same value on every machine
+    let step = |hash: u64, &byte: &u8| (hash ^ u64::from(byte)).wrapping_mul(0x100_0000_01b3);
+    let hash = bytes.iter().fold(0xcbf2_9ce4_8422_2325, step);
+    format!("{} bytes {hash:016x}", bytes.len())
+}

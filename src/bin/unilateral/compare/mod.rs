@@ -20,7 +20,8 @@ use watcher::Watcher;
 
 use crate::judge::write_requests;
 use crate::shared::{
-    ORDER_TOLERANCE, Request, cannot_write, complain, print, print_to, read, use_threads, write,
+    ORDER_TOLERANCE, Request, cannot_write, complain, fingerprint, print, print_to, read,
+    use_threads, write,
 };
 
 use unilateral::inequality::SOLVERS;
@@ -70,10 +71,7 @@ fn program<T: Real>(options: &Options, files: &[(&str, &[u8])]) -> Program {
         program = program.with_request(&format!("boundary {name}"), part.name());
     }
     for (name, bytes) in files {
-        // the hash of Fowler, Noll and Vo, which has the same value on every machine
-        let step = |hash: u64, &byte: &u8| (hash ^ u64::from(byte)).wrapping_mul(0x100_0000_01b3);
-        let hash = bytes.iter().fold(0xcbf2_9ce4_8422_2325, step);
-        program = program.with_request(name, format!("{} bytes {hash:016x}", bytes.len()));
+        program = program.with_request(name, fingerprint(bytes));
     }
     program
 }
