@@ -20,7 +20,7 @@ fn keys(value: &Value) -> Vec<&str> {
 fn json_has_the_keys_that_scripts_rely_on() {
     let json: Value = serde_json::from_str(&report(rows()).to_json()).unwrap();
     assert_eq!(keys(&json), ["program", "complete", "rows", "extrapolated"]);
-    let program = ["name", "version", "threads", "precision", "repeat", "target_cpu"];
+    let program = ["name", "version", "threads", "precision", "repeat", "target_cpu", "request"];
     assert_eq!(keys(&json["program"]), program);
     assert!(json["program"]["target_cpu"].as_str().unwrap().starts_with(std::env::consts::ARCH));
     let row = &json["rows"][0];
