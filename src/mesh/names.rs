@@ -34,6 +34,7 @@ impl<T: Real, const D: usize> Mesh<T, D> {
     }
 
     /// The mesh with the regions and boundary groups of another one, which has the same cells.
+    #[cfg(feature = "report")]
     pub(crate) fn with_names_of<S>(mut self, other: &Mesh<S, D>) -> Self {
         self.groups = other.groups.clone();
         self.cell_regions.clone_from(&other.cell_regions);

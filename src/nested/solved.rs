@@ -19,7 +19,9 @@ use crate::measure::{ContactErrors, Errors, Fields, contact_difference};
 use crate::mesh::Mesh;
 #[cfg(feature = "report")]
 use crate::paraview::VtuFile;
-use crate::problem::{DataOnMesh, Exact};
+#[cfg(feature = "report")]
+use crate::problem::DataOnMesh;
+use crate::problem::Exact;
 use crate::real::{Point, Real};
 
 /// Adds to a file of fields.
