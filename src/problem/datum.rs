@@ -22,7 +22,8 @@ pub enum Datum<const D: usize> {
     /// A function of space that is smooth in every cell, integrated by quadrature.
     Function(Field<D>),
     /// A function of space that may jump, or have a kink, where `level` changes its sign. Cells that
-    /// the zero set of `level` cuts are divided along it, see [`Problem::piecewise_source`].
+    /// the zero set of `level` cuts are divided along it, see
+    /// [`Problem::piecewise_source`](super::Problem::piecewise_source).
     Piecewise {
         /// The function. No point of a rule lies on the zero set of `level`, except by rounding.
         value: Field<D>,
