@@ -141,7 +141,7 @@ fn a_full_disk_leaves_the_finished_rows() {
     let scratch = Scratch::new("disk");
     for (scene, scheme, levels, blocks, file) in [
         ("radial-1d", "all", "4,5,6,7", 40, "report.jsonl"),
-        ("radial-2d", "p1", "4,8,32", 200, "radial-2d-p1.svg"),
+        ("radial-2d", "p1", "4,8,32", 30, "radial-2d-p1.vtu"),
     ] {
         let out = scratch.0.join(scene);
         let output = Command::new("sh")
