@@ -139,9 +139,9 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         let cell_rule = Rule::new(D, degree);
         let terms = self.node_terms(&Rule::new(D - 1, MEAN_DEGREE), &cell_rule);
         let table = self.cell_table(cell_rule);
-        let cuts: Vec<Option<(Field<D>, CutRule)>> = (0..self.mesh.regions().len())
-            .map(|region| Some((self.kinks(exact, region)?, CutRule::new(D, degree))))
-            .collect();
+        let kinks: Vec<Option<Field<D>>> =
+            (0..self.mesh.regions().len()).map(|region| self.kinks(exact, region)).collect();
+        let cut_rule = kinks.iter().any(Option::is_some).then(|| CutRule::new(D, degree));
         // partial sums are added in order, so the result does not depend on threads
         let parts = cells::map(self.mesh.n_cells(), &|cells: Range<usize>| {
             let mut sum = SquaredErrors::default();
@@ -149,7 +149,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
                 sum.add(&self.cell_error(
                     exact,
                     (&table, &terms),
-                    cuts[self.mesh.region(cell)].as_ref(),
+                    kinks[self.mesh.region(cell)].as_ref().zip(cut_rule.as_ref()),
                     cell,
                     u,
                 )?);
@@ -178,7 +178,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         &self,
         exact: &Reference<'_, T, D>,
         (table, terms): (&CellTable<f64>, &[Terms]),
-        cut: Option<&(Field<D>, CutRule)>,
+        cut: Option<(&Field<D>, &CutRule)>,
         cell: usize,
         u: &[T],
     ) -> Result<SquaredErrors, Error> {

@@ -103,8 +103,8 @@ fn judge<T: Real>(options: &Options, path: &Path, request: &Value) -> Request<bo
     let values = read_vector(&options.vector).map_err(|e| e.to_string())?;
     let mesh = mesh.map(|mesh| (mesh, &request["boundary"]));
     let of = (&scheme, level, mesh, &values[..]);
-    let row = match request["problem"].as_str() {
-        Some(problem) => match problem_file::read(Path::new(problem)).map_err(|e| e.to_string())? {
+    let row = match problem {
+        Some(path) => match problem_file::read(path).map_err(|e| e.to_string())? {
             AnyOwnProblem::One(own) => row::<T, 1>(own.into(), of),
             AnyOwnProblem::Two(own) => row::<T, 2>(own.into(), of),
             AnyOwnProblem::Three(own) => row::<T, 3>(own.into(), of),

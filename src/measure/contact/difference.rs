@@ -82,11 +82,9 @@ fn difference<T: Real, const D: usize>(
 fn has_contact_cells<T: Real, const D: usize>(space: &Space<'_, T, D>) -> bool {
     let dimension = D - usize::from(space.problem.has_gap());
     let is_vertex = |i: usize| matches!(space.nodes[i].entity(), Entity::Vertex(_));
-    let bounded = space.bounded_nodes().map(|(i, _)| i);
-    let on_facets = (0..=D).flat_map(|local| space.bounded_nodes_on(local)).map(|(i, _)| i);
     let has_vertices = match space.problem.has_gap() {
-        true => on_facets.into_iter().any(is_vertex),
-        false => bounded.into_iter().any(is_vertex),
+        true => (0..=D).flat_map(|local| space.bounded_nodes_on(local)).any(|(i, _)| is_vertex(i)),
+        false => space.bounded_nodes().any(|(i, _)| is_vertex(i)),
     };
     space.basis_degree < 2 || dimension < 2 || !has_vertices
 }

@@ -51,7 +51,7 @@ pub fn run(options: &Options) -> Request<bool> {
 }
 
 /// The program, with all that its rows depend on and do not say.
-fn program<T: Real>(options: &Options, files: &[(&str, &[u8])]) -> Program {
+fn program<T: Real>(options: &Options, files: &[(&str, String)]) -> Program {
     let threads = rayon::current_num_threads();
     let mut program = Program::new("compare", T::NAME, threads, options.repeat);
     for (name, value) in
@@ -70,8 +70,8 @@ fn program<T: Real>(options: &Options, files: &[(&str, &[u8])]) -> Program {
     for (name, part) in &options.boundary {
         program = program.with_request(&format!("boundary {name}"), part.name());
     }
-    for (name, bytes) in files {
-        program = program.with_request(name, fingerprint(bytes));
+    for (name, fingerprint) in files {
+        program = program.with_request(name, fingerprint);
     }
     program
 }
@@ -175,12 +175,11 @@ impl Chosen {
                 AnyScene::Three(of) => prepare::<T, 3>(of.into(), options, names, mesh, &watcher)?,
             });
         }
-        let mut files: Vec<(&str, &[u8])> =
-            mesh.iter().map(|(_, bytes)| ("mesh", &bytes[..])).collect();
-        let copies;
+        let mut files: Vec<(&str, String)> =
+            mesh.iter().map(|(_, bytes)| ("mesh", fingerprint(bytes))).collect();
         if let Some((own, text)) = own {
-            copies = (text, own.mesh_bytes().map(<[u8]>::to_vec).unwrap_or_default());
-            files = vec![("problem", &copies.0), ("mesh", &copies.1)];
+            let mesh = own.mesh_bytes().unwrap_or_default();
+            files = vec![("problem", fingerprint(&text)), ("mesh", fingerprint(mesh))];
             runs.extend(match own {
                 AnyOwnProblem::One(of) => {
                     prepare::<T, 1>(of.into(), options, names, None, &watcher)?

@@ -45,7 +45,7 @@ impl<const D: usize> Posed<D> {
         }
     }
     /// Whether it brings a mesh with it.
-    fn has_mesh(&self) -> bool {
+    pub fn has_mesh(&self) -> bool {
         matches!(self, Self::Own(OwnProblem { geometry: Geometry::File { .. }, .. }))
     }
     /// A study of it, without schemes; warnings of the mesh file are told.

@@ -23,6 +23,7 @@ use unilateral::work_precision::{
     Case, Precision, WorkPrecision, WorkProgress, WorkReport, changes,
 };
 
+use crate::compare::Posed;
 use crate::shared::{Request, bar, print, read, tick, use_threads, write};
 
 /// Whether every run converged and nothing changed.
@@ -293,52 +294,32 @@ fn run_one(options: &Options) -> Request<()> {
     let is_single = options.precisions().first() == Some(&Precision::Single);
     if let Some(path) = &options.problem {
         return match problem_file::read(path).map_err(|e| e.to_string())? {
-            AnyOwnProblem::One(own) if is_single => once_own::<f32, 1>(options, own),
-            AnyOwnProblem::One(own) => once_own::<f64, 1>(options, own),
-            AnyOwnProblem::Two(own) if is_single => once_own::<f32, 2>(options, own),
-            AnyOwnProblem::Two(own) => once_own::<f64, 2>(options, own),
-            AnyOwnProblem::Three(own) if is_single => once_own::<f32, 3>(options, own),
-            AnyOwnProblem::Three(own) => once_own::<f64, 3>(options, own),
+            AnyOwnProblem::One(own) if is_single => once::<f32, 1>(options, own.into()),
+            AnyOwnProblem::One(own) => once::<f64, 1>(options, own.into()),
+            AnyOwnProblem::Two(own) if is_single => once::<f32, 2>(options, own.into()),
+            AnyOwnProblem::Two(own) => once::<f64, 2>(options, own.into()),
+            AnyOwnProblem::Three(own) if is_single => once::<f32, 3>(options, own.into()),
+            AnyOwnProblem::Three(own) => once::<f64, 3>(options, own.into()),
         };
     }
     let name = options.scenes().pop().ok_or(one)?;
     match scene(options, &name)? {
-        AnyScene::One(s) if is_single => once::<f32, 1>(options, s),
-        AnyScene::One(s) => once::<f64, 1>(options, s),
-        AnyScene::Two(s) if is_single => once::<f32, 2>(options, s),
-        AnyScene::Two(s) => once::<f64, 2>(options, s),
-        AnyScene::Three(s) if is_single => once::<f32, 3>(options, s),
-        AnyScene::Three(s) => once::<f64, 3>(options, s),
+        AnyScene::One(s) if is_single => once::<f32, 1>(options, s.into()),
+        AnyScene::One(s) => once::<f64, 1>(options, s.into()),
+        AnyScene::Two(s) if is_single => once::<f32, 2>(options, s.into()),
+        AnyScene::Two(s) => once::<f64, 2>(options, s.into()),
+        AnyScene::Three(s) if is_single => once::<f32, 3>(options, s.into()),
+        AnyScene::Three(s) => once::<f64, 3>(options, s.into()),
     }
 }
 
-fn once<T: Real, const D: usize>(options: &Options, scene: Scene<D>) -> Request<()> {
-    let study = Study::<T, D>::new(scene);
-    match mesh(options)? {
-        Some(mesh) => once_study(options, study.on_mesh(mesh), true),
-        None => once_study(options, study, false),
+fn once<T: Real, const D: usize>(options: &Options, posed: Posed<D>) -> Request<()> {
+    let mesh = mesh(options)?;
+    let has_mesh = mesh.is_some() || posed.has_mesh();
+    let mut study = posed.study::<T>(&|_| {})?;
+    if let Some(mesh) = mesh {
+        study = study.on_mesh(mesh);
     }
-}
-
-fn once_own<T: Real, const D: usize>(options: &Options, own: OwnProblem<D>) -> Request<()> {
-    match (own.mesh::<T>().map_err(|e| e.to_string())?, own.geometry) {
-        (Some(read), _) => {
-            let study = Study::of_problem(&own.name, own.problem, read.mesh);
-            once_study(options, study.map_err(|e| e.to_string())?, true)
-        }
-        (None, Geometry::Box(domain)) => {
-            let scene = Scene::new(own.name, domain, own.problem);
-            once_study(options, Study::<T, D>::new(scene), false)
-        }
-        _ => Err("a problem has a mesh or a box".to_owned()),
-    }
-}
-
-fn once_study<T: Real, const D: usize>(
-    options: &Options,
-    study: Study<'_, T, D>,
-    has_mesh: bool,
-) -> Request<()> {
     let linear = options.linear().first().copied().unwrap_or(LinearMethod::BySize);
     let study =
         study.levels(options.levels(D, has_mesh)).solver(ActiveSet::default().linear(linear));
