@@ -162,14 +162,14 @@ impl<'a, T: Real, const D: usize> Solved<'a, T, D> {
         let energy = || self.discretisation.energy(self.values());
         self.has_iterate.then(energy).transpose()
     }
-    /// The measure of the discrete contact set: see [`Discretisation::contact_measure`]. None without an
-    /// inequality and without an iterate.
+    /// The measure of the discrete contact set, see [`Discretisation::contact_measure`]; none for a problem
+    /// without inequality and for an outcome without iterate.
     pub fn contact_measure(&self) -> Option<f64> {
         let measure = || self.discretisation.contact_measure(&self.inequality, &self.solution);
         self.has_iterate.then(measure).flatten()
     }
     /// The total contact force, positive where a lower bound pushes upward: see
-    /// [`Discretisation::resultant`]. None without an inequality and without an iterate.
+    /// [`Discretisation::resultant`]; none for a problem without inequality and for an outcome without iterate.
     pub fn resultant(&self) -> Option<f64> {
         let resultant = || self.discretisation.resultant(&self.inequality, &self.solution);
         self.has_iterate.then(resultant).flatten()

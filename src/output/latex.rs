@@ -134,7 +134,7 @@ fn is_break(c: char) -> bool {
     matches!(c, ' ' | '-' | ':' | '@' | '=' | ',' | '/' | '_')
 }
 
-/// Numbers in words as numbers of the package `siunitx`.
+/// A text in which every word that is a number is written by `\num` of the package `siunitx`.
 fn latex_number(text: &str) -> String {
     let word = |word: &str| {
         let number = word.trim_start_matches('(').trim_end_matches(')');

@@ -34,7 +34,7 @@ pub(crate) fn contact_difference<T: Real, const D: usize>(
     )(solved, reference, refinements)
 }
 
-/// A solution with its space and inequality.
+/// A solution with its inequality and what the assembler knows of its space.
 type OnSpace<'s, 'a, T, const D: usize> = (&'s Space<'a, T, D>, &'s Inequality<T>, &'s Solution<T>);
 
 fn difference<T: Real, const D: usize>(

@@ -26,7 +26,7 @@ struct State {
 
 impl Interrupt {
     /// Lets SIGINT and SIGTERM, and Ctrl-C elsewhere, write the report with this function and end the
-    /// process, also while a solve runs. A second one ends the process at once.
+    /// process, also while a solve runs. A second signal ends the process at once.
     pub fn install(
         write: impl Fn(&Report) -> Request<()> + Send + Sync + 'static,
     ) -> Request<Self> {

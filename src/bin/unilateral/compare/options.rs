@@ -93,7 +93,7 @@ pub struct Options {
     /// No .vtu files
     #[arg(long, conflicts_with = "fields_of_all_levels")]
     pub no_fields: bool,
-    /// The fields of every level, and a .pvd file that lists those of each scheme
+    /// Write the fields of every level, and for each scheme a .pvd file that lists its .vtu files
     #[arg(long)]
     pub fields_of_all_levels: bool,
     /// No progress, no tables
