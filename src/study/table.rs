@@ -191,6 +191,12 @@ pub(crate) fn columns(rows: &[&Row]) -> Vec<Column> {
         columns.push(number("H1", |r| scientific(r.error.h1)));
         columns.push(number("order", |r| fixed(r.order.h1)));
     }
+    if any(|r| r.bound.total) {
+        columns.push(number("bound", |r| scientific(r.bound.total)));
+        if any(|r| r.bound.effectivity) {
+            columns.push(number("effect.", |r| fixed(r.bound.effectivity)));
+        }
+    }
     if !has_errors(rows) {
         if any(|r| r.energy) {
             columns.push(number("energy", |r| digits(r.energy)));

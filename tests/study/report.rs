@@ -38,6 +38,9 @@ fn json_has_the_keys_that_scripts_rely_on() {
     let certificate =
         ["feasibility", "multiplier", "complementarity", "residual", "algebraic_bound"];
     assert_eq!(keys(&row["certificate"]), certificate);
+    let bound = "total distance guaranteed mismatch obstacle contact oscillation algebra \
+                 effectivity reason";
+    assert_eq!(keys(&row["bound"]), bound.split(' ').collect::<Vec<_>>());
     assert_eq!(keys(&row["seconds"]), ["mesh", "assemble", "solve", "total"]);
     assert_eq!(json["rows"].as_array().unwrap().len(), 18);
 }
