@@ -59,16 +59,17 @@ impl<T: Real, const D: usize> Discretisation<'_, T, D> {
                 let weight = weights.at::<D>((cell, local), true, kind);
                 let other = across.map(|(other, local)| (space.local_values(other, u), local));
                 let datum = match across {
-                    Some(_) => vec![0.0; n_moments],
+                    Some(_) => Vec::new(),
                     None => {
                         let group = space.mesh.boundary_group(cell, local).unwrap_or(0);
                         space.dirichlet_moments(&moments, (cell, local), group)?
                     }
                 };
                 let jump = |k: usize| {
-                    let there = other.map_or(datum[k], |(values, local)| {
-                        product(&values, &table.on(local)[k].values)
-                    });
+                    let there = match &other {
+                        Some((values, local)) => product(values, &table.on(*local)[k].values),
+                        None => datum[k],
+                    };
                     product(&own, &table.on(local)[k].values) - there
                 };
                 let metric = metrics.at::<D>(cell);

@@ -12,7 +12,7 @@ use crate::instances::compiled;
 use crate::measure::error_degree;
 use crate::mesh::BoundaryPart;
 use crate::parallel::cells;
-use crate::problem::{DataByGroup, Exact, Field};
+use crate::problem::{DataByGroup, DatumRef, Exact, Field};
 use crate::quadrature::{Rule, facet_to_cell};
 use crate::real::{Point, Real, point_f64};
 
@@ -31,7 +31,8 @@ pub enum Unproven {
     Boundary,
     /// Obstacles and gaps that are not linear in cells: `v` satisfies them at points only.
     Obstacle,
-    /// What the solver left, where no constant of Friedrichs' inequality is known.
+    /// What the solver left, where no constant of Friedrichs' inequality is known and the reaction vanishes
+    /// somewhere.
     Algebra,
 }
 
@@ -78,11 +79,11 @@ impl ErrorBound {
 impl<T: Real, const D: usize> Discretisation<'_, T, D> {
     /// The bound that an admissible function and a flux give, and the distance of the function from the
     /// discrete function `u`. Any pair whose flux has equal and opposite values on the two sides of facets
-    /// gives a bound; what the flux does not balance counts with the constant of Friedrichs' inequality.
+    /// gives a bound; what the flux does not balance counts with a constant of Friedrichs' inequality, or with the reaction.
     ///
     /// Between vertices the function is the larger one of its interpolant and the lower obstacle, or the
-    /// smaller one with the upper obstacle. The multiplier of a cell is what the flux leaves of the load,
-    /// as far as an obstacle has its sign.
+    /// smaller one with the upper obstacle; on contact facets the larger one with the gap counts. The
+    /// multiplier of a cell is what the flux leaves of the load, where an obstacle has its sign.
     ///
     /// # Errors
     /// [`NoBound`].
@@ -133,6 +134,40 @@ struct CellTerms {
 /// What is called with a point of a cell: barycentric, in space, its weight and the basis there.
 type Visit<'v, const D: usize> = &'v mut dyn FnMut(&[f64; 4], &Point<f64, D>, f64, &BasisAt<f64>);
 
+/// The admissible function in a cell.
+struct Admissible<'d, const D: usize> {
+    /// At the vertices.
+    values: [f64; 4],
+    /// The gradient of the interpolant.
+    gradient: Point<f64, D>,
+    /// The obstacles, lower and upper one.
+    bounds: [Option<DatumRef<'d, D>>; 2],
+    /// The step of difference quotients.
+    step: f64,
+}
+
+impl<const D: usize> Admissible<'_, D> {
+    /// Value and gradient at a point, by barycentric coordinates and in space.
+    fn at(&self, point: &[f64; 4], x: &Point<f64, D>) -> (f64, Point<f64, D>) {
+        let mut value = self.values.iter().zip(point).map(|(v, b)| v * b).sum();
+        let mut gradient = self.gradient;
+        for (bound, sign) in self.bounds.iter().zip([1.0, -1.0]) {
+            let Some(bound) = bound else { continue };
+            let at = bound.at(x);
+            if sign * (at - value) > 0.0 {
+                value = at;
+                gradient = Point::from_fn(|axis, _| {
+                    let (mut ahead, mut behind) = (*x, *x);
+                    ahead[axis] += self.step;
+                    behind[axis] -= self.step;
+                    (bound.at(&ahead) - bound.at(&behind)) / (2.0 * self.step)
+                });
+            }
+        }
+        (value, gradient)
+    }
+}
+
 /// Integrals over the boundary, by cell; empty where there are none.
 struct BoundaryTerms {
     /// Norms of the oscillation of Neumann data with the constant of the trace inequality.
@@ -160,9 +195,15 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         }
         let (mismatch, with_oscillation) = (sum(|t| t.mismatch), sum(|t| t.with_oscillation));
         let (obstacle, contact) = (sum(|t| t.obstacle), sum(|t| t.contact));
-        let constant = self.mesh.friedrichs_constant();
-        let unbalanced = (sum(|t| t.unbalanced) / least(|t| t.least_coefficient)).sqrt();
-        let algebra = constant.unwrap_or(0.0) * unbalanced;
+        // |e| <= constant |||e||| by the inequality of Friedrichs or, where the reaction is positive, by that
+        let least_root = |of| least(of).max(0.0).sqrt();
+        let by_gradient =
+            self.mesh.friedrichs_constant().map(|c| c / least_root(|t| t.least_coefficient));
+        let by_value = least_root(|t| t.least_reaction).recip();
+        let constant = by_gradient.map_or(by_value, |c| c.min(by_value));
+        let unbalanced = sum(|t| t.unbalanced).sqrt();
+        let is_proven = constant.is_finite() || unbalanced == 0.0;
+        let algebra = if constant.is_finite() { constant * unbalanced } else { 0.0 };
         let flux_square = (with_oscillation.sqrt() + algebra).powi(2);
         let square = flux_square + obstacle + contact;
         if !square.is_finite() || !(least(|t| t.least_coefficient) > 0.0) {
@@ -181,7 +222,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
                 algebra: share(flux_square - with_oscillation),
             },
             cells: terms.iter().map(of_cell).collect(),
-            unproven: self.unproven_terms(constant.is_some() || unbalanced == 0.0),
+            unproven: self.unproven_terms(is_proven),
         })
     }
 
@@ -210,37 +251,18 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         found.into_iter().filter(|(is_found, _)| *is_found).map(|(_, term)| term).collect()
     }
 
-    /// The value and the gradient of the admissible function at a point of a cell.
-    fn admissible_at(
-        &self,
-        pair: &PrimalDualPair,
-        cell: usize,
-        point: &[f64; 4],
-        x: &Point<f64, D>,
-    ) -> (f64, Point<f64, D>) {
-        let geometry = self.mesh.geometry(cell);
-        let (mut value, mut gradient) = (0.0, Point::zeros());
+    /// The admissible function in a cell.
+    fn admissible_in(&self, pair: &PrimalDualPair, cell: usize) -> Admissible<'_, D> {
+        let (geometry, region) = (self.mesh.geometry(cell), self.mesh.region(cell));
+        let mut values = [0.0; 4];
+        let mut gradient = Point::zeros();
         for (k, &v) in self.mesh.cell(cell).iter().enumerate() {
-            let at_vertex = pair.function[v as usize];
-            value += point[k] * at_vertex;
-            gradient += point_f64(geometry.gradient(k)) * at_vertex;
+            values[k] = pair.function[v as usize];
+            gradient += point_f64(geometry.gradient(k)) * (values[k] - values[0]);
         }
-        let region = self.mesh.region(cell);
         let step = STEP * self.mesh.cell_diameter(cell).to_f64();
-        for (bound, sign) in [(&self.data.lower, 1.0), (&self.data.upper, -1.0)] {
-            let Some(bound) = bound.of(region) else { continue };
-            let at = bound.at(x);
-            if sign * (at - value) > 0.0 {
-                value = at;
-                gradient = Point::from_fn(|axis, _| {
-                    let (mut ahead, mut behind) = (*x, *x);
-                    ahead[axis] += step;
-                    behind[axis] -= step;
-                    (bound.at(&ahead) - bound.at(&behind)) / (2.0 * step)
-                });
-            }
-        }
-        (value, gradient)
+        let bounds = [self.data.lower.of(region), self.data.upper.of(region)];
+        Admissible { values, gradient, bounds, step }
     }
 
     /// Calls a function with the points of a rule on a cell, divided where a level has zeros.
@@ -286,7 +308,14 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         }
         let local = self.local_values(cell, u);
         let datum = |data: &DataByGroup<'_, D>, x: &Point<f64, D>| self.in_region(data, cell, x);
-        let bounds = [self.data.lower.of(region), self.data.upper.of(region)];
+        let admissible = self.admissible_in(pair, cell);
+        // the derivatives of linear functions are those at any point
+        let mut discrete_gradient = Point::<f64, D>::zeros();
+        for k in 0..=D {
+            let derivatives = table.basis[0].derivatives.iter();
+            let slope: f64 = local.iter().zip(derivatives).map(|(c, d)| c * d[k]).sum();
+            discrete_gradient += point_f64(geometry.gradient(k)) * slope;
+        }
         let mut terms = CellTerms {
             least_coefficient: f64::INFINITY,
             least_reaction: f64::INFINITY,
@@ -301,22 +330,19 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
             let weight = weight * volume;
             let alpha = datum(&self.data.coefficient, x).unwrap_or(1.0);
             let reaction = datum(&self.data.reaction, x).unwrap_or(0.0);
-            let (value, gradient) = self.admissible_at(pair, cell, point, x);
+            let (value, gradient) = admissible.at(point, x);
             let q = (x * total_flux - origin) * per_volume;
             mismatch += weight * (gradient * alpha - q).norm_squared() / alpha;
             let discrete = basis.value(&local);
             from_values += weight * reaction * (discrete - value).powi(2);
-            let mut difference = gradient;
-            for k in 0..=D {
-                let slope: f64 = local.iter().zip(&basis.derivatives).map(|(c, d)| c * d[k]).sum();
-                difference -= point_f64(geometry.gradient(k)) * slope;
-            }
-            terms.distance += weight * alpha * difference.norm_squared();
+            terms.distance += weight * alpha * (gradient - discrete_gradient).norm_squared();
             let load = datum(&self.data.source, x).unwrap_or(0.0) - reaction * discrete;
             let load = load - *first.get_or_insert(load);
             mean += weight * load / volume;
             square += weight * load * load;
-            for (gap, (bound, sign)) in gaps.iter_mut().zip(bounds.iter().zip([1.0, -1.0])) {
+            for (gap, (bound, sign)) in
+                gaps.iter_mut().zip(admissible.bounds.iter().zip([1.0, -1.0]))
+            {
                 *gap += bound.map_or(0.0, |bound| weight * sign * (value - bound.at(x)));
             }
             terms.least_coefficient = terms.least_coefficient.min(alpha);
@@ -338,7 +364,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
             (mismatch.sqrt() + in_gradient).powi(2) + (from_values.sqrt() + in_value).powi(2);
         let multiplier = -total_flux / volume - mean - first.unwrap_or(0.0);
         let bound = usize::from(multiplier < 0.0);
-        match bounds[bound] {
+        match admissible.bounds[bound] {
             Some(_) => terms.obstacle = 2.0 * multiplier.abs() * gaps[bound],
             None => terms.unbalanced = multiplier * multiplier * volume,
         }
@@ -379,11 +405,11 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         }
         for (place, group) in self.grouped_facets_of(BoundaryPart::Contact) {
             let Some(gap) = self.data.gap.of(group) else { continue };
+            let admissible = self.admissible_in(pair, place.0);
             let mut mean = 0.0;
             for (point, weight) in self.facet_rule.iter() {
                 let x = self.facet_point(point, place.0, place.1);
-                let inserted = facet_to_cell(point, place.1);
-                let (value, _) = self.admissible_at(pair, place.0, &inserted, &x);
+                let (value, _) = admissible.at(&facet_to_cell(point, place.1), &x);
                 mean += weight * (value - gap.at(&x)).max(0.0);
             }
             terms.contact[place.0] += pair.flux[place_of(place)] * mean;
@@ -402,10 +428,11 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
             let mut sum = 0.0;
             for cell in cells {
                 let volume = self.mesh.geometry(cell).volume.to_f64();
+                let admissible = self.admissible_in(pair, cell);
                 let level = kinks[self.mesh.region(cell)].as_ref();
                 let cut = rule.as_ref().zip(level);
                 self.visit_points(cell, &table, cut, &mut |point, x, weight, _| {
-                    let (value, gradient) = self.admissible_at(pair, cell, point, x);
+                    let (value, gradient) = admissible.at(point, x);
                     let alpha = self.in_region(&self.data.coefficient, cell, x).unwrap_or(1.0);
                     let reaction = self.in_region(&self.data.reaction, cell, x).unwrap_or(0.0);
                     let slope = ((exact.gradient)(x) - gradient).norm_squared();

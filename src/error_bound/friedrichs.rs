@@ -44,10 +44,11 @@ impl<T: Real, const D: usize> Mesh<T, D> {
 #[cfg(test)]
 mod tests {
     use crate::mesh::{BoundaryPart, BoxDomain, Mesh};
+    use crate::real::Point;
 
     #[test]
     fn constants_of_the_unit_square() {
-        let square = || BoxDomain::<2>::unit();
+        let square = || BoxDomain::<2>::dirichlet(Point::zeros(), Point::repeat(1.0));
         let constant = |domain: &BoxDomain<2>| {
             let mesh = Mesh::<f64, 2>::kuhn_box(domain, [3, 3]).expect("a mesh");
             mesh.friedrichs_constant().map(|c| c * std::f64::consts::PI)

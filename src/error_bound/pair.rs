@@ -85,7 +85,7 @@ impl<T: Real, const D: usize> Discretisation<'_, T, D> {
         } else if space.is_conforming_linear() {
             space.patch_fluxes(u, &residual, &forces)?
         } else if !space.broken && space.nodes.iter().all(|node| node.is_facet_mean()) {
-            space.crouzeix_raviart_fluxes(u, &forces)?
+            space.crouzeix_raviart_fluxes(u)?
         } else {
             return Err(NoBound::Element);
         };
@@ -177,8 +177,8 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         residual
     }
 
-    /// The fluxes of the element of Crouzeix and Raviart.
-    fn crouzeix_raviart_fluxes(&self, u: &[T], forces: &[NodeForce]) -> Result<Vec<f64>, NoBound> {
+    /// The fluxes of the element of Crouzeix and Raviart, without those of Neumann data and contact.
+    fn crouzeix_raviart_fluxes(&self, u: &[T]) -> Result<Vec<f64>, NoBound> {
         let load = self.load_by_cell()?;
         let n_cells = self.mesh.n_cells();
         let mut own = vec![0.0; n_cells * (D + 1)];
@@ -202,9 +202,9 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
                 }
             }
         }
-        // the residual of a contact facet is its force
-        for force in forces {
-            flux[force.cell * (D + 1) + force.local] -= force.value;
+        // residuals of the rest of the boundary are multipliers, or zero: fluxes there are data
+        for f in self.mesh.boundary().iter().filter(|f| f.part != BoundaryPart::Dirichlet) {
+            flux[f.cell as usize * (D + 1) + usize::from(f.local)] = 0.0;
         }
         Ok(flux)
     }

@@ -369,7 +369,9 @@ fn a_study_writes_all_levels_on_request() {
     assert_eq!((grid.text("scene"), grid.text("scheme")), ("radial-2d".into(), "wopsip".into()));
     assert_eq!(grid.array("FieldData", "level").1, "4");
     assert_eq!(grid.names("PointData"), ["obstacle", "error", "u"]);
-    assert_eq!(grid.names("CellData"), ["multiplier", "contact", "dimension"]);
+    assert_eq!(grid.names("CellData"), ["bound", "multiplier", "contact", "dimension"]);
+    let shares: f64 = grid.floats("CellData", "bound").iter().sum();
+    assert!((shares - 1.0).abs() < 1e-6, "{shares}");
 }
 
 /// What VTK itself reads: `python3 -m pip install pyvista`, or another Python by
