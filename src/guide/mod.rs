@@ -8,7 +8,7 @@
 //! | [`own_problems`] | a mesh of one's own, materials, boundary names, errors without an exact solution |
 //! | [`conventions`] | signs, scalings, norms, the certificate |
 //! | [`reproduce`] | published tables beside ours |
-//! | [`solvers`] | how inequalities are solved, up to which size, in which time |
+//! | [`solvers`] | which solver runs when, what to do on each status, rounding, time and memory |
 //! | [`assembly`] | what assembly costs |
 //! | [`pictures`] | solutions drawn |
 //! | [`house`] | the rooms of the source and their order |
@@ -47,7 +47,7 @@ pub mod conventions {}
 #[cfg_attr(doc, doc = include_str!("../../docs/reproduce.md"))]
 pub mod reproduce {}
 
-/// The stages of the solver, the number of their steps, rounding, time and memory.
+/// Which solver runs when, and what to do on each status; rounding, time and memory.
 #[cfg_attr(doc, doc = "", doc = include_str!("links.md"))]
 #[cfg_attr(doc, doc = include_str!("../../docs/solvers.md"))]
 pub mod solvers {}

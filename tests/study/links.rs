@@ -6,7 +6,7 @@ use std::path::{Component, Path, PathBuf};
 use std::process::Command;
 
 /// Pages of the repository. Orders and stability are tables that the program writes.
-const PAGES: [&str; 11] = [
+const PAGES: [&str; 12] = [
     "README.md",
     "CHANGELOG.md",
     "docs/assembly.md",
@@ -14,6 +14,7 @@ const PAGES: [&str; 11] = [
     "docs/conventions.md",
     "docs/house.md",
     "docs/orders.md",
+    "docs/own_problems.md",
     "docs/pictures.md",
     "docs/reproduce.md",
     "docs/solvers.md",
