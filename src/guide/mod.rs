@@ -4,6 +4,7 @@
 //!
 //! | chapter | contents |
 //! |---|---|
+//! | [`gallery`] | six programs with pictures |
 //! | [`choosing`] | what each scheme costs and gives, and where it fails |
 //! | [`own_problems`] | a mesh of one's own, materials, boundary names, errors without an exact solution |
 //! | [`conventions`] | signs, scalings, norms, the certificate |
@@ -26,6 +27,11 @@
 // defines at its end. The first definition of a label counts: `links.md` and `pictures.md` stand
 // before each page and define the labels as items of this crate and as pictures inside the page.
 // Only rustdoc reads them.
+
+/// Six programs with pictures.
+#[cfg_attr(doc, doc = "", doc = include_str!("links.md"), doc = include_str!("pictures.md"))]
+#[cfg_attr(doc, doc = include_str!("../../docs/gallery.md"))]
+pub mod gallery {}
 
 /// Which scheme to take: costs, errors, orders and difficulties of each.
 #[cfg_attr(doc, doc = "", doc = include_str!("links.md"), doc = include_str!("pictures.md"))]
