@@ -29,7 +29,7 @@ pub struct Watcher {
 impl Watcher {
     pub fn new(options: &Options) -> Self {
         let bar = bar(options.quiet, 0, "{spinner} {pos} of {len} done, {elapsed}: {msg}");
-        let size: fn(usize, usize) -> f64 = match options.mesh {
+        let size: fn(usize, usize) -> f64 = match options.mesh.path {
             Some(_) => |dimension, level| 2_f64.powf((dimension * level) as f64),
             None => |dimension: usize, level: usize| (level as f64).powf(dimension as f64),
         };

@@ -15,6 +15,7 @@ use std::path::Path;
 
 pub use options::Options;
 
+use crate::mesh_file::with_parts;
 use crate::shared::{Request, bar, print, tick, use_threads, write};
 use unilateral::mesh::gmsh;
 use unilateral::stability::{Effort, Stability, StabilityProgress, Verdict};
@@ -45,8 +46,9 @@ pub fn run(options: &Options) -> Request<bool> {
             _ => {}
         });
     for path in &options.meshes {
-        let mesh = gmsh::read::<f64, 3>(path).map_err(|e| format!("{}: {e}", path.display()))?;
-        study = study.mesh(&name_of(path), mesh.mesh);
+        let read = gmsh::read::<f64, 3>(path).map_err(|e| format!("{}: {e}", path.display()))?;
+        let mesh = with_parts(read.mesh, path, &options.boundary)?;
+        study = study.mesh(&name_of(path), mesh);
     }
     let report = study.run().map_err(|e| e.to_string())?;
     bar.finish_and_clear();
