@@ -28,11 +28,7 @@ pub(crate) fn merge_shapes(text: &str, areas_meet: bool) -> String {
             merged += &format!("<path {kind}=\"{style} d=\"");
             (open, pen) = (Some((is_area, style)), None);
         }
-        let (start, end) = push_path(points, pen, &mut merged);
-        if is_area {
-            merged.push('z');
-        }
-        pen = if is_area { start } else { end };
+        pen = push_path(points, is_area, pen, &mut merged);
     }
     if open.is_some() {
         merged += "\"/>\n";
@@ -49,13 +45,14 @@ fn shape(line: &str) -> Option<(bool, &str, &str)> {
     Some((area.is_some(), style, points.strip_suffix("\"/>")?.trim()))
 }
 
-/// A path through points, each relative to the one before, the first to where the pen is; the first and the
-/// last of them.
+/// A path through points, each relative to the one before, the first to where the pen is; closed if it is that of
+/// an area. Returns where the pen is then.
 fn push_path(
     points: &str,
+    is_area: bool,
     mut pen: Option<(i64, i64)>,
     path: &mut String,
-) -> (Option<(i64, i64)>, Option<(i64, i64)>) {
+) -> Option<(i64, i64)> {
     let mut first = None;
     for point in points.split_whitespace() {
         let Some((x, y)) = point.split_once(',') else { continue };
@@ -73,7 +70,11 @@ fn push_path(
         first = first.or(Some((x, y)));
         pen = Some((x, y));
     }
-    (first, pen)
+    if is_area {
+        path.push('z');
+        return first;
+    }
+    pen
 }
 
 /// A command of a path; a sign separates numbers as well as a space does.

@@ -1,4 +1,4 @@
-//! Links and pictures: of the pages of the repository, and of the built documentation.
+//! Links, pictures and sizes of the pages of the repository, programs of the gallery, links of the built documentation.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
