@@ -22,7 +22,7 @@ pub enum BoundBy {
 /// share is bound if it is bound in one of them.
 #[diagnostic::on_unimplemented(
     message = "`{Self}` is not a constraint set",
-    note = "a constraint set says which nodes an inequality binds: implement `ConstraintSet`, see examples/my_constraint_set.rs"
+    note = "a constraint set says which nodes an inequality binds: implement `ConstraintSet`, see examples/my_element.rs"
 )]
 pub trait ConstraintSet: Send + Sync {
     /// The name users type and reports state.

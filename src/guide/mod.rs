@@ -4,12 +4,13 @@
 //!
 //! | chapter | contents |
 //! |---|---|
+//! | [`gallery`] | six programs with pictures |
 //! | [`choosing`] | what each scheme costs and gives, and where it fails |
 //! | [`own_problems`] | a mesh of one's own, materials, boundary names, errors without an exact solution |
 //! | [`bound`] | bounds on the error without an exact solution: theorems, what is guaranteed, figures |
 //! | [`conventions`] | signs, scalings, norms, the certificate |
 //! | [`reproduce`] | published tables beside ours |
-//! | [`solvers`] | how inequalities are solved, up to which size, in which time |
+//! | [`solvers`] | which solver runs when, what to do on each status, rounding, time and memory |
 //! | [`assembly`] | what assembly costs |
 //! | [`pictures`] | solutions drawn |
 //! | [`house`] | the rooms of the source and their order |
@@ -27,6 +28,11 @@
 // defines at its end. The first definition of a label counts: `links.md` and `pictures.md` stand
 // before each page and define the labels as items of this crate and as pictures inside the page.
 // Only rustdoc reads them.
+
+/// Six programs with pictures.
+#[cfg_attr(doc, doc = "", doc = include_str!("links.md"), doc = include_str!("pictures.md"))]
+#[cfg_attr(doc, doc = include_str!("../../docs/gallery.md"))]
+pub mod gallery {}
 
 /// Which scheme to take: costs, errors, orders and difficulties of each.
 #[cfg_attr(doc, doc = "", doc = include_str!("links.md"), doc = include_str!("pictures.md"))]
@@ -53,7 +59,7 @@ pub mod conventions {}
 #[cfg_attr(doc, doc = include_str!("../../docs/reproduce.md"))]
 pub mod reproduce {}
 
-/// The stages of the solver, the number of their steps, rounding, time and memory.
+/// Which solver runs when, and what to do on each status; rounding, time and memory.
 #[cfg_attr(doc, doc = "", doc = include_str!("links.md"))]
 #[cfg_attr(doc, doc = include_str!("../../docs/solvers.md"))]
 pub mod solvers {}

@@ -15,6 +15,7 @@ mod render;
 mod series;
 mod slopes;
 mod style;
+mod svg;
 mod sweep;
 
 pub(crate) use cost::{Cost, NamedCurve, cost_figure};

@@ -5,6 +5,7 @@ use super::layout::Layer;
 use super::panel::draw_panel;
 use super::pen::{Drawn, FAMILY, Pen};
 use super::style::PAPER;
+use super::svg::merge_shapes;
 use plotters::prelude::*;
 use plotters::style::{FontStyle, register_font};
 use std::fs::File;
@@ -28,6 +29,11 @@ pub(crate) trait Drawing {
     fn size(&self) -> (f64, f64);
     /// Draws on empty paper.
     fn draw<DB: DrawingBackend>(&self, pen: &Pen<DB>) -> Drawn;
+
+    /// Whether areas of a colour meet, as the parts of a map do and the marks of a curve do not.
+    fn areas_meet(&self) -> bool {
+        false
+    }
 
     /// Width and height in pixels.
     fn pixels(&self, scale: u32) -> (u32, u32) {
@@ -125,7 +131,7 @@ pub(crate) fn draw_svg(drawing: &impl Drawing) -> Result<String, String> {
     }
     let drawn = format!("<svg width=\"{}\" height=\"{}\"", size.0, size.1);
     let wanted = format!("<svg width=\"{}\" height=\"{}\"", shown.0, shown.1);
-    Ok(text.replacen(&drawn, &wanted, 1))
+    Ok(merge_shapes(&text.replacen(&drawn, &wanted, 1), drawing.areas_meet()))
 }
 
 /// Writes a drawing as a PNG file.

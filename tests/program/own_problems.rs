@@ -125,6 +125,64 @@ fn groups_of_a_mesh_are_given_their_part() {
 }
 
 #[test]
+fn every_command_takes_a_mesh_and_the_parts_of_its_boundary() {
+    let scratch = Scratch::new("commands");
+    let text = Square::with(|s| s.names[0] = "1 1 \"wall\"");
+    let mesh = scratch.file("wall.msh", &text);
+    let run = |name: &str, options: &str| {
+        let output = command(name).args(options.split(' ')).output().unwrap();
+        (output.status.code(), stderr(&output))
+    };
+    let out = scratch.path("pictures");
+    let on = format!("--scene radial-2d --mesh {mesh} --out {out}");
+    let bound = format!("{on} --boundary wall=dirichlet");
+    for (name, options) in [
+        ("pictures", "--scheme p1 --level 1 --series 0,1"),
+        ("work-precision", "--scheme p1 --levels 1 --rounds 1"),
+    ] {
+        assert_eq!(run(name, &format!("{bound} {options}")), (Some(0), String::new()), "{name}");
+        let (code, message) = run(name, &on);
+        assert_eq!(code, Some(2), "{name}: {message}");
+        assert!(message.contains("nothing says what holds on boundary group wall"), "{message}");
+        let (code, message) = run(name, &format!("{on} --boundary gate=contact"));
+        assert_eq!(code, Some(2), "{name}: {message}");
+        assert!(message.contains("has no group gate; it has wall"), "{message}");
+    }
+    for file in ["radial-2d-p1-1.svg", "radial-2d-p1-0.vtu", "radial-2d-p1.vtu", "radial-2d-p1.pvd"]
+    {
+        assert!(scratch.0.join("pictures").join(file).exists(), "{file}");
+    }
+    let tetrahedra = format!("{}/tests/data/unstructured_cube.msh", env!("CARGO_MANIFEST_DIR"));
+    let (code, message) = run(
+        "stability",
+        &format!("--quick --case slivers --mesh {tetrahedra} --boundary gate=contact --out {out}"),
+    );
+    assert_eq!(code, Some(2), "{message}");
+    assert!(message.contains("has no group gate; it has"), "{message}");
+    let (code, message) = run("pictures", &format!("{} --scheme p1 --out {out}", example("plate")));
+    assert_eq!((code, &message[..]), (Some(0), ""));
+    assert!(scratch.0.join("pictures/plate-p1-0.svg").exists());
+}
+
+#[test]
+fn the_default_request_has_two_scenes_and_both_placements() {
+    let scratch = Scratch::new("default");
+    let report = scratch.report("--no-fields --quiet");
+    let labels = ["p1", "sipg", "wopsip", "wopsip:facet-means"];
+    let expected = ["radial-2d", "signorini-2d"].map(|scene| {
+        labels.map(|label| [8, 16, 32, 64, 128].map(|level| (scene, label, level))).concat()
+    });
+    let found: Vec<(&str, &str, u64)> = rows(&report)
+        .iter()
+        .map(|r| {
+            let text = |key: &str| r[key].as_str().unwrap();
+            (text("scene"), text("label"), r["level"].as_u64().unwrap())
+        })
+        .collect();
+    assert_eq!(found, expected.concat());
+}
+
+#[test]
 fn a_report_against_another_reference_is_not_resumed() {
     let scratch = Scratch::new("resume-reference");
     let options = format!("{} --scheme p1 --levels 0 --reference", example("membrane"));

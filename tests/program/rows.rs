@@ -79,7 +79,7 @@ fn the_report_has_every_key_and_file() {
     let output = scratch.run("--levels 4,8");
     assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
     let progress = stderr(&output);
-    assert_eq!(progress.lines().count(), 2 * 3 * 2, "a line for each row: {progress}");
+    assert_eq!(progress.lines().count(), 2 * 4 * 2, "a line for each row: {progress}");
     assert!(progress.starts_with("radial-2d, p1, active-set, level 4: converged, "), "{progress}");
     let tables = stdout(&output);
     assert!(tables.contains("radial-2d") && tables.contains("signorini-2d"), "{tables}");
@@ -90,7 +90,7 @@ fn the_report_has_every_key_and_file() {
         assert!(report["program"].get(key).is_some_and(|v| !v.is_null()), "program.{key}");
     }
     assert_eq!(report["complete"], true);
-    assert_eq!(rows(&report).len(), 2 * 3 * 2);
+    assert_eq!(rows(&report).len(), 2 * 4 * 2);
     rows(&report).iter().for_each(check_row);
 
     let csv = std::fs::read_to_string(scratch.0.join("out/report.csv")).unwrap();
@@ -114,7 +114,8 @@ fn the_report_has_every_key_and_file() {
     for scene in ["radial-2d", "signorini-2d"] {
         files.push(format!("table-{scene}.tex"));
         for ending in ["vtu", "svg"] {
-            files.extend(["p1", "sipg", "wopsip"].map(|s| format!("{scene}-{s}.{ending}")));
+            let labels = ["p1", "sipg", "wopsip", "wopsip-facet-means"];
+            files.extend(labels.map(|label| format!("{scene}-{label}.{ending}")));
         }
     }
     let mut found: Vec<String> = std::fs::read_dir(scratch.0.join("out"))

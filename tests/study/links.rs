@@ -1,4 +1,4 @@
-//! Links and pictures: of the pages of the repository, and of the built documentation.
+//! Links, pictures and sizes of the pages of the repository, programs of the gallery, links of the built documentation.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
@@ -6,15 +6,17 @@ use std::path::{Component, Path, PathBuf};
 use std::process::Command;
 
 /// Pages of the repository. Orders and stability are tables that the program writes.
-const PAGES: [&str; 12] = [
+const PAGES: [&str; 14] = [
     "README.md",
     "CHANGELOG.md",
     "docs/assembly.md",
     "docs/bound.md",
     "docs/choosing.md",
     "docs/conventions.md",
+    "docs/gallery.md",
     "docs/house.md",
     "docs/orders.md",
+    "docs/own_problems.md",
     "docs/pictures.md",
     "docs/reproduce.md",
     "docs/solvers.md",
@@ -138,20 +140,33 @@ fn base64(bytes: &[u8]) -> String {
     text
 }
 
+/// A drawing as the target of a link in angle brackets, in text that compresses as well as the file.
+fn inline(svg: &str) -> String {
+    let mut text = String::from("<data:image/svg+xml,");
+    for c in svg.chars().filter(|c| *c != '\n') {
+        match c {
+            '"' => text.push('\''),
+            '%' | '#' | '<' | '>' | '\\' => text += &format!("%{:02X}", u32::from(c)),
+            c => text.push(c),
+        }
+    }
+    text + ">"
+}
+
 /// The definitions of all pictures of the pages, each with its bytes.
 fn embedded_pictures() -> String {
     let mut lines = BTreeSet::new();
     for page in PAGES {
         let path = root().join(page);
         for (label, target) in definitions(&read(&path)) {
-            let kind = match target.rsplit_once('.') {
-                Some((_, "png")) => "png",
-                Some((_, "svg")) => "svg+xml",
+            let file = path.parent().unwrap().join(&target);
+            let bytes = || fs::read(&file).unwrap_or_else(|e| panic!("{}: {e}", file.display()));
+            let data = match target.rsplit_once('.') {
+                Some((_, "png")) => format!("data:image/png;base64,{}", base64(&bytes())),
+                Some((_, "svg")) => inline(&read(&file)),
                 _ => continue,
             };
-            let file = path.parent().unwrap().join(&target);
-            let bytes = fs::read(&file).unwrap_or_else(|e| panic!("{}: {e}", file.display()));
-            lines.insert(format!("[{label}]: data:image/{kind};base64,{}\n", base64(&bytes)));
+            lines.insert(format!("[{label}]: {data}\n"));
         }
     }
     lines.into_iter().collect::<String>() + "\n"
@@ -167,6 +182,65 @@ fn pictures_of_the_guide_are_those_of_the_pages() {
         read(&root().join(PICTURES)) == embedded_pictures(),
         "{PICTURES} is not up to date: UNILATERAL_WRITE_PICTURES=1 cargo test --test study links"
     );
+}
+
+/// Files of a folder and of the folders in it.
+fn files(folder: &Path) -> Vec<PathBuf> {
+    let entries = fs::read_dir(folder).unwrap_or_else(|e| panic!("{}: {e}", folder.display()));
+    let of = |path: PathBuf| if path.is_dir() { files(&path) } else { vec![path] };
+    entries.flat_map(|entry| of(entry.unwrap().path())).collect()
+}
+
+#[test]
+fn files_of_the_documentation_are_small_and_shown() {
+    let shown: BTreeSet<PathBuf> = PAGES
+        .iter()
+        .flat_map(|page| {
+            let path = root().join(page);
+            let targets = targets(&read(&path));
+            targets.into_iter().map(move |target| normal(&path.parent().unwrap().join(target)))
+        })
+        .chain(PAGES.iter().map(|page| root().join(page)))
+        .collect();
+    for file in files(&root().join("docs")) {
+        let bytes = fs::metadata(&file).unwrap().len();
+        assert!(bytes <= 60_000, "{}: {bytes} bytes", file.display());
+        assert!(shown.contains(&file), "no page shows {}", file.display());
+    }
+}
+
+/// The sections of the gallery and their programs.
+const PROGRAMS: [(&str, &str); 6] = [
+    ("A mesh of one's own", "one_problem.rs"),
+    ("A scheme", "my_scheme.rs"),
+    ("An element and a constraint set", "my_element.rs"),
+    ("A study against a reference", "against_a_reference.rs"),
+    ("Out to SciPy and back", "solve_elsewhere.py"),
+    ("The contact force", "contact_force.rs"),
+];
+
+#[test]
+fn lines_of_the_gallery_are_lines_of_the_examples() {
+    let page = read(&root().join("docs/gallery.md"));
+    for (heading, program) in PROGRAMS {
+        let text = read(&root().join("examples").join(program));
+        let mut rest = text.lines();
+        let section = page.split(&format!("\n## {heading}\n")).nth(1).expect(heading);
+        let section = section.split("\n## ").next().unwrap_or_default();
+        let mut shown = 0;
+        for block in section.split("\n```").skip(1).step_by(2) {
+            let Some(code) = block.strip_prefix("rust,ignore\n").or(block.strip_prefix("python\n"))
+            else {
+                continue;
+            };
+            for line in code.lines().filter(|line| !line.trim().is_empty()) {
+                let found = rest.any(|of_file| of_file.trim() == line.trim());
+                assert!(found, "{program} has no such line, or not in this place: {line}");
+                shown += 1;
+            }
+        }
+        assert!(shown >= 5, "{heading}: {shown} lines");
+    }
 }
 
 /// What a page of HTML points to, and the anchors it has.

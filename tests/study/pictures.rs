@@ -53,21 +53,36 @@ fn paths(svg: &str) -> Vec<(String, Vec<Vec<[f64; 2]>>)> {
     let attribute = |line: &str, name: &str| -> String {
         line.split(&format!("{name}=\"")).nth(1).unwrap().split('"').next().unwrap().to_owned()
     };
-    let polygon = |text: &str| {
-        let mut at = [0.0; 2];
-        let step = |part: &str| {
-            let numbers: Vec<f64> = part.split(' ').map(|n| n.parse().unwrap()).collect();
-            at = [at[0] + numbers[0], at[1] + numbers[1]];
-            at
+    let numbers = |text: &str| -> Vec<f64> {
+        text.replace('-', " -").split_whitespace().map(|n| n.parse().unwrap()).collect()
+    };
+    // every polygon begins relative to the beginning of the one before
+    let polygons = |path: &str| {
+        let mut start = [0.0; 2];
+        let polygon = |text: &str| -> Vec<[f64; 2]> {
+            let mut at = start;
+            let starts: Vec<usize> =
+                text.match_indices(|c: char| c.is_alphabetic()).map(|(k, _)| k).collect();
+            let ends = starts.iter().skip(1).copied().chain([text.len()]);
+            let commands = starts.iter().zip(ends).map(|(&a, b)| text[a..b].split_at(1));
+            let commands = commands.map(|(command, text)| (command, numbers(text)));
+            let mut corners = if text.starts_with(['M', 'm']) { vec![] } else { vec![start] };
+            for (command, numbers) in commands {
+                let step = match command {
+                    "h" => [numbers[0], 0.0],
+                    "v" => [0.0, numbers[0]],
+                    _ => [numbers[0], numbers[1]],
+                };
+                at = [at[0] + step[0], at[1] + step[1]];
+                corners.push(at);
+            }
+            start = corners[0];
+            corners
         };
-        text.trim_start_matches('M').split('l').map(step).collect()
+        path.split('z').filter(|p| !p.is_empty()).map(polygon).collect()
     };
     let filled = svg.lines().filter(|l| l.starts_with("<path shape-rendering"));
-    let of = |line: &str| {
-        let path = attribute(line, " d");
-        let polygons = path.split('z').filter(|p| !p.is_empty()).map(polygon).collect();
-        (attribute(line, "fill"), polygons)
-    };
+    let of = |line: &str| (attribute(line, "fill"), polygons(&attribute(line, " d")));
     filled.map(of).collect()
 }
 

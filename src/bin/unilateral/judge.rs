@@ -9,14 +9,16 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 use serde_json::{Value, json};
 use unilateral::exchange::read_vector;
-use unilateral::mesh::{BoundaryPart, gmsh};
+use unilateral::mesh::BoundaryPart;
 use unilateral::problem_file::{self, AnyOwnProblem};
 use unilateral::real::Real;
 use unilateral::scenes::{self, AnyScene, Parameters};
 use unilateral::scheme::NamedScheme;
 use unilateral::study::{Program, Report, Row, RowKey, file_name};
 
-use crate::compare::{self, Posed};
+use crate::compare;
+use crate::mesh_file::MeshFile;
+use crate::posed::Posed;
 use crate::shared::{Request, cannot_write, fingerprint, print, read, write};
 
 /// Judges a vector that another program found for an inequality of `compare --dump`
@@ -36,16 +38,19 @@ pub struct Options {
 /// The file of a folder that says which inequality it has.
 const REQUEST: &str = "request.json";
 
-/// Writes what `judge` must know of each inequality.
-pub fn write_requests(options: &compare::Options, keys: &[RowKey]) -> Request<()> {
+/// Writes what `judge` must know of each inequality, with the fingerprints of all files that were read.
+pub fn write_requests(
+    options: &compare::Options,
+    contents: &[String],
+    keys: &[RowKey],
+) -> Request<()> {
     let Some(directory) = &options.dump else { return Ok(()) };
     let absolute = |path: &Option<PathBuf>| path.as_ref().map(std::path::absolute).transpose();
-    let files = [absolute(&options.mesh), absolute(&options.problem)];
+    let files = [absolute(&options.mesh.path), absolute(&options.problem)];
     let [mesh, problem] = files.map(|file| file.map_err(|e| format!("cannot find a file: {e}")));
     let (mesh, problem) = (mesh?, problem?);
-    let contents = fingerprints(mesh.as_deref(), problem.as_deref())?;
     let part = |(name, part): &(String, BoundaryPart)| (name.clone(), part.name());
-    let boundary: BTreeMap<String, &str> = options.boundary.iter().map(part).collect();
+    let boundary: BTreeMap<String, &str> = options.mesh.boundary.iter().map(part).collect();
     for RowKey { scene, label, level, .. } in keys {
         let folder = directory.join(file_name(&format!("{scene}-{label}-{level}")));
         let request = json!({
@@ -57,19 +62,6 @@ pub fn write_requests(options: &compare::Options, keys: &[RowKey]) -> Request<()
         write(&folder.join(REQUEST), format!("{request:#}\n"))?;
     }
     Ok(())
-}
-
-/// The fingerprints of a mesh file, of a problem file, and of the mesh file that this names.
-fn fingerprints(mesh: Option<&Path>, problem: Option<&Path>) -> Request<Vec<String>> {
-    let mut found = Vec::new();
-    for path in mesh.into_iter().chain(problem) {
-        found.push(fingerprint(&read(path)?));
-    }
-    if let Some(path) = problem {
-        let own = problem_file::read(path).map_err(|e| e.to_string())?;
-        found.extend(own.mesh_bytes().map(fingerprint));
-    }
-    Ok(found)
 }
 
 /// Whether the certificate is within its limits.
@@ -89,26 +81,42 @@ fn judge<T: Real>(options: &Options, path: &Path, request: &Value) -> Request<bo
     let scheme = text("label")?.parse::<NamedScheme>();
     let scheme = scheme.map_err(|e| format!("{}: {e}", path.display()))?;
     let level = request["level"].as_u64().ok_or_else(|| wrong("level"))? as usize;
-    let mesh = request["mesh"].as_str().map(PathBuf::from);
-    let problem = request["problem"].as_str().map(Path::new);
-    if json!(fingerprints(mesh.as_deref(), problem)?) != request["contents"] {
-        let files = [mesh.as_deref(), problem];
-        let files: Vec<String> = files.iter().flatten().map(|p| p.display().to_string()).collect();
-        return Err(format!(
-            "{} (or its mesh) is not what it was when {} was written: dump the inequality again",
-            files.join(", "),
-            path.display()
+    let is_unchanged = |place: usize, file: &Path, bytes: &[u8]| {
+        let file = file.display();
+        match request["contents"][place] == fingerprint(bytes) {
+            true => Ok(()),
+            false => Err(format!(
+                "{file} (or its mesh) is not what it was when {} was written: dump the inequality again",
+                path.display()
+            )),
+        }
+    };
+    let values = read_vector(&options.vector).map_err(|e| e.to_string())?;
+    let mut mesh = None;
+    if let Some(file) = request["mesh"].as_str() {
+        let bytes = read(Path::new(file))?;
+        is_unchanged(0, Path::new(file), &bytes)?;
+        let parts = request["boundary"].as_object().into_iter().flatten();
+        let part = |(name, part): (&String, &Value)| {
+            Some((name.clone(), BoundaryPart::from_name(part.as_str()?)?))
+        };
+        mesh = Some((
+            MeshFile { path: Some(file.into()), boundary: parts.filter_map(part).collect() },
+            bytes,
         ));
     }
-    let values = read_vector(&options.vector).map_err(|e| e.to_string())?;
-    let mesh = mesh.map(|mesh| (mesh, &request["boundary"]));
-    let of = (&scheme, level, mesh, &values[..]);
-    let row = match problem {
-        Some(path) => match problem_file::read(path).map_err(|e| e.to_string())? {
-            AnyOwnProblem::One(own) => row::<T, 1>(own.into(), of),
-            AnyOwnProblem::Two(own) => row::<T, 2>(own.into(), of),
-            AnyOwnProblem::Three(own) => row::<T, 3>(own.into(), of),
-        },
+    let of = (&scheme, level);
+    let row = match request["problem"].as_str().map(Path::new) {
+        Some(path) => {
+            is_unchanged(0, path, &read(path)?)?;
+            let own = problem_file::read(path).map_err(|e| e.to_string())?;
+            is_unchanged(1, path, own.mesh_bytes().unwrap_or_default())?;
+            match own {
+                AnyOwnProblem::One(own) => row::<T, 1>(own.into(), of, mesh, &values),
+                AnyOwnProblem::Two(own) => row::<T, 2>(own.into(), of, mesh, &values),
+                AnyOwnProblem::Three(own) => row::<T, 3>(own.into(), of, mesh, &values),
+            }
+        }
         None => {
             let entry = scenes::by_name(text("scene")?).ok_or_else(|| wrong("scene"))?;
             let number = |key: &str, is_taken: bool| request[key].as_f64().filter(|_| is_taken);
@@ -117,9 +125,9 @@ fn judge<T: Real>(options: &Options, path: &Path, request: &Value) -> Request<bo
                 .with_contrast(number("contrast", entry.accepts.contrast))
                 .with_load(number("load", entry.accepts.load));
             match entry.make(&parameters).map_err(|e| e.to_string())? {
-                AnyScene::One(scene) => row::<T, 1>(scene.into(), of),
-                AnyScene::Two(scene) => row::<T, 2>(scene.into(), of),
-                AnyScene::Three(scene) => row::<T, 3>(scene.into(), of),
+                AnyScene::One(scene) => row::<T, 1>(scene.into(), of, mesh, &values),
+                AnyScene::Two(scene) => row::<T, 2>(scene.into(), of, mesh, &values),
+                AnyScene::Three(scene) => row::<T, 3>(scene.into(), of, mesh, &values),
             }
         }
     }?;
@@ -144,15 +152,14 @@ fn judge<T: Real>(options: &Options, path: &Path, request: &Value) -> Request<bo
 
 fn row<T: Real, const D: usize>(
     posed: Posed<D>,
-    (scheme, level, mesh, values): (&NamedScheme, usize, Option<(PathBuf, &Value)>, &[f64]),
+    (scheme, level): (&NamedScheme, usize),
+    mesh: Option<(MeshFile, Vec<u8>)>,
+    values: &[f64],
 ) -> Request<Row> {
     let study = posed.study::<T>(&|_| {})?;
     let mut study = study.named_scheme(scheme).levels([level]);
-    if let Some((path, parts)) = mesh {
-        let place = |e: &dyn std::fmt::Display| format!("{}: {e}", path.display());
-        let mesh = gmsh::parse::<T, D>(&read(&path)?).map_err(|e| place(&e))?.mesh;
-        let part_of = |name: &str| parts[name].as_str().and_then(BoundaryPart::from_name);
-        study = study.on_mesh(mesh.with_boundary_parts(&part_of).map_err(|e| place(&e))?);
+    if let Some((file, bytes)) = mesh {
+        study = study.on_mesh(file.parse(&bytes, &|_| {})?);
     }
     study.judge(values).map_err(|e| e.to_string())
 }

@@ -6,8 +6,10 @@
 
 mod compare;
 mod judge;
+mod mesh_file;
 mod orders;
 mod pictures;
+mod posed;
 mod shared;
 mod stability;
 mod work_precision;

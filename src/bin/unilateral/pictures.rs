@@ -4,28 +4,38 @@
 //! `cargo run --release -- pictures --help` lists the options. Exit codes: 0 if every solve converged,
 //! 1 if one did not (its last iterate is drawn, and said to be one), 2 if the request was wrong.
 
+use std::cell::RefCell;
 use std::path::PathBuf;
 
 use clap::Args;
-use unilateral::nested::{Hierarchy, solve};
-use unilateral::paraview::write_pvd;
+use unilateral::error::Error;
+use unilateral::nested::Solved;
 use unilateral::plot::{Picture, Slice};
-use unilateral::scenes::{AnyScene, Scene};
-use unilateral::scheme::{AnyScheme, NamedScheme};
-use unilateral::study::file_name;
+use unilateral::problem_file::{self, AnyOwnProblem};
+use unilateral::scenes::AnyScene;
+use unilateral::scheme::NamedScheme;
+use unilateral::study::{Row, Study, file_name};
 
-use crate::shared::{Request, print, scene};
+use crate::mesh_file::MeshFile;
+use crate::posed::Posed;
+use crate::shared::{Request, print, print_to, scene};
 
-/// Draws the solution of a scheme on a scene
+/// Draws the solution of a scheme on a scene, or on a problem of your own
 #[derive(Args, Debug)]
 pub struct Options {
+    /// A problem of your own, as for compare
+    #[arg(value_name = "PROBLEM.toml", conflicts_with_all = ["scene", "mesh", "boundary"])]
+    problem: Option<PathBuf>,
     /// Scene by name
     #[arg(long, default_value = "radial-2d")]
     scene: String,
+    #[command(flatten)]
+    mesh: MeshFile,
     /// Scheme as NAME[:PLACEMENT][@KEY=VALUE[,KEY=VALUE...]]
     #[arg(long, default_value = "wopsip")]
     scheme: NamedScheme,
-    /// Subdivisions of the scene's shortest side; by default 16, in space 8
+    /// Subdivisions of the scene's shortest side, by default 16, in space 8; on a mesh: refinements, by
+    /// default none
     #[arg(long, value_name = "N")]
     level: Option<usize>,
     /// In space: the coordinate that the slice fixes, x, y or z
@@ -44,83 +54,84 @@ pub struct Options {
 
 /// Whether every solve converged.
 pub fn run(options: &Options) -> Request<bool> {
+    if let Some(path) = &options.problem {
+        return match problem_file::read(path).map_err(|e| e.to_string())? {
+            AnyOwnProblem::One(own) => draw::<1>(options, &|| own.clone().into()),
+            AnyOwnProblem::Two(own) => draw::<2>(options, &|| own.clone().into()),
+            AnyOwnProblem::Three(own) => draw::<3>(options, &|| own.clone().into()),
+        };
+    }
     match scene(&options.scene)? {
-        AnyScene::One(scene) => draw(options, scene),
-        AnyScene::Two(scene) => draw(options, scene),
-        AnyScene::Three(scene) => draw(options, scene),
+        AnyScene::One(scene) => draw::<1>(options, &|| scene.clone().into()),
+        AnyScene::Two(scene) => draw::<2>(options, &|| scene.clone().into()),
+        AnyScene::Three(scene) => draw::<3>(options, &|| scene.clone().into()),
     }
 }
 
-fn draw<const D: usize>(options: &Options, mut scene: Scene<D>) -> Request<bool> {
-    let scheme = options.scheme.make::<f64, D>();
-    if let Some(set) = options.scheme.constraint_set() {
-        scene.problem = scene.problem.on(set);
-    }
-    let scene = &scene;
-    let level = options.level.unwrap_or(if D == 3 { 8 } else { 16 });
+/// Draws one level, and writes the fields of the series.
+fn draw<const D: usize>(options: &Options, posed: &dyn Fn() -> Posed<D>) -> Request<bool> {
+    let study = |warn: &dyn Fn(String)| -> Request<Study<'_, f64, D>> {
+        let study = posed().study(warn)?.named_scheme(&options.scheme);
+        Ok(match options.mesh.read(warn)? {
+            Some(mesh) => study.on_mesh(mesh),
+            None => study,
+        })
+    };
+    let default = match options.mesh.path.is_some() || posed().has_mesh() {
+        true => 0,
+        false if D == 3 => 8,
+        false => 16,
+    };
     let slice = match (&options.across, options.at) {
         (Some(name), Some(at)) => {
             Some(Slice { axis: ["x", "y", "z"].iter().position(|n| n == name).unwrap_or(2), at })
         }
         _ => None,
     };
-    let meshes = meshes(scene, level)?;
-    let solved = solve(&scene.problem, &meshes, &*scheme).map_err(|e| e.to_string())?;
-    let fields = solved
-        .fields()
-        .ok_or_else(|| format!("level {level}: {}: there is nothing to draw", solved.outcome()))?;
-    let converged = solved.converged();
-    let label = scheme.label_on(scene.problem.constraint_set());
-    let mut title = format!("{}: {label}, level {level}", scene.name);
-    if !converged {
+    let posed = posed();
+    let written = RefCell::new(Vec::new());
+    let level = options.level.unwrap_or(default);
+    let warn = |warning: String| {
+        let _ = print_to(std::io::stderr(), &format!("{warning}\n"));
+    };
+    let picture = study(&warn)?.levels([level]).each_solution(|label, level, solved| {
+        let stem = file_name(&format!("{}-{label}-{level}", posed.name()));
+        let title = format!("{}: {label}, level {level}", posed.name());
+        written.borrow_mut().extend(draw_one(options, &title, &stem, solved, slice)?);
+        Ok(())
+    });
+    let mut rows = picture.run().map_err(|e| e.to_string())?.rows;
+    if let (true, Some(row)) = (written.borrow().is_empty(), rows.first()) {
+        let message = row.message.as_deref().unwrap_or_default();
+        return Err(format!("level {level}: {}: there is nothing to draw", message));
+    }
+    if !options.series.is_empty() {
+        let series = study(&|_| {})?.levels(options.series.clone()).fields_to(&options.out);
+        rows.extend(series.fields_of_all_levels().run().map_err(|e| e.to_string())?.rows);
+        let label = rows.first().map_or("", |row| &row.label);
+        let list = file_name(&format!("{}-{label}.pvd", posed.name()));
+        written.borrow_mut().push(options.out.join(list));
+    }
+    for path in written.borrow().iter() {
+        print(&format!("{}\n", path.display()))?;
+    }
+    Ok(rows.iter().all(Row::converged))
+}
+
+/// Draws a solution and returns the files.
+fn draw_one<const D: usize>(
+    options: &Options,
+    title: &str,
+    stem: &str,
+    solved: &Solved<'_, f64, D>,
+    slice: Option<Slice>,
+) -> Result<Vec<PathBuf>, Error> {
+    let Some(fields) = solved.fields() else { return Ok(Vec::new()) };
+    let mut title = title.to_owned();
+    if !solved.converged() {
         title += &format!(", NOT CONVERGED: {}", solved.outcome());
     }
-    let picture = Picture::of(&title, &scene.problem, solved.mesh(), &fields, slice);
-    let name = name_of(scene, &*scheme, &format!("-{level}"));
-    let written = picture
-        .and_then(|picture| picture.write(&options.out, &name))
-        .map_err(|e| e.to_string())?;
-    for path in written {
-        print(&format!("{}\n", path.display()))?;
-    }
-    Ok(series(options, scene, &*scheme)? && converged)
-}
-
-/// Writes the fields of all levels of the series; whether all converged.
-fn series<const D: usize>(
-    options: &Options,
-    scene: &Scene<D>,
-    scheme: &dyn AnyScheme<f64, D>,
-) -> Request<bool> {
-    let mut files = Vec::new();
-    let mut converged = true;
-    for &level in &options.series {
-        let meshes = meshes(scene, level)?;
-        let solved = solve(&scene.problem, &meshes, scheme).map_err(|e| e.to_string())?;
-        let path = options.out.join(name_of(scene, scheme, &format!("-{level}.vtu")));
-        let label = scheme.label_on(scene.problem.constraint_set());
-        let written = solved.write_vtu_with(&path, |file| {
-            let file = file.text("scene", &scene.name).text("scheme", &label);
-            file.number("level", level as f64)
-        });
-        written.map_err(|e| e.to_string())?;
-        converged &= solved.converged();
-        files.push((level as f64, path));
-    }
-    if !files.is_empty() {
-        let path = options.out.join(name_of(scene, scheme, ".pvd"));
-        write_pvd(&path, &files).map_err(|e| e.to_string())?;
-        print(&format!("{}\n", path.display()))?;
-    }
-    Ok(converged)
-}
-
-fn meshes<const D: usize>(scene: &Scene<D>, level: usize) -> Request<Hierarchy<f64, D>> {
-    Hierarchy::of_domain(&scene.domain, level).map_err(|e| e.to_string())
-}
-
-/// `SCENE-LABEL` with what follows.
-fn name_of<const D: usize>(scene: &Scene<D>, scheme: &dyn AnyScheme<f64, D>, end: &str) -> String {
-    let label = scheme.label_on(scene.problem.constraint_set());
-    file_name(&format!("{}-{label}{end}", scene.name))
+    let problem = solved.discretisation().problem();
+    let picture = Picture::of(&title, problem, solved.mesh(), &fields, slice)?;
+    Ok(picture.write(&options.out, stem)?.into())
 }

@@ -52,3 +52,27 @@ pub(crate) fn mean_jump<T: Real, const D: usize>(
     };
     Some((mean(one) - mean(other)).abs())
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::section::{Slice, View};
+    use super::edges;
+    use crate::measure::Fields;
+    use crate::mesh::{BoxDomain, Mesh};
+    use crate::real::Point;
+
+    /// In sums of differences of these coordinates the last digit is lost.
+    #[test]
+    fn sections_on_the_boundary_of_a_mesh_meet_at_its_vertices() {
+        let cube = BoxDomain::<3>::dirichlet(Point::repeat(0.1), Point::repeat(0.7));
+        let mesh = Mesh::<f64, 3>::kuhn_box(&cube, [3; 3]).unwrap();
+        let fields = Fields::default();
+        for at in [0.1, 0.7] {
+            let view = View::new(&mesh, &fields, Some(Slice { axis: 2, at }));
+            let sections = view.sections();
+            assert_eq!(sections.len(), 18);
+            let outer = edges(&sections).iter().filter(|edge| edge.sides.len() == 1).count();
+            assert_eq!(outer, 12, "at {at}");
+        }
+    }
+}

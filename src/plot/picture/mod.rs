@@ -17,7 +17,6 @@ mod map;
 mod panel;
 mod plane;
 mod section;
-mod svg;
 mod trace;
 
 use std::fs;
@@ -171,8 +170,7 @@ impl Picture {
                 ),
             });
         }
-        let text = draw_svg(self).map_err(|why| write_error(Path::new("SVG"), why))?;
-        Ok(svg::merge_shapes(&text))
+        draw_svg(self).map_err(|why| write_error(Path::new("SVG"), why))
     }
 
     /// Writes the picture as a PNG file.
@@ -225,6 +223,10 @@ impl Picture {
 }
 
 impl Drawing for Picture {
+    fn areas_meet(&self) -> bool {
+        true
+    }
+
     fn size(&self) -> (f64, f64) {
         self.layout().size
     }

@@ -127,10 +127,12 @@ impl<'a, T: Real, const D: usize> View<'a, T, D> {
             for k in 0..4 {
                 barycentric[k] = (1.0 - share) * simplex[i][k] + share * simplex[j][k];
             }
-            Corner {
-                at: self.plane_point(&(points[i] + (points[j] - points[i]) * share)),
-                barycentric,
-            }
+            // a vertex on the plane is where it is, in the section of every cell
+            let at = match share == 1.0 {
+                true => points[j],
+                false => points[i] + (points[j] - points[i]) * share,
+            };
+            Corner { at: self.plane_point(&at), barycentric }
         };
         edges.iter().map(corner).collect()
     }

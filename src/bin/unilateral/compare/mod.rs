@@ -14,7 +14,6 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use interrupt::Interrupt;
 pub use options::{Options, list};
 use options::{check_numbers, choose, choose_schemes};
-pub use prepare::Posed;
 use prepare::{Run, prepare};
 use watcher::Watcher;
 
@@ -67,7 +66,7 @@ fn program<T: Real>(options: &Options, files: &[(&str, String)]) -> Program {
     if let Some((scheme, level)) = &options.reference {
         program = program.with_request("reference", format!("{scheme} at level {level}"));
     }
-    for (name, part) in &options.boundary {
+    for (name, part) in &options.mesh.boundary {
         program = program.with_request(&format!("boundary {name}"), part.name());
     }
     for (name, fingerprint) in files {
@@ -88,7 +87,7 @@ struct Chosen {
 
 impl Chosen {
     fn new(options: &Options) -> Request<Self> {
-        let mesh = match &options.mesh {
+        let mesh = match &options.mesh.path {
             None => None,
             Some(path) => {
                 let bytes = read(path)?;
@@ -196,10 +195,11 @@ impl Chosen {
             return Err("no scene fits the mesh; name one to be told why".to_owned());
         }
         let program = program::<T>(options, &files);
+        let contents: Vec<String> = files.into_iter().map(|(_, fingerprint)| fingerprint).collect();
         let journal = start(options, program.clone(), &runs)?;
         interrupt.watch(journal);
         let all = || -> Request<Vec<Vec<Row>>> {
-            runs.iter().try_for_each(|run| write_requests(options, &run.keys))?;
+            runs.iter().try_for_each(|run| write_requests(options, &contents, &run.keys))?;
             runs.into_iter().map(|Run { run, .. }| run(journal)).collect()
         };
         // a panic has printed its message

@@ -6,10 +6,10 @@ use clap::Args;
 use unilateral::constraint::CONSTRAINT_SETS;
 use unilateral::inequality::SOLVERS;
 use unilateral::input::excerpt;
-use unilateral::mesh::BoundaryPart;
 use unilateral::scenes;
 use unilateral::scheme::{NamedScheme, SCHEMES, SchemeOptions, keys_of_scheme};
 
+use crate::mesh_file::MeshFile;
 use crate::shared::{MOST_THREADS, Request, each_once, reference, schemes};
 
 /// Compares finite element schemes on obstacle and Signorini problems
@@ -30,12 +30,8 @@ pub struct Options {
     /// Subdivisions of the scene's shortest side; with --mesh: uniform refinements, from 0
     #[arg(long, value_delimiter = ',', value_name = "N[,N...]", allow_negative_numbers = true, value_parser = whole)]
     pub levels: Vec<usize>,
-    /// Run on this Gmsh mesh; physical groups dirichlet, neumann, contact name the boundary parts
-    #[arg(long, value_name = "FILE")]
-    pub mesh: Option<PathBuf>,
-    /// The parts of other groups of the mesh, as bore=neumann
-    #[arg(long, value_delimiter = ',', value_name = "NAME=PART[,...]", requires = "mesh", value_parser = boundary)]
-    pub boundary: Vec<(String, BoundaryPart)>,
+    #[command(flatten)]
+    pub mesh: MeshFile,
     /// Measure against one fine solution in place of the exact one, by p2 where no scheme is named
     #[arg(long, value_name = "[SCHEME@level=]N", value_parser = reference)]
     pub reference: Option<(NamedScheme, usize)>,
@@ -121,14 +117,6 @@ fn whole(text: &str) -> Request<usize> {
     text.parse().map_err(|_| "expected a whole number, such as 16".to_owned())
 }
 
-/// A boundary group and its part.
-fn boundary(text: &str) -> Request<(String, BoundaryPart)> {
-    let found = text.rsplit_once('=');
-    let found =
-        found.and_then(|(name, part)| Some((name.to_owned(), BoundaryPart::from_name(part)?)));
-    found.ok_or_else(|| "expected NAME=dirichlet, NAME=neumann or NAME=contact".to_owned())
-}
-
 fn number(text: &str) -> Request<f64> {
     text.parse().map_err(|_| "expected a number, such as 2.5 or 1e-3".to_owned())
 }
@@ -189,7 +177,7 @@ pub fn choose(
 
 /// The schemes asked for; refuses a penalty factor that none of them takes.
 pub fn choose_schemes(options: &Options) -> Request<Vec<NamedScheme>> {
-    let chosen = schemes(&options.schemes, &["p1", "sipg", "wopsip"])?;
+    let chosen = schemes(&options.schemes, &["p1", "sipg", "wopsip", "wopsip:facet-means"])?;
     for (key, given) in [("sigma", options.sigma), ("eta", options.eta)] {
         let takes = |name: &str| keys_of_scheme(name).contains(&key);
         if let Some(x) = given.filter(|_| !chosen.iter().any(|scheme| takes(scheme.name()))) {

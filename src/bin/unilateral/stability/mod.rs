@@ -11,10 +11,12 @@
 
 mod options;
 
+use std::convert::identity;
 use std::path::Path;
 
 pub use options::Options;
 
+use crate::mesh_file::with_parts;
 use crate::shared::{Request, bar, print, tick, use_threads, write};
 use unilateral::mesh::gmsh;
 use unilateral::stability::{Effort, Stability, StabilityProgress, Verdict};
@@ -32,7 +34,8 @@ fn shown(path: &Path) -> String {
 /// Runs the study; false if a job ended in an error, or with `--strict` if a criterion was missed.
 pub fn run(options: &Options) -> Request<bool> {
     use_threads(options.threads.map(usize::from))?;
-    let bar = bar(options.quiet, 0, "{bar:24} {pos} of {len}, {elapsed}, {eta} to go: {msg}");
+    let bar =
+        bar(options.quiet, 0, "{bar:24} {pos} of {len}, {elapsed}, {eta} to go: {msg}", identity);
     tick(&bar);
     let mut study = Stability::new(options.effort())
         .cases(options.cases.clone())
@@ -45,8 +48,9 @@ pub fn run(options: &Options) -> Request<bool> {
             _ => {}
         });
     for path in &options.meshes {
-        let mesh = gmsh::read::<f64, 3>(path).map_err(|e| format!("{}: {e}", path.display()))?;
-        study = study.mesh(&name_of(path), mesh.mesh);
+        let read = gmsh::read::<f64, 3>(path).map_err(|e| format!("{}: {e}", path.display()))?;
+        let mesh = with_parts(read.mesh, path, &options.boundary)?;
+        study = study.mesh(&name_of(path), mesh);
     }
     let report = study.run().map_err(|e| e.to_string())?;
     bar.finish_and_clear();

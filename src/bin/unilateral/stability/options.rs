@@ -3,7 +3,10 @@
 use std::path::PathBuf;
 
 use clap::Args;
+use unilateral::mesh::BoundaryPart;
 use unilateral::stability::{Effort, STABILITY_CASES};
+
+use crate::mesh_file::boundary;
 
 /// Runs the hard cases of variational inequalities and judges schemes by their criteria
 #[derive(Args, Debug)]
@@ -18,6 +21,9 @@ pub struct Options {
     /// Gmsh files of tetrahedra for the case of slivers
     #[arg(long = "mesh", value_delimiter = ',', value_name = "FILE[,FILE...]")]
     pub meshes: Vec<PathBuf>,
+    /// The parts of other groups of these meshes than dirichlet, neumann and contact, as bore=neumann
+    #[arg(long, value_delimiter = ',', value_name = "NAME=PART[,...]", requires = "meshes", value_parser = boundary)]
+    pub boundary: Vec<(String, BoundaryPart)>,
     /// Coarse meshes and few places of each sweep: within a minute
     #[arg(long)]
     quick: bool,

@@ -6,6 +6,7 @@
 
 mod options;
 
+use std::convert::identity;
 use std::process::Command;
 
 use indicatif::ProgressBar;
@@ -13,7 +14,6 @@ pub use options::Options;
 use unilateral::inequality::ActiveSet;
 use unilateral::input::excerpt;
 use unilateral::linear::LinearMethod;
-use unilateral::mesh::{Mesh, gmsh};
 use unilateral::problem_file::{self, AnyOwnProblem, Geometry, OwnProblem};
 use unilateral::real::Real;
 use unilateral::scenes::{self, AnyScene, Parameters, Scene};
@@ -23,7 +23,7 @@ use unilateral::work_precision::{
     Case, Precision, WorkPrecision, WorkProgress, WorkReport, changes,
 };
 
-use crate::compare::Posed;
+use crate::posed::Posed;
 use crate::shared::{Request, bar, print, read, tick, use_threads, write};
 
 /// Whether every run converged and nothing changed.
@@ -48,7 +48,7 @@ pub fn run(options: &Options) -> Request<bool> {
         changes(text, &report).map_err(|e| e.to_string())?;
     }
     let template = "{bar:24} {pos} of {len} runs, {elapsed}, {eta} to go: {wide_msg}";
-    let bar = bar(options.quiet, planned(options, &schemes), template);
+    let bar = bar(options.quiet, planned(options, &schemes), template, identity);
     tick(&bar);
     for name in options.scenes() {
         match scene(options, &name)? {
@@ -89,7 +89,7 @@ pub fn run(options: &Options) -> Request<bool> {
 
 /// The mesh and the parameter of the scenes, for the heading of the report.
 fn setting(options: &Options) -> String {
-    let mesh = options.mesh.as_ref().and_then(|path| path.file_name());
+    let mesh = options.mesh.path.as_ref().and_then(|path| path.file_name());
     let mesh = mesh.map(|name| format!("refinements of {}", excerpt(name.as_encoded_bytes())));
     let contrast = options.contrast.map(|x| format!("contrast {x:e}"));
     [mesh, contrast].into_iter().flatten().collect::<Vec<_>>().join(", ")
@@ -102,18 +102,11 @@ fn scene(options: &Options, name: &str) -> Request<AnyScene> {
     entry.make(&Parameters::new().with_contrast(contrast)).map_err(|e| e.to_string())
 }
 
-/// The mesh of the options.
-fn mesh<T: Real, const D: usize>(options: &Options) -> Request<Option<Mesh<T, D>>> {
-    let Some(path) = &options.mesh else { return Ok(None) };
-    let read = gmsh::parse::<T, D>(&read(path)?);
-    read.map(|m| Some(m.mesh)).map_err(|e| format!("{}: {e}", path.display()))
-}
-
 /// How many runs there will be on all scenes, unless some take too long.
 fn planned(options: &Options, schemes: &[NamedScheme]) -> usize {
     let variants = schemes.len() * options.linear().len() * options.precisions().len();
     let of_scene = |name: &String| {
-        let has_mesh = options.mesh.is_some();
+        let has_mesh = options.mesh.path.is_some();
         let levels = scenes::by_name(name).map(|entry| options.levels(entry.dimension, has_mesh));
         let mut levels = levels.unwrap_or_default();
         levels.sort_unstable();
@@ -140,7 +133,7 @@ where
         None => unreachable!("it was made before"),
     };
     let mut study = WorkPrecision::<D>::new(remake);
-    let on_mesh = mesh(options)?;
+    let on_mesh = options.mesh.read(&|_| {})?;
     let has_mesh = on_mesh.is_some();
     if let Some(mesh) = on_mesh {
         study = study.on_mesh(mesh);
@@ -248,8 +241,11 @@ fn memory_of(case: &Case, options: &Options) -> Option<u64> {
     command.args(["--scheme", &v.label]);
     command.args(["--linear", &v.linear_asked, "--precision", &v.precision]);
     command.args(["--levels", &case.level.to_string()]);
-    if let Some(path) = &options.mesh {
+    if let Some(path) = &options.mesh.path {
         command.arg("--mesh").arg(path);
+    }
+    for (name, part) in &options.mesh.boundary {
+        command.args(["--boundary", &format!("{name}={}", part.name())]);
     }
     if let Some(x) = options.contrast {
         command.args(["--contrast", &format!("{x:e}")]);
@@ -314,7 +310,7 @@ fn run_one(options: &Options) -> Request<()> {
 }
 
 fn once<T: Real, const D: usize>(options: &Options, posed: Posed<D>) -> Request<()> {
-    let mesh = mesh(options)?;
+    let mesh = options.mesh.read(&|_| {})?;
     let has_mesh = mesh.is_some() || posed.has_mesh();
     let mut study = posed.study::<T>(&|_| {})?;
     if let Some(mesh) = mesh {

@@ -9,6 +9,7 @@ use unilateral::scenes;
 use unilateral::scheme::NamedScheme;
 use unilateral::work_precision::Precision;
 
+use crate::mesh_file::MeshFile;
 use crate::shared::{Request, reference, schemes};
 
 const SCENES: [&str; 5] = ["radial-2d", "ball-2d", "signorini-2d", "hertz-2d", "radial-3d"];
@@ -18,7 +19,7 @@ const CHOSEN: [&str; 6] = ["p1", "cr", "sipg", "wopsip", "wopsip:facet-means", "
 #[derive(Args, Debug)]
 pub struct Options {
     /// A problem of your own, as for compare; with --reference, for without errors there is nothing to reach
-    #[arg(value_name = "PROBLEM.toml", conflicts_with_all = ["scenes", "mesh"])]
+    #[arg(value_name = "PROBLEM.toml", conflicts_with_all = ["scenes", "mesh", "boundary"])]
     pub problem: Option<PathBuf>,
     /// Scenes by name; by default radial-2d, ball-2d, signorini-2d, hertz-2d, radial-3d
     #[arg(long = "scene", value_delimiter = ',', value_name = "A[,B...]")]
@@ -32,9 +33,8 @@ pub struct Options {
     /// Scalars
     #[arg(long, value_delimiter = ',', value_parser = Precision::NAMES.map(|p| p.0), default_value = "f64")]
     precision: Vec<String>,
-    /// Runs the scenes on this Gmsh mesh; levels are then refinements of it
-    #[arg(long, value_name = "FILE", requires = "scenes")]
-    pub mesh: Option<PathBuf>,
+    #[command(flatten)]
+    pub mesh: MeshFile,
     /// Take errors against one fine solution in place of the exact one, by p2 where no scheme is named
     #[arg(long, value_name = "[SCHEME@level=]N", value_parser = reference)]
     pub reference: Option<(NamedScheme, usize)>,
@@ -89,6 +89,9 @@ impl Options {
                 let name = excerpt(name);
                 return Err(format!("unknown scene {name}; there are: {}", names.join(", ")));
             }
+        }
+        if self.mesh.path.is_some() && self.scenes.is_empty() {
+            return Err("--mesh: name the scenes that run on the mesh by --scene".to_owned());
         }
         self.schemes()?;
         let takes = |name: &String| known.iter().any(|e| e.name == *name && e.accepts.contrast);

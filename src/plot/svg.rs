@@ -1,12 +1,14 @@
 //! Shapes of an SVG file made fewer.
 
-/// Makes one path of polygons, or of lines, that follow each other in the same style: shorter, and
-/// without the hair lines that viewers leave between neighbours they smooth one by one.
-pub(crate) fn merge_shapes(text: &str) -> String {
+/// Makes one path of lines that follow each other in the same style, which is shorter. Where `areas_meet`,
+/// polygons are merged too, without the hair lines that viewers leave between neighbours they smooth one by
+/// one.
+pub(crate) fn merge_shapes(text: &str, areas_meet: bool) -> String {
     let mut merged = String::with_capacity(text.len() / 2);
     let mut open: Option<(bool, &str)> = None;
+    let mut pen = None;
     for line in text.lines() {
-        let parts = shape(line);
+        let parts = shape(line).filter(|(is_area, ..)| areas_meet || !is_area);
         let style = parts.map(|(is_area, style, _)| (is_area, style));
         if open.is_some() && open != style {
             merged += "\"/>\n";
@@ -24,12 +26,9 @@ pub(crate) fn merge_shapes(text: &str) -> String {
                 "fill=\"none\" stroke"
             };
             merged += &format!("<path {kind}=\"{style} d=\"");
-            open = Some((is_area, style));
+            (open, pen) = (Some((is_area, style)), None);
         }
-        push_path(points, &mut merged);
-        if is_area {
-            merged.push('z');
-        }
+        pen = push_path(points, is_area, pen, &mut merged);
     }
     if open.is_some() {
         merged += "\"/>\n";
@@ -46,18 +45,42 @@ fn shape(line: &str) -> Option<(bool, &str, &str)> {
     Some((area.is_some(), style, points.strip_suffix("\"/>")?.trim()))
 }
 
-/// A path through points: the first as it is, the others relative to the one before.
-fn push_path(points: &str, path: &mut String) {
-    let mut last: Option<(i64, i64)> = None;
+/// A path through points, each relative to the one before, the first to where the pen is; closed if it is that of
+/// an area. Returns where the pen is then.
+fn push_path(
+    points: &str,
+    is_area: bool,
+    mut pen: Option<(i64, i64)>,
+    path: &mut String,
+) -> Option<(i64, i64)> {
+    let mut first = None;
     for point in points.split_whitespace() {
         let Some((x, y)) = point.split_once(',') else { continue };
         let (Ok(x), Ok(y)) = (x.parse::<i64>(), y.parse::<i64>()) else { continue };
-        match last {
-            None => *path += &format!("M{x} {y}"),
-            Some((a, b)) => *path += &format!("l{} {}", x - a, y - b),
+        let step = pen.map(|(a, b)| (x - a, y - b));
+        match (first, step) {
+            (None, None) => push_pair('M', x, y, path),
+            (None, Some((0, 0))) => {}
+            (None, Some((dx, dy))) => push_pair('m', dx, dy, path),
+            (Some(_), Some((dx, 0))) => *path += &format!("h{dx}"),
+            (Some(_), Some((0, dy))) => *path += &format!("v{dy}"),
+            (Some(_), Some((dx, dy))) => push_pair('l', dx, dy, path),
+            (Some(_), None) => {}
         }
-        last = Some((x, y));
+        first = first.or(Some((x, y)));
+        pen = Some((x, y));
     }
+    if is_area {
+        path.push('z');
+        return first;
+    }
+    pen
+}
+
+/// A command of a path; a sign separates numbers as well as a space does.
+fn push_pair(command: char, x: i64, y: i64, path: &mut String) {
+    let space = if y < 0 { "" } else { " " };
+    *path += &format!("{command}{x}{space}{y}");
 }
 
 #[cfg(test)]
@@ -75,11 +98,14 @@ mod tests {
             <polyline fill=\"none\" opacity=\"1\" stroke=\"#1E1E1E\" stroke-width=\"4\" points=\"0,1 2,3 \"/>\n\
             <line/>\n</svg>\n";
         let wanted = "<svg>\n\
-            <path shape-rendering=\"crispEdges\" fill=\"#0072B2\" d=\"M0 0l8 0l-8 8zM8 0l0 8l-8 0z\"/>\n\
-            <path shape-rendering=\"crispEdges\" fill=\"#FFFFFF\" d=\"M8 8l1 1l-1 0z\"/>\n\
-            <path fill=\"none\" stroke=\"#1E1E1E\" stroke-width=\"6\" d=\"M0 1l2 2M5 5l-3 -2\"/>\n\
+            <path shape-rendering=\"crispEdges\" fill=\"#0072B2\" d=\"M0 0h8l-8 8zm8 0v8h-8z\"/>\n\
+            <path shape-rendering=\"crispEdges\" fill=\"#FFFFFF\" d=\"M8 8l1 1h-1z\"/>\n\
+            <path fill=\"none\" stroke=\"#1E1E1E\" stroke-width=\"6\" d=\"M0 1l2 2m3 2l-3-2\"/>\n\
             <path fill=\"none\" stroke=\"#1E1E1E\" stroke-width=\"4\" d=\"M0 1l2 2\"/>\n\
             <line/>\n</svg>\n";
-        assert_eq!(merge_shapes(text), wanted);
+        assert_eq!(merge_shapes(text, true), wanted);
+        let of_lines = merge_shapes(text, false);
+        assert_eq!(of_lines.matches("<polygon").count(), 3);
+        assert_eq!(of_lines.matches("<path").count(), 2);
     }
 }

@@ -1,0 +1,81 @@
+//! A Gmsh file of the command line, and the parts of its boundary.
+
+use std::path::{Path, PathBuf};
+
+use clap::Args;
+use unilateral::mesh::{BoundaryPart, Mesh, MeshError, gmsh};
+use unilateral::real::Real;
+
+use crate::shared::{Request, read};
+
+/// The options of a mesh in place of built-in ones.
+#[derive(Args, Clone, Debug, Default)]
+pub struct MeshFile {
+    /// Run on this Gmsh mesh; physical groups dirichlet, neumann, contact name the boundary parts
+    #[arg(long = "mesh", id = "mesh", value_name = "FILE")]
+    pub path: Option<PathBuf>,
+    /// The parts of other groups of the mesh, as bore=neumann
+    #[arg(long, value_delimiter = ',', value_name = "NAME=PART[,...]", requires = "mesh", value_parser = boundary)]
+    pub boundary: Vec<(String, BoundaryPart)>,
+}
+
+impl MeshFile {
+    /// The mesh, where there is a file; warnings of the file are told.
+    pub fn read<T: Real, const D: usize>(
+        &self,
+        warn: &dyn Fn(String),
+    ) -> Request<Option<Mesh<T, D>>> {
+        let bytes = self.path.as_deref().map(read).transpose()?;
+        bytes.map(|bytes| self.parse(&bytes, warn)).transpose()
+    }
+
+    /// The mesh of the contents of the file.
+    pub fn parse<T: Real, const D: usize>(
+        &self,
+        bytes: &[u8],
+        warn: &dyn Fn(String),
+    ) -> Request<Mesh<T, D>> {
+        let path = self.path.as_deref().unwrap_or(Path::new(""));
+        let read = gmsh::parse::<T, D>(bytes).map_err(|e| format!("{}: {e}", path.display()))?;
+        for warning in &read.warnings {
+            warn(format!("warning: {}: {warning}", path.display()));
+        }
+        with_parts(read.mesh, path, &self.boundary)
+    }
+}
+
+/// A mesh of a file whose boundary groups have these parts besides those that they name.
+pub fn with_parts<T: Real, const D: usize>(
+    mesh: Mesh<T, D>,
+    path: &Path,
+    boundary: &[(String, BoundaryPart)],
+) -> Request<Mesh<T, D>> {
+    let file = path.display();
+    let groups: Vec<&str> =
+        mesh.boundary_groups().iter().flat_map(|g| &g.names).map(String::as_str).collect();
+    if let Some((group, _)) = boundary.iter().find(|(name, _)| !groups.contains(&&name[..])) {
+        let groups = groups.join(", ");
+        return Err(format!("--boundary: {file} has no group {group}; it has {groups}"));
+    }
+    let part_of = |name: &str| {
+        let given = boundary.iter().find(|(group, _)| group == name);
+        given.map(|(_, part)| *part)
+    };
+    let mesh = mesh.with_boundary_parts(&part_of).map_err(|e| format!("{file}: {e}"))?;
+    mesh.check_boundary_parts().map_err(|e| match e {
+        MeshError::UndecidedGroup { group, .. } => format!(
+            "{file}: nothing says what holds on boundary group {group}: \
+             --boundary {group}=dirichlet, {group}=neumann or {group}=contact does"
+        ),
+        other => format!("{file}: {other}"),
+    })?;
+    Ok(mesh)
+}
+
+/// A boundary group and its part.
+pub fn boundary(text: &str) -> Request<(String, BoundaryPart)> {
+    let found = text.rsplit_once('=');
+    let found =
+        found.and_then(|(name, part)| Some((name.to_owned(), BoundaryPart::from_name(part)?)));
+    found.ok_or_else(|| "expected NAME=dirichlet, NAME=neumann or NAME=contact".to_owned())
+}

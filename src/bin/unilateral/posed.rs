@@ -1,0 +1,58 @@
+//! What a command solves: a scene of the catalogue, or a problem of a file.
+
+use unilateral::problem_file::{Geometry, OwnProblem};
+use unilateral::real::Real;
+use unilateral::scenes::Scene;
+use unilateral::study::Study;
+
+use crate::shared::Request;
+
+/// A problem in one dimension: a scene of the catalogue, or a problem of a file.
+pub enum Posed<const D: usize> {
+    Scene(Scene<D>),
+    Own(OwnProblem<D>),
+}
+
+impl<const D: usize> From<Scene<D>> for Posed<D> {
+    fn from(scene: Scene<D>) -> Self {
+        Self::Scene(scene)
+    }
+}
+
+impl<const D: usize> From<OwnProblem<D>> for Posed<D> {
+    fn from(own: OwnProblem<D>) -> Self {
+        Self::Own(own)
+    }
+}
+
+impl<const D: usize> Posed<D> {
+    pub fn name(&self) -> &str {
+        match self {
+            Self::Scene(scene) => &scene.name,
+            Self::Own(own) => &own.name,
+        }
+    }
+    /// Whether it brings a mesh with it.
+    pub fn has_mesh(&self) -> bool {
+        matches!(self, Self::Own(OwnProblem { geometry: Geometry::File { .. }, .. }))
+    }
+    /// A study of it, without schemes; warnings of the mesh file are told.
+    pub fn study<'a, T: Real>(self, warn: &dyn Fn(String)) -> Request<Study<'a, T, D>> {
+        let own = match self {
+            Self::Scene(scene) => return Ok(Study::new(scene)),
+            Self::Own(own) => own,
+        };
+        let read = own.mesh::<T>().map_err(|e| e.to_string())?;
+        match (own.geometry, read) {
+            (Geometry::File { path, .. }, Some(read)) => {
+                for warning in &read.warnings {
+                    warn(format!("warning: {}: {warning}", path.display()));
+                }
+                Study::of_problem(&own.name, own.problem, read.mesh)
+                    .map_err(|e| format!("{}: {e}", path.display()))
+            }
+            (Geometry::Box(domain), _) => Ok(Study::new(Scene::new(own.name, domain, own.problem))),
+            _ => Err("a problem has a mesh or a box".to_owned()),
+        }
+    }
+}
