@@ -206,7 +206,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         let algebra = if constant.is_finite() { constant * unbalanced } else { 0.0 };
         let flux_square = (with_oscillation.sqrt() + algebra).powi(2);
         let square = flux_square + obstacle + contact;
-        if !square.is_finite() || !(least(|t| t.least_coefficient) > 0.0) {
+        if !square.is_finite() || least(|t| t.least_coefficient) <= 0.0 {
             return Err(NoBound::NotFinite);
         }
         let share = |part: f64| if square > 0.0 { part / square } else { 0.0 };
@@ -218,8 +218,9 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
                 mismatch: share(mismatch),
                 obstacle: share(obstacle),
                 contact: share(contact),
-                oscillation: share(with_oscillation - mismatch),
-                algebra: share(flux_square - with_oscillation),
+                // differences of equal numbers but for rounding
+                oscillation: share((with_oscillation - mismatch).max(0.0)),
+                algebra: share((flux_square - with_oscillation).max(0.0)),
             },
             cells: terms.iter().map(of_cell).collect(),
             unproven: self.unproven_terms(is_proven),
