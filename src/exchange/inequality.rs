@@ -20,7 +20,7 @@ use crate::real::{Real, point_f64};
 /// * `load.npy`, `lower.npy`, `upper.npy`: `b` and the bounds, infinite where there is none, equal for
 ///   Dirichlet values;
 /// * `inequality.npz`: all of these, of which `scipy.sparse.load_npz` reads the matrix and `numpy.load` the
-///   arrays `load`, `lower`, `upper`;
+///   arrays `load`, `lower`, `upper`; absent where it would have more than 4 GiB;
 /// * `places.csv`: for each unknown the cell that owns it, if one does, and its place: coordinates of the
 ///   barycentre of the vertices around its node, and these vertices.
 ///
@@ -89,10 +89,12 @@ fn write_files<T: Real, const D: usize>(
     ];
     files.extend(vectors);
     let path = directory.join("inequality.npz");
-    let Some(bytes) = archive(&files) else {
-        return Err(write_error(&path, "more than 4 GiB; matrix.mtx has the matrix"));
-    };
-    replace(&path, |draft| fs::write(draft, bytes)).map(|_| ())
+    match archive(&files) {
+        Some(bytes) => replace(&path, |draft| fs::write(draft, bytes)).map(|_| ()),
+        // the other files have all numbers; an archive of an earlier inequality must not stay
+        None if path.exists() => fs::remove_file(&path).map_err(|e| write_error(&path, e)),
+        None => Ok(()),
+    }
 }
 
 fn write_matrix<T: Real>(file: &mut dyn Write, matrix: &SparseMatrix<T>) -> std::io::Result<()> {

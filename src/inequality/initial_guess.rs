@@ -1,5 +1,6 @@
 //! The data, in addition to an inequality, from which an iterative solver starts.
 
+use super::step_counter::StepCounter;
 use crate::linear::CoarseSpaces;
 
 /// Coarse spaces, starting values and accuracy of a solve. The starting active set is part of the
@@ -15,11 +16,18 @@ pub struct InitialGuess<T> {
     /// energy norm of the iterate); `None` for the limit of the certificate. Direct solvers ignore
     /// it.
     pub energy_tolerance: Option<f64>,
+    /// Receives the number of each outer step as it begins.
+    pub steps: StepCounter,
 }
 
 impl<T> Default for InitialGuess<T> {
     fn default() -> Self {
-        Self { coarse_spaces: CoarseSpaces::Unknown, values: None, energy_tolerance: None }
+        Self {
+            coarse_spaces: CoarseSpaces::Unknown,
+            values: None,
+            energy_tolerance: None,
+            steps: StepCounter::default(),
+        }
     }
 }
 
@@ -41,6 +49,12 @@ impl<T> InitialGuess<T> {
     #[must_use]
     pub fn energy_tolerance(mut self, tolerance: f64) -> Self {
         self.energy_tolerance = Some(tolerance);
+        self
+    }
+    /// Sets what receives the number of each outer step.
+    #[must_use]
+    pub fn steps(mut self, steps: StepCounter) -> Self {
+        self.steps = steps;
         self
     }
 }

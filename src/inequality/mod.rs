@@ -22,6 +22,7 @@
 //! | `scales` | the energy norm and the largest value to which violations are relative |
 //! | `recession` | whether a solution exists and is unique where only bounds hold the domain |
 //! | `initial_guess` | [`InitialGuess`]: coarse spaces, starting values and tolerance of a solve |
+//! | `step_counter` | [`StepCounter`]: the outer step in which a solver is |
 //! | `by_name` | [`solver_by_name`] |
 //! | `solution`, `outcome`, `stage` | [`Solution`], [`Outcome`], [`StageRun`]: the result of a solver |
 //!
@@ -41,6 +42,7 @@ mod recession;
 mod scales;
 mod solution;
 mod stage;
+mod step_counter;
 mod validation;
 
 pub use active_set::{ActiveSet, Globalisation, Preconditioned};
@@ -54,6 +56,7 @@ pub use monotone_multigrid::MonotoneMultigrid;
 pub use outcome::Outcome;
 pub use solution::Solution;
 pub use stage::{Stage, StageRun};
+pub use step_counter::StepCounter;
 pub(crate) use validation::check_definite;
 
 use crate::algebra::Inequality;

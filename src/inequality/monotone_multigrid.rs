@@ -166,6 +166,7 @@ impl<'a, T: Real> MultigridIterate<'a, T> {
             if guess.energy_tolerance.is_some() { f64::INFINITY } else { T::CERTIFICATE_LIMIT };
         while self.cycles < settings.max_cycles {
             self.cycles += 1;
+            guess.steps.set(self.cycles);
             let mut by_sweeps = 0.0;
             for _ in 0..settings.sweeps {
                 by_sweeps += self.gauss_seidel_sweep()?;

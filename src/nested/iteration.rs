@@ -13,7 +13,8 @@ use crate::assemble::{DataQuadrature, Discretisation};
 use crate::element::Layout;
 use crate::error::Error;
 use crate::inequality::{
-    ActiveSet, InequalitySolver, InitialGuess, Outcome, Solution, check_definite, contact_of,
+    ActiveSet, InequalitySolver, InitialGuess, Outcome, Solution, StepCounter, check_definite,
+    contact_of,
 };
 use crate::instances::compiled;
 use crate::mesh::Mesh;
@@ -100,6 +101,7 @@ impl<'a, T: Real, const D: usize> NestedIteration<'a, T, D> {
             solver: Arc::new(ActiveSet::default()),
             quadrature: DataQuadrature::default(),
             repeat: 1,
+            steps: StepCounter::default(),
         };
         Self { p1, has_cold_start: false, observer: Box::new(|_| {}) }
     }
@@ -133,6 +135,13 @@ impl<'a, T: Real, const D: usize> NestedIteration<'a, T, D> {
     #[must_use]
     pub fn cold_start(mut self, has_cold_start: bool) -> Self {
         self.has_cold_start = has_cold_start;
+        self
+    }
+
+    /// Sets what receives the number of each outer step of a solve, also on coarser levels.
+    #[must_use]
+    pub fn steps(mut self, steps: StepCounter) -> Self {
+        self.p1.steps = steps;
         self
     }
 
@@ -288,7 +297,7 @@ impl<'a, T: Real, const D: usize> NestedIteration<'a, T, D> {
             drop(discretise()?.inequality()?);
             assemble_seconds = assemble_seconds.min(clock.elapsed().as_secs_f64());
         }
-        let mut guess = InitialGuess::default();
+        let mut guess = InitialGuess::default().steps(self.p1.steps.clone());
         if let Some(start) = &start {
             // a start without contact stays cold: the solver must detect a body that only contact holds
             if start.contact.iter().any(|&c| c != Contact::Inactive) {

@@ -8,7 +8,7 @@ use crate::algebra::{Bound, Contact, Inequality, Start, Support};
 use crate::assemble::{DataQuadrature, Discretisation};
 use crate::constraint::Nodes;
 use crate::error::Error;
-use crate::inequality::{InequalitySolver, InitialGuess, MonotoneMultigrid, Outcome};
+use crate::inequality::{InequalitySolver, InitialGuess, MonotoneMultigrid, Outcome, StepCounter};
 use crate::linear::{CoarseLevel, CoarseSpaces, P1Level};
 use crate::problem::Problem;
 use crate::real::Real;
@@ -82,6 +82,8 @@ pub(super) struct P1Iteration<'a, T: Real, const D: usize> {
     pub quadrature: DataQuadrature,
     /// Times are the smallest of this many runs, at least one.
     pub repeat: usize,
+    /// Receives the number of each outer step.
+    pub steps: StepCounter,
     /// The solution on each mesh, once computed.
     pub solutions: Vec<Option<Arc<P1Solution<T>>>>,
 }
@@ -167,7 +169,8 @@ impl<T: Real, const D: usize> P1Iteration<'_, T, D> {
         for _ in 0..self.repeat {
             let clock = Instant::now();
             let mut inequality = self.inequality(position)?;
-            let mut guess = InitialGuess::default().energy_tolerance(P1_ENERGY_TOLERANCE);
+            let guess = InitialGuess::default().steps(self.steps.clone());
+            let mut guess = guess.energy_tolerance(P1_ENERGY_TOLERANCE);
             if let Some(start) = &start {
                 inequality.start = Start::Contact(start.contact.clone());
                 guess =

@@ -5,8 +5,8 @@ use super::linear_solver::{Accuracy, LinearFailure, LinearSolver};
 use super::progress::{Obstruction, Patience, ProgressMonitor};
 use super::settings::ActiveSet;
 use crate::algebra::Bound;
-use crate::inequality::Outcome;
 use crate::inequality::certificate::certify_with_rounding;
+use crate::inequality::{Outcome, StepCounter};
 use crate::linear::direct::FactorError;
 use crate::real::Real;
 
@@ -55,6 +55,8 @@ pub(crate) struct Iteration<'s, 'i, 'a, T> {
     /// Whether the certificate must be within its limit. A solution that only provides a start for
     /// another solve needs no small residual.
     pub is_certified: bool,
+    /// Receives the number of each step.
+    pub steps: &'s StepCounter,
 }
 
 impl<T: Real> Iteration<'_, '_, '_, T> {
@@ -125,6 +127,7 @@ impl<T: Real> Iteration<'_, '_, '_, T> {
                 return Err(Outcome::IterationLimit.into());
             }
             self.iterate.outer += 1;
+            self.steps.set(self.iterate.outer);
         }
         let is_prepared = match has_new_states {
             true => self.solver.set_eliminated(&self.iterate.eliminated),

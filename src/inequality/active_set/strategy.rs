@@ -259,6 +259,7 @@ impl<'a, T: Real> Solve<'_, 'a, T> {
             solver: &mut solver,
             patience,
             is_certified: guess.energy_tolerance.is_none(),
+            steps: &guess.steps,
         };
         let mut outcome = match iteration.run() {
             End::Outcome(outcome) => outcome,
@@ -308,8 +309,9 @@ impl<'a, T: Real> Solve<'_, 'a, T> {
         let solver = self.direct.get_or_insert_with(new);
         let iterate = &mut self.iterate;
         let is_certified = true;
+        let steps = &self.guess.steps;
         let mut iteration =
-            Iteration { settings: self.settings, iterate, solver, patience, is_certified };
+            Iteration { settings: self.settings, iterate, solver, patience, is_certified, steps };
         iteration.run()
     }
 
@@ -330,6 +332,7 @@ impl<'a, T: Real> Solve<'_, 'a, T> {
             (method.values(), method.jump_multipliers(), method.steps);
         self.interior_point_may_improve = method.is_identified;
         self.iterate.outer += steps;
+        self.guess.steps.set(self.iterate.outer);
         if let Some(contact) = contact {
             let states = contact.iter().zip(&self.inequality.bounds);
             let states = states.map(|(&contact, bound)| admissible_state(bound, contact)).collect();

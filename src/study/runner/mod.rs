@@ -11,7 +11,7 @@ use crate::assemble::DataQuadrature;
 use crate::constraint::ConstraintSet;
 use crate::element::Layout;
 use crate::error::Error;
-use crate::inequality::{ActiveSet, InequalitySolver};
+use crate::inequality::{ActiveSet, InequalitySolver, StepCounter};
 use crate::instances::compiled;
 use crate::mesh::{BoxDomain, Mesh};
 use crate::nested::{Coarsest, Hierarchy, NestedIteration, Phase, Solved};
@@ -76,6 +76,7 @@ pub struct Study<'a, T: Real, const D: usize> {
     #[cfg(feature = "report")]
     inequalities: Option<PathBuf>,
     each_solution: Option<EachSolution<'a, T, D>>,
+    steps: StepCounter,
     observer: Box<dyn Fn(Progress<'_>) + 'a>,
 }
 
@@ -131,6 +132,7 @@ impl<'a, T: Real, const D: usize> Study<'a, T, D> {
             #[cfg(feature = "report")]
             inequalities: None,
             each_solution: None,
+            steps: StepCounter::default(),
             observer: Box::new(|_| {}),
         }
     }
@@ -307,6 +309,12 @@ impl<'a, T: Real, const D: usize> Study<'a, T, D> {
     #[must_use]
     pub fn journal(mut self, journal: &'a Journal) -> Self {
         self.journal = Some(journal);
+        self
+    }
+    /// Sets what receives the number of each outer step of a solve.
+    #[must_use]
+    pub fn steps(mut self, steps: StepCounter) -> Self {
+        self.steps = steps;
         self
     }
     /// Sets a function that receives the progress of the study.
@@ -576,6 +584,7 @@ impl<'a, T: Real, const D: usize> Study<'a, T, D> {
             .shared_solver(solver.clone())
             .quadrature(self.quadrature)
             .repeat(self.repeat)
+            .steps(self.steps.clone())
             .observer(|phase| (self.observer)(Progress::Entered(phase)))
     }
 }

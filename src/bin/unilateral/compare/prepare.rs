@@ -37,8 +37,9 @@ pub fn prepare<'a, T: Real, const D: usize>(
     watcher: &'a Watcher,
 ) -> Request<Option<Run<'a>>> {
     let name = posed.name().to_owned();
+    let has_mesh = mesh.is_some() || posed.has_mesh();
     let levels = match &options.levels[..] {
-        [] => default_levels(D, mesh.is_some() || posed.has_mesh()),
+        [] => default_levels(D, has_mesh),
         some => each_once(some),
     };
     let linear = match options.linear.as_deref() {
@@ -50,6 +51,7 @@ pub fn prepare<'a, T: Real, const D: usize>(
         .study::<T>(&|warning| watcher.warn_once(warning))?
         .levels(levels)
         .repeat(options.repeat)
+        .steps(watcher.steps())
         .observer(|progress| watcher.tell(&progress));
     let scene_name = name.clone();
     study = study.each_solution(move |label, level, solved| {
@@ -102,7 +104,7 @@ pub fn prepare<'a, T: Real, const D: usize>(
         ));
     }
     let keys = study.keys();
-    watcher.expect(D, keys.iter().map(|key| key.level));
+    watcher.expect(D, has_mesh, keys.iter().map(|key| key.level));
     let run = move |journal| match study.journal(journal).run() {
         Ok(report) => Ok(report.rows),
         Err(e) => Err(format!("{place}: {e}")),

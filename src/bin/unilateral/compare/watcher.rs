@@ -1,10 +1,12 @@
 //! What is shown while schemes run.
 
 use std::cell::{Cell, RefCell};
+use std::fmt;
 use std::io::Write;
 use std::time::{Duration, Instant};
 
-use indicatif::{HumanDuration, ProgressBar};
+use indicatif::{HumanDuration, ProgressBar, ProgressState};
+use unilateral::inequality::StepCounter;
 use unilateral::study::{Progress, Row};
 
 use super::options::Options;
@@ -16,39 +18,49 @@ pub struct Watcher {
     bar: ProgressBar,
     quiet: bool,
     warned: RefCell<Vec<String>>,
+    /// The outer step of the solve that runs.
+    steps: StepCounter,
     /// The scene, scheme and level that run.
     run: RefCell<String>,
-    /// Sizes of the runs that are expected, and of those that are finished.
+    /// Numbers of cells, up to a factor, of the runs that are expected, and of those that are finished.
     expected: Cell<f64>,
     finished: Cell<f64>,
-    /// The size of a run by dimension and level.
-    size: fn(usize, usize) -> f64,
+    /// Whether levels are refinements of a mesh, not subdivisions of a side.
+    levels_are_refinements: Cell<bool>,
     begin: Instant,
 }
 
 impl Watcher {
     pub fn new(options: &Options) -> Self {
-        let bar = bar(options.quiet, 0, "{spinner} {pos} of {len} done, {elapsed}: {msg}");
-        let size: fn(usize, usize) -> f64 = match options.mesh.path {
-            Some(_) => |dimension, level| 2_f64.powf((dimension * level) as f64),
-            None => |dimension: usize, level: usize| (level as f64).powf(dimension as f64),
+        let steps = StepCounter::default();
+        let shown = steps.clone();
+        let step = move |_: &ProgressState, w: &mut dyn fmt::Write| {
+            let _ = match shown.get() {
+                0 => Ok(()),
+                step => write!(w, ", step {step}"),
+            };
         };
+        let template = "{spinner} {pos} of {len} done, {elapsed}: {msg}{step}";
+        let bar = bar(options.quiet, 0, template, |style| style.with_key("step", step));
         Self {
             bar,
             quiet: options.quiet,
             warned: RefCell::default(),
+            steps,
             run: RefCell::default(),
             expected: Cell::default(),
             finished: Cell::default(),
-            size,
+            levels_are_refinements: Cell::default(),
             begin: Instant::now(),
         }
     }
-    /// Announces the runs of a scene, by their levels.
-    pub fn expect(&self, dimension: usize, levels: impl Iterator<Item = usize>) {
+    /// Announces the runs of a scene, by their levels, which are refinements of a mesh or subdivisions of a
+    /// side.
+    pub fn expect(&self, dimension: usize, has_mesh: bool, levels: impl Iterator<Item = usize>) {
+        self.levels_are_refinements.set(has_mesh);
         for level in levels {
             self.bar.inc_length(1);
-            self.expected.set(self.expected.get() + (self.size)(dimension, level));
+            self.expected.set(self.expected.get() + self.size(dimension, level));
         }
     }
     pub fn tell(&self, progress: &Progress<'_>) {
@@ -58,26 +70,33 @@ impl Watcher {
                 tick(&self.bar);
             }
             Progress::Entered(phase) => {
-                let left =
-                    self.estimate().map_or_else(String::new, |left| format!(", {left} left"));
-                self.bar.set_message(format!("{}, {phase}{left}", self.run.borrow()));
+                let run = self.run.borrow().clone();
+                let left = self.estimate().map(|left| format!("{left} left"));
+                let parts =
+                    [Some(run).filter(|run| !run.is_empty()), left, Some(phase.to_string())];
+                self.steps.set(0);
+                self.bar.set_message(parts.into_iter().flatten().collect::<Vec<_>>().join(", "));
             }
             Progress::Finished(row) => {
-                self.finished.set(self.finished.get() + self.size_of(row));
+                self.finished.set(self.finished.get() + self.size(row.dimension, row.level));
                 self.bar.inc(1);
                 if !self.quiet && self.bar.is_hidden() {
                     let _ = writeln!(std::io::stderr(), "{}", line(row));
                 }
             }
             Progress::Kept(row) => {
-                self.expected.set(self.expected.get() - self.size_of(row));
+                self.expected.set(self.expected.get() - self.size(row.dimension, row.level));
                 self.bar.inc(1);
             }
             _ => {}
         }
     }
-    fn size_of(&self, row: &Row) -> f64 {
-        (self.size)(row.dimension, row.level)
+    /// The number of cells of a level, up to a factor.
+    fn size(&self, dimension: usize, level: usize) -> f64 {
+        match self.levels_are_refinements.get() {
+            true => 2_f64.powf((dimension * level) as f64),
+            false => (level as f64).powf(dimension as f64),
+        }
     }
     /// The time that the other runs will take if a cell takes as long in them as before.
     fn estimate(&self) -> Option<HumanDuration> {
@@ -85,6 +104,10 @@ impl Watcher {
         let left = self.begin.elapsed().as_secs_f64() * (1.0 / share - 1.0);
         let left = (share > 0.02).then(|| Duration::try_from_secs_f64(left.max(0.0)).ok())?;
         left.map(HumanDuration)
+    }
+    /// What receives the outer steps of solves.
+    pub fn steps(&self) -> StepCounter {
+        self.steps.clone()
     }
     pub fn warn_once(&self, warning: String) {
         if !self.quiet && !self.warned.borrow().contains(&warning) {
