@@ -210,7 +210,7 @@ fn files_of_the_documentation_are_small_and_shown() {
 
 /// The sections of the gallery and their programs.
 const PROGRAMS: [(&str, &str); 6] = [
-    ("A mesh of one's own", "my_mesh.rs"),
+    ("A mesh of one's own", "one_problem.rs"),
     ("A scheme", "my_scheme.rs"),
     ("An element and a constraint set", "my_element.rs"),
     ("A study against a reference", "against_a_reference.rs"),

@@ -94,17 +94,20 @@ impl<'a, T: Real> PreconditionedSolver<'a, T> {
         match run.reason {
             StopReason::NotPositive if !self.inequality.symmetric => Err(self.not_coercive()),
             _ if high > MAX_CONDITION * low => Err(LinearFailure::Unsuitable),
+            StopReason::NotPositive => Err(self.not_coercive()),
             StopReason::Converged => Ok(()),
-            StopReason::NotPositive => Err(LinearFailure::Outcome(Outcome::NotCoercive)),
             StopReason::NotFinite => Err(LinearFailure::Outcome(Outcome::NotFinite)),
             StopReason::IterationLimit => Err(LinearFailure::Unsuitable),
         }
     }
 
-    /// The failure if the symmetric part of a matrix that is not symmetric seems not to be positive
-    /// definite. Rounding may be the reason, so that a Cholesky factorisation decides: LU factors of
-    /// the matrix would not detect an indefinite symmetric part.
+    /// The failure if the symmetric part of the matrix seems not to be positive definite. Rounding of large
+    /// penalties may be the reason, so that a Cholesky factorisation decides unless the matrix is known to be
+    /// definite: LU factors of the matrix would not detect an indefinite symmetric part.
     fn not_coercive(&self) -> LinearFailure {
+        if self.inequality.is_definite {
+            return LinearFailure::Unsuitable;
+        }
         check_definite(self.inequality)
             .err()
             .map_or(LinearFailure::Unsuitable, LinearFailure::Outcome)

@@ -1,8 +1,8 @@
 //! A mesh of one's own: a bracket whose Gmsh file names its material and parts of its boundary stands on a
 //! curved base, which alone holds it against a load that presses it down and turns it.
 //!
-//! `cargo run --release --example my_mesh` writes a picture of the foot and fields for ParaView to
-//! `target/my_mesh`.
+//! `cargo run --release --example one_problem` writes a picture of the foot and fields for ParaView to
+//! `target/one_problem`.
 
 use unilateral::mesh::gmsh;
 use unilateral::plot::Picture;
@@ -25,10 +25,10 @@ fn main() -> Result<(), Error> {
         let (area, force) = (u.contact_measure().unwrap_or(0.0), u.resultant().unwrap_or(0.0));
         print!("{}: {} unknowns, contact force {force:.9}, ", u.outcome(), u.values().len());
         println!("contact area {area:.3}, violation {:.0e}", u.certificate().largest());
-        u.write_vtu(format!("target/my_mesh/bracket-{refinements}.vtu"))?;
+        u.write_vtu(format!("target/one_problem/bracket-{refinements}.vtu"))?;
         if let (0, Some(fields)) = (refinements, u.fields()) {
             let picture = Picture::of("bracket, p1", &bracket, u.mesh(), &fields, None)?;
-            picture.write("target/my_mesh".as_ref(), "bracket")?;
+            picture.write("target/one_problem".as_ref(), "bracket")?;
         }
     }
     Ok(())
