@@ -21,6 +21,11 @@ use crate::real::{Point, Real, point_f64};
 /// A cell, one of its facets and the moments of the Dirichlet datum on it.
 pub(crate) type FacetDatum = (usize, (usize, Vec<f64>));
 
+/// Sorts data by cell and facet. It is no generic function, as sorting is much code.
+pub(super) fn sort_by_facet(data: &mut [FacetDatum]) {
+    data.sort_unstable_by_key(|(cell, (local, _))| (*cell, *local));
+}
+
 /// What is added to a cell's part of the load.
 type OfCell<'w, T> = &'w (dyn Fn(usize, &mut [T]) -> Result<(), Error> + Sync);
 

@@ -10,6 +10,7 @@ use super::p1::{P1Iteration, P1Solution};
 use super::solved::Solved;
 use crate::algebra::{Contact, Inequality, Start};
 use crate::assemble::{DataQuadrature, Discretisation};
+use crate::constraint::CellMeans;
 use crate::element::Layout;
 use crate::error::Error;
 use crate::inequality::{
@@ -21,6 +22,9 @@ use crate::mesh::Mesh;
 use crate::problem::Problem;
 use crate::real::Real;
 use crate::scheme::AnyScheme;
+
+/// More outer steps than a solve takes on any scene but with bounds at nodes of broken quadratics.
+const MANY_ACTIVE_SETS: usize = 28;
 
 /// One problem on nested meshes: the settings of its solves, and the conforming P1 solutions from which
 /// they start.
@@ -321,6 +325,9 @@ impl<'a, T: Real, const D: usize> NestedIteration<'a, T, D> {
         inequality.is_definite = penalty_below_bound.is_none() && discretisation.is_coercive();
         (self.observer)(Phase::Solve);
         let (solution, solve_seconds) = self.run(&mut inequality, &guess);
+        if solution.outer > MANY_ACTIVE_SETS || solution.outcome != Outcome::Converged {
+            warnings.extend(advice_on_bounds(self.p1.problem, scheme));
+        }
         let hierarchy = self.hierarchy(position);
         let mut solved = Solved::new(discretisation, inequality, solution, hierarchy);
         solved.warnings = warnings;
@@ -411,6 +418,20 @@ pub fn solve<'a, T: Real, const D: usize>(
     scheme: &dyn AnyScheme<T, D>,
 ) -> Result<Solved<'a, T, D>, Error> {
     NestedIteration::new(problem, meshes).solve(scheme)
+}
+
+/// What helps a scheme whose obstacle takes many active sets: bounds on cell means, where its element has
+/// them and nothing else is bound.
+fn advice_on_bounds<T: Real, const D: usize>(
+    problem: &Problem<D>,
+    scheme: &dyn AnyScheme<T, D>,
+) -> Option<String> {
+    let set = problem.constraint_set();
+    let present = scheme.constraint_on(set)?;
+    let means = scheme.constraint_on(&CellMeans)?;
+    (problem.has_obstacle() && !problem.has_gap() && present != means).then(|| {
+        format!("bounds at {present} take many active sets with quadratics: bounds on {means} take fewer")
+    })
 }
 
 /// Number of unknowns of a layout on a mesh.

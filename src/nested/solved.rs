@@ -27,7 +27,7 @@ use crate::real::{Point, Real};
 
 /// Adds to a file of fields.
 #[cfg(feature = "report")]
-type Complete<'c, T, const D: usize> = &'c dyn for<'f> Fn(VtuFile<'f, T, D>) -> VtuFile<'f, T, D>;
+type Complete<'c, const D: usize> = &'c dyn for<'f> Fn(VtuFile<'f, D>) -> VtuFile<'f, D>;
 
 /// A discrete solution with the space, the algebraic inequality and the mesh to which it belongs.
 ///
@@ -334,15 +334,15 @@ impl<'a, T: Real, const D: usize> Solved<'a, T, D> {
     pub fn write_vtu_with(
         &self,
         path: impl AsRef<Path>,
-        complete: impl for<'f> Fn(VtuFile<'f, T, D>) -> VtuFile<'f, T, D>,
+        complete: impl for<'f> Fn(VtuFile<'f, D>) -> VtuFile<'f, D>,
     ) -> Result<(), Error> {
         compiled!(
-            T, D: fn(&Solved<'_, T, D>, &Path, Complete<'_, T, D>) -> Result<(), Error>
+            T, D: fn(&Solved<'_, T, D>, &Path, Complete<'_, D>) -> Result<(), Error>
                 = |solved, path, complete| solved.write_fields(path, complete)
         )(self, path.as_ref(), &complete)
     }
     #[cfg(feature = "report")]
-    fn write_fields(&self, path: &Path, complete: Complete<'_, T, D>) -> Result<(), Error> {
+    fn write_fields(&self, path: &Path, complete: Complete<'_, D>) -> Result<(), Error> {
         let Some(fields) = self.fields() else {
             return Err(write_error(path, format!("no solution: {}", self.outcome())));
         };

@@ -222,7 +222,7 @@ fn fields_of_the_wrong_length_are_refused_by_name() {
     let scratch = Scratch::new("vtu-refused");
     std::fs::create_dir_all(&scratch.0).unwrap();
     let path = scratch.0.join("fields.vtu");
-    let said = |file: VtuFile<'_, f64, 2>| file.write(&path).unwrap_err().to_string();
+    let said = |file: VtuFile<'_, 2>| file.write(&path).unwrap_err().to_string();
     let u = [1.0; 6];
     let wrong = said(VtuFile::new(&mesh, &u[..5]));
     assert!(wrong.ends_with("field u has 5 values, the mesh needs 6"), "{wrong}");

@@ -223,6 +223,34 @@ fn rounding_in_a_krylov_method_is_not_an_indefinite_matrix() {
     assert!((row.error.h1.unwrap() / 9.25e-3 - 1.0).abs() < 0.01, "{:?}", row.error.h1);
 }
 
+/// Where bounds at nodes of quadratics take many active sets, the row says which bounds take few.
+#[test]
+fn bounds_on_cell_means_are_recommended_where_they_help() {
+    let row = |scheme: &str| {
+        let study = Study::<f64, 2>::new(scenes::radial(1.0)).levels([32]);
+        study.named_scheme(&scheme.parse().unwrap()).run().unwrap().rows.remove(0)
+    };
+    let (nodes, means) = (row("wopsip-p2@eta=1e10"), row("wopsip-p2:cell-means@eta=1e10"));
+    assert!(nodes.converged() && means.converged());
+    assert!(nodes.iterations.outer > Some(28) && means.iterations.outer < Some(28));
+    assert!(nodes.warnings.iter().any(|w| w.contains("bounds on cell-means")), "{nodes:?}");
+    assert!(!means.warnings.iter().any(|w| w.contains("cell-means")), "{means:?}");
+}
+
+/// Factors aim at a certificate of rounding. Where a small penalty keeps them above it and below the limit of
+/// the certificate, the solve has converged.
+#[test]
+fn a_certificate_within_its_limit_has_not_stalled() {
+    for (scene, level) in [("polynomial-2d", 8), ("degenerate2-2d", 8)] {
+        let made = scenes::by_name(scene).unwrap().make(&scenes::Parameters::default()).unwrap();
+        let scenes::AnyScene::Two(scene) = made else { panic!("{scene}") };
+        let study = Study::<f64, 2>::new(scene).scheme_on(wopsip(1e-2), FacetMeans);
+        let row = study.levels([level]).run().unwrap().rows.remove(0);
+        assert!(row.converged(), "{}", row.status);
+        assert!(row.certificate.largest() > 2e-14 && row.certificate.largest() < 1e-9);
+    }
+}
+
 /// A constant has no energy for rounding to be compared with.
 #[test]
 fn a_solution_without_energy_is_not_singular() {
