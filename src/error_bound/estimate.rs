@@ -235,10 +235,12 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
             is_constant(data) || stated.is_some_and(|stated| stated <= degree)
         };
         let integrands = [&data.source, &data.reaction, &data.lower, &data.upper, &data.gap];
+        // a facet of an interval is a point, where data are numbers
+        let has_facets = |part| D > 1 && self.mesh.has_part(part);
         let has_fluxes = self.problem.has_neumann_data()
-            && self.mesh.has_part(BoundaryPart::Neumann)
+            && has_facets(BoundaryPart::Neumann)
             && stated.is_none();
-        let has_data = self.mesh.has_part(BoundaryPart::Dirichlet);
+        let has_data = has_facets(BoundaryPart::Dirichlet);
         let is_inexact = has_fluxes
             || !is_below(&data.coefficient, 0)
             || integrands.iter().any(|data| !is_below(data, usize::MAX));

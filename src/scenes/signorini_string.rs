@@ -97,7 +97,11 @@ fn supported(
         domain: BoxDomain::dirichlet(Point::repeat(0.0), Point::repeat(1.0))
             .side(0, 1, BoundaryPart::Contact)
             .into(),
-        problem: Problem::new().constant_source(load).signorini(|_| 0.0).solved_by(exact),
+        problem: Problem::new()
+            .constant_source(load)
+            .signorini(|_| 0.0)
+            .solved_by(exact)
+            .polynomial_data(0),
         regularity,
     }
 }

@@ -196,15 +196,15 @@ pub(crate) fn columns(rows: &[&Row]) -> Vec<Column> {
     if any(|r| r.bound.effectivity) {
         columns.push(number("effect.", |r| fixed(r.bound.effectivity)));
     } else if any(|r| r.bound.total) {
-        columns.push(number("bound", |r| scientific(r.bound.total)));
+        columns.push(number("bound", |r| digits(r.bound.total, 1)));
     }
     if !has_errors(rows) {
         if any(|r| r.energy) {
-            columns.push(number("energy", |r| digits(r.energy)));
+            columns.push(number("energy", |r| digits(r.energy, 5)));
         }
         if any(|r| r.contact_measure) {
-            columns.push(number("contact", |r| digits(r.contact_measure)));
-            columns.push(number("resultant", |r| digits(r.resultant)));
+            columns.push(number("contact", |r| digits(r.contact_measure, 4)));
+            columns.push(number("resultant", |r| digits(r.resultant, 4)));
         }
     }
     columns.push(number("active", |r| whole(r.active)));
@@ -252,10 +252,10 @@ fn scientific(x: Option<f64>) -> String {
     }
 }
 
-/// Six digits and the power of ten: `1.37281e-2`.
-fn digits(x: Option<f64>) -> String {
+/// A number with `n` digits after the point and the power of ten: `1.37281e-2`.
+fn digits(x: Option<f64>, n: usize) -> String {
     match x {
-        Some(x) if x != 0.0 && x.is_finite() => format!("{x:.5e}"),
+        Some(x) if x != 0.0 && x.is_finite() => format!("{x:.n$e}"),
         x => scientific(x),
     }
 }

@@ -3,7 +3,7 @@
 use crate::runs::small_mesh;
 use crate::support::checks::Checks;
 use crate::support::meshes::{Random, Raw};
-use unilateral::error_bound::{ErrorBound, NoBound, PrimalDualPair, Unproven};
+use unilateral::error_bound::{ErrorBound, Guaranteed, NoBound, PrimalDualPair, Unproven};
 use unilateral::mesh::{Neighbour, Neighbours};
 use unilateral::prelude::*;
 use unilateral::quadrature::Rule;
@@ -341,4 +341,23 @@ fn what_is_proven_and_what_has_no_bound() {
     assert!(matches!(unproven(&stated, &ConformingP2), Err(NoBound::Element)));
     let negative = scene.problem.reaction(-1e-3);
     assert!(matches!(unproven(&negative, &ConformingP1), Err(NoBound::NegativeReaction)));
+}
+
+/// On the line data on facets are numbers: scenes that state constant data have guaranteed bounds.
+#[test]
+fn a_scene_with_constant_data_has_a_guaranteed_bound() {
+    for name in ["signorini-open-1d", "signorini-closed-1d"] {
+        let scene = scenes::by_name(name).unwrap().make(&scenes::Parameters::default()).unwrap();
+        let scenes::AnyScene::One(scene) = scene else { panic!("{name}") };
+        let study = Study::<f64, 1>::new(scene).scheme(ConformingP1).scheme(Sipg::default());
+        for row in study.scheme(Wopsip::default()).levels([8]).run().unwrap().rows {
+            assert_eq!(row.bound.guaranteed, Some(Guaranteed::All(true)), "{name} {}", row.label);
+            let effectivity = row.bound.effectivity.unwrap();
+            assert!(
+                (1.0 - 1e-9..3.0).contains(&effectivity),
+                "{name} {}: {effectivity}",
+                row.label
+            );
+        }
+    }
 }
