@@ -139,7 +139,6 @@ fn check_shapes<const D: usize>(
     is_marked: impl Fn(&Mesh<f64, D>, usize, usize) -> bool,
 ) {
     let floor = share * worst_shape(&mesh);
-    let before = mesh.n_cells();
     let mut refined = BisectedMesh::new(mesh);
     let mut worst = [f64::INFINITY; 2];
     for step in 0..30 {
@@ -150,9 +149,7 @@ fn check_shapes<const D: usize>(
         refined = refined.bisect(&marked).unwrap().0;
         worst[step / 15] = worst[step / 15].min(worst_shape(refined.mesh()));
     }
-    let mesh = refined.mesh();
-    check_conformity(mesh);
-    eprintln!("{D}-d: {before} to {} cells, {worst:?} against {}", mesh.n_cells(), floor / share);
+    check_conformity(refined.mesh());
     assert!(worst[0] >= floor, "{worst:?} against {floor}");
     assert!(worst[1] >= worst[0] * (1.0 - 1e-9), "{worst:?}");
 }
@@ -167,13 +164,13 @@ fn shapes_are_bounded_towards_a_point() {
     check_shapes(unit_box::<1>(3), 0.999, around(Point::from([0.3])));
     check_shapes(unit_box::<2>(3), 0.999, around(Point::from([0.3, 0.7])));
     check_shapes(unit_box::<2>(2), 0.999, around(Point::from([0.0, 0.0])));
-    check_shapes(Mesh::disc(1.0, 2).unwrap(), 0.999, around(Point::from([0.0, 0.0])));
-    check_shapes(file::<2>("unstructured_square.msh"), 0.3, around(Point::from([0.3, 0.1])));
-    check_shapes(unit_box::<3>(2), 0.3, around(Point::from([0.0, 0.0, 0.0])));
-    check_shapes(unit_box::<3>(2), 0.3, around(Point::from([0.3, 0.4, 0.7])));
+    check_shapes(Mesh::disc(1.0, 2).unwrap(), 0.4, around(Point::from([0.0, 0.0])));
+    check_shapes(file::<2>("unstructured_square.msh"), 0.5, around(Point::from([0.3, 0.1])));
+    check_shapes(unit_box::<3>(2), 0.9, around(Point::from([0.0, 0.0, 0.0])));
+    check_shapes(unit_box::<3>(2), 0.9, around(Point::from([0.3, 0.4, 0.7])));
     let inside = Point::from([0.3, 0.1, 0.2]);
-    check_shapes(file::<3>("unstructured_cube.msh"), 0.1, around(inside));
-    check_shapes(file::<3>("unstructured_half_cube.msh"), 0.1, around(Point::zeros()));
+    check_shapes(file::<3>("unstructured_cube.msh"), 0.3, around(inside));
+    check_shapes(file::<3>("unstructured_half_cube.msh"), 0.3, around(Point::zeros()));
 }
 
 /// Part of an edge or of a circle, which halves as the sizes of cells do once these are small.
@@ -193,8 +190,8 @@ fn shapes_are_bounded_towards_an_edge() {
             mesh.cell(c).iter().filter(on_line).count() > 0
         }
     };
-    check_shapes(unit_box::<3>(2), 0.3, along(0.0));
-    check_shapes(file::<3>("unstructured_half_cube.msh"), 0.1, along(-1.0));
+    check_shapes(unit_box::<3>(2), 0.9, along(0.0));
+    check_shapes(file::<3>("unstructured_half_cube.msh"), 0.3, along(-1.0));
 }
 
 #[test]
@@ -211,7 +208,7 @@ fn shapes_are_bounded_towards_a_circle() {
     };
     check_shapes(unit_box::<2>(4), 0.999, circle(0.7));
     check_shapes(Mesh::l_shape(1.0, 3).unwrap(), 0.999, circle(0.7));
-    check_shapes(file::<2>("unstructured_square.msh"), 0.3, circle(0.7));
+    check_shapes(file::<2>("unstructured_square.msh"), 0.5, circle(0.7));
 }
 
 #[test]
