@@ -13,6 +13,7 @@ pub mod assemble;
 pub mod constraint;
 pub mod element;
 pub mod error;
+pub mod error_bound;
 #[cfg(feature = "report")]
 pub mod exchange;
 pub mod facet;

@@ -20,6 +20,18 @@ impl DirichletEnergy {
     pub fn is_well_formed(&self, size: usize) -> bool {
         self.terms.iter().all(|term| (term.unknown as usize) < size)
     }
+    /// Sorts the terms by their unknowns and adds those of one unknown.
+    pub(crate) fn merge_terms(&mut self) {
+        self.terms.sort_by_key(|term| term.unknown);
+        self.terms.dedup_by(|next, term| {
+            let is_same = next.unknown == term.unknown;
+            if is_same {
+                term.load += next.load;
+                term.linear += next.linear;
+            }
+            is_same
+        });
+    }
 }
 
 /// What Dirichlet data contribute to one unknown.

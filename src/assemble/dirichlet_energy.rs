@@ -1,6 +1,6 @@
 //! What weak Dirichlet data change in the energy of a function, from the facet form's integrand.
 
-use super::load::FacetDatum;
+use super::load::{FacetDatum, sort_by_facet};
 use super::local::{traces, view};
 use super::owned_rows::lifted::{LiftTable, Lifting};
 use super::space::Space;
@@ -52,15 +52,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
             self.add_lifted_energy(form, metrics(), data, &mut energy);
         }
         // a cell with two Dirichlet facets has two terms for an unknown
-        energy.terms.sort_by_key(|term| term.unknown);
-        energy.terms.dedup_by(|next, term| {
-            let is_same = next.unknown == term.unknown;
-            if is_same {
-                term.load += next.load;
-                term.linear += next.linear;
-            }
-            is_same
-        });
+        energy.merge_terms();
         energy
     }
 
@@ -83,8 +75,8 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
             let load = load.to_f64();
             DirichletTerm { unknown: i as u32, load, linear: 2.0 * load }
         }));
-        let mut by_cell: Vec<&FacetDatum> = data.iter().collect();
-        by_cell.sort_by_key(|(cell, (local, _))| (*cell, *local));
+        let mut by_cell = data.to_vec();
+        sort_by_facet(&mut by_cell);
         for of_cell in by_cell.chunk_by(|a, b| a.0 == b.0) {
             let neighbours = self.coupled_neighbours();
             for (cell, first) in of_cell {

@@ -21,6 +21,11 @@ use crate::real::{Point, Real, point_f64};
 /// A cell, one of its facets and the moments of the Dirichlet datum on it.
 pub(crate) type FacetDatum = (usize, (usize, Vec<f64>));
 
+/// Sorts data by cell and facet. It is no generic function, as sorting is much code.
+pub(super) fn sort_by_facet(data: &mut [FacetDatum]) {
+    data.sort_unstable_by_key(|(cell, (local, _))| (*cell, *local));
+}
+
 /// What is added to a cell's part of the load.
 type OfCell<'w, T> = &'w (dyn Fn(usize, &mut [T]) -> Result<(), Error> + Sync);
 
@@ -130,24 +135,12 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
 
     fn add_neumann(&self, load: &mut [T]) -> Result<(), Error> {
         let n = self.per_cell();
-        let middle = [1.0 / (D + 1) as f64; 4];
-        for ((cell, local), group) in self.grouped_facets_of(BoundaryPart::Neumann) {
-            let geometry = self.mesh.geometry(cell);
-            let normal = point_f64(&geometry.normal(local));
-            let measure = geometry.facet_measure(local).to_f64();
+        for (place, group) in self.grouped_facets_of(BoundaryPart::Neumann) {
+            let (cell, local) = place;
+            let measure = self.mesh.geometry(cell).facet_measure(local).to_f64();
             let out = &mut load[cell * n..(cell + 1) * n];
             for (point, weight) in self.facet_rule.iter() {
-                count::neumann(1);
-                let x = self.facet_point(point, cell, local);
-                let flux = match (self.data.neumann.of(group), &self.problem.exact) {
-                    (Some(q), _) => q(&x, &normal),
-                    (None, Some(exact)) => {
-                        let inward = x + (self.cell_point(&middle, cell) - x) * INWARD;
-                        self.alpha_at(cell, &inward) * (exact.gradient)(&x).dot(&normal)
-                    }
-                    (None, None) => 0.0,
-                };
-                let flux = weight * measure * data::finite(flux, "neumann", &x, cell)?;
+                let flux = weight * measure * self.neumann_at(place, group, point)?;
                 let basis = self.basis_at(&facet_to_cell(point, local));
                 for (out, phi) in out.iter_mut().zip(&basis.values) {
                     *out += T::lit(flux * phi);
@@ -155,6 +148,28 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
             }
         }
         Ok(())
+    }
+
+    /// The Neumann datum at a point of a facet.
+    pub fn neumann_at(
+        &self,
+        (cell, local): Place,
+        group: usize,
+        point: &[f64; 4],
+    ) -> Result<f64, Error> {
+        count::neumann(1);
+        let x = self.facet_point(point, cell, local);
+        let normal = || point_f64(&self.mesh.geometry(cell).normal(local));
+        let flux = match (self.data.neumann.of(group), &self.problem.exact) {
+            (Some(q), _) => q(&x, &normal()),
+            (None, Some(exact)) => {
+                let middle = [1.0 / (D + 1) as f64; 4];
+                let inward = x + (self.cell_point(&middle, cell) - x) * INWARD;
+                self.alpha_at(cell, &inward) * (exact.gradient)(&x).dot(&normal())
+            }
+            (None, None) => 0.0,
+        };
+        data::finite(flux, "neumann", &x, cell)
     }
 
     /// Moments of Dirichlet data on a facet.

@@ -13,6 +13,7 @@ pub(crate) mod cut_simplices;
 mod data_quadrature;
 mod dirichlet_energy;
 mod facet_coefficients;
+mod facet_fluxes;
 mod jump_products;
 mod kernel;
 pub(crate) mod load;
@@ -103,7 +104,7 @@ impl<'a, T: Real, const D: usize> Discretisation<'a, T, D> {
         self.space.problem
     }
     /// Whether each row belongs to one cell, which then writes it in place.
-    fn owns_rows(&self) -> bool {
+    pub(crate) fn owns_rows(&self) -> bool {
         self.form.couples() && self.space.broken
     }
     /// The pattern of the matrix, with values zero.

@@ -3,7 +3,7 @@
 use std::convert::Infallible;
 
 use super::facet_coefficients::FacetCoefficients;
-use super::load::FacetDatum;
+use super::load::{FacetDatum, sort_by_facet};
 use super::local::zero_local;
 use super::space::Space;
 use super::space::metric::Metrics;
@@ -38,7 +38,7 @@ pub(crate) fn penalised_matrix<T: Real, const D: usize>(
     mut dirichlet: Vec<FacetDatum>,
 ) -> PenalisedMatrix<T> {
     load.resize(space.dofs.size(), T::lit(0.0));
-    dirichlet.sort_by_key(|(cell, (local, _))| (*cell, *local));
+    sort_by_facet(&mut dirichlet);
     let mut dirichlet = dirichlet.into_iter().peekable();
     let mut out = PenalisedMatrix {
         block_size: space.per_cell(),

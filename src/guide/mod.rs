@@ -7,6 +7,7 @@
 //! | [`gallery`] | six programs with pictures |
 //! | [`choosing`] | what each scheme costs and gives, and where it fails |
 //! | [`own_problems`] | a mesh of one's own, materials, boundary names, errors without an exact solution |
+//! | [`bound`] | bounds on the error without an exact solution: theorems, what is guaranteed, figures |
 //! | [`conventions`] | signs, scalings, norms, the certificate |
 //! | [`reproduce`] | published tables beside ours |
 //! | [`solvers`] | which solver runs when, what to do on each status, rounding, time and memory |
@@ -42,6 +43,11 @@ pub mod choosing {}
 #[cfg_attr(doc, doc = "", doc = include_str!("links.md"))]
 #[cfg_attr(doc, doc = include_str!("../../docs/own_problems.md"))]
 pub mod own_problems {}
+
+/// Guaranteed bounds on the error, from the solution and the data alone.
+#[cfg_attr(doc, doc = "", doc = include_str!("links.md"))]
+#[cfg_attr(doc, doc = include_str!("../../docs/bound.md"))]
+pub mod bound {}
 
 /// Signs, scalings, norms and the certificate, each with the test that asserts it.
 #[cfg_attr(doc, doc = "", doc = include_str!("links.md"))]

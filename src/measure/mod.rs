@@ -14,4 +14,5 @@ pub(crate) use contact::contact_difference;
 pub use error_norm::ErrorNorm;
 pub use errors::{ContactErrors, Errors};
 pub use fields::Fields;
+pub(crate) use norms::error_degree;
 pub use order::{FittedOrder, fit_order, observed_order};

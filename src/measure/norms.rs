@@ -24,7 +24,7 @@ use crate::real::{Point, Real, point_f64};
 /// limit what it measures. Cells that the exact free boundary or a jump of the load cuts are divided. For
 /// basis functions of degree `b` the degree of the rule is at least `2 b + 2`, that of the square of the
 /// largest part of the error.
-const fn error_degree(dimension: usize) -> usize {
+pub(crate) const fn error_degree(dimension: usize) -> usize {
     match dimension {
         1 | 2 => 19,
         _ => 9,
@@ -167,6 +167,12 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
     /// boundary: second derivatives of the exact solution jump there.
     fn kinks(&self, exact: &Reference<'_, T, D>, region: usize) -> Option<Field<D>> {
         let Reference::Exact(exact) = exact else { return None };
+        self.kinks_of(exact, region)
+    }
+
+    /// The function of an exact solution whose zeros are those of the level of the load of a region and,
+    /// with an obstacle, the exact free boundary.
+    pub(crate) fn kinks_of(&self, exact: &Exact<D>, region: usize) -> Option<Field<D>> {
         let contact = exact.contact.as_ref().filter(|_| self.problem.has_obstacle());
         let indicator = contact.map(|set| set.indicator.clone());
         let levels = self.data.source.of(region).and_then(|f| f.level()).cloned();

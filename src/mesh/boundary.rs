@@ -41,3 +41,10 @@ pub struct BoundaryFacet {
     /// Number of its group, see [`Mesh::boundary_groups`](super::Mesh::boundary_groups).
     pub group: u16,
 }
+
+impl BoundaryFacet {
+    /// Sorts facets by cell and number in the cell. It is no generic function, as sorting is much code.
+    pub(super) fn sort(facets: &mut [Self]) {
+        facets.sort_unstable_by_key(|f| (f.cell, f.local));
+    }
+}

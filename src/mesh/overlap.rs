@@ -74,7 +74,7 @@ pub(super) fn check_overlaps<const D: usize>(
             let inward = geometry(f.cell as usize).gradient(f.local as usize).dot(&direction);
             crossings.push((place, if inward > 0.0 { 1 } else { -1 }));
         }
-        crossings.sort_by(|a, b| a.0.total_cmp(&b.0));
+        sort_by_place(&mut crossings);
         let (mut depth, mut widest) = (0, (0.0, 0.0));
         for pair in crossings.windows(2) {
             depth += pair[0].1;
@@ -132,4 +132,9 @@ fn crossing<const D: usize>(corners: &[Point<f64, D>; D], start: &Point<f64, D>)
         let sum: f64 = weights.iter().sum();
         weights.iter().zip(corners).map(|(w, x)| w * x[0]).sum::<f64>() / sum
     })
+}
+
+/// Sorts crossings by their places. It is no generic function, as sorting is much code.
+fn sort_by_place(crossings: &mut [(f64, i32)]) {
+    crossings.sort_by(|a, b| a.0.total_cmp(&b.0));
 }

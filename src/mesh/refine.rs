@@ -199,7 +199,7 @@ impl<T: Real, const D: usize> Mesh<T, D> {
                 }
             }
         }
-        boundary.sort_unstable_by_key(|f| (f.cell, f.local));
+        BoundaryFacet::sort(&mut boundary);
         boundary
     }
 }

@@ -27,6 +27,23 @@ impl<T: Real, const D: usize> Mesh<T, D> {
         D + 1
     };
 
+    /// The mesh with coordinates of 64 bits: the mesh itself where it has them.
+    #[cfg(feature = "report")]
+    pub(crate) fn in_double(&self) -> std::borrow::Cow<'_, Mesh<f64, D>> {
+        use std::borrow::Cow;
+        let mesh: &dyn std::any::Any = self;
+        match mesh.downcast_ref() {
+            Some(mesh) => Cow::Borrowed(mesh),
+            None => Cow::Owned(Mesh {
+                vertices: self.vertices.iter().map(point_f64).collect(),
+                cells: self.cells.clone(),
+                boundary: self.boundary.clone(),
+                is_supported: self.is_supported,
+                groups: self.groups.clone(),
+                cell_regions: self.cell_regions.clone(),
+            }),
+        }
+    }
     /// Coordinates of the vertices.
     pub fn vertices(&self) -> &[Point<T, D>] {
         &self.vertices

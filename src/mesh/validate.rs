@@ -292,7 +292,7 @@ fn match_boundary<const D: usize>(
         let (what, count, limit) = ("boundary groups", groups.len(), usize::from(u16::MAX));
         return Err(MeshError::TooLarge { what, count, limit });
     }
-    boundary.sort_unstable_by_key(|f| (f.cell, f.local));
+    BoundaryFacet::sort(&mut boundary);
     Ok((boundary, groups))
 }
 

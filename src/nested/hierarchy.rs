@@ -127,8 +127,7 @@ impl<T: Real, const D: usize> Coarsest<'_, T, D> {
     /// # Errors
     /// Those of [`Coarsest::build`].
     pub fn build_all(&self, levels: &[usize]) -> Result<Vec<Hierarchy<T, D>>, Error> {
-        let mut finest = levels.to_vec();
-        finest.sort_unstable_by(|a, b| b.cmp(a));
+        let finest = descending(levels);
         let mut hierarchies: Vec<Hierarchy<T, D>> = Vec::new();
         for level in finest {
             if !hierarchies.iter().any(|h| h.position(level).is_some()) {
@@ -232,6 +231,13 @@ impl<T: Real, const D: usize> Coarsest<'_, T, D> {
             ),
         }
     }
+}
+
+/// Levels from the finest to the coarsest. It is no generic function, as sorting is much code.
+fn descending(levels: &[usize]) -> Vec<usize> {
+    let mut levels = levels.to_vec();
+    levels.sort_unstable_by(|a, b| b.cmp(a));
+    levels
 }
 
 #[cfg(test)]

@@ -10,6 +10,7 @@ use crate::assemble::Discretisation;
 use crate::error::Error;
 #[cfg(feature = "report")]
 use crate::error::write_error;
+use crate::error_bound::{BoundFigures, ErrorBound, NoBound, PrimalDualPair};
 use crate::inequality::{
     Certificate, Outcome, Solution, certify_with_jump_multipliers, count_active,
 };
@@ -26,7 +27,7 @@ use crate::real::{Point, Real};
 
 /// Adds to a file of fields.
 #[cfg(feature = "report")]
-type Complete<'c, T, const D: usize> = &'c dyn for<'f> Fn(VtuFile<'f, T, D>) -> VtuFile<'f, T, D>;
+type Complete<'c, const D: usize> = &'c dyn for<'f> Fn(VtuFile<'f, D>) -> VtuFile<'f, D>;
 
 /// A discrete solution with the space, the algebraic inequality and the mesh to which it belongs.
 ///
@@ -278,6 +279,30 @@ impl<'a, T: Real, const D: usize> Solved<'a, T, D> {
             false => Ok(ContactErrors::default()),
         }
     }
+    /// An admissible function and an equilibrated flux: see [`Discretisation::primal_dual_pair`].
+    ///
+    /// # Errors
+    /// [`NoBound`].
+    pub fn primal_dual_pair(&self) -> Result<PrimalDualPair, NoBound> {
+        match self.has_iterate {
+            true => self.discretisation.primal_dual_pair(&self.inequality, &self.solution),
+            false => Err(NoBound::NoIterate),
+        }
+    }
+    /// A bound on the error from solution and data alone: see [`crate::error_bound`].
+    ///
+    /// # Errors
+    /// [`NoBound`].
+    pub fn bound(&self) -> Result<ErrorBound, NoBound> {
+        self.discretisation.error_bound(&self.primal_dual_pair()?, self.values())
+    }
+    /// The figures of the bound; its effectivity where the exact solution is known and holds on the mesh.
+    pub(crate) fn bound_figures(&self, exact_holds: bool) -> BoundFigures {
+        let of = &self.discretisation;
+        let pair = self.primal_dual_pair();
+        let error = pair.as_ref().ok().filter(|_| exact_holds).and_then(|p| of.error_of_pair(p));
+        BoundFigures::new(&pair.and_then(|pair| of.error_bound(&pair, self.values())), error)
+    }
     /// Solution, obstacle, multiplier and contact set on cells; none without an iterate.
     pub fn fields(&self) -> Option<Fields> {
         self.has_iterate.then(|| self.discretisation.fields(&self.inequality, &self.solution))
@@ -297,7 +322,8 @@ impl<'a, T: Real, const D: usize> Solved<'a, T, D> {
     /// The solution `u` is written in its degree; above two it is interpolated in degree two. Point data:
     /// `obstacle` (the lower one, or the upper one where there is no lower one), `upper_obstacle` where
     /// there are both, `error`, which is `u` less the exact solution where that is known. Cell data of
-    /// obstacle problems: `multiplier` and `contact` of [`Fields`]. Signorini problems have the facets of
+    /// obstacle problems: `multiplier` and `contact` of [`Fields`]; of all for which there is one, `bound`, the share of
+    /// the cell in the square of the error bound ([`ErrorBound::cells`]). Signorini problems have the facets of
     /// the contact boundary as further cells with `pressure` and `gap` of [`Fields`] and `contact`, which is
     /// one on facets in contact as a whole; the integral of `pressure` over the cells of `dimension`
     /// `D - 1` is the total contact force.
@@ -308,15 +334,15 @@ impl<'a, T: Real, const D: usize> Solved<'a, T, D> {
     pub fn write_vtu_with(
         &self,
         path: impl AsRef<Path>,
-        complete: impl for<'f> Fn(VtuFile<'f, T, D>) -> VtuFile<'f, T, D>,
+        complete: impl for<'f> Fn(VtuFile<'f, D>) -> VtuFile<'f, D>,
     ) -> Result<(), Error> {
         compiled!(
-            T, D: fn(&Solved<'_, T, D>, &Path, Complete<'_, T, D>) -> Result<(), Error>
+            T, D: fn(&Solved<'_, T, D>, &Path, Complete<'_, D>) -> Result<(), Error>
                 = |solved, path, complete| solved.write_fields(path, complete)
         )(self, path.as_ref(), &complete)
     }
     #[cfg(feature = "report")]
-    fn write_fields(&self, path: &Path, complete: Complete<'_, T, D>) -> Result<(), Error> {
+    fn write_fields(&self, path: &Path, complete: Complete<'_, D>) -> Result<(), Error> {
         let Some(fields) = self.fields() else {
             return Err(write_error(path, format!("no solution: {}", self.outcome())));
         };
@@ -331,6 +357,7 @@ impl<'a, T: Real, const D: usize> Solved<'a, T, D> {
             1 => Vec::new(),
             _ => (0..mesh.n_cells()).map(|cell| mesh.region(cell) as f64).collect(),
         };
+        let shares = self.bound().map_or_else(|_| Vec::new(), |bound| bound.cells);
         let mut file = VtuFile::new(mesh, &u);
         let bounds = [&data.lower, &data.upper].into_iter().filter(|bound| bound.is_given());
         for (name, bound) in ["obstacle", "upper_obstacle"].into_iter().zip(bounds) {
@@ -340,6 +367,9 @@ impl<'a, T: Real, const D: usize> Solved<'a, T, D> {
         }
         if !regions.is_empty() {
             file = file.on_cells("region", &regions);
+        }
+        if !shares.is_empty() {
+            file = file.on_cells("bound", &shares);
         }
         if let Some(exact) = &problem.exact {
             file = file.error_from(&*exact.value);

@@ -1,7 +1,7 @@
 //! Points and cells of a VTK grid, linear or quadratic.
 
 use crate::mesh::{Edges, Mesh, edge_vertices};
-use crate::real::{Point, Real, point_f64};
+use crate::real::Point;
 
 /// Ends of the edges of a line, a triangle and a tetrahedron in the order of the format.
 const VTK_EDGES: [&[[usize; 2]]; 4] =
@@ -30,13 +30,18 @@ pub(super) const fn values_per_cell(dimension: usize, degree: usize) -> usize {
 impl<const D: usize> Grid<D> {
     /// The grid of a function with `n` values in each cell: at the vertices, then at the midpoints of
     /// the edges if the function is quadratic. Cells share their points if the function is continuous up
-    /// to rounding.
-    pub fn new<T: Real>(mesh: &Mesh<T, D>, u: &[f64], n: usize, facets: &[(usize, usize)]) -> Self {
+    /// to its relative rounding.
+    pub fn new(
+        mesh: &Mesh<f64, D>,
+        (u, epsilon): (&[f64], f64),
+        n: usize,
+        facets: &[(usize, usize)],
+    ) -> Self {
         let is_quadratic = n > D + 1;
-        let (sources, numbers) = shared(mesh, u, n)
+        let (sources, numbers) = shared(mesh, (u, epsilon), n)
             .unwrap_or_else(|| ((0..u.len()).collect(), (0..u.len() as u32).collect()));
         let point = |&k: &usize| {
-            let vertex = |i: usize| point_f64(&mesh.vertices()[mesh.cell(k / n)[i] as usize]);
+            let vertex = |i: usize| mesh.vertices()[mesh.cell(k / n)[i] as usize];
             match k % n {
                 i if i <= D => vertex(i),
                 i => {
@@ -92,13 +97,13 @@ impl<const D: usize> Grid<D> {
 
 /// The place of a value of each shared point, and the points of every cell; none if the cells at a point
 /// do not agree in its value.
-fn shared<T: Real, const D: usize>(
-    mesh: &Mesh<T, D>,
-    u: &[f64],
+fn shared<const D: usize>(
+    mesh: &Mesh<f64, D>,
+    (u, epsilon): (&[f64], f64),
     n: usize,
 ) -> Option<(Vec<usize>, Vec<u32>)> {
     let largest = u.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
-    let rounding = 16.0 * T::EPSILON * largest;
+    let rounding = 16.0 * epsilon * largest;
     let first_edge = mesh.vertices().len();
     let edges = (n > D + 1).then(|| Edges::with_cell_edges(mesh));
     let (n_edges, of_cells) = edges.map_or((0, Vec::new()), |(edges, of)| (edges.len(), of));
@@ -124,8 +129,8 @@ fn shared<T: Real, const D: usize>(
 }
 
 /// Positive if the vertices of a cell in this order span a positive volume or area.
-fn orientation<T: Real, const D: usize>(mesh: &Mesh<T, D>, cell: usize, order: &[usize]) -> f64 {
-    let vertex = |i: usize| point_f64(&mesh.vertices()[mesh.cell(cell)[order[i]] as usize]);
+fn orientation<const D: usize>(mesh: &Mesh<f64, D>, cell: usize, order: &[usize]) -> f64 {
+    let vertex = |i: usize| mesh.vertices()[mesh.cell(cell)[order[i]] as usize];
     let edge = |i: usize| -> [f64; 3] {
         let step = vertex(i) - vertex(0);
         std::array::from_fn(|k| if k < D { step[k] } else { 0.0 })

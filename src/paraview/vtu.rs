@@ -4,6 +4,7 @@
 //! the file as raw bytes, compressed by zlib: the smallest encoding of the format, and the one that ParaView
 //! writes itself.
 
+use std::borrow::Cow;
 use std::fmt;
 use std::fs::File;
 use std::io::{self, BufWriter, Write};
@@ -52,8 +53,10 @@ type InCell<'a, const D: usize> = Box<dyn Fn(usize, &Point<f64, D>) -> f64 + 'a>
 /// # }
 /// ```
 #[must_use]
-pub struct VtuFile<'a, T: Real, const D: usize> {
-    mesh: &'a Mesh<T, D>,
+pub struct VtuFile<'a, const D: usize> {
+    mesh: Cow<'a, Mesh<f64, D>>,
+    /// The relative rounding of values.
+    epsilon: f64,
     u: &'a [f64],
     functions: Vec<(&'a str, InCell<'a, D>)>,
     exact: Option<Function<'a, D>>,
@@ -65,7 +68,7 @@ pub struct VtuFile<'a, T: Real, const D: usize> {
     scalar: FieldScalar,
 }
 
-impl<T: Real, const D: usize> fmt::Debug for VtuFile<'_, T, D> {
+impl<const D: usize> fmt::Debug for VtuFile<'_, D> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.debug_struct("VtuFile")
             .field("cells", &self.mesh.n_cells())
@@ -75,15 +78,16 @@ impl<T: Real, const D: usize> fmt::Debug for VtuFile<'_, T, D> {
     }
 }
 
-impl<'a, T: Real, const D: usize> VtuFile<'a, T, D> {
+impl<'a, const D: usize> VtuFile<'a, D> {
     /// A file with a function as the point data `u`. The function has `D + 1` values for each cell, at
     /// its vertices in order, or `(D + 1)(D + 2)/2`, then those at the midpoints of its edges in the order
     /// of [`Layout::edge`](crate::element::Layout::edge): linear cells (types 3, 5, 10) or quadratic ones
     /// (21, 22, 24). Cells share their points if the values of all cells agree at every point up to
     /// rounding; otherwise each cell has its own points, so that jumps are visible.
-    pub fn new(mesh: &'a Mesh<T, D>, u: &'a [f64]) -> Self {
+    pub fn new<T: Real>(mesh: &'a Mesh<T, D>, u: &'a [f64]) -> Self {
         Self {
-            mesh,
+            mesh: mesh.in_double(),
+            epsilon: T::EPSILON,
             u,
             functions: Vec::new(),
             exact: None,
@@ -155,14 +159,15 @@ impl<'a, T: Real, const D: usize> VtuFile<'a, T, D> {
     /// [`Error::Write`] if a field has not the length that the mesh needs, or the file cannot be written.
     pub fn write(&self, path: &Path) -> Result<(), Error> {
         compiled!(
-            T, D: fn(&VtuFile<'_, T, D>, &Path) -> Result<(), Error>
+            const D: fn(&VtuFile<'_, D>, &Path) -> Result<(), Error>
                 = |file, path| file.write_checked(path)
         )(self, path)
     }
     fn write_checked(&self, path: &Path) -> Result<(), Error> {
         let written = replace(path, |draft| {
             let n = self.check()?;
-            let arrays = self.arrays(&Grid::new(self.mesh, self.u, n, self.facets))?;
+            let arrays =
+                self.arrays(&Grid::new(&self.mesh, (self.u, self.epsilon), n, self.facets))?;
             let mut file = BufWriter::new(File::create(draft)?);
             arrays.write(&mut file)?;
             file.flush()

@@ -58,6 +58,9 @@ pub struct Problem<const D: usize> {
     pub named: NamedData<D>,
     /// Where obstacles and gap bind; at the [`Nodes`] of the element where absent.
     pub constraint_set: Option<Arc<dyn ConstraintSet>>,
+    /// The degree of the polynomials that all data given as functions are in each cell, where it is
+    /// stated: see [`Problem::polynomial_data`].
+    pub data_degree: Option<usize>,
     /// The exact solution.
     pub exact: Option<Exact<D>>,
     /// The minimum of the energy, where it is known and the solution is not.
@@ -78,6 +81,7 @@ impl<const D: usize> fmt::Debug for Problem<D> {
             gap,
             named,
             constraint_set,
+            data_degree,
             exact,
             reference_energy,
         } = self;
@@ -105,6 +109,9 @@ impl<const D: usize> fmt::Debug for Problem<D> {
         }
         if let Some(set) = constraint_set {
             out.field("constraint_set", &set.name());
+        }
+        if let Some(degree) = data_degree {
+            out.field("data_degree", degree);
         }
         if let Some(exact) = exact {
             out.field("exact", exact);
@@ -244,6 +251,14 @@ impl<const D: usize> Problem<D> {
     #[must_use]
     pub fn on(mut self, set: impl ConstraintSet + 'static) -> Self {
         self.constraint_set = Some(Arc::new(set));
+        self
+    }
+    /// States that every datum given as a function is in each cell, and on each boundary facet, a
+    /// polynomial of at most this degree. The discretisation does not depend on it:
+    /// [error bounds](crate::error_bound) are guaranteed only for data of which it is stated, or constants.
+    #[must_use]
+    pub fn polynomial_data(mut self, degree: usize) -> Self {
+        self.data_degree = Some(degree);
         self
     }
     /// Sets the exact solution and its gradient, and makes it the Dirichlet datum and, times the

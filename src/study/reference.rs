@@ -91,9 +91,10 @@ pub(super) struct Measured<'m, 'p, T: Real, const D: usize> {
 }
 
 impl<T: Real, const D: usize> Measured<'_, '_, T, D> {
-    /// Fills in energy and errors.
+    /// Fills in energy, bound and errors.
     pub fn measure(&self, row: &mut Row, solved: &Solved<'_, T, D>) -> Result<(), Error> {
         row.energy = solved.energy()?;
+        row.bound = solved.bound_figures(self.failure.is_none());
         if let Some((reference, name)) = self.reference {
             row.error = solved.difference(reference)?;
             row.contact = solved.contact_difference(reference)?;

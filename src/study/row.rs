@@ -1,6 +1,7 @@
 //! Rows of a report: the figures of one scene, scheme and level each.
 
 use crate::error::Error;
+use crate::error_bound::BoundFigures;
 use crate::facet::PenaltyParameters;
 use crate::inequality::{Certificate, Outcome, StageRun};
 use crate::measure::{ContactErrors, Errors};
@@ -136,6 +137,9 @@ pub struct Row {
     pub objective: Option<f64>,
     /// The energy by one formula for every scheme: [`Discretisation::energy`](crate::assemble::Discretisation::energy).
     pub energy: Option<f64>,
+    /// A bound on the error from the solution and the data alone; old reports have none.
+    #[cfg_attr(feature = "report", serde(default))]
+    pub bound: BoundFigures,
     /// Constrained unknowns in contact, Dirichlet ones not counted; none where there is no iterate.
     pub active: Option<usize>,
     /// Measure of the contact set: a volume with obstacles, else an area of the boundary; null without an
@@ -182,6 +186,7 @@ impl Row {
             expected_order: ExpectedOrders::default(),
             objective: None,
             energy: None,
+            bound: BoundFigures::default(),
             active: None,
             contact_measure: None,
             resultant: None,

@@ -19,8 +19,9 @@ impl fmt::Display for Report {
 
 /// Writes one table for each scene, in the order in which scenes first occur, with a blank line
 /// between schemes; times are in seconds. `certif.` is the largest of the four numbers of the
-/// certificate. A row that did not converge is followed by the reason. Where no error is known there are
-/// columns of energy, contact measure and resultant, and their limits below.
+/// certificate, `effect.` the error bound over the true error. A row that did not converge is followed by
+/// the reason. Where no error is known there are columns of error bound, energy, contact measure and
+/// resultant, and their limits below.
 fn write_tables(f: &mut impl fmt::Write, rows: &[Row]) -> fmt::Result {
     for (i, (scene, rows)) in scenes(rows).into_iter().enumerate() {
         if i > 0 {
@@ -190,6 +191,12 @@ pub(crate) fn columns(rows: &[&Row]) -> Vec<Column> {
     if any(|r| r.error.h1) {
         columns.push(number("H1", |r| scientific(r.error.h1)));
         columns.push(number("order", |r| fixed(r.order.h1)));
+    }
+    // the errors say the rest where they are known, and lines stay within their width
+    if any(|r| r.bound.effectivity) {
+        columns.push(number("effect.", |r| fixed(r.bound.effectivity)));
+    } else if any(|r| r.bound.total) {
+        columns.push(number("bound", |r| scientific(r.bound.total)));
     }
     if !has_errors(rows) {
         if any(|r| r.energy) {

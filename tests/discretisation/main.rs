@@ -2,6 +2,7 @@
 
 mod accuracy;
 mod elements;
+mod error_bounds;
 mod forms;
 mod named_data;
 mod runs;

@@ -7,14 +7,26 @@ use super::run::{Scratch, read_json, rows, stderr, stdout};
 use crate::support::keys::ROW_KEYS;
 
 /// Keys of inner objects, and which of their values may be null in a row that converged.
-const INNER_KEYS: [(&str, &[&str], bool); 7] = [
+const INNER_KEYS: [(&str, &[&str], bool); 8] = [
     ("parameters", &["sigma", "eta", "rule"], true),
     ("error", &["l2", "h1", "energy", "broken_energy", "max"], true),
     ("order", &["l2", "h1", "energy", "max", "multiplier_l1", "multiplier_l2"], true),
     ("expected_order", &["l2", "h1"], true),
+    ("bound", &BOUND_NUMBERS, true),
     ("iterations", &["outer", "linear", "levels", "start_cycles", "stages"], false),
     ("certificate", &["feasibility", "multiplier", "complementarity", "residual"], false),
     ("seconds", &["mesh", "assemble", "solve", "total"], false),
+];
+
+const BOUND_NUMBERS: [&str; 8] = [
+    "total",
+    "distance",
+    "mismatch",
+    "obstacle",
+    "contact",
+    "oscillation",
+    "algebra",
+    "effectivity",
 ];
 
 /// Every key is there, with a value of its type.
@@ -56,6 +68,9 @@ fn check_row(row: &Value) {
         }
     }
     assert!(row["certificate"].get("algebraic_bound").is_some());
+    let bound = &row["bound"];
+    assert!(bound["total"].is_number() != bound["reason"].is_string(), "{bound}");
+    assert!(bound["total"].is_number() != bound["guaranteed"].is_null(), "{bound}");
 }
 
 #[test]

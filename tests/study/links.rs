@@ -6,10 +6,11 @@ use std::path::{Component, Path, PathBuf};
 use std::process::Command;
 
 /// Pages of the repository. Orders and stability are tables that the program writes.
-const PAGES: [&str; 13] = [
+const PAGES: [&str; 14] = [
     "README.md",
     "CHANGELOG.md",
     "docs/assembly.md",
+    "docs/bound.md",
     "docs/choosing.md",
     "docs/conventions.md",
     "docs/gallery.md",

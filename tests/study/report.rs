@@ -5,6 +5,7 @@ use crate::scratch::Scratch;
 use crate::support::keys::ROW_KEYS;
 use serde_json::Value;
 use std::path::Path;
+use unilateral::error_bound::{Guaranteed, Unproven};
 use unilateral::facet::PenaltyParameters;
 use unilateral::inequality::Outcome;
 use unilateral::measure::Errors;
@@ -38,6 +39,9 @@ fn json_has_the_keys_that_scripts_rely_on() {
     let certificate =
         ["feasibility", "multiplier", "complementarity", "residual", "algebraic_bound"];
     assert_eq!(keys(&row["certificate"]), certificate);
+    let bound = "total distance guaranteed mismatch obstacle contact oscillation algebra \
+                 effectivity reason";
+    assert_eq!(keys(&row["bound"]), bound.split(' ').collect::<Vec<_>>());
     assert_eq!(keys(&row["seconds"]), ["mesh", "assemble", "solve", "total"]);
     assert_eq!(json["rows"].as_array().unwrap().len(), 18);
 }
@@ -328,4 +332,32 @@ fn peak_memory_is_known_on_linux() {
     let peak = peak_memory_bytes();
     assert_eq!(peak.is_some(), cfg!(target_os = "linux"));
     assert!(peak.is_none_or(|p| p > 100_000));
+}
+
+#[test]
+fn bounds_are_guaranteed_or_name_what_is_not_proven() {
+    let mut rows = vec![row("a", "p1", 8), row("a", "p1", 16), row("a", "p2", 8)];
+    rows[0].bound.total = Some(0.5);
+    rows[0].bound.guaranteed = Some(Guaranteed::All(true));
+    rows[1].bound.total = Some(0.25);
+    rows[1].bound.effectivity = Some(1.75);
+    let unproven = vec![Unproven::Quadrature, Unproven::Algebra];
+    rows[1].bound.guaranteed = Some(Guaranteed::Except(unproven));
+    rows[2].bound.reason = Some("no flux".into());
+    let written = serde_json::to_value(&rows).unwrap();
+    assert_eq!(written[0]["bound"]["guaranteed"], true);
+    assert_eq!(written[1]["bound"]["guaranteed"], serde_json::json!(["quadrature", "algebra"]));
+    assert!(written[2]["bound"]["guaranteed"].is_null());
+    let read: Vec<Row> = serde_json::from_value(written.clone()).unwrap();
+    assert!(read == rows);
+    // reports of earlier versions have no bound
+    let mut old = written[0].clone();
+    old.as_object_mut().unwrap().shift_remove("bound");
+    let read: Row = serde_json::from_value(old).unwrap();
+    assert!(read.bound.total.is_none() && read.error == rows[0].error);
+    let text = report(rows.clone()).to_string();
+    assert!(text.contains(" effect. ") && text.contains(" 1.75 "), "{text}");
+    rows.iter_mut().for_each(|row| row.bound.effectivity = None);
+    let text = report(rows).to_string();
+    assert!(text.contains(" bound ") && text.contains(" 2.50e-1 "), "{text}");
 }

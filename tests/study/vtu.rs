@@ -222,7 +222,7 @@ fn fields_of_the_wrong_length_are_refused_by_name() {
     let scratch = Scratch::new("vtu-refused");
     std::fs::create_dir_all(&scratch.0).unwrap();
     let path = scratch.0.join("fields.vtu");
-    let said = |file: VtuFile<'_, f64, 2>| file.write(&path).unwrap_err().to_string();
+    let said = |file: VtuFile<'_, 2>| file.write(&path).unwrap_err().to_string();
     let u = [1.0; 6];
     let wrong = said(VtuFile::new(&mesh, &u[..5]));
     assert!(wrong.ends_with("field u has 5 values, the mesh needs 6"), "{wrong}");
@@ -369,7 +369,9 @@ fn a_study_writes_all_levels_on_request() {
     assert_eq!((grid.text("scene"), grid.text("scheme")), ("radial-2d".into(), "wopsip".into()));
     assert_eq!(grid.array("FieldData", "level").1, "4");
     assert_eq!(grid.names("PointData"), ["obstacle", "error", "u"]);
-    assert_eq!(grid.names("CellData"), ["multiplier", "contact", "dimension"]);
+    assert_eq!(grid.names("CellData"), ["bound", "multiplier", "contact", "dimension"]);
+    let shares: f64 = grid.floats("CellData", "bound").iter().sum();
+    assert!((shares - 1.0).abs() < 1e-6, "{shares}");
 }
 
 /// What VTK itself reads: `python3 -m pip install pyvista`, or another Python by

@@ -1,7 +1,7 @@
 //! What scripts rely on.
 
 /// The keys of a row, in order.
-pub const ROW_KEYS: [&str; 30] = [
+pub const ROW_KEYS: [&str; 31] = [
     "scene",
     "dimension",
     "scheme",
@@ -25,6 +25,7 @@ pub const ROW_KEYS: [&str; 30] = [
     "expected_order",
     "objective",
     "energy",
+    "bound",
     "active",
     "contact_measure",
     "resultant",

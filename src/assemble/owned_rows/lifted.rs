@@ -26,7 +26,7 @@ use crate::quadrature::{OrthonormalPolynomials, Rule, facet_to_cell};
 use crate::real::Real;
 
 /// Most moments a lift is made of: quadratics on a triangle.
-const MAX_MOMENTS: usize = 6;
+pub(crate) const MAX_MOMENTS: usize = 6;
 
 type Moments<T> = [[T; MAX_MOMENTS]; MAX_BASIS];
 type Product<T> = [[T; MAX_MOMENTS]; MAX_MOMENTS];
@@ -300,6 +300,42 @@ impl<T: Real, const D: usize> Lifting<'_, '_, T, D> {
                 add(other, other_local, T::lit(-1.0));
             }
         }
+    }
+
+    /// By facet of a centre the products, over the centre, of the lift of the function with mean one on
+    /// the facet with the lift of jumps, given by facet and moment as seen from the centre.
+    pub fn products_with_means(
+        &self,
+        neighbours: &Neighbours,
+        centre: usize,
+        jumps: &[[T; MAX_MOMENTS]; 4],
+    ) -> [f64; 4] {
+        let metric = self.metrics.at::<D>(centre);
+        let facets: [Option<JumpFacet<T>>; 4] = std::array::from_fn(|local| match local <= D {
+            true => self.jump_facet(neighbours, centre, &metric, local),
+            false => None,
+        });
+        let mut mean = [T::lit(0.0); MAX_MOMENTS];
+        mean[0] = T::lit(1.0);
+        let weighted = |facet: &JumpFacet<T>, moments: &[T; MAX_MOMENTS]| match &facet.products {
+            Some(products) => weigh(products, moments),
+            None => *moments,
+        };
+        let mut sums = [0.0; 4];
+        for test in facets.iter().flatten() {
+            let tested = weighted(test, &mean);
+            for trial in facets.iter().flatten() {
+                let jump = weighted(trial, &jumps[trial.local]);
+                let products = &self.table.products[test.local][trial.local];
+                let scale = self.scale(centre, &metric, test, trial);
+                for (row, &tested) in products.iter().zip(&tested) {
+                    for (&product, &jump) in row.iter().zip(&jump) {
+                        sums[test.local] += (scale * tested * product * jump).to_f64();
+                    }
+                }
+            }
+        }
+        sums
     }
 
     /// The product of the lifts of Dirichlet data on two facets of a centre, each given by the number of

@@ -14,6 +14,11 @@ use crate::real::{Point, Real};
 /// rounding in the data.
 const RELATIVE_SLACK: f64 = 1e-9;
 
+/// Sorts facets by the ranks of their groups. It is no generic function, as sorting is much code.
+fn sort_by_rank(facets: &mut [((usize, usize), usize)], ranks: &[usize]) {
+    facets.sort_by_key(|&(_, group)| ranks[group]);
+}
+
 impl<T: Real, const D: usize> Space<'_, T, D> {
     /// The bounds of all unknowns; see `Discretisation::bounds`.
     pub fn bounds(&self) -> Result<Vec<Bound<T>>, Error> {
@@ -116,7 +121,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         let (lowers, uppers) = (&self.data.lower, &self.data.upper);
         let mut facets: Vec<_> = self.grouped_facets_of(BoundaryPart::Dirichlet).collect();
         // the first facet decides on an unknown
-        facets.sort_by_key(|&(_, group)| self.data.dirichlet_rank[group]);
+        sort_by_rank(&mut facets, &self.data.dirichlet_rank);
         for ((cell, local), group) in facets {
             let region = self.mesh.region(cell);
             let datum = |x: &Point<f64, D>| self.dirichlet_at(group, x);

@@ -190,10 +190,10 @@ impl<T: Real> Iteration<'_, '_, '_, T> {
     }
 }
 
-/// The outcome of an iteration that ends with `outcome`, without a final active set. If the best
-/// iterate satisfies the complementarity conditions as well as rounding allows, it replaces the present
-/// one and the outcome is [`Outcome::Converged`], or, above the limit of the certificate,
-/// [`Outcome::Stalled`]; else `outcome`.
+/// The outcome of an iteration that ends with `outcome`, without a final active set or above rounding. If the
+/// best iterate satisfies the complementarity conditions as well as rounding allows or, after
+/// [`Outcome::Stalled`], within the limit of the certificate, it replaces the present one and the outcome is
+/// [`Outcome::Converged`]; within rounding, but above that limit, it is [`Outcome::Stalled`]; else `outcome`.
 pub(crate) fn outcome_of_best<T: Real>(
     iterate: &mut Iterate<'_, T>,
     rounding_band: f64,
@@ -206,12 +206,15 @@ pub(crate) fn outcome_of_best<T: Real>(
     let (certificate, amplification) =
         certify_with_rounding(iterate.inequality, best, jump_multipliers);
     let rounding = CERTIFICATE_FACTOR * rounding_band * T::EPSILON * amplification.max(1.0);
-    if certificate.largest() > rounding {
-        outcome
-    } else if certificate.largest() <= T::CERTIFICATE_LIMIT {
+    let (is_within_rounding, is_within_limit) =
+        (certificate.largest() <= rounding, certificate.largest() <= T::CERTIFICATE_LIMIT);
+    // factors aim at rounding; a settled active set that misses this aim only is a solution all the same
+    if is_within_limit && (is_within_rounding || outcome == Outcome::Stalled) {
         iterate.restore_best();
         Outcome::Converged
-    } else {
+    } else if is_within_rounding {
         Outcome::Stalled
+    } else {
+        outcome
     }
 }

@@ -161,7 +161,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
     }
 
     /// For each vertex on the Dirichlet part the boundary group whose datum is given there.
-    fn dirichlet_groups(&self) -> Vec<Option<usize>> {
+    pub(crate) fn dirichlet_groups(&self) -> Vec<Option<usize>> {
         let mut given: Vec<Option<usize>> = vec![None; self.mesh.vertices().len()];
         let rank = |group: usize| self.data.dirichlet_rank[group];
         for ((cell, local), group) in self.grouped_facets_of(BoundaryPart::Dirichlet) {

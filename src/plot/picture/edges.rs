@@ -3,7 +3,6 @@
 use std::collections::BTreeMap;
 
 use super::section::{Corner, PlanePoint, Section, View};
-use crate::real::Real;
 
 /// An edge of sections, and the cells beside it with the edge's ends in each.
 pub(crate) struct Edge {
@@ -39,10 +38,7 @@ pub(crate) fn edges(sections: &[Section]) -> Vec<Edge> {
 }
 
 /// The size of the mean jump of the function across an edge; none at the boundary.
-pub(crate) fn mean_jump<T: Real, const D: usize>(
-    view: &View<'_, T, D>,
-    edge: &Edge,
-) -> Option<f64> {
+pub(crate) fn mean_jump<const D: usize>(view: &View<'_, D>, edge: &Edge) -> Option<f64> {
     let [one, other] = &edge.sides[..] else { return None };
     // Simpson's rule is exact for quadratics
     let mean = |side: &Side| {

@@ -5,20 +5,20 @@ use super::graph::Graph;
 use crate::measure::Fields;
 use crate::mesh::Mesh;
 use crate::problem::{DataOnMesh, DatumRef, Problem};
-use crate::real::{Point, Real, point_f64};
+use crate::real::Point;
 
 /// Parts of a cell on which given functions are drawn as linear.
 const PARTS: usize = 6;
 
 /// The data of the panels.
-pub(crate) struct Line<'a, T: Real, const D: usize> {
+pub(crate) struct Line<'a, const D: usize> {
     problem: &'a Problem<D>,
-    mesh: &'a Mesh<T, D>,
+    mesh: &'a Mesh<f64, D>,
     fields: &'a Fields,
 }
 
-impl<'a, T: Real, const D: usize> Line<'a, T, D> {
-    pub fn new(problem: &'a Problem<D>, mesh: &'a Mesh<T, D>, fields: &'a Fields) -> Self {
+impl<'a, const D: usize> Line<'a, D> {
+    pub fn new(problem: &'a Problem<D>, mesh: &'a Mesh<f64, D>, fields: &'a Fields) -> Self {
         Line { problem, mesh, fields }
     }
 
@@ -39,7 +39,7 @@ impl<'a, T: Real, const D: usize> Line<'a, T, D> {
     /// The ends of a cell.
     fn ends(&self, cell: usize) -> [f64; 2] {
         let cell = self.mesh.cell(cell);
-        [0, 1].map(|k| point_f64(&self.mesh.vertices()[cell[k] as usize])[0])
+        [0, 1].map(|k| self.mesh.vertices()[cell[k] as usize][0])
     }
 
     /// Cells in contact, and points.

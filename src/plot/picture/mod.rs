@@ -101,22 +101,25 @@ impl Picture {
         slice: Option<Slice>,
     ) -> Result<Self, Error> {
         compiled!(
-            T, D: fn(
+            const D: fn(
                 &str,
                 &Problem<D>,
-                &Mesh<T, D>,
+                &Mesh<f64, D>,
                 &Fields,
                 Option<Slice>,
+                f64,
             ) -> Result<Picture, Error>
-                = Picture::painted::<T, D>
-        )(title, problem, mesh, fields, slice)
+                = Picture::painted::<D>
+        )(title, problem, &mesh.in_double(), fields, slice, T::EPSILON)
     }
-    fn painted<T: Real, const D: usize>(
+    /// The picture of a function whose values have this relative rounding.
+    fn painted<const D: usize>(
         title: &str,
         problem: &Problem<D>,
-        mesh: &Mesh<T, D>,
+        mesh: &Mesh<f64, D>,
         fields: &Fields,
         slice: Option<Slice>,
+        epsilon: f64,
     ) -> Result<Self, Error> {
         check_fields(mesh, fields)?;
         if let Some(slice) = slice.filter(|s| D != 3 || s.axis > 2 || !s.at.is_finite()) {
@@ -128,12 +131,12 @@ impl Picture {
         let title = title.to_owned();
         if D == 1 {
             let line = Line::new(problem, mesh, fields);
-            let measure = (0..mesh.n_cells()).map(|c| mesh.geometry(c).volume.to_f64()).sum();
+            let measure = (0..mesh.n_cells()).map(|c| mesh.geometry(c).volume).sum();
             let panels = line.panels().into_iter().map(Panel::Graph).collect();
             return Ok(Picture { title, panels, measure, contact_measure: line.contact_length() });
         }
         let slice = (D == 3).then(|| slice.unwrap_or_else(|| default_slice(problem, mesh)));
-        let plane = Plane::new(problem, mesh, fields, slice);
+        let plane = Plane::new(problem, mesh, fields, slice, epsilon);
         if let (Some(slice), true) = (slice, plane.sections.is_empty()) {
             return Err(wrong_slice(slice, "the plane misses the mesh"));
         }
@@ -246,7 +249,7 @@ impl Drawing for Picture {
 }
 
 /// Refuses fields that would be read beyond their ends.
-fn check_fields<T: Real, const D: usize>(mesh: &Mesh<T, D>, fields: &Fields) -> Result<(), Error> {
+fn check_fields<const D: usize>(mesh: &Mesh<f64, D>, fields: &Fields) -> Result<(), Error> {
     let n = mesh.n_cells();
     let found = &fields.discrete_contact;
     let fits = fields.u.len() == n * (D + 1)

@@ -13,7 +13,6 @@ use crate::measure::Fields;
 use crate::mesh::{BoundaryPart, Mesh};
 use crate::plot::style::{INK, PAPER};
 use crate::problem::{ContactSet, Problem};
-use crate::real::Real;
 
 /// Most cells whose edges are drawn.
 const MOST_EDGES: usize = 1500;
@@ -23,23 +22,26 @@ const ROUNDINGS: f64 = 256.0;
 const STRIDE: usize = 2;
 
 /// The data of the panels.
-pub(crate) struct Plane<'a, T: Real, const D: usize> {
+pub(crate) struct Plane<'a, const D: usize> {
     problem: &'a Problem<D>,
-    pub view: View<'a, T, D>,
+    pub view: View<'a, D>,
     pub sections: Vec<Section>,
     edges: Vec<Edge>,
     /// Whether each cell, or in a slice along the contact boundary its facet there, is in contact.
     touches: Vec<bool>,
     low: PlanePoint,
     high: PlanePoint,
+    /// The relative rounding of values.
+    epsilon: f64,
 }
 
-impl<'a, T: Real, const D: usize> Plane<'a, T, D> {
+impl<'a, const D: usize> Plane<'a, D> {
     pub fn new(
         problem: &'a Problem<D>,
-        mesh: &'a Mesh<T, D>,
+        mesh: &'a Mesh<f64, D>,
         fields: &'a Fields,
         slice: Option<Slice>,
+        epsilon: f64,
     ) -> Self {
         let view = View::new(mesh, fields, slice);
         let sections = view.sections();
@@ -55,7 +57,8 @@ impl<'a, T: Real, const D: usize> Plane<'a, T, D> {
                 high[k] = high[k].max(corner.at[k]);
             }
         }
-        Plane { problem, edges: edges(&sections), view, sections, touches, low, high }
+        let edges = edges(&sections);
+        Plane { problem, edges, view, sections, touches, low, high, epsilon }
     }
 
     /// All panels that are not empty.
@@ -194,7 +197,7 @@ impl<'a, T: Real, const D: usize> Plane<'a, T, D> {
         let title = if D == 3 { "jumps along the slice" } else { "jumps across facets" };
         let mut map = self.map(title);
         let largest = self.view.fields.u.iter().fold(0.0_f64, |m, u| m.max(u.abs()));
-        let floor = ROUNDINGS * T::EPSILON * largest;
+        let floor = ROUNDINGS * self.epsilon * largest;
         let jumps: Vec<(f64, [PlanePoint; 2])> =
             self.edges.iter().filter_map(|e| Some((mean_jump(&self.view, e)?, e.ends))).collect();
         map.scale = Scale::logarithmic("|mean jump|", jumps.iter().map(|j| j.0), floor);
@@ -326,10 +329,7 @@ fn shade(map: &mut Map, name: &str, triangles: &[[(PlanePoint, f64); 3]], with_l
 
 /// The default slice: along the contact boundary if that is a coordinate
 /// plane, otherwise through the middle across the last coordinate.
-pub(crate) fn default_slice<T: Real, const D: usize>(
-    problem: &Problem<D>,
-    mesh: &Mesh<T, D>,
-) -> Slice {
+pub(crate) fn default_slice<const D: usize>(problem: &Problem<D>, mesh: &Mesh<f64, D>) -> Slice {
     let corners = || {
         let contact = mesh.boundary().iter().filter(|f| f.part == BoundaryPart::Contact);
         let vertices = contact.flat_map(|f| mesh.facet_vertices(f.cell as usize, f.local.into()));
@@ -338,10 +338,10 @@ pub(crate) fn default_slice<T: Real, const D: usize>(
     if let (false, Some(first)) = (problem.has_obstacle(), corners().next()) {
         let is_flat = |axis: &usize| corners().all(|x| x[*axis] == first[*axis]);
         if let Some(axis) = (0..D).find(is_flat) {
-            return Slice { axis, at: first[axis].to_f64() };
+            return Slice { axis, at: first[axis] };
         }
     }
-    let heights = || mesh.vertices().iter().map(|x| x[D - 1].to_f64());
+    let heights = || mesh.vertices().iter().map(|x| x[D - 1]);
     let (low, high) =
         (heights().fold(f64::INFINITY, f64::min), heights().fold(f64::NEG_INFINITY, f64::max));
     Slice { axis: D - 1, at: 0.5 * (low + high) }

@@ -3,7 +3,7 @@
 
 use crate::measure::Fields;
 use crate::mesh::{Mesh, edge_vertices};
-use crate::real::{Point, Real, point_f64};
+use crate::real::Point;
 
 /// A coordinate plane through a mesh in space.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -36,8 +36,8 @@ pub(crate) struct Section {
 const FLAT: f64 = 1e-14;
 
 /// A view of the mesh: the coordinates shown to the right and upwards, and the plane of the slice.
-pub(crate) struct View<'a, T: Real, const D: usize> {
-    pub mesh: &'a Mesh<T, D>,
+pub(crate) struct View<'a, const D: usize> {
+    pub mesh: &'a Mesh<f64, D>,
     pub fields: &'a Fields,
     pub axes: [usize; 2],
     slice: Option<Slice>,
@@ -46,18 +46,17 @@ pub(crate) struct View<'a, T: Real, const D: usize> {
     smallest: f64,
 }
 
-impl<'a, T: Real, const D: usize> View<'a, T, D> {
+impl<'a, const D: usize> View<'a, D> {
     /// A mesh in the plane as it is, one in space cut by a plane.
-    pub fn new(mesh: &'a Mesh<T, D>, fields: &'a Fields, slice: Option<Slice>) -> Self {
+    pub fn new(mesh: &'a Mesh<f64, D>, fields: &'a Fields, slice: Option<Slice>) -> Self {
         let slice = slice.filter(|_| D == 3);
         let axes = match slice.map(|s| s.axis) {
             Some(0) => [1, 2],
             Some(1) => [0, 2],
             _ => [0, 1],
         };
-        let lowest = |axis: usize| {
-            mesh.vertices().iter().map(|x| x[axis].to_f64()).fold(f64::INFINITY, f64::min)
-        };
+        let lowest =
+            |axis: usize| mesh.vertices().iter().map(|x| x[axis]).fold(f64::INFINITY, f64::min);
         let on_is_below = slice.is_some_and(|s| s.at <= lowest(s.axis));
         let smallest = FLAT * mesh.domain_diameter().powi(2);
         View { mesh, fields, axes, slice, on_is_below, smallest }
@@ -65,7 +64,7 @@ impl<'a, T: Real, const D: usize> View<'a, T, D> {
 
     /// A corner of a cell in space.
     pub fn vertex(&self, cell: usize, k: usize) -> Point<f64, D> {
-        point_f64(&self.mesh.vertices()[self.mesh.cell(cell)[k] as usize])
+        self.mesh.vertices()[self.mesh.cell(cell)[k] as usize]
     }
 
     /// A point of a cell in space.

@@ -5,7 +5,7 @@ use super::graph::Graph;
 use crate::measure::Fields;
 use crate::mesh::{BoundaryPart, Mesh};
 use crate::problem::Problem;
-use crate::real::{Point, Real, point_f64};
+use crate::real::Point;
 
 /// Parts of a facet at which exact data are looked at.
 const PARTS: usize = 8;
@@ -18,7 +18,7 @@ pub(crate) struct Sample<const D: usize> {
 }
 
 /// The facets of the contact boundary: cell, number in it, vertices.
-fn facets<T: Real, const D: usize>(mesh: &Mesh<T, D>) -> Vec<(usize, usize, Vec<u32>)> {
+fn facets<const D: usize>(mesh: &Mesh<f64, D>) -> Vec<(usize, usize, Vec<u32>)> {
     let contact = mesh.boundary().iter().filter(|f| f.part == BoundaryPart::Contact);
     contact
         .map(|f| {
@@ -29,10 +29,10 @@ fn facets<T: Real, const D: usize>(mesh: &Mesh<T, D>) -> Vec<(usize, usize, Vec<
 }
 
 /// The contact boundary in short parts.
-pub(crate) fn samples<T: Real, const D: usize>(mesh: &Mesh<T, D>) -> Vec<Sample<D>> {
+pub(crate) fn samples<const D: usize>(mesh: &Mesh<f64, D>) -> Vec<Sample<D>> {
     let mut samples = Vec::new();
     for (_, _, vertices) in facets(mesh) {
-        let [a, b] = [0, 1].map(|k| point_f64(&mesh.vertices()[vertices[k] as usize]));
+        let [a, b] = [0, 1].map(|k| mesh.vertices()[vertices[k] as usize]);
         let at = |k: usize| a + (b - a) * (k as f64 / PARTS as f64);
         samples.extend((0..PARTS).map(|k| Sample { ends: [at(k), at(k + 1)] }));
     }
@@ -40,15 +40,15 @@ pub(crate) fn samples<T: Real, const D: usize>(mesh: &Mesh<T, D>) -> Vec<Sample<
 }
 
 /// The multiplier along a straight contact boundary; none on another.
-pub(crate) fn graph<T: Real, const D: usize>(
+pub(crate) fn graph<const D: usize>(
     problem: &Problem<D>,
-    mesh: &Mesh<T, D>,
+    mesh: &Mesh<f64, D>,
     fields: &Fields,
 ) -> Option<Graph> {
     let facets = facets(mesh);
     let points = || {
         let vertices = facets.iter().flat_map(|f| &f.2);
-        vertices.map(|&v| point_f64(&mesh.vertices()[v as usize]))
+        vertices.map(|&v| mesh.vertices()[v as usize])
     };
     let extent = |axis: usize| {
         let (low, high) = points()
@@ -59,7 +59,7 @@ pub(crate) fn graph<T: Real, const D: usize>(
     if extent(1 - axis) > STRAIGHT * mesh.domain_diameter() {
         return None;
     }
-    let along = |v: u32| mesh.vertices()[v as usize][axis].to_f64();
+    let along = |v: u32| mesh.vertices()[v as usize][axis];
     let mut graph = Graph {
         title: "multiplier".to_owned(),
         axes: [["x", "y"][axis].to_owned(), "density".to_owned()],

@@ -237,6 +237,20 @@ fn bounds_on_cell_means_are_recommended_where_they_help() {
     assert!(!means.warnings.iter().any(|w| w.contains("cell-means")), "{means:?}");
 }
 
+/// Factors aim at a certificate of rounding. Where a small penalty keeps them above it and below the limit of
+/// the certificate, the solve has converged.
+#[test]
+fn a_certificate_within_its_limit_has_not_stalled() {
+    for (scene, level) in [("polynomial-2d", 8), ("degenerate2-2d", 8)] {
+        let made = scenes::by_name(scene).unwrap().make(&scenes::Parameters::default()).unwrap();
+        let scenes::AnyScene::Two(scene) = made else { panic!("{scene}") };
+        let study = Study::<f64, 2>::new(scene).scheme_on(wopsip(1e-2), FacetMeans);
+        let row = study.levels([level]).run().unwrap().rows.remove(0);
+        assert!(row.converged(), "{}", row.status);
+        assert!(row.certificate.largest() > 2e-14 && row.certificate.largest() < 1e-9);
+    }
+}
+
 /// A constant has no energy for rounding to be compared with.
 #[test]
 fn a_solution_without_energy_is_not_singular() {

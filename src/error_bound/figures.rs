@@ -1,0 +1,75 @@
+//! The bound as a row of a report has it.
+
+use super::estimate::Unproven;
+use super::{BoundParts, ErrorBound, NoBound};
+
+/// Whether a bound is proven.
+#[derive(Clone, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "report", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "report", serde(untagged))]
+pub enum Guaranteed {
+    /// Whether all terms are proven.
+    All(bool),
+    /// The terms that are computed, or neglected, without proof.
+    Except(Vec<Unproven>),
+}
+
+impl From<&[Unproven]> for Guaranteed {
+    fn from(unproven: &[Unproven]) -> Self {
+        match unproven {
+            [] => Self::All(true),
+            some => Self::Except(some.to_vec()),
+        }
+    }
+}
+
+/// The bound in figures; without a bound all are absent but the reason.
+#[derive(Clone, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "report", derive(serde::Serialize, serde::Deserialize))]
+#[non_exhaustive]
+pub struct BoundFigures {
+    /// Bound on the energy norm of `u - v`: [`ErrorBound::total`].
+    pub total: Option<f64>,
+    /// Distance of `v` from the discrete solution in the broken energy norm.
+    pub distance: Option<f64>,
+    /// True, or the terms that are not proven.
+    pub guaranteed: Option<Guaranteed>,
+    /// Parts of `total` squared.
+    pub mismatch: Option<f64>,
+    /// Complementarity of the obstacles.
+    pub obstacle: Option<f64>,
+    /// Complementarity of contact.
+    pub contact: Option<f64>,
+    /// Data oscillation.
+    pub oscillation: Option<f64>,
+    /// What the solver left.
+    pub algebra: Option<f64>,
+    /// `total` over the energy norm of `u - v`, where the exact solution is known.
+    pub effectivity: Option<f64>,
+    /// Why there is no bound.
+    pub reason: Option<String>,
+}
+
+impl BoundFigures {
+    /// The figures of a bound, and the true error where it is known.
+    #[must_use]
+    pub fn new(bound: &Result<ErrorBound, NoBound>, error: Option<f64>) -> Self {
+        let bound = match bound {
+            Ok(bound) => bound,
+            Err(reason) => return Self { reason: Some(reason.to_string()), ..Self::default() },
+        };
+        let BoundParts { mismatch, obstacle, contact, oscillation, algebra } = bound.parts;
+        Self {
+            total: Some(bound.total),
+            distance: Some(bound.distance),
+            guaranteed: Some(bound.unproven[..].into()),
+            mismatch: Some(mismatch),
+            obstacle: Some(obstacle),
+            contact: Some(contact),
+            oscillation: Some(oscillation),
+            algebra: Some(algebra),
+            effectivity: error.filter(|&e| e > 0.0).map(|error| bound.total / error),
+            reason: None,
+        }
+    }
+}

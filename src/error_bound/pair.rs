@@ -1,0 +1,211 @@
+//! An admissible function and a flux that belong to a discrete solution.
+
+use super::NoBound;
+use super::contact::NodeForce;
+use crate::algebra::Inequality;
+use crate::assemble::Discretisation;
+use crate::assemble::local::zero_local;
+use crate::assemble::space::Space;
+use crate::element::Entity;
+use crate::inequality::Solution;
+use crate::instances::compiled;
+use crate::mesh::{BoundaryPart, Neighbour};
+use crate::real::{Real, point_f64};
+
+/// A continuous, piecewise linear function within the constraints, and a flux of the space of Raviart
+/// and Thomas of lowest degree, whose normal component is single-valued: what a bound on the error is
+/// computed from.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct PrimalDualPair {
+    /// The values of the function `v` at the vertices of the mesh: means of the values of the discrete
+    /// solution in the cells around, with the coefficient as weights, Dirichlet values on the Dirichlet
+    /// part, moved into the constraints at all other vertices.
+    pub function: Vec<f64>,
+    /// The integrals of `q.n` over the facets of each cell, `n` outward: `D + 1` for each cell, in the
+    /// order of the opposite vertices.
+    pub flux: Vec<f64>,
+}
+
+impl<T: Real, const D: usize> Discretisation<'_, T, D> {
+    /// The pair of a solution.
+    ///
+    /// *Broken linears.* The flux through a facet is minus the facet form tested with the function that is
+    /// one in the cell and zero elsewhere: the discrete equations balance it with the load. Every form has
+    /// such a flux, by its own integrand. *Crouzeix-Raviart.* The integral over a facet is half of the
+    /// difference of the two cells' residuals at the unknown of the facet (L. D. Marini, SIAM J. Numer.
+    /// Anal. 22 (1985), 493-496). *Conforming linears.* The flux with the least norm is added on the cells
+    /// around each vertex (D. Braess, J. Schöberl, Math. Comp. 77 (2008), 651-672). On contact facets the
+    /// flux is the contact force of the nodes on the facet.
+    ///
+    /// # Errors
+    /// [`NoBound`].
+    ///
+    /// # Panics
+    /// If the solution has fewer values than there are unknowns.
+    pub fn primal_dual_pair(
+        &self,
+        inequality: &Inequality<T>,
+        solution: &Solution<T>,
+    ) -> Result<PrimalDualPair, NoBound> {
+        compiled!(
+            T, D: fn(
+                &Discretisation<'_, T, D>,
+                &Inequality<T>,
+                &Solution<T>,
+            ) -> Result<PrimalDualPair, NoBound>
+                = |of, inequality, solution| of.pair(inequality, solution)
+        )(self, inequality, solution)
+    }
+    fn pair(
+        &self,
+        inequality: &Inequality<T>,
+        solution: &Solution<T>,
+    ) -> Result<PrimalDualPair, NoBound> {
+        let (space, u) = (&self.space, &solution.values[..]);
+        if space.basis_degree != 1 || space.gradient_factor().is_none() {
+            return Err(NoBound::Element);
+        }
+        let penalised = inequality.penalised.as_ref();
+        let multipliers = penalised.map(|p| match solution.jump_multipliers.len() == p.n_jumps() {
+            true => solution.jump_multipliers.iter().map(|m| m.to_f64()).collect(),
+            false => p.jump_multipliers(|i| u[i].to_f64()),
+        });
+        let mut residual = vec![0.0; space.dofs.size()];
+        match (penalised, &multipliers) {
+            (Some(penalised), Some(multipliers)) => {
+                let value = |i: usize| u[i].to_f64();
+                penalised.residual_with_jump_multipliers(value, |k| multipliers[k], &mut residual);
+            }
+            _ => inequality.residual_f64(u, &mut residual),
+        }
+        let forces = space.contact_forces(inequality, &residual);
+        let mut flux = if self.owns_rows() {
+            self.facet_fluxes(u, multipliers.as_deref())?
+        } else if space.is_conforming_linear() {
+            space.patch_fluxes(u, &residual, &forces)?
+        } else if !space.broken && space.nodes.iter().all(|node| node.is_facet_mean()) {
+            space.crouzeix_raviart_fluxes(u)?
+        } else {
+            return Err(NoBound::Element);
+        };
+        space.add_boundary_fluxes(&forces, &mut flux)?;
+        Ok(PrimalDualPair { function: space.admissible_values(u), flux })
+    }
+}
+
+impl<T: Real, const D: usize> Space<'_, T, D> {
+    /// The values of the admissible function at vertices.
+    fn admissible_values(&self, u: &[T]) -> Vec<f64> {
+        let n_vertices = self.mesh.vertices().len();
+        let values = self.vertex_values(u);
+        let mut sums = vec![(0.0, 0.0); n_vertices];
+        let mut bounds = vec![(f64::NEG_INFINITY, f64::INFINITY); n_vertices];
+        for (cell, values) in values.chunks_exact(D + 1).enumerate() {
+            let alpha = self.alpha(cell).to_f64();
+            let region = self.mesh.region(cell);
+            let (lower, upper) = (self.data.lower.of(region), self.data.upper.of(region));
+            for (&v, value) in self.mesh.cell(cell).iter().zip(values) {
+                let (sum, weight) = &mut sums[v as usize];
+                *sum += alpha * value;
+                *weight += alpha;
+                let x = point_f64(&self.mesh.vertices()[v as usize]);
+                let (low, high) = &mut bounds[v as usize];
+                *low = lower.map_or(*low, |psi| psi.at(&x).max(*low));
+                *high = upper.map_or(*high, |psi| psi.at(&x).min(*high));
+            }
+        }
+        for ((cell, local), group) in self.grouped_facets_of(BoundaryPart::Contact) {
+            let Some(gap) = self.data.gap.of(group) else { continue };
+            for v in self.mesh.facet_vertices(cell, local) {
+                let x = point_f64(&self.mesh.vertices()[v as usize]);
+                let low = &mut bounds[v as usize].0;
+                *low = low.max(gap.at(&x));
+            }
+        }
+        let groups = self.dirichlet_groups();
+        let value = |(v, (sum, weight)): (usize, (f64, f64))| match groups[v] {
+            Some(group) => self.dirichlet_at(group, &point_f64(&self.mesh.vertices()[v])),
+            None => (sum / weight).min(bounds[v].1).max(bounds[v].0),
+        };
+        sums.into_iter().enumerate().map(value).collect()
+    }
+
+    /// The integral of the Neumann datum over a facet.
+    fn neumann_flux(&self, place: (usize, usize), group: usize) -> Result<f64, NoBound> {
+        let measure = self.mesh.geometry(place.0).facet_measure(place.1).to_f64();
+        let mut sum = 0.0;
+        for (point, weight) in self.facet_rule.iter() {
+            sum += weight * measure * self.neumann_at(place, group, point)?;
+        }
+        Ok(sum)
+    }
+
+    /// Adds the fluxes of Neumann data and contact.
+    fn add_boundary_fluxes(&self, forces: &[NodeForce], flux: &mut [f64]) -> Result<(), NoBound> {
+        if self.problem.has_neumann_data() {
+            for ((cell, local), group) in self.grouped_facets_of(BoundaryPart::Neumann) {
+                flux[cell * (D + 1) + local] += self.neumann_flux((cell, local), group)?;
+            }
+        }
+        for force in forces {
+            flux[force.cell * (D + 1) + force.local] += force.value;
+        }
+        Ok(())
+    }
+
+    /// Stiffness and reaction of a cell at the values of a function, less its load: one number for each
+    /// unknown of the cell.
+    pub(super) fn cell_residual(&self, cell: usize, u: &[T], load: &[T]) -> [f64; 4] {
+        let metric = self.metric(cell);
+        let gradient = self.gradient_factor().map_or(1.0, Real::to_f64);
+        let scale = self.alpha(cell).to_f64() * gradient * gradient;
+        let values = self.local_values(cell, u);
+        let mut products = zero_local();
+        if let Some(reaction) = &self.reaction {
+            reaction.add(self.mesh, cell, metric.volume, &mut products);
+        }
+        let mut residual = [0.0; 4];
+        for (i, residual) in residual.iter_mut().enumerate().take(D + 1) {
+            for j in 0..=D {
+                // gradients sum to zero: without the common part of the values a constant adds no rounding
+                *residual += scale * metric.products[i][j].to_f64() * (values[j] - values[0])
+                    + products[i][j].to_f64() * values[j];
+            }
+            *residual -= load.get(cell * (D + 1) + i).map_or(0.0, |b| b.to_f64());
+        }
+        residual
+    }
+
+    /// The fluxes of the element of Crouzeix and Raviart, without those of Neumann data and contact.
+    fn crouzeix_raviart_fluxes(&self, u: &[T]) -> Result<Vec<f64>, NoBound> {
+        let load = self.load_by_cell()?;
+        let n_cells = self.mesh.n_cells();
+        let mut own = vec![0.0; n_cells * (D + 1)];
+        for (cell, own) in own.chunks_exact_mut(D + 1).enumerate() {
+            let residual = self.cell_residual(cell, u, &load);
+            for (i, node) in self.nodes.iter().enumerate() {
+                if let Entity::Facet(local) = node.entity() {
+                    own[local] = residual[i];
+                }
+            }
+        }
+        let mut flux = own.clone();
+        for cell in 0..n_cells {
+            for local in 0..=D {
+                if let Neighbour::Cell { cell: other, local: there } =
+                    self.coupled_neighbours().across(cell, local)
+                {
+                    let facet = cell * (D + 1) + local;
+                    let across = other as usize * (D + 1) + there as usize;
+                    flux[facet] = 0.5 * (own[facet] - own[across]);
+                }
+            }
+        }
+        // residuals of the rest of the boundary are multipliers, or zero: fluxes there are data
+        for f in self.mesh.boundary().iter().filter(|f| f.part != BoundaryPart::Dirichlet) {
+            flux[f.cell as usize * (D + 1) + usize::from(f.local)] = 0.0;
+        }
+        Ok(flux)
+    }
+}

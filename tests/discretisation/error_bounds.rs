@@ -1,0 +1,344 @@
+//! Guaranteed bounds on the error: the identity, effectivity, fluxes, perturbed pairs.
+
+use crate::runs::small_mesh;
+use crate::support::checks::Checks;
+use crate::support::meshes::{Random, Raw};
+use unilateral::error_bound::{ErrorBound, NoBound, PrimalDualPair, Unproven};
+use unilateral::mesh::{Neighbour, Neighbours};
+use unilateral::prelude::*;
+use unilateral::quadrature::Rule;
+use unilateral::scenes::Scene;
+
+/// Every scheme on linears, two placements and variants of forms with lifts among them.
+const SCHEMES: &str = "p1 cr sipg nipg iipg ldg br2 bmmpr wopsip wopsip:facet-means \
+    sipg:facet-means ldg-switch br2@lifts=full ldg@lifts=full wopsip@eta=1e4";
+
+/// The right side of the identity: half of the squared errors of function and flux, and the
+/// complementarity of each multiplier with the other function.
+fn right_side<const D: usize>(
+    problem: &Problem<D>,
+    mesh: &Mesh<f64, D>,
+    pair: &PrimalDualPair,
+) -> f64 {
+    let exact = problem.exact.as_ref().unwrap();
+    let density = exact.multiplier.as_ref().unwrap();
+    let degree = if D < 3 { 13 } else { 7 };
+    let rule = Rule::new(D, degree);
+    let datum =
+        |f: &Option<unilateral::problem::Field<D>>, x: &Point<f64, D>| f.as_ref().map(|f| f(x));
+    let source = |x: &Point<f64, D>| problem.source.as_ref().map_or(0.0, |f| f.at(x));
+    let mut sum = 0.0;
+    for cell in 0..mesh.n_cells() {
+        let geometry = mesh.geometry(cell);
+        let corners: Vec<_> = mesh.cell(cell).iter().map(|&v| v as usize).collect();
+        let flux = &pair.flux[cell * (D + 1)..(cell + 1) * (D + 1)];
+        let mut points = Vec::new();
+        for (point, weight) in rule.iter() {
+            let x: Point<f64, D> =
+                corners.iter().zip(point).map(|(&v, &b)| mesh.vertices()[v] * b).sum();
+            points.push((x, point, weight * geometry.volume));
+        }
+        let load: f64 = points.iter().map(|(x, _, w)| w * source(x)).sum::<f64>() / geometry.volume;
+        let multiplier = -flux.iter().sum::<f64>() / geometry.volume - load;
+        for (x, point, weight) in &points {
+            let mut v: f64 = corners.iter().zip(*point).map(|(&v, b)| b * pair.function[v]).sum();
+            let mut gradient: Point<f64, D> =
+                (0..=D).map(|k| *geometry.gradient(k) * pair.function[corners[k]]).sum();
+            let q: Point<f64, D> = (0..=D)
+                .map(|k| {
+                    (x - mesh.vertices()[corners[k]]) * (flux[k] / (D as f64 * geometry.volume))
+                })
+                .sum();
+            let u = (exact.value)(x);
+            let alpha = datum(&problem.coefficient, x).unwrap_or(1.0);
+            for (psi, sign) in [(&problem.lower, 1.0), (&problem.upper, -1.0)] {
+                let Some(psi) = psi else { continue };
+                if sign * (psi(x) - v) > 0.0 {
+                    v = psi(x);
+                    gradient = Point::from_fn(|k, _| {
+                        let mut step = Point::<f64, D>::zeros();
+                        step[k] = 1e-6;
+                        (psi(&(x + step)) - psi(&(x - step))) / 2e-6
+                    });
+                }
+                if sign * multiplier > 0.0 {
+                    sum += weight * multiplier * (u - psi(x));
+                }
+                if sign * density(x) > 0.0 {
+                    sum += weight * density(x) * (v - psi(x));
+                }
+            }
+            let slope = (exact.gradient)(x);
+            sum += 0.5 * weight * alpha * (slope - gradient).norm_squared();
+            sum += 0.5 * weight * (slope * alpha - q).norm_squared() / alpha;
+        }
+    }
+    let rule = Rule::new(D - 1, degree);
+    for f in mesh.boundary().iter().filter(|f| f.part == BoundaryPart::Contact) {
+        let (cell, local) = (f.cell as usize, f.local as usize);
+        let gap = problem.gap.as_ref().unwrap();
+        let measure = mesh.geometry(cell).facet_measure(local);
+        let force = pair.flux[cell * (D + 1) + local] / measure;
+        let corners: Vec<usize> = mesh.facet_vertices(cell, local).map(|v| v as usize).collect();
+        for (point, weight) in rule.iter() {
+            let at = |k: usize| mesh.vertices()[corners[k]] * point[k];
+            let x: Point<f64, D> = (0..D).map(at).sum();
+            let interpolated: f64 = (0..D).map(|k| pair.function[corners[k]] * point[k]).sum();
+            let v = interpolated.max(gap(&x));
+            let weight = weight * measure;
+            sum += weight * force * ((exact.value)(&x) - gap(&x));
+            sum += weight * density(&x) * (v - gap(&x));
+        }
+    }
+    sum
+}
+
+/// A scene with the placement of a scheme, and the scheme.
+fn placed<const D: usize>(scene: &Scene<D>, name: &str) -> (Scene<D>, Box<dyn AnyScheme<f64, D>>) {
+    let named: NamedScheme = name.parse().unwrap();
+    let mut scene = scene.clone();
+    scene.problem.constraint_set = named.constraint_set();
+    (scene, named.make())
+}
+
+/// The pair of a scheme, its bound and the true error of the admissible function.
+fn bounded<const D: usize>(
+    scene: &Scene<D>,
+    mesh: &Mesh<f64, D>,
+    scheme: &dyn AnyScheme<f64, D>,
+) -> (PrimalDualPair, ErrorBound, f64) {
+    let solved = solve(&scene.problem, mesh, scheme).unwrap();
+    assert!(solved.converged(), "{} {}", scene.name, scheme.name());
+    let pair = solved.primal_dual_pair().unwrap();
+    let error = solved.discretisation().error_of_pair(&pair).unwrap();
+    (pair, solved.bound().unwrap(), error)
+}
+
+/// The largest difference of the fluxes from the two sides of a facet, over the largest flux.
+fn mismatch_of_sides<const D: usize>(mesh: &Mesh<f64, D>, flux: &[f64]) -> f64 {
+    let neighbours = Neighbours::new(mesh);
+    let largest = flux.iter().fold(0.0, |largest: f64, f| largest.max(f.abs()));
+    let of = |(k, f): (usize, &f64)| match neighbours.across(k / (D + 1), k % (D + 1)) {
+        Neighbour::Cell { cell, local } => {
+            (f + flux[cell as usize * (D + 1) + usize::from(local)]).abs()
+        }
+        Neighbour::Boundary(_) => 0.0,
+    };
+    flux.iter().enumerate().map(of).fold(0.0, f64::max) / largest
+}
+
+/// On a mesh of a scene, every scheme: fluxes are single-valued and balance the load, the identity holds to a
+/// share, and the bound is one to three times the error.
+fn check<const D: usize>(scene: Scene<D>, mesh: &Mesh<f64, D>, schemes: &str, share: f64) {
+    let mut checks = Checks::default();
+    for name in schemes.split_whitespace() {
+        let (scene, scheme) = placed(&scene, name);
+        let label = format!("{}, {name}", scene.name);
+        let (pair, bound, error) = bounded(&scene, mesh, &*scheme);
+        let sides = mismatch_of_sides(mesh, &pair.flux);
+        checks.that(sides < 1e-12, || format!("{label}: sides differ by {sides:.1e}"));
+        let algebra = bound.parts.algebra;
+        checks.that(algebra.abs() < 1e-5, || format!("{label}: unbalanced {algebra:.1e}"));
+        let parts = bound.parts;
+        let sum = parts.mismatch + parts.obstacle + parts.contact + parts.oscillation + algebra;
+        checks.that((sum - 1.0).abs() < 1e-12, || format!("{label}: shares add to {sum}"));
+        let sum = bound.cells.iter().sum::<f64>() + algebra;
+        checks.that((sum - 1.0).abs() < 1e-10, || format!("{label}: cells add to {sum}"));
+        let effectivity = bound.total / error;
+        checks.that((1.0..3.0).contains(&effectivity), || format!("{label}: {effectivity}"));
+        // the oscillation is no part of the identity
+        let left = 0.5 * bound.total.powi(2) * (1.0 - parts.oscillation);
+        let identity = left / right_side(&scene.problem, mesh, &pair);
+        println!("{label}: identity {identity:.4}, effectivity {effectivity:.3}");
+        checks.that((identity - 1.0).abs() < share, || format!("{label}: identity {identity:.4}"));
+    }
+    checks.finish();
+}
+
+/// The same on the mesh of a level.
+fn check_level<const D: usize>(scene: Scene<D>, level: usize, schemes: &str, share: f64) {
+    let mesh = scene.domain.mesh(level).unwrap();
+    check(scene, &mesh, schemes, share);
+}
+
+#[test]
+fn nothing_is_lost_under_obstacles() {
+    check_level(scenes::radial::<1>(1.0), 64, SCHEMES, 0.01);
+    check_level(scenes::radial::<2>(1.0), 32, SCHEMES, 0.01);
+    check_level(scenes::radial_quarter_2d(), 16, "p1 cr sipg ldg wopsip", 0.01);
+}
+
+#[test]
+fn nothing_is_lost_with_two_materials() {
+    check_level(scenes::contrast::<2>(1e4), 32, "p1 cr sipg ldg br2 bmmpr wopsip", 0.01);
+    check_level(scenes::contrast::<2>(1e-4), 32, "p1 cr sipg ldg br2 bmmpr wopsip", 0.01);
+}
+
+#[test]
+fn nothing_is_lost_under_signorini_conditions() {
+    check_level(scenes::signorini_harmonic::<2>(), 16, SCHEMES, 0.01);
+    check_level(scenes::signorini_2d(), 16, "p1 cr nipg ldg wopsip", 0.01);
+    check_level(scenes::hertz_2d(), 16, "p1 cr sipg wopsip", 0.03);
+}
+
+#[test]
+fn nothing_is_lost_in_space() {
+    check_level(scenes::signorini_harmonic::<3>(), 4, "p1 cr sipg br2 wopsip", 0.03);
+    // rules of low degree across the free boundary on a coarse mesh
+    check_level(scenes::radial::<3>(1.0), 6, "p1 cr sipg ldg wopsip:facet-means", 0.06);
+}
+
+#[test]
+fn reaction_and_two_obstacles() {
+    check_level(scenes::signorini_reaction_1d(), 32, "p1 cr sipg ldg wopsip", 0.02);
+    check_level(scenes::bilateral_1d(), 64, "p1 cr sipg nipg wopsip", 0.03);
+}
+
+#[test]
+fn unstructured_meshes() {
+    let square = small_mesh::<2>("unstructured_square.msh");
+    check(scenes::radial::<2>(1.0), &square, SCHEMES, 0.03);
+    let half = small_mesh::<2>("unstructured_half_square.msh");
+    check(scenes::signorini_harmonic::<2>(), &half, SCHEMES, 0.03);
+    let cube = small_mesh::<3>("unstructured_cube.msh");
+    check(scenes::radial::<3>(1.0), &cube, "p1 cr sipg wopsip", 0.1);
+}
+
+#[test]
+fn the_factor_of_the_over_penalty_does_not_matter() {
+    for scene in [scenes::radial::<2>(1.0), scenes::signorini_harmonic::<2>()] {
+        let mesh = scene.domain.mesh(16).unwrap();
+        let total = |name: &str| {
+            let (scene, scheme) = placed(&scene, name);
+            bounded(&scene, &mesh, &*scheme).1.total
+        };
+        let ratio = total("wopsip@eta=10") / total("wopsip@eta=1e4");
+        assert!((ratio - 1.0).abs() < 0.01, "{}: {ratio}", scene.name);
+    }
+}
+
+/// Random admissible functions and fluxes on meshes with moved vertices, those near an interface of the
+/// coefficient put on it: ten for each mesh.
+fn random_pairs<const D: usize>(scene: &Scene<D>, n: usize, cases: usize, interface: Option<f64>) {
+    let unilateral::mesh::Domain::Box(domain) = &scene.domain else { panic!("a box") };
+    let mut least = f64::INFINITY;
+    let mut random = Random(n as u64);
+    for case in 0..cases {
+        let mut raw = Raw::jittered(domain, n, 0.4, &mut random);
+        for x in &mut raw.vertices {
+            x[0] = interface.filter(|at| (at - x[0]).abs() < 0.5 / n as f64).unwrap_or(x[0]);
+        }
+        let mesh: Mesh<f64, D> = raw.mesh();
+        let (scene, scheme) = placed(scene, ["p1", "sipg", "cr"][case % 3]);
+        let solved = solve(&scene.problem, &mesh, &*scheme).unwrap();
+        let exact = solved.primal_dual_pair().unwrap();
+        let neighbours = Neighbours::new(&mesh);
+        let mut on_boundary = vec![false; mesh.vertices().len()];
+        for f in mesh.boundary() {
+            mesh.facet_vertices(f.cell as usize, f.local as usize)
+                .for_each(|v| on_boundary[v as usize] = true);
+        }
+        for _ in 0..10 {
+            let mut pair = exact.clone();
+            let size = 10_f64.powf(-4.0 * random.unit());
+            for (v, value) in pair.function.iter_mut().enumerate() {
+                *value += if on_boundary[v] { 0.0 } else { size * random.unit() };
+            }
+            for cell in 0..mesh.n_cells() {
+                for local in 0..=D {
+                    let change = size * (random.unit() - 0.5);
+                    match neighbours.across(cell, local) {
+                        Neighbour::Cell { cell: other, local: there } if cell < other as usize => {
+                            pair.flux[cell * (D + 1) + local] += change;
+                            pair.flux[other as usize * (D + 1) + usize::from(there)] -= change;
+                        }
+                        Neighbour::Boundary(BoundaryPart::Dirichlet) => {
+                            pair.flux[cell * (D + 1) + local] += change;
+                        }
+                        _ => {}
+                    }
+                }
+            }
+            let bound = solved.discretisation().error_bound(&pair, solved.values()).unwrap();
+            let error = solved.discretisation().error_of_pair(&pair).unwrap();
+            least = least.min(bound.total / error);
+        }
+    }
+    println!("{}: least ratio {least}", scene.name);
+    assert!(least >= 1.0, "{}: {least}", scene.name);
+}
+
+#[test]
+fn any_admissible_function_and_any_flux_give_a_bound() {
+    random_pairs(&scenes::radial::<2>(1.0), 4, 30, None);
+    random_pairs(&scenes::contrast::<1>(100.0), 8, 25, Some(0.5));
+    random_pairs(&scenes::contrast::<2>(100.0), 4, 20, Some(0.5));
+    random_pairs(&scenes::signorini_reaction_1d(), 8, 25, None);
+}
+
+/// The form of `examples/my_scheme.rs`.
+struct Incomplete(f64);
+
+impl<T: Real, const D: usize> FacetForm<T, D> for Incomplete {
+    fn uses_flux(&self) -> bool {
+        true
+    }
+    fn is_symmetric(&self) -> bool {
+        false
+    }
+    fn penalty(&self, facet: &FacetView<T, D>) -> T {
+        T::lit(self.0) * facet.coefficient() / facet.diameter()
+    }
+    fn integrand(&self, _: &FacetView<T, D>, v: Trace<T>, u: Trace<T>, penalty: T) -> T {
+        penalty * u.jump * v.jump - u.flux * v.jump
+    }
+}
+
+/// The scheme of `examples/my_scheme.rs`.
+struct Iipg {
+    sigma: f64,
+}
+
+impl<T: Real, const D: usize> Scheme<T, D> for Iipg {
+    type Element = Broken<P1>;
+    type Facet = Incomplete;
+    const DIRICHLET: DirichletBy = DirichletBy::FacetForm;
+    fn name(&self) -> &str {
+        "iipg"
+    }
+    fn facet(&self, _: &Mesh<T, D>) -> Incomplete {
+        Incomplete(self.sigma)
+    }
+}
+
+#[test]
+fn a_scheme_of_ones_own_has_its_bound() {
+    let scene = scenes::radial::<2>(1.0);
+    let mesh = scene.domain.mesh(16).unwrap();
+    let own = bounded(&scene, &mesh, &Iipg { sigma: 10.0 });
+    let (_, known) = placed(&scene, "iipg@sigma=10");
+    let known = bounded(&scene, &mesh, &*known);
+    assert!((own.1.total / known.1.total - 1.0).abs() < 1e-9, "{} {}", own.1.total, known.1.total);
+    assert!((1.0..3.0).contains(&(own.1.total / own.2)));
+}
+
+#[test]
+fn what_is_proven_and_what_has_no_bound() {
+    let scene = scenes::radial::<2>(1.0);
+    let mesh = scene.domain.mesh::<f64>(4).unwrap();
+    let unproven = |problem: &Problem<2>, scheme: &dyn AnyScheme<f64, 2>| {
+        solve(problem, &mesh, scheme).unwrap().bound().map(|bound| bound.unproven)
+    };
+    let problem = Problem::new().constant_source(-2.0).obstacle_below(|x| -0.1 - 0.02 * x[0]);
+    let all = [Unproven::Quadrature, Unproven::Obstacle];
+    assert_eq!(unproven(&problem, &ConformingP1).unwrap(), all);
+    let stated = problem.polynomial_data(1);
+    assert_eq!(unproven(&stated, &ConformingP1).unwrap(), []);
+    assert_eq!(unproven(&stated, &Wopsip::default()).unwrap(), []);
+    let stated = stated.dirichlet(|x| 0.01 * x[0] * x[1]).polynomial_data(2);
+    let all = [Unproven::Boundary, Unproven::Obstacle];
+    assert_eq!(unproven(&stated, &Sipg::default()).unwrap(), all);
+    assert!(matches!(unproven(&stated, &ConformingP2), Err(NoBound::Element)));
+    let negative = scene.problem.reaction(-1e-3);
+    assert!(matches!(unproven(&negative, &ConformingP1), Err(NoBound::NegativeReaction)));
+}
