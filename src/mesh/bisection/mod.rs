@@ -22,6 +22,22 @@ use ordered_cell::OrderedCell;
 /// is its longest one. Any conforming mesh can be initial: in one dimension bisection halves cells, in
 /// two it is newest vertex bisection, in three that of D. N. Arnold, A. Mukherjee and L. Pouly (SIAM J.
 /// Sci. Comput. 22 (2000), 431-448), which puts no condition on the initial mesh.
+///
+/// ```
+/// use unilateral::mesh::BisectedMesh;
+/// use unilateral::prelude::*;
+///
+/// let square = BoxDomain::dirichlet(Point::from([0.0, 0.0]), Point::from([1.0, 1.0]));
+/// let mut refined = BisectedMesh::new(Mesh::<f64, 2>::kuhn_box(&square, [4, 4])?);
+/// for _ in 0..10 {
+///     // towards a corner
+///     let mesh = refined.mesh();
+///     let marked: Vec<usize> = (0..mesh.n_cells()).filter(|&c| mesh.cell(c)[0] == 0).collect();
+///     (refined, _) = refined.bisect(&marked)?;
+/// }
+/// assert!(refined.mesh().shortest_edge() < 0.01);
+/// # Ok::<(), unilateral::mesh::MeshError>(())
+/// ```
 #[derive(Clone, Debug)]
 pub struct BisectedMesh<T, const D: usize> {
     mesh: Mesh<T, D>,
@@ -118,6 +134,14 @@ struct Leaf {
     /// contains it, or [`INTERIOR`].
     facets: [u32; 4],
     ancestor: u32,
+}
+
+impl Leaf {
+    /// Sorts leaves by ancestor and keeps the order of equal ones. It is no generic function, as sorting
+    /// is much code.
+    fn sort(leaves: &mut [Self]) {
+        leaves.sort_by_key(|leaf| leaf.ancestor);
+    }
 }
 
 /// In the place of a boundary facet: the facet lies in the interior.
@@ -222,7 +246,7 @@ impl<T: Real, const D: usize> Division<T, D> {
 
     /// The refined mesh of a mesh.
     fn finish(mut self, old: &Mesh<T, D>) -> (BisectedMesh<T, D>, Bisection) {
-        self.leaves.sort_by_key(|leaf| leaf.ancestor);
+        Leaf::sort(&mut self.leaves);
         let mut cells = Vec::with_capacity(self.leaves.len() * (D + 1));
         let mut boundary = Vec::with_capacity(old.boundary.len());
         for (cell, leaf) in (0..).zip(&self.leaves) {
@@ -237,7 +261,7 @@ impl<T: Real, const D: usize> Division<T, D> {
                 }
             }
         }
-        boundary.sort_unstable_by_key(|f| (f.cell, f.local));
+        BoundaryFacet::sort(&mut boundary);
         let ancestors: Vec<u32> = self.leaves.iter().map(|leaf| leaf.ancestor).collect();
         // a mesh with one region has no list of them
         let region = |&ancestor: &u32| old.cell_regions.get(ancestor as usize).copied();
