@@ -189,6 +189,18 @@ pub enum MeshError {
         /// Number of cells of the component.
         cells: usize,
     },
+    /// The rounding of its new vertex changes the shape of half a cell.
+    #[error(
+        "cell {cell} cannot be bisected at {at}: the rounding of {scalar} changes the volume of its halves; mark no cell there"
+    )]
+    TooSmallToBisect {
+        /// The cell of the mesh before the bisection.
+        cell: usize,
+        /// The new vertex, as coordinates in parentheses.
+        at: String,
+        /// The scalar of the mesh.
+        scalar: &'static str,
+    },
 }
 
 debug_by_display!(MeshError);
@@ -207,6 +219,7 @@ impl MeshError {
             Self::VertexOutOfRange { cell, .. }
             | Self::DegenerateCell { cell, .. }
             | Self::UntaggedFacet { cell, .. }
+            | Self::TooSmallToBisect { cell, .. }
             | Self::UnsupportedComponent { cell, .. } => vec![*cell],
             Self::RepeatedCell { first, second, .. }
             | Self::OverlappingCells { first, second, .. } => vec![*first, *second],

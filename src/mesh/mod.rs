@@ -10,6 +10,7 @@
 //!   facet is a vertex and its measure is one.
 //! * A mesh is immutable once made, and what [`Mesh::new`] accepts carries a finite element space.
 
+mod bisection;
 mod boundary;
 mod components;
 mod domain;
@@ -26,6 +27,7 @@ mod simplicial;
 mod stars;
 mod validate;
 
+pub use bisection::{BisectedMesh, Bisection};
 pub use boundary::{BoundaryFacet, BoundaryPart};
 pub(crate) use components::Components;
 #[cfg(feature = "problem-files")]

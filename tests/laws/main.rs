@@ -1,5 +1,6 @@
 //! Meshes, quadrature rules and the files of meshes; the laws that schemes obey.
 
+mod bisection;
 mod floors;
 mod gmsh;
 mod kit;
