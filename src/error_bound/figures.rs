@@ -3,6 +3,9 @@
 use super::estimate::Unproven;
 use super::{BoundParts, ErrorBound, NoBound};
 
+/// A true error that is smaller than this share of its bound is rounding, and the ratio says nothing.
+const ROUNDING: f64 = 1e-6;
+
 /// Whether a bound is proven.
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "report", derive(serde::Serialize, serde::Deserialize))]
@@ -44,7 +47,7 @@ pub struct BoundFigures {
     pub oscillation: Option<f64>,
     /// What the solver left.
     pub algebra: Option<f64>,
-    /// `total` over the energy norm of `u - v`, where the exact solution is known.
+    /// `total` over the energy norm of `u - v`, where the exact solution is known and `v` is not exact.
     pub effectivity: Option<f64>,
     /// Why there is no bound.
     pub reason: Option<String>,
@@ -68,7 +71,9 @@ impl BoundFigures {
             contact: Some(contact),
             oscillation: Some(oscillation),
             algebra: Some(algebra),
-            effectivity: error.filter(|&e| e > 0.0).map(|error| bound.total / error),
+            effectivity: error
+                .filter(|&e| e > ROUNDING * bound.total)
+                .map(|error| bound.total / error),
             reason: None,
         }
     }
