@@ -16,6 +16,9 @@ use crate::problem::{DataByGroup, DatumRef, Exact, Field};
 use crate::quadrature::{Rule, facet_to_cell};
 use crate::real::{Point, Real, point_f64};
 
+/// Dirichlet data that differ by less than this share are equal but for rounding.
+const AGREEMENT: f64 = 1e-12;
+
 /// The step of difference quotients of obstacles, as a share of the diameter of the cell.
 const STEP: f64 = 1e-5;
 
@@ -247,11 +250,28 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         let is_curved = [&data.lower, &data.upper, &data.gap].iter().any(|d| !is_below(d, 1));
         let found = [
             (is_inexact, Unproven::Quadrature),
-            (has_data && !is_below(&data.dirichlet, 1), Unproven::Boundary),
+            (
+                has_data && !(is_below(&data.dirichlet, 1) && self.dirichlet_data_agree()),
+                Unproven::Boundary,
+            ),
             (is_curved, Unproven::Obstacle),
             (!is_algebra_proven, Unproven::Algebra),
         ];
         found.into_iter().filter(|(is_found, _)| *is_found).map(|(_, term)| term).collect()
+    }
+
+    /// Whether the data of all Dirichlet facets at a vertex have one value there: else no function with a
+    /// square-integrable gradient takes them, and that of the bound misses some on a whole facet.
+    fn dirichlet_data_agree(&self) -> bool {
+        let groups = self.dirichlet_groups();
+        self.grouped_facets_of(BoundaryPart::Dirichlet).all(|((cell, local), group)| {
+            self.mesh.facet_vertices(cell, local).all(|v| {
+                let x = point_f64(&self.mesh.vertices()[v as usize]);
+                let chosen = groups[v as usize].unwrap_or(group);
+                let [own, other] = [group, chosen].map(|group| self.dirichlet_at(group, &x));
+                group == chosen || (own - other).abs() <= AGREEMENT * own.abs().max(other.abs())
+            })
+        })
     }
 
     /// The admissible function in a cell.

@@ -325,7 +325,11 @@ impl<'a, T: Real, const D: usize> NestedIteration<'a, T, D> {
         inequality.is_definite = penalty_below_bound.is_none() && discretisation.is_coercive();
         (self.observer)(Phase::Solve);
         let (solution, solve_seconds) = self.run(&mut inequality, &guess);
-        if solution.outer > MANY_ACTIVE_SETS || solution.outcome != Outcome::Converged {
+        let returns = matches!(
+            solution.outcome,
+            Outcome::IterationLimit | Outcome::Cycling | Outcome::Stalled
+        );
+        if solution.outer > MANY_ACTIVE_SETS || returns {
             warnings.extend(advice_on_bounds(self.p1.problem, scheme));
         }
         let hierarchy = self.hierarchy(position);

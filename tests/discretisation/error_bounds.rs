@@ -361,3 +361,22 @@ fn a_scene_with_constant_data_has_a_guaranteed_bound() {
         }
     }
 }
+
+/// Dirichlet data of two groups that differ where the groups meet belong to no function of finite energy.
+#[test]
+fn dirichlet_data_that_disagree_are_not_guaranteed() {
+    let square = BoxDomain::dirichlet(Point::zeros(), Point::repeat(1.0));
+    let unproven = |bottom: f64| {
+        let problem = Problem::new()
+            .constant_source(1.0)
+            .dirichlet_on("bottom", bottom)
+            .dirichlet_on("left", 0.0)
+            .dirichlet_on("right", 0.0)
+            .dirichlet_on("top", 0.0);
+        let mesh = Mesh::<f64, 2>::kuhn_box(&square, [4, 4]).unwrap();
+        let mesh = problem.bind_boundary(mesh).unwrap();
+        solve(&problem, &mesh, &ConformingP1).unwrap().bound().unwrap().unproven
+    };
+    assert_eq!(unproven(0.0), []);
+    assert_eq!(unproven(1.0), [Unproven::Boundary]);
+}

@@ -94,6 +94,7 @@ fn wrong_problems_and_references_are_refused() {
     refused(&scratch, &["radial-2d"], &["no file radial-2d", "--scene"]);
     let plate = example("plate");
     refused(&scratch, &[&plate, "--scene", "radial-2d"], &["--scene"]);
+    refused(&scratch, &[&plate, "--load", "7"], &["--load 7.0", "a parameter of scenes"]);
     let coarse = [&plate[..], "--levels", "0,1", "--reference", "2"];
     refused(&scratch, &coarse, &["level of the reference", "at least 3"]);
     refused(&scratch, &[&plate, "--reference", "p3@level=4"], &["p3"]);
@@ -162,6 +163,20 @@ fn every_command_takes_a_mesh_and_the_parts_of_its_boundary() {
     let (code, message) = run("pictures", &format!("{} --scheme p1 --out {out}", example("plate")));
     assert_eq!((code, &message[..]), (Some(0), ""));
     assert!(scratch.0.join("pictures/plate-p1-0.svg").exists());
+}
+
+#[test]
+fn a_report_outlives_a_wrong_directory_and_pictures_show_the_finest_level() {
+    let scratch = Scratch::new("outlives");
+    let options = "--scene radial-2d --scheme p1 --levels 8,4";
+    assert_eq!(rows(&scratch.report(options)).len(), 2);
+    let picture = std::fs::read_to_string(scratch.0.join("out/radial-2d-p1.svg")).unwrap();
+    assert!(picture.contains("radial-2d-p1, level 8"));
+    let file = scratch.file("file", "");
+    let output = scratch.run(&format!("{options} --dump {file}/inequalities"));
+    assert_ne!(output.status.code(), Some(0));
+    assert!(stderr(&output).contains("cannot write"), "{}", stderr(&output));
+    assert_eq!(rows(&read_json(&scratch.0.join("out/report.json"))).len(), 2);
 }
 
 #[test]

@@ -106,6 +106,15 @@ impl Chosen {
                     let path = excerpt(path.as_os_str().as_encoded_bytes());
                     return Err(format!("there is no file {path}; scenes are named by --scene"));
                 }
+                let parameters = [
+                    ("scale", options.scale),
+                    ("contrast", options.contrast),
+                    ("load", options.load),
+                ];
+                if let Some((name, x)) = parameters.iter().find_map(|(n, x)| Some((n, (*x)?))) {
+                    let path = path.display();
+                    return Err(format!("--{name} {x:?}: a parameter of scenes; {path} has none"));
+                }
                 let own = problem_file::read(path).map_err(|e| e.to_string())?;
                 Some((own, read(path)?))
             }
@@ -233,6 +242,9 @@ fn start(options: &Options, program: Program, runs: &[Run<'_>]) -> Request<&'sta
 
 /// Makes sure before the work, not after it, that the report can be written.
 fn check_output(options: &Options) -> Request<()> {
+    if let Some(directory) = &options.dump {
+        fs::create_dir_all(directory).map_err(|e| cannot_write(directory, e))?;
+    }
     let json = options.json.as_ref().filter(|p| p.as_os_str() != "-");
     for path in json.into_iter().chain(&options.orders) {
         let file_is_new = !path.exists();

@@ -1,5 +1,7 @@
 //! What is compared: a study, checked before any runs.
 
+use std::cell::RefCell;
+use std::collections::BTreeMap;
 use std::path::Path;
 
 use super::options::Options;
@@ -54,8 +56,11 @@ pub fn prepare<'a, T: Real, const D: usize>(
         .steps(watcher.steps())
         .observer(|progress| watcher.tell(&progress));
     let scene_name = name.clone();
+    let drawn = RefCell::new(BTreeMap::new());
     study = study.each_solution(move |label, level, solved| {
-        if solved.mesh().n_cells() <= MOST_CELLS {
+        let finest = *drawn.borrow().get(label).unwrap_or(&0);
+        if solved.mesh().n_cells() <= MOST_CELLS && level >= finest {
+            drawn.borrow_mut().insert(label.to_owned(), level);
             let name = format!("{scene_name}-{label}");
             if let Err(why) = draw(&name, level, solved, &options.out) {
                 watcher.warn_once(format!("warning: no picture of {name}: {why}"));
