@@ -203,7 +203,7 @@ pub(crate) fn columns(rows: &[&Row]) -> Vec<Column> {
             columns.push(number("energy", |r| digits(r.energy, 5)));
         }
         if any(|r| r.contact_measure) {
-            columns.push(number("contact", |r| digits(r.contact_measure, 4)));
+            columns.push(number("contact", |r| digits(r.contact_measure, 3)));
             columns.push(number("resultant", |r| digits(r.resultant, 4)));
         }
     }
