@@ -1,6 +1,6 @@
 //! What weak Dirichlet data change in the energy of a function, from the facet form's integrand.
 
-use super::load::{FacetDatum, sort_by_facet};
+use super::load::{FacetDatum, by_facet};
 use super::local::{traces, view};
 use super::owned_rows::lifted::{LiftTable, Lifting};
 use super::space::Space;
@@ -75,9 +75,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
             let load = load.to_f64();
             DirichletTerm { unknown: i as u32, load, linear: 2.0 * load }
         }));
-        let mut by_cell = data.to_vec();
-        sort_by_facet(&mut by_cell);
-        for of_cell in by_cell.chunk_by(|a, b| a.0 == b.0) {
+        for of_cell in by_facet(data).chunk_by(|a, b| a.0 == b.0) {
             let neighbours = self.coupled_neighbours();
             for (cell, first) in of_cell {
                 let products = of_cell.iter().map(|(_, second)| {

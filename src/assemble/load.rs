@@ -21,9 +21,11 @@ use crate::real::{Point, Real, point_f64};
 /// A cell, one of its facets and the moments of the Dirichlet datum on it.
 pub(crate) type FacetDatum = (usize, (usize, Vec<f64>));
 
-/// Sorts data by cell and facet. It is no generic function, as sorting is much code.
-pub(super) fn sort_by_facet(data: &mut [FacetDatum]) {
-    data.sort_unstable_by_key(|(cell, (local, _))| (*cell, *local));
+/// The data in the order of cells and facets; not generic, so that the sorting code is compiled once.
+pub(super) fn by_facet(data: &[FacetDatum]) -> Vec<&FacetDatum> {
+    let mut sorted: Vec<&FacetDatum> = data.iter().collect();
+    sorted.sort_unstable_by_key(|(cell, (local, _))| (*cell, *local));
+    sorted
 }
 
 /// What is added to a cell's part of the load.

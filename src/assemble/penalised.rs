@@ -3,7 +3,7 @@
 use std::convert::Infallible;
 
 use super::facet_coefficients::FacetCoefficients;
-use super::load::{FacetDatum, sort_by_facet};
+use super::load::{FacetDatum, by_facet};
 use super::local::zero_local;
 use super::space::Space;
 use super::space::metric::Metrics;
@@ -35,11 +35,10 @@ pub(crate) fn penalised_matrix<T: Real, const D: usize>(
     form: &dyn FacetForm<T, D>,
     (metrics, weights): (&Metrics<T>, &FacetCoefficients<T>),
     mut load: Vec<T>,
-    mut dirichlet: Vec<FacetDatum>,
+    dirichlet: Vec<FacetDatum>,
 ) -> PenalisedMatrix<T> {
     load.resize(space.dofs.size(), T::lit(0.0));
-    sort_by_facet(&mut dirichlet);
-    let mut dirichlet = dirichlet.into_iter().peekable();
+    let mut dirichlet = by_facet(&dirichlet).into_iter().peekable();
     let mut out = PenalisedMatrix {
         block_size: space.per_cell(),
         blocks: blocks(space, metrics),

@@ -10,7 +10,7 @@ use crate::real::Real;
 pub(super) struct NodeForce {
     /// The cell of the facet.
     pub cell: usize,
-    /// The facet, opposite this vertex.
+    /// The number of the facet in the cell, which is that of the opposite vertex.
     pub local: usize,
     /// The unknown, by its number in the cell.
     pub node: usize,

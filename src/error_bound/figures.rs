@@ -1,4 +1,4 @@
-//! The bound as a row of a report has it.
+//! The figures of an error bound in a row of a report.
 
 use super::estimate::Unproven;
 use super::{BoundParts, ErrorBound, NoBound};

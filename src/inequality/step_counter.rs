@@ -5,7 +5,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// The number of the outer step in which a solver is, for whoever shows its progress: clones share the
 /// number. Solvers of this library count linear systems with a new active set, steps of the interior point
-/// method, and cycles of monotone multigrid.
+/// method when that method ends, and cycles of monotone multigrid.
 ///
 /// ```
 /// use unilateral::inequality::StepCounter;

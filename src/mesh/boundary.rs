@@ -43,7 +43,8 @@ pub struct BoundaryFacet {
 }
 
 impl BoundaryFacet {
-    /// Sorts facets by cell and number in the cell. It is no generic function, as sorting is much code.
+    /// Sorts facets by cell and number in the cell; not generic, so that the sorting code is
+    /// compiled once.
     pub(super) fn sort(facets: &mut [Self]) {
         facets.sort_unstable_by_key(|f| (f.cell, f.local));
     }

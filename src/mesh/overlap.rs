@@ -134,7 +134,7 @@ fn crossing<const D: usize>(corners: &[Point<f64, D>; D], start: &Point<f64, D>)
     })
 }
 
-/// Sorts crossings by their places. It is no generic function, as sorting is much code.
+/// Sorts crossings by their places; not generic, so that the sorting code is compiled once.
 fn sort_by_place(crossings: &mut [(f64, i32)]) {
     crossings.sort_by(|a, b| a.0.total_cmp(&b.0));
 }

@@ -233,7 +233,7 @@ impl<T: Real, const D: usize> Coarsest<'_, T, D> {
     }
 }
 
-/// Levels from the finest to the coarsest. It is no generic function, as sorting is much code.
+/// Levels from the finest to the coarsest; not generic, so that the sorting code is compiled once.
 fn descending(levels: &[usize]) -> Vec<usize> {
     let mut levels = levels.to_vec();
     levels.sort_unstable_by(|a, b| b.cmp(a));

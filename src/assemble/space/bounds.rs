@@ -14,7 +14,7 @@ use crate::real::{Point, Real};
 /// rounding in the data.
 const RELATIVE_SLACK: f64 = 1e-9;
 
-/// Sorts facets by the ranks of their groups. It is no generic function, as sorting is much code.
+/// Sorts facets by the ranks of their groups; not generic, so that the sorting code is compiled once.
 fn sort_by_rank(facets: &mut [((usize, usize), usize)], ranks: &[usize]) {
     facets.sort_by_key(|&(_, group)| ranks[group]);
 }

@@ -20,7 +20,7 @@ pub struct MeshFile {
 }
 
 impl MeshFile {
-    /// The mesh, where there is a file; warnings of the file are told.
+    /// The mesh, where there is a file; warnings of the file go to `warn`.
     pub fn read<T: Real, const D: usize>(
         &self,
         warn: &dyn Fn(String),

@@ -56,28 +56,32 @@ pub struct Options {
 pub fn run(options: &Options) -> Request<bool> {
     if let Some(path) = &options.problem {
         return match problem_file::read(path).map_err(|e| e.to_string())? {
-            AnyOwnProblem::One(own) => draw::<1>(options, &|| own.clone().into()),
-            AnyOwnProblem::Two(own) => draw::<2>(options, &|| own.clone().into()),
-            AnyOwnProblem::Three(own) => draw::<3>(options, &|| own.clone().into()),
+            AnyOwnProblem::One(own) => draw::<1>(options, own.into()),
+            AnyOwnProblem::Two(own) => draw::<2>(options, own.into()),
+            AnyOwnProblem::Three(own) => draw::<3>(options, own.into()),
         };
     }
     match scene(&options.scene)? {
-        AnyScene::One(scene) => draw::<1>(options, &|| scene.clone().into()),
-        AnyScene::Two(scene) => draw::<2>(options, &|| scene.clone().into()),
-        AnyScene::Three(scene) => draw::<3>(options, &|| scene.clone().into()),
+        AnyScene::One(scene) => draw::<1>(options, scene.into()),
+        AnyScene::Two(scene) => draw::<2>(options, scene.into()),
+        AnyScene::Three(scene) => draw::<3>(options, scene.into()),
     }
 }
 
 /// Draws one level, and writes the fields of the series.
-fn draw<const D: usize>(options: &Options, posed: &dyn Fn() -> Posed<D>) -> Request<bool> {
+fn draw<const D: usize>(options: &Options, posed: Posed<D>) -> Request<bool> {
+    let warn = |warning: String| {
+        let _ = print_to(std::io::stderr(), &format!("{warning}\n"));
+    };
+    let mesh = options.mesh.read(&warn)?;
     let study = |warn: &dyn Fn(String)| -> Request<Study<'_, f64, D>> {
-        let study = posed().study(warn)?.named_scheme(&options.scheme);
-        Ok(match options.mesh.read(warn)? {
+        let study = posed.clone().study(warn)?.named_scheme(&options.scheme);
+        Ok(match mesh.clone() {
             Some(mesh) => study.on_mesh(mesh),
             None => study,
         })
     };
-    let default = match options.mesh.path.is_some() || posed().has_mesh() {
+    let default = match mesh.is_some() || posed.has_mesh() {
         true => 0,
         false if D == 3 => 8,
         false => 16,
@@ -88,12 +92,8 @@ fn draw<const D: usize>(options: &Options, posed: &dyn Fn() -> Posed<D>) -> Requ
         }
         _ => None,
     };
-    let posed = posed();
     let written = RefCell::new(Vec::new());
     let level = options.level.unwrap_or(default);
-    let warn = |warning: String| {
-        let _ = print_to(std::io::stderr(), &format!("{warning}\n"));
-    };
     let picture = study(&warn)?.levels([level]).each_solution(|label, level, solved| {
         let stem = file_name(&format!("{}-{label}-{level}", posed.name()));
         let title = format!("{}: {label}, level {level}", posed.name());

@@ -8,6 +8,7 @@ use unilateral::study::Study;
 use crate::shared::Request;
 
 /// A problem in one dimension: a scene of the catalogue, or a problem of a file.
+#[derive(Clone)]
 pub enum Posed<const D: usize> {
     Scene(Scene<D>),
     Own(OwnProblem<D>),
@@ -32,11 +33,11 @@ impl<const D: usize> Posed<D> {
             Self::Own(own) => &own.name,
         }
     }
-    /// Whether it brings a mesh with it.
+    /// Whether the problem comes with a mesh file.
     pub fn has_mesh(&self) -> bool {
         matches!(self, Self::Own(OwnProblem { geometry: Geometry::File { .. }, .. }))
     }
-    /// A study of it, without schemes; warnings of the mesh file are told.
+    /// A study of the problem, without schemes. Warnings of the mesh file go to `warn`.
     pub fn study<'a, T: Real>(self, warn: &dyn Fn(String)) -> Request<Study<'a, T, D>> {
         let own = match self {
             Self::Scene(scene) => return Ok(Study::new(scene)),

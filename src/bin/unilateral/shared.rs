@@ -97,19 +97,14 @@ pub fn each_once<T: Clone + PartialEq>(items: &[T]) -> Vec<T> {
     once
 }
 
-/// A bar on a terminal, in the style of a template and what is done to it; nothing elsewhere. It does not [`tick`] yet.
-pub fn bar(
-    quiet: bool,
-    length: usize,
-    template: &str,
-    with: impl FnOnce(ProgressStyle) -> ProgressStyle,
-) -> ProgressBar {
+/// A bar on a terminal, nothing elsewhere. The bar does not [`tick`] yet.
+pub fn bar(quiet: bool, length: usize, template: &str) -> ProgressBar {
     if quiet || !std::io::stderr().is_terminal() {
         return ProgressBar::hidden();
     }
     let bar = ProgressBar::new(length as u64);
     match ProgressStyle::with_template(template) {
-        Ok(style) => bar.with_style(with(style)),
+        Ok(style) => bar.with_style(style),
         Err(_) => bar,
     }
 }

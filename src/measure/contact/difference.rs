@@ -18,8 +18,8 @@ type Solved<'s, 'a, T, const D: usize> =
 /// Distances of multiplier and contact set of a solution from those of another one, on the mesh that
 /// these refinements make of its own, coarsest first. The definitions are those of
 /// [`Discretisation::contact_errors`]. The measure of the symmetric difference is that of the cells (or contact
-/// facets) of the finer mesh, none where one of the two is a quadratic with bounds at vertices of triangles; the multiplier of the finer solution is tested with the hat functions of the
-/// coarser mesh, exactly.
+/// facets) of the finer mesh, and absent where one of the two solutions is a quadratic with bounds at vertices of
+/// triangles. The multiplier of the finer solution is tested with the hat functions of the coarser mesh, exactly.
 pub(crate) fn contact_difference<T: Real, const D: usize>(
     solved: Solved<'_, '_, T, D>,
     reference: Solved<'_, '_, T, D>,

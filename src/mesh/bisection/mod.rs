@@ -137,8 +137,8 @@ struct Leaf {
 }
 
 impl Leaf {
-    /// Sorts leaves by ancestor and keeps the order of equal ones. It is no generic function, as sorting
-    /// is much code.
+    /// Sorts leaves by ancestor and keeps the order of equal ones; not generic, so that the sorting
+    /// code is compiled once.
     fn sort(leaves: &mut [Self]) {
         leaves.sort_by_key(|leaf| leaf.ancestor);
     }

@@ -16,7 +16,7 @@ enum FaceEdge {
     Opposite,
 }
 
-/// A cell with its vertices in an order of its own: the edge between the first two is the *refinement
+/// A cell whose vertices are ordered for bisection: the edge between the first two vertices is the *refinement
 /// edge*, at whose midpoint the cell is divided.
 ///
 /// In two dimensions this is newest vertex bisection: the refinement edge of a child is the edge

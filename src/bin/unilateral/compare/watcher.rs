@@ -41,7 +41,8 @@ impl Watcher {
             };
         };
         let template = "{spinner} {pos} of {len} done, {elapsed}: {msg}{step}";
-        let bar = bar(options.quiet, 0, template, |style| style.with_key("step", step));
+        let bar = bar(options.quiet, 0, template);
+        bar.set_style(bar.style().with_key("step", step));
         Self {
             bar,
             quiet: options.quiet,

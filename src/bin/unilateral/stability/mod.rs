@@ -11,7 +11,6 @@
 
 mod options;
 
-use std::convert::identity;
 use std::path::Path;
 
 pub use options::Options;
@@ -34,8 +33,7 @@ fn shown(path: &Path) -> String {
 /// Runs the study; false if a job ended in an error, or with `--strict` if a criterion was missed.
 pub fn run(options: &Options) -> Request<bool> {
     use_threads(options.threads.map(usize::from))?;
-    let bar =
-        bar(options.quiet, 0, "{bar:24} {pos} of {len}, {elapsed}, {eta} to go: {msg}", identity);
+    let bar = bar(options.quiet, 0, "{bar:24} {pos} of {len}, {elapsed}, {eta} to go: {msg}");
     tick(&bar);
     let mut study = Stability::new(options.effort())
         .cases(options.cases.clone())

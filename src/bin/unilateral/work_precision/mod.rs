@@ -6,7 +6,6 @@
 
 mod options;
 
-use std::convert::identity;
 use std::process::Command;
 
 use indicatif::ProgressBar;
@@ -48,7 +47,7 @@ pub fn run(options: &Options) -> Request<bool> {
         changes(text, &report).map_err(|e| e.to_string())?;
     }
     let template = "{bar:24} {pos} of {len} runs, {elapsed}, {eta} to go: {wide_msg}";
-    let bar = bar(options.quiet, planned(options, &schemes), template, identity);
+    let bar = bar(options.quiet, planned(options, &schemes), template);
     tick(&bar);
     for name in options.scenes() {
         match scene(options, &name)? {
