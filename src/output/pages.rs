@@ -12,7 +12,7 @@ use crate::study::table::{columns, heading, limits, scenes};
 use crate::study::{Program, Report, Row, file_name};
 
 /// Columns of the page that are shown at first, by their keys.
-const SHOWN: [&str; 17] = [
+const SHOWN: [&str; 19] = [
     "against",
     "label",
     "level",
@@ -24,6 +24,8 @@ const SHOWN: [&str; 17] = [
     "order.l2",
     "error.h1",
     "order.h1",
+    "bound.total",
+    "order.bound",
     "energy",
     "contact_measure",
     "resultant",
@@ -32,11 +34,13 @@ const SHOWN: [&str; 17] = [
     "seconds.total",
 ];
 /// Columns of tables in LaTeX: what fits into the width of a page.
-const PRINTED: [&str; 12] = [
+const PRINTED: [&str; 15] = [
     "scheme",
     "solver",
     "n",
+    "step",
     "unknowns",
+    "bound",
     "L2",
     "order",
     "H1",
@@ -45,6 +49,7 @@ const PRINTED: [&str; 12] = [
     "resultant",
     "outer",
     "solve",
+    "total",
 ];
 
 impl Report {

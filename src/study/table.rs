@@ -180,11 +180,17 @@ pub(crate) fn columns(rows: &[&Row]) -> Vec<Column> {
     if rows.iter().any(|r| r.solver != rows[0].solver) {
         columns.push(text("solver", |r| r.solver.clone()));
     }
-    columns.push(number("n", |r| r.level.to_string()));
-    columns.push(number("h", |r| scientific(Some(r.mesh_size))));
+    let is_adaptive = rows.iter().any(|r| r.theta.is_some());
+    columns.push(number(if is_adaptive { "step" } else { "n" }, |r| r.level.to_string()));
+    if !is_adaptive {
+        columns.push(number("h", |r| scientific(Some(r.mesh_size))));
+    }
     columns.push(number("unknowns", |r| whole(r.unknowns)));
     columns.push(number("outer", |r| whole(r.iterations.outer)));
-    if any(|r| r.error.l2) {
+    if is_adaptive {
+        columns.push(number("bound", |r| scientific(r.bound.total)));
+        columns.push(number("order", |r| fixed(r.order.bound)));
+    } else if any(|r| r.error.l2) {
         columns.push(number("L2", |r| scientific(r.error.l2)));
         columns.push(number("order", |r| fixed(r.order.l2)));
     }
@@ -195,7 +201,7 @@ pub(crate) fn columns(rows: &[&Row]) -> Vec<Column> {
     // the errors say the rest where they are known, and lines stay within their width
     if any(|r| r.bound.effectivity) {
         columns.push(number("effect.", |r| fixed(r.bound.effectivity)));
-    } else if any(|r| r.bound.total) {
+    } else if !is_adaptive && any(|r| r.bound.total) {
         columns.push(number("bound", |r| digits(r.bound.total, 1)));
     }
     if !has_errors(rows) {
@@ -217,6 +223,9 @@ pub(crate) fn columns(rows: &[&Row]) -> Vec<Column> {
     }));
     columns.push(number("assem.", |r| seconds(r.seconds.assemble)));
     columns.push(number("solve", |r| seconds(r.seconds.solve)));
+    if is_adaptive {
+        columns.push(number("total", |r| seconds(r.seconds.total)));
+    }
     columns
 }
 
