@@ -3,6 +3,7 @@
 use std::fmt;
 
 use super::extrapolate::{Limit, extrapolate};
+use super::rates::rates;
 use super::report::Report;
 use super::row::{Row, distinct};
 
@@ -69,7 +70,8 @@ fn write_scene(f: &mut impl fmt::Write, scene: &str, rows: &[&Row]) -> fmt::Resu
     ) {
         write_wrapped(f, &format!("  warning, {}: {}", warning.0, warning.1))?;
     }
-    limits(rows).iter().try_for_each(|line| write_wrapped(f, &format!("  {line}")))
+    let notes = limits(rows).into_iter().chain(rates(rows));
+    notes.into_iter().try_for_each(|line| write_wrapped(f, &format!("  {line}")))
 }
 
 /// Whether an error in L2 or H1 is known.
