@@ -137,6 +137,8 @@ struct Patch {
     matrix: Vec<f64>,
     /// What the fluxes of two cells have too much, then the multipliers.
     multipliers: Vec<f64>,
+    /// The sums of the two fluxes; less the first of them once it is known.
+    sums: Vec<f64>,
 }
 
 impl<T: Real, const D: usize> Patches<'_, '_, T, D> {
@@ -145,7 +147,7 @@ impl<T: Real, const D: usize> Patches<'_, '_, T, D> {
     /// The fluxes of each cell are eliminated: the multipliers of the facets between cells remain.
     fn add_vertex(&self, vertex: usize, patch: &mut Patch, part: &mut Vec<(usize, f64)>) {
         let corners = &self.corners[self.starts[vertex]..self.starts[vertex + 1]];
-        let Patch { cells, matrix, multipliers } = patch;
+        let Patch { cells, matrix, multipliers, sums } = patch;
         let volume = |cell: u32| self.space.metric(cell as usize).volume.to_f64();
         let total: f64 = corners.iter().map(|&(cell, _)| volume(cell)).sum();
         cells.clear();
@@ -161,6 +163,8 @@ impl<T: Real, const D: usize> Patches<'_, '_, T, D> {
             cells.push(self.cell_of_patch((cell, own), volume, facets, load));
         }
         let n = multipliers.len();
+        sums.clear();
+        sums.extend(multipliers.iter().map(|excess| -excess));
         matrix.clear();
         matrix.resize(n * n, 0.0);
         for CellOfPatch { facets, slopes, fluxes } in &*cells {
@@ -177,14 +181,25 @@ impl<T: Real, const D: usize> Patches<'_, '_, T, D> {
         factor(matrix, n);
         forward(matrix, n, multipliers);
         backward(matrix, n, multipliers);
+        // the second cell of a facet takes the rest of the sum: sides agree to rounding
+        let mut n_known = 0;
         for (&(cell, own), of) in corners.iter().zip(&*cells) {
             let multiplier = |a: usize| match of.facets[a] {
                 FacetOfPatch::Interior(i) => multipliers[i],
                 _ => 0.0,
             };
             let fluxes = of.fluxes - of.slopes * SVector::from_fn(|a, _| multiplier(a));
-            for (local, flux) in around::<D>(own).zip(fluxes.iter()) {
-                part.push((cell as usize * (D + 1) + local, *flux));
+            for ((local, facet), &flux) in around::<D>(own).zip(&of.facets).zip(fluxes.iter()) {
+                let flux = match *facet {
+                    FacetOfPatch::Interior(i) if i < n_known => sums[i],
+                    FacetOfPatch::Interior(i) => {
+                        n_known += 1;
+                        sums[i] -= flux;
+                        flux
+                    }
+                    _ => flux,
+                };
+                part.push((cell as usize * (D + 1) + local, flux));
             }
         }
     }

@@ -8,7 +8,7 @@ use super::csv::flatten;
 use super::html::{HtmlCell, HtmlPage, HtmlTable};
 use super::table::{Cell, Table};
 use crate::study::row::distinct;
-use crate::study::table::{columns, heading, limits, scenes};
+use crate::study::table::{columns, heading, notes, scenes};
 use crate::study::{Program, Report, Row, file_name};
 
 /// Columns of the page that are shown at first, by their keys.
@@ -131,7 +131,7 @@ impl Report {
                 title: format!("{scene}, dimension {}", rows[0].dimension),
                 columns,
                 rows: rows_of_table.collect(),
-                remarks: [heading(&rows)].into_iter().chain(limits(&rows)).collect(),
+                remarks: [heading(&rows)].into_iter().chain(notes(&rows)).collect(),
             });
         }
         let mut pictures = Vec::new();
@@ -194,7 +194,7 @@ fn table(scene: &str, rows: &[&Row]) -> Table {
         columns: columns.iter().map(|c| c.name.to_owned()).collect(),
         rows: rows.iter().map(line).collect(),
         remarks: distinct(
-            [heading(rows)].into_iter().chain(remarks).chain(warnings).chain(limits(rows)),
+            [heading(rows)].into_iter().chain(remarks).chain(warnings).chain(notes(rows)),
         ),
     }
 }

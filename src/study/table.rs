@@ -70,8 +70,7 @@ fn write_scene(f: &mut impl fmt::Write, scene: &str, rows: &[&Row]) -> fmt::Resu
     ) {
         write_wrapped(f, &format!("  warning, {}: {}", warning.0, warning.1))?;
     }
-    let notes = limits(rows).into_iter().chain(rates(rows));
-    notes.into_iter().try_for_each(|line| write_wrapped(f, &format!("  {line}")))
+    notes(rows).iter().try_for_each(|line| write_wrapped(f, &format!("  {line}")))
 }
 
 /// Whether an error in L2 or H1 is known.
@@ -79,8 +78,13 @@ fn has_errors(rows: &[&Row]) -> bool {
     rows.iter().any(|r| r.error.l2.is_some() || r.error.h1.is_some())
 }
 
+/// What stands below a table: limits where no error is known, rates of adaptive steps.
+pub(crate) fn notes(rows: &[&Row]) -> Vec<String> {
+    [limits(rows), rates(rows)].concat()
+}
+
 /// The limits of energy, contact measure and resultant of each series, where no error is known.
-pub(crate) fn limits(rows: &[&Row]) -> Vec<String> {
+fn limits(rows: &[&Row]) -> Vec<String> {
     let mut lines = Vec::new();
     if has_errors(rows) {
         return lines;
