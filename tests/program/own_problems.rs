@@ -17,12 +17,12 @@ fn number(row: &Value, keys: &[&str]) -> f64 {
 fn a_membrane_from_a_file_is_measured_against_a_reference() {
     let scratch = Scratch::new("membrane");
     let options =
-        "--scheme p1,cr,wopsip:facet-means --levels 0,1,2 --reference p2:midpoints@level=4";
+        "--scheme p1,cr,wopsip:facet-means --levels 0,1,2 --reference 4";
     let report = scratch.report(&format!("{} {options}", example("membrane")));
     assert_eq!(rows(&report).len(), 9);
     for row in rows(&report) {
         assert_eq!(row["scene"], "membrane");
-        assert_eq!(row["against"], "p2:midpoints at level 4");
+        assert_eq!(row["against"], "p2 at level 4");
         assert_eq!(row["status"], "converged");
         assert!(number(row, &["energy"]) < 0.0 && number(row, &["contact_measure"]) > 0.0);
         for key in ["multiplier_l1", "multiplier_l2", "contact_area_error"] {
@@ -39,7 +39,7 @@ fn a_membrane_from_a_file_is_measured_against_a_reference() {
         assert!(scratch.0.join("out").join(file).exists(), "{file}");
     }
     let plot = std::fs::read_to_string(scratch.0.join("out/convergence.svg")).unwrap();
-    assert!(plot.contains("against p2:midpoints at level 4"));
+    assert!(plot.contains("against p2 at level 4"));
 }
 
 #[test]
