@@ -16,8 +16,7 @@ fn number(row: &Value, keys: &[&str]) -> f64 {
 #[test]
 fn a_membrane_from_a_file_is_measured_against_a_reference() {
     let scratch = Scratch::new("membrane");
-    let options =
-        "--scheme p1,cr,wopsip:facet-means --levels 0,1,2 --reference 4";
+    let options = "--scheme p1,cr,wopsip:facet-means --levels 0,1,2 --reference 4";
     let report = scratch.report(&format!("{} {options}", example("membrane")));
     assert_eq!(rows(&report).len(), 9);
     for row in rows(&report) {
@@ -206,4 +205,19 @@ fn a_report_against_another_reference_is_not_resumed() {
     assert_eq!(output.status.code(), Some(2), "{}", stderr(&output));
     assert!(stderr(&output).contains("reference p2 at level"), "{}", stderr(&output));
     scratch.report(&format!("{options} 2 --resume"));
+}
+
+/// One reference that fails ends neither the study nor the rows of other scenes.
+#[test]
+fn rows_stand_without_a_reference_that_fails() {
+    let scratch = Scratch::new("no-reference");
+    let options = "--scene radial-2d,signorini-2d --scheme p1 --levels 4 --quiet --no-fields";
+    let report = scratch.report(&format!("{options} --reference sipg-p2@sigma=1e-2,level=16"));
+    assert_eq!(rows(&report).len(), 2);
+    for row in rows(&report) {
+        assert_eq!(row["status"], "converged");
+        assert!(row["against"].is_null() && row["error"]["h1"].is_null());
+        let warning = row["warnings"][0].as_str().unwrap();
+        assert!(warning.contains("sipg-p2@sigma=0.01 at level 16, was not found"), "{warning}");
+    }
 }
