@@ -8,7 +8,7 @@ use super::csv::flatten;
 use super::html::{HtmlCell, HtmlPage, HtmlTable};
 use super::table::{Cell, Table};
 use crate::study::row::distinct;
-use crate::study::table::{columns, heading, limits, scenes};
+use crate::study::table::{Column, columns, heading, limits, scenes, totals};
 use crate::study::{Program, Report, Row, file_name};
 
 /// Columns of the page that are shown at first, by their keys.
@@ -32,7 +32,7 @@ const SHOWN: [&str; 17] = [
     "seconds.total",
 ];
 /// Columns of tables in LaTeX: what fits into the width of a page.
-const PRINTED: [&str; 12] = [
+const PRINTED: [&str; 14] = [
     "scheme",
     "solver",
     "n",
@@ -43,8 +43,10 @@ const PRINTED: [&str; 12] = [
     "energy",
     "contact",
     "resultant",
+    "bound",
     "outer",
     "solve",
+    "stages (outer)",
 ];
 
 impl Report {
@@ -59,9 +61,13 @@ impl Report {
         format!("{name} {version}, {target_cpu}; {threads} threads; {precision}; {times}{end}")
     }
 
-    /// One table for each scene, with the columns of the tables for a terminal.
+    /// Two tables for each scene, with the columns of the tables for a terminal: errors and times, then
+    /// energy, contact measure, resultant, error bound and stages.
     pub fn tables(&self) -> Vec<Table> {
-        scenes(&self.rows).into_iter().map(|(scene, rows)| table(scene, &rows)).collect()
+        let tables = |(scene, rows): (&str, Vec<&Row>)| {
+            [Some(table(scene, &rows)), second(scene, &rows)].into_iter().flatten()
+        };
+        scenes(&self.rows).into_iter().flat_map(tables).collect()
     }
 
     /// The tables in Markdown.
@@ -171,25 +177,30 @@ fn html_cell(text: &str) -> HtmlCell {
 
 /// The table of a scene.
 fn table(scene: &str, rows: &[&Row]) -> Table {
-    let columns = columns(rows);
-    let cell = |text: String, left: bool| match (left, &text[..]) {
-        (true, _) => Cell::Words(text),
-        (_, "-") => Cell::Nothing,
-        _ => Cell::Number(text, None),
-    };
-    let line = |row: &&Row| columns.iter().map(|c| cell((c.cell)(row), c.left)).collect();
     let failed = rows.iter().filter(|r| !r.converged());
     let remarks = failed.map(|r| {
         let why = r.message.as_deref().unwrap_or(r.status.message());
         format!("{}, level {}: did not converge: {}: {why}", r.label, r.level, r.status)
     });
     let warnings = rows.iter().flat_map(|r| r.warnings.iter().map(|w| format!("{}: {w}", r.label)));
-    Table {
-        title: scene.to_owned(),
-        columns: columns.iter().map(|c| c.name.to_owned()).collect(),
-        rows: rows.iter().map(line).collect(),
-        remarks: distinct(
-            [heading(rows)].into_iter().chain(remarks).chain(warnings).chain(limits(rows)),
-        ),
-    }
+    let remarks = distinct([heading(rows)].into_iter().chain(remarks).chain(warnings));
+    with_columns(scene.to_owned(), &columns(rows), rows, remarks)
+}
+
+/// The second table of a scene, if it says anything.
+fn second(scene: &str, rows: &[&Row]) -> Option<Table> {
+    let columns = totals(rows);
+    let title = format!("{scene}: totals and stages");
+    (!columns.is_empty()).then(|| with_columns(title, &columns, rows, limits(rows)))
+}
+
+fn with_columns(title: String, columns: &[Column], rows: &[&Row], remarks: Vec<String>) -> Table {
+    let cell = |text: String, left: bool| match (left, &text[..]) {
+        (true, _) => Cell::Words(text),
+        (_, "-") => Cell::Nothing,
+        _ => Cell::Number(text, None),
+    };
+    let line = |row: &&Row| columns.iter().map(|c| cell((c.cell)(row), c.left)).collect();
+    let names = columns.iter().map(|c| c.name.to_owned()).collect();
+    Table { title, columns: names, rows: rows.iter().map(line).collect(), remarks }
 }

@@ -34,6 +34,16 @@ fn a_membrane_from_a_file_is_measured_against_a_reference() {
             assert!(area < 0.5, "{area}");
         }
     }
+    // what errors leave out of the first table stands in a second one, in every format
+    let text = |name: &str| std::fs::read_to_string(scratch.0.join("out").join(name)).unwrap();
+    for (file, bar) in [("report.md", "|"), ("report.tex", "&")] {
+        let text = text(file);
+        assert!(text.contains("membrane: totals and stages"), "{file}");
+        for name in ["energy", "contact", "resultant", "bound", "stages (outer)"] {
+            assert!(text.contains(&format!("{bar} {name}")), "{file}: {name}");
+        }
+        assert!(text.contains("direct-active-set (") && text.contains("extrapolated, p1: energy"));
+    }
     for file in ["membrane-p1.vtu", "report.html", "convergence.svg"] {
         assert!(scratch.0.join("out").join(file).exists(), "{file}");
     }
@@ -70,6 +80,10 @@ fn the_work_of_a_problem_of_ones_own() {
         assert_eq!(row["against"], "p2 at level 3");
         assert!(number(row, &["error", "h1"]) > 0.0 && number(row, &["seconds", "total"]) > 0.0);
     }
+    for file in ["report.txt", "report.md", "report.tex", "report.html"] {
+        let text = std::fs::read_to_string(scratch.0.join("out").join(file)).unwrap();
+        assert!(text.contains("errors against p2 at level 3"), "{file}");
+    }
 }
 
 #[test]
@@ -79,7 +93,26 @@ fn a_box_of_ones_own() {
         [obstacle]\nlower.default = -0.2\n[boundary.left]\nkind = \"dirichlet\"\n\
         [boundary.right]\nkind = \"neumann\"\nflux = \"0.1 * nx\"\n";
     let path = scratch.file("rod.toml", text);
-    let report = scratch.report(&format!("{path} --scheme p1,sipg --levels 8,16 --reference 64"));
+    let output = scratch.run(&format!("{path} --scheme p1,sipg --levels 8,16 --reference 64"));
+    let report = read_json(&scratch.0.join("out/report.json"));
+    // on a terminal the second table has the finest level of each series
+    let text = String::from_utf8(output.stdout).unwrap();
+    let lines: Vec<&str> = text.lines().skip_while(|line| !line.contains("stages")).collect();
+    assert!(
+        lines[0].split_whitespace().eq([
+            "scheme",
+            "n",
+            "energy",
+            "contact",
+            "resultant",
+            "bound",
+            "stages",
+            "(outer)"
+        ]),
+        "{text}"
+    );
+    assert!(lines[1].starts_with("p1") && lines[2].starts_with("sipg"), "{text}");
+    assert!(lines[1].contains("  16  ") && lines[1].contains("direct-active-set ("), "{text}");
     assert_eq!(rows(&report)[0]["scene"], "rod");
     assert!(rows(&report).iter().all(|row| row["against"] == "p2 at level 64"));
 }
