@@ -99,6 +99,14 @@ pub enum Error {
         /// The part of the facets.
         part: &'static str,
     },
+    /// Meshes are to follow an error bound that the scheme does not have.
+    #[error("meshes cannot follow the error bound of {scheme}: {why}")]
+    NotAdaptive {
+        /// The scheme.
+        scheme: String,
+        /// Why there is no bound.
+        why: String,
+    },
     /// Mesh and scene disagree.
     #[error("mesh does not fit scene {scene}: {why}")]
     UnfitMesh {

@@ -3,6 +3,7 @@
 use std::fmt;
 #[cfg(feature = "report")]
 use std::path::Path;
+use std::sync::OnceLock;
 
 use super::hierarchy::Hierarchy;
 use crate::algebra::{Contact, Inequality};
@@ -41,7 +42,9 @@ pub struct Solved<'a, T: Real, const D: usize> {
     has_iterate: bool,
     /// The hierarchy that has the mesh, and its position there.
     hierarchy: Option<(&'a Hierarchy<T, D>, usize)>,
-    /// Seconds for the mesh and all coarser ones, if it is the mesh of a hierarchy.
+    /// The bound with the pair that gives it, once computed.
+    bound: OnceLock<(PrimalDualPair, ErrorBound)>,
+    /// Seconds for the mesh and all coarser ones, if it is one of several.
     pub(crate) mesh_seconds: f64,
     /// Seconds of assembly.
     pub(crate) assemble_seconds: f64,
@@ -101,6 +104,7 @@ impl<'a, T: Real, const D: usize> Solved<'a, T, D> {
             certificate,
             has_iterate,
             hierarchy,
+            bound: OnceLock::new(),
             assemble_seconds: 0.0,
             solve_seconds: 0.0,
             start_seconds: 0.0,
@@ -289,19 +293,27 @@ impl<'a, T: Real, const D: usize> Solved<'a, T, D> {
             false => Err(NoBound::NoIterate),
         }
     }
-    /// A bound on the error from solution and data alone: see [`crate::error_bound`].
+    /// A bound on the error from solution and data alone: see [`crate::error_bound`]. It is computed once.
     ///
     /// # Errors
     /// [`NoBound`].
     pub fn bound(&self) -> Result<ErrorBound, NoBound> {
-        self.discretisation.error_bound(&self.primal_dual_pair()?, self.values())
+        self.pair_and_bound().map(|(_, bound)| bound.clone())
+    }
+    pub(super) fn pair_and_bound(&self) -> Result<&(PrimalDualPair, ErrorBound), NoBound> {
+        if let Some(known) = self.bound.get() {
+            return Ok(known);
+        }
+        let pair = self.primal_dual_pair()?;
+        let bound = self.discretisation.error_bound(&pair, self.values())?;
+        Ok(self.bound.get_or_init(|| (pair, bound)))
     }
     /// The figures of the bound; its effectivity where the exact solution is known and holds on the mesh.
     pub(crate) fn bound_figures(&self, exact_holds: bool) -> BoundFigures {
-        let of = &self.discretisation;
-        let pair = self.primal_dual_pair();
-        let error = pair.as_ref().ok().filter(|_| exact_holds).and_then(|p| of.error_of_pair(p));
-        BoundFigures::new(&pair.and_then(|pair| of.error_bound(&pair, self.values())), error)
+        let judged = self.pair_and_bound();
+        let known = judged.as_ref().ok().filter(|_| exact_holds);
+        let error = known.and_then(|(pair, _)| self.discretisation.error_of_pair(pair));
+        BoundFigures::new(judged.map(|(_, bound)| bound), error)
     }
     /// Solution, obstacle, multiplier and contact set on cells; none without an iterate.
     pub fn fields(&self) -> Option<Fields> {

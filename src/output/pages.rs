@@ -12,7 +12,7 @@ use crate::study::table::{Column, columns, heading, limits, scenes, totals};
 use crate::study::{Program, Report, Row, file_name};
 
 /// Columns of the page that are shown at first, by their keys.
-const SHOWN: [&str; 17] = [
+const SHOWN: [&str; 19] = [
     "against",
     "label",
     "level",
@@ -24,6 +24,8 @@ const SHOWN: [&str; 17] = [
     "order.l2",
     "error.h1",
     "order.h1",
+    "bound.total",
+    "order.bound",
     "energy",
     "contact_measure",
     "resultant",
@@ -32,21 +34,23 @@ const SHOWN: [&str; 17] = [
     "seconds.total",
 ];
 /// Columns of tables in LaTeX: what fits into the width of a page.
-const PRINTED: [&str; 14] = [
+const PRINTED: [&str; 16] = [
     "scheme",
     "solver",
     "n",
+    "step",
     "unknowns",
+    "bound",
     "L2",
     "order",
     "H1",
     "energy",
     "contact",
     "resultant",
-    "bound",
     "outer",
     "solve",
     "stages (outer)",
+    "total",
 ];
 
 impl Report {

@@ -78,6 +78,11 @@ fn write_scene(f: &mut impl fmt::Write, scene: &str, rows: &[&Row]) -> fmt::Resu
     finest.iter().try_for_each(|row| lines.write(f, |c| (c.cell)(row)))
 }
 
+/// Whether the rows are those of meshes that follow the error bound.
+fn is_adaptive(rows: &[&Row]) -> bool {
+    rows.iter().any(|r| r.theta.is_some())
+}
+
 /// Whether an error in L2 or H1 is known.
 fn has_errors(rows: &[&Row]) -> bool {
     rows.iter().any(|r| r.error.l2.is_some() || r.error.h1.is_some())
@@ -183,11 +188,17 @@ pub(crate) fn columns(rows: &[&Row]) -> Vec<Column> {
     if rows.iter().any(|r| r.solver != rows[0].solver) {
         columns.push(text("solver", |r| r.solver.clone()));
     }
-    columns.push(number("n", |r| r.level.to_string()));
-    columns.push(number("h", |r| scientific(Some(r.mesh_size))));
+    let is_adaptive = is_adaptive(rows);
+    columns.push(number(if is_adaptive { "step" } else { "n" }, |r| r.level.to_string()));
+    if !is_adaptive {
+        columns.push(number("h", |r| scientific(Some(r.mesh_size))));
+    }
     columns.push(number("unknowns", |r| whole(r.unknowns)));
     columns.push(number("outer", |r| whole(r.iterations.outer)));
-    if any(|r| r.error.l2) {
+    if is_adaptive {
+        columns.push(number("bound", |r| scientific(r.bound.total)));
+        columns.push(number("order", |r| fixed(r.order.bound)));
+    } else if any(|r| r.error.l2) {
         columns.push(number("L2", |r| scientific(r.error.l2)));
         columns.push(number("order", |r| fixed(r.order.l2)));
     }
@@ -198,7 +209,7 @@ pub(crate) fn columns(rows: &[&Row]) -> Vec<Column> {
     // the errors say the rest where they are known, and lines stay within their width
     if any(|r| r.bound.effectivity) {
         columns.push(number("effect.", |r| fixed(r.bound.effectivity)));
-    } else if any(|r| r.bound.total) {
+    } else if !is_adaptive && any(|r| r.bound.total) {
         columns.push(number("bound", |r| digits(r.bound.total, 1)));
     }
     if !has_errors(rows) {
@@ -214,6 +225,9 @@ pub(crate) fn columns(rows: &[&Row]) -> Vec<Column> {
     }));
     columns.push(number("assem.", |r| seconds(r.seconds.assemble)));
     columns.push(number("solve", |r| seconds(r.seconds.solve)));
+    if is_adaptive {
+        columns.push(number("total", |r| seconds(r.seconds.total)));
+    }
     columns
 }
 
@@ -239,10 +253,12 @@ pub(crate) fn totals(rows: &[&Row]) -> Vec<Column> {
     if rows.iter().any(|r| r.solver != rows[0].solver) {
         columns.push(text("solver", |r| r.solver.clone()));
     }
-    columns.push(number("n", |r| r.level.to_string()));
+    let is_adaptive = is_adaptive(rows);
+    columns.push(number(if is_adaptive { "step" } else { "n" }, |r| r.level.to_string()));
+    let names = columns.len();
     if has_errors(rows) {
         columns.extend(of_the_solution(rows));
-        if rows.iter().any(|r| r.bound.total.is_some()) {
+        if !is_adaptive && rows.iter().any(|r| r.bound.total.is_some()) {
             columns.push(number("bound", |r| scientific(r.bound.total)));
         }
     }
@@ -252,10 +268,7 @@ pub(crate) fn totals(rows: &[&Row]) -> Vec<Column> {
             stages.collect::<Vec<_>>().join(", ")
         }));
     }
-    match columns.last() {
-        Some(last) if last.name == "n" => Vec::new(),
-        _ => columns,
-    }
+    if columns.len() > names { columns } else { Vec::new() }
 }
 
 /// The lines of a table: its columns, and how wide they are.

@@ -3,6 +3,7 @@
 //! `cargo run --release -- compare --help` lists the options. Exit codes: 0 if every row converged,
 //! 1 if some did not or the run could not go on, 2 if the request was wrong, 130 if it was interrupted.
 
+mod adaptive;
 mod interrupt;
 mod options;
 mod prepare;
@@ -65,6 +66,12 @@ fn program<T: Real>(options: &Options, files: &[(&str, String)]) -> Program {
     }
     if let Some((scheme, level)) = &options.reference {
         program = program.with_request("reference", format!("{scheme} at level {level}"));
+    }
+    if let Some(of) = &options.adaptive {
+        program = program.with_request("adaptive", adaptive::words(of));
+        if let [level] = options.levels[..] {
+            program = program.with_request("first level", level);
+        }
     }
     for (name, part) in &options.mesh.boundary {
         program = program.with_request(&format!("boundary {name}"), part.name());
