@@ -99,14 +99,6 @@ pub enum Error {
         /// The part of the facets.
         part: &'static str,
     },
-    /// The fine solution against which rows are to be measured was not found.
-    #[error("there is no reference: {reference} did not converge: {why}")]
-    NoReference {
-        /// Scheme and level.
-        reference: String,
-        /// What the outcome says.
-        why: String,
-    },
     /// Meshes are to follow an error bound that the scheme does not have.
     #[error("meshes cannot follow the error bound of {scheme}: {why}")]
     NotAdaptive {

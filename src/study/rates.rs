@@ -5,7 +5,7 @@ use crate::measure::fit_order;
 
 /// The orders of bound and error over the last half of the steps of each adaptive series, by least squares, the
 /// range of effectivities, and the time of all steps over that of the last one.
-pub(super) fn rates(rows: &[&Row]) -> Vec<String> {
+pub(crate) fn rates(rows: &[&Row]) -> Vec<String> {
     let key = |row: &Row| [&row.label, &row.constraint, &row.solver].map(String::clone);
     let adaptive: Vec<&Row> = rows.iter().copied().filter(|row| row.theta.is_some()).collect();
     let of_series = |series: [String; 3]| {

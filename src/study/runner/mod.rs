@@ -29,7 +29,7 @@ use crate::study::fields::FieldFiles;
 use crate::study::journal::Journal;
 use crate::study::memory::{MemoryEstimate, estimate, estimate_without_factors, unknowns_about};
 use crate::study::orders::fill_orders;
-use crate::study::reference::{Measured, Reference};
+use crate::study::reference::{FoundReference, Measured, Reference};
 use crate::study::report::{Program, Report};
 use crate::study::row::{Row, RowKey};
 
@@ -426,7 +426,7 @@ impl<'a, T: Real, const D: usize> Study<'a, T, D> {
         });
         let reference = match (&self.reference, &reference_problem, hierarchies.first()) {
             (Some(reference), Some(problem), Some(hierarchy)) => {
-                Some(self.solve_reference(reference, problem, hierarchy)?)
+                Some(self.solve_reference(reference, problem, hierarchy))
             }
             _ => None,
         };
@@ -561,24 +561,24 @@ impl<'a, T: Real, const D: usize> Study<'a, T, D> {
         }
     }
 
-    /// The reference, and its name in rows.
+    /// The reference and its name in rows. Where it cannot be had, rows have no errors and say why.
     fn solve_reference<'h>(
         &'h self,
         reference: &Reference<'_, T, D>,
         problem: &'h Problem<D>,
         hierarchy: &'h Hierarchy<T, D>,
-    ) -> Result<(Solved<'h, T, D>, String), Error> {
+    ) -> FoundReference<'h, T, D> {
         let name = reference.name(self.scene.problem.constraint_set());
         (self.observer)(Progress::Started(&self.scene.name, &name, reference.level));
         let mut nested = NestedIteration::new(problem, hierarchy)
             .shared_solver(self.solvers()[0].clone())
             .quadrature(self.quadrature);
-        let solved = nested.solve(&*reference.scheme)?;
-        if !solved.converged() {
-            let why = solved.outcome().message().to_owned();
-            return Err(Error::NoReference { reference: name, why });
+        let fails = |why: &str| format!("the reference, {name}, was not found: {why}");
+        let solved = nested.solve(&*reference.scheme).map_err(|e| fails(&e.to_string()))?;
+        match solved.converged() {
+            true => Ok((solved, name)),
+            false => Err(fails(solved.outcome().message())),
         }
-        Ok((solved, name))
     }
 
     /// From which the meshes of all levels are refined.

@@ -23,8 +23,10 @@ use unilateral::study::{Journal, Row, RowKey, Study, available_memory_bytes, fil
 pub struct Run<'a> {
     /// What tells its rows apart.
     pub keys: Vec<RowKey>,
+    /// Scene and mesh, for messages.
+    pub place: String,
     /// Runs it.
-    pub run: Box<dyn FnOnce(&'a Journal) -> Request<Vec<Row>> + 'a>,
+    pub run: Box<dyn FnOnce(&'a Journal) -> Result<Vec<Row>, Error> + 'a>,
 }
 
 /// Most cells of a solution that is drawn: pictures of more are large and show no more.
@@ -120,11 +122,8 @@ pub fn prepare<'a, T: Real, const D: usize>(
     if options.adaptive.is_none() {
         watcher.expect(D, has_mesh, keys.iter().map(|key| key.level));
     }
-    let run = move |journal| match study.journal(journal).run() {
-        Ok(report) => Ok(report.rows),
-        Err(e) => Err(format!("{place}: {e}")),
-    };
-    Ok(Some(Run { keys, run: Box::new(run) }))
+    let run = move |journal| Ok(study.journal(journal).run()?.rows);
+    Ok(Some(Run { keys, place, run: Box::new(run) }))
 }
 
 /// Draws a solution with few cells as `NAME.svg`; one on a finer mesh takes the place of a coarser one.
