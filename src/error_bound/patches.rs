@@ -57,8 +57,11 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
             vertices.for_each(|vertex| patches.add_vertex(vertex, &mut patch, &mut part));
             part
         });
-        for (facet, value) in parts.into_iter().flatten() {
-            flux[facet] += value;
+        let mut values = parts.into_iter().flatten();
+        for &(cell, own) in &patches.corners {
+            for (local, value) in around::<D>(own).zip(&mut values) {
+                flux[cell as usize * (D + 1) + local] += value;
+            }
         }
         Ok(flux)
     }
@@ -71,21 +74,24 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
     ) -> Result<Patches<'_, '_, T, D>, NoBound> {
         let load = self.load_by_cell()?;
         let (n_cells, n_vertices) = (self.mesh.n_cells(), self.mesh.vertices().len());
-        let mut normal = vec![0.0; n_cells * (D + 1)];
-        let mut loads = normal.clone();
-        for cell in 0..n_cells {
-            let metric = self.metric(cell);
-            let values = self.local_values(cell, u);
-            let alpha = self.alpha(cell).to_f64();
-            let residual = self.cell_residual(cell, u, &load);
-            for i in 0..=D {
-                let product = |j: usize| metric.products[i][j].to_f64() * (values[j] - values[0]);
-                let stiffness = alpha * (1..=D).map(product).sum::<f64>();
-                // |F| n = -D |K| grad lambda
-                normal[cell * (D + 1) + i] = -(D as f64) * stiffness;
-                loads[cell * (D + 1) + i] = residual[i] - stiffness;
+        let of_cells = cells::map(n_cells, &|cells: Range<usize>| {
+            let mut pairs = Vec::with_capacity(cells.len() * (D + 1));
+            for cell in cells {
+                let metric = self.metric(cell);
+                let values = self.local_values(cell, u);
+                let alpha = self.alpha(cell).to_f64();
+                let residual = self.cell_residual(cell, u, &load);
+                for i in 0..=D {
+                    let product =
+                        |j: usize| metric.products[i][j].to_f64() * (values[j] - values[0]);
+                    let stiffness = alpha * (1..=D).map(product).sum::<f64>();
+                    // |F| n = -D |K| grad lambda
+                    pairs.push((-(D as f64) * stiffness, residual[i] - stiffness));
+                }
             }
-        }
+            pairs
+        });
+        let (normal, mut loads): (Vec<f64>, Vec<f64>) = of_cells.into_iter().flatten().unzip();
         let mut multipliers: Vec<f64> = residual.iter().map(|r| -r).collect();
         for (cell, local) in self.facets_of(BoundaryPart::Dirichlet) {
             self.mesh.facet_vertices(cell, local).for_each(|v| multipliers[v as usize] = 0.0);
@@ -133,7 +139,7 @@ struct CellOfPatch {
 #[derive(Default)]
 struct Patch {
     cells: Vec<CellOfPatch>,
-    /// The matrix of the multipliers by rows, then its Cholesky factor.
+    /// The upper triangle of the matrix of the multipliers by rows.
     matrix: Vec<f64>,
     /// What the fluxes of two cells have too much, then the multipliers.
     multipliers: Vec<f64>,
@@ -142,10 +148,10 @@ struct Patch {
 }
 
 impl<T: Real, const D: usize> Patches<'_, '_, T, D> {
-    /// Adds the part of a vertex to a list of facets and fluxes.
+    /// Adds the part of a vertex to a list: for each cell around it the fluxes through the facets there.
     ///
     /// The fluxes of each cell are eliminated: the multipliers of the facets between cells remain.
-    fn add_vertex(&self, vertex: usize, patch: &mut Patch, part: &mut Vec<(usize, f64)>) {
+    fn add_vertex(&self, vertex: usize, patch: &mut Patch, part: &mut Vec<f64>) {
         let corners = &self.corners[self.starts[vertex]..self.starts[vertex + 1]];
         let Patch { cells, matrix, multipliers, sums } = patch;
         let volume = |cell: u32| self.space.metric(cell as usize).volume.to_f64();
@@ -172,25 +178,25 @@ impl<T: Real, const D: usize> Patches<'_, '_, T, D> {
                 let &FacetOfPatch::Interior(i) = facet else { continue };
                 multipliers[i] += fluxes[a];
                 for (b, other) in facets.iter().enumerate() {
-                    if let &FacetOfPatch::Interior(j) = other {
+                    if let &FacetOfPatch::Interior(j) = other
+                        && i <= j
+                    {
                         matrix[i * n + j] += slopes[(a, b)];
                     }
                 }
             }
         }
-        factor(matrix, n);
-        forward(matrix, n, multipliers);
-        backward(matrix, n, multipliers);
+        solve(matrix, multipliers);
         // the second cell of a facet takes the rest of the sum: sides agree to rounding
         let mut n_known = 0;
-        for (&(cell, own), of) in corners.iter().zip(&*cells) {
+        for of in &*cells {
             let multiplier = |a: usize| match of.facets[a] {
                 FacetOfPatch::Interior(i) => multipliers[i],
                 _ => 0.0,
             };
             let fluxes = of.fluxes - of.slopes * SVector::from_fn(|a, _| multiplier(a));
-            for ((local, facet), &flux) in around::<D>(own).zip(&of.facets).zip(fluxes.iter()) {
-                let flux = match *facet {
+            for (facet, &flux) in of.facets[..D].iter().zip(fluxes.iter()) {
+                part.push(match *facet {
                     FacetOfPatch::Interior(i) if i < n_known => sums[i],
                     FacetOfPatch::Interior(i) => {
                         n_known += 1;
@@ -198,8 +204,7 @@ impl<T: Real, const D: usize> Patches<'_, '_, T, D> {
                         flux
                     }
                     _ => flux,
-                };
-                part.push((cell as usize * (D + 1) + local, flux));
+                });
             }
         }
     }
@@ -307,38 +312,30 @@ fn facet_products<const D: usize>(
     })
 }
 
-/// The Cholesky factor of a matrix by rows, in place of its lower triangle; a pivot that is zero but for
-/// rounding has the number zero on the diagonal, and its unknown is zero.
-fn factor(a: &mut [f64], n: usize) {
-    for i in 0..n {
-        let size = a[i * n + i];
-        for j in 0..=i {
-            let sum: f64 = (0..j).map(|k| a[i * n + k] * a[j * n + k]).sum();
-            let value = a[i * n + j] - sum;
-            let pivot = a[j * n + j];
-            a[i * n + j] = match i == j {
-                true if value > ZERO_PIVOT * size => value.sqrt(),
-                false if pivot > 0.0 => value / pivot,
-                _ => 0.0,
-            };
+/// Solves with a symmetric positive semidefinite matrix, given by the upper triangle of its rows, by elimination in
+/// place. Where a pivot is zero but for rounding, the unknown is zero.
+fn solve(a: &mut [f64], x: &mut [f64]) {
+    let n = x.len();
+    // the lower triangle is free: its first column keeps the diagonal
+    (1..n).for_each(|i| a[i * n] = a[i * n + i]);
+    for k in 0..n {
+        let (above, below) = a.split_at_mut((k + 1) * n);
+        let row = &mut above[k * n..];
+        if row[k] <= ZERO_PIVOT * row[0] {
+            row[k] = 0.0;
+            continue;
+        }
+        for (i, lower) in (k + 1..).zip(below.chunks_exact_mut(n)) {
+            let factor = row[i] / row[k];
+            // patches are sparse
+            if factor != 0.0 {
+                x[i] -= factor * x[k];
+                lower[i..].iter_mut().zip(&row[i..]).for_each(|(to, from)| *to -= factor * from);
+            }
         }
     }
-}
-
-/// Solves with the lower triangle.
-fn forward(a: &[f64], n: usize, x: &mut [f64]) {
-    for i in 0..n {
-        let sum: f64 = (0..i).map(|k| a[i * n + k] * x[k]).sum();
-        let pivot = a[i * n + i];
-        x[i] = if pivot > 0.0 { (x[i] - sum) / pivot } else { 0.0 };
-    }
-}
-
-/// Solves with the transpose of the lower triangle.
-fn backward(a: &[f64], n: usize, x: &mut [f64]) {
-    for i in (0..n).rev() {
-        let sum: f64 = (i + 1..n).map(|k| a[k * n + i] * x[k]).sum();
-        let pivot = a[i * n + i];
-        x[i] = if pivot > 0.0 { (x[i] - sum) / pivot } else { 0.0 };
+    for (k, row) in a.chunks_exact(n.max(1)).enumerate().rev() {
+        let sum: f64 = row[k + 1..].iter().zip(&x[k + 1..]).map(|(a, x)| a * x).sum();
+        x[k] = if row[k] > 0.0 { (x[k] - sum) / row[k] } else { 0.0 };
     }
 }

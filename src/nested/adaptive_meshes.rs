@@ -117,7 +117,7 @@ impl<T: Real, const D: usize> AdaptiveMeshes<T, D> {
 
     /// Adds a mesh: the finest one with every marked cell divided, by [`BisectedMesh::bisect`]. In two and
     /// three dimensions both halves are divided again, so that a marked triangle has a vertex in the interior
-    /// of each edge.
+    /// of each edge. All vertices have new numbers, in the order of cells.
     ///
     /// # Errors
     /// [`Error::Mesh`] as for [`BisectedMesh::bisect`], [`Error::Parameter`] if another thread adds a mesh
