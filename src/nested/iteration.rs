@@ -246,11 +246,11 @@ impl<'a, T: Real, const D: usize> NestedIteration<'a, T, D> {
     }
 
     /// The result on a mesh, by its position, for values that another program found: certificate, errors and
-    /// totals. Its outcome is `converged` if the certificate is within its limits, else `stalled`.
+    /// totals. Its outcome is `converged` if the certificate is within its limits, else `not-a-solution`.
     ///
     /// # Errors
-    /// [`Error::Parameter`] if there is no such mesh or another number of values than of unknowns, and those
-    /// of assembly.
+    /// [`Error::Parameter`] if there is no such mesh, another number of values than of unknowns, or a value
+    /// that is not finite, and those of assembly.
     pub fn judge_on(
         &self,
         position: usize,
@@ -284,10 +284,16 @@ impl<'a, T: Real, const D: usize> NestedIteration<'a, T, D> {
             let value = values.len().to_string();
             return Err(Error::Parameter { parameter: "number of values", value, allowed });
         }
+        if let Some(k) = values.iter().position(|x| !T::lit(*x).to_f64().is_finite()) {
+            let value = format!("{} at position {k}, from zero", values[k]);
+            let allowed = format!("finite numbers in {}", T::NAME);
+            return Err(Error::Parameter { parameter: "values", value, allowed });
+        }
         let values: Vec<T> = values.iter().map(|&x| T::lit(x)).collect();
         let contact = contact_of(&inequality, &values);
         let solution = Solution::new(values, contact, Outcome::Converged).linear_solver("none");
-        Ok(Solved::new(discretisation, inequality, solution, self.hierarchy(position)))
+        let solved = Solved::new(discretisation, inequality, solution, self.hierarchy(position));
+        Ok(solved.from_elsewhere())
     }
 
     /// The hierarchy that has the mesh, and its position there.

@@ -145,10 +145,14 @@ impl Report {
             });
         }
         let mut pictures = Vec::new();
-        for (scene, label) in distinct(self.rows.iter().map(|r| (&r.scene, &r.label))) {
-            let path = directory.join(file_name(&format!("{scene}-{label}")) + ".svg");
+        for (scene, label, solver) in
+            distinct(self.rows.iter().map(|r| (&r.scene, &r.label, &r.solver)))
+        {
+            let is_alone = self.rows.iter().all(|r| r.solver == *solver);
+            let of = if is_alone { label.clone() } else { format!("{label}-{solver}") };
+            let path = directory.join(file_name(&format!("{scene}-{of}")) + ".svg");
             if let Ok(svg) = std::fs::read_to_string(path) {
-                pictures.push((format!("{label} on {scene}"), svg));
+                pictures.push((format!("{of} on {scene}"), svg));
             }
         }
         HtmlPage {

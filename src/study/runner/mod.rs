@@ -82,7 +82,7 @@ pub struct Study<'a, T: Real, const D: usize> {
     observer: Box<dyn Fn(Progress<'_>) + 'a>,
 }
 
-/// Receives a solution with its label and level.
+/// Receives a solution with its label (and solver, where there are several) and level.
 type EachSolution<'a, T, const D: usize> =
     Box<dyn Fn(&str, usize, &Solved<'_, T, D>) -> Result<(), Error> + 'a>;
 
@@ -266,8 +266,8 @@ impl<'a, T: Real, const D: usize> Study<'a, T, D> {
         self.repeat = times.max(1);
         self
     }
-    /// Writes the fields of every scheme on the finest level to this directory, as
-    /// `SCENE-LABEL.vtu`, with `-` for what is neither a letter, a digit, a dot, `_` nor `-`.
+    /// Writes the fields of every scheme on the finest level to this directory, as `SCENE-LABEL.vtu`, of
+    /// several solvers as `SCENE-LABEL-SOLVER.vtu`, with `-` for what is neither a letter, a digit, a dot, `_` nor `-`.
     #[cfg(feature = "report")]
     #[must_use]
     pub fn fields_to(mut self, directory: impl Into<PathBuf>) -> Self {
@@ -288,8 +288,8 @@ impl<'a, T: Real, const D: usize> Study<'a, T, D> {
         self.fields.all_levels = true;
         self
     }
-    /// Sets a function that receives every solution that has values, with its label and level, before the
-    /// row of the solution is complete. An error ends the study.
+    /// Sets a function that receives every solution that has values, with its label, of several solvers as
+    /// `LABEL-SOLVER`, and its level, before the row of the solution is complete. An error ends the study.
     #[must_use]
     pub fn each_solution(
         mut self,
@@ -420,16 +420,8 @@ impl<'a, T: Real, const D: usize> Study<'a, T, D> {
             false => self.hierarchies()?,
         };
         let problems = self.problems();
-        let reference_problem = self.reference.as_ref().map(|reference| {
-            let set = reference.set.clone().or(self.scene.problem.constraint_set.clone());
-            Problem { constraint_set: set, ..self.scene.problem.clone() }
-        });
-        let reference = match (&self.reference, &reference_problem, hierarchies.first()) {
-            (Some(reference), Some(problem), Some(hierarchy)) => {
-                Some(self.solve_reference(reference, problem, hierarchy))
-            }
-            _ => None,
-        };
+        let reference_problem = self.reference_problem();
+        let reference = self.find_reference(&reference_problem, &hierarchies);
         let mut by_solver: Vec<Vec<NestedIteration<'_, T, D>>> = self
             .solvers()
             .iter()
@@ -542,10 +534,16 @@ impl<'a, T: Real, const D: usize> Study<'a, T, D> {
             unreachable!("checked above")
         };
         let problem = entry.problem(&self.scene.problem);
-        let hierarchy = self.coarsest().build(level)?;
-        let nested = NestedIteration::new(&problem, &hierarchy).quadrature(self.quadrature);
-        let solved = nested.judge_on(hierarchy.n_meshes() - 1, &*entry.scheme, values)?;
-        let measured = Measured { failure: failure.as_deref(), reference: None };
+        let hierarchies = self.hierarchies()?;
+        let mut on_level = hierarchies.iter().filter_map(|h| Some((h.position(level)?, h)));
+        let Some((position, hierarchy)) = on_level.next() else {
+            unreachable!("a hierarchy has the level")
+        };
+        let nested = NestedIteration::new(&problem, hierarchy).quadrature(self.quadrature);
+        let solved = nested.judge_on(position, &*entry.scheme, values)?;
+        let reference_problem = self.reference_problem();
+        let reference = self.find_reference(&reference_problem, &hierarchies);
+        let measured = Measured { failure: failure.as_deref(), reference: reference.as_ref() };
         let row = self.measured_row(entry, level, &solved, measured)?;
         Ok(Row { solver: "none".to_owned(), ..row })
     }
@@ -559,6 +557,23 @@ impl<'a, T: Real, const D: usize> Study<'a, T, D> {
                 Ok(vec![self.coarsest().build_from(reference.level, coarsest)?])
             }
         }
+    }
+
+    /// The problem with the constraint set of the reference.
+    fn reference_problem(&self) -> Problem<D> {
+        let problem = self.scene.problem.clone();
+        let set = self.reference.as_ref().and_then(|reference| reference.set.clone());
+        Problem { constraint_set: set.or(problem.constraint_set), ..problem }
+    }
+
+    /// The reference on the finest mesh, where one is asked for.
+    fn find_reference<'h>(
+        &'h self,
+        problem: &'h Problem<D>,
+        hierarchies: &'h [Hierarchy<T, D>],
+    ) -> Option<FoundReference<'h, T, D>> {
+        let (reference, hierarchy) = (self.reference.as_ref()?, hierarchies.first()?);
+        Some(self.solve_reference(reference, problem, hierarchy))
     }
 
     /// The reference and its name in rows. Where it cannot be had, rows have no errors and say why.

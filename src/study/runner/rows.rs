@@ -84,11 +84,15 @@ impl<T: Real, const D: usize> Study<'_, T, D> {
         measured: Measured<'_, 'p, T, D>,
     ) -> Result<Row, Error> {
         let label = entry.scheme.label_on(solved.discretisation().problem().constraint_set());
+        let name = match self.solvers.len() {
+            0 | 1 => label.clone(),
+            _ => format!("{label}-{solver}"),
+        };
         #[cfg(feature = "report")]
         {
-            let with_solver = format!("{label}-{solver}");
-            let name = if self.solvers.len() > 1 { &with_solver } else { &label };
-            self.fields.write((&self.scene.name, name), level, levels, solved)?;
+            let reference = measured.reference.and_then(|found| found.as_ref().ok());
+            let reference = reference.map(|(reference, _)| reference);
+            self.fields.write((&self.scene.name, &name), level, levels, solved, reference)?;
             if let Some(directory) = &self.inequalities {
                 let name = format!("{}-{label}-{level}", self.scene.name);
                 let folder = directory.join(file_name(&name));
@@ -98,7 +102,7 @@ impl<T: Real, const D: usize> Study<'_, T, D> {
         #[cfg(not(feature = "report"))]
         let _ = levels;
         if let Some(f) = self.each_solution.as_ref().filter(|_| solved.has_iterate()) {
-            f(&label, level, solved)?;
+            f(&name, level, solved)?;
         }
         (self.observer)(Progress::Entered(Phase::Measures));
         let row = self.measured_row(entry, level, solved, measured)?;
