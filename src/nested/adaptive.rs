@@ -97,7 +97,7 @@ pub enum Stop {
     Steps,
     /// The next mesh would have more unknowns than allowed.
     Unknowns,
-    /// The bound is zero.
+    /// No cell has a share of the bound: it is zero, or what the solver left.
     Exact,
     /// The solve did not converge.
     NotConverged,
@@ -113,7 +113,7 @@ impl fmt::Display for Stop {
             Self::Goal => "the bound is at most the goal",
             Self::Steps => "the number of refinements is the largest allowed",
             Self::Unknowns => "the next mesh has more unknowns than allowed",
-            Self::Exact => "the bound is zero",
+            Self::Exact => "no cell has a share of the bound",
             Self::NotConverged => "the solve did not converge",
             Self::NoBound => "there is no bound",
             Self::Rounding => "marked cells are at the size of rounding",
@@ -251,12 +251,12 @@ impl<'a, T: Real, const D: usize> AdaptiveIteration<'a, T, D> {
         let bound = solved.bound().ok();
         let marked = bound.as_ref().map(|bound| bound.marked(self.adaptivity.theta));
         self.bound_seconds += clock.elapsed().as_secs_f64();
-        let goal = self.adaptivity.goal.unwrap_or(0.0);
+        let goal = self.adaptivity.goal.unwrap_or(f64::NEG_INFINITY);
         let stop = match (&bound, marked) {
             _ if !solved.converged() => Some(Stop::NotConverged),
             (Some(bound), Some(marked)) => match bound.total {
-                0.0 => Some(Stop::Exact),
                 total if total <= goal => Some(Stop::Goal),
+                _ if marked.is_empty() => Some(Stop::Exact),
                 _ if number >= self.adaptivity.steps => Some(Stop::Steps),
                 _ => self.refine(&marked)?,
             },

@@ -39,10 +39,17 @@ pub struct AdaptiveMeshes<T, const D: usize> {
 }
 
 /// A mesh of the sequence.
+///
+/// Bisection appends vertices, so that neighbours are far apart in its list. The mesh that is solved on has
+/// its vertices in the order of cells: smoothers work on neighbours of near numbers.
 #[derive(Debug)]
 pub(super) struct Step<T, const D: usize> {
-    mesh: BisectedMesh<T, D>,
-    /// The parents of the vertices that the mesh before does not have.
+    /// The mesh with its vertices in the order in which they came to be.
+    bisected: BisectedMesh<T, D>,
+    mesh: Mesh<T, D>,
+    /// The numbers that the vertices of `bisected` have in `mesh`.
+    numbers: Vec<u32>,
+    /// The parents of the vertices that the mesh before does not have, in the numbers of `bisected`.
     parents: Vec<[u32; 2]>,
     /// Seconds for this mesh and all before.
     seconds: f64,
@@ -52,15 +59,11 @@ pub(super) struct Step<T, const D: usize> {
 }
 
 impl<T: Real, const D: usize> Step<T, D> {
-    fn new(mesh: BisectedMesh<T, D>, parents: Vec<[u32; 2]>, seconds: f64) -> Self {
-        let (prolongation, finer) = (OnceLock::new(), OnceLock::new());
-        Self { mesh, parents, seconds, prolongation, finer }
-    }
     pub fn mesh(&self) -> &Mesh<T, D> {
-        self.mesh.mesh()
+        &self.mesh
     }
     fn n_vertices(&self) -> usize {
-        self.mesh().vertices().len()
+        self.numbers.len()
     }
 }
 
@@ -68,8 +71,16 @@ impl<T: Real, const D: usize> AdaptiveMeshes<T, D> {
     /// A sequence of one mesh.
     pub fn new(mesh: Mesh<T, D>) -> Self {
         let clock = Instant::now();
-        let mesh = BisectedMesh::new(mesh);
-        Self { coarsest: Step::new(mesh, Vec::new(), clock.elapsed().as_secs_f64()) }
+        let coarsest = Step {
+            bisected: BisectedMesh::new(mesh.clone()),
+            numbers: (0..mesh.vertices().len() as u32).collect(),
+            mesh,
+            parents: Vec::new(),
+            seconds: clock.elapsed().as_secs_f64(),
+            prolongation: OnceLock::new(),
+            finer: OnceLock::new(),
+        };
+        Self { coarsest }
     }
 
     fn steps(&self) -> impl Iterator<Item = &Step<T, D>> {
@@ -106,7 +117,7 @@ impl<T: Real, const D: usize> AdaptiveMeshes<T, D> {
 
     /// Adds a mesh: the finest one with every marked cell divided, by [`BisectedMesh::bisect`]. In two and
     /// three dimensions both halves are divided again, so that a marked triangle has a vertex in the interior
-    /// of each edge.
+    /// of each edge. All vertices have new numbers, in the order of cells.
     ///
     /// # Errors
     /// [`Error::Mesh`] as for [`BisectedMesh::bisect`], [`Error::Parameter`] if another thread adds a mesh
@@ -124,18 +135,26 @@ impl<T: Real, const D: usize> AdaptiveMeshes<T, D> {
     pub(super) fn bisected(&self, marked: &[usize]) -> Result<Step<T, D>, Error> {
         let clock = Instant::now();
         let finest = self.step(self.n_meshes() - 1);
-        let (mut mesh, bisection) = finest.mesh.bisect(marked)?;
+        let (mut bisected, bisection) = finest.bisected.bisect(marked)?;
         let mut parents = bisection.parents;
         if D > 1 {
-            let halves = halves(finest.mesh(), mesh.mesh(), &bisection.ancestors, marked);
+            let halves = halves(finest.mesh(), bisected.mesh(), &bisection.ancestors, marked);
             let n = parents.len();
-            let (again, bisection) = mesh.bisect(&halves)?;
-            mesh = again;
+            let (again, bisection) = bisected.bisect(&halves)?;
+            bisected = again;
             parents.extend_from_slice(&bisection.parents[n..]);
         }
         parents.drain(..finest.n_vertices());
-        let seconds = finest.seconds + clock.elapsed().as_secs_f64();
-        Ok(Step::new(mesh, parents, seconds))
+        let (mesh, numbers) = bisected.mesh().in_order_of_cells();
+        Ok(Step {
+            bisected,
+            mesh,
+            numbers,
+            parents,
+            seconds: finest.seconds + clock.elapsed().as_secs_f64(),
+            prolongation: OnceLock::new(),
+            finer: OnceLock::new(),
+        })
     }
     /// Adds a bisection of the finest mesh.
     pub(super) fn add(&self, step: Step<T, D>) -> Result<(), Error> {
@@ -155,9 +174,14 @@ impl<T: Real, const D: usize> AdaptiveMeshes<T, D> {
         coarse: &[V],
         middle: impl Fn(V, V) -> V,
     ) -> Vec<V> {
-        let mut fine = coarse.to_vec();
-        for &[a, b] in &self.step(position).parents {
-            fine.push(middle(fine[a as usize], fine[b as usize]));
+        let (before, step) = (self.step(position - 1), self.step(position));
+        let mut values: Vec<V> = before.numbers.iter().map(|&v| coarse[v as usize]).collect();
+        for &[a, b] in &step.parents {
+            values.push(middle(values[a as usize], values[b as usize]));
+        }
+        let mut fine = values.clone();
+        for (&number, &value) in step.numbers.iter().zip(&values) {
+            fine[number as usize] = value;
         }
         fine
     }
@@ -173,7 +197,9 @@ impl<T: Real, const D: usize> AdaptiveMeshes<T, D> {
         let prolongation = step.prolongation.get_or_init(|| {
             let finer = self.steps().take(position + 1).skip(coarser + 1);
             let parents = finer.flat_map(|step| step.parents.iter().copied());
-            Arc::new(Prolongation::bisections(parents, self.step(coarser).n_vertices()))
+            let coarse = &self.step(coarser).numbers;
+            let by_age = Prolongation::bisections(parents, coarse.len());
+            Arc::new(by_age.renumbered(&step.numbers, coarse))
         });
         Some((coarser, prolongation))
     }

@@ -7,6 +7,7 @@ use serde_json::Value;
 use super::csv::flatten;
 use super::html::{HtmlCell, HtmlPage, HtmlTable};
 use super::table::{Cell, Table};
+use crate::study::rates::rates;
 use crate::study::row::distinct;
 use crate::study::table::{Column, columns, heading, limits, scenes, totals};
 use crate::study::{Program, Report, Row, file_name};
@@ -136,7 +137,11 @@ impl Report {
                 title: format!("{scene}, dimension {}", rows[0].dimension),
                 columns,
                 rows: rows_of_table.collect(),
-                remarks: [heading(&rows)].into_iter().chain(limits(&rows)).collect(),
+                remarks: [heading(&rows)]
+                    .into_iter()
+                    .chain(limits(&rows))
+                    .chain(rates(&rows))
+                    .collect(),
             });
         }
         let mut pictures = Vec::new();
@@ -191,7 +196,8 @@ fn table(scene: &str, rows: &[&Row]) -> Table {
         format!("{}, level {}: did not converge: {}: {why}", r.label, r.level, r.status)
     });
     let warnings = rows.iter().flat_map(|r| r.warnings.iter().map(|w| format!("{}: {w}", r.label)));
-    let remarks = distinct([heading(rows)].into_iter().chain(remarks).chain(warnings));
+    let remarks =
+        distinct([heading(rows)].into_iter().chain(remarks).chain(warnings).chain(rates(rows)));
     with_columns(scene.to_owned(), &columns(rows), rows, remarks)
 }
 

@@ -59,9 +59,9 @@ pub struct Seconds {
     pub assemble: f64,
     /// Solve, with the start from coarser levels.
     pub solve: f64,
-    /// Error bounds that refined the mesh, with marking; zero for uniform meshes.
+    /// Error bounds that refined the mesh, with marking; none for uniform meshes.
     #[cfg_attr(feature = "report", serde(default))]
-    pub bound: f64,
+    pub bound: Option<f64>,
     /// The sum.
     pub total: f64,
 }
@@ -70,7 +70,7 @@ impl Seconds {
     /// Times of mesh, assembly and solve, with their sum.
     #[must_use]
     pub fn new(mesh: f64, assemble: f64, solve: f64) -> Self {
-        Self { mesh, assemble, solve, bound: 0.0, total: mesh + assemble + solve }
+        Self { mesh, assemble, solve, bound: None, total: mesh + assemble + solve }
     }
 }
 
@@ -269,6 +269,14 @@ impl Row {
         RowKey { scene, label, solver, level: self.level }
     }
 
+    /// The size in which orders are: the mesh size; on adaptive meshes the power `-1/D` of the number of
+    /// unknowns, so that an order is `-D` times the slope in unknowns.
+    pub(crate) fn size(&self) -> f64 {
+        match (self.theta, self.unknowns) {
+            (Some(_), Some(unknowns)) => (unknowns as f64).powf(-1.0 / self.dimension as f64),
+            _ => self.mesh_size,
+        }
+    }
     /// The reference against which the errors are; none where they are against the exact solution.
     pub fn reference(&self) -> Option<&str> {
         self.against.as_deref().filter(|against| *against != "exact")

@@ -3,6 +3,7 @@
 use std::fmt;
 
 use super::extrapolate::{Limit, extrapolate};
+use super::rates::rates;
 use super::report::Report;
 use super::row::{Row, distinct};
 
@@ -66,6 +67,7 @@ fn write_scene(f: &mut impl fmt::Write, scene: &str, rows: &[&Row]) -> fmt::Resu
     if !has_errors(rows) {
         limits(rows).iter().try_for_each(|line| write_wrapped(f, &format!("  {line}")))?;
     }
+    rates(rows).iter().try_for_each(|line| write_wrapped(f, &format!("  {line}")))?;
     let finest = |of_series| rows.iter().rfind(|r| key(r) == of_series).copied();
     let finest: Vec<&Row> = series.into_iter().filter_map(finest).collect();
     let columns = totals(rows);

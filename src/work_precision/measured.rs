@@ -57,7 +57,7 @@ impl Phases {
     /// The times as a row states them, with the start as a part of the solve.
     fn seconds(&self) -> Seconds {
         let Phases { mesh, assemble, coarse, solve, total } = *self;
-        Seconds { mesh, assemble, solve: solve + coarse, bound: 0.0, total }
+        Seconds { total, ..Seconds::new(mesh, assemble, solve + coarse) }
     }
 }
 

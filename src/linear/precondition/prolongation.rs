@@ -94,6 +94,24 @@ impl<T: Real> Prolongation<T> {
         Self::from_weights(fine, n_coarse)
     }
 
+    /// The prolongation with other numbers of the fine and of the coarse unknowns, by their present ones.
+    pub(crate) fn renumbered(&self, fine: &[u32], coarse: &[u32]) -> Self {
+        let mut order = vec![0; fine.len()];
+        (0..).zip(fine).for_each(|(old, &new): (u32, _)| order[new as usize] = old);
+        let mut rows =
+            RectangularMatrix { starts: vec![0], columns: Vec::new(), values: Vec::new() };
+        let mut row: Vec<(u32, T)> = Vec::new();
+        for old in order {
+            row.clear();
+            self.for_each_parent(old as usize, |j, weight| row.push((coarse[j as usize], weight)));
+            row.sort_unstable_by_key(|&(column, _)| column);
+            rows.columns.extend(row.iter().map(|entry| entry.0));
+            rows.values.extend(row.iter().map(|entry| entry.1));
+            rows.starts.push(rows.columns.len() as u32);
+        }
+        Self::from_weights(rows, self.n_coarse)
+    }
+
     /// The prolongation with the rows `fine`.
     pub(crate) fn from_weights(fine: RectangularMatrix<T>, n_coarse: usize) -> Self {
         let coarse = fine.transpose(n_coarse);

@@ -4,8 +4,8 @@ use crate::measure::observed_order;
 use crate::study::row::{Orders, Row};
 
 /// Fills in the order of every row against the previous level: the row with the next smaller level
-/// of the same scene, label, constraint and solver. It is that in the mesh size; on adaptive meshes in the power
-/// `-1/D` of the number of unknowns, `-D` times the slope in unknowns.
+/// of the same scene, label, constraint and solver. It is that in the mesh size; on adaptive meshes `-D` times the
+/// slope in unknowns.
 ///
 /// The order is none if one of the two rows did not converge or has no error. Rows further back are
 /// never used, since the table would not show it.
@@ -41,11 +41,7 @@ fn order(coarse: &Row, fine: &Row) -> Orders {
     if !coarse.converged() || !fine.converged() {
         return Orders::default();
     }
-    let size = |row: &Row| match (row.theta, row.unknowns) {
-        (None, _) => Some(row.mesh_size),
-        (Some(_), unknowns) => Some((unknowns? as f64).powf(-1.0 / row.dimension as f64)),
-    };
-    let of = |c: Option<f64>, f: Option<f64>| observed_order(c?, f?, size(coarse)?, size(fine)?);
+    let of = |c: Option<f64>, f: Option<f64>| observed_order(c?, f?, coarse.size(), fine.size());
     Orders {
         l2: of(coarse.error.l2, fine.error.l2),
         h1: of(coarse.error.h1, fine.error.h1),

@@ -148,7 +148,7 @@ fn adaptive_row<T: Real, const D: usize>(
     let seconds = Seconds {
         assemble: step.assemble_seconds,
         solve: step.solve_seconds,
-        bound: step.bound_seconds,
+        bound: Some(step.bound_seconds),
         total: step.seconds(),
         ..row.seconds
     };
