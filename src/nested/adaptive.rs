@@ -183,8 +183,9 @@ impl<T: Real, const D: usize> fmt::Debug for AdaptiveIteration<'_, T, D> {
 /// let square = BoxDomain::dirichlet(Point::zeros(), Point::repeat(1.0));
 /// let membrane = Problem::new().constant_source(-8.0).obstacle_below(|_| -0.2);
 /// let meshes = AdaptiveMeshes::new(Mesh::<f64, 2>::kuhn_box(&square, [4, 4])?);
-/// let steps: Vec<_> = adapt(&membrane, &meshes, &Sipg::default(), Adaptivity::to_bound(0.5))?
-///     .collect::<Result<_, _>>()?;
+/// let sipg = Sipg::default();
+/// let steps = adapt(&membrane, &meshes, &sipg, Adaptivity::to_bound(0.5))?;
+/// let steps = steps.collect::<Result<Vec<_>, _>>()?;
 /// let last = steps.last().unwrap();
 /// assert_eq!(last.stop, Some(Stop::Goal));
 /// assert!(last.solved.bound().unwrap().total <= 0.5);
