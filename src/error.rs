@@ -99,12 +99,12 @@ pub enum Error {
         /// The part of the facets.
         part: &'static str,
     },
-    /// The fine solution against which rows are to be measured was not found.
-    #[error("there is no reference: {reference} did not converge: {why}")]
-    NoReference {
-        /// Scheme and level.
-        reference: String,
-        /// What the outcome says.
+    /// Meshes are to follow an error bound that the scheme does not have.
+    #[error("meshes cannot follow the error bound of {scheme}: {why}")]
+    NotAdaptive {
+        /// The scheme.
+        scheme: String,
+        /// Why there is no bound.
         why: String,
     },
     /// Mesh and scene disagree.

@@ -8,6 +8,7 @@ pub use crate::facet::{
     DirichletBy, FacetForm, FacetView, Lifts, NoFacets, PenaltyRule, Trace, WeightRule,
 };
 pub use crate::mesh::{BoundaryPart, BoxDomain, Mesh};
+pub use crate::nested::{AdaptiveMeshes, Adaptivity, Stop, adapt};
 pub use crate::nested::{Hierarchy, NestedIteration, Solved, solve};
 pub use crate::problem::Problem;
 pub use crate::real::{Point, Real};

@@ -163,7 +163,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         let x = self.facet_point(point, cell, local);
         let normal = || point_f64(&self.mesh.geometry(cell).normal(local));
         let flux = match (self.data.neumann.of(group), &self.problem.exact) {
-            (Some(q), _) => q(&x, &normal()),
+            (Some(q), _) => q.at(&x, &normal()),
             (None, Some(exact)) => {
                 let middle = [1.0 / (D + 1) as f64; 4];
                 let inward = x + (self.cell_point(&middle, cell) - x) * INWARD;

@@ -241,9 +241,9 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         let integrands = [&data.source, &data.reaction, &data.lower, &data.upper, &data.gap];
         // a facet of an interval is a point, where data are numbers
         let has_facets = |part| D > 1 && self.mesh.has_part(part);
-        let has_fluxes = self.problem.has_neumann_data()
-            && has_facets(BoundaryPart::Neumann)
-            && stated.is_none();
+        let is_neumann_exact = stated.is_some()
+            || self.problem.exact.is_none() && data.neumann.all().all(|f| f.constant().is_some());
+        let has_fluxes = has_facets(BoundaryPart::Neumann) && !is_neumann_exact;
         let has_data = has_facets(BoundaryPart::Dirichlet);
         let is_inexact = has_fluxes
             || !is_below(&data.coefficient, 0)

@@ -56,7 +56,7 @@ pub struct BoundFigures {
 impl BoundFigures {
     /// The figures of a bound, and the true error where it is known.
     #[must_use]
-    pub fn new(bound: &Result<ErrorBound, NoBound>, error: Option<f64>) -> Self {
+    pub fn new(bound: Result<&ErrorBound, NoBound>, error: Option<f64>) -> Self {
         let bound = match bound {
             Ok(bound) => bound,
             Err(reason) => return Self { reason: Some(reason.to_string()), ..Self::default() },

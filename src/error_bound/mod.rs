@@ -31,6 +31,7 @@ mod contact;
 mod estimate;
 mod figures;
 mod friedrichs;
+mod marking;
 mod pair;
 mod patches;
 

@@ -57,15 +57,26 @@ impl<T: Real, const D: usize> Discretisation<'_, T, D> {
                 = |of, inequality, solution| of.pair(inequality, solution)
         )(self, inequality, solution)
     }
+    /// Checks that a flux is known for the element: broken, conforming or Crouzeix-Raviart linears.
+    ///
+    /// # Errors
+    /// [`NoBound::Element`].
+    pub(crate) fn check_flux(&self) -> Result<(), NoBound> {
+        let space = &self.space;
+        let is_linear = space.basis_degree == 1 && space.gradient_factor().is_some();
+        let has_means = || !space.broken && space.nodes.iter().all(|node| node.is_facet_mean());
+        match is_linear && (self.owns_rows() || space.is_conforming_linear() || has_means()) {
+            true => Ok(()),
+            false => Err(NoBound::Element),
+        }
+    }
     fn pair(
         &self,
         inequality: &Inequality<T>,
         solution: &Solution<T>,
     ) -> Result<PrimalDualPair, NoBound> {
+        self.check_flux()?;
         let (space, u) = (&self.space, &solution.values[..]);
-        if space.basis_degree != 1 || space.gradient_factor().is_none() {
-            return Err(NoBound::Element);
-        }
         let penalised = inequality.penalised.as_ref();
         let multipliers = penalised.map(|p| match solution.jump_multipliers.len() == p.n_jumps() {
             true => solution.jump_multipliers.iter().map(|m| m.to_f64()).collect(),
@@ -84,10 +95,8 @@ impl<T: Real, const D: usize> Discretisation<'_, T, D> {
             self.facet_fluxes(u, multipliers.as_deref())?
         } else if space.is_conforming_linear() {
             space.patch_fluxes(u, &residual, &forces)?
-        } else if !space.broken && space.nodes.iter().all(|node| node.is_facet_mean()) {
-            space.crouzeix_raviart_fluxes(u)?
         } else {
-            return Err(NoBound::Element);
+            space.crouzeix_raviart_fluxes(u)?
         };
         space.add_boundary_fluxes(&forces, &mut flux)?;
         Ok(PrimalDualPair { function: space.admissible_values(u), flux })

@@ -11,6 +11,8 @@
 
 use std::ops::Range;
 
+use nalgebra::{SMatrix, SVector};
+
 use super::NoBound;
 use super::contact::NodeForce;
 use crate::assemble::space::Space;
@@ -18,8 +20,8 @@ use crate::mesh::{BoundaryPart, Neighbour, Neighbours};
 use crate::parallel::cells;
 use crate::real::{Point, Real, point_f64};
 
-/// Pivots up to this share of the diagonal are zero: in a patch without Dirichlet facets the balance of
-/// one cell follows from those of the others.
+/// Pivots up to this share of the diagonal are zero: in a patch without Dirichlet facets multipliers are
+/// determined up to a constant.
 const ZERO_PIVOT: f64 = 1e-11;
 
 /// What the patches read.
@@ -55,8 +57,11 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
             vertices.for_each(|vertex| patches.add_vertex(vertex, &mut patch, &mut part));
             part
         });
-        for (facet, value) in parts.into_iter().flatten() {
-            flux[facet] += value;
+        let mut values = parts.into_iter().flatten();
+        for &(cell, own) in &patches.corners {
+            for (local, value) in around::<D>(own).zip(&mut values) {
+                flux[cell as usize * (D + 1) + local] += value;
+            }
         }
         Ok(flux)
     }
@@ -69,21 +74,24 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
     ) -> Result<Patches<'_, '_, T, D>, NoBound> {
         let load = self.load_by_cell()?;
         let (n_cells, n_vertices) = (self.mesh.n_cells(), self.mesh.vertices().len());
-        let mut normal = vec![0.0; n_cells * (D + 1)];
-        let mut loads = normal.clone();
-        for cell in 0..n_cells {
-            let metric = self.metric(cell);
-            let values = self.local_values(cell, u);
-            let alpha = self.alpha(cell).to_f64();
-            let residual = self.cell_residual(cell, u, &load);
-            for i in 0..=D {
-                let product = |j: usize| metric.products[i][j].to_f64() * (values[j] - values[0]);
-                let stiffness = alpha * (1..=D).map(product).sum::<f64>();
-                // |F| n = -D |K| grad lambda
-                normal[cell * (D + 1) + i] = -(D as f64) * stiffness;
-                loads[cell * (D + 1) + i] = residual[i] - stiffness;
+        let of_cells = cells::map(n_cells, &|cells: Range<usize>| {
+            let mut pairs = Vec::with_capacity(cells.len() * (D + 1));
+            for cell in cells {
+                let metric = self.metric(cell);
+                let values = self.local_values(cell, u);
+                let alpha = self.alpha(cell).to_f64();
+                let residual = self.cell_residual(cell, u, &load);
+                for i in 0..=D {
+                    let product =
+                        |j: usize| metric.products[i][j].to_f64() * (values[j] - values[0]);
+                    let stiffness = alpha * (1..=D).map(product).sum::<f64>();
+                    // |F| n = -D |K| grad lambda
+                    pairs.push((-(D as f64) * stiffness, residual[i] - stiffness));
+                }
             }
-        }
+            pairs
+        });
+        let (normal, mut loads): (Vec<f64>, Vec<f64>) = of_cells.into_iter().flatten().unzip();
         let mut multipliers: Vec<f64> = residual.iter().map(|r| -r).collect();
         for (cell, local) in self.facets_of(BoundaryPart::Dirichlet) {
             self.mesh.facet_vertices(cell, local).for_each(|v| multipliers[v as usize] = 0.0);
@@ -106,104 +114,184 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
     }
 }
 
+/// What is known of the flux through a facet of a cell at the vertex of a patch.
+#[derive(Clone, Copy)]
+enum FacetOfPatch {
+    /// The sum of the fluxes out of both cells; its Lagrange multiplier has this number.
+    Interior(usize),
+    /// Nothing.
+    Free,
+    /// The flux.
+    Fixed(f64),
+}
+
+/// A cell of a patch: the fluxes of smallest norm through its facets at the vertex, as an affine function of
+/// their Lagrange multipliers.
+struct CellOfPatch {
+    facets: [FacetOfPatch; 3],
+    /// Minus the derivative of the fluxes with respect to the multipliers.
+    slopes: SMatrix<f64, 3, 3>,
+    /// The fluxes for multipliers that vanish.
+    fluxes: SVector<f64, 3>,
+}
+
 /// The arrays of one patch.
 #[derive(Default)]
 struct Patch {
-    /// For each cell and each of its facets the unknown with its sign, if there is one.
-    unknowns: Vec<[Option<(usize, f64)>; 4]>,
-    /// For each cell the known part of the fluxes through its facets.
-    known: Vec<[f64; 4]>,
-    /// The matrix of the norm on the unknowns, then its Cholesky factor; by rows.
-    norm: Vec<f64>,
-    /// Minus the derivative of the norm at the known part, then the solution.
-    force: Vec<f64>,
-    /// By cell, the balance as a functional of the unknowns, then times the inverse of the factor.
-    balances: Vec<f64>,
-    /// The Schur complement of the norm.
-    schur: Vec<f64>,
-    /// What is left to balance in each cell.
-    rest: Vec<f64>,
+    cells: Vec<CellOfPatch>,
+    /// The upper triangle of the matrix of the multipliers by rows.
+    matrix: Vec<f64>,
+    /// What the fluxes of two cells have too much, then the multipliers.
+    multipliers: Vec<f64>,
+    /// The sums of the two fluxes; less the first of them once it is known.
+    sums: Vec<f64>,
 }
 
 impl<T: Real, const D: usize> Patches<'_, '_, T, D> {
-    /// Adds the part of a vertex to a list of facets and fluxes.
-    fn add_vertex(&self, vertex: usize, patch: &mut Patch, part: &mut Vec<(usize, f64)>) {
+    /// Adds the part of a vertex to a list: for each cell around it the fluxes through the facets there.
+    ///
+    /// The fluxes of each cell are eliminated: the multipliers of the facets between cells remain.
+    fn add_vertex(&self, vertex: usize, patch: &mut Patch, part: &mut Vec<f64>) {
         let corners = &self.corners[self.starts[vertex]..self.starts[vertex + 1]];
-        let n_cells = corners.len();
-        let degree = D as f64;
-        let position = |cell: u32| corners.binary_search_by_key(&cell, |&(c, _)| c).ok();
-        patch.unknowns.clear();
-        patch.unknowns.resize(n_cells, [None; 4]);
-        patch.known.clear();
-        patch.known.resize(n_cells, [0.0; 4]);
-        let mut n = 0;
+        let Patch { cells, matrix, multipliers, sums } = patch;
+        let volume = |cell: u32| self.space.metric(cell as usize).volume.to_f64();
+        let total: f64 = corners.iter().map(|&(cell, _)| volume(cell)).sum();
+        cells.clear();
+        multipliers.clear();
         for (k, &(cell, own)) in corners.iter().enumerate() {
-            for local in (0..=D).filter(|&local| local != usize::from(own)) {
-                let normal = self.normal[cell as usize * (D + 1) + local];
-                match self.neighbours.across(cell as usize, local) {
-                    Neighbour::Cell { cell: other, local: there } => {
-                        let Some(l) = position(other).filter(|&l| l > k) else { continue };
-                        let there = usize::from(there);
-                        let jump = normal + self.normal[other as usize * (D + 1) + there];
-                        patch.unknowns[k][local] = Some((n, 1.0));
-                        patch.unknowns[l][there] = Some((n, -1.0));
-                        patch.known[k][local] = -0.5 * jump / degree;
-                        patch.known[l][there] = -0.5 * jump / degree;
-                        n += 1;
+            let mut facets = [FacetOfPatch::Fixed(0.0); 3];
+            for (slot, local) in facets.iter_mut().zip(around::<D>(own)) {
+                *slot = self.facet_of_patch((cell, local), k, corners, (cells, multipliers));
+            }
+            let volume = volume(cell);
+            let pressed = self.multipliers[vertex] * volume / total;
+            let load = self.loads[cell as usize * (D + 1) + usize::from(own)] - pressed;
+            cells.push(self.cell_of_patch((cell, own), volume, facets, load));
+        }
+        let n = multipliers.len();
+        sums.clear();
+        sums.extend(multipliers.iter().map(|excess| -excess));
+        matrix.clear();
+        matrix.resize(n * n, 0.0);
+        for CellOfPatch { facets, slopes, fluxes } in &*cells {
+            for (a, facet) in facets.iter().enumerate() {
+                let &FacetOfPatch::Interior(i) = facet else { continue };
+                multipliers[i] += fluxes[a];
+                for (b, other) in facets.iter().enumerate() {
+                    if let &FacetOfPatch::Interior(j) = other
+                        && i <= j
+                    {
+                        matrix[i * n + j] += slopes[(a, b)];
                     }
-                    Neighbour::Boundary(BoundaryPart::Dirichlet) => {
-                        patch.unknowns[k][local] = Some((n, 1.0));
-                        n += 1;
-                    }
-                    Neighbour::Boundary(_) => patch.known[k][local] = -normal / degree,
                 }
             }
         }
-        self.fill(vertex, corners, n, patch);
-        patch.solve(n, n_cells);
-        for (k, &(cell, own)) in corners.iter().enumerate() {
-            for local in (0..=D).filter(|&local| local != usize::from(own)) {
-                let unknown = patch.unknowns[k][local];
-                let value = unknown.map_or(0.0, |(i, sign)| sign * patch.force[i]);
-                part.push((cell as usize * (D + 1) + local, patch.known[k][local] + value));
+        solve(matrix, multipliers);
+        // the second cell of a facet takes the rest of the sum: sides agree to rounding
+        let mut n_known = 0;
+        for of in &*cells {
+            let multiplier = |a: usize| match of.facets[a] {
+                FacetOfPatch::Interior(i) => multipliers[i],
+                _ => 0.0,
+            };
+            let fluxes = of.fluxes - of.slopes * SVector::from_fn(|a, _| multiplier(a));
+            for (facet, &flux) in of.facets[..D].iter().zip(fluxes.iter()) {
+                part.push(match *facet {
+                    FacetOfPatch::Interior(i) if i < n_known => sums[i],
+                    FacetOfPatch::Interior(i) => {
+                        n_known += 1;
+                        sums[i] -= flux;
+                        flux
+                    }
+                    _ => flux,
+                });
             }
         }
     }
 
-    /// Norm and balances of a patch.
-    fn fill(&self, vertex: usize, corners: &[(u32, u8)], n: usize, patch: &mut Patch) {
-        let mesh = self.space.mesh;
-        patch.norm.clear();
-        patch.norm.resize(n * n, 0.0);
-        patch.force.clear();
-        patch.force.resize(n, 0.0);
-        patch.balances.clear();
-        patch.balances.resize(corners.len() * n, 0.0);
-        patch.rest.clear();
-        let volume = |cell: u32| self.space.metric(cell as usize).volume.to_f64();
-        let total: f64 = corners.iter().map(|&(cell, _)| volume(cell)).sum();
-        for (k, &(cell, own)) in corners.iter().enumerate() {
-            let volume = volume(cell);
-            let products = facet_products::<D>(
-                mesh.cell(cell as usize).iter().map(|&v| point_f64(&mesh.vertices()[v as usize])),
-                volume * self.space.alpha(cell as usize).to_f64(),
-            );
-            let (unknowns, known) = (&patch.unknowns[k], &patch.known[k]);
-            for (a, row) in products.iter().enumerate().take(D + 1) {
-                let Some((i, sign)) = unknowns[a] else { continue };
-                patch.balances[k * n + i] += sign;
-                for (b, &product) in row.iter().enumerate().take(D + 1) {
-                    patch.force[i] -= sign * product * known[b];
-                    if let Some((j, other)) = unknowns[b] {
-                        patch.norm[i * n + j] += sign * other * product;
+    /// What is known of the flux through a facet of cell `k` of a patch. The first cell of an interior facet
+    /// adds its multiplier, with minus the sum of the two fluxes.
+    fn facet_of_patch(
+        &self,
+        (cell, local): (u32, usize),
+        k: usize,
+        corners: &[(u32, u8)],
+        (cells, multipliers): (&[CellOfPatch], &mut Vec<f64>),
+    ) -> FacetOfPatch {
+        let normal = self.normal[cell as usize * (D + 1) + local];
+        match self.neighbours.across(cell as usize, local) {
+            Neighbour::Cell { cell: other, local: there } => {
+                let there = usize::from(there);
+                let position = corners.binary_search_by_key(&other, |&(cell, _)| cell);
+                match position.ok().filter(|&l| l < k) {
+                    Some(l) => {
+                        let slot = around::<D>(corners[l].1).position(|local| local == there);
+                        slot.map_or(FacetOfPatch::Free, |slot| cells[l].facets[slot])
+                    }
+                    None => {
+                        let jump = normal + self.normal[other as usize * (D + 1) + there];
+                        multipliers.push(jump / D as f64);
+                        FacetOfPatch::Interior(multipliers.len() - 1)
                     }
                 }
             }
-            let load = self.loads[cell as usize * (D + 1) + usize::from(own)];
-            let pressed = self.multipliers[vertex] * volume / total;
-            patch.rest.push(load - pressed - known.iter().sum::<f64>());
+            Neighbour::Boundary(BoundaryPart::Dirichlet) => FacetOfPatch::Free,
+            Neighbour::Boundary(_) => FacetOfPatch::Fixed(-normal / D as f64),
         }
     }
+
+    /// Minimises the norm of the fluxes of a cell whose sum is `load`.
+    fn cell_of_patch(
+        &self,
+        (cell, own): (u32, u8),
+        volume: f64,
+        facets: [FacetOfPatch; 3],
+        load: f64,
+    ) -> CellOfPatch {
+        let mesh = self.space.mesh;
+        let products = facet_products::<D>(
+            mesh.cell(cell as usize).iter().map(|&v| point_f64(&mesh.vertices()[v as usize])),
+            volume * self.space.alpha(cell as usize).to_f64(),
+        );
+        let mut locals = [0; 3];
+        locals.iter_mut().zip(around::<D>(own)).for_each(|(to, local)| *to = local);
+        let fixed = facets.map(|facet| match facet {
+            FacetOfPatch::Fixed(flux) => Some(flux),
+            _ => None,
+        });
+        // fixed facets, and those that a dimension does not have, leave the identity
+        let mut norm = SMatrix::<f64, 3, 3>::identity();
+        let mut force = SVector::<f64, 3>::zeros();
+        let mut rest = load;
+        for a in 0..3 {
+            rest -= fixed[a].unwrap_or(0.0);
+            for b in 0..3 {
+                let product = products[locals[a]][locals[b]];
+                match (fixed[a], fixed[b]) {
+                    (None, None) => norm[(a, b)] = product,
+                    (None, Some(flux)) => force[a] -= product * flux,
+                    _ => {}
+                }
+            }
+        }
+        let is_free = SVector::<f64, 3>::from_fn(|a, _| f64::from(u8::from(fixed[a].is_none())));
+        let free = SMatrix::from_diagonal(&is_free);
+        let inverse = free * norm.try_inverse().unwrap_or_default() * free;
+        // the flux that a unit of the balance adds
+        let unit = inverse * is_free;
+        let sum = unit.sum();
+        let (slopes, unit) = match sum > 0.0 {
+            true => (inverse - unit * unit.transpose() / sum, unit / sum),
+            false => (inverse, unit),
+        };
+        let known = SVector::from_fn(|a, _| fixed[a].unwrap_or(0.0));
+        CellOfPatch { facets, slopes, fluxes: slopes * force + unit * rest + known }
+    }
+}
+
+/// The facets of a cell at one of its vertices.
+fn around<const D: usize>(vertex: u8) -> impl Iterator<Item = usize> {
+    (0..=D).filter(move |&local| local != usize::from(vertex))
 }
 
 /// The products in L2, over a coefficient, of the functions of Raviart and Thomas in a cell that have the
@@ -224,68 +312,30 @@ fn facet_products<const D: usize>(
     })
 }
 
-impl Patch {
-    /// Minimises the norm under the balances: `norm x = force + balances^T y`, `balances x = rest`. The
-    /// solution takes the place of `force`.
-    fn solve(&mut self, n: usize, n_cells: usize) {
-        factor(&mut self.norm, n);
-        // x = inv(L^T) (inv(L) force + W^T y) with W = balances inv(L^T)
-        forward(&self.norm, n, &mut self.force);
-        for row in self.balances.chunks_exact_mut(n.max(1)) {
-            forward(&self.norm, n, row);
+/// Solves with a symmetric positive semidefinite matrix, given by the upper triangle of its rows, by elimination in
+/// place. Where a pivot is zero but for rounding, the unknown is zero.
+fn solve(a: &mut [f64], x: &mut [f64]) {
+    let n = x.len();
+    // the lower triangle is free: its first column keeps the diagonal
+    (1..n).for_each(|i| a[i * n] = a[i * n + i]);
+    for k in 0..n {
+        let (above, below) = a.split_at_mut((k + 1) * n);
+        let row = &mut above[k * n..];
+        if row[k] <= ZERO_PIVOT * row[0] {
+            row[k] = 0.0;
+            continue;
         }
-        let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
-        let rows = |k: usize| k * n..(k + 1) * n;
-        self.schur.clear();
-        for k in 0..n_cells {
-            for l in 0..n_cells {
-                self.schur.push(dot(&self.balances[rows(k)], &self.balances[rows(l)]));
+        for (i, lower) in (k + 1..).zip(below.chunks_exact_mut(n)) {
+            let factor = row[i] / row[k];
+            // patches are sparse
+            if factor != 0.0 {
+                x[i] -= factor * x[k];
+                lower[i..].iter_mut().zip(&row[i..]).for_each(|(to, from)| *to -= factor * from);
             }
-            self.rest[k] -= dot(&self.balances[rows(k)], &self.force);
-        }
-        factor(&mut self.schur, n_cells);
-        forward(&self.schur, n_cells, &mut self.rest);
-        backward(&self.schur, n_cells, &mut self.rest);
-        for (k, &y) in self.rest.iter().enumerate() {
-            let row = &self.balances[k * n..(k + 1) * n];
-            self.force.iter_mut().zip(row).for_each(|(x, w)| *x += y * w);
-        }
-        backward(&self.norm, n, &mut self.force);
-    }
-}
-
-/// The Cholesky factor of a matrix by rows, in place of its lower triangle; a pivot that is zero but for
-/// rounding has the number zero on the diagonal, and its unknown is zero.
-fn factor(a: &mut [f64], n: usize) {
-    for i in 0..n {
-        let size = a[i * n + i];
-        for j in 0..=i {
-            let sum: f64 = (0..j).map(|k| a[i * n + k] * a[j * n + k]).sum();
-            let value = a[i * n + j] - sum;
-            let pivot = a[j * n + j];
-            a[i * n + j] = match i == j {
-                true if value > ZERO_PIVOT * size => value.sqrt(),
-                false if pivot > 0.0 => value / pivot,
-                _ => 0.0,
-            };
         }
     }
-}
-
-/// Solves with the lower triangle.
-fn forward(a: &[f64], n: usize, x: &mut [f64]) {
-    for i in 0..n {
-        let sum: f64 = (0..i).map(|k| a[i * n + k] * x[k]).sum();
-        let pivot = a[i * n + i];
-        x[i] = if pivot > 0.0 { (x[i] - sum) / pivot } else { 0.0 };
-    }
-}
-
-/// Solves with the transpose of the lower triangle.
-fn backward(a: &[f64], n: usize, x: &mut [f64]) {
-    for i in (0..n).rev() {
-        let sum: f64 = (i + 1..n).map(|k| a[k * n + i] * x[k]).sum();
-        let pivot = a[i * n + i];
-        x[i] = if pivot > 0.0 { (x[i] - sum) / pivot } else { 0.0 };
+    for (k, row) in a.chunks_exact(n.max(1)).enumerate().rev() {
+        let sum: f64 = row[k + 1..].iter().zip(&x[k + 1..]).map(|(a, x)| a * x).sum();
+        x[k] = if row[k] > 0.0 { (x[k] - sum) / row[k] } else { 0.0 };
     }
 }

@@ -8,6 +8,7 @@
 //! | [`choosing`] | what each scheme costs and gives, and where it fails |
 //! | [`own_problems`] | a mesh of one's own, materials, boundary names, errors without an exact solution |
 //! | [`bound`] | bounds on the error without an exact solution: theorems, what is guaranteed, figures |
+//! | [`adaptive`] | meshes that follow the error bound, for every scheme: steps, rates, times |
 //! | [`conventions`] | signs, scalings, norms, the certificate |
 //! | [`reproduce`] | published tables beside ours |
 //! | [`solvers`] | which solver runs when, what to do on each status, rounding, time and memory |
@@ -48,6 +49,11 @@ pub mod own_problems {}
 #[cfg_attr(doc, doc = "", doc = include_str!("links.md"))]
 #[cfg_attr(doc, doc = include_str!("../../docs/bound.md"))]
 pub mod bound {}
+
+/// Meshes that follow the error bound: steps, rates, times.
+#[cfg_attr(doc, doc = "", doc = include_str!("links.md"))]
+#[cfg_attr(doc, doc = include_str!("../../docs/adaptive.md"))]
+pub mod adaptive {}
 
 /// Signs, scalings, norms and the certificate, each with the test that asserts it.
 #[cfg_attr(doc, doc = "", doc = include_str!("links.md"))]

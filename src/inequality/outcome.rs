@@ -17,6 +17,8 @@ pub enum Outcome {
     Cycling,
     /// Rounding prevents the complementarity conditions from holding to the tolerance.
     Stalled,
+    /// Values from elsewhere do not satisfy the inequality to the tolerance.
+    NotASolution,
     /// The matrix is not positive definite on the inactive unknowns (penalty too small).
     NotCoercive,
     /// The matrix is singular on the inactive unknowns.
@@ -49,6 +51,7 @@ impl Outcome {
             Outcome::IterationLimit => "iteration-limit",
             Outcome::Cycling => "cycling",
             Outcome::Stalled => "stalled",
+            Outcome::NotASolution => "not-a-solution",
             Outcome::NotCoercive => "not-coercive",
             Outcome::Singular => "singular",
             Outcome::NoSolution => "no-solution",
@@ -75,6 +78,9 @@ impl Outcome {
             }
             Outcome::Stalled => {
                 "rounding, or the tolerance of the solver, keeps the certificate above its limit; use f64, a smaller penalty, a coarser mesh or a tighter tolerance"
+            }
+            Outcome::NotASolution => {
+                "the values do not satisfy the inequality to the limits of the certificate"
             }
             Outcome::NotCoercive => {
                 "the matrix is not positive definite: a penalty is too small, or a reaction too negative"

@@ -49,17 +49,6 @@ impl<T: Real, const D: usize> Reference<'_, T, D> {
 }
 
 impl<T: Real, const D: usize> Space<'_, T, D> {
-    /// The barycentric coordinates of a point in a cell.
-    fn barycentric(&self, cell: usize, x: &Point<f64, D>) -> [f64; 4] {
-        let geometry = self.mesh.geometry(cell);
-        let vertices = self.mesh.cell(cell);
-        let mut lambda = [0.0; 4];
-        for (k, coordinate) in lambda.iter_mut().enumerate().take(D + 1) {
-            let from = x - point_f64(&self.mesh.vertices()[vertices[k] as usize]);
-            *coordinate = 1.0 + point_f64(geometry.gradient(k)).dot(&from);
-        }
-        lambda
-    }
     /// The basis at a point of a cell, and the unknowns of the cell.
     fn evaluate(
         &self,
@@ -67,11 +56,11 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         x: &Point<f64, D>,
         u: &[T],
     ) -> (BasisAt<f64>, [f64; MAX_BASIS]) {
-        (self.basis_at(&self.barycentric(cell, x)), self.local_values(cell, u))
+        (self.basis_at(&self.mesh.barycentric(cell, x)), self.local_values(cell, u))
     }
     fn value_at(&self, u: &[T], x: &Point<f64, D>) -> Option<f64> {
         let contains = |&cell: &usize| {
-            self.barycentric(cell, x)[..=D].iter().all(|&lambda| lambda >= -ROUNDING)
+            self.mesh.barycentric(cell, x)[..=D].iter().all(|&lambda| lambda >= -ROUNDING)
         };
         let cell = (0..self.mesh.n_cells()).find(contains)?;
         let (basis, local) = self.evaluate(cell, x, u);
@@ -90,5 +79,13 @@ impl<T: Real, const D: usize> Discretisation<'_, T, D> {
             T, D: fn(&Discretisation<'_, T, D>, &[T], &Point<f64, D>) -> Option<f64>
                 = |of, u, point| of.space.value_at(u, point)
         )(self, u, point)
+    }
+    /// The value of a vector of unknowns at a point of a cell; outside the cell that of the polynomial there.
+    ///
+    /// # Panics
+    /// If there is no such cell, or `u` is shorter than the number of unknowns.
+    pub(crate) fn value_in(&self, u: &[T], cell: usize, point: &Point<f64, D>) -> f64 {
+        let (basis, local) = self.space.evaluate(cell, point, u);
+        basis.value(&local)
     }
 }

@@ -1,7 +1,7 @@
 //! The affine geometry of one cell.
 
 use super::simplicial::Mesh;
-use crate::real::{Point, Real};
+use crate::real::{Point, Real, point_f64};
 
 /// Volume of a cell and gradients of its barycentric coordinates.
 #[derive(Clone, Copy, Debug)]
@@ -103,6 +103,16 @@ impl<T: Real, const D: usize> Mesh<T, D> {
     pub fn geometry(&self, c: usize) -> CellGeometry<T, D> {
         let cell = self.cell(c);
         CellGeometry::new(|k| self.vertices[cell[k] as usize])
+    }
+    /// The barycentric coordinates of a point in a cell, and zeros.
+    pub(crate) fn barycentric(&self, c: usize, x: &Point<f64, D>) -> [f64; 4] {
+        let geometry = self.geometry(c);
+        let mut lambda = [0.0; 4];
+        for ((k, coordinate), &v) in lambda.iter_mut().enumerate().zip(self.cell(c)) {
+            let from = x - point_f64(&self.vertices[v as usize]);
+            *coordinate = 1.0 + point_f64(geometry.gradient(k)).dot(&from);
+        }
+        lambda
     }
     /// The point of a cell with these barycentric coordinates.
     #[inline(always)]

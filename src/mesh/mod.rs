@@ -23,6 +23,7 @@ mod groups;
 mod names;
 mod overlap;
 mod refine;
+mod renumber;
 mod simplicial;
 mod stars;
 mod validate;

@@ -4,6 +4,7 @@ use std::fmt;
 use std::sync::Arc;
 use std::time::Instant;
 
+use super::adaptive_meshes::AdaptiveMeshes;
 use super::hierarchy::Hierarchy;
 use super::meshes::Meshes;
 use super::p1::{P1Iteration, P1Solution};
@@ -64,6 +65,8 @@ pub enum Phase {
     Assembly,
     /// The inequality is solved.
     Solve,
+    /// The error of the solution is bounded, by which the next mesh is refined.
+    Bound,
     /// Energy and errors of the solution are computed.
     Measures,
 }
@@ -75,6 +78,7 @@ impl fmt::Display for Phase {
             Self::Start => "start",
             Self::Assembly => "assembly",
             Self::Solve => "solve",
+            Self::Bound => "bound",
             Self::Measures => "measures",
         })
     }
@@ -164,13 +168,36 @@ impl<'a, T: Real, const D: usize> NestedIteration<'a, T, D> {
     /// The position of the mesh of a level, if the meshes are nested and have it.
     pub(crate) fn position(&self, level: usize) -> Option<usize> {
         match self.p1.meshes {
-            Meshes::Flat(_) => None,
+            Meshes::Flat(_) | Meshes::Adaptive(_) => None,
             Meshes::Nested(hierarchy) => hierarchy.position(level),
         }
     }
     /// A mesh, by its position.
     pub(crate) fn mesh(&self, position: usize) -> &'a Mesh<T, D> {
         self.p1.meshes.mesh(position)
+    }
+    /// The meshes, if they are adaptive.
+    pub(super) fn adaptive_meshes(&self) -> Option<&'a AdaptiveMeshes<T, D>> {
+        match self.p1.meshes {
+            Meshes::Adaptive(meshes) => Some(meshes),
+            _ => None,
+        }
+    }
+    /// Checks that solutions of a scheme have an error bound.
+    ///
+    /// # Errors
+    /// [`Error::NotAdaptive`] and those of [`Discretisation::new`].
+    pub(crate) fn check_bound(&self, scheme: &dyn AnyScheme<T, D>) -> Result<(), Error> {
+        let mesh = self.p1.meshes.mesh(self.p1.meshes.len() - 1);
+        let of = scheme.discretise(self.p1.problem, mesh, self.p1.quadrature)?;
+        of.check_flux().map_err(|why| Error::NotAdaptive {
+            scheme: scheme.name().to_owned(),
+            why: why.to_string(),
+        })
+    }
+    /// Tells the observer that a phase begins.
+    pub(super) fn enter(&self, phase: Phase) {
+        (self.observer)(phase);
     }
     /// The name of the solver.
     pub(crate) fn solver_name(&self) -> &'static str {
@@ -219,11 +246,11 @@ impl<'a, T: Real, const D: usize> NestedIteration<'a, T, D> {
     }
 
     /// The result on a mesh, by its position, for values that another program found: certificate, errors and
-    /// totals. Its outcome is `converged` if the certificate is within its limits, else `stalled`.
+    /// totals. Its outcome is `converged` if the certificate is within its limits, else `not-a-solution`.
     ///
     /// # Errors
-    /// [`Error::Parameter`] if there is no such mesh or another number of values than of unknowns, and those
-    /// of assembly.
+    /// [`Error::Parameter`] if there is no such mesh, another number of values than of unknowns, or a value
+    /// that is not finite, and those of assembly.
     pub fn judge_on(
         &self,
         position: usize,
@@ -257,16 +284,22 @@ impl<'a, T: Real, const D: usize> NestedIteration<'a, T, D> {
             let value = values.len().to_string();
             return Err(Error::Parameter { parameter: "number of values", value, allowed });
         }
+        if let Some(k) = values.iter().position(|x| !T::lit(*x).to_f64().is_finite()) {
+            let value = format!("{} at position {k}, from zero", values[k]);
+            let allowed = format!("finite numbers in {}", T::NAME);
+            return Err(Error::Parameter { parameter: "values", value, allowed });
+        }
         let values: Vec<T> = values.iter().map(|&x| T::lit(x)).collect();
         let contact = contact_of(&inequality, &values);
         let solution = Solution::new(values, contact, Outcome::Converged).linear_solver("none");
-        Ok(Solved::new(discretisation, inequality, solution, self.hierarchy(position)))
+        let solved = Solved::new(discretisation, inequality, solution, self.hierarchy(position));
+        Ok(solved.from_elsewhere())
     }
 
     /// The hierarchy that has the mesh, and its position there.
     fn hierarchy(&self, position: usize) -> Option<(&'a Hierarchy<T, D>, usize)> {
         match self.p1.meshes {
-            Meshes::Flat(_) => None,
+            Meshes::Flat(_) | Meshes::Adaptive(_) => None,
             Meshes::Nested(hierarchy) => Some((hierarchy, position)),
         }
     }
@@ -315,8 +348,11 @@ impl<'a, T: Real, const D: usize> NestedIteration<'a, T, D> {
         warnings.extend(penalty_below_bound.as_ref().map(ToString::to_string));
         let limit =
             discretisation.form().theory().rounding_limit(T::EPSILON, mesh.domain_diameter());
+        let is_adaptive = matches!(self.p1.meshes, Meshes::Adaptive(_));
         let shortest = mesh.shortest_edge();
-        if shortest < limit {
+        // conditions of matrices on bisected meshes depend on the number of cells, but for a logarithm not on the
+        // smallest one: R. E. Bank, L. R. Scott, SIAM J. Numer. Anal. 26 (1989), 1383-1394
+        if shortest < limit && !is_adaptive {
             warnings.push(format!(
                 "edges of length {shortest:.1e} are below {limit:.1e}, where rounding in {} may outweigh the discretisation error",
                 T::NAME
@@ -335,10 +371,16 @@ impl<'a, T: Real, const D: usize> NestedIteration<'a, T, D> {
         let hierarchy = self.hierarchy(position);
         let mut solved = Solved::new(discretisation, inequality, solution, hierarchy);
         solved.warnings = warnings;
+        solved.mesh_seconds = self.p1.meshes.seconds(position);
         (solved.assemble_seconds, solved.solve_seconds) = (assemble_seconds, solve_seconds);
+        let is_p1 = scheme.is_conforming_linear(mesh);
+        if is_p1 && is_adaptive {
+            // every step of an adaptive sequence is solved: the next one starts from here
+            self.p1.keep_solved(position, start.as_deref(), &solved);
+        }
         if let Some(start) = start {
             // conforming P1 on the same mesh is no coarser level
-            let same_mesh = usize::from(!scheme.is_conforming_linear(mesh));
+            let same_mesh = usize::from(!is_p1);
             solved.coarser_levels = start.levels_solved.saturating_sub(same_mesh);
             solved.start_cycles = start.start_cycles;
             solved.start_seconds = start.seconds;
@@ -439,7 +481,7 @@ fn advice_on_bounds<T: Real, const D: usize>(
 }
 
 /// Number of unknowns of a layout on a mesh.
-fn unknowns<T: Real, const D: usize>(mesh: &Mesh<T, D>, layout: Layout) -> usize {
+pub(super) fn unknowns<T: Real, const D: usize>(mesh: &Mesh<T, D>, layout: Layout) -> usize {
     let facets = ((D + 1) * mesh.n_cells() + mesh.boundary().len()) / 2;
     let (vertices, cells) = (mesh.vertices().len(), mesh.n_cells());
     // in space Euler's formula for a ball, which estimates the number of edges of other domains

@@ -2,19 +2,24 @@
 
 use std::sync::Arc;
 
+use super::adaptive_meshes::AdaptiveMeshes;
 use super::hierarchy::Hierarchy;
 use crate::linear::Prolongation;
-use crate::mesh::{Mesh, Refinement};
+use crate::mesh::Mesh;
 use crate::real::Real;
 
 /// The meshes of a problem: one mesh, or nested ones.
+///
+/// Of several meshes the solution on a coarser one is the start on the next finer one.
 #[derive(Debug)]
 #[non_exhaustive]
 pub enum Meshes<'a, T, const D: usize> {
     /// One mesh.
     Flat(&'a Mesh<T, D>),
-    /// Nested meshes, of which the solution on a coarser one is the start on the next finer one.
+    /// Uniform refinements.
     Nested(&'a Hierarchy<T, D>),
+    /// Bisections; the sequence may grow.
+    Adaptive(&'a AdaptiveMeshes<T, D>),
 }
 
 impl<'a, T, const D: usize> From<&'a Mesh<T, D>> for Meshes<'a, T, D> {
@@ -29,12 +34,19 @@ impl<'a, T, const D: usize> From<&'a Hierarchy<T, D>> for Meshes<'a, T, D> {
     }
 }
 
+impl<'a, T, const D: usize> From<&'a AdaptiveMeshes<T, D>> for Meshes<'a, T, D> {
+    fn from(meshes: &'a AdaptiveMeshes<T, D>) -> Self {
+        Self::Adaptive(meshes)
+    }
+}
+
 impl<'a, T: Real, const D: usize> Meshes<'a, T, D> {
     /// Number of meshes.
     pub(super) fn len(&self) -> usize {
         match self {
             Self::Flat(_) => 1,
             Self::Nested(hierarchy) => hierarchy.n_meshes(),
+            Self::Adaptive(meshes) => meshes.n_meshes(),
         }
     }
     /// A mesh by its position, zero for the coarsest.
@@ -42,16 +54,50 @@ impl<'a, T: Real, const D: usize> Meshes<'a, T, D> {
         match self {
             Self::Flat(mesh) => mesh,
             Self::Nested(hierarchy) => hierarchy.mesh(position),
+            Self::Adaptive(meshes) => meshes.mesh(position),
         }
     }
-    /// The refinement of the next coarser mesh and its prolongation, if there is one.
-    pub(super) fn refinement(
+    /// Seconds in which a mesh and all coarser ones were made; zero for one mesh.
+    pub(super) fn seconds(&self, position: usize) -> f64 {
+        match self {
+            Self::Flat(_) => 0.0,
+            Self::Nested(hierarchy) => hierarchy.seconds(position),
+            Self::Adaptive(meshes) => meshes.seconds(position),
+        }
+    }
+    /// Continues values at the vertices of the mesh before a position: new vertices have `middle` of the
+    /// values of their parents.
+    pub(super) fn continued<V: Copy>(
         &self,
         position: usize,
-    ) -> Option<(&'a Refinement, &'a Arc<Prolongation<T>>)> {
+        coarse: &[V],
+        middle: impl Fn(V, V) -> V,
+    ) -> Vec<V> {
+        let between = |&[a, b]: &[u32; 2]| match (coarse[a as usize], coarse[b as usize]) {
+            (value, _) if a == b => value,
+            (one, other) => middle(one, other),
+        };
+        match self {
+            Self::Flat(_) => coarse.to_vec(),
+            Self::Nested(hierarchy) => match hierarchy.refinement(position) {
+                Some((refinement, _)) => refinement.parents.iter().map(between).collect(),
+                None => coarse.to_vec(),
+            },
+            Self::Adaptive(meshes) => meshes.continued(position, coarse, middle),
+        }
+    }
+    /// The position of the mesh that is the next coarser level of multigrid, and the prolongation of
+    /// conforming linear functions from there.
+    pub(super) fn coarser_level(
+        &self,
+        position: usize,
+    ) -> Option<(usize, &'a Arc<Prolongation<T>>)> {
         match self {
             Self::Flat(_) => None,
-            Self::Nested(hierarchy) => hierarchy.refinement(position),
+            Self::Nested(hierarchy) => {
+                hierarchy.refinement(position).map(|(_, by)| (position - 1, by))
+            }
+            Self::Adaptive(meshes) => meshes.coarser_level(position),
         }
     }
 }

@@ -1,14 +1,19 @@
 //! One problem solved: nested meshes, the start from conforming P1, the result.
 //!
 //! [`solve`] is the whole of it for one problem and one scheme. [`NestedIteration`] has the settings and keeps
-//! what several schemes share; a [`Study`](crate::study::Study) is a loop over it.
+//! what several schemes share; a [`Study`](crate::study::Study) is a loop over it. [`adapt`] solves on meshes
+//! that follow the error bound.
 
+mod adaptive;
+mod adaptive_meshes;
 mod hierarchy;
 mod iteration;
 mod meshes;
 mod p1;
 mod solved;
 
+pub use adaptive::{AdaptiveIteration, AdaptiveStep, Adaptivity, Stop, adapt};
+pub use adaptive_meshes::AdaptiveMeshes;
 pub(crate) use hierarchy::Coarsest;
 pub use hierarchy::Hierarchy;
 pub use iteration::{NestedIteration, Phase, solve};

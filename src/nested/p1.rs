@@ -4,7 +4,8 @@ use std::sync::Arc;
 use std::time::Instant;
 
 use super::meshes::Meshes;
-use crate::algebra::{Bound, Contact, Inequality, Start, Support};
+use super::solved::Solved;
+use crate::algebra::{Bound, Contact, Inequality, SparseMatrix, Start, Support};
 use crate::assemble::{DataQuadrature, Discretisation};
 use crate::constraint::Nodes;
 use crate::error::Error;
@@ -46,6 +47,34 @@ pub struct P1Solution<T> {
 }
 
 impl<T: Real> P1Solution<T> {
+    /// A solution from its start, with the matrix of all vertices and those with Dirichlet data. Its seconds
+    /// are those of the start.
+    fn new<const D: usize>(
+        start: Option<&Self>,
+        (matrix, fixed): (SparseMatrix<T>, Vec<bool>),
+        (outcome, contact, values): (Outcome, Vec<Contact>, Vec<T>),
+    ) -> Self {
+        // an initial guess need not be right: after a failure it is inactive everywhere
+        let (contact, values) = match outcome {
+            Outcome::Converged => (contact, values),
+            _ => (vec![Contact::Inactive; fixed.len()], Vec::new()),
+        };
+        // in one dimension factors are as sparse as the matrix: no multigrid is needed
+        let coarse_spaces = if D == 1 {
+            CoarseSpaces::Unknown
+        } else {
+            let coarser = start.and_then(|start| match &start.coarse_spaces {
+                CoarseSpaces::CoarseLevel(coarser) => Some(coarser.clone()),
+                _ => None,
+            });
+            CoarseSpaces::SameMesh(Arc::new(P1Level::new(matrix, fixed, coarser)))
+        };
+        let (seconds, levels_solved, start_cycles) =
+            start.map_or((0.0, 0, 0), |s| (s.seconds, s.levels_solved, s.start_cycles));
+        let levels_solved = levels_solved + 1;
+        Self { contact, values, coarse_spaces, seconds, levels_solved, start_cycles }
+    }
+
     /// The starting contact of unknowns: an unknown starts in contact if more than half of the vertices
     /// of its support are in contact.
     pub(super) fn contact_of(&self, supports: &[Support]) -> Vec<Contact> {
@@ -89,37 +118,39 @@ pub(super) struct P1Iteration<'a, T: Real, const D: usize> {
 }
 
 impl<T: Real, const D: usize> P1Iteration<'_, T, D> {
-    /// The start of conforming P1 on a mesh: the prolongation of the coarser solution, where a new
-    /// vertex is active if both ends of its edge are. On the coarsest mesh, if the solver uses coarse
-    /// spaces for so many unknowns: spaces by aggregation, and a solution by monotone multigrid to
-    /// [`FLAT_ENERGY_TOLERANCE`]; else `None`.
+    /// The start of conforming P1 on a mesh: the solution on the mesh before, where a new vertex has the
+    /// mean of the values at the ends of its edge and is active if both are. On the coarsest mesh, if the
+    /// solver uses coarse spaces for so many unknowns: spaces by aggregation, and a solution by monotone
+    /// multigrid to [`FLAT_ENERGY_TOLERANCE`]; else `None`.
     pub fn start(&mut self, position: usize) -> Result<Option<Arc<P1Solution<T>>>, Error> {
-        let Some((refinement, prolongation)) = self.meshes.refinement(position) else {
+        if position == 0 {
             let size = self.meshes.mesh(position).vertices().len();
             // in one dimension factors are as sparse as the matrix
             return match D > 1 && self.solver.uses_coarse_spaces(size) {
                 true => self.flat_start(position),
                 false => Ok(None),
             };
-        };
+        }
         let coarse = self.solve(position - 1)?;
         let clock = Instant::now();
-        let contact = refinement
-            .parents
-            .iter()
-            .map(|&[a, b]| match (coarse.contact[a as usize], coarse.contact[b as usize]) {
-                (one, other) if one == other => one,
-                _ => Contact::Inactive,
-            })
-            .collect();
+        let level = match self.meshes.coarser_level(position) {
+            Some((coarser, prolongation)) => Some((self.solve(coarser)?, prolongation)),
+            None => None,
+        };
+        let contact = self.meshes.continued(position, &coarse.contact, |one, other| {
+            if one == other { one } else { Contact::Inactive }
+        });
         let values = match coarse.values.len() == coarse.contact.len() {
-            true => prolongation.prolongate(&coarse.values),
+            true => {
+                let mean = |one, other| T::lit(0.5) * (one + other);
+                self.meshes.continued(position, &coarse.values, mean)
+            }
             false => Vec::new(),
         };
-        let coarse_level = match &coarse.coarse_spaces {
+        let coarse_level = level.and_then(|(level, prolongation)| match &level.coarse_spaces {
             CoarseSpaces::SameMesh(same) => CoarseLevel::new(same.clone(), prolongation.clone()),
             _ => None,
-        };
+        });
         let coarse_spaces = coarse_level.map_or(CoarseSpaces::Unknown, CoarseSpaces::CoarseLevel);
         let seconds = coarse.seconds + clock.elapsed().as_secs_f64();
         Ok(Some(Arc::new(P1Solution { contact, values, coarse_spaces, seconds, ..*coarse })))
@@ -160,7 +191,7 @@ impl<T: Real, const D: usize> P1Iteration<'_, T, D> {
     /// The conforming P1 solution on a mesh, from its start; computed once. The seconds are the smallest
     /// of all runs.
     pub fn solve(&mut self, position: usize) -> Result<Arc<P1Solution<T>>, Error> {
-        if let Some(known) = &self.solutions[position] {
+        if let Some(Some(known)) = self.solutions.get(position) {
             return Ok(known.clone());
         }
         let start = self.start(position)?;
@@ -182,33 +213,35 @@ impl<T: Real, const D: usize> P1Iteration<'_, T, D> {
         }
         let Some((inequality, solution)) = last else { unreachable!("at least one run") };
         let clock = Instant::now();
-        // an initial guess need not be right: after a failure it is inactive everywhere
-        let (contact, values) = match solution.outcome {
-            Outcome::Converged => (solution.contact, solution.values),
-            _ => (vec![Contact::Inactive; inequality.size()], Vec::new()),
-        };
-        // in one dimension factors are as sparse as the matrix: no multigrid is needed
-        let coarse_spaces = if D == 1 {
-            CoarseSpaces::Unknown
-        } else {
-            let coarser = start.as_ref().and_then(|start| match &start.coarse_spaces {
-                CoarseSpaces::CoarseLevel(coarser) => Some(coarser.clone()),
-                _ => None,
-            });
-            let fixed = fixed(&inequality);
-            CoarseSpaces::SameMesh(Arc::new(P1Level::new(inequality.matrix, fixed, coarser)))
-        };
-        let before = start.map_or((0.0, 0, 0), |s| (s.seconds, s.levels_solved, s.start_cycles));
-        let solution = Arc::new(P1Solution {
-            contact,
-            values,
-            coarse_spaces,
-            seconds: before.0 + seconds + clock.elapsed().as_secs_f64(),
-            levels_solved: before.1 + 1,
-            start_cycles: before.2,
-        });
-        self.solutions[position] = Some(solution.clone());
+        let fixed = fixed(&inequality);
+        let result = (solution.outcome, solution.contact, solution.values);
+        let mut solution =
+            P1Solution::new::<D>(start.as_deref(), (inequality.matrix, fixed), result);
+        solution.seconds += seconds + clock.elapsed().as_secs_f64();
+        let solution = Arc::new(solution);
+        self.keep(position, solution.clone());
         Ok(solution)
+    }
+
+    /// Keeps the solution of a scheme that is conforming P1. Its seconds are those of its start.
+    pub fn keep_solved(
+        &mut self,
+        position: usize,
+        start: Option<&P1Solution<T>>,
+        solved: &Solved<'_, T, D>,
+    ) {
+        let (inequality, solution) = (solved.inequality(), solved.solution());
+        let level = (inequality.matrix.clone(), fixed(inequality));
+        let result = (solution.outcome, solution.contact.clone(), solution.values.clone());
+        self.keep(position, Arc::new(P1Solution::new::<D>(start, level, result)));
+    }
+
+    /// Keeps a solution; adaptive meshes may have grown since the last one.
+    fn keep(&mut self, position: usize, solution: Arc<P1Solution<T>>) {
+        if self.solutions.len() <= position {
+            self.solutions.resize(position + 1, None);
+        }
+        self.solutions[position] = Some(solution);
     }
 
     /// The inequality of conforming P1 on a mesh.

@@ -3,6 +3,7 @@
 use std::fmt;
 #[cfg(feature = "report")]
 use std::path::Path;
+use std::sync::OnceLock;
 
 use super::hierarchy::Hierarchy;
 use crate::algebra::{Contact, Inequality};
@@ -41,7 +42,9 @@ pub struct Solved<'a, T: Real, const D: usize> {
     has_iterate: bool,
     /// The hierarchy that has the mesh, and its position there.
     hierarchy: Option<(&'a Hierarchy<T, D>, usize)>,
-    /// Seconds for the mesh and all coarser ones, if it is the mesh of a hierarchy.
+    /// The bound with the pair that gives it, once computed.
+    bound: OnceLock<(PrimalDualPair, ErrorBound)>,
+    /// Seconds for the mesh and all coarser ones, if it is one of several.
     pub(crate) mesh_seconds: f64,
     /// Seconds of assembly.
     pub(crate) assemble_seconds: f64,
@@ -101,6 +104,7 @@ impl<'a, T: Real, const D: usize> Solved<'a, T, D> {
             certificate,
             has_iterate,
             hierarchy,
+            bound: OnceLock::new(),
             assemble_seconds: 0.0,
             solve_seconds: 0.0,
             start_seconds: 0.0,
@@ -248,6 +252,29 @@ impl<'a, T: Real, const D: usize> Solved<'a, T, D> {
         let coarse = (&coarse.discretisation, coarse.values(), refinements.unsigned_abs());
         fine.discretisation.difference(fine.values(), coarse)
     }
+    /// The solution with the outcome of values that no solver of the library found.
+    pub(super) fn from_elsewhere(mut self) -> Self {
+        if self.solution.outcome == Outcome::Stalled {
+            self.solution.outcome = Outcome::NotASolution;
+        }
+        self
+    }
+    /// The value of this solution at a point of a cell of a coarser mesh of the same hierarchy, which is at
+    /// this position; the cell of this mesh is found through the cells between.
+    #[cfg(feature = "report")]
+    fn value_within(&self, position: usize, cell: usize, x: &Point<f64, D>) -> f64 {
+        let Some((hierarchy, own)) = self.hierarchy else { return f64::NAN };
+        let child = |parent: usize, position: usize| {
+            let least = |child: usize| {
+                let lambda = hierarchy.mesh(position).barycentric(child, x);
+                lambda[..=D].iter().copied().fold(f64::INFINITY, f64::min)
+            };
+            let children = parent << D..(parent + 1) << D;
+            children.max_by(|&a, &b| least(a).total_cmp(&least(b))).unwrap_or(parent)
+        };
+        let cell = (position + 1..=own).fold(cell, child);
+        self.discretisation.value_in(self.values(), cell, x)
+    }
     /// Distances of multiplier and contact set from those of a solution on a finer mesh of the same
     /// hierarchy, or on the same mesh; the distance of free boundaries is not computed. None without two
     /// iterates.
@@ -289,19 +316,27 @@ impl<'a, T: Real, const D: usize> Solved<'a, T, D> {
             false => Err(NoBound::NoIterate),
         }
     }
-    /// A bound on the error from solution and data alone: see [`crate::error_bound`].
+    /// A bound on the error from solution and data alone: see [`crate::error_bound`]. It is computed once.
     ///
     /// # Errors
     /// [`NoBound`].
     pub fn bound(&self) -> Result<ErrorBound, NoBound> {
-        self.discretisation.error_bound(&self.primal_dual_pair()?, self.values())
+        self.pair_and_bound().map(|(_, bound)| bound.clone())
+    }
+    pub(super) fn pair_and_bound(&self) -> Result<&(PrimalDualPair, ErrorBound), NoBound> {
+        if let Some(known) = self.bound.get() {
+            return Ok(known);
+        }
+        let pair = self.primal_dual_pair()?;
+        let bound = self.discretisation.error_bound(&pair, self.values())?;
+        Ok(self.bound.get_or_init(|| (pair, bound)))
     }
     /// The figures of the bound; its effectivity where the exact solution is known and holds on the mesh.
     pub(crate) fn bound_figures(&self, exact_holds: bool) -> BoundFigures {
-        let of = &self.discretisation;
-        let pair = self.primal_dual_pair();
-        let error = pair.as_ref().ok().filter(|_| exact_holds).and_then(|p| of.error_of_pair(p));
-        BoundFigures::new(&pair.and_then(|pair| of.error_bound(&pair, self.values())), error)
+        let judged = self.pair_and_bound();
+        let known = judged.as_ref().ok().filter(|_| exact_holds);
+        let error = known.and_then(|(pair, _)| self.discretisation.error_of_pair(pair));
+        BoundFigures::new(judged.map(|(_, bound)| bound), error)
     }
     /// Solution, obstacle, multiplier and contact set on cells; none without an iterate.
     pub fn fields(&self) -> Option<Fields> {
@@ -321,7 +356,8 @@ impl<'a, T: Real, const D: usize> Solved<'a, T, D> {
     ///
     /// The solution `u` is written in its degree; above two it is interpolated in degree two. Point data:
     /// `obstacle` (the lower one, or the upper one where there is no lower one), `upper_obstacle` where
-    /// there are both, `error`, which is `u` less the exact solution where that is known. Cell data of
+    /// there are both, `error`, which is `u` less the exact solution where that is known (for rows of a study
+    /// with a reference: less the reference). Cell data of
     /// obstacle problems: `multiplier` and `contact` of [`Fields`]; of all for which there is one, `bound`, the share of
     /// the cell in the square of the error bound ([`ErrorBound::cells`]). Signorini problems have the facets of
     /// the contact boundary as further cells with `pressure` and `gap` of [`Fields`] and `contact`, which is
@@ -336,13 +372,36 @@ impl<'a, T: Real, const D: usize> Solved<'a, T, D> {
         path: impl AsRef<Path>,
         complete: impl for<'f> Fn(VtuFile<'f, D>) -> VtuFile<'f, D>,
     ) -> Result<(), Error> {
+        self.write_vtu_against(path.as_ref(), None, complete)
+    }
+    /// As [`Self::write_vtu_with`]; where there is a solution on a finer mesh of the same hierarchy, `error` is
+    /// the difference from that.
+    #[cfg(feature = "report")]
+    pub(crate) fn write_vtu_against(
+        &self,
+        path: &Path,
+        reference: Option<&Solved<'_, T, D>>,
+        complete: impl for<'f> Fn(VtuFile<'f, D>) -> VtuFile<'f, D>,
+    ) -> Result<(), Error> {
         compiled!(
-            T, D: fn(&Solved<'_, T, D>, &Path, Complete<'_, D>) -> Result<(), Error>
-                = |solved, path, complete| solved.write_fields(path, complete)
-        )(self, path.as_ref(), &complete)
+            T, D: for<'s, 'x, 'p, 'r, 'y, 'c> fn(
+                &'s Solved<'x, T, D>,
+                &'p Path,
+                Option<&'r Solved<'y, T, D>>,
+                Complete<'c, D>,
+            ) -> Result<(), Error>
+                = |solved, path, reference, complete| {
+                    solved.write_fields(path, reference, complete)
+                }
+        )(self, path, reference, &complete)
     }
     #[cfg(feature = "report")]
-    fn write_fields(&self, path: &Path, complete: Complete<'_, D>) -> Result<(), Error> {
+    fn write_fields(
+        &self,
+        path: &Path,
+        reference: Option<&Solved<'_, T, D>>,
+        complete: Complete<'_, D>,
+    ) -> Result<(), Error> {
         let Some(fields) = self.fields() else {
             return Err(write_error(path, format!("no solution: {}", self.outcome())));
         };
@@ -371,8 +430,13 @@ impl<'a, T: Real, const D: usize> Solved<'a, T, D> {
         if !shares.is_empty() {
             file = file.on_cells("bound", &shares);
         }
-        if let Some(exact) = &problem.exact {
-            file = file.error_from(&*exact.value);
+        match (reference.filter(|r| r.has_iterate).zip(self.hierarchy), &problem.exact) {
+            (Some((reference, (_, own))), _) => {
+                file =
+                    file.error_from_in_cells(move |cell, x| reference.value_within(own, cell, x));
+            }
+            (None, Some(exact)) => file = file.error_from(&*exact.value),
+            (None, None) => {}
         }
         if problem.has_obstacle() {
             file = file.on_cells("multiplier", &fields.multiplier);

@@ -7,12 +7,13 @@ use serde_json::Value;
 use super::csv::flatten;
 use super::html::{HtmlCell, HtmlPage, HtmlTable};
 use super::table::{Cell, Table};
+use crate::study::rates::rates;
 use crate::study::row::distinct;
-use crate::study::table::{columns, heading, limits, scenes};
+use crate::study::table::{Column, columns, heading, limits, scenes, totals};
 use crate::study::{Program, Report, Row, file_name};
 
 /// Columns of the page that are shown at first, by their keys.
-const SHOWN: [&str; 17] = [
+const SHOWN: [&str; 19] = [
     "against",
     "label",
     "level",
@@ -24,6 +25,8 @@ const SHOWN: [&str; 17] = [
     "order.l2",
     "error.h1",
     "order.h1",
+    "bound.total",
+    "order.bound",
     "energy",
     "contact_measure",
     "resultant",
@@ -32,11 +35,13 @@ const SHOWN: [&str; 17] = [
     "seconds.total",
 ];
 /// Columns of tables in LaTeX: what fits into the width of a page.
-const PRINTED: [&str; 12] = [
+const PRINTED: [&str; 16] = [
     "scheme",
     "solver",
     "n",
+    "step",
     "unknowns",
+    "bound",
     "L2",
     "order",
     "H1",
@@ -45,6 +50,8 @@ const PRINTED: [&str; 12] = [
     "resultant",
     "outer",
     "solve",
+    "stages (outer)",
+    "total",
 ];
 
 impl Report {
@@ -59,9 +66,13 @@ impl Report {
         format!("{name} {version}, {target_cpu}; {threads} threads; {precision}; {times}{end}")
     }
 
-    /// One table for each scene, with the columns of the tables for a terminal.
+    /// Two tables for each scene, with the columns of the tables for a terminal: errors and times, then
+    /// energy, contact measure, resultant, error bound and stages.
     pub fn tables(&self) -> Vec<Table> {
-        scenes(&self.rows).into_iter().map(|(scene, rows)| table(scene, &rows)).collect()
+        let tables = |(scene, rows): (&str, Vec<&Row>)| {
+            [Some(table(scene, &rows)), second(scene, &rows)].into_iter().flatten()
+        };
+        scenes(&self.rows).into_iter().flat_map(tables).collect()
     }
 
     /// The tables in Markdown.
@@ -126,14 +137,22 @@ impl Report {
                 title: format!("{scene}, dimension {}", rows[0].dimension),
                 columns,
                 rows: rows_of_table.collect(),
-                remarks: [heading(&rows)].into_iter().chain(limits(&rows)).collect(),
+                remarks: [heading(&rows)]
+                    .into_iter()
+                    .chain(limits(&rows))
+                    .chain(rates(&rows))
+                    .collect(),
             });
         }
         let mut pictures = Vec::new();
-        for (scene, label) in distinct(self.rows.iter().map(|r| (&r.scene, &r.label))) {
-            let path = directory.join(file_name(&format!("{scene}-{label}")) + ".svg");
+        for (scene, label, solver) in
+            distinct(self.rows.iter().map(|r| (&r.scene, &r.label, &r.solver)))
+        {
+            let is_alone = self.rows.iter().all(|r| r.solver == *solver);
+            let of = if is_alone { label.clone() } else { format!("{label}-{solver}") };
+            let path = directory.join(file_name(&format!("{scene}-{of}")) + ".svg");
             if let Ok(svg) = std::fs::read_to_string(path) {
-                pictures.push((format!("{label} on {scene}"), svg));
+                pictures.push((format!("{of} on {scene}"), svg));
             }
         }
         HtmlPage {
@@ -171,25 +190,31 @@ fn html_cell(text: &str) -> HtmlCell {
 
 /// The table of a scene.
 fn table(scene: &str, rows: &[&Row]) -> Table {
-    let columns = columns(rows);
-    let cell = |text: String, left: bool| match (left, &text[..]) {
-        (true, _) => Cell::Words(text),
-        (_, "-") => Cell::Nothing,
-        _ => Cell::Number(text, None),
-    };
-    let line = |row: &&Row| columns.iter().map(|c| cell((c.cell)(row), c.left)).collect();
     let failed = rows.iter().filter(|r| !r.converged());
     let remarks = failed.map(|r| {
         let why = r.message.as_deref().unwrap_or(r.status.message());
         format!("{}, level {}: did not converge: {}: {why}", r.label, r.level, r.status)
     });
     let warnings = rows.iter().flat_map(|r| r.warnings.iter().map(|w| format!("{}: {w}", r.label)));
-    Table {
-        title: scene.to_owned(),
-        columns: columns.iter().map(|c| c.name.to_owned()).collect(),
-        rows: rows.iter().map(line).collect(),
-        remarks: distinct(
-            [heading(rows)].into_iter().chain(remarks).chain(warnings).chain(limits(rows)),
-        ),
-    }
+    let remarks =
+        distinct([heading(rows)].into_iter().chain(remarks).chain(warnings).chain(rates(rows)));
+    with_columns(scene.to_owned(), &columns(rows), rows, remarks)
+}
+
+/// The second table of a scene, if it says anything.
+fn second(scene: &str, rows: &[&Row]) -> Option<Table> {
+    let columns = totals(rows);
+    let title = format!("{scene}: totals and stages");
+    (!columns.is_empty()).then(|| with_columns(title, &columns, rows, limits(rows)))
+}
+
+fn with_columns(title: String, columns: &[Column], rows: &[&Row], remarks: Vec<String>) -> Table {
+    let cell = |text: String, left: bool| match (left, &text[..]) {
+        (true, _) => Cell::Words(text),
+        (_, "-") => Cell::Nothing,
+        _ => Cell::Number(text, None),
+    };
+    let line = |row: &&Row| columns.iter().map(|c| cell((c.cell)(row), c.left)).collect();
+    let names = columns.iter().map(|c| c.name.to_owned()).collect();
+    Table { title, columns: names, rows: rows.iter().map(line).collect(), remarks }
 }

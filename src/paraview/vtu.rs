@@ -59,7 +59,7 @@ pub struct VtuFile<'a, const D: usize> {
     epsilon: f64,
     u: &'a [f64],
     functions: Vec<(&'a str, InCell<'a, D>)>,
-    exact: Option<Function<'a, D>>,
+    exact: Option<InCell<'a, D>>,
     on_cells: Vec<(&'a str, &'a [f64])>,
     facets: &'a [(usize, usize)],
     on_facets: Vec<(&'a str, &'a [f64])>,
@@ -114,8 +114,15 @@ impl<'a, const D: usize> VtuFile<'a, D> {
         self
     }
     /// Adds the difference of `u` from this function as the point data `error`.
-    pub fn error_from(mut self, exact: Function<'a, D>) -> Self {
-        self.exact = Some(exact);
+    pub fn error_from(self, exact: Function<'a, D>) -> Self {
+        self.error_from_in_cells(move |_, x| exact(x))
+    }
+    /// Adds the difference of `u` from a function of cell and point as the point data `error`.
+    pub fn error_from_in_cells(
+        mut self,
+        exact: impl Fn(usize, &Point<f64, D>) -> f64 + 'a,
+    ) -> Self {
+        self.exact = Some(Box::new(exact));
         self
     }
     /// Adds cell data, one value for each cell.
@@ -219,8 +226,9 @@ impl<'a, const D: usize> VtuFile<'a, D> {
             let places = grid.sources.iter().map(|k| k / per_cell).zip(&grid.points);
             self.push_floats(to, name, 1, places.map(|(cell, x)| f(cell, x)))?;
         }
-        if let Some(exact) = self.exact {
-            let error = u.iter().zip(&grid.points).map(|(u, x)| u - exact(x));
+        if let Some(exact) = &self.exact {
+            let places = grid.sources.iter().map(|k| k / per_cell).zip(&grid.points);
+            let error = u.iter().zip(places).map(|(u, (cell, x))| u - exact(cell, x));
             self.push_floats(to, "error", 1, error.map(|e| self.shortened(e)))?;
         }
         self.push_floats(to, "u", 1, u.iter().copied())?;

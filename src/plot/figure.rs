@@ -16,7 +16,8 @@ pub struct Figure {
 }
 
 /// Error against mesh size, with reference slopes: for each scene one panel for the L2 error and
-/// one for the error in the broken H1 seminorm.
+/// one for the error in the broken H1 seminorm. On adaptive meshes error in the broken energy norm and bound
+/// against the number of unknowns.
 pub fn convergence(rows: &[Row]) -> Figure {
     let keys = keys(rows);
     let scenes = scenes(rows);
@@ -28,15 +29,19 @@ pub fn convergence(rows: &[Row]) -> Figure {
     let panels = scenes
         .iter()
         .flat_map(|scene| {
-            let panel = |error| Panel::new(rows, &keys, scene, Quantity::MeshSize, error);
-            with_curves([Quantity::L2, Quantity::H1].map(panel).into())
+            let (size, errors) = match is_adaptive(rows, scene) {
+                true => (Quantity::Unknowns, [Quantity::Energy, Quantity::Bound]),
+                false => (Quantity::MeshSize, [Quantity::L2, Quantity::H1]),
+            };
+            let panel = |error| Panel::new(rows, &keys, scene, size, error);
+            with_curves(errors.map(panel).into())
         })
         .collect();
     Figure { panels, keys, columns }
 }
 
-/// L2 error against the seconds a run took altogether, one panel for each scene. Runs that did not
-/// converge are marked.
+/// L2 error, on adaptive meshes the error bound, against the seconds a run took altogether, one panel for each
+/// scene. Runs that did not converge are marked.
 pub fn work_precision(rows: &[Row]) -> Figure {
     let keys = keys(rows);
     let scenes = scenes(rows);
@@ -49,10 +54,18 @@ pub fn work_precision(rows: &[Row]) -> Figure {
     };
     let panels = scenes
         .iter()
-        .map(|scene| Panel::new(rows, &keys, scene, Quantity::Seconds, Quantity::L2))
+        .map(|scene| {
+            let error = if is_adaptive(rows, scene) { Quantity::Bound } else { Quantity::L2 };
+            Panel::new(rows, &keys, scene, Quantity::Seconds, error)
+        })
         .flat_map(|panel| with_curves(vec![panel]))
         .collect();
     Figure { panels, keys, columns }
+}
+
+/// Whether the meshes of a scene are adaptive.
+fn is_adaptive(rows: &[Row], scene: &str) -> bool {
+    rows.iter().any(|row| row.scene == scene && row.theta.is_some())
 }
 
 impl Figure {

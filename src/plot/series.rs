@@ -20,6 +20,8 @@ pub(crate) enum Quantity {
     H1,
     /// Error in the broken energy norm, the same for all schemes.
     Energy,
+    /// Error bound in the energy norm.
+    Bound,
 }
 
 impl Quantity {
@@ -33,6 +35,7 @@ impl Quantity {
             Quantity::L2 => "L2 error",
             Quantity::H1 => "broken H1 error",
             Quantity::Energy => "error in the broken energy norm",
+            Quantity::Bound => "error bound",
         }
     }
 
@@ -47,6 +50,7 @@ impl Quantity {
             Quantity::L2 => row.error.l2,
             Quantity::H1 => row.error.h1,
             Quantity::Energy => row.error.broken_energy,
+            Quantity::Bound => row.bound.total,
         };
         value.filter(|x| x.is_finite() && *x > 0.0)
     }
@@ -172,6 +176,12 @@ impl Panel {
         let of_scene = || rows.iter().filter(|r| r.scene == scene);
         let orders = match x {
             Quantity::MeshSize => y.orders(of_scene()),
+            // the best rate of linears, on any meshes
+            Quantity::Unknowns => Orders {
+                orders: vec![1.0],
+                are_promised: false,
+                falls_over: of_scene().map(|row| row.dimension as u32).next(),
+            },
             _ => Orders::default(),
         };
         Self::of(&title(scene, of_scene()), (x.label(), y.label()), curves, orders)

@@ -9,11 +9,47 @@ use crate::real::Point;
 pub type Field<const D: usize> = Arc<dyn Fn(&Point<f64, D>) -> f64 + Send + Sync>;
 /// A vector function of space.
 pub type VectorField<const D: usize> = Arc<dyn Fn(&Point<f64, D>) -> Point<f64, D> + Send + Sync>;
-/// A flux through the boundary: a function of the point and the outward unit normal.
-pub type BoundaryFlux<const D: usize> =
+/// A scalar function of a boundary point and the outward unit normal there.
+pub type BoundaryField<const D: usize> =
     Arc<dyn Fn(&Point<f64, D>, &Point<f64, D>) -> f64 + Send + Sync>;
 
-/// A reaction or load: a constant, integrated exactly and without a quadrature loop, or a function.
+/// A flux through the boundary: a constant, or a function of the point and the outward unit normal.
+#[derive(Clone)]
+#[non_exhaustive]
+pub enum BoundaryFlux<const D: usize> {
+    /// A constant.
+    Constant(f64),
+    /// A function that is smooth on every boundary facet, integrated by quadrature.
+    Function(BoundaryField<D>),
+}
+
+impl<const D: usize> BoundaryFlux<D> {
+    /// The value of a constant.
+    pub(crate) fn constant(&self) -> Option<f64> {
+        match self {
+            BoundaryFlux::Constant(c) => Some(*c),
+            BoundaryFlux::Function(_) => None,
+        }
+    }
+    /// The flux at a point with this outward unit normal.
+    pub fn at(&self, x: &Point<f64, D>, normal: &Point<f64, D>) -> f64 {
+        match self {
+            BoundaryFlux::Constant(c) => *c,
+            BoundaryFlux::Function(f) => f(x, normal),
+        }
+    }
+}
+
+impl<const D: usize> fmt::Debug for BoundaryFlux<D> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            BoundaryFlux::Constant(c) => f.debug_tuple("Constant").field(c).finish(),
+            BoundaryFlux::Function(_) => f.write_str("Function(..)"),
+        }
+    }
+}
+
+/// A datum in the domain: a constant, integrated exactly and without a quadrature loop, or a function.
 #[derive(Clone)]
 #[non_exhaustive]
 pub enum Datum<const D: usize> {

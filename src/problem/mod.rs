@@ -20,7 +20,7 @@ mod exact;
 mod named;
 mod on_mesh;
 
-pub use datum::{BoundaryFlux, Datum, Field, VectorField};
+pub use datum::{BoundaryField, BoundaryFlux, Datum, Field, VectorField};
 pub use exact::{ContactSet, Exact, ReferenceEnergy};
 pub use named::NamedData;
 pub(crate) use on_mesh::{DataByGroup, DataOnMesh, DatumRef};
@@ -39,21 +39,21 @@ pub struct Problem<const D: usize> {
     /// The load `f` per unit volume.
     pub source: Option<Datum<D>>,
     /// Dirichlet data `u_D`; zero where absent.
-    pub dirichlet: Option<Field<D>>,
+    pub dirichlet: Option<Datum<D>>,
     /// Neumann data `q = alpha du/dn`; zero where absent.
     pub neumann: Option<BoundaryFlux<D>>,
     /// The diffusion coefficient; one where absent. Elements of degree one take its value at the barycentre
     /// of each cell, others its values at the points of rules in the cells in which it varies, see
     /// [`Problem::coefficient`].
-    pub coefficient: Option<Field<D>>,
+    pub coefficient: Option<Datum<D>>,
     /// The reaction coefficient `c >= 0`.
     pub reaction: Option<Datum<D>>,
     /// Obstacle from below.
-    pub lower: Option<Field<D>>,
+    pub lower: Option<Datum<D>>,
     /// Obstacle from above.
-    pub upper: Option<Field<D>>,
+    pub upper: Option<Datum<D>>,
     /// Signorini gap `g` on the contact part.
-    pub gap: Option<Field<D>>,
+    pub gap: Option<Datum<D>>,
     /// Data for named regions and boundary groups, which take precedence over those without a name.
     pub named: NamedData<D>,
     /// Where obstacles and gap bind; at the [`Nodes`] of the element where absent.
@@ -86,22 +86,21 @@ impl<const D: usize> fmt::Debug for Problem<D> {
             reference_energy,
         } = self;
         let mut out = f.debug_struct("Problem");
-        for (name, datum) in [("source", source), ("reaction", reaction)] {
+        for (name, datum) in [
+            ("source", source),
+            ("reaction", reaction),
+            ("dirichlet", dirichlet),
+            ("coefficient", coefficient),
+            ("lower", lower),
+            ("upper", upper),
+            ("gap", gap),
+        ] {
             if let Some(datum) = datum {
                 out.field(name, datum);
             }
         }
-        for (name, is_present) in [
-            ("dirichlet", dirichlet.is_some()),
-            ("neumann", neumann.is_some()),
-            ("coefficient", coefficient.is_some()),
-            ("lower", lower.is_some()),
-            ("upper", upper.is_some()),
-            ("gap", gap.is_some()),
-        ] {
-            if is_present {
-                out.field(name, &format_args!("Function(..)"));
-            }
+        if let Some(flux) = neumann {
+            out.field("neumann", flux);
         }
         let names: Vec<&str> = named.names().map(|(name, _)| name).collect();
         if !names.is_empty() {
@@ -171,7 +170,7 @@ impl<const D: usize> Problem<D> {
     /// Sets Dirichlet data.
     #[must_use]
     pub fn dirichlet(mut self, u: impl Fn(&Point<f64, D>) -> f64 + Send + Sync + 'static) -> Self {
-        self.dirichlet = Some(Arc::new(u));
+        self.dirichlet = Some(u.into());
         self
     }
     /// Sets Neumann data, a function of the point and the outward normal.
@@ -180,7 +179,7 @@ impl<const D: usize> Problem<D> {
         mut self,
         q: impl Fn(&Point<f64, D>, &Point<f64, D>) -> f64 + Send + Sync + 'static,
     ) -> Self {
-        self.neumann = Some(Arc::new(q));
+        self.neumann = Some(BoundaryFlux::Function(Arc::new(q)));
         self
     }
     /// Sets the diffusion coefficient.
@@ -195,7 +194,7 @@ impl<const D: usize> Problem<D> {
         mut self,
         alpha: impl Fn(&Point<f64, D>) -> f64 + Send + Sync + 'static,
     ) -> Self {
-        self.coefficient = Some(Arc::new(alpha));
+        self.coefficient = Some(alpha.into());
         self
     }
     /// Sets the reaction coefficient: a number, a closure whose argument is written with its
@@ -211,7 +210,7 @@ impl<const D: usize> Problem<D> {
         mut self,
         psi: impl Fn(&Point<f64, D>) -> f64 + Send + Sync + 'static,
     ) -> Self {
-        self.lower = Some(Arc::new(psi));
+        self.lower = Some(psi.into());
         self
     }
     /// Sets an obstacle from above.
@@ -220,7 +219,7 @@ impl<const D: usize> Problem<D> {
         mut self,
         psi: impl Fn(&Point<f64, D>) -> f64 + Send + Sync + 'static,
     ) -> Self {
-        self.upper = Some(Arc::new(psi));
+        self.upper = Some(psi.into());
         self
     }
     /// Sets the Signorini condition `u >= g` on the contact part.
@@ -229,7 +228,7 @@ impl<const D: usize> Problem<D> {
         mut self,
         gap: impl Fn(&Point<f64, D>) -> f64 + Send + Sync + 'static,
     ) -> Self {
-        self.gap = Some(Arc::new(gap));
+        self.gap = Some(gap.into());
         self
     }
     /// Sets the constraint set: where obstacles and gap bind. A [`Study`](crate::study::Study) may
@@ -291,7 +290,7 @@ impl<const D: usize> Problem<D> {
     /// The Dirichlet value at a point.
     pub fn dirichlet_at(&self, x: &Point<f64, D>) -> f64 {
         match (&self.dirichlet, &self.exact) {
-            (Some(u), _) => u(x),
+            (Some(u), _) => u.at(x),
             (None, Some(exact)) => (exact.value)(x),
             (None, None) => 0.0,
         }

@@ -128,7 +128,8 @@ impl<const D: usize> Problem<D> {
         group: &str,
         q: impl Fn(&Point<f64, D>, &Point<f64, D>) -> f64 + Send + Sync + 'static,
     ) -> Self {
-        self.named.neumann.push((group.to_owned(), Arc::new(q)));
+        let flux = BoundaryFlux::Function(Arc::new(q));
+        self.named.neumann.push((group.to_owned(), flux));
         self
     }
     /// Sets the Signorini condition `u >= g` on a boundary group.

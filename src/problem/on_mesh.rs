@@ -138,7 +138,6 @@ impl<'a, const D: usize> DataOnMesh<'a, D> {
                 _ => {}
             }
         }
-        let function = |f: &'a Option<Field<D>>| f.as_ref().map(DatumRef::Function);
         let datum = |f: &'a Option<Datum<D>>| f.as_ref().map(DatumRef::Datum);
         let exact = problem.exact.as_ref().map(|exact| DatumRef::Function(&exact.value));
         let list = |data: &'a [(String, Datum<D>)]| -> Vec<(&'a str, DatumRef<'a, D>)> {
@@ -152,13 +151,13 @@ impl<'a, const D: usize> DataOnMesh<'a, D> {
             given.unwrap_or(named.dirichlet.len())
         };
         Ok(Self {
-            coefficient: in_regions(function(&problem.coefficient), &named.coefficient),
+            coefficient: in_regions(datum(&problem.coefficient), &named.coefficient),
             source: in_regions(datum(&problem.source), &named.source),
             reaction: in_regions(datum(&problem.reaction), &named.reaction),
-            lower: in_regions(function(&problem.lower), &named.lower),
-            upper: in_regions(function(&problem.upper), &named.upper),
-            dirichlet: on_groups(function(&problem.dirichlet).or(exact), &named.dirichlet),
-            gap: on_groups(function(&problem.gap), &named.gap),
+            lower: in_regions(datum(&problem.lower), &named.lower),
+            upper: in_regions(datum(&problem.upper), &named.upper),
+            dirichlet: on_groups(datum(&problem.dirichlet).or(exact), &named.dirichlet),
+            gap: on_groups(datum(&problem.gap), &named.gap),
             neumann: ByGroup::new(problem.neumann.as_ref(), &fluxes, groups()),
             dirichlet_rank: groups().map(rank).collect(),
         })

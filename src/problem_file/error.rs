@@ -1,7 +1,7 @@
 //! What may be wrong with a problem file.
 
 use std::io;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use crate::error::Error;
 use crate::mesh::gmsh::GmshError;
@@ -32,10 +32,16 @@ pub enum ProblemFileError {
         fault: ProblemFileFault,
     },
     /// The mesh file that it names is no mesh.
-    #[error("{}: {source}", path.display())]
+    #[error("{}:{line}:{column}: mesh {}", path.display(), with_path(mesh, source))]
     Mesh {
-        /// The mesh file.
+        /// The problem file.
         path: PathBuf,
+        /// The line of the name, from one.
+        line: usize,
+        /// Its column in characters, from one.
+        column: usize,
+        /// The mesh file.
+        mesh: PathBuf,
         /// Why.
         source: Box<GmshError>,
     },
@@ -50,6 +56,14 @@ pub enum ProblemFileError {
 }
 
 debug_by_display!(ProblemFileError);
+
+/// The message on a mesh file, with its path once.
+fn with_path(mesh: &Path, error: &GmshError) -> String {
+    match error {
+        GmshError::Unreadable { .. } => error.to_string(),
+        _ => format!("{}: {error}", mesh.display()),
+    }
+}
 
 /// What is wrong at a place of a problem file.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -98,6 +112,20 @@ pub enum ProblemFileFault {
         at: String,
         /// What is allowed.
         allowed: &'static str,
+    },
+    /// A component of the gradient of the exact solution is not that of its value.
+    #[error(
+        "component {component} of exact.gradient is {value} at {at}, but difference quotients of exact.value are {quotient}"
+    )]
+    Gradient {
+        /// The component, from one.
+        component: usize,
+        /// The value.
+        value: f64,
+        /// The difference quotient of the exact solution.
+        quotient: f64,
+        /// The point, as coordinates in parentheses.
+        at: String,
     },
     /// The mesh has no such region or boundary group.
     #[error("the mesh has no {kind} `{name}`; it has {known}")]

@@ -150,6 +150,20 @@ impl Expression {
     pub fn value(&self, variables: &[f64]) -> f64 {
         value(&self.0, variables)
     }
+    /// The value of an expression without variables.
+    pub fn constant(&self) -> Option<f64> {
+        (!has_variables(&self.0)).then(|| value(&self.0, &[]))
+    }
+}
+
+fn has_variables(node: &Node) -> bool {
+    match node {
+        Node::Number(_) => false,
+        Node::Variable(_) | Node::Name(..) | Node::Call(..) => true,
+        Node::One(_, a) => has_variables(a),
+        Node::Two(_, ab) => has_variables(&ab.0) || has_variables(&ab.1),
+        Node::If(parts) => [&parts.0, &parts.1, &parts.2].into_iter().any(has_variables),
+    }
 }
 
 /// A bound of the depth to which the parser descends.

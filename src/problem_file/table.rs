@@ -22,8 +22,16 @@ pub(super) enum Formula {
 
 /// Where the problem of a file is posed.
 pub(super) enum Place {
-    Box { corners: [Vec<f64>; 2] },
-    File { path: PathBuf, bytes: Vec<u8>, dimension: usize },
+    Box {
+        corners: [Vec<f64>; 2],
+    },
+    /// The offset is that of the name in the problem file.
+    File {
+        path: PathBuf,
+        bytes: Vec<u8>,
+        dimension: usize,
+        offset: usize,
+    },
 }
 
 impl Place {
@@ -46,16 +54,29 @@ type Found<V> = Result<V, ProblemFileError>;
 impl<'t> Source<'t> {
     /// The error at an offset in bytes.
     pub fn error(&self, offset: usize, fault: ProblemFileFault) -> ProblemFileError {
+        let [line, column] = self.position(offset);
+        ProblemFileError::At { path: self.path.into(), line, column, fault }
+    }
+
+    /// The error for a mesh file that is named at an offset in bytes.
+    pub fn mesh_error(
+        &self,
+        offset: usize,
+        mesh: &Path,
+        source: gmsh::GmshError,
+    ) -> ProblemFileError {
+        let [line, column] = self.position(offset);
+        let (path, mesh) = (self.path.into(), mesh.into());
+        ProblemFileError::Mesh { path, line, column, mesh, source: Box::new(source) }
+    }
+
+    /// Line and column of an offset in bytes, from one.
+    fn position(&self, offset: usize) -> [usize; 2] {
         let offset =
             (0..=offset.min(self.text.len())).rev().find(|&k| self.text.is_char_boundary(k));
         let before = &self.text[..offset.unwrap_or(0)];
         let line_start = before.rfind('\n').map_or(0, |k| k + 1);
-        ProblemFileError::At {
-            path: self.path.into(),
-            line: before.matches('\n').count() + 1,
-            column: before[line_start..].chars().count() + 1,
-            fault,
-        }
+        [before.matches('\n').count() + 1, before[line_start..].chars().count() + 1]
     }
 
     /// The table of the file.
@@ -90,13 +111,13 @@ impl<'t> Source<'t> {
     fn mesh_file(&self, value: &Value<'t>) -> Found<Place> {
         let name = self.string("mesh", value)?;
         let path = self.path.parent().unwrap_or(Path::new("")).join(name);
-        let failed =
-            |source| ProblemFileError::Mesh { path: path.clone(), source: Box::new(source) };
+        let offset = value.span().start;
+        let failed = |source| self.mesh_error(offset, &path, source);
         let unreadable =
             |source| failed(gmsh::GmshError::Unreadable { path: path.clone(), source });
         let bytes = read_file(&path).map_err(unreadable)?;
         let dimension = gmsh::dimension(&bytes).map_err(failed)?;
-        Ok(Place::File { path, bytes, dimension })
+        Ok(Place::File { path, bytes, dimension, offset })
     }
 
     fn corners(&self, value: &Value<'t>) -> Found<Place> {
@@ -110,6 +131,11 @@ impl<'t> Source<'t> {
         let Ok([lower, upper]) = <[Vec<f64>; 2]>::try_from(corners) else { return Err(wrong()) };
         if lower.len() != upper.len() || !(1..=3).contains(&lower.len()) {
             return Err(wrong());
+        }
+        let is_side = |(a, b): (&f64, &f64)| (b - a).is_finite() && b > a;
+        if !lower.iter().zip(&upper).all(is_side) {
+            let expected = "two corners, the first below the second in every coordinate";
+            return Err(self.wrong_type("box", value, expected));
         }
         Ok(Place::Box { corners: [lower, upper] })
     }
@@ -176,6 +202,7 @@ impl<'t> Source<'t> {
             let offset = value.span().start + quotes + error.offset;
             self.error(offset, ProblemFileFault::Expression(error.message))
         })?;
-        Ok(Formula::Expression(expression))
+        // constants are integrated exactly
+        Ok(expression.constant().map_or(Formula::Expression(expression), Formula::Number))
     }
 }

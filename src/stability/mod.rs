@@ -125,12 +125,11 @@ impl<'a> Stability<'a> {
     /// default.
     pub const SCHEMES: [&'static str; 7] = choice::NAMES;
 
-    /// Runs everything.
+    /// Checks cases and schemes without running any.
     ///
     /// # Errors
-    /// [`Error::Parameter`] for a case that does not exist or a scheme that is wrong, before anything
-    /// runs; [`Error::Write`]. Errors of a job are listed in [`StabilityReport::failures`].
-    pub fn run(&self) -> Result<StabilityReport, Error> {
+    /// [`Error::Parameter`] for a case that does not exist or a scheme that is wrong.
+    pub fn check(&self) -> Result<(), Error> {
         let check = |parameter, names: &[String], known: &[&str]| match names
             .iter()
             .find(|name| !known.contains(&name.as_str()))
@@ -143,6 +142,16 @@ impl<'a> Stability<'a> {
             }),
         };
         check("case", &self.cases, &STABILITY_CASES)?;
+        self.plan().map(|_| ())
+    }
+
+    /// Runs everything.
+    ///
+    /// # Errors
+    /// Those of [`Self::check`], before anything runs; [`Error::Write`]. Errors of a job are listed in
+    /// [`StabilityReport::failures`].
+    pub fn run(&self) -> Result<StabilityReport, Error> {
+        self.check()?;
         let plan = self.plan()?;
         (self.observer)(StabilityProgress::Planned(plan.jobs.len()));
         let mut report = StabilityReport::new(self.effort);

@@ -1,12 +1,10 @@
 //! Compatibility of a mesh and a scene.
 
-use std::sync::Arc;
-
 use crate::assemble::{DataQuadrature, Discretisation};
 use crate::constraint::Nodes;
 use crate::error::Error;
 use crate::mesh::{BoundaryPart, BoxDomain, Mesh, describe_point};
-use crate::problem::{DataOnMesh, Field, NamedData, Problem};
+use crate::problem::{DataOnMesh, Datum, NamedData, Problem};
 use crate::real::{Point, Real, point_f64};
 use crate::scenes::Scene;
 use crate::scheme::{AnyScheme, ConformingP1, NonconformingP1};
@@ -68,9 +66,7 @@ pub(super) fn check_scheme<T: Real, const D: usize>(
     quadrature: DataQuadrature,
 ) -> Result<(), Error> {
     // bounds without names, which the cube does not have
-    let zero = |is_given: bool, old: Option<Field<D>>| {
-        old.or_else(|| is_given.then(|| -> Field<D> { Arc::new(|_| 0.0) }))
-    };
+    let zero = |is_given: bool, old: Option<Datum<D>>| old.or(is_given.then_some(0.0.into()));
     let (lower, gap) = (!problem.named.lower.is_empty(), !problem.named.gap.is_empty());
     let upper = !problem.named.upper.is_empty();
     let problem = Problem {

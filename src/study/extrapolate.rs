@@ -78,13 +78,16 @@ pub struct Extrapolated {
 }
 
 /// The limits of energy, contact measure and resultant of every series with three levels that converged,
-/// from the three finest of them. Rows of one scene, label, constraint set and solver are a series.
+/// from the three finest of them. Rows of one scene, label, constraint set and solver are a series. Adaptive
+/// meshes have no limits: their sizes are not those of one family.
 #[must_use]
 pub fn extrapolate(rows: &[Row]) -> Vec<Extrapolated> {
     let key = |r: &Row| [&r.scene, &r.label, &r.constraint, &r.solver].map(String::clone);
     let of_series = |series: [String; 4]| {
-        let mut levels: Vec<&Row> =
-            rows.iter().filter(|r| key(r) == series && r.converged()).collect();
+        let mut levels: Vec<&Row> = rows
+            .iter()
+            .filter(|r| key(r) == series && r.converged() && r.theta.is_none())
+            .collect();
         levels.sort_by(|a, b| b.mesh_size.total_cmp(&a.mesh_size));
         let three: &[&Row; 3] = levels.last_chunk()?;
         let of = |figure: fn(&Row) -> Option<f64>| {

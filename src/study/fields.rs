@@ -20,13 +20,14 @@ pub(super) struct FieldFiles {
 impl FieldFiles {
     /// Writes the fields of a solution if its level is wanted: `SCENE-LABEL.vtu` for the finest of the
     /// levels; with all levels also `SCENE-LABEL-LEVEL.vtu` for the others and `SCENE-LABEL.pvd`, which
-    /// lists the files that are there.
+    /// lists the files that are there. Where there is a reference the error is the difference from it.
     pub fn write<T: Real, const D: usize>(
         &self,
         (scene, label): (&str, &str),
         level: usize,
         levels: &[usize],
         solved: &Solved<'_, T, D>,
+        reference: Option<&Solved<'_, T, D>>,
     ) -> Result<(), Error> {
         let finest = levels.iter().max();
         let Some(directory) = &self.directory else { return Ok(()) };
@@ -39,7 +40,7 @@ impl FieldFiles {
             false => directory.join(format!("{stem}-{level}.vtu")),
         };
         replace(&path(level), |draft| {
-            solved.write_vtu_with(draft, |file| {
+            solved.write_vtu_against(draft, reference, |file| {
                 let file = file.text("scene", scene).text("scheme", label);
                 file.number("level", level as f64).scalar(self.scalar)
             })

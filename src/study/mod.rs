@@ -10,6 +10,7 @@ mod file_name;
 mod journal;
 mod memory;
 mod orders;
+pub(crate) mod rates;
 mod reference;
 pub(crate) mod report;
 pub(crate) mod row;

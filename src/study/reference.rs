@@ -81,27 +81,38 @@ impl<T: Real, const D: usize> Reference<'_, T, D> {
     }
 }
 
+/// A solution in place of the exact one with its name, or why there is none.
+pub(super) type FoundReference<'p, T, const D: usize> = Result<(Solved<'p, T, D>, String), String>;
+
 /// Against what rows are measured.
 #[derive(Clone, Copy)]
 pub(super) struct Measured<'m, 'p, T: Real, const D: usize> {
     /// Where the exact solution breaks the contact condition of the mesh.
     pub failure: Option<&'m str>,
-    /// A solution in place of the exact one, and its name.
-    pub reference: Option<&'m (Solved<'p, T, D>, String)>,
+    /// The reference, where one was asked for.
+    pub reference: Option<&'m FoundReference<'p, T, D>>,
 }
 
 impl<T: Real, const D: usize> Measured<'_, '_, T, D> {
-    /// Fills in energy, bound and errors.
+    /// Fills in energy, bound and errors, and why there are none.
     pub fn measure(&self, row: &mut Row, solved: &Solved<'_, T, D>) -> Result<(), Error> {
         row.energy = solved.energy()?;
         row.bound = solved.bound_figures(self.failure.is_none());
-        if let Some((reference, name)) = self.reference {
-            row.error = solved.difference(reference)?;
-            row.contact = solved.contact_difference(reference)?;
-            row.against = Some(name.clone());
-        } else if self.failure.is_none() && solved.discretisation().problem().exact.is_some() {
-            (row.error, row.contact) = (solved.errors()?, solved.contact_errors()?);
-            row.against = Some("exact".to_owned());
+        match (self.reference, self.failure) {
+            (Some(Ok((reference, name))), _) => {
+                row.error = solved.difference(reference)?;
+                row.contact = solved.contact_difference(reference)?;
+                row.against = Some(name.clone());
+            }
+            (Some(Err(why)), _) => row.warnings.push(format!("{why}: no errors")),
+            (None, Some(at)) => row.warnings.push(format!(
+                "the scene's solution breaks the contact condition of this mesh at {at}: no errors"
+            )),
+            (None, None) if solved.discretisation().problem().exact.is_some() => {
+                (row.error, row.contact) = (solved.errors()?, solved.contact_errors()?);
+                row.against = Some("exact".to_owned());
+            }
+            (None, None) => {}
         }
         Ok(())
     }

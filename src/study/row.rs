@@ -22,6 +22,9 @@ pub struct Orders {
     pub energy: Option<f64>,
     /// In the maximum over nodes.
     pub max: Option<f64>,
+    /// Of the error bound; old reports have none.
+    #[cfg_attr(feature = "report", serde(default))]
+    pub bound: Option<f64>,
     /// Of the multiplier in L1.
     pub multiplier_l1: Option<f64>,
     /// Of the multiplier in L2.
@@ -56,6 +59,9 @@ pub struct Seconds {
     pub assemble: f64,
     /// Solve, with the start from coarser levels.
     pub solve: f64,
+    /// Error bounds that refined the mesh, with marking; none for uniform meshes.
+    #[cfg_attr(feature = "report", serde(default))]
+    pub bound: Option<f64>,
     /// The sum.
     pub total: f64,
 }
@@ -64,7 +70,7 @@ impl Seconds {
     /// Times of mesh, assembly and solve, with their sum.
     #[must_use]
     pub fn new(mesh: f64, assemble: f64, solve: f64) -> Self {
-        Self { mesh, assemble, solve, total: mesh + assemble + solve }
+        Self { mesh, assemble, solve, bound: None, total: mesh + assemble + solve }
     }
 }
 
@@ -99,8 +105,12 @@ pub struct Row {
     /// Scheme, constraint set and choices without what is default, as
     /// [`NamedScheme`](crate::scheme::NamedScheme) reads it: what distinguishes the series of a report.
     pub label: String,
-    /// Subdivisions of the shortest side, or number of refinements of a mesh file.
+    /// Subdivisions of the shortest side, or number of refinements of a mesh file or of adaptive refinement.
     pub level: usize,
+    /// Share of the error bound that each adaptive refinement marks; null for uniform meshes. Times of
+    /// such a row are those of all its steps so far.
+    #[cfg_attr(feature = "report", serde(default))]
+    pub theta: Option<f64>,
     /// Penalty factors in force.
     pub parameters: PenaltyParameters,
     /// Name of the solver of the inequality.
@@ -170,6 +180,7 @@ impl Row {
             constraint: String::new(),
             label: scheme.to_owned(),
             level,
+            theta: None,
             parameters: PenaltyParameters::default(),
             solver: String::new(),
             linear: String::new(),
@@ -258,6 +269,14 @@ impl Row {
         RowKey { scene, label, solver, level: self.level }
     }
 
+    /// The size in which orders are: the mesh size; on adaptive meshes the power `-1/D` of the number of
+    /// unknowns, so that an order is `-D` times the slope in unknowns.
+    pub(crate) fn size(&self) -> f64 {
+        match (self.theta, self.unknowns) {
+            (Some(_), Some(unknowns)) => (unknowns as f64).powf(-1.0 / self.dimension as f64),
+            _ => self.mesh_size,
+        }
+    }
     /// The reference against which the errors are; none where they are against the exact solution.
     pub fn reference(&self) -> Option<&str> {
         self.against.as_deref().filter(|against| *against != "exact")

@@ -3,6 +3,7 @@
 use std::fmt;
 
 use super::extrapolate::{Limit, extrapolate};
+use super::rates::rates;
 use super::report::Report;
 use super::row::{Row, distinct};
 
@@ -21,7 +22,8 @@ impl fmt::Display for Report {
 /// between schemes; times are in seconds. `certif.` is the largest of the four numbers of the
 /// certificate, `effect.` the error bound over the true error. A row that did not converge is followed by
 /// the reason. Where no error is known there are columns of error bound, energy, contact measure and
-/// resultant, and their limits below.
+/// resultant, and their limits below; where errors are known a second table has these, for the finest level
+/// of each series, and the stages that ran.
 fn write_tables(f: &mut impl fmt::Write, rows: &[Row]) -> fmt::Result {
     for (i, (scene, rows)) in scenes(rows).into_iter().enumerate() {
         if i > 0 {
@@ -41,23 +43,16 @@ pub(crate) fn scenes(rows: &[Row]) -> Vec<(&str, Vec<&Row>)> {
 /// The table of one scene.
 fn write_scene(f: &mut impl fmt::Write, scene: &str, rows: &[&Row]) -> fmt::Result {
     write_wrapped(f, &format!("{scene}: {}", heading(rows)))?;
-    let columns = columns(rows);
-    let widths: Vec<usize> = columns
-        .iter()
-        .map(|c| rows.iter().map(|r| (c.cell)(r).len()).chain([c.name.len()]).max().unwrap_or(0))
-        .collect();
-    // Two blanks between columns where they fit.
-    let widest = widths.iter().sum::<usize>() + 2 * (widths.len() - 1);
-    let gap = if widest <= WIDTH { "  " } else { " " };
-    write_line(f, &columns, &widths, gap, |c| c.name.to_owned())?;
+    let lines = Lines::new(columns(rows), rows);
+    lines.write(f, |c| c.name.to_owned())?;
     let key = |r: &Row| [&r.label, &r.constraint, &r.solver].map(String::clone);
     let series = distinct(rows.iter().map(|r| key(r)));
-    for (i, of_series) in series.into_iter().enumerate() {
+    for (i, of_series) in series.iter().enumerate() {
         if i > 0 {
             writeln!(f)?;
         }
-        for row in rows.iter().filter(|r| key(r) == of_series) {
-            write_line(f, &columns, &widths, gap, |c| (c.cell)(row))?;
+        for row in rows.iter().filter(|r| key(r) == *of_series) {
+            lines.write(f, |c| (c.cell)(row))?;
             if !row.converged() {
                 let message = row.message.as_deref().unwrap_or(row.status.message());
                 write_wrapped(f, &format!("  ^ did not converge: {}: {message}", row.status))?;
@@ -69,7 +64,25 @@ fn write_scene(f: &mut impl fmt::Write, scene: &str, rows: &[&Row]) -> fmt::Resu
     ) {
         write_wrapped(f, &format!("  warning, {}: {}", warning.0, warning.1))?;
     }
-    limits(rows).iter().try_for_each(|line| write_wrapped(f, &format!("  {line}")))
+    if !has_errors(rows) {
+        limits(rows).iter().try_for_each(|line| write_wrapped(f, &format!("  {line}")))?;
+    }
+    rates(rows).iter().try_for_each(|line| write_wrapped(f, &format!("  {line}")))?;
+    let finest = |of_series| rows.iter().rfind(|r| key(r) == of_series).copied();
+    let finest: Vec<&Row> = series.into_iter().filter_map(finest).collect();
+    let columns = totals(rows);
+    if columns.is_empty() {
+        return Ok(());
+    }
+    let lines = Lines::new(columns, &finest);
+    writeln!(f)?;
+    lines.write(f, |c| c.name.to_owned())?;
+    finest.iter().try_for_each(|row| lines.write(f, |c| (c.cell)(row)))
+}
+
+/// Whether the rows are those of meshes that follow the error bound.
+fn is_adaptive(rows: &[&Row]) -> bool {
+    rows.iter().any(|r| r.theta.is_some())
 }
 
 /// Whether an error in L2 or H1 is known.
@@ -77,12 +90,9 @@ fn has_errors(rows: &[&Row]) -> bool {
     rows.iter().any(|r| r.error.l2.is_some() || r.error.h1.is_some())
 }
 
-/// The limits of energy, contact measure and resultant of each series, where no error is known.
+/// The limits of energy, contact measure and resultant of each series.
 pub(crate) fn limits(rows: &[&Row]) -> Vec<String> {
     let mut lines = Vec::new();
-    if has_errors(rows) {
-        return lines;
-    }
     let rows: Vec<Row> = rows.iter().map(|&row| row.clone()).collect();
     let has_solvers = rows.iter().any(|r| r.solver != rows[0].solver);
     for series in extrapolate(&rows) {
@@ -180,11 +190,17 @@ pub(crate) fn columns(rows: &[&Row]) -> Vec<Column> {
     if rows.iter().any(|r| r.solver != rows[0].solver) {
         columns.push(text("solver", |r| r.solver.clone()));
     }
-    columns.push(number("n", |r| r.level.to_string()));
-    columns.push(number("h", |r| scientific(Some(r.mesh_size))));
+    let is_adaptive = is_adaptive(rows);
+    columns.push(number(if is_adaptive { "step" } else { "n" }, |r| r.level.to_string()));
+    if !is_adaptive {
+        columns.push(number("h", |r| scientific(Some(r.mesh_size))));
+    }
     columns.push(number("unknowns", |r| whole(r.unknowns)));
     columns.push(number("outer", |r| whole(r.iterations.outer)));
-    if any(|r| r.error.l2) {
+    if is_adaptive {
+        columns.push(number("bound", |r| scientific(r.bound.total)));
+        columns.push(number("order", |r| fixed(r.order.bound)));
+    } else if any(|r| r.error.l2) {
         columns.push(number("L2", |r| scientific(r.error.l2)));
         columns.push(number("order", |r| fixed(r.order.l2)));
     }
@@ -195,17 +211,11 @@ pub(crate) fn columns(rows: &[&Row]) -> Vec<Column> {
     // the errors say the rest where they are known, and lines stay within their width
     if any(|r| r.bound.effectivity) {
         columns.push(number("effect.", |r| fixed(r.bound.effectivity)));
-    } else if any(|r| r.bound.total) {
+    } else if !is_adaptive && any(|r| r.bound.total) {
         columns.push(number("bound", |r| digits(r.bound.total, 1)));
     }
     if !has_errors(rows) {
-        if any(|r| r.energy) {
-            columns.push(number("energy", |r| digits(r.energy, 5)));
-        }
-        if any(|r| r.contact_measure) {
-            columns.push(number("contact", |r| digits(r.contact_measure, 3)));
-            columns.push(number("resultant", |r| digits(r.resultant, 4)));
-        }
+        columns.extend(of_the_solution(rows));
     }
     columns.push(number("active", |r| whole(r.active)));
     columns.push(number("certif.", |r| {
@@ -217,24 +227,80 @@ pub(crate) fn columns(rows: &[&Row]) -> Vec<Column> {
     }));
     columns.push(number("assem.", |r| seconds(r.seconds.assemble)));
     columns.push(number("solve", |r| seconds(r.seconds.solve)));
+    if is_adaptive {
+        columns.push(number("total", |r| seconds(r.seconds.total)));
+    }
     columns
 }
 
-/// One line of a table, without blanks at its end.
-fn write_line(
-    f: &mut impl fmt::Write,
-    columns: &[Column],
-    widths: &[usize],
-    gap: &str,
-    cell: impl Fn(&Column) -> String,
-) -> fmt::Result {
-    let mut line = String::new();
-    for (column, &width) in columns.iter().zip(widths) {
-        let cell = cell(column);
-        line += &if column.left { format!("{cell:<width$}") } else { format!("{cell:>width$}") };
-        line += gap;
+/// Energy, contact measure and resultant, where they are known.
+fn of_the_solution(rows: &[&Row]) -> Vec<Column> {
+    let number = |name, cell| Column { name, left: false, cell };
+    let mut columns = Vec::new();
+    if rows.iter().any(|r| r.energy.is_some()) {
+        columns.push(number("energy", |r| digits(r.energy, 5)));
     }
-    writeln!(f, "{}", line.trim_end())
+    if rows.iter().any(|r| r.contact_measure.is_some()) {
+        columns.push(number("contact", |r| digits(r.contact_measure, 3)));
+        columns.push(number("resultant", |r| digits(r.resultant, 4)));
+    }
+    columns
+}
+
+/// The columns of the second table of `rows`: what the first one leaves out; none if that is nothing.
+pub(crate) fn totals(rows: &[&Row]) -> Vec<Column> {
+    let text = |name, cell| Column { name, left: true, cell };
+    let number = |name, cell| Column { name, left: false, cell };
+    let mut columns = vec![text("scheme", |r| r.label.clone())];
+    if rows.iter().any(|r| r.solver != rows[0].solver) {
+        columns.push(text("solver", |r| r.solver.clone()));
+    }
+    let is_adaptive = is_adaptive(rows);
+    columns.push(number(if is_adaptive { "step" } else { "n" }, |r| r.level.to_string()));
+    let names = columns.len();
+    if has_errors(rows) {
+        columns.extend(of_the_solution(rows));
+        if !is_adaptive && rows.iter().any(|r| r.bound.total.is_some()) {
+            columns.push(number("bound", |r| scientific(r.bound.total)));
+        }
+    }
+    if rows.iter().any(|r| !r.iterations.stages.is_empty()) {
+        columns.push(text("stages (outer)", |r| {
+            let stages = r.iterations.stages.iter().map(|s| format!("{} ({})", s.stage, s.outer));
+            stages.collect::<Vec<_>>().join(", ")
+        }));
+    }
+    if columns.len() > names { columns } else { Vec::new() }
+}
+
+/// The lines of a table: its columns, and how wide they are.
+struct Lines {
+    columns: Vec<Column>,
+    widths: Vec<usize>,
+    gap: &'static str,
+}
+
+impl Lines {
+    /// Two blanks between columns where they fit into the width of a table.
+    fn new(columns: Vec<Column>, rows: &[&Row]) -> Self {
+        let width = |c: &Column| {
+            rows.iter().map(|r| (c.cell)(r).len()).chain([c.name.len()]).max().unwrap_or(0)
+        };
+        let widths: Vec<usize> = columns.iter().map(width).collect();
+        let widest = widths.iter().sum::<usize>() + 2 * (widths.len() - 1);
+        Self { columns, widths, gap: if widest <= WIDTH { "  " } else { " " } }
+    }
+    /// One line, without blanks at its end.
+    fn write(&self, f: &mut impl fmt::Write, cell: impl Fn(&Column) -> String) -> fmt::Result {
+        let mut line = String::new();
+        for (column, &width) in self.columns.iter().zip(&self.widths) {
+            let cell = cell(column);
+            line +=
+                &if column.left { format!("{cell:<width$}") } else { format!("{cell:>width$}") };
+            line += self.gap;
+        }
+        writeln!(f, "{}", line.trim_end())
+    }
 }
 
 /// A number of things.

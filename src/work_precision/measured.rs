@@ -50,14 +50,14 @@ pub struct Phases {
 impl Phases {
     /// The phases of a row whose start took these seconds.
     pub(crate) fn new(seconds: &Seconds, coarse: f64) -> Self {
-        let Seconds { mesh, assemble, solve, total } = *seconds;
+        let Seconds { mesh, assemble, solve, total, .. } = *seconds;
         Phases { mesh, assemble, coarse, solve: solve - coarse, total }
     }
 
     /// The times as a row states them, with the start as a part of the solve.
     fn seconds(&self) -> Seconds {
         let Phases { mesh, assemble, coarse, solve, total } = *self;
-        Seconds { mesh, assemble, solve: solve + coarse, total }
+        Seconds { total, ..Seconds::new(mesh, assemble, solve + coarse) }
     }
 }
 

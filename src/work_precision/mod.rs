@@ -259,11 +259,25 @@ impl<'a, const D: usize> WorkPrecision<'a, D> {
         self
     }
 
+    /// The number of runs, each with its rounds, unless some exceed the time limit.
+    ///
+    /// # Errors
+    /// Those of [`Study::check`] of each case; [`Error::Parameter`] for two schemes of one label, and for a
+    /// reference that does not fit the levels or the memory.
+    pub fn check(&self) -> Result<usize, Error> {
+        compiled!(
+            const D: fn(&WorkPrecision<'_, D>) -> Result<usize, Error> = |study| {
+                let cases = study.slots()?.len();
+                study.study_against_reference()?;
+                Ok(cases * study.rounds)
+            }
+        )(self)
+    }
+
     /// Runs everything.
     ///
     /// # Errors
-    /// The errors of [`Study::check`], before anything runs; [`Error::Parameter`] for two schemes of one
-    /// label. An [`Error::Write`] ends the study. A case that
+    /// Those of [`Self::check`], before anything runs. An [`Error::Write`] ends the study. A case that
     /// fails is no error: the report lists it.
     pub fn run(&self) -> Result<WorkReport, Error> {
         let mut report = WorkReport::new("work-precision", self.rounds);
@@ -297,7 +311,10 @@ impl<'a, const D: usize> WorkPrecision<'a, D> {
                 report.program.precision += &format!("{comma}{precision}");
             }
         }
-        let measured = self.rows_against_reference()?;
+        let measured = match self.study_against_reference()? {
+            Some(study) => study.run()?.rows,
+            None => Vec::new(),
+        };
         let before = (report.rows.len(), report.refused.len());
         (self.observer)(WorkProgress::Planned(slots.len() * self.rounds));
         // threads, pages and instructions are there when the clock starts
@@ -370,6 +387,9 @@ impl<'a, const D: usize> WorkPrecision<'a, D> {
                 };
                 if let Some(known) = against_reference.iter().find(is_same) {
                     row.against.clone_from(&known.against);
+                    if known.against.is_none() {
+                        row.warnings.clone_from(&known.warnings);
+                    }
                     (row.error, row.contact) = (known.error, known.contact);
                 }
                 match &mut slot.measured {
@@ -380,9 +400,10 @@ impl<'a, const D: usize> WorkPrecision<'a, D> {
         }
     }
 
-    /// Every scheme on every level with its errors against the reference; empty without a reference.
-    fn rows_against_reference(&self) -> Result<Vec<Row>, Error> {
-        let Some((reference, level)) = &self.reference else { return Ok(Vec::new()) };
+    /// Every scheme on every level with its errors against the reference, checked; none without a
+    /// reference.
+    fn study_against_reference(&self) -> Result<Option<Study<'_, f64, D>>, Error> {
+        let Some((reference, level)) = &self.reference else { return Ok(None) };
         let mut study = Study::<f64, D>::new((self.scene)()).levels(self.levels.iter().copied());
         if let Some(mesh) = &self.mesh {
             study = study.on_mesh(mesh.clone());
@@ -405,7 +426,8 @@ impl<'a, const D: usize> WorkPrecision<'a, D> {
                 format!("it would need about {need:.1} GB of memory, {free:.1} GB are available");
             return Err(wrong("level of the reference", level.to_string(), &allowed));
         }
-        Ok(study.run()?.rows)
+        study.check()?;
+        Ok(Some(study))
     }
 
     /// The reason for which a case is not run.

@@ -191,6 +191,10 @@ impl WorkReport {
         if !self.setting.is_empty() {
             text += &format!("; {}", self.setting);
         }
+        let references = distinct(self.rows.iter().filter_map(|m| m.row.reference()));
+        if !references.is_empty() {
+            text += &format!("; errors against {}", references.join(", "));
+        }
         text
     }
 

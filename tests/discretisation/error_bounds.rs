@@ -24,8 +24,6 @@ fn right_side<const D: usize>(
     let density = exact.multiplier.as_ref().unwrap();
     let degree = if D < 3 { 13 } else { 7 };
     let rule = Rule::new(D, degree);
-    let datum =
-        |f: &Option<unilateral::problem::Field<D>>, x: &Point<f64, D>| f.as_ref().map(|f| f(x));
     let source = |x: &Point<f64, D>| problem.source.as_ref().map_or(0.0, |f| f.at(x));
     let mut sum = 0.0;
     for cell in 0..mesh.n_cells() {
@@ -50,22 +48,22 @@ fn right_side<const D: usize>(
                 })
                 .sum();
             let u = (exact.value)(x);
-            let alpha = datum(&problem.coefficient, x).unwrap_or(1.0);
+            let alpha = problem.coefficient.as_ref().map_or(1.0, |f| f.at(x));
             for (psi, sign) in [(&problem.lower, 1.0), (&problem.upper, -1.0)] {
                 let Some(psi) = psi else { continue };
-                if sign * (psi(x) - v) > 0.0 {
-                    v = psi(x);
+                if sign * (psi.at(x) - v) > 0.0 {
+                    v = psi.at(x);
                     gradient = Point::from_fn(|k, _| {
                         let mut step = Point::<f64, D>::zeros();
                         step[k] = 1e-6;
-                        (psi(&(x + step)) - psi(&(x - step))) / 2e-6
+                        (psi.at(&(x + step)) - psi.at(&(x - step))) / 2e-6
                     });
                 }
                 if sign * multiplier > 0.0 {
-                    sum += weight * multiplier * (u - psi(x));
+                    sum += weight * multiplier * (u - psi.at(x));
                 }
                 if sign * density(x) > 0.0 {
-                    sum += weight * density(x) * (v - psi(x));
+                    sum += weight * density(x) * (v - psi.at(x));
                 }
             }
             let slope = (exact.gradient)(x);
@@ -84,10 +82,10 @@ fn right_side<const D: usize>(
             let at = |k: usize| mesh.vertices()[corners[k]] * point[k];
             let x: Point<f64, D> = (0..D).map(at).sum();
             let interpolated: f64 = (0..D).map(|k| pair.function[corners[k]] * point[k]).sum();
-            let v = interpolated.max(gap(&x));
+            let v = interpolated.max(gap.at(&x));
             let weight = weight * measure;
-            sum += weight * force * ((exact.value)(&x) - gap(&x));
-            sum += weight * density(&x) * (v - gap(&x));
+            sum += weight * force * ((exact.value)(&x) - gap.at(&x));
+            sum += weight * density(&x) * (v - gap.at(&x));
         }
     }
     sum

@@ -1,6 +1,7 @@
 //! Matrices and loads of discretisations, and the accuracy of their solutions.
 
 mod accuracy;
+mod adaptive;
 mod elements;
 mod error_bounds;
 mod forms;

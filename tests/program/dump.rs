@@ -70,9 +70,20 @@ fn a_vector_that_comes_back_has_the_row_of_the_run() {
         let output = judge(&folder, "u.txt", &[]);
         assert!(stdout(&output).contains("certificate: feasibility"), "{}", stdout(&output));
 
-        let wrong: Vec<String> = values.iter().map(|x| format!("{:e}", x + 1e-3)).collect();
-        fs::write(folder.join("wrong.txt"), wrong.join(" ")).unwrap();
-        assert_eq!(judge(&folder, "wrong.txt", &[]).status.code(), Some(1));
+        for wrong in [values.iter().map(|x| x + 1e-3).collect(), vec![0.0; n]] {
+            let wrong: Vec<String> = wrong.iter().map(|x: &f64| format!("{x:e}")).collect();
+            fs::write(folder.join("wrong.txt"), wrong.join(" ")).unwrap();
+            let output = judge(&folder, "wrong.txt", &[]);
+            assert_eq!(output.status.code(), Some(1));
+            let words = "not-a-solution: the values do not satisfy the inequality";
+            assert!(stdout(&output).contains(words), "{}", stdout(&output));
+        }
+        let mut infinite = text;
+        infinite[2] = "nan".to_owned();
+        fs::write(folder.join("nan.txt"), infinite.join(" ")).unwrap();
+        let output = judge(&folder, "nan.txt", &[]);
+        assert_eq!(output.status.code(), Some(2));
+        assert!(stderr(&output).contains("NaN at position 2"), "{}", stderr(&output));
         fs::write(folder.join("short.txt"), "1 2 3").unwrap();
         let output = judge(&folder, "short.txt", &[]);
         assert_eq!(output.status.code(), Some(2));
@@ -129,4 +140,40 @@ fn a_problem_that_changed_since_the_dump_is_noticed() {
     let output = judge(&folder, "u.txt", &[]);
     assert_eq!(output.status.code(), Some(2));
     assert!(stderr(&output).contains("is not what it was"), "{}", stderr(&output));
+}
+
+/// Errors against a reference are those of the run.
+#[test]
+fn a_vector_is_judged_against_the_reference_of_its_run() {
+    let scratch = Scratch::new("dump-reference");
+    let dump = scratch.path("dump");
+    let options = "--scene radial-2d --scheme p1 --levels 4,8 --quiet --reference cr@level=32";
+    let report = scratch.report(&format!("{options} --dump {dump}"));
+    let folder = Path::new(&dump).join("radial-2d-p1-8");
+    let text: Vec<String> = solution(&ConformingP1, 8).iter().map(|x| format!("{x:e}")).collect();
+    fs::write(folder.join("u.txt"), text.join(" ")).unwrap();
+    let output = judge(&folder, "u.txt", &["--json"]);
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    let judged: Value = serde_json::from_str(&stdout(&output)).unwrap();
+    let (judged, row) = (&rows(&judged)[0], &rows(&report)[1]);
+    assert_eq!(judged["against"], "cr at level 32");
+    let [a, b] = [judged, row].map(|r| r["error"]["h1"].as_f64().unwrap());
+    assert!((a / b - 1.0).abs() < 1e-9, "{a} and {b}");
+}
+
+/// Each of several solvers has its own files.
+#[test]
+fn solvers_side_by_side_have_files_of_their_own() {
+    let scratch = Scratch::new("solvers");
+    scratch.report(
+        "--scene radial-2d --scheme p1 --levels 4,8 --solver active-set,monotone-multigrid",
+    );
+    let out = scratch.0.join("out");
+    let page = fs::read_to_string(out.join("report.html")).unwrap();
+    for solver in ["active-set", "monotone-multigrid"] {
+        for end in ["svg", "vtu"] {
+            assert!(out.join(format!("radial-2d-p1-{solver}.{end}")).exists(), "{solver} {end}");
+        }
+        assert!(page.contains(&format!("p1-{solver} on radial-2d")));
+    }
 }

@@ -1,5 +1,6 @@
 //! The program `unilateral`, subcommand `compare`: wrong requests and right requests.
 
+mod adaptive;
 mod data;
 mod dump;
 #[cfg(unix)]

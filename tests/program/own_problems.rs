@@ -16,13 +16,12 @@ fn number(row: &Value, keys: &[&str]) -> f64 {
 #[test]
 fn a_membrane_from_a_file_is_measured_against_a_reference() {
     let scratch = Scratch::new("membrane");
-    let options =
-        "--scheme p1,cr,wopsip:facet-means --levels 0,1,2 --reference p2:midpoints@level=4";
+    let options = "--scheme p1,cr,wopsip:facet-means --levels 0,1,2 --reference 4";
     let report = scratch.report(&format!("{} {options}", example("membrane")));
     assert_eq!(rows(&report).len(), 9);
     for row in rows(&report) {
         assert_eq!(row["scene"], "membrane");
-        assert_eq!(row["against"], "p2:midpoints at level 4");
+        assert_eq!(row["against"], "p2 at level 4");
         assert_eq!(row["status"], "converged");
         assert!(number(row, &["energy"]) < 0.0 && number(row, &["contact_measure"]) > 0.0);
         for key in ["multiplier_l1", "multiplier_l2", "contact_area_error"] {
@@ -35,11 +34,21 @@ fn a_membrane_from_a_file_is_measured_against_a_reference() {
             assert!(area < 0.5, "{area}");
         }
     }
+    // what errors leave out of the first table stands in a second one, in every format
+    let text = |name: &str| std::fs::read_to_string(scratch.0.join("out").join(name)).unwrap();
+    for (file, bar) in [("report.md", "|"), ("report.tex", "&")] {
+        let text = text(file);
+        assert!(text.contains("membrane: totals and stages"), "{file}");
+        for name in ["energy", "contact", "resultant", "bound", "stages (outer)"] {
+            assert!(text.contains(&format!("{bar} {name}")), "{file}: {name}");
+        }
+        assert!(text.contains("direct-active-set (") && text.contains("extrapolated, p1: energy"));
+    }
     for file in ["membrane-p1.vtu", "report.html", "convergence.svg"] {
         assert!(scratch.0.join("out").join(file).exists(), "{file}");
     }
     let plot = std::fs::read_to_string(scratch.0.join("out/convergence.svg")).unwrap();
-    assert!(plot.contains("against p2:midpoints at level 4"));
+    assert!(plot.contains("against p2 at level 4"));
 }
 
 #[test]
@@ -71,6 +80,10 @@ fn the_work_of_a_problem_of_ones_own() {
         assert_eq!(row["against"], "p2 at level 3");
         assert!(number(row, &["error", "h1"]) > 0.0 && number(row, &["seconds", "total"]) > 0.0);
     }
+    for file in ["report.txt", "report.md", "report.tex", "report.html"] {
+        let text = std::fs::read_to_string(scratch.0.join("out").join(file)).unwrap();
+        assert!(text.contains("errors against p2 at level 3"), "{file}");
+    }
 }
 
 #[test]
@@ -80,7 +93,26 @@ fn a_box_of_ones_own() {
         [obstacle]\nlower.default = -0.2\n[boundary.left]\nkind = \"dirichlet\"\n\
         [boundary.right]\nkind = \"neumann\"\nflux = \"0.1 * nx\"\n";
     let path = scratch.file("rod.toml", text);
-    let report = scratch.report(&format!("{path} --scheme p1,sipg --levels 8,16 --reference 64"));
+    let output = scratch.run(&format!("{path} --scheme p1,sipg --levels 8,16 --reference 64"));
+    let report = read_json(&scratch.0.join("out/report.json"));
+    // on a terminal the second table has the finest level of each series
+    let text = String::from_utf8(output.stdout).unwrap();
+    let lines: Vec<&str> = text.lines().skip_while(|line| !line.contains("stages")).collect();
+    assert!(
+        lines[0].split_whitespace().eq([
+            "scheme",
+            "n",
+            "energy",
+            "contact",
+            "resultant",
+            "bound",
+            "stages",
+            "(outer)"
+        ]),
+        "{text}"
+    );
+    assert!(lines[1].starts_with("p1") && lines[2].starts_with("sipg"), "{text}");
+    assert!(lines[1].contains("  16  ") && lines[1].contains("direct-active-set ("), "{text}");
     assert_eq!(rows(&report)[0]["scene"], "rod");
     assert!(rows(&report).iter().all(|row| row["against"] == "p2 at level 64"));
 }
@@ -206,4 +238,19 @@ fn a_report_against_another_reference_is_not_resumed() {
     assert_eq!(output.status.code(), Some(2), "{}", stderr(&output));
     assert!(stderr(&output).contains("reference p2 at level"), "{}", stderr(&output));
     scratch.report(&format!("{options} 2 --resume"));
+}
+
+/// One reference that fails ends neither the study nor the rows of other scenes.
+#[test]
+fn rows_stand_without_a_reference_that_fails() {
+    let scratch = Scratch::new("no-reference");
+    let options = "--scene radial-2d,signorini-2d --scheme p1 --levels 4 --quiet --no-fields";
+    let report = scratch.report(&format!("{options} --reference sipg-p2@sigma=1e-2,level=16"));
+    assert_eq!(rows(&report).len(), 2);
+    for row in rows(&report) {
+        assert_eq!(row["status"], "converged");
+        assert!(row["against"].is_null() && row["error"]["h1"].is_null());
+        let warning = row["warnings"][0].as_str().unwrap();
+        assert!(warning.contains("sipg-p2@sigma=0.01 at level 16, was not found"), "{warning}");
+    }
 }

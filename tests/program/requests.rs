@@ -1,6 +1,6 @@
 //! Wrong requests.
 
-use super::run::{Scratch, refused, stdout};
+use super::run::{Scratch, command, refused, stderr, stdout};
 
 #[test]
 fn wrong_options_are_refused() {
@@ -99,4 +99,47 @@ fn places_that_cannot_be_written_are_refused_before_the_work() {
     let directory = scratch.0.display().to_string();
     refused(&scratch, &["--json", &directory], &["cannot write", &directory]);
     assert!(std::fs::read(file).unwrap().is_empty());
+}
+
+#[test]
+fn the_other_commands_refuse_before_the_work_too() {
+    let scratch = Scratch::new("other-places");
+    let file = scratch.file("file", "");
+    let (below, out) = (scratch.path("file/report"), scratch.path("out"));
+    for (name, options, words) in [
+        ("work-precision", format!("--quick --save {below} --out {out}"), "cannot write"),
+        ("work-precision", format!("--quick --out {below}"), "cannot write"),
+        ("work-precision", format!("--scene radial-2d --reference 20 --out {out}"), "reference"),
+        ("stability", format!("--quick --markdown {below} --out {out}"), "cannot write"),
+        ("stability", format!("--quick --scheme none --out {out}"), "scheme"),
+        ("orders", below.clone(), "cannot write"),
+        ("orders", format!("{out} --summary {below}"), "cannot write"),
+        ("pictures", format!("--series 0 --out {out}"), "level"),
+        ("pictures", format!("--out {below}"), "cannot write"),
+    ] {
+        let output = command(name).args(options.split(' ')).output().unwrap();
+        let message = stderr(&output);
+        assert_eq!(output.status.code(), Some(2), "{name} {options}: {message}");
+        assert!(message.starts_with("error: ") && message.lines().count() == 1, "{message}");
+        assert!(message.contains(words), "{name} {options}: {message}");
+        assert!(!scratch.0.join("out").exists(), "{name} {options} left files");
+    }
+    assert!(std::fs::read(file).unwrap().is_empty());
+}
+
+/// A solve that fails is no wrong request.
+#[test]
+fn a_picture_of_nothing_is_no_wrong_request() {
+    let scratch = Scratch::new("nothing-to-draw");
+    let out = scratch.path("out");
+    let problem = scratch.file(
+        "pulled.toml",
+        "box = [[0, 0], [1, 1]]\n[obstacle]\nlower.default = 1\nupper.default = \"1 - x * (1 - x)\"\n\
+         [boundary.left]\nkind = \"dirichlet\"\nvalue = 1\n[boundary.right]\nkind = \"dirichlet\"\nvalue = 1\n\
+         [boundary.top]\nkind = \"neumann\"\n[boundary.bottom]\nkind = \"neumann\"\n",
+    );
+    let output = command("pictures").args([&problem, "--out", &out]).output().unwrap();
+    let message = stderr(&output);
+    assert_eq!(output.status.code(), Some(1), "{message}");
+    assert!(message.contains("nothing to draw"), "{message}");
 }

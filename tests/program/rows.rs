@@ -10,7 +10,7 @@ use crate::support::keys::ROW_KEYS;
 const INNER_KEYS: [(&str, &[&str], bool); 8] = [
     ("parameters", &["sigma", "eta", "rule"], true),
     ("error", &["l2", "h1", "energy", "broken_energy", "max"], true),
-    ("order", &["l2", "h1", "energy", "max", "multiplier_l1", "multiplier_l2"], true),
+    ("order", &["l2", "h1", "energy", "max", "bound", "multiplier_l1", "multiplier_l2"], true),
     ("expected_order", &["l2", "h1"], true),
     ("bound", &BOUND_NUMBERS, true),
     ("iterations", &["outer", "linear", "levels", "start_cycles", "stages"], false),
@@ -46,6 +46,7 @@ fn check_row(row: &Value) {
             }
             "peak_memory_bytes" => value.is_u64() || value.is_null(),
             "mesh_size" => value.is_f64(),
+            "theta" => value.is_f64() || value.is_null(),
             "objective" => value.is_number() || value.is_null(),
             "energy" | "contact_measure" | "resultant" => value.is_f64() || !converged,
             _ => value.is_object(),

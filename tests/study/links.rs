@@ -6,9 +6,10 @@ use std::path::{Component, Path, PathBuf};
 use std::process::Command;
 
 /// Pages of the repository. Orders and stability are tables that the program writes.
-const PAGES: [&str; 14] = [
+const PAGES: [&str; 15] = [
     "README.md",
     "CHANGELOG.md",
+    "docs/adaptive.md",
     "docs/assembly.md",
     "docs/bound.md",
     "docs/choosing.md",

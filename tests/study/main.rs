@@ -1,5 +1,6 @@
 //! Studies and what they write: scenes, reports, tables, pictures, files of fields.
 
+mod adaptive;
 mod journal;
 mod links;
 mod named_schemes;

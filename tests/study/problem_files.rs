@@ -192,6 +192,24 @@ fn mistakes_are_found_where_they_are() {
             (16, 12),
             "for each coordinate",
         ),
+        ("box = [[0, 1], [1, 1]]".to_owned(), (1, 7), "the first below the second"),
+        ("box = [[0], [inf]]".to_owned(), (1, 7), "the first below the second"),
+        (
+            // finite at every vertex and barycentre
+            format!("{BOX}[coefficient]\ndefault = \"if(abs(x - 0.21) < 0.02, 0, 1)\"\n{SIDES}"),
+            (3, 11),
+            "coefficient.default is 0 at (0.2",
+        ),
+        (
+            format!("{BOX}{SIDES}[exact]\nvalue = \"ln(x)\"\ngradient = [\"1/x\", 0]\n"),
+            (15, 9),
+            "exact.value is",
+        ),
+        (
+            format!("{BOX}{SIDES}[exact]\nvalue = \"x*y\"\ngradient = [\"y\", \"-x\"]\n"),
+            (16, 12),
+            "component 2 of exact.gradient is",
+        ),
     ];
     for (text, place, words) in cases {
         let path = folder.0.join("wrong.toml");
@@ -207,15 +225,42 @@ fn mistakes_are_found_where_they_are() {
     }
     std::fs::write(folder.0.join("lost.toml"), "mesh = \"lost.msh\"").unwrap();
     let error = read(&folder.0.join("lost.toml")).unwrap_err();
-    assert!(
-        matches!(error, ProblemFileError::Mesh { .. }) && error.to_string().contains("lost.msh")
-    );
+    let message = error.to_string();
+    assert!(matches!(error, ProblemFileError::Mesh { line: 1, column: 8, .. }), "{message}");
+    assert!(message.contains("lost.toml:1:8: mesh cannot read"), "{message}");
+    assert_eq!(message.matches("lost.msh").count(), 1, "{message}");
     let error = read(&folder.0.join("nothing.toml")).unwrap_err();
     assert!(matches!(error, ProblemFileError::Unreadable { .. }));
     std::fs::write(folder.0.join("two.toml"), format!("{BOX}{SIDES}[boundary.dirichlet]\n"))
         .unwrap();
     let error = read(&folder.0.join("two.toml")).unwrap_err();
     assert!(matches!(error, ProblemFileError::At { fault: ProblemFileFault::Missing { .. }, .. }));
+}
+
+#[test]
+fn bounds_on_constant_data_are_guaranteed() {
+    let folder = Scratch::new("problem-constants");
+    std::fs::create_dir_all(&folder.0).unwrap();
+    let path = folder.0.join("constants.toml");
+    let data = "[coefficient]\ndefault = 2\n[source]\ndefault = -8\n[reaction]\ndefault = 1\n\
+        [obstacle]\nlower.default = -0.1\n";
+    let sides = |flux: &str| {
+        format!(
+            "[boundary.left]\nkind = \"dirichlet\"\n[boundary.right]\nkind = \"dirichlet\"\nvalue = 0\n\
+            [boundary.top]\nkind = \"neumann\"\n[boundary.bottom]\nkind = \"neumann\"\nflux = {flux}\n"
+        )
+    };
+    for (flux, is_guaranteed) in
+        [("1", true), ("\"1\"", true), ("\"2 * pi - 1\"", true), ("\"1 + x\"", false)]
+    {
+        std::fs::write(&path, format!("{BOX}{data}{}", sides(flux))).unwrap();
+        let AnyOwnProblem::Two(own) = read(&path).unwrap() else { panic!("in the plane") };
+        let Geometry::Box(domain) = &own.geometry else { panic!("a box") };
+        let mesh = Mesh::<f64, 2>::kuhn_box(domain, domain.counts(4)).unwrap();
+        let solved = solve(&own.problem, &mesh, &ConformingP1).unwrap();
+        assert!(solved.active() > Some(0));
+        assert_eq!(solved.bound().unwrap().is_guaranteed(), is_guaranteed, "{flux}");
+    }
 }
 
 #[test]

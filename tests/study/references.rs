@@ -90,6 +90,24 @@ fn multiplier_and_contact_set_are_measured_too() {
         assert!((0.5..2.0).contains(&ratio), "{ratio}");
         assert!(row.contact.contact_area_error.unwrap() <= 2.0 * row.mesh_size);
     }
+    // cells, in the plane and in space, where the vertices of quadratics have no positive mean
+    let plane = scenes::radial::<2>(1.0);
+    let plane = Study::<f64, 2>::new(plane).scheme(ConformingP1).scheme(ConformingP2);
+    let exact = plane.levels([8, 16]).run().unwrap().rows;
+    let plane = Study::<f64, 2>::new(scenes::radial(1.0)).scheme(ConformingP1).levels([8, 16]);
+    let found = plane.reference(ConformingP2, 64).run().unwrap().rows;
+    for (row, exact) in found.iter().zip(&exact) {
+        let [found, exact] = [row, exact].map(|r| r.contact.contact_area_error.unwrap());
+        assert!((found - exact).abs() < 0.25 * exact, "{found} {exact}");
+    }
+    // quadratics find the contact set, a disc of radius one, at least as well as linears
+    let area = std::f64::consts::PI;
+    for (linear, quadratic) in exact[..2].iter().zip(&exact[2..]) {
+        let error = |row: &Row| row.contact.contact_area_error.unwrap();
+        assert!(error(quadratic) <= error(linear), "{} {}", error(quadratic), error(linear));
+        let measure = quadratic.contact_measure.unwrap();
+        assert!((measure - area).abs() < 4.0 * quadratic.mesh_size, "{measure}");
+    }
     // nothing differs from itself
     let scene = scenes::radial::<2>(1.0);
     let meshes = Hierarchy::<f64, 2>::of_domain(&scene.domain, 8).unwrap();

@@ -32,7 +32,7 @@ fn json_has_the_keys_that_scripts_rely_on() {
     assert_eq!(keys(row).len(), ROW_KEYS.len() + added.len());
     assert_eq!(keys(&row["parameters"]), ["sigma", "eta", "rule"]);
     assert_eq!(keys(&row["error"]), ["l2", "h1", "energy", "broken_energy", "max"]);
-    let orders = ["l2", "h1", "energy", "max", "multiplier_l1", "multiplier_l2"];
+    let orders = ["l2", "h1", "energy", "max", "bound", "multiplier_l1", "multiplier_l2"];
     assert_eq!(keys(&row["order"]), orders);
     assert_eq!(keys(&row["expected_order"]), ["l2", "h1"]);
     assert_eq!(keys(&row["iterations"]), ["outer", "linear", "levels", "start_cycles", "stages"]);
@@ -42,7 +42,7 @@ fn json_has_the_keys_that_scripts_rely_on() {
     let bound = "total distance guaranteed mismatch obstacle contact oscillation algebra \
                  effectivity reason";
     assert_eq!(keys(&row["bound"]), bound.split(' ').collect::<Vec<_>>());
-    assert_eq!(keys(&row["seconds"]), ["mesh", "assemble", "solve", "total"]);
+    assert_eq!(keys(&row["seconds"]), ["mesh", "assemble", "solve", "bound", "total"]);
     assert_eq!(json["rows"].as_array().unwrap().len(), 18);
 }
 

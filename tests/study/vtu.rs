@@ -420,3 +420,23 @@ fn needs_pyvista_to_read_files() {
     let output = Command::new(python).args(["-c", &script]).output().unwrap();
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
 }
+
+/// Against a reference the field is the difference from that, at the same points of its cells.
+#[test]
+fn the_error_is_the_difference_from_a_reference() {
+    let scratch = Scratch::new("vtu-reference");
+    let scene = scenes::radial::<2>(1.0);
+    let exact = scene.problem.exact.clone().unwrap();
+    let study = Study::<f64, 2>::new(scene).scheme(Wopsip::default()).levels([4]);
+    let study = study.reference(ConformingP2, 64).fields_to(&scratch.0);
+    study.field_scalar(FieldScalar::Double).run().unwrap();
+    let grid = read(scratch.0.join(file_name("radial-2d-wopsip") + ".vtu"));
+    let [u, error] = ["u", "error"].map(|name| grid.floats("PointData", name));
+    let points = grid.floats("Points", "Points");
+    let largest = error.iter().fold(0.0, |most: f64, e| most.max(e.abs()));
+    assert!(largest > 1e-2, "{largest}");
+    for ((x, u), error) in points.chunks(3).zip(u).zip(error) {
+        let from_exact = u - (exact.value)(&Point::from([x[0], x[1]]));
+        assert!((error - from_exact).abs() < 0.02 * largest, "{x:?}: {error} {from_exact}");
+    }
+}

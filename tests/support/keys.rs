@@ -1,13 +1,14 @@
 //! What scripts rely on.
 
 /// The keys of a row, in order.
-pub const ROW_KEYS: [&str; 31] = [
+pub const ROW_KEYS: [&str; 32] = [
     "scene",
     "dimension",
     "scheme",
     "constraint",
     "label",
     "level",
+    "theta",
     "parameters",
     "cells",
     "unknowns",

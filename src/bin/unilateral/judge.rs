@@ -19,7 +19,7 @@ use unilateral::study::{Program, Report, Row, RowKey, file_name};
 use crate::compare;
 use crate::mesh_file::MeshFile;
 use crate::posed::Posed;
-use crate::shared::{Request, cannot_write, fingerprint, print, read, write};
+use crate::shared::{Request, cannot_write, each_once, fingerprint, print, read, write};
 
 /// Judges a vector that another program found for an inequality of `compare --dump`
 #[derive(Args, Debug)]
@@ -51,11 +51,17 @@ pub fn write_requests(
     let (mesh, problem) = (mesh?, problem?);
     let part = |(name, part): &(String, BoundaryPart)| (name.clone(), part.name());
     let boundary: BTreeMap<String, &str> = options.mesh.boundary.iter().map(part).collect();
+    // the meshes of a reference are refined from that of the coarsest level
+    let coarsest = keys.iter().map(|key| key.level).min();
     for RowKey { scene, label, level, .. } in keys {
         let folder = directory.join(file_name(&format!("{scene}-{label}-{level}")));
         let request = json!({
-            "scene": scene, "label": label, "level": level, "precision": options.precision,
+            "scene": scene, "label": label, "level": level, "coarsest": coarsest,
+            "precision": options.precision,
             "scale": options.scale, "contrast": options.contrast, "load": options.load,
+            "reference": options.reference.as_ref().map(|(scheme, level)| {
+                json!({ "scheme": scheme.to_string(), "level": level })
+            }),
             "mesh": mesh, "problem": problem, "contents": contents, "boundary": boundary,
         });
         std::fs::create_dir_all(&folder).map_err(|e| cannot_write(&folder, e))?;
@@ -105,7 +111,17 @@ fn judge<T: Real>(options: &Options, path: &Path, request: &Value) -> Request<bo
             bytes,
         ));
     }
-    let of = (&scheme, level);
+    let reference = match &request["reference"] {
+        Value::Null => None,
+        reference => {
+            let name = reference["scheme"].as_str().and_then(|name| name.parse().ok());
+            let level = reference["level"].as_u64().map(|level| level as usize);
+            Some(name.zip(level).ok_or_else(|| wrong("reference"))?)
+        }
+    };
+    let coarsest = request["coarsest"].as_u64().map_or(level, |coarsest| coarsest as usize);
+    let levels = [level, if reference.is_some() { coarsest } else { level }];
+    let of = (&scheme, levels, reference.as_ref());
     let row = match request["problem"].as_str().map(Path::new) {
         Some(path) => {
             is_unchanged(0, path, &read(path)?)?;
@@ -152,14 +168,17 @@ fn judge<T: Real>(options: &Options, path: &Path, request: &Value) -> Request<bo
 
 fn row<T: Real, const D: usize>(
     posed: Posed<D>,
-    (scheme, level): (&NamedScheme, usize),
+    (scheme, levels, reference): (&NamedScheme, [usize; 2], Option<&(NamedScheme, usize)>),
     mesh: Option<(MeshFile, Vec<u8>)>,
     values: &[f64],
 ) -> Request<Row> {
     let study = posed.study::<T>(&|_| {})?;
-    let mut study = study.named_scheme(scheme).levels([level]);
+    let mut study = study.named_scheme(scheme).levels(each_once(&levels));
     if let Some((file, bytes)) = mesh {
         study = study.on_mesh(file.parse(&bytes, &|_| {})?);
+    }
+    if let Some((scheme, level)) = reference {
+        study = study.named_reference(scheme, *level);
     }
     study.judge(values).map_err(|e| e.to_string())
 }

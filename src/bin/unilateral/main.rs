@@ -19,7 +19,7 @@ use std::process::ExitCode;
 
 use clap::error::ErrorKind;
 use clap::{CommandFactory, Parser, Subcommand};
-use shared::{Request, check_environment, complain, print};
+use shared::{Failure, Request, check_environment, complain, print};
 use unilateral::input::excerpt;
 
 /// Finite element schemes on variational inequalities: comparisons, measurements, pictures.
@@ -44,10 +44,14 @@ enum Command {
 }
 
 fn main() -> ExitCode {
-    match parse().and_then(run) {
+    match parse().map_err(Failure::from).and_then(run) {
         Ok(true) => ExitCode::SUCCESS,
         Ok(false) => ExitCode::from(1),
-        Err(message) => {
+        Err(Failure::Work(message)) => {
+            complain(&message);
+            ExitCode::from(1)
+        }
+        Err(Failure::Request(message)) => {
             complain(&message);
             ExitCode::from(2)
         }
@@ -55,16 +59,16 @@ fn main() -> ExitCode {
 }
 
 /// Runs a command; false for exit code 1.
-fn run(command: Command) -> Request<bool> {
+fn run(command: Command) -> Result<bool, Failure> {
     check_environment()?;
     match command {
-        Command::Compare(options) => compare::run(&options),
+        Command::Compare(options) => Ok(compare::run(&options)?),
         Command::WorkPrecision(options) => work_precision::run(&options),
         Command::Stability(options) => stability::run(&options),
         Command::Pictures(options) => pictures::run(&options),
         Command::Orders(options) => orders::run(&options),
-        Command::Judge(options) => judge::run(&options),
-        Command::List => print(&compare::list()).map(|()| true),
+        Command::Judge(options) => Ok(judge::run(&options)?),
+        Command::List => Ok(print(&compare::list()).map(|()| true)?),
     }
 }
 

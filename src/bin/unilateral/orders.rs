@@ -18,7 +18,7 @@ use unilateral::scenes::{AnyScene, Parameters, Scene, catalogue};
 use unilateral::scheme::NamedScheme;
 use unilateral::study::{Program, Row, orders_summary, orders_table};
 
-use crate::shared::{ORDER_TOLERANCE, Request, complain, print, schemes, write};
+use crate::shared::{Failure, ORDER_TOLERANCE, check_writable, print, schemes, write};
 
 /// Sets observed orders beside those that theory promises, every scheme on every scene
 #[derive(Args, Debug)]
@@ -40,15 +40,11 @@ pub struct Options {
 }
 
 /// Whether the work came to its end.
-pub fn run(options: &Options) -> Request<bool> {
+pub fn run(options: &Options) -> Result<bool, Failure> {
     let schemes = schemes(&options.schemes, &["all"])?;
-    match make(options, &schemes) {
-        Ok(()) => Ok(true),
-        Err(error) => {
-            complain(&error.to_string());
-            Ok(false)
-        }
-    }
+    check_writable(options.file.iter().chain(&options.summary))?;
+    make(options, &schemes).map_err(Failure::of_work)?;
+    Ok(true)
 }
 
 fn make(options: &Options, schemes: &[NamedScheme]) -> Result<(), Box<dyn Error>> {

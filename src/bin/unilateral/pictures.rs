@@ -18,7 +18,7 @@ use unilateral::study::{Row, Study, file_name};
 
 use crate::mesh_file::MeshFile;
 use crate::posed::Posed;
-use crate::shared::{Request, print, print_to, scene};
+use crate::shared::{Failure, Request, make_directory, print, print_to, scene};
 
 /// Draws the solution of a scheme on a scene, or on a problem of your own
 #[derive(Args, Debug)]
@@ -53,7 +53,7 @@ pub struct Options {
 }
 
 /// Whether every solve converged.
-pub fn run(options: &Options) -> Request<bool> {
+pub fn run(options: &Options) -> Result<bool, Failure> {
     if let Some(path) = &options.problem {
         return match problem_file::read(path).map_err(|e| e.to_string())? {
             AnyOwnProblem::One(own) => draw::<1>(options, own.into()),
@@ -69,7 +69,7 @@ pub fn run(options: &Options) -> Request<bool> {
 }
 
 /// Draws one level, and writes the fields of the series.
-fn draw<const D: usize>(options: &Options, posed: Posed<D>) -> Request<bool> {
+fn draw<const D: usize>(options: &Options, posed: Posed<D>) -> Result<bool, Failure> {
     let warn = |warning: String| {
         let _ = print_to(std::io::stderr(), &format!("{warning}\n"));
     };
@@ -100,14 +100,20 @@ fn draw<const D: usize>(options: &Options, posed: Posed<D>) -> Request<bool> {
         written.borrow_mut().extend(draw_one(options, &title, &stem, solved, slice)?);
         Ok(())
     });
-    let mut rows = picture.run().map_err(|e| e.to_string())?.rows;
+    picture.check().map_err(|e| e.to_string())?;
+    let series = study(&|_| {})?.levels(options.series.clone()).fields_to(&options.out);
+    let series = series.fields_of_all_levels();
+    if !options.series.is_empty() {
+        series.check().map_err(|e| e.to_string())?;
+    }
+    make_directory(&options.out)?;
+    let mut rows = picture.run().map_err(Failure::of_work)?.rows;
     if let (true, Some(row)) = (written.borrow().is_empty(), rows.first()) {
         let message = row.message.as_deref().unwrap_or_default();
-        return Err(format!("level {level}: {}: there is nothing to draw", message));
+        return Err(Failure::Work(format!("level {level}: {message}: there is nothing to draw")));
     }
     if !options.series.is_empty() {
-        let series = study(&|_| {})?.levels(options.series.clone()).fields_to(&options.out);
-        rows.extend(series.fields_of_all_levels().run().map_err(|e| e.to_string())?.rows);
+        rows.extend(series.run().map_err(Failure::of_work)?.rows);
         let label = rows.first().map_or("", |row| &row.label);
         let list = file_name(&format!("{}-{label}.pvd", posed.name()));
         written.borrow_mut().push(options.out.join(list));

@@ -6,6 +6,7 @@ use unilateral::scenes::Scene;
 use unilateral::study::Study;
 
 use crate::shared::Request;
+use unilateral::work_precision::WorkPrecision;
 
 /// A problem in one dimension: a scene of the catalogue, or a problem of a file.
 #[derive(Clone)]
@@ -53,6 +54,25 @@ impl<const D: usize> Posed<D> {
                     .map_err(|e| format!("{}: {e}", path.display()))
             }
             (Geometry::Box(domain), _) => Ok(Study::new(Scene::new(own.name, domain, own.problem))),
+            _ => Err("a problem has a mesh or a box".to_owned()),
+        }
+    }
+    /// A study of work against precision of the problem, without schemes.
+    pub fn work_precision<'a>(self) -> Request<WorkPrecision<'a, D>> {
+        let own = match self {
+            Self::Scene(scene) => return Ok(WorkPrecision::new(move || scene.clone())),
+            Self::Own(own) => own,
+        };
+        let read = own.mesh::<f64>().map_err(|e| e.to_string())?;
+        match (own.geometry, read) {
+            (Geometry::File { path, .. }, Some(read)) => {
+                WorkPrecision::of_problem(&own.name, own.problem, read.mesh)
+                    .map_err(|e| format!("{}: {e}", path.display()))
+            }
+            (Geometry::Box(domain), _) => {
+                let scene = Scene::new(own.name, domain, own.problem);
+                Ok(WorkPrecision::new(move || scene.clone()))
+            }
             _ => Err("a problem has a mesh or a box".to_owned()),
         }
     }

@@ -1,8 +1,8 @@
 //! The commands share messages, printing, threads and progress.
 
-use std::fs;
+use std::fs::{self, OpenOptions};
 use std::io::{ErrorKind, IsTerminal, Write};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 use indicatif::{ProgressBar, ProgressStyle};
@@ -13,6 +13,46 @@ use unilateral::scheme::NamedScheme;
 
 /// The error of a wrong request is one message.
 pub type Request<T> = Result<T, String>;
+
+/// Why a command ended early.
+#[derive(Debug)]
+pub enum Failure {
+    /// The request was wrong, found before any work: exit code 2.
+    Request(String),
+    /// The work could not go on: exit code 1.
+    Work(String),
+}
+
+impl Failure {
+    /// An error that ended the work.
+    pub fn of_work(error: impl ToString) -> Self {
+        Self::Work(error.to_string())
+    }
+}
+
+impl From<String> for Failure {
+    fn from(message: String) -> Self {
+        Self::Request(message)
+    }
+}
+
+/// Makes sure before the work, not after it, that files can be written. A new file is not left there.
+pub fn check_writable<'p>(paths: impl IntoIterator<Item = &'p PathBuf>) -> Request<()> {
+    for path in paths {
+        let file_is_new = !path.exists();
+        let open = OpenOptions::new().append(true).create(true).open(path);
+        open.map_err(|e| cannot_write(path, e))?;
+        if file_is_new {
+            fs::remove_file(path).map_err(|e| cannot_write(path, e))?;
+        }
+    }
+    Ok(())
+}
+
+/// Makes sure before the work that a directory is there.
+pub fn make_directory(path: &Path) -> Request<()> {
+    fs::create_dir_all(path).map_err(|e| cannot_write(path, e))
+}
 
 /// An observed order that falls below the promised one by no more than this counts as kept.
 pub const ORDER_TOLERANCE: f64 = 0.1;

@@ -47,8 +47,9 @@ impl<'m, T: Real> ConjugateGradients<'m, T> {
             run.norm = rz.max(0.0).sqrt();
             run.reason = match () {
                 () if !rz.is_finite() => StopReason::NotFinite,
+                // a negative square within the target is rounding
+                () if rz < -target * target => StopReason::NotPositive,
                 () if run.norm <= target => StopReason::Converged,
-                () if rz < 0.0 => StopReason::NotPositive,
                 () if run.iterations >= rule.max_iterations => StopReason::IterationLimit,
                 () => {
                     let pq = self.multiply(fixed);
@@ -146,6 +147,31 @@ mod tests {
         fn apply(&mut self, r: &[f64], z: &mut [f64]) {
             z.copy_from_slice(r);
         }
+    }
+
+    struct Negative;
+    impl Preconditioner<f64> for Negative {
+        fn name(&self) -> &'static str {
+            "test"
+        }
+        fn set_fixed(&mut self, _fixed: &[bool]) -> Result<(), FactorError> {
+            Ok(())
+        }
+        fn apply(&mut self, r: &[f64], z: &mut [f64]) {
+            z.iter_mut().zip(r).for_each(|(z, r)| *z = -r);
+        }
+    }
+
+    #[test]
+    fn a_negative_square_is_no_small_norm() {
+        let matrix = SparseMatrix { row_starts: vec![0, 1], columns: vec![0], values: vec![2.0] };
+        let rule = StoppingRule { norm: 1e-3, reduction: 0.0, max_iterations: 5 };
+        let run = |residual: f64| {
+            let system = (&mut [0.0][..], &mut [residual][..]);
+            ConjugateGradients::new(&matrix).solve(&[false], &mut Negative, system, rule).reason
+        };
+        assert_eq!(run(1.0), StopReason::NotPositive);
+        assert_eq!(run(1e-9), StopReason::Converged);
     }
 
     #[test]

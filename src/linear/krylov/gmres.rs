@@ -65,8 +65,9 @@ impl<T: Real> Gmres<T> {
             let left = rule.max_iterations - run.iterations;
             run.reason = match last_cycle {
                 _ if !square.is_finite() => StopReason::NotFinite,
+                // a negative square within the target is rounding
+                _ if square < -target * target => StopReason::NotPositive,
                 _ if run.norm <= target => StopReason::Converged,
-                _ if square < 0.0 => StopReason::NotPositive,
                 Some(cycle) if !converges_within(cycle, run.norm, target, left) => {
                     StopReason::IterationLimit
                 }

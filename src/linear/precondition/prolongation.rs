@@ -59,6 +59,59 @@ impl<T: Real> Prolongation<T> {
         Self { entries: Entries::Midpoints { parents, starts, children, own }, n_coarse }
     }
 
+    /// The prolongation of conforming linear functions to a mesh by bisections, whose first `n_coarse`
+    /// vertices are those of the coarse mesh. Each further one is the midpoint of its two `parents` among the
+    /// vertices before it.
+    ///
+    /// # Panics
+    /// If a parent does not come before its child.
+    #[must_use]
+    pub fn bisections(parents: impl IntoIterator<Item = [u32; 2]>, n_coarse: usize) -> Self {
+        let mut fine = RectangularMatrix {
+            starts: (0..=n_coarse as u32).collect(),
+            columns: (0..n_coarse as u32).collect(),
+            values: vec![T::lit(1.0); n_coarse],
+        };
+        // a vertex lies in one coarse cell: its row has at most D + 1 entries
+        let mut row: Vec<(u32, T)> = Vec::new();
+        for pair in parents {
+            row.clear();
+            for parent in pair {
+                let (columns, values) = fine.row(parent as usize);
+                for (&column, &value) in columns.iter().zip(values) {
+                    let half = T::lit(0.5) * value;
+                    match row.iter_mut().find(|(known, _)| *known == column) {
+                        Some((_, sum)) => *sum += half,
+                        None => row.push((column, half)),
+                    }
+                }
+            }
+            row.sort_unstable_by_key(|&(column, _)| column);
+            fine.columns.extend(row.iter().map(|entry| entry.0));
+            fine.values.extend(row.iter().map(|entry| entry.1));
+            fine.starts.push(fine.columns.len() as u32);
+        }
+        Self::from_weights(fine, n_coarse)
+    }
+
+    /// The prolongation with other numbers of the fine and of the coarse unknowns, by their present ones.
+    pub(crate) fn renumbered(&self, fine: &[u32], coarse: &[u32]) -> Self {
+        let mut order = vec![0; fine.len()];
+        (0..).zip(fine).for_each(|(old, &new): (u32, _)| order[new as usize] = old);
+        let mut rows =
+            RectangularMatrix { starts: vec![0], columns: Vec::new(), values: Vec::new() };
+        let mut row: Vec<(u32, T)> = Vec::new();
+        for old in order {
+            row.clear();
+            self.for_each_parent(old as usize, |j, weight| row.push((coarse[j as usize], weight)));
+            row.sort_unstable_by_key(|&(column, _)| column);
+            rows.columns.extend(row.iter().map(|entry| entry.0));
+            rows.values.extend(row.iter().map(|entry| entry.1));
+            rows.starts.push(rows.columns.len() as u32);
+        }
+        Self::from_weights(rows, self.n_coarse)
+    }
+
     /// The prolongation with the rows `fine`.
     pub(crate) fn from_weights(fine: RectangularMatrix<T>, n_coarse: usize) -> Self {
         let coarse = fine.transpose(n_coarse);

@@ -4,7 +4,6 @@ use super::entity::ContactEntity;
 use crate::algebra::Inequality;
 use crate::assemble::Discretisation;
 use crate::assemble::space::Space;
-use crate::element::Entity;
 use crate::inequality::Solution;
 use crate::instances::compiled;
 use crate::measure::errors::ContactErrors;
@@ -18,8 +17,8 @@ type Solved<'s, 'a, T, const D: usize> =
 /// Distances of multiplier and contact set of a solution from those of another one, on the mesh that
 /// these refinements make of its own, coarsest first. The definitions are those of
 /// [`Discretisation::contact_errors`]. The measure of the symmetric difference is that of the cells (or contact
-/// facets) of the finer mesh, and absent where one of the two solutions is a quadratic with bounds at vertices of
-/// triangles. The multiplier of the finer solution is tested with the hat functions of the coarser mesh, exactly.
+/// facets) of the finer mesh. The multiplier of the finer solution is tested with the hat functions of the coarser
+/// mesh, exactly.
 pub(crate) fn contact_difference<T: Real, const D: usize>(
     solved: Solved<'_, '_, T, D>,
     reference: Solved<'_, '_, T, D>,
@@ -55,9 +54,7 @@ fn difference<T: Real, const D: usize>(
         let differs = ancestor.is_some_and(|k| touching[k] != touches);
         if differs { fine.measure_of(entity) } else { 0.0 }
     });
-    if has_contact_cells(space) && has_contact_cells(fine) {
-        errors.contact_area_error = Some(area.sum());
-    }
+    errors.contact_area_error = Some(area.sum());
 
     let mut multipliers = fine.vertex_multipliers(fine_inequality, fine_solution, |_| true);
     for refinement in refinements.iter().rev() {
@@ -74,19 +71,6 @@ fn difference<T: Real, const D: usize>(
         errors.multiplier_l2 = Some(squares.sqrt());
     }
     errors
-}
-
-/// Whether a cell or facet within the contact set counts as in contact: not where quadratics are bounded at
-/// vertices, for the basis functions of these have no positive mean over a triangle or tetrahedron, so that
-/// vertices within the contact set are inactive.
-fn has_contact_cells<T: Real, const D: usize>(space: &Space<'_, T, D>) -> bool {
-    let dimension = D - usize::from(space.problem.has_gap());
-    let is_vertex = |i: usize| matches!(space.nodes[i].entity(), Entity::Vertex(_));
-    let has_vertices = match space.problem.has_gap() {
-        true => (0..=D).flat_map(|local| space.bounded_nodes_on(local)).any(|(i, _)| is_vertex(i)),
-        false => space.bounded_nodes().any(|(i, _)| is_vertex(i)),
-    };
-    space.basis_degree < 2 || dimension < 2 || !has_vertices
 }
 
 /// The position of the entity that contains an entity of a refinement.

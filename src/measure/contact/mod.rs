@@ -4,6 +4,7 @@
 //! with different unknowns can be compared.
 
 mod contact_set;
+mod deciding_nodes;
 mod difference;
 mod discrete_contact;
 mod entity;
@@ -54,7 +55,9 @@ impl<T: Real, const D: usize> Discretisation<'_, T, D> {
     /// need not all have the sign of their sum (those of over-penalised schemes on curved obstacles
     /// do not). On the Dirichlet part, where some schemes have no unknowns and others satisfy the datum
     /// approximately, it is in contact if the datum is. A cell, or a facet of the contact boundary,
-    /// is in contact if all its unknowns with bounds are. The area error is the measure of the
+    /// is in contact if all its unknowns are that have bounds and basis functions with a positive mean over
+    /// it (those of quadratics at vertices of triangles and tetrahedra have none); where no unknown has
+    /// both, if all its unknowns with bounds are. The area error is the measure of the
     /// symmetric difference with the exact set. The distance is that of Hausdorff between the exact
     /// free boundary and the facets between cells in contact and cells that are not.
     ///
@@ -190,20 +193,6 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         points
     }
 
-    /// The unknowns on an entity that have a bound.
-    fn bound_unknowns<'s>(
-        &'s self,
-        entity: ContactEntity,
-        inequality: &'s Inequality<T>,
-    ) -> impl Iterator<Item = usize> + 's {
-        let on_facet = entity.facet.map(|local| self.nodes_on(local));
-        let all = entity.facet.is_none().then(|| 0..self.per_cell());
-        let nodes = on_facet.into_iter().flatten().chain(all.into_iter().flatten());
-        nodes
-            .map(move |i| self.dofs.of(entity.cell, i))
-            .filter(|&unknown| inequality.bounds[unknown] != Bound::Free)
-    }
-
     /// Which entities are in contact.
     fn in_contact(
         &self,
@@ -233,8 +222,11 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
                 supports.binary_search(&support).is_ok()
             }
         };
+        let deciding = self.deciding_nodes();
         let state = |&entity: &ContactEntity| {
-            let mut unknowns = self.bound_unknowns(entity, inequality).peekable();
+            let unknowns = deciding.of(entity).iter().map(|&i| self.dofs.of(entity.cell, i));
+            let mut unknowns =
+                unknowns.filter(|&unknown| inequality.bounds[unknown] != Bound::Free).peekable();
             unknowns.peek().is_some() && unknowns.all(|unknown| support_touches(entity, unknown))
         };
         entities.iter().map(state).collect()

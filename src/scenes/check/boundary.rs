@@ -31,11 +31,11 @@ pub(super) fn check<const D: usize>(
                 evaluator.require(Condition::Dirichlet, &x, error, value)?;
             }
             (BoundaryPart::Neumann, Some(q), _) => {
-                let error = (q(&x, &normal) - outflow).abs();
+                let error = (q.at(&x, &normal) - outflow).abs();
                 evaluator.require(Condition::Neumann, &x, error, flux)?;
             }
             (BoundaryPart::Contact, _, Some(g)) => {
-                let above = evaluator.value(&x) - g(&x);
+                let above = evaluator.value(&x) - g.at(&x);
                 evaluator.require(Condition::Gap, &x, -above, value)?;
                 evaluator.require(Condition::ContactFlux, &x, -outflow, flux)?;
                 if above > value {

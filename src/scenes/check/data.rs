@@ -25,7 +25,7 @@ pub(super) fn check<const D: usize>(
             }
             BoundaryPart::Neumann => {
                 if let Some(q) = &scene.problem.neumann {
-                    finite(scene, "neumann", &x, q(&x, &normal))?;
+                    finite(scene, "neumann", &x, q.at(&x, &normal))?;
                 }
             }
             BoundaryPart::Contact => {}
@@ -48,18 +48,14 @@ fn finite<const D: usize>(
 
 fn check_at<const D: usize>(scene: &Scene<D>, x: &Point<f64, D>) -> Result<(), Violation> {
     let problem = &scene.problem;
-    let fields = [
+    for (name, datum) in [
         ("coefficient", &problem.coefficient),
         ("lower obstacle", &problem.lower),
         ("upper obstacle", &problem.upper),
         ("gap", &problem.gap),
-    ];
-    for (name, field) in fields {
-        if let Some(field) = field {
-            finite(scene, name, x, field(x))?;
-        }
-    }
-    for (name, datum) in [("source", &problem.source), ("reaction", &problem.reaction)] {
+        ("source", &problem.source),
+        ("reaction", &problem.reaction),
+    ] {
         if let Some(datum) = datum {
             finite(scene, name, x, datum.at(x))?;
         }
@@ -70,7 +66,7 @@ fn check_at<const D: usize>(scene: &Scene<D>, x: &Point<f64, D>) -> Result<(), V
             finite(scene, "gradient", x, component)?;
         }
     }
-    let alpha = problem.coefficient.as_ref().map_or(1.0, |alpha| alpha(x));
+    let alpha = problem.coefficient.as_ref().map_or(1.0, |alpha| alpha.at(x));
     let reaction = problem.reaction.as_ref().map_or(0.0, |c| c.at(x));
     for (value, passes) in [(alpha, alpha > 0.0), (reaction, reaction >= 0.0)] {
         if !passes {
@@ -90,8 +86,8 @@ fn check_dirichlet<const D: usize>(scene: &Scene<D>, x: &Point<f64, D>) -> Resul
 }
 
 fn bounds<const D: usize>(scene: &Scene<D>, x: &Point<f64, D>) -> (f64, f64) {
-    let lower = scene.problem.lower.as_ref().map_or(f64::NEG_INFINITY, |psi| psi(x));
-    let upper = scene.problem.upper.as_ref().map_or(f64::INFINITY, |psi| psi(x));
+    let lower = scene.problem.lower.as_ref().map_or(f64::NEG_INFINITY, |psi| psi.at(x));
+    let upper = scene.problem.upper.as_ref().map_or(f64::INFINITY, |psi| psi.at(x));
     (lower, upper)
 }
 

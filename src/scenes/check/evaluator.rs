@@ -54,7 +54,7 @@ impl<'a, const D: usize> Evaluator<'a, D> {
         (self.exact.gradient)(x)
     }
     pub fn coefficient(&self, x: &Point<f64, D>) -> f64 {
-        self.scene.problem.coefficient.as_ref().map_or(1.0, |alpha| alpha(x))
+        self.scene.problem.coefficient.as_ref().map_or(1.0, |alpha| alpha.at(x))
     }
     /// `alpha grad u`.
     pub fn flux(&self, x: &Point<f64, D>) -> Point<f64, D> {
@@ -68,11 +68,11 @@ impl<'a, const D: usize> Evaluator<'a, D> {
     }
     /// `u - psi_lower`, infinite without obstacle.
     pub fn above_lower(&self, x: &Point<f64, D>) -> f64 {
-        self.scene.problem.lower.as_ref().map_or(f64::INFINITY, |psi| self.value(x) - psi(x))
+        self.scene.problem.lower.as_ref().map_or(f64::INFINITY, |psi| self.value(x) - psi.at(x))
     }
     /// `psi_upper - u`, infinite without obstacle.
     pub fn below_upper(&self, x: &Point<f64, D>) -> f64 {
-        self.scene.problem.upper.as_ref().map_or(f64::INFINITY, |psi| psi(x) - self.value(x))
+        self.scene.problem.upper.as_ref().map_or(f64::INFINITY, |psi| psi.at(x) - self.value(x))
     }
     /// A violation unless `by <= allowed`; a violation if `by` is not a number.
     pub fn require(

@@ -223,7 +223,7 @@ impl ObservedOrders {
         sorted.retain(|row| row.converged());
         let fit = |norm: fn(&Row) -> Option<f64>| {
             let points: Option<Vec<(f64, f64)>> =
-                sorted.iter().map(|row| Some((row.mesh_size, norm(row)?))).collect();
+                sorted.iter().map(|row| Some((row.size(), norm(row)?))).collect();
             fit_order(&points?)
         };
         let errors = [(ErrorNorm::L2, finest.error.l2), (ErrorNorm::H1, finest.error.h1)];

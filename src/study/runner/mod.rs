@@ -1,5 +1,6 @@
 //! A study: schemes on a scene, level by level.
 
+mod adaptive;
 mod rows;
 
 use std::fmt;
@@ -14,7 +15,7 @@ use crate::error::Error;
 use crate::inequality::{ActiveSet, InequalitySolver, StepCounter};
 use crate::instances::compiled;
 use crate::mesh::{BoxDomain, Mesh};
-use crate::nested::{Coarsest, Hierarchy, NestedIteration, Phase, Solved};
+use crate::nested::{Adaptivity, Coarsest, Hierarchy, NestedIteration, Phase, Solved};
 #[cfg(feature = "report")]
 use crate::paraview::FieldScalar;
 use crate::problem::Problem;
@@ -28,7 +29,7 @@ use crate::study::fields::FieldFiles;
 use crate::study::journal::Journal;
 use crate::study::memory::{MemoryEstimate, estimate, estimate_without_factors, unknowns_about};
 use crate::study::orders::fill_orders;
-use crate::study::reference::{Measured, Reference};
+use crate::study::reference::{FoundReference, Measured, Reference};
 use crate::study::report::{Program, Report};
 use crate::study::row::{Row, RowKey};
 
@@ -64,6 +65,7 @@ pub struct Study<'a, T: Real, const D: usize> {
     scene: Scene<D>,
     entries: Vec<Entry<'a, T, D>>,
     levels: Vec<usize>,
+    adaptive: Option<Adaptivity>,
     mesh: Option<Mesh<T, D>>,
     reference: Option<Reference<'a, T, D>>,
     solvers: Vec<Arc<dyn InequalitySolver<T> + 'a>>,
@@ -80,7 +82,7 @@ pub struct Study<'a, T: Real, const D: usize> {
     observer: Box<dyn Fn(Progress<'_>) + 'a>,
 }
 
-/// Receives a solution with its label and level.
+/// Receives a solution with its label (and solver, where there are several) and level.
 type EachSolution<'a, T, const D: usize> =
     Box<dyn Fn(&str, usize, &Solved<'_, T, D>) -> Result<(), Error> + 'a>;
 
@@ -120,6 +122,7 @@ impl<'a, T: Real, const D: usize> Study<'a, T, D> {
             scene,
             entries: Vec::new(),
             levels: Vec::new(),
+            adaptive: None,
             mesh: None,
             reference: None,
             solvers: Vec::new(),
@@ -263,8 +266,8 @@ impl<'a, T: Real, const D: usize> Study<'a, T, D> {
         self.repeat = times.max(1);
         self
     }
-    /// Writes the fields of every scheme on the finest level to this directory, as
-    /// `SCENE-LABEL.vtu`, with `-` for what is neither a letter, a digit, a dot, `_` nor `-`.
+    /// Writes the fields of every scheme on the finest level to this directory, as `SCENE-LABEL.vtu`, of
+    /// several solvers as `SCENE-LABEL-SOLVER.vtu`, with `-` for what is neither a letter, a digit, a dot, `_` nor `-`.
     #[cfg(feature = "report")]
     #[must_use]
     pub fn fields_to(mut self, directory: impl Into<PathBuf>) -> Self {
@@ -285,8 +288,8 @@ impl<'a, T: Real, const D: usize> Study<'a, T, D> {
         self.fields.all_levels = true;
         self
     }
-    /// Sets a function that receives every solution that has values, with its label and level, before the
-    /// row of the solution is complete. An error ends the study.
+    /// Sets a function that receives every solution that has values, with its label, of several solvers as
+    /// `LABEL-SOLVER`, and its level, before the row of the solution is complete. An error ends the study.
     #[must_use]
     pub fn each_solution(
         mut self,
@@ -339,7 +342,7 @@ impl<'a, T: Real, const D: usize> Study<'a, T, D> {
     /// Checks schemes, levels and mesh. Returns the point at which the exact solution of the scene
     /// breaks the contact condition of a given mesh.
     fn where_exact_fails(&self) -> Result<Option<String>, Error> {
-        let lengths = [("schemes", self.entries.len()), ("levels", self.levels.len())];
+        let lengths = [("schemes", self.entries.len()), ("levels", self.row_levels().len())];
         if let Some(&(parameter, _)) = lengths.iter().find(|(_, length)| *length == 0) {
             let allowed = format!("a study needs {parameter}: at least one");
             return Err(Error::Parameter { parameter, value: "none".to_owned(), allowed });
@@ -348,7 +351,9 @@ impl<'a, T: Real, const D: usize> Study<'a, T, D> {
         for (entry, problem) in self.entries.iter().zip(self.problems()) {
             check_scheme(&*entry.scheme, problem, self.quadrature)?;
         }
-        if let Some(reference) = &self.reference {
+        if let Some(adaptivity) = &self.adaptive {
+            self.check_adaptive(adaptivity)?;
+        } else if let Some(reference) = &self.reference {
             let domain = self.mesh.is_none().then_some(&self.scene.domain);
             reference.check(domain, &self.levels)?;
             self.coarsest().check(reference.level)?;
@@ -377,12 +382,15 @@ impl<'a, T: Real, const D: usize> Study<'a, T, D> {
                 false => estimate(D, layout, cells, obstacle, size_of::<T>()),
             }
         };
-        let of = |scheme: &dyn AnyScheme<T, D>, level: usize| MemoryEstimate {
-            bytes: bytes(scheme.layout(), self.coarsest().cells(level)),
-            scheme: scheme.name().to_owned(),
-            level,
+        let of = |scheme: &dyn AnyScheme<T, D>, level: usize| {
+            let cells = match &self.adaptive {
+                Some(of) => of.unknowns as f64 / unknowns_about(D, scheme.layout(), 1.0),
+                None => self.coarsest().cells(level),
+            };
+            let bytes = bytes(scheme.layout(), cells);
+            MemoryEstimate { bytes, scheme: scheme.name().to_owned(), level }
         };
-        let finest = self.levels.iter().copied().max()?;
+        let finest = self.row_levels().into_iter().max()?;
         let reference = self.reference.iter().map(|r| of(&*r.scheme, r.level));
         let runs = self.entries.iter().map(|e| of(&*e.scheme, finest));
         runs.chain(reference).max_by(|a, b| a.bytes.total_cmp(&b.bytes))
@@ -402,6 +410,9 @@ impl<'a, T: Real, const D: usize> Study<'a, T, D> {
     }
     fn run_all(&self) -> Result<Report, Error> {
         let failure = self.where_exact_fails()?;
+        if let Some(adaptivity) = self.adaptive {
+            return self.run_adaptive(adaptivity, failure.as_deref());
+        }
         let kept: Vec<Option<Row>> = self.keys().iter().map(|key| self.kept(key)).collect();
         (self.observer)(Progress::Entered(Phase::Mesh));
         let hierarchies = match kept.iter().all(Option::is_some) {
@@ -409,16 +420,8 @@ impl<'a, T: Real, const D: usize> Study<'a, T, D> {
             false => self.hierarchies()?,
         };
         let problems = self.problems();
-        let reference_problem = self.reference.as_ref().map(|reference| {
-            let set = reference.set.clone().or(self.scene.problem.constraint_set.clone());
-            Problem { constraint_set: set, ..self.scene.problem.clone() }
-        });
-        let reference = match (&self.reference, &reference_problem, hierarchies.first()) {
-            (Some(reference), Some(problem), Some(hierarchy)) => {
-                Some(self.solve_reference(reference, problem, hierarchy)?)
-            }
-            _ => None,
-        };
+        let reference_problem = self.reference_problem();
+        let reference = self.find_reference(&reference_problem, &hierarchies);
         let mut by_solver: Vec<Vec<NestedIteration<'_, T, D>>> = self
             .solvers()
             .iter()
@@ -439,20 +442,31 @@ impl<'a, T: Real, const D: usize> Study<'a, T, D> {
                     let (failure, reference) = (failure.as_deref(), reference.as_ref());
                     let measured = Measured { failure, reference };
                     let (row, _) = self.row(nested, (entry, problem), level, measured)?;
-                    #[cfg(feature = "report")]
-                    if let Some(journal) = self.journal {
-                        journal.add(&row)?;
-                    }
-                    (self.observer)(Progress::Finished(&row));
-                    rows.push(row);
+                    self.finish(row, &mut rows)?;
                 }
             }
         }
+        Ok(self.report(rows))
+    }
+
+    /// Adds a row that is finished.
+    fn finish(&self, row: Row, rows: &mut Vec<Row>) -> Result<(), Error> {
+        #[cfg(feature = "report")]
+        if let Some(journal) = self.journal {
+            journal.add(&row)?;
+        }
+        (self.observer)(Progress::Finished(&row));
+        rows.push(row);
+        Ok(())
+    }
+
+    /// The report of all rows.
+    fn report(&self, mut rows: Vec<Row>) -> Report {
         fill_orders(&mut rows);
         let program = || Program::new("study", T::NAME, rayon::current_num_threads(), self.repeat);
         #[cfg(feature = "report")]
         let program = || self.journal.map_or_else(program, |journal| journal.program().clone());
-        Ok(Report::new(program(), rows))
+        Report::new(program(), rows)
     }
 
     /// The problem of the scene with the constraint set of each scheme.
@@ -460,13 +474,14 @@ impl<'a, T: Real, const D: usize> Study<'a, T, D> {
         self.entries.iter().map(|e| e.problem(&self.scene.problem)).collect()
     }
 
-    /// What tells the rows of the study apart, in the order in which they run.
+    /// What tells the rows of the study apart, in the order in which they run. Adaptive refinement may end
+    /// before the last step.
     pub fn keys(&self) -> Vec<RowKey> {
         let mut keys = Vec::new();
         for (entry, problem) in self.entries.iter().zip(&self.problems()) {
             let label = entry.scheme.label_on(problem.constraint_set());
             for solver in self.solvers() {
-                keys.extend(self.levels.iter().map(|&level| RowKey {
+                keys.extend(self.row_levels().into_iter().map(|level| RowKey {
                     scene: self.scene.name.clone(),
                     label: label.clone(),
                     solver: solver.name().to_owned(),
@@ -492,7 +507,7 @@ impl<'a, T: Real, const D: usize> Study<'a, T, D> {
     #[cfg(feature = "report")]
     pub(crate) fn run_alone(&self) -> Result<(Row, f64), Error> {
         let failure = self.where_exact_fails()?;
-        let (Some(entry), Some(&level)) = (self.entries.first(), self.levels.first()) else {
+        let (Some(entry), level) = (self.entries.first(), self.first_level()) else {
             unreachable!("checked above")
         };
         let problem = entry.problem(&self.scene.problem);
@@ -515,14 +530,20 @@ impl<'a, T: Real, const D: usize> Study<'a, T, D> {
     }
     fn judge_values(&self, values: &[f64]) -> Result<Row, Error> {
         let failure = self.where_exact_fails()?;
-        let (Some(entry), Some(&level)) = (self.entries.first(), self.levels.first()) else {
+        let (Some(entry), level) = (self.entries.first(), self.first_level()) else {
             unreachable!("checked above")
         };
         let problem = entry.problem(&self.scene.problem);
-        let hierarchy = self.coarsest().build(level)?;
-        let nested = NestedIteration::new(&problem, &hierarchy).quadrature(self.quadrature);
-        let solved = nested.judge_on(hierarchy.n_meshes() - 1, &*entry.scheme, values)?;
-        let measured = Measured { failure: failure.as_deref(), reference: None };
+        let hierarchies = self.hierarchies()?;
+        let mut on_level = hierarchies.iter().filter_map(|h| Some((h.position(level)?, h)));
+        let Some((position, hierarchy)) = on_level.next() else {
+            unreachable!("a hierarchy has the level")
+        };
+        let nested = NestedIteration::new(&problem, hierarchy).quadrature(self.quadrature);
+        let solved = nested.judge_on(position, &*entry.scheme, values)?;
+        let reference_problem = self.reference_problem();
+        let reference = self.find_reference(&reference_problem, &hierarchies);
+        let measured = Measured { failure: failure.as_deref(), reference: reference.as_ref() };
         let row = self.measured_row(entry, level, &solved, measured)?;
         Ok(Row { solver: "none".to_owned(), ..row })
     }
@@ -538,24 +559,41 @@ impl<'a, T: Real, const D: usize> Study<'a, T, D> {
         }
     }
 
-    /// The reference, and its name in rows.
+    /// The problem with the constraint set of the reference.
+    fn reference_problem(&self) -> Problem<D> {
+        let problem = self.scene.problem.clone();
+        let set = self.reference.as_ref().and_then(|reference| reference.set.clone());
+        Problem { constraint_set: set.or(problem.constraint_set), ..problem }
+    }
+
+    /// The reference on the finest mesh, where one is asked for.
+    fn find_reference<'h>(
+        &'h self,
+        problem: &'h Problem<D>,
+        hierarchies: &'h [Hierarchy<T, D>],
+    ) -> Option<FoundReference<'h, T, D>> {
+        let (reference, hierarchy) = (self.reference.as_ref()?, hierarchies.first()?);
+        Some(self.solve_reference(reference, problem, hierarchy))
+    }
+
+    /// The reference and its name in rows. Where it cannot be had, rows have no errors and say why.
     fn solve_reference<'h>(
         &'h self,
         reference: &Reference<'_, T, D>,
         problem: &'h Problem<D>,
         hierarchy: &'h Hierarchy<T, D>,
-    ) -> Result<(Solved<'h, T, D>, String), Error> {
+    ) -> FoundReference<'h, T, D> {
         let name = reference.name(self.scene.problem.constraint_set());
         (self.observer)(Progress::Started(&self.scene.name, &name, reference.level));
         let mut nested = NestedIteration::new(problem, hierarchy)
             .shared_solver(self.solvers()[0].clone())
             .quadrature(self.quadrature);
-        let solved = nested.solve(&*reference.scheme)?;
-        if !solved.converged() {
-            let why = solved.outcome().message().to_owned();
-            return Err(Error::NoReference { reference: name, why });
+        let fails = |why: &str| format!("the reference, {name}, was not found: {why}");
+        let solved = nested.solve(&*reference.scheme).map_err(|e| fails(&e.to_string()))?;
+        match solved.converged() {
+            true => Ok((solved, name)),
+            false => Err(fails(solved.outcome().message())),
         }
-        Ok((solved, name))
     }
 
     /// From which the meshes of all levels are refined.
@@ -580,7 +618,14 @@ impl<'a, T: Real, const D: usize> Study<'a, T, D> {
         hierarchy: &'s Hierarchy<T, D>,
         solver: &Arc<dyn InequalitySolver<T> + 's>,
     ) -> NestedIteration<'s, T, D> {
-        NestedIteration::new(&self.scene.problem, hierarchy)
+        self.with_settings(NestedIteration::new(&self.scene.problem, hierarchy), solver)
+    }
+    fn with_settings<'s>(
+        &'s self,
+        nested: NestedIteration<'s, T, D>,
+        solver: &Arc<dyn InequalitySolver<T> + 's>,
+    ) -> NestedIteration<'s, T, D> {
+        nested
             .shared_solver(solver.clone())
             .quadrature(self.quadrature)
             .repeat(self.repeat)

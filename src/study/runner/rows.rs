@@ -6,6 +6,7 @@ use crate::error::Error;
 #[cfg(feature = "report")]
 use crate::exchange::write_inequality;
 use crate::inequality::Outcome;
+use crate::mesh::Mesh;
 use crate::nested::{NestedIteration, Phase, Solved};
 use crate::problem::Problem;
 use crate::real::Real;
@@ -31,47 +32,82 @@ impl<T: Real, const D: usize> Study<'_, T, D> {
         let Some((position, nested)) = on_level.next() else {
             unreachable!("a hierarchy has the level")
         };
-        let scheme = &*entry.scheme;
         let solver = nested.solver_name();
         nested.replace_constraint_set(problem);
-        let row = |row: Row| Row {
+        match nested.solve_on(position, &*entry.scheme) {
+            Ok(solved) => {
+                let row = self.row_of(entry, (level, &self.levels), &solved, solver, measured)?;
+                Ok((row, solved.start_seconds))
+            }
+            Err(error) => {
+                let place = (level, nested.mesh(position));
+                let row =
+                    self.row_without((entry, problem), place, solver, measured.failure, error)?;
+                Ok((row, 0.0))
+            }
+        }
+    }
+
+    /// The row that the data of a problem leave on a mesh.
+    ///
+    /// # Errors
+    /// The error itself if another mesh would have it too.
+    pub(super) fn row_without(
+        &self,
+        (entry, problem): (&Entry<'_, T, D>, &Problem<D>),
+        (level, mesh): (usize, &Mesh<T, D>),
+        solver: &str,
+        failure: Option<&str>,
+        error: Error,
+    ) -> Result<Row, Error> {
+        let scheme = &*entry.scheme;
+        let space = scheme.discretise(problem, mesh, self.quadrature);
+        let without_solution = Row {
+            parameters: scheme.parameters(mesh),
+            unknowns: space.ok().map(|space| space.unknowns()),
+            cells: mesh.n_cells(),
+            mesh_size: mesh.mesh_size(),
             solver: solver.to_owned(),
             peak_memory_bytes: peak_memory_bytes(),
-            ..row
+            ..Row::new(&self.scene.name, D, scheme.name(), level, Outcome::Malformed)
         };
-        let solved = match nested.solve_on(position, scheme) {
-            Ok(solved) => solved,
-            Err(error) => {
-                let mesh = nested.mesh(position);
-                let space = scheme.discretise(problem, mesh, self.quadrature);
-                let without_solution = Row {
-                    parameters: scheme.parameters(mesh),
-                    unknowns: space.ok().map(|space| space.unknowns()),
-                    cells: mesh.n_cells(),
-                    mesh_size: mesh.mesh_size(),
-                    ..Row::new(&self.scene.name, D, scheme.name(), level, Outcome::Malformed)
-                };
-                let named = self.named(entry, problem, without_solution, measured.failure);
-                return Ok((row(named).with_error(error)?, 0.0));
-            }
+        self.named(entry, problem, without_solution, failure).with_error(error)
+    }
+
+    /// The row of a solution, after its files are written; `levels` are those that have files.
+    pub(super) fn row_of<'p>(
+        &self,
+        entry: &Entry<'_, T, D>,
+        (level, levels): (usize, &[usize]),
+        solved: &Solved<'p, T, D>,
+        solver: &str,
+        measured: Measured<'_, 'p, T, D>,
+    ) -> Result<Row, Error> {
+        let label = entry.scheme.label_on(solved.discretisation().problem().constraint_set());
+        let name = match self.solvers.len() {
+            0 | 1 => label.clone(),
+            _ => format!("{label}-{solver}"),
         };
-        let label = scheme.label_on(problem.constraint_set());
         #[cfg(feature = "report")]
         {
-            let with_solver = format!("{label}-{solver}");
-            let name = if self.solvers.len() > 1 { &with_solver } else { &label };
-            self.fields.write((&self.scene.name, name), level, &self.levels, &solved)?;
+            let reference = measured.reference.and_then(|found| found.as_ref().ok());
+            let reference = reference.map(|(reference, _)| reference);
+            self.fields.write((&self.scene.name, &name), level, levels, solved, reference)?;
             if let Some(directory) = &self.inequalities {
                 let name = format!("{}-{label}-{level}", self.scene.name);
                 let folder = directory.join(file_name(&name));
                 write_inequality(folder, solved.inequality(), solved.mesh())?;
             }
         }
+        #[cfg(not(feature = "report"))]
+        let _ = levels;
         if let Some(f) = self.each_solution.as_ref().filter(|_| solved.has_iterate()) {
-            f(&label, level, &solved)?;
+            f(&name, level, solved)?;
         }
         (self.observer)(Progress::Entered(Phase::Measures));
-        Ok((row(self.measured_row(entry, level, &solved, measured)?), solved.start_seconds))
+        let row = self.measured_row(entry, level, solved, measured)?;
+        let (solver, peak_memory_bytes) = (solver.to_owned(), peak_memory_bytes());
+        Ok(Row { solver, peak_memory_bytes, ..row })
     }
 
     /// The row of a solution with its errors and totals, without solver and memory.
@@ -85,11 +121,6 @@ impl<T: Real, const D: usize> Study<'_, T, D> {
         let row = Row::of(&self.scene.name, entry.scheme.name(), level, solved);
         let problem = solved.discretisation().problem();
         let mut row = self.named(entry, problem, row, measured.failure);
-        if let Some(at) = measured.failure.filter(|_| measured.reference.is_none()) {
-            row.warnings.push(format!(
-                "the scene's solution breaks the contact condition of this mesh at {at}: no errors"
-            ));
-        }
         match measured.measure(&mut row, solved) {
             Ok(()) => Ok(row),
             Err(error) => row.with_error(error),

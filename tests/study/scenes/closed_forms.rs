@@ -68,7 +68,7 @@ fn the_contact_disc_of_the_ball_has_the_radius_of_its_equation() {
 fn the_obstacle_of_the_ball_is_finite_and_continuously_differentiable() {
     let scene = ball_2d();
     let psi = scene.problem.lower.as_ref().unwrap();
-    let at = |r: f64| psi(&Point::from([r, 0.0]));
+    let at = |r: f64| psi.at(&Point::from([r, 0.0]));
     let h = 1e-6;
     assert_close((at(0.9) - at(0.9 - h)) / h, (at(0.9 + h) - at(0.9)) / h, 1e-4);
     assert_close(at(0.9), 0.19_f64.sqrt(), 1e-15);

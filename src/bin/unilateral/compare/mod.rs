@@ -3,12 +3,12 @@
 //! `cargo run --release -- compare --help` lists the options. Exit codes: 0 if every row converged,
 //! 1 if some did not or the run could not go on, 2 if the request was wrong, 130 if it was interrupted.
 
+mod adaptive;
 mod interrupt;
 mod options;
 mod prepare;
 mod watcher;
 
-use std::fs::{self, OpenOptions};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
 use interrupt::Interrupt;
@@ -19,10 +19,11 @@ use watcher::Watcher;
 
 use crate::judge::write_requests;
 use crate::shared::{
-    ORDER_TOLERANCE, Request, cannot_write, complain, fingerprint, print, print_to, read,
-    use_threads, write,
+    ORDER_TOLERANCE, Request, check_writable, complain, fingerprint, make_directory, print,
+    print_to, read, use_threads, write,
 };
 
+use unilateral::error::Error;
 use unilateral::inequality::SOLVERS;
 use unilateral::input::excerpt;
 use unilateral::mesh::gmsh;
@@ -65,6 +66,12 @@ fn program<T: Real>(options: &Options, files: &[(&str, String)]) -> Program {
     }
     if let Some((scheme, level)) = &options.reference {
         program = program.with_request("reference", format!("{scheme} at level {level}"));
+    }
+    if let Some(of) = &options.adaptive {
+        program = program.with_request("adaptive", adaptive::words(of));
+        if let [level] = options.levels[..] {
+            program = program.with_request("first level", level);
+        }
     }
     for (name, part) in &options.mesh.boundary {
         program = program.with_request(&format!("boundary {name}"), part.name());
@@ -207,20 +214,37 @@ impl Chosen {
         let contents: Vec<String> = files.into_iter().map(|(_, fingerprint)| fingerprint).collect();
         let journal = start(options, program.clone(), &runs)?;
         interrupt.watch(journal);
-        let all = || -> Request<Vec<Vec<Row>>> {
-            runs.iter().try_for_each(|run| write_requests(options, &contents, &run.keys))?;
-            runs.into_iter().map(|Run { run, .. }| run(journal)).collect()
+        let all = || -> (Vec<Row>, Vec<String>) {
+            let (mut rows, mut messages) = (Vec::new(), Vec::new());
+            let written = runs.iter().map(|run| write_requests(options, &contents, &run.keys));
+            if let Err(why) = written.collect::<Request<()>>() {
+                return (rows, vec![why]);
+            }
+            for Run { place, run, .. } in runs {
+                match run(journal) {
+                    Ok(found) => rows.extend(found),
+                    Err(error) => {
+                        messages.push(format!("{place}: {error}"));
+                        // the next scene could not be written either
+                        if matches!(error, Error::Write { .. }) {
+                            break;
+                        }
+                    }
+                }
+            }
+            (rows, messages)
         };
         // a panic has printed its message
-        let rows = catch_unwind(AssertUnwindSafe(all)).unwrap_or_else(|_| Err(String::new()));
+        let (rows, mut messages) = catch_unwind(AssertUnwindSafe(all))
+            .unwrap_or_else(|_| (Vec::new(), vec![String::new()]));
         watcher.clear();
-        let report = match &rows {
-            Ok(rows) => Report::new(program, rows.concat()),
-            Err(_) => journal.report(),
+        let report = match messages.is_empty() {
+            true => Report::new(program, rows),
+            false => journal.report(),
         };
-        let messages = [rows.err(), interrupt.at_end(|| write_all(options, &report)).err()];
-        messages.iter().flatten().filter(|text| !text.is_empty()).for_each(|text| complain(text));
-        Ok(messages == [None, None] && report.rows.iter().all(Row::converged))
+        messages.extend(interrupt.at_end(|| write_all(options, &report)).err());
+        messages.iter().filter(|text| !text.is_empty()).for_each(|text| complain(text));
+        Ok(messages.is_empty() && report.rows.iter().all(Row::converged))
     }
 }
 
@@ -243,21 +267,10 @@ fn start(options: &Options, program: Program, runs: &[Run<'_>]) -> Request<&'sta
 /// Makes sure before the work, not after it, that the report can be written.
 fn check_output(options: &Options) -> Request<()> {
     if let Some(directory) = &options.dump {
-        fs::create_dir_all(directory).map_err(|e| cannot_write(directory, e))?;
+        make_directory(directory)?;
     }
     let json = options.json.as_ref().filter(|p| p.as_os_str() != "-");
-    for path in json.into_iter().chain(&options.orders) {
-        let file_is_new = !path.exists();
-        OpenOptions::new()
-            .append(true)
-            .create(true)
-            .open(path)
-            .map_err(|e| cannot_write(path, e))?;
-        if file_is_new {
-            fs::remove_file(path).map_err(|e| cannot_write(path, e))?;
-        }
-    }
-    Ok(())
+    check_writable(json.into_iter().chain(&options.orders))
 }
 
 /// Writes the report and prints its tables, of an incomplete one the files only.

@@ -6,9 +6,11 @@ use clap::Args;
 use unilateral::constraint::CONSTRAINT_SETS;
 use unilateral::inequality::SOLVERS;
 use unilateral::input::excerpt;
+use unilateral::nested::Adaptivity;
 use unilateral::scenes;
 use unilateral::scheme::{NamedScheme, SCHEMES, SchemeOptions, keys_of_scheme};
 
+use super::adaptive::adaptivity;
 use crate::mesh_file::MeshFile;
 use crate::shared::{MOST_THREADS, Request, each_once, reference, schemes};
 
@@ -30,6 +32,11 @@ pub struct Options {
     /// Subdivisions of the scene's shortest side; with --mesh: uniform refinements, from 0
     #[arg(long, value_delimiter = ',', value_name = "N[,N...]", allow_negative_numbers = true, value_parser = whole)]
     pub levels: Vec<usize>,
+    /// Meshes that follow the error bound in place of levels, until the bound is GOAL; or keys:
+    /// theta=0.5,steps=20,unknowns=1e6,goal=GOAL. --levels N then sets the first mesh
+    #[arg(long, value_name = "GOAL|KEY=VALUE[,...]", allow_negative_numbers = true,
+        value_parser = adaptivity, conflicts_with_all = ["reference", "resume", "dump"])]
+    pub adaptive: Option<Adaptivity>,
     #[command(flatten)]
     pub mesh: MeshFile,
     /// Measure against one fine solution in place of the exact one, by p2 where no scheme is named

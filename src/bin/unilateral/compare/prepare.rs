@@ -23,8 +23,10 @@ use unilateral::study::{Journal, Row, RowKey, Study, available_memory_bytes, fil
 pub struct Run<'a> {
     /// What tells its rows apart.
     pub keys: Vec<RowKey>,
+    /// Scene and mesh, for messages.
+    pub place: String,
     /// Runs it.
-    pub run: Box<dyn FnOnce(&'a Journal) -> Request<Vec<Row>> + 'a>,
+    pub run: Box<dyn FnOnce(&'a Journal) -> Result<Vec<Row>, Error> + 'a>,
 }
 
 /// Most cells of a solution that is drawn: pictures of more are large and show no more.
@@ -41,6 +43,7 @@ pub fn prepare<'a, T: Real, const D: usize>(
     let name = posed.name().to_owned();
     let has_mesh = mesh.is_some() || posed.has_mesh();
     let levels = match &options.levels[..] {
+        [] if options.adaptive.is_some() => Vec::new(),
         [] => default_levels(D, has_mesh),
         some => each_once(some),
     };
@@ -85,6 +88,9 @@ pub fn prepare<'a, T: Real, const D: usize>(
             .map(|solver| study.boxed_solver(solver))
             .ok_or_else(|| format!("there is no solver {name}"))?;
     }
+    if let Some(of) = options.adaptive {
+        study = study.adaptive(of);
+    }
     if let Some((scheme, level)) = &options.reference {
         study = study.named_reference(scheme, *level);
     }
@@ -100,21 +106,24 @@ pub fn prepare<'a, T: Real, const D: usize>(
     if let (Some(need), Some(free)) = (study.memory_estimate(), available_memory_bytes())
         && need.bytes > free as f64
     {
+        let (run, less) = match &options.adaptive {
+            Some(of) => (format!("{} unknowns", of.unknowns), "fewer unknowns"),
+            None => (format!("level {}", need.level), "a lower level"),
+        };
         return Err(format!(
-            "scene {name}, scheme {}, level {}: would need about {:.1} GB of memory, {:.1} GB are available; choose a lower level",
+            "scene {name}, scheme {}, {run}: would need about {:.1} GB of memory, {:.1} GB are available; choose {less}",
             need.scheme,
-            need.level,
             need.bytes / 1e9,
             free as f64 / 1e9
         ));
     }
     let keys = study.keys();
-    watcher.expect(D, has_mesh, keys.iter().map(|key| key.level));
-    let run = move |journal| match study.journal(journal).run() {
-        Ok(report) => Ok(report.rows),
-        Err(e) => Err(format!("{place}: {e}")),
-    };
-    Ok(Some(Run { keys, run: Box::new(run) }))
+    // how many steps a bound takes is not known before
+    if options.adaptive.is_none() {
+        watcher.expect(D, has_mesh, keys.iter().map(|key| key.level));
+    }
+    let run = move |journal| Ok(study.journal(journal).run()?.rows);
+    Ok(Some(Run { keys, place, run: Box::new(run) }))
 }
 
 /// Draws a solution with few cells as `NAME.svg`; one on a finer mesh takes the place of a coarser one.

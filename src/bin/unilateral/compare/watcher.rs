@@ -102,6 +102,9 @@ impl Watcher {
     /// The time that the other runs will take if a cell takes as long in them as before.
     fn estimate(&self) -> Option<HumanDuration> {
         let share = self.finished.get() / self.expected.get();
+        if !share.is_finite() {
+            return None;
+        }
         let left = self.begin.elapsed().as_secs_f64() * (1.0 / share - 1.0);
         let left = (share > 0.02).then(|| Duration::try_from_secs_f64(left.max(0.0)).ok())?;
         left.map(HumanDuration)

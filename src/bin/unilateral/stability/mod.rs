@@ -16,7 +16,9 @@ use std::path::Path;
 pub use options::Options;
 
 use crate::mesh_file::with_parts;
-use crate::shared::{Request, bar, print, tick, use_threads, write};
+use crate::shared::{
+    Failure, bar, check_writable, make_directory, print, tick, use_threads, write,
+};
 use unilateral::mesh::gmsh;
 use unilateral::stability::{Effort, Stability, StabilityProgress, Verdict};
 
@@ -31,7 +33,7 @@ fn shown(path: &Path) -> String {
 }
 
 /// Runs the study; false if a job ended in an error, or with `--strict` if a criterion was missed.
-pub fn run(options: &Options) -> Request<bool> {
+pub fn run(options: &Options) -> Result<bool, Failure> {
     use_threads(options.threads.map(usize::from))?;
     let bar = bar(options.quiet, 0, "{bar:24} {pos} of {len}, {elapsed}, {eta} to go: {msg}");
     tick(&bar);
@@ -50,7 +52,10 @@ pub fn run(options: &Options) -> Request<bool> {
         let mesh = with_parts(read.mesh, path, &options.boundary)?;
         study = study.mesh(&name_of(path), mesh);
     }
-    let report = study.run().map_err(|e| e.to_string())?;
+    study.check().map_err(|e| e.to_string())?;
+    check_writable(&options.markdown)?;
+    make_directory(&options.out)?;
+    let report = study.run().map_err(Failure::of_work)?;
     bar.finish_and_clear();
     if let Some(path) = &options.markdown {
         let named: Vec<String> = options.meshes.iter().map(|path| shown(path)).collect();
@@ -66,7 +71,7 @@ pub fn run(options: &Options) -> Request<bool> {
             &format!("{title}\nMade by `{command}`.\n"),
             1,
         );
-        write(path, text)?;
+        write(path, text).map_err(Failure::Work)?;
     }
     if !options.quiet {
         print(&report.summary())?;

@@ -13,9 +13,9 @@ pub use options::Options;
 use unilateral::inequality::ActiveSet;
 use unilateral::input::excerpt;
 use unilateral::linear::LinearMethod;
-use unilateral::problem_file::{self, AnyOwnProblem, Geometry, OwnProblem};
+use unilateral::problem_file::{self, AnyOwnProblem};
 use unilateral::real::Real;
-use unilateral::scenes::{self, AnyScene, Parameters, Scene};
+use unilateral::scenes::{self, AnyScene, Parameters};
 use unilateral::scheme::NamedScheme;
 use unilateral::study::{Study, peak_memory_bytes};
 use unilateral::work_precision::{
@@ -23,14 +23,16 @@ use unilateral::work_precision::{
 };
 
 use crate::posed::Posed;
-use crate::shared::{Request, bar, print, read, tick, use_threads, write};
+use crate::shared::{
+    Failure, Request, bar, check_writable, make_directory, print, read, tick, use_threads, write,
+};
 
 /// Whether every run converged and nothing changed.
-pub fn run(options: &Options) -> Request<bool> {
+pub fn run(options: &Options) -> Result<bool, Failure> {
     options.check()?;
     let schemes = options.schemes()?;
     if options.peak {
-        return peak(options);
+        return peak(options).map_err(Failure::Work);
     }
     use_threads(options.threads())?;
     // what cannot be read or written is better known before the work
@@ -47,24 +49,38 @@ pub fn run(options: &Options) -> Request<bool> {
         changes(text, &report).map_err(|e| e.to_string())?;
     }
     let template = "{bar:24} {pos} of {len} runs, {elapsed}, {eta} to go: {wide_msg}";
-    let bar = bar(options.quiet, planned(options, &schemes), template);
-    tick(&bar);
+    let bar = bar(options.quiet, 0, template);
+    let mut studies = Vec::new();
     for name in options.scenes() {
-        match scene(options, &name)? {
-            AnyScene::One(s) => study(options, &schemes, &bar, s, &mut report),
-            AnyScene::Two(s) => study(options, &schemes, &bar, s, &mut report),
-            AnyScene::Three(s) => study(options, &schemes, &bar, s, &mut report),
-        }
-        .map_err(|e| format!("scene {name}: {e}"))?;
+        studies.push(match scene(options, &name)? {
+            AnyScene::One(s) => prepare::<1>(options, &schemes, &bar, s.into()),
+            AnyScene::Two(s) => prepare::<2>(options, &schemes, &bar, s.into()),
+            AnyScene::Three(s) => prepare::<3>(options, &schemes, &bar, s.into()),
+        }?);
     }
     if let Some(path) = &options.problem {
-        match problem_file::read(path).map_err(|e| e.to_string())? {
-            AnyOwnProblem::One(own) => study_own(options, &schemes, &bar, own, &mut report),
-            AnyOwnProblem::Two(own) => study_own(options, &schemes, &bar, own, &mut report),
-            AnyOwnProblem::Three(own) => study_own(options, &schemes, &bar, own, &mut report),
-        }
-        .map_err(|e| format!("{}: {e}", path.display()))?;
+        studies.push(match problem_file::read(path).map_err(|e| e.to_string())? {
+            AnyOwnProblem::One(own) => prepare::<1>(options, &schemes, &bar, own.into()),
+            AnyOwnProblem::Two(own) => prepare::<2>(options, &schemes, &bar, own.into()),
+            AnyOwnProblem::Three(own) => prepare::<3>(options, &schemes, &bar, own.into()),
+        }?);
     }
+    check_writable(&options.save)?;
+    make_directory(&options.out)?;
+    tick(&bar);
+    for run in studies {
+        run(&mut report).map_err(Failure::Work)?;
+    }
+    finish(options, report, &bar, baseline.as_deref()).map_err(Failure::Work)
+}
+
+/// Writes and prints the report. Whether every run converged and nothing changed.
+fn finish(
+    options: &Options,
+    mut report: WorkReport,
+    bar: &ProgressBar,
+    baseline: Option<&str>,
+) -> Request<bool> {
     report.provenance.complete = true;
     report.write_data(&options.out).map_err(|e| e.to_string())?;
     bar.finish_and_clear();
@@ -76,7 +92,7 @@ pub fn run(options: &Options) -> Request<bool> {
         print(&format!("\nReport and plots are in {}\n", options.out.display()))?;
     }
     let mut same = true;
-    if let Some(text) = &baseline {
+    if let Some(text) = baseline {
         let changes = changes(text, &report).map_err(|e| e.to_string())?;
         print(&format!("\n{changes}"))?;
         print("ratios of times, of runs made now:\n")?;
@@ -101,80 +117,39 @@ fn scene(options: &Options, name: &str) -> Request<AnyScene> {
     entry.make(&Parameters::new().with_contrast(contrast)).map_err(|e| e.to_string())
 }
 
-/// How many runs there will be on all scenes, unless some take too long.
-fn planned(options: &Options, schemes: &[NamedScheme]) -> usize {
-    let variants = schemes.len() * options.linear().len() * options.precisions().len();
-    let of_scene = |name: &String| {
-        let has_mesh = options.mesh.path.is_some();
-        let levels = scenes::by_name(name).map(|entry| options.levels(entry.dimension, has_mesh));
-        let mut levels = levels.unwrap_or_default();
-        levels.sort_unstable();
-        levels.dedup();
-        levels.len()
-    };
-    variants * options.rounds() * options.scenes().iter().map(of_scene).sum::<usize>()
-}
+/// A study that has been checked, which adds itself to a report.
+type Run<'a> = Box<dyn FnOnce(&mut WorkReport) -> Request<()> + 'a>;
 
-/// Measures a scene and adds it to the report.
-fn study<const D: usize>(
-    options: &Options,
+/// Checks a study with the settings of the options.
+fn prepare<'a, const D: usize>(
+    options: &'a Options,
     schemes: &[NamedScheme],
-    bar: &ProgressBar,
-    first: Scene<D>,
-    report: &mut WorkReport,
-) -> Request<()>
-where
-    AnyScene: Pick<D>,
-{
-    let name = first.name.clone();
-    let remake = move || match scene(options, &name).ok().and_then(Pick::<D>::pick) {
-        Some(scene) => scene,
-        None => unreachable!("it was made before"),
+    bar: &'a ProgressBar,
+    posed: Posed<D>,
+) -> Request<Run<'a>> {
+    let place = match &options.problem {
+        Some(path) => path.display().to_string(),
+        None => format!("scene {}", posed.name()),
     };
-    let mut study = WorkPrecision::<D>::new(remake);
-    let on_mesh = options.mesh.read(&|_| {})?;
-    let has_mesh = on_mesh.is_some();
-    if let Some(mesh) = on_mesh {
+    let mesh = options.mesh.read(&|_| {})?;
+    let has_mesh = mesh.is_some() || posed.has_mesh();
+    let mut study = posed.work_precision()?.levels(options.levels(D, has_mesh));
+    if let Some(mesh) = mesh {
         study = study.on_mesh(mesh);
     }
-    run_study(options, schemes, bar, study.levels(options.levels(D, has_mesh)), report)
+    let study = with_settings(options, schemes, bar, study);
+    let runs = study.check().map_err(|e| format!("{place}: {e}"))?;
+    bar.inc_length(runs as u64);
+    Ok(Box::new(move |report| study.run_into(report).map_err(|e| format!("{place}: {e}"))))
 }
 
-/// Measures a problem of a file and adds it to the report.
-fn study_own<const D: usize>(
-    options: &Options,
+/// A study with schemes and settings of the options.
+fn with_settings<'a, const D: usize>(
+    options: &'a Options,
     schemes: &[NamedScheme],
-    bar: &ProgressBar,
-    own: OwnProblem<D>,
-    report: &mut WorkReport,
-) -> Request<()> {
-    let (study, has_mesh) = match own.mesh::<f64>().map_err(|e| e.to_string())? {
-        Some(read) => {
-            let study = WorkPrecision::of_problem(&own.name, own.problem, read.mesh);
-            (study.map_err(|e| e.to_string())?, true)
-        }
-        None => {
-            let Geometry::Box(domain) = own.geometry else {
-                return Err("a problem has a mesh or a box".to_owned());
-            };
-            let scene = Scene::new(own.name, domain, own.problem);
-            (WorkPrecision::new(move || scene.clone()), false)
-        }
-    };
-    let levels = options.levels(D, has_mesh);
-    let variants = schemes.len() * options.linear().len() * options.precisions().len();
-    bar.inc_length((variants * options.rounds() * levels.len()) as u64);
-    run_study(options, schemes, bar, study.levels(levels), report)
-}
-
-/// Runs a study with the settings of the options and adds it to the report.
-fn run_study<const D: usize>(
-    options: &Options,
-    schemes: &[NamedScheme],
-    bar: &ProgressBar,
-    study: WorkPrecision<'_, D>,
-    report: &mut WorkReport,
-) -> Request<()> {
+    bar: &'a ProgressBar,
+    study: WorkPrecision<'a, D>,
+) -> WorkPrecision<'a, D> {
     let study = study
         .linear(options.linear())
         .precisions(options.precisions())
@@ -203,30 +178,7 @@ fn run_study<const D: usize>(
     if let Some((scheme, level)) = &options.reference {
         study = study.named_reference(scheme, *level);
     }
-    study.run_into(report).map_err(|e| e.to_string())
-}
-
-/// The scene of a dimension, if it is of that dimension.
-trait Pick<const D: usize> {
-    fn pick(self) -> Option<Scene<D>>;
-}
-
-impl Pick<1> for AnyScene {
-    fn pick(self) -> Option<Scene<1>> {
-        if let AnyScene::One(scene) = self { Some(scene) } else { None }
-    }
-}
-
-impl Pick<2> for AnyScene {
-    fn pick(self) -> Option<Scene<2>> {
-        if let AnyScene::Two(scene) = self { Some(scene) } else { None }
-    }
-}
-
-impl Pick<3> for AnyScene {
-    fn pick(self) -> Option<Scene<3>> {
-        if let AnyScene::Three(scene) = self { Some(scene) } else { None }
-    }
+    study
 }
 
 /// The peak of memory of a process that runs this case and nothing else.

@@ -1,15 +1,17 @@
 //! The data of a problem file, checked on its mesh.
 
+mod check;
+
 use toml::de::DeTable;
 
 use super::error::{ProblemFileError, ProblemFileFault};
 use super::own_problem::{Geometry, OwnProblem};
 use super::table::{Formula, Place, Source, Value};
 use crate::error::Error;
-use crate::input::excerpt;
-use crate::mesh::{BoundaryPart, BoxDomain, Mesh, SIDES, describe_point};
-use crate::problem::{Datum, Problem};
+use crate::mesh::{BoundaryPart, BoxDomain, SIDES};
+use crate::problem::{BoundaryFlux, Datum, Problem};
 use crate::real::Point;
+use check::{Allowed, Entry};
 
 const KEYS: [&str; 9] =
     ["name", "mesh", "box", "coefficient", "source", "reaction", "obstacle", "boundary", "exact"];
@@ -20,62 +22,18 @@ const DEFAULT: &str = "default";
 /// The data that may be given with a level, where they jump.
 const PIECEWISE: [&str; 2] = ["source", "reaction"];
 
-/// The values that a datum may have.
-#[derive(Clone, Copy)]
-enum Allowed {
-    Finite,
-    NotNegative,
-    Positive,
-}
-
-impl Allowed {
-    fn holds(self, value: f64) -> bool {
-        value.is_finite()
-            && match self {
-                Self::Finite => true,
-                Self::NotNegative => value >= 0.0,
-                Self::Positive => value > 0.0,
-            }
-    }
-    fn describe(self) -> &'static str {
-        match self {
-            Self::Finite => "finite",
-            Self::NotNegative => "finite and not negative",
-            Self::Positive => "finite and positive",
-        }
-    }
-}
-
-/// A datum with its place, for checks.
-struct Entry<const D: usize> {
-    /// What it is: `source of region steel`, say.
-    datum: String,
-    /// Region or boundary group; none for cells in no other.
-    group: Option<String>,
-    is_boundary: bool,
-    /// Of the other groups with such a datum.
-    others: Vec<String>,
-    /// Whether it is evaluated at vertices.
-    at_vertices: bool,
-    offset: usize,
-    allowed: Allowed,
-    value: Flux<D>,
-}
-
-/// A function of point and normal.
-type Flux<const D: usize> =
-    std::sync::Arc<dyn Fn(&Point<f64, D>, &Point<f64, D>) -> f64 + Send + Sync>;
-
 /// A number or expression as a function of the point and of the normal.
-fn flux<const D: usize>(formula: &Formula) -> Flux<D> {
+fn flux<const D: usize>(formula: &Formula) -> BoundaryFlux<D> {
     match formula.clone() {
-        Formula::Number(c) => std::sync::Arc::new(move |_, _| c),
-        Formula::Expression(expression) => std::sync::Arc::new(move |x, n| {
-            let mut variables = [0.0; 6];
-            variables[..D].copy_from_slice(x.as_slice());
-            variables[D..2 * D].copy_from_slice(n.as_slice());
-            expression.value(&variables[..2 * D])
-        }),
+        Formula::Number(c) => BoundaryFlux::Constant(c),
+        Formula::Expression(expression) => {
+            BoundaryFlux::Function(std::sync::Arc::new(move |x, n| {
+                let mut variables = [0.0; 6];
+                variables[..D].copy_from_slice(x.as_slice());
+                variables[D..2 * D].copy_from_slice(n.as_slice());
+                expression.value(&variables[..2 * D])
+            }))
+        }
     }
 }
 
@@ -108,6 +66,8 @@ struct Builder<'s, 't, const D: usize> {
     parts: Vec<(String, BoundaryPart)>,
     /// Whether the file has the exact solution.
     has_exact: bool,
+    /// Where the file has its gradient.
+    gradient_offset: usize,
 }
 
 type Done<V = ()> = Result<V, ProblemFileError>;
@@ -165,13 +125,13 @@ impl<'t, const D: usize> Builder<'_, 't, D> {
         if let Some(value) = table.get("lower") {
             self.by_region(("obstacle.lower", value), how, |p, region, psi| match region {
                 Some(region) => p.obstacle_below_in(region, psi),
-                None => p.obstacle_below(move |x| psi.at(x)),
+                None => Problem { lower: Some(psi), ..p },
             })?;
         }
         if let Some(value) = table.get("upper") {
             self.by_region(("obstacle.upper", value), how, |p, region, psi| match region {
                 Some(region) => p.obstacle_above_in(region, psi),
-                None => p.obstacle_above(move |x| psi.at(x)),
+                None => Problem { upper: Some(psi), ..p },
             })?;
         }
         Ok(())
@@ -209,14 +169,14 @@ impl<'t, const D: usize> Builder<'_, 't, D> {
                 }
                 None => Formula::Number(0.0),
             };
-            let problem = std::mem::take(&mut self.problem);
+            let mut problem = std::mem::take(&mut self.problem);
             let function = flux::<D>(&formula);
             self.problem = match part {
                 BoundaryPart::Dirichlet => problem.dirichlet_on(&group, datum(&formula)),
                 BoundaryPart::Contact => problem.signorini_on(&group, datum(&formula)),
                 BoundaryPart::Neumann => {
-                    let function = function.clone();
-                    problem.neumann_on(&group, move |x, n| function(x, n))
+                    problem.named.neumann.push((group.clone(), function.clone()));
+                    problem
                 }
             };
             self.entries.push(Entry {
@@ -246,91 +206,24 @@ impl<'t, const D: usize> Builder<'_, 't, D> {
             needed("value", "the exact solution")?,
             needed("gradient", "a list with an expression for each coordinate")?,
         );
-        let solution = datum::<D>(&source.formula("value", solution, &VARIABLES[0][..D])?);
+        let offset = solution.span().start;
+        let solution = source.formula("value", solution, &VARIABLES[0][..D])?;
+        self.entries.push(Entry::of_exact("value", &solution, offset));
+        let solution = datum::<D>(&solution);
         let expected = "a list with an expression for each coordinate";
         let components = gradient.get_ref().as_array().filter(|list| list.len() == D);
         let components =
             components.ok_or_else(|| source.wrong_type("gradient", gradient, expected))?;
-        let component =
-            |value| Ok(datum::<D>(&source.formula("gradient", value, &VARIABLES[0][..D])?));
-        let components = components.iter().map(component).collect::<Done<Vec<_>>>()?;
+        self.gradient_offset = gradient.span().start;
+        let mut component = |value: &Value<'t>| {
+            let formula = source.formula("gradient", value, &VARIABLES[0][..D])?;
+            let entry = Entry::of_exact("gradient", &formula, value.span().start);
+            self.entries.push(Entry { at_vertices: false, ..entry });
+            Ok(datum::<D>(&formula))
+        };
+        let components = components.iter().map(&mut component).collect::<Done<Vec<_>>>()?;
         self.problem = std::mem::take(&mut self.problem)
             .exact(move |x| solution.at(x), move |x| Point::from_fn(|k, _| components[k].at(x)));
-        Ok(())
-    }
-
-    /// Holds names and values against a mesh.
-    fn check(&self, mesh: &Mesh<f64, D>) -> Done {
-        let groups: Vec<&[String]> = mesh.boundary_groups().iter().map(|g| &g.names[..]).collect();
-        let regions: Vec<&[String]> = mesh.regions().iter().map(|names| &names[..]).collect();
-        for entry in &self.entries {
-            let (kind, known) = match entry.is_boundary {
-                true => ("boundary group", &groups),
-                false => ("region", &regions),
-            };
-            let Some(name) = &entry.group else { continue };
-            if !known.iter().any(|names| names.contains(name)) {
-                let mut known: Vec<String> = known.iter().copied().flatten().map(excerpt).collect();
-                known.sort_unstable();
-                known.dedup();
-                let known = if known.is_empty() { "none".to_owned() } else { known.join(", ") };
-                let fault = ProblemFileFault::UnknownGroup { kind, name: excerpt(name), known };
-                return Err(self.source.error(entry.offset, fault));
-            }
-        }
-        for names in groups {
-            if !names.iter().any(|name| self.parts.iter().any(|(known, _)| known == name)) {
-                let name = names.first().map(excerpt).unwrap_or_default();
-                return Err(self.source.error(0, ProblemFileFault::MissingBoundary { name }));
-            }
-        }
-        self.entries.iter().try_for_each(|entry| self.check_values(entry, mesh))
-    }
-
-    fn check_values(&self, entry: &Entry<D>, mesh: &Mesh<f64, D>) -> Done {
-        let check = |x: &Point<f64, D>, normal: &Point<f64, D>| {
-            let value = (entry.value)(x, normal);
-            if entry.allowed.holds(value) {
-                return Ok(());
-            }
-            let fault = ProblemFileFault::Value {
-                datum: entry.datum.clone(),
-                value,
-                at: describe_point(x),
-                allowed: entry.allowed.describe(),
-            };
-            Err(self.source.error(entry.offset, fault))
-        };
-        let is_meant = |names: &[String]| match &entry.group {
-            Some(name) => names.contains(name),
-            None => !names.iter().any(|name| entry.others.contains(name)),
-        };
-        let vertex = |v: u32| mesh.vertices()[v as usize];
-        if entry.is_boundary {
-            for facet in mesh.boundary() {
-                let group = &mesh.boundary_groups()[usize::from(facet.group)];
-                if !is_meant(&group.names) {
-                    continue;
-                }
-                let (cell, local) = (facet.cell as usize, facet.local as usize);
-                let normal = mesh.geometry(cell).normal(local);
-                check(&mesh.facet_barycentre(cell, local), &normal)?;
-                if entry.at_vertices {
-                    mesh.facet_vertices(cell, local)
-                        .try_for_each(|v| check(&vertex(v), &normal))?;
-                }
-            }
-            return Ok(());
-        }
-        let none = Point::zeros();
-        for cell in 0..mesh.n_cells() {
-            if is_meant(&mesh.regions()[mesh.region(cell)]) {
-                check(&mesh.barycentre(cell), &none)?;
-                if entry.at_vertices {
-                    mesh.cell(cell).iter().try_for_each(|&v| check(&vertex(v), &none))?;
-                }
-            }
-        }
         Ok(())
     }
 }
@@ -352,6 +245,7 @@ pub(super) fn problem<'t, const D: usize>(
         entries: Vec::new(),
         parts: Vec::new(),
         has_exact: root.contains_key("exact"),
+        gradient_offset: 0,
     };
     for (key, value) in root.iter() {
         match &**key.get_ref() {
@@ -362,18 +256,15 @@ pub(super) fn problem<'t, const D: usize>(
                     how,
                     |p, region, alpha| match region {
                         Some(region) => p.coefficient_in(region, alpha),
-                        None => p.coefficient(move |x| alpha.at(x)),
+                        None => Problem { coefficient: Some(alpha), ..p },
                     },
                 )?;
             }
             "source" => {
                 let how = (Allowed::Finite, false);
-                builder.by_region(("source", value), how, |mut p, region, f| match region {
+                builder.by_region(("source", value), how, |p, region, f| match region {
                     Some(region) => p.source_in(region, f),
-                    None => {
-                        p.source = Some(f);
-                        p
-                    }
+                    None => Problem { source: Some(f), ..p },
                 })?;
             }
             "reaction" => {
@@ -407,8 +298,8 @@ pub(super) fn problem<'t, const D: usize>(
     };
     let own = OwnProblem { name, problem: builder.problem.clone(), geometry };
     let failed = |error: Error| match (error, place) {
-        (Error::Gmsh(source), Place::File { path, .. }) => {
-            ProblemFileError::Mesh { path: path.clone(), source: Box::new(source) }
+        (Error::Gmsh(error), Place::File { path, offset, .. }) => {
+            source.mesh_error(*offset, path, error)
         }
         (error, _) => {
             ProblemFileError::Problem { path: source.path.into(), source: Box::new(error) }

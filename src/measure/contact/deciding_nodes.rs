@@ -1,0 +1,53 @@
+//! Which nodes of a cell or facet decide whether it is in contact.
+
+use super::entity::ContactEntity;
+use crate::assemble::space::Space;
+use crate::quadrature::{Rule, facet_to_cell};
+use crate::real::Real;
+
+/// A mean of a basis function counts as positive above this.
+const POSITIVE: f64 = 1e-9;
+
+/// The nodes that decide whether a cell or a facet of the contact boundary is in contact.
+pub(super) struct DecidingNodes {
+    in_cell: Vec<usize>,
+    /// By number of the facet in its cell.
+    on_facet: Vec<Vec<usize>>,
+}
+
+impl DecidingNodes {
+    /// The nodes of an entity.
+    pub fn of(&self, entity: ContactEntity) -> &[usize] {
+        entity.facet.map_or(&self.in_cell, |local| &self.on_facet[local])
+    }
+}
+
+impl<T: Real, const D: usize> Space<'_, T, D> {
+    /// Of the nodes that the constraint set binds those whose basis functions have a positive mean over the
+    /// entity, or all if there is none.
+    ///
+    /// A quadratic basis function of a vertex has a mean of zero over a triangle and a negative one over a
+    /// tetrahedron: within the contact set the nodal multiplier of the vertex is zero or has the wrong
+    /// sign, so that the vertex is inactive there.
+    pub(super) fn deciding_nodes(&self) -> DecidingNodes {
+        let positive = |points: Vec<([f64; 4], f64)>, bounded: Vec<usize>| {
+            let mean = |i: usize| -> f64 {
+                points.iter().map(|(point, weight)| weight * self.basis_at(point).values[i]).sum()
+            };
+            let chosen: Vec<usize> =
+                bounded.iter().copied().filter(|&i| mean(i) > POSITIVE).collect();
+            if chosen.is_empty() { bounded } else { chosen }
+        };
+        let in_cell = Rule::new(D, self.basis_degree);
+        let in_cell = in_cell.iter().map(|(point, weight)| (*point, weight)).collect();
+        let on_facet = |local: usize| {
+            let rule = Rule::new(D - 1, self.basis_degree);
+            let points = rule.iter().map(|(point, weight)| (facet_to_cell(point, local), weight));
+            positive(points.collect(), self.bounded_nodes_on(local).map(|(i, _)| i).collect())
+        };
+        DecidingNodes {
+            in_cell: positive(in_cell, self.bounded_nodes().map(|(i, _)| i).collect()),
+            on_facet: (0..=D).map(on_facet).collect(),
+        }
+    }
+}

@@ -1,0 +1,42 @@
+//! What adaptive steps came to, in one line for each series: rates, effectivities, times.
+
+use super::row::{Row, distinct};
+use crate::measure::fit_order;
+
+/// The orders of bound and error over the last half of the steps of each adaptive series, by least squares, the
+/// range of effectivities, and the time of all steps over that of the last one.
+pub(crate) fn rates(rows: &[&Row]) -> Vec<String> {
+    let key = |row: &Row| [&row.label, &row.constraint, &row.solver].map(String::clone);
+    let adaptive: Vec<&Row> = rows.iter().copied().filter(|row| row.theta.is_some()).collect();
+    let of_series = |series: [String; 3]| {
+        let steps: Vec<&Row> =
+            adaptive.iter().copied().filter(|row| key(row) == series && row.converged()).collect();
+        let ([.., before, last], half) = (&steps[..], &steps[steps.len() / 2..]) else {
+            return None;
+        };
+        let order = |figure: fn(&Row) -> Option<f64>| {
+            let points: Option<Vec<_>> =
+                half.iter().map(|row| Some((row.size(), figure(row)?))).collect();
+            points.and_then(|points| fit_order(&points)).map(|fitted| fitted.order)
+        };
+        let mut words = Vec::new();
+        let orders = [("bound", order(|r| r.bound.total)), ("H1", order(|r| r.error.h1))];
+        let orders = orders.iter().filter_map(|(name, p)| Some(format!("{name} {:.2}", (*p)?)));
+        let orders: Vec<String> = orders.collect();
+        if !orders.is_empty() {
+            words.push(format!("order {} from step {} on", orders.join(", "), half[0].level));
+        }
+        let effectivities = || steps.iter().filter_map(|row| row.bound.effectivity);
+        let least = effectivities().fold(f64::INFINITY, f64::min);
+        if least.is_finite() {
+            let largest = effectivities().fold(0.0, f64::max);
+            words.push(format!("effectivity {least:.2} to {largest:.2}"));
+        }
+        let (all, step) = (last.seconds.total, last.seconds.total - before.seconds.total);
+        if step > 0.0 {
+            words.push(format!("all steps take {:.1} times the last", all / step));
+        }
+        Some(format!("{}: {}", series[0], words.join("; ")))
+    };
+    distinct(adaptive.iter().map(|row| key(row))).into_iter().filter_map(of_series).collect()
+}

@@ -1,0 +1,156 @@
+//! A study on meshes that follow the error bound: the rows of the steps of each scheme.
+
+use super::{Progress, Study};
+use crate::error::Error;
+use crate::mesh::{Domain, Mesh};
+use crate::nested::{AdaptiveIteration, AdaptiveMeshes, AdaptiveStep, Adaptivity};
+use crate::nested::{NestedIteration, Phase};
+use crate::real::Real;
+use crate::scheme::ExpectedOrders;
+use crate::study::reference::Measured;
+use crate::study::report::Report;
+use crate::study::row::{Row, Seconds};
+
+/// Subdivisions of the shortest side of a domain in the first mesh where no level is set.
+const FIRST_LEVEL: usize = 4;
+
+impl<T: Real, const D: usize> Study<'_, T, D> {
+    /// Runs every scheme on meshes that follow its error bound, in place of levels. The level of a row is the
+    /// number of refinements. [`Study::levels`] may set the level of the first mesh; else that is the mesh
+    /// given, or four subdivisions of the shortest side.
+    ///
+    /// Times are those of all steps so far, bounds included: what the error of the row costs.
+    ///
+    /// ```
+    /// use unilateral::prelude::*;
+    /// # fn main() -> Result<(), unilateral::error::Error> {
+    /// let report = Study::<f64, 2>::new(scenes::lshape_2d())
+    ///     .scheme(ConformingP1)
+    ///     .adaptive(Adaptivity::default().steps(3))
+    ///     .run()?;
+    /// assert_eq!(report.rows.len(), 4);
+    /// assert!(report.rows[3].bound.total < report.rows[0].bound.total);
+    /// # Ok(())
+    /// # }
+    /// ```
+    #[must_use]
+    pub fn adaptive(mut self, adaptivity: Adaptivity) -> Self {
+        self.adaptive = Some(adaptivity);
+        self
+    }
+
+    /// The levels of all rows that may come: those set, or one for each step.
+    pub(super) fn row_levels(&self) -> Vec<usize> {
+        match &self.adaptive {
+            Some(adaptivity) => (0..=adaptivity.steps).collect(),
+            None => self.levels.clone(),
+        }
+    }
+
+    /// The level of the first mesh of adaptive refinement.
+    pub(super) fn first_level(&self) -> usize {
+        let default = if self.mesh.is_some() { 0 } else { FIRST_LEVEL };
+        self.levels.first().copied().unwrap_or(default)
+    }
+    fn first_mesh(&self) -> Result<Mesh<T, D>, Error> {
+        let hierarchy = self.coarsest().build(self.first_level())?;
+        Ok(hierarchy.finest().clone())
+    }
+
+    /// Checks what adaptive refinement asks of a study besides.
+    pub(super) fn check_adaptive(&self, adaptivity: &Adaptivity) -> Result<(), Error> {
+        let refuse = |parameter, value: String, allowed: &str| {
+            Err(Error::Parameter { parameter, value, allowed: allowed.to_owned() })
+        };
+        adaptivity.check()?;
+        if let [_, _, ..] = self.levels[..] {
+            let value = self.levels.len().to_string();
+            let allowed = "adaptive refinement has one first mesh, of one level at most";
+            return refuse("number of levels", value, allowed);
+        }
+        if let Some(reference) = &self.reference {
+            let allowed = "none: a reference needs uniform refinements of all meshes";
+            return refuse("level of the reference", reference.level.to_string(), allowed);
+        }
+        if self.mesh.is_none() && matches!(self.scene.domain, Domain::Disc { .. }) {
+            let allowed = "one with a polygon as its boundary: bisection does not follow a circle";
+            return refuse("domain of an adaptive study", "a disc".to_owned(), allowed);
+        }
+        self.coarsest().check(self.first_level())?;
+        let mesh = self.first_mesh()?;
+        for (entry, problem) in self.entries.iter().zip(self.problems()) {
+            match NestedIteration::new(&problem, &mesh).check_bound(&*entry.scheme) {
+                // data that are bad on a mesh are for the rows
+                Err(error @ Error::NotAdaptive { .. }) => return Err(error),
+                _ => {}
+            }
+        }
+        Ok(())
+    }
+
+    /// The report of all schemes and solvers.
+    pub(super) fn run_adaptive(
+        &self,
+        adaptivity: Adaptivity,
+        failure: Option<&str>,
+    ) -> Result<Report, Error> {
+        (self.observer)(Progress::Entered(Phase::Mesh));
+        let mut rows = Vec::new();
+        let mut add = |row| self.finish(row, &mut rows);
+        let first = self.first_mesh()?;
+        let measured = Measured { failure, reference: None };
+        for (entry, problem) in self.entries.iter().zip(&self.problems()) {
+            let label = entry.scheme.label_on(problem.constraint_set());
+            for solver in self.solvers() {
+                let meshes = AdaptiveMeshes::new(first.clone());
+                let nested = self.with_settings(NestedIteration::new(problem, &meshes), &solver);
+                let mut steps = AdaptiveIteration::new(nested, &*entry.scheme, adaptivity)?;
+                for level in 0.. {
+                    (self.observer)(Progress::Started(&self.scene.name, &label, level));
+                    let step = match steps.next() {
+                        Some(Ok(step)) => step,
+                        Some(Err(error)) => {
+                            let place = (level, meshes.finest());
+                            let name = solver.name();
+                            add(self.row_without(
+                                (entry, problem),
+                                place,
+                                name,
+                                failure,
+                                error,
+                            )?)?;
+                            break;
+                        }
+                        None => break,
+                    };
+                    // files are named after the last step: whether there is another one is known
+                    let last = level + usize::from(step.stop.is_none());
+                    let levels: Vec<usize> = (0..=last).collect();
+                    let at = (level, &levels[..]);
+                    let row = self.row_of(entry, at, &step.solved, solver.name(), measured)?;
+                    add(adaptive_row(row, &step, adaptivity.theta))?;
+                    if step.stop.is_some() {
+                        break;
+                    }
+                }
+            }
+        }
+        Ok(self.report(rows))
+    }
+}
+
+/// The row of a step: the times of all steps so far, and no order that theory promises for uniform meshes.
+fn adaptive_row<T: Real, const D: usize>(
+    row: Row,
+    step: &AdaptiveStep<'_, T, D>,
+    theta: f64,
+) -> Row {
+    let seconds = Seconds {
+        assemble: step.assemble_seconds,
+        solve: step.solve_seconds,
+        bound: Some(step.bound_seconds),
+        total: step.seconds(),
+        ..row.seconds
+    };
+    Row { theta: Some(theta), seconds, expected_order: ExpectedOrders::default(), ..row }
+}
