@@ -84,6 +84,7 @@ impl<T: Real, const D: usize> Discretisation<'_, T, D> {
     ///
     /// # Panics
     /// If there is no such cell, or `u` is shorter than the number of unknowns.
+    #[cfg(feature = "report")]
     pub(crate) fn value_in(&self, u: &[T], cell: usize, point: &Point<f64, D>) -> f64 {
         let (basis, local) = self.space.evaluate(cell, point, u);
         basis.value(&local)

@@ -225,10 +225,9 @@ impl<'a, T: Real, const D: usize> AdaptiveIteration<'a, T, D> {
                 allowed: "adaptive refinement takes AdaptiveMeshes".to_owned(),
             });
         };
-        match nested.check_bound(scheme) {
-            // other errors are those of the first step
-            Err(error @ Error::NotAdaptive { .. }) => return Err(error),
-            _ => {}
+        // other errors are those of the first step
+        if let Err(error @ Error::NotAdaptive { .. }) = nested.check_bound(scheme) {
+            return Err(error);
         }
         Ok(Self {
             nested,

@@ -293,7 +293,7 @@ impl<'a, T: Real, const D: usize> NestedIteration<'a, T, D> {
         let contact = contact_of(&inequality, &values);
         let solution = Solution::new(values, contact, Outcome::Converged).linear_solver("none");
         let solved = Solved::new(discretisation, inequality, solution, self.hierarchy(position));
-        Ok(solved.from_elsewhere())
+        Ok(solved.found_elsewhere())
     }
 
     /// The hierarchy that has the mesh, and its position there.

@@ -253,7 +253,7 @@ impl<'a, T: Real, const D: usize> Solved<'a, T, D> {
         fine.discretisation.difference(fine.values(), coarse)
     }
     /// The solution with the outcome of values that no solver of the library found.
-    pub(super) fn from_elsewhere(mut self) -> Self {
+    pub(super) fn found_elsewhere(mut self) -> Self {
         if self.solution.outcome == Outcome::Stalled {
             self.solution.outcome = Outcome::NotASolution;
         }

@@ -60,7 +60,7 @@ fn the_last_step_has_the_files_of_fields() {
         let mut expected = Vec::new();
         for label in ["p1", "wopsip"] {
             let of_label = || report.rows.iter().filter(|row| row.label == label);
-            let (steps, last) = (of_label().count(), of_label().last().unwrap());
+            let (steps, last) = (of_label().count(), of_label().next_back().unwrap());
             assert!(steps > 2 && last.bound.total <= Some(0.5) && last.warnings.is_empty());
             expected.push(format!("radial-2d-{label}.vtu"));
             if all {

@@ -79,10 +79,10 @@ impl<T: Real, const D: usize> Study<'_, T, D> {
         self.coarsest().check(self.first_level())?;
         let mesh = self.first_mesh()?;
         for (entry, problem) in self.entries.iter().zip(self.problems()) {
-            match NestedIteration::new(&problem, &mesh).check_bound(&*entry.scheme) {
-                // data that are bad on a mesh are for the rows
-                Err(error @ Error::NotAdaptive { .. }) => return Err(error),
-                _ => {}
+            let of_entry = NestedIteration::new(&problem, &mesh).check_bound(&*entry.scheme);
+            // data that are bad on a mesh are for the rows
+            if let Err(error @ Error::NotAdaptive { .. }) = of_entry {
+                return Err(error);
             }
         }
         Ok(())
