@@ -201,7 +201,7 @@ fn the_other_commands_end_at_an_interrupt() {
         ("stability", format!("--out {out}"), "stability.json"),
     ] {
         let mut command = super::run::command(name);
-        let mut child = command.args(options.split(' ')).stderr(Stdio::piped()).spawn().unwrap();
+        let child = command.args(options.split(' ')).stderr(Stdio::piped()).spawn().unwrap();
         let clock = Instant::now();
         while !scratch.0.join("out").join(file).exists() && clock.elapsed().as_secs() < 60 {
             std::thread::sleep(Duration::from_millis(20));
