@@ -284,3 +284,30 @@ pub fn count_active<T: Real>(inequality: &Inequality<T>, contact: &[Contact]) ->
         .filter(|(bound, state)| bound.is_inequality() && **state != Contact::Inactive)
         .count()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::algebra::SparseMatrix;
+
+    /// Forces and values in a unit that is smaller or larger by a power of two.
+    #[test]
+    fn certificate_and_rounding_do_not_depend_on_the_unit_of_data() {
+        let of_unit = |unit: f64| {
+            let matrix = SparseMatrix {
+                row_starts: vec![0, 2, 4],
+                columns: vec![0, 1, 0, 1],
+                values: vec![3.0, -1.0, -1.0, 2.0],
+            };
+            let bounds = vec![Bound::Lower(-0.5 * unit), Bound::Upper(0.3 * unit)];
+            let problem = Inequality::new(matrix, true, vec![-2.0 * unit, unit], bounds);
+            certify_with_rounding(&problem, &[-0.4 * unit, 0.31 * unit], &[])
+        };
+        let (certificate, rounding) = of_unit(1.0);
+        assert!(certificate.feasibility > 0.0 && certificate.complementarity > 0.0);
+        assert!(rounding > 0.0);
+        for exponent in [-300, -30, 30, 300] {
+            assert_eq!(of_unit(2.0_f64.powi(exponent)), (certificate, rounding), "{exponent}");
+        }
+    }
+}

@@ -12,12 +12,36 @@ use crate::files::replace;
 use crate::files::replace_text;
 #[cfg(feature = "plot")]
 use crate::plot::{convergence, work_precision};
-use crate::study::Report;
+use crate::study::{Report, Row, file_name};
 
 impl Report {
     /// The rows as comma-separated values: see [`to_csv`](super::to_csv).
     pub fn to_csv(&self) -> String {
         csv::to_csv(&self.rows)
+    }
+
+    /// Removes the files of this report from a directory, where they are: those that [`Report::write`] writes
+    /// but `report.json`, and the fields and pictures of its rows. Another report that is written there then
+    /// has no file of this one beside it.
+    pub fn remove_files(&self, directory: impl AsRef<Path>) {
+        let mut names: Vec<String> =
+            ["csv", "md", "html"].map(|end| format!("report.{end}")).into();
+        let tables = latex_files("report", &[], &self.latex_tables(), &[]);
+        names.extend(tables.into_iter().map(|(name, _)| name));
+        for plot in ["convergence", "work_precision"] {
+            names.extend(["svg", "png"].map(|end| format!("{plot}.{end}")));
+        }
+        for Row { scene, label, solver, level, .. } in &self.rows {
+            for stem in [format!("{scene}-{label}"), format!("{scene}-{label}-{solver}")] {
+                let stem = file_name(&stem);
+                names.extend(["svg", "vtu", "pvd"].map(|end| format!("{stem}.{end}")));
+                names.push(format!("{stem}-{level}.vtu"));
+            }
+        }
+        for name in names {
+            // a file that is not there need not go, and one that stays is noticed when it is written
+            let _ = std::fs::remove_file(directory.as_ref().join(name));
+        }
     }
 
     /// Writes `report.json`, `report.csv`, `report.md`, `report.tex`, every table of that as
@@ -28,19 +52,18 @@ impl Report {
     /// reader never sees a part of it.
     ///
     /// # Errors
-    /// [`Error::Write`] at the first file that cannot be written.
+    /// [`Error::Write`] of the first file that cannot be written; the others are written all the same.
     pub fn write(&self, directory: impl AsRef<Path>) -> Result<Vec<PathBuf>, Error> {
         let directory = directory.as_ref();
-        let mut written = Vec::new();
+        let mut results = Vec::new();
         let mut put = |name: &str, text: &str| {
-            written.push(replace_text(&directory.join(name), text)?);
-            Ok::<(), Error>(())
+            results.push(replace_text(&directory.join(name), text));
         };
-        put("report.json", &self.to_json())?;
-        put("report.csv", &self.to_csv())?;
-        put("report.md", &self.to_markdown())?;
+        put("report.json", &self.to_json());
+        put("report.csv", &self.to_csv());
+        put("report.md", &self.to_markdown());
         for (name, text) in latex_files("report", &[], &self.latex_tables(), &[]) {
-            put(&name, &text)?;
+            put(&name, &text);
         }
         #[cfg_attr(not(feature = "plot"), expect(unused_mut))]
         let mut page = self.page(directory);
@@ -50,12 +73,12 @@ impl Report {
             ("work_precision", "Error against time", work_precision(&self.rows)),
         ] {
             let path = directory.join(name);
-            let svg = figure.to_svg().map_err(|why| write_error(&path, why))?;
-            written.push(replace_text(&path.with_extension("svg"), &svg)?);
-            written.push(replace(&path.with_extension("png"), |path| figure.write_png(path))?);
+            let svg = figure.to_svg().map_err(|why| write_error(&path, why));
+            results.push(svg.and_then(|svg| replace_text(&path.with_extension("svg"), &svg)));
+            results.push(replace(&path.with_extension("png"), |path| figure.write_png(path)));
             page.draw(title, &figure).map_err(|why| write_error(&path, why))?;
         }
-        written.push(replace_text(&directory.join("report.html"), &page.to_html())?);
-        Ok(written)
+        results.push(replace_text(&directory.join("report.html"), &page.to_html()));
+        results.into_iter().collect()
     }
 }

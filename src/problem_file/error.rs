@@ -32,7 +32,7 @@ pub enum ProblemFileError {
         fault: ProblemFileFault,
     },
     /// The mesh file that it names is no mesh.
-    #[error("{}:{line}:{column}: mesh {}", path.display(), with_path(mesh, source))]
+    #[error("{}:{line}:{column}: {}", path.display(), with_path(mesh, source))]
     Mesh {
         /// The problem file.
         path: PathBuf,
@@ -61,7 +61,7 @@ debug_by_display!(ProblemFileError);
 fn with_path(mesh: &Path, error: &GmshError) -> String {
     match error {
         GmshError::Unreadable { .. } => error.to_string(),
-        _ => format!("{}: {error}", mesh.display()),
+        _ => format!("mesh {}: {error}", mesh.display()),
     }
 }
 

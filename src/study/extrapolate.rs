@@ -16,8 +16,9 @@ pub struct Limit {
 
 /// Two differences below this share of the figures are those of the accuracy of a solve.
 const EQUAL: f64 = 1e-9;
-/// The orders that are searched; differences that fall more slowly or faster have no limit.
-const ORDERS: [f64; 2] = [0.1, 12.0];
+/// The orders that are searched. Differences that fall more slowly are those of figures that have not begun to
+/// tend to a limit, as of a contact set that grows by whole cells: a limit far from all three figures.
+const ORDERS: [f64; 2] = [0.5, 12.0];
 
 /// The limit of three figures, coarsest mesh first, whose error is `C h^p`: Richardson extrapolation with
 /// the order that the figures themselves show (for halved mesh sizes the formula of Aitken). None where the

@@ -223,7 +223,7 @@ pub(crate) fn columns(rows: &[&Row]) -> Vec<Column> {
         // the largest violation, where NaN counts as larger than any number
         let all = [c.feasibility, c.multiplier, c.complementarity, c.residual];
         let worse = |a: f64, b: f64| if a.is_nan() || a > b { a } else { b };
-        scientific(Some(all.into_iter().fold(0.0, worse)))
+        scientific(Some(all.into_iter().fold(0.0, worse)).filter(|c| c.is_finite()))
     }));
     columns.push(number("assem.", |r| seconds(r.seconds.assemble)));
     columns.push(number("solve", |r| seconds(r.seconds.solve)));

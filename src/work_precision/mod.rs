@@ -259,17 +259,18 @@ impl<'a, const D: usize> WorkPrecision<'a, D> {
         self
     }
 
-    /// The number of runs, each with its rounds, unless some exceed the time limit.
+    /// Checks everything without a run. Returns the cases, each of which runs once in every round unless
+    /// some exceed the time limit.
     ///
     /// # Errors
     /// Those of [`Study::check`] of each case; [`Error::Parameter`] for two schemes of one label, and for a
     /// reference that does not fit the levels or the memory.
-    pub fn check(&self) -> Result<usize, Error> {
+    pub fn check(&self) -> Result<Vec<Case>, Error> {
         compiled!(
-            const D: fn(&WorkPrecision<'_, D>) -> Result<usize, Error> = |study| {
-                let cases = study.slots()?.len();
+            const D: fn(&WorkPrecision<'_, D>) -> Result<Vec<Case>, Error> = |study| {
+                let cases = study.slots()?.into_iter().map(|slot| slot.case).collect();
                 study.study_against_reference()?;
-                Ok(cases * study.rounds)
+                Ok(cases)
             }
         )(self)
     }

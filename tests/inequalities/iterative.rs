@@ -99,6 +99,17 @@ fn counts_of_over_penalty_on_vertices_do_not_grow() {
     assert_level(&counts::<2>(scenes::radial, scheme, &[16, 32, 64], "facet-split"), 90);
 }
 
+/// The forces of jumps, as unknowns besides the values, leave a certificate at rounding where jumps are
+/// lost in the differences of values.
+#[test]
+fn a_huge_penalty_needs_no_factors_under_signorini_conditions() {
+    let scheme = Wopsip { eta: Eta::Absolute(1e8), ..Wopsip::default() };
+    for row in rows(scenes::signorini_2d(), scheme, &[32, 64], LinearMethod::Iterative) {
+        assert_eq!(&*row.linear, "facet-split");
+        assert!(row.certificate.largest() <= 1e-11, "{}: {:?}", row.level, row.certificate);
+    }
+}
+
 #[test]
 fn counts_in_three_dimensions_stay_small() {
     let sipg = counts::<3>(scenes::radial, Sipg::default(), &[4, 8], "auxiliary-space");

@@ -67,6 +67,7 @@ fn a_vector_that_comes_back_has_the_row_of_the_run() {
         }
         assert_eq!(row["active"], expected["active"]);
         assert_eq!([&row["label"], &row["solver"]], [label, "none"]);
+        assert!(row["iterations"]["outer"].is_null());
         let output = judge(&folder, "u.txt", &[]);
         assert!(stdout(&output).contains("certificate: feasibility"), "{}", stdout(&output));
 
@@ -136,6 +137,11 @@ fn a_problem_that_changed_since_the_dump_is_noticed() {
     fs::write(folder.join("u.txt"), "0 0 0 0 0 0 0 0 0").unwrap();
     // the values violate nothing but the residual
     assert_eq!(judge(&folder, "u.txt", &[]).status.code(), Some(1));
+    // a file that went with the dump is found beside it
+    fs::rename(&path, Path::new(&dump).join("rod.toml")).unwrap();
+    assert_eq!(judge(&folder, "u.txt", &[]).status.code(), Some(1));
+    fs::remove_file(Path::new(&dump).join("rod.toml")).unwrap();
+    assert_eq!(judge(&folder, "u.txt", &[]).status.code(), Some(2));
     scratch.file("rod.toml", &text.replace("-4", "-5"));
     let output = judge(&folder, "u.txt", &[]);
     assert_eq!(output.status.code(), Some(2));

@@ -190,3 +190,30 @@ fn another_request_is_not_mixed_with_a_report() {
     let fresh = scratch.report("--scene radial-1d --scheme p1 --quiet --levels 4,8,16");
     assert_eq!(without_times(report), without_times(fresh));
 }
+
+/// The other commands end with the code of an interrupt too, and leave what is finished.
+#[test]
+fn the_other_commands_end_at_an_interrupt() {
+    let scratch = Scratch::new("other-interrupts");
+    let out = scratch.path("out");
+    for (name, options, file) in [
+        ("work-precision", format!("--levels 8,16,32,64 --rounds 50 --out {out}"), "report.json"),
+        ("stability", format!("--out {out}"), "stability.json"),
+    ] {
+        let mut command = super::run::command(name);
+        let child = command.args(options.split(' ')).stderr(Stdio::piped()).spawn().unwrap();
+        let clock = Instant::now();
+        while !scratch.0.join("out").join(file).exists() && clock.elapsed().as_secs() < 60 {
+            std::thread::sleep(Duration::from_millis(20));
+        }
+        let id = child.id().to_string();
+        assert!(Command::new("kill").args(["-TERM", &id]).status().unwrap().success());
+        let output = child.wait_with_output().unwrap();
+        let message = stderr(&output);
+        assert_eq!(output.status.code(), Some(130), "{name}: {message}");
+        assert!(message.contains("interrupted; the report has"), "{name}: {message}");
+        let report = read_json(&scratch.0.join("out").join(file));
+        assert_eq!(report["provenance"]["complete"], false, "{name}");
+        fs::remove_dir_all(scratch.0.join("out")).unwrap();
+    }
+}

@@ -254,3 +254,39 @@ fn rows_stand_without_a_reference_that_fails() {
         assert!(warning.contains("sipg-p2@sigma=0.01 at level 16, was not found"), "{warning}");
     }
 }
+
+/// A gap above the Dirichlet data beside it leaves no function of finite energy.
+#[test]
+fn a_gap_above_the_dirichlet_data_beside_it_is_infeasible() {
+    let scratch = Scratch::new("lifted");
+    let sides = ["left", "right", "top"].map(|s| format!("[boundary.{s}]\nkind = \"dirichlet\"\n"));
+    for (gap, status) in [("0.5", "infeasible"), ("\"4 * x * (1 - x)\"", "converged")] {
+        let bottom = format!("[boundary.bottom]\nkind = \"contact\"\ngap = {gap}\n");
+        let text = format!("box = [[0, 0], [1, 1]]\n{}{bottom}", sides.concat());
+        let path = scratch.file("lifted.toml", &text);
+        scratch.run(&format!("{path} --scheme p1,cr,sipg,wopsip --levels 4 --quiet"));
+        let report = read_json(&scratch.0.join("out/report.json"));
+        assert_eq!(rows(&report).len(), 4);
+        for row in rows(&report) {
+            assert_eq!(row["status"], status, "{row}");
+        }
+    }
+}
+
+/// A report has the files of its own request only, and foreign files stay.
+#[test]
+fn files_of_an_earlier_request_go() {
+    let scratch = Scratch::new("earlier");
+    scratch.report("--scene radial-2d --scheme p1,sipg --levels 8");
+    let out = scratch.0.join("out");
+    std::fs::write(out.join("mine-p1.svg"), "foreign").unwrap();
+    assert!(out.join("radial-2d-p1.svg").exists() && out.join("table-radial-2d.tex").exists());
+    // more cells than are drawn
+    scratch.report("--scene radial-2d --scheme p1 --levels 64 --no-fields");
+    for name in ["radial-2d-p1.svg", "radial-2d-p1.vtu", "radial-2d-sipg.svg"] {
+        assert!(!out.join(name).exists(), "{name}");
+    }
+    assert!(out.join("mine-p1.svg").exists());
+    let page = std::fs::read_to_string(out.join("report.html")).unwrap();
+    assert!(!page.contains("p1 on radial-2d"));
+}

@@ -114,6 +114,12 @@ fn the_other_commands_refuse_before_the_work_too() {
         ("stability", format!("--quick --scheme none --out {out}"), "scheme"),
         ("orders", below.clone(), "cannot write"),
         ("orders", format!("{out} --summary {below}"), "cannot write"),
+        ("orders", format!("{out} nowhere"), "no scene has nowhere in its name; there are: "),
+        (
+            "work-precision",
+            format!("--scene radial-2d --scheme p1,cr --subject sipg --out {out}"),
+            "--subject sipg: no scheme has this label; there are: cr, p1",
+        ),
         ("pictures", format!("--series 0 --out {out}"), "level"),
         ("pictures", format!("--out {below}"), "cannot write"),
     ] {

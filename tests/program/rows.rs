@@ -113,7 +113,7 @@ fn the_report_has_every_key_and_file() {
         files.extend(["svg", "png"].map(|ending| format!("{plot}.{ending}")));
     }
     for scene in ["radial-2d", "signorini-2d"] {
-        files.push(format!("table-{scene}.tex"));
+        files.extend(["", "-totals-and-stages"].map(|end| format!("table-{scene}{end}.tex")));
         for ending in ["vtu", "svg"] {
             let labels = ["p1", "sipg", "wopsip", "wopsip-facet-means"];
             files.extend(labels.map(|label| format!("{scene}-{label}.{ending}")));

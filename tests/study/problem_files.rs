@@ -227,7 +227,7 @@ fn mistakes_are_found_where_they_are() {
     let error = read(&folder.0.join("lost.toml")).unwrap_err();
     let message = error.to_string();
     assert!(matches!(error, ProblemFileError::Mesh { line: 1, column: 8, .. }), "{message}");
-    assert!(message.contains("lost.toml:1:8: mesh cannot read"), "{message}");
+    assert!(message.contains("lost.toml:1:8: cannot read"), "{message}");
     assert_eq!(message.matches("lost.msh").count(), 1, "{message}");
     let error = read(&folder.0.join("nothing.toml")).unwrap_err();
     assert!(matches!(error, ProblemFileError::Unreadable { .. }));

@@ -8,7 +8,7 @@ use crate::element::Node;
 use crate::error::Error;
 use crate::mesh::{BoundaryPart, describe_point};
 use crate::problem::DatumRef;
-use crate::real::{Point, Real};
+use crate::real::{Point, Real, point_f64};
 
 /// Two bounds contradict each other if they do so by more than this share of their size: less is
 /// rounding in the data.
@@ -80,8 +80,17 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         conflicts: &mut Vec<Conflict<D>>,
     ) -> Result<(), Error> {
         let terms = self.node_terms(&self.facet_rule, &self.cell_rule);
+        let given = self.dirichlet_groups();
         for ((cell, local), group) in self.grouped_facets_of(BoundaryPart::Contact) {
             let Some(gap) = self.data.gap.of(group) else { continue };
+            // a function that jumps along the boundary, down to the Dirichlet data, has no finite energy
+            for (k, v) in self.mesh.facet_vertices(cell, local).enumerate() {
+                let Some(dirichlet) = given[v as usize] else { continue };
+                let x = point_f64(&self.mesh.vertices()[v as usize]);
+                let datum = data::finite(self.dirichlet_at(dirichlet, &x), "dirichlet", &x, cell)?;
+                let unknown = self.nodes_on(local).nth(k).map_or(0, |i| self.dofs.of(cell, i));
+                note(gap.at(&x), datum, unknown, x, conflicts);
+            }
             for (i, by) in self.bounded_nodes_on(local) {
                 count::bounds(1);
                 let node = &self.nodes[i];

@@ -100,14 +100,15 @@ fn judge<T: Real>(options: &Options, path: &Path, request: &Value) -> Request<bo
     let values = read_vector(&options.vector).map_err(|e| e.to_string())?;
     let mut mesh = None;
     if let Some(file) = request["mesh"].as_str() {
-        let bytes = read(Path::new(file))?;
-        is_unchanged(0, Path::new(file), &bytes)?;
+        let file = found_beside(&options.directory, file);
+        let bytes = read(&file)?;
+        is_unchanged(0, &file, &bytes)?;
         let parts = request["boundary"].as_object().into_iter().flatten();
         let part = |(name, part): (&String, &Value)| {
             Some((name.clone(), BoundaryPart::from_name(part.as_str()?)?))
         };
         mesh = Some((
-            MeshFile { path: Some(file.into()), boundary: parts.filter_map(part).collect() },
+            MeshFile { path: Some(file), boundary: parts.filter_map(part).collect() },
             bytes,
         ));
     }
@@ -122,11 +123,12 @@ fn judge<T: Real>(options: &Options, path: &Path, request: &Value) -> Request<bo
     let coarsest = request["coarsest"].as_u64().map_or(level, |coarsest| coarsest as usize);
     let levels = [level, if reference.is_some() { coarsest } else { level }];
     let of = (&scheme, levels, reference.as_ref());
-    let row = match request["problem"].as_str().map(Path::new) {
+    let row = match request["problem"].as_str() {
         Some(path) => {
-            is_unchanged(0, path, &read(path)?)?;
-            let own = problem_file::read(path).map_err(|e| e.to_string())?;
-            is_unchanged(1, path, own.mesh_bytes().unwrap_or_default())?;
+            let path = found_beside(&options.directory, path);
+            is_unchanged(0, &path, &read(&path)?)?;
+            let own = problem_file::read(&path).map_err(|e| e.to_string())?;
+            is_unchanged(1, &path, own.mesh_bytes().unwrap_or_default())?;
             match own {
                 AnyOwnProblem::One(own) => row::<T, 1>(own.into(), of, mesh, &values),
                 AnyOwnProblem::Two(own) => row::<T, 2>(own.into(), of, mesh, &values),
@@ -164,6 +166,15 @@ fn judge<T: Real>(options: &Options, path: &Path, request: &Value) -> Request<bo
         print(&text)?;
     }
     Ok(is_within)
+}
+
+/// A file where it was when the inequality was written or, if it is there no more, beside the folder of the
+/// inequality or in it: a dump that went to another machine takes its files with it.
+fn found_beside(folder: &Path, file: &str) -> PathBuf {
+    let file = PathBuf::from(file);
+    let Some(name) = file.file_name().filter(|_| !file.exists()) else { return file };
+    let places = [folder.join(name), folder.join("..").join(name)];
+    places.into_iter().find(|place| place.exists()).unwrap_or(file)
 }
 
 fn row<T: Real, const D: usize>(

@@ -12,13 +12,16 @@ use std::error::Error;
 use std::path::PathBuf;
 
 use clap::Args;
+use unilateral::input::excerpt;
 use unilateral::prelude::{Report, Study};
 use unilateral::real::Real;
 use unilateral::scenes::{AnyScene, Parameters, Scene, catalogue};
 use unilateral::scheme::NamedScheme;
-use unilateral::study::{Program, Row, orders_summary, orders_table};
+use unilateral::study::{ObservedOrders, Program, Row, orders_summary, orders_table};
 
-use crate::shared::{Failure, ORDER_TOLERANCE, check_writable, print, schemes, write};
+use crate::shared::{
+    Failure, ORDER_TOLERANCE, Request, check_writable, end_at_interrupt, print, schemes, write,
+};
 
 /// Sets observed orders beside those that theory promises, every scheme on every scene
 #[derive(Args, Debug)]
@@ -42,7 +45,15 @@ pub struct Options {
 /// Whether the work came to its end.
 pub fn run(options: &Options) -> Result<bool, Failure> {
     let schemes = schemes(&options.schemes, &["all"])?;
+    let names: Vec<String> = catalogue().into_iter().map(|entry| entry.name).collect();
+    if let Some(pattern) =
+        options.pattern.as_ref().filter(|p| !names.iter().any(|n| n.contains(*p)))
+    {
+        let (pattern, names) = (excerpt(pattern), names.join(", "));
+        return Err(format!("no scene has {pattern} in its name; there are: {names}").into());
+    }
     check_writable(options.file.iter().chain(&options.summary))?;
+    end_at_interrupt("the table has the scenes so far")?;
     make(options, &schemes).map_err(Failure::of_work)?;
     Ok(true)
 }
@@ -67,16 +78,28 @@ fn make(options: &Options, schemes: &[NamedScheme]) -> Result<(), Box<dyn Error>
                 AnyScene::Three(scene) => study(scene, &schemes, degree, quick)?,
             });
         }
+        save(options, &rows)?;
     }
+    if options.file.is_none() {
+        print(&orders_table(&observed(&rows), ORDER_TOLERANCE))?;
+    }
+    Ok(())
+}
+
+/// The observed orders of these rows.
+fn observed(rows: &[Row]) -> Vec<ObservedOrders> {
     let program = Program::new("orders", f64::NAME, rayon::current_num_threads(), 1);
-    let observed = Report::new(program, rows).observed_orders();
-    let table = orders_table(&observed, ORDER_TOLERANCE);
-    match &options.file {
-        Some(file) => write(file, table)?,
-        None => print(&table)?,
+    Report::new(program, rows.to_vec()).observed_orders()
+}
+
+/// Writes the files that are asked for.
+fn save(options: &Options, rows: &[Row]) -> Request<()> {
+    let observed = observed(rows);
+    if let Some(file) = &options.file {
+        write(file, orders_table(&observed, ORDER_TOLERANCE))?;
     }
     match &options.summary {
-        Some(file) => Ok(write(file, orders_summary(&observed, ORDER_TOLERANCE))?),
+        Some(file) => write(file, orders_summary(&observed, ORDER_TOLERANCE)),
         None => Ok(()),
     }
 }

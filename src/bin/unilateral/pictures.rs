@@ -18,7 +18,7 @@ use unilateral::study::{Row, Study, file_name};
 
 use crate::mesh_file::MeshFile;
 use crate::posed::Posed;
-use crate::shared::{Failure, Request, make_directory, print, print_to, scene};
+use crate::shared::{Failure, Request, end_at_interrupt, make_directory, print, print_to, scene};
 
 /// Draws the solution of a scheme on a scene, or on a problem of your own
 #[derive(Args, Debug)]
@@ -107,6 +107,7 @@ fn draw<const D: usize>(options: &Options, posed: Posed<D>) -> Result<bool, Fail
         series.check().map_err(|e| e.to_string())?;
     }
     make_directory(&options.out)?;
+    end_at_interrupt("pictures and fields that are finished are there")?;
     let mut rows = picture.run().map_err(Failure::of_work)?.rows;
     if let (true, Some(row)) = (written.borrow().is_empty(), rows.first()) {
         let message = row.message.as_deref().unwrap_or_default();

@@ -34,6 +34,13 @@ impl<const D: usize> Posed<D> {
             Self::Own(own) => &own.name,
         }
     }
+    /// Whether the solution is known.
+    pub fn has_exact(&self) -> bool {
+        match self {
+            Self::Scene(scene) => scene.problem.exact.is_some(),
+            Self::Own(own) => own.problem.exact.is_some(),
+        }
+    }
     /// Whether the problem comes with a mesh file.
     pub fn has_mesh(&self) -> bool {
         matches!(self, Self::Own(OwnProblem { geometry: Geometry::File { .. }, .. }))

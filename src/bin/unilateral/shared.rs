@@ -49,6 +49,19 @@ pub fn check_writable<'p>(paths: impl IntoIterator<Item = &'p PathBuf>) -> Reque
     Ok(())
 }
 
+/// The exit code of an interrupted run.
+pub const INTERRUPTED: i32 = 130;
+
+/// Lets SIGINT and SIGTERM, and Ctrl-C elsewhere, end the process with the exit code of an interrupt. What is
+/// on disk stays there: files are replaced as a whole.
+pub fn end_at_interrupt(left: &'static str) -> Request<()> {
+    ctrlc::set_handler(move || {
+        complain(&format!("interrupted; {left}"));
+        std::process::exit(INTERRUPTED);
+    })
+    .map_err(|e| format!("cannot handle interrupts: {e}"))
+}
+
 /// Makes sure before the work that a directory is there.
 pub fn make_directory(path: &Path) -> Request<()> {
     fs::create_dir_all(path).map_err(|e| cannot_write(path, e))

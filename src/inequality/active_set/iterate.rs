@@ -2,7 +2,7 @@
 
 use super::contact_state::{prescribed_value, starting_states};
 use crate::algebra::{Bound, Contact, Inequality};
-use crate::inequality::certificate::positive_diagonal;
+use crate::inequality::certificate::{certify_with_rounding, positive_diagonal};
 use crate::inequality::{Outcome, Solution};
 use crate::real::Real;
 
@@ -210,6 +210,11 @@ impl<'a, T: Real> Iterate<'a, T> {
         Solution::new(values, contact, outcome)
             .iterations(self.outer, self.linear)
             .jump_multipliers(jump_multipliers)
+    }
+
+    /// The largest number of the certificate of the values.
+    pub fn certificate(&self) -> f64 {
+        certify_with_rounding(self.inequality, &self.values, &self.jump_multipliers).0.largest()
     }
 
     /// Replaces the iterate by the best one. The residual is then not current.

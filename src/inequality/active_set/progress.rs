@@ -176,3 +176,29 @@ fn scramble(key: u64) -> u64 {
     let z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
     z ^ (z >> 31)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The number of accurate steps, each with another unknown in contact, before the iteration ends.
+    fn steps(improvement: usize, is_best: bool) -> usize {
+        let mut states = vec![Contact::Inactive; 20];
+        let mut progress =
+            ProgressMonitor::new(&states, Patience { halving: None, improvement }, false);
+        let mut goes_on = |i: &usize| {
+            let change = [(*i as u32, Contact::Lower)];
+            let noted = progress.note(&change, &states, is_best, true);
+            states[*i] = Contact::Lower;
+            noted != Err(Obstruction::Stagnation)
+        };
+        (0..20).take_while(|i| goes_on(i)).count()
+    }
+
+    #[test]
+    fn patience_ends_where_nothing_improves() {
+        assert_eq!(steps(3, false), 3);
+        assert_eq!(steps(7, false), 7);
+        assert_eq!(steps(3, true), 20);
+    }
+}

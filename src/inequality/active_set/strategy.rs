@@ -275,7 +275,18 @@ impl<'a, T: Real> Solve<'_, 'a, T> {
                 };
         }
         if outcome == Outcome::Converged {
+            let values = self.iterate.values.clone();
+            let jump_multipliers = self.iterate.jump_multipliers.clone();
             algebraic_bound = solver.error_bound(&mut self.iterate);
+            // the bound is that of values on their bounds, and large penalties see each step there
+            if guess.energy_tolerance.is_none()
+                && self.iterate.values != values
+                && self.iterate.certificate() > T::CERTIFICATE_LIMIT
+            {
+                let states = self.iterate.states.clone();
+                self.iterate.replace(values, jump_multipliers, states);
+                algebraic_bound = None;
+            }
             if guess.energy_tolerance.is_none()
                 && algebraic_bound.is_some_and(|bound| bound > T::ALGEBRAIC_BOUND_LIMIT)
             {

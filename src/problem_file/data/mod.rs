@@ -149,6 +149,10 @@ impl<'t, const D: usize> Builder<'_, 't, D> {
             };
             let part = BoundaryPart::from_name(self.source.string("kind", kind)?)
                 .ok_or_else(|| self.source.wrong_type("kind", kind, kinds))?;
+            if BoundaryPart::from_name(&group).is_some_and(|named| named != part) {
+                let expected = "what the name of the group says: dirichlet, neumann and contact fix their kind";
+                return Err(self.source.wrong_type("kind", kind, expected));
+            }
             let name = match part {
                 BoundaryPart::Dirichlet => "value",
                 BoundaryPart::Neumann => "flux",

@@ -31,7 +31,7 @@ use crate::study::memory::{MemoryEstimate, estimate, estimate_without_factors, u
 use crate::study::orders::fill_orders;
 use crate::study::reference::{FoundReference, Measured, Reference};
 use crate::study::report::{Program, Report};
-use crate::study::row::{Row, RowKey};
+use crate::study::row::{Iterations, Row, RowKey};
 
 /// Progress of a study.
 #[derive(Debug)]
@@ -545,7 +545,8 @@ impl<'a, T: Real, const D: usize> Study<'a, T, D> {
         let reference = self.find_reference(&reference_problem, &hierarchies);
         let measured = Measured { failure: failure.as_deref(), reference: reference.as_ref() };
         let row = self.measured_row(entry, level, &solved, measured)?;
-        Ok(Row { solver: "none".to_owned(), ..row })
+        let iterations = Iterations { outer: None, ..row.iterations };
+        Ok(Row { solver: "none".to_owned(), iterations, ..row })
     }
 
     /// The meshes of all levels: in one hierarchy with those of a reference.

@@ -89,16 +89,18 @@ impl<T: Real, const D: usize> Study<'_, T, D> {
             _ => format!("{label}-{solver}"),
         };
         #[cfg(feature = "report")]
-        {
+        let written = {
             let reference = measured.reference.and_then(|found| found.as_ref().ok());
             let reference = reference.map(|(reference, _)| reference);
-            self.fields.write((&self.scene.name, &name), level, levels, solved, reference)?;
-            if let Some(directory) = &self.inequalities {
+            let of = (&self.scene.name[..], &name[..]);
+            let mut written = self.fields.write(of, level, levels, solved, reference);
+            if let (Ok(()), Some(directory)) = (&written, &self.inequalities) {
                 let name = format!("{}-{label}-{level}", self.scene.name);
                 let folder = directory.join(file_name(&name));
-                write_inequality(folder, solved.inequality(), solved.mesh())?;
+                written = write_inequality(folder, solved.inequality(), solved.mesh());
             }
-        }
+            written
+        };
         #[cfg(not(feature = "report"))]
         let _ = levels;
         if let Some(f) = self.each_solution.as_ref().filter(|_| solved.has_iterate()) {
@@ -107,7 +109,15 @@ impl<T: Real, const D: usize> Study<'_, T, D> {
         (self.observer)(Progress::Entered(Phase::Measures));
         let row = self.measured_row(entry, level, solved, measured)?;
         let (solver, peak_memory_bytes) = (solver.to_owned(), peak_memory_bytes());
-        Ok(Row { solver, peak_memory_bytes, ..row })
+        let row = Row { solver, peak_memory_bytes, ..row };
+        #[cfg(feature = "report")]
+        if let (Err(_), Some(journal)) = (&written, self.journal) {
+            // the study ends, and the row is finished
+            journal.add(&row)?;
+        }
+        #[cfg(feature = "report")]
+        written?;
+        Ok(row)
     }
 
     /// The row of a solution with its errors and totals, without solver and memory.

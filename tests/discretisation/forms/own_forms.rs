@@ -1,6 +1,7 @@
 //! Forms made outside the library whose formula depends on the facet.
 
-use unilateral::facet::FacetKind;
+use unilateral::algebra::Inequality;
+use unilateral::facet::{FacetKind, Lifted};
 use unilateral::kit::check_scheme;
 use unilateral::mesh::{BoundaryPart, BoxDomain, Mesh};
 use unilateral::prelude::*;
@@ -119,6 +120,18 @@ impl<T: Real, const D: usize, E: ReferenceElement<T, D>> Scheme<T, D> for SipgBy
     }
 }
 
+#[track_caller]
+fn same_matrix_and_load(a: &Inequality<f64>, b: &Inequality<f64>) {
+    let largest = a.matrix.values.iter().fold(0.0, |m: f64, v| m.max(v.abs()));
+    assert_eq!(a.matrix.columns, b.matrix.columns);
+    for (a, b) in a.matrix.values.iter().zip(&b.matrix.values) {
+        assert!((a - b).abs() < 1e-13 * largest, "matrix: {a} and {b}");
+    }
+    for (a, b) in a.load.iter().zip(&b.load) {
+        assert!((a - b).abs() < 1e-13 * largest, "load: {a} and {b}");
+    }
+}
+
 /// A formula that differs between facets is read off on each of them: matrix, load and energy are
 /// those of the penalty.
 #[test]
@@ -138,13 +151,7 @@ fn a_formula_may_differ_from_facet_to_facet() {
         let own = SipgByFormula(element);
         let own = Discretisation::new(&own, &problem, &mesh, Default::default()).unwrap();
         let [a, b] = [&known, &own].map(|d| d.inequality().unwrap());
-        let largest = a.matrix.values.iter().fold(0.0, |m: f64, v| m.max(v.abs()));
-        for (a, b) in a.matrix.values.iter().zip(&b.matrix.values) {
-            assert!((a - b).abs() < 1e-13 * largest, "{D}D: {a} and {b}");
-        }
-        for (a, b) in a.load.iter().zip(&b.load) {
-            assert!((a - b).abs() < 1e-13 * largest, "{D}D, load: {a} and {b}");
-        }
+        same_matrix_and_load(&a, &b);
         let u: Vec<f64> = (0..a.size()).map(|i| ((i * 7) % 5) as f64).collect();
         let [a, b] = [&known, &own].map(|d| d.errors(&u).unwrap().energy.unwrap());
         assert!((a / b - 1.0).abs() < 1e-12, "{D}D, energy: {a} and {b}");
@@ -155,4 +162,49 @@ fn a_formula_may_differ_from_facet_to_facet() {
     check::<1, _>(P2);
     check::<2, _>(P2);
     check::<3, _>(P2);
+}
+
+/// The terms of the local discontinuous Galerkin method besides its lifts, of which they say nothing.
+struct FluxesAndJumps;
+
+impl<T: Real, const D: usize> FacetForm<T, D> for FluxesAndJumps {
+    fn uses_flux(&self) -> bool {
+        true
+    }
+    fn penalty(&self, facet: &FacetView<T, D>) -> T {
+        facet.coefficient() / facet.diameter()
+    }
+    fn integrand(&self, _: &FacetView<T, D>, v: Trace<T>, u: Trace<T>, penalty: T) -> T {
+        penalty * u.jump * v.jump - u.flux * v.jump - v.flux * u.jump
+    }
+}
+
+struct OwnLdg<E>(E);
+
+impl<T: Real, const D: usize, E: ReferenceElement<T, D>> Scheme<T, D> for OwnLdg<E> {
+    type Element = Broken<E>;
+    type Facet = Lifted<FluxesAndJumps>;
+    const DIRICHLET: DirichletBy = DirichletBy::FacetForm;
+    fn name(&self) -> &str {
+        "own-ldg"
+    }
+    fn facet(&self, _: &Mesh<T, D>) -> Lifted<FluxesAndJumps> {
+        Lifted(FluxesAndJumps)
+    }
+}
+
+/// Without a word on lifts they have one degree less than the element.
+#[test]
+fn lifts_have_the_degree_of_gradients_by_default() {
+    fn check<E: ReferenceElement<f64, 2>>(element: E) {
+        let mesh = Mesh::<f64, 2>::kuhn_box(&BoxDomain::centred(1.0), [3; 2]).unwrap();
+        let problem = Problem::new().dirichlet(|x: &Point<f64, 2>| x[0] * x[1]);
+        let known = Ldg::default().on(element);
+        let known = Discretisation::new(&known, &problem, &mesh, Default::default()).unwrap();
+        let own = OwnLdg(element);
+        let own = Discretisation::new(&own, &problem, &mesh, Default::default()).unwrap();
+        same_matrix_and_load(&known.inequality().unwrap(), &own.inequality().unwrap());
+    }
+    check(P1);
+    check(P2);
 }

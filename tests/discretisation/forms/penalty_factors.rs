@@ -106,6 +106,18 @@ fn small_penalties_are_possible() {
     }
 }
 
+/// From its bound on, theory proves every form with a penalty coercive.
+#[test]
+fn large_penalties_are_proven_coercive() {
+    let mesh = Mesh::<f64, 2>::kuhn_box(&BoxDomain::centred(1.0), [3; 2]).unwrap();
+    let problem = Problem::new();
+    for (parameter, scheme) in with_factor::<f64, 2>(100.0) {
+        let of = scheme.discretise(&problem, &mesh, Default::default()).unwrap();
+        let is_proven = of.is_coercive() && of.penalty_below_bound().is_none();
+        assert!(is_proven, "{} with {parameter}", scheme.name());
+    }
+}
+
 #[test]
 fn coefficients_out_of_range_are_refused() {
     let mesh = Mesh::<f64, 2>::kuhn_box(&BoxDomain::centred(1.0), [2; 2]).unwrap();

@@ -3,7 +3,7 @@
 use super::cold;
 use crate::problems::*;
 use unilateral::algebra::{Bound, Contact};
-use unilateral::inequality::certify;
+use unilateral::inequality::{certify, contact_of};
 
 #[test]
 fn values_at_a_bound_but_for_rounding_are_in_contact() {
@@ -46,4 +46,34 @@ fn a_force_acts_as_far_as_the_opposite_bound() {
     assert!((ratio - 250.0).abs() < 1e-6, "{ratio}");
     // a force towards the bound is what holds the unknown there
     assert_eq!(certificate(1e3, -1.0).largest(), 0.0);
+}
+
+/// Values near the obstacle touch it if their forces reach it: in every unit of force, from above as
+/// from below.
+#[test]
+fn contact_is_told_from_values_alone() {
+    let mut below = membrane::<f64>(20, 10.0, |_, _| -0.3);
+    let cold = cold(&below);
+    let closed = |i: &usize| cold.contact[*i] == Contact::Lower;
+    let step =
+        |i: usize| (below.matrix.row_dot(i, &cold.values) - below.load[i]) / below.matrix.get(i, i);
+    let least = (0..400).filter(closed).map(step).fold(f64::INFINITY, f64::min);
+    let mut values = cold.values.clone();
+    (0..400).filter(closed).for_each(|i| values[i] += 0.01 * least);
+    for unit in [1.0, 1e-6, 1e9] {
+        let mut above = below.clone();
+        for problem in [&mut below, &mut above] {
+            problem.matrix.values.iter_mut().for_each(|a| *a *= unit);
+            problem.load.iter_mut().for_each(|b| *b *= unit);
+        }
+        assert_eq!(contact_of(&below, &values), cold.contact, "unit {unit}");
+        above.load.iter_mut().for_each(|b| *b = -*b);
+        above.bounds.fill(Bound::Upper(0.3));
+        let mirrored: Vec<f64> = values.iter().map(|x| -x).collect();
+        let expected = cold.contact.iter().map(|&state| match state {
+            Contact::Lower => Contact::Upper,
+            other => other,
+        });
+        assert!(contact_of(&above, &mirrored).into_iter().eq(expected), "unit {unit}, above");
+    }
 }

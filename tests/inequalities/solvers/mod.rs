@@ -10,11 +10,15 @@ mod wrong_promises;
 
 use crate::problems::*;
 use unilateral::algebra::{Bound, Contact, Inequality, Start};
+use unilateral::assemble::Discretisation;
 use unilateral::inequality::{
     ActiveSet, Globalisation, InequalitySolver, Outcome, Solution, certify, count_active,
 };
 use unilateral::linear::Factors;
-use unilateral::real::Real;
+use unilateral::mesh::{BoxDomain, Mesh};
+use unilateral::problem::Problem;
+use unilateral::real::{Point, Real};
+use unilateral::scheme::Wopsip;
 
 fn cold<T: Real>(inequality: &Inequality<T>) -> Solution<T> {
     ActiveSet::default().solve(inequality)
@@ -301,6 +305,40 @@ fn refinement_gives_single_precision_its_digits() {
         distance(&solution.values, &exact.values)
     };
     assert!(error(1) < 1e-8 && error(1) < 0.1 * error(0));
+}
+
+/// Values and forces of jumps are corrected until corrections no longer shrink, whatever the setting.
+#[test]
+fn jumps_have_their_digits_without_refinements() {
+    let mesh = Mesh::<f32, 2>::kuhn_box(&BoxDomain::centred(1.0), [24; 2]).unwrap();
+    let problem = Problem::new().source(|x: &Point<f64, 2>| 1.0 + x[0]);
+    let space =
+        Discretisation::new(&Wopsip::default(), &problem, &mesh, Default::default()).unwrap();
+    let inequality = space.inequality().unwrap();
+    let [none, many] = [0, 8].map(|refinements| {
+        let solution = ActiveSet::default().refinements(refinements).solve(&inequality);
+        assert_eq!(solution.outcome, Outcome::Converged);
+        solution.values.iter().map(|x| f64::from(*x)).collect::<Vec<f64>>()
+    });
+    let largest = many.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
+    let error = distance(&none, &many);
+    assert!(error <= 8.0 * f64::from(f32::EPSILON) * largest, "{error:e} of {largest:e}");
+}
+
+/// An obstacle above the free solution by less than the rounding band is not touched.
+#[test]
+fn no_difference_within_the_rounding_band_changes_a_state() {
+    let free = inequality(laplacian::<f64>(3, 1, 2.0), &[-1.0; 3], vec![Bound::Free; 3]);
+    let middle = cold(&free).values[1];
+    let mut obstacle = free;
+    obstacle.bounds[1] = Bound::Lower(middle + 1e-12);
+    let contact = |solver: ActiveSet| {
+        let solution = solver.solve(&obstacle);
+        assert_eq!(solution.outcome, Outcome::Converged);
+        count_active(&obstacle, &solution.contact)
+    };
+    assert_eq!(contact(ActiveSet::default()), 1);
+    assert_eq!(contact(ActiveSet::default().rounding_band(1e5)), 0);
 }
 
 #[test]

@@ -6,10 +6,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 use unilateral::study::{Journal, Report};
 
-use crate::shared::{Request, complain};
-
-/// The exit code of an interrupted run.
-const INTERRUPTED: i32 = 130;
+use crate::shared::{INTERRUPTED, Request, complain};
 
 /// Ends the process at an interrupt. The one that writes files, the run at its end or the interrupt, has
 /// the lock.

@@ -257,7 +257,12 @@ fn start(options: &Options, program: Program, runs: &[Run<'_>]) -> Request<&'sta
             let keys: Vec<RowKey> = runs.iter().flat_map(|run| run.keys.clone()).collect();
             Journal::resume(&options.out, program, &keys)
         }
-        false => Journal::create(&options.out, program),
+        false => {
+            if let Ok(earlier) = Report::read(&options.out) {
+                earlier.remove_files(&options.out);
+            }
+            Journal::create(&options.out, program)
+        }
     };
     let journal = journal.map_err(|e| e.to_string())?;
     // the thread that ends an interrupted run may need the journal as long as the process lives

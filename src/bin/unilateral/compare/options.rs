@@ -23,7 +23,7 @@ pub struct Options {
     /// Name every scene, scheme, constraint placement and solver, and end
     #[arg(long)]
     pub list: bool,
-    /// Scenes by name, or `all`
+    /// Scenes by name, or `all`; with --mesh by default all that fit the mesh
     #[arg(long = "scene", value_delimiter = ',', value_name = "A[,B...]")]
     pub scenes: Vec<String>,
     /// Schemes as NAME[:PLACEMENT][@KEY=VALUE[,KEY=VALUE...]], or `all`; --list names the keys of each
@@ -75,7 +75,7 @@ pub struct Options {
     /// Every time is the smallest of K runs
     #[arg(long, value_name = "K", allow_negative_numbers = true, value_parser = whole, default_value_t = 1)]
     pub repeat: usize,
-    /// Where the report goes
+    /// Where the report goes; it has pictures of meshes of at most 5000 cells
     #[arg(long, value_name = "DIR", default_value = "target/compare")]
     pub out: PathBuf,
     /// Write every algebraic inequality to a folder of DIR, for other solvers; `judge` reads their results

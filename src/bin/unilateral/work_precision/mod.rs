@@ -6,6 +6,8 @@
 
 mod options;
 
+use std::cell::RefCell;
+use std::collections::BTreeSet;
 use std::process::Command;
 
 use indicatif::ProgressBar;
@@ -24,8 +26,12 @@ use unilateral::work_precision::{
 
 use crate::posed::Posed;
 use crate::shared::{
-    Failure, Request, bar, check_writable, make_directory, print, read, tick, use_threads, write,
+    Failure, Request, bar, check_writable, end_at_interrupt, make_directory, print, print_to, read,
+    tick, use_threads, write,
 };
+
+/// The label of which the verdicts speak by default.
+const SUBJECT: &str = "wopsip";
 
 /// Whether every run converged and nothing changed.
 pub fn run(options: &Options) -> Result<bool, Failure> {
@@ -50,23 +56,36 @@ pub fn run(options: &Options) -> Result<bool, Failure> {
     }
     let template = "{bar:24} {pos} of {len} runs, {elapsed}, {eta} to go: {wide_msg}";
     let bar = bar(options.quiet, 0, template);
+    let labels = RefCell::new(BTreeSet::new());
     let mut studies = Vec::new();
     for name in options.scenes() {
         studies.push(match scene(options, &name)? {
-            AnyScene::One(s) => prepare::<1>(options, &schemes, &bar, s.into()),
-            AnyScene::Two(s) => prepare::<2>(options, &schemes, &bar, s.into()),
-            AnyScene::Three(s) => prepare::<3>(options, &schemes, &bar, s.into()),
+            AnyScene::One(s) => prepare::<1>(options, &schemes, &bar, s.into(), &labels),
+            AnyScene::Two(s) => prepare::<2>(options, &schemes, &bar, s.into(), &labels),
+            AnyScene::Three(s) => prepare::<3>(options, &schemes, &bar, s.into(), &labels),
         }?);
     }
     if let Some(path) = &options.problem {
         studies.push(match problem_file::read(path).map_err(|e| e.to_string())? {
-            AnyOwnProblem::One(own) => prepare::<1>(options, &schemes, &bar, own.into()),
-            AnyOwnProblem::Two(own) => prepare::<2>(options, &schemes, &bar, own.into()),
-            AnyOwnProblem::Three(own) => prepare::<3>(options, &schemes, &bar, own.into()),
+            AnyOwnProblem::One(own) => prepare::<1>(options, &schemes, &bar, own.into(), &labels),
+            AnyOwnProblem::Two(own) => prepare::<2>(options, &schemes, &bar, own.into(), &labels),
+            AnyOwnProblem::Three(own) => prepare::<3>(options, &schemes, &bar, own.into(), &labels),
         }?);
+    }
+    if let (Some(subject), labels) = (&options.subject, labels.borrow())
+        && !labels.contains(subject)
+    {
+        let labels = labels.iter().cloned().collect::<Vec<_>>().join(", ");
+        let subject = excerpt(subject);
+        return Err(
+            format!("--subject {subject}: no scheme has this label; there are: {labels}").into()
+        );
     }
     check_writable(&options.save)?;
     make_directory(&options.out)?;
+    end_at_interrupt("the report has the runs so far and is not complete")?;
+    // rows of an earlier request do not stand for this one
+    report.write_data(&options.out).map_err(Failure::of_work)?;
     tick(&bar);
     for run in studies {
         run(&mut report).map_err(Failure::Work)?;
@@ -126,11 +145,18 @@ fn prepare<'a, const D: usize>(
     schemes: &[NamedScheme],
     bar: &'a ProgressBar,
     posed: Posed<D>,
+    labels: &RefCell<BTreeSet<String>>,
 ) -> Request<Run<'a>> {
     let place = match &options.problem {
         Some(path) => path.display().to_string(),
         None => format!("scene {}", posed.name()),
     };
+    if !posed.has_exact() && options.reference.is_none() && !options.quiet {
+        let reference = "--reference N measures against a fine solution";
+        let text =
+            format!("warning: {place}: no error is known, so none is reached; {reference}\n");
+        print_to(std::io::stderr(), &text)?;
+    }
     let mesh = options.mesh.read(&|_| {})?;
     let has_mesh = mesh.is_some() || posed.has_mesh();
     let mut study = posed.work_precision()?.levels(options.levels(D, has_mesh));
@@ -138,8 +164,9 @@ fn prepare<'a, const D: usize>(
         study = study.on_mesh(mesh);
     }
     let study = with_settings(options, schemes, bar, study);
-    let runs = study.check().map_err(|e| format!("{place}: {e}"))?;
-    bar.inc_length(runs as u64);
+    let cases = study.check().map_err(|e| format!("{place}: {e}"))?;
+    labels.borrow_mut().extend(cases.iter().map(|case| case.variant.label.clone()));
+    bar.inc_length((cases.len() * options.rounds()) as u64);
     Ok(Box::new(move |report| study.run_into(report).map_err(|e| format!("{place}: {e}"))))
 }
 
@@ -155,7 +182,7 @@ fn with_settings<'a, const D: usize>(
         .precisions(options.precisions())
         .rounds(options.rounds())
         .limit(options.limit)
-        .subject(&options.subject)
+        .subject(options.subject.as_deref().unwrap_or(SUBJECT))
         .write_to(&options.out)
         .memory(|case| memory_of(case, options))
         .empty_memory(empty_memory(options))

@@ -50,9 +50,9 @@ pub struct Options {
     /// Runs longer than this many seconds are not repeated, and no finer level is tried
     #[arg(long, value_name = "S", default_value_t = 20.0)]
     pub limit: f64,
-    /// The scheme of which the verdicts speak, by its label
-    #[arg(long, value_name = "NAME", default_value = "wopsip")]
-    pub subject: String,
+    /// The scheme of which the verdicts speak, by its label; wopsip, or the fastest where that does not run
+    #[arg(long, value_name = "NAME")]
+    pub subject: Option<String>,
     /// Coarse levels and two rounds: within a minute
     #[arg(long)]
     quick: bool,
