@@ -1,6 +1,7 @@
 //! Tables and values of a TOML file, with their places.
 
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
@@ -9,6 +10,8 @@ use super::error::{ProblemFileError, ProblemFileFault};
 use super::expression::Expression;
 use crate::input::{excerpt, read_file};
 use crate::mesh::gmsh;
+use crate::problem::{BoundaryFlux, Datum};
+use crate::real::Point;
 
 /// A value with its place.
 pub(super) type Value<'t> = Spanned<DeValue<'t>>;
@@ -18,6 +21,30 @@ pub(super) type Value<'t> = Spanned<DeValue<'t>>;
 pub(super) enum Formula {
     Number(f64),
     Expression(Expression),
+}
+
+impl Formula {
+    /// A function of the point and of the normal.
+    pub fn flux<const D: usize>(&self) -> BoundaryFlux<D> {
+        match self.clone() {
+            Self::Number(c) => BoundaryFlux::Constant(c),
+            Self::Expression(expression) => BoundaryFlux::Function(Arc::new(move |x, n| {
+                let mut variables = [0.0; 6];
+                variables[..D].copy_from_slice(x.as_slice());
+                variables[D..2 * D].copy_from_slice(n.as_slice());
+                expression.value(&variables[..2 * D])
+            })),
+        }
+    }
+    /// A function of the point.
+    pub fn datum<const D: usize>(&self) -> Datum<D> {
+        match self.clone() {
+            Self::Number(c) => Datum::Constant(c),
+            Self::Expression(expression) => {
+                Datum::Function(Arc::new(move |x: &Point<f64, D>| expression.value(x.as_slice())))
+            }
+        }
+    }
 }
 
 /// Where the problem of a file is posed.

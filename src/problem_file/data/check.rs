@@ -1,11 +1,11 @@
 //! Names and values of a problem file, held against the mesh.
 
-use super::{Builder, Done, flux};
 use crate::input::excerpt;
+use crate::mesh::BoundaryPart;
 use crate::mesh::{Mesh, describe_point};
-use crate::problem::BoundaryFlux;
-use crate::problem_file::error::ProblemFileFault;
-use crate::problem_file::table::Formula;
+use crate::problem::{BoundaryFlux, Problem};
+use crate::problem_file::error::{ProblemFileError, ProblemFileFault};
+use crate::problem_file::table::{Formula, Source};
 use crate::quadrature::{Rule, facet_to_cell};
 use crate::real::Point;
 
@@ -71,17 +71,30 @@ impl<const D: usize> Entry<D> {
             at_vertices: true,
             offset,
             allowed: Allowed::Finite,
-            value: flux(formula),
+            value: formula.flux(),
         }
     }
 }
 
-impl<const D: usize> Builder<'_, '_, D> {
+/// The data of a file, to be held against a mesh.
+pub(super) struct Checks<'s, 't, const D: usize> {
+    pub source: &'s Source<'t>,
+    pub problem: &'s Problem<D>,
+    pub entries: &'s [Entry<D>],
+    /// The boundary groups that the file names.
+    pub parts: &'s [(String, BoundaryPart)],
+    /// Where the file has the gradient of the exact solution.
+    pub gradient_offset: usize,
+}
+
+type Done = Result<(), ProblemFileError>;
+
+impl<const D: usize> Checks<'_, '_, D> {
     /// Holds names and values against a mesh.
-    pub(super) fn check(&self, mesh: &Mesh<f64, D>) -> Done {
+    pub fn run(&self, mesh: &Mesh<f64, D>) -> Done {
         let groups: Vec<&[String]> = mesh.boundary_groups().iter().map(|g| &g.names[..]).collect();
         let regions: Vec<&[String]> = mesh.regions().iter().map(|names| &names[..]).collect();
-        for entry in &self.entries {
+        for entry in self.entries {
             let (kind, known) = match entry.is_boundary {
                 true => ("boundary group", &groups),
                 false => ("region", &regions),

@@ -9,9 +9,9 @@ use super::own_problem::{Geometry, OwnProblem};
 use super::table::{Formula, Place, Source, Value};
 use crate::error::Error;
 use crate::mesh::{BoundaryPart, BoxDomain, SIDES};
-use crate::problem::{BoundaryFlux, Datum, Problem};
+use crate::problem::{Datum, Problem};
 use crate::real::Point;
-use check::{Allowed, Entry};
+use check::{Allowed, Checks, Entry};
 
 const KEYS: [&str; 9] =
     ["name", "mesh", "box", "coefficient", "source", "reaction", "obstacle", "boundary", "exact"];
@@ -22,37 +22,10 @@ const DEFAULT: &str = "default";
 /// The data that may be given with a level, where they jump.
 const PIECEWISE: [&str; 2] = ["source", "reaction"];
 
-/// A number or expression as a function of the point and of the normal.
-fn flux<const D: usize>(formula: &Formula) -> BoundaryFlux<D> {
-    match formula.clone() {
-        Formula::Number(c) => BoundaryFlux::Constant(c),
-        Formula::Expression(expression) => {
-            BoundaryFlux::Function(std::sync::Arc::new(move |x, n| {
-                let mut variables = [0.0; 6];
-                variables[..D].copy_from_slice(x.as_slice());
-                variables[D..2 * D].copy_from_slice(n.as_slice());
-                expression.value(&variables[..2 * D])
-            }))
-        }
-    }
-}
-
-/// A number or expression as a datum.
-fn datum<const D: usize>(formula: &Formula) -> Datum<D> {
-    match formula.clone() {
-        Formula::Number(c) => Datum::Constant(c),
-        Formula::Expression(expression) => {
-            Datum::Function(std::sync::Arc::new(move |x: &Point<f64, D>| {
-                expression.value(x.as_slice())
-            }))
-        }
-    }
-}
-
 /// A number or expression as a datum that may jump where the level vanishes.
 fn piecewise<const D: usize>(formula: &Formula, level: Option<&Formula>) -> Datum<D> {
-    let value = datum::<D>(formula);
-    match level.map(datum::<D>) {
+    let value = formula.datum::<D>();
+    match level.map(Formula::datum::<D>) {
         None => value,
         Some(level) => Datum::piecewise(move |x| value.at(x), move |x| level.at(x)),
     }
@@ -112,7 +85,7 @@ impl<'t, const D: usize> Builder<'_, 't, D> {
                 at_vertices,
                 offset: if region.is_some() { key.span().start } else { value.span().start },
                 allowed,
-                value: flux(&formula),
+                value: formula.flux(),
             });
         }
         Ok(())
@@ -174,10 +147,10 @@ impl<'t, const D: usize> Builder<'_, 't, D> {
                 None => Formula::Number(0.0),
             };
             let mut problem = std::mem::take(&mut self.problem);
-            let function = flux::<D>(&formula);
+            let function = formula.flux::<D>();
             self.problem = match part {
-                BoundaryPart::Dirichlet => problem.dirichlet_on(&group, datum(&formula)),
-                BoundaryPart::Contact => problem.signorini_on(&group, datum(&formula)),
+                BoundaryPart::Dirichlet => problem.dirichlet_on(&group, formula.datum()),
+                BoundaryPart::Contact => problem.signorini_on(&group, formula.datum()),
                 BoundaryPart::Neumann => {
                     problem.named.neumann.push((group.clone(), function.clone()));
                     problem
@@ -213,7 +186,7 @@ impl<'t, const D: usize> Builder<'_, 't, D> {
         let offset = solution.span().start;
         let solution = source.formula("value", solution, &VARIABLES[0][..D])?;
         self.entries.push(Entry::of_exact("value", &solution, offset));
-        let solution = datum::<D>(&solution);
+        let solution = solution.datum::<D>();
         let expected = "a list with an expression for each coordinate";
         let components = gradient.get_ref().as_array().filter(|list| list.len() == D);
         let components =
@@ -223,7 +196,7 @@ impl<'t, const D: usize> Builder<'_, 't, D> {
             let formula = source.formula("gradient", value, &VARIABLES[0][..D])?;
             let entry = Entry::of_exact("gradient", &formula, value.span().start);
             self.entries.push(Entry { at_vertices: false, ..entry });
-            Ok(datum::<D>(&formula))
+            Ok(formula.datum::<D>())
         };
         let components = components.iter().map(&mut component).collect::<Done<Vec<_>>>()?;
         self.problem = std::mem::take(&mut self.problem)
@@ -310,7 +283,9 @@ pub(super) fn problem<'t, const D: usize>(
         }
     };
     let mesh = own.sample_mesh().map_err(failed)?;
-    builder.check(&mesh)?;
+    let Builder { problem, entries, parts, gradient_offset, .. } = &builder;
+    let gradient_offset = *gradient_offset;
+    Checks { source, problem, entries, parts, gradient_offset }.run(&mesh)?;
     own.problem.bind_boundary(mesh).map_err(|error| failed(error.into()))?;
     Ok(own)
 }
