@@ -200,12 +200,17 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         inequality: &Inequality<T>,
         solution: &Solution<T>,
     ) -> Vec<bool> {
-        // the supports where some unknown is in contact, sorted by their vertices
+        // the supports where some unknown is in contact: vertices, and others sorted by their vertices
         let touches = |&k: &usize| solution.contact[k] != Contact::Inactive;
-        let mut supports: Vec<&[u32]> = (0..inequality.size())
-            .filter(|k| inequality.bounds[*k].is_inequality() && touches(k))
-            .map(|k| inequality.supports[k].vertices())
-            .collect();
+        let mut vertices = vec![false; self.mesh.vertices().len()];
+        let mut supports: Vec<&[u32]> = Vec::new();
+        for k in (0..inequality.size()).filter(touches) {
+            match inequality.supports[k].vertices() {
+                _ if !inequality.bounds[k].is_inequality() => {}
+                &[v] => vertices[v as usize] = true,
+                several => supports.push(several),
+            }
+        }
         supports.sort_unstable();
         supports.dedup();
         let given = self.dirichlet_groups();
@@ -219,7 +224,10 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
             if let Some(group) = group.filter(|_| groups.clone().all(|g| g.is_some())) {
                 self.datum_touches(entity, group, support, slack)
             } else {
-                supports.binary_search(&support).is_ok()
+                match support {
+                    &[v] => vertices[v as usize],
+                    several => supports.binary_search(&several).is_ok(),
+                }
             }
         };
         let deciding = self.deciding_nodes();
