@@ -24,7 +24,7 @@ pub(super) enum Formula {
 }
 
 impl Formula {
-    /// A function of the point and of the normal.
+    /// The formula as a flux: a constant, or a function of the point and of the normal.
     pub fn flux<const D: usize>(&self) -> BoundaryFlux<D> {
         match self.clone() {
             Self::Number(c) => BoundaryFlux::Constant(c),
@@ -36,7 +36,7 @@ impl Formula {
             })),
         }
     }
-    /// A function of the point.
+    /// The formula as a datum: a constant, or a function of the point.
     pub fn datum<const D: usize>(&self) -> Datum<D> {
         match self.clone() {
             Self::Number(c) => Datum::Constant(c),

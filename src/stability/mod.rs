@@ -130,6 +130,9 @@ impl<'a> Stability<'a> {
     /// # Errors
     /// [`Error::Parameter`] for a case that does not exist or a scheme that is wrong.
     pub fn check(&self) -> Result<(), Error> {
+        self.checked_plan().map(|_| ())
+    }
+    fn checked_plan(&self) -> Result<Plan<'_>, Error> {
         let check = |parameter, names: &[String], known: &[&str]| match names
             .iter()
             .find(|name| !known.contains(&name.as_str()))
@@ -142,7 +145,7 @@ impl<'a> Stability<'a> {
             }),
         };
         check("case", &self.cases, &STABILITY_CASES)?;
-        self.plan().map(|_| ())
+        self.plan()
     }
 
     /// Runs everything.
@@ -151,8 +154,7 @@ impl<'a> Stability<'a> {
     /// Those of [`Self::check`], before anything runs; [`Error::Write`]. Errors of a job are listed in
     /// [`StabilityReport::failures`].
     pub fn run(&self) -> Result<StabilityReport, Error> {
-        self.check()?;
-        let plan = self.plan()?;
+        let plan = self.checked_plan()?;
         (self.observer)(StabilityProgress::Planned(plan.jobs.len()));
         let mut report = StabilityReport::new(self.effort);
         let mut written = Instant::now();

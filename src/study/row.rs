@@ -22,7 +22,7 @@ pub struct Orders {
     pub energy: Option<f64>,
     /// In the maximum over nodes.
     pub max: Option<f64>,
-    /// Of the error bound; old reports have none.
+    /// Order of the error bound; none in reports of versions before it.
     #[cfg_attr(feature = "report", serde(default))]
     pub bound: Option<f64>,
     /// Of the multiplier in L1.

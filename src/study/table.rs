@@ -247,7 +247,8 @@ fn of_the_solution(rows: &[&Row]) -> Vec<Column> {
     columns
 }
 
-/// The columns of the second table of `rows`: what the first one leaves out; none if that is nothing.
+/// The columns of the second table of `rows`: the figures that the first table leaves out. None if the rows
+/// have no such figure.
 pub(crate) fn totals(rows: &[&Row]) -> Vec<Column> {
     let text = |name, cell| Column { name, left: true, cell };
     let number = |name, cell| Column { name, left: false, cell };

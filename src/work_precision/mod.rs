@@ -401,8 +401,8 @@ impl<'a, const D: usize> WorkPrecision<'a, D> {
         }
     }
 
-    /// Every scheme on every level with its errors against the reference, checked; none without a
-    /// reference.
+    /// The study that measures every scheme on every level against the reference, checked; none where no
+    /// reference is asked for.
     fn study_against_reference(&self) -> Result<Option<Study<'_, f64, D>>, Error> {
         let Some((reference, level)) = &self.reference else { return Ok(None) };
         let mut study = Study::<f64, D>::new((self.scene)()).levels(self.levels.iter().copied());

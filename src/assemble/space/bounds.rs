@@ -88,7 +88,9 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
                 let Some(dirichlet) = given[v as usize] else { continue };
                 let x = point_f64(&self.mesh.vertices()[v as usize]);
                 let datum = data::finite(self.dirichlet_at(dirichlet, &x), "dirichlet", &x, cell)?;
-                let unknown = self.nodes_on(local).nth(k).map_or(0, |i| self.dofs.of(cell, i));
+                // the node at the vertex, where the element has one, else one of the facet
+                let node = self.nodes_on(local).take(k + 1).last();
+                let unknown = node.map_or(0, |i| self.dofs.of(cell, i));
                 note(gap.at(&x), datum, unknown, x, conflicts);
             }
             for (i, by) in self.bounded_nodes_on(local) {

@@ -62,7 +62,7 @@ pub fn end_at_interrupt(left: &'static str) -> Request<()> {
     .map_err(|e| format!("cannot handle interrupts: {e}"))
 }
 
-/// Makes sure before the work that a directory is there.
+/// Makes a directory where there is none, before the work.
 pub fn make_directory(path: &Path) -> Request<()> {
     fs::create_dir_all(path).map_err(|e| cannot_write(path, e))
 }

@@ -82,7 +82,7 @@ pub struct Study<'a, T: Real, const D: usize> {
     observer: Box<dyn Fn(Progress<'_>) + 'a>,
 }
 
-/// Receives a solution with its label (and solver, where there are several) and level.
+/// A function that receives a solution with its label (of several solvers `LABEL-SOLVER`) and its level.
 type EachSolution<'a, T, const D: usize> =
     Box<dyn Fn(&str, usize, &Solved<'_, T, D>) -> Result<(), Error> + 'a>;
 
@@ -95,10 +95,18 @@ struct Entry<'a, T: Real, const D: usize> {
 impl<T: Real, const D: usize> Entry<'_, T, D> {
     /// The problem with the constraint set of the entry.
     fn problem(&self, problem: &Problem<D>) -> Problem<D> {
-        let mut problem = problem.clone();
-        problem.constraint_set = self.set.clone().or(problem.constraint_set);
-        problem
+        with_set(problem, &self.set)
     }
+}
+
+/// A problem with a constraint set, where there is one, in place of its own.
+fn with_set<const D: usize>(
+    problem: &Problem<D>,
+    set: &Option<Arc<dyn ConstraintSet>>,
+) -> Problem<D> {
+    let mut problem = problem.clone();
+    problem.constraint_set = set.clone().or(problem.constraint_set);
+    problem
 }
 
 impl<T: Real, const D: usize> fmt::Debug for Study<'_, T, D> {
@@ -561,20 +569,19 @@ impl<'a, T: Real, const D: usize> Study<'a, T, D> {
     }
 
     /// The problem with the constraint set of the reference.
-    fn reference_problem(&self) -> Problem<D> {
-        let problem = self.scene.problem.clone();
-        let set = self.reference.as_ref().and_then(|reference| reference.set.clone());
-        Problem { constraint_set: set.or(problem.constraint_set), ..problem }
+    fn reference_problem(&self) -> Option<Problem<D>> {
+        let reference = self.reference.as_ref()?;
+        Some(with_set(&self.scene.problem, &reference.set))
     }
 
     /// The reference on the finest mesh, where one is asked for.
     fn find_reference<'h>(
         &'h self,
-        problem: &'h Problem<D>,
+        problem: &'h Option<Problem<D>>,
         hierarchies: &'h [Hierarchy<T, D>],
     ) -> Option<FoundReference<'h, T, D>> {
         let (reference, hierarchy) = (self.reference.as_ref()?, hierarchies.first()?);
-        Some(self.solve_reference(reference, problem, hierarchy))
+        Some(self.solve_reference(reference, problem.as_ref()?, hierarchy))
     }
 
     /// The reference and its name in rows. Where it cannot be had, rows have no errors and say why.

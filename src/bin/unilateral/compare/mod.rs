@@ -216,8 +216,8 @@ impl Chosen {
         interrupt.watch(journal);
         let all = || -> (Vec<Row>, Vec<String>) {
             let (mut rows, mut messages) = (Vec::new(), Vec::new());
-            let written = runs.iter().map(|run| write_requests(options, &contents, &run.keys));
-            if let Err(why) = written.collect::<Request<()>>() {
+            let write = |run: &Run<'_>| write_requests(options, &contents, &run.keys);
+            if let Err(why) = runs.iter().try_for_each(write) {
                 return (rows, vec![why]);
             }
             for Run { place, run, .. } in runs {
