@@ -1,6 +1,8 @@
 //! A study: schemes on a scene, level by level.
 
 mod adaptive;
+mod judge;
+mod reference;
 mod rows;
 
 use std::fmt;
@@ -29,9 +31,9 @@ use crate::study::fields::FieldFiles;
 use crate::study::journal::Journal;
 use crate::study::memory::{MemoryEstimate, estimate, estimate_without_factors, unknowns_about};
 use crate::study::orders::fill_orders;
-use crate::study::reference::{FoundReference, Measured, Reference};
+use crate::study::reference::{Measured, Reference};
 use crate::study::report::{Program, Report};
-use crate::study::row::{Iterations, Row, RowKey};
+use crate::study::row::{Row, RowKey};
 
 /// Progress of a study.
 #[derive(Debug)]
@@ -525,38 +527,6 @@ impl<'a, T: Real, const D: usize> Study<'a, T, D> {
         self.row(&mut nested, (entry, &problem), level, measured)
     }
 
-    /// The row of the first scheme on the first level for values of its unknowns that another program
-    /// found: their certificate, errors and totals. Solver and linear solver of the row are `none`.
-    ///
-    /// # Errors
-    /// Those of [`Study::run`], and [`Error::Parameter`] for another number of values than of unknowns.
-    pub fn judge(&self, values: &[f64]) -> Result<Row, Error> {
-        compiled!(
-            T, D: fn(&Study<'_, T, D>, &[f64]) -> Result<Row, Error>
-                = |study, values| study.judge_values(values)
-        )(self, values)
-    }
-    fn judge_values(&self, values: &[f64]) -> Result<Row, Error> {
-        let failure = self.where_exact_fails()?;
-        let (Some(entry), level) = (self.entries.first(), self.first_level()) else {
-            unreachable!("checked above")
-        };
-        let problem = entry.problem(&self.scene.problem);
-        let hierarchies = self.hierarchies()?;
-        let mut on_level = hierarchies.iter().filter_map(|h| Some((h.position(level)?, h)));
-        let Some((position, hierarchy)) = on_level.next() else {
-            unreachable!("a hierarchy has the level")
-        };
-        let nested = NestedIteration::new(&problem, hierarchy).quadrature(self.quadrature);
-        let solved = nested.judge_on(position, &*entry.scheme, values)?;
-        let reference_problem = self.reference_problem();
-        let reference = self.find_reference(&reference_problem, &hierarchies);
-        let measured = Measured { failure: failure.as_deref(), reference: reference.as_ref() };
-        let row = self.measured_row(entry, level, &solved, measured)?;
-        let iterations = Iterations { outer: None, ..row.iterations };
-        Ok(Row { solver: "none".to_owned(), iterations, ..row })
-    }
-
     /// The meshes of all levels: in one hierarchy with those of a reference.
     fn hierarchies(&self) -> Result<Vec<Hierarchy<T, D>>, Error> {
         match &self.reference {
@@ -565,42 +535,6 @@ impl<'a, T: Real, const D: usize> Study<'a, T, D> {
                 let coarsest = self.levels.iter().copied().min().unwrap_or(1);
                 Ok(vec![self.coarsest().build_from(reference.level, coarsest)?])
             }
-        }
-    }
-
-    /// The problem with the constraint set of the reference.
-    fn reference_problem(&self) -> Option<Problem<D>> {
-        let reference = self.reference.as_ref()?;
-        Some(with_set(&self.scene.problem, &reference.set))
-    }
-
-    /// The reference on the finest mesh, where one is asked for.
-    fn find_reference<'h>(
-        &'h self,
-        problem: &'h Option<Problem<D>>,
-        hierarchies: &'h [Hierarchy<T, D>],
-    ) -> Option<FoundReference<'h, T, D>> {
-        let (reference, hierarchy) = (self.reference.as_ref()?, hierarchies.first()?);
-        Some(self.solve_reference(reference, problem.as_ref()?, hierarchy))
-    }
-
-    /// The reference and its name in rows. Where it cannot be had, rows have no errors and say why.
-    fn solve_reference<'h>(
-        &'h self,
-        reference: &Reference<'_, T, D>,
-        problem: &'h Problem<D>,
-        hierarchy: &'h Hierarchy<T, D>,
-    ) -> FoundReference<'h, T, D> {
-        let name = reference.name(self.scene.problem.constraint_set());
-        (self.observer)(Progress::Started(&self.scene.name, &name, reference.level));
-        let mut nested = NestedIteration::new(problem, hierarchy)
-            .shared_solver(self.solvers()[0].clone())
-            .quadrature(self.quadrature);
-        let fails = |why: &str| format!("the reference, {name}, was not found: {why}");
-        let solved = nested.solve(&*reference.scheme).map_err(|e| fails(&e.to_string()))?;
-        match solved.converged() {
-            true => Ok((solved, name)),
-            false => Err(fails(solved.outcome().message())),
         }
     }
 

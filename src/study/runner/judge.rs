@@ -1,0 +1,43 @@
+//! The judgement of values that another program found.
+
+use super::Study;
+use crate::error::Error;
+use crate::instances::compiled;
+use crate::nested::NestedIteration;
+use crate::real::Real;
+use crate::study::reference::Measured;
+use crate::study::row::{Iterations, Row};
+
+impl<T: Real, const D: usize> Study<'_, T, D> {
+    /// The row of the first scheme on the first level for values of its unknowns that another program
+    /// found: their certificate, errors and totals. Solver and linear solver of the row are `none`.
+    ///
+    /// # Errors
+    /// Those of [`Study::run`], and [`Error::Parameter`] for another number of values than of unknowns.
+    pub fn judge(&self, values: &[f64]) -> Result<Row, Error> {
+        compiled!(
+            T, D: fn(&Study<'_, T, D>, &[f64]) -> Result<Row, Error>
+                = |study, values| study.judge_values(values)
+        )(self, values)
+    }
+    fn judge_values(&self, values: &[f64]) -> Result<Row, Error> {
+        let failure = self.where_exact_fails()?;
+        let (Some(entry), level) = (self.entries.first(), self.first_level()) else {
+            unreachable!("checked above")
+        };
+        let problem = entry.problem(&self.scene.problem);
+        let hierarchies = self.hierarchies()?;
+        let mut on_level = hierarchies.iter().filter_map(|h| Some((h.position(level)?, h)));
+        let Some((position, hierarchy)) = on_level.next() else {
+            unreachable!("a hierarchy has the level")
+        };
+        let nested = NestedIteration::new(&problem, hierarchy).quadrature(self.quadrature);
+        let solved = nested.judge_on(position, &*entry.scheme, values)?;
+        let reference_problem = self.reference_problem();
+        let reference = self.find_reference(&reference_problem, &hierarchies);
+        let measured = Measured { failure: failure.as_deref(), reference: reference.as_ref() };
+        let row = self.measured_row(entry, level, &solved, measured)?;
+        let iterations = Iterations { outer: None, ..row.iterations };
+        Ok(Row { solver: "none".to_owned(), iterations, ..row })
+    }
+}

@@ -1,0 +1,45 @@
+//! The fine solution against which rows are measured.
+
+use super::{Progress, Study, with_set};
+use crate::nested::{Hierarchy, NestedIteration};
+use crate::problem::Problem;
+use crate::real::Real;
+use crate::study::reference::{FoundReference, Reference};
+
+impl<T: Real, const D: usize> Study<'_, T, D> {
+    /// The problem with the constraint set of the reference.
+    pub(super) fn reference_problem(&self) -> Option<Problem<D>> {
+        let reference = self.reference.as_ref()?;
+        Some(with_set(&self.scene.problem, &reference.set))
+    }
+
+    /// The reference on the finest mesh, where one is asked for.
+    pub(super) fn find_reference<'h>(
+        &'h self,
+        problem: &'h Option<Problem<D>>,
+        hierarchies: &'h [Hierarchy<T, D>],
+    ) -> Option<FoundReference<'h, T, D>> {
+        let (reference, hierarchy) = (self.reference.as_ref()?, hierarchies.first()?);
+        Some(self.solve_reference(reference, problem.as_ref()?, hierarchy))
+    }
+
+    /// The reference and its name in rows. Where it cannot be had, rows have no errors and say why.
+    fn solve_reference<'h>(
+        &'h self,
+        reference: &Reference<'_, T, D>,
+        problem: &'h Problem<D>,
+        hierarchy: &'h Hierarchy<T, D>,
+    ) -> FoundReference<'h, T, D> {
+        let name = reference.name(self.scene.problem.constraint_set());
+        (self.observer)(Progress::Started(&self.scene.name, &name, reference.level));
+        let mut nested = NestedIteration::new(problem, hierarchy)
+            .shared_solver(self.solvers()[0].clone())
+            .quadrature(self.quadrature);
+        let fails = |why: &str| format!("the reference, {name}, was not found: {why}");
+        let solved = nested.solve(&*reference.scheme).map_err(|e| fails(&e.to_string()))?;
+        match solved.converged() {
+            true => Ok((solved, name)),
+            false => Err(fails(solved.outcome().message())),
+        }
+    }
+}
