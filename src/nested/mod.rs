@@ -6,6 +6,7 @@
 
 mod adaptive;
 mod adaptive_meshes;
+mod cascade;
 mod hierarchy;
 mod iteration;
 mod meshes;
