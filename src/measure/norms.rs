@@ -266,8 +266,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         let value = |basis: &BasisAt<T>, local: &[f64; MAX_BASIS]| -> f64 {
             local.iter().zip(&basis.values).map(|(c, v)| c * v.to_f64()).sum()
         };
-        let mut total = 0.0;
-        for cell in 0..self.mesh.n_cells() {
+        let terms_of = |cell: usize, terms: &mut Vec<f64>| -> Result<(), Error> {
             let mine = self.local_values(cell, u);
             for local in 0..=D {
                 let across = neighbours.across(cell, local);
@@ -291,9 +290,20 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
                 for (jump, &degree) in jumps.into_iter().zip(&table.degrees) {
                     let trace = Trace { jump: T::lit(jump), flux: T::lit(0.0) };
                     let penalty = penalty * T::lit(form.moment_weight(degree));
-                    total += (view.measure * form.integrand(&view, trace, trace, penalty)).to_f64();
+                    let term = view.measure * form.integrand(&view, trace, trace, penalty);
+                    terms.push(term.to_f64());
                 }
             }
+            Ok(())
+        };
+        let parts = cells::map(self.mesh.n_cells(), &|mut cells: Range<usize>| {
+            let mut terms = Vec::new();
+            cells.try_for_each(|cell| terms_of(cell, &mut terms)).map(|()| terms)
+        });
+        // added in the order of facets, for every number of threads
+        let mut total = 0.0;
+        for part in parts {
+            total = part?.into_iter().fold(total, |sum, term| sum + term);
         }
         Ok(total)
     }
