@@ -31,9 +31,11 @@ mod contact;
 mod estimate;
 mod figures;
 mod friedrichs;
+mod function;
 mod marking;
 mod pair;
 mod patches;
+mod terms;
 
 pub use estimate::{BoundParts, ErrorBound, Unproven};
 pub use figures::{BoundFigures, Guaranteed};
