@@ -90,7 +90,7 @@ impl<T: Real, const D: usize> Discretisation<'_, T, D> {
             }
             _ => inequality.residual_f64(u, &mut residual),
         }
-        let forces = space.contact_forces(inequality, &residual);
+        let forces = space.contact_forces(inequality, &solution.contact, &residual);
         let mut flux = if self.owns_rows() {
             self.facet_fluxes(u, multipliers.as_deref())?
         } else if space.is_conforming_linear() {

@@ -25,7 +25,7 @@ pub(super) struct CellTerms {
     pub obstacle: f64,
     /// Twice the complementarity of contact.
     pub contact: f64,
-    /// The square of what the flux does not balance.
+    /// What the flux does not balance, of either sign.
     pub unbalanced: f64,
     /// The square of the distance of the two functions.
     pub distance: f64,
@@ -127,6 +127,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         cell: usize,
         (table, cut): (&CellTable<f64>, Option<&CutRule>),
         boundary: &BoundaryTerms,
+        friedrichs: Option<f64>,
     ) -> CellTerms {
         let geometry = self.mesh.geometry(cell);
         let (volume, region) = (geometry.volume.to_f64(), self.mesh.region(cell));
@@ -196,9 +197,15 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
             (mismatch.sqrt() + in_gradient).powi(2) + (from_values.sqrt() + in_value).powi(2);
         let multiplier = -total_flux / volume - mean - first.unwrap_or(0.0);
         let bound = usize::from(multiplier < 0.0);
+        // what the solver leaves away from contact would count once there, and squared here
+        let of_solver = friedrichs.map(|c| c * c * multiplier.abs() / terms.least_coefficient);
         match admissible.bounds[bound] {
-            Some(_) => terms.obstacle = 2.0 * multiplier.abs() * gaps[bound],
-            None => terms.unbalanced = multiplier * multiplier * volume,
+            Some(_)
+                if of_solver.is_none_or(|of_solver| 2.0 * gaps[bound] <= of_solver * volume) =>
+            {
+                terms.obstacle = 2.0 * multiplier.abs() * gaps[bound];
+            }
+            _ => terms.unbalanced = multiplier,
         }
         terms.contact = boundary.contact.get(cell).map_or(0.0, |c| 2.0 * c);
         terms
