@@ -1,6 +1,6 @@
 //! The forces on contact facets.
 
-use crate::algebra::Inequality;
+use crate::algebra::{Contact, Inequality};
 use crate::assemble::space::Space;
 use crate::mesh::BoundaryPart;
 use crate::real::Real;
@@ -19,10 +19,11 @@ pub(super) struct NodeForce {
 }
 
 impl<T: Real, const D: usize> Space<'_, T, D> {
-    /// The contact forces: that of each node, divided among its contact facets by their measures.
+    /// The contact forces: that of each node in contact, divided among its contact facets by their measures.
     pub(super) fn contact_forces(
         &self,
         inequality: &Inequality<T>,
+        contact: &[Contact],
         residual: &[f64],
     ) -> Vec<NodeForce> {
         let mut forces: Vec<NodeForce> = Vec::new();
@@ -34,7 +35,8 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
             let measure = self.mesh.geometry(cell).facet_measure(local).to_f64();
             for (node, _) in self.bounded_nodes_on(local) {
                 let unknown = self.dofs.of(cell, node);
-                if inequality.bounds[unknown].is_inequality() {
+                let is_in_contact = contact.get(unknown) != Some(&Contact::Inactive);
+                if inequality.bounds[unknown].is_inequality() && is_in_contact {
                     shared[unknown] += measure;
                     forces.push(NodeForce { cell, local, node, value: measure });
                 }
