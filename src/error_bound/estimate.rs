@@ -112,7 +112,8 @@ impl<T: Real, const D: usize> Discretisation<'_, T, D> {
 impl<T: Real, const D: usize> Space<'_, T, D> {
     fn error_bound(&self, pair: &PrimalDualPair, u: &[T]) -> Result<ErrorBound, NoBound> {
         let stated = self.problem.data_degree.unwrap_or(0);
-        let table = self.cell_table(Rule::new(D, self.cell_degree.max(2 * stated + 2)));
+        let degree = 2 * (stated + pair.degree);
+        let table = self.cell_table(Rule::new(D, self.cell_degree.max(degree)));
         let has_level = self.data.source.all().any(|f| f.level().is_some());
         let cut = has_level.then(|| CutRule::new(D, self.cell_degree));
         let boundary = self.boundary_terms(pair)?;
@@ -156,12 +157,12 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
                 algebra: share((flux_square - with_oscillation).max(0.0)),
             },
             cells: terms.iter().map(of_cell).collect(),
-            unproven: self.unproven_terms(is_proven),
+            unproven: self.unproven_terms(pair, is_proven),
         })
     }
 
     /// The terms that are not proven; the argument says whether the term of the solver is.
-    fn unproven_terms(&self, is_algebra_proven: bool) -> Vec<Unproven> {
+    fn unproven_terms(&self, pair: &PrimalDualPair, is_algebra_proven: bool) -> Vec<Unproven> {
         let (data, stated) = (&self.data, self.problem.data_degree);
         let is_constant = |data: &DataByGroup<'_, D>| data.all().all(|f| f.constant().is_some());
         let is_below = |data: &DataByGroup<'_, D>, degree: usize| {
@@ -177,14 +178,20 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         let is_inexact = has_fluxes
             || !is_below(&data.coefficient, 0)
             || integrands.iter().any(|data| !is_below(data, usize::MAX));
-        let is_curved = [&data.lower, &data.upper, &data.gap].iter().any(|d| !is_below(d, 1));
+        let obstacles = [&data.lower, &data.upper, &data.gap];
+        let is_curved = obstacles.iter().any(|d| !is_below(d, pair.degree));
+        // in space a quadratic with the data on two facets of a cell may leave the obstacle inside
+        let may_leave = D == 3
+            && pair.degree > 1
+            && obstacles.iter().any(|d| d.is_given())
+            && !is_below(&data.dirichlet, 1);
         let found = [
             (is_inexact, Unproven::Quadrature),
             (
-                has_data && !(is_below(&data.dirichlet, 1) && self.dirichlet_data_agree()),
+                has_data && !(is_below(&data.dirichlet, pair.degree) && self.dirichlet_data_agree()),
                 Unproven::Boundary,
             ),
-            (is_curved, Unproven::Obstacle),
+            (is_curved || may_leave, Unproven::Obstacle),
             (!is_algebra_proven, Unproven::Algebra),
         ];
         found.into_iter().filter(|(is_found, _)| *is_found).map(|(_, term)| term).collect()
