@@ -188,7 +188,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         let found = [
             (is_inexact, Unproven::Quadrature),
             (
-                has_data && !(is_below(&data.dirichlet, pair.degree) && self.dirichlet_data_agree()),
+                has_data && !(is_below(&data.dirichlet, pair.degree) && self.takes_dirichlet_data(pair)),
                 Unproven::Boundary,
             ),
             (is_curved || may_leave, Unproven::Obstacle),
@@ -197,20 +197,19 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         found.into_iter().filter(|(is_found, _)| *is_found).map(|(_, term)| term).collect()
     }
 
-    /// Whether the data of all Dirichlet facets at a vertex have one value there: else no function with a
-    /// square-integrable gradient takes the data, and the admissible function misses one datum on a whole facet.
-    fn dirichlet_data_agree(&self) -> bool {
-        let groups = self.dirichlet_groups();
+    /// Whether the function of a pair has the data of all Dirichlet facets at its nodes on them: where data of
+    /// two facets differ at a common node no function with a square-integrable gradient takes both.
+    fn takes_dirichlet_data(&self, pair: &PrimalDualPair) -> bool {
         self.grouped_facets_of(BoundaryPart::Dirichlet).all(|((cell, local), group)| {
-            self.mesh.facet_vertices(cell, local).all(|v| {
-                let chosen = groups[v as usize].unwrap_or(group);
-                if chosen == group {
-                    return true;
-                }
-                let x = point_f64(&self.mesh.vertices()[v as usize]);
-                let [own, other] = [group, chosen].map(|group| self.dirichlet_at(group, &x));
-                (own - other).abs() <= AGREEMENT * own.abs().max(other.abs())
-            })
+            self.pair_nodes(pair, cell).filter(|(ends, _)| !ends.contains(&local)).all(
+                |(ends, node)| {
+                    let [x, y] = ends.map(|k| self.mesh.cell(cell)[k] as usize);
+                    let [x, y] = [x, y].map(|v| point_f64(&self.mesh.vertices()[v]));
+                    let datum = self.dirichlet_at(group, &((x + y) * 0.5));
+                    let value = pair.function[node];
+                    (datum - value).abs() <= AGREEMENT * datum.abs().max(value.abs())
+                },
+            )
         })
     }
 

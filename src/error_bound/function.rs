@@ -31,6 +31,20 @@ impl Nodes<'_> {
 }
 
 impl<T: Real, const D: usize> Space<'_, T, D> {
+    /// The nodes of the function of a pair in a cell: each is the middle of two vertices of the cell, that of a
+    /// vertex the middle of twice the vertex; and the number of the node.
+    pub(super) fn pair_nodes(
+        &self,
+        pair: &PrimalDualPair,
+        cell: usize,
+    ) -> impl Iterator<Item = ([usize; 2], usize)> {
+        let n_vertices = self.mesh.vertices().len();
+        let nodes = Nodes { n_vertices, n_edges: 0, edges: &pair.edges };
+        let vertices = self.mesh.cell(cell).iter().enumerate();
+        let of_edges: Vec<_> = nodes.of_edges(D, cell).map(|(ends, node)| (*ends, node)).collect();
+        vertices.map(|(k, &v)| ([k; 2], v as usize)).chain(of_edges)
+    }
+
     /// The admissible function of a discrete function: of degree one or two, without a flux.
     pub(super) fn admissible_function(&self, u: &[T], degree: usize) -> PrimalDualPair {
         let (n_edges, edges) = match degree {

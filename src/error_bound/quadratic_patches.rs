@@ -20,9 +20,9 @@
 use std::ops::Range;
 
 use super::patches::{around, solve};
-use super::quadratics::{CellLoads, Products, add, densities};
+use super::quadratics::{CellLoads, Products, add, densities, products_on_facet, vertices_of};
 use crate::assemble::local::StiffnessTable;
-use crate::assemble::space::{Place, Space};
+use crate::assemble::space::{INWARD, Place, Space};
 use crate::assemble::space::tables::BasisAt;
 use crate::element::Node;
 use crate::mesh::{BoundaryPart, Neighbour, Neighbours};
@@ -35,8 +35,10 @@ type OfFacets = [[f64; 3]; 3];
 /// What is known of a cell before its patches are.
 #[derive(Clone, Default)]
 struct CellData {
-    /// The measure of each facet times `alpha grad u . n`, at the vertices; zero at the opposite one.
+    /// By facet the densities of `alpha grad u . n`.
     normal: Products,
+    /// By facet and vertex of the patch those of the part of the vertex, `phi alpha grad u . n`.
+    parts: [Products; 4],
     /// By vertex of the patch the divergence tested with the barycentric coordinates.
     divergence: Products,
 }
@@ -52,20 +54,13 @@ struct Patches<'s, 'a, T: Real, const D: usize> {
     starts: Vec<usize>,
 }
 
-/// The integral of `lambda_a lambda_j lambda_k` over a simplex of a dimension and of measure one.
-fn triple(dimension: usize, [a, j, k]: [usize; 3]) -> f64 {
-    let d = dimension as f64;
-    let equal = usize::from(a == j) + usize::from(j == k) + usize::from(a == k);
-    [1.0, 2.0, 0.0, 6.0][equal] / ((d + 1.0) * (d + 2.0) * (d + 3.0))
-}
-
 impl<T: Real, const D: usize> Space<'_, T, D> {
     /// The densities `c_Fj` of a conforming quadratic function, without those of Neumann data and contact.
     pub(super) fn quadratic_patch_fluxes(&self, u: &[T], loads: &CellLoads) -> Vec<f64> {
         let (corners, starts) = self.corners();
         let neighbours = Neighbours::new(self.mesh);
         let cells = self.patch_data(u, loads);
-        let mut given: Vec<_> = loads.boundary.iter().collect();
+        let mut given: Vec<_> = loads.neumann.iter().chain(&loads.contact).collect();
         given.sort_unstable_by_key(|(place, _)| *place);
         let patches = Patches { space: self, neighbours, cells, given, corners, starts };
         let square = (D + 1) * (D + 1);
@@ -102,7 +97,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
             cells.map(of).collect::<Vec<_>>()
         });
         let mut data: Vec<CellData> = data.into_iter().flatten().collect();
-        for ((cell, _), products) in &loads.boundary {
+        for ((cell, _), products) in &loads.neumann {
             add(&mut data[*cell].divergence, |a, j| products[a][j]);
         }
         data
@@ -120,20 +115,28 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         let metric = self.metric(cell);
         let local = self.local_values(cell, u);
         let alpha = self.alpha(cell);
+        let varying = self.varying_in(cell);
         let mut data = CellData::default();
         for (k, basis) in corners.iter().enumerate() {
             let slope = |m: usize| -> f64 {
                 local.iter().zip(&basis.derivatives).take(n).map(|(u, d)| u * d[m]).sum()
             };
             let slopes: [f64; 4] = std::array::from_fn(|m| if m <= D { slope(m) } else { 0.0 });
-            for facet in (0..=D).filter(|&facet| facet != k) {
+            let coefficient = match varying {
+                None => alpha.to_f64(),
+                Some(_) => {
+                    let inward = |b: f64| b + (1.0 / (D + 1) as f64 - b) * INWARD;
+                    let point = Node::vertex(k).centre(D).map(inward);
+                    self.alpha_at(cell, &self.cell_point(&point, cell))
+                }
+            };
+            for facet in vertices_of::<D>(k) {
                 // |F| n = -D |K| grad lambda
                 let products = metric.products[facet].iter().zip(&slopes);
                 let sum: f64 = products.map(|(p, slope)| p.to_f64() * slope).sum();
-                data.normal[facet][k] = -(D as f64) * alpha.to_f64() * sum;
+                data.normal[facet][k] = -(D as f64) * coefficient * sum;
             }
         }
-        let varying = self.varying_in(cell);
         for i in 0..n {
             let mut left = -loads.values[cell * n + i];
             for (j, value) in local.iter().enumerate().take(n) {
@@ -146,32 +149,11 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
             add(&mut data.divergence, |a, j| left * loads.functionals[i][a][j]);
         }
         for facet in 0..=D {
-            for a in vertices_of::<D>(facet) {
-                let moments = data.moments::<D>(facet, a);
-                let row = &mut data.divergence[a];
-                row.iter_mut().zip(moments).for_each(|(to, moment)| *to -= moment);
-            }
+            let products = products_on_facet::<D>(&data.normal[facet], facet);
+            add(&mut data.divergence, |a, j| -products[a][j]);
+            data.parts[facet] = products.map(|of_vertex| densities::<D>(&of_vertex, facet));
         }
         data
-    }
-}
-
-/// The vertices of a facet by their numbers in the cell.
-fn vertices_of<const D: usize>(facet: usize) -> impl Iterator<Item = usize> {
-    (0..=D).filter(move |&j| j != facet)
-}
-
-impl CellData {
-    /// The products of `alpha grad u . n phi` with the barycentric coordinates on a facet, `phi` the hat
-    /// function of a vertex of the facet.
-    fn moments<const D: usize>(&self, facet: usize, vertex: usize) -> [f64; 4] {
-        let mut moments = [0.0; 4];
-        for j in vertices_of::<D>(facet) {
-            for k in vertices_of::<D>(facet) {
-                moments[j] += self.normal[facet][k] * triple(D - 1, [vertex, j, k]);
-            }
-        }
-        moments
     }
 }
 
@@ -238,15 +220,14 @@ impl<T: Real, const D: usize> Patches<'_, '_, T, D> {
         slots: &[[Slot; 3]],
         n_free: &mut usize,
     ) -> Slot {
-        let on_facet = |moments: &[f64; 4], local: usize| {
-            let densities = densities::<D>(moments, local);
+        let on_facet = |densities: &[f64; 4], local: usize| {
             let mut of_vertices = [0.0; 3];
-            of_vertices.iter_mut().zip(vertices_of::<D>(local)).for_each(|(to, j)| *to = densities[j]);
+            let vertices = vertices_of::<D>(local);
+            of_vertices.iter_mut().zip(vertices).for_each(|(to, j)| *to = densities[j]);
             of_vertices
         };
         let place = (cell as usize, local);
-        let normal = self.cells[place.0].moments::<D>(local, usize::from(own));
-        let normal = on_facet(&normal, local);
+        let normal = on_facet(&self.cells[place.0].parts[local][usize::from(own)], local);
         let mut free = || {
             *n_free += D;
             Slot { first: *n_free - D, sign: 1.0, shift: [0.0; 3] }
@@ -257,8 +238,8 @@ impl<T: Real, const D: usize> Patches<'_, '_, T, D> {
                 let position = corners.binary_search_by_key(&other, |&(cell, _)| cell);
                 let Some(known) = position.ok().filter(|&l| l < slots.len()) else { return free() };
                 let own = corners[known].1;
-                let across = self.cells[other as usize].moments::<D>(there, usize::from(own));
-                let across = on_facet(&across, there);
+                let across = &self.cells[other as usize].parts[there][usize::from(own)];
+                let across = on_facet(across, there);
                 let slot = around::<D>(own).position(|local| local == there).unwrap_or(0);
                 let first = slots[known][slot].first;
                 let shift = std::array::from_fn(|p| -normal[p] - across[p]);
@@ -267,8 +248,10 @@ impl<T: Real, const D: usize> Patches<'_, '_, T, D> {
             Neighbour::Boundary(BoundaryPart::Dirichlet) => free(),
             Neighbour::Boundary(_) => {
                 let given = self.given.binary_search_by_key(&place, |(place, _)| *place);
-                let given = given.map(|k| on_facet(&self.given[k].1[usize::from(own)], local));
-                let given = given.unwrap_or_default();
+                let given = given.map_or([0.0; 3], |k| {
+                    let products = &self.given[k].1[usize::from(own)];
+                    on_facet(&densities::<D>(products, local), local)
+                });
                 let shift = std::array::from_fn(|p| given[p] - normal[p]);
                 Slot { first: 0, sign: 0.0, shift }
             }

@@ -29,12 +29,15 @@ use crate::real::Real;
 pub(super) type Products = [[f64; 4]; 4];
 
 /// What the inequality leaves in each unknown of each cell: the load without the reaction term at the
-/// discrete function, and the multiplier, of which a cell has a part where cells share an unknown.
+/// discrete function, and the multiplier without contact forces, of which a cell has a part where cells share
+/// an unknown.
 pub(super) struct CellLoads {
     /// By cell and unknown.
     pub values: Vec<f64>,
-    /// By facet of the Neumann and the contact part the products of Neumann data and contact forces.
-    pub boundary: Vec<(Place, Products)>,
+    /// By facet the products of Neumann data, which are among the loads.
+    pub neumann: Vec<(Place, Products)>,
+    /// By facet the products of contact forces.
+    pub contact: Vec<(Place, Products)>,
     /// By unknown of a cell its functional at `lambda_a lambda_j`.
     pub functionals: Vec<Products>,
 }
@@ -73,10 +76,10 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         let load = self.load_by_cell()?;
         let mut multipliers: Vec<f64> = residual.iter().map(|r| -r).collect();
         let is_pinned = |unknown: usize| self.pins && matches!(bounds[unknown], Bound::Fixed(_));
-        (0..multipliers.len()).filter(|&i| is_pinned(i)).for_each(|i| multipliers[i] = 0.0);
         for force in forces {
             multipliers[self.dofs.of(force.cell, force.node)] -= force.value;
         }
+        (0..multipliers.len()).filter(|&i| is_pinned(i)).for_each(|i| multipliers[i] = 0.0);
         // of a shared unknown each cell has the part of its volume
         let volume = |cell: usize| self.mesh.geometry(cell).volume.to_f64();
         let mut around = vec![0.0; if self.broken { 0 } else { self.dofs.size() }];
@@ -113,7 +116,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
             })
         };
         let functionals: Vec<Products> = terms.iter().map(functional).collect();
-        let mut boundary = Vec::new();
+        let mut neumann = Vec::new();
         if self.problem.has_neumann_data() {
             for (place, group) in self.grouped_facets_of(BoundaryPart::Neumann) {
                 let measure = self.mesh.geometry(place.0).facet_measure(place.1).to_f64();
@@ -123,19 +126,42 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
                     let point = (facet_to_cell(point, place.1), flux);
                     add(&mut products, |a, j| at(a, j, &point));
                 }
-                boundary.push((place, products));
+                neumann.push((place, products));
             }
         }
+        let mut contact: Vec<(Place, Products)> = Vec::new();
         for force in forces {
-            values[force.cell * n + force.node] += force.value;
             let place = (force.cell, force.local);
-            if boundary.last().is_none_or(|(last, _)| *last != place) {
-                boundary.push((place, Products::default()));
+            if contact.last().is_none_or(|(last, _)| *last != place) {
+                contact.push((place, Products::default()));
             }
-            let Some((_, products)) = boundary.last_mut() else { continue };
+            let Some((_, products)) = contact.last_mut() else { continue };
             add(products, |a, j| force.value * functionals[force.node][a][j]);
         }
-        Ok(CellLoads { values, boundary, functionals })
+        Ok(CellLoads { values, neumann, contact, functionals })
+    }
+
+    /// Divides the product of contact forces with each hat function among the contact facets at its vertex
+    /// by their measures, and makes the forces linear on facets.
+    pub(super) fn average_forces(&self, contact: &mut [(Place, Products)]) {
+        let measure = |(cell, local): Place| self.mesh.geometry(cell).facet_measure(local).to_f64();
+        let vertex = |(cell, _): Place, k: usize| self.mesh.cell(cell)[k] as usize;
+        let mut of_vertices = vec![(0.0, 0.0); self.mesh.vertices().len()];
+        for (place, products) in &*contact {
+            for k in vertices_of::<D>(place.1) {
+                let (sum, weight) = &mut of_vertices[vertex(*place, k)];
+                *sum += products[k].iter().sum::<f64>();
+                *weight += measure(*place);
+            }
+        }
+        for (place, products) in contact {
+            let mut moments = [0.0; 4];
+            for k in vertices_of::<D>(place.1) {
+                let (sum, weight) = of_vertices[vertex(*place, k)];
+                moments[k] = sum * measure(*place) / weight;
+            }
+            *products = products_on_facet::<D>(&densities::<D>(&moments, place.1), place.1);
+        }
     }
 
     /// The densities `c_Fj` of fluxes with these moments, `D` of each facet of each cell.
@@ -162,13 +188,15 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
     pub(super) fn balance(&self, loads: &CellLoads, flux: &mut [f64]) {
         let (n, n_cells, square) = (self.per_cell(), self.mesh.n_cells(), (D + 1) * (D + 1));
         let d = D as f64;
-        let mut on_boundary = vec![[0.0; 4]; if loads.boundary.is_empty() { 0 } else { n_cells }];
-        for ((cell, local), products) in &loads.boundary {
-            let moments = products.map(|row| row.iter().sum());
-            let of_facet = densities::<D>(&moments, *local);
+        let mut given = vec![[0.0; 4]; if loads.neumann.is_empty() { 0 } else { n_cells }];
+        for ((cell, _), products) in &loads.neumann {
+            let moments = products.iter().map(|row| row.iter().sum::<f64>());
+            given[*cell].iter_mut().zip(moments).for_each(|(to, moment)| *to += moment);
+        }
+        for ((cell, local), products) in loads.neumann.iter().chain(&loads.contact) {
+            let of_facet = densities::<D>(&products.map(|row| row.iter().sum()), *local);
             let start = cell * square + local * (D + 1);
             flux[start..start + D + 1].iter_mut().zip(of_facet).for_each(|(to, c)| *to += c);
-            on_boundary[*cell].iter_mut().zip(moments).for_each(|(to, m)| *to += m);
         }
         let linear: Vec<[f64; 4]> =
             loads.functionals.iter().map(|f| f.map(|row| row.iter().sum())).collect();
@@ -178,7 +206,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
                 for (load, of_linear) in loads.values[cell * n..][..n].iter().zip(&linear) {
                     tested.iter_mut().zip(of_linear).for_each(|(to, l)| *to += load * l);
                 }
-                if let Some(given) = on_boundary.get(cell) {
+                if let Some(given) = given.get(cell) {
                     tested.iter_mut().zip(given).for_each(|(to, given)| *to -= given);
                 }
                 let through: f64 = flux.iter().sum::<f64>() / d;
@@ -195,6 +223,30 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         };
         let Ok(()) = cells::for_each(n_cells, &|c| c * square, flux, &fill);
     }
+}
+
+/// The integral of `lambda_a lambda_j lambda_k` over a simplex of a dimension and of measure one.
+fn triple(dimension: usize, [a, j, k]: [usize; 3]) -> f64 {
+    let d = dimension as f64;
+    let equal = usize::from(a == j) + usize::from(j == k) + usize::from(a == k);
+    [1.0, 2.0, 0.0, 6.0][equal] / ((d + 1.0) * (d + 2.0) * (d + 3.0))
+}
+
+/// The vertices of a facet by their numbers in the cell.
+pub(super) fn vertices_of<const D: usize>(facet: usize) -> impl Iterator<Item = usize> {
+    (0..=D).filter(move |&j| j != facet)
+}
+
+/// The products of a flux with these densities on a facet.
+pub(super) fn products_on_facet<const D: usize>(densities: &[f64; 4], facet: usize) -> Products {
+    let mut products = Products::default();
+    for a in vertices_of::<D>(facet) {
+        for j in vertices_of::<D>(facet) {
+            let terms = vertices_of::<D>(facet).map(|k| densities[k] * triple(D - 1, [a, j, k]));
+            products[a][j] = terms.sum();
+        }
+    }
+    products
 }
 
 /// Adds to each product.
