@@ -1,6 +1,6 @@
 //! The forces on contact facets.
 
-use crate::algebra::Inequality;
+use crate::algebra::{Contact, Inequality};
 use crate::assemble::space::{Place, Space};
 use crate::mesh::BoundaryPart;
 use crate::quadrature::facet_to_cell;
@@ -20,12 +20,13 @@ pub(super) struct NodeForce {
 }
 
 impl<T: Real, const D: usize> Space<'_, T, D> {
-    /// The contact forces: that of each node, divided among its contact facets by their measures. A node of
-    /// a quadratic that Dirichlet data pin at the end of a contact part has no force of its own: the part
-    /// of the flux of the discrete function `u` stands for it, and any number would do.
+    /// The contact forces: that of each node in contact, divided among its contact facets by their measures.
+    /// A node of a quadratic that Dirichlet data pin at the end of a contact part has no force of its own: the
+    /// part of the flux of the discrete function `u` stands for it, and any number would do.
     pub(super) fn contact_forces(
         &self,
         inequality: &Inequality<T>,
+        contact: &[Contact],
         residual: &[f64],
         u: &[T],
     ) -> Vec<NodeForce> {
@@ -39,8 +40,10 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
             for (node, _) in self.bounded_nodes_on(local) {
                 let unknown = self.dofs.of(cell, node);
                 if inequality.bounds[unknown].is_inequality() {
-                    shared[unknown] += measure;
-                    forces.push(NodeForce { cell, local, node, value: measure });
+                    if contact.get(unknown) != Some(&Contact::Inactive) {
+                        shared[unknown] += measure;
+                        forces.push(NodeForce { cell, local, node, value: measure });
+                    }
                 } else if self.pins && self.degree == 2 {
                     let value = self.flux_at_node((cell, local), node, u).max(0.0);
                     forces.push(NodeForce { cell, local, node, value });

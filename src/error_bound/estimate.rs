@@ -2,6 +2,7 @@
 
 use std::ops::Range;
 
+use super::algebra::{CoarserCells, Unbalanced, dual_norm};
 use super::terms::CellTerms;
 use super::{NoBound, PrimalDualPair};
 use crate::assemble::Discretisation;
@@ -92,8 +93,26 @@ impl<T: Real, const D: usize> Discretisation<'_, T, D> {
     pub fn error_bound(&self, pair: &PrimalDualPair, u: &[T]) -> Result<ErrorBound, NoBound> {
         compiled!(
             T, D: fn(&Discretisation<'_, T, D>, &PrimalDualPair, &[T]) -> Result<ErrorBound, NoBound>
-                = |of, pair, u| of.space.error_bound(pair, u)
+                = |of, pair, u| of.space.error_bound(pair, u, &[])
         )(self, pair, u)
+    }
+    /// As [`Self::error_bound`], with the coarser meshes of a sequence, finest first: with them what the flux
+    /// does not balance counts less.
+    pub(crate) fn error_bound_on_levels(
+        &self,
+        pair: &PrimalDualPair,
+        u: &[T],
+        coarser: &[CoarserCells<'_, T, D>],
+    ) -> Result<ErrorBound, NoBound> {
+        compiled!(
+            T, D: fn(
+                &Discretisation<'_, T, D>,
+                &PrimalDualPair,
+                &[T],
+                &[CoarserCells<'_, T, D>],
+            ) -> Result<ErrorBound, NoBound>
+                = |of, pair, u, coarser| of.space.error_bound(pair, u, coarser)
+        )(self, pair, u, coarser)
     }
 
     /// The energy norm of the difference of the exact solution and the admissible function of a pair; none
@@ -110,15 +129,22 @@ impl<T: Real, const D: usize> Discretisation<'_, T, D> {
 }
 
 impl<T: Real, const D: usize> Space<'_, T, D> {
-    fn error_bound(&self, pair: &PrimalDualPair, u: &[T]) -> Result<ErrorBound, NoBound> {
+    fn error_bound(
+        &self,
+        pair: &PrimalDualPair,
+        u: &[T],
+        coarser: &[CoarserCells<'_, T, D>],
+    ) -> Result<ErrorBound, NoBound> {
         let stated = self.problem.data_degree.unwrap_or(0);
         let degree = 2 * (stated + pair.degree);
         let table = self.cell_table(Rule::new(D, self.cell_degree.max(degree)));
         let has_level = self.data.source.all().any(|f| f.level().is_some());
         let cut = has_level.then(|| CutRule::new(D, self.cell_degree));
         let boundary = self.boundary_terms(pair)?;
+        let friedrichs = self.mesh.friedrichs_constant();
+        let rules = (&table, cut.as_ref());
         let terms = cells::map(self.mesh.n_cells(), &|cells: Range<usize>| {
-            let terms = |cell| self.cell_terms(pair, u, cell, (&table, cut.as_ref()), &boundary);
+            let terms = |cell| self.cell_terms(pair, u, cell, rules, &boundary, friedrichs);
             cells.map(terms).collect::<Vec<_>>()
         });
         let terms: Vec<CellTerms> = terms.into_iter().flatten().collect();
@@ -131,13 +157,17 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         let (obstacle, contact) = (sum(|t| t.obstacle), sum(|t| t.contact));
         // |e| <= constant |||e||| by the inequality of Friedrichs or, where the reaction is positive, by that
         let least_root = |of| least(of).max(0.0).sqrt();
-        let by_gradient =
-            self.mesh.friedrichs_constant().map(|c| c / least_root(|t| t.least_coefficient));
+        let by_gradient = friedrichs.map(|c| c / least_root(|t| t.least_coefficient));
         let by_value = least_root(|t| t.least_reaction).recip();
         let constant = by_gradient.map_or(by_value, |c| c.min(by_value));
-        let unbalanced = sum(|t| t.unbalanced).sqrt();
-        let is_proven = constant.is_finite() || unbalanced == 0.0;
-        let algebra = if constant.is_finite() { constant * unbalanced } else { 0.0 };
+        let is_proven = constant.is_finite() || terms.iter().all(|t| t.unbalanced == 0.0);
+        let of_solver = |(cell, terms): (usize, &CellTerms)| {
+            let volume = self.mesh.geometry(cell).volume.to_f64();
+            let integral = terms.unbalanced * volume;
+            Unbalanced { integral, volume, least_coefficient: terms.least_coefficient }
+        };
+        let unbalanced = terms.iter().enumerate().map(of_solver).collect();
+        let algebra = dual_norm(unbalanced, coarser, constant);
         let flux_square = (with_oscillation.sqrt() + algebra).powi(2);
         let square = flux_square + obstacle + contact;
         if !square.is_finite() || least(|t| t.least_coefficient) <= 0.0 {

@@ -27,6 +27,7 @@
 //! Sources: S. Repin, J. Valdman, arXiv 1702.08689; D. Braess, Numer. Math. 101 (2005), 415-421; L. E. Payne,
 //! H. F. Weinberger, Arch. Rational Mech. Anal. 5 (1960), 286-292.
 
+mod algebra;
 mod contact;
 mod estimate;
 mod figures;
@@ -39,6 +40,7 @@ mod quadratic_patches;
 mod quadratics;
 mod terms;
 
+pub(crate) use algebra::CoarserCells;
 pub use estimate::{BoundParts, ErrorBound, Unproven};
 pub use figures::{BoundFigures, Guaranteed};
 pub use pair::PrimalDualPair;

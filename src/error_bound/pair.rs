@@ -102,7 +102,7 @@ impl<T: Real, const D: usize> Discretisation<'_, T, D> {
             }
             _ => inequality.residual_f64(u, &mut residual),
         }
-        let forces = space.contact_forces(inequality, &residual, u);
+        let forces = space.contact_forces(inequality, &solution.contact, &residual, u);
         let multipliers = multipliers.as_deref();
         let flux = if space.degree == 2 {
             let mut loads = space.cell_loads(u, &residual, &inequality.bounds, &forces)?;

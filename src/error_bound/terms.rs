@@ -25,7 +25,7 @@ pub(super) struct CellTerms {
     pub obstacle: f64,
     /// Twice the complementarity of contact.
     pub contact: f64,
-    /// The square of what the flux does not balance.
+    /// What the flux does not balance, of either sign.
     pub unbalanced: f64,
     /// The square of the distance of the two functions.
     pub distance: f64,
@@ -279,6 +279,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         cell: usize,
         (table, cut): (&CellTable<f64>, Option<&CutRule>),
         boundary: &BoundaryTerms,
+        friedrichs: Option<f64>,
     ) -> CellTerms {
         let geometry = self.mesh.geometry(cell);
         let (volume, region) = (geometry.volume.to_f64(), self.mesh.region(cell));
@@ -340,8 +341,20 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         let by_value = terms.least_reaction.max(0.0).sqrt().recip();
         let balance = flux.balance(volume, &means, square, first.unwrap_or(0.0));
         let bound = usize::from(balance.mean < 0.0);
-        let share = admissible.bounds[bound].map(|_| limit(balance.mean, &balance.values[..flux.n]));
-        let left = 1.0 - share.unwrap_or(0.0);
+        let share = limit(balance.mean, &balance.values[..flux.n]);
+        for (value, gap) in balance.values.iter().zip(gaps[bound]).take(flux.n) {
+            let multiplier = balance.mean + share * (value - balance.mean);
+            terms.obstacle += 2.0 * multiplier.abs() * gap;
+        }
+        // what the solver leaves away from contact would count once there, and squared here
+        let square_of_mean = balance.mean * balance.mean * volume;
+        let of_solver = friedrichs.map(|c| c * c * square_of_mean / terms.least_coefficient);
+        let is_force = admissible.bounds[bound].is_some()
+            && of_solver.is_none_or(|of_solver| terms.obstacle <= of_solver);
+        if !is_force {
+            (terms.obstacle, terms.unbalanced) = (0.0, balance.mean);
+        }
+        let left = if is_force { 1.0 - share } else { 1.0 };
         let of_load = (balance.rest + left * left * balance.variation).sqrt();
         let of_trace =
             boundary.traces.get(cell).map_or(0.0, |n| n / terms.least_coefficient.sqrt());
@@ -351,15 +364,6 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         };
         terms.with_oscillation =
             (mismatch.sqrt() + in_gradient).powi(2) + (from_values.sqrt() + in_value).powi(2);
-        match share {
-            Some(share) => {
-                for (value, gap) in balance.values.iter().zip(gaps[bound]).take(flux.n) {
-                    let multiplier = balance.mean + share * (value - balance.mean);
-                    terms.obstacle += 2.0 * multiplier.abs() * gap;
-                }
-            }
-            None => terms.unbalanced = balance.mean * balance.mean * volume,
-        }
         terms.contact = boundary.contact.get(cell).map_or(0.0, |c| 2.0 * c);
         terms
     }

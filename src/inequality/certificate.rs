@@ -169,6 +169,18 @@ pub(crate) fn certify_with_rounding<T: Real>(
     (certificate, max_norm / unit * norm(stiffness))
 }
 
+/// The energy norm `E` of `u` to which certificates and tolerances are relative.
+pub(crate) fn energy_norm<T: Real>(
+    inequality: &Inequality<T>,
+    u: &[T],
+    jump_multipliers: &[T],
+) -> f64 {
+    let mut r = vec![0.0; inequality.size()];
+    residual_and_mismatch(inequality, u, jump_multipliers, &mut r);
+    let diagonal = |i: usize| positive_diagonal(inequality, i);
+    Scales::of(inequality, u, &r, jump_multipliers, &diagonal, 1.0).energy_norm
+}
+
 /// A power of two near the largest of all values, admissible values and Jacobi corrections; one if all
 /// are zero or one is not finite.
 fn unit<T: Real>(bounds: &[Bound<T>], u: &[T], r: &[f64], diagonal: &[f64]) -> f64 {

@@ -47,6 +47,7 @@ mod validation;
 
 pub use active_set::{ActiveSet, Globalisation, Preconditioned};
 pub use by_name::{SOLVERS, SolverOptions, solver_by_name};
+pub(crate) use certificate::energy_norm;
 pub use certificate::{
     Certificate, certify, certify_with_jump_multipliers, contact_of, count_active,
 };

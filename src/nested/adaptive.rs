@@ -4,122 +4,22 @@ use std::fmt;
 use std::time::Instant;
 
 use super::adaptive_meshes::AdaptiveMeshes;
+use super::adaptivity::{Adaptivity, Stop};
 use super::iteration::{NestedIteration, Phase, unknowns};
 use super::solved::Solved;
 use crate::error::Error;
+use crate::error_bound::{ErrorBound, Unproven};
 use crate::instances::compiled;
 use crate::mesh::MeshError;
 use crate::problem::Problem;
 use crate::real::Real;
 use crate::scheme::AnyScheme;
 
-/// How far meshes follow an error bound.
-///
-/// ```
-/// use unilateral::prelude::*;
-/// let to_one_percent = Adaptivity::to_bound(1e-2).unknowns(100_000);
-/// assert_eq!(to_one_percent.theta, 0.5);
-/// ```
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[non_exhaustive]
-pub struct Adaptivity {
-    /// The share of the square of the bound that the marked cells have, above zero and at most one.
-    pub theta: f64,
-    /// The bound, absolute and in the energy norm, that ends the refinement.
-    pub goal: Option<f64>,
-    /// Most refinements.
-    pub steps: usize,
-    /// Most unknowns; the first mesh may have more.
-    pub unknowns: usize,
-}
+/// The first tolerance of a solve, divided by the share of the bound on the mesh before.
+const FIRST_TOLERANCE: f64 = 0.1;
 
-impl Default for Adaptivity {
-    /// A share of a half, no goal, at most 20 refinements and a million unknowns.
-    fn default() -> Self {
-        Self { theta: 0.5, goal: None, steps: 20, unknowns: 1_000_000 }
-    }
-}
-
-impl Adaptivity {
-    /// Refinement until the bound is at most `goal`.
-    #[must_use]
-    pub fn to_bound(goal: f64) -> Self {
-        Self::default().goal(goal)
-    }
-    /// Sets the bound that ends the refinement.
-    #[must_use]
-    pub fn goal(self, goal: f64) -> Self {
-        Self { goal: Some(goal), ..self }
-    }
-    /// Sets the share of the marked cells.
-    #[must_use]
-    pub fn theta(self, theta: f64) -> Self {
-        Self { theta, ..self }
-    }
-    /// Sets the largest number of refinements.
-    #[must_use]
-    pub fn steps(self, steps: usize) -> Self {
-        Self { steps, ..self }
-    }
-    /// Sets the largest number of unknowns.
-    #[must_use]
-    pub fn unknowns(self, unknowns: usize) -> Self {
-        Self { unknowns, ..self }
-    }
-    /// Checks share and goal.
-    ///
-    /// # Errors
-    /// [`Error::Parameter`].
-    pub fn check(&self) -> Result<(), Error> {
-        let refuse = |parameter, value: f64, allowed: &str| {
-            let (value, allowed) = (format!("{value:?}"), allowed.to_owned());
-            Err(Error::Parameter { parameter, value, allowed })
-        };
-        if !(self.theta > 0.0 && self.theta <= 1.0) {
-            return refuse("theta", self.theta, "the share of marked cells is in (0, 1]");
-        }
-        match self.goal {
-            Some(goal) if !(goal > 0.0 && goal.is_finite()) => {
-                refuse("goal", goal, "a bound is positive and finite")
-            }
-            _ => Ok(()),
-        }
-    }
-}
-
-/// Why no finer mesh follows.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[non_exhaustive]
-pub enum Stop {
-    /// The bound is at most the goal.
-    Goal,
-    /// As many refinements as allowed.
-    Steps,
-    /// The next mesh would have more unknowns than allowed.
-    Unknowns,
-    /// No cell has a share of the bound: it is zero, or what the solver left.
-    Exact,
-    /// The solve did not converge.
-    NotConverged,
-    /// The solution has no bound.
-    NoBound,
-    /// Marked cells are at the size of rounding, or more than can be numbered.
-    Rounding,
-}
-
-impl fmt::Display for Stop {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            Self::Goal => "the bound is at most the goal",
-            Self::Steps => "the number of refinements is the largest allowed",
-            Self::Unknowns => "the next mesh has more unknowns than allowed",
-            Self::Exact => "no cell has a share of the bound",
-            Self::NotConverged => "the solve did not converge",
-            Self::NoBound => "there is no bound",
-            Self::Rounding => "marked cells are at the size of rounding",
-        })
-    }
-}
+/// The factor by which the next tolerance is below the one that the measured error asks for.
+const REDUCTION: f64 = 0.5;
 
 /// A step of adaptive refinement: the solution on one mesh of the sequence.
 #[derive(Debug)]
@@ -131,6 +31,9 @@ pub struct AdaptiveStep<'a, T: Real, const D: usize> {
     pub solved: Solved<'a, T, D>,
     /// Why this step is the last one; none if another follows.
     pub stop: Option<Stop>,
+    /// The share that the solver's error may have in the square of the bound; none where the solution meets the
+    /// ordinary limits.
+    pub tolerance: Option<f64>,
     /// Seconds of assembly, of solves with their starts, and of bounds with marking, of this step and all
     /// before.
     pub(crate) assemble_seconds: f64,
@@ -157,6 +60,8 @@ pub struct AdaptiveIteration<'a, T: Real, const D: usize> {
     meshes: &'a AdaptiveMeshes<T, D>,
     scheme: &'a dyn AnyScheme<T, D>,
     adaptivity: Adaptivity,
+    /// What the last step says of the next one.
+    last: Option<LastStep>,
     /// The position of the next step; none after the last one.
     next: Option<usize>,
     assemble_seconds: f64,
@@ -172,6 +77,22 @@ impl<T: Real, const D: usize> fmt::Debug for AdaptiveIteration<'_, T, D> {
             .field("next", &self.next)
             .finish_non_exhaustive()
     }
+}
+
+/// A finished step, from which the next one is predicted.
+#[derive(Debug)]
+struct LastStep {
+    unknowns: usize,
+    /// The number of unknowns divided by that of the step before.
+    growth: f64,
+    /// The bound divided by that of the step before.
+    decrease: f64,
+    /// The bound.
+    total: f64,
+    /// The bound divided by the energy norm.
+    relative_bound: f64,
+    /// The tolerance that was small enough, divided by the relative bound.
+    tolerance_to_bound: f64,
 }
 
 /// Solves a problem with a scheme on meshes that follow the error bound, from the finest mesh of the sequence
@@ -235,6 +156,7 @@ impl<'a, T: Real, const D: usize> AdaptiveIteration<'a, T, D> {
             meshes,
             scheme,
             adaptivity,
+            last: None,
             next: Some(meshes.n_meshes() - 1),
             assemble_seconds: 0.0,
             solve_seconds: 0.0,
@@ -243,25 +165,29 @@ impl<'a, T: Real, const D: usize> AdaptiveIteration<'a, T, D> {
     }
 
     fn step(&mut self, number: usize) -> Result<AdaptiveStep<'a, T, D>, Error> {
-        let mut solved = self.nested.solve_on(number, self.scheme)?;
-        self.nested.enter(Phase::Bound);
+        let mut tolerance = self.tolerance(number);
+        let mut solved = self.nested.solve_scheme(number, self.scheme, tolerance)?;
         self.assemble_seconds += solved.assemble_seconds;
-        self.solve_seconds += solved.solve_seconds;
-        let clock = Instant::now();
-        let bound = solved.bound().ok();
-        let marked = bound.as_ref().map(|bound| bound.marked(self.adaptivity.theta));
-        self.bound_seconds += clock.elapsed().as_secs_f64();
-        let goal = self.adaptivity.goal.unwrap_or(f64::NEG_INFINITY);
-        let stop = match (&bound, marked) {
-            _ if !solved.converged() => Some(Stop::NotConverged),
-            (Some(bound), Some(marked)) => match bound.total {
-                total if total <= goal => Some(Stop::Goal),
-                _ if marked.is_empty() => Some(Stop::Exact),
-                _ if number >= self.adaptivity.steps => Some(Stop::Steps),
-                _ => self.refine(&marked)?,
-            },
-            _ => Some(Stop::NoBound),
+        let (bound, stop) = loop {
+            let bound = self.bound(&solved);
+            let excess = self.adaptivity.tolerance.map_or(0.0, |allowed| {
+                bound.as_ref().map_or(0.0, |bound| share_of_solver(&solved, bound)) / allowed
+            });
+            let is_too_inexact = solved.is_inexact() && excess > 1.0;
+            let stop = match is_too_inexact {
+                true => None,
+                false => self.stop(number, &solved, bound.as_ref())?,
+            };
+            if tolerance.is_none() || !is_too_inexact && stop.is_none() {
+                break (bound, stop);
+            }
+            tolerance = tolerance.filter(|_| stop.is_none()).map(|t| REDUCTION * t / excess);
+            solved = self.nested.continued(solved, number, self.scheme, tolerance)?;
         };
+        if let Some(bound) = &bound {
+            self.last = Some(self.finished(&solved, bound, tolerance));
+        }
+        self.solve_seconds += solved.solve_seconds;
         if let (Some(stop), Some(goal), Some(bound)) = (stop, self.adaptivity.goal, &bound)
             && bound.total > goal
         {
@@ -272,11 +198,82 @@ impl<'a, T: Real, const D: usize> AdaptiveIteration<'a, T, D> {
         Ok(AdaptiveStep {
             number,
             stop,
+            tolerance: self.adaptivity.tolerance.filter(|_| solved.is_inexact()),
             assemble_seconds: self.assemble_seconds,
             solve_seconds: self.solve_seconds + solved.start_seconds,
             bound_seconds: self.bound_seconds,
             solved,
         })
+    }
+
+    /// The tolerance of the first solve on a mesh: none for the first mesh and where this one is likely to be
+    /// the last.
+    fn tolerance(&self, number: usize) -> Option<f64> {
+        let Adaptivity { goal, steps, unknowns, tolerance, .. } = self.adaptivity;
+        let last = tolerance.and(self.last.as_ref())?;
+        let is_last = number >= steps
+            || last.unknowns as f64 * last.growth * last.growth > unknowns as f64
+            || goal.is_some_and(|goal| last.total * last.decrease <= goal);
+        (!is_last).then_some(last.relative_bound * last.tolerance_to_bound)
+    }
+
+    /// What a step with its last tolerance says of the next one.
+    fn finished(
+        &self,
+        solved: &Solved<'a, T, D>,
+        bound: &ErrorBound,
+        tolerance: Option<f64>,
+    ) -> LastStep {
+        let last = self.last.as_ref();
+        let (unknowns, total) = (solved.values().len(), bound.total);
+        let relative_bound = total / solved.energy_norm();
+        let allowed = self.adaptivity.tolerance.unwrap_or(0.0);
+        let tolerance_to_bound = match (tolerance.filter(|_| solved.is_inexact()), last) {
+            (Some(tolerance), _) => tolerance / relative_bound,
+            (None, Some(last)) => last.tolerance_to_bound,
+            (None, None) => FIRST_TOLERANCE * allowed,
+        };
+        LastStep {
+            unknowns,
+            growth: last.map_or(1.0, |last| unknowns as f64 / last.unknowns as f64),
+            decrease: last.map_or(1.0, |last| total / last.total),
+            total,
+            relative_bound,
+            tolerance_to_bound,
+        }
+    }
+
+    /// The bound of a solution.
+    fn bound(&mut self, solved: &Solved<'a, T, D>) -> Option<ErrorBound> {
+        self.nested.enter(Phase::Bound);
+        let clock = Instant::now();
+        let bound = solved.bound().ok();
+        self.bound_seconds += clock.elapsed().as_secs_f64();
+        bound
+    }
+
+    /// Adds the next mesh, or says why this one is the last.
+    fn stop(
+        &mut self,
+        number: usize,
+        solved: &Solved<'a, T, D>,
+        bound: Option<&ErrorBound>,
+    ) -> Result<Option<Stop>, Error> {
+        if !solved.converged() {
+            return Ok(Some(Stop::NotConverged));
+        }
+        let Some(bound) = bound else { return Ok(Some(Stop::NoBound)) };
+        if self.adaptivity.goal.is_some_and(|goal| bound.total <= goal) {
+            return Ok(Some(Stop::Goal));
+        }
+        let clock = Instant::now();
+        let marked = bound.marked(self.adaptivity.theta);
+        self.bound_seconds += clock.elapsed().as_secs_f64();
+        match marked.is_empty() {
+            true => Ok(Some(Stop::Exact)),
+            false if number >= self.adaptivity.steps => Ok(Some(Stop::Steps)),
+            false => self.refine(&marked),
+        }
     }
 
     /// Adds the next mesh, or says why there is none.
@@ -294,6 +291,16 @@ impl<'a, T: Real, const D: usize> AdaptiveIteration<'a, T, D> {
         }
         self.meshes.add(next).map(|()| None)
     }
+}
+
+/// The share of the solver's error in the square of a bound: the bound's own and, where that is not proven, twice
+/// the estimate of the solver divided by the bound.
+fn share_of_solver<T: Real, const D: usize>(solved: &Solved<'_, T, D>, bound: &ErrorBound) -> f64 {
+    let estimate = match bound.unproven.contains(&Unproven::Algebra) {
+        true => solved.certificate().algebraic_bound.unwrap_or(0.0) * solved.energy_norm(),
+        false => 0.0,
+    };
+    bound.parts.algebra.max(2.0 * estimate / bound.total)
 }
 
 impl<'a, T: Real, const D: usize> Iterator for AdaptiveIteration<'a, T, D> {

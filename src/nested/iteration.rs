@@ -241,7 +241,7 @@ impl<'a, T: Real, const D: usize> NestedIteration<'a, T, D> {
                 usize,
                 &'s dyn AnyScheme<T, D>,
             ) -> Result<Solved<'p, T, D>, Error>
-                = |nested, position, scheme| nested.solve_scheme(position, scheme)
+                = |nested, position, scheme| nested.solve_scheme(position, scheme, None)
         )(self, position, scheme)
     }
 
@@ -292,7 +292,8 @@ impl<'a, T: Real, const D: usize> NestedIteration<'a, T, D> {
         let values: Vec<T> = values.iter().map(|&x| T::lit(x)).collect();
         let contact = contact_of(&inequality, &values);
         let solution = Solution::new(values, contact, Outcome::Converged).linear_solver("none");
-        let solved = Solved::new(discretisation, inequality, solution, self.hierarchy(position));
+        let hierarchy = self.hierarchy(position);
+        let solved = Solved::new(discretisation, inequality, solution, hierarchy, None);
         Ok(solved.found_elsewhere())
     }
 
@@ -315,10 +316,12 @@ impl<'a, T: Real, const D: usize> NestedIteration<'a, T, D> {
         }
     }
 
-    fn solve_scheme(
+    /// The solution on a mesh, to a tolerance on the relative error in the energy norm if there is one.
+    pub(super) fn solve_scheme(
         &mut self,
         position: usize,
         scheme: &dyn AnyScheme<T, D>,
+        energy_tolerance: Option<f64>,
     ) -> Result<Solved<'a, T, D>, Error> {
         (self.observer)(Phase::Start);
         let start = self.start(position, scheme)?;
@@ -335,6 +338,7 @@ impl<'a, T: Real, const D: usize> NestedIteration<'a, T, D> {
             assemble_seconds = assemble_seconds.min(clock.elapsed().as_secs_f64());
         }
         let mut guess = InitialGuess::default().steps(self.p1.steps.clone());
+        guess.energy_tolerance = energy_tolerance;
         if let Some(start) = &start {
             // a start without contact stays cold: the solver must detect a body that only contact holds
             if start.contact.iter().any(|&c| c != Contact::Inactive) {
@@ -369,7 +373,9 @@ impl<'a, T: Real, const D: usize> NestedIteration<'a, T, D> {
             warnings.extend(advice_on_bounds(self.p1.problem, scheme));
         }
         let hierarchy = self.hierarchy(position);
-        let mut solved = Solved::new(discretisation, inequality, solution, hierarchy);
+        let mut solved =
+            Solved::new(discretisation, inequality, solution, hierarchy, energy_tolerance);
+        solved.adaptive = self.adaptive_meshes().map(|meshes| (meshes, position));
         solved.warnings = warnings;
         solved.mesh_seconds = self.p1.meshes.seconds(position);
         (solved.assemble_seconds, solved.solve_seconds) = (assemble_seconds, solve_seconds);
@@ -384,6 +390,32 @@ impl<'a, T: Real, const D: usize> NestedIteration<'a, T, D> {
             solved.coarser_levels = start.levels_solved.saturating_sub(same_mesh);
             solved.start_cycles = start.start_cycles;
             solved.start_seconds = start.seconds;
+        }
+        Ok(solved)
+    }
+
+    /// The solution of a scheme on a mesh continued from a less accurate one, to a smaller tolerance or to
+    /// the ordinary limits. Iterations and seconds are those of both.
+    pub(super) fn continued(
+        &mut self,
+        solved: Solved<'a, T, D>,
+        position: usize,
+        scheme: &dyn AnyScheme<T, D>,
+        energy_tolerance: Option<f64>,
+    ) -> Result<Solved<'a, T, D>, Error> {
+        if !solved.has_iterate() {
+            return self.solve_scheme(position, scheme, energy_tolerance);
+        }
+        let start = self.start(position, scheme)?;
+        let mut guess = InitialGuess::default().steps(self.p1.steps.clone());
+        guess.energy_tolerance = energy_tolerance;
+        guess.values = Some(solved.values().to_vec());
+        if let Some(start) = &start {
+            guess.coarse_spaces = start.coarse_spaces.clone();
+        }
+        let solved = solved.continued(energy_tolerance, |inequality| self.run(inequality, &guess));
+        if scheme.is_conforming_linear(solved.mesh()) {
+            self.p1.keep_solved(position, start.as_deref(), &solved);
         }
         Ok(solved)
     }

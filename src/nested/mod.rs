@@ -6,14 +6,16 @@
 
 mod adaptive;
 mod adaptive_meshes;
+mod adaptivity;
 mod hierarchy;
 mod iteration;
 mod meshes;
 mod p1;
 mod solved;
 
-pub use adaptive::{AdaptiveIteration, AdaptiveStep, Adaptivity, Stop, adapt};
+pub use adaptive::{AdaptiveIteration, AdaptiveStep, adapt};
 pub use adaptive_meshes::AdaptiveMeshes;
+pub use adaptivity::{Adaptivity, Stop};
 pub(crate) use hierarchy::Coarsest;
 pub use hierarchy::Hierarchy;
 pub use iteration::{NestedIteration, Phase, solve};

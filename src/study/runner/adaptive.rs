@@ -152,5 +152,6 @@ fn adaptive_row<T: Real, const D: usize>(
         total: step.seconds(),
         ..row.seconds
     };
-    Row { theta: Some(theta), seconds, expected_order: ExpectedOrders::default(), ..row }
+    let (theta, tolerance) = (Some(theta), step.tolerance);
+    Row { theta, tolerance, seconds, expected_order: ExpectedOrders::default(), ..row }
 }
