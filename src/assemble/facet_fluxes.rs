@@ -1,12 +1,16 @@
 //! Fluxes through facets that the form of a broken space balances with the load.
 
+use std::ops::Range;
+
 use super::Discretisation;
 use super::load::FacetMoments;
 use super::owned_rows::lifted::{LiftTable, Lifting, MAX_MOMENTS};
+use super::space::tables::FacetTable;
 use crate::element::MAX_BASIS;
 use crate::error::Error;
 use crate::facet::FacetKind;
 use crate::mesh::{BoundaryPart, Neighbour};
+use crate::parallel::cells;
 use crate::real::Real;
 
 /// The sum of coefficients times values.
@@ -14,11 +18,15 @@ fn product<T: Real>(coefficients: &[f64; MAX_BASIS], values: &[T]) -> f64 {
     coefficients.iter().zip(values).map(|(c, v)| c * v.to_f64()).sum()
 }
 
+/// The two cells of a facet that carries the form: cell and number of the facet in it.
+type Sides = ((usize, usize), Option<(usize, usize)>);
+
 impl<T: Real, const D: usize> Discretisation<'_, T, D> {
-    /// By facet of each cell the integral of a flux `q.n` out of the cell: minus the facet form of `u`
-    /// tested with the function that is one in the cell and zero elsewhere. Both cells of a facet have
-    /// the same flux with opposite signs, and the sum over the facets of a cell is minus the integral of
-    /// load and multiplier. Facets without a form have zero.
+    /// By facet of each cell the first `kept` moments of a flux `q.n` out of the cell, times the measure of
+    /// the facet: minus the facet form of `u` tested with the function in the cell that has this moment on
+    /// the facet, zero elsewhere, without its flux. Both cells of a facet have the same moments with
+    /// opposite signs, and the sum of the first ones over the facets of a cell is minus the integral of load
+    /// and multiplier. Facets without a form have zeros.
     ///
     /// Of a form that is a penalty alone, the given multipliers are the products of weights and jumps:
     /// from differences of values they would lose their digits.
@@ -29,108 +37,173 @@ impl<T: Real, const D: usize> Discretisation<'_, T, D> {
         &self,
         u: &[T],
         jump_multipliers: Option<&[f64]>,
+        kept: usize,
     ) -> Result<Vec<f64>, Error> {
         let (space, form) = (&self.space, self.form());
-        let (metrics, weights) = self.prepared();
         let degree = form.moments(space.basis_degree);
         let table = space.facet_table(degree);
-        let n_moments = table.degrees.len();
-        let moments = FacetMoments::new(D, degree, &space.facet_rule);
-        let neighbours = space.coupled_neighbours();
-        let (n, n_cells) = (space.per_cell(), space.mesh.n_cells());
-        let place = |cell: usize, local: usize| cell * (D + 1) + local;
-        let mut fluxes = vec![0.0; n_cells * (D + 1)];
+        let data = FacetMoments::new(D, degree, &space.facet_rule);
         let n_lifted = if form.is_lifted() { MAX_MOMENTS } else { 0 };
-        let mut jumps = vec![T::lit(0.0); fluxes.len() * n_lifted];
-        let mut multipliers = jump_multipliers.map(|m| m.chunks_exact(n_moments));
-        for cell in 0..n_cells {
-            let own = space.local_values(cell, u);
-            for local in 0..=D {
-                let (kind, across) = match neighbours.across(cell, local) {
-                    Neighbour::Cell { cell: other, local } if cell < other as usize => {
-                        (FacetKind::Interior, Some((other as usize, local as usize)))
-                    }
-                    Neighbour::Boundary(BoundaryPart::Dirichlet) if !space.pins => {
-                        (FacetKind::Dirichlet, None)
-                    }
-                    _ => continue,
-                };
-                let multiplier = multipliers.as_mut().and_then(Iterator::next);
-                let weight = weights.at::<D>((cell, local), true, kind);
-                let other = across.map(|(other, local)| (space.local_values(other, u), local));
-                let datum = match across {
-                    Some(_) => Vec::new(),
-                    None => {
-                        let group = space.mesh.boundary_group(cell, local).unwrap_or(0);
-                        space.dirichlet_moments(&moments, (cell, local), group)?
-                    }
-                };
-                let jump = |k: usize| {
-                    let there = match &other {
-                        Some((values, local)) => product(values, &table.on(*local)[k].values),
-                        None => datum[k],
-                    };
-                    product(&own, &table.on(local)[k].values) - there
-                };
-                let metric = metrics.at::<D>(cell);
-                let measure = metric.measures[local];
-                let penalty = weight.penalty * T::lit(form.moment_weight(0));
-                let coefficients = weight.coefficients;
-                let mut tested = match multiplier {
-                    Some(multiplier) => multiplier[0],
-                    None => (measure * coefficients.jump_jump.at(penalty)).to_f64() * jump(0),
-                };
-                if form.uses_flux() {
-                    let derivatives = |(cell, local): (usize, usize), across, weight: T| {
-                        let metric = metrics.at::<D>(cell);
-                        let side = space.side(cell, local, &metric);
-                        match space.flux_derivatives((cell, local), across, weight, 0) {
-                            Some(weighted) => side.normal_derivatives(&weighted, n, T::lit(1.0)),
-                            None => {
-                                let basis = &table.on(local)[0];
-                                side.normal_derivatives(&basis.derivatives, n, weight)
-                            }
-                        }
-                    };
-                    let mut flux =
-                        product(&own, &derivatives((cell, local), across, weight.own_flux_weight));
-                    if let (Some(there), Some((values, _))) = (across, &other) {
-                        let here = Some((cell, local));
-                        flux -=
-                            product(values, &derivatives(there, here, weight.other_flux_weight));
-                    }
-                    tested += coefficients.jump_flux.at(penalty).to_f64() * flux;
+        let n_cells = space.mesh.n_cells();
+        let stride = kept + n_lifted;
+        let per_cell = (D + 1) * stride;
+        let starts = jump_multipliers.map(|_| self.facet_starts());
+        // by facet of the cell here: fluxes, then the jumps that are lifted
+        let mut here = vec![0.0; n_cells * per_cell];
+        cells::for_each(n_cells, &|c| c * per_cell, &mut here, &|cells, out| {
+            for (cell, out) in cells.zip(out.chunks_exact_mut(per_cell)) {
+                let mut facet = starts.as_ref().map(|starts| starts[cell] as usize);
+                for (local, out) in out.chunks_exact_mut(stride).enumerate() {
+                    let Some(sides) = self.sides((cell, local)) else { continue };
+                    let n = table.degrees.len();
+                    let multipliers = jump_multipliers.zip(facet).map(|(m, f)| &m[f * n..][..n]);
+                    self.moments_on_facet(u, sides, (&table, &data), multipliers, kept, out)?;
+                    facet = facet.map(|facet| facet + 1);
                 }
-                fluxes[place(cell, local)] = -tested;
-                if let Some((other, other_local)) = across {
-                    fluxes[place(other, other_local)] = tested;
-                }
-                for k in 0..n_lifted.min(n_moments) {
-                    let jump = T::lit(jump(k));
-                    jumps[place(cell, local) * n_lifted + k] = jump;
-                    if let Some((other, other_local)) = across {
-                        jumps[place(other, other_local) * n_lifted + k] = -jump;
-                    }
-                }
+            }
+            Ok::<(), Error>(())
+        })?;
+        let place = |(cell, local): (usize, usize)| cell * (D + 1) + local;
+        let mut fluxes = vec![0.0; n_cells * (D + 1) * kept];
+        let mut jumps = vec![T::lit(0.0); n_cells * (D + 1) * n_lifted];
+        for (k, of_facet) in here.chunks_exact(stride).enumerate() {
+            let Some((own, across)) = self.sides((k / (D + 1), k % (D + 1))) else { continue };
+            for (side, sign) in [(Some(own), 1.0), (across, -1.0)] {
+                let Some(side) = side.map(place) else { continue };
+                let (moments, lifted) = of_facet.split_at(kept);
+                let to = &mut fluxes[side * kept..][..kept];
+                to.iter_mut().zip(moments).for_each(|(to, from)| *to = sign * from);
+                let to = &mut jumps[side * n_lifted..][..n_lifted];
+                to.iter_mut().zip(lifted).for_each(|(to, &from)| *to = T::lit(sign * from));
             }
         }
         if form.is_lifted() {
-            let table = LiftTable::new(space, form.lift_degree(space.basis_degree));
-            let lifting = Lifting { space, form, metrics, table: &table };
-            for centre in 0..n_cells {
-                let jumps = std::array::from_fn(|local| match local <= D {
-                    true => std::array::from_fn(|k| jumps[place(centre, local) * n_lifted + k]),
-                    false => [T::lit(0.0); MAX_MOMENTS],
-                });
-                let products = lifting.products_with_means(neighbours, centre, &jumps);
-                for (local, &product) in products.iter().enumerate().take(D + 1) {
-                    fluxes[place(centre, local)] -= product;
+            self.add_lifted_fluxes(&jumps, kept, &mut fluxes);
+        }
+        Ok(fluxes)
+    }
+
+    /// The cells of a facet that carries the form, if it is told by the cell here.
+    fn sides(&self, (cell, local): (usize, usize)) -> Option<Sides> {
+        match self.space.coupled_neighbours().across(cell, local) {
+            Neighbour::Cell { cell: other, local: there } if cell < other as usize => {
+                Some(((cell, local), Some((other as usize, usize::from(there)))))
+            }
+            Neighbour::Boundary(BoundaryPart::Dirichlet) if !self.space.pins => {
+                Some(((cell, local), None))
+            }
+            _ => None,
+        }
+    }
+
+    /// By cell, how many facets that carry the form the cells before it tell.
+    fn facet_starts(&self) -> Vec<u32> {
+        let count = |cell| (0..=D).filter(|&local| self.sides((cell, local)).is_some()).count();
+        let mut end = 0;
+        let start = |cell| {
+            end += count(cell) as u32;
+            end - count(cell) as u32
+        };
+        (0..self.space.mesh.n_cells()).map(start).collect()
+    }
+
+    /// The moments of the flux through a facet out of the cell here, after them those of the jump.
+    fn moments_on_facet(
+        &self,
+        u: &[T],
+        ((cell, local), across): Sides,
+        (table, data): (&FacetTable<T>, &FacetMoments<'_>),
+        multipliers: Option<&[f64]>,
+        kept: usize,
+        out: &mut [f64],
+    ) -> Result<(), Error> {
+        let (space, form) = (&self.space, self.form());
+        let (metrics, weights) = self.prepared();
+        let n = space.per_cell();
+        let kind = if across.is_some() { FacetKind::Interior } else { FacetKind::Dirichlet };
+        let weight = weights.at::<D>((cell, local), true, kind);
+        let own = space.local_values(cell, u);
+        let other = across.map(|(other, local)| (space.local_values(other, u), local));
+        let datum = match across {
+            Some(_) => Vec::new(),
+            None => {
+                let group = space.mesh.boundary_group(cell, local).unwrap_or(0);
+                space.dirichlet_moments(data, (cell, local), group)?
+            }
+        };
+        let jump = |k: usize| {
+            let there = match &other {
+                Some((values, local)) => product(values, &table.on(*local)[k].values),
+                None => datum[k],
+            };
+            product(&own, &table.on(local)[k].values) - there
+        };
+        let measure = metrics.at::<D>(cell).measures[local];
+        let (fluxes, lifted) = out.split_at_mut(kept);
+        for (k, out) in fluxes.iter_mut().enumerate().take(table.degrees.len()) {
+            let penalty = weight.penalty * T::lit(form.moment_weight(table.degrees[k]));
+            let coefficients = weight.coefficients;
+            let mut tested = match multipliers {
+                Some(multipliers) => multipliers[k],
+                None => (measure * coefficients.jump_jump.at(penalty)).to_f64() * jump(k),
+            };
+            if form.uses_flux() {
+                let derivatives = |(cell, local): (usize, usize), across, weight: T| {
+                    let metric = metrics.at::<D>(cell);
+                    let side = space.side(cell, local, &metric);
+                    match space.flux_derivatives((cell, local), across, weight, k) {
+                        Some(weighted) => side.normal_derivatives(&weighted, n, T::lit(1.0)),
+                        None => {
+                            let basis = &table.on(local)[k];
+                            side.normal_derivatives(&basis.derivatives, n, weight)
+                        }
+                    }
+                };
+                let mut flux =
+                    product(&own, &derivatives((cell, local), across, weight.own_flux_weight));
+                if let (Some(there), Some((values, _))) = (across, &other) {
+                    let here = Some((cell, local));
+                    flux -= product(values, &derivatives(there, here, weight.other_flux_weight));
+                }
+                tested += coefficients.jump_flux.at(penalty).to_f64() * flux;
+            }
+            *out = -tested;
+        }
+        for (k, out) in lifted.iter_mut().enumerate().take(table.degrees.len()) {
+            *out = jump(k);
+        }
+        Ok(())
+    }
+
+    /// Adds what the products of lifts tell of the fluxes, from the jumps as each cell sees them.
+    fn add_lifted_fluxes(&self, jumps: &[T], kept: usize, fluxes: &mut [f64]) {
+        let (space, form) = (&self.space, self.form());
+        let (metrics, _) = self.prepared();
+        let neighbours = space.coupled_neighbours();
+        let table = LiftTable::new(space, form.lift_degree(space.basis_degree));
+        let lifting = Lifting { space, form, metrics, table: &table };
+        let products = cells::map(space.mesh.n_cells(), &|centres: Range<usize>| {
+            let of_centre = |centre: usize| {
+                let jump = |local: usize, k: usize| match local <= D {
+                    true => jumps[(centre * (D + 1) + local) * MAX_MOMENTS + k],
+                    false => T::lit(0.0),
+                };
+                let jumps =
+                    std::array::from_fn(|local| std::array::from_fn(|k| jump(local, k)));
+                lifting.products_with_moments(neighbours, centre, &jumps, kept)
+            };
+            centres.map(of_centre).collect::<Vec<_>>()
+        });
+        for (centre, products) in products.iter().flatten().enumerate() {
+            for (local, products) in products.iter().enumerate().take(D + 1) {
+                for (k, &product) in products.iter().enumerate().take(kept) {
+                    fluxes[(centre * (D + 1) + local) * kept + k] -= product;
                     if let Neighbour::Cell { cell, local } = neighbours.across(centre, local) {
-                        fluxes[place(cell as usize, local as usize)] += product;
+                        let place = cell as usize * (D + 1) + usize::from(local);
+                        fluxes[place * kept + k] += product;
                     }
                 }
             }
         }
-        Ok(fluxes)
     }
 }

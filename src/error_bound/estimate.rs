@@ -136,7 +136,8 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         coarser: &[CoarserCells<'_, T, D>],
     ) -> Result<ErrorBound, NoBound> {
         let stated = self.problem.data_degree.unwrap_or(0);
-        let table = self.cell_table(Rule::new(D, self.cell_degree.max(2 * stated + 2)));
+        let degree = 2 * (stated + pair.degree);
+        let table = self.cell_table(Rule::new(D, self.cell_degree.max(degree)));
         let has_level = self.data.source.all().any(|f| f.level().is_some());
         let cut = has_level.then(|| CutRule::new(D, self.cell_degree));
         let boundary = self.boundary_terms(pair)?;
@@ -186,12 +187,12 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
                 algebra: share((flux_square - with_oscillation).max(0.0)),
             },
             cells: terms.iter().map(of_cell).collect(),
-            unproven: self.unproven_terms(is_proven),
+            unproven: self.unproven_terms(pair, is_proven),
         })
     }
 
     /// The terms that are not proven; the argument says whether the term of the solver is.
-    fn unproven_terms(&self, is_algebra_proven: bool) -> Vec<Unproven> {
+    fn unproven_terms(&self, pair: &PrimalDualPair, is_algebra_proven: bool) -> Vec<Unproven> {
         let (data, stated) = (&self.data, self.problem.data_degree);
         let is_constant = |data: &DataByGroup<'_, D>| data.all().all(|f| f.constant().is_some());
         let is_below = |data: &DataByGroup<'_, D>, degree: usize| {
@@ -207,33 +208,38 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         let is_inexact = has_fluxes
             || !is_below(&data.coefficient, 0)
             || integrands.iter().any(|data| !is_below(data, usize::MAX));
-        let is_curved = [&data.lower, &data.upper, &data.gap].iter().any(|d| !is_below(d, 1));
+        let obstacles = [&data.lower, &data.upper, &data.gap];
+        let is_curved = obstacles.iter().any(|d| !is_below(d, pair.degree));
+        // in space a quadratic with the data on two facets of a cell may leave the obstacle inside
+        let may_leave = D == 3
+            && pair.degree > 1
+            && obstacles.iter().any(|d| d.is_given())
+            && !is_below(&data.dirichlet, 1);
         let found = [
             (is_inexact, Unproven::Quadrature),
             (
-                has_data && !(is_below(&data.dirichlet, 1) && self.dirichlet_data_agree()),
+                has_data && !(is_below(&data.dirichlet, pair.degree) && self.takes_dirichlet_data(pair)),
                 Unproven::Boundary,
             ),
-            (is_curved, Unproven::Obstacle),
+            (is_curved || may_leave, Unproven::Obstacle),
             (!is_algebra_proven, Unproven::Algebra),
         ];
         found.into_iter().filter(|(is_found, _)| *is_found).map(|(_, term)| term).collect()
     }
 
-    /// Whether the data of all Dirichlet facets at a vertex have one value there: else no function with a
-    /// square-integrable gradient takes the data, and the admissible function misses one datum on a whole facet.
-    fn dirichlet_data_agree(&self) -> bool {
-        let groups = self.dirichlet_groups();
+    /// Whether the function of a pair has the data of all Dirichlet facets at its nodes on them: where data of
+    /// two facets differ at a common node no function with a square-integrable gradient takes both.
+    fn takes_dirichlet_data(&self, pair: &PrimalDualPair) -> bool {
         self.grouped_facets_of(BoundaryPart::Dirichlet).all(|((cell, local), group)| {
-            self.mesh.facet_vertices(cell, local).all(|v| {
-                let chosen = groups[v as usize].unwrap_or(group);
-                if chosen == group {
-                    return true;
-                }
-                let x = point_f64(&self.mesh.vertices()[v as usize]);
-                let [own, other] = [group, chosen].map(|group| self.dirichlet_at(group, &x));
-                (own - other).abs() <= AGREEMENT * own.abs().max(other.abs())
-            })
+            self.pair_nodes(pair, cell).filter(|(ends, _)| !ends.contains(&local)).all(
+                |(ends, node)| {
+                    let [x, y] = ends.map(|k| self.mesh.cell(cell)[k] as usize);
+                    let [x, y] = [x, y].map(|v| point_f64(&self.mesh.vertices()[v]));
+                    let datum = self.dirichlet_at(group, &((x + y) * 0.5));
+                    let value = pair.function[node];
+                    (datum - value).abs() <= AGREEMENT * datum.abs().max(value.abs())
+                },
+            )
         })
     }
 

@@ -1,24 +1,98 @@
 //! The admissible function of a discrete solution.
 
+use super::PrimalDualPair;
 use crate::assemble::space::Space;
-use crate::mesh::BoundaryPart;
-use crate::real::{Real, point_f64};
+use crate::assemble::space::tables::BasisAt;
+use crate::element::Node;
+use crate::mesh::{BoundaryPart, Edges, edge_vertices};
+use crate::problem::DatumRef;
+use crate::real::{Point, Real, point_f64};
+
+/// The nodes of the admissible function: the vertices of the mesh and, for quadratics, after them the
+/// midpoints of its edges.
+struct Nodes<'m> {
+    n_vertices: usize,
+    n_edges: usize,
+    /// By cell the numbers of its edges; empty for linears.
+    edges: &'m [u32],
+}
+
+impl Nodes<'_> {
+    /// The edges of a cell that have a node: their two vertices in the cell and the number of the node.
+    fn of_edges(
+        &self,
+        dimension: usize,
+        cell: usize,
+    ) -> impl Iterator<Item = (&'static [usize; 2], usize)> {
+        let pairs = edge_vertices(dimension);
+        let edges = self.edges.get(cell * pairs.len()..).unwrap_or_default();
+        pairs.iter().zip(edges).map(|(pair, &edge)| (pair, self.n_vertices + edge as usize))
+    }
+}
 
 impl<T: Real, const D: usize> Space<'_, T, D> {
-    /// The values of the admissible function at vertices.
-    pub(super) fn admissible_values(&self, u: &[T]) -> Vec<f64> {
+    /// The nodes of the function of a pair in a cell: each is the middle of two vertices of the cell, that of a
+    /// vertex the middle of twice the vertex; and the number of the node.
+    pub(super) fn pair_nodes(
+        &self,
+        pair: &PrimalDualPair,
+        cell: usize,
+    ) -> impl Iterator<Item = ([usize; 2], usize)> {
         let n_vertices = self.mesh.vertices().len();
-        let values = self.vertex_values(u);
-        let mut sums = vec![(0.0, 0.0); n_vertices];
-        let mut bounds = vec![(f64::NEG_INFINITY, f64::INFINITY); n_vertices];
-        for (cell, values) in values.chunks_exact(D + 1).enumerate() {
-            let alpha = self.alpha(cell).to_f64();
+        let nodes = Nodes { n_vertices, n_edges: 0, edges: &pair.edges };
+        let vertices = self.mesh.cell(cell).iter().enumerate();
+        let of_edges: Vec<_> = nodes.of_edges(D, cell).map(|(ends, node)| (*ends, node)).collect();
+        vertices.map(|(k, &v)| ([k; 2], v as usize)).chain(of_edges)
+    }
+
+    /// The admissible function of a discrete function: of degree one or two, without a flux.
+    pub(super) fn admissible_function(&self, u: &[T], degree: usize) -> PrimalDualPair {
+        let (n_edges, edges) = match degree {
+            1 => (0, Vec::new()),
+            _ => {
+                let (edges, numbers) = Edges::with_cell_edges(self.mesh);
+                (edges.len(), numbers)
+            }
+        };
+        let n_vertices = self.mesh.vertices().len();
+        let nodes = Nodes { n_vertices, n_edges, edges: &edges };
+        let mut function = self.means(u, &nodes);
+        self.clip_at_vertices(&mut function[..n_vertices]);
+        if n_edges > 0 {
+            self.clip_at_midpoints(&nodes, &mut function);
+        }
+        PrimalDualPair { degree, function, edges, flux: Vec::new() }
+    }
+
+    /// At each node the mean of the values in the cells around, with the coefficient as weights.
+    fn means(&self, u: &[T], nodes: &Nodes<'_>) -> Vec<f64> {
+        let midpoints = if nodes.n_edges > 0 { edge_vertices(D).len() } else { 0 };
+        let basis: Vec<BasisAt<f64>> = (0..=D)
+            .map(Node::vertex)
+            .chain((0..midpoints).map(Node::midpoint))
+            .map(|node| self.basis_at(&node.centre(D)))
+            .collect();
+        let mut sums = vec![(0.0, 0.0); nodes.n_vertices + nodes.n_edges];
+        for cell in 0..self.mesh.n_cells() {
+            let (alpha, local) = (self.alpha(cell).to_f64(), self.local_values(cell, u));
+            let vertices = self.mesh.cell(cell).iter().map(|&v| v as usize);
+            let all = vertices.chain(nodes.of_edges(D, cell).map(|(_, node)| node));
+            for (node, basis) in all.zip(&basis) {
+                let (sum, weight) = &mut sums[node];
+                *sum += alpha * basis.value(&local);
+                *weight += alpha;
+            }
+        }
+        sums.into_iter().map(|(sum, weight)| sum / weight).collect()
+    }
+
+    /// Sets values at vertices to Dirichlet data, and moves the others into the constraints.
+    fn clip_at_vertices(&self, values: &mut [f64]) {
+        let mut bounds = vec![(f64::NEG_INFINITY, f64::INFINITY); values.len()];
+        for cell in 0..self.mesh.n_cells() {
             let region = self.mesh.region(cell);
             let (lower, upper) = (self.data.lower.of(region), self.data.upper.of(region));
-            for (&v, value) in self.mesh.cell(cell).iter().zip(values) {
-                let (sum, weight) = &mut sums[v as usize];
-                *sum += alpha * value;
-                *weight += alpha;
+            for &v in self.mesh.cell(cell) {
                 let x = point_f64(&self.mesh.vertices()[v as usize]);
                 let (low, high) = &mut bounds[v as usize];
                 *low = lower.map_or(*low, |psi| psi.at(&x).max(*low));
@@ -34,10 +108,68 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
             }
         }
         let groups = self.dirichlet_groups();
-        let value = |(v, (sum, weight)): (usize, (f64, f64))| match groups[v] {
-            Some(group) => self.dirichlet_at(group, &point_f64(&self.mesh.vertices()[v])),
-            None => (sum / weight).min(bounds[v].1).max(bounds[v].0),
-        };
-        sums.into_iter().enumerate().map(value).collect()
+        for (v, value) in values.iter_mut().enumerate() {
+            *value = match groups[v] {
+                Some(group) => self.dirichlet_at(group, &point_f64(&self.mesh.vertices()[v])),
+                None => value.min(bounds[v].1).max(bounds[v].0),
+            };
+        }
     }
+
+    /// The same at midpoints of edges: a quadratic that exceeds an obstacle at the vertices exceeds it
+    /// everywhere if its Bernstein coefficients on the edges, `2 v_m - (v_a + v_b) / 2`, do not lie below
+    /// those of the obstacle.
+    fn clip_at_midpoints(&self, nodes: &Nodes<'_>, values: &mut [f64]) {
+        let (at_vertices, at_midpoints) = values.split_at_mut(nodes.n_vertices);
+        let mut bounds = vec![(f64::NEG_INFINITY, f64::INFINITY); at_midpoints.len()];
+        // what a datum asks of the value at the midpoint of an edge
+        let least = |datum: DatumRef<'_, D>, cell: usize, &[a, b]: &[usize; 2]| {
+            let ends = [a, b].map(|k| self.mesh.cell(cell)[k] as usize);
+            let [x, y] = ends.map(|v| point_f64(&self.mesh.vertices()[v]));
+            let middle = datum.at(&midpoint(&x, &y));
+            let [of_x, of_y] = ends.map(|v| at_vertices[v]);
+            middle + (of_x + of_y - datum.at(&x) - datum.at(&y)) / 4.0
+        };
+        for cell in 0..self.mesh.n_cells() {
+            let region = self.mesh.region(cell);
+            let (lower, upper) = (self.data.lower.of(region), self.data.upper.of(region));
+            if lower.is_none() && upper.is_none() {
+                continue;
+            }
+            for (edge, node) in nodes.of_edges(D, cell) {
+                let (low, high) = &mut bounds[node - nodes.n_vertices];
+                *low = lower.map_or(*low, |psi| least(psi, cell, edge).max(*low));
+                *high = upper.map_or(*high, |psi| least(psi, cell, edge).min(*high));
+            }
+        }
+        let on_facet = |local: usize, edge: &[usize; 2]| !edge.contains(&local);
+        for ((cell, local), group) in self.grouped_facets_of(BoundaryPart::Contact) {
+            let Some(gap) = self.data.gap.of(group) else { continue };
+            for (edge, node) in nodes.of_edges(D, cell).filter(|(e, _)| on_facet(local, e)) {
+                let low = &mut bounds[node - nodes.n_vertices].0;
+                *low = low.max(least(gap, cell, edge));
+            }
+        }
+        for (value, (low, high)) in at_midpoints.iter_mut().zip(bounds) {
+            *value = value.min(high).max(low);
+        }
+        let mut ranks = vec![usize::MAX; at_midpoints.len()];
+        for ((cell, local), group) in self.grouped_facets_of(BoundaryPart::Dirichlet) {
+            for (&[a, b], node) in nodes.of_edges(D, cell).filter(|(e, _)| on_facet(local, e)) {
+                let edge = node - nodes.n_vertices;
+                let rank = self.data.dirichlet_rank[group];
+                if rank < ranks[edge] {
+                    ranks[edge] = rank;
+                    let [x, y] = [a, b].map(|k| self.mesh.cell(cell)[k] as usize);
+                    let [x, y] = [x, y].map(|v| point_f64(&self.mesh.vertices()[v]));
+                    at_midpoints[edge] = self.dirichlet_at(group, &midpoint(&x, &y));
+                }
+            }
+        }
+    }
+}
+
+/// The middle of two points.
+fn midpoint<const D: usize>(x: &Point<f64, D>, y: &Point<f64, D>) -> Point<f64, D> {
+    (x + y) * 0.5
 }

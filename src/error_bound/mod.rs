@@ -36,6 +36,8 @@ mod function;
 mod marking;
 mod pair;
 mod patches;
+mod quadratic_patches;
+mod quadratics;
 mod terms;
 
 pub(crate) use algebra::CoarserCells;
@@ -52,7 +54,7 @@ use crate::readable_debug::debug_by_display;
 pub enum NoBound {
     /// The element is none of those for which a flux is known.
     #[error(
-        "no flux is known for this element: the bound is for broken, conforming and Crouzeix-Raviart linears"
+        "no flux is known for this element: the bound is for broken and conforming linears and quadratics, and for Crouzeix-Raviart elements"
     )]
     Element,
     /// The solve has no values.

@@ -73,7 +73,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         forces: &[NodeForce],
     ) -> Result<Patches<'_, '_, T, D>, NoBound> {
         let load = self.load_by_cell()?;
-        let (n_cells, n_vertices) = (self.mesh.n_cells(), self.mesh.vertices().len());
+        let n_cells = self.mesh.n_cells();
         let of_cells = cells::map(n_cells, &|cells: Range<usize>| {
             let mut pairs = Vec::with_capacity(cells.len() * (D + 1));
             for cell in cells {
@@ -100,6 +100,14 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
             loads[force.cell * (D + 1) + force.node] -= force.value;
             multipliers[self.dofs.of(force.cell, force.node)] -= force.value;
         }
+        let (corners, starts) = self.corners();
+        let neighbours = Neighbours::new(self.mesh);
+        Ok(Patches { space: self, neighbours, normal, loads, multipliers, corners, starts })
+    }
+
+    /// The cells around each vertex with its number there, and where those of each vertex start.
+    pub(super) fn corners(&self) -> (Vec<(u32, u8)>, Vec<usize>) {
+        let n_vertices = self.mesh.vertices().len();
         let mut starts = vec![0; n_vertices + 1];
         self.mesh.cells().iter().for_each(|&v| starts[v as usize + 1] += 1);
         (0..n_vertices).for_each(|v| starts[v + 1] += starts[v]);
@@ -109,8 +117,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
             corners[next[v as usize]] = ((k / (D + 1)) as u32, (k % (D + 1)) as u8);
             next[v as usize] += 1;
         }
-        let neighbours = Neighbours::new(self.mesh);
-        Ok(Patches { space: self, neighbours, normal, loads, multipliers, corners, starts })
+        (corners, starts)
     }
 }
 
@@ -186,7 +193,7 @@ impl<T: Real, const D: usize> Patches<'_, '_, T, D> {
                 }
             }
         }
-        solve(matrix, multipliers);
+        solve(matrix, multipliers, n);
         // the second cell of a facet takes the rest of the sum: sides agree to rounding
         let mut n_known = 0;
         for of in &*cells {
@@ -290,7 +297,7 @@ impl<T: Real, const D: usize> Patches<'_, '_, T, D> {
 }
 
 /// The facets of a cell at one of its vertices.
-fn around<const D: usize>(vertex: u8) -> impl Iterator<Item = usize> {
+pub(super) fn around<const D: usize>(vertex: u8) -> impl Iterator<Item = usize> {
     (0..=D).filter(move |&local| local != usize::from(vertex))
 }
 
@@ -312,16 +319,19 @@ fn facet_products<const D: usize>(
     })
 }
 
-/// Solves with a symmetric positive semidefinite matrix, given by the upper triangle of its rows, by elimination in
-/// place. Where a pivot is zero but for rounding, the unknown is zero.
-fn solve(a: &mut [f64], x: &mut [f64]) {
+/// Solves with a symmetric matrix, given by the upper triangle of its rows, by elimination in place. It is
+/// positive semidefinite in the first `n_positive` unknowns; what remains for the others once these are
+/// eliminated is negative semidefinite. Where a pivot is zero but for rounding, the unknown is zero.
+pub(super) fn solve(a: &mut [f64], x: &mut [f64], n_positive: usize) {
     let n = x.len();
-    // the lower triangle is free: its first column keeps the diagonal
-    (1..n).for_each(|i| a[i * n] = a[i * n + i]);
     for k in 0..n {
+        if k == 0 || k == n_positive {
+            // the lower triangle is free: its first column keeps the diagonal
+            (k.max(1)..n).for_each(|i| a[i * n] = a[i * n + i].abs());
+        }
         let (above, below) = a.split_at_mut((k + 1) * n);
         let row = &mut above[k * n..];
-        if row[k] <= ZERO_PIVOT * row[0] {
+        if row[k].abs() <= ZERO_PIVOT * row[0].abs() {
             row[k] = 0.0;
             continue;
         }
@@ -336,6 +346,6 @@ fn solve(a: &mut [f64], x: &mut [f64]) {
     }
     for (k, row) in a.chunks_exact(n.max(1)).enumerate().rev() {
         let sum: f64 = row[k + 1..].iter().zip(&x[k + 1..]).map(|(a, x)| a * x).sum();
-        x[k] = if row[k] > 0.0 { (x[k] - sum) / row[k] } else { 0.0 };
+        x[k] = if row[k] != 0.0 { (x[k] - sum) / row[k] } else { 0.0 };
     }
 }

@@ -4,9 +4,9 @@ use std::f64::consts::PI;
 
 use super::{NoBound, PrimalDualPair};
 use crate::assemble::cut_simplices::CutRule;
-use crate::assemble::space::Space;
+use crate::assemble::space::{Place, Space};
 use crate::assemble::space::tables::{BasisAt, CellTable};
-use crate::mesh::BoundaryPart;
+use crate::mesh::{BoundaryPart, edge_vertices};
 use crate::problem::{DataByGroup, DatumRef, Field};
 use crate::quadrature::facet_to_cell;
 use crate::real::{Point, Real, point_f64};
@@ -44,8 +44,12 @@ pub(super) type Visit<'v, const D: usize> =
 pub(super) struct Admissible<'d, const D: usize> {
     /// At the vertices.
     values: [f64; 4],
-    /// The gradient of the interpolant.
+    /// The gradient of the linear interpolant.
     gradient: Point<f64, D>,
+    /// For quadratics by edge four times what the value at the midpoint exceeds that of the interpolant by.
+    excess: Option<[f64; 6]>,
+    /// The gradients of the barycentric coordinates.
+    gradients: [Point<f64, D>; 4],
     /// The obstacles, lower and upper one.
     bounds: [Option<DatumRef<'d, D>>; 2],
     /// The step of difference quotients.
@@ -57,6 +61,12 @@ impl<const D: usize> Admissible<'_, D> {
     pub(super) fn at(&self, point: &[f64; 4], x: &Point<f64, D>) -> (f64, Point<f64, D>) {
         let mut value = self.values.iter().zip(point).map(|(v, b)| v * b).sum();
         let mut gradient = self.gradient;
+        if let Some(excess) = &self.excess {
+            for (&[a, b], excess) in edge_vertices(D).iter().zip(excess) {
+                value += excess * point[a] * point[b];
+                gradient += (self.gradients[b] * point[a] + self.gradients[a] * point[b]) * *excess;
+            }
+        }
         for (bound, sign) in self.bounds.iter().zip([1.0, -1.0]) {
             let Some(bound) = bound else { continue };
             let at = bound.at(x);
@@ -74,10 +84,119 @@ impl<const D: usize> Admissible<'_, D> {
     }
 }
 
+/// The flux in a cell: `q = sum_j lambda_j (s_j x - o_j) / (D |K|)` with one term, without `lambda_j`, where
+/// the density is constant on facets.
+struct CellFlux<const D: usize> {
+    /// Number of terms: one, or that of the vertices.
+    n: usize,
+    /// `sum_F c_Fj`.
+    sums: [f64; 4],
+    /// `sum_F c_Fj a_F`.
+    origins: [Point<f64, D>; 4],
+    /// `1 / (D |K|)`.
+    per_volume: f64,
+    /// `D |K| div q`: at the vertices; constant for one term.
+    divergence: [f64; 4],
+}
+
+impl<const D: usize> CellFlux<D> {
+    /// The factors of the terms at a point.
+    fn shares<'p>(&self, point: &'p [f64; 4]) -> &'p [f64] {
+        if self.n == 1 { &[1.0] } else { &point[..=D] }
+    }
+    /// The value at a point, by barycentric coordinates and in space.
+    fn at(&self, point: &[f64; 4], x: &Point<f64, D>) -> Point<f64, D> {
+        if self.n == 1 {
+            return (x * self.sums[0] - self.origins[0]) * self.per_volume;
+        }
+        let mut q = Point::zeros();
+        for (k, share) in point.iter().enumerate().take(self.n) {
+            q += (x * self.sums[k] - self.origins[k]) * *share;
+        }
+        q * self.per_volume
+    }
+    /// What the flux leaves of a load, by the means of the load less a constant times each factor of a
+    /// term, and the square of its norm.
+    fn balance(&self, volume: f64, means: &[f64; 4], square: f64, constant: f64) -> Balance {
+        if self.n == 1 {
+            let mean = -self.sums[0] / volume - means[0] - constant;
+            let rest = (square - volume * means[0] * means[0]).max(0.0);
+            return Balance { mean, values: [mean; 4], variation: 0.0, rest };
+        }
+        let d = D as f64;
+        let sum: f64 = means.iter().sum();
+        let projection = means.map(|m| (d + 1.0) * ((d + 2.0) * m - sum));
+        let products: f64 = projection.iter().zip(means).take(self.n).map(|(p, m)| p * m).sum();
+        let mut values = [0.0; 4];
+        for k in 0..self.n {
+            values[k] = -self.divergence[k] * self.per_volume - projection[k] - constant;
+        }
+        let mean = values.iter().sum::<f64>() / (d + 1.0);
+        let squares: f64 = values[..self.n].iter().map(|v| (v - mean).powi(2)).sum();
+        let variation = volume * squares / ((d + 1.0) * (d + 2.0));
+        Balance { mean, values, variation, rest: (square - volume * products).max(0.0) }
+    }
+}
+
+/// What the flux of a cell leaves of the load.
+struct Balance {
+    /// Its mean.
+    mean: f64,
+    /// Its projection on the linear functions, at the vertices; the mean where the flux has one term.
+    values: [f64; 4],
+    /// The square of the norm of the projection less the mean.
+    variation: f64,
+    /// The square of the norm of the rest.
+    rest: f64,
+}
+
+/// The measure of a facet times `q.n` on it.
+#[derive(Clone, Copy)]
+struct FacetFlux {
+    /// A factor.
+    scale: f64,
+    /// The values at the vertices of the cell over the factor, zero at that opposite the facet; one if it is
+    /// constant.
+    values: Option<[f64; 4]>,
+    /// The number of the facet.
+    local: usize,
+}
+
+impl FacetFlux {
+    /// The value, over the factor, at a point of the facet by its barycentric coordinates in the cell.
+    fn at(&self, point: &[f64; 4]) -> f64 {
+        self.values.map_or(1.0, |values| values.iter().zip(point).map(|(v, b)| v * b).sum())
+    }
+    /// A flux that is nowhere negative with the same integral, and the mean of the square of the
+    /// difference.
+    fn limited(self, dimension: usize) -> (Self, f64) {
+        let Some(mut values) = self.values else { return (self, 0.0) };
+        let d = dimension as f64;
+        let mean = values.iter().sum::<f64>() / d;
+        let vertices = || (0..=dimension).filter(|&k| k != self.local);
+        // the value at the vertex opposite the facet does not count
+        values[self.local] = mean;
+        let share = limit(mean, &values[..=dimension]);
+        let squares: f64 = values[..=dimension].iter().map(|v| (v - mean).powi(2)).sum();
+        vertices().for_each(|k| values[k] = mean + share * (values[k] - mean));
+        values[self.local] = 0.0;
+        let left = (1.0 - share).powi(2) * squares / (d * (d + 1.0));
+        (Self { values: Some(values), ..self }, left)
+    }
+}
+
+/// How far a linear function with these values at vertices can be taken from its mean, at most all the way,
+/// with the sign of the mean everywhere.
+fn limit(mean: f64, values: &[f64]) -> f64 {
+    let deepest = values.iter().map(|v| mean.signum() * (mean - v)).fold(0.0, f64::max);
+    if deepest > mean.abs() { mean.abs() / deepest } else { 1.0 }
+}
+
 /// Integrals over the boundary, by cell; empty where there are none.
 pub(super) struct BoundaryTerms {
-    /// Norms of the oscillation of Neumann data with the constant of the trace inequality.
-    neumann: Vec<f64>,
+    /// Norms of what Neumann data and contact forces have besides those of the pair, with the constant of the
+    /// trace inequality.
+    traces: Vec<f64>,
     /// The complementarity of contact.
     contact: Vec<f64>,
 }
@@ -86,15 +205,48 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
     /// The admissible function in a cell.
     pub(super) fn admissible_in(&self, pair: &PrimalDualPair, cell: usize) -> Admissible<'_, D> {
         let (geometry, region) = (self.mesh.geometry(cell), self.mesh.region(cell));
-        let mut values = [0.0; 4];
+        let (mut values, mut gradients) = ([0.0; 4], [Point::zeros(); 4]);
         let mut gradient = Point::zeros();
         for (k, &v) in self.mesh.cell(cell).iter().enumerate() {
             values[k] = pair.function[v as usize];
-            gradient += point_f64(geometry.gradient(k)) * (values[k] - values[0]);
+            gradients[k] = point_f64(geometry.gradient(k));
+            gradient += gradients[k] * (values[k] - values[0]);
         }
         let step = STEP * self.mesh.cell_diameter(cell).to_f64();
         let bounds = [self.data.lower.of(region), self.data.upper.of(region)];
-        Admissible { values, gradient, bounds, step }
+        let excess = (pair.degree > 1).then(|| {
+            let midpoints = &pair.function[self.mesh.vertices().len()..];
+            let ends = edge_vertices(D);
+            let edges = &pair.edges[cell * ends.len()..];
+            let mut excess = [0.0; 6];
+            for ((excess, &[a, b]), &edge) in excess.iter_mut().zip(ends).zip(edges) {
+                *excess = 4.0 * midpoints[edge as usize] - 2.0 * (values[a] + values[b]);
+            }
+            excess
+        });
+        Admissible { values, gradient, excess, gradients, bounds, step }
+    }
+
+    /// The flux of a pair in a cell.
+    fn flux_in(&self, pair: &PrimalDualPair, cell: usize) -> CellFlux<D> {
+        let n = if pair.degree > 1 { D + 1 } else { 1 };
+        let flux = &pair.flux[cell * (D + 1) * n..(cell + 1) * (D + 1) * n];
+        let volume = self.mesh.geometry(cell).volume.to_f64();
+        let per_volume = 1.0 / (D as f64 * volume);
+        let (mut sums, mut origins) = ([0.0; 4], [Point::<f64, D>::zeros(); 4]);
+        for (&v, flux) in self.mesh.cell(cell).iter().zip(flux.chunks_exact(n)) {
+            let opposite = point_f64(&self.mesh.vertices()[v as usize]);
+            for (k, flux) in flux.iter().enumerate() {
+                sums[k] += flux;
+                origins[k] += opposite * *flux;
+            }
+        }
+        let inner: f64 = (0..=D).map(|k| flux[k * (D + 2) % flux.len()]).sum();
+        let divergence = match n {
+            1 => [D as f64 * sums[0]; 4],
+            _ => sums.map(|sum| (D + 1) as f64 * sum - inner),
+        };
+        CellFlux { n, sums, origins, per_volume, divergence }
     }
 
     /// Calls a function with the points of a rule on a cell, divided where a level has zeros.
@@ -131,24 +283,21 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
     ) -> CellTerms {
         let geometry = self.mesh.geometry(cell);
         let (volume, region) = (geometry.volume.to_f64(), self.mesh.region(cell));
-        let flux = &pair.flux[cell * (D + 1)..(cell + 1) * (D + 1)];
-        let per_volume = 1.0 / (D as f64 * volume);
-        let total_flux: f64 = flux.iter().sum();
-        // q = sum_F flux_F (x - a_F) / (D |K|)
-        let mut origin = Point::<f64, D>::zeros();
-        for (&v, flux) in self.mesh.cell(cell).iter().zip(flux) {
-            origin += point_f64(&self.mesh.vertices()[v as usize]) * *flux;
-        }
+        let flux = self.flux_in(pair, cell);
         let local = self.local_values(cell, u);
         let datum = |data: &DataByGroup<'_, D>, x: &Point<f64, D>| self.in_region(data, cell, x);
         let admissible = self.admissible_in(pair, cell);
+        let gradient_of = |basis: &BasisAt<f64>| {
+            let mut gradient = Point::<f64, D>::zeros();
+            for k in 0..=D {
+                let derivatives = basis.derivatives.iter();
+                let slope: f64 = local.iter().zip(derivatives).map(|(c, d)| c * d[k]).sum();
+                gradient += admissible.gradients[k] * slope;
+            }
+            gradient
+        };
         // the derivatives of linear functions are those at any point
-        let mut discrete_gradient = Point::<f64, D>::zeros();
-        for k in 0..=D {
-            let derivatives = table.basis[0].derivatives.iter();
-            let slope: f64 = local.iter().zip(derivatives).map(|(c, d)| c * d[k]).sum();
-            discrete_gradient += point_f64(geometry.gradient(k)) * slope;
-        }
+        let constant = (pair.degree == 1).then(|| gradient_of(&table.basis[0]));
         let mut terms = CellTerms {
             least_coefficient: f64::INFINITY,
             least_reaction: f64::INFINITY,
@@ -156,27 +305,31 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         };
         let (mut mismatch, mut from_values) = (0.0, 0.0);
         // the balance is summed from its value at the first point, so that a constant has no oscillation
-        let (mut first, mut mean, mut square) = (None, 0.0, 0.0);
-        let mut gaps = [0.0; 2];
+        let (mut first, mut means, mut square) = (None, [0.0; 4], 0.0);
+        let mut gaps = [[0.0; 4]; 2];
         let level = self.data.source.of(region).and_then(|f| f.level());
         self.visit_points(cell, table, cut.zip(level), &mut |point, x, weight, basis| {
             let weight = weight * volume;
             let alpha = datum(&self.data.coefficient, x).unwrap_or(1.0);
             let reaction = datum(&self.data.reaction, x).unwrap_or(0.0);
             let (value, gradient) = admissible.at(point, x);
-            let q = (x * total_flux - origin) * per_volume;
+            let q = flux.at(point, x);
             mismatch += weight * (gradient * alpha - q).norm_squared() / alpha;
             let discrete = basis.value(&local);
             from_values += weight * reaction * (discrete - value).powi(2);
-            terms.distance += weight * alpha * (gradient - discrete_gradient).norm_squared();
+            let slope = constant.unwrap_or_else(|| gradient_of(basis));
+            terms.distance += weight * alpha * (gradient - slope).norm_squared();
             let load = datum(&self.data.source, x).unwrap_or(0.0) - reaction * discrete;
             let load = load - *first.get_or_insert(load);
-            mean += weight * load / volume;
             square += weight * load * load;
-            for (gap, (bound, sign)) in
-                gaps.iter_mut().zip(admissible.bounds.iter().zip([1.0, -1.0]))
-            {
-                *gap += bound.map_or(0.0, |bound| weight * sign * (value - bound.at(x)));
+            let differences = [0, 1].map(|k| {
+                let sign = [1.0, -1.0][k];
+                admissible.bounds[k].map_or(0.0, |bound| weight * sign * (value - bound.at(x)))
+            });
+            for (k, share) in flux.shares(point).iter().enumerate() {
+                means[k] += weight * load / volume * share;
+                gaps[0][k] += differences[0] * share;
+                gaps[1][k] += differences[1] * share;
             }
             terms.least_coefficient = terms.least_coefficient.min(alpha);
             terms.least_reaction = terms.least_reaction.min(reaction);
@@ -186,27 +339,31 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         let diameter = self.mesh.cell_diameter(cell).to_f64();
         let by_gradient = diameter / (PI * terms.least_coefficient.sqrt());
         let by_value = terms.least_reaction.max(0.0).sqrt().recip();
-        let of_load = (square - volume * mean * mean).max(0.0).sqrt();
-        let of_neumann =
-            boundary.neumann.get(cell).map_or(0.0, |n| n / terms.least_coefficient.sqrt());
+        let balance = flux.balance(volume, &means, square, first.unwrap_or(0.0));
+        let bound = usize::from(balance.mean < 0.0);
+        let share = limit(balance.mean, &balance.values[..flux.n]);
+        for (value, gap) in balance.values.iter().zip(gaps[bound]).take(flux.n) {
+            let multiplier = balance.mean + share * (value - balance.mean);
+            terms.obstacle += 2.0 * multiplier.abs() * gap;
+        }
+        // what the solver leaves away from contact would count once there, and squared here
+        let square_of_mean = balance.mean * balance.mean * volume;
+        let of_solver = friedrichs.map(|c| c * c * square_of_mean / terms.least_coefficient);
+        let is_force = admissible.bounds[bound].is_some()
+            && of_solver.is_none_or(|of_solver| terms.obstacle <= of_solver);
+        if !is_force {
+            (terms.obstacle, terms.unbalanced) = (0.0, balance.mean);
+        }
+        let left = if is_force { 1.0 - share } else { 1.0 };
+        let of_load = (balance.rest + left * left * balance.variation).sqrt();
+        let of_trace =
+            boundary.traces.get(cell).map_or(0.0, |n| n / terms.least_coefficient.sqrt());
         let [in_gradient, in_value] = match by_value < by_gradient {
-            true => [of_neumann, by_value * of_load],
-            false => [by_gradient * of_load + of_neumann, 0.0],
+            true => [of_trace, by_value * of_load],
+            false => [by_gradient * of_load + of_trace, 0.0],
         };
         terms.with_oscillation =
             (mismatch.sqrt() + in_gradient).powi(2) + (from_values.sqrt() + in_value).powi(2);
-        let multiplier = -total_flux / volume - mean - first.unwrap_or(0.0);
-        let bound = usize::from(multiplier < 0.0);
-        // what the solver leaves away from contact would count once there, and squared here
-        let of_solver = friedrichs.map(|c| c * c * multiplier.abs() / terms.least_coefficient);
-        match admissible.bounds[bound] {
-            Some(_)
-                if of_solver.is_none_or(|of_solver| 2.0 * gaps[bound] <= of_solver * volume) =>
-            {
-                terms.obstacle = 2.0 * multiplier.abs() * gaps[bound];
-            }
-            _ => terms.unbalanced = multiplier,
-        }
         terms.contact = boundary.contact.get(cell).map_or(0.0, |c| 2.0 * c);
         terms
     }
@@ -218,41 +375,64 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
     pub(super) fn boundary_terms(&self, pair: &PrimalDualPair) -> Result<BoundaryTerms, NoBound> {
         let n_cells = self.mesh.n_cells();
         let zeros = |is_needed: bool| vec![0.0; if is_needed { n_cells } else { 0 }];
-        let has_fluxes = self.problem.has_neumann_data();
+        let has_fluxes = self.problem.has_neumann_data() && self.mesh.has_part(BoundaryPart::Neumann);
+        let has_gap = self.problem.has_gap();
         let mut terms = BoundaryTerms {
-            neumann: zeros(has_fluxes && self.mesh.has_part(BoundaryPart::Neumann)),
-            contact: zeros(self.problem.has_gap()),
+            traces: zeros(has_fluxes || has_gap && pair.degree > 1),
+            contact: zeros(has_gap),
         };
-        let place_of = |(cell, local): (usize, usize)| cell * (D + 1) + local;
+        let measure_of =
+            |(cell, local): Place| self.mesh.geometry(cell).facet_measure(local).to_f64();
+        let norm = |(cell, _): Place, measure: f64, square: f64| {
+            let volume = self.mesh.geometry(cell).volume.to_f64();
+            let constant = measure / volume
+                * (1.0 / (PI * PI) + 2.0 / (PI * D as f64))
+                * self.mesh.cell_diameter(cell).to_f64().powi(2);
+            (constant * square).sqrt()
+        };
         if has_fluxes {
-            let dimension = D as f64;
             for (place, group) in self.grouped_facets_of(BoundaryPart::Neumann) {
-                let geometry = self.mesh.geometry(place.0);
-                let measure = geometry.facet_measure(place.1).to_f64();
-                let mean = pair.flux[place_of(place)] / measure;
+                let measure = measure_of(place);
+                let flux = self.flux_on(pair, place);
                 let mut square = 0.0;
                 for (point, weight) in self.facet_rule.iter() {
                     let datum = self.neumann_at(place, group, point)?;
-                    square += weight * measure * (datum - mean).powi(2);
+                    let flux = flux.scale * flux.at(&facet_to_cell(point, place.1)) / measure;
+                    square += weight * measure * (datum - flux).powi(2);
                 }
-                let diameter = self.mesh.cell_diameter(place.0).to_f64();
-                let constant = measure / geometry.volume.to_f64()
-                    * (1.0 / (PI * PI) + 2.0 / (PI * dimension))
-                    * diameter.powi(2);
-                terms.neumann[place.0] += (constant * square).sqrt();
+                terms.traces[place.0] += norm(place, measure, square);
             }
         }
         for (place, group) in self.grouped_facets_of(BoundaryPart::Contact) {
             let Some(gap) = self.data.gap.of(group) else { continue };
             let admissible = self.admissible_in(pair, place.0);
-            let mut mean = 0.0;
+            let flux = self.flux_on(pair, place);
+            let (force, left) = flux.limited(D);
+            let mut sum = 0.0;
             for (point, weight) in self.facet_rule.iter() {
                 let x = self.facet_point(point, place.0, place.1);
-                let (value, _) = admissible.at(&facet_to_cell(point, place.1), &x);
-                mean += weight * (value - gap.at(&x)).max(0.0);
+                let point = facet_to_cell(point, place.1);
+                let (value, _) = admissible.at(&point, &x);
+                sum += weight * force.at(&point) * (value - gap.at(&x)).max(0.0);
             }
-            terms.contact[place.0] += pair.flux[place_of(place)] * mean;
+            terms.contact[place.0] += flux.scale * sum;
+            if pair.degree > 1 {
+                let measure = measure_of(place);
+                terms.traces[place.0] += norm(place, measure, left / measure);
+            }
         }
         Ok(terms)
+    }
+
+    /// The flux of a pair through a facet.
+    fn flux_on(&self, pair: &PrimalDualPair, (cell, local): Place) -> FacetFlux {
+        let place = cell * (D + 1) + local;
+        if pair.degree == 1 {
+            return FacetFlux { scale: pair.flux[place], values: None, local };
+        }
+        let mut values = [0.0; 4];
+        values[..=D].copy_from_slice(&pair.flux[place * (D + 1)..][..D + 1]);
+        values[local] = 0.0;
+        FacetFlux { scale: 1.0, values: Some(values), local }
     }
 }

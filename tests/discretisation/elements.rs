@@ -13,7 +13,7 @@ use unilateral::prelude::*;
 /// Continuous cubics: values at the vertices, at the thirds of edges and at the barycentres of
 /// triangles.
 #[derive(Clone, Copy)]
-struct P3;
+pub struct P3;
 
 const EDGES: [[usize; 2]; 6] = [[0, 1], [0, 2], [1, 2], [0, 3], [1, 3], [2, 3]];
 
@@ -93,7 +93,7 @@ impl<T: Real, const D: usize> ReferenceElement<T, D> for P3 {
     }
 }
 
-struct ConformingP3;
+pub struct ConformingP3;
 
 impl<T: Real, const D: usize> Scheme<T, D> for ConformingP3 {
     type Element = P3;

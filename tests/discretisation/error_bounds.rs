@@ -1,5 +1,6 @@
 //! Guaranteed bounds on the error: the identity, effectivity, fluxes, perturbed pairs.
 
+use crate::elements::ConformingP3;
 use crate::runs::small_mesh;
 use crate::support::checks::Checks;
 use crate::support::meshes::{Random, Raw};
@@ -92,7 +93,7 @@ fn right_side<const D: usize>(
 }
 
 /// A scene with the placement of a scheme, and the scheme.
-fn placed<const D: usize>(scene: &Scene<D>, name: &str) -> (Scene<D>, Box<dyn AnyScheme<f64, D>>) {
+pub fn placed<const D: usize>(scene: &Scene<D>, name: &str) -> (Scene<D>, Box<dyn AnyScheme<f64, D>>) {
     let named: NamedScheme = name.parse().unwrap();
     let mut scene = scene.clone();
     scene.problem.constraint_set = named.constraint_set();
@@ -100,7 +101,7 @@ fn placed<const D: usize>(scene: &Scene<D>, name: &str) -> (Scene<D>, Box<dyn An
 }
 
 /// The pair of a scheme, its bound and the true error of the admissible function.
-fn bounded<const D: usize>(
+pub fn bounded<const D: usize>(
     scene: &Scene<D>,
     mesh: &Mesh<f64, D>,
     scheme: &dyn AnyScheme<f64, D>,
@@ -336,7 +337,10 @@ fn what_is_proven_and_what_has_no_bound() {
     let stated = stated.dirichlet(|x| 0.01 * x[0] * x[1]).polynomial_data(2);
     let all = [Unproven::Boundary, Unproven::Obstacle];
     assert_eq!(unproven(&stated, &Sipg::default()).unwrap(), all);
-    assert!(matches!(unproven(&stated, &ConformingP2), Err(NoBound::Element)));
+    assert!(matches!(unproven(&stated, &ConformingP3), Err(NoBound::Element)));
+    let meshes = AdaptiveMeshes::new(scene.domain.mesh::<f64>(4).unwrap());
+    let refused = adapt(&stated, &meshes, &ConformingP3, Adaptivity::default()).err().unwrap();
+    assert!(refused.to_string().contains("error bound of p3"), "{refused}");
     let negative = scene.problem.reaction(-1e-3);
     assert!(matches!(unproven(&negative, &ConformingP1), Err(NoBound::NegativeReaction)));
 }

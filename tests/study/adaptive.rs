@@ -110,7 +110,6 @@ fn what_an_adaptive_study_cannot_have_is_refused_before_work() {
     let cases = [
         (of(scenes::radial(1.0)).levels([4, 8]), "number of levels = 2"),
         (of(scenes::radial(1.0)).reference(ConformingP1, 64), "reference = 64"),
-        (of(scenes::radial(1.0)).scheme(ConformingP2), "error bound of p2"),
         (of(scenes::radial(1.0)).adaptive(adaptivity.theta(2.0)), "theta = 2.0"),
         (of(scenes::disc_2d()), "bisection does not follow a circle"),
         (of(scenes::radial(1.0)).levels([0]), "level = 0"),

@@ -302,35 +302,39 @@ impl<T: Real, const D: usize> Lifting<'_, '_, T, D> {
         }
     }
 
-    /// By facet of a centre the products, over the centre, of the lift of the function with mean one on
-    /// the facet with the lift of jumps, given by facet and moment as seen from the centre.
-    pub fn products_with_means(
+    /// By facet of a centre and moment on it, of the first `kept` ones, the products, over the centre, of
+    /// the lift of the function that has this moment with the lift of jumps, given by facet and moment as
+    /// seen from the centre.
+    pub fn products_with_moments(
         &self,
         neighbours: &Neighbours,
         centre: usize,
         jumps: &[[T; MAX_MOMENTS]; 4],
-    ) -> [f64; 4] {
+        kept: usize,
+    ) -> [[f64; 3]; 4] {
         let metric = self.metrics.at::<D>(centre);
         let facets: [Option<JumpFacet<T>>; 4] = std::array::from_fn(|local| match local <= D {
             true => self.jump_facet(neighbours, centre, &metric, local),
             false => None,
         });
-        let mut mean = [T::lit(0.0); MAX_MOMENTS];
-        mean[0] = T::lit(1.0);
         let weighted = |facet: &JumpFacet<T>, moments: &[T; MAX_MOMENTS]| match &facet.products {
             Some(products) => weigh(products, moments),
             None => *moments,
         };
-        let mut sums = [0.0; 4];
+        let mut sums = [[0.0; 3]; 4];
         for test in facets.iter().flatten() {
-            let tested = weighted(test, &mean);
             for trial in facets.iter().flatten() {
                 let jump = weighted(trial, &jumps[trial.local]);
                 let products = &self.table.products[test.local][trial.local];
                 let scale = self.scale(centre, &metric, test, trial);
-                for (row, &tested) in products.iter().zip(&tested) {
-                    for (&product, &jump) in row.iter().zip(&jump) {
-                        sums[test.local] += (scale * tested * product * jump).to_f64();
+                for (k, sum) in sums[test.local].iter_mut().enumerate().take(kept) {
+                    let mut moment = [T::lit(0.0); MAX_MOMENTS];
+                    moment[k] = T::lit(1.0);
+                    let tested = weighted(test, &moment);
+                    for (row, &tested) in products.iter().zip(&tested) {
+                        for (&product, &jump) in row.iter().zip(&jump) {
+                            *sum += (scale * tested * product * jump).to_f64();
+                        }
                     }
                 }
             }

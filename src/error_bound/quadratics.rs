@@ -1,0 +1,257 @@
+//! The flux of a discrete quadratic function: in each cell of the space of Raviart and Thomas of degree one.
+//!
+//! With `c_Fj` the measure of facet `F` times `q.n` at its vertex `j`, and `phi_F = (x - a_F) / (D |K|)`,
+//! `a_F` the vertex opposite `F`, in a cell `K`
+//!
+//! ```text
+//! q = sum_F s_F phi_F,   s_F = sum_j c_Fj lambda_j,
+//! div q = ((D + 1) sum_F s_F - sum_F c_FF) / (D |K|)
+//! ```
+//!
+//! Here `j` is any vertex: `lambda_F phi_F` vanishes on the boundary in normal direction. The sum of these
+//! `D + 1` functions is zero, so that `sum_F c_FF = 0` may be asked for. Facet moments and the products of
+//! `div q` with the linear functions determine `q`; the latter are those of load and multiplier.
+
+use std::convert::Infallible;
+use std::ops::Range;
+
+use super::NoBound;
+use super::contact::NodeForce;
+use crate::algebra::Bound;
+use crate::assemble::local::zero_local;
+use crate::assemble::space::{Place, Space};
+use crate::mesh::{BoundaryPart, edge_vertices};
+use crate::parallel::cells;
+use crate::quadrature::{OrthonormalPolynomials, facet_to_cell};
+use crate::real::Real;
+
+/// Products with `lambda_a lambda_j`, symmetric.
+pub(super) type Products = [[f64; 4]; 4];
+
+/// What the inequality leaves in each unknown of each cell: the load without the reaction term at the
+/// discrete function, and the multiplier without contact forces, of which a cell has a part where cells share
+/// an unknown.
+pub(super) struct CellLoads {
+    /// By cell and unknown.
+    pub values: Vec<f64>,
+    /// By facet the products of Neumann data, which are among the loads.
+    pub neumann: Vec<(Place, Products)>,
+    /// By facet the products of contact forces.
+    pub contact: Vec<(Place, Products)>,
+    /// By unknown of a cell its functional at `lambda_a lambda_j`.
+    pub functionals: Vec<Products>,
+}
+
+/// `c_Fj` from the products `int_F q.n lambda_j`: `lambda` has on a facet the products
+/// `(1 + delta) / (D (D + 1))`.
+pub(super) fn densities<const D: usize>(products: &[f64; 4], facet: usize) -> [f64; 4] {
+    let sum: f64 = products[..=D].iter().sum();
+    let d = D as f64;
+    std::array::from_fn(|j| match j <= D && j != facet {
+        true => d * ((d + 1.0) * products[j] - sum),
+        false => 0.0,
+    })
+}
+
+impl<T: Real, const D: usize> Space<'_, T, D> {
+    /// Whether the unknowns of a cell are the values of a continuous quadratic at vertices and midpoints.
+    pub(super) fn is_conforming_quadratic(&self) -> bool {
+        let is_vertex = |i: usize| self.nodes[i].point().is_some_and(|p| p[i] == 1.0);
+        !self.broken
+            && self.basis_degree == 2
+            && self.per_cell() == D + 1 + edge_vertices(D).len()
+            && (0..=D).all(is_vertex)
+            && self.nodes[D + 1..].iter().all(|node| node.is_midpoint())
+    }
+
+    /// Loads and multipliers by cell; `residual` is that of the inequality.
+    pub(super) fn cell_loads(
+        &self,
+        u: &[T],
+        residual: &[f64],
+        bounds: &[Bound<T>],
+        forces: &[NodeForce],
+    ) -> Result<CellLoads, NoBound> {
+        let (n, n_cells) = (self.per_cell(), self.mesh.n_cells());
+        let load = self.load_by_cell()?;
+        let mut multipliers: Vec<f64> = residual.iter().map(|r| -r).collect();
+        let is_pinned = |unknown: usize| self.pins && matches!(bounds[unknown], Bound::Fixed(_));
+        for force in forces {
+            multipliers[self.dofs.of(force.cell, force.node)] -= force.value;
+        }
+        (0..multipliers.len()).filter(|&i| is_pinned(i)).for_each(|i| multipliers[i] = 0.0);
+        // of a shared unknown each cell has the part of its volume
+        let volume = |cell: usize| self.mesh.geometry(cell).volume.to_f64();
+        let mut around = vec![0.0; if self.broken { 0 } else { self.dofs.size() }];
+        if !self.broken {
+            (0..n_cells).for_each(|c| (0..n).for_each(|i| around[self.dofs.of(c, i)] += volume(c)));
+        }
+        let mut values = vec![0.0; n_cells * n];
+        let fill = |cells: Range<usize>, out: &mut [f64]| {
+            for (cell, out) in cells.zip(out.chunks_exact_mut(n)) {
+                let mut products = zero_local();
+                if let Some(reaction) = &self.reaction {
+                    let volume = self.mesh.geometry(cell).volume;
+                    reaction.add(self.mesh, cell, volume, &mut products);
+                }
+                let local = self.local_values(cell, u);
+                for (i, out) in out.iter_mut().enumerate() {
+                    let unknown = self.dofs.of(cell, i);
+                    let part = if self.broken { 1.0 } else { volume(cell) / around[unknown] };
+                    *out = load.get(cell * n + i).map_or(0.0, |b| b.to_f64());
+                    *out += part * multipliers[unknown];
+                    for (c, value) in products[i].iter().zip(&local).take(n) {
+                        *out -= c.to_f64() * value;
+                    }
+                }
+            }
+            Ok::<(), Infallible>(())
+        };
+        let Ok(()) = cells::for_each(n_cells, &|c| c * n, &mut values, &fill);
+        let terms = self.node_terms(&self.facet_rule, &self.cell_rule);
+        let at = |a: usize, j: usize, (p, w): &([f64; 4], f64)| w * p[a] * p[j];
+        let functional = |terms: &Vec<([f64; 4], f64)>| -> Products {
+            std::array::from_fn(|a| {
+                std::array::from_fn(|j| terms.iter().map(|term| at(a, j, term)).sum())
+            })
+        };
+        let functionals: Vec<Products> = terms.iter().map(functional).collect();
+        let mut neumann = Vec::new();
+        if self.problem.has_neumann_data() {
+            for (place, group) in self.grouped_facets_of(BoundaryPart::Neumann) {
+                let measure = self.mesh.geometry(place.0).facet_measure(place.1).to_f64();
+                let mut products = Products::default();
+                for (point, weight) in self.facet_rule.iter() {
+                    let flux = weight * measure * self.neumann_at(place, group, point)?;
+                    let point = (facet_to_cell(point, place.1), flux);
+                    add(&mut products, |a, j| at(a, j, &point));
+                }
+                neumann.push((place, products));
+            }
+        }
+        let mut contact: Vec<(Place, Products)> = Vec::new();
+        for force in forces {
+            let place = (force.cell, force.local);
+            if contact.last().is_none_or(|(last, _)| *last != place) {
+                contact.push((place, Products::default()));
+            }
+            let Some((_, products)) = contact.last_mut() else { continue };
+            add(products, |a, j| force.value * functionals[force.node][a][j]);
+        }
+        Ok(CellLoads { values, neumann, contact, functionals })
+    }
+
+    /// Divides the product of contact forces with each hat function among the contact facets at its vertex
+    /// by their measures, and makes the forces linear on facets.
+    pub(super) fn average_forces(&self, contact: &mut [(Place, Products)]) {
+        let measure = |(cell, local): Place| self.mesh.geometry(cell).facet_measure(local).to_f64();
+        let vertex = |(cell, _): Place, k: usize| self.mesh.cell(cell)[k] as usize;
+        let mut of_vertices = vec![(0.0, 0.0); self.mesh.vertices().len()];
+        for (place, products) in &*contact {
+            for k in vertices_of::<D>(place.1) {
+                let (sum, weight) = &mut of_vertices[vertex(*place, k)];
+                *sum += products[k].iter().sum::<f64>();
+                *weight += measure(*place);
+            }
+        }
+        for (place, products) in contact {
+            let mut moments = [0.0; 4];
+            for k in vertices_of::<D>(place.1) {
+                let (sum, weight) = of_vertices[vertex(*place, k)];
+                moments[k] = sum * measure(*place) / weight;
+            }
+            *products = products_on_facet::<D>(&densities::<D>(&moments, place.1), place.1);
+        }
+    }
+
+    /// The densities `c_Fj` of fluxes with these moments, `D` of each facet of each cell.
+    pub(super) fn densities_of_moments(&self, moments: &[f64]) -> Vec<f64> {
+        let polynomials = OrthonormalPolynomials::new(D - 1, 1);
+        let n = D + 1;
+        let mut densities = vec![0.0; self.mesh.n_cells() * n * n];
+        for (k, (out, moments)) in
+            densities.chunks_exact_mut(n).zip(moments.chunks_exact(D)).enumerate()
+        {
+            for (j, out) in out.iter_mut().enumerate().filter(|(j, _)| *j != k % n) {
+                let mut vertex = [0.0; 4];
+                vertex[j - usize::from(j > k % n)] = 1.0;
+                let term = |(k, m): (usize, &f64)| m * polynomials.value(k, &vertex);
+                *out = moments.iter().enumerate().map(term).sum();
+            }
+        }
+        densities
+    }
+
+    /// Adds the fluxes of Neumann data and contact, and sets `c_FF` such that the divergence balances loads
+    /// and multipliers tested with linear functions. What rounding leaves of the balance of a cell is
+    /// divided among these.
+    pub(super) fn balance(&self, loads: &CellLoads, flux: &mut [f64]) {
+        let (n, n_cells, square) = (self.per_cell(), self.mesh.n_cells(), (D + 1) * (D + 1));
+        let d = D as f64;
+        let mut given = vec![[0.0; 4]; if loads.neumann.is_empty() { 0 } else { n_cells }];
+        for ((cell, _), products) in &loads.neumann {
+            let moments = products.iter().map(|row| row.iter().sum::<f64>());
+            given[*cell].iter_mut().zip(moments).for_each(|(to, moment)| *to += moment);
+        }
+        for ((cell, local), products) in loads.neumann.iter().chain(&loads.contact) {
+            let of_facet = densities::<D>(&products.map(|row| row.iter().sum()), *local);
+            let start = cell * square + local * (D + 1);
+            flux[start..start + D + 1].iter_mut().zip(of_facet).for_each(|(to, c)| *to += c);
+        }
+        let linear: Vec<[f64; 4]> =
+            loads.functionals.iter().map(|f| f.map(|row| row.iter().sum())).collect();
+        let fill = |cells: Range<usize>, out: &mut [f64]| {
+            for (cell, flux) in cells.zip(out.chunks_exact_mut(square)) {
+                let mut tested = [0.0; 4];
+                for (load, of_linear) in loads.values[cell * n..][..n].iter().zip(&linear) {
+                    tested.iter_mut().zip(of_linear).for_each(|(to, l)| *to += load * l);
+                }
+                if let Some(given) = given.get(cell) {
+                    tested.iter_mut().zip(given).for_each(|(to, given)| *to -= given);
+                }
+                let through: f64 = flux.iter().sum::<f64>() / d;
+                let left = (tested[..=D].iter().sum::<f64>() + through) / (d + 1.0);
+                tested[..=D].iter_mut().for_each(|t| *t -= left);
+                let sum: f64 = tested[..=D].iter().sum();
+                for j in 0..=D {
+                    let others: f64 = (0..=D).map(|facet| flux[facet * (D + 1) + j]).sum();
+                    tested[j] = d * (sum - (d + 2.0) * tested[j]) - others;
+                }
+                (0..=D).for_each(|j| flux[j * (D + 2)] = tested[j]);
+            }
+            Ok::<(), Infallible>(())
+        };
+        let Ok(()) = cells::for_each(n_cells, &|c| c * square, flux, &fill);
+    }
+}
+
+/// The integral of `lambda_a lambda_j lambda_k` over a simplex of a dimension and of measure one.
+fn triple(dimension: usize, [a, j, k]: [usize; 3]) -> f64 {
+    let d = dimension as f64;
+    let equal = usize::from(a == j) + usize::from(j == k) + usize::from(a == k);
+    [1.0, 2.0, 0.0, 6.0][equal] / ((d + 1.0) * (d + 2.0) * (d + 3.0))
+}
+
+/// The vertices of a facet by their numbers in the cell.
+pub(super) fn vertices_of<const D: usize>(facet: usize) -> impl Iterator<Item = usize> {
+    (0..=D).filter(move |&j| j != facet)
+}
+
+/// The products of a flux with these densities on a facet.
+pub(super) fn products_on_facet<const D: usize>(densities: &[f64; 4], facet: usize) -> Products {
+    let mut products = Products::default();
+    for a in vertices_of::<D>(facet) {
+        for j in vertices_of::<D>(facet) {
+            let terms = vertices_of::<D>(facet).map(|k| densities[k] * triple(D - 1, [a, j, k]));
+            products[a][j] = terms.sum();
+        }
+    }
+    products
+}
+
+/// Adds to each product.
+pub(super) fn add(products: &mut Products, term: impl Fn(usize, usize) -> f64) {
+    for (a, row) in products.iter_mut().enumerate() {
+        row.iter_mut().enumerate().for_each(|(j, product)| *product += term(a, j));
+    }
+}
