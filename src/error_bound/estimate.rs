@@ -218,7 +218,8 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         let found = [
             (is_inexact, Unproven::Quadrature),
             (
-                has_data && !(is_below(&data.dirichlet, pair.degree) && self.takes_dirichlet_data(pair)),
+                has_data
+                    && !(is_below(&data.dirichlet, pair.degree) && self.takes_dirichlet_data(pair)),
                 Unproven::Boundary,
             ),
             (is_curved || may_leave, Unproven::Obstacle),
