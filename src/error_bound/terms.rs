@@ -19,13 +19,17 @@ const STEP: f64 = 1e-5;
 pub(super) struct CellTerms {
     /// The square of the mismatch.
     pub mismatch: f64,
-    /// The square of the mismatch with the oscillation added.
-    pub with_oscillation: f64,
-    /// Twice the complementarity of obstacles.
+    /// The square of the mismatch with the oscillation added: if what the flux leaves is a force of an
+    /// obstacle, and if the solver left it.
+    pub with_oscillation: [f64; 2],
+    /// Twice the complementarity of obstacles, if it is a force.
     pub obstacle: f64,
+    /// The complementarity over the square that the cell would add if the solver left it; infinite where there
+    /// is no obstacle that presses in this direction, zero where nothing is known of the square.
+    pub ratio: f64,
     /// Twice the complementarity of contact.
     pub contact: f64,
-    /// What the flux does not balance, of either sign.
+    /// The mean of what the flux leaves.
     pub unbalanced: f64,
     /// The square of the distance of the two functions.
     pub distance: f64,
@@ -346,24 +350,25 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
             let multiplier = balance.mean + share * (value - balance.mean);
             terms.obstacle += 2.0 * multiplier.abs() * gap;
         }
-        // what the solver leaves away from contact would count once there, and squared here
+        terms.unbalanced = balance.mean;
         let square_of_mean = balance.mean * balance.mean * volume;
-        let of_solver = friedrichs.map(|c| c * c * square_of_mean / terms.least_coefficient);
-        let is_force = admissible.bounds[bound].is_some()
-            && of_solver.is_none_or(|of_solver| terms.obstacle <= of_solver);
-        if !is_force {
-            (terms.obstacle, terms.unbalanced) = (0.0, balance.mean);
-        }
-        let left = if is_force { 1.0 - share } else { 1.0 };
-        let of_load = (balance.rest + left * left * balance.variation).sqrt();
+        terms.ratio = match (admissible.bounds[bound], friedrichs) {
+            (None, _) => f64::INFINITY,
+            (Some(_), Some(c)) if square_of_mean > 0.0 => {
+                terms.obstacle * terms.least_coefficient / (c * c * square_of_mean)
+            }
+            _ => 0.0,
+        };
         let of_trace =
             boundary.traces.get(cell).map_or(0.0, |n| n / terms.least_coefficient.sqrt());
-        let [in_gradient, in_value] = match by_value < by_gradient {
-            true => [of_trace, by_value * of_load],
-            false => [by_gradient * of_load + of_trace, 0.0],
-        };
-        terms.with_oscillation =
-            (mismatch.sqrt() + in_gradient).powi(2) + (from_values.sqrt() + in_value).powi(2);
+        terms.with_oscillation = [1.0 - share, 1.0].map(|left| {
+            let of_load = (balance.rest + left * left * balance.variation).sqrt();
+            let [in_gradient, in_value] = match by_value < by_gradient {
+                true => [of_trace, by_value * of_load],
+                false => [by_gradient * of_load + of_trace, 0.0],
+            };
+            (mismatch.sqrt() + in_gradient).powi(2) + (from_values.sqrt() + in_value).powi(2)
+        });
         terms.contact = boundary.contact.get(cell).map_or(0.0, |c| 2.0 * c);
         terms
     }
