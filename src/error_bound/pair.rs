@@ -105,7 +105,8 @@ impl<T: Real, const D: usize> Discretisation<'_, T, D> {
         let forces = space.contact_forces(inequality, &solution.contact, &residual, u);
         let multipliers = multipliers.as_deref();
         let flux = if space.degree == 2 {
-            let mut loads = space.cell_loads(u, &residual, (&inequality.bounds, &solution.contact), &forces)?;
+            let mut loads =
+                space.cell_loads(u, &residual, (&inequality.bounds, &solution.contact), &forces)?;
             // multipliers of jumps alone may contain a flux without divergence that alternates between facets
             // and that jumps hardly see: that of WOPSIP has an error of first order in the plane. Its
             // equations, tested with hat functions, are those of a conforming function

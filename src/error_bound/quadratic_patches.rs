@@ -22,8 +22,8 @@ use std::ops::Range;
 use super::patches::{around, solve};
 use super::quadratics::{CellLoads, Products, add, densities, products_on_facet, vertices_of};
 use crate::assemble::local::StiffnessTable;
-use crate::assemble::space::{INWARD, Place, Space};
 use crate::assemble::space::tables::BasisAt;
+use crate::assemble::space::{INWARD, Place, Space};
 use crate::element::Node;
 use crate::mesh::{BoundaryPart, Neighbour, Neighbours};
 use crate::parallel::cells;
@@ -205,9 +205,8 @@ impl<T: Real, const D: usize> Patches<'_, '_, T, D> {
                 0.0 => slot.shift[p],
                 sign => sign * unknowns[slot.first + p] + slot.shift[p],
             };
-            let of_facet = |slot: &Slot| {
-                std::array::from_fn(|p| if p < D { density(slot, p) } else { 0.0 })
-            };
+            let of_facet =
+                |slot: &Slot| std::array::from_fn(|p| if p < D { density(slot, p) } else { 0.0 });
             parts.push(slots.each_ref().map(of_facet));
         }
     }
@@ -289,7 +288,8 @@ impl<T: Real, const D: usize> Patches<'_, '_, T, D> {
         });
         let mut balance = total;
         let densities = || {
-            let of_facet = |(slot, facet)| vertices_of::<D>(facet).enumerate().map(move |v| (slot, facet, v));
+            let of_facet =
+                |(slot, facet)| vertices_of::<D>(facet).enumerate().map(move |v| (slot, facet, v));
             slots.iter().zip(around::<D>(own)).flat_map(of_facet)
         };
         for (slot, facet, (p, j)) in densities() {

@@ -84,8 +84,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         // of a shared unknown each cell has the part of its volume, among those in contact if there are any
         let is_held = |cell: usize| {
             let is_free = |unknown: usize| {
-                bounds[unknown].is_inequality()
-                    && contact.get(unknown) == Some(&Contact::Inactive)
+                bounds[unknown].is_inequality() && contact.get(unknown) == Some(&Contact::Inactive)
             };
             !(0..n).any(|i| is_free(self.dofs.of(cell, i)))
         };
