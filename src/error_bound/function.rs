@@ -89,10 +89,17 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
     /// Sets values at vertices to Dirichlet data, and moves the others into the constraints.
     fn clip_at_vertices(&self, values: &mut [f64]) {
         let mut bounds = vec![(f64::NEG_INFINITY, f64::INFINITY); values.len()];
-        for cell in 0..self.mesh.n_cells() {
+        // obstacles without names are the same in all cells
+        let by_region = self.data.lower.has_names() || self.data.upper.has_names();
+        let has_obstacle = self.problem.has_obstacle();
+        let mut is_known = vec![false; if has_obstacle { values.len() } else { 0 }];
+        for cell in 0..if has_obstacle { self.mesh.n_cells() } else { 0 } {
             let region = self.mesh.region(cell);
             let (lower, upper) = (self.data.lower.of(region), self.data.upper.of(region));
             for &v in self.mesh.cell(cell) {
+                if std::mem::replace(&mut is_known[v as usize], !by_region) {
+                    continue;
+                }
                 let x = point_f64(&self.mesh.vertices()[v as usize]);
                 let (low, high) = &mut bounds[v as usize];
                 *low = lower.map_or(*low, |psi| psi.at(&x).max(*low));

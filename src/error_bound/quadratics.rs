@@ -17,7 +17,7 @@ use std::ops::Range;
 
 use super::NoBound;
 use super::contact::NodeForce;
-use crate::algebra::Bound;
+use crate::algebra::{Bound, Contact};
 use crate::assemble::local::zero_local;
 use crate::assemble::space::{Place, Space};
 use crate::mesh::{BoundaryPart, edge_vertices};
@@ -69,7 +69,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         &self,
         u: &[T],
         residual: &[f64],
-        bounds: &[Bound<T>],
+        (bounds, contact): (&[Bound<T>], &[Contact]),
         forces: &[NodeForce],
     ) -> Result<CellLoads, NoBound> {
         let (n, n_cells) = (self.per_cell(), self.mesh.n_cells());
@@ -80,12 +80,24 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
             multipliers[self.dofs.of(force.cell, force.node)] -= force.value;
         }
         (0..multipliers.len()).filter(|&i| is_pinned(i)).for_each(|i| multipliers[i] = 0.0);
-        // of a shared unknown each cell has the part of its volume
         let volume = |cell: usize| self.mesh.geometry(cell).volume.to_f64();
-        let mut around = vec![0.0; if self.broken { 0 } else { self.dofs.size() }];
-        if !self.broken {
-            (0..n_cells).for_each(|c| (0..n).for_each(|i| around[self.dofs.of(c, i)] += volume(c)));
+        // of a shared unknown each cell has the part of its volume, among those in contact if there are any
+        let is_held = |cell: usize| {
+            let is_free = |unknown: usize| {
+                bounds[unknown].is_inequality() && contact.get(unknown) == Some(&Contact::Inactive)
+            };
+            !(0..n).any(|i| is_free(self.dofs.of(cell, i)))
+        };
+        let mut around = vec![[0.0; 2]; if self.broken { 0 } else { self.dofs.size() }];
+        for cell in (0..n_cells).filter(|_| !self.broken) {
+            let kind = usize::from(is_held(cell));
+            (0..n).for_each(|i| around[self.dofs.of(cell, i)][kind] += volume(cell));
         }
+        let part_of = |cell: usize, kind: usize, unknown: usize| match around.get(unknown) {
+            None => 1.0,
+            Some([_, held]) if *held > 0.0 => kind as f64 * volume(cell) / held,
+            Some([all, _]) => volume(cell) / all,
+        };
         let mut values = vec![0.0; n_cells * n];
         let fill = |cells: Range<usize>, out: &mut [f64]| {
             for (cell, out) in cells.zip(out.chunks_exact_mut(n)) {
@@ -95,11 +107,11 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
                     reaction.add(self.mesh, cell, volume, &mut products);
                 }
                 let local = self.local_values(cell, u);
+                let kind = usize::from(!self.broken && is_held(cell));
                 for (i, out) in out.iter_mut().enumerate() {
                     let unknown = self.dofs.of(cell, i);
-                    let part = if self.broken { 1.0 } else { volume(cell) / around[unknown] };
                     *out = load.get(cell * n + i).map_or(0.0, |b| b.to_f64());
-                    *out += part * multipliers[unknown];
+                    *out += part_of(cell, kind, unknown) * multipliers[unknown];
                     for (c, value) in products[i].iter().zip(&local).take(n) {
                         *out -= c.to_f64() * value;
                     }
@@ -129,21 +141,21 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
                 neumann.push((place, products));
             }
         }
-        let mut contact: Vec<(Place, Products)> = Vec::new();
+        let mut of_contact: Vec<(Place, Products)> = Vec::new();
         for force in forces {
             let place = (force.cell, force.local);
-            if contact.last().is_none_or(|(last, _)| *last != place) {
-                contact.push((place, Products::default()));
+            if of_contact.last().is_none_or(|(last, _)| *last != place) {
+                of_contact.push((place, Products::default()));
             }
-            let Some((_, products)) = contact.last_mut() else { continue };
+            let Some((_, products)) = of_contact.last_mut() else { continue };
             add(products, |a, j| force.value * functionals[force.node][a][j]);
         }
-        Ok(CellLoads { values, neumann, contact, functionals })
+        Ok(CellLoads { values, neumann, contact: of_contact, functionals })
     }
 
-    /// Divides the product of contact forces with each hat function among the contact facets at its vertex
-    /// by their measures, and makes the forces linear on facets.
-    pub(super) fn average_forces(&self, contact: &mut [(Place, Products)]) {
+    /// Makes contact forces smooth: linear between their means around vertices, and what is then left of
+    /// their products with hat functions divided among the contact facets at the vertex by their measures.
+    pub(super) fn smooth_forces(&self, contact: &mut [(Place, Products)]) {
         let measure = |(cell, local): Place| self.mesh.geometry(cell).facet_measure(local).to_f64();
         let vertex = |(cell, _): Place, k: usize| self.mesh.cell(cell)[k] as usize;
         let mut of_vertices = vec![(0.0, 0.0); self.mesh.vertices().len()];
@@ -154,11 +166,24 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
                 *weight += measure(*place);
             }
         }
-        for (place, products) in contact {
-            let mut moments = [0.0; 4];
-            for k in vertices_of::<D>(place.1) {
+        let mut left: Vec<f64> = of_vertices.iter().map(|(sum, _)| *sum).collect();
+        for (place, products) in &mut *contact {
+            let mean = |k: usize| {
                 let (sum, weight) = of_vertices[vertex(*place, k)];
-                moments[k] = sum * measure(*place) / weight;
+                D as f64 * sum / weight * measure(*place)
+            };
+            let mut densities = [0.0; 4];
+            vertices_of::<D>(place.1).for_each(|k| densities[k] = mean(k));
+            *products = products_on_facet::<D>(&densities, place.1);
+            for k in vertices_of::<D>(place.1) {
+                left[vertex(*place, k)] -= products[k].iter().sum::<f64>();
+            }
+        }
+        for (place, products) in contact {
+            let mut moments = products.map(|row| row.iter().sum());
+            for k in vertices_of::<D>(place.1) {
+                let v = vertex(*place, k);
+                moments[k] += left[v] * measure(*place) / of_vertices[v].1;
             }
             *products = products_on_facet::<D>(&densities::<D>(&moments, place.1), place.1);
         }

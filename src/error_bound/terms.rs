@@ -19,13 +19,17 @@ const STEP: f64 = 1e-5;
 pub(super) struct CellTerms {
     /// The square of the mismatch.
     pub mismatch: f64,
-    /// The square of the mismatch with the oscillation added.
-    pub with_oscillation: f64,
-    /// Twice the complementarity of obstacles.
+    /// The square of the mismatch with the oscillation added: if what the flux leaves is a force of an
+    /// obstacle, and if the solver left it.
+    pub with_oscillation: [f64; 2],
+    /// Twice the complementarity of obstacles, if it is a force.
     pub obstacle: f64,
+    /// The complementarity over the square that the cell would add if the solver left it; infinite where there
+    /// is no obstacle that presses in this direction, zero where nothing is known of the square.
+    pub ratio: f64,
     /// Twice the complementarity of contact.
     pub contact: f64,
-    /// What the flux does not balance, of either sign.
+    /// The mean of what the flux leaves.
     pub unbalanced: f64,
     /// The square of the distance of the two functions.
     pub distance: f64,
@@ -192,6 +196,12 @@ fn limit(mean: f64, values: &[f64]) -> f64 {
     if deepest > mean.abs() { mean.abs() / deepest } else { 1.0 }
 }
 
+/// An integral of squares: corrections of rules along curved zeros have weights of both signs, so that the sum of
+/// values at rounding may be negative.
+fn integral_of_square(sum: f64) -> f64 {
+    if sum < 0.0 { 0.0 } else { sum }
+}
+
 /// Integrals over the boundary, by cell; empty where there are none.
 pub(super) struct BoundaryTerms {
     /// Norms of what Neumann data and contact forces have besides those of the pair, with the constant of the
@@ -334,7 +344,8 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
             terms.least_coefficient = terms.least_coefficient.min(alpha);
             terms.least_reaction = terms.least_reaction.min(reaction);
         });
-        terms.distance += from_values;
+        let [mismatch, from_values] = [mismatch, from_values].map(integral_of_square);
+        terms.distance = integral_of_square(terms.distance) + from_values;
         terms.mismatch = mismatch + from_values;
         let diameter = self.mesh.cell_diameter(cell).to_f64();
         let by_gradient = diameter / (PI * terms.least_coefficient.sqrt());
@@ -346,24 +357,25 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
             let multiplier = balance.mean + share * (value - balance.mean);
             terms.obstacle += 2.0 * multiplier.abs() * gap;
         }
-        // what the solver leaves away from contact would count once there, and squared here
+        terms.unbalanced = balance.mean;
         let square_of_mean = balance.mean * balance.mean * volume;
-        let of_solver = friedrichs.map(|c| c * c * square_of_mean / terms.least_coefficient);
-        let is_force = admissible.bounds[bound].is_some()
-            && of_solver.is_none_or(|of_solver| terms.obstacle <= of_solver);
-        if !is_force {
-            (terms.obstacle, terms.unbalanced) = (0.0, balance.mean);
-        }
-        let left = if is_force { 1.0 - share } else { 1.0 };
-        let of_load = (balance.rest + left * left * balance.variation).sqrt();
+        terms.ratio = match (admissible.bounds[bound], friedrichs) {
+            (None, _) => f64::INFINITY,
+            (Some(_), Some(c)) if square_of_mean > 0.0 => {
+                terms.obstacle * terms.least_coefficient / (c * c * square_of_mean)
+            }
+            _ => 0.0,
+        };
         let of_trace =
             boundary.traces.get(cell).map_or(0.0, |n| n / terms.least_coefficient.sqrt());
-        let [in_gradient, in_value] = match by_value < by_gradient {
-            true => [of_trace, by_value * of_load],
-            false => [by_gradient * of_load + of_trace, 0.0],
-        };
-        terms.with_oscillation =
-            (mismatch.sqrt() + in_gradient).powi(2) + (from_values.sqrt() + in_value).powi(2);
+        terms.with_oscillation = [1.0 - share, 1.0].map(|left| {
+            let of_load = (balance.rest + left * left * balance.variation).sqrt();
+            let [in_gradient, in_value] = match by_value < by_gradient {
+                true => [of_trace, by_value * of_load],
+                false => [by_gradient * of_load + of_trace, 0.0],
+            };
+            (mismatch.sqrt() + in_gradient).powi(2) + (from_values.sqrt() + in_value).powi(2)
+        });
         terms.contact = boundary.contact.get(cell).map_or(0.0, |c| 2.0 * c);
         terms
     }
