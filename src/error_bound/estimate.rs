@@ -31,9 +31,9 @@ const WORTH_A_CHOICE: f64 = 0.01;
 pub enum Unproven {
     /// Integrals of data that are functions: a rule need not be exact.
     Quadrature,
-    /// Dirichlet data that are not linear on facets: `v` takes them at vertices only.
+    /// Dirichlet data of a higher degree than `v` on facets: `v` takes them at its nodes only.
     Boundary,
-    /// Obstacles and gaps that are not linear in cells: `v` satisfies them at points only.
+    /// Obstacles and gaps of a higher degree than `v` in cells: `v` satisfies them at points only.
     Obstacle,
     /// What the solver left, where no constant of Friedrichs' inequality is known and the reaction vanishes
     /// somewhere.
@@ -50,7 +50,8 @@ pub struct BoundParts {
     pub obstacle: f64,
     /// The complementarity of contact.
     pub contact: f64,
-    /// Data less their means in cells and on Neumann facets.
+    /// Data less their means in cells and on Neumann facets; for quadratics also what the multiplier and contact
+    /// forces have of the other sign.
     pub oscillation: f64,
     /// What the flux does not balance: the residual of an inexact solution.
     pub algebra: f64,
@@ -181,8 +182,9 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         let by_value = least_root(|t| t.least_reaction).recip();
         let constant = by_gradient.map_or(by_value, |c| c.min(by_value));
         let contact = sum(|t| t.contact);
-        // what the solver leaves away from contact may be taken for forces or for its error, which the first
-        // choice only asks where no obstacle presses; the least bound counts
+        // what the solver leaves away from contact may be taken for forces or, on a sequence of meshes whose
+        // solves are inexact, for its error; the least bound counts. At first it is an error only where no
+        // obstacle presses
         let chosen = |least_ratio: f64| {
             let (mut with_oscillation, mut obstacle) = (0.0, 0.0);
             let unbalanced = terms.iter().enumerate().map(|(cell, terms)| {
@@ -201,7 +203,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         };
         let mut choice = chosen(f64::INFINITY);
         let away: f64 = terms.iter().filter(|t| t.ratio >= 1.0).map(|t| t.obstacle).sum();
-        if away > WORTH_A_CHOICE * (choice.flux_square + choice.obstacle) {
+        if !coarser.is_empty() && away > WORTH_A_CHOICE * (choice.flux_square + choice.obstacle) {
             for least_ratio in [100.0, 10.0, 1.0] {
                 let other = chosen(least_ratio);
                 let is_less =

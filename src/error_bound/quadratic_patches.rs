@@ -17,6 +17,7 @@
 //! Source: D. Braess, J. Schöberl, Math. Comp. 77 (2008), 651-672; D. Braess, V. Pillwein, J. Schöberl, Comput.
 //! Methods Appl. Mech. Engrg. 198 (2009), 1189-1197.
 
+use std::convert::Infallible;
 use std::ops::Range;
 
 use super::patches::{around, solve};
@@ -25,7 +26,7 @@ use crate::assemble::local::StiffnessTable;
 use crate::assemble::space::tables::BasisAt;
 use crate::assemble::space::{INWARD, Place, Space};
 use crate::element::Node;
-use crate::mesh::{BoundaryPart, Neighbour, Neighbours};
+use crate::mesh::{BoundaryPart, Neighbour, Neighbours, edge_vertices};
 use crate::parallel::cells;
 use crate::real::{Point, Real, point_f64};
 
@@ -37,10 +38,17 @@ type OfFacets = [[f64; 3]; 3];
 struct CellData {
     /// By facet the densities of `alpha grad u . n`.
     normal: Products,
-    /// By facet and vertex of the patch those of the part of the vertex, `phi alpha grad u . n`.
-    parts: [Products; 4],
+    /// The stiffness term of each unknown.
+    stiffness: [f64; 10],
     /// By vertex of the patch the divergence tested with the barycentric coordinates.
     divergence: Products,
+}
+
+impl CellData {
+    /// The densities of the part of a vertex of a facet, `phi alpha grad u . n`.
+    fn part<const D: usize>(&self, facet: usize, vertex: usize) -> [f64; 4] {
+        densities::<D>(&products_on_facet::<D>(&self.normal[facet], facet)[vertex], facet)
+    }
 }
 
 /// What the patches read.
@@ -56,10 +64,10 @@ struct Patches<'s, 'a, T: Real, const D: usize> {
 
 impl<T: Real, const D: usize> Space<'_, T, D> {
     /// The densities `c_Fj` of a conforming quadratic function, without those of Neumann data and contact.
-    pub(super) fn quadratic_patch_fluxes(&self, u: &[T], loads: &CellLoads) -> Vec<f64> {
+    pub(super) fn quadratic_patch_fluxes(&self, u: &[T], loads: &mut CellLoads) -> Vec<f64> {
         let (corners, starts) = self.corners();
         let neighbours = Neighbours::new(self.mesh);
-        let cells = self.patch_data(u, loads);
+        let cells = self.patch_data(u, &neighbours, loads);
         let mut given: Vec<_> = loads.neumann.iter().chain(&loads.contact).collect();
         given.sort_unstable_by_key(|(place, _)| *place);
         let patches = Patches { space: self, neighbours, cells, given, corners, starts };
@@ -88,27 +96,87 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         flux
     }
 
-    fn patch_data(&self, u: &[T], loads: &CellLoads) -> Vec<CellData> {
+    fn patch_data(&self, u: &[T], neighbours: &Neighbours, loads: &mut CellLoads) -> Vec<CellData> {
         let corners: Vec<BasisAt<f64>> =
             (0..=D).map(|k| self.basis_at(&Node::vertex(k).centre(D))).collect();
-        let table = self.stiffness_table();
-        let data = cells::map(self.mesh.n_cells(), &|cells: Range<usize>| {
-            let of = |cell| self.patch_data_in(cell, u, loads, (&corners, &table));
-            cells.map(of).collect::<Vec<_>>()
+        let (table, n_cells) = (self.stiffness_table(), self.mesh.n_cells());
+        let data = cells::map(n_cells, &|cells: Range<usize>| {
+            cells.map(|cell| self.patch_data_in(cell, u, (&corners, &table))).collect::<Vec<_>>()
         });
         let mut data: Vec<CellData> = data.into_iter().flatten().collect();
+        if loads.surrounded.contains(&true) {
+            self.divide_multipliers(&data, neighbours, loads);
+        }
+        let loads = &*loads;
+        let n = self.per_cell();
+        let fill = |cells: Range<usize>, out: &mut [CellData]| {
+            for (cell, data) in cells.zip(out) {
+                for (i, of_linear) in loads.functionals.iter().enumerate() {
+                    let left = data.stiffness[i] - loads.values[cell * n + i];
+                    add(&mut data.divergence, |a, j| left * of_linear[a][j]);
+                }
+                for facet in 0..=D {
+                    let products = products_on_facet::<D>(&data.normal[facet], facet);
+                    add(&mut data.divergence, |a, j| -products[a][j]);
+                }
+            }
+            Ok::<(), Infallible>(())
+        };
+        let Ok(()) = cells::for_each(n_cells, &|c| c, &mut data, &fill);
         for ((cell, _), products) in &loads.neumann {
             add(&mut data[*cell].divergence, |a, j| products[a][j]);
         }
         data
     }
 
-    /// The data of a cell; the divergence is that with the fluxes of Neumann data and contact as loads.
+    /// Divides the multipliers of unknowns amid contact among their cells as the mean of the two fluxes
+    /// through each facet balances them, since the function is there as smooth as the obstacle.
+    fn divide_multipliers(
+        &self,
+        data: &[CellData],
+        neighbours: &Neighbours,
+        loads: &mut CellLoads,
+    ) {
+        let (n, surrounded) = (self.per_cell(), &loads.surrounded);
+        let fill = |cells: Range<usize>, out: &mut [f64]| {
+            for (cell, out) in cells.zip(out.chunks_exact_mut(n)) {
+                if !(0..n).any(|i| surrounded[self.dofs.of(cell, i)]) {
+                    continue;
+                }
+                let mut balance = data[cell].stiffness;
+                for facet in 0..=D {
+                    let mut flux = data[cell].normal[facet];
+                    if let Neighbour::Cell { cell: other, local } = neighbours.across(cell, facet) {
+                        let local = usize::from(local);
+                        let across = &data[other as usize].normal[local];
+                        let pairs = vertices_of::<D>(facet).zip(vertices_of::<D>(local));
+                        pairs.for_each(|(j, there)| flux[j] = 0.5 * (flux[j] - across[there]));
+                    }
+                    let products = products_on_facet::<D>(&flux, facet);
+                    for a in 0..=D {
+                        let hat: f64 = products[a].iter().sum();
+                        balance[a] -= 2.0 * products[a][a] - hat;
+                    }
+                    for (balance, &[a, b]) in balance[D + 1..].iter_mut().zip(edge_vertices(D)) {
+                        *balance -= 4.0 * products[a][b];
+                    }
+                }
+                for (i, out) in out.iter_mut().enumerate() {
+                    if surrounded[self.dofs.of(cell, i)] {
+                        *out = balance[i];
+                    }
+                }
+            }
+            Ok::<(), Infallible>(())
+        };
+        let Ok(()) = cells::for_each(self.mesh.n_cells(), &|c| c * n, &mut loads.values, &fill);
+    }
+
+    /// The data of a cell, without divergence.
     fn patch_data_in(
         &self,
         cell: usize,
         u: &[T],
-        loads: &CellLoads,
         (corners, table): (&[BasisAt<f64>], &StiffnessTable<T>),
     ) -> CellData {
         let n = self.per_cell();
@@ -137,21 +205,14 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
                 data.normal[facet][k] = -(D as f64) * coefficient * sum;
             }
         }
-        for i in 0..n {
-            let mut left = -loads.values[cell * n + i];
+        for (i, term) in data.stiffness.iter_mut().enumerate().take(n) {
             for (j, value) in local.iter().enumerate().take(n) {
                 let entry = match varying {
                     None => alpha * table.entry::<D>(&metric, i, j),
                     Some((varying, values)) => varying.stiffness::<D>(values, &metric, i, j),
                 };
-                left += entry.to_f64() * value;
+                *term += entry.to_f64() * value;
             }
-            add(&mut data.divergence, |a, j| left * loads.functionals[i][a][j]);
-        }
-        for facet in 0..=D {
-            let products = products_on_facet::<D>(&data.normal[facet], facet);
-            add(&mut data.divergence, |a, j| -products[a][j]);
-            data.parts[facet] = products.map(|of_vertex| densities::<D>(&of_vertex, facet));
         }
         data
     }
@@ -226,7 +287,7 @@ impl<T: Real, const D: usize> Patches<'_, '_, T, D> {
             of_vertices
         };
         let place = (cell as usize, local);
-        let normal = on_facet(&self.cells[place.0].parts[local][usize::from(own)], local);
+        let normal = on_facet(&self.cells[place.0].part::<D>(local, usize::from(own)), local);
         let mut free = || {
             *n_free += D;
             Slot { first: *n_free - D, sign: 1.0, shift: [0.0; 3] }
@@ -237,8 +298,8 @@ impl<T: Real, const D: usize> Patches<'_, '_, T, D> {
                 let position = corners.binary_search_by_key(&other, |&(cell, _)| cell);
                 let Some(known) = position.ok().filter(|&l| l < slots.len()) else { return free() };
                 let own = corners[known].1;
-                let across = &self.cells[other as usize].parts[there][usize::from(own)];
-                let across = on_facet(across, there);
+                let across = self.cells[other as usize].part::<D>(there, usize::from(own));
+                let across = on_facet(&across, there);
                 let slot = around::<D>(own).position(|local| local == there).unwrap_or(0);
                 let first = slots[known][slot].first;
                 let shift = std::array::from_fn(|p| -normal[p] - across[p]);

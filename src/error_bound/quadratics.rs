@@ -40,6 +40,8 @@ pub(super) struct CellLoads {
     pub contact: Vec<(Place, Products)>,
     /// By unknown of a cell its functional at `lambda_a lambda_j`.
     pub functionals: Vec<Products>,
+    /// For shared unknowns, whether the unknown is in contact with all others of the cells around.
+    pub surrounded: Vec<bool>,
 }
 
 /// `c_Fj` from the products `int_F q.n lambda_j`: `lambda` has on a facet the products
@@ -92,6 +94,18 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         for cell in (0..n_cells).filter(|_| !self.broken) {
             let kind = usize::from(is_held(cell));
             (0..n).for_each(|i| around[self.dofs.of(cell, i)][kind] += volume(cell));
+        }
+        let mut surrounded = vec![false; around.len()];
+        for (unknown, surrounded) in surrounded.iter_mut().enumerate() {
+            let is_bound = bounds[unknown].is_inequality() && contact.len() == bounds.len();
+            *surrounded = is_bound && around[unknown][0] == 0.0;
+        }
+        if !self.broken {
+            for f in self.mesh.boundary().iter().filter(|f| f.part != BoundaryPart::Dirichlet) {
+                for i in self.nodes_on(usize::from(f.local)) {
+                    surrounded[self.dofs.of(f.cell as usize, i)] = false;
+                }
+            }
         }
         let part_of = |cell: usize, kind: usize, unknown: usize| match around.get(unknown) {
             None => 1.0,
@@ -150,40 +164,47 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
             let Some((_, products)) = of_contact.last_mut() else { continue };
             add(products, |a, j| force.value * functionals[force.node][a][j]);
         }
-        Ok(CellLoads { values, neumann, contact: of_contact, functionals })
+        Ok(CellLoads { values, neumann, contact: of_contact, functionals, surrounded })
     }
 
     /// Makes contact forces smooth: linear between their means around vertices, and what is then left of
     /// their products with hat functions divided among the contact facets at the vertex by their measures.
-    pub(super) fn smooth_forces(&self, contact: &mut [(Place, Products)]) {
+    /// Where a facet at a vertex has all of its nodes in contact, those that have not get nothing.
+    pub(super) fn smooth_forces(&self, forces: &[NodeForce], contact: &mut [(Place, Products)]) {
         let measure = |(cell, local): Place| self.mesh.geometry(cell).facet_measure(local).to_f64();
         let vertex = |(cell, _): Place, k: usize| self.mesh.cell(cell)[k] as usize;
-        let mut of_vertices = vec![(0.0, 0.0); self.mesh.vertices().len()];
-        for (place, products) in &*contact {
+        let by_facet = forces.chunk_by(|a, b| (a.cell, a.local) == (b.cell, b.local));
+        let is_held: Vec<bool> =
+            by_facet.map(|of| of.len() == self.bounded_nodes_on(of[0].local).count()).collect();
+        // the sum of forces at each vertex, the measures of held facets and of the others
+        let mut of_vertices = vec![(0.0, [0.0; 2]); self.mesh.vertices().len()];
+        for ((place, products), is_held) in contact.iter().zip(&is_held) {
             for k in vertices_of::<D>(place.1) {
-                let (sum, weight) = &mut of_vertices[vertex(*place, k)];
+                let (sum, weights) = &mut of_vertices[vertex(*place, k)];
                 *sum += products[k].iter().sum::<f64>();
-                *weight += measure(*place);
+                weights[usize::from(!is_held)] += measure(*place);
             }
         }
+        let part = |place: Place, is_held: bool, k: usize| match of_vertices[vertex(place, k)].1 {
+            [held, _] if held > 0.0 => f64::from(u8::from(is_held)) * measure(place) / held,
+            [_, all] => measure(place) / all,
+        };
         let mut left: Vec<f64> = of_vertices.iter().map(|(sum, _)| *sum).collect();
-        for (place, products) in &mut *contact {
-            let mean = |k: usize| {
-                let (sum, weight) = of_vertices[vertex(*place, k)];
-                D as f64 * sum / weight * measure(*place)
-            };
+        for ((place, products), &is_held) in contact.iter_mut().zip(&is_held) {
             let mut densities = [0.0; 4];
-            vertices_of::<D>(place.1).for_each(|k| densities[k] = mean(k));
+            for k in vertices_of::<D>(place.1) {
+                densities[k] =
+                    D as f64 * of_vertices[vertex(*place, k)].0 * part(*place, is_held, k);
+            }
             *products = products_on_facet::<D>(&densities, place.1);
             for k in vertices_of::<D>(place.1) {
                 left[vertex(*place, k)] -= products[k].iter().sum::<f64>();
             }
         }
-        for (place, products) in contact {
+        for ((place, products), &is_held) in contact.iter_mut().zip(&is_held) {
             let mut moments = products.map(|row| row.iter().sum());
             for k in vertices_of::<D>(place.1) {
-                let v = vertex(*place, k);
-                moments[k] += left[v] * measure(*place) / of_vertices[v].1;
+                moments[k] += left[vertex(*place, k)] * part(*place, is_held, k);
             }
             *products = products_on_facet::<D>(&densities::<D>(&moments, place.1), place.1);
         }
