@@ -188,8 +188,7 @@ impl<T: Real, const D: usize> Discretisation<'_, T, D> {
                     true => jumps[(centre * (D + 1) + local) * MAX_MOMENTS + k],
                     false => T::lit(0.0),
                 };
-                let jumps =
-                    std::array::from_fn(|local| std::array::from_fn(|k| jump(local, k)));
+                let jumps = std::array::from_fn(|local| std::array::from_fn(|k| jump(local, k)));
                 lifting.products_with_moments(neighbours, centre, &jumps, kept)
             };
             centres.map(of_centre).collect::<Vec<_>>()

@@ -68,8 +68,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         for (point, weight) in self.facet_rule.iter() {
             let basis = self.basis_at(&facet_to_cell(point, local));
             for k in 0..=D {
-                let slope: f64 =
-                    values.iter().zip(&basis.derivatives).map(|(u, d)| u * d[k]).sum();
+                let slope: f64 = values.iter().zip(&basis.derivatives).map(|(u, d)| u * d[k]).sum();
                 let along = point_f64(geometry.gradient(k)).dot(&normal);
                 sum += weight * scale * slope * along * basis.values[node];
             }

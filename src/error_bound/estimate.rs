@@ -206,7 +206,8 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         if !coarser.is_empty() && away > WORTH_A_CHOICE * (choice.flux_square + choice.obstacle) {
             for least_ratio in [100.0, 10.0, 1.0] {
                 let other = chosen(least_ratio);
-                let is_less = other.flux_square + other.obstacle < choice.flux_square + choice.obstacle;
+                let is_less =
+                    other.flux_square + other.obstacle < choice.flux_square + choice.obstacle;
                 choice = if is_less { other } else { choice };
             }
         }
@@ -265,7 +266,8 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         let found = [
             (is_inexact, Unproven::Quadrature),
             (
-                has_data && !(is_below(&data.dirichlet, pair.degree) && self.takes_dirichlet_data(pair)),
+                has_data
+                    && !(is_below(&data.dirichlet, pair.degree) && self.takes_dirichlet_data(pair)),
                 Unproven::Boundary,
             ),
             (is_curved || may_leave, Unproven::Obstacle),

@@ -105,7 +105,8 @@ impl<T: Real, const D: usize> Discretisation<'_, T, D> {
         let forces = space.contact_forces(inequality, &solution.contact, &residual, u);
         let multipliers = multipliers.as_deref();
         let flux = if space.degree == 2 {
-            let mut loads = space.cell_loads(u, &residual, (&inequality.bounds, &solution.contact), &forces)?;
+            let mut loads =
+                space.cell_loads(u, &residual, (&inequality.bounds, &solution.contact), &forces)?;
             // multipliers of jumps alone may contain a flux without divergence that alternates between facets
             // and that jumps hardly see: that of WOPSIP has an error of first order in the plane. Its
             // equations, tested with hat functions, are those of a conforming function
@@ -113,7 +114,7 @@ impl<T: Real, const D: usize> Discretisation<'_, T, D> {
                 space.densities_of_moments(&self.facet_fluxes(u, multipliers, D)?)
             } else {
                 if self.owns_rows() {
-                    space.smooth_forces(&forces, &mut loads.contact);
+                    space.smooth_forces(&mut loads.contact);
                 }
                 space.quadratic_patch_fluxes(u, &mut loads)
             };

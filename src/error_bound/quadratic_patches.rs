@@ -23,8 +23,8 @@ use std::ops::Range;
 use super::patches::{around, solve};
 use super::quadratics::{CellLoads, Products, add, densities, products_on_facet, vertices_of};
 use crate::assemble::local::StiffnessTable;
-use crate::assemble::space::{INWARD, Place, Space};
 use crate::assemble::space::tables::BasisAt;
+use crate::assemble::space::{INWARD, Place, Space};
 use crate::element::Node;
 use crate::mesh::{BoundaryPart, Neighbour, Neighbours, edge_vertices};
 use crate::parallel::cells;
@@ -96,12 +96,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         flux
     }
 
-    fn patch_data(
-        &self,
-        u: &[T],
-        neighbours: &Neighbours,
-        loads: &mut CellLoads,
-    ) -> Vec<CellData> {
+    fn patch_data(&self, u: &[T], neighbours: &Neighbours, loads: &mut CellLoads) -> Vec<CellData> {
         let corners: Vec<BasisAt<f64>> =
             (0..=D).map(|k| self.basis_at(&Node::vertex(k).centre(D))).collect();
         let (table, n_cells) = (self.stiffness_table(), self.mesh.n_cells());
@@ -174,8 +169,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
             }
             Ok::<(), Infallible>(())
         };
-        let Ok(()) =
-            cells::for_each(self.mesh.n_cells(), &|c| c * n, &mut loads.values, &fill);
+        let Ok(()) = cells::for_each(self.mesh.n_cells(), &|c| c * n, &mut loads.values, &fill);
     }
 
     /// The data of a cell, without divergence.
@@ -272,9 +266,8 @@ impl<T: Real, const D: usize> Patches<'_, '_, T, D> {
                 0.0 => slot.shift[p],
                 sign => sign * unknowns[slot.first + p] + slot.shift[p],
             };
-            let of_facet = |slot: &Slot| {
-                std::array::from_fn(|p| if p < D { density(slot, p) } else { 0.0 })
-            };
+            let of_facet =
+                |slot: &Slot| std::array::from_fn(|p| if p < D { density(slot, p) } else { 0.0 });
             parts.push(slots.each_ref().map(of_facet));
         }
     }
@@ -356,7 +349,8 @@ impl<T: Real, const D: usize> Patches<'_, '_, T, D> {
         });
         let mut balance = total;
         let densities = || {
-            let of_facet = |(slot, facet)| vertices_of::<D>(facet).enumerate().map(move |v| (slot, facet, v));
+            let of_facet =
+                |(slot, facet)| vertices_of::<D>(facet).enumerate().map(move |v| (slot, facet, v));
             slots.iter().zip(around::<D>(own)).flat_map(of_facet)
         };
         for (slot, facet, (p, j)) in densities() {

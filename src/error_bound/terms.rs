@@ -4,8 +4,8 @@ use std::f64::consts::PI;
 
 use super::{NoBound, PrimalDualPair};
 use crate::assemble::cut_simplices::CutRule;
-use crate::assemble::space::{Place, Space};
 use crate::assemble::space::tables::{BasisAt, CellTable};
+use crate::assemble::space::{Place, Space};
 use crate::mesh::{BoundaryPart, edge_vertices};
 use crate::problem::{DataByGroup, DatumRef, Field};
 use crate::quadrature::facet_to_cell;
@@ -380,7 +380,8 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
     pub(super) fn boundary_terms(&self, pair: &PrimalDualPair) -> Result<BoundaryTerms, NoBound> {
         let n_cells = self.mesh.n_cells();
         let zeros = |is_needed: bool| vec![0.0; if is_needed { n_cells } else { 0 }];
-        let has_fluxes = self.problem.has_neumann_data() && self.mesh.has_part(BoundaryPart::Neumann);
+        let has_fluxes =
+            self.problem.has_neumann_data() && self.mesh.has_part(BoundaryPart::Neumann);
         let has_gap = self.problem.has_gap();
         let mut terms = BoundaryTerms {
             traces: zeros(has_fluxes || has_gap && pair.degree > 1),

@@ -93,7 +93,10 @@ fn right_side<const D: usize>(
 }
 
 /// A scene with the placement of a scheme, and the scheme.
-pub fn placed<const D: usize>(scene: &Scene<D>, name: &str) -> (Scene<D>, Box<dyn AnyScheme<f64, D>>) {
+pub fn placed<const D: usize>(
+    scene: &Scene<D>,
+    name: &str,
+) -> (Scene<D>, Box<dyn AnyScheme<f64, D>>) {
     let named: NamedScheme = name.parse().unwrap();
     let mut scene = scene.clone();
     scene.problem.constraint_set = named.constraint_set();
