@@ -169,42 +169,33 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
 
     /// Makes contact forces smooth: linear between their means around vertices, and what is then left of
     /// their products with hat functions divided among the contact facets at the vertex by their measures.
-    /// Where a facet at a vertex has all of its nodes in contact, those that have not get nothing.
-    pub(super) fn smooth_forces(&self, forces: &[NodeForce], contact: &mut [(Place, Products)]) {
+    pub(super) fn smooth_forces(&self, contact: &mut [(Place, Products)]) {
         let measure = |(cell, local): Place| self.mesh.geometry(cell).facet_measure(local).to_f64();
         let vertex = |(cell, _): Place, k: usize| self.mesh.cell(cell)[k] as usize;
-        let by_facet = forces.chunk_by(|a, b| (a.cell, a.local) == (b.cell, b.local));
-        let is_held: Vec<bool> =
-            by_facet.map(|of| of.len() == self.bounded_nodes_on(of[0].local).count()).collect();
-        // the sum of forces at each vertex, the measures of held facets and of the others
-        let mut of_vertices = vec![(0.0, [0.0; 2]); self.mesh.vertices().len()];
-        for ((place, products), is_held) in contact.iter().zip(&is_held) {
+        let mut of_vertices = vec![(0.0, 0.0); self.mesh.vertices().len()];
+        for (place, products) in &*contact {
             for k in vertices_of::<D>(place.1) {
-                let (sum, weights) = &mut of_vertices[vertex(*place, k)];
+                let (sum, weight) = &mut of_vertices[vertex(*place, k)];
                 *sum += products[k].iter().sum::<f64>();
-                weights[usize::from(!is_held)] += measure(*place);
+                *weight += measure(*place);
             }
         }
-        let part = |place: Place, is_held: bool, k: usize| match of_vertices[vertex(place, k)].1 {
-            [held, _] if held > 0.0 => f64::from(u8::from(is_held)) * measure(place) / held,
-            [_, all] => measure(place) / all,
-        };
+        let part = |place: Place, k: usize| measure(place) / of_vertices[vertex(place, k)].1;
         let mut left: Vec<f64> = of_vertices.iter().map(|(sum, _)| *sum).collect();
-        for ((place, products), &is_held) in contact.iter_mut().zip(&is_held) {
+        for (place, products) in &mut *contact {
             let mut densities = [0.0; 4];
             for k in vertices_of::<D>(place.1) {
-                densities[k] =
-                    D as f64 * of_vertices[vertex(*place, k)].0 * part(*place, is_held, k);
+                densities[k] = D as f64 * of_vertices[vertex(*place, k)].0 * part(*place, k);
             }
             *products = products_on_facet::<D>(&densities, place.1);
             for k in vertices_of::<D>(place.1) {
                 left[vertex(*place, k)] -= products[k].iter().sum::<f64>();
             }
         }
-        for ((place, products), &is_held) in contact.iter_mut().zip(&is_held) {
+        for (place, products) in contact {
             let mut moments = products.map(|row| row.iter().sum());
             for k in vertices_of::<D>(place.1) {
-                moments[k] += left[vertex(*place, k)] * part(*place, is_held, k);
+                moments[k] += left[vertex(*place, k)] * part(*place, k);
             }
             *products = products_on_facet::<D>(&densities::<D>(&moments, place.1), place.1);
         }

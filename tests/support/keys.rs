@@ -9,6 +9,7 @@ pub const ROW_KEYS: [&str; 32] = [
     "label",
     "level",
     "theta",
+    "tolerance",
     "parameters",
     "cells",
     "unknowns",
