@@ -196,6 +196,12 @@ fn limit(mean: f64, values: &[f64]) -> f64 {
     if deepest > mean.abs() { mean.abs() / deepest } else { 1.0 }
 }
 
+/// An integral of squares: corrections of rules along curved zeros have weights of both signs, so that the sum of
+/// values at rounding may be negative.
+fn integral_of_square(sum: f64) -> f64 {
+    if sum < 0.0 { 0.0 } else { sum }
+}
+
 /// Integrals over the boundary, by cell; empty where there are none.
 pub(super) struct BoundaryTerms {
     /// Norms of what Neumann data and contact forces have besides those of the pair, with the constant of the
@@ -338,7 +344,8 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
             terms.least_coefficient = terms.least_coefficient.min(alpha);
             terms.least_reaction = terms.least_reaction.min(reaction);
         });
-        terms.distance += from_values;
+        let [mismatch, from_values] = [mismatch, from_values].map(integral_of_square);
+        terms.distance = integral_of_square(terms.distance) + from_values;
         terms.mismatch = mismatch + from_values;
         let diameter = self.mesh.cell_diameter(cell).to_f64();
         let by_gradient = diameter / (PI * terms.least_coefficient.sqrt());

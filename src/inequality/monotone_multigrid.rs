@@ -115,6 +115,12 @@ struct MultigridIterate<'a, T> {
     correction: Vec<T>,
     /// Whether an unknown is fixed or active and takes no part in the linear correction.
     eliminated: Vec<bool>,
+    /// The diagonal of the matrix.
+    diagonal: Vec<T>,
+    /// `b - A u` on all unknowns.
+    whole_residual: Vec<f64>,
+    /// The energy norm of the values before the last correction; see [`Scales::energy_norm`].
+    energy_norm: f64,
     cycles: usize,
 }
 
@@ -133,6 +139,9 @@ impl<'a, T: Real> MultigridIterate<'a, T> {
             residual: zeros.clone(),
             correction: zeros,
             eliminated: vec![false; n],
+            diagonal: Vec::new(),
+            whole_residual: vec![0.0; n],
+            energy_norm: 0.0,
             cycles: 0,
         }
     }
@@ -160,6 +169,7 @@ impl<'a, T: Real> MultigridIterate<'a, T> {
             _ => aggregated.as_ref(),
         };
         let mut multigrid = Multigrid::new(matrix, coarse_level);
+        self.diagonal = matrix.diagonal();
         let least = guess.energy_tolerance.unwrap_or(0.0).max(4.0 * T::EPSILON);
         let tolerance = settings.tolerance.max(least);
         let limit =
@@ -172,7 +182,7 @@ impl<'a, T: Real> MultigridIterate<'a, T> {
                 by_sweeps += self.gauss_seidel_sweep()?;
             }
             let by_correction = self.correct(&mut multigrid)?;
-            let energy_norm = self.energy_norm();
+            let energy_norm = self.energy_norm;
             if !(energy_norm.is_finite() && by_sweeps.is_finite()) {
                 return Err(Outcome::NotFinite);
             }
@@ -193,11 +203,10 @@ impl<'a, T: Real> MultigridIterate<'a, T> {
     fn gauss_seidel_sweep(&mut self) -> Result<f64, Outcome> {
         let Inequality { matrix, load, bounds, .. } = self.inequality;
         let mut sum = 0.0;
-        for (i, bound) in bounds.iter().enumerate() {
+        for (i, (bound, &d)) in bounds.iter().zip(&self.diagonal).enumerate() {
             if bound.fixed_value().is_some() {
                 continue;
             }
-            let d = matrix.get(i, i);
             if d <= T::lit(0.0) {
                 return Err(Outcome::NotCoercive);
             }
@@ -255,17 +264,25 @@ impl<'a, T: Real> MultigridIterate<'a, T> {
         Ok(curvature * length.to_f64().powi(2))
     }
 
-    /// Marks fixed and active unknowns as eliminated and computes the residual: zero on eliminated
-    /// unknowns, `b - A u` on inactive ones.
+    /// Marks fixed and active unknowns as eliminated and computes the energy norm of the values and the
+    /// residual: zero on eliminated unknowns, `b - A u` on inactive ones.
     fn eliminate_active(&mut self) {
-        let Inequality { matrix, load, bounds, .. } = self.inequality;
-        for (i, bound) in bounds.iter().enumerate() {
+        let inequality = self.inequality;
+        inequality.residual_f64(&self.values, &mut self.whole_residual);
+        let diagonal = |i: usize| match self.diagonal[i].to_f64() {
+            d if d > 0.0 => d,
+            _ => positive_diagonal(inequality, i),
+        };
+        let residual = &self.whole_residual;
+        self.energy_norm =
+            Scales::of(inequality, &self.values, residual, &[], &diagonal, 1.0).energy_norm;
+        for (i, bound) in inequality.bounds.iter().enumerate() {
             let x = self.values[i];
             self.eliminated[i] = bound.fixed_value().is_some()
                 || bound.lower().is_some_and(|l| x <= l)
                 || bound.upper().is_some_and(|u| x >= u);
-            let residual = load[i].to_f64() - matrix.row_dot_f64(i, &self.values);
-            self.residual[i] = if self.eliminated[i] { T::lit(0.0) } else { T::lit(residual) };
+            let residual = if self.eliminated[i] { 0.0 } else { self.whole_residual[i] };
+            self.residual[i] = T::lit(residual);
         }
     }
 
@@ -282,15 +299,6 @@ impl<'a, T: Real> MultigridIterate<'a, T> {
             }
         }
         longest.max(1.0)
-    }
-
-    /// The energy norm of the values; see [`Scales::energy_norm`].
-    fn energy_norm(&self) -> f64 {
-        let inequality = self.inequality;
-        let mut residual = vec![0.0; self.values.len()];
-        inequality.residual_f64(&self.values, &mut residual);
-        let diagonal = |i: usize| positive_diagonal(inequality, i);
-        Scales::of(inequality, &self.values, &residual, &[], &diagonal, 1.0).energy_norm
     }
 
     /// The solution, with the contact states of its values.

@@ -7,6 +7,7 @@
 mod adaptive;
 mod adaptive_meshes;
 mod adaptivity;
+mod cascade;
 mod hierarchy;
 mod iteration;
 mod meshes;

@@ -3,13 +3,14 @@
 use std::sync::Arc;
 use std::time::Instant;
 
+use super::cascade::solve_cascade;
 use super::meshes::Meshes;
 use super::solved::Solved;
 use crate::algebra::{Bound, Contact, Inequality, SparseMatrix, Start, Support};
 use crate::assemble::{DataQuadrature, Discretisation};
 use crate::constraint::Nodes;
 use crate::error::Error;
-use crate::inequality::{InequalitySolver, InitialGuess, MonotoneMultigrid, Outcome, StepCounter};
+use crate::inequality::{InequalitySolver, InitialGuess, Outcome, StepCounter};
 use crate::linear::{CoarseLevel, CoarseSpaces, P1Level};
 use crate::problem::Problem;
 use crate::real::Real;
@@ -18,14 +19,6 @@ use crate::scheme::ConformingP1;
 /// Relative tolerance in the energy norm for iterative solvers of P1, whose solution serves as an
 /// initial guess only: below the discretisation error of all meshes that fit into memory.
 const P1_ENERGY_TOLERANCE: f64 = 1e-4;
-
-/// Relative tolerance in the energy norm of the start on a mesh without coarser ones. On a plate with
-/// holes and 122 000 vertices, with three obstacles, 62 to 96 active sets from a cold start become 9 to
-/// 27, 4 to 13, 2 to 4 and 1 or 2 for the tolerances 3e-2, 1e-2, 1e-3 and 1e-4.
-const FLAT_ENERGY_TOLERANCE: f64 = 1e-3;
-
-/// Largest number of cycles of that start; 22 to 27 are usual.
-const MAX_FLAT_CYCLES: usize = 60;
 
 /// A conforming P1 function from which a solve starts: the solution on the same mesh, or the
 /// prolongation of the solution on the next coarser one.
@@ -120,8 +113,8 @@ pub(super) struct P1Iteration<'a, T: Real, const D: usize> {
 impl<T: Real, const D: usize> P1Iteration<'_, T, D> {
     /// The start of conforming P1 on a mesh: the solution on the mesh before, where a new vertex has the
     /// mean of the values at the ends of its edge and is active if both are. On the coarsest mesh, if the
-    /// solver uses coarse spaces for so many unknowns: spaces by aggregation, and a solution by monotone
-    /// multigrid to [`FLAT_ENERGY_TOLERANCE`]; else `None`.
+    /// solver uses coarse spaces for so many unknowns: spaces by aggregation, and a solution on them from the
+    /// coarsest one up, see [`solve_cascade`]; else `None`.
     pub fn start(&mut self, position: usize) -> Result<Option<Arc<P1Solution<T>>>, Error> {
         if position == 0 {
             let size = self.meshes.mesh(position).vertices().len();
@@ -163,21 +156,16 @@ impl<T: Real, const D: usize> P1Iteration<'_, T, D> {
         let Some(coarser) = CoarseLevel::aggregated(&inequality.matrix, &fixed(&inequality)) else {
             return Ok(None);
         };
-        let coarse_spaces = CoarseSpaces::CoarseLevel(coarser);
         let mut start = P1Solution {
             contact: vec![Contact::Inactive; inequality.size()],
             values: Vec::new(),
-            coarse_spaces: coarse_spaces.clone(),
+            coarse_spaces: CoarseSpaces::CoarseLevel(coarser.clone()),
             seconds: 0.0,
             levels_solved: 0,
             start_cycles: 0,
         };
         if inequality.bounds.iter().any(Bound::is_inequality) {
-            let guess = InitialGuess::default()
-                .coarse_spaces(coarse_spaces)
-                .energy_tolerance(FLAT_ENERGY_TOLERANCE);
-            let solver = MonotoneMultigrid::default().max_cycles(MAX_FLAT_CYCLES);
-            let solution = solver.solve_from(&inequality, &guess);
+            let solution = solve_cascade(&inequality, Some(&coarser));
             start.start_cycles = solution.outer;
             // an initial guess need not be right
             if solution.outcome == Outcome::Converged {

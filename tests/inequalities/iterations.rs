@@ -67,6 +67,34 @@ fn strictly_complementary_scenes_need_few_iterations_in_other_dimensions() {
     few_iterations(scenes::signorini_harmonic::<3>(), &[4, 8]);
 }
 
+/// One mesh without coarser ones: neither active sets nor cycles of the start grow with the mesh, on which the start
+/// begins on spaces by aggregation.
+fn few_iterations_on_one_mesh<const D: usize>(scene: impl Fn() -> Scene<D>, levels: [usize; 2]) {
+    let mut checks = Checks::default();
+    for level in levels {
+        let mesh = scene().domain.mesh::<f64>(level).unwrap();
+        assert!(mesh.vertices().len() > 10_000, "multigrid begins there");
+        let study = Study::<f64, D>::new(scene()).on_mesh(mesh).levels([0]).scheme(ConformingP1);
+        let study = if level == levels[0] { study.scheme(Sipg::default()) } else { study };
+        for row in &study.run().unwrap().rows {
+            checks.certified(row, 1e-9);
+            let (outer, start) = (row.iterations.outer, row.iterations.start_cycles);
+            checks.that(outer.is_some_and(|n| n <= 8) && (1..=20).contains(&start), || {
+                format!("{} of {level}: {outer:?} active sets, {start} cycles", label(row))
+            });
+        }
+    }
+    checks.finish();
+}
+
+#[test]
+fn one_mesh_needs_few_iterations() {
+    few_iterations_on_one_mesh(|| scenes::radial::<2>(1.0), [128, 256]);
+    few_iterations_on_one_mesh(scenes::ball_2d, [128, 256]);
+    few_iterations_on_one_mesh(scenes::signorini_2d, [80, 160]);
+    few_iterations_on_one_mesh(|| scenes::radial::<3>(1.0), [24, 32]);
+}
+
 /// Whatever is called converged has a certificate.
 #[test]
 fn converged_rows_are_certified() {

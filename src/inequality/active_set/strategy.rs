@@ -279,10 +279,12 @@ impl<'a, T: Real> Solve<'_, 'a, T> {
             let jump_multipliers = self.iterate.jump_multipliers.clone();
             algebraic_bound = solver.error_bound(&mut self.iterate);
             // the bound is that of values on their bounds, and large penalties see each step there
-            if guess.energy_tolerance.is_none()
-                && self.iterate.values != values
-                && self.iterate.certificate() > T::CERTIFICATE_LIMIT
-            {
+            let limit = match guess.energy_tolerance {
+                None => T::CERTIFICATE_LIMIT,
+                Some(tolerance) if inequality.penalised.is_some() => tolerance,
+                Some(_) => f64::INFINITY,
+            };
+            if self.iterate.values != values && self.iterate.certificate() > limit {
                 let states = self.iterate.states.clone();
                 self.iterate.replace(values, jump_multipliers, states);
                 algebraic_bound = None;

@@ -7,7 +7,7 @@ use super::coarse_level::{CoarseLevel, MAX_COARSEST_FACTORED};
 use super::gauss_seidel::GaussSeidel;
 use super::preconditioner::Preconditioner;
 use super::prolongation::Prolongation;
-use crate::algebra::SparseMatrix;
+use crate::algebra::{NO_INDEX, SparseMatrix};
 use crate::linear::direct::{FactorError, Factors};
 use crate::parallel::vectors::{for_each_chunk, map_chunks, zeros};
 use crate::real::Real;
@@ -141,10 +141,14 @@ impl<T: Real> Level<'_, T> {
 
     /// Recomputes the rows that truncation at the fixed unknowns of the finer level may change, and
     /// marks them, with all rows recomputed before, as outdated. A free unknown is concerned if one
-    /// of its children is fixed, is coupled to a fixed unknown, or has a recomputed row itself.
+    /// of its children is fixed, is coupled to a fixed unknown with a free parent, or has a recomputed
+    /// row itself.
     fn recompute_rows(&mut self, finer: &Level<'_, T>, prolongation: &Prolongation<T>) {
         let mut is_near = vec![false; finer.fixed.len()];
-        for i in (0..is_near.len()).filter(|&i| finer.fixed[i]) {
+        // where all parents are fixed, as at most Dirichlet data, no free function is truncated
+        let is_truncated =
+            |&i: &usize| finer.fixed[i] && prolongation.any_parent(i, |j| !self.fixed[j as usize]);
+        for i in (0..is_near.len()).filter(is_truncated) {
             is_near[i] = true;
             finer.matrix.row(i).0.iter().for_each(|&j| is_near[j as usize] = true);
         }
@@ -157,16 +161,19 @@ impl<T: Real> Level<'_, T> {
         self.recomputed_rows = recomputed_rows;
         self.recomputed_values.clear();
         self.recomputed_starts.truncate(1);
+        let mut places = vec![NO_INDEX; self.matrix.size()];
         for &j in &self.recomputed_rows {
             let columns = self.matrix.row(j as usize).0;
             let start = self.recomputed_values.len();
             self.recomputed_values.resize(start + columns.len(), T::lit(0.0));
             let values = &mut self.recomputed_values[start..];
+            (0..).zip(columns).for_each(|(place, &column)| places[column as usize] = place);
             prolongation.for_each_child(j as usize, |i, weight| {
                 if !finer.fixed[i] {
-                    add_row(finer.row(i), &finer.fixed, prolongation, weight, (columns, values));
+                    add_row(finer.row(i), &finer.fixed, prolongation, weight, (&places, values));
                 }
             });
+            columns.iter().for_each(|&column| places[column as usize] = NO_INDEX);
             self.recomputed_starts.push(self.recomputed_values.len());
         }
     }
@@ -205,22 +212,23 @@ fn row_range<T>(matrix: &SparseMatrix<T>, j: u32) -> std::ops::Range<usize> {
 }
 
 /// Adds `weight` times a fine row, restricted to free unknowns and multiplied by the prolongation,
-/// to the values of a coarse row with the given ascending columns. Products in other columns are
-/// dropped.
+/// to the values of a coarse row, by the places of its columns among these values. Products in other
+/// columns are dropped.
 fn add_row<T: Real>(
     (neighbours, entries): (&[u32], &[T]),
     fixed: &[bool],
     prolongation: &Prolongation<T>,
     weight: T,
-    (columns, values): (&[u32], &mut [T]),
+    (places, values): (&[u32], &mut [T]),
 ) {
     for (&k, &a) in neighbours.iter().zip(entries) {
         if fixed[k as usize] {
             continue;
         }
         prolongation.for_each_parent(k as usize, |parent, parent_weight| {
-            if let Ok(at) = columns.binary_search(&parent) {
-                values[at] += weight * a * parent_weight;
+            let place = places[parent as usize];
+            if place != NO_INDEX {
+                values[place as usize] += weight * a * parent_weight;
             }
         });
     }

@@ -207,6 +207,13 @@ impl<T: Real> Prolongation<T> {
         any
     }
 
+    /// Whether a predicate holds for any parent of the fine unknown `i`.
+    pub(crate) fn any_parent(&self, i: usize, predicate: impl Fn(u32) -> bool) -> bool {
+        let mut any = false;
+        self.for_each_parent(i, |j, _| any |= predicate(j));
+        any
+    }
+
     /// Calls a function with each child of the coarse unknown `j` and its weight.
     #[inline(always)]
     pub(crate) fn for_each_child(&self, j: usize, mut call: impl FnMut(usize, T)) {

@@ -14,7 +14,7 @@ pub(super) struct ContactEntity {
 
 impl ContactEntity {
     /// The vertices of the entity, as numbers in the cell.
-    pub fn corners<const D: usize>(self) -> impl Iterator<Item = usize> {
+    pub fn corners<const D: usize>(self) -> impl Iterator<Item = usize> + Clone {
         (0..=D).filter(move |&k| Some(k) != self.facet)
     }
     /// The dimension of the entity.

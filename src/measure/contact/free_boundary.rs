@@ -38,15 +38,24 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         let Some(dimension) = entities.first().map(|c| c.dimension::<D>()) else {
             return Vec::new();
         };
-        // every facet of every entity, named by its vertices, in the order of these names
+        // whether a vertex belongs to entities that are not, and that are in contact
+        let mut belongs = vec![[false; 2]; self.mesh.vertices().len()];
+        for (entity, &touches) in entities.iter().zip(touching) {
+            let cell = self.mesh.cell(entity.cell);
+            let states = entity.corners::<D>().map(|k| cell[k] as usize);
+            states.for_each(|v| belongs[v][usize::from(touches)] = true);
+        }
+        // every facet between such vertices, named by them, in the order of these names
         let mut facets: Vec<([u32; 3], bool)> = Vec::new();
         for (entity, &touches) in entities.iter().zip(touching) {
             let cell = self.mesh.cell(entity.cell);
             for opposite in entity.corners::<D>().filter(|_| dimension > 0) {
                 let mut name = [u32::MAX; 3];
-                let others = entity.corners::<D>().filter(|&k| k != opposite);
-                name.iter_mut().zip(others).for_each(|(v, k)| *v = cell[k]);
-                facets.push((name, touches));
+                let others = entity.corners::<D>().filter(|&k| k != opposite).map(|k| cell[k]);
+                if others.clone().all(|v| belongs[v as usize] == [true; 2]) {
+                    name.iter_mut().zip(others).for_each(|(v, other)| *v = other);
+                    facets.push((name, touches));
+                }
             }
         }
         facets.sort_unstable();
@@ -69,8 +78,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         // in the order of their first coordinates, so that few are tried on each entity
         let mut points = set.free_boundary.clone();
         points.sort_unstable_by(|x, y| x[0].total_cmp(&y[0]));
-        let mut found = vec![false; points.len()];
-        for entity in entities {
+        let on_entity = |entity: &ContactEntity, found: &mut Vec<usize>| {
             let corners = self.corner_points(*entity);
             let corners = &corners[..=entity.dimension::<D>()];
             let fold = |f: fn(f64, f64) -> f64| {
@@ -80,14 +88,21 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
             let slack = SLACK * (high - low).norm().max(f64::MIN_POSITIVE);
             let first = points.partition_point(|x| x[0] < low[0] - slack);
             let near = points[first..].iter().take_while(|x| x[0] <= high[0] + slack);
-            for (found, x) in found[first..].iter_mut().zip(near) {
-                if *found || (1..D).any(|k| x[k] < low[k] - slack || x[k] > high[k] + slack) {
-                    continue;
-                }
-                *found = self.covers(*entity, x);
-            }
-        }
-        points.iter().zip(found).filter(|(_, found)| *found).map(|(x, _)| *x).collect()
+            let in_box = |x: &Point<f64, D>| {
+                (1..D).all(|k| x[k] >= low[k] - slack && x[k] <= high[k] + slack)
+            };
+            let covered = |(_, x): &(usize, &Point<f64, D>)| in_box(x) && self.covers(*entity, x);
+            found.extend((first..).zip(near).filter(covered).map(|(k, _)| k));
+        };
+        let mut found = cells::map(entities.len(), &|range: Range<usize>| {
+            let mut found = Vec::new();
+            entities[range].iter().for_each(|entity| on_entity(entity, &mut found));
+            found
+        })
+        .concat();
+        found.sort_unstable();
+        found.dedup();
+        found.into_iter().map(|k| points[k]).collect()
     }
 
     /// Whether a point lies on an entity.
@@ -109,8 +124,26 @@ const SLACK: f64 = 1e-9;
 
 /// The largest distance of a point of the first set from the second.
 fn one_sided<const D: usize>(from: &[Point<f64, D>], to: &[Point<f64, D>]) -> f64 {
-    let nearest =
-        |x: &Point<f64, D>| to.iter().map(|y| (x - y).norm_squared()).fold(f64::INFINITY, f64::min);
+    let mut to = to.to_vec();
+    to.sort_unstable_by(|x, y| x[0].total_cmp(&y[0]));
+    let nearest = |x: &Point<f64, D>| {
+        // on both sides only as far as the first coordinate alone does not exceed the distance known
+        let (before, after) = to.split_at(to.partition_point(|y| y[0] < x[0]));
+        let mut least = f64::INFINITY;
+        for y in after {
+            if (x[0] - y[0]).powi(2) > least {
+                break;
+            }
+            least = least.min((x - y).norm_squared());
+        }
+        for y in before.iter().rev() {
+            if (x[0] - y[0]).powi(2) > least {
+                break;
+            }
+            least = least.min((x - y).norm_squared());
+        }
+        least
+    };
     let of_chunk = |range: Range<usize>| from[range].iter().map(nearest).fold(0.0, f64::max);
     cells::map(from.len(), &of_chunk).into_iter().fold(0.0, f64::max).sqrt()
 }

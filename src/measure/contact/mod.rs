@@ -15,6 +15,8 @@ pub(crate) use difference::contact_difference;
 pub use discrete_contact::DiscreteContact;
 pub(super) use entity::Place;
 
+use std::ops::Range;
+
 use super::errors::ContactErrors;
 use crate::algebra::{Bound, Contact, Inequality};
 use crate::assemble::Discretisation;
@@ -24,6 +26,7 @@ use crate::error::Error;
 use crate::inequality::Solution;
 use crate::instances::compiled;
 use crate::mesh::BoundaryPart;
+use crate::parallel::cells;
 use crate::problem::ContactSet;
 use crate::real::{Point, Real, point_f64};
 use entity::ContactEntity;
@@ -237,7 +240,8 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
                 unknowns.filter(|&unknown| inequality.bounds[unknown] != Bound::Free).peekable();
             unknowns.peek().is_some() && unknowns.all(|unknown| support_touches(entity, unknown))
         };
-        entities.iter().map(state).collect()
+        let states = |range: Range<usize>| entities[range].iter().map(state).collect::<Vec<_>>();
+        cells::map(entities.len(), &states).concat()
     }
 
     /// Whether the Dirichlet datum of a boundary group at the barycentre of a support differs from a bound
@@ -267,8 +271,8 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         touching: &[bool],
     ) -> f64 {
         let rules = [D - 1, D].map(|dimension| CutRule::new(dimension, 2));
-        let mut error = 0.0;
-        for (&entity, &touches) in entities.iter().zip(touching) {
+        let wrong = |k: usize| {
+            let (entity, touches) = (entities[k], touching[k]);
             let corners = self.corner_points(entity);
             let rule = &rules[usize::from(entity.facet.is_none())];
             let mut wrong = 0.0;
@@ -277,8 +281,10 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
                     wrong += weight;
                 }
             });
-            error += wrong * self.measure_of(entity);
-        }
-        error
+            wrong * self.measure_of(entity)
+        };
+        let of_chunk = |range: Range<usize>| range.map(wrong).collect::<Vec<_>>();
+        // added in the order of entities, for every number of threads
+        cells::map(entities.len(), &of_chunk).into_iter().flatten().sum()
     }
 }

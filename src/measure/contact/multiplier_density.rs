@@ -1,11 +1,14 @@
 //! The multiplier as a density at vertices.
 
+use std::ops::Range;
+
 use super::entity::{ContactEntity, Place};
 use crate::algebra::{Contact, Inequality};
 use crate::assemble::cut_simplices::{CutRule, in_space};
 use crate::assemble::space::{Space, data};
 use crate::error::Error;
 use crate::inequality::Solution;
+use crate::parallel::cells;
 use crate::problem::{ContactSet, Field};
 use crate::real::Real;
 
@@ -40,9 +43,23 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         let mut multipliers = self.vertex_multipliers(inequality, solution, |_| true);
         // for facets and for cells
         let rules = [D - 1, D].map(|dimension| CutRule::new(dimension, DEGREE));
-        for &entity in entities {
-            let rule = &rules[usize::from(entity.facet.is_none())];
-            self.subtract_exact((multiplier, set), entity, rule, &mut weights, &mut multipliers)?;
+        let tested = cells::map(entities.len(), &|range: Range<usize>| {
+            let tested = |entity: &ContactEntity| {
+                let rule = &rules[usize::from(entity.facet.is_none())];
+                self.tested((multiplier, set), *entity, rule)
+            };
+            entities[range].iter().map(tested).collect::<Result<Vec<_>, _>>()
+        });
+        let mut rest = entities.iter();
+        for chunk in tested {
+            for (tested, entity) in chunk?.into_iter().zip(rest.by_ref()) {
+                let (measure, cell) = (self.measure_of(*entity), self.mesh.cell(entity.cell));
+                for (k, local) in entity.corners::<D>().enumerate() {
+                    let vertex = cell[local] as usize;
+                    weights[vertex] += measure / (entity.dimension::<D>() + 1) as f64;
+                    multipliers[vertex] -= measure * tested[k];
+                }
+            }
         }
         let given = self.dirichlet_groups();
         let counted = |v: &usize| weights[*v] > 0.0 && given[*v].is_none();
@@ -99,43 +116,30 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         entities().map(mean).collect()
     }
 
-    /// Subtracts the exact multiplier tested with the hat functions of an entity, and adds their
-    /// integrals to the weights.
-    fn subtract_exact(
+    /// The means over an entity of the exact multiplier times the hat function of each corner.
+    fn tested(
         &self,
         (multiplier, set): (&Field<D>, Option<&ContactSet<D>>),
         entity: ContactEntity,
         rule: &CutRule,
-        weights: &mut [f64],
-        multipliers: &mut [f64],
-    ) -> Result<(), Error> {
-        let dimension = entity.dimension::<D>();
+    ) -> Result<[f64; 4], Error> {
         let corners = self.corner_points(entity);
-        let mut tested = [0.0; 4];
-        let mut failure = None;
+        let mut tested = Ok([0.0; 4]);
         let mut add = |hats: &[f64; 4], weight: f64| {
             let x = in_space(hats, &corners);
             match data::finite(multiplier(&x), "exact multiplier", &x, entity.cell) {
-                Ok(density) => tested
-                    .iter_mut()
-                    .zip(hats)
-                    .for_each(|(sum, hat)| *sum += weight * density * hat),
-                Err(why) => failure = Some(why),
+                Ok(density) => {
+                    for (sum, hat) in tested.iter_mut().flatten().zip(hats) {
+                        *sum += weight * density * hat;
+                    }
+                }
+                Err(why) => tested = Err(why),
             }
         };
         match set {
             Some(set) => rule.visit(&corners, &set.indicator, &mut add),
             None => rule.visit_whole(&mut add),
         }
-        if let Some(why) = failure {
-            return Err(why);
-        }
-        let measure = self.measure_of(entity);
-        for (k, local) in entity.corners::<D>().enumerate() {
-            let vertex = self.mesh.cell(entity.cell)[local] as usize;
-            weights[vertex] += measure / (dimension + 1) as f64;
-            multipliers[vertex] -= measure * tested[k];
-        }
-        Ok(())
+        tested
     }
 }

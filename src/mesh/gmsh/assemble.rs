@@ -13,8 +13,13 @@ use crate::real::{Point, Real};
 #[derive(Clone, Debug)]
 #[non_exhaustive]
 pub struct GmshMesh<T, const D: usize> {
-    /// The mesh.
+    /// The mesh, with its cells along a Hilbert curve and its vertices in the order in which cells name them
+    /// first: whatever the order of the file, what is near in space is near in memory.
     pub mesh: Mesh<T, D>,
+    /// The tag in the file of each vertex of the mesh.
+    pub node_tags: Vec<u64>,
+    /// The tag in the file of each cell of the mesh.
+    pub element_tags: Vec<u64>,
     /// Contents of the file that the mesh does not represent exactly.
     pub warnings: Vec<GmshWarning>,
 }
@@ -30,6 +35,8 @@ pub(super) fn assemble<T: Real, const D: usize>(
     let boundary = grouped_facets::<D>(contents, &index)?;
     let vertices = contents.nodes.points.iter().map(|x| Point::from_fn(|k, _| x[k])).collect();
     let Cells { vertices: corners, elements, regions, of_cells } = cells;
+    let mut is_used = vec![false; contents.nodes.tags.len()];
+    corners.iter().for_each(|&v| is_used[v as usize] = true);
     let mesh = Mesh::with_groups(vertices, corners, &boundary.facets, &boundary.names);
     let mesh = mesh.and_then(|mesh| mesh.with_regions(regions, of_cells)).map_err(|source| {
         let cells =
@@ -43,7 +50,14 @@ pub(super) fn assemble<T: Real, const D: usize>(
             .collect();
         GmshError::Mesh { elements: cells.chain(facet).collect(), nodes, source }
     })?;
-    Ok(GmshMesh { mesh, warnings: warnings(contents, D) })
+    let (mesh, order, numbers) = mesh.along_curve();
+    // vertices are the nodes that a cell uses
+    let used = contents.nodes.tags.iter().zip(is_used).filter(|(_, is_used)| *is_used);
+    let mut node_tags = vec![0; numbers.len()];
+    used.zip(numbers).for_each(|((&tag, _), number)| node_tags[number as usize] = tag);
+    let tags = &contents.simplices[D].tags;
+    let element_tags = order.iter().map(|&cell| tags[elements[cell as usize]]).collect();
+    Ok(GmshMesh { mesh, node_tags, element_tags, warnings: warnings(contents, D) })
 }
 
 fn check_dimension(contents: &Contents, asked: usize) -> Result<(), GmshError> {

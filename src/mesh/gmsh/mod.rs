@@ -9,6 +9,10 @@
 //! [`Problem::bind_boundary`](crate::problem::Problem::bind_boundary). Elements of higher order are read as
 //! straight ones, with a [`GmshWarning`].
 //!
+//! Cells and vertices are numbered anew, along a Hilbert curve, because Gmsh's own numbers scatter neighbours
+//! over the memory: of two files that list the same elements in different orders the meshes are equal. Files of
+//! fields have the order of the mesh; [`GmshMesh::node_tags`] and [`GmshMesh::element_tags`] lead to the file.
+//!
 //! In Gmsh the groups are made by lines such as
 //!
 //! ```text

@@ -19,8 +19,8 @@ struct Entity<'m> {
 }
 
 /// A mesh as the text of a Gmsh file. What [`parse`](super::parse) reads from it has the vertices of the mesh,
-/// bit by bit, its cells in the order of their regions, and the names of regions and boundary groups. The file
-/// keeps the part of a boundary group whose name is that of a part; the part of any other group is left to a
+/// bit by bit, its cells, and the names of regions and boundary groups, in the order of every mesh that is read;
+/// the tag of a node is the number of its vertex from one on. The file keeps the part of a boundary group whose name is that of a part; the part of any other group is left to a
 /// problem.
 #[must_use]
 pub fn to_text<T: Real, const D: usize>(mesh: &Mesh<T, D>) -> String {

@@ -2,6 +2,7 @@
 
 use super::forms::{parse, parts, volume};
 use super::writer::{FORMS, square, tetrahedron};
+use std::collections::HashMap;
 use std::path::PathBuf;
 use unilateral::mesh::Mesh;
 use unilateral::mesh::gmsh;
@@ -37,12 +38,14 @@ fn check<const D: usize>(name: &str, bytes: &[u8]) {
     );
 }
 
-/// Cells of dimension `D` by the coordinates of their corners, and the number of nodes, as another
-/// reader of MSH 4.1 has them.
-fn oracle<const D: usize>(bytes: &[u8]) -> (usize, Vec<Vec<[f64; D]>>) {
+/// Nodes, and cells of dimension `D` by the tags of their corners, as another reader of MSH 4.1 has them, both
+/// by tag.
+type Oracle<const D: usize> = (HashMap<u64, [f64; D]>, HashMap<u64, Vec<u64>>);
+
+fn oracle<const D: usize>(bytes: &[u8]) -> Oracle<D> {
     let file = mshio::parse_msh_bytes(bytes).unwrap_or_else(|e| panic!("{e}"));
     let nodes = file.data.nodes.unwrap();
-    let mut points = std::collections::HashMap::new();
+    let mut points = HashMap::new();
     let mut next = nodes.min_node_tag;
     for block in &nodes.node_blocks {
         for (at, x) in block.nodes.iter().enumerate() {
@@ -57,26 +60,30 @@ fn oracle<const D: usize>(bytes: &[u8]) -> (usize, Vec<Vec<[f64; D]>>) {
     }
     let blocks = file.data.elements.unwrap().element_blocks;
     let cells = blocks.iter().filter(|b| b.entity_dim as usize == D).flat_map(|b| &b.elements);
-    let corners = |nodes: &[u64]| nodes[..=D].iter().map(|tag| points[tag]).collect();
-    (points.len(), cells.map(|e| corners(&e.nodes)).collect())
+    let cells = cells.map(|e| (e.element_tag, e.nodes[..=D].to_vec())).collect();
+    (points, cells)
 }
 
 fn agrees_with_oracle<const D: usize>(bytes: &[u8]) {
-    let mesh = parse::<D>(bytes).mesh;
-    let (nodes, cells) = oracle::<D>(bytes);
-    assert_eq!(mesh.n_cells(), cells.len());
-    assert!(mesh.vertices().len() <= nodes);
-    for (c, mut expected) in cells.into_iter().enumerate() {
-        let corner = |&v: &u32| std::array::from_fn(|k| mesh.vertices()[v as usize][k]);
-        let mut found: Vec<[f64; D]> = mesh.cell(c).iter().map(corner).collect();
-        // Text is rounded by two different readers.
-        let key = |a: &[f64; D], b: &[f64; D]| a.partial_cmp(b).unwrap();
-        expected.sort_by(key);
-        found.sort_by(key);
-        for (a, b) in expected.iter().flatten().zip(found.iter().flatten()) {
-            assert!((a - b).abs() < 1e-14, "cell {c}");
+    let read = parse::<D>(bytes);
+    let (nodes, mut cells) = oracle::<D>(bytes);
+    assert_eq!(read.node_tags.len(), read.mesh.vertices().len());
+    for (x, tag) in read.mesh.vertices().iter().zip(&read.node_tags) {
+        for (found, expected) in x.iter().zip(nodes[tag]) {
+            // Text is rounded by two different readers.
+            assert!((found - expected).abs() < 1e-14, "node {tag}");
         }
     }
+    assert_eq!(read.element_tags.len(), read.mesh.n_cells());
+    for (c, tag) in read.element_tags.iter().enumerate() {
+        let mut expected = cells.remove(tag).unwrap();
+        let tag_of = |&v: &u32| read.node_tags[v as usize];
+        let mut found: Vec<u64> = read.mesh.cell(c).iter().map(tag_of).collect();
+        expected.sort_unstable();
+        found.sort_unstable();
+        assert_eq!(found, expected, "element {tag}");
+    }
+    assert!(cells.is_empty());
 }
 
 #[test]

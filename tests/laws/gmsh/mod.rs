@@ -7,6 +7,7 @@ mod errors;
 mod files;
 mod forms;
 mod mesh_errors;
+mod order;
 mod structure_errors;
 mod writer;
 mod written;
