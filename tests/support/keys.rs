@@ -1,7 +1,7 @@
 //! What scripts rely on.
 
 /// The keys of a row, in order.
-pub const ROW_KEYS: [&str; 32] = [
+pub const ROW_KEYS: [&str; 33] = [
     "scene",
     "dimension",
     "scheme",
