@@ -184,8 +184,8 @@ impl<'a, T: Real, const D: usize> AdaptiveIteration<'a, T, D> {
             tolerance = tolerance.filter(|_| stop.is_none()).map(|t| REDUCTION * t / excess);
             solved = self.nested.continued(solved, number, self.scheme, tolerance)?;
         };
-        if let Some(bound) = &bound {
-            self.last = Some(self.finished(&solved, bound, tolerance));
+        if let (Some(bound), Some(allowed)) = (&bound, self.adaptivity.tolerance) {
+            self.last = Some(self.finished(&solved, bound, (allowed, tolerance)));
         }
         self.solve_seconds += solved.solve_seconds;
         if let (Some(stop), Some(goal), Some(bound)) = (stop, self.adaptivity.goal, &bound)
@@ -217,17 +217,16 @@ impl<'a, T: Real, const D: usize> AdaptiveIteration<'a, T, D> {
         (!is_last).then_some(last.relative_bound * last.tolerance_to_bound)
     }
 
-    /// What a step with its last tolerance says of the next one.
+    /// What a step says of the next one: by the share that the solver's error may have, and the last tolerance.
     fn finished(
         &self,
         solved: &Solved<'a, T, D>,
         bound: &ErrorBound,
-        tolerance: Option<f64>,
+        (allowed, tolerance): (f64, Option<f64>),
     ) -> LastStep {
         let last = self.last.as_ref();
         let (unknowns, total) = (solved.values().len(), bound.total);
         let relative_bound = total / solved.energy_norm();
-        let allowed = self.adaptivity.tolerance.unwrap_or(0.0);
         let tolerance_to_bound = match (tolerance.filter(|_| solved.is_inexact()), last) {
             (Some(tolerance), _) => tolerance / relative_bound,
             (None, Some(last)) => last.tolerance_to_bound,
@@ -297,7 +296,9 @@ impl<'a, T: Real, const D: usize> AdaptiveIteration<'a, T, D> {
 /// the estimate of the solver divided by the bound.
 fn share_of_solver<T: Real, const D: usize>(solved: &Solved<'_, T, D>, bound: &ErrorBound) -> f64 {
     let estimate = match bound.unproven.contains(&Unproven::Algebra) {
-        true => solved.certificate().algebraic_bound.unwrap_or(0.0) * solved.energy_norm(),
+        true => {
+            solved.certificate().algebraic_bound.unwrap_or(f64::INFINITY) * solved.energy_norm()
+        }
         false => 0.0,
     };
     bound.parts.algebra.max(2.0 * estimate / bound.total)
