@@ -21,7 +21,7 @@ pub struct PrimalDualPair {
     /// The degree of the function, one or two.
     pub degree: usize,
     /// The values of the function `v` at the vertices of the mesh and, for degree two, after them at the
-    /// midpoints of its edges, in the order of [`Edges`](crate::mesh::Edges): means of the values of the
+    /// midpoints of its edges, in the order of `mesh::Edges`: means of the values of the
     /// discrete solution in the cells around, with the coefficient as weights, Dirichlet values on the
     /// Dirichlet part, moved into the constraints at all others.
     pub function: Vec<f64>,
