@@ -2,7 +2,8 @@
 
 use std::ops::Range;
 
-use super::algebra::{CoarserCells, Unbalanced, dual_norm};
+use super::algebra::CoarserCells;
+use super::choice::Choice;
 use super::terms::CellTerms;
 use super::{NoBound, PrimalDualPair};
 use crate::assemble::Discretisation;
@@ -18,10 +19,6 @@ use crate::real::{Real, point_f64};
 
 /// Dirichlet data that differ by less than this share are equal but for rounding.
 const AGREEMENT: f64 = 1e-12;
-
-/// The share of a bound from which on it is worth while to take forces away from contact for an error of the
-/// solver.
-const WORTH_A_CHOICE: f64 = 0.01;
 
 /// A term of a bound that is not proven for a problem.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -96,10 +93,7 @@ impl<T: Real, const D: usize> Discretisation<'_, T, D> {
     /// # Panics
     /// If the pair is not one of this mesh, or `u` is shorter than the number of unknowns.
     pub fn error_bound(&self, pair: &PrimalDualPair, u: &[T]) -> Result<ErrorBound, NoBound> {
-        compiled!(
-            T, D: fn(&Discretisation<'_, T, D>, &PrimalDualPair, &[T]) -> Result<ErrorBound, NoBound>
-                = |of, pair, u| of.space.error_bound(pair, u, &[])
-        )(self, pair, u)
+        self.error_bound_on_levels(pair, u, &[])
     }
     /// As [`Self::error_bound`], with the coarser meshes of a sequence, finest first: with them what the flux
     /// does not balance counts less.
@@ -131,18 +125,6 @@ impl<T: Real, const D: usize> Discretisation<'_, T, D> {
                 = |of, pair| of.problem().exact.as_ref().map(|e| of.space.error_of_pair(e, pair))
         )(self, pair)
     }
-}
-
-/// The parts of the square of a bound that depend on which cells count for the solver.
-struct Choice {
-    /// Those with this ratio or more.
-    least_ratio: f64,
-    with_oscillation: f64,
-    obstacle: f64,
-    /// The square of mismatch, oscillation and the part of the solver.
-    flux_square: f64,
-    /// Whether the solver left nothing.
-    is_balanced: bool,
 }
 
 impl<T: Real, const D: usize> Space<'_, T, D> {
@@ -182,35 +164,9 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         let by_value = least_root(|t| t.least_reaction).recip();
         let constant = by_gradient.map_or(by_value, |c| c.min(by_value));
         let contact = sum(|t| t.contact);
-        // what the solver leaves away from contact may be taken for forces or, on a sequence of meshes whose
-        // solves are inexact, for its error; the least bound counts. At first it is an error only where no
-        // obstacle presses
-        let chosen = |least_ratio: f64| {
-            let (mut with_oscillation, mut obstacle) = (0.0, 0.0);
-            let unbalanced = terms.iter().enumerate().map(|(cell, terms)| {
-                let is_left = terms.ratio >= least_ratio;
-                with_oscillation += terms.with_oscillation[usize::from(is_left)];
-                obstacle += if is_left { 0.0 } else { terms.obstacle };
-                let volume = self.mesh.geometry(cell).volume.to_f64();
-                let integral = if is_left { terms.unbalanced * volume } else { 0.0 };
-                Unbalanced { integral, volume, least_coefficient: terms.least_coefficient }
-            });
-            let unbalanced: Vec<Unbalanced> = unbalanced.collect();
-            let is_balanced = unbalanced.iter().all(|cell| cell.integral == 0.0);
-            let algebra = dual_norm(unbalanced, coarser, constant);
-            let flux_square = (with_oscillation.sqrt() + algebra).powi(2);
-            Choice { least_ratio, with_oscillation, obstacle, flux_square, is_balanced }
-        };
-        let mut choice = chosen(f64::INFINITY);
-        let away: f64 = terms.iter().filter(|t| t.ratio >= 1.0).map(|t| t.obstacle).sum();
-        if !coarser.is_empty() && away > WORTH_A_CHOICE * (choice.flux_square + choice.obstacle) {
-            for least_ratio in [100.0, 10.0, 1.0] {
-                let other = chosen(least_ratio);
-                let is_less =
-                    other.flux_square + other.obstacle < choice.flux_square + choice.obstacle;
-                choice = if is_less { other } else { choice };
-            }
-        }
+        let volume = |cell| self.mesh.geometry(cell).volume.to_f64();
+        let volumes: Vec<f64> = (0..self.mesh.n_cells()).map(volume).collect();
+        let choice = Choice::best((&terms, &volumes), coarser, constant);
         let Choice { least_ratio, with_oscillation, obstacle, flux_square, is_balanced } = choice;
         let mismatch = sum(|t| t.mismatch);
         let is_proven = constant.is_finite() || is_balanced;

@@ -123,7 +123,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         }
     }
 
-    /// The same at midpoints of edges: a quadratic that exceeds an obstacle at the vertices exceeds it
+    /// Moves values at midpoints of edges into the constraints, and sets those on the Dirichlet part: a quadratic that exceeds an obstacle at the vertices exceeds it
     /// everywhere if its Bernstein coefficients on the edges, `2 v_m - (v_a + v_b) / 2`, do not lie below
     /// those of the obstacle.
     fn clip_at_midpoints(&self, nodes: &Nodes<'_>, values: &mut [f64]) {

@@ -28,6 +28,7 @@
 //! H. F. Weinberger, Arch. Rational Mech. Anal. 5 (1960), 286-292.
 
 mod algebra;
+mod choice;
 mod contact;
 mod estimate;
 mod figures;

@@ -25,12 +25,11 @@ use crate::parallel::cells;
 use crate::quadrature::{OrthonormalPolynomials, facet_to_cell};
 use crate::real::Real;
 
-/// Products with `lambda_a lambda_j`, symmetric.
+/// The numbers that a functional gives to the products `lambda_a lambda_j` of barycentric coordinates, symmetric.
 pub(super) type Products = [[f64; 4]; 4];
 
-/// What the inequality leaves in each unknown of each cell: the load without the reaction term at the
-/// discrete function, and the multiplier without contact forces, of which a cell has a part where cells share
-/// an unknown.
+/// Load and multiplier of each unknown of each cell: the load less the reaction term of the discrete function, plus
+/// the multiplier less contact forces. Cells that share an unknown have a part of its multiplier each.
 pub(super) struct CellLoads {
     /// By cell and unknown.
     pub values: Vec<f64>,
@@ -135,13 +134,19 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         };
         let Ok(()) = cells::for_each(n_cells, &|c| c * n, &mut values, &fill);
         let terms = self.node_terms(&self.facet_rule, &self.cell_rule);
-        let at = |a: usize, j: usize, (p, w): &([f64; 4], f64)| w * p[a] * p[j];
         let functional = |terms: &Vec<([f64; 4], f64)>| -> Products {
             std::array::from_fn(|a| {
-                std::array::from_fn(|j| terms.iter().map(|term| at(a, j, term)).sum())
+                std::array::from_fn(|j| terms.iter().map(|(p, w)| w * p[a] * p[j]).sum())
             })
         };
         let functionals: Vec<Products> = terms.iter().map(functional).collect();
+        let neumann = self.neumann_products()?;
+        let contact = contact_products(forces, &functionals);
+        Ok(CellLoads { values, neumann, contact, functionals, surrounded })
+    }
+
+    /// The products of Neumann data, by facet.
+    fn neumann_products(&self) -> Result<Vec<(Place, Products)>, NoBound> {
         let mut neumann = Vec::new();
         if self.problem.has_neumann_data() {
             for (place, group) in self.grouped_facets_of(BoundaryPart::Neumann) {
@@ -149,22 +154,13 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
                 let mut products = Products::default();
                 for (point, weight) in self.facet_rule.iter() {
                     let flux = weight * measure * self.neumann_at(place, group, point)?;
-                    let point = (facet_to_cell(point, place.1), flux);
-                    add(&mut products, |a, j| at(a, j, &point));
+                    let point = facet_to_cell(point, place.1);
+                    add(&mut products, |a, j| flux * point[a] * point[j]);
                 }
                 neumann.push((place, products));
             }
         }
-        let mut of_contact: Vec<(Place, Products)> = Vec::new();
-        for force in forces {
-            let place = (force.cell, force.local);
-            if of_contact.last().is_none_or(|(last, _)| *last != place) {
-                of_contact.push((place, Products::default()));
-            }
-            let Some((_, products)) = of_contact.last_mut() else { continue };
-            add(products, |a, j| force.value * functionals[force.node][a][j]);
-        }
-        Ok(CellLoads { values, neumann, contact: of_contact, functionals, surrounded })
+        Ok(neumann)
     }
 
     /// Makes contact forces smooth: linear between their means around vertices, and what is then left of
@@ -260,6 +256,20 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         };
         let Ok(()) = cells::for_each(n_cells, &|c| c * square, flux, &fill);
     }
+}
+
+/// The products of contact forces, by facet; those of a facet follow each other.
+fn contact_products(forces: &[NodeForce], functionals: &[Products]) -> Vec<(Place, Products)> {
+    let mut contact: Vec<(Place, Products)> = Vec::new();
+    for force in forces {
+        let place = (force.cell, force.local);
+        if contact.last().is_none_or(|(last, _)| *last != place) {
+            contact.push((place, Products::default()));
+        }
+        let Some((_, products)) = contact.last_mut() else { continue };
+        add(products, |a, j| force.value * functionals[force.node][a][j]);
+    }
+    contact
 }
 
 /// The integral of `lambda_a lambda_j lambda_k` over a simplex of a dimension and of measure one.

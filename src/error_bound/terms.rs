@@ -22,10 +22,10 @@ pub(super) struct CellTerms {
     /// The square of the mismatch with the oscillation added: if what the flux leaves is a force of an
     /// obstacle, and if the solver left it.
     pub with_oscillation: [f64; 2],
-    /// Twice the complementarity of obstacles, if it is a force.
+    /// Twice the complementarity of obstacles, if what the flux leaves is a force.
     pub obstacle: f64,
-    /// The complementarity over the square that the cell would add if the solver left it; infinite where there
-    /// is no obstacle that presses in this direction, zero where nothing is known of the square.
+    /// The complementarity divided by the square that the cell adds if the solver left the mean: infinite where
+    /// no obstacle presses in the direction of the mean, zero where no constant of Friedrichs' inequality is known.
     pub ratio: f64,
     /// Twice the complementarity of contact.
     pub contact: f64,

@@ -204,9 +204,9 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
                 false => Point::zeros(),
             })
         };
-        let of_linear = shares_of(&table.basis[0]);
+        let of_linear = is_linear.then(|| shares_of(&table.basis[0]));
         let mut add = |x: &Point<f64, D>, weight: f64, basis: &BasisAt<f64>| {
-            let shares = if is_linear { of_linear } else { shares_of(basis) };
+            let shares = of_linear.unwrap_or_else(|| shares_of(basis));
             let error =
                 shares[..=D].iter().fold(-exact.gradient(cell, x), |sum, share| sum + share);
             let value = data::finite(exact.value(cell, x), "exact solution", x, cell)?;

@@ -192,7 +192,7 @@ impl<T: Real, const D: usize> AdaptiveMeshes<T, D> {
         fine
     }
 
-    /// All meshes before a position, the finest first.
+    /// The meshes before a position, the finest first, each with the cell that contains each cell of the next one.
     pub(super) fn coarser_cells(&self, position: usize) -> Vec<CoarserCells<'_, T, D>> {
         let finer = self.steps().skip(1).take(position);
         let pairs = self.steps().zip(finer);

@@ -219,6 +219,41 @@ fn the_factor_of_the_over_penalty_does_not_matter() {
     }
 }
 
+/// Whether each vertex is on the boundary.
+pub fn on_boundary<const D: usize>(mesh: &Mesh<f64, D>) -> Vec<bool> {
+    let mut on_boundary = vec![false; mesh.vertices().len()];
+    for f in mesh.boundary() {
+        let vertices = mesh.facet_vertices(f.cell as usize, f.local as usize);
+        vertices.for_each(|v| on_boundary[v as usize] = true);
+    }
+    on_boundary
+}
+
+/// Adds a change to the flux of a pair through a facet, with opposite signs on both sides; on the boundary where
+/// data are Dirichlet's alone. The last argument is the place of the facet of a cell in the list of fluxes.
+pub fn change_flux(
+    flux: &mut [f64],
+    neighbours: &Neighbours,
+    (cell, local): (usize, usize),
+    change: f64,
+    place: impl Fn(usize, usize) -> usize,
+) {
+    match neighbours.across(cell, local) {
+        Neighbour::Cell { cell: other, local: there } if cell < other as usize => {
+            flux[place(cell, local)] += change;
+            flux[place(other as usize, usize::from(there))] -= change;
+        }
+        Neighbour::Boundary(BoundaryPart::Dirichlet) => flux[place(cell, local)] += change,
+        _ => {}
+    }
+}
+
+/// The bound that a pair gives, over the error of the function of the pair.
+pub fn ratio<const D: usize>(solved: &Solved<'_, f64, D>, pair: &PrimalDualPair) -> f64 {
+    let bound = solved.discretisation().error_bound(pair, solved.values()).unwrap();
+    bound.total / solved.discretisation().error_of_pair(pair).unwrap()
+}
+
 /// Random admissible functions and fluxes on meshes with moved vertices, those near an interface of the
 /// coefficient put on it: ten for each mesh.
 fn random_pairs<const D: usize>(scene: &Scene<D>, n: usize, cases: usize, interface: Option<f64>) {
@@ -235,11 +270,7 @@ fn random_pairs<const D: usize>(scene: &Scene<D>, n: usize, cases: usize, interf
         let solved = solve(&scene.problem, &mesh, &*scheme).unwrap();
         let exact = solved.primal_dual_pair().unwrap();
         let neighbours = Neighbours::new(&mesh);
-        let mut on_boundary = vec![false; mesh.vertices().len()];
-        for f in mesh.boundary() {
-            mesh.facet_vertices(f.cell as usize, f.local as usize)
-                .for_each(|v| on_boundary[v as usize] = true);
-        }
+        let on_boundary = on_boundary(&mesh);
         for _ in 0..10 {
             let mut pair = exact.clone();
             let size = 10_f64.powf(-4.0 * random.unit());
@@ -249,21 +280,11 @@ fn random_pairs<const D: usize>(scene: &Scene<D>, n: usize, cases: usize, interf
             for cell in 0..mesh.n_cells() {
                 for local in 0..=D {
                     let change = size * (random.unit() - 0.5);
-                    match neighbours.across(cell, local) {
-                        Neighbour::Cell { cell: other, local: there } if cell < other as usize => {
-                            pair.flux[cell * (D + 1) + local] += change;
-                            pair.flux[other as usize * (D + 1) + usize::from(there)] -= change;
-                        }
-                        Neighbour::Boundary(BoundaryPart::Dirichlet) => {
-                            pair.flux[cell * (D + 1) + local] += change;
-                        }
-                        _ => {}
-                    }
+                    let place = |cell, local| cell * (D + 1) + local;
+                    change_flux(&mut pair.flux, &neighbours, (cell, local), change, place);
                 }
             }
-            let bound = solved.discretisation().error_bound(&pair, solved.values()).unwrap();
-            let error = solved.discretisation().error_of_pair(&pair).unwrap();
-            least = least.min(bound.total / error);
+            least = least.min(ratio(&solved, &pair));
         }
     }
     println!("{}: least ratio {least}", scene.name);

@@ -1,6 +1,6 @@
 //! Guaranteed bounds on the error of quadratics: fluxes, effectivity, orders, perturbed pairs.
 
-use crate::error_bounds::{bounded, placed};
+use crate::error_bounds::{bounded, change_flux, on_boundary, placed, ratio};
 use crate::runs::{own_scene, small_mesh};
 use crate::support::checks::Checks;
 use crate::support::meshes::Random;
@@ -143,11 +143,7 @@ fn random_pairs<const D: usize>(scene: &Scene<D>, level: usize, schemes: &str) {
     let mesh = scene.domain.mesh::<f64>(level).unwrap();
     let neighbours = Neighbours::new(&mesh);
     let (n, n_vertices) = (D + 1, mesh.vertices().len());
-    let mut on_boundary = vec![false; n_vertices];
-    for f in mesh.boundary() {
-        let vertices = mesh.facet_vertices(f.cell as usize, f.local as usize);
-        vertices.for_each(|v| on_boundary[v as usize] = true);
-    }
+    let on_boundary = on_boundary(&mesh);
     let ends = [[0, 1], [0, 2], [1, 2], [0, 3], [1, 3], [2, 3]];
     let (mut random, mut least) = (Random(level as u64), f64::INFINITY);
     for name in schemes.split_whitespace() {
@@ -180,24 +176,11 @@ fn random_pairs<const D: usize>(scene: &Scene<D>, level: usize, schemes: &str) {
                             (cell * n + local) * n + p + usize::from(p >= local)
                         };
                         let change = size * (random.unit() - 0.5);
-                        match neighbours.across(cell, local) {
-                            Neighbour::Cell { cell: other, local: there }
-                                if cell < other as usize =>
-                            {
-                                pair.flux[place(cell, local)] += change;
-                                pair.flux[place(other as usize, usize::from(there))] -= change;
-                            }
-                            Neighbour::Boundary(BoundaryPart::Dirichlet) => {
-                                pair.flux[place(cell, local)] += change;
-                            }
-                            _ => {}
-                        }
+                        change_flux(&mut pair.flux, &neighbours, (cell, local), change, place);
                     }
                 }
             }
-            let bound = solved.discretisation().error_bound(&pair, solved.values()).unwrap();
-            let error = solved.discretisation().error_of_pair(&pair).unwrap();
-            least = least.min(bound.total / error);
+            least = least.min(ratio(&solved, &pair));
         }
     }
     println!("{}: least ratio {least}", scene.name);

@@ -168,8 +168,8 @@ fn judge<T: Real>(options: &Options, path: &Path, request: &Value) -> Request<bo
     Ok(is_within)
 }
 
-/// A file where it was when the inequality was written or, if it is there no more, beside the folder of the
-/// inequality or in it: a dump that went to another machine takes its files with it.
+/// The path of a file that a request names. Where no such file exists, a file of this name in the folder of the
+/// inequality, or beside the folder, stands for it: a dump may be copied to another machine with its files.
 fn found_beside(folder: &Path, file: &str) -> PathBuf {
     let file = PathBuf::from(file);
     let Some(name) = file.file_name().filter(|_| !file.exists()) else { return file };

@@ -116,7 +116,8 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         entities().map(mean).collect()
     }
 
-    /// The means over an entity of the exact multiplier times the hat function of each corner.
+    /// For each corner of an entity the mean over the entity of the exact multiplier times the hat function of the
+    /// corner.
     fn tested(
         &self,
         (multiplier, set): (&Field<D>, Option<&ContactSet<D>>),

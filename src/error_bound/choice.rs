@@ -1,0 +1,73 @@
+//! Which cells count for the solver: what the flux leaves of the load there is its error, elsewhere a force of an
+//! obstacle.
+
+use super::algebra::{CoarserCells, Unbalanced, dual_norm};
+use super::terms::CellTerms;
+use crate::real::Real;
+
+/// Forces away from contact below this share of the square of a bound are left as they are.
+const NEGLIGIBLE: f64 = 0.01;
+
+/// The parts of the square of a bound that depend on which cells count for the solver.
+pub(super) struct Choice {
+    /// Those with this ratio or more.
+    pub least_ratio: f64,
+    /// The square of mismatch and oscillation.
+    pub with_oscillation: f64,
+    /// Twice the complementarity of obstacles.
+    pub obstacle: f64,
+    /// The square of mismatch, oscillation and the part of the solver.
+    pub flux_square: f64,
+    /// Whether the solver left nothing.
+    pub is_balanced: bool,
+}
+
+impl Choice {
+    /// The choice of all cells with this ratio or more; `volumes` are those of the cells, `constant` that of
+    /// [`dual_norm`].
+    fn new<T: Real, const D: usize>(
+        least_ratio: f64,
+        (terms, volumes): (&[CellTerms], &[f64]),
+        coarser: &[CoarserCells<'_, T, D>],
+        constant: f64,
+    ) -> Self {
+        let (mut with_oscillation, mut obstacle) = (0.0, 0.0);
+        let of_solver = |(terms, &volume): (&CellTerms, &f64)| {
+            let is_left = terms.ratio >= least_ratio;
+            with_oscillation += terms.with_oscillation[usize::from(is_left)];
+            obstacle += if is_left { 0.0 } else { terms.obstacle };
+            let integral = if is_left { terms.unbalanced * volume } else { 0.0 };
+            Unbalanced { integral, volume, least_coefficient: terms.least_coefficient }
+        };
+        let unbalanced: Vec<Unbalanced> = terms.iter().zip(volumes).map(of_solver).collect();
+        let is_balanced = unbalanced.iter().all(|cell| cell.integral == 0.0);
+        let algebra = dual_norm(unbalanced, coarser, constant);
+        let flux_square = (with_oscillation.sqrt() + algebra).powi(2);
+        Self { least_ratio, with_oscillation, obstacle, flux_square, is_balanced }
+    }
+
+    /// The choice with the least bound: any choice gives one. Without coarser meshes only cells count for the
+    /// solver in which no obstacle presses; solves on a sequence of meshes may be inexact, so that other choices are
+    /// tried there.
+    pub fn best<T: Real, const D: usize>(
+        cells: (&[CellTerms], &[f64]),
+        coarser: &[CoarserCells<'_, T, D>],
+        constant: f64,
+    ) -> Self {
+        let of_ratio = |least_ratio| Self::new(least_ratio, cells, coarser, constant);
+        let mut best = of_ratio(f64::INFINITY);
+        let away: f64 = cells.0.iter().filter(|t| t.ratio >= 1.0).map(|t| t.obstacle).sum();
+        if !coarser.is_empty() && away > NEGLIGIBLE * best.square() {
+            for least_ratio in [100.0, 10.0, 1.0] {
+                let other = of_ratio(least_ratio);
+                best = if other.square() < best.square() { other } else { best };
+            }
+        }
+        best
+    }
+
+    /// The square of the bound without contact.
+    fn square(&self) -> f64 {
+        self.flux_square + self.obstacle
+    }
+}
