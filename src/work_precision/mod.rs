@@ -27,6 +27,7 @@ use crate::error::Error;
 use crate::instances::compiled;
 use crate::linear::LinearMethod;
 use crate::mesh::{BoxDomain, Mesh};
+use crate::nested::Adaptivity;
 use crate::problem::Problem;
 use crate::scenes::Scene;
 use crate::scheme::{AnyScheme, NamedScheme};
@@ -71,6 +72,7 @@ pub struct WorkPrecision<'a, const D: usize> {
     linear: Vec<LinearMethod>,
     precisions: Vec<Precision>,
     levels: Vec<usize>,
+    adaptive: Option<Adaptivity>,
     mesh: Option<Mesh<f64, D>>,
     /// The scheme and the level of the solution against which errors are.
     reference: Option<(Candidate<'a, D>, usize)>,
@@ -92,6 +94,7 @@ impl<const D: usize> fmt::Debug for WorkPrecision<'_, D> {
             .field("linear", &self.linear)
             .field("precisions", &self.precisions)
             .field("levels", &self.levels)
+            .field("adaptive", &self.adaptive)
             .field("rounds", &self.rounds)
             .field("limit", &self.limit)
             .field("subject", &self.subject)
@@ -110,6 +113,7 @@ impl<'a, const D: usize> WorkPrecision<'a, D> {
             linear: vec![LinearMethod::BySize],
             precisions: vec![Precision::Double],
             levels: Vec::new(),
+            adaptive: None,
             mesh: None,
             reference: None,
             rounds: 3,
@@ -191,6 +195,14 @@ impl<'a, const D: usize> WorkPrecision<'a, D> {
         self.levels = levels.into_iter().collect();
         self.levels.sort_unstable();
         self.levels.dedup();
+        self
+    }
+    /// Runs every scheme also on meshes that follow its error bound, from the coarsest level on, as
+    /// [`Study::adaptive`](crate::study::Study::adaptive) does. All steps are one run, and the time of a step is that
+    /// of all steps so far with their bounds: what its error costs. Memory is not measured for them.
+    #[must_use]
+    pub fn adaptive(mut self, adaptivity: Adaptivity) -> Self {
+        self.adaptive = Some(adaptivity);
         self
     }
     /// Runs on this mesh and refinements of it instead of the scene's own domain.

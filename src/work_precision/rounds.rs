@@ -34,14 +34,15 @@ impl<const D: usize> WorkPrecision<'_, D> {
         let before = (report.rows.len(), report.refused.len());
         (self.observer)(WorkProgress::Planned(slots.len() * self.rounds));
         // threads, pages and instructions are there when the clock starts
-        for slot in slots.iter().filter(|s| s.coarser.is_none()) {
+        let is_coarsest = |s: &&Slot<'_, D>| s.coarser.is_none() && !s.case.is_adaptive();
+        for slot in slots.iter().filter(is_coarsest) {
             drop(slot.study.run());
         }
         let mut written = Instant::now();
         for round in 0..self.rounds {
             // by level, so that a level that takes too long is known before the next
             let mut order: Vec<usize> = (0..slots.len()).collect();
-            order.sort_by_key(|&k| slots[k].case.level);
+            order.sort_by_key(|&k| (slots[k].case.is_adaptive(), slots[k].case.level));
             if round % 2 == 1 {
                 order.reverse();
             }
@@ -72,7 +73,7 @@ impl<const D: usize> WorkPrecision<'_, D> {
         round: usize,
         against_reference: &[Row],
     ) {
-        if let Some(measured) = &slots[k].measured {
+        if let Some(measured) = slots[k].measured.last() {
             let is_slow = measured.smallest.total > self.limit;
             if is_slow || !measured.row.converged() {
                 return;
@@ -91,29 +92,48 @@ impl<const D: usize> WorkPrecision<'_, D> {
             Err(e) => {
                 slot.failure = Some(Failure::new(slot.case.clone(), &e.to_string()));
             }
-            Ok((mut row, phases)) => {
-                if let Some(memory) = &self.memory {
-                    let known = slot.measured.as_ref().map(|m| m.row.peak_memory_bytes);
-                    row.peak_memory_bytes = known.unwrap_or_else(|| memory(&slot.case));
-                }
-                let is_same = |other: &&Row| {
-                    slot.case.variant.precision == f64::NAME
-                        && other.label == row.label
-                        && other.level == row.level
-                };
-                if let Some(known) = against_reference.iter().find(is_same) {
-                    row.against.clone_from(&known.against);
-                    if known.against.is_none() {
-                        row.warnings.clone_from(&known.warnings);
+            Ok(rows) => {
+                for (step, (row, phases)) in rows.into_iter().enumerate() {
+                    let row = self.completed(row, slot, step, against_reference);
+                    match slot.measured.get_mut(step) {
+                        Some(measured) => measured.add(&row, phases),
+                        None => slot.measured.push(Measured::new(row, phases, &slot.case)),
                     }
-                    (row.error, row.contact) = (known.error, known.contact);
-                }
-                match &mut slot.measured {
-                    Some(measured) => measured.add(&row, phases),
-                    None => slot.measured = Some(Measured::new(row, phases, &slot.case)),
                 }
             }
         }
+    }
+
+    /// The row of a run with its peak of memory, and its errors where they are against a reference.
+    fn completed(
+        &self,
+        mut row: Row,
+        slot: &Slot<'_, D>,
+        step: usize,
+        against_reference: &[Row],
+    ) -> Row {
+        if slot.case.is_adaptive() {
+            // the peak of one step is not that of a process
+            row.peak_memory_bytes = None;
+            return row;
+        }
+        if let Some(memory) = &self.memory {
+            let known = slot.measured.get(step).map(|m| m.row.peak_memory_bytes);
+            row.peak_memory_bytes = known.unwrap_or_else(|| memory(&slot.case));
+        }
+        let is_same = |other: &&Row| {
+            slot.case.variant.precision == f64::NAME
+                && other.label == row.label
+                && other.level == row.level
+        };
+        if let Some(known) = against_reference.iter().find(is_same) {
+            row.against.clone_from(&known.against);
+            if known.against.is_none() {
+                row.warnings.clone_from(&known.warnings);
+            }
+            (row.error, row.contact) = (known.error, known.contact);
+        }
+        row
     }
 
     /// Puts the results so far into the report, after the rows of other scenes, and writes it.
@@ -124,7 +144,7 @@ impl<const D: usize> WorkPrecision<'_, D> {
         slots: &[Slot<'_, D>],
     ) -> Result<(), Error> {
         report.rows.truncate(rows);
-        report.rows.extend(slots.iter().filter_map(|s| s.measured.clone()));
+        report.rows.extend(slots.iter().flat_map(|s| s.measured.iter().cloned()));
         report.refused.truncate(refused);
         report.refused.extend(slots.iter().filter_map(|s| s.failure.clone()));
         fill_orders(&mut report.rows[rows..]);

@@ -4,11 +4,12 @@ use std::sync::Arc;
 
 use super::WorkPrecision;
 use super::case::{Candidate, OneStudy, Precision, in_single_precision};
-use super::measured::{Case, Failure, Measured, Variant};
+use super::measured::{ADAPTIVE, Case, Failure, Measured, UNIFORM, Variant};
 use crate::constraint::ConstraintSet;
 use crate::error::Error;
 use crate::inequality::ActiveSet;
 use crate::linear::LinearMethod;
+use crate::nested::Adaptivity;
 use crate::real::Real;
 use crate::scheme::AnyScheme;
 use crate::study::{Study, available_memory_bytes};
@@ -19,7 +20,8 @@ pub(super) struct Slot<'s, const D: usize> {
     pub study: OneStudy<'s, D>,
     /// The case one level coarser, by its place in the list.
     pub coarser: Option<usize>,
-    pub measured: Option<Measured>,
+    /// A row, or on adaptive meshes one for each step.
+    pub measured: Vec<Measured>,
     pub failure: Option<Failure>,
 }
 
@@ -31,14 +33,17 @@ impl<'a, const D: usize> WorkPrecision<'a, D> {
             for &linear in &self.linear {
                 for &precision in &self.precisions {
                     let mut coarser = None;
-                    for &level in &self.levels {
-                        let slot = self.slot(candidate, linear, precision, level)?;
+                    let levels = self.levels.iter().map(|&level| (level, None));
+                    let first = self.levels.first().map(|&level| (level, self.adaptive));
+                    for meshes in levels.chain(first.filter(|first| first.1.is_some())) {
+                        let slot = self.slot(candidate, linear, precision, meshes)?;
                         slot.study.check()?;
                         if slots.iter().any(|s| s.case == slot.case) {
                             let variant = &slot.case.variant;
                             let name = format!("{} on {}", variant.label, variant.constraint);
                             return Err(wrong("schemes", name, "each must have its own label"));
                         }
+                        coarser = coarser.filter(|_| meshes.1.is_none());
                         slots.push(Slot { coarser, ..slot });
                         coarser = Some(slots.len() - 1);
                     }
@@ -57,13 +62,13 @@ impl<'a, const D: usize> WorkPrecision<'a, D> {
         candidate: &Candidate<'s, D>,
         linear: LinearMethod,
         precision: Precision,
-        level: usize,
+        meshes: (usize, Option<Adaptivity>),
     ) -> Result<Slot<'s, D>, Error> {
         let set = candidate.set.clone();
         let (case, study) = match precision {
             Precision::Double => {
                 let (case, mut study) =
-                    self.one_study(candidate.double.clone(), set, linear, level);
+                    self.one_study(candidate.double.clone(), set, linear, meshes);
                 if let Some(mesh) = &self.mesh {
                     study = study.on_mesh(mesh.clone());
                 }
@@ -71,14 +76,14 @@ impl<'a, const D: usize> WorkPrecision<'a, D> {
             }
             Precision::Single => {
                 let (case, mut study) =
-                    self.one_study(candidate.single.clone(), set, linear, level);
+                    self.one_study(candidate.single.clone(), set, linear, meshes);
                 if let Some(mesh) = &self.mesh {
                     study = study.on_mesh(in_single_precision(mesh)?);
                 }
                 (case, OneStudy::Single(study))
             }
         };
-        Ok(Slot { case, study, coarser: None, measured: None, failure: None })
+        Ok(Slot { case, study, coarser: None, measured: Vec::new(), failure: None })
     }
 
     fn one_study<'s, T: Real>(
@@ -86,7 +91,7 @@ impl<'a, const D: usize> WorkPrecision<'a, D> {
         scheme: Arc<dyn AnyScheme<T, D> + 's>,
         set: Option<Arc<dyn ConstraintSet>>,
         linear: LinearMethod,
-        level: usize,
+        (level, adaptivity): (usize, Option<Adaptivity>),
     ) -> (Case, Study<'s, T, D>) {
         let scene = (self.scene)();
         let name = LinearMethod::NAMES.iter().find(|l| l.1 == linear).map_or("", |l| l.0);
@@ -99,11 +104,16 @@ impl<'a, const D: usize> WorkPrecision<'a, D> {
             label: scheme.label_on(in_force),
             linear_asked: name.to_owned(),
             precision: T::NAME.to_owned(),
+            meshes: if adaptivity.is_some() { ADAPTIVE } else { UNIFORM }.to_owned(),
         };
-        let study = Study::<T, D>::new(scene)
+        let mut study = Study::<T, D>::new(scene)
             .solver(ActiveSet::default().linear(linear))
             .shared_scheme(scheme, set)
             .levels([level]);
+        if let Some(adaptivity) = adaptivity {
+            study = study.adaptive(adaptivity);
+        }
+        let level = if adaptivity.is_some() { 0 } else { level };
         (Case { variant, level }, study)
     }
 
@@ -141,7 +151,7 @@ impl<'a, const D: usize> WorkPrecision<'a, D> {
     pub(super) fn obstacle_to(&self, slots: &[Slot<'_, D>], k: usize) -> Option<String> {
         if let Some(coarser) = slots[k].coarser.map(|c| &slots[c]) {
             let level = coarser.case.level;
-            let Some(measured) = &coarser.measured else {
+            let Some(measured) = coarser.measured.last() else {
                 return Some(format!("not run: level {level} was not, either"));
             };
             let seconds = measured.smallest.total;
