@@ -6,6 +6,9 @@ use crate::mesh::BoundaryPart;
 use crate::quadrature::facet_to_cell;
 use crate::real::{Real, point_f64};
 
+/// Gaps whose difference is below this share of them are equal but for rounding, also of single precision.
+const AGREEMENT: f64 = 1e-5;
+
 /// The part of the contact force of a node that acts on one of its contact facets.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct NodeForce {
@@ -20,9 +23,11 @@ pub(super) struct NodeForce {
 }
 
 impl<T: Real, const D: usize> Space<'_, T, D> {
-    /// The contact forces: that of each node in contact, divided among its contact facets by their measures.
-    /// A node of a quadratic that Dirichlet data pin at the end of a contact part has no force of its own: the
-    /// part of the flux of the discrete function `u` stands for it, and any number would do.
+    /// The contact forces: that of each node in contact, divided by measure among those of its contact facets
+    /// whose gap binds it and, in the plane, if there are any, all of whose nodes are in contact: the other facet of a
+    /// node is open there. In space facets around the end of contact are many, and few of them are in contact whole.
+    /// A node of a quadratic that Dirichlet data pin beside nodes in contact has no force of its own: the part of
+    /// the flux of the discrete function `u` stands for it, and any number would do.
     pub(super) fn contact_forces(
         &self,
         inequality: &Inequality<T>,
@@ -31,30 +36,52 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         u: &[T],
     ) -> Vec<NodeForce> {
         let mut forces: Vec<NodeForce> = Vec::new();
-        let mut shared = vec![0.0; if self.problem.has_gap() { residual.len() } else { 0 }];
+        // of each unknown the best rank of its facets, and the measure of those
+        let mut best = vec![(0, 0.0); if self.problem.has_gap() { residual.len() } else { 0 }];
+        let mut ranks = Vec::new();
+        let is_in_contact = |unknown: usize| contact.get(unknown) != Some(&Contact::Inactive);
         for ((cell, local), group) in self.grouped_facets_of(BoundaryPart::Contact) {
-            if self.data.gap.of(group).is_none() {
-                continue;
-            }
+            let Some(gap) = self.data.gap.of(group) else { continue };
             let measure = self.mesh.geometry(cell).facet_measure(local).to_f64();
+            let unknown_of = |node: usize| self.dofs.of(cell, node);
+            let is_bound = |unknown: usize| inequality.bounds[unknown].is_inequality();
+            let (mut n_bound, mut n_touching) = (0, 0);
+            for (node, _) in self.bounded_nodes_on(local).filter(|(n, _)| is_bound(unknown_of(*n)))
+            {
+                n_bound += 1;
+                n_touching += usize::from(is_in_contact(unknown_of(node)));
+            }
+            let (is_closed, is_open) = (n_touching == n_bound, n_bound > 0 && n_touching == 0);
             for (node, _) in self.bounded_nodes_on(local) {
-                let unknown = self.dofs.of(cell, node);
-                if inequality.bounds[unknown].is_inequality() {
-                    if contact.get(unknown) != Some(&Contact::Inactive) {
-                        shared[unknown] += measure;
+                let unknown = unknown_of(node);
+                if is_bound(unknown) {
+                    if is_in_contact(unknown) {
+                        let point = self.node_point(cell, &self.nodes[node]);
+                        let bound = inequality.bounds[unknown].lower().map(Real::to_f64);
+                        let is_binding = bound.is_none_or(|b| agree(b, gap.at(&point)))
+                            || self.nodes[node].point().is_none();
+                        let is_end = D < 3 && !is_closed;
+                        let rank = 1 + 2 * usize::from(is_binding) + usize::from(!is_end);
+                        match &mut best[unknown] {
+                            (of_best, all) if *of_best == rank => *all += measure,
+                            lower if lower.0 < rank => *lower = (rank, measure),
+                            _ => {}
+                        }
                         forces.push(NodeForce { cell, local, node, value: measure });
+                        ranks.push(rank);
                     }
-                } else if self.pins && self.degree == 2 {
+                } else if self.pins && self.degree == 2 && !is_open {
                     let value = self.flux_at_node((cell, local), node, u).max(0.0);
                     forces.push(NodeForce { cell, local, node, value });
+                    ranks.push(0);
                 }
             }
         }
-        for force in &mut forces {
+        for (force, rank) in forces.iter_mut().zip(ranks).filter(|(_, rank)| *rank > 0) {
             let unknown = self.dofs.of(force.cell, force.node);
-            if inequality.bounds[unknown].is_inequality() {
-                force.value *= (-residual[unknown]).max(0.0) / shared[unknown];
-            }
+            let (of_best, all) = best[unknown];
+            let part = if rank == of_best { force.value / all } else { 0.0 };
+            force.value = part * (-residual[unknown]).max(0.0);
         }
         forces
     }
@@ -75,4 +102,9 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         }
         sum
     }
+}
+
+/// Whether two numbers are equal but for rounding.
+fn agree(a: f64, b: f64) -> bool {
+    (a - b).abs() <= AGREEMENT * a.abs().max(b.abs())
 }

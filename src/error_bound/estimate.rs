@@ -13,7 +13,7 @@ use crate::instances::compiled;
 use crate::measure::error_degree;
 use crate::mesh::BoundaryPart;
 use crate::parallel::cells;
-use crate::problem::{DataByGroup, Exact, Field};
+use crate::problem::{DataByGroup, DatumRef, Exact, Field};
 use crate::quadrature::Rule;
 use crate::real::{Real, point_f64};
 
@@ -80,8 +80,9 @@ impl ErrorBound {
 
 impl<T: Real, const D: usize> Discretisation<'_, T, D> {
     /// The bound that an admissible function and a flux give, and the distance of the function from the
-    /// discrete function `u`. Any pair whose flux has equal and opposite values on the two sides of facets
-    /// gives a bound; what the flux does not balance counts with a constant of Friedrichs' inequality, or with the reaction.
+    /// discrete function `u`. Any pair gives a bound whose function has the Dirichlet data, and whose flux has
+    /// equal and opposite values on the two sides of facets, on Neumann facets the mean of the datum, and on contact
+    /// facets no negative mean; what the flux does not balance counts with a constant of Friedrichs' inequality, or with the reaction.
     ///
     /// Between vertices the function is the larger one of its interpolant and the lower obstacle, or the
     /// smaller one with the upper obstacle; on contact facets the larger one with the gap counts. The
@@ -209,16 +210,19 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
             || self.problem.exact.is_none() && data.neumann.all().all(|f| f.constant().is_some());
         let has_fluxes = has_facets(BoundaryPart::Neumann) && !is_neumann_exact;
         let has_data = has_facets(BoundaryPart::Dirichlet);
+        let has_jumps = data.source.all().any(|f| f.level().is_some());
         let is_inexact = has_fluxes
+            || has_jumps
             || !is_below(&data.coefficient, 0)
             || integrands.iter().any(|data| !is_below(data, usize::MAX));
         let obstacles = [&data.lower, &data.upper, &data.gap];
         let is_curved = obstacles.iter().any(|d| !is_below(d, pair.degree));
-        // in space a quadratic with the data on two facets of a cell may leave the obstacle inside
-        let may_leave = D == 3
+        // a quadratic with the data on two facets of a cell may leave the obstacle inside the cell
+        let may_leave = D > 1
             && pair.degree > 1
             && obstacles.iter().any(|d| d.is_given())
-            && !is_below(&data.dirichlet, 1);
+            && !is_below(&data.dirichlet, 1)
+            && !self.dirichlet_data_exceed_obstacles(pair);
         let found = [
             (is_inexact, Unproven::Quadrature),
             (
@@ -230,6 +234,40 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
             (!is_algebra_proven, Unproven::Algebra),
         ];
         found.into_iter().filter(|(is_found, _)| *is_found).map(|(_, term)| term).collect()
+    }
+
+    /// Whether a quadratic with the Dirichlet data exceeds obstacles and gaps by its Bernstein coefficients on the
+    /// edges of Dirichlet facets too, where it is not moved.
+    fn dirichlet_data_exceed_obstacles(&self, pair: &PrimalDualPair) -> bool {
+        let mut is_given = vec![false; pair.function.len()];
+        let on_facet = |ends: &[usize; 2], local: usize| !ends.contains(&local);
+        for (cell, local) in self.facets_of(BoundaryPart::Dirichlet) {
+            let nodes = self.pair_nodes(pair, cell).filter(|(ends, _)| on_facet(ends, local));
+            nodes.for_each(|(_, node)| is_given[node] = true);
+        }
+        let exceeds = |bound: Option<DatumRef<'_, D>>, sign: f64, cell: usize, (ends, node)| {
+            let Some(bound) = bound else { return true };
+            let ends: [usize; 2] = ends;
+            let ends = ends.map(|k| self.mesh.cell(cell)[k] as usize);
+            let [x, y] = ends.map(|v| point_f64(&self.mesh.vertices()[v]));
+            let [at_x, at_y] = ends.map(|v| pair.function[v]);
+            let node: usize = node;
+            let own = 4.0 * pair.function[node] - at_x - at_y;
+            let of_bound = 4.0 * bound.at(&((x + y) * 0.5)) - bound.at(&x) - bound.at(&y);
+            sign * (own - of_bound) >= -AGREEMENT * own.abs().max(of_bound.abs())
+        };
+        let given = |cell: usize| self.pair_nodes(pair, cell).filter(|(_, node)| is_given[*node]);
+        let in_cells = (0..self.mesh.n_cells()).all(|cell| {
+            let region = self.mesh.region(cell);
+            let (lower, upper) = (self.data.lower.of(region), self.data.upper.of(region));
+            given(cell).all(|at| exceeds(lower, 1.0, cell, at) && exceeds(upper, -1.0, cell, at))
+        });
+        in_cells
+            && self.grouped_facets_of(BoundaryPart::Contact).all(|((cell, local), group)| {
+                let gap = self.data.gap.of(group);
+                let mut on_it = given(cell).filter(|(ends, _)| on_facet(ends, local));
+                on_it.all(|at| exceeds(gap, 1.0, cell, at))
+            })
     }
 
     /// Whether the function of a pair has the data of all Dirichlet facets at its nodes on them: where data of

@@ -40,6 +40,7 @@ mod pair;
 mod patches;
 mod quadratic_patches;
 mod quadratics;
+mod smooth_forces;
 mod terms;
 
 pub(crate) use algebra::CoarserCells;
@@ -65,6 +66,9 @@ pub enum NoBound {
     /// The reaction is negative at a point.
     #[error("the reaction is negative at a point, and the energy norm is none")]
     NegativeReaction,
+    /// The flux of a pair through a contact facet has the sign of no contact force.
+    #[error("the flux through a contact facet is negative in the mean: it is no contact force")]
+    NegativeForce,
     /// A number that enters is not finite.
     #[error(
         "a datum is not finite, or a coefficient not positive, at a point of the bound's rules"

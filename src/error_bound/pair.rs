@@ -114,7 +114,7 @@ impl<T: Real, const D: usize> Discretisation<'_, T, D> {
                 space.densities_of_moments(&self.facet_fluxes(u, multipliers, D)?)
             } else {
                 if self.owns_rows() {
-                    space.smooth_forces(&mut loads.contact);
+                    space.smooth_forces(&forces, &mut loads.contact);
                 }
                 space.quadratic_patch_fluxes(u, &mut loads)
             };

@@ -25,6 +25,9 @@ use crate::parallel::cells;
 use crate::quadrature::{OrthonormalPolynomials, facet_to_cell};
 use crate::real::Real;
 
+/// A mean of a basis function below this is rounding.
+const MEAN_ROUNDING: f64 = 1e-12;
+
 /// The numbers that a functional gives to the products `lambda_a lambda_j` of barycentric coordinates, symmetric.
 pub(super) type Products = [[f64; 4]; 4];
 
@@ -82,12 +85,15 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         }
         (0..multipliers.len()).filter(|&i| is_pinned(i)).for_each(|i| multipliers[i] = 0.0);
         let volume = |cell: usize| self.mesh.geometry(cell).volume.to_f64();
+        // where the mean of a basis function is not positive, as at vertices in the plane, the multiplier has no
+        // definite sign, and unknowns deep in contact are inactive at random
+        let decides: Vec<bool> = (0..n).map(|i| self.has_positive_mean(i)).collect();
         // of a shared unknown each cell has the part of its volume, among those in contact if there are any
         let is_held = |cell: usize| {
             let is_free = |unknown: usize| {
                 bounds[unknown].is_inequality() && contact.get(unknown) == Some(&Contact::Inactive)
             };
-            !(0..n).any(|i| is_free(self.dofs.of(cell, i)))
+            !(0..n).any(|i| decides[i] && is_free(self.dofs.of(cell, i)))
         };
         let mut around = vec![[0.0; 2]; if self.broken { 0 } else { self.dofs.size() }];
         for cell in (0..n_cells).filter(|_| !self.broken) {
@@ -145,6 +151,12 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         Ok(CellLoads { values, neumann, contact, functionals, surrounded })
     }
 
+    /// Whether the integral of a basis function over a cell is positive, but for rounding.
+    fn has_positive_mean(&self, node: usize) -> bool {
+        let terms = self.cell_rule.iter().map(|(point, w)| w * self.basis_at(point).values[node]);
+        terms.sum::<f64>() > MEAN_ROUNDING
+    }
+
     /// The products of Neumann data, by facet.
     fn neumann_products(&self) -> Result<Vec<(Place, Products)>, NoBound> {
         let mut neumann = Vec::new();
@@ -161,40 +173,6 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
             }
         }
         Ok(neumann)
-    }
-
-    /// Makes contact forces smooth: linear between their means around vertices, and what is then left of
-    /// their products with hat functions divided among the contact facets at the vertex by their measures.
-    pub(super) fn smooth_forces(&self, contact: &mut [(Place, Products)]) {
-        let measure = |(cell, local): Place| self.mesh.geometry(cell).facet_measure(local).to_f64();
-        let vertex = |(cell, _): Place, k: usize| self.mesh.cell(cell)[k] as usize;
-        let mut of_vertices = vec![(0.0, 0.0); self.mesh.vertices().len()];
-        for (place, products) in &*contact {
-            for k in vertices_of::<D>(place.1) {
-                let (sum, weight) = &mut of_vertices[vertex(*place, k)];
-                *sum += products[k].iter().sum::<f64>();
-                *weight += measure(*place);
-            }
-        }
-        let part = |place: Place, k: usize| measure(place) / of_vertices[vertex(place, k)].1;
-        let mut left: Vec<f64> = of_vertices.iter().map(|(sum, _)| *sum).collect();
-        for (place, products) in &mut *contact {
-            let mut densities = [0.0; 4];
-            for k in vertices_of::<D>(place.1) {
-                densities[k] = D as f64 * of_vertices[vertex(*place, k)].0 * part(*place, k);
-            }
-            *products = products_on_facet::<D>(&densities, place.1);
-            for k in vertices_of::<D>(place.1) {
-                left[vertex(*place, k)] -= products[k].iter().sum::<f64>();
-            }
-        }
-        for (place, products) in contact {
-            let mut moments = products.map(|row| row.iter().sum());
-            for k in vertices_of::<D>(place.1) {
-                moments[k] += left[vertex(*place, k)] * part(*place, k);
-            }
-            *products = products_on_facet::<D>(&densities::<D>(&moments, place.1), place.1);
-        }
     }
 
     /// The densities `c_Fj` of fluxes with these moments, `D` of each facet of each cell.

@@ -11,6 +11,9 @@ use crate::problem::{DataByGroup, DatumRef, Field};
 use crate::quadrature::facet_to_cell;
 use crate::real::{Point, Real, point_f64};
 
+/// A negative contact force below this share of the largest one is rounding.
+const FORCE_ROUNDING: f64 = 1e-8;
+
 /// The step of difference quotients of obstacles, as a share of the diameter of the cell.
 const STEP: f64 = 1e-5;
 
@@ -171,12 +174,19 @@ impl FacetFlux {
     fn at(&self, point: &[f64; 4]) -> f64 {
         self.values.map_or(1.0, |values| values.iter().zip(point).map(|(v, b)| v * b).sum())
     }
+    /// The integral over the facet.
+    fn integral(&self, dimension: usize) -> f64 {
+        self.scale * self.values.map_or(1.0, |values| values.iter().sum::<f64>() / dimension as f64)
+    }
     /// A flux that is nowhere negative with the same integral, and the mean of the square of the
     /// difference.
     fn limited(self, dimension: usize) -> (Self, f64) {
-        let Some(mut values) = self.values else { return (self, 0.0) };
+        // a negative integral is rounding: other pairs give no bound
+        let Some(mut values) = self.values else {
+            return (Self { scale: self.scale.max(0.0), ..self }, 0.0);
+        };
         let d = dimension as f64;
-        let mean = values.iter().sum::<f64>() / d;
+        let mean = (values.iter().sum::<f64>() / d).max(0.0);
         let vertices = || (0..=dimension).filter(|&k| k != self.local);
         // the value at the vertex opposite the facet does not count
         values[self.local] = mean;
@@ -416,10 +426,13 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
                 terms.traces[place.0] += norm(place, measure, square);
             }
         }
+        let (mut least, mut largest) = (0.0_f64, 0.0_f64);
         for (place, group) in self.grouped_facets_of(BoundaryPart::Contact) {
             let Some(gap) = self.data.gap.of(group) else { continue };
             let admissible = self.admissible_in(pair, place.0);
             let flux = self.flux_on(pair, place);
+            let integral = flux.integral(D);
+            (least, largest) = (least.min(integral), largest.max(integral));
             let (force, left) = flux.limited(D);
             let mut sum = 0.0;
             for (point, weight) in self.facet_rule.iter() {
@@ -428,13 +441,16 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
                 let (value, _) = admissible.at(&point, &x);
                 sum += weight * force.at(&point) * (value - gap.at(&x)).max(0.0);
             }
-            terms.contact[place.0] += flux.scale * sum;
+            terms.contact[place.0] += force.scale * sum;
             if pair.degree > 1 {
                 let measure = measure_of(place);
                 terms.traces[place.0] += norm(place, measure, left / measure);
             }
         }
-        Ok(terms)
+        match -least > FORCE_ROUNDING * largest {
+            true => Err(NoBound::NegativeForce),
+            false => Ok(terms),
+        }
     }
 
     /// The flux of a pair through a facet.

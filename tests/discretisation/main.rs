@@ -4,6 +4,7 @@ mod accuracy;
 mod adaptive;
 mod elements;
 mod error_bounds;
+mod error_bounds_contact;
 mod error_bounds_quadratics;
 mod forms;
 mod named_data;

@@ -1,0 +1,128 @@
+//! Error bounds where contact decides the flux: beside Dirichlet facets, at the ends of contact, deep inside.
+
+use crate::error_bounds::{bounded, placed};
+use crate::support::checks::Checks;
+use unilateral::error_bound::NoBound;
+use unilateral::prelude::*;
+
+/// Where an obstacle binds the unknowns beside Dirichlet facets, its multiplier is exchanged for flux: the bound has
+/// order one for every broken scheme, and that of WOPSIP is near those of the others.
+#[test]
+fn multipliers_beside_dirichlet_facets_carry_no_flux() {
+    let mut checks = Checks::default();
+    let scene = scenes::torsion_2d(5.0);
+    let mut totals = Vec::new();
+    for name in "p1 cr sipg ldg br2 wopsip wopsip:facet-means".split_whitespace() {
+        let (scene, scheme) = placed(&scene, name);
+        let of_level = |n: usize| {
+            let mesh = scene.domain.mesh::<f64>(n).unwrap();
+            let solved = solve(&scene.problem, &mesh, &*scheme).unwrap();
+            solved.bound().unwrap().total
+        };
+        let [coarse, fine] = [16, 32].map(of_level);
+        println!("{name}: {coarse:.3e}, {fine:.3e}");
+        checks.that(coarse / fine > 1.9, || format!("{name}: {coarse:e} {fine:e}"));
+        totals.push(fine);
+    }
+    let least = totals.iter().copied().fold(f64::INFINITY, f64::min);
+    for total in totals {
+        checks.that(total < 1.7 * least, || format!("{total:e} {least:e}"));
+    }
+    checks.finish();
+}
+
+/// Vertices of conforming quadratics deep in contact are inactive at random, and the flux there does not know it.
+#[test]
+fn quadratics_deep_in_contact() {
+    let scene = scenes::ball_2d();
+    let total = |name: &str| {
+        let (scene, scheme) = placed(&scene, name);
+        let (_, bound, error) = bounded(&scene, &scene.domain.mesh(16).unwrap(), &*scheme);
+        assert!((1.0..2.0).contains(&(bound.total / error)), "{name}: {}", bound.total / error);
+        bound.total
+    };
+    let ratio = total("p2") / total("p2:midpoints");
+    assert!((ratio - 1.0).abs() < 0.02, "{ratio}");
+}
+
+/// A strip in contact along its lower side, pulled down with very different forces.
+fn strip(gap: impl Fn(f64) -> f64 + Send + Sync + 'static) -> (Problem<2>, Mesh<f64, 2>) {
+    let box_ = BoxDomain::dirichlet(Point::zeros(), Point::<f64, 2>::new(6.0, 1.0));
+    let box_ = box_.side(1, 0, BoundaryPart::Contact).side(1, 1, BoundaryPart::Neumann);
+    let forces = [-1.0, -10.0, -0.72, 0.114, -0.03, 0.0];
+    let problem = Problem::new()
+        .neumann(move |x, _| forces[(x[0] as usize).min(5)])
+        .dirichlet(|x| 0.734 * x[0] / 6.0)
+        .signorini(move |x| gap(x[0]));
+    (problem, Mesh::kuhn_box(&box_, [6, 1]).unwrap())
+}
+
+/// No contact facet has a force that is negative in the mean, and the complementarity is not negative: else a bound may
+/// lie below the error.
+#[test]
+fn forces_on_contact_facets_are_not_negative() {
+    let (problem, mesh) =
+        strip(|x| if (3.0..4.0).contains(&x) { -899.0 * (x - 3.0) * (4.0 - x) } else { 0.0 });
+    let fine = mesh.refine().unwrap().0.refine().unwrap().0.refine().unwrap().0;
+    let reference = solve(&problem, &fine, &ConformingP2).unwrap();
+    let named: NamedScheme = "wopsip-p2".parse().unwrap();
+    let scheme = named.make();
+    let solved = solve(&problem, &mesh, &*scheme).unwrap();
+    let mut pair = solved.primal_dual_pair().unwrap();
+    let contact: Vec<(usize, usize)> = mesh
+        .boundary()
+        .iter()
+        .filter(|f| f.part == BoundaryPart::Contact)
+        .map(|f| (f.cell as usize, usize::from(f.local)))
+        .collect();
+    for &(cell, local) in &contact {
+        let values = &pair.flux[(cell * 3 + local) * 3..][..3];
+        let integral: f64 = (0..3).filter(|&k| k != local).map(|k| values[k] / 2.0).sum();
+        assert!(integral >= -1e-12, "{cell} {local}: {integral}");
+    }
+    let bound = solved.bound().unwrap();
+    assert!(bound.parts.contact >= 0.0, "{:?}", bound.parts);
+    // a lower bound on the error of the function: norms of both solutions differ by it at most
+    let energy = |solved: &Solved<'_, f64, 2>| solved.energy().unwrap().unwrap();
+    let excess = energy(&solved) - energy(&reference);
+    assert!(
+        excess.is_finite() && 0.5 * (bound.total + bound.distance).powi(2) > excess,
+        "{excess}"
+    );
+    // a pair with such a force gives no bound
+    let (cell, local) = contact[1];
+    for k in (0..3).filter(|&k| k != local) {
+        pair.flux[(cell * 3 + local) * 3 + k] = -1.0;
+    }
+    let refused = solved.discretisation().error_bound(&pair, solved.values());
+    assert!(matches!(refused, Err(NoBound::NegativeForce)), "{refused:?}");
+}
+
+/// Where gaps of two boundary groups differ at a common vertex, the force of the vertex is on the facets whose gap binds
+/// it: the bound does not grow with the other gap.
+#[test]
+fn the_force_of_a_vertex_is_where_its_gap_binds() {
+    let square = BoxDomain::dirichlet(Point::zeros(), Point::repeat(1.0))
+        .side(0, 1, BoundaryPart::Contact)
+        .side(1, 0, BoundaryPart::Contact);
+    let mesh = Mesh::<f64, 2>::kuhn_box(&square, [4, 4]).unwrap();
+    let total = |depth: f64, name: &str| {
+        let named: NamedScheme = name.parse().unwrap();
+        let problem = Problem::new()
+            .constant_source(-4.0)
+            .dirichlet_on("left", 0.0)
+            .dirichlet_on("top", 0.0)
+            .signorini_on("bottom", 0.0)
+            .signorini_on("right", -depth);
+        let mesh = problem.bind_boundary(mesh.clone()).unwrap();
+        let scheme = named.make();
+        let bound = solve(&problem, &mesh, &*scheme).unwrap().bound().unwrap();
+        assert!(bound.is_guaranteed(), "{name}: {:?}", bound.unproven);
+        bound.total
+    };
+    for name in "p1 p2 sipg wopsip".split_whitespace() {
+        let [shallow, deep] = [2.0, 2e4].map(|depth| total(depth, name));
+        println!("{name}: {shallow:.3} {deep:.3}");
+        assert!(deep < 1.01 * shallow, "{name}: {shallow} {deep}");
+    }
+}
