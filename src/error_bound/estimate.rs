@@ -9,11 +9,12 @@ use super::{NoBound, PrimalDualPair};
 use crate::assemble::Discretisation;
 use crate::assemble::cut_simplices::CutRule;
 use crate::assemble::space::Space;
+use crate::error::Error;
 use crate::instances::compiled;
-use crate::measure::error_degree;
+use crate::measure::Errors;
 use crate::mesh::BoundaryPart;
 use crate::parallel::cells;
-use crate::problem::{DataByGroup, Exact, Field};
+use crate::problem::DataByGroup;
 use crate::quadrature::Rule;
 use crate::real::{Real, point_f64};
 
@@ -120,10 +121,37 @@ impl<T: Real, const D: usize> Discretisation<'_, T, D> {
     /// # Panics
     /// If the pair is not one of this mesh.
     pub fn error_of_pair(&self, pair: &PrimalDualPair) -> Option<f64> {
+        self.errors_and_error_of_pair(None, Some(pair)).ok()?.1
+    }
+
+    /// The errors of a vector of unknowns against the exact solution, and the energy norm of the difference of
+    /// the exact solution and the admissible function of a pair: both at the same points.
+    ///
+    /// # Errors
+    /// [`Error::DataNotFinite`].
+    pub(crate) fn errors_and_error_of_pair(
+        &self,
+        u: Option<&[T]>,
+        pair: Option<&PrimalDualPair>,
+    ) -> Result<(Errors, Option<f64>), Error> {
         compiled!(
-            T, D: fn(&Discretisation<'_, T, D>, &PrimalDualPair) -> Option<f64>
-                = |of, pair| of.problem().exact.as_ref().map(|e| of.space.error_of_pair(e, pair))
-        )(self, pair)
+            T, D: fn(
+                &Discretisation<'_, T, D>,
+                Option<&[T]>,
+                Option<&PrimalDualPair>,
+            ) -> Result<(Errors, Option<f64>), Error>
+                = |of, u, pair| {
+                    let Some(exact) = &of.problem().exact else { return Ok(Default::default()) };
+                    match pair {
+                        Some(pair) => of.errors_beside(
+                            exact,
+                            u,
+                            Some(&|cell| of.space.admissible_in(pair, cell)),
+                        ),
+                        None => of.errors_beside(exact, u, None),
+                    }
+                }
+        )(self, u, pair)
     }
 }
 
@@ -246,33 +274,5 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
                 },
             )
         })
-    }
-
-    /// The true error of the admissible function.
-    fn error_of_pair(&self, exact: &Exact<D>, pair: &PrimalDualPair) -> f64 {
-        let degree = error_degree(D);
-        let table = self.cell_table(Rule::new(D, degree));
-        let kinks: Vec<Option<Field<D>>> =
-            (0..self.mesh.regions().len()).map(|region| self.kinks_of(exact, region)).collect();
-        let rule = kinks.iter().any(Option::is_some).then(|| CutRule::new(D, degree));
-        let parts = cells::map(self.mesh.n_cells(), &|cells: Range<usize>| {
-            let mut sum = 0.0;
-            for cell in cells {
-                let volume = self.mesh.geometry(cell).volume.to_f64();
-                let admissible = self.admissible_in(pair, cell);
-                let level = kinks[self.mesh.region(cell)].as_ref();
-                let cut = rule.as_ref().zip(level);
-                self.visit_points(cell, &table, cut, &mut |point, x, weight, _| {
-                    let (value, gradient) = admissible.at(point, x);
-                    let alpha = self.in_region(&self.data.coefficient, cell, x).unwrap_or(1.0);
-                    let reaction = self.in_region(&self.data.reaction, cell, x).unwrap_or(0.0);
-                    let slope = ((exact.gradient)(x) - gradient).norm_squared();
-                    let difference = (exact.value)(x) - value;
-                    sum += weight * volume * (alpha * slope + reaction * difference * difference);
-                });
-            }
-            sum
-        });
-        parts.iter().sum::<f64>().sqrt()
     }
 }

@@ -6,13 +6,11 @@ use super::{NoBound, PrimalDualPair};
 use crate::assemble::cut_simplices::CutRule;
 use crate::assemble::space::tables::{BasisAt, CellTable};
 use crate::assemble::space::{Place, Space};
+use crate::measure::Admissible;
 use crate::mesh::{BoundaryPart, edge_vertices};
-use crate::problem::{DataByGroup, DatumRef, Field};
+use crate::problem::{DataByGroup, Field};
 use crate::quadrature::facet_to_cell;
 use crate::real::{Point, Real, point_f64};
-
-/// The step of difference quotients of obstacles, as a share of the diameter of the cell.
-const STEP: f64 = 1e-5;
 
 /// Integrals over one cell.
 #[derive(Clone, Copy, Debug, Default)]
@@ -41,52 +39,7 @@ pub(super) struct CellTerms {
 
 /// A function of a quadrature point of a cell: barycentric coordinates, coordinates in space, weight and values
 /// of the basis.
-pub(super) type Visit<'v, const D: usize> =
-    &'v mut dyn FnMut(&[f64; 4], &Point<f64, D>, f64, &BasisAt<f64>);
-
-/// The admissible function in a cell.
-pub(super) struct Admissible<'d, const D: usize> {
-    /// At the vertices.
-    values: [f64; 4],
-    /// The gradient of the linear interpolant.
-    gradient: Point<f64, D>,
-    /// For quadratics by edge four times what the value at the midpoint exceeds that of the interpolant by.
-    excess: Option<[f64; 6]>,
-    /// The gradients of the barycentric coordinates.
-    gradients: [Point<f64, D>; 4],
-    /// The obstacles, lower and upper one.
-    bounds: [Option<DatumRef<'d, D>>; 2],
-    /// The step of difference quotients.
-    step: f64,
-}
-
-impl<const D: usize> Admissible<'_, D> {
-    /// Value and gradient at a point, by barycentric coordinates and in space.
-    pub(super) fn at(&self, point: &[f64; 4], x: &Point<f64, D>) -> (f64, Point<f64, D>) {
-        let mut value = self.values.iter().zip(point).map(|(v, b)| v * b).sum();
-        let mut gradient = self.gradient;
-        if let Some(excess) = &self.excess {
-            for (&[a, b], excess) in edge_vertices(D).iter().zip(excess) {
-                value += excess * point[a] * point[b];
-                gradient += (self.gradients[b] * point[a] + self.gradients[a] * point[b]) * *excess;
-            }
-        }
-        for (bound, sign) in self.bounds.iter().zip([1.0, -1.0]) {
-            let Some(bound) = bound else { continue };
-            let at = bound.at(x);
-            if sign * (at - value) > 0.0 {
-                value = at;
-                gradient = Point::from_fn(|axis, _| {
-                    let (mut ahead, mut behind) = (*x, *x);
-                    ahead[axis] += self.step;
-                    behind[axis] -= self.step;
-                    (bound.at(&ahead) - bound.at(&behind)) / (2.0 * self.step)
-                });
-            }
-        }
-        (value, gradient)
-    }
-}
+type Visit<'v, const D: usize> = &'v mut dyn FnMut(&[f64; 4], &Point<f64, D>, f64, &BasisAt<f64>);
 
 /// The flux in a cell: `q = sum_j lambda_j (s_j x - o_j) / (D |K|)` with one term, without `lambda_j`, where
 /// the density is constant on facets.
@@ -222,7 +175,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
             gradients[k] = point_f64(geometry.gradient(k));
             gradient += gradients[k] * (values[k] - values[0]);
         }
-        let step = STEP * self.mesh.cell_diameter(cell).to_f64();
+        let diameter = self.mesh.cell_diameter(cell).to_f64();
         let bounds = [self.data.lower.of(region), self.data.upper.of(region)];
         let excess = (pair.degree > 1).then(|| {
             let midpoints = &pair.function[self.mesh.vertices().len()..];
@@ -234,7 +187,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
             }
             excess
         });
-        Admissible { values, gradient, excess, gradients, bounds, step }
+        Admissible { values, gradient, excess, gradients, bounds, diameter }
     }
 
     /// The flux of a pair in a cell.
@@ -260,7 +213,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
     }
 
     /// Calls a function with the points of a rule on a cell, divided where a level has zeros.
-    pub(super) fn visit_points(
+    fn visit_points(
         &self,
         cell: usize,
         table: &CellTable<f64>,
