@@ -72,7 +72,7 @@ impl<T: Real, const D: usize> Discretisation<'_, T, D> {
                     let space = &coarse.space;
                     let reference = Reference::Coarse { space, values, refinements };
                     let total = of.space.cell_errors(&reference, Some(u), None)?;
-                    Ok(Errors { energy: None, ..total.roots() })
+                    Ok(Errors { energy: None, ..total.norms(0.0) })
                 }
         )(self, u, (coarse, values, refinements))
     }
@@ -86,13 +86,13 @@ impl<T: Real, const D: usize> Discretisation<'_, T, D> {
         function: Option<InCells<'_, D>>,
     ) -> Result<(Errors, Option<f64>), Error> {
         let space = &self.space;
-        let mut total = space.cell_errors(&Reference::Exact(exact), u, function)?;
-        total.energy = total.broken_energy;
+        let total = space.cell_errors(&Reference::Exact(exact), u, function)?;
         let neighbours = space.neighbours.as_ref().filter(|_| self.form().couples());
-        if let (Some(neighbours), Some(u)) = (neighbours, u) {
-            total.energy += space.facet_error(self.form(), neighbours, u)?;
-        }
-        Ok((total.roots(), function.map(|_| total.of_function.sqrt())))
+        let of_facets = match neighbours.zip(u) {
+            Some((neighbours, u)) => space.facet_error(self.form(), neighbours, u)?,
+            None => 0.0,
+        };
+        Ok((total.norms(of_facets), function.map(|_| total.of_function())))
     }
 }
 
@@ -113,26 +113,29 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         let terms_of = |cell: usize, terms: &mut Vec<f64>| -> Result<(), Error> {
             let mine = self.local_values(cell, u);
             for local in 0..=D {
-                let across = neighbours.across(cell, local);
-                let jumps: Vec<f64> = match across {
+                let (other, data) = match neighbours.across(cell, local) {
                     Neighbour::Cell { cell: other, .. } if (other as usize) < cell => continue,
-                    Neighbour::Cell { cell: other, local: other_local } => {
-                        let theirs = self.local_values(other as usize, u);
-                        let sides = table.on(local).iter().zip(table.on(other_local as usize));
-                        sides.map(|(a, b)| value(a, &mine) - value(b, &theirs)).collect()
+                    Neighbour::Cell { cell: other, local } => {
+                        let values = self.local_values(other as usize, u);
+                        (Some((values, usize::from(local))), Vec::new())
                     }
                     Neighbour::Boundary(BoundaryPart::Dirichlet) if !self.pins => {
                         let group = self.mesh.boundary_group(cell, local).unwrap_or(0);
-                        let data = self.dirichlet_moments(&moments, (cell, local), group)?;
-                        let sides = table.on(local).iter().zip(data);
-                        sides.map(|(basis, g)| value(basis, &mine) - g).collect()
+                        (None, self.dirichlet_moments(&moments, (cell, local), group)?)
                     }
                     Neighbour::Boundary(_) => continue,
                 };
+                let jump = |k: usize| {
+                    let there = match &other {
+                        Some((theirs, local)) => value(&table.on(*local)[k], theirs),
+                        None => data[k],
+                    };
+                    value(&table.on(local)[k], &mine) - there
+                };
                 let Some(view) = self.facet_view(neighbours, cell, local) else { continue };
                 let penalty = form.penalty(&view);
-                for (jump, &degree) in jumps.into_iter().zip(&table.degrees) {
-                    let trace = Trace { jump: T::lit(jump), flux: T::lit(0.0) };
+                for (k, &degree) in table.degrees.iter().enumerate() {
+                    let trace = Trace { jump: T::lit(jump(k)), flux: T::lit(0.0) };
                     let penalty = penalty * T::lit(form.moment_weight(degree));
                     let term = view.measure * form.integrand(&view, trace, trace, penalty);
                     terms.push(term.to_f64());
