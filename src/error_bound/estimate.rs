@@ -1,5 +1,6 @@
 //! The bound of a pair: its parts, and what of it is proven.
 
+use std::convert::Infallible;
 use std::ops::Range;
 
 use super::algebra::CoarserCells;
@@ -12,6 +13,7 @@ use crate::assemble::space::Space;
 use crate::error::Error;
 use crate::instances::compiled;
 use crate::measure::Errors;
+use crate::memory::in_large_pages;
 use crate::mesh::BoundaryPart;
 use crate::parallel::cells;
 use crate::problem::DataByGroup;
@@ -176,30 +178,35 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         let boundary = self.boundary_terms(pair)?;
         let friedrichs = self.mesh.friedrichs_constant();
         let rules = (&table, cut.as_ref());
-        let terms = cells::map(self.mesh.n_cells(), &|cells: Range<usize>| {
-            let terms = |cell| self.cell_terms(pair, u, cell, rules, &boundary, friedrichs);
-            cells.map(terms).collect::<Vec<_>>()
-        });
-        let terms: Vec<CellTerms> = terms.into_iter().flatten().collect();
-        let sum = |of: fn(&CellTerms) -> f64| terms.iter().map(of).sum::<f64>();
-        let least = |of: fn(&CellTerms) -> f64| terms.iter().map(of).fold(f64::INFINITY, f64::min);
-        if least(|t| t.least_reaction) < 0.0 {
+        let mut terms = in_large_pages(vec![CellTerms::default(); self.mesh.n_cells()]);
+        let fill = |cells: Range<usize>, out: &mut [CellTerms]| {
+            for (cell, terms) in cells.zip(out) {
+                *terms = self.cell_terms(pair, u, cell, rules, &boundary, friedrichs);
+            }
+            Ok::<(), Infallible>(())
+        };
+        let Ok(()) = cells::for_each(terms.len(), &|cell| cell, &mut terms, &fill);
+        let (mut mismatch, mut distance, mut contact) = (0.0, 0.0, 0.0);
+        let [mut least_coefficient, mut least_reaction] = [f64::INFINITY; 2];
+        for t in &terms {
+            mismatch += t.mismatch;
+            distance += t.distance;
+            contact += t.contact;
+            least_coefficient = t.least_coefficient.min(least_coefficient);
+            least_reaction = t.least_reaction.min(least_reaction);
+        }
+        if least_reaction < 0.0 {
             return Err(NoBound::NegativeReaction);
         }
         // |e| <= constant |||e||| by the inequality of Friedrichs or, where the reaction is positive, by that
-        let least_root = |of| least(of).max(0.0).sqrt();
-        let by_gradient = friedrichs.map(|c| c / least_root(|t| t.least_coefficient));
-        let by_value = least_root(|t| t.least_reaction).recip();
+        let by_gradient = friedrichs.map(|c| c / least_coefficient.max(0.0).sqrt());
+        let by_value = least_reaction.max(0.0).sqrt().recip();
         let constant = by_gradient.map_or(by_value, |c| c.min(by_value));
-        let contact = sum(|t| t.contact);
-        let volume = |cell| self.mesh.geometry(cell).volume.to_f64();
-        let volumes: Vec<f64> = (0..self.mesh.n_cells()).map(volume).collect();
-        let choice = Choice::best((&terms, &volumes), coarser, constant);
+        let choice = Choice::best(&terms, coarser, constant);
         let Choice { least_ratio, with_oscillation, obstacle, flux_square, is_balanced } = choice;
-        let mismatch = sum(|t| t.mismatch);
         let is_proven = constant.is_finite() || is_balanced;
         let square = flux_square + obstacle + contact;
-        if !square.is_finite() || least(|t| t.least_coefficient) <= 0.0 {
+        if !square.is_finite() || least_coefficient <= 0.0 {
             return Err(NoBound::NotFinite);
         }
         let share = |part: f64| if square > 0.0 { part / square } else { 0.0 };
@@ -209,7 +216,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         };
         Ok(ErrorBound {
             total: square.sqrt(),
-            distance: sum(|t| t.distance).sqrt(),
+            distance: distance.sqrt(),
             parts: BoundParts {
                 mismatch: share(mismatch),
                 obstacle: share(obstacle),

@@ -4,18 +4,22 @@
 //! With `phi` the hat function of the vertex, the part of the flux on its patch has in each cell the
 //! integral `int c u phi - int f phi - lambda |K| / |patch|` over the boundary of the cell, on each facet at
 //! the vertex jumps that cancel `1/D` of those of `alpha grad u . n`, and no flux through the facets
-//! opposite the vertex. The equation of the vertex is the condition of solvability.
+//! opposite the vertex. The equation of the vertex is the condition of solvability. In the plane the cells
+//! around the vertex form a fan, along which balance and jumps determine all fluxes by the first one: see `Fan`.
 //!
 //! Source: P. Destuynder, B. Métivet, Math. Comp. 68 (1999), 1379-1396; D. Braess, J. Schöberl, Math.
 //! Comp. 77 (2008), 651-672.
 
+use std::convert::Infallible;
 use std::ops::Range;
+use std::sync::atomic::{AtomicU64, Ordering};
 
 use nalgebra::{SMatrix, SVector};
 
 use super::NoBound;
 use super::contact::NodeForce;
 use crate::assemble::space::Space;
+use crate::memory::in_large_pages;
 use crate::mesh::{BoundaryPart, Neighbour, Neighbours};
 use crate::parallel::cells;
 use crate::real::{Point, Real, point_f64};
@@ -24,19 +28,29 @@ use crate::real::{Point, Real, point_f64};
 /// determined up to a constant.
 const ZERO_PIVOT: f64 = 1e-11;
 
+/// What is known of a cell before its patches are.
+#[derive(Clone, Copy, Default)]
+struct CellData {
+    volume: f64,
+    /// The integrals of `alpha grad u . n` over its facets.
+    normal: [f64; 4],
+    /// What the flux of each of its vertices balances, without obstacles.
+    loads: [f64; 4],
+}
+
 /// What the patches read.
 struct Patches<'s, 'a, T: Real, const D: usize> {
     space: &'s Space<'a, T, D>,
     neighbours: Neighbours,
-    /// The integrals of `alpha grad u . n` over the facets of each cell.
-    normal: Vec<f64>,
-    /// What the flux of each vertex of each cell balances there, without obstacles.
-    loads: Vec<f64>,
+    cells: Vec<CellData>,
     /// The multiplier of each vertex that belongs to obstacles.
     multipliers: Vec<f64>,
     /// The cells around each vertex with its number there, and where those of each vertex start.
     corners: Vec<(u32, u8)>,
     starts: Vec<usize>,
+    /// By cell and vertex the fluxes through the facets there, as bits: each is written once, by the task of
+    /// the vertex.
+    parts: Vec<AtomicU64>,
 }
 
 impl<T: Real, const D: usize> Space<'_, T, D> {
@@ -49,20 +63,24 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         forces: &[NodeForce],
     ) -> Result<Vec<f64>, NoBound> {
         let patches = self.patches(u, residual, forces)?;
-        let mut flux = patches.normal.clone();
-        // parts are added in the order of vertices, so the result does not depend on threads
-        let parts = cells::map(self.mesh.vertices().len(), &|vertices: Range<usize>| {
-            let mut part = Vec::new();
+        cells::map(self.mesh.vertices().len(), &|vertices: Range<usize>| {
             let mut patch = Patch::default();
-            vertices.for_each(|vertex| patches.add_vertex(vertex, &mut patch, &mut part));
-            part
+            vertices.for_each(|vertex| patches.add_vertex(vertex, &mut patch));
         });
-        let mut values = parts.into_iter().flatten();
-        for &(cell, own) in &patches.corners {
-            for (local, value) in around::<D>(own).zip(&mut values) {
-                flux[cell as usize * (D + 1) + local] += value;
+        let mut flux = in_large_pages(vec![0.0; self.mesh.n_cells() * (D + 1)]);
+        let fill = |cells: Range<usize>, flux: &mut [f64]| {
+            for (cell, flux) in cells.zip(flux.chunks_exact_mut(D + 1)) {
+                flux.copy_from_slice(&patches.cells[cell].normal[..=D]);
+                for own in 0..=D as u8 {
+                    for (k, local) in around::<D>(own).enumerate() {
+                        let part = &patches.parts[part_of::<D>((cell, own), k)];
+                        flux[local] += f64::from_bits(part.load(Ordering::Relaxed));
+                    }
+                }
             }
-        }
+            Ok::<(), Infallible>(())
+        };
+        let Ok(()) = cells::for_each(self.mesh.n_cells(), &|c| c * (D + 1), &mut flux, &fill);
         Ok(flux)
     }
 
@@ -74,35 +92,40 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
     ) -> Result<Patches<'_, '_, T, D>, NoBound> {
         let load = self.load_by_cell()?;
         let n_cells = self.mesh.n_cells();
-        let of_cells = cells::map(n_cells, &|cells: Range<usize>| {
-            let mut pairs = Vec::with_capacity(cells.len() * (D + 1));
-            for cell in cells {
+        let mut data = in_large_pages(vec![CellData::default(); n_cells]);
+        let fill = |cells: Range<usize>, out: &mut [CellData]| {
+            for (cell, data) in cells.zip(out) {
                 let metric = self.metric(cell);
                 let values = self.local_values(cell, u);
                 let alpha = self.alpha(cell).to_f64();
-                let residual = self.cell_residual(cell, u, &load);
+                let residual = self.cell_residual(cell, &metric, u, &load);
+                data.volume = metric.volume.to_f64();
                 for i in 0..=D {
                     let product =
                         |j: usize| metric.products[i][j].to_f64() * (values[j] - values[0]);
                     let stiffness = alpha * (1..=D).map(product).sum::<f64>();
                     // |F| n = -D |K| grad lambda
-                    pairs.push((-(D as f64) * stiffness, residual[i] - stiffness));
+                    data.normal[i] = -(D as f64) * stiffness;
+                    data.loads[i] = residual[i] - stiffness;
                 }
             }
-            pairs
-        });
-        let (normal, mut loads): (Vec<f64>, Vec<f64>) = of_cells.into_iter().flatten().unzip();
+            Ok::<(), Infallible>(())
+        };
+        let Ok(()) = cells::for_each(n_cells, &|c| c, &mut data, &fill);
         let mut multipliers: Vec<f64> = residual.iter().map(|r| -r).collect();
         for (cell, local) in self.facets_of(BoundaryPart::Dirichlet) {
             self.mesh.facet_vertices(cell, local).for_each(|v| multipliers[v as usize] = 0.0);
         }
         for force in forces {
-            loads[force.cell * (D + 1) + force.node] -= force.value;
+            data[force.cell].loads[force.node] -= force.value;
             multipliers[self.dofs.of(force.cell, force.node)] -= force.value;
         }
         let (corners, starts) = self.corners();
         let neighbours = Neighbours::new(self.mesh);
-        Ok(Patches { space: self, neighbours, normal, loads, multipliers, corners, starts })
+        let mut parts = in_large_pages(Vec::with_capacity(n_cells * (D + 1) * D));
+        parts.resize_with(n_cells * (D + 1) * D, AtomicU64::default);
+        let (space, cells) = (self, data);
+        Ok(Patches { space, neighbours, cells, multipliers, corners, starts, parts })
     }
 
     /// The cells around each vertex with its number there, and where those of each vertex start.
@@ -142,9 +165,20 @@ struct CellOfPatch {
     fluxes: SVector<f64, 3>,
 }
 
+/// A cell of a fan, between two facets at its vertex.
+#[derive(Clone, Copy)]
+struct CellOfFan {
+    cell: usize,
+    /// The number of the vertex in the cell.
+    own: u8,
+    /// The numbers of the facets on both sides.
+    sides: [u8; 2],
+}
+
 /// The arrays of one patch.
 #[derive(Default)]
 struct Patch {
+    fan: Vec<CellOfFan>,
     cells: Vec<CellOfPatch>,
     /// The upper triangle of the matrix of the multipliers by rows.
     matrix: Vec<f64>,
@@ -155,14 +189,18 @@ struct Patch {
 }
 
 impl<T: Real, const D: usize> Patches<'_, '_, T, D> {
-    /// Adds the part of a vertex to a list: for each cell around it the fluxes through the facets there.
+    /// Sets the part of a vertex: for each cell around it the fluxes through the facets there.
     ///
     /// The fluxes of each cell are eliminated: the multipliers of the facets between cells remain.
-    fn add_vertex(&self, vertex: usize, patch: &mut Patch, part: &mut Vec<f64>) {
+    fn add_vertex(&self, vertex: usize, patch: &mut Patch) {
         let corners = &self.corners[self.starts[vertex]..self.starts[vertex + 1]];
-        let Patch { cells, matrix, multipliers, sums } = patch;
-        let volume = |cell: u32| self.space.metric(cell as usize).volume.to_f64();
+        let volume = |cell: u32| self.cells[cell as usize].volume;
         let total: f64 = corners.iter().map(|&(cell, _)| volume(cell)).sum();
+        let pressure = self.multipliers[vertex] / total;
+        if D == 2 && self.add_fan(corners, pressure, &mut patch.fan) {
+            return;
+        }
+        let Patch { cells, matrix, multipliers, sums, .. } = patch;
         cells.clear();
         multipliers.clear();
         for (k, &(cell, own)) in corners.iter().enumerate() {
@@ -170,10 +208,8 @@ impl<T: Real, const D: usize> Patches<'_, '_, T, D> {
             for (slot, local) in facets.iter_mut().zip(around::<D>(own)) {
                 *slot = self.facet_of_patch((cell, local), k, corners, (cells, multipliers));
             }
-            let volume = volume(cell);
-            let pressed = self.multipliers[vertex] * volume / total;
-            let load = self.loads[cell as usize * (D + 1) + usize::from(own)] - pressed;
-            cells.push(self.cell_of_patch((cell, own), volume, facets, load));
+            let load = self.cells[cell as usize].loads[usize::from(own)] - pressure * volume(cell);
+            cells.push(self.cell_of_patch((cell, own), facets, load));
         }
         let n = multipliers.len();
         sums.clear();
@@ -196,14 +232,14 @@ impl<T: Real, const D: usize> Patches<'_, '_, T, D> {
         solve(matrix, multipliers, n);
         // the second cell of a facet takes the rest of the sum: sides agree to rounding
         let mut n_known = 0;
-        for of in &*cells {
+        for (&(cell, own), of) in corners.iter().zip(&*cells) {
             let multiplier = |a: usize| match of.facets[a] {
                 FacetOfPatch::Interior(i) => multipliers[i],
                 _ => 0.0,
             };
             let fluxes = of.fluxes - of.slopes * SVector::from_fn(|a, _| multiplier(a));
-            for (facet, &flux) in of.facets[..D].iter().zip(fluxes.iter()) {
-                part.push(match *facet {
+            for (k, (facet, &flux)) in of.facets[..D].iter().zip(fluxes.iter()).enumerate() {
+                let flux = match *facet {
                     FacetOfPatch::Interior(i) if i < n_known => sums[i],
                     FacetOfPatch::Interior(i) => {
                         n_known += 1;
@@ -211,9 +247,106 @@ impl<T: Real, const D: usize> Patches<'_, '_, T, D> {
                         flux
                     }
                     _ => flux,
-                });
+                };
+                self.set((cell as usize, own), k, flux);
             }
         }
+    }
+
+    fn set(&self, corner: (usize, u8), k: usize, flux: f64) {
+        self.parts[part_of::<D>(corner, k)].store(flux.to_bits(), Ordering::Relaxed);
+    }
+
+    /// The same in the plane where the cells form one fan, else false.
+    ///
+    /// With the flux `x` out of the first cell through its first facet all others are `p + x` through first and
+    /// `q - x` through second facets: the two fluxes of a cell have its load as their sum, those of a facet
+    /// cancel the jump. On a fan that begins and ends with facets of unknown flux, or closes, `x` makes the norm
+    /// least: with `a` and `b` opposite both facets, `m` the barycentre and `V` the volume of a cell the
+    /// derivative of its square by `x` is that of `|(p + x) (m - a) + (q - x) (m - b)|^2 / (4 alpha V)`, since the
+    /// flux `1, -1` is the constant `(b - a) / (2 V)`.
+    fn add_fan(&self, corners: &[(u32, u8)], pressure: f64, fan: &mut Vec<CellOfFan>) -> bool {
+        if !self.find_fan(corners, fan) {
+            return false;
+        }
+        let mesh = self.space.mesh;
+        let normal = |(cell, local): (usize, u8)| self.cells[cell].normal[usize::from(local)];
+        let load = |of: &CellOfFan| {
+            let CellData { volume, loads, .. } = &self.cells[of.cell];
+            loads[usize::from(of.own)] - pressure * volume
+        };
+        // what the fluxes of a cell through a facet and of the next one through it sum to
+        let sum = |of: &CellOfFan, next: &CellOfFan| {
+            -0.5 * (normal((of.cell, of.sides[1])) + normal((next.cell, next.sides[0])))
+        };
+        let given = |of: &CellOfFan, side: usize| {
+            let local = of.sides[side];
+            match self.neighbours.across(of.cell, usize::from(local)) {
+                Neighbour::Boundary(BoundaryPart::Dirichlet) | Neighbour::Cell { .. } => None,
+                Neighbour::Boundary(_) => Some(-0.5 * normal((of.cell, local))),
+            }
+        };
+        let (mut first, mut force, mut stiffness) = (0.0, 0.0, 0.0);
+        for (k, of) in fan.iter().enumerate() {
+            let second = load(of) - first;
+            let point = |local: u8| {
+                point_f64(&mesh.vertices()[mesh.cell(of.cell)[usize::from(local)] as usize])
+            };
+            let (own, a, b) = (point(of.own), point(of.sides[0]), point(of.sides[1]));
+            let (along, middle) = (b - a, (own + a + b) / 3.0);
+            let alpha = self.space.alpha(of.cell).to_f64();
+            let weight = 1.0 / (alpha * self.cells[of.cell].volume);
+            stiffness += weight * along.norm_squared();
+            force -= weight * along.dot(&((middle - a) * first + (middle - b) * second));
+            if let Some(next) = fan.get(k + 1) {
+                first = sum(of, next) - second;
+            }
+        }
+        let Some((begin, end)) = fan.first().zip(fan.last()) else { return true };
+        let of_end = || given(end, 1).map(|flux| load(end) - first - flux);
+        let mut first = given(begin, 0).or_else(of_end).unwrap_or(force / stiffness);
+        for (k, of) in fan.iter().enumerate() {
+            let second = load(of) - first;
+            let is_ascending = of.sides[0] < of.sides[1];
+            let corner = (of.cell, of.own);
+            self.set(corner, usize::from(!is_ascending), first);
+            self.set(corner, usize::from(is_ascending), second);
+            if let Some(next) = fan.get(k + 1) {
+                first = sum(of, next) - second;
+            }
+        }
+        true
+    }
+
+    /// The cells around a vertex of the plane, each with the next one behind its second facet: all of them, or the
+    /// result is false. On the boundary the fan begins and ends with boundary facets.
+    fn find_fan(&self, corners: &[(u32, u8)], fan: &mut Vec<CellOfFan>) -> bool {
+        let Some(&(cell, own)) = corners.first() else { return false };
+        let mesh = self.space.mesh;
+        let vertex = mesh.cell(cell as usize)[usize::from(own)];
+        let mut begin =
+            CellOfFan { cell: cell as usize, own, sides: [(own + 1) % 3, (own + 2) % 3] };
+        for _ in 0..2 {
+            let mut last = begin;
+            fan.clear();
+            fan.push(last);
+            while let Neighbour::Cell { cell, local } =
+                self.neighbours.across(last.cell, usize::from(last.sides[1]))
+                && fan.len() < corners.len()
+                && cell as usize != begin.cell
+            {
+                let cell = cell as usize;
+                let own = mesh.cell(cell).iter().position(|&v| v == vertex).unwrap_or(0) as u8;
+                // the numbers of the vertex and of both facets sum to three
+                last = CellOfFan { cell, own, sides: [local, 3 - own - local] };
+                fan.push(last);
+            }
+            if fan.len() == corners.len() {
+                return true;
+            }
+            begin = CellOfFan { sides: [last.sides[1], last.sides[0]], ..last };
+        }
+        false
     }
 
     /// What is known of the flux through a facet of cell `k` of a patch. The first cell of an interior facet
@@ -225,7 +358,7 @@ impl<T: Real, const D: usize> Patches<'_, '_, T, D> {
         corners: &[(u32, u8)],
         (cells, multipliers): (&[CellOfPatch], &mut Vec<f64>),
     ) -> FacetOfPatch {
-        let normal = self.normal[cell as usize * (D + 1) + local];
+        let normal = self.cells[cell as usize].normal[local];
         match self.neighbours.across(cell as usize, local) {
             Neighbour::Cell { cell: other, local: there } => {
                 let there = usize::from(there);
@@ -236,7 +369,7 @@ impl<T: Real, const D: usize> Patches<'_, '_, T, D> {
                         slot.map_or(FacetOfPatch::Free, |slot| cells[l].facets[slot])
                     }
                     None => {
-                        let jump = normal + self.normal[other as usize * (D + 1) + there];
+                        let jump = normal + self.cells[other as usize].normal[there];
                         multipliers.push(jump / D as f64);
                         FacetOfPatch::Interior(multipliers.len() - 1)
                     }
@@ -251,14 +384,13 @@ impl<T: Real, const D: usize> Patches<'_, '_, T, D> {
     fn cell_of_patch(
         &self,
         (cell, own): (u32, u8),
-        volume: f64,
         facets: [FacetOfPatch; 3],
         load: f64,
     ) -> CellOfPatch {
         let mesh = self.space.mesh;
         let products = facet_products::<D>(
             mesh.cell(cell as usize).iter().map(|&v| point_f64(&mesh.vertices()[v as usize])),
-            volume * self.space.alpha(cell as usize).to_f64(),
+            self.cells[cell as usize].volume * self.space.alpha(cell as usize).to_f64(),
         );
         let mut locals = [0; 3];
         locals.iter_mut().zip(around::<D>(own)).for_each(|(to, local)| *to = local);
@@ -294,6 +426,11 @@ impl<T: Real, const D: usize> Patches<'_, '_, T, D> {
         let known = SVector::from_fn(|a, _| fixed[a].unwrap_or(0.0));
         CellOfPatch { facets, slopes, fluxes: slopes * force + unit * rest + known }
     }
+}
+
+/// Where the flux of a vertex of a cell through its facet `k` there is among those of all.
+fn part_of<const D: usize>((cell, own): (usize, u8), k: usize) -> usize {
+    (cell * (D + 1) + usize::from(own)) * D + k
 }
 
 /// The facets of a cell at one of its vertices.

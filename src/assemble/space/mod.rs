@@ -20,7 +20,7 @@ use crate::element::{Entity, MAX_BASIS, Node};
 use crate::error::Error;
 use crate::memory::in_large_pages;
 use crate::mesh::{BoundaryFacet, BoundaryPart, Mesh, Neighbours};
-use crate::problem::{DataByGroup, DataOnMesh, Problem};
+use crate::problem::{DataOnMesh, Problem};
 use crate::quadrature::{Quadrature, QuadratureError, Rule, facet_to_cell};
 use crate::real::{Point, Real, point_f64};
 pub(crate) use any_element::AnyElement;
@@ -311,15 +311,6 @@ impl<'a, T: Real, const D: usize> Space<'a, T, D> {
         let of_part = move |f: &&BoundaryFacet| f.part == part;
         let facet = |f: &BoundaryFacet| ((f.cell as usize, f.local as usize), usize::from(f.group));
         self.mesh.boundary().iter().filter(of_part).map(facet)
-    }
-    /// The value of a datum in the region of a cell, if there is one.
-    pub fn in_region(
-        &self,
-        data: &DataByGroup<'a, D>,
-        cell: usize,
-        x: &Point<f64, D>,
-    ) -> Option<f64> {
-        data.of(self.mesh.region(cell)).map(|datum| datum.at(x))
     }
     /// The Dirichlet value at a point of a boundary group.
     pub fn dirichlet_at(&self, group: usize, x: &Point<f64, D>) -> f64 {
