@@ -77,4 +77,9 @@ impl BoundFigures {
             reason: None,
         }
     }
+
+    /// The bound on the broken energy norm of the error of the discrete solution: `total` and `distance`.
+    pub fn of_broken_energy(&self) -> Option<f64> {
+        self.total.zip(self.distance).map(|(total, distance)| total + distance)
+    }
 }

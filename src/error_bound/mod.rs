@@ -30,6 +30,7 @@
 mod algebra;
 mod choice;
 mod contact;
+mod dirichlet;
 mod estimate;
 mod figures;
 mod friedrichs;

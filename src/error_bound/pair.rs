@@ -130,6 +130,9 @@ impl<T: Real, const D: usize> Discretisation<'_, T, D> {
                 space.crouzeix_raviart_fluxes(u)?
             };
             space.add_boundary_fluxes(&forces, &mut flux)?;
+            if self.owns_rows() && space.problem.has_obstacle() {
+                space.exchange_with_dirichlet(u, &residual, &forces, &mut flux);
+            }
             flux
         };
         Ok(PrimalDualPair { flux, ..space.admissible_function(u, space.degree) })

@@ -1,6 +1,6 @@
-//! Norms of the error.
+//! Norms of the error, and the bound beside them.
 
-/// A norm in which errors are measured.
+/// A norm in which errors are measured, or the bound in place of an error.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "report", derive(serde::Serialize), serde(rename_all = "lowercase"))]
 pub enum ErrorNorm {
@@ -11,11 +11,14 @@ pub enum ErrorNorm {
     /// The broken energy norm, the same for all schemes: `broken_energy` of
     /// [`Errors`](super::Errors).
     Energy,
+    /// The bound on the error in the energy norm, known without the solution: `total` of
+    /// [`ErrorBound`](crate::error_bound::ErrorBound).
+    Bound,
 }
 
 impl ErrorNorm {
-    /// All norms.
-    pub const ALL: [Self; 3] = [Self::L2, Self::H1, Self::Energy];
+    /// All norms, and the bound last.
+    pub const ALL: [Self; 4] = [Self::L2, Self::H1, Self::Energy, Self::Bound];
 
     /// The name in tables.
     pub fn name(self) -> &'static str {
@@ -23,6 +26,7 @@ impl ErrorNorm {
             Self::L2 => "L2",
             Self::H1 => "H1",
             Self::Energy => "energy",
+            Self::Bound => "bound",
         }
     }
 }

@@ -4,6 +4,7 @@ use std::fmt;
 #[cfg(feature = "report")]
 use std::path::Path;
 use std::sync::OnceLock;
+use std::time::Instant;
 
 use super::adaptive_meshes::AdaptiveMeshes;
 use super::hierarchy::Hierarchy;
@@ -49,8 +50,8 @@ pub struct Solved<'a, T: Real, const D: usize> {
     hierarchy: Option<(&'a Hierarchy<T, D>, usize)>,
     /// The adaptive meshes that have the mesh, and its position there.
     pub(super) adaptive: Option<(&'a AdaptiveMeshes<T, D>, usize)>,
-    /// The bound with the pair that gives it, once computed.
-    bound: OnceLock<(PrimalDualPair, ErrorBound)>,
+    /// The bound with the pair that gives it and the seconds of both, once computed.
+    bound: OnceLock<(PrimalDualPair, ErrorBound, f64)>,
     /// Seconds for the mesh and all coarser ones, if it is one of several.
     pub(crate) mesh_seconds: f64,
     /// Seconds of assembly.
@@ -374,23 +375,28 @@ impl<'a, T: Real, const D: usize> Solved<'a, T, D> {
     /// # Errors
     /// [`NoBound`].
     pub fn bound(&self) -> Result<ErrorBound, NoBound> {
-        self.pair_and_bound().map(|(_, bound)| bound.clone())
+        self.pair_and_bound().map(|(_, bound, _)| bound.clone())
     }
-    pub(super) fn pair_and_bound(&self) -> Result<&(PrimalDualPair, ErrorBound), NoBound> {
+    pub(super) fn pair_and_bound(&self) -> Result<&(PrimalDualPair, ErrorBound, f64), NoBound> {
         if let Some(known) = self.bound.get() {
             return Ok(known);
         }
+        let clock = Instant::now();
         let pair = self.primal_dual_pair()?;
         let coarser = self.adaptive.map_or_else(Vec::new, |(meshes, k)| meshes.coarser_cells(k));
         let bound = self.discretisation.error_bound_on_levels(&pair, self.values(), &coarser)?;
-        Ok(self.bound.get_or_init(|| (pair, bound)))
+        Ok(self.bound.get_or_init(|| (pair, bound, clock.elapsed().as_secs_f64())))
+    }
+    /// Seconds of the bound; none if it is not known, or not yet.
+    pub(crate) fn bound_seconds(&self) -> Option<f64> {
+        self.bound.get().map(|(_, _, seconds)| *seconds)
     }
     /// The figures of the bound, with its effectivity if asked for and the exact solution is known.
     pub(crate) fn bound_figures(&self, with_effectivity: bool) -> BoundFigures {
         let judged = self.pair_and_bound();
         let known = judged.as_ref().ok().filter(|_| with_effectivity);
-        let error = known.and_then(|(pair, _)| self.discretisation.error_of_pair(pair));
-        BoundFigures::new(judged.map(|(_, bound)| bound), error)
+        let error = known.and_then(|(pair, ..)| self.discretisation.error_of_pair(pair));
+        BoundFigures::new(judged.map(|(_, bound, _)| bound), error)
     }
     /// The errors against the exact solution, and the figures of the bound with its effectivity.
     ///
@@ -398,12 +404,12 @@ impl<'a, T: Real, const D: usize> Solved<'a, T, D> {
     /// [`Error::DataNotFinite`].
     pub(crate) fn errors_and_bound_figures(&self) -> Result<(Errors, BoundFigures), Error> {
         let judged = self.pair_and_bound();
-        let pair = judged.as_ref().ok().map(|(pair, _)| pair);
+        let pair = judged.as_ref().ok().map(|(pair, ..)| pair);
         let (errors, error) = match self.has_iterate {
             true => self.discretisation.errors_and_error_of_pair(Some(self.values()), pair)?,
             false => (Errors::default(), None),
         };
-        Ok((errors, BoundFigures::new(judged.map(|(_, bound)| bound), error)))
+        Ok((errors, BoundFigures::new(judged.map(|(_, bound, _)| bound), error)))
     }
     /// Solution, obstacle, multiplier and contact set on cells; none without an iterate.
     pub fn fields(&self) -> Option<Fields> {

@@ -37,11 +37,14 @@ pub(crate) struct NamedCurve<'a> {
     pub rows: Vec<&'a Row>,
 }
 
-/// The panels of a scene, one for each norm in which there are errors, below each other; energy only where
-/// it is not the H1 seminorm.
+/// The panels of a scene, one for each norm in which there are errors and one for bounds, below each other;
+/// energy only where it is not the H1 seminorm.
 pub(crate) fn cost_figure(scene: &str, named: &[NamedCurve<'_>], cost: Cost) -> Figure {
-    let x = cost.quantity();
     let panel = |y: Quantity| {
+        let x = match (cost, y) {
+            (Cost::Seconds, Quantity::Bound) => Quantity::SecondsWithBound,
+            _ => cost.quantity(),
+        };
         let curves = named.iter().enumerate().map(|(key, curve)| Curve {
             key,
             points: curve.rows.iter().filter_map(|row| Point::of(row, x, y)).collect(),
@@ -59,6 +62,7 @@ pub(crate) fn cost_figure(scene: &str, named: &[NamedCurve<'_>], cost: Cost) -> 
     if named.iter().flat_map(|c| &c.rows).all(|row| row.error.is_energy_h1()) {
         shown.pop();
     }
+    shown.push(Quantity::Bound);
     Figure {
         panels: with_curves(shown.into_iter().map(panel).collect()),
         keys: named.iter().map(|c| Key::labelled(&c.label)).collect(),

@@ -17,7 +17,8 @@ pub struct Figure {
 
 /// Error against mesh size, with reference slopes: for each scene one panel for the L2 error and
 /// one for the error in the broken H1 seminorm. On adaptive meshes error in the broken energy norm and bound
-/// against the number of unknowns.
+/// against the number of unknowns. A band goes from each error in the energy norm up to the bound on it; where no
+/// error is known the bound itself is shown.
 pub fn convergence(rows: &[Row]) -> Figure {
     let keys = keys(rows);
     let scenes = scenes(rows);
@@ -34,14 +35,17 @@ pub fn convergence(rows: &[Row]) -> Figure {
                 false => (Quantity::MeshSize, [Quantity::L2, Quantity::H1]),
             };
             let panel = |error| Panel::new(rows, &keys, scene, size, error);
-            with_curves(errors.map(panel).into())
+            match has_errors(rows, scene) {
+                true => with_curves(errors.map(panel).into()),
+                false => with_curves(vec![panel(Quantity::Bound)]),
+            }
         })
         .collect();
     Figure { panels, keys, columns }
 }
 
-/// L2 error, on adaptive meshes the error bound, against the seconds a run took altogether, one panel for each
-/// scene. Runs that did not converge are marked.
+/// L2 error against the seconds a run took altogether, one panel for each scene. On adaptive meshes, and where no
+/// error is known, the error bound against the seconds with those of the bound. Runs that did not converge are marked.
 pub fn work_precision(rows: &[Row]) -> Figure {
     let keys = keys(rows);
     let scenes = scenes(rows);
@@ -55,8 +59,11 @@ pub fn work_precision(rows: &[Row]) -> Figure {
     let panels = scenes
         .iter()
         .map(|scene| {
-            let error = if is_adaptive(rows, scene) { Quantity::Bound } else { Quantity::L2 };
-            Panel::new(rows, &keys, scene, Quantity::Seconds, error)
+            let (time, error) = match is_adaptive(rows, scene) || !has_errors(rows, scene) {
+                true => (Quantity::SecondsWithBound, Quantity::Bound),
+                false => (Quantity::Seconds, Quantity::L2),
+            };
+            Panel::new(rows, &keys, scene, time, error)
         })
         .flat_map(|panel| with_curves(vec![panel]))
         .collect();
@@ -66,6 +73,11 @@ pub fn work_precision(rows: &[Row]) -> Figure {
 /// Whether the meshes of a scene are adaptive.
 fn is_adaptive(rows: &[Row], scene: &str) -> bool {
     rows.iter().any(|row| row.scene == scene && row.theta.is_some())
+}
+
+/// Whether some error of a scene is known.
+fn has_errors(rows: &[Row], scene: &str) -> bool {
+    rows.iter().any(|row| row.scene == scene && row.error.l2.is_some())
 }
 
 impl Figure {
@@ -85,6 +97,11 @@ impl Figure {
         self.panels.iter().any(|p| !p.limits.is_empty())
     }
 
+    /// Whether a panel shows bands.
+    fn has_bands(&self) -> bool {
+        self.panels.iter().any(Panel::has_bands)
+    }
+
     /// Positions of panels and legend.
     pub(super) fn layout(&self) -> FigureLayout {
         let mut signs = Vec::new();
@@ -92,6 +109,7 @@ impl Figure {
         signs.extend(self.has_orders(true).then_some(Sign::Promised));
         signs.extend(self.has_orders(false).then_some(Sign::Compared));
         signs.extend(self.has_limits().then_some(Sign::Limit));
+        signs.extend(self.has_bands().then_some(Sign::Band));
         FigureLayout::new(self.panels.len(), self.columns, &self.keys, &signs)
     }
 }

@@ -45,6 +45,8 @@ pub(crate) enum Sign {
     Compared,
     /// The line of a limit.
     Limit,
+    /// The band between an error and the bound on it.
+    Band,
 }
 
 /// An entry of the legend.
@@ -62,6 +64,7 @@ impl Entry {
             Entry::Sign(Sign::Promised) => "orders promised by theory",
             Entry::Sign(Sign::Compared) => "slopes for comparison",
             Entry::Sign(Sign::Limit) => "limit",
+            Entry::Sign(Sign::Band) => "band: up to the bound on the error",
         }
     }
     fn width(&self) -> f64 {
@@ -140,6 +143,15 @@ impl FigureLayout {
                     pen.line(tip, (right, y + 6.0), 0.8, GREY)?;
                     pen.line((right, y + 6.0), (right, y - 6.0), 0.8, GREY)?;
                     draw_slope(pen, tip, (right, y - 6.0), *sign == Sign::Promised)?;
+                }
+                Entry::Sign(Sign::Band) => {
+                    let corners = [
+                        (*x, y + 6.0),
+                        (x + SYMBOL, y + 6.0),
+                        (x + SYMBOL, y - 6.0),
+                        (*x, y - 6.0),
+                    ];
+                    pen.fill_faintly(&corners, INK)?;
                 }
                 Entry::Sign(Sign::Limit) => draw_limit(pen, (*x, *y), (x + SYMBOL, *y))?,
             }

@@ -5,7 +5,7 @@ use super::layout::{Layer, PANEL};
 use super::pen::{Align, Drawn, Pen, ScreenPoint, text_width};
 use super::series::{Panel, Point};
 use super::slopes::Slopes;
-use super::style::{GRID, INK, draw_failed, draw_limit, draw_mark, segment};
+use super::style::{GRID, INK, draw_band, draw_failed, draw_limit, draw_mark, segment};
 use plotters::prelude::DrawingBackend;
 
 /// Room around the data for title, labels and ticks.
@@ -200,7 +200,7 @@ fn draw_label<DB: DrawingBackend>(
     pen.text(exponent, (x + 0.5, y - 5.0), 0.75 * TICK, INK, Align::Left)
 }
 
-/// Lines first, then marks, then failures: what matters most is on top. A line ends where a run
+/// Bands first, then lines, then marks, then failures: what matters most is on top. A line ends where a run
 /// did not converge.
 fn draw_curves<DB: DrawingBackend>(
     pen: &Pen<DB>,
@@ -214,6 +214,18 @@ fn draw_curves<DB: DrawingBackend>(
         .map(|c| c.into_iter().map(|(x, y)| (origin.0 + x, origin.1 + y)).collect())
         .collect();
     let curves = || frame.panel.curves.iter().zip(&places).filter(|(c, _)| layer.has_curve(c.key));
+    for (curve, places) in curves() {
+        for (points, ends) in curve.points.windows(2).zip(places.windows(2)) {
+            let bound = |k: usize| {
+                let y = points[k].bound.filter(|_| points[k].y.is_some())?;
+                let height = (1.0 - frame.y.position(y.log10())) * SIZE.1;
+                Some((ends[k].0, origin.1 + height.clamp(0.0, SIZE.1)))
+            };
+            if let (Some(left), Some(right)) = (bound(0), bound(1)) {
+                draw_band(pen, curve.key, [ends[0], ends[1]], [left, right])?;
+            }
+        }
+    }
     for (curve, places) in curves() {
         for (points, ends) in curve.points.windows(2).zip(places.windows(2)) {
             if points[0].converged && points[1].converged {

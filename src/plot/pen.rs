@@ -14,6 +14,9 @@ pub(crate) type ScreenPoint = (f64, f64);
 /// an SVG file names it, and viewers that lack it take the next.
 pub(crate) const FAMILY: &str = "Ubuntu, DejaVu Sans, Arial, sans-serif";
 
+/// The opacity of faint areas.
+const FAINT: f64 = 0.12;
+
 /// A typeface's width of a text.
 pub(crate) fn text_width(text: &str, size: f64) -> f64 {
     // Measured large, since the answer is in whole pixels.
@@ -105,6 +108,13 @@ impl<DB: DrawingBackend> Pen<'_, DB> {
     pub fn fill(&self, corners: &[ScreenPoint], colour: RGBColor) -> Drawn {
         let corners: Vec<_> = corners.iter().map(|&c| self.pixel(c)).collect();
         self.area.draw(&Polygon::new(corners, colour)).map_err(|e| e.to_string())
+    }
+
+    /// A filled area through which the drawing below is seen.
+    pub fn fill_faintly(&self, corners: &[ScreenPoint], colour: RGBColor) -> Drawn {
+        let corners: Vec<_> = corners.iter().map(|&c| self.pixel(c)).collect();
+        let area = Polygon::new(corners, colour.mix(FAINT));
+        self.area.draw(&area).map_err(|e| e.to_string())
     }
 
     /// Text, its middle at the height of its position.

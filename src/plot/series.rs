@@ -10,6 +10,8 @@ pub(crate) enum Quantity {
     MeshSize,
     /// Seconds altogether.
     Seconds,
+    /// Seconds altogether, with those of the bound.
+    SecondsWithBound,
     /// Number of unknowns.
     Unknowns,
     /// Peak of memory in megabytes, less that of an empty run.
@@ -30,6 +32,7 @@ impl Quantity {
         match self {
             Quantity::MeshSize => "mesh size h",
             Quantity::Seconds => "time in s",
+            Quantity::SecondsWithBound => "time in s, bound included",
             Quantity::Unknowns => "number of unknowns",
             Quantity::Memory => "peak memory above that of an empty run in MB",
             Quantity::L2 => "L2 error",
@@ -45,6 +48,7 @@ impl Quantity {
             Quantity::MeshSize => Some(row.mesh_size),
             // no clock is finer: a smaller number is a time that was not measured
             Quantity::Seconds => Some(row.seconds.total.max(1e-6)),
+            Quantity::SecondsWithBound => Some(row.seconds_with_bound().max(1e-6)),
             Quantity::Unknowns => row.unknowns.map(|n| n as f64),
             Quantity::Memory => row.peak_memory_bytes.map(|bytes| bytes as f64 / 1e6),
             Quantity::L2 => row.error.l2,
@@ -53,6 +57,16 @@ impl Quantity {
             Quantity::Bound => row.bound.total,
         };
         value.filter(|x| x.is_finite() && *x > 0.0)
+    }
+
+    /// The bound on this error: that on the error in the broken energy norm, which may be the H1 seminorm.
+    fn bound(self, row: &Row) -> Option<f64> {
+        let is_bounded = match self {
+            Quantity::Energy => true,
+            Quantity::H1 => row.error.is_energy_h1(),
+            _ => false,
+        };
+        row.bound.of_broken_energy().filter(|x| is_bounded && row.converged() && *x > 0.0)
     }
 
     /// The order that theory promises for this quantity. The broken energy norm and the broken H1
@@ -126,6 +140,8 @@ pub(crate) struct Point {
     pub x: f64,
     /// None: there is no error, or none that can be shown.
     pub y: Option<f64>,
+    /// The bound on the error, the upper end of the band.
+    pub bound: Option<f64>,
     pub converged: bool,
 }
 
@@ -133,7 +149,8 @@ impl Point {
     /// The point of a row; none for a converged run without an error. A failed run always has a
     /// point.
     pub fn of(row: &Row, x: Quantity, y: Quantity) -> Option<Self> {
-        let point = Point { x: x.of(row)?, y: y.of(row), converged: row.converged() };
+        let point =
+            Point { x: x.of(row)?, y: y.of(row), bound: y.bound(row), converged: row.converged() };
         (point.y.is_some() || !point.converged).then_some(point)
     }
 }
@@ -209,6 +226,12 @@ impl Panel {
         self.has_errors() && self.curves.iter().any(|c| c.points.len() > 1)
     }
 
+    /// Whether a curve has a band up to the bound on its errors.
+    pub fn has_bands(&self) -> bool {
+        let of_curve = |c: &Curve| c.points.iter().filter(|p| p.bound.is_some()).count() > 1;
+        self.has_curves() && self.curves.iter().any(of_curve)
+    }
+
     /// All runs.
     pub fn points(&self) -> impl Iterator<Item = Point> + '_ {
         self.curves.iter().flat_map(|c| c.points.iter().copied())
@@ -225,6 +248,7 @@ impl Panel {
             .filter_map(|p| p.y)
             .filter(|y| none_converged || (low..=high).contains(y))
             .chain(self.limits.iter().copied())
+            .chain(self.points().filter_map(|p| p.bound))
             .collect()
     }
 }

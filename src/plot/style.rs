@@ -73,6 +73,16 @@ pub(crate) fn segment<DB: DrawingBackend>(
     pen.dashes(from, to, 1.4, colour(key), DASHES[key % DASHES.len()])
 }
 
+/// The part of a band between two runs: from two errors, in their order, to the bounds on them.
+pub(crate) fn draw_band<DB: DrawingBackend>(
+    pen: &Pen<DB>,
+    key: usize,
+    errors: [ScreenPoint; 2],
+    bounds: [ScreenPoint; 2],
+) -> Drawn {
+    pen.fill_faintly(&[errors[0], errors[1], bounds[1], bounds[0]], colour(key))
+}
+
 /// The mark of a curve, `size` times its usual size.
 pub(crate) fn draw_mark<DB: DrawingBackend>(
     pen: &Pen<DB>,

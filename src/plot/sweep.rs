@@ -31,6 +31,7 @@ pub(crate) fn sweep_figure(points: &[SweepPoint]) -> Option<Figure> {
             let point = |p: &SweepPoint| Point {
                 x: p.at,
                 y: p.value.filter(|y| *y > 0.0),
+                bound: None,
                 converged: p.value.is_some(),
             };
             let mine = here().filter(|p| p.series == **name).map(point);

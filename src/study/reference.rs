@@ -98,6 +98,7 @@ impl<T: Real, const D: usize> Measured<'_, '_, T, D> {
     pub fn measure(&self, row: &mut Row, solved: &Solved<'_, T, D>) -> Result<(), Error> {
         row.energy = solved.energy()?;
         row.bound = solved.bound_figures(self.failure.is_none() && self.reference.is_some());
+        row.seconds.bound = solved.bound_seconds();
         match (self.reference, self.failure) {
             (Some(Ok((reference, name))), _) => {
                 row.error = solved.difference(reference)?;

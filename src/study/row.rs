@@ -59,7 +59,8 @@ pub struct Seconds {
     pub assemble: f64,
     /// Solve, with the start from coarser levels.
     pub solve: f64,
-    /// Error bounds that refined the mesh, with marking; none for uniform meshes.
+    /// The error bound. On adaptive meshes with marking and a part of the sum, on uniform ones beside it; none
+    /// where there is no bound.
     #[cfg_attr(feature = "report", serde(default))]
     pub bound: Option<f64>,
     /// The sum.
@@ -281,6 +282,11 @@ impl Row {
             (Some(_), Some(unknowns)) => (unknowns as f64).powf(-1.0 / self.dimension as f64),
             _ => self.mesh_size,
         }
+    }
+    /// The seconds of the row with those of its bound, which on adaptive meshes are a part of them.
+    pub(crate) fn seconds_with_bound(&self) -> f64 {
+        let beside = self.seconds.bound.filter(|_| self.theta.is_none());
+        self.seconds.total + beside.unwrap_or(0.0)
     }
     /// The reference against which the errors are; none where they are against the exact solution.
     pub fn reference(&self) -> Option<&str> {

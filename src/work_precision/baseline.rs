@@ -9,7 +9,8 @@ use crate::error::Error;
 use crate::real::Real;
 
 /// Keys that identify a row.
-const KEYS: [&str; 6] = ["scene", "label", "constraint", "linear_asked", "precision", "level"];
+const KEYS: [&str; 7] =
+    ["scene", "label", "constraint", "linear_asked", "precision", "theta", "level"];
 /// Keys whose values must agree exactly.
 const COUNTS: [&str; 8] = [
     "/status",
@@ -89,11 +90,12 @@ pub fn changes(baseline: &str, report: &WorkReport) -> Result<Changes, Error> {
 
 /// The name of a row.
 fn name(row: &Value) -> String {
-    let part = |key: &str| match &row[key] {
-        Value::String(text) => text.clone(),
-        other => format!("{key} {other}"),
+    let part = |key: &&str| match &row[*key] {
+        Value::Null => None,
+        Value::String(text) => Some(text.clone()),
+        other => Some(format!("{key} {other}")),
     };
-    KEYS.map(part).join(", ")
+    KEYS.iter().filter_map(part).collect::<Vec<_>>().join(", ")
 }
 
 fn compare(before: &Value, now: &Value, changed: &mut Vec<String>) {

@@ -76,17 +76,20 @@ impl<const D: usize> OneStudy<'_, D> {
             Self::Single(study) => study.memory_estimate(),
         }
     }
-    /// Runs the study with nothing known from before: the row, and the phases of its time. The peak
-    /// of memory is that of the process during the run, where the system tells.
-    pub fn run(&self) -> Result<(Row, Phases), Error> {
+    /// Runs the study with nothing known from before: the row, or those of all adaptive steps, and the phases of
+    /// their times. The peak of memory is that of the process during the run, where the system tells.
+    pub fn run(&self) -> Result<Vec<(Row, Phases)>, Error> {
         let is_reset = reset_peak_memory();
-        let (mut row, coarse) = match self {
+        let rows = match self {
             Self::Double(study) => study.run_alone()?,
             Self::Single(study) => study.run_alone()?,
         };
-        row.peak_memory_bytes = peak_memory_bytes().filter(|_| is_reset);
-        let phases = Phases::new(&row.seconds, coarse);
-        Ok((row, phases))
+        let peak = peak_memory_bytes().filter(|_| is_reset);
+        let of = |(row, coarse): (Row, f64)| {
+            let phases = Phases::new(&row.seconds, coarse);
+            (Row { peak_memory_bytes: peak, ..row }, phases)
+        };
+        Ok(rows.into_iter().map(of).collect())
     }
 }
 

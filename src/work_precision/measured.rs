@@ -2,6 +2,7 @@
 
 use serde::Serialize;
 
+use crate::measure::ErrorNorm;
 use crate::study::row::distinct;
 use crate::study::{Row, Seconds};
 
@@ -20,29 +21,47 @@ pub struct Variant {
     pub linear_asked: String,
     /// Scalar of assembly and solve: `f64` or `f32`.
     pub precision: String,
+    /// The meshes: `uniform` or `adaptive`.
+    pub meshes: String,
 }
 
-/// A variant on a level: the unit of a run.
+/// The meshes of a variant by name.
+pub(super) const UNIFORM: &str = "uniform";
+pub(super) const ADAPTIVE: &str = "adaptive";
+
+/// A variant on a level, or on all its adaptive meshes: the unit of a run.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct Case {
     /// The variant.
     #[serde(flatten)]
     pub variant: Variant,
-    /// Subdivisions of the shortest side.
+    /// Subdivisions of the shortest side, or refinements; of a variant on adaptive meshes zero, as all its steps are
+    /// one run.
     pub level: usize,
 }
 
-/// Wall times of one run in seconds. They add up to the total.
+impl Case {
+    /// Whether the case is all steps of a variant on adaptive meshes.
+    pub fn is_adaptive(&self) -> bool {
+        self.variant.meshes == ADAPTIVE
+    }
+}
+
+/// Wall times of one run in seconds. They add up to the total, but for the bound of a uniform mesh; on an
+/// adaptive mesh they are those of all steps so far.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct Phases {
     /// Making the mesh and all coarser ones it is refined from.
     pub mesh: f64,
     /// Assembly of matrix, load and bounds.
     pub assemble: f64,
-    /// The start: conforming P1 on coarser levels and, for other schemes, on this one.
+    /// The start: conforming P1 on coarser levels and, for other schemes, on this one; on adaptive meshes a
+    /// part of the solve.
     pub coarse: f64,
     /// The solve on this level.
     pub solve: f64,
+    /// The error bound: on adaptive meshes a part of the total, on uniform ones beside it. None without one.
+    pub bound: Option<f64>,
     /// The sum.
     pub total: f64,
 }
@@ -50,14 +69,14 @@ pub struct Phases {
 impl Phases {
     /// The phases of a row whose start took these seconds.
     pub(crate) fn new(seconds: &Seconds, coarse: f64) -> Self {
-        let Seconds { mesh, assemble, solve, total, .. } = *seconds;
-        Phases { mesh, assemble, coarse, solve: solve - coarse, total }
+        let Seconds { mesh, assemble, solve, bound, total } = *seconds;
+        Phases { mesh, assemble, coarse, solve: solve - coarse, bound, total }
     }
 
     /// The times as a row states them, with the start as a part of the solve.
     fn seconds(&self) -> Seconds {
-        let Phases { mesh, assemble, coarse, solve, total } = *self;
-        Seconds { total, ..Seconds::new(mesh, assemble, solve + coarse) }
+        let Phases { mesh, assemble, coarse, solve, bound, total } = *self;
+        Seconds { total, bound, ..Seconds::new(mesh, assemble, solve + coarse) }
     }
 }
 
@@ -71,6 +90,8 @@ pub struct Measured {
     pub precision: String,
     /// The linear solver asked for; `linear` is the one that was used.
     pub linear_asked: String,
+    /// The meshes: `uniform` or `adaptive`.
+    pub meshes: String,
     /// Number of runs so far.
     pub runs: usize,
     /// The run with the smallest total.
@@ -93,6 +114,7 @@ impl Measured {
             row,
             precision: case.variant.precision.clone(),
             linear_asked: case.variant.linear_asked.clone(),
+            meshes: case.variant.meshes.clone(),
             runs: 1,
             smallest: phases,
             median: phases,
@@ -135,10 +157,20 @@ impl Measured {
             label: self.row.label.clone(),
             linear_asked: self.linear_asked.clone(),
             precision: self.precision.clone(),
+            meshes: self.meshes.clone(),
         }
     }
 
-    /// Variant and level.
+    /// The seconds of the fastest run that lead to an error in this norm: those of the run, and for the bound of a
+    /// uniform mesh its own besides.
+    pub fn seconds_to(&self, norm: ErrorNorm) -> f64 {
+        match norm {
+            ErrorNorm::Bound => self.row.seconds_with_bound(),
+            _ => self.smallest.total,
+        }
+    }
+
+    /// Variant and level, or step.
     pub fn case(&self) -> Case {
         Case { variant: self.variant(), level: self.row.level }
     }
@@ -166,12 +198,13 @@ impl Failure {
 impl Variant {
     /// Whether the other one is this scheme with these choices, perhaps on another scene.
     pub(super) fn differs_in_scene_only(&self, other: &Variant) -> bool {
-        (&self.label, &self.linear_asked, &self.precision)
-            == (&other.label, &other.linear_asked, &other.precision)
+        let of =
+            |v: &Variant| [&v.label, &v.linear_asked, &v.precision, &v.meshes].map(String::clone);
+        of(self) == of(other)
     }
 
-    /// The name of the variant among others of a report: the label of the scheme, and the linear solver
-    /// and the scalar where they vary.
+    /// The name of the variant among others of a report: the label of the scheme, and the linear solver,
+    /// the scalar and the meshes where they vary.
     pub fn name_among(&self, all: &[Variant]) -> String {
         let varies = |part: fn(&Variant) -> &str| all.iter().any(|v| part(v) != part(self));
         let mut label = self.label.clone();
@@ -180,6 +213,9 @@ impl Variant {
         }
         if varies(|v| &v.precision) {
             label += &format!(", {}", self.precision);
+        }
+        if varies(|v| &v.meshes) {
+            label += &format!(", {}", self.meshes);
         }
         label
     }

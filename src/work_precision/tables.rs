@@ -68,6 +68,7 @@ fn runs(failures: &[Failure], scene: &str, rows: &[&Measured], variants: &[Varia
             Cell::scientific(row.error.l2),
             Cell::scientific(row.error.h1),
             Cell::scientific(row.error.broken_energy),
+            Cell::scientific(row.bound.total),
             Cell::scientific(Some(certificate.into_iter().fold(0.0, worse))),
             Cell::scientific(Some(m.smallest.total)),
             megabytes(row.peak_memory_bytes.map(|b| b as f64)),
@@ -77,8 +78,8 @@ fn runs(failures: &[Failure], scene: &str, rows: &[&Measured], variants: &[Varia
     Table {
         title: format!("{scene}: runs"),
         columns: head(&[
-            "scheme", "n", "unknowns", "outer", "inner", "L2", "H1", "energy", "certif.", "least",
-            "MB",
+            "scheme", "n", "unknowns", "outer", "inner", "L2", "H1", "energy", "bound", "certif.",
+            "least", "MB",
         ]),
         rows: rows.iter().map(line).collect(),
         remarks: failures
@@ -104,9 +105,18 @@ const SPREAD: &str = "spread";
 const WHAT_SPREAD_IS: &str =
     "spread: the median time of repeated runs over the least; - for what ran once";
 
-/// Time, unknowns, stored entries and memory at one error in L2.
+/// What is reached, in words, with its value if there is one.
+fn reached(norm: ErrorNorm, value: Option<f64>) -> String {
+    let value = value.map_or_else(String::new, |value| format!(" of {value:e}"));
+    match norm {
+        ErrorNorm::Bound => format!("error bound{value}"),
+        of_error => format!("error{value} in {}", of_error.name()),
+    }
+}
+
+/// Time, unknowns, stored entries and memory at one error.
 fn costs(scene: &str, reach: &[&WorkAtError], variants: &[Variant]) -> Option<Table> {
-    let error = reach.first()?.error;
+    let (error, norm) = reach.first().map(|r| (r.error, r.norm))?;
     let whole = |x: Option<f64>| Cell::whole(x.map(|x| x.round() as usize));
     let line = |r: &&WorkAtError| {
         vec![
@@ -119,7 +129,7 @@ fn costs(scene: &str, reach: &[&WorkAtError], variants: &[Variant]) -> Option<Ta
         ]
     };
     Some(Table {
-        title: format!("{scene}: costs at an error of {error:e} in {}", ErrorNorm::L2.name()),
+        title: format!("{scene}: costs at an {}", reached(norm, Some(error))),
         columns: head(&["scheme", "seconds", SPREAD, "unknowns", "entries", "MB"]),
         rows: reach.iter().map(line).collect(),
         remarks: vec![WHAT_SPREAD_IS.to_owned()],
@@ -146,14 +156,14 @@ fn time(at: &WorkAtError) -> Cell {
 /// Where the time of the fastest run went, and how far the run in the middle is from it.
 fn phases(scene: &str, rows: &[&Measured], variants: &[Variant]) -> Table {
     let line = |m: &&Measured| {
-        let Phases { mesh, assemble, coarse, solve, total } = m.smallest;
+        let Phases { mesh, assemble, coarse, solve, bound, total } = m.smallest;
         let mut cells = vec![
             Cell::Words(m.variant().name_among(variants)),
             Cell::Words(m.row.linear.clone()),
             Cell::whole(Some(m.row.level)),
         ];
-        let seconds = [mesh, assemble, coarse, solve, total];
-        cells.extend(seconds.map(|s| Cell::scientific(Some(s))));
+        let seconds = [Some(mesh), Some(assemble), Some(coarse), Some(solve), bound, Some(total)];
+        cells.extend(seconds.map(Cell::scientific));
         cells.push(decimals(m.median_over_least));
         cells.push(Cell::whole(Some(m.runs)));
         cells
@@ -161,7 +171,8 @@ fn phases(scene: &str, rows: &[&Measured], variants: &[Variant]) -> Table {
     Table {
         title: format!("{scene}: phases of the fastest run"),
         columns: head(&[
-            "scheme", "linear", "n", "mesh", "assembly", "start", "solve", "total", SPREAD, "runs",
+            "scheme", "linear", "n", "mesh", "assembly", "start", "solve", "bound", "total",
+            SPREAD, "runs",
         ]),
         rows: rows.iter().map(line).collect(),
         remarks: vec![WHAT_SPREAD_IS.to_owned()],
@@ -195,7 +206,7 @@ fn times(scene: &str, norm: ErrorNorm, reach: &[&WorkAtError], variants: &[Varia
         ));
     }
     Table {
-        title: format!("{scene}: time to reach an error in {}", norm.name()),
+        title: format!("{scene}: time to reach an {}", reached(norm, None)),
         columns,
         rows: distinct(reach.iter().map(|r| r.variant.clone())).into_iter().map(line).collect(),
         remarks,

@@ -1,14 +1,19 @@
 //! One sentence for a scene, made from the figures.
 
-use super::measured::Variant;
+use super::measured::{ADAPTIVE, Variant};
 use super::work_at_error::{Standing, WorkAtError};
 use crate::measure::ErrorNorm;
 
-/// What variants take in a scene at the smallest error in L2 that the most of them reach. Empty without
-/// errors in L2.
+/// What variants take in a scene at the smallest error that the most of them reach: in L2, and by the bound where
+/// meshes are adaptive or no error is known. Empty without errors and bounds.
 pub(crate) fn at_common_error<'a>(reach: &'a [WorkAtError], scene: &str) -> Vec<&'a WorkAtError> {
     let mut of_scene: Vec<&WorkAtError> =
-        reach.iter().filter(|r| r.variant.scene == scene && r.norm == ErrorNorm::L2).collect();
+        reach.iter().filter(|r| r.variant.scene == scene).collect();
+    let in_l2 = |r: &&WorkAtError| r.norm == ErrorNorm::L2;
+    let by_bound =
+        !of_scene.iter().any(in_l2) || of_scene.iter().any(|r| r.variant.meshes == ADAPTIVE);
+    let norm = if by_bound { ErrorNorm::Bound } else { ErrorNorm::L2 };
+    of_scene.retain(|r| r.norm == norm);
     let reached =
         |error: f64| of_scene.iter().filter(|r| r.error == error && r.seconds.is_some()).count();
     let most = of_scene.iter().map(|r| reached(r.error)).max();
@@ -20,7 +25,7 @@ pub(crate) fn at_common_error<'a>(reach: &'a [WorkAtError], scene: &str) -> Vec<
 
 /// What the figures say of a scene: at the error of [`at_common_error`], how many times the time of each
 /// other variant the subject takes. The subject is the first variant of that label that gets there,
-/// otherwise the fastest. Nothing without errors in L2.
+/// otherwise the fastest. Nothing without errors and bounds.
 pub(crate) fn verdict(reach: &[WorkAtError], scene: &str, subject: &str) -> Option<String> {
     let here = at_common_error(reach, scene);
     let error = here.first()?.error;
@@ -36,7 +41,8 @@ pub(crate) fn verdict(reach: &[WorkAtError], scene: &str, subject: &str) -> Opti
     });
     let name = chosen.variant.name_among(&variants);
     let seconds = chosen.seconds.unwrap_or(f64::NAN);
-    let mut text = format!("{scene}: at an L2 error of {error:e} {name} takes {seconds:.2e} s");
+    let kind = if there[0].norm == ErrorNorm::L2 { "L2 error" } else { "error bound" };
+    let mut text = format!("{scene}: at an {kind} of {error:e} {name} takes {seconds:.2e} s");
     for (k, (ratio, other)) in others.enumerate() {
         let comma = if k == 0 { ", " } else { "; " };
         let time = if k == 0 { "the time" } else { "that" };

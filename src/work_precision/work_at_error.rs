@@ -13,6 +13,7 @@ fn error_in(norm: ErrorNorm, measured: &Measured) -> Option<f64> {
         ErrorNorm::L2 => error.l2,
         ErrorNorm::H1 => error.h1,
         ErrorNorm::Energy => error.broken_energy,
+        ErrorNorm::Bound => measured.row.bound.total,
     };
     value.filter(|e| measured.row.converged() && e.is_finite() && *e > 0.0)
 }
@@ -77,7 +78,7 @@ pub struct WorkAtError {
     /// The variant.
     #[serde(flatten)]
     pub variant: Variant,
-    /// The norm.
+    /// The norm, or the bound.
     pub norm: ErrorNorm,
     /// The error.
     pub error: f64,
@@ -143,7 +144,7 @@ fn work_of_variants_at(
     norm: ErrorNorm,
     error: f64,
 ) -> Vec<WorkAtError> {
-    let at = |levels: &[&Measured], work: fn(&Measured) -> Option<f64>| {
+    let at = |levels: &[&Measured], work: &dyn Fn(&Measured) -> Option<f64>| {
         let point = |m: &&Measured| {
             let work = work(m);
             WorkPoint {
@@ -154,7 +155,7 @@ fn work_of_variants_at(
         work_at(&levels.iter().map(point).collect::<Vec<_>>(), error)
     };
     let seconds: Vec<Option<f64>> =
-        curves.iter().map(|(_, levels)| at(levels, |m| Some(m.smallest.total))).collect();
+        curves.iter().map(|(_, levels)| at(levels, &|m| Some(m.seconds_to(norm)))).collect();
     let best = seconds.iter().flatten().copied().fold(f64::INFINITY, f64::min);
     let of = |((variant, levels), seconds): (&(Variant, Vec<&Measured>), Option<f64>)| {
         let finest = levels.last().map(|m| m.row.level);
@@ -175,12 +176,12 @@ fn work_of_variants_at(
             error,
             standing,
             seconds,
-            seconds_bound: bound.map(|m| m.smallest.total),
-            median_over_least: at(levels, |m| m.median_over_least),
+            seconds_bound: bound.map(|m| m.seconds_to(norm)),
+            median_over_least: at(levels, &|m| m.median_over_least),
             ratio: seconds.map(|s| s / best),
-            unknowns: at(levels, |m| m.row.unknowns.map(|n| n as f64)),
-            entries: at(levels, |m| m.row.nonzeros.map(|n| n as f64)),
-            memory_bytes: at(levels, |m| m.row.peak_memory_bytes.map(|b| b as f64)),
+            unknowns: at(levels, &|m| m.row.unknowns.map(|n| n as f64)),
+            entries: at(levels, &|m| m.row.nonzeros.map(|n| n as f64)),
+            memory_bytes: at(levels, &|m| m.row.peak_memory_bytes.map(|b| b as f64)),
         }
     };
     curves.iter().zip(seconds).map(of).collect()

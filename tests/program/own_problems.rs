@@ -86,6 +86,29 @@ fn the_work_of_a_problem_of_ones_own() {
     }
 }
 
+/// Without an error to reach, a bound is reached, on uniform and on adaptive meshes.
+#[test]
+fn the_work_of_a_problem_of_ones_own_by_its_bound() {
+    let scratch = Scratch::new("own-work-bound");
+    let out = scratch.path("out");
+    let mut work = command("work-precision");
+    work.args([&example("plate"), "--scheme", "p1,sipg", "--levels", "0,1", "--out", &out]);
+    let output = work.args(["--adaptive", "steps=3", "--rounds", "1"]).output().unwrap();
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    assert!(stderr(&output).contains("only bounds are reached, for no error is known"));
+    let report = read_json(&scratch.0.join("out/report.json"));
+    assert_eq!(rows(&report).len(), 2 * (2 + 4));
+    for row in rows(&report) {
+        assert!(row["error"]["l2"].is_null() && number(row, &["bound", "total"]) > 0.0);
+        assert_eq!(row["theta"].is_null(), row["meshes"] == "uniform");
+    }
+    let setting = report["setting"].as_str().unwrap();
+    assert!(setting.contains("adaptive meshes: theta 0.5, at most 3 steps"), "{setting}");
+    let reach = report["reach"].as_array().unwrap();
+    assert!(!reach.is_empty() && reach.iter().all(|r| r["norm"] == "bound"), "{reach:?}");
+    assert!(report["verdicts"][0].as_str().unwrap().contains("at an error bound of"));
+}
+
 #[test]
 fn a_box_of_ones_own() {
     let scratch = Scratch::new("own-box");

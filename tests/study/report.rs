@@ -212,6 +212,25 @@ fn plots_show_promised_orders_and_no_single_points() {
     assert!(has(&lines(all.clone()), "slopes for comparison"));
     // labels of an axis are of one kind: numbers for mesh sizes from 1/32 to 1/8
     assert!(has(&drawn, "0.1") && has(&drawn, "0.05"), "{drawn:?}");
+    // a band from each error in the H1 seminorm, which is the energy norm here, to the bound on it
+    let bands =
+        |rows: &[Row]| convergence(rows).to_svg().unwrap().matches("opacity=\"0.12\"").count();
+    assert_eq!(bands(&all), 0);
+    let text = "band: up to the bound on the error";
+    assert!(!has(&drawn, text));
+    for row in &mut all {
+        (row.bound.total, row.bound.distance) = (Some(3.0 * row.mesh_size), Some(row.mesh_size));
+    }
+    assert!(has(&lines(all.clone()), text));
+    assert_eq!(bands(&all), 2 * 3 * 2 + 1, "two parts of six curves, and the legend");
+    all[2].status = Outcome::Stalled;
+    assert_eq!(bands(&all), 2 * 3 * 2, "none to a run that failed");
+    all[2].status = Outcome::Converged;
+    // bounds alone where no error is known
+    let mut without: Vec<Row> = all.clone();
+    without.iter_mut().for_each(|row| row.error = Errors::default());
+    let bounds = lines(without);
+    assert!(has(&bounds, "error bound") && !has(&bounds, "broken H1 error"));
     all.retain(|r| r.level == 8);
     let single = lines(all);
     assert!(has(&single, "one level: no curve"));

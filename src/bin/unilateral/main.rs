@@ -4,6 +4,7 @@
 //! the other commands. Exit codes: 0 if the command succeeded, 1 if a run did not converge or a
 //! check failed, 2 if the request was wrong.
 
+mod adaptive;
 mod compare;
 mod judge;
 mod mesh_file;

@@ -175,7 +175,7 @@ impl ObservedOrders {
         match norm {
             ErrorNorm::L2 => self.l2.as_ref(),
             ErrorNorm::H1 => self.h1.as_ref(),
-            ErrorNorm::Energy => None,
+            ErrorNorm::Energy | ErrorNorm::Bound => None,
         }
     }
     /// The order that theory promises in a norm.
@@ -183,7 +183,7 @@ impl ObservedOrders {
         match norm {
             ErrorNorm::L2 => self.promised.l2,
             ErrorNorm::H1 => self.promised.h1,
-            ErrorNorm::Energy => None,
+            ErrorNorm::Energy | ErrorNorm::Bound => None,
         }
     }
     /// The verdict in a norm.

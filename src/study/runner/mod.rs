@@ -513,10 +513,15 @@ impl<'a, T: Real, const D: usize> Study<'a, T, D> {
     }
 
     /// Runs the first scheme with the first solver on the first level with a new hierarchy, so that no
-    /// earlier run shortens it. Returns the row and the seconds of the start from coarser levels.
+    /// earlier run shortens it, or on adaptive meshes. Returns the row, or those of all steps, each with the
+    /// seconds of the start from coarser levels; on adaptive meshes these are a part of the solve.
     #[cfg(feature = "report")]
-    pub(crate) fn run_alone(&self) -> Result<(Row, f64), Error> {
+    pub(crate) fn run_alone(&self) -> Result<Vec<(Row, f64)>, Error> {
         let failure = self.where_exact_fails()?;
+        if let Some(adaptivity) = self.adaptive {
+            let report = self.run_adaptive(adaptivity, failure.as_deref())?;
+            return Ok(report.rows.into_iter().map(|row| (row, 0.0)).collect());
+        }
         let (Some(entry), level) = (self.entries.first(), self.first_level()) else {
             unreachable!("checked above")
         };
@@ -524,7 +529,7 @@ impl<'a, T: Real, const D: usize> Study<'a, T, D> {
         let hierarchy = self.coarsest().build(level)?;
         let mut nested = [self.nested(&hierarchy, &self.solvers()[0])];
         let measured = Measured { failure: failure.as_deref(), reference: None };
-        self.row(&mut nested, (entry, &problem), level, measured)
+        Ok(vec![self.row(&mut nested, (entry, &problem), level, measured)?])
     }
 
     /// The meshes of all levels: in one hierarchy with those of a reference.

@@ -13,8 +13,8 @@ use unilateral::measure::ErrorNorm;
 use unilateral::output::Table;
 use unilateral::prelude::*;
 use unilateral::work_precision::{
-    Failure, Phases, Precision, Standing, WorkPoint, WorkPrecision, WorkProgress, WorkReport,
-    work_at,
+    Failure, Measured, Phases, Precision, Standing, WorkAtError, WorkPoint, WorkPrecision,
+    WorkProgress, WorkReport, changes, work_at,
 };
 
 fn close(a: f64, b: f64) -> bool {
@@ -265,9 +265,66 @@ fn a_tiny_study_measures_every_variant_alike() {
 }
 
 #[test]
+fn adaptive_meshes_stand_beside_uniform_ones() {
+    let adaptivity = Adaptivity::default().steps(3);
+    let study = || tiny().levels([4, 8]).adaptive(adaptivity).rounds(2);
+    assert_eq!(study().check().unwrap().len(), 2 * 3);
+    let scratch = Scratch::new("work-adaptive");
+    let report = study().memory(|_| Some(1)).write_to(&scratch.0).run().unwrap();
+    assert_eq!(report.failures(), []);
+    assert_eq!(report.rows.len(), 2 * (2 + 4));
+    let names: Vec<String> =
+        report.variants().iter().map(|v| v.name_among(&report.variants())).collect();
+    assert_eq!(names, ["p1, uniform", "p1, adaptive", "wopsip, uniform", "wopsip, adaptive"]);
+    let alone = Study::<f64, 2>::new(scenes::radial(1.0))
+        .scheme(ConformingP1)
+        .scheme(Wopsip::default())
+        .levels([4])
+        .adaptive(adaptivity)
+        .run()
+        .unwrap();
+    let adaptive = || report.rows.iter().filter(|m| m.meshes == "adaptive");
+    assert_eq!(adaptive().count(), alone.rows.len());
+    for (m, row) in adaptive().zip(&alone.rows) {
+        assert_eq!((m.row.level, m.row.error, &m.row.bound), (row.level, row.error, &row.bound));
+        assert_eq!((m.runs, m.row.peak_memory_bytes), (2, None));
+        let p = m.smallest;
+        let sum = p.mesh + p.assemble + p.solve + p.bound.unwrap();
+        assert!((sum - p.total).abs() <= 1e-9 && m.seconds_to(ErrorNorm::Bound) == p.total);
+    }
+    for m in report.rows.iter().filter(|m| m.meshes == "uniform") {
+        let with_bound = m.smallest.total + m.smallest.bound.unwrap();
+        assert_eq!(m.seconds_to(ErrorNorm::Bound), with_bound);
+        assert_eq!(m.seconds_to(ErrorNorm::H1), m.smallest.total);
+    }
+    // adaptive meshes follow the bound, and the bound is what the verdict compares by
+    let verdict = &report.verdicts()[0];
+    assert!(verdict.starts_with("radial-2d: at an error bound of "), "{verdict}");
+    let by_bound = |r: &&WorkAtError| r.norm == ErrorNorm::Bound;
+    for r in report.reach().iter().filter(by_bound) {
+        let of = |m: &&Measured| m.variant() == r.variant && m.row.bound.total > Some(r.error);
+        let coarser = report.rows.iter().rfind(of);
+        let is_above = |m: &Measured| r.seconds.is_none_or(|s| s >= m.seconds_to(r.norm));
+        assert!(coarser.is_none_or(is_above), "{r:?}");
+    }
+    let text = report.to_text();
+    assert!(text.contains("time to reach an error bound\n"), "{text}");
+    let mut runs = text.lines().skip(1).take_while(|line| !line.contains("phases"));
+    assert!(runs.all(|line| line.len() <= 110), "{text}");
+    let rows: Value = serde_json::from_str(&scratch.read("report.json")).unwrap();
+    assert_eq!(rows["rows"][2]["meshes"], "adaptive");
+    assert!(scratch.read("radial-2d-time.svg").contains("time in s, bound included"));
+    // the report is its own baseline
+    let changes = changes(&report.to_json(), &report).unwrap();
+    assert_eq!((changes.compared, changes.changed.len()), (12, 0));
+}
+
+#[test]
 fn wrong_requests_are_refused_before_anything_runs() {
     let message = |study: WorkPrecision<2>| study.run().unwrap_err().to_string();
     assert!(message(tiny()).contains("needs a scheme"));
+    let share = Adaptivity::default().theta(2.0);
+    assert!(message(tiny().levels([4]).adaptive(share)).contains("share of marked cells"));
     assert!(message(tiny().levels([0, 4])).contains("at least one subdivision"));
     assert!(message(tiny().scheme(ConformingP1).levels([4])).contains("must have its own label"));
     let named: NamedScheme = "wopsip@factor=1".parse().unwrap();

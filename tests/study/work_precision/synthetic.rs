@@ -12,6 +12,7 @@ pub fn measured(scheme: &str, level: usize, factor: f64) -> Measured {
         label: scheme.into(),
         linear_asked: "direct".into(),
         precision: "f64".into(),
+        meshes: "uniform".into(),
     };
     let mut row = row("radial-2d", scheme, level);
     let n = level as f64;
@@ -23,6 +24,7 @@ pub fn measured(scheme: &str, level: usize, factor: f64) -> Measured {
         assemble: 0.25 * total,
         coarse: 0.25 * total,
         solve: 0.5 * total,
+        bound: None,
         total,
     };
     Measured::new(row, phases, &Case { variant, level })

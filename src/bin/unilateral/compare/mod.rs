@@ -3,7 +3,6 @@
 //! `cargo run --release -- compare --help` lists the options. Exit codes: 0 if every row converged,
 //! 1 if some did not or the run could not go on, 2 if the request was wrong, 130 if it was interrupted.
 
-mod adaptive;
 mod interrupt;
 mod options;
 mod prepare;
@@ -68,7 +67,7 @@ fn program<T: Real>(options: &Options, files: &[(&str, String)]) -> Program {
         program = program.with_request("reference", format!("{scheme} at level {level}"));
     }
     if let Some(of) = &options.adaptive {
-        program = program.with_request("adaptive", adaptive::words(of));
+        program = program.with_request("adaptive", crate::adaptive::words(of));
         if let [level] = options.levels[..] {
             program = program.with_request("first level", level);
         }

@@ -10,7 +10,7 @@ use unilateral::nested::Adaptivity;
 use unilateral::scenes;
 use unilateral::scheme::{NamedScheme, SCHEMES, SchemeOptions, keys_of_scheme};
 
-use super::adaptive::adaptivity;
+use crate::adaptive::adaptivity;
 use crate::mesh_file::MeshFile;
 use crate::shared::{MOST_THREADS, Request, each_once, reference, schemes};
 

@@ -24,6 +24,7 @@ use unilateral::work_precision::{
     Case, Precision, WorkPrecision, WorkProgress, WorkReport, changes,
 };
 
+use crate::adaptive::words;
 use crate::posed::Posed;
 use crate::shared::{
     Failure, Request, bar, check_writable, end_at_interrupt, make_directory, print, print_to, read,
@@ -121,12 +122,13 @@ fn finish(
     Ok(same && report.failures().is_empty())
 }
 
-/// The mesh and the parameter of the scenes, for the heading of the report.
+/// The mesh, the parameter of the scenes and the adaptive refinement, for the heading of the report.
 fn setting(options: &Options) -> String {
     let mesh = options.mesh.path.as_ref().and_then(|path| path.file_name());
     let mesh = mesh.map(|name| format!("refinements of {}", excerpt(name.as_encoded_bytes())));
     let contrast = options.contrast.map(|x| format!("contrast {x:e}"));
-    [mesh, contrast].into_iter().flatten().collect::<Vec<_>>().join(", ")
+    let adaptive = options.adaptive.as_ref().map(|of| format!("adaptive meshes: {}", words(of)));
+    [mesh, contrast, adaptive].into_iter().flatten().collect::<Vec<_>>().join(", ")
 }
 
 /// A scene by name with the parameter of the options, if it takes one.
@@ -153,8 +155,9 @@ fn prepare<'a, const D: usize>(
     };
     if !posed.has_exact() && options.reference.is_none() && !options.quiet {
         let reference = "--reference N measures against a fine solution";
-        let text =
-            format!("warning: {place}: no error is known, so none is reached; {reference}\n");
+        let text = format!(
+            "warning: {place}: only bounds are reached, for no error is known; {reference}\n"
+        );
         print_to(std::io::stderr(), &text)?;
     }
     let mesh = options.mesh.read(&|_| {})?;
@@ -162,6 +165,9 @@ fn prepare<'a, const D: usize>(
     let mut study = posed.work_precision()?.levels(options.levels(D, has_mesh));
     if let Some(mesh) = mesh {
         study = study.on_mesh(mesh);
+    }
+    if let Some(adaptivity) = options.adaptive {
+        study = study.adaptive(adaptivity);
     }
     let study = with_settings(options, schemes, bar, study);
     let cases = study.check().map_err(|e| format!("{place}: {e}"))?;
@@ -190,13 +196,11 @@ fn with_settings<'a, const D: usize>(
             WorkProgress::Finished => bar.inc(1),
             WorkProgress::Started(case, round) => {
                 let v = &case.variant;
-                bar.set_message(format!(
-                    "{}, {}, level {}, round {}",
-                    v.scene,
-                    v.label,
-                    case.level,
-                    round + 1
-                ));
+                let meshes = match case.is_adaptive() {
+                    true => v.meshes.clone(),
+                    false => format!("level {}", case.level),
+                };
+                bar.set_message(format!("{}, {}, {meshes}, round {}", v.scene, v.label, round + 1));
             }
             // what is planned counts for nothing: the bar was made for all scenes
             _ => {}

@@ -5,10 +5,12 @@ use std::path::PathBuf;
 use clap::Args;
 use unilateral::input::excerpt;
 use unilateral::linear::LinearMethod;
+use unilateral::nested::Adaptivity;
 use unilateral::scenes;
 use unilateral::scheme::NamedScheme;
 use unilateral::work_precision::Precision;
 
+use crate::adaptive::adaptivity;
 use crate::mesh_file::MeshFile;
 use crate::shared::{Request, reference, schemes};
 
@@ -18,7 +20,7 @@ const CHOSEN: [&str; 6] = ["p1", "cr", "sipg", "wopsip", "wopsip:facet-means", "
 /// Measures what schemes take to reach a given error
 #[derive(Args, Debug)]
 pub struct Options {
-    /// A problem of your own, as for compare; with --reference, for without errors there is nothing to reach
+    /// A problem of your own, as for compare; with --reference for errors besides the bound
     #[arg(value_name = "PROBLEM.toml", conflicts_with_all = ["scenes", "mesh", "boundary"])]
     pub problem: Option<PathBuf>,
     /// Scenes by name; by default radial-2d, ball-2d, signorini-2d, hertz-2d, radial-3d
@@ -44,6 +46,10 @@ pub struct Options {
     /// Subdivisions of the scene's shortest side, or refinements of the mesh
     #[arg(long, value_delimiter = ',', value_name = "N[,N...]")]
     levels: Vec<usize>,
+    /// Also run on meshes that follow the error bound, from the coarsest level on: the bound to reach, or keys such
+    /// as theta=0.5,steps=12,unknowns=1e6
+    #[arg(long, value_name = "GOAL", value_parser = adaptivity)]
+    pub adaptive: Option<Adaptivity>,
     /// How often each case runs; 5, with --quick 2
     #[arg(long, value_name = "K", value_parser = clap::value_parser!(u16).range(1..))]
     rounds: Option<u16>,

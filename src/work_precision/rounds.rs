@@ -1,0 +1,169 @@
+//! Running all cases of a study, round by round.
+
+use std::time::{Duration, Instant};
+
+use super::case::resident_memory_bytes;
+use super::measured::{Failure, Measured};
+use super::report::WorkReport;
+use super::slots::Slot;
+use super::{WorkPrecision, WorkProgress};
+use crate::error::Error;
+use crate::real::Real;
+use crate::study::Row;
+use crate::study::row::distinct;
+
+/// The least time between two writes of finished rows within a round.
+const WRITE_INTERVAL: Duration = Duration::from_secs(1);
+
+impl<const D: usize> WorkPrecision<'_, D> {
+    pub(super) fn run_cases(&self, report: &mut WorkReport) -> Result<(), Error> {
+        let mut slots = self.slots()?;
+        report.subject.clone_from(&self.subject);
+        let of_this_process = || resident_memory_bytes().filter(|_| self.memory.is_none());
+        report.empty_memory_bytes = self.empty_memory.or_else(of_this_process);
+        for precision in self.precisions.iter().map(|p| p.name()) {
+            if !report.program.precision.split(", ").any(|p| p == precision) {
+                let comma = if report.program.precision.is_empty() { "" } else { ", " };
+                report.program.precision += &format!("{comma}{precision}");
+            }
+        }
+        let measured = match self.study_against_reference()? {
+            Some(study) => study.run()?.rows,
+            None => Vec::new(),
+        };
+        let before = (report.rows.len(), report.refused.len());
+        (self.observer)(WorkProgress::Planned(slots.len() * self.rounds));
+        // threads, pages and instructions are there when the clock starts
+        let is_coarsest = |s: &&Slot<'_, D>| s.coarser.is_none() && !s.case.is_adaptive();
+        for slot in slots.iter().filter(is_coarsest) {
+            drop(slot.study.run());
+        }
+        let mut written = Instant::now();
+        for round in 0..self.rounds {
+            // by level, so that a level that takes too long is known before the next
+            let mut order: Vec<usize> = (0..slots.len()).collect();
+            order.sort_by_key(|&k| (slots[k].case.is_adaptive(), slots[k].case.level));
+            if round % 2 == 1 {
+                order.reverse();
+            }
+            for k in order {
+                (self.observer)(WorkProgress::Started(&slots[k].case, round));
+                self.run_slot(&mut slots, k, round, &measured);
+                (self.observer)(WorkProgress::Finished);
+                if written.elapsed() > WRITE_INTERVAL {
+                    self.save(report, before, &slots)?;
+                    written = Instant::now();
+                }
+            }
+            self.save(report, before, &slots)?;
+        }
+        match (&self.directory, slots.first()) {
+            (Some(directory), Some(slot)) => {
+                report.write_figures(directory, &slot.case.variant.scene).map(|_| ())
+            }
+            _ => Ok(()),
+        }
+    }
+
+    /// Runs a case, unless it has failed, takes too long or would not fit.
+    fn run_slot(
+        &self,
+        slots: &mut [Slot<'_, D>],
+        k: usize,
+        round: usize,
+        against_reference: &[Row],
+    ) {
+        if let Some(measured) = slots[k].measured.last() {
+            let is_slow = measured.smallest.total > self.limit;
+            if is_slow || !measured.row.converged() {
+                return;
+            }
+        } else if round > 0 {
+            return;
+        }
+        if round == 0
+            && let Some(why) = self.obstacle_to(slots, k)
+        {
+            slots[k].failure = Some(Failure::new(slots[k].case.clone(), &why));
+            return;
+        }
+        let slot = &mut slots[k];
+        match slot.study.run() {
+            Err(e) => {
+                slot.failure = Some(Failure::new(slot.case.clone(), &e.to_string()));
+            }
+            Ok(rows) => {
+                for (step, (row, phases)) in rows.into_iter().enumerate() {
+                    let row = self.completed(row, slot, step, against_reference);
+                    match slot.measured.get_mut(step) {
+                        Some(measured) => measured.add(&row, phases),
+                        None => slot.measured.push(Measured::new(row, phases, &slot.case)),
+                    }
+                }
+            }
+        }
+    }
+
+    /// The row of a run with its peak of memory, and its errors where they are against a reference.
+    fn completed(
+        &self,
+        mut row: Row,
+        slot: &Slot<'_, D>,
+        step: usize,
+        against_reference: &[Row],
+    ) -> Row {
+        if slot.case.is_adaptive() {
+            // the peak of one step is not that of a process
+            row.peak_memory_bytes = None;
+            return row;
+        }
+        if let Some(memory) = &self.memory {
+            let known = slot.measured.get(step).map(|m| m.row.peak_memory_bytes);
+            row.peak_memory_bytes = known.unwrap_or_else(|| memory(&slot.case));
+        }
+        let is_same = |other: &&Row| {
+            slot.case.variant.precision == f64::NAME
+                && other.label == row.label
+                && other.level == row.level
+        };
+        if let Some(known) = against_reference.iter().find(is_same) {
+            row.against.clone_from(&known.against);
+            if known.against.is_none() {
+                row.warnings.clone_from(&known.warnings);
+            }
+            (row.error, row.contact) = (known.error, known.contact);
+        }
+        row
+    }
+
+    /// Puts the results so far into the report, after the rows of other scenes, and writes it.
+    fn save(
+        &self,
+        report: &mut WorkReport,
+        (rows, refused): (usize, usize),
+        slots: &[Slot<'_, D>],
+    ) -> Result<(), Error> {
+        report.rows.truncate(rows);
+        report.rows.extend(slots.iter().flat_map(|s| s.measured.iter().cloned()));
+        report.refused.truncate(refused);
+        report.refused.extend(slots.iter().filter_map(|s| s.failure.clone()));
+        fill_orders(&mut report.rows[rows..]);
+        match &self.directory {
+            Some(directory) => report.write_data(directory).map(|_| ()),
+            None => Ok(()),
+        }
+    }
+}
+
+/// Observed orders, variant by variant.
+fn fill_orders(rows: &mut [Measured]) {
+    for variant in distinct(rows.iter().map(Measured::variant)) {
+        let mut own: Vec<&mut Measured> =
+            rows.iter_mut().filter(|m| m.variant() == variant).collect();
+        let mut plain: Vec<_> = own.iter().map(|m| m.row.clone()).collect();
+        crate::study::fill_orders(&mut plain);
+        for (measured, row) in own.iter_mut().zip(plain) {
+            measured.row.order = row.order;
+        }
+    }
+}

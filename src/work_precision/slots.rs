@@ -1,0 +1,173 @@
+//! The cases of a study of work against precision, each with its own study, checked before anything runs.
+
+use std::sync::Arc;
+
+use super::WorkPrecision;
+use super::case::{Candidate, OneStudy, Precision, in_single_precision};
+use super::measured::{ADAPTIVE, Case, Failure, Measured, UNIFORM, Variant};
+use crate::constraint::ConstraintSet;
+use crate::error::Error;
+use crate::inequality::ActiveSet;
+use crate::linear::LinearMethod;
+use crate::nested::Adaptivity;
+use crate::real::Real;
+use crate::scheme::AnyScheme;
+use crate::study::{Study, available_memory_bytes};
+
+/// A case, its study, and its results so far.
+pub(super) struct Slot<'s, const D: usize> {
+    pub case: Case,
+    pub study: OneStudy<'s, D>,
+    /// The case one level coarser, by its place in the list.
+    pub coarser: Option<usize>,
+    /// A row, or on adaptive meshes one for each step.
+    pub measured: Vec<Measured>,
+    pub failure: Option<Failure>,
+}
+
+impl<'a, const D: usize> WorkPrecision<'a, D> {
+    /// All cases, variant by variant, each checked.
+    pub(super) fn slots(&self) -> Result<Vec<Slot<'_, D>>, Error> {
+        let mut slots: Vec<Slot<'_, D>> = Vec::new();
+        for candidate in &self.candidates {
+            for &linear in &self.linear {
+                for &precision in &self.precisions {
+                    let mut coarser = None;
+                    let levels = self.levels.iter().map(|&level| (level, None));
+                    let first = self.levels.first().map(|&level| (level, self.adaptive));
+                    for meshes in levels.chain(first.filter(|first| first.1.is_some())) {
+                        let slot = self.slot(candidate, linear, precision, meshes)?;
+                        slot.study.check()?;
+                        if slots.iter().any(|s| s.case == slot.case) {
+                            let variant = &slot.case.variant;
+                            let name = format!("{} on {}", variant.label, variant.constraint);
+                            return Err(wrong("schemes", name, "each must have its own label"));
+                        }
+                        coarser = coarser.filter(|_| meshes.1.is_none());
+                        slots.push(Slot { coarser, ..slot });
+                        coarser = Some(slots.len() - 1);
+                    }
+                }
+            }
+        }
+        if slots.is_empty() {
+            let needs = "a study needs a scheme, a linear solver, a scalar and a level";
+            return Err(wrong("cases", "none".to_owned(), needs));
+        }
+        Ok(slots)
+    }
+
+    fn slot<'s>(
+        &'s self,
+        candidate: &Candidate<'s, D>,
+        linear: LinearMethod,
+        precision: Precision,
+        meshes: (usize, Option<Adaptivity>),
+    ) -> Result<Slot<'s, D>, Error> {
+        let set = candidate.set.clone();
+        let (case, study) = match precision {
+            Precision::Double => {
+                let (case, mut study) =
+                    self.one_study(candidate.double.clone(), set, linear, meshes);
+                if let Some(mesh) = &self.mesh {
+                    study = study.on_mesh(mesh.clone());
+                }
+                (case, OneStudy::Double(study))
+            }
+            Precision::Single => {
+                let (case, mut study) =
+                    self.one_study(candidate.single.clone(), set, linear, meshes);
+                if let Some(mesh) = &self.mesh {
+                    study = study.on_mesh(in_single_precision(mesh)?);
+                }
+                (case, OneStudy::Single(study))
+            }
+        };
+        Ok(Slot { case, study, coarser: None, measured: Vec::new(), failure: None })
+    }
+
+    fn one_study<'s, T: Real>(
+        &'s self,
+        scheme: Arc<dyn AnyScheme<T, D> + 's>,
+        set: Option<Arc<dyn ConstraintSet>>,
+        linear: LinearMethod,
+        (level, adaptivity): (usize, Option<Adaptivity>),
+    ) -> (Case, Study<'s, T, D>) {
+        let scene = (self.scene)();
+        let name = LinearMethod::NAMES.iter().find(|l| l.1 == linear).map_or("", |l| l.0);
+        let in_force = set.as_deref().unwrap_or(scene.problem.constraint_set());
+        let constraint = scheme.constraint_on(in_force);
+        let variant = Variant {
+            scene: scene.name.clone(),
+            scheme: scheme.name().to_owned(),
+            constraint: constraint.unwrap_or_else(|| in_force.name().to_owned()),
+            label: scheme.label_on(in_force),
+            linear_asked: name.to_owned(),
+            precision: T::NAME.to_owned(),
+            meshes: if adaptivity.is_some() { ADAPTIVE } else { UNIFORM }.to_owned(),
+        };
+        let mut study = Study::<T, D>::new(scene)
+            .solver(ActiveSet::default().linear(linear))
+            .shared_scheme(scheme, set)
+            .levels([level]);
+        if let Some(adaptivity) = adaptivity {
+            study = study.adaptive(adaptivity);
+        }
+        let level = if adaptivity.is_some() { 0 } else { level };
+        (Case { variant, level }, study)
+    }
+
+    /// The study that measures every scheme on every level against the reference, checked; none where no
+    /// reference is asked for.
+    pub(super) fn study_against_reference(&self) -> Result<Option<Study<'_, f64, D>>, Error> {
+        let Some((reference, level)) = &self.reference else { return Ok(None) };
+        let mut study = Study::<f64, D>::new((self.scene)()).levels(self.levels.iter().copied());
+        if let Some(mesh) = &self.mesh {
+            study = study.on_mesh(mesh.clone());
+        }
+        for candidate in &self.candidates {
+            study = study.shared_scheme(candidate.double.clone(), candidate.set.clone());
+        }
+        if self.precisions.contains(&Precision::Single) {
+            let allowed =
+                "a reference is computed over f64, and errors of f32 would be no like ones";
+            return Err(wrong("precision", f32::NAME.to_owned(), allowed));
+        }
+        let (scheme, set) = (reference.double.clone(), reference.set.clone());
+        let study = study.shared_reference(scheme, set, *level);
+        if let (Some(need), Some(free)) = (study.memory_estimate(), available_memory_bytes())
+            && need.bytes > free as f64
+        {
+            let (need, free) = (need.bytes / 1e9, free as f64 / 1e9);
+            let allowed =
+                format!("it would need about {need:.1} GB of memory, {free:.1} GB are available");
+            return Err(wrong("level of the reference", level.to_string(), &allowed));
+        }
+        study.check()?;
+        Ok(Some(study))
+    }
+
+    /// The reason for which a case is not run.
+    pub(super) fn obstacle_to(&self, slots: &[Slot<'_, D>], k: usize) -> Option<String> {
+        if let Some(coarser) = slots[k].coarser.map(|c| &slots[c]) {
+            let level = coarser.case.level;
+            let Some(measured) = coarser.measured.last() else {
+                return Some(format!("not run: level {level} was not, either"));
+            };
+            let seconds = measured.smallest.total;
+            if seconds > self.limit {
+                return Some(format!("not run: level {level} took {seconds:.1} s"));
+            }
+        }
+        let (need, free) = (slots[k].study.memory_estimate()?, available_memory_bytes()?);
+        (need.bytes > free as f64).then(|| {
+            let (need, free) = (need.bytes / 1e9, free as f64 / 1e9);
+            format!("not run: would need about {need:.1} GB of memory, {free:.1} GB are available")
+        })
+    }
+}
+
+/// The error of an invalid request.
+fn wrong(parameter: &'static str, value: String, allowed: &str) -> Error {
+    Error::Parameter { parameter, value, allowed: allowed.to_owned() }
+}
