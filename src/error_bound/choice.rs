@@ -26,7 +26,7 @@ impl Choice {
     /// The choice of all cells with this ratio or more, with the constant of [`dual_norm`].
     fn new<T: Real, const D: usize>(
         least_ratio: f64,
-        terms: &[CellTerms],
+        terms: &[Vec<CellTerms>],
         coarser: &[CoarserCells<'_, T, D>],
         constant: f64,
     ) -> Self {
@@ -39,7 +39,7 @@ impl Choice {
             let integral = if is_left { terms.unbalanced * volume } else { 0.0 };
             Unbalanced { integral, volume, least_coefficient: terms.least_coefficient }
         };
-        let unbalanced: Vec<Unbalanced> = terms.iter().map(of_solver).collect();
+        let unbalanced: Vec<Unbalanced> = terms.iter().flatten().map(of_solver).collect();
         let is_balanced = unbalanced.iter().all(|cell| cell.integral == 0.0);
         let algebra = dual_norm(unbalanced, coarser, constant);
         let flux_square = (with_oscillation.sqrt() + algebra).powi(2);
@@ -50,13 +50,13 @@ impl Choice {
     /// solver in which no obstacle presses; solves on a sequence of meshes may be inexact, so that other choices are
     /// tried there.
     pub fn best<T: Real, const D: usize>(
-        cells: &[CellTerms],
+        cells: &[Vec<CellTerms>],
         coarser: &[CoarserCells<'_, T, D>],
         constant: f64,
     ) -> Self {
         let of_ratio = |least_ratio| Self::new(least_ratio, cells, coarser, constant);
         let mut best = of_ratio(f64::INFINITY);
-        let away: f64 = cells.iter().filter(|t| t.ratio >= 1.0).map(|t| t.obstacle).sum();
+        let away: f64 = cells.iter().flatten().filter(|t| t.ratio >= 1.0).map(|t| t.obstacle).sum();
         if !coarser.is_empty() && away > NEGLIGIBLE * best.square() {
             for least_ratio in [100.0, 10.0, 1.0] {
                 let other = of_ratio(least_ratio);

@@ -1,6 +1,5 @@
 //! The bound of a pair: its parts, and what of it is proven.
 
-use std::convert::Infallible;
 use std::ops::Range;
 
 use super::algebra::CoarserCells;
@@ -13,7 +12,6 @@ use crate::assemble::space::Space;
 use crate::error::Error;
 use crate::instances::compiled;
 use crate::measure::Errors;
-use crate::memory::in_large_pages;
 use crate::mesh::BoundaryPart;
 use crate::parallel::cells;
 use crate::problem::DataByGroup;
@@ -178,17 +176,14 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         let boundary = self.boundary_terms(pair)?;
         let friedrichs = self.mesh.friedrichs_constant();
         let rules = (&table, cut.as_ref());
-        let mut terms = in_large_pages(vec![CellTerms::default(); self.mesh.n_cells()]);
-        let fill = |cells: Range<usize>, out: &mut [CellTerms]| {
-            for (cell, terms) in cells.zip(out) {
-                *terms = self.cell_terms(pair, u, cell, rules, &boundary, friedrichs);
-            }
-            Ok::<(), Infallible>(())
-        };
-        let Ok(()) = cells::for_each(terms.len(), &|cell| cell, &mut terms, &fill);
+        // by chunk, as they come: copies of them would cost more than their sums
+        let terms = cells::map(self.mesh.n_cells(), &|cells: Range<usize>| {
+            let terms = |cell| self.cell_terms(pair, u, cell, rules, &boundary, friedrichs);
+            cells.map(terms).collect::<Vec<_>>()
+        });
         let (mut mismatch, mut distance, mut contact) = (0.0, 0.0, 0.0);
         let [mut least_coefficient, mut least_reaction] = [f64::INFINITY; 2];
-        for t in &terms {
+        for t in terms.iter().flatten() {
             mismatch += t.mismatch;
             distance += t.distance;
             contact += t.contact;
@@ -225,7 +220,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
                 oscillation: share((with_oscillation - mismatch).max(0.0)),
                 algebra: share((flux_square - with_oscillation).max(0.0)),
             },
-            cells: terms.iter().map(of_cell).collect(),
+            cells: terms.iter().flatten().map(of_cell).collect(),
             unproven: self.unproven_terms(pair, is_proven),
         })
     }

@@ -12,6 +12,7 @@
 
 use std::convert::Infallible;
 use std::ops::Range;
+use std::sync::OnceLock;
 use std::sync::atomic::{AtomicU64, Ordering};
 
 use nalgebra::{SMatrix, SVector};
@@ -28,26 +29,19 @@ use crate::real::{Point, Real, point_f64};
 /// determined up to a constant.
 const ZERO_PIVOT: f64 = 1e-11;
 
-/// What is known of a cell before its patches are.
-#[derive(Clone, Copy, Default)]
-struct CellData {
-    volume: f64,
-    /// The integrals of `alpha grad u . n` over its facets.
-    normal: [f64; 4],
-    /// What the flux of each of its vertices balances, without obstacles.
-    loads: [f64; 4],
-}
-
 /// What the patches read.
 struct Patches<'s, 'a, T: Real, const D: usize> {
     space: &'s Space<'a, T, D>,
     neighbours: Neighbours,
-    cells: Vec<CellData>,
+    /// By cell its volume, the integrals of `alpha grad u . n` over its facets, and what the flux of each of its
+    /// vertices balances, without obstacles.
+    cells: Vec<f64>,
     /// The multiplier of each vertex that belongs to obstacles.
     multipliers: Vec<f64>,
-    /// The cells around each vertex with its number there, and where those of each vertex start.
-    corners: Vec<(u32, u8)>,
-    starts: Vec<usize>,
+    /// Of each vertex one of its cells, and how many there are.
+    one_cell: Vec<(u32, u32)>,
+    /// The cells around each vertex with its number there, and where those of each vertex start; found once needed.
+    corners: OnceLock<(Vec<(u32, u8)>, Vec<usize>)>,
     /// By cell and vertex the fluxes through the facets there, as bits: each is written once, by the task of
     /// the vertex.
     parts: Vec<AtomicU64>,
@@ -70,7 +64,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         let mut flux = in_large_pages(vec![0.0; self.mesh.n_cells() * (D + 1)]);
         let fill = |cells: Range<usize>, flux: &mut [f64]| {
             for (cell, flux) in cells.zip(flux.chunks_exact_mut(D + 1)) {
-                flux.copy_from_slice(&patches.cells[cell].normal[..=D]);
+                flux.copy_from_slice(patches.normals(cell));
                 for own in 0..=D as u8 {
                     for (k, local) in around::<D>(own).enumerate() {
                         let part = &patches.parts[part_of::<D>((cell, own), k)];
@@ -92,40 +86,53 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
     ) -> Result<Patches<'_, '_, T, D>, NoBound> {
         let load = self.load_by_cell()?;
         let n_cells = self.mesh.n_cells();
-        let mut data = in_large_pages(vec![CellData::default(); n_cells]);
-        let fill = |cells: Range<usize>, out: &mut [CellData]| {
-            for (cell, data) in cells.zip(out) {
+        let stride = numbers_of_cell(D);
+        let mut data = in_large_pages(vec![0.0; n_cells * stride]);
+        let fill = |cells: Range<usize>, out: &mut [f64]| {
+            for (cell, data) in cells.zip(out.chunks_exact_mut(stride)) {
                 let metric = self.metric(cell);
                 let values = self.local_values(cell, u);
                 let alpha = self.alpha(cell).to_f64();
                 let residual = self.cell_residual(cell, &metric, u, &load);
-                data.volume = metric.volume.to_f64();
+                data[0] = metric.volume.to_f64();
                 for i in 0..=D {
                     let product =
                         |j: usize| metric.products[i][j].to_f64() * (values[j] - values[0]);
                     let stiffness = alpha * (1..=D).map(product).sum::<f64>();
                     // |F| n = -D |K| grad lambda
-                    data.normal[i] = -(D as f64) * stiffness;
-                    data.loads[i] = residual[i] - stiffness;
+                    data[1 + i] = -(D as f64) * stiffness;
+                    data[D + 2 + i] = residual[i] - stiffness;
                 }
             }
             Ok::<(), Infallible>(())
         };
-        let Ok(()) = cells::for_each(n_cells, &|c| c, &mut data, &fill);
+        let Ok(()) = cells::for_each(n_cells, &|c| c * stride, &mut data, &fill);
         let mut multipliers: Vec<f64> = residual.iter().map(|r| -r).collect();
         for (cell, local) in self.facets_of(BoundaryPart::Dirichlet) {
             self.mesh.facet_vertices(cell, local).for_each(|v| multipliers[v as usize] = 0.0);
         }
         for force in forces {
-            data[force.cell].loads[force.node] -= force.value;
+            data[force.cell * stride + D + 2 + force.node] -= force.value;
             multipliers[self.dofs.of(force.cell, force.node)] -= force.value;
         }
-        let (corners, starts) = self.corners();
+        let mut one_cell = vec![(0, 0); self.mesh.vertices().len()];
+        for (k, &v) in self.mesh.cells().iter().enumerate() {
+            let (cell, count) = &mut one_cell[v as usize];
+            *cell = (k / (D + 1)) as u32;
+            *count += 1;
+        }
         let neighbours = Neighbours::new(self.mesh);
         let mut parts = in_large_pages(Vec::with_capacity(n_cells * (D + 1) * D));
         parts.resize_with(n_cells * (D + 1) * D, AtomicU64::default);
-        let (space, cells) = (self, data);
-        Ok(Patches { space, neighbours, cells, multipliers, corners, starts, parts })
+        Ok(Patches {
+            space: self,
+            neighbours,
+            cells: data,
+            multipliers,
+            one_cell,
+            corners: OnceLock::new(),
+            parts,
+        })
     }
 
     /// The cells around each vertex with its number there, and where those of each vertex start.
@@ -189,17 +196,31 @@ struct Patch {
 }
 
 impl<T: Real, const D: usize> Patches<'_, '_, T, D> {
+    fn volume(&self, cell: usize) -> f64 {
+        self.cells[cell * numbers_of_cell(D)]
+    }
+
+    fn normals(&self, cell: usize) -> &[f64] {
+        &self.cells[cell * numbers_of_cell(D) + 1..][..D + 1]
+    }
+
+    /// What the flux of a vertex of a cell balances there, with a multiplier per volume.
+    fn load(&self, cell: usize, own: u8, pressure: f64) -> f64 {
+        let own = self.cells[cell * numbers_of_cell(D) + D + 2 + usize::from(own)];
+        own - pressure * self.volume(cell)
+    }
+
     /// Sets the part of a vertex: for each cell around it the fluxes through the facets there.
     ///
     /// The fluxes of each cell are eliminated: the multipliers of the facets between cells remain.
     fn add_vertex(&self, vertex: usize, patch: &mut Patch) {
-        let corners = &self.corners[self.starts[vertex]..self.starts[vertex + 1]];
-        let volume = |cell: u32| self.cells[cell as usize].volume;
-        let total: f64 = corners.iter().map(|&(cell, _)| volume(cell)).sum();
-        let pressure = self.multipliers[vertex] / total;
-        if D == 2 && self.add_fan(corners, pressure, &mut patch.fan) {
+        if D == 2 && self.add_fan(vertex, &mut patch.fan) {
             return;
         }
+        let (corners, starts) = self.corners.get_or_init(|| self.space.corners());
+        let corners = &corners[starts[vertex]..starts[vertex + 1]];
+        let total: f64 = corners.iter().map(|&(cell, _)| self.volume(cell as usize)).sum();
+        let pressure = self.multipliers[vertex] / total;
         let Patch { cells, matrix, multipliers, sums, .. } = patch;
         cells.clear();
         multipliers.clear();
@@ -208,7 +229,7 @@ impl<T: Real, const D: usize> Patches<'_, '_, T, D> {
             for (slot, local) in facets.iter_mut().zip(around::<D>(own)) {
                 *slot = self.facet_of_patch((cell, local), k, corners, (cells, multipliers));
             }
-            let load = self.cells[cell as usize].loads[usize::from(own)] - pressure * volume(cell);
+            let load = self.load(cell as usize, own, pressure);
             cells.push(self.cell_of_patch((cell, own), facets, load));
         }
         let n = multipliers.len();
@@ -265,16 +286,14 @@ impl<T: Real, const D: usize> Patches<'_, '_, T, D> {
     /// least: with `a` and `b` opposite both facets, `m` the barycentre and `V` the volume of a cell the
     /// derivative of its square by `x` is that of `|(p + x) (m - a) + (q - x) (m - b)|^2 / (4 alpha V)`, since the
     /// flux `1, -1` is the constant `(b - a) / (2 V)`.
-    fn add_fan(&self, corners: &[(u32, u8)], pressure: f64, fan: &mut Vec<CellOfFan>) -> bool {
-        if !self.find_fan(corners, fan) {
+    fn add_fan(&self, vertex: usize, fan: &mut Vec<CellOfFan>) -> bool {
+        if !self.find_fan(vertex, fan) {
             return false;
         }
         let mesh = self.space.mesh;
-        let normal = |(cell, local): (usize, u8)| self.cells[cell].normal[usize::from(local)];
-        let load = |of: &CellOfFan| {
-            let CellData { volume, loads, .. } = &self.cells[of.cell];
-            loads[usize::from(of.own)] - pressure * volume
-        };
+        let total: f64 = fan.iter().map(|of| self.volume(of.cell)).sum();
+        let mut pressure = self.multipliers[vertex] / total;
+        let normal = |(cell, local): (usize, u8)| self.normals(cell)[usize::from(local)];
         // what the fluxes of a cell through a facet and of the next one through it sum to
         let sum = |of: &CellOfFan, next: &CellOfFan| {
             -0.5 * (normal((of.cell, of.sides[1])) + normal((next.cell, next.sides[0])))
@@ -288,14 +307,14 @@ impl<T: Real, const D: usize> Patches<'_, '_, T, D> {
         };
         let (mut first, mut force, mut stiffness) = (0.0, 0.0, 0.0);
         for (k, of) in fan.iter().enumerate() {
-            let second = load(of) - first;
+            let second = self.load(of.cell, of.own, pressure) - first;
             let point = |local: u8| {
                 point_f64(&mesh.vertices()[mesh.cell(of.cell)[usize::from(local)] as usize])
             };
             let (own, a, b) = (point(of.own), point(of.sides[0]), point(of.sides[1]));
             let (along, middle) = (b - a, (own + a + b) / 3.0);
             let alpha = self.space.alpha(of.cell).to_f64();
-            let weight = 1.0 / (alpha * self.cells[of.cell].volume);
+            let weight = 1.0 / (alpha * self.volume(of.cell));
             stiffness += weight * along.norm_squared();
             force -= weight * along.dot(&((middle - a) * first + (middle - b) * second));
             if let Some(next) = fan.get(k + 1) {
@@ -303,10 +322,22 @@ impl<T: Real, const D: usize> Patches<'_, '_, T, D> {
             }
         }
         let Some((begin, end)) = fan.first().zip(fan.last()) else { return true };
-        let of_end = || given(end, 1).map(|flux| load(end) - first - flux);
-        let mut first = given(begin, 0).or_else(of_end).unwrap_or(force / stiffness);
+        let second = self.load(end.cell, end.own, pressure) - first;
+        let is_closed = matches!(
+            self.neighbours.across(begin.cell, usize::from(begin.sides[0])),
+            Neighbour::Cell { .. }
+        );
+        // what the equation of the vertex leaves, rounding, is divided like the multiplier
+        let (mut first, left) = match (given(begin, 0), given(end, 1)) {
+            (Some(flux), Some(other)) => (flux, second - flux - other),
+            (Some(flux), None) => (flux, 0.0),
+            (None, Some(other)) => (second - other, 0.0),
+            (None, None) if is_closed => (force / stiffness, second - sum(end, begin)),
+            (None, None) => (force / stiffness, 0.0),
+        };
+        pressure += left / total;
         for (k, of) in fan.iter().enumerate() {
-            let second = load(of) - first;
+            let second = self.load(of.cell, of.own, pressure) - first;
             let is_ascending = of.sides[0] < of.sides[1];
             let corner = (of.cell, of.own);
             self.set(corner, usize::from(!is_ascending), first);
@@ -320,28 +351,31 @@ impl<T: Real, const D: usize> Patches<'_, '_, T, D> {
 
     /// The cells around a vertex of the plane, each with the next one behind its second facet: all of them, or the
     /// result is false. On the boundary the fan begins and ends with boundary facets.
-    fn find_fan(&self, corners: &[(u32, u8)], fan: &mut Vec<CellOfFan>) -> bool {
-        let Some(&(cell, own)) = corners.first() else { return false };
+    fn find_fan(&self, vertex: usize, fan: &mut Vec<CellOfFan>) -> bool {
         let mesh = self.space.mesh;
-        let vertex = mesh.cell(cell as usize)[usize::from(own)];
-        let mut begin =
-            CellOfFan { cell: cell as usize, own, sides: [(own + 1) % 3, (own + 2) % 3] };
+        let number_in = |cell: usize| {
+            mesh.cell(cell).iter().position(|&v| v as usize == vertex).unwrap_or(0) as u8
+        };
+        let (cell, count) = self.one_cell[vertex];
+        let own = number_in(cell as usize);
+        let sides = [(own + 1) % 3, (own + 2) % 3];
+        let mut begin = CellOfFan { cell: cell as usize, own, sides };
         for _ in 0..2 {
             let mut last = begin;
             fan.clear();
             fan.push(last);
             while let Neighbour::Cell { cell, local } =
                 self.neighbours.across(last.cell, usize::from(last.sides[1]))
-                && fan.len() < corners.len()
+                && fan.len() < count as usize
                 && cell as usize != begin.cell
             {
                 let cell = cell as usize;
-                let own = mesh.cell(cell).iter().position(|&v| v == vertex).unwrap_or(0) as u8;
+                let own = number_in(cell);
                 // the numbers of the vertex and of both facets sum to three
                 last = CellOfFan { cell, own, sides: [local, 3 - own - local] };
                 fan.push(last);
             }
-            if fan.len() == corners.len() {
+            if fan.len() == count as usize {
                 return true;
             }
             begin = CellOfFan { sides: [last.sides[1], last.sides[0]], ..last };
@@ -358,7 +392,7 @@ impl<T: Real, const D: usize> Patches<'_, '_, T, D> {
         corners: &[(u32, u8)],
         (cells, multipliers): (&[CellOfPatch], &mut Vec<f64>),
     ) -> FacetOfPatch {
-        let normal = self.cells[cell as usize].normal[local];
+        let normal = self.normals(cell as usize)[local];
         match self.neighbours.across(cell as usize, local) {
             Neighbour::Cell { cell: other, local: there } => {
                 let there = usize::from(there);
@@ -369,7 +403,7 @@ impl<T: Real, const D: usize> Patches<'_, '_, T, D> {
                         slot.map_or(FacetOfPatch::Free, |slot| cells[l].facets[slot])
                     }
                     None => {
-                        let jump = normal + self.cells[other as usize].normal[there];
+                        let jump = normal + self.normals(other as usize)[there];
                         multipliers.push(jump / D as f64);
                         FacetOfPatch::Interior(multipliers.len() - 1)
                     }
@@ -390,7 +424,7 @@ impl<T: Real, const D: usize> Patches<'_, '_, T, D> {
         let mesh = self.space.mesh;
         let products = facet_products::<D>(
             mesh.cell(cell as usize).iter().map(|&v| point_f64(&mesh.vertices()[v as usize])),
-            self.cells[cell as usize].volume * self.space.alpha(cell as usize).to_f64(),
+            self.volume(cell as usize) * self.space.alpha(cell as usize).to_f64(),
         );
         let mut locals = [0; 3];
         locals.iter_mut().zip(around::<D>(own)).for_each(|(to, local)| *to = local);
@@ -426,6 +460,11 @@ impl<T: Real, const D: usize> Patches<'_, '_, T, D> {
         let known = SVector::from_fn(|a, _| fixed[a].unwrap_or(0.0));
         CellOfPatch { facets, slopes, fluxes: slopes * force + unit * rest + known }
     }
+}
+
+/// How many numbers are known of a cell before its patches are.
+const fn numbers_of_cell(dimension: usize) -> usize {
+    2 * dimension + 3
 }
 
 /// Where the flux of a vertex of a cell through its facet `k` there is among those of all.

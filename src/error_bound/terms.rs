@@ -3,7 +3,7 @@
 use std::f64::consts::PI;
 
 use super::{NoBound, PrimalDualPair};
-use crate::assemble::cut_simplices::CutRule;
+use crate::assemble::cut_simplices::{CutRule, in_space};
 use crate::assemble::space::tables::{BasisAt, CellTable};
 use crate::assemble::space::{Place, Space};
 use crate::measure::Admissible;
@@ -258,8 +258,12 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         if function.bounds.iter().all(Option::is_none) {
             return Some(gaps);
         }
+        let mut corners = [Point::zeros(); 4];
+        for (corner, &v) in corners.iter_mut().zip(self.mesh.cell(cell)) {
+            *corner = point_f64(&self.mesh.vertices()[v as usize]);
+        }
         for (point, weight) in table.points.iter().zip(&table.weights) {
-            let x = self.cell_point(point, cell);
+            let x = in_space(point, &corners);
             let value: f64 = function.values.iter().zip(point).map(|(v, b)| v * b).sum();
             for (k, sign) in [1.0, -1.0].into_iter().enumerate() {
                 let gap = function.bounds[k].map_or(0.0, |bound| sign * (value - bound.at(&x)));

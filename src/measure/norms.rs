@@ -107,8 +107,9 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         let degree = form.moments(self.basis_degree);
         let table = self.facet_table(degree);
         let moments = FacetMoments::new(D, degree, &self.facet_rule);
+        let n = self.per_cell();
         let value = |basis: &BasisAt<T>, local: &[f64; MAX_BASIS]| -> f64 {
-            local.iter().zip(&basis.values).map(|(c, v)| c * v.to_f64()).sum()
+            local[..n].iter().zip(&basis.values).map(|(c, v)| c * v.to_f64()).sum()
         };
         let terms_of = |cell: usize, terms: &mut Vec<f64>| -> Result<(), Error> {
             let mine = self.local_values(cell, u);
