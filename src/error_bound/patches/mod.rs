@@ -5,23 +5,28 @@
 //! integral `int c u phi - int f phi - lambda |K| / |patch|` over the boundary of the cell, on each facet at
 //! the vertex jumps that cancel `1/D` of those of `alpha grad u . n`, and no flux through the facets
 //! opposite the vertex. The equation of the vertex is the condition of solvability. In the plane the cells
-//! around the vertex form a fan, along which balance and jumps determine all fluxes by the first one: see `Fan`.
+//! around the vertex form a fan, along which balance and jumps determine all fluxes by the first one: see `fan`.
 //!
 //! Source: P. Destuynder, B. Métivet, Math. Comp. 68 (1999), 1379-1396; D. Braess, J. Schöberl, Math.
 //! Comp. 77 (2008), 651-672.
 
+mod data;
+mod fan;
+
 use std::convert::Infallible;
 use std::ops::Range;
-use std::sync::OnceLock;
-use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::atomic::Ordering;
 
+pub(super) use data::around;
+use data::{Patches, part_of};
+use fan::CellOfFan;
 use nalgebra::{SMatrix, SVector};
 
 use super::NoBound;
 use super::contact::NodeForce;
 use crate::assemble::space::Space;
 use crate::memory::in_large_pages;
-use crate::mesh::{BoundaryPart, Neighbour, Neighbours};
+use crate::mesh::{BoundaryPart, Neighbour};
 use crate::parallel::cells;
 use crate::real::{Point, Real, point_f64};
 
@@ -29,28 +34,10 @@ use crate::real::{Point, Real, point_f64};
 /// determined up to a constant.
 const ZERO_PIVOT: f64 = 1e-11;
 
-/// What the patches read.
-struct Patches<'s, 'a, T: Real, const D: usize> {
-    space: &'s Space<'a, T, D>,
-    neighbours: Neighbours,
-    /// By cell its volume, the integrals of `alpha grad u . n` over its facets, and what the flux of each of its
-    /// vertices balances, without obstacles.
-    cells: Vec<f64>,
-    /// The multiplier of each vertex that belongs to obstacles.
-    multipliers: Vec<f64>,
-    /// Of each vertex one of its cells, and how many there are.
-    one_cell: Vec<(u32, u32)>,
-    /// The cells around each vertex with its number there, and where those of each vertex start; found once needed.
-    corners: OnceLock<(Vec<(u32, u8)>, Vec<usize>)>,
-    /// By cell and vertex the fluxes through the facets there, as bits: each is written once, by the task of
-    /// the vertex.
-    parts: Vec<AtomicU64>,
-}
-
 impl<T: Real, const D: usize> Space<'_, T, D> {
     /// The fluxes of a conforming linear function, without those of Neumann data and contact, which are
     /// balanced all the same.
-    pub(super) fn patch_fluxes(
+    pub(in crate::error_bound) fn patch_fluxes(
         &self,
         u: &[T],
         residual: &[f64],
@@ -77,78 +64,6 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         let Ok(()) = cells::for_each(self.mesh.n_cells(), &|c| c * (D + 1), &mut flux, &fill);
         Ok(flux)
     }
-
-    fn patches(
-        &self,
-        u: &[T],
-        residual: &[f64],
-        forces: &[NodeForce],
-    ) -> Result<Patches<'_, '_, T, D>, NoBound> {
-        let load = self.load_by_cell()?;
-        let n_cells = self.mesh.n_cells();
-        let stride = numbers_of_cell(D);
-        let mut data = in_large_pages(vec![0.0; n_cells * stride]);
-        let fill = |cells: Range<usize>, out: &mut [f64]| {
-            for (cell, data) in cells.zip(out.chunks_exact_mut(stride)) {
-                let metric = self.metric(cell);
-                let values = self.local_values(cell, u);
-                let alpha = self.alpha(cell).to_f64();
-                let residual = self.cell_residual(cell, &metric, u, &load);
-                data[0] = metric.volume.to_f64();
-                for i in 0..=D {
-                    let product =
-                        |j: usize| metric.products[i][j].to_f64() * (values[j] - values[0]);
-                    let stiffness = alpha * (1..=D).map(product).sum::<f64>();
-                    // |F| n = -D |K| grad lambda
-                    data[1 + i] = -(D as f64) * stiffness;
-                    data[D + 2 + i] = residual[i] - stiffness;
-                }
-            }
-            Ok::<(), Infallible>(())
-        };
-        let Ok(()) = cells::for_each(n_cells, &|c| c * stride, &mut data, &fill);
-        let mut multipliers: Vec<f64> = residual.iter().map(|r| -r).collect();
-        for (cell, local) in self.facets_of(BoundaryPart::Dirichlet) {
-            self.mesh.facet_vertices(cell, local).for_each(|v| multipliers[v as usize] = 0.0);
-        }
-        for force in forces {
-            data[force.cell * stride + D + 2 + force.node] -= force.value;
-            multipliers[self.dofs.of(force.cell, force.node)] -= force.value;
-        }
-        let mut one_cell = vec![(0, 0); self.mesh.vertices().len()];
-        for (k, &v) in self.mesh.cells().iter().enumerate() {
-            let (cell, count) = &mut one_cell[v as usize];
-            *cell = (k / (D + 1)) as u32;
-            *count += 1;
-        }
-        let neighbours = Neighbours::new(self.mesh);
-        let mut parts = in_large_pages(Vec::with_capacity(n_cells * (D + 1) * D));
-        parts.resize_with(n_cells * (D + 1) * D, AtomicU64::default);
-        Ok(Patches {
-            space: self,
-            neighbours,
-            cells: data,
-            multipliers,
-            one_cell,
-            corners: OnceLock::new(),
-            parts,
-        })
-    }
-
-    /// The cells around each vertex with its number there, and where those of each vertex start.
-    pub(super) fn corners(&self) -> (Vec<(u32, u8)>, Vec<usize>) {
-        let n_vertices = self.mesh.vertices().len();
-        let mut starts = vec![0; n_vertices + 1];
-        self.mesh.cells().iter().for_each(|&v| starts[v as usize + 1] += 1);
-        (0..n_vertices).for_each(|v| starts[v + 1] += starts[v]);
-        let mut next = starts.clone();
-        let mut corners = vec![(0, 0); self.mesh.cells().len()];
-        for (k, &v) in self.mesh.cells().iter().enumerate() {
-            corners[next[v as usize]] = ((k / (D + 1)) as u32, (k % (D + 1)) as u8);
-            next[v as usize] += 1;
-        }
-        (corners, starts)
-    }
 }
 
 /// What is known of the flux through a facet of a cell at the vertex of a patch.
@@ -172,16 +87,6 @@ struct CellOfPatch {
     fluxes: SVector<f64, 3>,
 }
 
-/// A cell of a fan, between two facets at its vertex.
-#[derive(Clone, Copy)]
-struct CellOfFan {
-    cell: usize,
-    /// The number of the vertex in the cell.
-    own: u8,
-    /// The numbers of the facets on both sides.
-    sides: [u8; 2],
-}
-
 /// The arrays of one patch.
 #[derive(Default)]
 struct Patch {
@@ -196,20 +101,6 @@ struct Patch {
 }
 
 impl<T: Real, const D: usize> Patches<'_, '_, T, D> {
-    fn volume(&self, cell: usize) -> f64 {
-        self.cells[cell * numbers_of_cell(D)]
-    }
-
-    fn normals(&self, cell: usize) -> &[f64] {
-        &self.cells[cell * numbers_of_cell(D) + 1..][..D + 1]
-    }
-
-    /// What the flux of a vertex of a cell balances there, with a multiplier per volume.
-    fn load(&self, cell: usize, own: u8, pressure: f64) -> f64 {
-        let own = self.cells[cell * numbers_of_cell(D) + D + 2 + usize::from(own)];
-        own - pressure * self.volume(cell)
-    }
-
     /// Sets the part of a vertex: for each cell around it the fluxes through the facets there.
     ///
     /// The fluxes of each cell are eliminated: the multipliers of the facets between cells remain.
@@ -272,115 +163,6 @@ impl<T: Real, const D: usize> Patches<'_, '_, T, D> {
                 self.set((cell as usize, own), k, flux);
             }
         }
-    }
-
-    fn set(&self, corner: (usize, u8), k: usize, flux: f64) {
-        self.parts[part_of::<D>(corner, k)].store(flux.to_bits(), Ordering::Relaxed);
-    }
-
-    /// The same in the plane where the cells form one fan, else false.
-    ///
-    /// With the flux `x` out of the first cell through its first facet all others are `p + x` through first and
-    /// `q - x` through second facets: the two fluxes of a cell have its load as their sum, those of a facet
-    /// cancel the jump. On a fan that begins and ends with facets of unknown flux, or closes, `x` makes the norm
-    /// least: with `a` and `b` opposite both facets, `m` the barycentre and `V` the volume of a cell the
-    /// derivative of its square by `x` is that of `|(p + x) (m - a) + (q - x) (m - b)|^2 / (4 alpha V)`, since the
-    /// flux `1, -1` is the constant `(b - a) / (2 V)`.
-    fn add_fan(&self, vertex: usize, fan: &mut Vec<CellOfFan>) -> bool {
-        if !self.find_fan(vertex, fan) {
-            return false;
-        }
-        let mesh = self.space.mesh;
-        let total: f64 = fan.iter().map(|of| self.volume(of.cell)).sum();
-        let mut pressure = self.multipliers[vertex] / total;
-        let normal = |(cell, local): (usize, u8)| self.normals(cell)[usize::from(local)];
-        // what the fluxes of a cell through a facet and of the next one through it sum to
-        let sum = |of: &CellOfFan, next: &CellOfFan| {
-            -0.5 * (normal((of.cell, of.sides[1])) + normal((next.cell, next.sides[0])))
-        };
-        let given = |of: &CellOfFan, side: usize| {
-            let local = of.sides[side];
-            match self.neighbours.across(of.cell, usize::from(local)) {
-                Neighbour::Boundary(BoundaryPart::Dirichlet) | Neighbour::Cell { .. } => None,
-                Neighbour::Boundary(_) => Some(-0.5 * normal((of.cell, local))),
-            }
-        };
-        let (mut first, mut force, mut stiffness) = (0.0, 0.0, 0.0);
-        for (k, of) in fan.iter().enumerate() {
-            let second = self.load(of.cell, of.own, pressure) - first;
-            let point = |local: u8| {
-                point_f64(&mesh.vertices()[mesh.cell(of.cell)[usize::from(local)] as usize])
-            };
-            let (own, a, b) = (point(of.own), point(of.sides[0]), point(of.sides[1]));
-            let (along, middle) = (b - a, (own + a + b) / 3.0);
-            let alpha = self.space.alpha(of.cell).to_f64();
-            let weight = 1.0 / (alpha * self.volume(of.cell));
-            stiffness += weight * along.norm_squared();
-            force -= weight * along.dot(&((middle - a) * first + (middle - b) * second));
-            if let Some(next) = fan.get(k + 1) {
-                first = sum(of, next) - second;
-            }
-        }
-        let Some((begin, end)) = fan.first().zip(fan.last()) else { return true };
-        let second = self.load(end.cell, end.own, pressure) - first;
-        let is_closed = matches!(
-            self.neighbours.across(begin.cell, usize::from(begin.sides[0])),
-            Neighbour::Cell { .. }
-        );
-        // what the equation of the vertex leaves, rounding, is divided like the multiplier
-        let (mut first, left) = match (given(begin, 0), given(end, 1)) {
-            (Some(flux), Some(other)) => (flux, second - flux - other),
-            (Some(flux), None) => (flux, 0.0),
-            (None, Some(other)) => (second - other, 0.0),
-            (None, None) if is_closed => (force / stiffness, second - sum(end, begin)),
-            (None, None) => (force / stiffness, 0.0),
-        };
-        pressure += left / total;
-        for (k, of) in fan.iter().enumerate() {
-            let second = self.load(of.cell, of.own, pressure) - first;
-            let is_ascending = of.sides[0] < of.sides[1];
-            let corner = (of.cell, of.own);
-            self.set(corner, usize::from(!is_ascending), first);
-            self.set(corner, usize::from(is_ascending), second);
-            if let Some(next) = fan.get(k + 1) {
-                first = sum(of, next) - second;
-            }
-        }
-        true
-    }
-
-    /// The cells around a vertex of the plane, each with the next one behind its second facet: all of them, or the
-    /// result is false. On the boundary the fan begins and ends with boundary facets.
-    fn find_fan(&self, vertex: usize, fan: &mut Vec<CellOfFan>) -> bool {
-        let mesh = self.space.mesh;
-        let number_in = |cell: usize| {
-            mesh.cell(cell).iter().position(|&v| v as usize == vertex).unwrap_or(0) as u8
-        };
-        let (cell, count) = self.one_cell[vertex];
-        let own = number_in(cell as usize);
-        let sides = [(own + 1) % 3, (own + 2) % 3];
-        let mut begin = CellOfFan { cell: cell as usize, own, sides };
-        for _ in 0..2 {
-            let mut last = begin;
-            fan.clear();
-            fan.push(last);
-            while let Neighbour::Cell { cell, local } =
-                self.neighbours.across(last.cell, usize::from(last.sides[1]))
-                && fan.len() < count as usize
-                && cell as usize != begin.cell
-            {
-                let cell = cell as usize;
-                let own = number_in(cell);
-                // the numbers of the vertex and of both facets sum to three
-                last = CellOfFan { cell, own, sides: [local, 3 - own - local] };
-                fan.push(last);
-            }
-            if fan.len() == count as usize {
-                return true;
-            }
-            begin = CellOfFan { sides: [last.sides[1], last.sides[0]], ..last };
-        }
-        false
     }
 
     /// What is known of the flux through a facet of cell `k` of a patch. The first cell of an interior facet
@@ -462,21 +244,6 @@ impl<T: Real, const D: usize> Patches<'_, '_, T, D> {
     }
 }
 
-/// How many numbers are known of a cell before its patches are.
-const fn numbers_of_cell(dimension: usize) -> usize {
-    2 * dimension + 3
-}
-
-/// Where the flux of a vertex of a cell through its facet `k` there is among those of all.
-fn part_of<const D: usize>((cell, own): (usize, u8), k: usize) -> usize {
-    (cell * (D + 1) + usize::from(own)) * D + k
-}
-
-/// The facets of a cell at one of its vertices.
-pub(super) fn around<const D: usize>(vertex: u8) -> impl Iterator<Item = usize> {
-    (0..=D).filter(move |&local| local != usize::from(vertex))
-}
-
 /// The products in L2, over a coefficient, of the functions of Raviart and Thomas in a cell that have the
 /// flux one through a facet each: `(x - a_F) / (D |K|)`.
 fn facet_products<const D: usize>(
@@ -498,7 +265,7 @@ fn facet_products<const D: usize>(
 /// Solves with a symmetric matrix, given by the upper triangle of its rows, by elimination in place. It is
 /// positive semidefinite in the first `n_positive` unknowns; what remains for the others once these are
 /// eliminated is negative semidefinite. Where a pivot is zero but for rounding, the unknown is zero.
-pub(super) fn solve(a: &mut [f64], x: &mut [f64], n_positive: usize) {
+pub(in crate::error_bound) fn solve(a: &mut [f64], x: &mut [f64], n_positive: usize) {
     let n = x.len();
     for k in 0..n {
         if k == 0 || k == n_positive {
