@@ -12,6 +12,8 @@ pub(crate) mod metric;
 pub(crate) mod reaction_term;
 pub(crate) mod tables;
 
+use std::sync::OnceLock;
+
 use super::local::{CellSide, StiffnessTable};
 use super::{DataQuadrature, count};
 use crate::algebra::Support;
@@ -71,6 +73,8 @@ pub(crate) struct Space<'a, T: Real, const D: usize> {
     /// a contact facet.
     on_contact: Vec<Option<BoundBy>>,
     basis: fn(&[f64; 4]) -> BasisAt<f64>,
+    /// Integrals of the load by cell, once computed.
+    pub load_by_cell: OnceLock<Vec<T>>,
 }
 
 impl<'a, T: Real, const D: usize> Space<'a, T, D> {
@@ -134,6 +138,7 @@ impl<'a, T: Real, const D: usize> Space<'a, T, D> {
             broken: layout.is_broken(),
             pins,
             basis,
+            load_by_cell: OnceLock::new(),
         };
         space.check_constraint_set(offered)?;
         Ok(space)
