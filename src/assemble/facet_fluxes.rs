@@ -6,7 +6,6 @@ use super::Discretisation;
 use super::load::FacetMoments;
 use super::owned_rows::lifted::{LiftTable, Lifting, MAX_MOMENTS};
 use super::space::tables::FacetTable;
-use crate::element::MAX_BASIS;
 use crate::error::Error;
 use crate::facet::FacetKind;
 use crate::mesh::{BoundaryPart, Neighbour};
@@ -14,7 +13,7 @@ use crate::parallel::cells;
 use crate::real::Real;
 
 /// The sum of coefficients times values.
-fn product<T: Real>(coefficients: &[f64; MAX_BASIS], values: &[T]) -> f64 {
+fn product<T: Real>(coefficients: &[f64], values: &[T]) -> f64 {
     coefficients.iter().zip(values).map(|(c, v)| c * v.to_f64()).sum()
 }
 
@@ -133,10 +132,10 @@ impl<T: Real, const D: usize> Discretisation<'_, T, D> {
         };
         let jump = |k: usize| {
             let there = match &other {
-                Some((values, local)) => product(values, &table.on(*local)[k].values),
+                Some((values, local)) => product(&values[..n], &table.on(*local)[k].values),
                 None => datum[k],
             };
-            product(&own, &table.on(local)[k].values) - there
+            product(&own[..n], &table.on(local)[k].values) - there
         };
         let measure = metrics.at::<D>(cell).measures[local];
         let (fluxes, lifted) = out.split_at_mut(kept);
@@ -160,10 +159,11 @@ impl<T: Real, const D: usize> Discretisation<'_, T, D> {
                     }
                 };
                 let mut flux =
-                    product(&own, &derivatives((cell, local), across, weight.own_flux_weight));
+                    product(&own[..n], &derivatives((cell, local), across, weight.own_flux_weight));
                 if let (Some(there), Some((values, _))) = (across, &other) {
                     let here = Some((cell, local));
-                    flux -= product(values, &derivatives(there, here, weight.other_flux_weight));
+                    flux -=
+                        product(&values[..n], &derivatives(there, here, weight.other_flux_weight));
                 }
                 tested += coefficients.jump_flux.at(penalty).to_f64() * flux;
             }

@@ -2,6 +2,7 @@
 //!
 //! Data are integrated in `f64` and rounded once.
 
+use std::borrow::Cow;
 use std::ops::Range;
 
 use super::count;
@@ -40,8 +41,24 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
     }
 
     /// Source and Neumann data tested with each cell's basis functions; empty if neither they nor
-    /// weak Dirichlet data are there.
-    pub fn load_by_cell(&self) -> Result<Vec<T>, Error> {
+    /// weak Dirichlet data are there. Integrals of a source that varies are kept for cells that share unknowns:
+    /// load, energy and bound ask for them.
+    pub fn load_by_cell(&self) -> Result<Cow<'_, [T]>, Error> {
+        let varies = self.data.source.all().any(|f| f.constant().is_none());
+        if self.broken || !varies {
+            return self.integrate_load().map(Cow::Owned);
+        }
+        let load = match self.load_by_cell.get() {
+            Some(load) => load,
+            None => {
+                let load = self.integrate_load()?;
+                self.load_by_cell.get_or_init(|| load)
+            }
+        };
+        Ok(Cow::Borrowed(load))
+    }
+
+    fn integrate_load(&self) -> Result<Vec<T>, Error> {
         let flux = self.problem.has_neumann_data() && self.mesh.has_part(BoundaryPart::Neumann);
         let source = &self.data.source;
         if !source.is_given() && !self.has_weak_data() && !flux {
@@ -61,9 +78,9 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
     }
 
     /// Adds up what the cells of each unknown hold.
-    fn gather_load(&self, by_cell: Vec<T>) -> Vec<T> {
+    fn gather_load(&self, by_cell: Cow<'_, [T]>) -> Vec<T> {
         if self.broken && !by_cell.is_empty() {
-            return by_cell;
+            return by_cell.into_owned();
         }
         let n = self.per_cell();
         let mut load = vec![T::lit(0.0); self.dofs.size()];
@@ -229,9 +246,10 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         before(&by_cell);
         let mut data = Vec::new();
         if self.has_weak_data() {
-            data = self.add_dirichlet(form, &mut by_cell)?;
+            let by_cell = by_cell.to_mut();
+            data = self.add_dirichlet(form, by_cell)?;
             if form.is_lifted() {
-                self.add_lifted(form, metrics(), &data, &mut by_cell);
+                self.add_lifted(form, metrics(), &data, by_cell);
             }
         }
         Ok((self.gather_load(by_cell), data))

@@ -23,23 +23,23 @@ pub(super) struct Choice {
 }
 
 impl Choice {
-    /// The choice of all cells with this ratio or more; `volumes` are those of the cells, `constant` that of
-    /// [`dual_norm`].
+    /// The choice of all cells with this ratio or more, with the constant of [`dual_norm`].
     fn new<T: Real, const D: usize>(
         least_ratio: f64,
-        (terms, volumes): (&[CellTerms], &[f64]),
+        terms: &[Vec<CellTerms>],
         coarser: &[CoarserCells<'_, T, D>],
         constant: f64,
     ) -> Self {
         let (mut with_oscillation, mut obstacle) = (0.0, 0.0);
-        let of_solver = |(terms, &volume): (&CellTerms, &f64)| {
+        let of_solver = |terms: &CellTerms| {
+            let volume = terms.volume;
             let is_left = terms.ratio >= least_ratio;
             with_oscillation += terms.with_oscillation[usize::from(is_left)];
             obstacle += if is_left { 0.0 } else { terms.obstacle };
             let integral = if is_left { terms.unbalanced * volume } else { 0.0 };
             Unbalanced { integral, volume, least_coefficient: terms.least_coefficient }
         };
-        let unbalanced: Vec<Unbalanced> = terms.iter().zip(volumes).map(of_solver).collect();
+        let unbalanced: Vec<Unbalanced> = terms.iter().flatten().map(of_solver).collect();
         let is_balanced = unbalanced.iter().all(|cell| cell.integral == 0.0);
         let algebra = dual_norm(unbalanced, coarser, constant);
         let flux_square = (with_oscillation.sqrt() + algebra).powi(2);
@@ -50,13 +50,13 @@ impl Choice {
     /// solver in which no obstacle presses; solves on a sequence of meshes may be inexact, so that other choices are
     /// tried there.
     pub fn best<T: Real, const D: usize>(
-        cells: (&[CellTerms], &[f64]),
+        cells: &[Vec<CellTerms>],
         coarser: &[CoarserCells<'_, T, D>],
         constant: f64,
     ) -> Self {
         let of_ratio = |least_ratio| Self::new(least_ratio, cells, coarser, constant);
         let mut best = of_ratio(f64::INFINITY);
-        let away: f64 = cells.0.iter().filter(|t| t.ratio >= 1.0).map(|t| t.obstacle).sum();
+        let away: f64 = cells.iter().flatten().filter(|t| t.ratio >= 1.0).map(|t| t.obstacle).sum();
         if !coarser.is_empty() && away > NEGLIGIBLE * best.square() {
             for least_ratio in [100.0, 10.0, 1.0] {
                 let other = of_ratio(least_ratio);

@@ -9,11 +9,12 @@ use super::{NoBound, PrimalDualPair};
 use crate::assemble::Discretisation;
 use crate::assemble::cut_simplices::CutRule;
 use crate::assemble::space::Space;
+use crate::error::Error;
 use crate::instances::compiled;
-use crate::measure::error_degree;
+use crate::measure::Errors;
 use crate::mesh::BoundaryPart;
 use crate::parallel::cells;
-use crate::problem::{DataByGroup, DatumRef, Exact, Field};
+use crate::problem::{DataByGroup, DatumRef};
 use crate::quadrature::Rule;
 use crate::real::{Real, point_f64};
 
@@ -121,10 +122,37 @@ impl<T: Real, const D: usize> Discretisation<'_, T, D> {
     /// # Panics
     /// If the pair is not one of this mesh.
     pub fn error_of_pair(&self, pair: &PrimalDualPair) -> Option<f64> {
+        self.errors_and_error_of_pair(None, Some(pair)).ok()?.1
+    }
+
+    /// The errors of a vector of unknowns against the exact solution, and the energy norm of the difference of
+    /// the exact solution and the admissible function of a pair: both at the same points.
+    ///
+    /// # Errors
+    /// [`Error::DataNotFinite`].
+    pub(crate) fn errors_and_error_of_pair(
+        &self,
+        u: Option<&[T]>,
+        pair: Option<&PrimalDualPair>,
+    ) -> Result<(Errors, Option<f64>), Error> {
         compiled!(
-            T, D: fn(&Discretisation<'_, T, D>, &PrimalDualPair) -> Option<f64>
-                = |of, pair| of.problem().exact.as_ref().map(|e| of.space.error_of_pair(e, pair))
-        )(self, pair)
+            T, D: fn(
+                &Discretisation<'_, T, D>,
+                Option<&[T]>,
+                Option<&PrimalDualPair>,
+            ) -> Result<(Errors, Option<f64>), Error>
+                = |of, u, pair| {
+                    let Some(exact) = &of.problem().exact else { return Ok(Default::default()) };
+                    match pair {
+                        Some(pair) => of.errors_beside(
+                            exact,
+                            u,
+                            Some(&|cell| of.space.admissible_in(pair, cell)),
+                        ),
+                        None => of.errors_beside(exact, u, None),
+                    }
+                }
+        )(self, u, pair)
     }
 }
 
@@ -149,30 +177,32 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         let boundary = self.boundary_terms(pair)?;
         let friedrichs = self.mesh.friedrichs_constant();
         let rules = (&table, cut.as_ref());
+        // by chunk, as they come: copies of them would cost more than their sums
         let terms = cells::map(self.mesh.n_cells(), &|cells: Range<usize>| {
             let terms = |cell| self.cell_terms(pair, u, cell, rules, &boundary, friedrichs);
             cells.map(terms).collect::<Vec<_>>()
         });
-        let terms: Vec<CellTerms> = terms.into_iter().flatten().collect();
-        let sum = |of: fn(&CellTerms) -> f64| terms.iter().map(of).sum::<f64>();
-        let least = |of: fn(&CellTerms) -> f64| terms.iter().map(of).fold(f64::INFINITY, f64::min);
-        if least(|t| t.least_reaction) < 0.0 {
+        let (mut mismatch, mut distance, mut contact) = (0.0, 0.0, 0.0);
+        let [mut least_coefficient, mut least_reaction] = [f64::INFINITY; 2];
+        for t in terms.iter().flatten() {
+            mismatch += t.mismatch;
+            distance += t.distance;
+            contact += t.contact;
+            least_coefficient = t.least_coefficient.min(least_coefficient);
+            least_reaction = t.least_reaction.min(least_reaction);
+        }
+        if least_reaction < 0.0 {
             return Err(NoBound::NegativeReaction);
         }
         // |e| <= constant |||e||| by the inequality of Friedrichs or, where the reaction is positive, by that
-        let least_root = |of| least(of).max(0.0).sqrt();
-        let by_gradient = friedrichs.map(|c| c / least_root(|t| t.least_coefficient));
-        let by_value = least_root(|t| t.least_reaction).recip();
+        let by_gradient = friedrichs.map(|c| c / least_coefficient.max(0.0).sqrt());
+        let by_value = least_reaction.max(0.0).sqrt().recip();
         let constant = by_gradient.map_or(by_value, |c| c.min(by_value));
-        let contact = sum(|t| t.contact);
-        let volume = |cell| self.mesh.geometry(cell).volume.to_f64();
-        let volumes: Vec<f64> = (0..self.mesh.n_cells()).map(volume).collect();
-        let choice = Choice::best((&terms, &volumes), coarser, constant);
+        let choice = Choice::best(&terms, coarser, constant);
         let Choice { least_ratio, with_oscillation, obstacle, flux_square, is_balanced } = choice;
-        let mismatch = sum(|t| t.mismatch);
         let is_proven = constant.is_finite() || is_balanced;
         let square = flux_square + obstacle + contact;
-        if !square.is_finite() || least(|t| t.least_coefficient) <= 0.0 {
+        if !square.is_finite() || least_coefficient <= 0.0 {
             return Err(NoBound::NotFinite);
         }
         let share = |part: f64| if square > 0.0 { part / square } else { 0.0 };
@@ -182,7 +212,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         };
         Ok(ErrorBound {
             total: square.sqrt(),
-            distance: sum(|t| t.distance).sqrt(),
+            distance: distance.sqrt(),
             parts: BoundParts {
                 mismatch: share(mismatch),
                 obstacle: share(obstacle),
@@ -191,7 +221,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
                 oscillation: share((with_oscillation - mismatch).max(0.0)),
                 algebra: share((flux_square - with_oscillation).max(0.0)),
             },
-            cells: terms.iter().map(of_cell).collect(),
+            cells: terms.iter().flatten().map(of_cell).collect(),
             unproven: self.unproven_terms(pair, is_proven),
         })
     }
@@ -284,33 +314,5 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
                 },
             )
         })
-    }
-
-    /// The true error of the admissible function.
-    fn error_of_pair(&self, exact: &Exact<D>, pair: &PrimalDualPair) -> f64 {
-        let degree = error_degree(D);
-        let table = self.cell_table(Rule::new(D, degree));
-        let kinks: Vec<Option<Field<D>>> =
-            (0..self.mesh.regions().len()).map(|region| self.kinks_of(exact, region)).collect();
-        let rule = kinks.iter().any(Option::is_some).then(|| CutRule::new(D, degree));
-        let parts = cells::map(self.mesh.n_cells(), &|cells: Range<usize>| {
-            let mut sum = 0.0;
-            for cell in cells {
-                let volume = self.mesh.geometry(cell).volume.to_f64();
-                let admissible = self.admissible_in(pair, cell);
-                let level = kinks[self.mesh.region(cell)].as_ref();
-                let cut = rule.as_ref().zip(level);
-                self.visit_points(cell, &table, cut, &mut |point, x, weight, _| {
-                    let (value, gradient) = admissible.at(point, x);
-                    let alpha = self.in_region(&self.data.coefficient, cell, x).unwrap_or(1.0);
-                    let reaction = self.in_region(&self.data.reaction, cell, x).unwrap_or(0.0);
-                    let slope = ((exact.gradient)(x) - gradient).norm_squared();
-                    let difference = (exact.value)(x) - value;
-                    sum += weight * volume * (alpha * slope + reaction * difference * difference);
-                });
-            }
-            sum
-        });
-        parts.iter().sum::<f64>().sqrt()
     }
 }

@@ -66,12 +66,16 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
 
     /// At each node the mean of the values in the cells around, with the coefficient as weights.
     fn means(&self, u: &[T], nodes: &Nodes<'_>) -> Vec<f64> {
+        if self.is_conforming_linear() && nodes.n_edges == 0 {
+            return u.iter().map(|u| u.to_f64()).collect();
+        }
         let midpoints = if nodes.n_edges > 0 { edge_vertices(D).len() } else { 0 };
         let basis: Vec<BasisAt<f64>> = (0..=D)
             .map(Node::vertex)
             .chain((0..midpoints).map(Node::midpoint))
             .map(|node| self.basis_at(&node.centre(D)))
             .collect();
+        let n = self.per_cell();
         let mut sums = vec![(0.0, 0.0); nodes.n_vertices + nodes.n_edges];
         for cell in 0..self.mesh.n_cells() {
             let (alpha, local) = (self.alpha(cell).to_f64(), self.local_values(cell, u));
@@ -79,7 +83,8 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
             let all = vertices.chain(nodes.of_edges(D, cell).map(|(_, node)| node));
             for (node, basis) in all.zip(&basis) {
                 let (sum, weight) = &mut sums[node];
-                *sum += alpha * basis.value(&local);
+                let value: f64 = (0..n).map(|i| local[i] * basis.values[i]).sum();
+                *sum += alpha * value;
                 *weight += alpha;
             }
         }
@@ -91,20 +96,19 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         let mut bounds = vec![(f64::NEG_INFINITY, f64::INFINITY); values.len()];
         // obstacles without names are the same in all cells
         let by_region = self.data.lower.has_names() || self.data.upper.has_names();
-        let has_obstacle = self.problem.has_obstacle();
-        let mut is_known = vec![false; if has_obstacle { values.len() } else { 0 }];
-        for cell in 0..if has_obstacle { self.mesh.n_cells() } else { 0 } {
-            let region = self.mesh.region(cell);
-            let (lower, upper) = (self.data.lower.of(region), self.data.upper.of(region));
-            for &v in self.mesh.cell(cell) {
-                if std::mem::replace(&mut is_known[v as usize], !by_region) {
-                    continue;
-                }
-                let x = point_f64(&self.mesh.vertices()[v as usize]);
-                let (low, high) = &mut bounds[v as usize];
-                *low = lower.map_or(*low, |psi| psi.at(&x).max(*low));
-                *high = upper.map_or(*high, |psi| psi.at(&x).min(*high));
+        let mut add = |v: usize, region: usize| {
+            let x = point_f64(&self.mesh.vertices()[v]);
+            let (low, high) = &mut bounds[v];
+            *low = self.data.lower.of(region).map_or(*low, |psi| psi.at(&x).max(*low));
+            *high = self.data.upper.of(region).map_or(*high, |psi| psi.at(&x).min(*high));
+        };
+        if by_region {
+            for cell in 0..self.mesh.n_cells() {
+                let region = self.mesh.region(cell);
+                self.mesh.cell(cell).iter().for_each(|&v| add(v as usize, region));
             }
+        } else if self.problem.has_obstacle() {
+            (0..values.len()).for_each(|v| add(v, 0));
         }
         for ((cell, local), group) in self.grouped_facets_of(BoundaryPart::Contact) {
             let Some(gap) = self.data.gap.of(group) else { continue };

@@ -6,6 +6,7 @@ use crate::algebra::Inequality;
 use crate::assemble::Discretisation;
 use crate::assemble::local::zero_local;
 use crate::assemble::space::Space;
+use crate::assemble::space::metric::CellMetric;
 use crate::element::Entity;
 use crate::inequality::Solution;
 use crate::instances::compiled;
@@ -164,8 +165,13 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
 
     /// Stiffness and reaction of a cell at the values of a function, less its load: one number for each
     /// unknown of the cell.
-    pub(super) fn cell_residual(&self, cell: usize, u: &[T], load: &[T]) -> [f64; 4] {
-        let metric = self.metric(cell);
+    pub(super) fn cell_residual(
+        &self,
+        cell: usize,
+        metric: &CellMetric<T, D>,
+        u: &[T],
+        load: &[T],
+    ) -> [f64; 4] {
         let gradient = self.gradient_factor().map_or(1.0, Real::to_f64);
         let scale = self.alpha(cell).to_f64() * gradient * gradient;
         let values = self.local_values(cell, u);
@@ -191,7 +197,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         let n_cells = self.mesh.n_cells();
         let mut own = vec![0.0; n_cells * (D + 1)];
         for (cell, own) in own.chunks_exact_mut(D + 1).enumerate() {
-            let residual = self.cell_residual(cell, u, &load);
+            let residual = self.cell_residual(cell, &self.metric(cell), u, &load);
             for (i, node) in self.nodes.iter().enumerate() {
                 if let Entity::Facet(local) = node.entity() {
                     own[local] = residual[i];

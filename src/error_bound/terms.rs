@@ -3,19 +3,17 @@
 use std::f64::consts::PI;
 
 use super::{NoBound, PrimalDualPair};
-use crate::assemble::cut_simplices::CutRule;
+use crate::assemble::cut_simplices::{CutRule, in_space};
 use crate::assemble::space::tables::{BasisAt, CellTable};
 use crate::assemble::space::{Place, Space};
+use crate::measure::Admissible;
 use crate::mesh::{BoundaryPart, edge_vertices};
-use crate::problem::{DataByGroup, DatumRef, Field};
+use crate::problem::{DatumRef, Field};
 use crate::quadrature::facet_to_cell;
 use crate::real::{Point, Real, point_f64};
 
 /// A negative contact force below this share of the largest one is rounding.
 const FORCE_ROUNDING: f64 = 1e-8;
-
-/// The step of difference quotients of obstacles, as a share of the diameter of the cell.
-const STEP: f64 = 1e-5;
 
 /// Integrals over one cell.
 #[derive(Clone, Copy, Debug, Default)]
@@ -40,55 +38,8 @@ pub(super) struct CellTerms {
     pub least_coefficient: f64,
     /// The least value of the reaction.
     pub least_reaction: f64,
-}
-
-/// A function of a quadrature point of a cell: barycentric coordinates, coordinates in space, weight and values
-/// of the basis.
-pub(super) type Visit<'v, const D: usize> =
-    &'v mut dyn FnMut(&[f64; 4], &Point<f64, D>, f64, &BasisAt<f64>);
-
-/// The admissible function in a cell.
-pub(super) struct Admissible<'d, const D: usize> {
-    /// At the vertices.
-    values: [f64; 4],
-    /// The gradient of the linear interpolant.
-    gradient: Point<f64, D>,
-    /// For quadratics by edge four times what the value at the midpoint exceeds that of the interpolant by.
-    excess: Option<[f64; 6]>,
-    /// The gradients of the barycentric coordinates.
-    gradients: [Point<f64, D>; 4],
-    /// The obstacles, lower and upper one.
-    bounds: [Option<DatumRef<'d, D>>; 2],
-    /// The step of difference quotients.
-    step: f64,
-}
-
-impl<const D: usize> Admissible<'_, D> {
-    /// Value and gradient at a point, by barycentric coordinates and in space.
-    pub(super) fn at(&self, point: &[f64; 4], x: &Point<f64, D>) -> (f64, Point<f64, D>) {
-        let mut value = self.values.iter().zip(point).map(|(v, b)| v * b).sum();
-        let mut gradient = self.gradient;
-        if let Some(excess) = &self.excess {
-            for (&[a, b], excess) in edge_vertices(D).iter().zip(excess) {
-                value += excess * point[a] * point[b];
-                gradient += (self.gradients[b] * point[a] + self.gradients[a] * point[b]) * *excess;
-            }
-        }
-        for (bound, sign) in self.bounds.iter().zip([1.0, -1.0]) {
-            let Some(bound) = bound else { continue };
-            let at = bound.at(x);
-            if sign * (at - value) > 0.0 {
-                value = at;
-                gradient = Point::from_fn(|axis, _| {
-                    let (mut ahead, mut behind) = (*x, *x);
-                    ahead[axis] += self.step;
-                    behind[axis] -= self.step;
-                    (bound.at(&ahead) - bound.at(&behind)) / (2.0 * self.step)
-                });
-            }
-        }
-        (value, gradient)
-    }
+    /// The volume of the cell.
+    pub volume: f64,
 }
 
 /// The flux in a cell: `q = sum_j lambda_j (s_j x - o_j) / (D |K|)` with one term, without `lambda_j`, where
@@ -121,6 +72,20 @@ impl<const D: usize> CellFlux<D> {
             q += (x * self.sums[k] - self.origins[k]) * *share;
         }
         q * self.per_volume
+    }
+    /// The mean of the square of the norm of a constant less the flux with one term, by the corners of the cell.
+    fn mean_square_of_difference(
+        &self,
+        gradient: Point<f64, D>,
+        corners: impl Iterator<Item = Point<f64, D>> + Clone,
+    ) -> f64 {
+        let d = D as f64;
+        let middle = corners.clone().sum::<Point<f64, D>>() / (d + 1.0);
+        let squares: f64 = corners.map(|x| (x - middle).norm_squared()).sum();
+        let slope = self.sums[0] * self.per_volume;
+        let at_middle = (middle * self.sums[0] - self.origins[0]) * self.per_volume;
+        let of_slope = slope * slope * squares / ((d + 1.0) * (d + 2.0));
+        (gradient - at_middle).norm_squared() + of_slope
     }
     /// What the flux leaves of a load, by the means of the load less a constant times each factor of a
     /// term, and the square of its norm.
@@ -232,7 +197,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
             gradients[k] = point_f64(geometry.gradient(k));
             gradient += gradients[k] * (values[k] - values[0]);
         }
-        let step = STEP * self.mesh.cell_diameter(cell).to_f64();
+        let diameter = self.mesh.cell_diameter(cell).to_f64();
         let bounds = [self.data.lower.of(region), self.data.upper.of(region)];
         let excess = (pair.degree > 1).then(|| {
             let midpoints = &pair.function[self.mesh.vertices().len()..];
@@ -244,14 +209,13 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
             }
             excess
         });
-        Admissible { values, gradient, excess, gradients, bounds, step }
+        Admissible { values, gradient, excess, gradients, bounds, diameter }
     }
 
     /// The flux of a pair in a cell.
-    fn flux_in(&self, pair: &PrimalDualPair, cell: usize) -> CellFlux<D> {
+    fn flux_in(&self, pair: &PrimalDualPair, cell: usize, volume: f64) -> CellFlux<D> {
         let n = if pair.degree > 1 { D + 1 } else { 1 };
         let flux = &pair.flux[cell * (D + 1) * n..(cell + 1) * (D + 1) * n];
-        let volume = self.mesh.geometry(cell).volume.to_f64();
         let per_volume = 1.0 / (D as f64 * volume);
         let (mut sums, mut origins) = ([0.0; 4], [Point::<f64, D>::zeros(); 4]);
         for (&v, flux) in self.mesh.cell(cell).iter().zip(flux.chunks_exact(n)) {
@@ -269,13 +233,14 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         CellFlux { n, sums, origins, per_volume, divergence }
     }
 
-    /// Calls a function with the points of a rule on a cell, divided where a level has zeros.
-    pub(super) fn visit_points(
+    /// Calls a function with the points of a rule on a cell, divided where a level has zeros: with barycentric
+    /// coordinates, coordinates in space, weight and the basis.
+    fn visit_points(
         &self,
         cell: usize,
         table: &CellTable<f64>,
         cut: Option<(&CutRule, &Field<D>)>,
-        visit: Visit<'_, D>,
+        mut visit: impl FnMut(&[f64; 4], &Point<f64, D>, f64, &BasisAt<f64>),
     ) {
         let is_cut = cut.is_some_and(|(rule, level)| {
             rule.visit_if_cut(self.mesh, cell, level, &mut |point, x, weight| {
@@ -291,6 +256,36 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         }
     }
 
+    /// The means of the distances of a linear function from the obstacles at the points of a rule; none if it
+    /// leaves one of them at a point.
+    fn gaps_of_linear(
+        &self,
+        function: &Admissible<'_, D>,
+        cell: usize,
+        table: &CellTable<f64>,
+    ) -> Option<[f64; 2]> {
+        let mut gaps = [0.0; 2];
+        if function.bounds.iter().all(Option::is_none) {
+            return Some(gaps);
+        }
+        let mut corners = [Point::zeros(); 4];
+        for (corner, &v) in corners.iter_mut().zip(self.mesh.cell(cell)) {
+            *corner = point_f64(&self.mesh.vertices()[v as usize]);
+        }
+        for (point, weight) in table.points.iter().zip(&table.weights) {
+            let x = in_space(point, &corners);
+            let value: f64 = function.values.iter().zip(point).map(|(v, b)| v * b).sum();
+            for (k, sign) in [1.0, -1.0].into_iter().enumerate() {
+                let gap = function.bounds[k].map_or(0.0, |bound| sign * (value - bound.at(&x)));
+                if gap < 0.0 {
+                    return None;
+                }
+                gaps[k] += weight * gap;
+            }
+        }
+        Some(gaps)
+    }
+
     /// The terms of a cell.
     pub(super) fn cell_terms(
         &self,
@@ -303,9 +298,11 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
     ) -> CellTerms {
         let geometry = self.mesh.geometry(cell);
         let (volume, region) = (geometry.volume.to_f64(), self.mesh.region(cell));
-        let flux = self.flux_in(pair, cell);
+        let flux = self.flux_in(pair, cell, volume);
         let local = self.local_values(cell, u);
-        let datum = |data: &DataByGroup<'_, D>, x: &Point<f64, D>| self.in_region(data, cell, x);
+        let [coefficient, reaction, source] =
+            [&self.data.coefficient, &self.data.reaction, &self.data.source]
+                .map(|data| data.of(region));
         let admissible = self.admissible_in(pair, cell);
         let gradient_of = |basis: &BasisAt<f64>| {
             let mut gradient = Point::<f64, D>::zeros();
@@ -321,44 +318,68 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         let mut terms = CellTerms {
             least_coefficient: f64::INFINITY,
             least_reaction: f64::INFINITY,
+            volume,
             ..CellTerms::default()
         };
         let (mut mismatch, mut from_values) = (0.0, 0.0);
         // the balance is summed from its value at the first point, so that a constant has no oscillation
         let (mut first, mut means, mut square) = (None, [0.0; 4], 0.0);
         let mut gaps = [[0.0; 4]; 2];
-        let level = self.data.source.of(region).and_then(|f| f.level());
-        self.visit_points(cell, table, cut.zip(level), &mut |point, x, weight, basis| {
-            let weight = weight * volume;
-            let alpha = datum(&self.data.coefficient, x).unwrap_or(1.0);
-            let reaction = datum(&self.data.reaction, x).unwrap_or(0.0);
-            let (value, gradient) = admissible.at(point, x);
-            let q = flux.at(point, x);
-            mismatch += weight * (gradient * alpha - q).norm_squared() / alpha;
-            let discrete = basis.value(&local);
-            from_values += weight * reaction * (discrete - value).powi(2);
-            let slope = constant.unwrap_or_else(|| gradient_of(basis));
-            terms.distance += weight * alpha * (gradient - slope).norm_squared();
-            let load = datum(&self.data.source, x).unwrap_or(0.0) - reaction * discrete;
-            let load = load - *first.get_or_insert(load);
-            square += weight * load * load;
-            let differences = [0, 1].map(|k| {
-                let sign = [1.0, -1.0][k];
-                admissible.bounds[k].map_or(0.0, |bound| weight * sign * (value - bound.at(x)))
-            });
-            for (k, share) in flux.shares(point).iter().enumerate() {
-                means[k] += weight * load / volume * share;
-                gaps[0][k] += differences[0] * share;
-                gaps[1][k] += differences[1] * share;
-            }
-            terms.least_coefficient = terms.least_coefficient.min(alpha);
-            terms.least_reaction = terms.least_reaction.min(reaction);
-        });
+        let constant_of =
+            |datum: Option<DatumRef<'_, D>>, absent| datum.map_or(Some(absent), |d| d.constant());
+        let constants = constant_of(coefficient, 1.0)
+            .zip(constant_of(source, 0.0))
+            .filter(|_| pair.degree == 1 && reaction.is_none())
+            .and_then(|data| Some((data, self.gaps_of_linear(&admissible, cell, table)?)));
+        if let Some(((alpha, load), distances)) = constants {
+            // everything but the obstacles is a polynomial
+            let corners =
+                self.mesh.cell(cell).iter().map(|&v| point_f64(&self.mesh.vertices()[v as usize]));
+            let square = flux.mean_square_of_difference(admissible.gradient * alpha, corners);
+            mismatch = volume / alpha * square;
+            let slope = constant.unwrap_or_else(Point::zeros);
+            terms.distance = volume * alpha * (admissible.gradient - slope).norm_squared();
+            first = Some(load);
+            [gaps[0][0], gaps[1][0]] = distances.map(|mean| volume * mean);
+            (terms.least_coefficient, terms.least_reaction) = (alpha, 0.0);
+        } else {
+            self.visit_points(
+                cell,
+                table,
+                cut.zip(source.and_then(|f| f.level())),
+                |point, x, weight, basis| {
+                    let weight = weight * volume;
+                    let alpha = coefficient.map_or(1.0, |alpha| alpha.at(x));
+                    let reaction = reaction.map_or(0.0, |c| c.at(x));
+                    let (value, gradient) = admissible.at(point, x);
+                    let q = flux.at(point, x);
+                    mismatch += weight * (gradient * alpha - q).norm_squared() / alpha;
+                    let discrete = basis.value(&local);
+                    from_values += weight * reaction * (discrete - value).powi(2);
+                    let slope = constant.unwrap_or_else(|| gradient_of(basis));
+                    terms.distance += weight * alpha * (gradient - slope).norm_squared();
+                    let load = source.map_or(0.0, |f| f.at(x)) - reaction * discrete;
+                    let load = load - *first.get_or_insert(load);
+                    square += weight * load * load;
+                    let differences = [0, 1].map(|k| {
+                        let sign = [1.0, -1.0][k];
+                        admissible.bounds[k]
+                            .map_or(0.0, |bound| weight * sign * (value - bound.at(x)))
+                    });
+                    for (k, share) in flux.shares(point).iter().enumerate() {
+                        means[k] += weight * load / volume * share;
+                        gaps[0][k] += differences[0] * share;
+                        gaps[1][k] += differences[1] * share;
+                    }
+                    terms.least_coefficient = terms.least_coefficient.min(alpha);
+                    terms.least_reaction = terms.least_reaction.min(reaction);
+                },
+            );
+        }
         let [mismatch, from_values] = [mismatch, from_values].map(integral_of_square);
         terms.distance = integral_of_square(terms.distance) + from_values;
         terms.mismatch = mismatch + from_values;
-        let diameter = self.mesh.cell_diameter(cell).to_f64();
-        let by_gradient = diameter / (PI * terms.least_coefficient.sqrt());
+        let by_gradient = admissible.diameter / (PI * terms.least_coefficient.sqrt());
         let by_value = terms.least_reaction.max(0.0).sqrt().recip();
         let balance = flux.balance(volume, &means, square, first.unwrap_or(0.0));
         let bound = usize::from(balance.mean < 0.0);

@@ -1,5 +1,7 @@
 //! Measures of a discrete solution: error norms, multiplier, contact set, free boundary, fields.
 
+mod admissible;
+mod cell_errors;
 mod contact;
 mod energy;
 mod error_norm;
@@ -9,10 +11,10 @@ mod fields;
 mod norms;
 mod order;
 
+pub(crate) use admissible::Admissible;
 pub use contact::DiscreteContact;
 pub(crate) use contact::contact_difference;
 pub use error_norm::ErrorNorm;
 pub use errors::{ContactErrors, Errors};
 pub use fields::Fields;
-pub(crate) use norms::error_degree;
 pub use order::{FittedOrder, fit_order, observed_order};

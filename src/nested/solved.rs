@@ -391,12 +391,25 @@ impl<'a, T: Real, const D: usize> Solved<'a, T, D> {
     pub(crate) fn bound_seconds(&self) -> Option<f64> {
         self.bound.get().map(|(_, _, seconds)| *seconds)
     }
-    /// The figures of the bound; its effectivity where the exact solution is known and holds on the mesh.
-    pub(crate) fn bound_figures(&self, exact_holds: bool) -> BoundFigures {
+    /// The figures of the bound, with its effectivity if asked for and the exact solution is known.
+    pub(crate) fn bound_figures(&self, with_effectivity: bool) -> BoundFigures {
         let judged = self.pair_and_bound();
-        let known = judged.as_ref().ok().filter(|_| exact_holds);
+        let known = judged.as_ref().ok().filter(|_| with_effectivity);
         let error = known.and_then(|(pair, ..)| self.discretisation.error_of_pair(pair));
         BoundFigures::new(judged.map(|(_, bound, _)| bound), error)
+    }
+    /// The errors against the exact solution, and the figures of the bound with its effectivity.
+    ///
+    /// # Errors
+    /// [`Error::DataNotFinite`].
+    pub(crate) fn errors_and_bound_figures(&self) -> Result<(Errors, BoundFigures), Error> {
+        let judged = self.pair_and_bound();
+        let pair = judged.as_ref().ok().map(|(pair, ..)| pair);
+        let (errors, error) = match self.has_iterate {
+            true => self.discretisation.errors_and_error_of_pair(Some(self.values()), pair)?,
+            false => (Errors::default(), None),
+        };
+        Ok((errors, BoundFigures::new(judged.map(|(_, bound, _)| bound), error)))
     }
     /// Solution, obstacle, multiplier and contact set on cells; none without an iterate.
     pub fn fields(&self) -> Option<Fields> {

@@ -1,5 +1,6 @@
 //! A problem from a file.
 
+use std::any::Any;
 use std::path::PathBuf;
 
 use crate::error::Error;
@@ -20,6 +21,8 @@ pub enum Geometry<const D: usize> {
         path: PathBuf,
         /// Its contents.
         bytes: Vec<u8>,
+        /// The mesh, before the problem says what holds on its boundary.
+        read: Box<GmshMesh<f64, D>>,
     },
 }
 
@@ -41,8 +44,12 @@ impl<const D: usize> OwnProblem<D> {
     /// # Errors
     /// [`Error::Gmsh`] and [`Error::Mesh`], in a scalar in which the mesh degenerates, say.
     pub fn mesh<T: Real>(&self) -> Result<Option<GmshMesh<T, D>>, Error> {
-        let Geometry::File { bytes, .. } = &self.geometry else { return Ok(None) };
-        let mut read = gmsh::parse::<T, D>(bytes)?;
+        let Geometry::File { bytes, read, .. } = &self.geometry else { return Ok(None) };
+        let known: &dyn Any = &**read;
+        let mut read = match known.downcast_ref::<GmshMesh<T, D>>() {
+            Some(read) => read.clone(),
+            None => gmsh::parse::<T, D>(bytes)?,
+        };
         read.mesh = self.problem.bind_boundary(read.mesh)?;
         Ok(Some(read))
     }
@@ -50,7 +57,7 @@ impl<const D: usize> OwnProblem<D> {
     pub(super) fn sample_mesh(&self) -> Result<Mesh<f64, D>, Error> {
         match &self.geometry {
             Geometry::Box(domain) => Ok(Mesh::kuhn_box(domain, domain.counts(4))?),
-            Geometry::File { bytes, .. } => Ok(gmsh::parse::<f64, D>(bytes)?.mesh),
+            Geometry::File { read, .. } => Ok(read.mesh.clone()),
         }
     }
 }

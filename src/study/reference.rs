@@ -97,7 +97,7 @@ impl<T: Real, const D: usize> Measured<'_, '_, T, D> {
     /// Fills in energy, bound and errors, and why there are none.
     pub fn measure(&self, row: &mut Row, solved: &Solved<'_, T, D>) -> Result<(), Error> {
         row.energy = solved.energy()?;
-        row.bound = solved.bound_figures(self.failure.is_none());
+        row.bound = solved.bound_figures(self.failure.is_none() && self.reference.is_some());
         row.seconds.bound = solved.bound_seconds();
         match (self.reference, self.failure) {
             (Some(Ok((reference, name))), _) => {
@@ -110,7 +110,8 @@ impl<T: Real, const D: usize> Measured<'_, '_, T, D> {
                 "the scene's solution breaks the contact condition of this mesh at {at}: no errors"
             )),
             (None, None) if solved.discretisation().problem().exact.is_some() => {
-                (row.error, row.contact) = (solved.errors()?, solved.contact_errors()?);
+                (row.error, row.bound) = solved.errors_and_bound_figures()?;
+                row.contact = solved.contact_errors()?;
                 row.against = Some("exact".to_owned());
             }
             (None, None) => {}

@@ -12,6 +12,8 @@ pub(crate) mod metric;
 pub(crate) mod reaction_term;
 pub(crate) mod tables;
 
+use std::sync::OnceLock;
+
 use super::local::{CellSide, StiffnessTable};
 use super::{DataQuadrature, count};
 use crate::algebra::Support;
@@ -20,7 +22,7 @@ use crate::element::{Entity, MAX_BASIS, Node};
 use crate::error::Error;
 use crate::memory::in_large_pages;
 use crate::mesh::{BoundaryFacet, BoundaryPart, Mesh, Neighbours};
-use crate::problem::{DataByGroup, DataOnMesh, Problem};
+use crate::problem::{DataOnMesh, Problem};
 use crate::quadrature::{Quadrature, QuadratureError, Rule, facet_to_cell};
 use crate::real::{Point, Real, point_f64};
 pub(crate) use any_element::AnyElement;
@@ -71,6 +73,8 @@ pub(crate) struct Space<'a, T: Real, const D: usize> {
     /// a contact facet.
     on_contact: Vec<Option<BoundBy>>,
     basis: fn(&[f64; 4]) -> BasisAt<f64>,
+    /// Integrals of the load by cell, once computed.
+    pub load_by_cell: OnceLock<Vec<T>>,
 }
 
 impl<'a, T: Real, const D: usize> Space<'a, T, D> {
@@ -134,6 +138,7 @@ impl<'a, T: Real, const D: usize> Space<'a, T, D> {
             broken: layout.is_broken(),
             pins,
             basis,
+            load_by_cell: OnceLock::new(),
         };
         space.check_constraint_set(offered)?;
         Ok(space)
@@ -311,15 +316,6 @@ impl<'a, T: Real, const D: usize> Space<'a, T, D> {
         let of_part = move |f: &&BoundaryFacet| f.part == part;
         let facet = |f: &BoundaryFacet| ((f.cell as usize, f.local as usize), usize::from(f.group));
         self.mesh.boundary().iter().filter(of_part).map(facet)
-    }
-    /// The value of a datum in the region of a cell, if there is one.
-    pub fn in_region(
-        &self,
-        data: &DataByGroup<'a, D>,
-        cell: usize,
-        x: &Point<f64, D>,
-    ) -> Option<f64> {
-        data.of(self.mesh.region(cell)).map(|datum| datum.at(x))
     }
     /// The Dirichlet value at a point of a boundary group.
     pub fn dirichlet_at(&self, group: usize, x: &Point<f64, D>) -> f64 {

@@ -8,7 +8,7 @@ use super::error::{ProblemFileError, ProblemFileFault};
 use super::own_problem::{Geometry, OwnProblem};
 use super::table::{Formula, Place, Source, Value};
 use crate::error::Error;
-use crate::mesh::{BoundaryPart, BoxDomain, SIDES};
+use crate::mesh::{BoundaryPart, BoxDomain, SIDES, gmsh};
 use crate::problem::{Datum, Problem};
 use crate::real::Point;
 use check::{Allowed, Checks, Entry};
@@ -258,8 +258,9 @@ pub(super) fn problem<'t, const D: usize>(
         }
     }
     let geometry = match place {
-        Place::File { path, bytes, .. } => {
-            Geometry::File { path: path.clone(), bytes: bytes.clone() }
+        Place::File { path, bytes, offset, .. } => {
+            let read = gmsh::parse(bytes).map_err(|e| source.mesh_error(*offset, path, e))?;
+            Geometry::File { path: path.clone(), bytes: bytes.clone(), read: Box::new(read) }
         }
         Place::Box { corners } => {
             let [lower, upper] =
@@ -274,13 +275,9 @@ pub(super) fn problem<'t, const D: usize>(
         }
     };
     let own = OwnProblem { name, problem: builder.problem.clone(), geometry };
-    let failed = |error: Error| match (error, place) {
-        (Error::Gmsh(error), Place::File { path, offset, .. }) => {
-            source.mesh_error(*offset, path, error)
-        }
-        (error, _) => {
-            ProblemFileError::Problem { path: source.path.into(), source: Box::new(error) }
-        }
+    let failed = |error: Error| ProblemFileError::Problem {
+        path: source.path.into(),
+        source: Box::new(error),
     };
     let mesh = own.sample_mesh().map_err(failed)?;
     let Builder { problem, entries, parts, gradient_offset, .. } = &builder;

@@ -4,19 +4,29 @@
 //! With `phi` the hat function of the vertex, the part of the flux on its patch has in each cell the
 //! integral `int c u phi - int f phi - lambda |K| / |patch|` over the boundary of the cell, on each facet at
 //! the vertex jumps that cancel `1/D` of those of `alpha grad u . n`, and no flux through the facets
-//! opposite the vertex. The equation of the vertex is the condition of solvability.
+//! opposite the vertex. The equation of the vertex is the condition of solvability. In the plane the cells
+//! around the vertex form a fan, along which balance and jumps determine all fluxes by the first one: see `fan`.
 //!
 //! Source: P. Destuynder, B. Métivet, Math. Comp. 68 (1999), 1379-1396; D. Braess, J. Schöberl, Math.
 //! Comp. 77 (2008), 651-672.
 
-use std::ops::Range;
+mod data;
+mod fan;
 
+use std::convert::Infallible;
+use std::ops::Range;
+use std::sync::atomic::Ordering;
+
+pub(super) use data::around;
+use data::{Patches, part_of};
+use fan::CellOfFan;
 use nalgebra::{SMatrix, SVector};
 
 use super::NoBound;
 use super::contact::NodeForce;
 use crate::assemble::space::Space;
-use crate::mesh::{BoundaryPart, Neighbour, Neighbours};
+use crate::memory::in_large_pages;
+use crate::mesh::{BoundaryPart, Neighbour};
 use crate::parallel::cells;
 use crate::real::{Point, Real, point_f64};
 
@@ -24,100 +34,35 @@ use crate::real::{Point, Real, point_f64};
 /// determined up to a constant.
 const ZERO_PIVOT: f64 = 1e-11;
 
-/// What the patches read.
-struct Patches<'s, 'a, T: Real, const D: usize> {
-    space: &'s Space<'a, T, D>,
-    neighbours: Neighbours,
-    /// The integrals of `alpha grad u . n` over the facets of each cell.
-    normal: Vec<f64>,
-    /// What the flux of each vertex of each cell balances there, without obstacles.
-    loads: Vec<f64>,
-    /// The multiplier of each vertex that belongs to obstacles.
-    multipliers: Vec<f64>,
-    /// The cells around each vertex with its number there, and where those of each vertex start.
-    corners: Vec<(u32, u8)>,
-    starts: Vec<usize>,
-}
-
 impl<T: Real, const D: usize> Space<'_, T, D> {
     /// The fluxes of a conforming linear function, without those of Neumann data and contact, which are
     /// balanced all the same.
-    pub(super) fn patch_fluxes(
+    pub(in crate::error_bound) fn patch_fluxes(
         &self,
         u: &[T],
         residual: &[f64],
         forces: &[NodeForce],
     ) -> Result<Vec<f64>, NoBound> {
         let patches = self.patches(u, residual, forces)?;
-        let mut flux = patches.normal.clone();
-        // parts are added in the order of vertices, so the result does not depend on threads
-        let parts = cells::map(self.mesh.vertices().len(), &|vertices: Range<usize>| {
-            let mut part = Vec::new();
+        cells::map(self.mesh.vertices().len(), &|vertices: Range<usize>| {
             let mut patch = Patch::default();
-            vertices.for_each(|vertex| patches.add_vertex(vertex, &mut patch, &mut part));
-            part
+            vertices.for_each(|vertex| patches.add_vertex(vertex, &mut patch));
         });
-        let mut values = parts.into_iter().flatten();
-        for &(cell, own) in &patches.corners {
-            for (local, value) in around::<D>(own).zip(&mut values) {
-                flux[cell as usize * (D + 1) + local] += value;
-            }
-        }
-        Ok(flux)
-    }
-
-    fn patches(
-        &self,
-        u: &[T],
-        residual: &[f64],
-        forces: &[NodeForce],
-    ) -> Result<Patches<'_, '_, T, D>, NoBound> {
-        let load = self.load_by_cell()?;
-        let n_cells = self.mesh.n_cells();
-        let of_cells = cells::map(n_cells, &|cells: Range<usize>| {
-            let mut pairs = Vec::with_capacity(cells.len() * (D + 1));
-            for cell in cells {
-                let metric = self.metric(cell);
-                let values = self.local_values(cell, u);
-                let alpha = self.alpha(cell).to_f64();
-                let residual = self.cell_residual(cell, u, &load);
-                for i in 0..=D {
-                    let product =
-                        |j: usize| metric.products[i][j].to_f64() * (values[j] - values[0]);
-                    let stiffness = alpha * (1..=D).map(product).sum::<f64>();
-                    // |F| n = -D |K| grad lambda
-                    pairs.push((-(D as f64) * stiffness, residual[i] - stiffness));
+        let mut flux = in_large_pages(vec![0.0; self.mesh.n_cells() * (D + 1)]);
+        let fill = |cells: Range<usize>, flux: &mut [f64]| {
+            for (cell, flux) in cells.zip(flux.chunks_exact_mut(D + 1)) {
+                flux.copy_from_slice(patches.normals(cell));
+                for own in 0..=D as u8 {
+                    for (k, local) in around::<D>(own).enumerate() {
+                        let part = &patches.parts[part_of::<D>((cell, own), k)];
+                        flux[local] += f64::from_bits(part.load(Ordering::Relaxed));
+                    }
                 }
             }
-            pairs
-        });
-        let (normal, mut loads): (Vec<f64>, Vec<f64>) = of_cells.into_iter().flatten().unzip();
-        let mut multipliers: Vec<f64> = residual.iter().map(|r| -r).collect();
-        for (cell, local) in self.facets_of(BoundaryPart::Dirichlet) {
-            self.mesh.facet_vertices(cell, local).for_each(|v| multipliers[v as usize] = 0.0);
-        }
-        for force in forces {
-            loads[force.cell * (D + 1) + force.node] -= force.value;
-            multipliers[self.dofs.of(force.cell, force.node)] -= force.value;
-        }
-        let (corners, starts) = self.corners();
-        let neighbours = Neighbours::new(self.mesh);
-        Ok(Patches { space: self, neighbours, normal, loads, multipliers, corners, starts })
-    }
-
-    /// The cells around each vertex with its number there, and where those of each vertex start.
-    pub(super) fn corners(&self) -> (Vec<(u32, u8)>, Vec<usize>) {
-        let n_vertices = self.mesh.vertices().len();
-        let mut starts = vec![0; n_vertices + 1];
-        self.mesh.cells().iter().for_each(|&v| starts[v as usize + 1] += 1);
-        (0..n_vertices).for_each(|v| starts[v + 1] += starts[v]);
-        let mut next = starts.clone();
-        let mut corners = vec![(0, 0); self.mesh.cells().len()];
-        for (k, &v) in self.mesh.cells().iter().enumerate() {
-            corners[next[v as usize]] = ((k / (D + 1)) as u32, (k % (D + 1)) as u8);
-            next[v as usize] += 1;
-        }
-        (corners, starts)
+            Ok::<(), Infallible>(())
+        };
+        let Ok(()) = cells::for_each(self.mesh.n_cells(), &|c| c * (D + 1), &mut flux, &fill);
+        Ok(flux)
     }
 }
 
@@ -145,6 +90,7 @@ struct CellOfPatch {
 /// The arrays of one patch.
 #[derive(Default)]
 struct Patch {
+    fan: Vec<CellOfFan>,
     cells: Vec<CellOfPatch>,
     /// The upper triangle of the matrix of the multipliers by rows.
     matrix: Vec<f64>,
@@ -155,14 +101,18 @@ struct Patch {
 }
 
 impl<T: Real, const D: usize> Patches<'_, '_, T, D> {
-    /// Adds the part of a vertex to a list: for each cell around it the fluxes through the facets there.
+    /// Sets the part of a vertex: for each cell around it the fluxes through the facets there.
     ///
     /// The fluxes of each cell are eliminated: the multipliers of the facets between cells remain.
-    fn add_vertex(&self, vertex: usize, patch: &mut Patch, part: &mut Vec<f64>) {
-        let corners = &self.corners[self.starts[vertex]..self.starts[vertex + 1]];
-        let Patch { cells, matrix, multipliers, sums } = patch;
-        let volume = |cell: u32| self.space.metric(cell as usize).volume.to_f64();
-        let total: f64 = corners.iter().map(|&(cell, _)| volume(cell)).sum();
+    fn add_vertex(&self, vertex: usize, patch: &mut Patch) {
+        if D == 2 && self.add_fan(vertex, &mut patch.fan) {
+            return;
+        }
+        let (corners, starts) = self.corners.get_or_init(|| self.space.corners());
+        let corners = &corners[starts[vertex]..starts[vertex + 1]];
+        let total: f64 = corners.iter().map(|&(cell, _)| self.volume(cell as usize)).sum();
+        let pressure = self.multipliers[vertex] / total;
+        let Patch { cells, matrix, multipliers, sums, .. } = patch;
         cells.clear();
         multipliers.clear();
         for (k, &(cell, own)) in corners.iter().enumerate() {
@@ -170,10 +120,8 @@ impl<T: Real, const D: usize> Patches<'_, '_, T, D> {
             for (slot, local) in facets.iter_mut().zip(around::<D>(own)) {
                 *slot = self.facet_of_patch((cell, local), k, corners, (cells, multipliers));
             }
-            let volume = volume(cell);
-            let pressed = self.multipliers[vertex] * volume / total;
-            let load = self.loads[cell as usize * (D + 1) + usize::from(own)] - pressed;
-            cells.push(self.cell_of_patch((cell, own), volume, facets, load));
+            let load = self.load(cell as usize, own, pressure);
+            cells.push(self.cell_of_patch((cell, own), facets, load));
         }
         let n = multipliers.len();
         sums.clear();
@@ -196,14 +144,14 @@ impl<T: Real, const D: usize> Patches<'_, '_, T, D> {
         solve(matrix, multipliers, n);
         // the second cell of a facet takes the rest of the sum: sides agree to rounding
         let mut n_known = 0;
-        for of in &*cells {
+        for (&(cell, own), of) in corners.iter().zip(&*cells) {
             let multiplier = |a: usize| match of.facets[a] {
                 FacetOfPatch::Interior(i) => multipliers[i],
                 _ => 0.0,
             };
             let fluxes = of.fluxes - of.slopes * SVector::from_fn(|a, _| multiplier(a));
-            for (facet, &flux) in of.facets[..D].iter().zip(fluxes.iter()) {
-                part.push(match *facet {
+            for (k, (facet, &flux)) in of.facets[..D].iter().zip(fluxes.iter()).enumerate() {
+                let flux = match *facet {
                     FacetOfPatch::Interior(i) if i < n_known => sums[i],
                     FacetOfPatch::Interior(i) => {
                         n_known += 1;
@@ -211,7 +159,8 @@ impl<T: Real, const D: usize> Patches<'_, '_, T, D> {
                         flux
                     }
                     _ => flux,
-                });
+                };
+                self.set((cell as usize, own), k, flux);
             }
         }
     }
@@ -225,7 +174,7 @@ impl<T: Real, const D: usize> Patches<'_, '_, T, D> {
         corners: &[(u32, u8)],
         (cells, multipliers): (&[CellOfPatch], &mut Vec<f64>),
     ) -> FacetOfPatch {
-        let normal = self.normal[cell as usize * (D + 1) + local];
+        let normal = self.normals(cell as usize)[local];
         match self.neighbours.across(cell as usize, local) {
             Neighbour::Cell { cell: other, local: there } => {
                 let there = usize::from(there);
@@ -236,7 +185,7 @@ impl<T: Real, const D: usize> Patches<'_, '_, T, D> {
                         slot.map_or(FacetOfPatch::Free, |slot| cells[l].facets[slot])
                     }
                     None => {
-                        let jump = normal + self.normal[other as usize * (D + 1) + there];
+                        let jump = normal + self.normals(other as usize)[there];
                         multipliers.push(jump / D as f64);
                         FacetOfPatch::Interior(multipliers.len() - 1)
                     }
@@ -251,14 +200,13 @@ impl<T: Real, const D: usize> Patches<'_, '_, T, D> {
     fn cell_of_patch(
         &self,
         (cell, own): (u32, u8),
-        volume: f64,
         facets: [FacetOfPatch; 3],
         load: f64,
     ) -> CellOfPatch {
         let mesh = self.space.mesh;
         let products = facet_products::<D>(
             mesh.cell(cell as usize).iter().map(|&v| point_f64(&mesh.vertices()[v as usize])),
-            volume * self.space.alpha(cell as usize).to_f64(),
+            self.volume(cell as usize) * self.space.alpha(cell as usize).to_f64(),
         );
         let mut locals = [0; 3];
         locals.iter_mut().zip(around::<D>(own)).for_each(|(to, local)| *to = local);
@@ -296,11 +244,6 @@ impl<T: Real, const D: usize> Patches<'_, '_, T, D> {
     }
 }
 
-/// The facets of a cell at one of its vertices.
-pub(super) fn around<const D: usize>(vertex: u8) -> impl Iterator<Item = usize> {
-    (0..=D).filter(move |&local| local != usize::from(vertex))
-}
-
 /// The products in L2, over a coefficient, of the functions of Raviart and Thomas in a cell that have the
 /// flux one through a facet each: `(x - a_F) / (D |K|)`.
 fn facet_products<const D: usize>(
@@ -322,7 +265,7 @@ fn facet_products<const D: usize>(
 /// Solves with a symmetric matrix, given by the upper triangle of its rows, by elimination in place. It is
 /// positive semidefinite in the first `n_positive` unknowns; what remains for the others once these are
 /// eliminated is negative semidefinite. Where a pivot is zero but for rounding, the unknown is zero.
-pub(super) fn solve(a: &mut [f64], x: &mut [f64], n_positive: usize) {
+pub(in crate::error_bound) fn solve(a: &mut [f64], x: &mut [f64], n_positive: usize) {
     let n = x.len();
     for k in 0..n {
         if k == 0 || k == n_positive {

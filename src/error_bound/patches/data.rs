@@ -1,0 +1,143 @@
+//! What the patches of a conforming linear function read, and where they write.
+
+use std::convert::Infallible;
+use std::ops::Range;
+use std::sync::OnceLock;
+use std::sync::atomic::{AtomicU64, Ordering};
+
+use crate::assemble::space::Space;
+use crate::error_bound::NoBound;
+use crate::error_bound::contact::NodeForce;
+use crate::memory::in_large_pages;
+use crate::mesh::{BoundaryPart, Neighbours};
+use crate::parallel::cells;
+use crate::real::Real;
+
+/// What the patches read.
+pub(super) struct Patches<'s, 'a, T: Real, const D: usize> {
+    pub space: &'s Space<'a, T, D>,
+    pub neighbours: Neighbours,
+    /// By cell its volume, the integrals of `alpha grad u . n` over its facets, and what the flux of each of its
+    /// vertices balances, without obstacles.
+    cells: Vec<f64>,
+    /// The multiplier of each vertex that belongs to obstacles.
+    pub multipliers: Vec<f64>,
+    /// Of each vertex one of its cells, and how many there are.
+    pub one_cell: Vec<(u32, u32)>,
+    /// The cells around each vertex with its number there, and where those of each vertex start; found once needed.
+    pub corners: OnceLock<(Vec<(u32, u8)>, Vec<usize>)>,
+    /// By cell and vertex the fluxes through the facets there, as bits: each is written once, by the task of
+    /// the vertex.
+    pub parts: Vec<AtomicU64>,
+}
+
+impl<T: Real, const D: usize> Space<'_, T, D> {
+    /// What the patches read, without their parts.
+    pub(super) fn patches(
+        &self,
+        u: &[T],
+        residual: &[f64],
+        forces: &[NodeForce],
+    ) -> Result<Patches<'_, '_, T, D>, NoBound> {
+        let load = self.load_by_cell()?;
+        let n_cells = self.mesh.n_cells();
+        let stride = numbers_of_cell(D);
+        let mut data = in_large_pages(vec![0.0; n_cells * stride]);
+        let fill = |cells: Range<usize>, out: &mut [f64]| {
+            for (cell, data) in cells.zip(out.chunks_exact_mut(stride)) {
+                let metric = self.metric(cell);
+                let values = self.local_values(cell, u);
+                let alpha = self.alpha(cell).to_f64();
+                let residual = self.cell_residual(cell, &metric, u, &load);
+                data[0] = metric.volume.to_f64();
+                for i in 0..=D {
+                    let product =
+                        |j: usize| metric.products[i][j].to_f64() * (values[j] - values[0]);
+                    let stiffness = alpha * (1..=D).map(product).sum::<f64>();
+                    // |F| n = -D |K| grad lambda
+                    data[1 + i] = -(D as f64) * stiffness;
+                    data[D + 2 + i] = residual[i] - stiffness;
+                }
+            }
+            Ok::<(), Infallible>(())
+        };
+        let Ok(()) = cells::for_each(n_cells, &|c| c * stride, &mut data, &fill);
+        let mut multipliers: Vec<f64> = residual.iter().map(|r| -r).collect();
+        for (cell, local) in self.facets_of(BoundaryPart::Dirichlet) {
+            self.mesh.facet_vertices(cell, local).for_each(|v| multipliers[v as usize] = 0.0);
+        }
+        for force in forces {
+            data[force.cell * stride + D + 2 + force.node] -= force.value;
+            multipliers[self.dofs.of(force.cell, force.node)] -= force.value;
+        }
+        let mut one_cell = vec![(0, 0); self.mesh.vertices().len()];
+        for (k, &v) in self.mesh.cells().iter().enumerate() {
+            let (cell, count) = &mut one_cell[v as usize];
+            *cell = (k / (D + 1)) as u32;
+            *count += 1;
+        }
+        let neighbours = Neighbours::new(self.mesh);
+        let mut parts = in_large_pages(Vec::with_capacity(n_cells * (D + 1) * D));
+        parts.resize_with(n_cells * (D + 1) * D, AtomicU64::default);
+        Ok(Patches {
+            space: self,
+            neighbours,
+            cells: data,
+            multipliers,
+            one_cell,
+            corners: OnceLock::new(),
+            parts,
+        })
+    }
+
+    /// The cells around each vertex with its number there, and where those of each vertex start.
+    pub(in crate::error_bound) fn corners(&self) -> (Vec<(u32, u8)>, Vec<usize>) {
+        let n_vertices = self.mesh.vertices().len();
+        let mut starts = vec![0; n_vertices + 1];
+        self.mesh.cells().iter().for_each(|&v| starts[v as usize + 1] += 1);
+        (0..n_vertices).for_each(|v| starts[v + 1] += starts[v]);
+        let mut next = starts.clone();
+        let mut corners = vec![(0, 0); self.mesh.cells().len()];
+        for (k, &v) in self.mesh.cells().iter().enumerate() {
+            corners[next[v as usize]] = ((k / (D + 1)) as u32, (k % (D + 1)) as u8);
+            next[v as usize] += 1;
+        }
+        (corners, starts)
+    }
+}
+
+impl<T: Real, const D: usize> Patches<'_, '_, T, D> {
+    pub fn volume(&self, cell: usize) -> f64 {
+        self.cells[cell * numbers_of_cell(D)]
+    }
+
+    pub fn normals(&self, cell: usize) -> &[f64] {
+        &self.cells[cell * numbers_of_cell(D) + 1..][..D + 1]
+    }
+
+    /// What the flux of a vertex of a cell balances there, with a multiplier per volume.
+    pub fn load(&self, cell: usize, own: u8, pressure: f64) -> f64 {
+        let own = self.cells[cell * numbers_of_cell(D) + D + 2 + usize::from(own)];
+        own - pressure * self.volume(cell)
+    }
+
+    /// Writes the flux of a vertex of a cell through its facet `k` there.
+    pub fn set(&self, corner: (usize, u8), k: usize, flux: f64) {
+        self.parts[part_of::<D>(corner, k)].store(flux.to_bits(), Ordering::Relaxed);
+    }
+}
+
+/// How many numbers are known of a cell before its patches are.
+const fn numbers_of_cell(dimension: usize) -> usize {
+    2 * dimension + 3
+}
+
+/// Where the flux of a vertex of a cell through its facet `k` there is among those of all.
+pub(super) fn part_of<const D: usize>((cell, own): (usize, u8), k: usize) -> usize {
+    (cell * (D + 1) + usize::from(own)) * D + k
+}
+
+/// The facets of a cell at one of its vertices.
+pub(in crate::error_bound) fn around<const D: usize>(vertex: u8) -> impl Iterator<Item = usize> {
+    (0..=D).filter(move |&local| local != usize::from(vertex))
+}

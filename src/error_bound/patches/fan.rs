@@ -1,0 +1,122 @@
+//! Patches of the plane whose cells lie side by side around the vertex: all fluxes follow from one.
+
+use super::data::Patches;
+use crate::mesh::{BoundaryPart, Neighbour};
+use crate::real::{Real, point_f64};
+
+/// A cell of a fan, between two facets at its vertex.
+#[derive(Clone, Copy)]
+pub(super) struct CellOfFan {
+    cell: usize,
+    /// The number of the vertex in the cell.
+    own: u8,
+    /// The numbers of the facets on both sides.
+    sides: [u8; 2],
+}
+
+impl<T: Real, const D: usize> Patches<'_, '_, T, D> {
+    /// Sets the part of a vertex of the plane if its cells form one fan, else false.
+    ///
+    /// With the flux `x` out of the first cell through its first facet all others are `p + x` through first and
+    /// `q - x` through second facets: the two fluxes of a cell have its load as their sum, those of a facet
+    /// cancel the jump. On a fan that begins and ends with facets of unknown flux, or closes, `x` makes the norm
+    /// least: with `a` and `b` opposite both facets, `m` the barycentre and `V` the volume of a cell the
+    /// derivative of its square by `x` is that of `|(p + x) (m - a) + (q - x) (m - b)|^2 / (4 alpha V)`, since the
+    /// flux `1, -1` is the constant `(b - a) / (2 V)`.
+    pub(super) fn add_fan(&self, vertex: usize, fan: &mut Vec<CellOfFan>) -> bool {
+        if !self.find_fan(vertex, fan) {
+            return false;
+        }
+        let mesh = self.space.mesh;
+        let total: f64 = fan.iter().map(|of| self.volume(of.cell)).sum();
+        let mut pressure = self.multipliers[vertex] / total;
+        let normal = |(cell, local): (usize, u8)| self.normals(cell)[usize::from(local)];
+        // what the fluxes of a cell through a facet and of the next one through it sum to
+        let sum = |of: &CellOfFan, next: &CellOfFan| {
+            -0.5 * (normal((of.cell, of.sides[1])) + normal((next.cell, next.sides[0])))
+        };
+        let given = |of: &CellOfFan, side: usize| {
+            let local = of.sides[side];
+            match self.neighbours.across(of.cell, usize::from(local)) {
+                Neighbour::Boundary(BoundaryPart::Dirichlet) | Neighbour::Cell { .. } => None,
+                Neighbour::Boundary(_) => Some(-0.5 * normal((of.cell, local))),
+            }
+        };
+        let (mut first, mut force, mut stiffness) = (0.0, 0.0, 0.0);
+        for (k, of) in fan.iter().enumerate() {
+            let second = self.load(of.cell, of.own, pressure) - first;
+            let point = |local: u8| {
+                point_f64(&mesh.vertices()[mesh.cell(of.cell)[usize::from(local)] as usize])
+            };
+            let (own, a, b) = (point(of.own), point(of.sides[0]), point(of.sides[1]));
+            let (along, middle) = (b - a, (own + a + b) / 3.0);
+            let alpha = self.space.alpha(of.cell).to_f64();
+            let weight = 1.0 / (alpha * self.volume(of.cell));
+            stiffness += weight * along.norm_squared();
+            force -= weight * along.dot(&((middle - a) * first + (middle - b) * second));
+            if let Some(next) = fan.get(k + 1) {
+                first = sum(of, next) - second;
+            }
+        }
+        let Some((begin, end)) = fan.first().zip(fan.last()) else { return true };
+        let second = self.load(end.cell, end.own, pressure) - first;
+        let is_closed = matches!(
+            self.neighbours.across(begin.cell, usize::from(begin.sides[0])),
+            Neighbour::Cell { .. }
+        );
+        // what the equation of the vertex leaves, rounding, is divided like the multiplier
+        let (mut first, left) = match (given(begin, 0), given(end, 1)) {
+            (Some(flux), Some(other)) => (flux, second - flux - other),
+            (Some(flux), None) => (flux, 0.0),
+            (None, Some(other)) => (second - other, 0.0),
+            (None, None) if is_closed => (force / stiffness, second - sum(end, begin)),
+            (None, None) => (force / stiffness, 0.0),
+        };
+        pressure += left / total;
+        for (k, of) in fan.iter().enumerate() {
+            let second = self.load(of.cell, of.own, pressure) - first;
+            let is_ascending = of.sides[0] < of.sides[1];
+            let corner = (of.cell, of.own);
+            self.set(corner, usize::from(!is_ascending), first);
+            self.set(corner, usize::from(is_ascending), second);
+            if let Some(next) = fan.get(k + 1) {
+                first = sum(of, next) - second;
+            }
+        }
+        true
+    }
+
+    /// The cells around a vertex of the plane, each with the next one behind its second facet: all of them, or the
+    /// result is false. On the boundary the fan begins and ends with boundary facets.
+    fn find_fan(&self, vertex: usize, fan: &mut Vec<CellOfFan>) -> bool {
+        let mesh = self.space.mesh;
+        let number_in = |cell: usize| {
+            mesh.cell(cell).iter().position(|&v| v as usize == vertex).unwrap_or(0) as u8
+        };
+        let (cell, count) = self.one_cell[vertex];
+        let own = number_in(cell as usize);
+        let sides = [(own + 1) % 3, (own + 2) % 3];
+        let mut begin = CellOfFan { cell: cell as usize, own, sides };
+        for _ in 0..2 {
+            let mut last = begin;
+            fan.clear();
+            fan.push(last);
+            while let Neighbour::Cell { cell, local } =
+                self.neighbours.across(last.cell, usize::from(last.sides[1]))
+                && fan.len() < count as usize
+                && cell as usize != begin.cell
+            {
+                let cell = cell as usize;
+                let own = number_in(cell);
+                // the numbers of the vertex and of both facets sum to three
+                last = CellOfFan { cell, own, sides: [local, 3 - own - local] };
+                fan.push(last);
+            }
+            if fan.len() == count as usize {
+                return true;
+            }
+            begin = CellOfFan { sides: [last.sides[1], last.sides[0]], ..last };
+        }
+        false
+    }
+}

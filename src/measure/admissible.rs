@@ -1,0 +1,64 @@
+//! Continuous functions within the constraints, evaluated in cells.
+
+use crate::mesh::edge_vertices;
+use crate::problem::DatumRef;
+use crate::real::Point;
+
+/// The step of difference quotients of obstacles, as a share of the diameter of the cell.
+const STEP: f64 = 1e-5;
+
+/// By cell a function whose error is measured.
+pub(crate) type InCells<'f, const D: usize> = &'f (dyn Fn(usize) -> Admissible<'f, D> + Sync);
+
+/// An admissible function in a cell.
+pub(crate) struct Admissible<'d, const D: usize> {
+    /// At the vertices.
+    pub values: [f64; 4],
+    /// The gradient of the linear interpolant.
+    pub gradient: Point<f64, D>,
+    /// For quadratics by edge four times what the value at the midpoint exceeds that of the interpolant by.
+    pub excess: Option<[f64; 6]>,
+    /// The gradients of the barycentric coordinates.
+    pub gradients: [Point<f64, D>; 4],
+    /// The obstacles, lower and upper one.
+    pub bounds: [Option<DatumRef<'d, D>>; 2],
+    /// The diameter of the cell.
+    pub diameter: f64,
+}
+
+impl<const D: usize> Admissible<'_, D> {
+    /// Value and gradient at a point, by barycentric coordinates and in space.
+    pub fn at(&self, point: &[f64; 4], x: &Point<f64, D>) -> (f64, Point<f64, D>) {
+        let mut value = self.values.iter().zip(point).map(|(v, b)| v * b).sum();
+        let mut gradient = self.gradient;
+        if let Some(excess) = &self.excess {
+            for (&[a, b], excess) in edge_vertices(D).iter().zip(excess) {
+                value += excess * point[a] * point[b];
+                gradient += (self.gradients[b] * point[a] + self.gradients[a] * point[b]) * *excess;
+            }
+        }
+        for (bound, sign) in self.bounds.iter().zip([1.0, -1.0]) {
+            let Some(bound) = bound else { continue };
+            let at = bound.at(x);
+            if sign * (at - value) > 0.0 {
+                value = at;
+                let step = STEP * self.diameter;
+                gradient = Point::from_fn(|axis, _| {
+                    let (mut ahead, mut behind) = (*x, *x);
+                    ahead[axis] += step;
+                    behind[axis] -= step;
+                    (bound.at(&ahead) - bound.at(&behind)) / (2.0 * step)
+                });
+            }
+        }
+        (value, gradient)
+    }
+    /// Whether the function has the value of an obstacle at some of the corners of its cell and not at all of them:
+    /// the obstacle may exceed it in a part of the cell that is small.
+    pub fn touches_in_part(&self, corner: impl Fn(usize) -> Point<f64, D>) -> bool {
+        self.bounds.iter().flatten().any(|bound| {
+            let touches = |k: &usize| bound.at(&corner(*k)) == self.values[*k];
+            (1..=D).contains(&(0..=D).filter(touches).count())
+        })
+    }
+}

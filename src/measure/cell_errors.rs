@@ -1,0 +1,292 @@
+//! Squares of errors, integrated over cells.
+
+use std::ops::Range;
+use std::sync::Arc;
+
+use super::admissible::InCells;
+use super::errors::Errors;
+use super::evaluation::Reference;
+use crate::assemble::cut_simplices::CutRule;
+use crate::assemble::space::tables::{BasisAt, CellTable};
+use crate::assemble::space::{Space, Terms, data};
+use crate::element::MAX_BASIS;
+use crate::error::Error;
+use crate::parallel::cells;
+use crate::problem::{Exact, Field};
+use crate::quadrature::{FullySymmetric, Quadrature, Rule};
+use crate::real::{Point, Real, point_f64};
+
+/// Degree of the rule for error norms: the exact solution is not polynomial, and the rule must not
+/// limit what it measures. Cells that the exact free boundary or a jump of the load cuts are divided. For
+/// basis functions of degree `b` the degree of the rule is at least `2 b + 2`, that of the square of the
+/// largest part of the error.
+const fn error_degree(dimension: usize) -> usize {
+    match dimension {
+        1 | 2 => 19,
+        _ => 9,
+    }
+}
+
+/// Degrees of two rules with fewer points for basis functions of some degree. Both are exact for the square of
+/// the largest part of the error.
+const fn lower_degrees(dimension: usize, basis_degree: usize) -> Option<[usize; 2]> {
+    match (dimension, basis_degree) {
+        (2 | 3, 1) => Some([6, 8]),
+        (2, 2) => Some([8, 10]),
+        _ => None,
+    }
+}
+
+/// Two rules agree in a cell if their integrals differ by this share: where the solution is smooth the rule of higher
+/// degree, which counts, is nearer by powers of the diameter.
+const AGREEMENT: f64 = 1e-8;
+
+/// Two rules agree in a cell if their integrals differ by this share of the mean over all cells.
+const NEGLIGIBLE: f64 = 1e-10;
+
+/// Degree of the rule for means over facets.
+const MEAN_DEGREE: usize = 5;
+
+/// Squares of the L2 norm, the broken H1 seminorm and the broken energy norm of an error, and of the energy norm
+/// of the error of a function in cells.
+type Squares = [f64; 4];
+
+/// Squares of the norms of the error.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct SquaredErrors {
+    squares: Squares,
+    /// Maximum over nodes.
+    max: f64,
+}
+
+impl SquaredErrors {
+    fn add(&mut self, squares: &Squares) {
+        self.squares.iter_mut().zip(squares).for_each(|(sum, square)| *sum += square);
+    }
+    /// The norms, with the square of the facet part of the energy norm.
+    pub fn norms(&self, of_facets: f64) -> Errors {
+        let [l2, h1, broken_energy, _] = self.squares;
+        Errors {
+            l2: Some(l2.sqrt()),
+            h1: Some(h1.sqrt()),
+            energy: Some((broken_energy + of_facets).sqrt()),
+            broken_energy: Some(broken_energy.sqrt()),
+            max: Some(self.max),
+        }
+    }
+    /// The energy norm of the error of the function in cells.
+    pub fn of_function(&self) -> f64 {
+        self.squares[3].sqrt()
+    }
+}
+
+/// What the errors of all cells read.
+struct Measure<'m, 'r, 'f, T: Real, const D: usize> {
+    exact: &'m Reference<'r, T, D>,
+    /// The rule of highest degree.
+    table: CellTable<f64>,
+    /// Two rules that are tried before.
+    lower: Option<[CellTable<f64>; 2]>,
+    /// The rule on cells that kinks cut.
+    cut_rule: Option<CutRule>,
+    /// By region the function whose zeros are kinks.
+    kinks: Vec<Option<Field<D>>>,
+    /// The functional of each node.
+    nodes: Vec<Terms>,
+    u: Option<&'m [T]>,
+    function: Option<InCells<'f, D>>,
+}
+
+impl<T: Real, const D: usize> Space<'_, T, D> {
+    /// Squares of the errors of a vector of unknowns and of a function in cells over all cells.
+    pub(super) fn cell_errors(
+        &self,
+        exact: &Reference<'_, T, D>,
+        u: Option<&[T]>,
+        function: Option<InCells<'_, D>>,
+    ) -> Result<SquaredErrors, Error> {
+        let (degree, lower) = match exact {
+            Reference::Exact(_) => (
+                error_degree(D).max(2 * self.basis_degree + 2),
+                lower_degrees(D, self.basis_degree),
+            ),
+            // the square of a difference of polynomials
+            Reference::Coarse { space, .. } => {
+                (2 * self.basis_degree.max(space.basis_degree), None)
+            }
+        };
+        let lower = lower.map(|degrees| degrees.map(|degree| FullySymmetric.rule(D, degree)));
+        let lower = match lower {
+            Some([Ok(a), Ok(b)]) => Some([a, b].map(|rule| self.cell_table(rule))),
+            _ => None,
+        };
+        let cell_rule = Rule::new(D, degree);
+        let nodes = self.node_terms(&Rule::new(D - 1, MEAN_DEGREE), &cell_rule);
+        let kinks: Vec<Option<Field<D>>> =
+            (0..self.mesh.regions().len()).map(|region| self.kinks(exact, region)).collect();
+        let cut_rule = kinks.iter().any(Option::is_some).then(|| CutRule::new(D, degree));
+        let table = self.cell_table(cell_rule);
+        let measure = Measure { exact, table, lower, cut_rule, kinks, nodes, u, function };
+        let n_cells = self.mesh.n_cells();
+        // partial sums are added in order, so the result does not depend on threads
+        let parts = cells::map(n_cells, &|cells: Range<usize>| {
+            let (mut sum, mut open) = (SquaredErrors::default(), Vec::new());
+            for cell in cells {
+                let [low, high] = self.squares_in(&measure, cell, true)?;
+                match differ(&low, &high, &high.map(|square| AGREEMENT * square)) {
+                    true => open.push((cell, low, high)),
+                    false => sum.add(&high),
+                }
+                sum.max = sum.max.max(self.largest_at_nodes(&measure, cell)?);
+            }
+            Ok::<_, Error>((sum, open))
+        });
+        let (mut total, mut open) = (SquaredErrors::default(), Vec::new());
+        for part in parts {
+            let (sum, of_part) = part?;
+            total.add(&sum.squares);
+            total.max = total.max.max(sum.max);
+            open.extend(of_part);
+        }
+        let mut estimate = total;
+        open.iter().for_each(|(_, _, high)| estimate.add(high));
+        let negligible = estimate.squares.map(|square| NEGLIGIBLE * square / n_cells as f64);
+        let parts = cells::map(open.len(), &|range: Range<usize>| {
+            let mut sum = SquaredErrors::default();
+            for (cell, low, high) in &open[range] {
+                match differ(low, high, &negligible) {
+                    true => sum.add(&self.squares_in(&measure, *cell, false)?[1]),
+                    false => sum.add(high),
+                }
+            }
+            Ok::<_, Error>(sum)
+        });
+        for part in parts {
+            total.add(&part?.squares);
+        }
+        Ok(total)
+    }
+
+    /// The function whose zeros are those of the level of the load of a region and, with an obstacle, the exact free
+    /// boundary: second derivatives of the exact solution jump there.
+    fn kinks(&self, exact: &Reference<'_, T, D>, region: usize) -> Option<Field<D>> {
+        let Reference::Exact(Exact { contact, .. }) = exact else { return None };
+        let contact = contact.as_ref().filter(|_| self.problem.has_obstacle());
+        let indicator = contact.map(|set| set.indicator.clone());
+        let levels = self.data.source.of(region).and_then(|f| f.level()).cloned();
+        let product = |a: Field<D>, b: Field<D>| -> Field<D> { Arc::new(move |x| a(x) * b(x)) };
+        indicator.into_iter().chain(levels).reduce(product)
+    }
+
+    /// The squares of a cell by two rules; by the same one if it is the one of highest degree.
+    fn squares_in(
+        &self,
+        of: &Measure<'_, '_, '_, T, D>,
+        cell: usize,
+        try_lower: bool,
+    ) -> Result<[Squares; 2], Error> {
+        let geometry = self.mesh.geometry(cell);
+        let (volume, region) = (geometry.volume.to_f64(), self.mesh.region(cell));
+        let local = of.u.map(|u| self.local_values(cell, u));
+        let function = of.function.map(|f| f(cell));
+        let n = self.per_cell();
+        let gradients: [Point<f64, D>; 4] = std::array::from_fn(|k| match k <= D {
+            true => point_f64(geometry.gradient(k)),
+            false => Point::zeros(),
+        });
+        let gradient_of = |basis: &BasisAt<f64>, local: &[f64; MAX_BASIS]| {
+            let mut gradient = Point::<f64, D>::zeros();
+            for k in 0..=D {
+                let slope: f64 = (0..n).map(|i| local[i] * basis.derivatives[i][k]).sum();
+                gradient += gradients[k] * slope;
+            }
+            gradient
+        };
+        // the derivatives of linear functions are those at any point
+        let is_linear = self.basis_degree <= 1;
+        let of_linear = local.as_ref().filter(|_| is_linear);
+        let of_linear = of_linear.map(|local| gradient_of(&of.table.basis[0], local));
+        let [coefficient, reaction] =
+            [&self.data.coefficient, &self.data.reaction].map(|data| data.of(region));
+        let alpha = self.alpha(cell).to_f64();
+        let varying = coefficient.filter(|_| self.varying_in(cell).is_some());
+        let add = |sum: &mut Squares,
+                   (point, x): (&[f64; 4], &Point<f64, D>),
+                   weight: f64,
+                   basis: &BasisAt<f64>| {
+            let weight = weight * volume;
+            let value = data::finite(of.exact.value(cell, x), "exact solution", x, cell)?;
+            let gradient = of.exact.gradient(cell, x);
+            let reaction = reaction.map_or(0.0, |c| c.at(x));
+            if let Some(local) = &local {
+                let own: f64 = (0..n).map(|i| local[i] * basis.values[i]).sum();
+                let slope = of_linear.unwrap_or_else(|| gradient_of(basis, local));
+                let (square, difference) = ((slope - gradient).norm_squared(), own - value);
+                let square = data::finite(square, "exact gradient", x, cell)?;
+                let alpha = varying.map_or(alpha, |alpha| alpha.at(x));
+                let of_value = difference * difference;
+                sum[0] += weight * of_value;
+                sum[1] += weight * square;
+                sum[2] += weight * (alpha * square + reaction * of_value);
+            }
+            if let Some(function) = &function {
+                let (own, slope) = function.at(point, x);
+                let alpha = coefficient.map_or(1.0, |alpha| alpha.at(x));
+                let (square, difference) = ((slope - gradient).norm_squared(), own - value);
+                sum[3] += weight * (alpha * square + reaction * difference * difference);
+            }
+            Ok::<_, Error>(())
+        };
+        let by_rule = |table: &CellTable<f64>| {
+            let mut sum = Squares::default();
+            let CellTable { points, basis, weights } = table;
+            for ((point, basis), &weight) in points.iter().zip(basis).zip(weights) {
+                add(&mut sum, (point, &self.cell_point(point, cell)), weight, basis)?;
+            }
+            Ok(sum)
+        };
+        if !try_lower {
+            return by_rule(&of.table).map(|squares| [squares; 2]);
+        }
+        let (mut sum, mut outcome) = (Squares::default(), Ok(()));
+        let is_cut =
+            of.cut_rule.as_ref().zip(of.kinks[region].as_ref()).is_some_and(|(rule, level)| {
+                rule.visit_if_cut(self.mesh, cell, level, &mut |point, x, weight| {
+                    if outcome.is_ok() {
+                        outcome = add(&mut sum, (point, x), weight, &self.basis_at(point));
+                    }
+                })
+            });
+        let corner = |k: usize| point_f64(&self.mesh.vertices()[self.mesh.cell(cell)[k] as usize]);
+        match &of.lower {
+            _ if is_cut => outcome.map(|()| [sum; 2]),
+            Some([low, high]) if function.as_ref().is_none_or(|f| !f.touches_in_part(corner)) => {
+                Ok([by_rule(low)?, by_rule(high)?])
+            }
+            _ => by_rule(&of.table).map(|squares| [squares; 2]),
+        }
+    }
+
+    /// The largest error at the nodes of a cell.
+    fn largest_at_nodes(&self, of: &Measure<'_, '_, '_, T, D>, cell: usize) -> Result<f64, Error> {
+        let Some(u) = of.u else { return Ok(0.0) };
+        let mut largest = 0.0_f64;
+        for (i, (node, terms)) in self.nodes.iter().zip(&of.nodes).enumerate() {
+            let at = |(point, weight): &([f64; 4], f64)| {
+                weight * of.exact.value(cell, &self.cell_point(point, cell))
+            };
+            let value: f64 = terms.iter().map(at).sum();
+            let value = match value.is_finite() {
+                true => value,
+                false => data::finite(value, "exact solution", &self.node_point(cell, node), cell)?,
+            };
+            largest = largest.max((u[self.dofs.of(cell, i)].to_f64() - value).abs());
+        }
+        Ok(largest)
+    }
+}
+
+/// Whether two lists of squares differ by more than is allowed.
+fn differ(a: &Squares, b: &Squares, allowed: &Squares) -> bool {
+    a.iter().zip(b).zip(allowed).any(|((a, b), allowed)| (a - b).abs() > *allowed)
+}
