@@ -3,8 +3,9 @@
 use super::estimate::Unproven;
 use super::{BoundParts, ErrorBound, NoBound};
 
-/// A true error that is smaller than this share of its bound is rounding, and the ratio says nothing.
-const ROUNDING: f64 = 1e-6;
+/// A true error that is smaller than this share of the energy norm of the solution is rounding, and the ratio says
+/// nothing.
+const ROUNDING: f64 = 1e-8;
 
 /// Whether a bound is proven.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -47,16 +48,17 @@ pub struct BoundFigures {
     pub oscillation: Option<f64>,
     /// What the solver left.
     pub algebra: Option<f64>,
-    /// `total` over the energy norm of `u - v`, where the exact solution is known and `v` is not exact.
+    /// `total` over the energy norm of `u - v`, where the exact solution is known and `v` is not exact but for
+    /// rounding.
     pub effectivity: Option<f64>,
     /// Why there is no bound.
     pub reason: Option<String>,
 }
 
 impl BoundFigures {
-    /// The figures of a bound, and the true error where it is known.
+    /// The figures of a bound, and the true error where it is known; `norm` is the energy norm of the solution.
     #[must_use]
-    pub fn new(bound: Result<&ErrorBound, NoBound>, error: Option<f64>) -> Self {
+    pub fn new(bound: Result<&ErrorBound, NoBound>, error: Option<f64>, norm: f64) -> Self {
         let bound = match bound {
             Ok(bound) => bound,
             Err(reason) => return Self { reason: Some(reason.to_string()), ..Self::default() },
@@ -71,9 +73,7 @@ impl BoundFigures {
             contact: Some(contact),
             oscillation: Some(oscillation),
             algebra: Some(algebra),
-            effectivity: error
-                .filter(|&e| e > ROUNDING * bound.total)
-                .map(|error| bound.total / error),
+            effectivity: error.filter(|&e| e > ROUNDING * norm).map(|error| bound.total / error),
             reason: None,
         }
     }

@@ -396,7 +396,7 @@ impl<'a, T: Real, const D: usize> Solved<'a, T, D> {
         let judged = self.pair_and_bound();
         let known = judged.as_ref().ok().filter(|_| with_effectivity);
         let error = known.and_then(|(pair, ..)| self.discretisation.error_of_pair(pair));
-        BoundFigures::new(judged.map(|(_, bound, _)| bound), error)
+        BoundFigures::new(judged.map(|(_, bound, _)| bound), error, self.energy_norm())
     }
     /// The errors against the exact solution, and the figures of the bound with its effectivity.
     ///
@@ -409,7 +409,10 @@ impl<'a, T: Real, const D: usize> Solved<'a, T, D> {
             true => self.discretisation.errors_and_error_of_pair(Some(self.values()), pair)?,
             false => (Errors::default(), None),
         };
-        Ok((errors, BoundFigures::new(judged.map(|(_, bound, _)| bound), error)))
+        Ok((
+            errors,
+            BoundFigures::new(judged.map(|(_, bound, _)| bound), error, self.energy_norm()),
+        ))
     }
     /// Solution, obstacle, multiplier and contact set on cells; none without an iterate.
     pub fn fields(&self) -> Option<Fields> {
