@@ -13,6 +13,9 @@ use crate::mesh::{BoundaryPart, Neighbours};
 use crate::parallel::cells;
 use crate::real::Real;
 
+/// Cells with the number of a vertex in each, and where those of each vertex start.
+type Corners = (Vec<(u32, u8)>, Vec<usize>);
+
 /// What the patches read.
 pub(super) struct Patches<'s, 'a, T: Real, const D: usize> {
     pub space: &'s Space<'a, T, D>,
@@ -25,7 +28,7 @@ pub(super) struct Patches<'s, 'a, T: Real, const D: usize> {
     /// Of each vertex one of its cells, and how many there are.
     pub one_cell: Vec<(u32, u32)>,
     /// The cells around each vertex with its number there, and where those of each vertex start; found once needed.
-    pub corners: OnceLock<(Vec<(u32, u8)>, Vec<usize>)>,
+    pub corners: OnceLock<Corners>,
     /// By cell and vertex the fluxes through the facets there, as bits: each is written once, by the task of
     /// the vertex.
     pub parts: Vec<AtomicU64>,
@@ -91,7 +94,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
     }
 
     /// The cells around each vertex with its number there, and where those of each vertex start.
-    pub(in crate::error_bound) fn corners(&self) -> (Vec<(u32, u8)>, Vec<usize>) {
+    pub(in crate::error_bound) fn corners(&self) -> Corners {
         let n_vertices = self.mesh.vertices().len();
         let mut starts = vec![0; n_vertices + 1];
         self.mesh.cells().iter().for_each(|&v| starts[v as usize + 1] += 1);
