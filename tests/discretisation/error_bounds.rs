@@ -5,7 +5,7 @@ use crate::runs::small_mesh;
 use crate::support::checks::Checks;
 use crate::support::meshes::{Random, Raw};
 use unilateral::error_bound::{ErrorBound, Guaranteed, NoBound, PrimalDualPair, Unproven};
-use unilateral::mesh::{Neighbour, Neighbours};
+use unilateral::mesh::{Neighbour, Neighbours, TaggedFacet};
 use unilateral::prelude::*;
 use unilateral::quadrature::Rule;
 use unilateral::scenes::Scene;
@@ -155,6 +155,49 @@ fn check<const D: usize>(scene: Scene<D>, mesh: &Mesh<f64, D>, schemes: &str, sh
         checks.that((identity - 1.0).abs() < share, || format!("{label}: identity {identity:.4}"));
     }
     checks.finish();
+}
+
+/// Two squares that share one vertex: the cells around it form two fans, and the vertex has one equation. Under loads of
+/// opposite signs neither fan balances alone.
+#[test]
+fn a_vertex_with_two_fans_has_balanced_fluxes() {
+    let n = 3;
+    let side = |k: usize, sign: f64| sign * k as f64 / n as f64;
+    let (mut vertices, mut cells, mut boundary) = (Vec::new(), Vec::new(), Vec::new());
+    for (square, sign) in [1.0, -1.0].into_iter().enumerate() {
+        // the first vertex of both is the origin
+        let number = |i: usize, j: usize| match i + j {
+            0 => 0,
+            _ => (square * ((n + 1) * (n + 1) - 1) + j * (n + 1) + i) as u32,
+        };
+        for (i, j) in (0..(n + 1) * (n + 1)).map(|k| (k % (n + 1), k / (n + 1))) {
+            if square == 0 || i + j > 0 {
+                vertices.push(Point::from([side(i, sign), side(j, sign)]));
+            }
+        }
+        for (i, j) in (0..n * n).map(|k| (k % n, k / n)) {
+            let [a, b] = [number(i, j), number(i + 1, j + 1)];
+            cells.extend([a, number(i + 1, j), b, a, number(i, j + 1), b]);
+        }
+        for k in 0..n {
+            let mut add = |vertices: [u32; 2], part| boundary.push(TaggedFacet { vertices, part });
+            for transposed in [false, true] {
+                let number = |i, j| if transposed { number(j, i) } else { number(i, j) };
+                add([number(k, 0), number(k + 1, 0)], BoundaryPart::Neumann);
+                add([number(k, n), number(k + 1, n)], BoundaryPart::Dirichlet);
+            }
+        }
+    }
+    let mesh = Mesh::<f64, 2>::new(vertices, cells, &boundary).unwrap();
+    // loads of opposite signs: what one fan has too much the other one lacks
+    let problem = Problem::new().source(|x: &Point<f64, 2>| x[0].signum());
+    let solved = solve(&problem, &mesh, &ConformingP1).unwrap();
+    let origin = mesh.vertices().iter().position(|x| x.norm() == 0.0).unwrap();
+    assert!(solved.values()[origin].abs() < 1e-12, "by symmetry");
+    let sides = mismatch_of_sides(&mesh, &solved.primal_dual_pair().unwrap().flux);
+    assert!(sides < 1e-12, "{sides:e}");
+    let bound = solved.bound().unwrap();
+    assert!(bound.parts.algebra.abs() < 1e-6, "{:?}", bound.parts);
 }
 
 /// The same on the mesh of a level.
