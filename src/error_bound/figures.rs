@@ -7,6 +7,9 @@ use super::{BoundParts, ErrorBound, NoBound};
 /// nothing.
 const ROUNDING: f64 = 1e-8;
 
+/// Effectivities of which a row says nothing: others have a warning.
+const USUAL: std::ops::RangeInclusive<f64> = 1.0..=3.0;
+
 /// Whether a bound is proven.
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "report", derive(serde::Serialize, serde::Deserialize))]
@@ -76,6 +79,37 @@ impl BoundFigures {
             effectivity: error.filter(|&e| e > ROUNDING * norm).map(|error| bound.total / error),
             reason: None,
         }
+    }
+
+    /// Why the bound is below the true error or above three times that, where it is.
+    pub(crate) fn remark(&self) -> Option<String> {
+        let effectivity = self.effectivity.filter(|e| !USUAL.contains(e))?;
+        if effectivity < *USUAL.start() {
+            let unproven = match &self.guaranteed {
+                Some(Guaranteed::Except(some)) => some.as_slice(),
+                _ => &[],
+            };
+            let words: Vec<String> =
+                unproven.iter().map(|term| format!("{term:?}").to_lowercase()).collect();
+            let words = words.join(", ");
+            return Some(format!(
+                "the bound is {effectivity:.2} times the error; not proven: {words}"
+            ));
+        }
+        let (share, part) = [
+            (self.mismatch, "the flux, further from the solution than the function"),
+            (self.obstacle, "the multiplier where the function is off the obstacle"),
+            (self.contact, "the contact force where the function is off the gap"),
+            (self.oscillation, "the oscillation of data and multiplier in cells"),
+            (self.algebra, "what the solver left"),
+        ]
+        .into_iter()
+        .filter_map(|(share, part)| Some((share?, part)))
+        .max_by(|a, b| a.0.total_cmp(&b.0))?;
+        let percent = 100.0 * share;
+        Some(format!(
+            "the bound is {effectivity:.1} times the error: {percent:.0} % of its square is {part}"
+        ))
     }
 
     /// The bound on the broken energy norm of the error of the discrete solution: `total` and `distance`.

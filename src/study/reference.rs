@@ -116,6 +116,7 @@ impl<T: Real, const D: usize> Measured<'_, '_, T, D> {
             }
             (None, None) => {}
         }
+        row.warnings.extend(row.bound.remark().filter(|_| row.converged()));
         Ok(())
     }
 }

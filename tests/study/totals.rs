@@ -228,3 +228,26 @@ fn without_an_inequality_there_is_no_contact() {
         assert_eq!((row.contact_measure, row.resultant), (None, None), "{}", row.label);
     }
 }
+
+/// A row whose bound is far from the error says which part of it is, or what is not proven.
+#[test]
+fn bounds_far_from_the_error_say_why() {
+    let of_scene = |scene: Scene<2>, scheme: &str| {
+        let scheme: NamedScheme = scheme.parse().unwrap();
+        let study = Study::<f64, 2>::new(scene).named_scheme(&scheme).levels([4]);
+        study.run().unwrap().rows.remove(0)
+    };
+    let row = of_scene(scenes::contrast::<2>(1e6), "wopsip-p2");
+    assert!(row.bound.effectivity > Some(3.0), "{:?}", row.bound);
+    let says = |row: &Row, text: &str| row.warnings.iter().any(|w| w.contains(text));
+    assert!(
+        says(&row, "times the error: ") && says(&row, " % of its square is "),
+        "{:?}",
+        row.warnings
+    );
+    let row = of_scene(scenes::contrast_disc_2d(1e6), "p1");
+    assert!(row.bound.effectivity < Some(1.0), "{:?}", row.bound);
+    assert!(says(&row, "not proven: quadrature"), "{:?}", row.warnings);
+    let row = of_scene(scenes::radial(1.0), "p1");
+    assert!(!says(&row, "times the error"), "{:?}", row.warnings);
+}
