@@ -284,6 +284,7 @@ impl Row {
         }
     }
     /// The seconds of the row with those of its bound, which on adaptive meshes are a part of them.
+    #[cfg(feature = "report")]
     pub(crate) fn seconds_with_bound(&self) -> f64 {
         let beside = self.seconds.bound.filter(|_| self.theta.is_none());
         self.seconds.total + beside.unwrap_or(0.0)
