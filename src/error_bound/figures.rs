@@ -7,8 +7,8 @@ use super::{BoundParts, ErrorBound, NoBound};
 /// nothing.
 const ROUNDING: f64 = 1e-8;
 
-/// Effectivities of which a row says nothing: others have a warning.
-const USUAL: std::ops::RangeInclusive<f64> = 1.0..=3.0;
+/// Effectivities of which a row says nothing, but for rounding: others have a warning.
+const USUAL: std::ops::RangeInclusive<f64> = 1.0 - ROUNDING..=3.0;
 
 /// Whether a bound is proven.
 #[derive(Clone, Debug, PartialEq, Eq)]
