@@ -156,7 +156,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         let n = self.per_cell();
         for (place, group) in self.grouped_facets_of(BoundaryPart::Neumann) {
             let (cell, local) = place;
-            let measure = self.mesh.geometry(cell).facet_measure(local).to_f64();
+            let measure = self.facet_measure((cell, local));
             let out = &mut load[cell * n..(cell + 1) * n];
             for (point, weight) in self.facet_rule.iter() {
                 let flux = weight * measure * self.neumann_at(place, group, point)?;

@@ -42,7 +42,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         let is_in_contact = |unknown: usize| contact.get(unknown) != Some(&Contact::Inactive);
         for ((cell, local), group) in self.grouped_facets_of(BoundaryPart::Contact) {
             let Some(gap) = self.data.gap.of(group) else { continue };
-            let measure = self.mesh.geometry(cell).facet_measure(local).to_f64();
+            let measure = self.facet_measure((cell, local));
             let unknown_of = |node: usize| self.dofs.of(cell, node);
             let is_bound = |unknown: usize| inequality.bounds[unknown].is_inequality();
             let (mut n_bound, mut n_touching) = (0, 0);
@@ -90,7 +90,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
     fn flux_at_node(&self, (cell, local): Place, node: usize, u: &[T]) -> f64 {
         let geometry = self.mesh.geometry(cell);
         let (values, normal) = (self.local_values(cell, u), point_f64(&geometry.normal(local)));
-        let scale = geometry.facet_measure(local).to_f64() * self.alpha(cell).to_f64();
+        let scale = self.facet_measure((cell, local)) * self.alpha(cell).to_f64();
         let mut sum = 0.0;
         for (point, weight) in self.facet_rule.iter() {
             let basis = self.basis_at(&facet_to_cell(point, local));

@@ -4,11 +4,12 @@ use std::ops::Range;
 
 use super::algebra::CoarserCells;
 use super::choice::Choice;
+use super::function::PairNode;
 use super::terms::CellTerms;
 use super::{NoBound, PrimalDualPair};
 use crate::assemble::Discretisation;
 use crate::assemble::cut_simplices::CutRule;
-use crate::assemble::space::Space;
+use crate::assemble::space::{Place, Space};
 use crate::error::Error;
 use crate::instances::compiled;
 use crate::measure::Errors;
@@ -81,9 +82,10 @@ impl ErrorBound {
 
 impl<T: Real, const D: usize> Discretisation<'_, T, D> {
     /// The bound that an admissible function and a flux give, and the distance of the function from the
-    /// discrete function `u`. Any pair gives a bound whose function has the Dirichlet data, and whose flux has
-    /// equal and opposite values on the two sides of facets, on Neumann facets the mean of the datum, and on contact
-    /// facets no negative mean; what the flux does not balance counts with a constant of Friedrichs' inequality, or with the reaction.
+    /// discrete function `u`. A pair gives a bound if its function has the Dirichlet data, and if its flux has
+    /// equal and opposite values on the two sides of facets, the mean of the datum on Neumann facets, and no
+    /// negative mean on contact facets. What the flux does not balance counts with a constant of Friedrichs'
+    /// inequality, or with the reaction.
     ///
     /// Between vertices the function is the larger one of its interpolant and the lower obstacle, or the
     /// smaller one with the upper obstacle; on contact facets the larger one with the gap counts. The
@@ -117,7 +119,7 @@ impl<T: Real, const D: usize> Discretisation<'_, T, D> {
     }
 
     /// The energy norm of the difference of the exact solution and the admissible function of a pair; none
-    /// where the exact solution is not known.
+    /// where the exact solution is not known, or not finite.
     ///
     /// # Panics
     /// If the pair is not one of this mesh.
@@ -248,7 +250,8 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         let obstacles = [&data.lower, &data.upper, &data.gap];
         let is_curved = obstacles.iter().any(|d| !is_below(d, pair.degree));
         // a quadratic with the data on two facets of a cell may leave the obstacle inside the cell
-        let may_leave = D > 1
+        let may_leave = !is_curved
+            && D > 1
             && pair.degree > 1
             && obstacles.iter().any(|d| d.is_given())
             && !is_below(&data.dirichlet, 1)
@@ -270,49 +273,46 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
     /// edges of Dirichlet facets too, where it is not moved.
     fn dirichlet_data_exceed_obstacles(&self, pair: &PrimalDualPair) -> bool {
         let mut is_given = vec![false; pair.function.len()];
-        let on_facet = |ends: &[usize; 2], local: usize| !ends.contains(&local);
-        for (cell, local) in self.facets_of(BoundaryPart::Dirichlet) {
-            let nodes = self.pair_nodes(pair, cell).filter(|(ends, _)| on_facet(ends, local));
-            nodes.for_each(|(_, node)| is_given[node] = true);
+        for place in self.facets_of(BoundaryPart::Dirichlet) {
+            self.pair_nodes_on(pair, place).for_each(|(_, node)| is_given[node] = true);
         }
-        let exceeds = |bound: Option<DatumRef<'_, D>>, sign: f64, cell: usize, (ends, node)| {
+        let exceeds = |bound: Option<DatumRef<'_, D>>, sign, cell, (ends, node): PairNode| {
+            if !is_given[node] {
+                return true;
+            }
             let Some(bound) = bound else { return true };
-            let ends: [usize; 2] = ends;
             let ends = ends.map(|k| self.mesh.cell(cell)[k] as usize);
             let [x, y] = ends.map(|v| point_f64(&self.mesh.vertices()[v]));
             let [at_x, at_y] = ends.map(|v| pair.function[v]);
-            let node: usize = node;
             let own = 4.0 * pair.function[node] - at_x - at_y;
             let of_bound = 4.0 * bound.at(&((x + y) * 0.5)) - bound.at(&x) - bound.at(&y);
             sign * (own - of_bound) >= -AGREEMENT * own.abs().max(of_bound.abs())
         };
-        let given = |cell: usize| self.pair_nodes(pair, cell).filter(|(_, node)| is_given[*node]);
-        let in_cells = (0..self.mesh.n_cells()).all(|cell| {
+        let exceeds_in = |cell: usize| {
             let region = self.mesh.region(cell);
             let (lower, upper) = (self.data.lower.of(region), self.data.upper.of(region));
-            given(cell).all(|at| exceeds(lower, 1.0, cell, at) && exceeds(upper, -1.0, cell, at))
-        });
-        in_cells
-            && self.grouped_facets_of(BoundaryPart::Contact).all(|((cell, local), group)| {
-                let gap = self.data.gap.of(group);
-                let mut on_it = given(cell).filter(|(ends, _)| on_facet(ends, local));
-                on_it.all(|at| exceeds(gap, 1.0, cell, at))
-            })
+            self.pair_nodes(pair, cell)
+                .all(|at| exceeds(lower, 1.0, cell, at) && exceeds(upper, -1.0, cell, at))
+        };
+        let exceeds_on = |(place, group): (Place, usize)| {
+            let gap = self.data.gap.of(group);
+            self.pair_nodes_on(pair, place).all(|at| exceeds(gap, 1.0, place.0, at))
+        };
+        (0..self.mesh.n_cells()).all(exceeds_in)
+            && self.grouped_facets_of(BoundaryPart::Contact).all(exceeds_on)
     }
 
     /// Whether the function of a pair has the data of all Dirichlet facets at its nodes on them: where data of
     /// two facets differ at a common node no function with a square-integrable gradient takes both.
     fn takes_dirichlet_data(&self, pair: &PrimalDualPair) -> bool {
-        self.grouped_facets_of(BoundaryPart::Dirichlet).all(|((cell, local), group)| {
-            self.pair_nodes(pair, cell).filter(|(ends, _)| !ends.contains(&local)).all(
-                |(ends, node)| {
-                    let [x, y] = ends.map(|k| self.mesh.cell(cell)[k] as usize);
-                    let [x, y] = [x, y].map(|v| point_f64(&self.mesh.vertices()[v]));
-                    let datum = self.dirichlet_at(group, &((x + y) * 0.5));
-                    let value = pair.function[node];
-                    (datum - value).abs() <= AGREEMENT * datum.abs().max(value.abs())
-                },
-            )
+        self.grouped_facets_of(BoundaryPart::Dirichlet).all(|(place, group)| {
+            self.pair_nodes_on(pair, place).all(|(ends, node)| {
+                let [x, y] = ends.map(|k| self.mesh.cell(place.0)[k] as usize);
+                let [x, y] = [x, y].map(|v| point_f64(&self.mesh.vertices()[v]));
+                let datum = self.dirichlet_at(group, &((x + y) * 0.5));
+                let value = pair.function[node];
+                (datum - value).abs() <= AGREEMENT * datum.abs().max(value.abs())
+            })
         })
     }
 }

@@ -3,8 +3,7 @@
 use super::estimate::Unproven;
 use super::{BoundParts, ErrorBound, NoBound};
 
-/// A true error that is smaller than this share of the energy norm of the solution is rounding, and the ratio says
-/// nothing.
+/// Effectivities that differ from one by less are one but for rounding.
 const ROUNDING: f64 = 1e-8;
 
 /// Effectivities of which a row says nothing, but for rounding: others have a warning.
@@ -59,9 +58,9 @@ pub struct BoundFigures {
 }
 
 impl BoundFigures {
-    /// The figures of a bound, and the true error where it is known; `norm` is the energy norm of the solution.
+    /// The figures of a bound, and the true error where it is known and more than rounding.
     #[must_use]
-    pub fn new(bound: Result<&ErrorBound, NoBound>, error: Option<f64>, norm: f64) -> Self {
+    pub fn new(bound: Result<&ErrorBound, NoBound>, error: Option<f64>) -> Self {
         let bound = match bound {
             Ok(bound) => bound,
             Err(reason) => return Self { reason: Some(reason.to_string()), ..Self::default() },
@@ -76,7 +75,7 @@ impl BoundFigures {
             contact: Some(contact),
             oscillation: Some(oscillation),
             algebra: Some(algebra),
-            effectivity: error.filter(|&e| e > ROUNDING * norm).map(|error| bound.total / error),
+            effectivity: error.map(|error| bound.total / error),
             reason: None,
         }
     }

@@ -1,8 +1,8 @@
 //! The admissible function of a discrete solution.
 
 use super::PrimalDualPair;
-use crate::assemble::space::Space;
 use crate::assemble::space::tables::BasisAt;
+use crate::assemble::space::{Place, Space};
 use crate::element::Node;
 use crate::mesh::{BoundaryPart, Edges, edge_vertices};
 use crate::problem::DatumRef;
@@ -16,6 +16,10 @@ struct Nodes<'m> {
     /// By cell the numbers of its edges; empty for linears.
     edges: &'m [u32],
 }
+
+/// A node of the function of a pair: the two vertices of a cell of which it is the middle, those of a vertex equal, and
+/// the number of the node.
+pub(super) type PairNode = ([usize; 2], usize);
 
 impl Nodes<'_> {
     /// The edges of a cell that have a node: their two vertices in the cell and the number of the node.
@@ -31,18 +35,26 @@ impl Nodes<'_> {
 }
 
 impl<T: Real, const D: usize> Space<'_, T, D> {
-    /// The nodes of the function of a pair in a cell: each is the middle of two vertices of the cell, that of a
-    /// vertex the middle of twice the vertex; and the number of the node.
+    /// The nodes of the function of a pair in a cell.
     pub(super) fn pair_nodes(
         &self,
         pair: &PrimalDualPair,
         cell: usize,
-    ) -> impl Iterator<Item = ([usize; 2], usize)> {
+    ) -> impl Iterator<Item = PairNode> {
         let n_vertices = self.mesh.vertices().len();
         let nodes = Nodes { n_vertices, n_edges: 0, edges: &pair.edges };
         let vertices = self.mesh.cell(cell).iter().enumerate();
         let of_edges: Vec<_> = nodes.of_edges(D, cell).map(|(ends, node)| (*ends, node)).collect();
         vertices.map(|(k, &v)| ([k; 2], v as usize)).chain(of_edges)
+    }
+
+    /// The nodes of the function of a pair on a facet.
+    pub(super) fn pair_nodes_on(
+        &self,
+        pair: &PrimalDualPair,
+        (cell, local): Place,
+    ) -> impl Iterator<Item = PairNode> {
+        self.pair_nodes(pair, cell).filter(move |(ends, _)| !ends.contains(&local))
     }
 
     /// The admissible function of a discrete function: of degree one or two, without a flux.

@@ -142,7 +142,7 @@ impl<T: Real, const D: usize> Discretisation<'_, T, D> {
 impl<T: Real, const D: usize> Space<'_, T, D> {
     /// The integral of the Neumann datum over a facet.
     fn neumann_flux(&self, place: (usize, usize), group: usize) -> Result<f64, NoBound> {
-        let measure = self.mesh.geometry(place.0).facet_measure(place.1).to_f64();
+        let measure = self.facet_measure(place);
         let mut sum = 0.0;
         for (point, weight) in self.facet_rule.iter() {
             sum += weight * measure * self.neumann_at(place, group, point)?;

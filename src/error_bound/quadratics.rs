@@ -162,7 +162,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         let mut neumann = Vec::new();
         if self.problem.has_neumann_data() {
             for (place, group) in self.grouped_facets_of(BoundaryPart::Neumann) {
-                let measure = self.mesh.geometry(place.0).facet_measure(place.1).to_f64();
+                let measure = self.facet_measure(place);
                 let mut products = Products::default();
                 for (point, weight) in self.facet_rule.iter() {
                     let flux = weight * measure * self.neumann_at(place, group, point)?;

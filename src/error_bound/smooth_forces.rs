@@ -38,7 +38,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         let part = |place: Place, is_closed: bool, k: usize| {
             let around = &around[vertex(place, k)];
             match is_closed == around.is_closed {
-                true => self.area_of(place) / around.measure,
+                true => self.facet_measure(place) / around.measure,
                 false => 0.0,
             }
         };
@@ -86,12 +86,8 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         }
     }
 
-    fn area_of(&self, (cell, local): Place) -> f64 {
-        self.mesh.geometry(cell).facet_measure(local).to_f64()
-    }
-
-    /// Whether each facet with forces has all its nodes in contact, of a vertex a node of any cell. In space facets
-    /// around the end of contact are many, and none is set apart.
+    /// Whether each facet with forces has all its nodes in contact, of a vertex a node of any cell. In space every
+    /// facet counts as one of these: many facets lie around the end of contact, and few are in contact whole.
     fn closed_facets(&self, forces: &[NodeForce]) -> Vec<bool> {
         let mut touches = vec![false; self.mesh.vertices().len()];
         for force in forces.iter().filter(|force| force.node <= D) {
@@ -122,7 +118,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
                     (force.measure, force.is_closed) = (0.0, true);
                 }
                 if is_closed == force.is_closed {
-                    force.measure += self.area_of(*place);
+                    force.measure += self.facet_measure(*place);
                 }
             }
         }

@@ -425,8 +425,6 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
             traces: zeros(has_fluxes || has_gap && pair.degree > 1),
             contact: zeros(has_gap),
         };
-        let measure_of =
-            |(cell, local): Place| self.mesh.geometry(cell).facet_measure(local).to_f64();
         let norm = |(cell, _): Place, measure: f64, square: f64| {
             let volume = self.mesh.geometry(cell).volume.to_f64();
             let constant = measure / volume
@@ -436,7 +434,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         };
         if has_fluxes {
             for (place, group) in self.grouped_facets_of(BoundaryPart::Neumann) {
-                let measure = measure_of(place);
+                let measure = self.facet_measure(place);
                 let flux = self.flux_on(pair, place);
                 let mut square = 0.0;
                 for (point, weight) in self.facet_rule.iter() {
@@ -464,7 +462,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
             }
             terms.contact[place.0] += force.scale * sum;
             if pair.degree > 1 {
-                let measure = measure_of(place);
+                let measure = self.facet_measure(place);
                 terms.traces[place.0] += norm(place, measure, left / measure);
             }
         }

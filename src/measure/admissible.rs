@@ -16,7 +16,7 @@ pub(crate) struct Admissible<'d, const D: usize> {
     pub values: [f64; 4],
     /// The gradient of the linear interpolant.
     pub gradient: Point<f64, D>,
-    /// For quadratics by edge four times what the value at the midpoint exceeds that of the interpolant by.
+    /// For quadratics, by edge, four times the value at the midpoint less that of the linear interpolant.
     pub excess: Option<[f64; 6]>,
     /// The gradients of the barycentric coordinates.
     pub gradients: [Point<f64, D>; 4],

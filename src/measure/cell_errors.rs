@@ -110,7 +110,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
                 error_degree(D).max(2 * self.basis_degree + 2),
                 lower_degrees(D, self.basis_degree),
             ),
-            // the square of a difference of polynomials
+            // exact: the integrand is the square of a difference of polynomials
             Reference::Coarse { space, .. } => {
                 (2 * self.basis_degree.max(space.basis_degree), None)
             }

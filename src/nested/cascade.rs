@@ -12,7 +12,7 @@ const ENERGY_TOLERANCE: f64 = 1e-3;
 const MAX_CYCLES: usize = 60;
 
 /// A solution by [`MonotoneMultigrid`]. The solution on the next coarser space, by this function, gives its starting
-/// values (F. A. Bornemann, P. Deuflhard, Numer. Math. 75 (1996), 135-152); on the coarsest space they are zero.
+/// values (F. A. Bornemann, P. Deuflhard, Numer. Math. 75 (1996), 135-152); on the coarsest space the starting values are zero.
 ///
 /// A coarse function is bound by the means of the bounds over its children: the coarse solution need not be
 /// admissible, because the solver projects its starting values.

@@ -28,6 +28,10 @@ use crate::problem::DataOnMesh;
 use crate::problem::Exact;
 use crate::real::{Point, Real};
 
+/// A true error that is smaller than this share of the energy norm of the solution is rounding, and its ratio to a bound
+/// says nothing.
+const ERROR_ROUNDING: f64 = 1e-8;
+
 /// The largest certificate of a solution to a tolerance, divided by the tolerance: both are relative to the
 /// energy norm.
 const CERTIFICATE_TO_TOLERANCE: f64 = 10.0;
@@ -393,26 +397,25 @@ impl<'a, T: Real, const D: usize> Solved<'a, T, D> {
     }
     /// The figures of the bound, with its effectivity if asked for and the exact solution is known.
     pub(crate) fn bound_figures(&self, with_effectivity: bool) -> BoundFigures {
-        let judged = self.pair_and_bound();
-        let known = judged.as_ref().ok().filter(|_| with_effectivity);
-        let error = known.and_then(|(pair, ..)| self.discretisation.error_of_pair(pair));
-        BoundFigures::new(judged.map(|(_, bound, _)| bound), error, self.energy_norm())
+        let pair = self.pair_and_bound().ok().filter(|_| with_effectivity);
+        self.figures(pair.and_then(|(pair, ..)| self.discretisation.error_of_pair(pair)))
     }
     /// The errors against the exact solution, and the figures of the bound with its effectivity.
     ///
     /// # Errors
     /// [`Error::DataNotFinite`].
     pub(crate) fn errors_and_bound_figures(&self) -> Result<(Errors, BoundFigures), Error> {
-        let judged = self.pair_and_bound();
-        let pair = judged.as_ref().ok().map(|(pair, ..)| pair);
+        let pair = self.pair_and_bound().ok().map(|(pair, ..)| pair);
         let (errors, error) = match self.has_iterate {
             true => self.discretisation.errors_and_error_of_pair(Some(self.values()), pair)?,
             false => (Errors::default(), None),
         };
-        Ok((
-            errors,
-            BoundFigures::new(judged.map(|(_, bound, _)| bound), error, self.energy_norm()),
-        ))
+        Ok((errors, self.figures(error)))
+    }
+    /// The figures of the bound; an error of its function below `ERROR_ROUNDING` is left out.
+    fn figures(&self, error: Option<f64>) -> BoundFigures {
+        let error = error.filter(|error| *error > ERROR_ROUNDING * self.energy_norm());
+        BoundFigures::new(self.pair_and_bound().map(|(_, bound, _)| bound), error)
     }
     /// Solution, obstacle, multiplier and contact set on cells; none without an iterate.
     pub fn fields(&self) -> Option<Fields> {

@@ -53,12 +53,17 @@ impl<'a> Frame<'a> {
         frame
     }
 
+    /// How far a value of the second axis is below the upper edge of the area.
+    fn depth(&self, y: f64) -> f64 {
+        (1.0 - self.y.position(y.log10())) * SIZE.1
+    }
+
     /// A point relative to the upper left corner of the area. One with an error beyond the axis
     /// stands at the edge it is beyond, one without an error at the upper edge, where failures are
     /// looked for.
     fn place(&self, point: &Point) -> ScreenPoint {
         let x = self.x.position(point.x.log10()) * SIZE.0;
-        let y = match point.y.map(|y| (1.0 - self.y.position(y.log10())) * SIZE.1) {
+        let y = match point.y.map(|y| self.depth(y)) {
             Some(y) if y > SIZE.1 => SIZE.1 - EDGE,
             Some(y) if y >= 0.0 => y,
             _ => EDGE,
@@ -143,7 +148,7 @@ fn draw_frame<DB: DrawingBackend>(
     } else {
         draw_ticks(pen, frame, origin)?;
         for limit in &panel.limits {
-            let y = origin.1 + SIZE.1 * (1.0 - frame.y.position(limit.log10()));
+            let y = origin.1 + frame.depth(*limit);
             draw_limit(pen, (origin.0, y), (origin.0 + SIZE.0, y))?;
         }
     }
@@ -218,8 +223,7 @@ fn draw_curves<DB: DrawingBackend>(
         for (points, ends) in curve.points.windows(2).zip(places.windows(2)) {
             let bound = |k: usize| {
                 let y = points[k].bound.filter(|_| points[k].y.is_some())?;
-                let height = (1.0 - frame.y.position(y.log10())) * SIZE.1;
-                Some((ends[k].0, origin.1 + height.clamp(0.0, SIZE.1)))
+                Some((ends[k].0, origin.1 + frame.depth(y).clamp(0.0, SIZE.1)))
             };
             if let (Some(left), Some(right)) = (bound(0), bound(1)) {
                 draw_band(pen, curve.key, [ends[0], ends[1]], [left, right])?;

@@ -106,15 +106,17 @@ impl<DB: DrawingBackend> Pen<'_, DB> {
 
     /// A filled area.
     pub fn fill(&self, corners: &[ScreenPoint], colour: RGBColor) -> Drawn {
-        let corners: Vec<_> = corners.iter().map(|&c| self.pixel(c)).collect();
-        self.area.draw(&Polygon::new(corners, colour)).map_err(|e| e.to_string())
+        self.polygon(corners, colour)
     }
 
     /// A filled area through which the drawing below is seen.
     pub fn fill_faintly(&self, corners: &[ScreenPoint], colour: RGBColor) -> Drawn {
+        self.polygon(corners, colour.mix(FAINT))
+    }
+
+    fn polygon(&self, corners: &[ScreenPoint], style: impl Into<ShapeStyle>) -> Drawn {
         let corners: Vec<_> = corners.iter().map(|&c| self.pixel(c)).collect();
-        let area = Polygon::new(corners, colour.mix(FAINT));
-        self.area.draw(&area).map_err(|e| e.to_string())
+        self.area.draw(&Polygon::new(corners, style)).map_err(|e| e.to_string())
     }
 
     /// Text, its middle at the height of its position.

@@ -33,9 +33,10 @@ impl<'a, const D: usize> WorkPrecision<'a, D> {
             for &linear in &self.linear {
                 for &precision in &self.precisions {
                     let mut coarser = None;
-                    let levels = self.levels.iter().map(|&level| (level, None));
-                    let first = self.levels.first().map(|&level| (level, self.adaptive));
-                    for meshes in levels.chain(first.filter(|first| first.1.is_some())) {
+                    let uniform = self.levels.iter().map(|&level| (level, None));
+                    let adaptive =
+                        self.adaptive.and_then(|of| Some((*self.levels.first()?, Some(of))));
+                    for meshes in uniform.chain(adaptive) {
                         let slot = self.slot(candidate, linear, precision, meshes)?;
                         slot.study.check()?;
                         if slots.iter().any(|s| s.case == slot.case) {
@@ -43,8 +44,8 @@ impl<'a, const D: usize> WorkPrecision<'a, D> {
                             let name = format!("{} on {}", variant.label, variant.constraint);
                             return Err(wrong("schemes", name, "each must have its own label"));
                         }
-                        coarser = coarser.filter(|_| meshes.1.is_none());
-                        slots.push(Slot { coarser, ..slot });
+                        slots
+                            .push(Slot { coarser: coarser.filter(|_| meshes.1.is_none()), ..slot });
                         coarser = Some(slots.len() - 1);
                     }
                 }

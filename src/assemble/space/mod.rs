@@ -325,6 +325,10 @@ impl<'a, T: Real, const D: usize> Space<'a, T, D> {
     pub fn metric(&self, cell: usize) -> CellMetric<T, D> {
         CellMetric::of(self.mesh, cell)
     }
+    /// The measure of a facet.
+    pub fn facet_measure(&self, (cell, local): Place) -> f64 {
+        self.mesh.geometry(cell).facet_measure(local).to_f64()
+    }
     /// A point of a facet in space.
     pub fn facet_point(&self, point: &[f64; 4], cell: usize, local: usize) -> Point<f64, D> {
         let inserted = facet_to_cell(point, local).map(T::lit);

@@ -20,8 +20,8 @@ type Corners = (Vec<(u32, u8)>, Vec<usize>);
 pub(super) struct Patches<'s, 'a, T: Real, const D: usize> {
     pub space: &'s Space<'a, T, D>,
     pub neighbours: Neighbours,
-    /// By cell its volume, the integrals of `alpha grad u . n` over its facets, and what the flux of each of its
-    /// vertices balances, without obstacles.
+    /// By cell its volume, the integrals of `alpha grad u . n` over its facets, and for each of its vertices the load
+    /// that the flux of the vertex balances, without multipliers of obstacles.
     cells: Vec<f64>,
     /// The multiplier of each vertex that belongs to obstacles.
     pub multipliers: Vec<f64>,

@@ -19,10 +19,10 @@ impl<T: Real, const D: usize> Patches<'_, '_, T, D> {
     ///
     /// With the flux `x` out of the first cell through its first facet all others are `p + x` through first and
     /// `q - x` through second facets: the two fluxes of a cell have its load as their sum, those of a facet
-    /// cancel the jump. On a fan that begins and ends with facets of unknown flux, or closes, `x` makes the norm
-    /// least: with `a` and `b` opposite both facets, `m` the barycentre and `V` the volume of a cell the
-    /// derivative of its square by `x` is that of `|(p + x) (m - a) + (q - x) (m - b)|^2 / (4 alpha V)`, since the
-    /// flux `1, -1` is the constant `(b - a) / (2 V)`.
+    /// cancel the jump. Where the fan is closed, or the fluxes at both ends are unknown, `x` is the number for which
+    /// the norm is least. Let `a` and `b` be the vertices of a cell opposite its two facets, `m` its barycentre and
+    /// `V` its volume. The flux with the integrals `1, -1` is the constant `(b - a) / (2 V)`; hence the derivative of
+    /// the squared norm in the cell by `x` is that of `|(p + x) (m - a) + (q - x) (m - b)|^2 / (4 alpha V)`.
     pub(super) fn add_fan(&self, vertex: usize, fan: &mut Vec<CellOfFan>) -> bool {
         if !self.find_fan(vertex, fan) {
             return false;
