@@ -30,8 +30,8 @@
 mod algebra;
 mod choice;
 mod contact;
-mod dirichlet;
 mod estimate;
+mod exchange;
 mod figures;
 mod friedrichs;
 mod function;

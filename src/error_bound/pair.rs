@@ -10,7 +10,7 @@ use crate::assemble::space::metric::CellMetric;
 use crate::element::Entity;
 use crate::inequality::Solution;
 use crate::instances::compiled;
-use crate::mesh::{BoundaryPart, Neighbour};
+use crate::mesh::{BoundaryPart, Neighbour, Neighbours};
 use crate::real::Real;
 
 /// A continuous, piecewise linear or quadratic function within the constraints, and a flux of the space of
@@ -105,6 +105,9 @@ impl<T: Real, const D: usize> Discretisation<'_, T, D> {
         }
         let forces = space.contact_forces(inequality, &solution.contact, &residual, u);
         let multipliers = multipliers.as_deref();
+        let function = space.admissible_function(u, space.degree);
+        let exchanges = space.problem.has_obstacle() && std::env::var("NOEX").is_err();
+        let neighbours = || Neighbours::new(space.mesh);
         let flux = if space.degree == 2 {
             let mut loads =
                 space.cell_loads(u, &residual, (&inequality.bounds, &solution.contact), &forces)?;
@@ -117,9 +120,12 @@ impl<T: Real, const D: usize> Discretisation<'_, T, D> {
                 if self.owns_rows() {
                     space.smooth_forces(&forces, &mut loads.contact);
                 }
-                space.quadratic_patch_fluxes(u, &mut loads)
+                space.quadratic_patch_fluxes(u, &function, &mut loads)
             };
             space.balance(&loads, &mut flux);
+            if exchanges {
+                space.exchange_quadratics(&function, &loads, &neighbours(), &mut flux);
+            }
             flux
         } else {
             let mut flux = if self.owns_rows() {
@@ -130,12 +136,13 @@ impl<T: Real, const D: usize> Discretisation<'_, T, D> {
                 space.crouzeix_raviart_fluxes(u)?
             };
             space.add_boundary_fluxes(&forces, &mut flux)?;
-            if self.owns_rows() && space.problem.has_obstacle() {
-                space.exchange_with_dirichlet(u, &residual, &forces, &mut flux);
+            if exchanges {
+                let multipliers = space.multipliers_by_cell(u, &residual, &forces, &flux)?;
+                space.exchange_linears(&function, &multipliers, &neighbours(), &mut flux);
             }
             flux
         };
-        Ok(PrimalDualPair { flux, ..space.admissible_function(u, space.degree) })
+        Ok(PrimalDualPair { flux, ..function })
     }
 }
 

@@ -20,12 +20,16 @@
 use std::convert::Infallible;
 use std::ops::Range;
 
+use super::PrimalDualPair;
 use super::patches::{around, solve};
-use super::quadratics::{CellLoads, Products, add, densities, products_on_facet, vertices_of};
+use super::quadratics::{
+    CellLoads, Products, add, densities, products_on_facet, triple, vertices_of,
+};
 use crate::assemble::local::StiffnessTable;
 use crate::assemble::space::tables::BasisAt;
 use crate::assemble::space::{INWARD, Place, Space};
 use crate::element::Node;
+use crate::measure::Admissible;
 use crate::mesh::{BoundaryPart, Neighbour, Neighbours, edge_vertices};
 use crate::parallel::cells;
 use crate::real::{Point, Real, point_f64};
@@ -38,6 +42,8 @@ type OfFacets = [[f64; 3]; 3];
 struct CellData {
     /// By facet the densities of `alpha grad u . n`.
     normal: Products,
+    /// The gradient of the admissible function less that of the discrete function, at the vertices.
+    difference: [[f64; 3]; 4],
     /// The stiffness term of each unknown.
     stiffness: [f64; 10],
     /// By vertex of the patch the divergence tested with the barycentric coordinates.
@@ -64,10 +70,15 @@ struct Patches<'s, 'a, T: Real, const D: usize> {
 
 impl<T: Real, const D: usize> Space<'_, T, D> {
     /// The densities `c_Fj` of a conforming quadratic function, without those of Neumann data and contact.
-    pub(super) fn quadratic_patch_fluxes(&self, u: &[T], loads: &mut CellLoads) -> Vec<f64> {
+    pub(super) fn quadratic_patch_fluxes(
+        &self,
+        u: &[T],
+        function: &PrimalDualPair,
+        loads: &mut CellLoads,
+    ) -> Vec<f64> {
         let (corners, starts) = self.corners();
         let neighbours = Neighbours::new(self.mesh);
-        let cells = self.patch_data(u, &neighbours, loads);
+        let cells = self.patch_data((u, function), &neighbours, loads);
         let mut given: Vec<_> = loads.neumann.iter().chain(&loads.contact).collect();
         given.sort_unstable_by_key(|(place, _)| *place);
         let patches = Patches { space: self, neighbours, cells, given, corners, starts };
@@ -96,12 +107,18 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         flux
     }
 
-    fn patch_data(&self, u: &[T], neighbours: &Neighbours, loads: &mut CellLoads) -> Vec<CellData> {
+    fn patch_data(
+        &self,
+        (u, function): (&[T], &PrimalDualPair),
+        neighbours: &Neighbours,
+        loads: &mut CellLoads,
+    ) -> Vec<CellData> {
         let corners: Vec<BasisAt<f64>> =
             (0..=D).map(|k| self.basis_at(&Node::vertex(k).centre(D))).collect();
         let (table, n_cells) = (self.stiffness_table(), self.mesh.n_cells());
         let data = cells::map(n_cells, &|cells: Range<usize>| {
-            cells.map(|cell| self.patch_data_in(cell, u, (&corners, &table))).collect::<Vec<_>>()
+            let in_cell = |cell| self.patch_data_in(cell, (u, function), (&corners, &table));
+            cells.map(in_cell).collect::<Vec<_>>()
         });
         let mut data: Vec<CellData> = data.into_iter().flatten().collect();
         if loads.surrounded.contains(&true) {
@@ -176,7 +193,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
     fn patch_data_in(
         &self,
         cell: usize,
-        u: &[T],
+        (u, function): (&[T], &PrimalDualPair),
         (corners, table): (&[BasisAt<f64>], &StiffnessTable<T>),
     ) -> CellData {
         let n = self.per_cell();
@@ -185,11 +202,18 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         let alpha = self.alpha(cell);
         let varying = self.varying_in(cell);
         let mut data = CellData::default();
+        let admissible = Admissible { bounds: [None, None], ..self.admissible_in(function, cell) };
         for (k, basis) in corners.iter().enumerate() {
             let slope = |m: usize| -> f64 {
                 local.iter().zip(&basis.derivatives).take(n).map(|(u, d)| u * d[m]).sum()
             };
             let slopes: [f64; 4] = std::array::from_fn(|m| if m <= D { slope(m) } else { 0.0 });
+            let vertex = Node::vertex(k).centre(D);
+            let (_, mut difference) = admissible.at(&vertex, &Point::zeros());
+            for (gradient, slope) in admissible.gradients.iter().zip(&slopes) {
+                difference -= gradient * *slope;
+            }
+            data.difference[k][..D].copy_from_slice(difference.as_slice());
             let coefficient = match varying {
                 None => alpha.to_f64(),
                 Some(_) => {
@@ -347,6 +371,16 @@ impl<T: Real, const D: usize> Patches<'_, '_, T, D> {
             }
             product
         });
+        // the products of what the part aims at, phi times the difference of gradients, with the same functions
+        let differences = &self.cells[cell as usize].difference;
+        let targets: [Point<f64, D>; 4] = std::array::from_fn(|j| {
+            let mut target = Point::zeros();
+            for (k, difference) in differences.iter().enumerate().take(D + 1) {
+                let product = triple(D, [j, usize::from(own), k]) / d;
+                target += Point::from_fn(|axis, _| product * difference[axis]);
+            }
+            target
+        });
         let mut balance = total;
         let densities = || {
             let of_facet =
@@ -360,7 +394,7 @@ impl<T: Real, const D: usize> Patches<'_, '_, T, D> {
                 continue;
             }
             let unknown = slot.first + p;
-            let mut force = scale * products[j].dot(&along);
+            let mut force = scale * products[j].dot(&along) - targets[j].dot(&along);
             for (other, facet, (q, k)) in densities() {
                 let weight = if j == k { 2.0 } else { 1.0 } * scale;
                 let product = weight * along.dot(&(points[k] - points[facet]));

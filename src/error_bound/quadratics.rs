@@ -36,6 +36,8 @@ pub(super) type Products = [[f64; 4]; 4];
 pub(super) struct CellLoads {
     /// By cell and unknown.
     pub values: Vec<f64>,
+    /// The same without multipliers.
+    pub given: Vec<f64>,
     /// By facet the products of Neumann data, which are among the loads.
     pub neumann: Vec<(Place, Products)>,
     /// By facet the products of contact forces.
@@ -77,7 +79,6 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         forces: &[NodeForce],
     ) -> Result<CellLoads, NoBound> {
         let (n, n_cells) = (self.per_cell(), self.mesh.n_cells());
-        let load = self.load_by_cell()?;
         let mut multipliers: Vec<f64> = residual.iter().map(|r| -r).collect();
         let is_pinned = |unknown: usize| self.pins && matches!(bounds[unknown], Bound::Fixed(_));
         for force in forces {
@@ -117,23 +118,14 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
             Some([_, held]) if *held > 0.0 => kind as f64 * volume(cell) / held,
             Some([all, _]) => volume(cell) / all,
         };
-        let mut values = vec![0.0; n_cells * n];
+        let given = self.loads_less_reaction(u)?;
+        let mut values = given.clone();
         let fill = |cells: Range<usize>, out: &mut [f64]| {
             for (cell, out) in cells.zip(out.chunks_exact_mut(n)) {
-                let mut products = zero_local();
-                if let Some(reaction) = &self.reaction {
-                    let volume = self.mesh.geometry(cell).volume;
-                    reaction.add(self.mesh, cell, volume, &mut products);
-                }
-                let local = self.local_values(cell, u);
                 let kind = usize::from(!self.broken && is_held(cell));
                 for (i, out) in out.iter_mut().enumerate() {
                     let unknown = self.dofs.of(cell, i);
-                    *out = load.get(cell * n + i).map_or(0.0, |b| b.to_f64());
                     *out += part_of(cell, kind, unknown) * multipliers[unknown];
-                    for (c, value) in products[i].iter().zip(&local).take(n) {
-                        *out -= c.to_f64() * value;
-                    }
                 }
             }
             Ok::<(), Infallible>(())
@@ -148,7 +140,32 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         let functionals: Vec<Products> = terms.iter().map(functional).collect();
         let neumann = self.neumann_products()?;
         let contact = contact_products(forces, &functionals);
-        Ok(CellLoads { values, neumann, contact, functionals, surrounded })
+        Ok(CellLoads { values, given, neumann, contact, functionals, surrounded })
+    }
+
+    /// The load less the reaction term of a discrete function, by cell and unknown.
+    fn loads_less_reaction(&self, u: &[T]) -> Result<Vec<f64>, NoBound> {
+        let (n, n_cells) = (self.per_cell(), self.mesh.n_cells());
+        let load = self.load_by_cell()?;
+        let mut loads = vec![0.0; n_cells * n];
+        let fill = |cells: Range<usize>, out: &mut [f64]| {
+            for (cell, out) in cells.zip(out.chunks_exact_mut(n)) {
+                let own = load.get(cell * n..).unwrap_or_default();
+                out.iter_mut().zip(own).for_each(|(out, load)| *out = load.to_f64());
+                let Some(reaction) = &self.reaction else { continue };
+                let mut products = zero_local();
+                let volume = self.mesh.geometry(cell).volume;
+                reaction.add(self.mesh, cell, volume, &mut products);
+                let local = self.local_values(cell, u);
+                for (i, out) in out.iter_mut().enumerate() {
+                    let terms = products[i].iter().zip(&local).take(n);
+                    *out -= terms.map(|(c, value)| c.to_f64() * value).sum::<f64>();
+                }
+            }
+            Ok::<(), Infallible>(())
+        };
+        let Ok(()) = cells::for_each(n_cells, &|c| c * n, &mut loads, &fill);
+        Ok(loads)
     }
 
     /// Whether the integral of a basis function over a cell is positive, but for rounding.
@@ -251,7 +268,7 @@ fn contact_products(forces: &[NodeForce], functionals: &[Products]) -> Vec<(Plac
 }
 
 /// The integral of `lambda_a lambda_j lambda_k` over a simplex of a dimension and of measure one.
-fn triple(dimension: usize, [a, j, k]: [usize; 3]) -> f64 {
+pub(super) fn triple(dimension: usize, [a, j, k]: [usize; 3]) -> f64 {
     let d = dimension as f64;
     let equal = usize::from(a == j) + usize::from(j == k) + usize::from(a == k);
     [1.0, 2.0, 0.0, 6.0][equal] / ((d + 1.0) * (d + 2.0) * (d + 3.0))

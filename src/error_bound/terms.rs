@@ -166,7 +166,7 @@ impl FacetFlux {
 
 /// How far a linear function with these values at vertices can be taken from its mean, at most all the way,
 /// with the sign of the mean everywhere.
-fn limit(mean: f64, values: &[f64]) -> f64 {
+pub(super) fn limit(mean: f64, values: &[f64]) -> f64 {
     let deepest = values.iter().map(|v| mean.signum() * (mean - v)).fold(0.0, f64::max);
     if deepest > mean.abs() { mean.abs() / deepest } else { 1.0 }
 }

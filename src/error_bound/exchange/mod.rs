@@ -1,0 +1,49 @@
+//! Multipliers exchanged for flux between cells in contact.
+//!
+//! Where an obstacle binds the unknowns of two neighbouring cells, the multipliers of the two may carry a part of the
+//! flux through their facet: the sum of both is determined by the discrete equations, its division is not, and
+//! over-penalties have no flux where jumps vanish. A number `e` added to the flux from `K` to `K'`, taken from
+//! the multiplier of `K` and given to that of `K'`, keeps the balance of both cells. The square of the bound
+//! is a quadratic polynomial in `e`,
+//!
+//! ```text
+//! |alpha^-1/2 (alpha grad v - q)|^2 over K and K' + 2 (|mu|, distance of v from the obstacle) over K and K'
+//! ```
+//!
+//! Facet by facet the least value is taken, among those numbers that keep the signs of both multipliers. Through a
+//! Dirichlet facet the flux is free, and `K` is alone. Cells beside those in contact take part: their multipliers
+//! may grow, if the distance costs less than the mismatch.
+
+mod linears;
+mod quadratics;
+
+use crate::assemble::space::Space;
+use crate::mesh::{Neighbour, Neighbours};
+use crate::real::Real;
+
+/// Multipliers below this share of the largest one are rounding.
+const ROUNDING: f64 = 1e-10;
+
+impl<T: Real, const D: usize> Space<'_, T, D> {
+    /// The cells of an exchange, those with a multiplier and their neighbours, and by cell its place among them, or
+    /// a larger number.
+    fn cells_of_exchange(
+        &self,
+        presses: impl Fn(usize) -> bool,
+        neighbours: &Neighbours,
+    ) -> (Vec<usize>, Vec<u32>) {
+        let mut places = vec![u32::MAX; self.mesh.n_cells()];
+        let mut numbers = Vec::new();
+        for (cell, place) in places.iter_mut().enumerate() {
+            let beside = |local| match neighbours.across(cell, local) {
+                Neighbour::Cell { cell, .. } => presses(cell as usize),
+                Neighbour::Boundary(_) => false,
+            };
+            if presses(cell) || (0..=D).any(beside) {
+                *place = numbers.len() as u32;
+                numbers.push(cell);
+            }
+        }
+        (numbers, places)
+    }
+}
