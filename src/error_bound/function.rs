@@ -1,6 +1,7 @@
 //! The admissible function of a discrete solution.
 
 use super::PrimalDualPair;
+use crate::algebra::{Bound, Contact};
 use crate::assemble::space::tables::BasisAt;
 use crate::assemble::space::{Place, Space};
 use crate::element::Node;
@@ -57,8 +58,14 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         self.pair_nodes(pair, cell).filter(move |(ends, _)| !ends.contains(&local))
     }
 
-    /// The admissible function of a discrete function: of degree one or two, without a flux.
-    pub(super) fn admissible_function(&self, u: &[T], degree: usize) -> PrimalDualPair {
+    /// The admissible function of a discrete function: of the same degree, without a flux. It has the value of an
+    /// obstacle at nodes all of whose cells are in contact with it.
+    pub(super) fn admissible_function(
+        &self,
+        u: &[T],
+        states: (&[Bound<T>], &[Contact]),
+    ) -> PrimalDualPair {
+        let degree = self.degree;
         let (n_edges, edges) = match degree {
             1 => (0, Vec::new()),
             _ => {
@@ -69,11 +76,58 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         let n_vertices = self.mesh.vertices().len();
         let nodes = Nodes { n_vertices, n_edges, edges: &edges };
         let mut function = self.means(u, &nodes);
+        if let Some(states) = self.states_of_nodes(states, &nodes) {
+            for (value, state) in function.iter_mut().zip(states) {
+                // a value beyond all bounds becomes that of the obstacle
+                *value = match state {
+                    Contact::Inactive => *value,
+                    Contact::Lower => f64::NEG_INFINITY,
+                    Contact::Upper => f64::INFINITY,
+                };
+            }
+        }
         self.clip_at_vertices(&mut function[..n_vertices]);
         if n_edges > 0 {
             self.clip_at_midpoints(&nodes, &mut function);
         }
         PrimalDualPair { degree, function, edges, flux: Vec::new() }
+    }
+
+    /// For each node the obstacle that all unknowns of all cells around touch, where these are no values at the nodes.
+    /// An unknown whose basis function has no positive mean does not count.
+    fn states_of_nodes(
+        &self,
+        (bounds, contact): (&[Bound<T>], &[Contact]),
+        nodes: &Nodes<'_>,
+    ) -> Option<Vec<Contact>> {
+        let has_means = self.nodes.iter().any(|node| node.point().is_none());
+        if !has_means || !self.problem.has_obstacle() || contact.len() != bounds.len() {
+            return None;
+        }
+        let decides: Vec<usize> =
+            (0..self.per_cell()).filter(|&i| self.has_positive_mean(i)).collect();
+        let mut states: Vec<Option<Contact>> = vec![None; nodes.n_vertices + nodes.n_edges];
+        for cell in 0..self.mesh.n_cells() {
+            let mut of_unknowns = decides
+                .iter()
+                .map(|&i| self.dofs.of(cell, i))
+                .filter(|&unknown| bounds[unknown].is_inequality())
+                .map(|unknown| contact[unknown]);
+            let first = of_unknowns.next().unwrap_or_default();
+            let obstacle = match first {
+                Contact::Inactive => None,
+                Contact::Lower => self.data.lower.of(self.mesh.region(cell)),
+                Contact::Upper => self.data.upper.of(self.mesh.region(cell)),
+            };
+            let touches = obstacle.is_some() && of_unknowns.all(|state| state == first);
+            let state = if touches { first } else { Contact::Inactive };
+            let vertices = self.mesh.cell(cell).iter().map(|&v| v as usize);
+            for node in vertices.chain(nodes.of_edges(D, cell).map(|(_, node)| node)) {
+                let merged = states[node].is_none_or(|before| before == state);
+                states[node] = Some(if merged { state } else { Contact::Inactive });
+            }
+        }
+        Some(states.into_iter().map(Option::unwrap_or_default).collect())
     }
 
     /// At each node the mean of the values in the cells around, with the coefficient as weights.

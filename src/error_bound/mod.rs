@@ -40,6 +40,7 @@ mod pair;
 mod patches;
 mod quadratic_patches;
 mod quadratics;
+mod shared_multipliers;
 mod smooth_forces;
 mod terms;
 

@@ -105,16 +105,21 @@ impl<T: Real, const D: usize> Discretisation<'_, T, D> {
         }
         let forces = space.contact_forces(inequality, &solution.contact, &residual, u);
         let multipliers = multipliers.as_deref();
-        let function = space.admissible_function(u, space.degree);
+        let function = space.admissible_function(u, (&inequality.bounds, &solution.contact));
         let exchanges = space.problem.has_obstacle() && std::env::var("NOEX").is_err();
         let neighbours = || Neighbours::new(space.mesh);
         let flux = if space.degree == 2 {
-            let mut loads =
-                space.cell_loads(u, &residual, (&inequality.bounds, &solution.contact), &forces)?;
             // multipliers of jumps alone may contain a flux without divergence that alternates between facets
             // and that jumps hardly see: that of WOPSIP has an error of first order in the plane. Its
             // equations, tested with hat functions, are those of a conforming function
-            let mut flux = if self.owns_rows() && inequality.penalised.is_none() {
+            let has_facet_fluxes = self.owns_rows() && inequality.penalised.is_none();
+            let numbers = match has_facet_fluxes {
+                true => None,
+                false => space.node_numbers(&function.edges),
+            };
+            let states = (&inequality.bounds[..], &solution.contact[..]);
+            let mut loads = space.cell_loads(u, &residual, states, &forces, numbers)?;
+            let mut flux = if has_facet_fluxes {
                 space.densities_of_moments(&self.facet_fluxes(u, multipliers, D)?)
             } else {
                 if self.owns_rows() {

@@ -25,6 +25,7 @@ use super::patches::{around, solve};
 use super::quadratics::{
     CellLoads, Products, add, densities, products_on_facet, triple, vertices_of,
 };
+use super::shared_multipliers::SharedNodes;
 use crate::assemble::local::StiffnessTable;
 use crate::assemble::space::tables::BasisAt;
 use crate::assemble::space::{INWARD, Place, Space};
@@ -121,8 +122,8 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
             cells.map(in_cell).collect::<Vec<_>>()
         });
         let mut data: Vec<CellData> = data.into_iter().flatten().collect();
-        if loads.surrounded.contains(&true) {
-            self.divide_multipliers(&data, neighbours, loads);
+        if let Some(shared) = &loads.shared {
+            self.divide_multipliers(&data, neighbours, shared, &mut loads.values);
         }
         let loads = &*loads;
         let n = self.per_cell();
@@ -152,12 +153,14 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         &self,
         data: &[CellData],
         neighbours: &Neighbours,
-        loads: &mut CellLoads,
+        shared: &SharedNodes,
+        values: &mut [f64],
     ) {
-        let (n, surrounded) = (self.per_cell(), &loads.surrounded);
+        let n = self.per_cell();
+        let is_surrounded = |k: usize| shared.surrounded[shared.numbers[k] as usize];
         let fill = |cells: Range<usize>, out: &mut [f64]| {
             for (cell, out) in cells.zip(out.chunks_exact_mut(n)) {
-                if !(0..n).any(|i| surrounded[self.dofs.of(cell, i)]) {
+                if !(0..n).any(|i| is_surrounded(cell * n + i)) {
                     continue;
                 }
                 let mut balance = data[cell].stiffness;
@@ -179,14 +182,14 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
                     }
                 }
                 for (i, out) in out.iter_mut().enumerate() {
-                    if surrounded[self.dofs.of(cell, i)] {
+                    if is_surrounded(cell * n + i) {
                         *out = balance[i];
                     }
                 }
             }
             Ok::<(), Infallible>(())
         };
-        let Ok(()) = cells::for_each(self.mesh.n_cells(), &|c| c * n, &mut loads.values, &fill);
+        let Ok(()) = cells::for_each(self.mesh.n_cells(), &|c| c * n, values, &fill);
     }
 
     /// The data of a cell, without divergence.

@@ -17,6 +17,7 @@ use std::ops::Range;
 
 use super::NoBound;
 use super::contact::NodeForce;
+use super::shared_multipliers::SharedNodes;
 use crate::algebra::{Bound, Contact};
 use crate::assemble::local::zero_local;
 use crate::assemble::space::{Place, Space};
@@ -44,8 +45,8 @@ pub(super) struct CellLoads {
     pub contact: Vec<(Place, Products)>,
     /// By unknown of a cell its functional at `lambda_a lambda_j`.
     pub functionals: Vec<Products>,
-    /// For shared unknowns, whether the unknown is in contact with all others of the cells around.
-    pub surrounded: Vec<bool>,
+    /// The nodes whose multipliers cells share.
+    pub shared: Option<SharedNodes>,
 }
 
 /// `c_Fj` from the products `int_F q.n lambda_j`: `lambda` has on a facet the products
@@ -62,75 +63,48 @@ pub(super) fn densities<const D: usize>(products: &[f64; 4], facet: usize) -> [f
 impl<T: Real, const D: usize> Space<'_, T, D> {
     /// Whether the unknowns of a cell are the values of a continuous quadratic at vertices and midpoints.
     pub(super) fn is_conforming_quadratic(&self) -> bool {
+        !self.broken && self.has_values_of_quadratics()
+    }
+
+    /// Whether the unknowns of a cell are the values of a quadratic at vertices and midpoints.
+    pub(super) fn has_values_of_quadratics(&self) -> bool {
         let is_vertex = |i: usize| self.nodes[i].point().is_some_and(|p| p[i] == 1.0);
-        !self.broken
-            && self.basis_degree == 2
+        self.basis_degree == 2
             && self.per_cell() == D + 1 + edge_vertices(D).len()
             && (0..=D).all(is_vertex)
             && self.nodes[D + 1..].iter().all(|node| node.is_midpoint())
     }
 
-    /// Loads and multipliers by cell; `residual` is that of the inequality.
+    /// Loads and multipliers by cell; `residual` is that of the inequality, `numbers` are those of the nodes whose
+    /// multipliers cells share.
     pub(super) fn cell_loads(
         &self,
         u: &[T],
         residual: &[f64],
         (bounds, contact): (&[Bound<T>], &[Contact]),
         forces: &[NodeForce],
+        numbers: Option<Vec<u32>>,
     ) -> Result<CellLoads, NoBound> {
-        let (n, n_cells) = (self.per_cell(), self.mesh.n_cells());
+        let n = self.per_cell();
         let mut multipliers: Vec<f64> = residual.iter().map(|r| -r).collect();
         let is_pinned = |unknown: usize| self.pins && matches!(bounds[unknown], Bound::Fixed(_));
         for force in forces {
             multipliers[self.dofs.of(force.cell, force.node)] -= force.value;
         }
         (0..multipliers.len()).filter(|&i| is_pinned(i)).for_each(|i| multipliers[i] = 0.0);
-        let volume = |cell: usize| self.mesh.geometry(cell).volume.to_f64();
-        // where the mean of a basis function is not positive, as at vertices in the plane, the multiplier has no
-        // definite sign, and unknowns deep in contact are inactive at random
-        let decides: Vec<bool> = (0..n).map(|i| self.has_positive_mean(i)).collect();
-        // of a shared unknown each cell has the part of its volume, among those in contact if there are any
-        let is_held = |cell: usize| {
-            let is_free = |unknown: usize| {
-                bounds[unknown].is_inequality() && contact.get(unknown) == Some(&Contact::Inactive)
-            };
-            !(0..n).any(|i| decides[i] && is_free(self.dofs.of(cell, i)))
-        };
-        let mut around = vec![[0.0; 2]; if self.broken { 0 } else { self.dofs.size() }];
-        for cell in (0..n_cells).filter(|_| !self.broken) {
-            let kind = usize::from(is_held(cell));
-            (0..n).for_each(|i| around[self.dofs.of(cell, i)][kind] += volume(cell));
-        }
-        let mut surrounded = vec![false; around.len()];
-        for (unknown, surrounded) in surrounded.iter_mut().enumerate() {
-            let is_bound = bounds[unknown].is_inequality() && contact.len() == bounds.len();
-            *surrounded = is_bound && around[unknown][0] == 0.0;
-        }
-        if !self.broken {
-            for f in self.mesh.boundary().iter().filter(|f| f.part != BoundaryPart::Dirichlet) {
-                for i in self.nodes_on(usize::from(f.local)) {
-                    surrounded[self.dofs.of(f.cell as usize, i)] = false;
-                }
-            }
-        }
-        let part_of = |cell: usize, kind: usize, unknown: usize| match around.get(unknown) {
-            None => 1.0,
-            Some([_, held]) if *held > 0.0 => kind as f64 * volume(cell) / held,
-            Some([all, _]) => volume(cell) / all,
-        };
         let given = self.loads_less_reaction(u)?;
         let mut values = given.clone();
-        let fill = |cells: Range<usize>, out: &mut [f64]| {
-            for (cell, out) in cells.zip(out.chunks_exact_mut(n)) {
-                let kind = usize::from(!self.broken && is_held(cell));
-                for (i, out) in out.iter_mut().enumerate() {
-                    let unknown = self.dofs.of(cell, i);
-                    *out += part_of(cell, kind, unknown) * multipliers[unknown];
-                }
+        let shared = match numbers {
+            Some(numbers) => {
+                Some(self.add_multipliers(&multipliers, (bounds, contact), numbers, &mut values))
             }
-            Ok::<(), Infallible>(())
+            None => {
+                for (k, value) in values.iter_mut().enumerate() {
+                    *value += multipliers[self.dofs.of(k / n, k % n)];
+                }
+                None
+            }
         };
-        let Ok(()) = cells::for_each(n_cells, &|c| c * n, &mut values, &fill);
         let terms = self.node_terms(&self.facet_rule, &self.cell_rule);
         let functional = |terms: &Vec<([f64; 4], f64)>| -> Products {
             std::array::from_fn(|a| {
@@ -140,7 +114,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         let functionals: Vec<Products> = terms.iter().map(functional).collect();
         let neumann = self.neumann_products()?;
         let contact = contact_products(forces, &functionals);
-        Ok(CellLoads { values, given, neumann, contact, functionals, surrounded })
+        Ok(CellLoads { values, given, neumann, contact, functionals, shared })
     }
 
     /// The load less the reaction term of a discrete function, by cell and unknown.
@@ -169,7 +143,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
     }
 
     /// Whether the integral of a basis function over a cell is positive, but for rounding.
-    fn has_positive_mean(&self, node: usize) -> bool {
+    pub(super) fn has_positive_mean(&self, node: usize) -> bool {
         let terms = self.cell_rule.iter().map(|(point, w)| w * self.basis_at(point).values[node]);
         terms.sum::<f64>() > MEAN_ROUNDING
     }

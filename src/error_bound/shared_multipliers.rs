@@ -1,0 +1,93 @@
+//! Multipliers of quadratics, divided among the cells of each node.
+//!
+//! Only the sum over the cells of a node is determined: by the equation of the unknown that they share, or, for
+//! over-penalties, by the sum of the equations of the copies of the node, in which jumps do not appear.
+
+use crate::algebra::{Bound, Contact};
+use crate::assemble::space::Space;
+use crate::mesh::BoundaryPart;
+use crate::real::Real;
+
+/// The nodes of quadratics that cells share.
+pub(super) struct SharedNodes {
+    /// By cell and unknown of the cell the number of the node.
+    pub numbers: Vec<u32>,
+    /// For each node whether it lies inside the domain and is in contact with all other nodes of the cells around.
+    pub surrounded: Vec<bool>,
+}
+
+impl<T: Real, const D: usize> Space<'_, T, D> {
+    /// The numbers of the nodes of quadratics, by cell and unknown of the cell: of broken functions those of vertices
+    /// and, after them, of edges; none if the unknowns are other ones than values at vertices and midpoints.
+    pub(super) fn node_numbers(&self, edges: &[u32]) -> Option<Vec<u32>> {
+        let (n, n_cells) = (self.per_cell(), self.mesh.n_cells());
+        if !self.has_values_of_quadratics() {
+            return None;
+        }
+        let n_vertices = self.mesh.vertices().len() as u32;
+        let n_edges = n - (D + 1);
+        let number = |(cell, i): (usize, usize)| match i.checked_sub(D + 1) {
+            _ if !self.broken => self.dofs.of(cell, i) as u32,
+            None => self.mesh.cell(cell)[i],
+            Some(edge) => n_vertices + edges[cell * n_edges + edge],
+        };
+        Some((0..n_cells * n).map(|k| number((k / n, k % n))).collect())
+    }
+
+    /// Adds multipliers, by unknown, to what cells have: of a node each cell has the part of its volume, among those in
+    /// contact if there are any.
+    pub(super) fn add_multipliers(
+        &self,
+        multipliers: &[f64],
+        (bounds, contact): (&[Bound<T>], &[Contact]),
+        numbers: Vec<u32>,
+        values: &mut [f64],
+    ) -> SharedNodes {
+        let (n, n_cells) = (self.per_cell(), self.mesh.n_cells());
+        let volume = |cell: usize| self.mesh.geometry(cell).volume.to_f64();
+        let held: Vec<bool> = self.cells_in_contact(bounds, contact);
+        let n_nodes = numbers.iter().max().map_or(0, |&most| most as usize + 1);
+        let mut around = vec![[0.0; 2]; n_nodes];
+        let mut sums = vec![0.0; n_nodes];
+        let mut surrounded = vec![contact.len() == bounds.len(); n_nodes];
+        for (k, &node) in numbers.iter().enumerate() {
+            let (cell, node, unknown) = (k / n, node as usize, self.dofs.of(k / n, k % n));
+            around[node][usize::from(held[cell])] += volume(cell);
+            // a shared unknown has one multiplier
+            sums[node] =
+                if self.broken { sums[node] + multipliers[unknown] } else { multipliers[unknown] };
+            surrounded[node] &= held[cell] && bounds[unknown].is_inequality();
+        }
+        for f in self.mesh.boundary() {
+            if self.broken || f.part != BoundaryPart::Dirichlet {
+                for i in self.nodes_on(usize::from(f.local)) {
+                    surrounded[numbers[f.cell as usize * n + i] as usize] = false;
+                }
+            }
+        }
+        for cell in 0..n_cells {
+            for k in cell * n..(cell + 1) * n {
+                let [free, in_contact] = around[numbers[k] as usize];
+                let part = match in_contact > 0.0 {
+                    true => f64::from(u8::from(held[cell])) * volume(cell) / in_contact,
+                    false => volume(cell) / free,
+                };
+                values[k] += part * sums[numbers[k] as usize];
+            }
+        }
+        SharedNodes { numbers, surrounded }
+    }
+
+    /// For each cell whether no bounded unknown with a basis function of positive mean is free: where the mean is not
+    /// positive, as at vertices in the plane, the multiplier has no definite sign, and unknowns deep in contact are
+    /// inactive at random.
+    fn cells_in_contact(&self, bounds: &[Bound<T>], contact: &[Contact]) -> Vec<bool> {
+        let decides: Vec<usize> =
+            (0..self.per_cell()).filter(|&i| self.has_positive_mean(i)).collect();
+        let is_free = |unknown: usize| {
+            bounds[unknown].is_inequality() && contact.get(unknown) == Some(&Contact::Inactive)
+        };
+        let is_held = |cell| !decides.iter().any(|&i| is_free(self.dofs.of(cell, i)));
+        (0..self.mesh.n_cells()).map(is_held).collect()
+    }
+}
