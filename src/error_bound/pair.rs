@@ -106,7 +106,7 @@ impl<T: Real, const D: usize> Discretisation<'_, T, D> {
         let forces = space.contact_forces(inequality, &solution.contact, &residual, u);
         let multipliers = multipliers.as_deref();
         let function = space.admissible_function(u, (&inequality.bounds, &solution.contact));
-        let exchanges = space.problem.has_obstacle() && std::env::var("NOEX").is_err();
+        let exchanges = space.problem.has_obstacle();
         let neighbours = || Neighbours::new(space.mesh);
         let flux = if space.degree == 2 {
             // multipliers of jumps alone may contain a flux without divergence that alternates between facets
@@ -130,6 +130,9 @@ impl<T: Real, const D: usize> Discretisation<'_, T, D> {
             space.balance(&loads, &mut flux);
             if exchanges {
                 space.exchange_quadratics(&function, &loads, &neighbours(), &mut flux);
+            }
+            if space.problem.has_gap() && D > 1 {
+                space.exchange_forces(&function, &mut flux);
             }
             flux
         } else {

@@ -411,10 +411,16 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         terms
     }
 
+    /// The constant of the trace inequality on a facet: for `w` with mean zero in a cell the divergence theorem for
+    /// `w^2 (x - a_F)` and the inequality of Payne and Weinberger give
+    /// `|w|_F^2 <= |F| / |K| (1/pi^2 + 2/(pi D)) h_K^2 |grad w|_K^2`.
+    pub(super) fn constant_of_trace(&self, place: Place) -> f64 {
+        let volume = self.mesh.geometry(place.0).volume.to_f64();
+        let square = self.facet_measure(place) / volume * (1.0 / (PI * PI) + 2.0 / (PI * D as f64));
+        square.sqrt() * self.mesh.cell_diameter(place.0).to_f64()
+    }
+
     /// The terms of the boundary.
-    ///
-    /// For `w` with mean zero in a cell the divergence theorem for `w^2 (x - a_F)` and the inequality of Payne
-    /// and Weinberger give `|w|_F^2 <= |F| / |K| (1/pi^2 + 2/(pi D)) h_K^2 |grad w|_K^2`.
     pub(super) fn boundary_terms(&self, pair: &PrimalDualPair) -> Result<BoundaryTerms, NoBound> {
         let n_cells = self.mesh.n_cells();
         let zeros = |is_needed: bool| vec![0.0; if is_needed { n_cells } else { 0 }];
@@ -424,13 +430,6 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         let mut terms = BoundaryTerms {
             traces: zeros(has_fluxes || has_gap && pair.degree > 1),
             contact: zeros(has_gap),
-        };
-        let norm = |(cell, _): Place, measure: f64, square: f64| {
-            let volume = self.mesh.geometry(cell).volume.to_f64();
-            let constant = measure / volume
-                * (1.0 / (PI * PI) + 2.0 / (PI * D as f64))
-                * self.mesh.cell_diameter(cell).to_f64().powi(2);
-            (constant * square).sqrt()
         };
         if has_fluxes {
             for (place, group) in self.grouped_facets_of(BoundaryPart::Neumann) {
@@ -442,7 +441,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
                     let flux = flux.scale * flux.at(&facet_to_cell(point, place.1)) / measure;
                     square += weight * measure * (datum - flux).powi(2);
                 }
-                terms.traces[place.0] += norm(place, measure, square);
+                terms.traces[place.0] += self.constant_of_trace(place) * square.sqrt();
             }
         }
         let (mut least, mut largest) = (0.0_f64, 0.0_f64);
@@ -463,7 +462,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
             terms.contact[place.0] += force.scale * sum;
             if pair.degree > 1 {
                 let measure = self.facet_measure(place);
-                terms.traces[place.0] += norm(place, measure, left / measure);
+                terms.traces[place.0] += self.constant_of_trace(place) * (left / measure).sqrt();
             }
         }
         match -least > FORCE_ROUNDING * largest {

@@ -251,11 +251,17 @@ fn unstructured_meshes() {
 
 #[test]
 fn the_factor_of_the_over_penalty_does_not_matter() {
-    for scene in [scenes::radial::<2>(1.0), scenes::signorini_harmonic::<2>()] {
-        let mesh = scene.domain.mesh(16).unwrap();
+    let scenes = [
+        scenes::radial::<2>(1.0),
+        scenes::signorini_harmonic::<2>(),
+        scenes::ball_2d(),
+        scenes::torsion_2d(5.0),
+    ];
+    for scene in scenes {
+        let mesh = scene.domain.mesh(32).unwrap();
         let total = |name: &str| {
             let (scene, scheme) = placed(&scene, name);
-            bounded(&scene, &mesh, &*scheme).1.total
+            solve(&scene.problem, &mesh, &*scheme).unwrap().bound().unwrap().total
         };
         let ratio = total("wopsip@eta=10") / total("wopsip@eta=1e4");
         assert!((ratio - 1.0).abs() < 0.01, "{}: {ratio}", scene.name);

@@ -26,9 +26,55 @@ fn multipliers_beside_dirichlet_facets_carry_no_flux() {
     }
     let least = totals.iter().copied().fold(f64::INFINITY, f64::min);
     for total in totals {
-        checks.that(total < 1.7 * least, || format!("{total:e} {least:e}"));
+        checks.that(total < 1.3 * least, || format!("{total:e} {least:e}"));
     }
     checks.finish();
+}
+
+/// Deep in contact the multipliers of neighbouring cells may carry the flux between them: without an exchange the bounds
+/// of WOPSIP and of minimal-dissipation LDG are eight times the error where all cells are in contact.
+#[test]
+fn multipliers_in_contact_carry_no_flux() {
+    let mut checks = Checks::default();
+    let mut check = |label: String, effectivity: f64, most: f64| {
+        println!("{label}: {effectivity:.3}");
+        checks.that((1.0..most).contains(&effectivity), || format!("{label}: {effectivity}"));
+    };
+    let effectivity = |scene: &scenes::Scene<1>, name: &str, n: usize| {
+        let (scene, scheme) = placed(scene, name);
+        let (_, bound, error) = bounded(&scene, &scene.domain.mesh(n).unwrap(), &*scheme);
+        bound.total / error
+    };
+    for name in "p1 cr sipg nipg ldg-switch br2 wopsip wopsip:facet-means".split_whitespace() {
+        let of_parabola = effectivity(&scenes::parabola_1d(), name, 32);
+        check(format!("parabola-1d, {name}"), of_parabola, 2.0);
+    }
+    for name in "p2 sipg-p2 nipg-p2 br2-p2 wopsip-p2 wopsip-p2:cell-means".split_whitespace() {
+        let of_parabola = effectivity(&scenes::parabola_1d(), name, 16);
+        check(format!("parabola-1d, {name}"), of_parabola, 2.3);
+        let of_two_obstacles = effectivity(&scenes::bilateral_1d(), name, 16);
+        check(format!("bilateral-1d, {name}"), of_two_obstacles, 3.0);
+    }
+    let ball = scenes::ball_2d();
+    for name in "p1 cr sipg ldg-switch br2 wopsip p2 sipg-p2 wopsip-p2".split_whitespace() {
+        let (scene, scheme) = placed(&ball, name);
+        let (_, bound, error) = bounded(&scene, &scene.domain.mesh(16).unwrap(), &*scheme);
+        check(format!("ball-2d, {name}"), bound.total / error, 1.6);
+    }
+    checks.finish();
+}
+
+/// Copies of a node of WOPSIP on quadratics share one multiplier beside Dirichlet facets and interfaces too.
+#[test]
+fn copies_of_a_node_share_their_multipliers() {
+    let scene = scenes::torsion_2d(5.0);
+    let total = |name: &str| {
+        let (scene, scheme) = placed(&scene, name);
+        let mesh = scene.domain.mesh::<f64>(16).unwrap();
+        solve(&scene.problem, &mesh, &*scheme).unwrap().bound().unwrap().total
+    };
+    let ratio = total("wopsip-p2") / total("sipg-p2");
+    assert!(ratio < 1.7, "{ratio}");
 }
 
 /// Vertices of conforming quadratics deep in contact are inactive at random, and the flux there does not know it.

@@ -14,6 +14,8 @@
 //! Dirichlet facet the flux is free, and `K` is alone. Cells beside those in contact take part: their multipliers
 //! may grow, if the distance costs less than the mismatch.
 
+mod cells;
+mod forces;
 mod linears;
 mod quadratics;
 

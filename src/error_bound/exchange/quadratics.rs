@@ -5,92 +5,19 @@
 //! from its counterpart on the other side changes the multipliers of the two cells at vertex `j` alone; a number
 //! added to `c_AA` and taken from `c_BB` changes that of the cell at `A` and `B`.
 
-use std::f64::consts::PI;
-
 use super::ROUNDING;
+use super::cells::{CellInContact, Cells};
 use crate::assemble::space::{Place, Space};
 use crate::error_bound::PrimalDualPair;
 use crate::error_bound::quadratics::{CellLoads, vertices_of};
 use crate::error_bound::terms::limit;
 use crate::mesh::{BoundaryPart, Neighbour, Neighbours};
-use crate::quadrature::Rule;
-use crate::real::{Point, Real, point_f64};
+use crate::real::Real;
 
 /// Visits of each number: the mass matrix of fluxes has a condition that does not grow with the number of cells.
 const SWEEPS: usize = 8;
 
-/// The degree of products of two fluxes.
-const DEGREE: usize = 4;
-
-/// A cell of the exchange, but for the products of its fluxes.
-struct CellInContact {
-    /// The number of the cell.
-    number: usize,
-    /// The multiplier at the vertices.
-    multiplier: [f64; 4],
-    /// The integrals of the distances of the function from the lower and the upper obstacle times barycentric
-    /// coordinates.
-    gaps: [[f64; 4]; 2],
-    /// Products of the gradient of the function with the fluxes.
-    gradient: [f64; 16],
-    /// By how much the divergence at a vertex grows with a density there.
-    divergence: f64,
-    /// Whether each of the two obstacles is given.
-    is_given: [bool; 2],
-    /// The square of the energy norm of the function.
-    energy: f64,
-    /// The factor of the norm of a function without mean in the inequality of Payne and Weinberger, over the root of
-    /// the coefficient and of `(D + 1) (D + 2)` over the volume: by it the values of a linear function
-    /// at the vertices count.
-    variation: f64,
-    /// Whether the multiplier has one sign in the cell: otherwise its variation counts besides, and grows with numbers
-    /// that make the mismatch smaller.
-    has_one_sign: bool,
-}
-
-impl CellInContact {
-    /// The sign of the multiplier in the mean.
-    fn mean(&self) -> f64 {
-        self.multiplier.iter().sum()
-    }
-    /// How far the multiplier at a vertex may fall, times its sign.
-    fn room(&self, sign: f64, vertex: usize) -> f64 {
-        (sign * self.multiplier[vertex]).max(0.0) / self.divergence
-    }
-    /// The integral of distance and barycentric coordinate by which the complementarity grows with a density.
-    fn gap(&self, sign: f64, vertex: usize) -> f64 {
-        self.divergence * self.gaps[usize::from(sign < 0.0)][vertex]
-    }
-}
-
-/// The cells of the exchange.
-struct Cells<'f, const D: usize> {
-    cells: Vec<CellInContact>,
-    /// By cell the products of its fluxes with each other.
-    products: Vec<f64>,
-    flux: &'f mut [f64],
-}
-
 impl<const D: usize> Cells<'_, D> {
-    /// The number of fluxes of a cell.
-    const N: usize = (D + 1) * (D + 1);
-
-    /// Half of the derivative of the square of the mismatch of a cell by one of its numbers.
-    fn slope(&self, k: usize, number: usize) -> f64 {
-        let row = &self.products[(k * Self::N + number) * Self::N..][..Self::N];
-        let flux = &self.flux[self.cells[k].number * Self::N..][..Self::N];
-        let products = row.iter().zip(flux).map(|(p, c)| p * c);
-        products.sum::<f64>() - self.cells[k].gradient[number]
-    }
-    /// The square of the mismatch of a cell.
-    fn mismatch(&self, k: usize) -> f64 {
-        let flux = &self.flux[self.cells[k].number * Self::N..][..Self::N];
-        let of_cell = &self.cells[k];
-        let term =
-            |(number, c): (usize, &f64)| c * (self.slope(k, number) - of_cell.gradient[number]);
-        (flux.iter().enumerate().map(term).sum::<f64>() + of_cell.energy).max(0.0)
-    }
-
     /// Moves the multiplier of a cell towards its mean, until it has one sign, by numbers inside the cell: if that costs
     /// less than what it has of the other sign counts for.
     fn make_sign_definite(&mut self, k: usize) {
@@ -111,15 +38,6 @@ impl<const D: usize> Cells<'_, D> {
         } else {
             self.cells[k].has_one_sign = true;
         }
-    }
-
-    fn product(&self, k: usize, row: usize, column: usize) -> f64 {
-        self.products[(k * Self::N + row) * Self::N + column]
-    }
-    fn add(&mut self, k: usize, number: usize, vertex: usize, exchange: f64) {
-        let cell = &mut self.cells[k];
-        self.flux[cell.number * Self::N + number] += exchange;
-        cell.multiplier[vertex] -= cell.divergence * exchange;
     }
 
     /// Exchanges multipliers of two cells at a vertex of their facet, by its numbers in the two cells.
@@ -198,20 +116,9 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         let largest = (0..multipliers.len()).map(strength).fold(0.0, f64::max);
         let presses = |cell: usize| strength(cell) > ROUNDING * largest;
         let (numbers, places) = self.cells_of_exchange(presses, neighbours);
-        let rule = Rule::new(D, DEGREE);
-        let square = (D + 1) * (D + 1);
-        let mut products = vec![0.0; numbers.len() * square * square];
-        let in_contact = |(&number, products): (&usize, &mut [f64])| {
-            let multiplier = if presses(number) { multipliers[number] } else { [0.0; 4] };
-            self.quadratic_in_contact(number, function, multiplier, (&rule, products))
-        };
-        let cells: Vec<CellInContact> = numbers
-            .iter()
-            .zip(products.chunks_exact_mut(square * square))
-            .map(in_contact)
-            .collect();
-        let n_cells = cells.len();
-        let mut cells = Cells::<D> { cells, products, flux };
+        let multiplier = |cell: usize| if presses(cell) { multipliers[cell] } else { [0.0; 4] };
+        let mut cells = self.cells_with_products(&numbers, multiplier, function, flux);
+        let n_cells = cells.cells.len();
         (0..n_cells).for_each(|k| cells.make_sign_definite(k));
         for _ in 0..SWEEPS {
             for here in 0..n_cells {
@@ -267,58 +174,5 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
             std::array::from_fn(|k| if k <= D { value(k) } else { 0.0 })
         };
         (0..self.mesh.n_cells()).map(of_cell).collect()
-    }
-
-    fn quadratic_in_contact(
-        &self,
-        number: usize,
-        function: &PrimalDualPair,
-        multiplier: [f64; 4],
-        (rule, products): (&Rule, &mut [f64]),
-    ) -> CellInContact {
-        let n = (D + 1) * (D + 1);
-        let volume = self.mesh.geometry(number).volume.to_f64();
-        let per_volume = 1.0 / (D as f64 * volume);
-        let alpha = self.alpha(number).to_f64();
-        let admissible = self.admissible_in(function, number);
-        let mut corners = [Point::<f64, D>::zeros(); 4];
-        for (corner, &v) in corners.iter_mut().zip(self.mesh.cell(number)) {
-            *corner = point_f64(&self.mesh.vertices()[v as usize]);
-        }
-        let mut gaps = [[0.0; 4]; 2];
-        let (mut of_gradient, mut energy) = ([0.0; 16], 0.0);
-        for (point, weight) in rule.iter() {
-            let x = self.cell_point(point, number);
-            let weight = weight * volume;
-            let (value, gradient) = admissible.at(point, &x);
-            energy += weight * alpha * gradient.norm_squared();
-            for (k, sign) in [1.0, -1.0].into_iter().enumerate() {
-                let distance = admissible.bounds[k].map_or(0.0, |psi| sign * (value - psi.at(&x)));
-                (0..=D).for_each(|j| gaps[k][j] += weight * point[j] * distance);
-            }
-            let mut fluxes = [Point::<f64, D>::zeros(); 16];
-            for (facet, corner) in corners.iter().enumerate().take(D + 1) {
-                let along = (x - corner) * per_volume;
-                (0..=D).for_each(|j| fluxes[facet * (D + 1) + j] = along * point[j]);
-            }
-            for a in 0..n {
-                of_gradient[a] += weight * gradient.dot(&fluxes[a]);
-                for b in 0..n {
-                    products[a * n + b] += weight / alpha * fluxes[a].dot(&fluxes[b]);
-                }
-            }
-        }
-        CellInContact {
-            number,
-            multiplier,
-            gaps,
-            gradient: of_gradient,
-            divergence: (D + 1) as f64 * per_volume,
-            is_given: admissible.bounds.map(|bound| bound.is_some()),
-            energy,
-            variation: admissible.diameter / PI
-                * (volume / (alpha * ((D + 1) * (D + 2)) as f64)).sqrt(),
-            has_one_sign: false,
-        }
     }
 }
