@@ -132,7 +132,7 @@ impl<T: Real, const D: usize> Discretisation<'_, T, D> {
                 space.exchange_quadratics(&function, &loads, &neighbours(), &mut flux);
             }
             if space.problem.has_gap() && D > 1 {
-                space.exchange_forces(&function, &mut flux);
+                space.exchange_forces(&function, &neighbours(), &mut flux);
             }
             flux
         } else {

@@ -2,20 +2,25 @@
 //!
 //! On a contact facet `F` the normal flux is the contact force, which must not be negative. A number added to the
 //! density `c_Fj` at one vertex and taken from that at another keeps the force of the facet; taken from
-//! `c_jj` and added to that of the other vertex it keeps the divergence in the cell. What changes is the mismatch, and
-//! the complementarity of the contact force.
+//! `c_jj` and added to that of the other vertex it keeps the divergence in the cell. A number taken from the density
+//! of a contact facet at a vertex may also leave through another facet at that vertex, and through those of further
+//! cells around the vertex, until it comes to another contact facet there: divergences at a vertex depend on the
+//! sum of its densities. What changes is the mismatch, and the complementarity of the contact force.
 
 use super::cells::Cells;
 use crate::assemble::space::{Place, Space};
 use crate::error_bound::PrimalDualPair;
 use crate::error_bound::quadratics::vertices_of;
 use crate::error_bound::terms::limit;
-use crate::mesh::BoundaryPart;
+use crate::mesh::{BoundaryPart, Neighbour, Neighbours};
 use crate::quadrature::facet_to_cell;
 use crate::real::Real;
 
 /// Visits of each pair of vertices of each facet.
 const SWEEPS: usize = 4;
+
+/// The largest number of cells between two contact facets that exchange forces.
+const LONGEST: usize = 3;
 
 /// A contact facet.
 struct ContactFacet {
@@ -28,6 +33,18 @@ struct ContactFacet {
     variation: f64,
     /// Whether the force is nowhere negative.
     has_one_sign: bool,
+}
+
+/// The facets and cells around a vertex.
+#[derive(Clone, Copy)]
+struct Around<'f> {
+    /// The contact facets, sorted, and the number of that where chains begin.
+    facets: &'f [ContactFacet],
+    here: usize,
+    /// The numbers of the cells of the exchange in the mesh.
+    numbers: &'f [usize],
+    neighbours: &'f Neighbours,
+    vertex: u32,
 }
 
 impl<const D: usize> Cells<'_, D> {
@@ -51,8 +68,8 @@ impl<const D: usize> Cells<'_, D> {
         let mut values = [mean; 4];
         vertices_of::<D>(at.1).for_each(|j| values[j] = self.force(at, j));
         let share = limit(mean, &values[..=D]);
-        facet.has_one_sign = mean > 0.0;
-        if share == 1.0 || mean <= 0.0 {
+        facet.has_one_sign = mean >= 0.0;
+        if share == 1.0 || mean < 0.0 {
             return;
         }
         let squares: f64 = values[..=D].iter().map(|c| (c - mean).powi(2)).sum();
@@ -66,28 +83,52 @@ impl<const D: usize> Cells<'_, D> {
         }
     }
 
+    /// The change of numbers, each with a sign, that makes the square of the mismatch and twice a linear term least;
+    /// numbers of a cell follow each other.
+    fn least_change(&self, terms: &[(usize, usize, f64)], linear: f64) -> f64 {
+        let (mut slope, mut curvature) = (linear, 0.0);
+        for (i, &(k, row, sign)) in terms.iter().enumerate() {
+            slope += sign * self.slope(k, row);
+            curvature += self.product(k, row, row);
+            for &(other, column, of_other) in &terms[..i] {
+                if other == k {
+                    curvature += 2.0 * sign * of_other * self.product(k, row, column);
+                }
+            }
+        }
+        -slope / curvature
+    }
+
     /// Exchanges the contact force of a facet between two of its vertices.
     fn exchange_force(&mut self, facet: &ContactFacet, [a, b]: [usize; 2]) {
         let (k, local) = facet.at;
         let terms = [
-            (local * (D + 1) + a, 1.0),
-            (local * (D + 1) + b, -1.0),
-            (a * (D + 2), -1.0),
-            (b * (D + 2), 1.0),
+            (k, local * (D + 1) + a, 1.0),
+            (k, local * (D + 1) + b, -1.0),
+            (k, a * (D + 2), -1.0),
+            (k, b * (D + 2), 1.0),
         ];
-        let slope: f64 = terms.iter().map(|(number, sign)| sign * self.slope(k, *number)).sum();
-        let mut curvature = 0.0;
-        for (row, sign) in terms {
-            for (column, other) in terms {
-                curvature += sign * other * self.product(k, row, column);
-            }
-        }
-        let least = -(slope + facet.gaps[a] - facet.gaps[b]) / curvature;
+        let least = self.least_change(&terms, facet.gaps[a] - facet.gaps[b]);
         let (most, fewest) = (self.force(facet.at, b), -self.force(facet.at, a));
         let change = least.min(most.max(0.0)).max(fewest.min(0.0));
         if change.is_finite() {
             self.add_to_force(facet.at, a, change);
             self.add_to_force(facet.at, b, -change);
+        }
+    }
+
+    /// Exchanges the contact forces of two facets at a vertex, along a chain of cells: numbers with alternating signs,
+    /// two for each cell.
+    fn exchange_along(&mut self, chain: &[(usize, usize, f64)], [gap, gap_of_last]: [f64; 2]) {
+        let number = |(k, number, _): (usize, usize, f64)| self.cells[k].number * Self::N + number;
+        let Some((first, last)) = chain.first().zip(chain.last()) else { return };
+        let [first, last] = [*first, *last].map(|end| self.flux[number(end)].max(0.0));
+        let least = self.least_change(chain, gap_of_last - gap);
+        let change = least.min(first).max(-last);
+        if change.is_finite() {
+            for &(k, number, sign) in chain {
+                self.flux[self.cells[k].number * Self::N + number] += sign * change;
+            }
         }
     }
 }
@@ -97,12 +138,16 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
     pub(in crate::error_bound) fn exchange_forces(
         &self,
         function: &PrimalDualPair,
+        neighbours: &Neighbours,
         flux: &mut [f64],
     ) {
         let facets: Vec<(Place, usize)> = self.grouped_facets_of(BoundaryPart::Contact).collect();
-        let mut numbers: Vec<usize> = facets.iter().map(|((cell, _), _)| *cell).collect();
-        numbers.sort_unstable();
-        numbers.dedup();
+        let mut touches = vec![false; self.mesh.vertices().len()];
+        for ((cell, local), _) in &facets {
+            self.mesh.facet_vertices(*cell, *local).for_each(|v| touches[v as usize] = true);
+        }
+        let touches = |cell: &usize| self.mesh.cell(*cell).iter().any(|&v| touches[v as usize]);
+        let numbers: Vec<usize> = (0..self.mesh.n_cells()).filter(touches).collect();
         let mut cells = self.cells_with_products(&numbers, |_| [0.0; 4], function, flux);
         let in_contact = |&(place, group): &(Place, usize)| {
             let gap = self.data.gap.of(group)?;
@@ -125,14 +170,60 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
             })
         };
         let mut facets: Vec<ContactFacet> = facets.iter().filter_map(in_contact).collect();
+        facets.sort_unstable_by_key(|facet| facet.at);
         facets.iter_mut().for_each(|facet| cells.make_force_positive(facet));
+        facets.retain(|facet| facet.has_one_sign);
         for _ in 0..SWEEPS {
-            for facet in facets.iter().filter(|facet| facet.has_one_sign) {
+            for (here, facet) in facets.iter().enumerate() {
+                for j in vertices_of::<D>(facet.at.1) {
+                    let vertex = self.mesh.cell(numbers[facet.at.0])[j];
+                    let around =
+                        Around { facets: &facets, here, numbers: &numbers, neighbours, vertex };
+                    let mut chain = [(0, 0, 0.0); 2 * LONGEST];
+                    chain[0] = (facet.at.0, facet.at.1 * (D + 1) + j, -1.0);
+                    self.follow(&mut cells, &around, &mut chain, (facet.at, 1));
+                }
                 for a in vertices_of::<D>(facet.at.1) {
                     for b in vertices_of::<D>(facet.at.1).filter(|&b| b > a) {
                         cells.exchange_force(facet, [a, b]);
                     }
                 }
+            }
+        }
+    }
+    /// Follows a chain of cells around a vertex through all facets there but that by which it came to the last of its
+    /// cells, and exchanges the contact force at its end with that at its beginning.
+    fn follow(
+        &self,
+        cells: &mut Cells<'_, D>,
+        around: &Around<'_>,
+        chain: &mut [(usize, usize, f64); 2 * LONGEST],
+        ((k, entered), length): (Place, usize),
+    ) {
+        let Around { facets, here, numbers, neighbours, vertex } = *around;
+        let corner = |cell: usize| self.mesh.cell(cell).iter().position(|&v| v == vertex);
+        let Some(j) = corner(numbers[k]) else { return };
+        for local in (0..=D).filter(|&local| local != j && local != entered) {
+            chain[2 * length - 1] = (k, local * (D + 1) + j, 1.0);
+            match neighbours.across(numbers[k], local) {
+                Neighbour::Boundary(_) => {
+                    let last = facets.binary_search_by_key(&(k, local), |facet| facet.at);
+                    if let Some(last) = last.ok().filter(|&last| last > here) {
+                        let gaps = [here, last].map(|facet| {
+                            let facet = &facets[facet];
+                            corner(numbers[facet.at.0]).map_or(0.0, |j| facet.gaps[j])
+                        });
+                        cells.exchange_along(&chain[..2 * length], gaps);
+                    }
+                }
+                Neighbour::Cell { cell, local: across } if length < LONGEST => {
+                    let next = numbers.binary_search(&(cell as usize)).ok();
+                    let Some((next, j)) = next.zip(corner(cell as usize)) else { continue };
+                    let across = usize::from(across);
+                    chain[2 * length] = (next, across * (D + 1) + j, -1.0);
+                    self.follow(cells, around, chain, ((next, across), length + 1));
+                }
+                Neighbour::Cell { .. } => {}
             }
         }
     }
