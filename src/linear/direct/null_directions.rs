@@ -7,12 +7,6 @@ use crate::algebra::dense::extend_basis;
 /// stiffnesses.
 const DEPENDENT: f64 = 1e-2;
 
-/// Least diagonal entry of a multiplier, divided by `eps / k`, `eps` machine epsilon. The directions of two
-/// blocks with a common facet may be dependent functions of the facet means: elimination of the one
-/// multiplier leaves of the other one its diagonal entry alone, beside rounding of `1 / k`. A larger entry is a
-/// smaller weight, and iterative refinement by the caller restores the solution for the true one.
-const LEAST_PIVOT: f64 = 64.0;
-
 /// Null directions `y` of blocks, and the multipliers `q` of these directions as unknowns of the
 /// condensed system.
 ///
@@ -109,8 +103,8 @@ impl NullDirections {
     /// by `X`. [`NullDirections::couple`] must follow with the inverse.
     ///
     /// Sides on which no free unknown has a mean have no part in a direction: their weights are
-    /// diagonal entries; such is a row of `B` whose relative norm is at most `tolerance_of_rows`, the root of
-    /// machine epsilon. Columns of `B` of relative norm up to [`DEPENDENT`] count as dependent.
+    /// diagonal entries; such is a row of `B` whose relative norm is at most `tolerance_of_rows`, the root
+    /// of machine epsilon. Columns of `B` of relative norm up to [`DEPENDENT`] count as dependent.
     pub fn append(
         &mut self,
         block: u32,
@@ -153,14 +147,13 @@ impl NullDirections {
             extend_basis(basis, (0..n_sides).map(|l| f64::from(u8::from(l == side))), 0.0);
         }
         let (c, k) = (largest / unit, unit / largest_square);
-        let least_pivot = LEAST_PIVOT * tolerance_of_rows.powi(2) / k;
         for (index, v) in basis[rank * n_sides..].chunks_exact(n_sides).enumerate() {
             let y = || v.iter().zip(&*roots).map(|(v, root)| v / root);
             self.entries.extend(y());
             self.starts.push(self.entries.len() as u32);
             self.blocks.push(block);
             self.products.extend((0..index).map(|_| 0.0));
-            self.products.push(-(c + k * c * c).max(least_pivot));
+            self.products.push(-(c + k * c * c));
             self.product_starts.push(self.products.len() as u32);
             let work = |i: usize| column(i).zip(y()).map(|((m, _), y)| matrix[m] * y).sum::<f64>();
             self.works.extend((0..n_free).map(work));

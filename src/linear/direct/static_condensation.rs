@@ -344,7 +344,7 @@ impl<'a, T: Real> StaticCondensation<'a, T> {
             for l in 0..n {
                 let entry = &mut out[k * n + l];
                 match (k < n_free, l < n_free) {
-                    (true, true) => *entry *= scales[k] * scales[l] / unit,
+                    (true, true) => *entry = *entry * scales[k] * scales[l] / unit,
                     (false, false) => *entry *= unit,
                     (true, false) => *entry *= scales[k],
                     (false, true) => *entry *= scales[l],
