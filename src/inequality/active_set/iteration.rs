@@ -4,7 +4,7 @@ use super::iterate::Iterate;
 use super::linear_solver::{Accuracy, LinearFailure, LinearSolver};
 use super::progress::{Obstruction, Patience, ProgressMonitor};
 use super::settings::ActiveSet;
-use crate::algebra::Bound;
+use crate::algebra::{Bound, Inequality};
 use crate::inequality::certificate::certify_with_rounding;
 use crate::inequality::{Outcome, StepCounter};
 use crate::linear::direct::FactorError;
@@ -153,15 +153,21 @@ impl<T: Real> Iteration<'_, '_, '_, T> {
                     Err(Outcome::Singular.into())
                 }
             }
-            // bounds alone hold a part of the domain, and the active set has released all of them there
+            // bounds alone hold a part of the domain, and the active set has released all of them there;
+            // or large penalties make the matrix of an arbitrary active set singular but for rounding
             Err(LinearFailure::Factors(FactorError::Singular))
-                if !self.iterate.inequality.kernel.is_empty()
-                    && self.patience.halving.is_some() =>
+                if self.patience.halving.is_some() && self.may_have_regular_successor() =>
             {
                 Err(End::Obstruction(Obstruction::Stagnation))
             }
             Err(failure) => Err(failure.into()),
         }
+    }
+
+    /// Whether another active set may have a regular matrix where that of the present one is singular.
+    fn may_have_regular_successor(&self) -> bool {
+        let Inequality { kernel, penalised, is_definite, .. } = self.iterate.inequality;
+        !kernel.is_empty() || (*is_definite && penalised.is_some())
     }
 
     /// The end of an iteration whose certificate stays too large. Factors with jump multipliers as

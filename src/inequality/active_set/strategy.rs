@@ -343,7 +343,8 @@ impl<'a, T: Real> Solve<'_, 'a, T> {
         let contact = method.run();
         let (values, jump_multipliers, steps) =
             (method.values(), method.jump_multipliers(), method.steps);
-        self.interior_point_may_improve = method.is_identified;
+        self.interior_point_may_improve =
+            method.is_identified || (identification == Identification::Early && method.is_stuck);
         self.iterate.outer += steps;
         self.guess.steps.set(self.iterate.outer);
         if let Some(contact) = contact {

@@ -11,6 +11,9 @@ const STEP_FRACTION: f64 = 0.995;
 /// after it.
 const BACKTRACKING: f64 = 0.9;
 
+/// Smallest share of a step that keeps near the central path.
+const LEAST_LENGTH: f64 = 0.1;
+
 /// Number of subintervals of a step at whose ends a polynomial is evaluated to find a sign change.
 const SUBINTERVALS: usize = 32;
 
@@ -98,8 +101,13 @@ impl ComplementarityPair {
 /// not positive after the step, because roots were missed, the length is multiplied by
 /// [`BACKTRACKING`].
 ///
+/// While a complementarity product is less than `least_share` of their mean after the step, and less than
+/// before it, the length is multiplied by [`BACKTRACKING`] too: a product far below the mean makes all
+/// later steps short (the neighbourhood of the central path in Wright, Primal-Dual Interior-Point Methods,
+/// SIAM 1997). The length never falls below [`LEAST_LENGTH`] times that of the positive variables.
+///
 /// All slack and dual variables must be positive at zero; otherwise the search does not end.
-pub(crate) fn ratio_test(pairs: &[ComplementarityPair], order: usize) -> f64 {
+pub(crate) fn ratio_test(pairs: &[ComplementarityPair], order: usize, least_share: f64) -> f64 {
     let longest = pairs.iter().fold(1.0, |longest, pair| {
         let longest = first_root(pair.slack, &pair.slack_coefficients[..order], longest);
         first_root(pair.dual, &pair.dual_coefficients[..order], longest)
@@ -107,6 +115,18 @@ pub(crate) fn ratio_test(pairs: &[ComplementarityPair], order: usize) -> f64 {
     let mut length = if longest < 1.0 { STEP_FRACTION * longest } else { 1.0 };
     // a polynomial may be negative between two points of evaluation and positive at both
     while pairs.iter().any(|pair| pair.at(length, order).iter().any(|&variable| variable <= 0.0)) {
+        length *= BACKTRACKING;
+    }
+    let least_length = if least_share > 0.0 { LEAST_LENGTH * length } else { length };
+    while length > least_length {
+        let least = least_share * mean_complementarity(pairs, length, order);
+        let is_too_small = |pair: &ComplementarityPair| {
+            let [slack, dual] = pair.at(length, order);
+            slack * dual < least.min(pair.product())
+        };
+        if !pairs.iter().any(is_too_small) {
+            break;
+        }
         length *= BACKTRACKING;
     }
     length
@@ -170,8 +190,8 @@ mod tests {
         cubic[2] = -8.0;
         let pairs = [pair([0.0; MAX_ORDER], cubic), pair(cubic, [0.0; MAX_ORDER])];
         let root = 0.25_f64.cbrt();
-        assert!((ratio_test(&pairs, 3) - STEP_FRACTION * root).abs() < 1e-12);
-        assert_eq!(ratio_test(&pairs, 2), 1.0);
+        assert!((ratio_test(&pairs, 3, 0.0) - STEP_FRACTION * root).abs() < 1e-12);
+        assert_eq!(ratio_test(&pairs, 2, 0.0), 1.0);
         let mean = mean_complementarity(&pairs, 0.5, 3);
         assert!((mean - 0.5 * (2.0 * (3.0 - 1.0) + (2.0 - 1.0) * 3.0)).abs() < 1e-14);
     }
@@ -205,7 +225,7 @@ mod tests {
         dual[0] = -6.0;
         let mut touching = pair(slack, dual);
         touching.slack -= 1e-9;
-        let length = ratio_test(std::slice::from_ref(&touching), 2);
+        let length = ratio_test(std::slice::from_ref(&touching), 2, 0.0);
         assert!(touching.at(length, 2).iter().all(|&variable| variable > 0.0), "{length}");
     }
 }

@@ -26,6 +26,10 @@ const INITIAL_COMPLEMENTARITY: f64 = 0.1;
 /// then within rounding.
 const FINAL_COMPLEMENTARITY: f64 = 1e-18;
 
+/// Relative complementarity at which the method ends although the Tapia indicators of some bound are not
+/// separated: slacks that a large penalty determines, and multipliers beside them, are that small.
+const LEAST_COMPLEMENTARITY: f64 = 1e-36;
+
 /// Relative complementarity at or below which the active set is identified, if the Tapia indicators are
 /// separated and gave the same active set one step before.
 const IDENTIFICATION_TOL: f64 = 1e-10;
@@ -42,6 +46,11 @@ pub(crate) const MAX_STEPS: usize = 60;
 
 /// Steps that may pass without halving the relative complementarity before the method stagnates.
 const STAGNATION_STEPS: usize = 3;
+
+/// Least share of the mean that a step leaves to every complementarity product, where slacks and multipliers
+/// that a penalty determines are resolved: their sizes differ by the penalty, and a product far below the
+/// mean makes the steps short after most pairs are decided.
+const LEAST_SHARE: f64 = 1e-3;
 
 /// When the method ends.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -84,6 +93,12 @@ pub(crate) struct InteriorPoint<'h, 'a, T> {
     identification: Identification,
     /// Whether the method ended because it had identified the active set.
     pub is_identified: bool,
+    /// Whether points are relative to bounds, steps keep near the central path and go on until every bound
+    /// is decided. Where cells have null directions ([`StaticCondensation::has_null_directions`]), copies
+    /// of one node within the contact set leave their bound by as little as the penalty admits.
+    resolves_slacks: bool,
+    /// Whether steps became short before every bound was decided.
+    pub is_stuck: bool,
 }
 
 impl<'h, 'a, T: Real> InteriorPoint<'h, 'a, T> {
@@ -96,12 +111,19 @@ impl<'h, 'a, T: Real> InteriorPoint<'h, 'a, T> {
         identification: Identification,
     ) -> Self {
         let bounds = inequality.bounds.iter().zip(values);
-        let values = bounds.map(|(bound, &x)| bound.fixed_value().unwrap_or(x).to_f64()).collect();
+        let mut values: Vec<f64> =
+            bounds.map(|(bound, &x)| bound.fixed_value().unwrap_or(x).to_f64()).collect();
         let penalised = inequality.penalised.as_ref().filter(|_| condensation.is_some());
         let n_jumps = penalised.map_or(0, |penalised| penalised.n_jumps());
         let mut jump_multipliers: Vec<f64> = jump_multipliers.iter().map(|p| p.to_f64()).collect();
         jump_multipliers.resize(n_jumps, 0.0);
-        let system = NewtonSystem::new(inequality, condensation);
+        let mut system = NewtonSystem::new(inequality, condensation);
+        let resolves_slacks = condensation.is_some_and(|c| c.has_null_directions());
+        if resolves_slacks {
+            let bounds = inequality.bounds.iter().zip(&values);
+            system = system.with_reference(bounds.map(|(b, &x)| nearer_bound(b, x)).collect());
+            values.iter_mut().enumerate().for_each(|(i, x)| *x -= system.reference(i));
+        }
         let diagonal = (0..inequality.size()).map(|i| system.diagonal_scale(i)).collect();
         let mut method = Self {
             inequality,
@@ -112,6 +134,8 @@ impl<'h, 'a, T: Real> InteriorPoint<'h, 'a, T> {
             steps: 0,
             identification,
             is_identified: false,
+            resolves_slacks,
+            is_stuck: false,
         };
         method.move_to_central_path(INITIAL_COMPLEMENTARITY);
         method
@@ -126,6 +150,7 @@ impl<'h, 'a, T: Real> InteriorPoint<'h, 'a, T> {
         let mut previous_contact = Vec::new();
         let mut is_recentred = false;
         let mut last_contact = None;
+        let mut decided = DecidedContact::default();
         while self.steps < MAX_STEPS {
             let energy = self.residual(&mut residual);
             let mean = mean_complementarity(&self.pairs, 0.0, 0);
@@ -140,6 +165,9 @@ impl<'h, 'a, T: Real> InteriorPoint<'h, 'a, T> {
                 && relative <= IDENTIFICATION_TOL
                 && self.indicators_are_separated()
                 && contact == previous_contact;
+            if self.resolves_slacks && relative <= FINAL_COMPLEMENTARITY {
+                decided.keep_if_better(self.undecided(), &contact);
+            }
             previous_contact = contact;
             let stagnates = stagnant_steps > STAGNATION_STEPS;
             if relative > STAGNATION_TOL && stagnates && !is_recentred {
@@ -148,15 +176,20 @@ impl<'h, 'a, T: Real> InteriorPoint<'h, 'a, T> {
                 self.move_to_central_path(1.0);
                 continue;
             }
-            if self.is_identified || relative <= FINAL_COMPLEMENTARITY || stagnates {
+            self.is_stuck = self.resolves_slacks && stagnates && relative > FINAL_COMPLEMENTARITY;
+            let is_decided = !self.resolves_slacks
+                || self.indicators_are_separated()
+                || relative <= LEAST_COMPLEMENTARITY;
+            let is_final = relative <= FINAL_COMPLEMENTARITY && is_decided;
+            if self.is_identified || is_final || stagnates {
                 break;
             }
             if !self.step(&residual, mean)? {
-                return last_contact;
+                return decided.contact.or(last_contact);
             }
             last_contact = Some(self.contact());
         }
-        Some(self.contact())
+        Some(decided.contact.unwrap_or_else(|| self.contact()))
     }
 
     /// The jump multipliers.
@@ -166,8 +199,9 @@ impl<'h, 'a, T: Real> InteriorPoint<'h, 'a, T> {
 
     /// The values, projected onto their bounds.
     pub fn values(&self) -> Vec<T> {
-        let nearest = |(x, bound): (&f64, &Bound<T>)| bound.nearest(T::lit(*x));
-        self.point.values.iter().zip(&self.inequality.bounds).map(nearest).collect()
+        let value = |i: usize| T::lit(self.system.reference(i) + self.point.values[i]);
+        let bounds = self.inequality.bounds.iter().enumerate();
+        bounds.map(|(i, bound)| bound.nearest(value(i))).collect()
     }
 
     /// Moves every free unknown off its bounds, close to its Jacobi value, and sets its pairs anew
@@ -193,7 +227,8 @@ impl<'h, 'a, T: Real> InteriorPoint<'h, 'a, T> {
     /// `x - product / (d_i x) = y`. Between two bounds the Jacobi value is clamped instead.
     fn centre_unknown(&mut self, i: usize, residual: &[f64], product: f64) {
         let bound = &self.inequality.bounds[i];
-        let (lower, upper) = (bound.lower().map(T::to_f64), bound.upper().map(T::to_f64));
+        let relative = |bound: T| bound.to_f64() - self.system.reference(i);
+        let (lower, upper) = (bound.lower().map(relative), bound.upper().map(relative));
         let jacobi = self.point.values[i] + residual[i] / self.diagonal[i];
         let square = product / self.diagonal[i];
         let slack = |y: f64| 0.5 * y.hypot(2.0 * square.sqrt()) + 0.5 * y;
@@ -223,8 +258,10 @@ impl<'h, 'a, T: Real> InteriorPoint<'h, 'a, T> {
             diagonal[pair.unknown] += pair.dual / pair.slack;
         }
         let factors = self.system.factor(&diagonal).ok()?;
+        let share = if self.resolves_slacks { LEAST_SHARE } else { 0.0 };
         let mut expand = |target: f64, max_order: usize| {
-            PathExpansion::new(&self.system, &factors, &mut self.pairs, residual, target, max_order)
+            let pairs = &mut self.pairs;
+            PathExpansion::new(&self.system, &factors, pairs, residual, target, max_order, share)
         };
         // Mehrotra's centring: the cube of the reduction that the predictor achieves
         let predicted = expand(0.0, PREDICTOR_ORDER).complementarity;
@@ -253,8 +290,13 @@ impl<'h, 'a, T: Real> InteriorPoint<'h, 'a, T> {
     /// Whether the two Tapia indicators are separated at every bound: in the limit one of them is
     /// one, the other zero (El-Bakry, Tapia, Zhang, SIAM Rev. 36 (1994) 45-72).
     fn indicators_are_separated(&self) -> bool {
+        self.undecided() == 0
+    }
+
+    /// The number of bounds whose two Tapia indicators are not separated.
+    fn undecided(&self) -> usize {
         let distance = |pair: &ComplementarityPair| (pair.indicators[0] - pair.indicators[1]).abs();
-        self.pairs.iter().all(|pair| distance(pair) > INDICATOR_SEPARATION)
+        self.pairs.iter().filter(|pair| distance(pair) <= INDICATOR_SEPARATION).count()
     }
 
     /// The contact states: a bound is active if the indicator of its dual variable is larger than the
@@ -266,6 +308,29 @@ impl<'h, 'a, T: Real> InteriorPoint<'h, 'a, T> {
         }
         contact
     }
+}
+
+/// The contact states of the step with the fewest undecided bounds: the indicators of a short step tell
+/// nothing.
+#[derive(Default)]
+struct DecidedContact {
+    undecided: usize,
+    contact: Option<Vec<Contact>>,
+}
+
+impl DecidedContact {
+    /// Keeps contact states with as many undecided bounds as those so far, or fewer.
+    fn keep_if_better(&mut self, undecided: usize, contact: &[Contact]) {
+        if self.contact.is_none() || undecided <= self.undecided {
+            (self.undecided, self.contact) = (undecided, Some(contact.to_vec()));
+        }
+    }
+}
+
+/// The bound nearer to the value, zero without bounds.
+fn nearer_bound<T: Real>(bound: &Bound<T>, x: f64) -> f64 {
+    let bounds = [bound.lower(), bound.upper()].into_iter().flatten().map(T::to_f64);
+    bounds.min_by(|a, b| f64::total_cmp(&(x - a).abs(), &(x - b).abs())).unwrap_or(0.0)
 }
 
 #[cfg(test)]

@@ -1,15 +1,14 @@
 //! The linear systems of the interior point method: `A + D` with a nonnegative diagonal `D`.
 
-use crate::algebra::Inequality;
-use crate::algebra::Submatrix;
+use crate::algebra::{Inequality, PenalisedMatrix, Submatrix};
 use crate::inequality::certificate::positive_diagonal;
 use crate::linear::direct::EliminationOrder;
 use crate::linear::direct::{CondensedFactors, StaticCondensation};
 use crate::linear::direct::{FactorError, Factors, SymbolicFactor};
 use crate::real::Real;
 
-/// A vector of the mixed system: values of the unknowns, and jump multipliers where the matrix is a
-/// [`PenalisedMatrix`](crate::algebra::PenalisedMatrix) (else the list is empty).
+/// A vector of the mixed system: values of the unknowns, relative to a reference, and jump multipliers
+/// where the matrix is a [`PenalisedMatrix`] (else the list is empty).
 #[derive(Clone, Debug)]
 pub(crate) struct MixedVector {
     pub values: Vec<f64>,
@@ -22,6 +21,12 @@ pub(crate) struct MixedVector {
 pub(crate) struct NewtonSystem<'h, 'a, T> {
     inequality: &'a Inequality<T>,
     condensation: Option<&'h StaticCondensation<'a, T>>,
+    /// Values relative to which a point is given, where jump multipliers are unknowns; else zeros.
+    reference: Vec<f64>,
+    /// `K` times the reference; empty if this is zero.
+    reference_stiffness: Vec<f64>,
+    /// `g - M u` of the reference `u`; empty if jump multipliers are no unknowns.
+    reference_data: Vec<f64>,
     /// The unknowns that are not fixed, ascending.
     free: Vec<u32>,
     /// Whether an unknown is not fixed.
@@ -65,7 +70,44 @@ impl<'h, 'a, T: Real> NewtonSystem<'h, 'a, T> {
         let free = inequality.free_unknowns();
         let mut is_free = vec![false; inequality.size()];
         free.iter().for_each(|&i| is_free[i as usize] = true);
-        Self { inequality, condensation, free, is_free, lower_triangle: None }
+        let penalised = inequality.penalised.as_ref().filter(|_| condensation.is_some());
+        let data = penalised.map(|p| p.jump_data.iter().map(|g| g.to_f64()).collect());
+        Self {
+            inequality,
+            condensation,
+            reference: vec![0.0; inequality.size()],
+            reference_stiffness: Vec::new(),
+            reference_data: data.unwrap_or_default(),
+            free,
+            is_free,
+            lower_triangle: None,
+        }
+    }
+
+    /// Gives points relative to these values, if jump multipliers are unknowns.
+    ///
+    /// A slack that the penalty determines is far below the rounding of the value: relative to their
+    /// bounds values have the digits of their slacks, and jumps of the difference do too.
+    #[must_use]
+    pub fn with_reference(mut self, reference: Vec<f64>) -> Self {
+        let Some(penalised) = self.penalised() else { return self };
+        let value = |i: usize| reference[i];
+        let stiffness = (0..reference.len()).map(|i| penalised.stiffness(i, value)).collect();
+        let data = |jump| penalised.jump_residual(jump, value, 0.0);
+        let data = (0..penalised.n_jumps()).map(data).collect();
+        (self.reference_stiffness, self.reference_data) = (stiffness, data);
+        self.reference = reference;
+        self
+    }
+
+    /// The value of unknown `i` relative to which a point is given.
+    pub fn reference(&self, i: usize) -> f64 {
+        self.reference[i]
+    }
+
+    /// The penalised matrix, if jump multipliers are unknowns.
+    fn penalised(&self) -> Option<&'a PenalisedMatrix<T>> {
+        self.inequality.penalised.as_ref().filter(|_| self.condensation.is_some())
     }
 
     /// The unknowns that are not fixed.
@@ -130,24 +172,30 @@ impl<'h, 'a, T: Real> NewtonSystem<'h, 'a, T> {
 
     /// Computes the residual `b - A u`; where jump multipliers `p` are unknowns, `c - K u - M^T p`
     /// and `g - M u + p / s` in the notation of
-    /// [`PenalisedMatrix`](crate::algebra::PenalisedMatrix), `s` the weight of a jump.
+    /// [`PenalisedMatrix`], `s` the weight of a jump.
     ///
     /// Returns a positive energy scale for the sum of all complementarity products:
     /// `sum |u_i b_i|`, or the energy of the penalised matrix where jump multipliers are unknowns,
     /// plus `sum b_i^2 / d_i` with the diagonal scales `d`; one if all of this is zero.
     pub fn residual(&self, point: &MixedVector, residual: &mut MixedVector) -> f64 {
-        let Inequality { load, penalised, .. } = self.inequality;
+        let load = &self.inequality.load;
         let value = |i: usize| point.values[i];
-        let (load, energy) = match penalised {
-            Some(penalised) if self.condensation.is_some() => {
+        let (load, energy) = match self.penalised() {
+            Some(penalised) => {
                 let multiplier = |jump: usize| point.jump_multipliers[jump];
                 penalised.residual_with_jump_multipliers(value, multiplier, &mut residual.values);
-                for (jump, out) in residual.jump_multipliers.iter_mut().enumerate() {
-                    *out = penalised.jump_residual(jump, value, multiplier(jump));
+                for (r, stiffness) in residual.values.iter_mut().zip(&self.reference_stiffness) {
+                    *r -= stiffness;
                 }
+                for (jump, out) in residual.jump_multipliers.iter_mut().enumerate() {
+                    let weight = penalised.weights[jump].to_f64();
+                    let data = self.reference_data[jump] - penalised.jump(jump, value);
+                    *out = data + multiplier(jump) / weight;
+                }
+                let value = |i: usize| self.reference[i] + point.values[i];
                 (&penalised.load, penalised.energy(value, multiplier))
             }
-            _ => {
+            None => {
                 self.inequality.residual_of(&value, &mut residual.values);
                 let terms = point.values.iter().zip(load);
                 (load, terms.map(|(x, b)| (x * b.to_f64()).abs()).sum())

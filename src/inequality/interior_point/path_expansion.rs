@@ -37,6 +37,7 @@ impl PathExpansion {
         residual: &MixedVector,
         target: f64,
         max_order: usize,
+        least_share: f64,
     ) -> Self {
         let mut best =
             Self { coefficients: Vec::new(), length: 0.0, complementarity: f64::INFINITY };
@@ -48,7 +49,7 @@ impl PathExpansion {
             if order < PREDICTOR_ORDER {
                 continue;
             }
-            let length = ratio_test(pairs, order);
+            let length = ratio_test(pairs, order, least_share);
             let complementarity = mean_complementarity(pairs, length, order);
             if complementarity < ORDER_GAIN * best.complementarity {
                 (best.length, best.complementarity) = (length, complementarity);

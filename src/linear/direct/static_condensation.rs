@@ -18,9 +18,10 @@
 //! Where the means over the sides of a block are linearly dependent functions of its free unknowns,
 //! the block inverse contains weights beside stiffnesses. If that is so with all unknowns free (quadratic
 //! functions vanish at both Gauss points of every edge), the multipliers of [`NullDirections`] are further
-//! unknowns of the condensed system, which is quasidefinite then. If it is so in a few blocks only,
-//! because of fixed unknowns, weights of these blocks are cut off; iterative refinement by the caller
-//! restores the solution for the true weights.
+//! unknowns of the condensed system, which is quasidefinite then; directions in which only unknowns with a
+//! large shift give way are among them. If it is so in a few blocks only, because of fixed unknowns,
+//! weights of these blocks are cut off; iterative refinement by the caller restores the solution for the
+//! true weights.
 //!
 //! Source: static condensation of hybridised methods, B. Cockburn, J. Gopalakrishnan, R. Lazarov, SIAM
 //! J. Numer. Anal. 47 (2009), 1319-1365.
@@ -81,6 +82,15 @@ pub(crate) struct CondensedFactors<T> {
     schur_complement: Factors<T>,
 }
 
+/// Workspace for the inverse of a block with its jump multipliers.
+#[derive(Default)]
+struct BlockInverse {
+    /// By rows: free unknowns of the block, then jump multipliers.
+    entries: Vec<f64>,
+    /// The factors by which the free unknowns are scaled.
+    scales: Vec<f64>,
+}
+
 impl<'a, T: Real> StaticCondensation<'a, T> {
     /// The condensation of a matrix, without points of its unknowns.
     pub fn new(penalised: &'a PenalisedMatrix<T>) -> Self {
@@ -121,6 +131,12 @@ impl<'a, T: Real> StaticCondensation<'a, T> {
             condensation.rank_of_means(block, |_| true, &mut basis) < n_sides
         });
         condensation
+    }
+
+    /// Whether the means over the sides of a block are dependent functions of all its unknowns, as the
+    /// moments of quadratics on a triangle are.
+    pub fn has_null_directions(&self) -> bool {
+        self.has_null_directions
     }
 
     /// Uses the points of unknowns for the order of elimination of facet means; `None` if they are
@@ -222,7 +238,7 @@ impl<'a, T: Real> StaticCondensation<'a, T> {
     ) -> Result<CondensedFactors<T>, FactorError> {
         let mut matrix = self.pattern.clone();
         let (mut inverses, mut starts) = (Vec::new(), vec![0]);
-        let mut inverse = Vec::new();
+        let mut inverse = BlockInverse::default();
         let mut null_directions = NullDirections::new();
         for block in 0..self.starts.len() - 1 {
             let n_free =
@@ -234,12 +250,12 @@ impl<'a, T: Real> StaticCondensation<'a, T> {
                 let start = matrix.row_starts[row.mean as usize] as usize;
                 for (j, column) in sides.iter().enumerate().filter(|(_, s)| s.mean <= row.mean) {
                     if let Ok(k) = columns.binary_search(&column.mean) {
-                        let entry = -inverse[(n_free + i) * n + n_free + j];
+                        let entry = -inverse.entries[(n_free + i) * n + n_free + j];
                         matrix.values[start + k] += T::lit(entry);
                     }
                 }
             }
-            inverses.extend_from_slice(&inverse);
+            inverses.extend_from_slice(&inverse.entries);
             starts.push(inverses.len());
         }
         let schur_complement = if self.has_null_directions {
@@ -261,14 +277,16 @@ impl<'a, T: Real> StaticCondensation<'a, T> {
             row.extend(sides.map(|(side, &y)| (side.mean, y)));
             row.retain(|&(mean, _)| mean != NO_INDEX);
             row.sort_unstable_by_key(|&(mean, _)| mean);
-            row.push((matrix.size() as u32, null_directions.diagonal(k)));
+            let products = null_directions.products(k);
+            let first = (matrix.size() + 1 - products.len()) as u32;
+            row.extend((first..).zip(products.iter().copied()));
             matrix.columns.extend(row.iter().map(|(column, _)| column));
             matrix.values.extend(row.iter().map(|&(_, value)| T::lit(value)));
             matrix.row_starts.push(matrix.columns.len() as u32);
         }
     }
 
-    /// Sets `out` to the inverse of a block with its jump multipliers; returns the number of free
+    /// Sets `inverse` to the inverse of a block with its jump multipliers; returns the number of free
     /// unknowns of the block.
     ///
     /// # Errors
@@ -278,7 +296,7 @@ impl<'a, T: Real> StaticCondensation<'a, T> {
         block: usize,
         is_free: &[bool],
         shift: &[f64],
-        out: &mut Vec<f64>,
+        inverse: &mut BlockInverse,
         null_directions: &mut NullDirections,
     ) -> Result<usize, FactorError> {
         let (size, sides) = (self.penalised.block_size, self.sides(block));
@@ -294,27 +312,14 @@ impl<'a, T: Real> StaticCondensation<'a, T> {
         let max_shift = least * MAX_SHIFT_BY_ROOT / T::EPSILON.sqrt();
         let may_move =
             |i: usize| is_free[i] && shift.get(i).is_none_or(|&shift| shift <= max_shift);
-        out.clear();
-        out.resize(n * n, 0.0);
-        for (k, i) in self.free(block, is_free).enumerate() {
-            for (l, j) in self.free(block, is_free).enumerate() {
-                out[k * n + l] = stiffness(i, j) / unit;
-            }
-            if let Some(&shift) = shift.get(i) {
-                out[k * n + k] += shift / unit;
-            }
-            for (l, side) in (n_free..).zip(sides) {
-                let coefficient = self.mean_coefficient(side, i);
-                out[k * n + l] = coefficient;
-                out[l * n + k] = coefficient;
-            }
-        }
+        let has_null_directions = self.has_null_directions && n_free > 0;
+        self.fill_block((block, n_free), is_free, shift, unit, inverse);
+        let BlockInverse { entries: out, scales } = inverse;
         // The rank decides, and is computed only if some weight exceeds the limit.
         let limit = least * MAX_WEIGHT / T::EPSILON;
-        let has_null_directions = self.has_null_directions && n_free > 0;
-        let is_as_good_as_fixed = |i: usize| !may_move(i) && (is_free[i] || !has_null_directions);
-        let is_heavy = n_free > 0
-            && (block * size..(block + 1) * size).any(is_as_good_as_fixed)
+        let is_heavy = !has_null_directions
+            && n_free > 0
+            && (block * size..(block + 1) * size).any(|i| !may_move(i))
             && sides.iter().any(|side| self.side_weight(side) > limit);
         let mut basis = Vec::new();
         let has_dependent_means =
@@ -332,16 +337,60 @@ impl<'a, T: Real> StaticCondensation<'a, T> {
         if is_positive != (sides.len() % 2 == 0) {
             return Err(FactorError::NotPositive);
         }
+        if has_null_directions {
+            null_directions.couple(out, (n_free, n), unit, scales);
+        }
         for k in 0..n {
             for l in 0..n {
+                let entry = &mut out[k * n + l];
                 match (k < n_free, l < n_free) {
-                    (true, true) => out[k * n + l] /= unit,
-                    (false, false) => out[k * n + l] *= unit,
-                    _ => {}
+                    (true, true) => *entry = *entry * scales[k] * scales[l] / unit,
+                    (false, false) => *entry *= unit,
+                    (true, false) => *entry *= scales[k],
+                    (false, true) => *entry *= scales[l],
                 }
             }
         }
         Ok(n_free)
+    }
+
+    /// Sets `inverse` to the matrix `[[K + D, B^T], [B, 0]]` of a block with `n_free` free unknowns, `D` the
+    /// shift, `K + D` divided by `unit`. Where there are null directions, unknowns with a large shift are
+    /// scaled to the size of the others.
+    fn fill_block(
+        &self,
+        (block, n_free): (usize, usize),
+        is_free: &[bool],
+        shift: &[f64],
+        unit: f64,
+        inverse: &mut BlockInverse,
+    ) {
+        let (size, sides) = (self.penalised.block_size, self.sides(block));
+        let stiffness = |i: usize, j: usize| self.penalised.blocks[i * size + j % size].to_f64();
+        let BlockInverse { entries: out, scales } = inverse;
+        scales.clear();
+        scales.extend(self.free(block, is_free).map(|i| match shift.get(i) {
+            Some(&shift) if self.has_null_directions => {
+                (unit / (stiffness(i, i) + shift)).min(1.0).sqrt()
+            }
+            _ => 1.0,
+        }));
+        let n = n_free + sides.len();
+        out.clear();
+        out.resize(n * n, 0.0);
+        for (k, i) in self.free(block, is_free).enumerate() {
+            for (l, j) in self.free(block, is_free).enumerate() {
+                out[k * n + l] = scales[k] * scales[l] * stiffness(i, j) / unit;
+            }
+            if let Some(&shift) = shift.get(i) {
+                out[k * n + k] += scales[k] * scales[k] * shift / unit;
+            }
+            for (l, side) in (n_free..).zip(sides) {
+                let coefficient = scales[k] * self.mean_coefficient(side, i);
+                out[k * n + l] = coefficient;
+                out[l * n + k] = coefficient;
+            }
+        }
     }
 
     /// Solves `K u + M^T p = r` on the free unknowns and `M u - S^-1 p = t`. Replaces `r` by `u`, which
@@ -367,21 +416,28 @@ impl<'a, T: Real> StaticCondensation<'a, T> {
                 }
             }
         }
-        load.extend(null_directions.blocks().iter().enumerate().map(|(k, &block)| {
-            let sides = self.sides(block as usize).iter().zip(null_directions.entries(k));
-            sides.fold(0.0, |s, (side, y)| s - y * side.share() * t[side.jump as usize])
-        }));
+        self.append_null_loads(null_directions, is_free, r, t, &mut load);
         let mut means: Vec<T> = load.into_iter().map(T::lit).collect();
         factors.schur_complement.solve_in_place(&mut means, 1);
         let mean = |k: u32| if k == NO_INDEX { 0.0 } else { means[k as usize].to_f64() };
         let jump_right_side = t.to_vec();
         let mut energy = 0.0;
+        let mut directions = 0..0;
         for block in 0..self.starts.len() - 1 {
+            directions = null_directions.of_block(block, directions.end);
             self.block_right_side(block, is_free, r, &jump_right_side, &mean, &mut local);
             let n = self.penalised.block_size;
             let mut k = 0;
             for i in block * n..(block + 1) * n {
-                let value = if is_free[i] { factors.row_dot(block, k, &local) } else { 0.0 };
+                let response =
+                    |q: usize| null_directions.responses(q)[k] * means[n_means + q].to_f64();
+                let value = match is_free[i] {
+                    true => directions
+                        .clone()
+                        .map(response)
+                        .fold(factors.row_dot(block, k, &local), |s, x| s + x),
+                    false => 0.0,
+                };
                 energy += value * r[i];
                 r[i] = value;
                 k += usize::from(is_free[i]);
@@ -404,6 +460,23 @@ impl<'a, T: Real> StaticCondensation<'a, T> {
             }
         }
         energy
+    }
+
+    /// Appends the right-hand sides of the equations of the multipliers of null directions.
+    fn append_null_loads(
+        &self,
+        null_directions: &NullDirections,
+        is_free: &[bool],
+        r: &[f64],
+        t: &[f64],
+        load: &mut Vec<f64>,
+    ) {
+        load.extend(null_directions.blocks().iter().enumerate().map(|(k, &block)| {
+            let sides = self.sides(block as usize).iter().zip(null_directions.entries(k));
+            let unknowns = self.free(block as usize, is_free).zip(null_directions.responses(k));
+            let of_unknowns = unknowns.fold(0.0, |s, (i, g)| s + g * r[i]);
+            sides.fold(of_unknowns, |s, (side, y)| s - y * side.share() * t[side.jump as usize])
+        }));
     }
 
     /// The right-hand side of the equations of a block: `r` on its free unknowns, then for each side

@@ -209,6 +209,31 @@ fn no_penalty_is_too_large() {
     }
 }
 
+/// Copies of one node are tied by the penalty and leave the bound within the contact set by as little as it
+/// admits: torsion and the L-shape have a contact set that the penalty decides cell by cell.
+#[test]
+fn bounds_at_nodes_of_quadratics_are_solved_for_every_penalty() {
+    let of = |scene: &Scene<2>, eta: f64, level: usize| {
+        let scheme: NamedScheme = format!("wopsip-p2@eta={eta:e}").parse().unwrap();
+        let study = Study::<f64, 2>::new(scene.clone()).named_scheme(&scheme).levels([level]);
+        study.run().unwrap().rows.remove(0)
+    };
+    for name in ["torsion-2d", "lshape-2d", "ball-2d", "disc-2d"] {
+        let made = scenes::by_name(name).unwrap().make(&scenes::Parameters::default()).unwrap();
+        let scenes::AnyScene::Two(scene) = made else { panic!("{name}") };
+        let level = if name == "lshape-2d" { 8 } else { 16 };
+        for eta in [1e-2, 1e4, 1e7, 1e10] {
+            let row = of(&scene, eta, level);
+            assert!(row.converged(), "{name} {eta:e}: {}", row.status);
+            // the limit of the certificate is 1e-9, which bounds little beside large penalties
+            let certificate = row.certificate;
+            assert!(certificate.largest() < 1e-14, "{name} {eta:e}: {certificate:?}");
+            let outer = row.iterations.outer.unwrap();
+            assert!(outer <= 60, "{name} {eta:e}: {outer} systems");
+        }
+    }
+}
+
 /// Rounding of a huge penalty makes a direction of a Krylov method look indefinite. The matrix is known to be
 /// definite, so that factors with jump multipliers go on.
 #[test]
