@@ -54,6 +54,18 @@ pub(crate) fn map_chunks<R: Send>(n: usize, work: impl Fn(Range<usize>) -> R + S
     if is_sequential(n) { (0..n_chunks).map(one).collect() } else { map_indices(n_chunks, &one) }
 }
 
+/// The values of `work` on the ranges of `length` indices of which `0..n` consists, in their order; the
+/// last range may be shorter.
+pub(crate) fn map_index_ranges<R: Send>(
+    n: usize,
+    length: usize,
+    work: impl Fn(Range<usize>) -> R + Sync,
+) -> Vec<R> {
+    let n_ranges = n.div_ceil(length);
+    let one = |k: usize| work(k * length..((k + 1) * length).min(n));
+    if is_sequential(n) { (0..n_ranges).map(one).collect() } else { map_indices(n_ranges, &one) }
+}
+
 /// The values of `work` on the index range and the entries of each chunk of `x`, in the order of
 /// chunks; `work` may change the entries.
 pub(crate) fn map_chunks_mut<A: Send, R: Send>(
@@ -85,12 +97,23 @@ pub(crate) fn sum_chunks_of_two<A: Send, B: Send>(
     y: &mut [B],
     work: impl Fn(Range<usize>, &mut [A], &mut [B]) -> f64 + Sync,
 ) -> f64 {
-    let n = x.len();
-    let one = |(k, (x, y)): (usize, (&mut [A], &mut [B]))| work(chunk_range(k, n), x, y);
+    sum_chunks_of_groups_of_two(x, y, 1, work)
+}
+
+/// As [`sum_chunks_of_two`]; no chunk divides a group of `group` consecutive entries.
+pub(crate) fn sum_chunks_of_groups_of_two<A: Send, B: Send>(
+    x: &mut [A],
+    y: &mut [B],
+    group: usize,
+    work: impl Fn(Range<usize>, &mut [A], &mut [B]) -> f64 + Sync,
+) -> f64 {
+    let (n, length) = (x.len(), CHUNK / group * group);
+    let one =
+        |(k, (x, y)): (usize, (&mut [A], &mut [B]))| work(k * length..k * length + x.len(), x, y);
     if is_sequential(n) {
-        x.chunks_mut(CHUNK).zip(y.chunks_mut(CHUNK)).enumerate().map(one).sum()
+        x.chunks_mut(length).zip(y.chunks_mut(length)).enumerate().map(one).sum()
     } else {
-        let chunks = x.chunks_mut(CHUNK).zip(y.chunks_mut(CHUNK));
+        let chunks = x.chunks_mut(length).zip(y.chunks_mut(length));
         let chunks: Vec<Mutex<(&mut [A], &mut [B])>> = chunks.map(Mutex::new).collect();
         let sums = map_indices(chunks.len(), &|k| {
             let (x, y) = &mut *lock(&chunks[k]);

@@ -2,6 +2,7 @@
 
 use super::iterate::Iterate;
 use super::linear_solver::{Accuracy, LinearFailure, LinearSolver};
+use super::local_inequality::solve_locally;
 use super::progress::{Obstruction, Patience, ProgressMonitor};
 use super::settings::ActiveSet;
 use crate::algebra::{Bound, Inequality};
@@ -13,6 +14,14 @@ use crate::real::Real;
 /// The largest certificate that is attributed to rounding, divided by `rounding_band` times machine
 /// epsilon.
 const CERTIFICATE_FACTOR: f64 = 8.0;
+
+/// Number of steps after which an iteration with few state changes continues from the solution near the
+/// unknowns that change them; see [`solve_locally`]. WOPSIP with bounds at vertices on radial-3d at 32, whose
+/// last changes move along the free boundary from cell to cell, takes 17 steps in place of 22.
+const MANY_STEPS: usize = 8;
+
+/// Few state changes, divided by the number of unknowns.
+const FEW_CHANGES: f64 = 1.0 / 4000.0;
 
 /// How an iteration ends.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -52,6 +61,9 @@ pub(crate) struct Iteration<'s, 'i, 'a, T> {
     pub iterate: &'i mut Iterate<'a, T>,
     pub solver: &'i mut dyn LinearSolver<T>,
     pub patience: Patience,
+    /// How often an iteration that does not progress may continue from the solution near the unknowns
+    /// whose states change; see [`solve_locally`].
+    pub local_solves: usize,
     /// Whether the certificate must be within its limit. A solution that only provides a start for
     /// another solve needs no small residual.
     pub is_certified: bool,
@@ -80,6 +92,8 @@ impl<T: Real> Iteration<'_, '_, '_, T> {
         let is_linear = !self.iterate.inequality.bounds.iter().any(Bound::is_inequality);
         let mut progress = ProgressMonitor::new(&self.iterate.states, self.patience, is_linear);
         let mut has_new_states = true;
+        // the unknowns whose states have changed since the number of changes halved
+        let mut recent: Vec<u32> = Vec::new();
         loop {
             if !self.solve_system(has_new_states, progress.accuracy())? {
                 let states = &self.iterate.states;
@@ -111,11 +125,31 @@ impl<T: Real> Iteration<'_, '_, '_, T> {
                     return Err(self.end_by_rounding());
                 }
             }
-            progress
-                .note(changes, &self.iterate.states, is_best, is_accurate)
-                .map_err(End::Obstruction)?;
+            let noted = progress.note(changes, &self.iterate.states, is_best, is_accurate);
+            if progress.has_halved() {
+                recent.clear();
+            }
+            recent.extend(changes.iter().map(|change| change.0));
+            let is_slow = progress.steps() > MANY_STEPS
+                && changes.len() as f64 <= FEW_CHANGES * self.iterate.values.len() as f64;
+            if (noted.is_err() || is_slow) && self.settle(&recent) {
+                progress = ProgressMonitor::new(&self.iterate.states, self.patience, is_linear);
+                recent.clear();
+                has_new_states = true;
+                continue;
+            }
+            noted.map_err(End::Obstruction)?;
             self.iterate.change_states(changes);
         }
+    }
+
+    /// Solves the inequality near the unknowns `changed`, if that is allowed once more; returns whether it
+    /// was solved.
+    fn settle(&mut self, changed: &[u32]) -> bool {
+        let is_solved =
+            self.local_solves > 0 && solve_locally(self.iterate, self.settings, changed);
+        self.local_solves -= usize::from(is_solved);
+        is_solved
     }
 
     /// Solves the linear system of the present active set, which `has_new_states` if the solver has not

@@ -22,6 +22,7 @@ mod evaluation;
 mod iterate;
 mod iteration;
 mod linear_solver;
+mod local_inequality;
 mod preconditioned_solver;
 mod progress;
 mod settings;

@@ -116,6 +116,16 @@ impl ProgressMonitor {
         Ok(())
     }
 
+    /// The number of active sets so far.
+    pub fn steps(&self) -> usize {
+        self.seen.len()
+    }
+
+    /// Whether the number of state changes has halved at the last note.
+    pub fn has_halved(&self) -> bool {
+        self.steps_without_halving == 0
+    }
+
     /// Whether the number of state changes has not halved for too long.
     fn has_stagnated(&mut self, changes: usize) -> bool {
         if 2 * changes <= self.fewest_changes {

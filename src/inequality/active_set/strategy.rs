@@ -44,6 +44,10 @@ const DIRECT_STEP_COST: usize = 4;
 /// Relative tolerance of accurate solutions by Krylov methods, divided by the limit of the certificate.
 const TOLERANCE_TO_LIMIT: f64 = 0.1;
 
+/// Largest number of inequalities near unknowns that change their states that are solved in place of a
+/// later stage. One suffices for WOPSIP with bounds at vertices in space.
+const LOCAL_SOLVES: usize = 3;
+
 /// The stages in their order.
 const STRATEGY: [Stage; 7] = [
     Stage::PreconditionedActiveSet,
@@ -253,11 +257,15 @@ impl<'a, T: Real> Solve<'_, 'a, T> {
         let tolerance = guess.energy_tolerance.unwrap_or(0.0).max(least);
         let mut solver = PreconditionedSolver::new(inequality, &matrix, preconditioner, tolerance);
         let patience = self.patience(Stage::PreconditionedActiveSet);
+        // on nested meshes of conforming P1 monotone multigrid follows
+        let is_local = self.settings.globalisation == Globalisation::OnStagnation
+            && !matches!(guess.coarse_spaces, CoarseSpaces::CoarseLevel(_));
         let mut iteration = Iteration {
             settings: self.settings,
             iterate: &mut self.iterate,
             solver: &mut solver,
             patience,
+            local_solves: if is_local { LOCAL_SOLVES } else { 0 },
             is_certified: guess.energy_tolerance.is_none(),
             steps: &guess.steps,
         };
@@ -323,8 +331,15 @@ impl<'a, T: Real> Solve<'_, 'a, T> {
         let iterate = &mut self.iterate;
         let is_certified = true;
         let steps = &self.guess.steps;
-        let mut iteration =
-            Iteration { settings: self.settings, iterate, solver, patience, is_certified, steps };
+        let mut iteration = Iteration {
+            settings: self.settings,
+            iterate,
+            solver,
+            patience,
+            local_solves: 0,
+            is_certified,
+            steps,
+        };
         iteration.run()
     }
 

@@ -7,10 +7,10 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use super::multigrid::Multigrid;
 use super::preconditioner::Preconditioner;
+use super::prolongation::rows_of_means;
 use crate::algebra::{RectangularMatrix, SparseMatrix, Support};
 use crate::element::MAX_BASIS;
 use crate::linear::direct::FactorError;
-use crate::memory::in_large_pages;
 use crate::parallel::vectors::{for_each_chunk, for_each_chunk_of_groups, zeros};
 use crate::real::Real;
 
@@ -99,23 +99,7 @@ impl<'a, T: Real> VertexCorrection<'a, T> {
         supports: &[Support],
     ) -> Option<Self> {
         let n = dirichlet.len();
-        let total = supports.iter().map(|support| support.vertices().len()).sum();
-        let mut interpolation = RectangularMatrix {
-            starts: in_large_pages(Vec::with_capacity(supports.len() + 1)),
-            columns: in_large_pages(Vec::with_capacity(total)),
-            values: in_large_pages(Vec::with_capacity(total)),
-        };
-        interpolation.starts.push(0);
-        for support in supports {
-            let vertices = support.vertices();
-            if vertices.is_empty() || vertices.iter().any(|&v| v as usize >= n) {
-                return None;
-            }
-            let weight = T::lit(1.0 / vertices.len() as f64);
-            interpolation.columns.extend(vertices);
-            interpolation.values.extend(vertices.iter().map(|_| weight));
-            interpolation.starts.push(interpolation.columns.len() as u32);
-        }
+        let interpolation = rows_of_means(supports.iter().map(Support::vertices), n)?;
         let transpose = interpolation.transpose(n);
         let (residual, values) = (zeros(n), zeros(n));
         let fixed_vertices = vec![false; n];
@@ -243,7 +227,7 @@ fn read_block<T: Real>(matrix: &SparseMatrix<T>, first: usize, fixed: &[bool], b
 
 /// Inverts a symmetric positive definite block in place on its free unknowns, by Gauss-Jordan
 /// elimination; false if a pivot is not positive, with the block destroyed.
-fn invert_positive_definite<T: Real>(a: &mut [T], size: usize, fixed: &[bool]) -> bool {
+pub(super) fn invert_positive_definite<T: Real>(a: &mut [T], size: usize, fixed: &[bool]) -> bool {
     let one = T::lit(1.0);
     for k in (0..size).filter(|&k| !fixed[k]) {
         let pivot = a[k * size + k];

@@ -15,6 +15,8 @@ pub(crate) struct FacetMeanForm<T> {
     pub are_means: bool,
     /// The other side of the same facet, [`NO_INDEX`] if there is none with a jump.
     pub opposite: Vec<u32>,
+    /// Whether a side has a jump: over the facet, or from Dirichlet data.
+    pub has_jump: Vec<bool>,
     /// The form of the function of a side with itself.
     pub diagonal: Vec<T>,
     /// The form of the function of a side with the function of the opposite side; zero if there is
@@ -48,8 +50,8 @@ impl<T: Real> FacetMeanForm<T> {
             opposite: vec![NO_INDEX; n],
             diagonal: (0..n).map(|side| stiffness(penalised, side, are_means)).collect(),
             coupling: vec![zero; n],
+            has_jump: vec![false; n],
         };
-        let mut has_jump = vec![false; n];
         for jump in 0..penalised.n_jumps() {
             let terms = penalised.terms_of(jump);
             let here = form.side(terms, |t| t.here)?;
@@ -59,7 +61,7 @@ impl<T: Real> FacetMeanForm<T> {
             let product = weight * mean * mean;
             for side in [Some(here), there].into_iter().flatten() {
                 // a second jump is a moment of higher degree
-                if std::mem::replace(&mut has_jump[side], true) {
+                if std::mem::replace(&mut form.has_jump[side], true) {
                     return None;
                 }
                 form.diagonal[side] += product;

@@ -24,6 +24,10 @@ use crate::real::Real;
 /// Where the entries between chunks exceed the diagonal entry, the sum of their sizes counts with this factor.
 const MARGIN: f64 = 1.1;
 
+/// The reciprocal of the diagonal entry of an unknown that is not smoothed: a forward iteration leaves it at
+/// zero but for rounding, and does not count it as fixed. Reciprocals of other unknowns are at least one.
+const KEPT: f32 = 1e-30;
+
 /// The Gauss-Seidel smoother of a symmetric matrix divided by a scale.
 pub(crate) struct GaussSeidel {
     chunks: Vec<ChunkRows>,
@@ -174,8 +178,9 @@ impl GaussSeidel {
         self.chunks.iter_mut().for_each(ChunkRows::update_added);
     }
 
-    /// Sets the fixed unknowns.
-    pub fn set_fixed(&mut self, fixed: &[bool]) {
+    /// Sets the fixed unknowns, and unknowns `kept` that are neither fixed nor smoothed: of them the forward
+    /// iteration returns the residual, and the backward iteration keeps the value.
+    pub fn set_fixed(&mut self, fixed: &[bool], kept: &[u32]) {
         let chunks = &self.chunks;
         for_each_chunk(&mut self.inverse_diagonal, |range, inverse| {
             let ChunkRows { diagonal, added, .. } = &chunks[range.start / CHUNK];
@@ -186,6 +191,7 @@ impl GaussSeidel {
                 *inverse /= 1.0 + added * *inverse;
             }
         });
+        kept.iter().for_each(|&i| self.inverse_diagonal[i as usize] = KEPT);
     }
 
     /// The reciprocals of the diagonal entries, zero for fixed unknowns.
@@ -202,7 +208,9 @@ impl GaussSeidel {
                 let sum = chunk.lower_row(k).fold(b, |sum, (j, a)| sum - a * x[j]);
                 let value = sum * inverse;
                 x[k] = value;
-                r[k] = chunk.added.get(k).map_or(0.0, |added| added * value);
+                // a fixed unknown becomes zero below
+                let own = chunk.added.get(k).map_or(0.0, |added| added * value);
+                r[k] = if inverse > KEPT { own } else { sum };
                 chunk.lower_row(k).for_each(|(j, a)| r[j] -= a * value);
             }
             0.0
@@ -232,7 +240,8 @@ impl GaussSeidel {
             for (k, &inverse) in self.inverse_diagonal[range].iter().enumerate().rev() {
                 let first = r[k] + chunk.added.get(k).map_or(0.0, |added| added * x[k]);
                 let sum = chunk.lower_row(k).fold(first, |sum, (j, a)| sum - a * x[j]);
-                let value = sum * inverse;
+                // a fixed unknown is zero already
+                let value = if inverse > KEPT { sum * inverse } else { x[k] };
                 x[k] = value;
                 chunk.lower_row(k).for_each(|(j, a)| r[j] -= a * value);
             }
@@ -308,7 +317,7 @@ mod tests {
         let mut smoother = GaussSeidel::new(&matrix, |i| matrix.row(i), 1.0);
         let rows: Vec<u32> = (0..n as u32).collect();
         for _ in 0..2 {
-            smoother.set_fixed(&vec![false; n]);
+            smoother.set_fixed(&vec![false; n], &[]);
             let (b, mut x, mut r) = (vec![1.0; n], vec![9.0; n], vec![9.0; n]);
             smoother.forward(&b, &mut x, &mut r);
             let residual = 1.0 - f64::from(x[0]) * (1.0 + 2.0 * coupling);
@@ -322,12 +331,28 @@ mod tests {
     }
 
     #[test]
+    fn unknowns_that_are_kept_have_a_residual_and_keep_their_values() {
+        let n = 1000;
+        let matrix = matrix(n);
+        let mut smoother = GaussSeidel::new(&matrix, |i| matrix.row(i), 4.0);
+        let kept: Vec<u32> = (0..n as u32).step_by(3).collect();
+        smoother.set_fixed(&vec![false; n], &kept);
+        let (b, mut x, mut r) = (vec![1.0; n], vec![9.0; n], vec![9.0; n]);
+        smoother.forward(&b, &mut x, &mut r);
+        assert!(kept.iter().all(|&i| x[i as usize].abs() < 1e-20 && r[i as usize] > 1.0));
+        kept.iter().for_each(|&i| x[i as usize] = 0.5);
+        smoother.backward(&b, &mut x, &mut r);
+        assert!(kept.iter().all(|&i| x[i as usize] == 0.5));
+        assert!((0..n).all(|i| i % 3 == 0 || x[i] > 0.25));
+    }
+
+    #[test]
     fn forward_and_backward_iteration_are_a_symmetric_operator_and_return_the_residual() {
         let n = 2 * CHUNK + 1000;
         let matrix = matrix(n);
         let mut smoother = GaussSeidel::new(&matrix, |i| matrix.row(i), 2.0);
         let fixed: Vec<bool> = (0..n).map(|i| i % 7 == 3).collect();
-        smoother.set_fixed(&fixed);
+        smoother.set_fixed(&fixed, &[]);
         let vector = |seed: usize| -> Vec<f32> {
             let entry = |i: usize| ((i * 2_654_435_761 + seed) % 1000) as f32 / 500.0 - 1.0;
             (0..n).map(|i| if fixed[i] { 0.0 } else { entry(i) }).collect()

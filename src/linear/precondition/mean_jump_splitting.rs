@@ -3,30 +3,53 @@
 //!
 //! A facet has a facet mean from each side. The form is nearly diagonal in the sum and the
 //! difference of the two, the mean and the jump: jumps have the penalty as diagonal, means are
-//! Crouzeix-Raviart functions, with conforming linear functions as auxiliary space. Source: B.
-//! Ayuso de Dios, L. Zikatanov, J. Sci. Comput. 40 (2009), 4-36.
+//! Crouzeix-Raviart functions, with multigrid for their stiffness. Source: B. Ayuso de Dios, L. Zikatanov,
+//! J. Sci. Comput. 40 (2009), 4-36.
 
-use super::auxiliary_space::VertexCorrection;
+use std::borrow::Cow;
+
+use super::coarse_level::P1Level;
+use super::crouzeix_raviart_space::CrouzeixRaviartSpace;
 use super::facet_mean_form::{FacetMeanForm, cr_basis};
+use super::multigrid::Multigrid;
 use super::preconditioner::Preconditioner;
 use crate::algebra::{
     NO_INDEX, PenalisedMatrix, RectangularMatrix, SparseMatrix, Support, galerkin_product,
 };
 use crate::linear::direct::{FactorError, Factors};
-use crate::parallel::vectors::for_each_chunk_of_groups;
+use crate::parallel::vectors::{for_each_chunk, for_each_chunk_of_groups};
 use crate::real::Real;
 
-/// The sum of diagonal corrections of means and jumps, an exact solution on cells with free and fixed
-/// vertex values, and a multigrid cycle on conforming linear functions.
+/// The sum of a diagonal correction of jumps, an exact solution on cells with free and fixed vertex values,
+/// and a multigrid cycle on Crouzeix-Raviart functions, whose next coarser level has the conforming linear
+/// functions.
 ///
 /// A cell without fixed unknowns has facet mean functions as basis. On a facet between two such cells
 /// mean and jump are corrected separately. On a facet to a cell with all unknowns fixed, or with
 /// Dirichlet data, the mean over the one side is corrected. The free vertex values of the remaining
-/// cells, with the means of the adjacent sides, form the mixed block.
+/// cells, with the means of the adjacent sides, form the mixed block; conforming linear functions that vanish
+/// at all vertices with fixed values correct them as well.
 pub(crate) struct MeanJumpSplitting<'a, T: Real> {
     matrix: &'a SparseMatrix<T>,
     form: FacetMeanForm<T>,
-    correction: VertexCorrection<'a, T>,
+    space: CrouzeixRaviartSpace,
+    /// The cycle on Crouzeix-Raviart functions.
+    multigrid: Multigrid<'a, T>,
+    /// The support of each unknown.
+    supports: &'a [Support],
+    /// Whether an unknown is fixed.
+    fixed: Vec<bool>,
+    /// The state of each side.
+    states: Vec<SideState>,
+    /// Whether a facet has no Crouzeix-Raviart function.
+    fixed_facets: Vec<bool>,
+    /// The facets on which conforming linear functions alone correct.
+    kept_facets: Vec<u32>,
+    /// Whether a vertex has a fixed value in a cell; empty if the unknowns are means.
+    fixed_vertices: Vec<bool>,
+    /// Workspace: residuals and values of Crouzeix-Raviart functions.
+    facet_residuals: Vec<T>,
+    facet_means: Vec<T>,
     /// The diagonal correction of each side.
     sides: Vec<SideCorrection<T>>,
     mixed_block: MixedBlock<T>,
@@ -40,8 +63,6 @@ pub(crate) struct MeanJumpSplitting<'a, T: Real> {
 struct SideCorrection<T> {
     /// The opposite side, if the two are corrected together; else [`NO_INDEX`].
     opposite: u32,
-    /// The reciprocal of the form of the sum of the two functions; zero if there is no opposite side.
-    inverse_mean: T,
     /// The reciprocal of the form of the difference of the two functions; of the function of this
     /// side if there is no opposite side; zero without a correction.
     inverse_jump: T,
@@ -61,22 +82,36 @@ struct MixedBlock<T> {
 impl<'a, T: Real> MeanJumpSplitting<'a, T> {
     /// The preconditioner of `matrix`, which is `penalised` multiplied out; `None` if its unknowns are
     /// not those of discontinuous linear functions, or cells are coupled by more than facet means, or
-    /// `correction` returns `None`.
+    /// a support has a vertex that `level` lacks.
     pub fn new(
         matrix: &'a SparseMatrix<T>,
         penalised: &PenalisedMatrix<T>,
-        supports: &[Support],
-        correction: impl FnOnce() -> Option<VertexCorrection<'a, T>>,
+        supports: &'a [Support],
+        level: &'a P1Level<T>,
     ) -> Option<Self> {
         let form = FacetMeanForm::new(penalised, supports)?;
         let zero = T::lit(0.0);
         let n = matrix.size();
-        let no_correction =
-            SideCorrection { opposite: NO_INDEX, inverse_mean: zero, inverse_jump: zero };
+        let no_correction = SideCorrection { opposite: NO_INDEX, inverse_jump: zero };
+        let space = CrouzeixRaviartSpace::new(&form);
+        let prolongation = space.prolongation(&form, supports, level.size())?;
+        let stiffness = space.matrix(&form, penalised);
+        let n_facets = space.sides.len();
+        let are_means = form.are_means;
+        let n_vertices = if are_means { 0 } else { level.size() };
         Some(Self {
             matrix,
             form,
-            correction: correction()?,
+            space,
+            multigrid: Multigrid::of_element(Cow::Owned(stiffness), prolongation, level, 1),
+            supports,
+            fixed: vec![false; n],
+            states: vec![SideState::Free; n],
+            fixed_facets: vec![true; n_facets],
+            kept_facets: Vec::new(),
+            fixed_vertices: vec![false; n_vertices],
+            facet_residuals: vec![zero; n_facets],
+            facet_means: vec![zero; n_facets],
             sides: vec![no_correction; n],
             mixed_block: MixedBlock {
                 vertex_values: vec![],
@@ -84,9 +119,94 @@ impl<'a, T: Real> MeanJumpSplitting<'a, T> {
                 factors: None,
                 vector: vec![],
             },
-            mean_residuals: vec![zero; n],
-            means: vec![zero; n],
+            mean_residuals: vec![zero; if are_means { 0 } else { n }],
+            means: vec![zero; if are_means { 0 } else { n }],
         })
+    }
+}
+
+/// Which values of the element on a side are free.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum SideState {
+    /// The facet mean function of the side.
+    Free,
+    /// Some vertex values of the cell, but not all.
+    Mixed,
+    /// None.
+    Fixed,
+}
+
+impl<T: Real> MeanJumpSplitting<'_, T> {
+    /// Sets the states of all sides by the fixed unknowns.
+    fn set_side_states(&mut self) {
+        let (fixed, size) = (&self.fixed, self.form.cell_size);
+        if self.form.are_means {
+            for (state, &fixed) in self.states.iter_mut().zip(fixed) {
+                *state = if fixed { SideState::Fixed } else { SideState::Free };
+            }
+            return;
+        }
+        for (states, fixed) in self.states.chunks_exact_mut(size).zip(fixed.chunks_exact(size)) {
+            states.fill(match fixed.iter().filter(|&&fixed| fixed).count() {
+                0 => SideState::Free,
+                n if n < size => SideState::Mixed,
+                _ => SideState::Fixed,
+            });
+        }
+    }
+
+    /// Sets the corrections of all sides, and the unknowns of the mixed block.
+    ///
+    /// # Errors
+    /// [`FactorError::NotPositive`] if the form of a function is not positive.
+    fn set_side_corrections(&mut self) -> Result<(), FactorError> {
+        let Self { form, states, sides, mixed_block, fixed, .. } = self;
+        mixed_block.vertex_values.clear();
+        mixed_block.sides.clear();
+        for (s, side) in sides.iter_mut().enumerate() {
+            *side = SideCorrection { opposite: NO_INDEX, inverse_jump: T::lit(0.0) };
+            if states[s] != SideState::Free {
+                if !fixed[s] {
+                    mixed_block.vertex_values.push(s as u32);
+                }
+                continue;
+            }
+            let (own, opposite) = (form.diagonal[s], form.opposite[s]);
+            match states.get(opposite as usize) {
+                Some(SideState::Free) => {
+                    let (other, coupling) = (form.diagonal[opposite as usize], form.coupling[s]);
+                    let inverse_jump = invert(own + other - (coupling + coupling))?;
+                    *side = SideCorrection { opposite, inverse_jump };
+                }
+                Some(SideState::Mixed) => mixed_block.sides.push(s as u32),
+                Some(SideState::Fixed) => side.inverse_jump = invert(own)?,
+                None if form.has_jump[s] => side.inverse_jump = invert(own)?,
+                None => {}
+            }
+        }
+        Ok(())
+    }
+
+    /// Sets the facets without Crouzeix-Raviart functions, and those on which conforming functions alone
+    /// correct: a cell with free and fixed vertex values has no facet mean functions.
+    fn set_facets(&mut self) {
+        let Self { form, space, states, fixed_facets, kept_facets, .. } = self;
+        kept_facets.clear();
+        let facets = fixed_facets.iter_mut().zip(&space.sides);
+        for (facet, (is_fixed, &[one, other])) in (0..).zip(facets) {
+            let one = one as usize;
+            // Dirichlet data are a jump without an opposite side
+            let beyond = match states.get(other as usize) {
+                Some(&state) => state,
+                None if form.has_jump[one] => SideState::Fixed,
+                None => states[one],
+            };
+            let pair = [states[one], beyond];
+            *is_fixed = pair.contains(&SideState::Fixed);
+            if !*is_fixed && pair.contains(&SideState::Mixed) {
+                kept_facets.push(facet);
+            }
+        }
     }
 }
 
@@ -148,7 +268,7 @@ impl<T: Real> MixedBlock<T> {
             z[i as usize] = value;
         }
         for (&s, &mean) in self.sides.iter().zip(side_means) {
-            means[s as usize] = mean;
+            means[s as usize] += mean;
         }
     }
 }
@@ -161,49 +281,25 @@ impl<T: Real> Preconditioner<T> for MeanJumpSplitting<'_, T> {
     /// An error that is small in the energy norm can be large in single unknowns of an over-penalised
     /// element, and change their contact states.
     fn reduction(&self) -> f64 {
-        0.01
+        0.03
     }
 
     fn set_fixed(&mut self, fixed: &[bool]) -> Result<(), FactorError> {
-        let form = &self.form;
-        let size = form.cell_size;
-        let zero = T::lit(0.0);
-        self.mixed_block.vertex_values.clear();
-        self.mixed_block.sides.clear();
-        let is_free_cell = |cell: usize| !fixed[cell * size..(cell + 1) * size].contains(&true);
-        let is_fixed_cell = |cell: usize| !fixed[cell * size..(cell + 1) * size].contains(&false);
-        let has_mean = |s: usize| if form.are_means { !fixed[s] } else { is_free_cell(s / size) };
-        for s in 0..fixed.len() {
-            self.sides[s] =
-                SideCorrection { opposite: NO_INDEX, inverse_mean: zero, inverse_jump: zero };
-            if !has_mean(s) {
-                if !fixed[s] {
-                    self.mixed_block.vertex_values.push(s as u32);
+        self.fixed.copy_from_slice(fixed);
+        self.set_side_states();
+        self.set_side_corrections()?;
+        self.mixed_block.factor(self.matrix, self.form.cell_size)?;
+        self.set_facets();
+        self.fixed_vertices.fill(false);
+        if !self.form.are_means {
+            for i in (0..fixed.len()).filter(|&i| fixed[i]) {
+                for &v in self.supports[i].vertices() {
+                    self.fixed_vertices[v as usize] = true;
                 }
-                continue;
-            }
-            let own = form.diagonal[s];
-            let opposite = form.opposite[s];
-            if opposite != NO_INDEX && has_mean(opposite as usize) {
-                let (other, coupling) = (form.diagonal[opposite as usize], form.coupling[s]);
-                let both = own + other;
-                let twice = coupling + coupling;
-                self.sides[s] = SideCorrection {
-                    opposite,
-                    inverse_mean: invert(both + twice)?,
-                    inverse_jump: invert(both - twice)?,
-                };
-            } else if opposite != NO_INDEX
-                && !form.are_means
-                && !is_fixed_cell(opposite as usize / size)
-            {
-                self.mixed_block.sides.push(s as u32);
-            } else {
-                self.sides[s].inverse_jump = invert(own)?;
             }
         }
-        self.mixed_block.factor(self.matrix, size)?;
-        self.correction.set_fixed(fixed)
+        let Self { fixed_facets, kept_facets, fixed_vertices, .. } = self;
+        self.multigrid.set_fixed_and_kept(fixed_facets, kept_facets, fixed_vertices)
     }
 
     fn apply(&mut self, r: &[T], z: &mut [T]) {
@@ -221,31 +317,44 @@ impl<T: Real> Preconditioner<T> for MeanJumpSplitting<'_, T> {
             });
         }
         let g = if are_means { r } else { &self.mean_residuals[..] };
-        for_each_chunk_of_groups(&mut self.means, size, |range, chunk| {
-            for (s, mean) in range.zip(chunk) {
-                let side = &sides[s];
-                *mean = match side.opposite {
-                    NO_INDEX => side.inverse_jump * g[s],
-                    opposite => {
-                        let other = g[opposite as usize];
-                        side.inverse_mean * (g[s] + other) + side.inverse_jump * (g[s] - other)
-                    }
+        let (facet_sides, fixed_facets) = (&self.space.sides, &self.fixed_facets);
+        for_each_chunk(&mut self.facet_residuals, |range, out| {
+            for (facet, out) in range.zip(out) {
+                *out = match facet_sides[facet] {
+                    _ if fixed_facets[facet] => zero,
+                    [one, NO_INDEX] => g[one as usize],
+                    [one, other] => g[one as usize] + g[other as usize],
                 };
             }
         });
-        if are_means {
-            z.copy_from_slice(&self.means);
-        } else {
+        self.multigrid.apply(&self.facet_residuals, &mut self.facet_means);
+        let (facets, facet_means) = (&self.space.facet, &self.facet_means);
+        let means = if are_means { &mut *z } else { &mut self.means[..] };
+        for_each_chunk_of_groups(means, size, |range, chunk| {
+            for (s, mean) in range.zip(chunk) {
+                let side = &sides[s];
+                let jump = match side.opposite {
+                    NO_INDEX => g[s],
+                    opposite => g[s] - g[opposite as usize],
+                };
+                *mean = facet_means[facets[s] as usize] + side.inverse_jump * jump;
+            }
+        });
+        if !are_means {
             z.fill(zero);
             self.mixed_block.solve(r, g, &mut self.means, z);
-            let means = &self.means;
-            for_each_chunk_of_groups(z, size, |range, chunk| {
-                for (z, m) in chunk.chunks_exact_mut(size).zip(means[range].chunks_exact(size)) {
+            let (means, fixed) = (&self.means, &self.fixed);
+            for_each_chunk_of_groups(z, size, |range, z| {
+                let first = range.start;
+                for (z, m) in z.chunks_exact_mut(size).zip(means[range].chunks_exact(size)) {
                     let sum = m.iter().fold(zero, |s, &m| s + m);
                     z.iter_mut().zip(m).for_each(|(z, &m)| *z += sum - d * m);
                 }
+                z.iter_mut()
+                    .zip(&fixed[first..])
+                    .filter(|(_, fixed)| **fixed)
+                    .for_each(|(z, _)| *z = zero);
             });
         }
-        self.correction.add(r, z);
     }
 }

@@ -1,22 +1,27 @@
 //! Symmetric positive definite preconditioners on the free unknowns.
 //!
-//! `preconditioner`: the trait. `multigrid`: conforming linear functions, with `gauss_seidel`,
-//! `prolongation`, `aggregation` and `coarse_level`. `auxiliary_space`: other finite elements.
-//! `mean_jump_splitting` and `facet_mean_form`: over-penalised discontinuous elements.
+//! `preconditioner`: the trait. `multigrid`: conforming linear functions, and other linear elements with
+//! them as auxiliary space, with `smoother`, `gauss_seidel`, `cell_gauss_seidel`, `prolongation`,
+//! `aggregation` and `coarse_level`. `auxiliary_space`: discontinuous elements of higher degree.
+//! `mean_jump_splitting`, `facet_mean_form` and `crouzeix_raviart_space`: over-penalised discontinuous
+//! elements.
 //! `coarse_spaces`: the spaces that are known for an inequality. `built_in`: the preconditioner that
 //! fits an inequality.
 
 mod aggregation;
 mod auxiliary_space;
 mod built_in;
+mod cell_gauss_seidel;
 mod coarse_level;
 mod coarse_spaces;
+mod crouzeix_raviart_space;
 mod facet_mean_form;
 mod gauss_seidel;
 mod mean_jump_splitting;
 mod multigrid;
 mod preconditioner;
 mod prolongation;
+mod smoother;
 
 pub use built_in::BuiltInPreconditioners;
 pub use coarse_level::{CoarseLevel, P1Level};

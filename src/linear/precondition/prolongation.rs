@@ -1,6 +1,6 @@
 //! Prolongations from coarse to fine functions, and their transposes.
 
-use crate::algebra::RectangularMatrix;
+use crate::algebra::{RectangularMatrix, Support};
 use crate::memory::in_large_pages;
 use crate::parallel::vectors::{for_each_chunk, zeros};
 use crate::real::Real;
@@ -92,6 +92,22 @@ impl<T: Real> Prolongation<T> {
             fine.starts.push(fine.columns.len() as u32);
         }
         Self::from_weights(fine, n_coarse)
+    }
+
+    /// The prolongation of conforming linear functions to the unknowns of another element, each of which
+    /// is the mean of the values at the vertices of its support; `None` if a support is empty or has a
+    /// vertex that is not less than `n_vertices`.
+    pub(crate) fn to_element(supports: &[Support], n_vertices: usize) -> Option<Self> {
+        Self::to_means(supports.iter().map(Support::vertices), n_vertices)
+    }
+
+    /// The prolongation of conforming linear functions to the means over sets of vertices; `None` if a set is
+    /// empty or has a vertex that is not less than `n_vertices`.
+    pub(crate) fn to_means<'v>(
+        sets: impl Iterator<Item = &'v [u32]> + Clone,
+        n_vertices: usize,
+    ) -> Option<Self> {
+        Some(Self::from_weights(rows_of_means(sets, n_vertices)?, n_vertices))
     }
 
     /// The prolongation with other numbers of the fine and of the coarse unknowns, by their present ones.
@@ -246,4 +262,29 @@ impl<T: Real> Prolongation<T> {
             }
         }
     }
+}
+
+/// The rows of the prolongation [`Prolongation::to_means`].
+pub(crate) fn rows_of_means<'v, T: Real>(
+    sets: impl Iterator<Item = &'v [u32]> + Clone,
+    n_vertices: usize,
+) -> Option<RectangularMatrix<T>> {
+    let (count, total) =
+        sets.clone().fold((0, 0), |(count, total), set| (count + 1, total + set.len()));
+    let mut rows = RectangularMatrix {
+        starts: in_large_pages(Vec::with_capacity(count + 1)),
+        columns: in_large_pages(Vec::with_capacity(total)),
+        values: in_large_pages(Vec::with_capacity(total)),
+    };
+    rows.starts.push(0);
+    for set in sets {
+        if set.is_empty() || set.iter().any(|&v| v as usize >= n_vertices) {
+            return None;
+        }
+        let weight = T::lit(1.0 / set.len() as f64);
+        rows.columns.extend(set);
+        rows.values.extend(set.iter().map(|_| weight));
+        rows.starts.push(rows.columns.len() as u32);
+    }
+    Some(rows)
 }

@@ -1,0 +1,140 @@
+//! The inequality near a few unknowns, whose solution provides their contact states.
+
+use super::iterate::Iterate;
+use super::settings::ActiveSet;
+use crate::algebra::{Bound, Inequality, SparseMatrix, Start, Submatrix};
+use crate::inequality::{InequalitySolver, Outcome};
+use crate::linear::LinearMethod;
+use crate::real::Real;
+
+/// The distance of the nearby unknowns in couplings of the matrix. The vertex values at a vertex of
+/// tetrahedra, which are coupled from cell to cell, are at most half a dozen couplings apart.
+const DISTANCE: usize = 4;
+
+/// Largest number of unknowns of a local inequality, divided by the number of all unknowns. It is solved
+/// with factors.
+const SHARE: f64 = 0.1;
+
+/// Solves the inequality for the unknowns near those of `changed`, all others as they are, and stores values
+/// and contact states. Returns false, without a change, if they are too many or there is no solution.
+///
+/// The active set of a matrix that is no M-matrix may return to itself where a few unknowns, each group on
+/// a few cells, change their states in turn. The exact solution on these cells ends this: the sum of all
+/// local inequalities is solved by a method that does not cycle, and decreases the energy.
+pub(super) fn solve_locally<T: Real>(
+    iterate: &mut Iterate<'_, T>,
+    settings: &ActiveSet,
+    changed: &[u32],
+) -> bool {
+    if !iterate.residual_is_current {
+        iterate.compute_residual();
+    }
+    let Iterate { inequality, values, states, residual, .. } = &*iterate;
+    let near = near(&inequality.matrix, changed);
+    if near.len() as f64 > SHARE * values.len() as f64 {
+        return false;
+    }
+    let Submatrix { row_starts, columns, values: entries } =
+        Submatrix::new(&inequality.matrix, &near);
+    let matrix = SparseMatrix { row_starts, columns, values: entries };
+    // for the correction of the values, so that the others contribute their residual
+    let load = near.iter().map(|&i| T::lit(residual[i as usize])).collect();
+    let bounds = near.iter().map(|&i| shifted(&inequality.bounds[i as usize], values[i as usize]));
+    let mut local = Inequality::new(matrix, inequality.symmetric, load, bounds.collect());
+    local.start = Start::Contact(near.iter().map(|&i| states[i as usize]).collect());
+    local.is_definite = true;
+    let solution = settings.clone().linear(LinearMethod::Direct).solve(&local);
+    if solution.outcome != Outcome::Converged {
+        return false;
+    }
+    let (mut values, mut states) = (values.clone(), states.clone());
+    for (k, &i) in near.iter().enumerate() {
+        values[i as usize] += solution.values[k];
+        states[i as usize] = solution.contact[k];
+    }
+    iterate.replace(values, Vec::new(), states);
+    true
+}
+
+/// The unknowns within [`DISTANCE`] of some unknowns, ascending.
+fn near<T: Real>(matrix: &SparseMatrix<T>, of: &[u32]) -> Vec<u32> {
+    let mut is_near = vec![false; matrix.size()];
+    let mut all: Vec<u32> = Vec::new();
+    let add = |i: u32, is_near: &mut [bool], all: &mut Vec<u32>| {
+        if !std::mem::replace(&mut is_near[i as usize], true) {
+            all.push(i);
+        }
+    };
+    of.iter().for_each(|&i| add(i, &mut is_near, &mut all));
+    let mut begin = 0;
+    for _ in 0..DISTANCE {
+        let end = all.len();
+        for k in begin..end {
+            for &j in matrix.row(all[k] as usize).0 {
+                add(j, &mut is_near, &mut all);
+            }
+        }
+        begin = end;
+    }
+    all.sort_unstable();
+    all
+}
+
+/// The bound on the correction of a value.
+fn shifted<T: Real>(bound: &Bound<T>, value: T) -> Bound<T> {
+    match *bound {
+        Bound::Free => Bound::Free,
+        Bound::Fixed(_) => Bound::Fixed(T::lit(0.0)),
+        Bound::Lower(lower) => Bound::Lower(lower - value),
+        Bound::Upper(upper) => Bound::Upper(upper - value),
+        Bound::Both(lower, upper) => Bound::Both(lower - value, upper - value),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::algebra::Contact;
+
+    /// Second differences at `n` points under the load -0.01, above `obstacle`.
+    fn string(n: usize, obstacle: f64) -> Inequality<f64> {
+        let mut matrix = SparseMatrix { row_starts: vec![0], columns: vec![], values: vec![] };
+        for i in 0..n {
+            for j in i.saturating_sub(1)..=(i + 1).min(n - 1) {
+                matrix.columns.push(j as u32);
+                matrix.values.push(if i == j { 2.0 } else { -1.0 });
+            }
+            matrix.row_starts.push(matrix.columns.len() as u32);
+        }
+        Inequality::new(matrix, true, vec![-0.01; n], vec![Bound::Lower(obstacle); n])
+    }
+
+    #[test]
+    fn nearby_unknowns_satisfy_their_inequality_and_the_others_keep_their_values() {
+        let (n, middle) = (200, 100);
+        let string = string(n, -0.05);
+        let mut iterate = Iterate::new(&string, &[]);
+        assert!(solve_locally(&mut iterate, &ActiveSet::default(), &[middle as u32]));
+        iterate.compute_residual();
+        for i in 0..n {
+            let is_near = i.abs_diff(middle) <= DISTANCE;
+            let (u, r) = (iterate.values[i], iterate.residual[i]);
+            match iterate.states[i] {
+                Contact::Lower => assert!(is_near && u == -0.05 && r < 0.0, "{i}: {u} {r}"),
+                _ if is_near => assert!(u > -0.05 && r.abs() < 1e-14, "{i}: {u} {r}"),
+                _ => assert_eq!(u, 0.0),
+            }
+        }
+        // nine unknowns between zeros would reach -0.125 without the obstacle
+        let active = iterate.states.iter().filter(|&&s| s == Contact::Lower).count();
+        assert!((1..9).contains(&active), "{active}");
+    }
+
+    #[test]
+    fn a_local_inequality_of_most_unknowns_is_none() {
+        let string = string(40, -0.05);
+        let mut iterate = Iterate::new(&string, &[]);
+        assert!(!solve_locally(&mut iterate, &ActiveSet::default(), &[20]));
+        assert!(iterate.values.iter().all(|&u| u == 0.0));
+    }
+}

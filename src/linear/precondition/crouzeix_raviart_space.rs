@@ -1,0 +1,123 @@
+//! The Crouzeix-Raviart functions on the mesh of a discontinuous linear element.
+
+use super::facet_mean_form::{FacetMeanForm, cr_basis};
+use super::prolongation::Prolongation;
+use crate::algebra::{NO_INDEX, PenalisedMatrix, SparseMatrix, Support};
+use crate::memory::in_large_pages;
+use crate::real::Real;
+
+/// The facets of a mesh, by the sides of an element of which [`FacetMeanForm`] has the entries.
+///
+/// A Crouzeix-Raviart function has one mean on each facet, which is the mean over both sides: such
+/// functions have no jumps of means, and their form is the stiffness alone.
+pub(crate) struct CrouzeixRaviartSpace {
+    /// The facet of each side.
+    pub facet: Vec<u32>,
+    /// The sides of each facet; the second is [`NO_INDEX`] on the boundary.
+    pub sides: Vec<[u32; 2]>,
+}
+
+impl CrouzeixRaviartSpace {
+    /// The facets in the order of their first sides.
+    pub fn new<T>(form: &FacetMeanForm<T>) -> Self {
+        let n = form.opposite.len();
+        let mut facet = in_large_pages(vec![0; n]);
+        let mut sides = in_large_pages(Vec::with_capacity(n / 2));
+        for (side, &opposite) in form.opposite.iter().enumerate() {
+            if opposite == NO_INDEX || side < opposite as usize {
+                facet[side] = sides.len() as u32;
+                sides.push([side as u32, opposite]);
+            } else {
+                facet[side] = facet[opposite as usize];
+            }
+        }
+        Self { facet, sides }
+    }
+
+    /// The matrix of the stiffness on all facets.
+    pub fn matrix<T: Real>(
+        &self,
+        form: &FacetMeanForm<T>,
+        penalised: &PenalisedMatrix<T>,
+    ) -> SparseMatrix<T> {
+        let size = form.cell_size;
+        let capacity = self.sides.len() * (2 * size - 1);
+        let mut matrix = SparseMatrix {
+            row_starts: in_large_pages(Vec::with_capacity(self.sides.len() + 1)),
+            columns: in_large_pages(Vec::with_capacity(capacity)),
+            values: in_large_pages(Vec::with_capacity(capacity)),
+        };
+        matrix.row_starts.push(0);
+        for (own, sides) in (0..).zip(&self.sides) {
+            let mut row = [(NO_INDEX, T::lit(0.0)); 7];
+            row[0].0 = own;
+            let mut n = 1;
+            for &side in sides.iter().filter(|&&side| side != NO_INDEX) {
+                let side = side as usize;
+                let first = side / size * size;
+                for other in first..first + size {
+                    let value = stiffness(penalised, side, other, form.are_means);
+                    if other == side {
+                        row[0].1 += value;
+                    } else {
+                        row[n] = (self.facet[other], value);
+                        n += 1;
+                    }
+                }
+            }
+            row[..n].sort_unstable_by_key(|entry| entry.0);
+            matrix.columns.extend(row[..n].iter().map(|entry| entry.0));
+            matrix.values.extend(row[..n].iter().map(|entry| entry.1));
+            matrix.row_starts.push(matrix.columns.len() as u32);
+        }
+        matrix
+    }
+
+    /// The prolongation of conforming linear functions, whose mean on a facet is that of its vertex values;
+    /// `None` if a vertex of a support is not less than `n_vertices`.
+    pub fn prolongation<T: Real>(
+        &self,
+        form: &FacetMeanForm<T>,
+        supports: &[Support],
+        n_vertices: usize,
+    ) -> Option<Prolongation<T>> {
+        let size = form.cell_size;
+        let length = size - 1;
+        let mut vertices: Vec<u32> = in_large_pages(Vec::with_capacity(self.sides.len() * length));
+        for &[side, _] in &self.sides {
+            let side = side as usize;
+            if form.are_means {
+                vertices.extend(supports[side].vertices());
+            } else {
+                let first = side / size * size;
+                let others = (first..first + size).filter(|&i| i != side);
+                vertices.extend(others.flat_map(|i| supports[i].vertices()));
+            }
+        }
+        Prolongation::to_means(vertices.chunks_exact(length), n_vertices)
+    }
+}
+
+/// The stiffness form of the facet mean functions of two sides of a cell.
+fn stiffness<T: Real>(
+    penalised: &PenalisedMatrix<T>,
+    one: usize,
+    other: usize,
+    are_means: bool,
+) -> T {
+    let size = penalised.block_size;
+    let first = one / size * size;
+    let entry = |i: usize, j: usize| penalised.blocks[(first + i) * size + j];
+    let (one, other) = (one - first, other - first);
+    if are_means {
+        return entry(one, other);
+    }
+    let mut sum = T::lit(0.0);
+    for i in 0..size {
+        for j in 0..size {
+            let weight: T = cr_basis::<T>(size, i, one) * cr_basis::<T>(size, j, other);
+            sum += weight * entry(i, j);
+        }
+    }
+    sum
+}

@@ -1,0 +1,74 @@
+//! The smoother of a level of multigrid, by unknowns or by cells.
+
+use super::cell_gauss_seidel::CellGaussSeidel;
+use super::gauss_seidel::GaussSeidel;
+use crate::algebra::SparseMatrix;
+use crate::linear::direct::FactorError;
+use crate::real::Real;
+
+/// The smoother of a level.
+pub(crate) enum Smoother {
+    /// One unknown after the other.
+    ByUnknowns(GaussSeidel),
+    /// All unknowns of a triangle at a time, three of them.
+    ByTriangles(CellGaussSeidel<3>),
+    /// All unknowns of a tetrahedron at a time, four of them.
+    ByTetrahedra(CellGaussSeidel<4>),
+}
+
+impl Smoother {
+    /// The smoother by cells of `cell_size` unknowns each; `None` if there is none for this number.
+    pub fn by_cells<T: Real>(
+        matrix: &SparseMatrix<T>,
+        cell_size: usize,
+        scale: f64,
+    ) -> Option<Self> {
+        match cell_size {
+            3 => Some(Self::ByTriangles(CellGaussSeidel::new(matrix, scale))),
+            4 => Some(Self::ByTetrahedra(CellGaussSeidel::new(matrix, scale))),
+            _ => None,
+        }
+    }
+
+    /// Sets the fixed unknowns, and those of a smoother by unknowns that are neither fixed nor smoothed.
+    ///
+    /// # Errors
+    /// [`FactorError::NotPositive`] if the block of a cell is not positive definite.
+    pub fn set_fixed(&mut self, fixed: &[bool], kept: &[u32]) -> Result<(), FactorError> {
+        match self {
+            Self::ByUnknowns(smoother) => {
+                smoother.set_fixed(fixed, kept);
+                Ok(())
+            }
+            Self::ByTriangles(smoother) => smoother.set_fixed(fixed),
+            Self::ByTetrahedra(smoother) => smoother.set_fixed(fixed),
+        }
+    }
+
+    /// A forward iteration from zero, with the residual.
+    pub fn forward(&self, b: &[f32], x: &mut [f32], r: &mut [f32]) {
+        match self {
+            Self::ByUnknowns(smoother) => smoother.forward(b, x, r),
+            Self::ByTriangles(smoother) => smoother.forward(b, x, r),
+            Self::ByTetrahedra(smoother) => smoother.forward(b, x, r),
+        }
+    }
+
+    /// A backward iteration.
+    pub fn backward(&self, b: &[f32], x: &mut [f32], r: &mut [f32]) {
+        match self {
+            Self::ByUnknowns(smoother) => smoother.backward(b, x, r),
+            Self::ByTriangles(smoother) => smoother.backward(b, x, r),
+            Self::ByTetrahedra(smoother) => smoother.backward(b, x, r),
+        }
+    }
+
+    /// Zero for fixed unknowns, else another number.
+    pub fn mask(&self) -> &[f32] {
+        match self {
+            Self::ByUnknowns(smoother) => smoother.inverse_diagonal(),
+            Self::ByTriangles(smoother) => smoother.mask(),
+            Self::ByTetrahedra(smoother) => smoother.mask(),
+        }
+    }
+}
