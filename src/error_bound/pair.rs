@@ -1,5 +1,7 @@
 //! An admissible function and a flux that belong to a discrete solution.
 
+use std::cell::OnceCell;
+
 use super::NoBound;
 use super::contact::NodeForce;
 use crate::algebra::Inequality;
@@ -107,7 +109,11 @@ impl<T: Real, const D: usize> Discretisation<'_, T, D> {
         let multipliers = multipliers.as_deref();
         let function = space.admissible_function(u, (&inequality.bounds, &solution.contact));
         let exchanges = space.problem.has_obstacle();
-        let neighbours = || Neighbours::new(space.mesh);
+        let computed = OnceCell::new();
+        let neighbours = || match &space.neighbours {
+            Some(neighbours) => neighbours,
+            None => computed.get_or_init(|| Neighbours::new(space.mesh)),
+        };
         let flux = if space.degree == 2 {
             // multipliers of jumps alone may contain a flux without divergence that alternates between facets
             // and that jumps hardly see: that of WOPSIP has an error of first order in the plane. Its
@@ -129,10 +135,10 @@ impl<T: Real, const D: usize> Discretisation<'_, T, D> {
             };
             space.balance(&loads, &mut flux);
             if exchanges {
-                space.exchange_quadratics(&function, &loads, &neighbours(), &mut flux);
+                space.exchange_quadratics(&function, &loads, neighbours(), &mut flux);
             }
             if space.problem.has_gap() && D > 1 {
-                space.exchange_forces(&function, &neighbours(), &mut flux);
+                space.exchange_forces(&function, neighbours(), &mut flux);
             }
             flux
         } else {
@@ -145,8 +151,8 @@ impl<T: Real, const D: usize> Discretisation<'_, T, D> {
             };
             space.add_boundary_fluxes(&forces, &mut flux)?;
             if exchanges {
-                let multipliers = space.multipliers_by_cell(u, &residual, &forces, &flux)?;
-                space.exchange_linears(&function, &multipliers, &neighbours(), &mut flux);
+                let multipliers = space.multipliers_by_cell(&residual, &forces);
+                space.exchange_linears(&function, &multipliers, neighbours(), &mut flux);
             }
             flux
         };

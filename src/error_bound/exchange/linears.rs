@@ -3,8 +3,8 @@
 use super::ROUNDING;
 use crate::assemble::cut_simplices::in_space;
 use crate::assemble::space::{Place, Space};
+use crate::error_bound::PrimalDualPair;
 use crate::error_bound::contact::NodeForce;
-use crate::error_bound::{NoBound, PrimalDualPair};
 use crate::mesh::{BoundaryPart, Neighbour, Neighbours};
 use crate::quadrature::Rule;
 use crate::real::{Point, Real, point_f64};
@@ -61,33 +61,43 @@ impl<const D: usize> CellInContact<D> {
 }
 
 impl<T: Real, const D: usize> Space<'_, T, D> {
-    /// The integrals of multipliers of obstacles over cells that go with a flux.
+    /// The integrals of multipliers of obstacles over cells: of a shared unknown each cell has the part that its
+    /// flux balances, by volume around a vertex and half on the two sides of a facet.
     pub(in crate::error_bound) fn multipliers_by_cell(
         &self,
-        u: &[T],
         residual: &[f64],
         forces: &[NodeForce],
-        flux: &[f64],
-    ) -> Result<Vec<f64>, NoBound> {
+    ) -> Vec<f64> {
+        let n = self.per_cell();
+        let mut multipliers: Vec<f64> = residual.iter().map(|r| -r).collect();
+        for force in forces {
+            multipliers[self.dofs.of(force.cell, force.node)] -= force.value;
+        }
         if self.broken {
-            let by_cell = residual.chunks_exact(self.per_cell());
-            let mut multipliers: Vec<f64> = by_cell.map(|r| -r.iter().sum::<f64>()).collect();
-            for force in forces {
-                multipliers[force.cell] -= force.value;
-            }
-            return Ok(multipliers);
+            return multipliers.chunks_exact(n).map(|m| m.iter().sum()).collect();
         }
-        let load = self.load_by_cell()?;
-        let of_cell = |(cell, flux): (usize, &[f64])| {
-            let residual = self.cell_residual(cell, &self.metric(cell), u, &load);
-            residual.iter().sum::<f64>() - flux.iter().sum::<f64>()
-        };
-        let mut multipliers: Vec<f64> = flux.chunks_exact(D + 1).enumerate().map(of_cell).collect();
-        // Neumann data are among the loads
-        for (cell, local) in self.facets_of(BoundaryPart::Neumann) {
-            multipliers[cell] += flux[cell * (D + 1) + local];
+        for (cell, local) in self.facets_of(BoundaryPart::Dirichlet) {
+            self.nodes_on(local).for_each(|i| multipliers[self.dofs.of(cell, i)] = 0.0);
         }
-        Ok(multipliers)
+        let largest = multipliers.iter().fold(0.0, |largest: f64, m| largest.max(m.abs()));
+        let is_rounding = |m: &&mut f64| m.abs() <= ROUNDING * largest;
+        multipliers.iter_mut().filter(is_rounding).for_each(|m| *m = 0.0);
+        let by_volume = self.is_conforming_linear();
+        let n_cells = self.mesh.n_cells();
+        let part =
+            |cell: usize| if by_volume { self.mesh.geometry(cell).volume.to_f64() } else { 1.0 };
+        let mut parts = vec![0.0; multipliers.len()];
+        let presses = |cell: usize| (0..n).any(|i| multipliers[self.dofs.of(cell, i)] != 0.0);
+        let mut of_cells = vec![0.0; n_cells];
+        for cell in (0..n_cells).filter(|&cell| presses(cell)) {
+            of_cells[cell] = part(cell);
+            (0..n).for_each(|i| parts[self.dofs.of(cell, i)] += of_cells[cell]);
+        }
+        for (cell, of_cell) in of_cells.iter_mut().enumerate().filter(|(_, part)| **part > 0.0) {
+            let unknowns = (0..n).map(|i| self.dofs.of(cell, i));
+            *of_cell *= unknowns.map(|i| multipliers[i] / parts[i]).sum::<f64>();
+        }
+        of_cells
     }
 
     /// Exchanges multipliers for flux of linears.

@@ -34,17 +34,20 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         presses: impl Fn(usize) -> bool,
         neighbours: &Neighbours,
     ) -> (Vec<usize>, Vec<u32>) {
-        let mut places = vec![u32::MAX; self.mesh.n_cells()];
-        let mut numbers = Vec::new();
-        for (cell, place) in places.iter_mut().enumerate() {
-            let beside = |local| match neighbours.across(cell, local) {
-                Neighbour::Cell { cell, .. } => presses(cell as usize),
-                Neighbour::Boundary(_) => false,
-            };
-            if presses(cell) || (0..=D).any(beside) {
-                *place = numbers.len() as u32;
-                numbers.push(cell);
+        let n_cells = self.mesh.n_cells();
+        let mut places = vec![u32::MAX; n_cells];
+        for cell in (0..n_cells).filter(|&cell| presses(cell)) {
+            places[cell] = 0;
+            for local in 0..=D {
+                if let Neighbour::Cell { cell: other, .. } = neighbours.across(cell, local) {
+                    places[other as usize] = 0;
+                }
             }
+        }
+        let mut numbers = Vec::new();
+        for (cell, place) in places.iter_mut().enumerate().filter(|(_, place)| **place == 0) {
+            *place = numbers.len() as u32;
+            numbers.push(cell);
         }
         (numbers, places)
     }

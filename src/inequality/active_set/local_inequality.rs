@@ -7,7 +7,7 @@ use crate::inequality::{InequalitySolver, Outcome};
 use crate::linear::LinearMethod;
 use crate::real::Real;
 
-/// The distance of the nearby unknowns in couplings of the matrix. The vertex values at a vertex of
+/// The distance of the unknowns of a local inequality from those that change, in couplings of the matrix. The vertex values at a vertex of
 /// tetrahedra, which are coupled from cell to cell, are at most half a dozen couplings apart.
 const DISTANCE: usize = 4;
 
@@ -30,25 +30,26 @@ pub(super) fn solve_locally<T: Real>(
         iterate.compute_residual();
     }
     let Iterate { inequality, values, states, residual, .. } = &*iterate;
-    let near = near(&inequality.matrix, changed);
-    if near.len() as f64 > SHARE * values.len() as f64 {
+    let unknowns = unknowns_around(&inequality.matrix, changed);
+    if unknowns.len() as f64 > SHARE * values.len() as f64 {
         return false;
     }
     let Submatrix { row_starts, columns, values: entries } =
-        Submatrix::new(&inequality.matrix, &near);
+        Submatrix::new(&inequality.matrix, &unknowns);
     let matrix = SparseMatrix { row_starts, columns, values: entries };
     // for the correction of the values, so that the others contribute their residual
-    let load = near.iter().map(|&i| T::lit(residual[i as usize])).collect();
-    let bounds = near.iter().map(|&i| shifted(&inequality.bounds[i as usize], values[i as usize]));
+    let load = unknowns.iter().map(|&i| T::lit(residual[i as usize])).collect();
+    let bounds =
+        unknowns.iter().map(|&i| shifted(&inequality.bounds[i as usize], values[i as usize]));
     let mut local = Inequality::new(matrix, inequality.symmetric, load, bounds.collect());
-    local.start = Start::Contact(near.iter().map(|&i| states[i as usize]).collect());
+    local.start = Start::Contact(unknowns.iter().map(|&i| states[i as usize]).collect());
     local.is_definite = true;
     let solution = settings.clone().linear(LinearMethod::Direct).solve(&local);
     if solution.outcome != Outcome::Converged {
         return false;
     }
     let (mut values, mut states) = (values.clone(), states.clone());
-    for (k, &i) in near.iter().enumerate() {
+    for (k, &i) in unknowns.iter().enumerate() {
         values[i as usize] += solution.values[k];
         states[i as usize] = solution.contact[k];
     }
@@ -57,21 +58,21 @@ pub(super) fn solve_locally<T: Real>(
 }
 
 /// The unknowns within [`DISTANCE`] of some unknowns, ascending.
-fn near<T: Real>(matrix: &SparseMatrix<T>, of: &[u32]) -> Vec<u32> {
-    let mut is_near = vec![false; matrix.size()];
+fn unknowns_around<T: Real>(matrix: &SparseMatrix<T>, of: &[u32]) -> Vec<u32> {
+    let mut is_local = vec![false; matrix.size()];
     let mut all: Vec<u32> = Vec::new();
-    let add = |i: u32, is_near: &mut [bool], all: &mut Vec<u32>| {
-        if !std::mem::replace(&mut is_near[i as usize], true) {
+    let add = |i: u32, is_local: &mut [bool], all: &mut Vec<u32>| {
+        if !std::mem::replace(&mut is_local[i as usize], true) {
             all.push(i);
         }
     };
-    of.iter().for_each(|&i| add(i, &mut is_near, &mut all));
+    of.iter().for_each(|&i| add(i, &mut is_local, &mut all));
     let mut begin = 0;
     for _ in 0..DISTANCE {
         let end = all.len();
         for k in begin..end {
             for &j in matrix.row(all[k] as usize).0 {
-                add(j, &mut is_near, &mut all);
+                add(j, &mut is_local, &mut all);
             }
         }
         begin = end;
@@ -110,18 +111,18 @@ mod tests {
     }
 
     #[test]
-    fn nearby_unknowns_satisfy_their_inequality_and_the_others_keep_their_values() {
+    fn local_unknowns_satisfy_their_inequality_and_the_others_keep_their_values() {
         let (n, middle) = (200, 100);
         let string = string(n, -0.05);
         let mut iterate = Iterate::new(&string, &[]);
         assert!(solve_locally(&mut iterate, &ActiveSet::default(), &[middle as u32]));
         iterate.compute_residual();
         for i in 0..n {
-            let is_near = i.abs_diff(middle) <= DISTANCE;
+            let is_local = i.abs_diff(middle) <= DISTANCE;
             let (u, r) = (iterate.values[i], iterate.residual[i]);
             match iterate.states[i] {
-                Contact::Lower => assert!(is_near && u == -0.05 && r < 0.0, "{i}: {u} {r}"),
-                _ if is_near => assert!(u > -0.05 && r.abs() < 1e-14, "{i}: {u} {r}"),
+                Contact::Lower => assert!(is_local && u == -0.05 && r < 0.0, "{i}: {u} {r}"),
+                _ if is_local => assert!(u > -0.05 && r.abs() < 1e-14, "{i}: {u} {r}"),
                 _ => assert_eq!(u, 0.0),
             }
         }
