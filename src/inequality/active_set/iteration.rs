@@ -17,7 +17,7 @@ const CERTIFICATE_FACTOR: f64 = 8.0;
 
 /// Number of steps after which an iteration with few state changes continues from the solution near the
 /// unknowns that change them; see [`solve_locally`]. WOPSIP with bounds at vertices on radial-3d at 32, whose
-/// last changes move along the free boundary from cell to cell, takes 17 steps in place of 22.
+/// last changes move along the free boundary from cell to cell, takes three quarters of the steps.
 const MANY_STEPS: usize = 8;
 
 /// Few state changes, divided by the number of unknowns.

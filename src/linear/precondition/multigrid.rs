@@ -212,13 +212,13 @@ impl<T: Real> Level<'_, T> {
     /// [`FactorError::NotPositive`] if the block of a cell is not positive definite.
     fn update_smoother(&mut self, scale: f64) -> Result<(), FactorError> {
         let mut smoother = match self.smoother.take() {
-            Some(Smoother::ByUnknowns(smoother)) => {
-                Smoother::ByUnknowns(self.smoother_by_unknowns(Some(smoother), scale))
+            Some(Smoother::Unknowns(smoother)) => {
+                Smoother::Unknowns(self.smoother_by_unknowns(Some(smoother), scale))
             }
             // the finest level, whose rows stay as they are
             Some(by_cells) => by_cells,
             None => Smoother::by_cells(&self.matrix, self.cell_size, scale)
-                .unwrap_or_else(|| Smoother::ByUnknowns(self.smoother_by_unknowns(None, scale))),
+                .unwrap_or_else(|| Smoother::Unknowns(self.smoother_by_unknowns(None, scale))),
         };
         self.outdated.clear();
         smoother.set_fixed(&self.fixed, &self.kept)?;

@@ -9,11 +9,11 @@ use crate::real::Real;
 /// The smoother of a level.
 pub(crate) enum Smoother {
     /// One unknown after the other.
-    ByUnknowns(GaussSeidel),
+    Unknowns(GaussSeidel),
     /// All unknowns of a triangle at a time, three of them.
-    ByTriangles(CellGaussSeidel<3>),
+    Triangles(CellGaussSeidel<3>),
     /// All unknowns of a tetrahedron at a time, four of them.
-    ByTetrahedra(CellGaussSeidel<4>),
+    Tetrahedra(CellGaussSeidel<4>),
 }
 
 impl Smoother {
@@ -24,8 +24,8 @@ impl Smoother {
         scale: f64,
     ) -> Option<Self> {
         match cell_size {
-            3 => Some(Self::ByTriangles(CellGaussSeidel::new(matrix, scale))),
-            4 => Some(Self::ByTetrahedra(CellGaussSeidel::new(matrix, scale))),
+            3 => Some(Self::Triangles(CellGaussSeidel::new(matrix, scale))),
+            4 => Some(Self::Tetrahedra(CellGaussSeidel::new(matrix, scale))),
             _ => None,
         }
     }
@@ -36,39 +36,39 @@ impl Smoother {
     /// [`FactorError::NotPositive`] if the block of a cell is not positive definite.
     pub fn set_fixed(&mut self, fixed: &[bool], kept: &[u32]) -> Result<(), FactorError> {
         match self {
-            Self::ByUnknowns(smoother) => {
+            Self::Unknowns(smoother) => {
                 smoother.set_fixed(fixed, kept);
                 Ok(())
             }
-            Self::ByTriangles(smoother) => smoother.set_fixed(fixed),
-            Self::ByTetrahedra(smoother) => smoother.set_fixed(fixed),
+            Self::Triangles(smoother) => smoother.set_fixed(fixed),
+            Self::Tetrahedra(smoother) => smoother.set_fixed(fixed),
         }
     }
 
     /// A forward iteration from zero, with the residual.
     pub fn forward(&self, b: &[f32], x: &mut [f32], r: &mut [f32]) {
         match self {
-            Self::ByUnknowns(smoother) => smoother.forward(b, x, r),
-            Self::ByTriangles(smoother) => smoother.forward(b, x, r),
-            Self::ByTetrahedra(smoother) => smoother.forward(b, x, r),
+            Self::Unknowns(smoother) => smoother.forward(b, x, r),
+            Self::Triangles(smoother) => smoother.forward(b, x, r),
+            Self::Tetrahedra(smoother) => smoother.forward(b, x, r),
         }
     }
 
     /// A backward iteration.
     pub fn backward(&self, b: &[f32], x: &mut [f32], r: &mut [f32]) {
         match self {
-            Self::ByUnknowns(smoother) => smoother.backward(b, x, r),
-            Self::ByTriangles(smoother) => smoother.backward(b, x, r),
-            Self::ByTetrahedra(smoother) => smoother.backward(b, x, r),
+            Self::Unknowns(smoother) => smoother.backward(b, x, r),
+            Self::Triangles(smoother) => smoother.backward(b, x, r),
+            Self::Tetrahedra(smoother) => smoother.backward(b, x, r),
         }
     }
 
     /// Zero for fixed unknowns, else another number.
     pub fn mask(&self) -> &[f32] {
         match self {
-            Self::ByUnknowns(smoother) => smoother.inverse_diagonal(),
-            Self::ByTriangles(smoother) => smoother.mask(),
-            Self::ByTetrahedra(smoother) => smoother.mask(),
+            Self::Unknowns(smoother) => smoother.inverse_diagonal(),
+            Self::Triangles(smoother) => smoother.mask(),
+            Self::Tetrahedra(smoother) => smoother.mask(),
         }
     }
 }
