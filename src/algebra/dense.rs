@@ -1,4 +1,6 @@
-//! The inverse of a small dense matrix, stored by rows, and orthonormal bases.
+//! Inverses of small dense matrices, stored by rows, and orthonormal bases.
+
+use crate::real::Real;
 
 /// Inverts an `n` by `n` matrix in place by Gauss-Jordan elimination with partial pivoting. Returns
 /// whether the determinant is positive, `None` if the matrix is singular or an entry is not finite.
@@ -66,6 +68,32 @@ pub(crate) fn extend_basis(
         basis.truncate(start);
     }
     is_new
+}
+
+/// Inverts a symmetric positive definite block in place on its free unknowns, by Gauss-Jordan
+/// elimination; false if a pivot is not positive, with the block destroyed.
+pub(crate) fn invert_positive_definite<T: Real>(a: &mut [T], size: usize, fixed: &[bool]) -> bool {
+    let one = T::lit(1.0);
+    for k in (0..size).filter(|&k| !fixed[k]) {
+        let pivot = a[k * size + k];
+        if pivot <= T::lit(0.0) || !pivot.is_finite() {
+            return false;
+        }
+        let inverse = one / pivot;
+        a[k * size + k] = one;
+        for j in 0..size {
+            a[k * size + j] *= inverse;
+        }
+        for i in (0..size).filter(|&i| i != k) {
+            let factor = a[i * size + k];
+            a[i * size + k] = T::lit(0.0);
+            for j in 0..size {
+                let term = factor * a[k * size + j];
+                a[i * size + j] -= term;
+            }
+        }
+    }
+    true
 }
 
 #[cfg(test)]

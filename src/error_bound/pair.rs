@@ -108,39 +108,20 @@ impl<T: Real, const D: usize> Discretisation<'_, T, D> {
         let forces = space.contact_forces(inequality, &solution.contact, &residual, u);
         let multipliers = multipliers.as_deref();
         let function = space.admissible_function(u, (&inequality.bounds, &solution.contact));
-        let exchanges = space.problem.has_obstacle();
         let computed = OnceCell::new();
         let neighbours = || match &space.neighbours {
             Some(neighbours) => neighbours,
             None => computed.get_or_init(|| Neighbours::new(space.mesh)),
         };
         let flux = if space.degree == 2 {
-            // multipliers of jumps alone may contain a flux without divergence that alternates between facets
-            // and that jumps hardly see: that of WOPSIP has an error of first order in the plane. Its
-            // equations, tested with hat functions, are those of a conforming function
-            let has_facet_fluxes = self.owns_rows() && inequality.penalised.is_none();
-            let numbers = match has_facet_fluxes {
-                true => None,
-                false => space.node_numbers(&function.edges),
-            };
-            let states = (&inequality.bounds[..], &solution.contact[..]);
-            let mut loads = space.cell_loads(u, &residual, states, &forces, numbers)?;
-            let mut flux = if has_facet_fluxes {
-                space.densities_of_moments(&self.facet_fluxes(u, multipliers, D)?)
-            } else {
-                if self.owns_rows() {
-                    space.smooth_forces(&forces, &mut loads.contact);
-                }
-                space.quadratic_patch_fluxes(u, &function, &mut loads)
-            };
-            space.balance(&loads, &mut flux);
-            if exchanges {
-                space.exchange_quadratics(&function, &loads, neighbours(), &mut flux);
-            }
-            if space.problem.has_gap() && D > 1 {
-                space.exchange_forces(&function, neighbours(), &mut flux);
-            }
-            flux
+            let of_solver = (&residual[..], multipliers);
+            self.quadratic_flux(
+                (inequality, solution),
+                of_solver,
+                &forces,
+                &function,
+                neighbours(),
+            )?
         } else {
             let mut flux = if self.owns_rows() {
                 self.facet_fluxes(u, multipliers, 1)?
@@ -150,13 +131,51 @@ impl<T: Real, const D: usize> Discretisation<'_, T, D> {
                 space.crouzeix_raviart_fluxes(u)?
             };
             space.add_boundary_fluxes(&forces, &mut flux)?;
-            if exchanges {
+            if space.problem.has_obstacle() {
                 let multipliers = space.multipliers_by_cell(&residual, &forces);
                 space.exchange_linears(&function, &multipliers, neighbours(), &mut flux);
             }
             flux
         };
         Ok(PrimalDualPair { flux, ..function })
+    }
+
+    /// The flux of a discrete quadratic function, from the residual and the multipliers of jumps.
+    fn quadratic_flux(
+        &self,
+        (inequality, solution): (&Inequality<T>, &Solution<T>),
+        (residual, multipliers): (&[f64], Option<&[f64]>),
+        forces: &[NodeForce],
+        function: &PrimalDualPair,
+        neighbours: &Neighbours,
+    ) -> Result<Vec<f64>, NoBound> {
+        let (space, u) = (&self.space, &solution.values[..]);
+        // multipliers of jumps alone may contain a flux without divergence that alternates between facets
+        // and that jumps hardly see: that of WOPSIP has an error of first order in the plane. Its
+        // equations, tested with hat functions, are those of a conforming function
+        let has_facet_fluxes = self.owns_rows() && inequality.penalised.is_none();
+        let numbers = match has_facet_fluxes {
+            true => None,
+            false => space.node_numbers(&function.edges),
+        };
+        let states = (&inequality.bounds[..], &solution.contact[..]);
+        let mut loads = space.cell_loads(u, residual, states, forces, numbers)?;
+        let mut flux = if has_facet_fluxes {
+            space.densities_of_moments(&self.facet_fluxes(u, multipliers, D)?)
+        } else {
+            if self.owns_rows() {
+                space.smooth_forces(forces, &mut loads.contact);
+            }
+            space.quadratic_patch_fluxes(u, function, &mut loads)
+        };
+        space.balance(&loads, &mut flux);
+        if space.problem.has_obstacle() {
+            space.exchange_quadratics(function, &loads, neighbours, &mut flux);
+        }
+        if space.problem.has_gap() && D > 1 {
+            space.exchange_forces(function, neighbours, &mut flux);
+        }
+        Ok(flux)
     }
 }
 

@@ -265,7 +265,10 @@ fn bounds_hold_for_solutions_to_a_share_of_them() {
                 let is_share = shares.clone().all(|share| share == tolerance);
                 assert!(shares.clone().count() > 0 && is_share, "{name}, {tolerance}");
                 let (few, many) = (iterations(&steps), iterations(&accurate));
-                assert!(saving * few <= many, "{name}, {tolerance}: {few}, {many}");
+                // a solve takes one iteration at least
+                let least = steps.len() - 1;
+                let is_saving = saving * few <= many || few == least;
+                assert!(is_saving, "{name}, {tolerance}: {few}, {many}, {least}");
                 for AdaptiveStep { solved, .. } in &steps {
                     let bound = solved.bound().unwrap();
                     assert!(bound.parts.algebra <= tolerance, "{name}, {bound:?}");

@@ -8,6 +8,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use super::multigrid::Multigrid;
 use super::preconditioner::Preconditioner;
 use super::prolongation::rows_of_means;
+use crate::algebra::dense::invert_positive_definite;
 use crate::algebra::{RectangularMatrix, SparseMatrix, Support};
 use crate::element::MAX_BASIS;
 use crate::linear::direct::FactorError;
@@ -223,30 +224,4 @@ fn read_block<T: Real>(matrix: &SparseMatrix<T>, first: usize, fixed: &[bool], b
             }
         }
     }
-}
-
-/// Inverts a symmetric positive definite block in place on its free unknowns, by Gauss-Jordan
-/// elimination; false if a pivot is not positive, with the block destroyed.
-pub(super) fn invert_positive_definite<T: Real>(a: &mut [T], size: usize, fixed: &[bool]) -> bool {
-    let one = T::lit(1.0);
-    for k in (0..size).filter(|&k| !fixed[k]) {
-        let pivot = a[k * size + k];
-        if pivot <= T::lit(0.0) || !pivot.is_finite() {
-            return false;
-        }
-        let inverse = one / pivot;
-        a[k * size + k] = one;
-        for j in 0..size {
-            a[k * size + j] *= inverse;
-        }
-        for i in (0..size).filter(|&i| i != k) {
-            let factor = a[i * size + k];
-            a[i * size + k] = T::lit(0.0);
-            for j in 0..size {
-                let term = factor * a[k * size + j];
-                a[i * size + j] -= term;
-            }
-        }
-    }
-    true
 }

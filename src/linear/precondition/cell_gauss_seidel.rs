@@ -9,8 +9,8 @@
 //! reduces the energy of the error if `D - O` is positive. A sum of forms on facets, each positive with either
 //! sign of the traces from one side, has this property: interior penalties above the proven bound.
 
-use super::auxiliary_space::invert_positive_definite;
 use crate::algebra::SparseMatrix;
+use crate::algebra::dense::invert_positive_definite;
 use crate::linear::direct::FactorError;
 use crate::parallel::vectors::{
     CHUNK, for_each_chunk_of_groups, map_index_ranges, sum_chunks_of_groups_of_two, zeros,
