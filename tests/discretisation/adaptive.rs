@@ -255,7 +255,8 @@ fn bounds_hold_for_solutions_to_a_share_of_them() {
                 let before = &steps[..steps.len() - 1];
                 before.iter().map(|step| step.solved.solution().linear).sum::<usize>()
             };
-            for (tolerance, saving) in [(0.05, 1), (0.9, 2)] {
+            // accurate solves with smoothing by cells take ten iterations: little is left to save
+            for (tolerance, saving) in [(0.05, 1.0), (0.9, 1.5)] {
                 let inexact = meshes(&scene);
                 let steps = steps_to(&scene, &inexact, scheme, Some(tolerance));
                 assert!(steps.iter().all(|step| step.solved.converged()), "{name}");
@@ -265,10 +266,8 @@ fn bounds_hold_for_solutions_to_a_share_of_them() {
                 let is_share = shares.clone().all(|share| share == tolerance);
                 assert!(shares.clone().count() > 0 && is_share, "{name}, {tolerance}");
                 let (few, many) = (iterations(&steps), iterations(&accurate));
-                // a solve takes one iteration at least
-                let least = steps.len() - 1;
-                let is_saving = saving * few <= many || few == least;
-                assert!(is_saving, "{name}, {tolerance}: {few}, {many}, {least}");
+                let is_saving = saving * few as f64 <= many as f64;
+                assert!(is_saving, "{name}, {tolerance}: {few}, {many}");
                 for AdaptiveStep { solved, .. } in &steps {
                     let bound = solved.bound().unwrap();
                     assert!(bound.parts.algebra <= tolerance, "{name}, {bound:?}");
