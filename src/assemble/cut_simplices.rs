@@ -9,7 +9,7 @@
 use crate::mesh::Mesh;
 use crate::problem::Field;
 use crate::quadrature::{Rule, facet_to_cell};
-use crate::real::{Point, Real, point_f64};
+use crate::real::{Point, Real};
 
 /// What is called with a point of a rule on a cut cell: in barycentric coordinates, in space, and with
 /// its weight.
@@ -63,10 +63,7 @@ impl CutRule {
         level: &Field<D>,
         visit: Visit<'_, D>,
     ) -> bool {
-        let mut corners = [Point::zeros(); 4];
-        for (corner, &v) in corners.iter_mut().zip(mesh.cell(cell)) {
-            *corner = point_f64(&mesh.vertices()[v as usize]);
-        }
+        let corners = mesh.corners(cell);
         let is_cut = self.is_cut(&self.whole(), &corners, level);
         if is_cut {
             self.visit(&corners, level, &mut |point, weight| {

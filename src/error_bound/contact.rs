@@ -86,6 +86,19 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         forces
     }
 
+    /// The multipliers of obstacles by unknown: minus the residual, less contact forces.
+    pub(super) fn multipliers_of_obstacles(
+        &self,
+        residual: &[f64],
+        forces: &[NodeForce],
+    ) -> Vec<f64> {
+        let mut multipliers: Vec<f64> = residual.iter().map(|r| -r).collect();
+        for force in forces {
+            multipliers[self.dofs.of(force.cell, force.node)] -= force.value;
+        }
+        multipliers
+    }
+
     /// The integral over a facet of `alpha grad u . n` times a basis function.
     fn flux_at_node(&self, (cell, local): Place, node: usize, u: &[T]) -> f64 {
         let geometry = self.mesh.geometry(cell);

@@ -18,8 +18,8 @@ struct Nodes<'m> {
     edges: &'m [u32],
 }
 
-/// A node of the function of a pair: the two vertices of a cell of which it is the middle, those of a vertex equal, and
-/// the number of the node.
+/// A node of the function of a pair: two vertices of a cell, whose midpoint the node is, and the number of the node. For a
+/// node at a vertex the two are equal.
 pub(super) type PairNode = ([usize; 2], usize);
 
 impl Nodes<'_> {
@@ -104,8 +104,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         if !has_means || !self.problem.has_obstacle() || contact.len() != bounds.len() {
             return None;
         }
-        let decides: Vec<usize> =
-            (0..self.per_cell()).filter(|&i| self.has_positive_mean(i)).collect();
+        let decides = self.unknowns_with_positive_mean();
         let mut states: Vec<Option<Contact>> = vec![None; nodes.n_vertices + nodes.n_edges];
         for cell in 0..self.mesh.n_cells() {
             let mut of_unknowns = decides

@@ -126,7 +126,7 @@ impl<T: Real, const D: usize> Discretisation<'_, T, D> {
             let mut flux = if self.owns_rows() {
                 self.facet_fluxes(u, multipliers, 1)?
             } else if space.is_conforming_linear() {
-                space.patch_fluxes(u, &residual, &forces)?
+                space.patch_fluxes(u, &residual, &forces, neighbours())?
             } else {
                 space.crouzeix_raviart_fluxes(u)?
             };
@@ -166,7 +166,7 @@ impl<T: Real, const D: usize> Discretisation<'_, T, D> {
             if self.owns_rows() {
                 space.smooth_forces(forces, &mut loads.contact);
             }
-            space.quadratic_patch_fluxes(u, function, &mut loads)
+            space.quadratic_patch_fluxes((u, function), neighbours, &mut loads)
         };
         space.balance(&loads, &mut flux);
         if space.problem.has_obstacle() {

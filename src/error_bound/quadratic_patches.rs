@@ -33,7 +33,7 @@ use crate::element::Node;
 use crate::measure::Admissible;
 use crate::mesh::{BoundaryPart, Neighbour, Neighbours, edge_vertices};
 use crate::parallel::cells;
-use crate::real::{Point, Real, point_f64};
+use crate::real::{Point, Real};
 
 /// Numbers for each vertex of a facet at the vertex of a patch, for each of these facets.
 type OfFacets = [[f64; 3]; 3];
@@ -61,7 +61,7 @@ impl CellData {
 /// What the patches read.
 struct Patches<'s, 'a, T: Real, const D: usize> {
     space: &'s Space<'a, T, D>,
-    neighbours: Neighbours,
+    neighbours: &'s Neighbours,
     cells: Vec<CellData>,
     /// The products of Neumann data and contact forces, by facet; sorted.
     given: Vec<&'s (Place, Products)>,
@@ -73,13 +73,12 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
     /// The densities `c_Fj` of a conforming quadratic function, without those of Neumann data and contact.
     pub(super) fn quadratic_patch_fluxes(
         &self,
-        u: &[T],
-        function: &PrimalDualPair,
+        (u, function): (&[T], &PrimalDualPair),
+        neighbours: &Neighbours,
         loads: &mut CellLoads,
     ) -> Vec<f64> {
         let (corners, starts) = self.corners();
-        let neighbours = Neighbours::new(self.mesh);
-        let cells = self.patch_data((u, function), &neighbours, loads);
+        let cells = self.patch_data((u, function), neighbours, loads);
         let mut given: Vec<_> = loads.neumann.iter().chain(&loads.contact).collect();
         given.sort_unstable_by_key(|(place, _)| *place);
         let patches = Patches { space: self, neighbours, cells, given, corners, starts };
@@ -122,7 +121,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
             cells.map(in_cell).collect::<Vec<_>>()
         });
         let mut data: Vec<CellData> = data.into_iter().flatten().collect();
-        if let Some(shared) = &loads.shared {
+        if let Some(shared) = loads.shared.as_ref().filter(|s| s.surrounded.contains(&true)) {
             self.divide_multipliers(&data, neighbours, shared, &mut loads.values);
         }
         let loads = &*loads;
@@ -354,10 +353,7 @@ impl<T: Real, const D: usize> Patches<'_, '_, T, D> {
         (matrix, unknowns): (&mut [f64], &mut [f64]),
     ) {
         let (mesh, n, d) = (self.space.mesh, unknowns.len(), D as f64);
-        let mut points = [Point::<f64, D>::zeros(); 4];
-        for (to, &v) in points.iter_mut().zip(mesh.cell(cell as usize)) {
-            *to = point_f64(&mesh.vertices()[v as usize]);
-        }
+        let points = mesh.corners(cell as usize);
         let sum: Point<f64, D> = points[..=D].iter().sum();
         let volume = mesh.geometry(cell as usize).volume.to_f64();
         let alpha = self.space.alpha(cell as usize).to_f64();

@@ -86,11 +86,8 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         numbers: Option<Vec<u32>>,
     ) -> Result<CellLoads, NoBound> {
         let n = self.per_cell();
-        let mut multipliers: Vec<f64> = residual.iter().map(|r| -r).collect();
+        let mut multipliers = self.multipliers_of_obstacles(residual, forces);
         let is_pinned = |unknown: usize| self.pins && matches!(bounds[unknown], Bound::Fixed(_));
-        for force in forces {
-            multipliers[self.dofs.of(force.cell, force.node)] -= force.value;
-        }
         (0..multipliers.len()).filter(|&i| is_pinned(i)).for_each(|i| multipliers[i] = 0.0);
         let given = self.loads_less_reaction(u)?;
         let mut values = given.clone();
@@ -142,10 +139,14 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         Ok(loads)
     }
 
-    /// Whether the integral of a basis function over a cell is positive, but for rounding.
-    pub(super) fn has_positive_mean(&self, node: usize) -> bool {
-        let terms = self.cell_rule.iter().map(|(point, w)| w * self.basis_at(point).values[node]);
-        terms.sum::<f64>() > MEAN_ROUNDING
+    /// The unknowns of a cell whose basis functions have a positive integral over the cell, but for rounding. Where the
+    /// integral is not positive, as at vertices in the plane, the multiplier has no definite sign, and unknowns deep in
+    /// contact are inactive at random.
+    pub(super) fn unknowns_with_positive_mean(&self) -> Vec<usize> {
+        let mean = |node: usize| -> f64 {
+            self.cell_rule.iter().map(|(point, w)| w * self.basis_at(point).values[node]).sum()
+        };
+        (0..self.per_cell()).filter(|&node| mean(node) > MEAN_ROUNDING).collect()
     }
 
     /// The products of Neumann data, by facet.

@@ -43,20 +43,23 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         numbers: Vec<u32>,
         values: &mut [f64],
     ) -> SharedNodes {
-        let (n, n_cells) = (self.per_cell(), self.mesh.n_cells());
+        let n = self.per_cell();
         let volume = |cell: usize| self.mesh.geometry(cell).volume.to_f64();
         let held: Vec<bool> = self.cells_in_contact(bounds, contact);
         let n_nodes = numbers.iter().max().map_or(0, |&most| most as usize + 1);
         let mut around = vec![[0.0; 2]; n_nodes];
         let mut sums = vec![0.0; n_nodes];
         let mut surrounded = vec![contact.len() == bounds.len(); n_nodes];
-        for (k, &node) in numbers.iter().enumerate() {
-            let (cell, node, unknown) = (k / n, node as usize, self.dofs.of(k / n, k % n));
-            around[node][usize::from(held[cell])] += volume(cell);
-            // a shared unknown has one multiplier
-            sums[node] =
-                if self.broken { sums[node] + multipliers[unknown] } else { multipliers[unknown] };
-            surrounded[node] &= held[cell] && bounds[unknown].is_inequality();
+        for (cell, nodes) in numbers.chunks_exact(n).enumerate() {
+            let volume = volume(cell);
+            for (i, &node) in nodes.iter().enumerate() {
+                let (node, unknown) = (node as usize, self.dofs.of(cell, i));
+                around[node][usize::from(held[cell])] += volume;
+                // a shared unknown has one multiplier
+                let before = if self.broken { sums[node] } else { 0.0 };
+                sums[node] = before + multipliers[unknown];
+                surrounded[node] &= held[cell] && bounds[unknown].is_inequality();
+            }
         }
         for f in self.mesh.boundary() {
             if self.broken || f.part != BoundaryPart::Dirichlet {
@@ -65,25 +68,24 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
                 }
             }
         }
-        for cell in 0..n_cells {
-            for k in cell * n..(cell + 1) * n {
-                let [free, in_contact] = around[numbers[k] as usize];
+        let of_cells = numbers.chunks_exact(n).zip(values.chunks_exact_mut(n));
+        for (cell, (nodes, values)) in of_cells.enumerate() {
+            let volume = volume(cell);
+            for (&node, value) in nodes.iter().zip(values) {
+                let [free, in_contact] = around[node as usize];
                 let part = match in_contact > 0.0 {
-                    true => f64::from(u8::from(held[cell])) * volume(cell) / in_contact,
-                    false => volume(cell) / free,
+                    true => f64::from(u8::from(held[cell])) * volume / in_contact,
+                    false => volume / free,
                 };
-                values[k] += part * sums[numbers[k] as usize];
+                *value += part * sums[node as usize];
             }
         }
         SharedNodes { numbers, surrounded }
     }
 
-    /// For each cell whether no bounded unknown with a basis function of positive mean is free: where the mean is not
-    /// positive, as at vertices in the plane, the multiplier has no definite sign, and unknowns deep in contact are
-    /// inactive at random.
+    /// For each cell whether no bounded unknown with a basis function of positive mean is free.
     fn cells_in_contact(&self, bounds: &[Bound<T>], contact: &[Contact]) -> Vec<bool> {
-        let decides: Vec<usize> =
-            (0..self.per_cell()).filter(|&i| self.has_positive_mean(i)).collect();
+        let decides = self.unknowns_with_positive_mean();
         let is_free = |unknown: usize| {
             bounds[unknown].is_inequality() && contact.get(unknown) == Some(&Contact::Inactive)
         };

@@ -268,10 +268,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         if function.bounds.iter().all(Option::is_none) {
             return Some(gaps);
         }
-        let mut corners = [Point::zeros(); 4];
-        for (corner, &v) in corners.iter_mut().zip(self.mesh.cell(cell)) {
-            *corner = point_f64(&self.mesh.vertices()[v as usize]);
-        }
+        let corners = self.mesh.corners(cell);
         for (point, weight) in table.points.iter().zip(&table.weights) {
             let x = in_space(point, &corners);
             let value: f64 = function.values.iter().zip(point).map(|(v, b)| v * b).sum();

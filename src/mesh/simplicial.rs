@@ -57,6 +57,14 @@ impl<T: Real, const D: usize> Mesh<T, D> {
     pub fn cell(&self, c: usize) -> &[u32] {
         &self.cells[c * Self::CELL_VERTICES..(c + 1) * Self::CELL_VERTICES]
     }
+    /// The points of the vertices of a cell, zero beyond the last.
+    pub(crate) fn corners(&self, cell: usize) -> [Point<f64, D>; 4] {
+        let mut corners = [Point::zeros(); 4];
+        for (corner, &v) in corners.iter_mut().zip(self.cell(cell)) {
+            *corner = point_f64(&self.vertices[v as usize]);
+        }
+        corners
+    }
     /// Vertices of all cells, `D + 1` for each.
     pub fn cells(&self) -> &[u32] {
         &self.cells

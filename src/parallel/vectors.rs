@@ -49,18 +49,21 @@ fn is_sequential(n: usize) -> bool {
 
 /// The values of `work` on the index range of each chunk of `0..n`, in the order of chunks.
 pub(crate) fn map_chunks<R: Send>(n: usize, work: impl Fn(Range<usize>) -> R + Sync) -> Vec<R> {
-    let n_chunks = n.div_ceil(CHUNK);
-    let one = |k: usize| work(chunk_range(k, n));
-    if is_sequential(n) { (0..n_chunks).map(one).collect() } else { map_indices(n_chunks, &one) }
+    map_chunks_of_groups(n, 1, work)
 }
 
-/// The values of `work` on the ranges of `length` indices of which `0..n` consists, in their order; the
-/// last range may be shorter.
-pub(crate) fn map_index_ranges<R: Send>(
+/// The length of chunks that divide no group of `group` consecutive entries.
+pub(crate) const fn chunk_of_groups(group: usize) -> usize {
+    CHUNK / group * group
+}
+
+/// As [`map_chunks`]; no chunk divides a group of `group` consecutive entries.
+pub(crate) fn map_chunks_of_groups<R: Send>(
     n: usize,
-    length: usize,
+    group: usize,
     work: impl Fn(Range<usize>) -> R + Sync,
 ) -> Vec<R> {
+    let length = chunk_of_groups(group);
     let n_ranges = n.div_ceil(length);
     let one = |k: usize| work(k * length..((k + 1) * length).min(n));
     if is_sequential(n) { (0..n_ranges).map(one).collect() } else { map_indices(n_ranges, &one) }
@@ -107,7 +110,7 @@ pub(crate) fn sum_chunks_of_groups_of_two<A: Send, B: Send>(
     group: usize,
     work: impl Fn(Range<usize>, &mut [A], &mut [B]) -> f64 + Sync,
 ) -> f64 {
-    let (n, length) = (x.len(), CHUNK / group * group);
+    let (n, length) = (x.len(), chunk_of_groups(group));
     let one =
         |(k, (x, y)): (usize, (&mut [A], &mut [B]))| work(k * length..k * length + x.len(), x, y);
     if is_sequential(n) {
@@ -135,7 +138,7 @@ pub(crate) fn for_each_chunk_of_groups<A: Send>(
     group: usize,
     work: impl Fn(Range<usize>, &mut [A]) + Sync,
 ) {
-    let (n, length) = (x.len(), CHUNK / group * group);
+    let (n, length) = (x.len(), chunk_of_groups(group));
     let one = |(k, x): (usize, &mut [A])| work(k * length..k * length + x.len(), x);
     if is_sequential(n) {
         x.chunks_mut(length).enumerate().for_each(one);

@@ -6,7 +6,7 @@ use std::f64::consts::PI;
 use crate::assemble::space::Space;
 use crate::error_bound::PrimalDualPair;
 use crate::quadrature::Rule;
-use crate::real::{Point, Real, point_f64};
+use crate::real::{Point, Real};
 
 /// The degree of products of two fluxes.
 const DEGREE: usize = 4;
@@ -22,15 +22,14 @@ pub(super) struct CellInContact {
     pub gaps: [[f64; 4]; 2],
     /// Products of the gradient of the function with the fluxes.
     pub gradient: [f64; 16],
-    /// By how much the divergence at a vertex grows with a density there.
+    /// The derivative of the divergence at a vertex by a density at that vertex.
     pub divergence: f64,
     /// Whether each of the two obstacles is given.
     pub is_given: [bool; 2],
     /// The square of the energy norm of the function.
     pub energy: f64,
-    /// The factor of the norm of a function without mean in the inequality of Payne and Weinberger, over the root of
-    /// the coefficient and of `(D + 1) (D + 2)` over the volume: by it the values of a linear function
-    /// at the vertices count.
+    /// What a linear function without mean counts for by the inequality of Payne and Weinberger, over the root of the
+    /// sum of the squares of its values at the vertices: `h_K / pi (|K| / (alpha (D + 1) (D + 2)))^1/2`.
     pub variation: f64,
     /// Whether the multiplier has one sign in the cell: otherwise its variation counts besides, and grows with numbers
     /// that make the mismatch smaller.
@@ -38,8 +37,8 @@ pub(super) struct CellInContact {
 }
 
 impl CellInContact {
-    /// The sign of the multiplier in the mean.
-    pub fn mean(&self) -> f64 {
+    /// The multiplier in the mean, times the number of vertices.
+    pub fn sum(&self) -> f64 {
         self.multiplier.iter().sum()
     }
     /// How far the multiplier at a vertex may fall, times its sign.
@@ -65,7 +64,7 @@ impl<const D: usize> Cells<'_, D> {
     pub const N: usize = (D + 1) * (D + 1);
 
     /// Half of the derivative of the square of the mismatch of a cell by one of its numbers.
-    pub fn slope(&self, k: usize, number: usize) -> f64 {
+    fn slope(&self, k: usize, number: usize) -> f64 {
         let row = &self.products[(k * Self::N + number) * Self::N..][..Self::N];
         let flux = &self.flux[self.cells[k].number * Self::N..][..Self::N];
         let products = row.iter().zip(flux).map(|(p, c)| p * c);
@@ -80,9 +79,24 @@ impl<const D: usize> Cells<'_, D> {
         (flux.iter().enumerate().map(term).sum::<f64>() + of_cell.energy).max(0.0)
     }
 
-    pub fn product(&self, k: usize, row: usize, column: usize) -> f64 {
-        self.products[(k * Self::N + row) * Self::N + column]
+    /// The change of numbers, each given by its cell, its number in the cell and a sign, that makes the square of the
+    /// mismatch and twice a linear term least.
+    pub fn least_change(&self, terms: &[(usize, usize, f64)], linear: f64) -> f64 {
+        let product = |k: usize, row: usize, column: usize| {
+            self.products[(k * Self::N + row) * Self::N + column]
+        };
+        let (mut slope, mut curvature) = (0.0, 0.0);
+        for (i, &(k, row, sign)) in terms.iter().enumerate() {
+            slope += sign * self.slope(k, row);
+            curvature += product(k, row, row);
+            for &(_, column, of_other) in terms[..i].iter().filter(|(other, ..)| *other == k) {
+                curvature += 2.0 * sign * of_other * product(k, row, column);
+            }
+        }
+        -(slope + linear) / curvature
     }
+
+    /// Adds to a number of a cell that changes the divergence at one vertex.
     pub fn add(&mut self, k: usize, number: usize, vertex: usize, exchange: f64) {
         let cell = &mut self.cells[k];
         self.flux[cell.number * Self::N + number] += exchange;
@@ -122,10 +136,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         let per_volume = 1.0 / (D as f64 * volume);
         let alpha = self.alpha(number).to_f64();
         let admissible = self.admissible_in(function, number);
-        let mut corners = [Point::<f64, D>::zeros(); 4];
-        for (corner, &v) in corners.iter_mut().zip(self.mesh.cell(number)) {
-            *corner = point_f64(&self.mesh.vertices()[v as usize]);
-        }
+        let corners = self.mesh.corners(number);
         let mut gaps = [[0.0; 4]; 2];
         let (mut of_gradient, mut energy) = ([0.0; 16], 0.0);
         for (point, weight) in rule.iter() {

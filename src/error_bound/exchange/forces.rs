@@ -1,8 +1,8 @@
-//! Contact forces of quadratics, changed along a facet.
+//! Contact forces of quadratics, exchanged along facets and between them.
 //!
-//! On a contact facet `F` the normal flux is the contact force, which must not be negative. A number added to the
-//! density `c_Fj` at one vertex and taken from that at another keeps the force of the facet; taken from
-//! `c_jj` and added to that of the other vertex it keeps the divergence in the cell. A number taken from the density
+//! On a contact facet `F` the normal flux is the contact force, which must not be negative. A number that is added to
+//! the density `c_Fj` at one vertex and taken from the density at another keeps the force of the facet; taken from
+//! `c_jj` and added to its counterpart at the other vertex the number keeps the divergence in the cell. A number taken from the density
 //! of a contact facet at a vertex may also leave through another facet at that vertex, and through those of further
 //! cells around the vertex, until it comes to another contact facet there: divergences at a vertex depend on the
 //! sum of its densities. What changes is the mismatch, and the complementarity of the contact force.
@@ -60,8 +60,8 @@ impl<const D: usize> Cells<'_, D> {
         self.flux[self.cells[k].number * Self::N + local * (D + 1) + vertex]
     }
 
-    /// Moves a contact force towards its mean, until it is nowhere negative: if that costs less than its negative
-    /// part counts for.
+    /// Moves a contact force towards its mean until the force is nowhere negative. The force stays as it is if the
+    /// mismatch would grow by more than the negative part counts for.
     fn make_force_positive(&mut self, facet: &mut ContactFacet) {
         let at = facet.at;
         let mean = vertices_of::<D>(at.1).map(|j| self.force(at, j)).sum::<f64>() / D as f64;
@@ -81,22 +81,6 @@ impl<const D: usize> Cells<'_, D> {
             vertices_of::<D>(at.1).for_each(|j| self.add_to_force(at, j, -changes[j]));
             facet.has_one_sign = false;
         }
-    }
-
-    /// The change of numbers, each with a sign, that makes the square of the mismatch and twice a linear term least;
-    /// numbers of a cell follow each other.
-    fn least_change(&self, terms: &[(usize, usize, f64)], linear: f64) -> f64 {
-        let (mut slope, mut curvature) = (linear, 0.0);
-        for (i, &(k, row, sign)) in terms.iter().enumerate() {
-            slope += sign * self.slope(k, row);
-            curvature += self.product(k, row, row);
-            for &(other, column, of_other) in &terms[..i] {
-                if other == k {
-                    curvature += 2.0 * sign * of_other * self.product(k, row, column);
-                }
-            }
-        }
-        -slope / curvature
     }
 
     /// Exchanges the contact force of a facet between two of its vertices.
@@ -191,6 +175,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
             }
         }
     }
+
     /// Follows a chain of cells around a vertex through all facets there but that by which it came to the last of its
     /// cells, and exchanges the contact force at its end with that at its beginning.
     fn follow(

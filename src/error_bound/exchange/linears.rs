@@ -1,13 +1,13 @@
 //! Exchange for linears: one flux of each facet, one multiplier of each cell.
 
-use super::ROUNDING;
+use super::{ROUNDING, Step};
 use crate::assemble::cut_simplices::in_space;
 use crate::assemble::space::{Place, Space};
 use crate::error_bound::PrimalDualPair;
 use crate::error_bound::contact::NodeForce;
-use crate::mesh::{BoundaryPart, Neighbour, Neighbours};
+use crate::mesh::{BoundaryPart, Neighbours};
 use crate::quadrature::Rule;
-use crate::real::{Point, Real, point_f64};
+use crate::real::{Point, Real};
 
 /// Visits of each facet. The matrix of the least-squares problem is the mass matrix of fluxes, whose condition
 /// does not grow with the number of cells.
@@ -69,10 +69,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         forces: &[NodeForce],
     ) -> Vec<f64> {
         let n = self.per_cell();
-        let mut multipliers: Vec<f64> = residual.iter().map(|r| -r).collect();
-        for force in forces {
-            multipliers[self.dofs.of(force.cell, force.node)] -= force.value;
-        }
+        let mut multipliers = self.multipliers_of_obstacles(residual, forces);
         if self.broken {
             return multipliers.chunks_exact(n).map(|m| m.iter().sum()).collect();
         }
@@ -110,32 +107,20 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
     ) {
         let largest = multipliers.iter().fold(0.0, |largest: f64, m| largest.max(m.abs()));
         let presses = |cell: usize| multipliers[cell].abs() > ROUNDING * largest;
-        let (numbers, places) = self.cells_of_exchange(presses, neighbours);
+        let (numbers, steps) = self.cells_of_exchange(presses, neighbours);
         let rule = Rule::new(D, DEGREE);
         let in_contact = |&cell: &usize| {
             let multiplier = if presses(cell) { multipliers[cell] } else { 0.0 };
             self.linear_in_contact(cell, function, multiplier, &rule)
         };
         let mut cells: Vec<CellInContact<D>> = numbers.iter().map(in_contact).collect();
-        for _ in 0..SWEEPS {
-            for here in 0..cells.len() {
-                for local in 0..=D {
-                    let cell = cells[here].number;
-                    match neighbours.across(cell, local) {
-                        Neighbour::Cell { cell: other, local: there } => {
-                            let there_at = places[other as usize] as usize;
-                            if (other as usize) < cell || there_at >= cells.len() {
-                                continue;
-                            }
-                            let at = [(here, local), (there_at, usize::from(there))];
-                            exchange_between(&mut cells, at, flux);
-                        }
-                        Neighbour::Boundary(BoundaryPart::Dirichlet) => {
-                            exchange_with_dirichlet(&mut cells[here], local, flux);
-                        }
-                        Neighbour::Boundary(_) => {}
-                    }
+        for step in (0..SWEEPS).flat_map(|_| &steps) {
+            match *step {
+                Step::Between(at) => exchange_between(&mut cells, at, flux),
+                Step::WithDirichlet((k, local)) => {
+                    exchange_with_dirichlet(&mut cells[k], local, flux);
                 }
+                Step::Inside(_) => {}
             }
         }
     }
@@ -150,11 +135,8 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         let volume = self.mesh.geometry(number).volume.to_f64();
         let alpha = self.alpha(number).to_f64();
         let admissible = self.admissible_in(function, number);
-        let (mut corners, mut centre) = ([Point::zeros(); 4], Point::<f64, D>::zeros());
-        for (corner, &v) in corners.iter_mut().zip(self.mesh.cell(number)) {
-            *corner = point_f64(&self.mesh.vertices()[v as usize]);
-            centre += *corner / (D + 1) as f64;
-        }
+        let corners = self.mesh.corners(number);
+        let centre: Point<f64, D> = corners[..=D].iter().map(|x| x / (D + 1) as f64).sum();
         let mut arms = [Point::zeros(); 4];
         (0..=D).for_each(|k| arms[k] = centre - corners[k]);
         let squares: f64 = arms.iter().map(|arm| arm.norm_squared()).sum();

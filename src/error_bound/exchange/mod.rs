@@ -19,21 +19,31 @@ mod forces;
 mod linears;
 mod quadratics;
 
-use crate::assemble::space::Space;
-use crate::mesh::{Neighbour, Neighbours};
+use crate::assemble::space::{Place, Space};
+use crate::mesh::{BoundaryPart, Neighbour, Neighbours};
 use crate::real::Real;
 
 /// Multipliers below this share of the largest one are rounding.
 const ROUNDING: f64 = 1e-10;
 
+/// A step of an exchange; cells by their numbers among those of the exchange.
+#[derive(Clone, Copy)]
+enum Step {
+    /// Between two cells, through the facet with these numbers in them.
+    Between([Place; 2]),
+    /// Through a Dirichlet facet of a cell.
+    WithDirichlet(Place),
+    /// Inside a cell, after its facets.
+    Inside(usize),
+}
+
 impl<T: Real, const D: usize> Space<'_, T, D> {
-    /// The cells of an exchange, those with a multiplier and their neighbours, and by cell its place among them, or
-    /// a larger number.
+    /// The cells of an exchange, those with a multiplier and their neighbours, and its steps, cell by cell.
     fn cells_of_exchange(
         &self,
         presses: impl Fn(usize) -> bool,
         neighbours: &Neighbours,
-    ) -> (Vec<usize>, Vec<u32>) {
+    ) -> (Vec<usize>, Vec<Step>) {
         let n_cells = self.mesh.n_cells();
         let mut places = vec![u32::MAX; n_cells];
         for cell in (0..n_cells).filter(|&cell| presses(cell)) {
@@ -44,11 +54,29 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
                 }
             }
         }
-        let mut numbers = Vec::new();
+        let mut numbers: Vec<usize> = Vec::new();
         for (cell, place) in places.iter_mut().enumerate().filter(|(_, place)| **place == 0) {
             *place = numbers.len() as u32;
             numbers.push(cell);
         }
-        (numbers, places)
+        let mut steps = Vec::new();
+        for (here, &cell) in numbers.iter().enumerate() {
+            for local in 0..=D {
+                match neighbours.across(cell, local) {
+                    Neighbour::Cell { cell: other, local: across } => {
+                        let (other, there) = (other as usize, places[other as usize] as usize);
+                        if other > cell && there < numbers.len() {
+                            steps.push(Step::Between([(here, local), (there, across.into())]));
+                        }
+                    }
+                    Neighbour::Boundary(BoundaryPart::Dirichlet) => {
+                        steps.push(Step::WithDirichlet((here, local)));
+                    }
+                    Neighbour::Boundary(_) => {}
+                }
+            }
+            steps.push(Step::Inside(here));
+        }
+        (numbers, steps)
     }
 }

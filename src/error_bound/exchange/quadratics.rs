@@ -3,26 +3,27 @@
 //! In the notation of [`quadratics`](crate::error_bound::quadratics) the divergence at vertex `j` of a cell depends on
 //! the `c_Fj` of that vertex and on the sum of all `c_FF`. A number added to `c_Fj` on one side of a facet and taken
 //! from its counterpart on the other side changes the multipliers of the two cells at vertex `j` alone; a number
-//! added to `c_AA` and taken from `c_BB` changes that of the cell at `A` and `B`.
+//! added to `c_AA` and taken from `c_BB` changes the multiplier of the cell at the vertices `A` and `B` alone.
 
-use super::ROUNDING;
 use super::cells::{CellInContact, Cells};
+use super::{ROUNDING, Step};
 use crate::assemble::space::{Place, Space};
 use crate::error_bound::PrimalDualPair;
 use crate::error_bound::quadratics::{CellLoads, vertices_of};
 use crate::error_bound::terms::limit;
-use crate::mesh::{BoundaryPart, Neighbour, Neighbours};
+use crate::mesh::Neighbours;
 use crate::real::Real;
 
 /// Visits of each number: the mass matrix of fluxes has a condition that does not grow with the number of cells.
 const SWEEPS: usize = 8;
 
 impl<const D: usize> Cells<'_, D> {
-    /// Moves the multiplier of a cell towards its mean, until it has one sign, by numbers inside the cell: if that costs
-    /// less than what it has of the other sign counts for.
+    /// Moves the multiplier of a cell towards its mean until the multiplier has one sign. Numbers inside the cell keep
+    /// the balance. The multiplier stays as it is if the mismatch would grow by more than the part of the other sign
+    /// counts for.
     fn make_sign_definite(&mut self, k: usize) {
         let cell = &self.cells[k];
-        let mean = cell.mean() / (D + 1) as f64;
+        let mean = cell.sum() / (D + 1) as f64;
         let share = limit(mean, &cell.multiplier[..=D]);
         if share == 1.0 {
             self.cells[k].has_one_sign = true;
@@ -43,17 +44,16 @@ impl<const D: usize> Cells<'_, D> {
     /// Exchanges multipliers of two cells at a vertex of their facet, by its numbers in the two cells.
     fn exchange_between(&mut self, at: [Place; 2], vertex: [usize; 2]) {
         let [here, there] = at.map(|(k, _)| &self.cells[k]);
-        let sign = (here.mean() + there.mean()).signum();
+        let sign = (here.sum() + there.sum()).signum();
         let obstacle = usize::from(sign < 0.0);
         let takes_part = |cell: &CellInContact| cell.has_one_sign && cell.is_given[obstacle];
-        if here.mean() * there.mean() < 0.0 || !takes_part(here) || !takes_part(there) {
+        if here.sum() * there.sum() < 0.0 || !takes_part(here) || !takes_part(there) {
             return;
         }
         let number = [0, 1].map(|s| at[s].1 * (D + 1) + vertex[s]);
-        let slope = self.slope(at[0].0, number[0]) - self.slope(at[1].0, number[1]);
-        let curvature: f64 = (0..2).map(|s| self.product(at[s].0, number[s], number[s])).sum();
+        let terms = [(at[0].0, number[0], 1.0), (at[1].0, number[1], -1.0)];
         let of_gaps = sign * (there.gap(sign, vertex[1]) - here.gap(sign, vertex[0]));
-        let least = sign * -(slope + of_gaps) / curvature;
+        let least = sign * self.least_change(&terms, of_gaps);
         let exchange =
             sign * least.max(-there.room(sign, vertex[1])).min(here.room(sign, vertex[0]));
         if exchange.is_finite() {
@@ -65,13 +65,13 @@ impl<const D: usize> Cells<'_, D> {
     /// Exchanges the multiplier of a cell at a vertex of a Dirichlet facet.
     fn exchange_with_dirichlet(&mut self, (k, local): Place, vertex: usize) {
         let cell = &self.cells[k];
-        let sign = cell.mean().signum();
+        let sign = cell.sum().signum();
         if !(cell.has_one_sign && cell.is_given[usize::from(sign < 0.0)]) {
             return;
         }
         let number = local * (D + 1) + vertex;
-        let slope = self.slope(k, number) - sign * cell.gap(sign, vertex);
-        let least = sign * -slope / self.product(k, number, number);
+        let of_gap = -sign * cell.gap(sign, vertex);
+        let least = sign * self.least_change(&[(k, number, 1.0)], of_gap);
         let exchange = sign * least.min(cell.room(sign, vertex));
         if exchange.is_finite() {
             self.add(k, number, vertex, exchange);
@@ -84,14 +84,11 @@ impl<const D: usize> Cells<'_, D> {
         if !cell.has_one_sign {
             return;
         }
-        let sign = cell.mean().signum();
+        let sign = cell.sum().signum();
         let number = [a, b].map(|v| v * (D + 2));
-        let slope = self.slope(k, number[0]) - self.slope(k, number[1]);
-        let curvature = self.product(k, number[0], number[0])
-            + self.product(k, number[1], number[1])
-            - 2.0 * self.product(k, number[0], number[1]);
+        let terms = [(k, number[0], 1.0), (k, number[1], -1.0)];
         let of_gaps = sign * (cell.gap(sign, b) - cell.gap(sign, a));
-        let least = sign * -(slope + of_gaps) / curvature;
+        let least = sign * self.least_change(&terms, of_gaps);
         let exchange = sign * least.max(-cell.room(sign, b)).min(cell.room(sign, a));
         if exchange.is_finite() {
             self.add(k, number[0], a, exchange);
@@ -115,42 +112,27 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         };
         let largest = (0..multipliers.len()).map(strength).fold(0.0, f64::max);
         let presses = |cell: usize| strength(cell) > ROUNDING * largest;
-        let (numbers, places) = self.cells_of_exchange(presses, neighbours);
+        let (numbers, steps) = self.cells_of_exchange(presses, neighbours);
         let multiplier = |cell: usize| if presses(cell) { multipliers[cell] } else { [0.0; 4] };
         let mut cells = self.cells_with_products(&numbers, multiplier, function, flux);
-        let n_cells = cells.cells.len();
-        (0..n_cells).for_each(|k| cells.make_sign_definite(k));
-        for _ in 0..SWEEPS {
-            for here in 0..n_cells {
-                let cell = cells.cells[here].number;
-                for local in 0..=D {
-                    match neighbours.across(cell, local) {
-                        Neighbour::Cell { cell: other, local: across } => {
-                            let (other, across) = (other as usize, usize::from(across));
-                            let there = places[other] as usize;
-                            if other < cell || there >= n_cells {
-                                continue;
-                            }
-                            let at = [(here, local), (there, across)];
-                            for j in vertices_of::<D>(local) {
-                                let vertex = self.mesh.cell(cell)[j];
-                                let of_other = self.mesh.cell(other).iter();
-                                let Some(m) = of_other.clone().position(|&v| v == vertex) else {
-                                    continue;
-                                };
-                                cells.exchange_between(at, [j, m]);
-                            }
+        (0..numbers.len()).for_each(|k| cells.make_sign_definite(k));
+        for step in (0..SWEEPS).flat_map(|_| &steps) {
+            match *step {
+                Step::Between(at) => {
+                    let [cell, other] = at.map(|(k, _)| self.mesh.cell(numbers[k]));
+                    for j in vertices_of::<D>(at[0].1) {
+                        if let Some(m) = other.iter().position(|&v| v == cell[j]) {
+                            cells.exchange_between(at, [j, m]);
                         }
-                        Neighbour::Boundary(BoundaryPart::Dirichlet) => {
-                            for j in vertices_of::<D>(local) {
-                                cells.exchange_with_dirichlet((here, local), j);
-                            }
-                        }
-                        Neighbour::Boundary(_) => {}
                     }
                 }
-                for a in 0..=D {
-                    (a + 1..=D).for_each(|b| cells.exchange_inside(here, [a, b]));
+                Step::WithDirichlet(at) => {
+                    vertices_of::<D>(at.1).for_each(|j| cells.exchange_with_dirichlet(at, j));
+                }
+                Step::Inside(k) => {
+                    for a in 0..=D {
+                        (a + 1..=D).for_each(|b| cells.exchange_inside(k, [a, b]));
+                    }
                 }
             }
         }

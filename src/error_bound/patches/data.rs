@@ -19,7 +19,7 @@ type Corners = (Vec<(u32, u8)>, Vec<usize>);
 /// What the patches read.
 pub(super) struct Patches<'s, 'a, T: Real, const D: usize> {
     pub space: &'s Space<'a, T, D>,
-    pub neighbours: Neighbours,
+    pub neighbours: &'s Neighbours,
     /// By cell its volume, the integrals of `alpha grad u . n` over its facets, and for each of its vertices the load
     /// that the flux of the vertex balances, without multipliers of obstacles.
     cells: Vec<f64>,
@@ -36,12 +36,13 @@ pub(super) struct Patches<'s, 'a, T: Real, const D: usize> {
 
 impl<T: Real, const D: usize> Space<'_, T, D> {
     /// What the patches read, without their parts.
-    pub(super) fn patches(
-        &self,
+    pub(super) fn patches<'s>(
+        &'s self,
         u: &[T],
         residual: &[f64],
         forces: &[NodeForce],
-    ) -> Result<Patches<'_, '_, T, D>, NoBound> {
+        neighbours: &'s Neighbours,
+    ) -> Result<Patches<'s, 's, T, D>, NoBound> {
         let load = self.load_by_cell()?;
         let n_cells = self.mesh.n_cells();
         let stride = numbers_of_cell(D);
@@ -65,13 +66,12 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
             Ok::<(), Infallible>(())
         };
         let Ok(()) = cells::for_each(n_cells, &|c| c * stride, &mut data, &fill);
-        let mut multipliers: Vec<f64> = residual.iter().map(|r| -r).collect();
+        let mut multipliers = self.multipliers_of_obstacles(residual, forces);
         for (cell, local) in self.facets_of(BoundaryPart::Dirichlet) {
             self.mesh.facet_vertices(cell, local).for_each(|v| multipliers[v as usize] = 0.0);
         }
         for force in forces {
             data[force.cell * stride + D + 2 + force.node] -= force.value;
-            multipliers[self.dofs.of(force.cell, force.node)] -= force.value;
         }
         let mut one_cell = vec![(0, 0); self.mesh.vertices().len()];
         for (k, &v) in self.mesh.cells().iter().enumerate() {
@@ -79,7 +79,6 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
             *cell = (k / (D + 1)) as u32;
             *count += 1;
         }
-        let neighbours = Neighbours::new(self.mesh);
         let mut parts = in_large_pages(Vec::with_capacity(n_cells * (D + 1) * D));
         parts.resize_with(n_cells * (D + 1) * D, AtomicU64::default);
         Ok(Patches {

@@ -26,7 +26,7 @@ use super::NoBound;
 use super::contact::NodeForce;
 use crate::assemble::space::Space;
 use crate::memory::in_large_pages;
-use crate::mesh::{BoundaryPart, Neighbour};
+use crate::mesh::{BoundaryPart, Neighbour, Neighbours};
 use crate::parallel::cells;
 use crate::real::{Point, Real, point_f64};
 
@@ -42,8 +42,9 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         u: &[T],
         residual: &[f64],
         forces: &[NodeForce],
+        neighbours: &Neighbours,
     ) -> Result<Vec<f64>, NoBound> {
-        let patches = self.patches(u, residual, forces)?;
+        let patches = self.patches(u, residual, forces, neighbours)?;
         cells::map(self.mesh.vertices().len(), &|vertices: Range<usize>| {
             let mut patch = Patch::default();
             vertices.for_each(|vertex| patches.add_vertex(vertex, &mut patch));

@@ -2,8 +2,8 @@
 
 use crate::algebra::dense::extend_basis;
 
-/// Largest norm of a column of `B`, relative to the largest, that counts as dependent on others. Any
-/// number between rounding and one is right; with it, weights up to its inverse square remain beside
+/// Largest norm of a column of `B`, relative to the largest column, that counts as dependent on others. Any
+/// number between rounding and one is right; weights up to the inverse square of the number remain beside
 /// stiffnesses.
 const DEPENDENT: f64 = 1e-2;
 

@@ -13,7 +13,8 @@ use crate::algebra::SparseMatrix;
 use crate::algebra::dense::invert_positive_definite;
 use crate::linear::direct::FactorError;
 use crate::parallel::vectors::{
-    CHUNK, for_each_chunk_of_groups, map_index_ranges, sum_chunks_of_groups_of_two, zeros,
+    chunk_of_groups, for_each_chunk_of_groups, map_chunks_of_groups, sum_chunks_of_groups_of_two,
+    zeros,
 };
 use crate::real::Real;
 
@@ -22,7 +23,7 @@ pub(crate) struct CellGaussSeidel<const N: usize> {
     chunks: Vec<CellRows<N>>,
     /// The diagonal blocks.
     diagonal: Vec<[[f32; N]; N]>,
-    /// Their inverses on free unknowns, zero in rows and columns of fixed ones.
+    /// The inverses of the diagonal blocks on free unknowns, zero in rows and columns of fixed unknowns.
     inverses: Vec<[[f32; N]; N]>,
     /// One for free unknowns, zero for fixed ones; empty before the first call of
     /// [`CellGaussSeidel::set_fixed`].
@@ -38,11 +39,6 @@ struct CellRows<const N: usize> {
     blocks: Vec<[[f32; N]; N]>,
     /// The blocks outside of the chunk: cell relative to the chunk, other cell, block.
     outside: Vec<(u16, u32, [[f32; N]; N])>,
-}
-
-/// Number of unknowns of a chunk: no chunk divides a cell.
-const fn chunk_length(n: usize) -> usize {
-    CHUNK / n * n
 }
 
 impl<const N: usize> CellRows<N> {
@@ -143,8 +139,7 @@ impl<const N: usize> CellGaussSeidel<N> {
     /// The smoother of a matrix divided by `scale`, whose unknowns belong to cells in groups of `N`.
     pub fn new<T: Real>(matrix: &SparseMatrix<T>, scale: f64) -> Self {
         let n = matrix.size();
-        let parts =
-            map_index_ranges(n, chunk_length(N), |range| CellRows::new(matrix, scale, range));
+        let parts = map_chunks_of_groups(n, N, |range| CellRows::new(matrix, scale, range));
         let (mut chunks, mut diagonal) = (Vec::with_capacity(parts.len()), Vec::new());
         diagonal.reserve_exact(n / N);
         for (rows, blocks) in parts {
@@ -197,7 +192,7 @@ impl<const N: usize> CellGaussSeidel<N> {
     /// A forward iteration from zero: sets `x`, and `r = b - A x` on free unknowns, zero on fixed ones.
     pub fn forward(&self, b: &[f32], x: &mut [f32], r: &mut [f32]) {
         sum_chunks_of_groups_of_two(x, r, N, |range, x, r| {
-            let chunk = &self.chunks[range.start / chunk_length(N)];
+            let chunk = &self.chunks[range.start / chunk_of_groups(N)];
             let (x, r) = (x.as_chunks_mut::<N>().0, r.as_chunks_mut::<N>().0);
             let inverses = &self.inverses[range.start / N..range.end / N];
             let b = b[range].as_chunks::<N>().0;
@@ -216,7 +211,7 @@ impl<const N: usize> CellGaussSeidel<N> {
         let x = x.as_chunks::<N>().0;
         for_each_chunk_of_groups(r, N, |range, r| {
             let blocks = r.as_chunks_mut::<N>().0;
-            for (cell, other, a) in &self.chunks[range.start / chunk_length(N)].outside {
+            for (cell, other, a) in &self.chunks[range.start / chunk_of_groups(N)].outside {
                 subtract_product(a, &x[*other as usize], &mut blocks[usize::from(*cell)]);
             }
             r.iter_mut().zip(&self.mask[range]).for_each(|(r, mask)| *r *= mask);
@@ -229,12 +224,12 @@ impl<const N: usize> CellGaussSeidel<N> {
         for_each_chunk_of_groups(r, N, |range, r| {
             r.copy_from_slice(&b[range.clone()]);
             let blocks = r.as_chunks_mut::<N>().0;
-            for (cell, other, a) in &self.chunks[range.start / chunk_length(N)].outside {
+            for (cell, other, a) in &self.chunks[range.start / chunk_of_groups(N)].outside {
                 subtract_product(a, &old[*other as usize], &mut blocks[usize::from(*cell)]);
             }
         });
         sum_chunks_of_groups_of_two(x, r, N, |range, x, r| {
-            let chunk = &self.chunks[range.start / chunk_length(N)];
+            let chunk = &self.chunks[range.start / chunk_of_groups(N)];
             let (x, r) = (x.as_chunks_mut::<N>().0, r.as_chunks_mut::<N>().0);
             let inverses = &self.inverses[range.start / N..range.end / N];
             for (cell, inverse) in inverses.iter().enumerate().rev() {
@@ -254,6 +249,7 @@ impl<const N: usize> CellGaussSeidel<N> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::linear::precondition::gauss_seidel::tests::check_symmetry;
 
     /// Cells of three unknowns, more of them than in a chunk, coupled to the next cell and to a far one.
     fn matrix(n_cells: usize) -> SparseMatrix<f64> {
@@ -317,13 +313,7 @@ mod tests {
             assert!(after < 0.3 * norm(&mut b.iter().map(|&b| f64::from(b))), "{after}");
             x
         };
-        let (b, c) = (vector(0), vector(77));
-        let dot = |x: &[f32], y: &[f32]| -> f64 {
-            x.iter().zip(y).map(|(&x, &y)| f64::from(x) * f64::from(y)).sum()
-        };
-        let (bc, cb) = (dot(&apply(&b), &c), dot(&apply(&c), &b));
-        let size = (dot(&apply(&b), &b) * dot(&apply(&c), &c)).sqrt();
-        assert!((bc - cb).abs() < 1e-6 * size, "{bc} {cb} {size}");
+        check_symmetry(apply, &vector(0), &vector(77));
     }
 
     #[test]

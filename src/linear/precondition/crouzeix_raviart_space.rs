@@ -1,6 +1,6 @@
 //! The Crouzeix-Raviart functions on the mesh of a discontinuous linear element.
 
-use super::facet_mean_form::{FacetMeanForm, cr_basis};
+use super::facet_mean_form::{FacetMeanForm, stiffness};
 use super::prolongation::Prolongation;
 use crate::algebra::{NO_INDEX, PenalisedMatrix, SparseMatrix, Support};
 use crate::memory::in_large_pages;
@@ -56,7 +56,7 @@ impl CrouzeixRaviartSpace {
                 let side = side as usize;
                 let first = side / size * size;
                 for other in first..first + size {
-                    let value = stiffness(penalised, side, other, form.are_means);
+                    let value = stiffness(penalised, [side, other], form.are_means);
                     if other == side {
                         row[0].1 += value;
                     } else {
@@ -96,28 +96,4 @@ impl CrouzeixRaviartSpace {
         }
         Prolongation::to_means(vertices.chunks_exact(length), n_vertices)
     }
-}
-
-/// The stiffness form of the facet mean functions of two sides of a cell.
-fn stiffness<T: Real>(
-    penalised: &PenalisedMatrix<T>,
-    one: usize,
-    other: usize,
-    are_means: bool,
-) -> T {
-    let size = penalised.block_size;
-    let first = one / size * size;
-    let entry = |i: usize, j: usize| penalised.blocks[(first + i) * size + j];
-    let (one, other) = (one - first, other - first);
-    if are_means {
-        return entry(one, other);
-    }
-    let mut sum = T::lit(0.0);
-    for i in 0..size {
-        for j in 0..size {
-            let weight: T = cr_basis::<T>(size, i, one) * cr_basis::<T>(size, j, other);
-            sum += weight * entry(i, j);
-        }
-    }
-    sum
 }

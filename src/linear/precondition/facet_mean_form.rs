@@ -48,7 +48,7 @@ impl<T: Real> FacetMeanForm<T> {
             cell_size,
             are_means,
             opposite: vec![NO_INDEX; n],
-            diagonal: (0..n).map(|side| stiffness(penalised, side, are_means)).collect(),
+            diagonal: (0..n).map(|side| stiffness(penalised, [side, side], are_means)).collect(),
             coupling: vec![zero; n],
             has_jump: vec![false; n],
         };
@@ -95,18 +95,23 @@ impl<T: Real> FacetMeanForm<T> {
     }
 }
 
-/// The stiffness form of the facet mean function of a side with itself.
-fn stiffness<T: Real>(penalised: &PenalisedMatrix<T>, side: usize, are_means: bool) -> T {
+/// The stiffness form of the facet mean functions of two sides of a cell.
+pub(super) fn stiffness<T: Real>(
+    penalised: &PenalisedMatrix<T>,
+    [one, other]: [usize; 2],
+    are_means: bool,
+) -> T {
     let size = penalised.block_size;
-    let (first, facet) = (side / size * size, side % size);
+    let first = one / size * size;
     let entry = |i: usize, j: usize| penalised.blocks[(first + i) * size + j];
+    let (one, other) = (one - first, other - first);
     if are_means {
-        return entry(facet, facet);
+        return entry(one, other);
     }
     let mut sum = T::lit(0.0);
     for i in 0..size {
         for j in 0..size {
-            let weight: T = cr_basis::<T>(size, i, facet) * cr_basis::<T>(size, j, facet);
+            let weight: T = cr_basis::<T>(size, i, one) * cr_basis::<T>(size, j, other);
             sum += weight * entry(i, j);
         }
     }

@@ -251,8 +251,20 @@ impl GaussSeidel {
 }
 
 #[cfg(test)]
-mod tests {
+pub(super) mod tests {
     use super::*;
+
+    fn dot(x: &[f32], y: &[f32]) -> f64 {
+        x.iter().zip(y).map(|(&x, &y)| f64::from(x) * f64::from(y)).sum()
+    }
+
+    /// Asserts that an operator is symmetric in its products with two vectors; returns the size of the products.
+    pub fn check_symmetry(apply: impl Fn(&[f32]) -> Vec<f32>, b: &[f32], c: &[f32]) -> f64 {
+        let (bc, cb) = (dot(&apply(b), c), dot(&apply(c), b));
+        let size = (dot(&apply(b), b) * dot(&apply(c), c)).sqrt();
+        assert!((bc - cb).abs() < 1e-6 * size, "{bc} {cb} {size}");
+        size
+    }
 
     /// Second differences with more unknowns than a chunk, and couplings between chunks.
     fn matrix(n: usize) -> SparseMatrix<f64> {
@@ -373,13 +385,8 @@ mod tests {
             smoother.backward(b, &mut x, &mut r);
             x
         };
-        let (b, c) = (vector(0), vector(77));
-        let dot = |x: &[f32], y: &[f32]| -> f64 {
-            x.iter().zip(y).map(|(&x, &y)| f64::from(x) * f64::from(y)).sum()
-        };
-        let (bc, cb) = (dot(&apply(&b), &c), dot(&apply(&c), &b));
-        let size = (dot(&apply(&b), &b) * dot(&apply(&c), &c)).sqrt();
-        assert!((bc - cb).abs() < 1e-6 * size, "{bc} {cb} {size}");
+        let b = vector(0);
+        let size = check_symmetry(apply, &b, &vector(77));
         assert!(size > 0.1 * dot(&b, &b), "{size}");
     }
 }
