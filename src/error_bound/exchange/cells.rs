@@ -79,13 +79,21 @@ impl<const D: usize> Cells<'_, D> {
         (flux.iter().enumerate().map(term).sum::<f64>() + of_cell.energy).max(0.0)
     }
 
-    /// The change of numbers, each given by its cell, its number in the cell and a sign, that makes the square of the
-    /// mismatch and twice a linear term least.
-    pub fn least_change(&self, terms: &[(usize, usize, f64)], linear: f64) -> f64 {
+    /// What a cell adds to the square of the bound: mismatch and complementarity.
+    pub fn square(&self, k: usize) -> f64 {
+        let cell = &self.cells[k];
+        let gaps = &cell.gaps[usize::from(cell.sum() < 0.0)];
+        let complementarity: f64 = cell.multiplier.iter().zip(gaps).map(|(m, gap)| m * gap).sum();
+        self.mismatch(k) + 2.0 * complementarity.abs()
+    }
+
+    /// The square of the mismatch and twice a linear term by a change of numbers, each given by its cell, its number
+    /// in the cell and a sign: half of the derivative, and half of the second derivative.
+    pub fn slopes(&self, terms: &[(usize, usize, f64)], linear: f64) -> [f64; 2] {
         let product = |k: usize, row: usize, column: usize| {
             self.products[(k * Self::N + row) * Self::N + column]
         };
-        let (mut slope, mut curvature) = (0.0, 0.0);
+        let (mut slope, mut curvature) = (linear, 0.0);
         for (i, &(k, row, sign)) in terms.iter().enumerate() {
             slope += sign * self.slope(k, row);
             curvature += product(k, row, row);
@@ -93,7 +101,7 @@ impl<const D: usize> Cells<'_, D> {
                 curvature += 2.0 * sign * of_other * product(k, row, column);
             }
         }
-        -(slope + linear) / curvature
+        [slope, curvature]
     }
 
     /// Adds to a number of a cell that changes the divergence at one vertex.

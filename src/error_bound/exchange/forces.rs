@@ -92,9 +92,9 @@ impl<const D: usize> Cells<'_, D> {
             (k, a * (D + 2), -1.0),
             (k, b * (D + 2), 1.0),
         ];
-        let least = self.least_change(&terms, facet.gaps[a] - facet.gaps[b]);
+        let [slope, curvature] = self.slopes(&terms, facet.gaps[a] - facet.gaps[b]);
         let (most, fewest) = (self.force(facet.at, b), -self.force(facet.at, a));
-        let change = least.min(most.max(0.0)).max(fewest.min(0.0));
+        let change = (-slope / curvature).min(most.max(0.0)).max(fewest.min(0.0));
         if change.is_finite() {
             self.add_to_force(facet.at, a, change);
             self.add_to_force(facet.at, b, -change);
@@ -107,8 +107,8 @@ impl<const D: usize> Cells<'_, D> {
         let number = |(k, number, _): (usize, usize, f64)| self.cells[k].number * Self::N + number;
         let Some((first, last)) = chain.first().zip(chain.last()) else { return };
         let [first, last] = [*first, *last].map(|end| self.flux[number(end)].max(0.0));
-        let least = self.least_change(chain, gap_of_last - gap);
-        let change = least.min(first).max(-last);
+        let [slope, curvature] = self.slopes(chain, gap_of_last - gap);
+        let change = (-slope / curvature).min(first).max(-last);
         if change.is_finite() {
             for &(k, number, sign) in chain {
                 self.flux[self.cells[k].number * Self::N + number] += sign * change;

@@ -1,6 +1,6 @@
 //! Exchange for linears: one flux of each facet, one multiplier of each cell.
 
-use super::{ROUNDING, Step};
+use super::{ROUNDING, Step, decrease, visit_steps};
 use crate::assemble::cut_simplices::in_space;
 use crate::assemble::space::{Place, Space};
 use crate::error_bound::PrimalDualPair;
@@ -9,7 +9,7 @@ use crate::mesh::{BoundaryPart, Neighbours};
 use crate::quadrature::Rule;
 use crate::real::{Point, Real};
 
-/// Visits of each facet. The matrix of the least-squares problem is the mass matrix of fluxes, whose condition
+/// Most visits of each facet. The matrix of the least-squares problem is the mass matrix of fluxes, whose condition
 /// does not grow with the number of cells.
 const SWEEPS: usize = 4;
 
@@ -20,16 +20,16 @@ const DEGREE: usize = 2;
 struct CellInContact<const D: usize> {
     /// The number of the cell.
     number: usize,
-    /// The centre less the vertices.
-    arms: [Point<f64, D>; 4],
-    /// The mean of the square of the distance from the centre.
+    /// The values at the centre of the fluxes that leave through one facet each.
+    at_centre: [Point<f64, D>; 4],
+    /// The mean of the square of such a flux less its value at the centre.
     variance: f64,
-    /// `1 / (D |K|)`.
-    per_volume: f64,
-    /// The coefficient.
-    alpha: f64,
-    /// The gradient of the function, times the coefficient.
-    gradient: Point<f64, D>,
+    /// The volume over the coefficient.
+    weight: f64,
+    /// The flux at the centre less the gradient of the function times the coefficient.
+    difference: Point<f64, D>,
+    /// The sum of the fluxes through the facets.
+    sum: f64,
     /// The mean distances of the function from the lower and the upper obstacle; if they are given.
     gaps: [Option<f64>; 2],
     /// The integral of the multiplier.
@@ -37,26 +37,34 @@ struct CellInContact<const D: usize> {
 }
 
 impl<const D: usize> CellInContact<D> {
-    /// Half of the derivative of the square of the mismatch by the flux through a facet, at these fluxes, and half of
-    /// the second derivative.
-    fn slopes(&self, flux: &[f64], facet: usize) -> [f64; 2] {
-        let (mut at_centre, mut sum) = (Point::zeros(), 0.0);
-        for (flux, arm) in flux.iter().zip(&self.arms) {
-            at_centre += arm * *flux;
-            sum += flux;
-        }
-        let (arm, d) = (&self.arms[facet], D as f64);
-        let difference = at_centre * self.per_volume - self.gradient;
-        let variance = self.variance * self.per_volume / d;
+    /// Half of the derivative of the square of the mismatch by the flux through a facet, and half of the second
+    /// derivative.
+    fn slopes(&self, facet: usize) -> [f64; 2] {
+        let flux = &self.at_centre[facet];
         [
-            (arm.dot(&difference) / d + variance * sum) / self.alpha,
-            (arm.norm_squared() * self.per_volume / d + variance) / self.alpha,
+            self.weight * (flux.dot(&self.difference) + self.variance * self.sum),
+            self.weight * (flux.norm_squared() + self.variance),
         ]
+    }
+
+    /// What the cell adds to the square of the bound.
+    fn square(&self) -> f64 {
+        let mismatch = self.difference.norm_squared() + self.variance * self.sum * self.sum;
+        let gap = self.gap(self.multiplier.signum()).unwrap_or(0.0);
+        self.weight * mismatch + 2.0 * self.multiplier.abs() * gap
     }
 
     /// The mean distance from the obstacle that presses with this sign.
     fn gap(&self, sign: f64) -> Option<f64> {
         self.gaps[usize::from(sign < 0.0)]
+    }
+
+    /// Adds to the flux through a facet what the multiplier gives.
+    fn add(&mut self, facet: usize, exchange: f64, flux: &mut [f64]) {
+        flux[self.number * (D + 1) + facet] += exchange;
+        self.difference += self.at_centre[facet] * exchange;
+        self.sum += exchange;
+        self.multiplier -= exchange;
     }
 }
 
@@ -114,15 +122,19 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
             self.linear_in_contact(cell, function, multiplier, &rule)
         };
         let mut cells: Vec<CellInContact<D>> = numbers.iter().map(in_contact).collect();
-        for step in (0..SWEEPS).flat_map(|_| &steps) {
-            match *step {
-                Step::Between(at) => exchange_between(&mut cells, at, flux),
-                Step::WithDirichlet((k, local)) => {
-                    exchange_with_dirichlet(&mut cells[k], local, flux);
-                }
-                Step::Inside(_) => {}
+        for cell in &mut cells {
+            let fluxes = &flux[cell.number * (D + 1)..][..D + 1];
+            for (flux, at_centre) in fluxes.iter().zip(&cell.at_centre) {
+                cell.difference += at_centre * *flux;
+                cell.sum += flux;
             }
         }
+        let square: f64 = cells.iter().map(CellInContact::square).sum();
+        visit_steps(&steps, (cells.len(), square), SWEEPS, |step| match step {
+            Step::Between(at) => exchange_between(&mut cells, at, flux),
+            Step::WithDirichlet((k, local)) => exchange_with_dirichlet(&mut cells[k], local, flux),
+            Step::Inside(_) => 0.0,
+        });
     }
 
     fn linear_in_contact(
@@ -137,9 +149,10 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         let admissible = self.admissible_in(function, number);
         let corners = self.mesh.corners(number);
         let centre: Point<f64, D> = corners[..=D].iter().map(|x| x / (D + 1) as f64).sum();
-        let mut arms = [Point::zeros(); 4];
-        (0..=D).for_each(|k| arms[k] = centre - corners[k]);
-        let squares: f64 = arms.iter().map(|arm| arm.norm_squared()).sum();
+        let squares: f64 = corners[..=D].iter().map(|x| (centre - x).norm_squared()).sum();
+        let per_volume = 1.0 / (D as f64 * volume);
+        let mut at_centre = [Point::zeros(); 4];
+        (0..=D).for_each(|k| at_centre[k] = (centre - corners[k]) * per_volume);
         let gap = |k: usize| {
             let bound = admissible.bounds[k]?;
             let distance =
@@ -156,58 +169,58 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         };
         CellInContact {
             number,
-            arms,
-            variance: squares / ((D + 1) * (D + 2)) as f64,
-            per_volume: 1.0 / (D as f64 * volume),
-            alpha,
-            gradient: admissible.gradient * alpha,
+            at_centre,
+            variance: squares * per_volume * per_volume / ((D + 1) * (D + 2)) as f64,
+            weight: volume / alpha,
+            difference: -admissible.gradient * alpha,
+            sum: 0.0,
             gaps: [gap(0), gap(1)],
             multiplier,
         }
     }
 }
 
-/// Exchanges the multipliers of two cells for the flux through their facet.
+/// Exchanges the multipliers of two cells for the flux through their facet. The result is by how much the square of the
+/// bound falls.
 fn exchange_between<const D: usize>(
     cells: &mut [CellInContact<D>],
     [(here, local), (there, across)]: [Place; 2],
     flux: &mut [f64],
-) {
-    let [of_here, of_there] = [here, there].map(|k| cells[k].multiplier);
-    let sign = (of_here + of_there).signum();
-    let gaps = cells[here].gap(sign).zip(cells[there].gap(sign));
-    let Some((gap_here, gap_there)) = gaps.filter(|_| of_here * of_there >= 0.0) else { return };
-    let start = |k: usize| cells[k].number * (D + 1);
-    let fluxes = |k: usize| &flux[start(k)..start(k) + D + 1];
-    let [slope, curvature] = cells[here].slopes(fluxes(here), local);
-    let [slope_there, curvature_there] = cells[there].slopes(fluxes(there), across);
-    let of_gaps = sign * (gap_there - gap_here);
-    let least = -(slope - slope_there + of_gaps) / (curvature + curvature_there);
-    let (a, b) = (-of_there, of_here);
-    let exchange = least.max(a.min(b)).min(a.max(b));
-    if exchange.is_finite() {
-        let places = [start(here) + local, start(there) + across];
-        flux[places[0]] += exchange;
-        flux[places[1]] -= exchange;
-        cells[here].multiplier -= exchange;
-        cells[there].multiplier += exchange;
+) -> f64 {
+    let [of_here, of_there] = [&cells[here], &cells[there]];
+    let sign = (of_here.multiplier + of_there.multiplier).signum();
+    let gaps = of_here.gap(sign).zip(of_there.gap(sign));
+    let gaps = gaps.filter(|_| of_here.multiplier * of_there.multiplier >= 0.0);
+    let Some((gap_here, gap_there)) = gaps else { return 0.0 };
+    let [slope, curvature] = of_here.slopes(local);
+    let [slope_there, curvature_there] = of_there.slopes(across);
+    let slope = slope - slope_there + sign * (gap_there - gap_here);
+    let curvature = curvature + curvature_there;
+    let (a, b) = (-of_there.multiplier, of_here.multiplier);
+    let exchange = (-slope / curvature).max(a.min(b)).min(a.max(b));
+    if !exchange.is_finite() {
+        return 0.0;
     }
+    cells[here].add(local, exchange, flux);
+    cells[there].add(across, -exchange, flux);
+    decrease([slope, curvature], exchange)
 }
 
-/// Exchanges the multiplier of a cell for the flux through a Dirichlet facet.
+/// Exchanges the multiplier of a cell for the flux through a Dirichlet facet. The result is by how much the square of
+/// the bound falls.
 fn exchange_with_dirichlet<const D: usize>(
     cell: &mut CellInContact<D>,
     local: usize,
     flux: &mut [f64],
-) {
-    let fluxes = &mut flux[cell.number * (D + 1)..][..D + 1];
+) -> f64 {
     let sign = cell.multiplier.signum();
-    let Some(gap) = cell.gap(sign) else { return };
-    let [slope, curvature] = cell.slopes(fluxes, local);
-    let least = -(sign * slope - gap) / curvature;
-    let exchange = sign * least.min(sign * cell.multiplier);
-    if exchange.is_finite() {
-        fluxes[local] += exchange;
-        cell.multiplier -= exchange;
+    let Some(gap) = cell.gap(sign) else { return 0.0 };
+    let [slope, curvature] = cell.slopes(local);
+    let slope = slope - sign * gap;
+    let exchange = sign * (-sign * slope / curvature).min(sign * cell.multiplier);
+    if !exchange.is_finite() {
+        return 0.0;
     }
+    cell.add(local, exchange, flux);
+    decrease([slope, curvature], exchange)
 }

@@ -6,7 +6,7 @@
 //! added to `c_AA` and taken from `c_BB` changes the multiplier of the cell at the vertices `A` and `B` alone.
 
 use super::cells::{CellInContact, Cells};
-use super::{ROUNDING, Step};
+use super::{ROUNDING, Step, decrease, visit_steps};
 use crate::assemble::space::{Place, Space};
 use crate::error_bound::PrimalDualPair;
 use crate::error_bound::quadratics::{CellLoads, vertices_of};
@@ -14,7 +14,7 @@ use crate::error_bound::terms::limit;
 use crate::mesh::Neighbours;
 use crate::real::Real;
 
-/// Visits of each number: the mass matrix of fluxes has a condition that does not grow with the number of cells.
+/// Most visits of each number: the mass matrix of fluxes has a condition that does not grow with the number of cells.
 const SWEEPS: usize = 8;
 
 impl<const D: usize> Cells<'_, D> {
@@ -41,59 +41,68 @@ impl<const D: usize> Cells<'_, D> {
         }
     }
 
-    /// Exchanges multipliers of two cells at a vertex of their facet, by its numbers in the two cells.
-    fn exchange_between(&mut self, at: [Place; 2], vertex: [usize; 2]) {
+    /// Exchanges multipliers of two cells at a vertex of their facet, by its numbers in the two cells. The result, here and
+    /// below, is by how much the square of the bound falls.
+    fn exchange_between(&mut self, at: [Place; 2], vertex: [usize; 2]) -> f64 {
         let [here, there] = at.map(|(k, _)| &self.cells[k]);
         let sign = (here.sum() + there.sum()).signum();
         let obstacle = usize::from(sign < 0.0);
         let takes_part = |cell: &CellInContact| cell.has_one_sign && cell.is_given[obstacle];
         if here.sum() * there.sum() < 0.0 || !takes_part(here) || !takes_part(there) {
-            return;
+            return 0.0;
         }
         let number = [0, 1].map(|s| at[s].1 * (D + 1) + vertex[s]);
         let terms = [(at[0].0, number[0], 1.0), (at[1].0, number[1], -1.0)];
         let of_gaps = sign * (there.gap(sign, vertex[1]) - here.gap(sign, vertex[0]));
-        let least = sign * self.least_change(&terms, of_gaps);
+        let [slope, curvature] = self.slopes(&terms, of_gaps);
+        let least = -sign * slope / curvature;
         let exchange =
             sign * least.max(-there.room(sign, vertex[1])).min(here.room(sign, vertex[0]));
-        if exchange.is_finite() {
-            self.add(at[0].0, number[0], vertex[0], exchange);
-            self.add(at[1].0, number[1], vertex[1], -exchange);
+        if !exchange.is_finite() {
+            return 0.0;
         }
+        self.add(at[0].0, number[0], vertex[0], exchange);
+        self.add(at[1].0, number[1], vertex[1], -exchange);
+        decrease([slope, curvature], exchange)
     }
 
     /// Exchanges the multiplier of a cell at a vertex of a Dirichlet facet.
-    fn exchange_with_dirichlet(&mut self, (k, local): Place, vertex: usize) {
+    fn exchange_with_dirichlet(&mut self, (k, local): Place, vertex: usize) -> f64 {
         let cell = &self.cells[k];
         let sign = cell.sum().signum();
         if !(cell.has_one_sign && cell.is_given[usize::from(sign < 0.0)]) {
-            return;
+            return 0.0;
         }
         let number = local * (D + 1) + vertex;
         let of_gap = -sign * cell.gap(sign, vertex);
-        let least = sign * self.least_change(&[(k, number, 1.0)], of_gap);
-        let exchange = sign * least.min(cell.room(sign, vertex));
-        if exchange.is_finite() {
-            self.add(k, number, vertex, exchange);
+        let [slope, curvature] = self.slopes(&[(k, number, 1.0)], of_gap);
+        let exchange = sign * (-sign * slope / curvature).min(cell.room(sign, vertex));
+        if !exchange.is_finite() {
+            return 0.0;
         }
+        self.add(k, number, vertex, exchange);
+        decrease([slope, curvature], exchange)
     }
 
     /// Exchanges the multiplier of a cell between two of its vertices.
-    fn exchange_inside(&mut self, k: usize, [a, b]: [usize; 2]) {
+    fn exchange_inside(&mut self, k: usize, [a, b]: [usize; 2]) -> f64 {
         let cell = &self.cells[k];
         if !cell.has_one_sign {
-            return;
+            return 0.0;
         }
         let sign = cell.sum().signum();
         let number = [a, b].map(|v| v * (D + 2));
         let terms = [(k, number[0], 1.0), (k, number[1], -1.0)];
         let of_gaps = sign * (cell.gap(sign, b) - cell.gap(sign, a));
-        let least = sign * self.least_change(&terms, of_gaps);
+        let [slope, curvature] = self.slopes(&terms, of_gaps);
+        let least = -sign * slope / curvature;
         let exchange = sign * least.max(-cell.room(sign, b)).min(cell.room(sign, a));
-        if exchange.is_finite() {
-            self.add(k, number[0], a, exchange);
-            self.add(k, number[1], b, -exchange);
+        if !exchange.is_finite() {
+            return 0.0;
         }
+        self.add(k, number[0], a, exchange);
+        self.add(k, number[1], b, -exchange);
+        decrease([slope, curvature], exchange)
     }
 }
 
@@ -116,26 +125,22 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         let multiplier = |cell: usize| if presses(cell) { multipliers[cell] } else { [0.0; 4] };
         let mut cells = self.cells_with_products(&numbers, multiplier, function, flux);
         (0..numbers.len()).for_each(|k| cells.make_sign_definite(k));
-        for step in (0..SWEEPS).flat_map(|_| &steps) {
-            match *step {
-                Step::Between(at) => {
-                    let [cell, other] = at.map(|(k, _)| self.mesh.cell(numbers[k]));
-                    for j in vertices_of::<D>(at[0].1) {
-                        if let Some(m) = other.iter().position(|&v| v == cell[j]) {
-                            cells.exchange_between(at, [j, m]);
-                        }
-                    }
-                }
-                Step::WithDirichlet(at) => {
-                    vertices_of::<D>(at.1).for_each(|j| cells.exchange_with_dirichlet(at, j));
-                }
-                Step::Inside(k) => {
-                    for a in 0..=D {
-                        (a + 1..=D).for_each(|b| cells.exchange_inside(k, [a, b]));
-                    }
-                }
+        let square: f64 = (0..numbers.len()).map(|k| cells.square(k)).sum();
+        visit_steps(&steps, (numbers.len(), square), SWEEPS, |step| match step {
+            Step::Between(at) => {
+                let [cell, other] = at.map(|(k, _)| self.mesh.cell(numbers[k]));
+                let across = |v: u32| other.iter().position(|&w| w == v);
+                let common = vertices_of::<D>(at[0].1).filter_map(|j| Some([j, across(cell[j])?]));
+                common.map(|vertex| cells.exchange_between(at, vertex)).sum()
             }
-        }
+            Step::WithDirichlet(at) => {
+                vertices_of::<D>(at.1).map(|j| cells.exchange_with_dirichlet(at, j)).sum()
+            }
+            Step::Inside(k) => {
+                let pairs = (0..=D).flat_map(|a| (a + 1..=D).map(move |b| [a, b]));
+                pairs.map(|pair| cells.exchange_inside(k, pair)).sum()
+            }
+        });
     }
 
     /// The multipliers of obstacles, projected on linear functions, at the vertices of cells.

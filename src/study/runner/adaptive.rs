@@ -112,13 +112,9 @@ impl<T: Real, const D: usize> Study<'_, T, D> {
                         Some(Err(error)) => {
                             let place = (level, meshes.finest());
                             let name = solver.name();
-                            add(self.row_without(
-                                (entry, problem),
-                                place,
-                                name,
-                                failure,
-                                error,
-                            )?)?;
+                            let of = (entry, problem);
+                            let row = self.row_without(of, place, name, failure, error)?;
+                            add(Row { theta: Some(adaptivity.theta), ..row })?;
                             break;
                         }
                         None => break,
