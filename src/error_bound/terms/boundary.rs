@@ -1,0 +1,141 @@
+//! Integrals of a pair over the boundary.
+
+use std::f64::consts::PI;
+
+use super::cell_flux::limit;
+use crate::assemble::space::{Place, Space};
+use crate::error_bound::{NoBound, PrimalDualPair};
+use crate::mesh::BoundaryPart;
+use crate::quadrature::facet_to_cell;
+use crate::real::Real;
+
+/// A negative contact force below this share of the largest one is rounding.
+const FORCE_ROUNDING: f64 = 1e-8;
+
+/// The measure of a facet times `q.n` on it.
+#[derive(Clone, Copy)]
+struct FacetFlux {
+    /// A factor.
+    scale: f64,
+    /// The values at the vertices of the cell over the factor, zero at that opposite the facet; one if it is
+    /// constant.
+    values: Option<[f64; 4]>,
+    /// The number of the facet.
+    local: usize,
+}
+
+impl FacetFlux {
+    /// The value, over the factor, at a point of the facet by its barycentric coordinates in the cell.
+    fn at(&self, point: &[f64; 4]) -> f64 {
+        self.values.map_or(1.0, |values| values.iter().zip(point).map(|(v, b)| v * b).sum())
+    }
+    /// The integral over the facet.
+    fn integral(&self, dimension: usize) -> f64 {
+        self.scale * self.values.map_or(1.0, |values| values.iter().sum::<f64>() / dimension as f64)
+    }
+    /// A flux that is nowhere negative with the same integral, and the mean of the square of the
+    /// difference.
+    fn limited(self, dimension: usize) -> (Self, f64) {
+        // a negative integral is rounding: other pairs give no bound
+        let Some(mut values) = self.values else {
+            return (Self { scale: self.scale.max(0.0), ..self }, 0.0);
+        };
+        let d = dimension as f64;
+        let mean = (values.iter().sum::<f64>() / d).max(0.0);
+        let vertices = || (0..=dimension).filter(|&k| k != self.local);
+        // the value at the vertex opposite the facet does not count
+        values[self.local] = mean;
+        let share = limit(mean, &values[..=dimension]);
+        let squares: f64 = values[..=dimension].iter().map(|v| (v - mean).powi(2)).sum();
+        vertices().for_each(|k| values[k] = mean + share * (values[k] - mean));
+        values[self.local] = 0.0;
+        let left = (1.0 - share).powi(2) * squares / (d * (d + 1.0));
+        (Self { values: Some(values), ..self }, left)
+    }
+}
+
+/// Integrals over the boundary, by cell; empty where there are none.
+pub(in crate::error_bound) struct BoundaryTerms {
+    /// Norms of what Neumann data and contact forces have besides those of the pair, with the constant of the
+    /// trace inequality.
+    pub(super) traces: Vec<f64>,
+    /// The complementarity of contact.
+    pub(super) contact: Vec<f64>,
+}
+
+impl<T: Real, const D: usize> Space<'_, T, D> {
+    /// The constant of the trace inequality on a facet: for `w` with mean zero in a cell the divergence theorem for
+    /// `w^2 (x - a_F)` and the inequality of Payne and Weinberger give
+    /// `|w|_F^2 <= |F| / |K| (1/pi^2 + 2/(pi D)) h_K^2 |grad w|_K^2`.
+    pub(in crate::error_bound) fn constant_of_trace(&self, place: Place) -> f64 {
+        let volume = self.mesh.geometry(place.0).volume.to_f64();
+        let square = self.facet_measure(place) / volume * (1.0 / (PI * PI) + 2.0 / (PI * D as f64));
+        square.sqrt() * self.mesh.cell_diameter(place.0).to_f64()
+    }
+
+    /// The terms of the boundary.
+    pub(in crate::error_bound) fn boundary_terms(
+        &self,
+        pair: &PrimalDualPair,
+    ) -> Result<BoundaryTerms, NoBound> {
+        let n_cells = self.mesh.n_cells();
+        let zeros = |is_needed: bool| vec![0.0; if is_needed { n_cells } else { 0 }];
+        let has_fluxes =
+            self.problem.has_neumann_data() && self.mesh.has_part(BoundaryPart::Neumann);
+        let has_gap = self.problem.has_gap();
+        let mut terms = BoundaryTerms {
+            traces: zeros(has_fluxes || has_gap && pair.degree > 1),
+            contact: zeros(has_gap),
+        };
+        if has_fluxes {
+            for (place, group) in self.grouped_facets_of(BoundaryPart::Neumann) {
+                let measure = self.facet_measure(place);
+                let flux = self.flux_on(pair, place);
+                let mut square = 0.0;
+                for (point, weight) in self.facet_rule.iter() {
+                    let datum = self.neumann_at(place, group, point)?;
+                    let flux = flux.scale * flux.at(&facet_to_cell(point, place.1)) / measure;
+                    square += weight * measure * (datum - flux).powi(2);
+                }
+                terms.traces[place.0] += self.constant_of_trace(place) * square.sqrt();
+            }
+        }
+        let (mut least, mut largest) = (0.0_f64, 0.0_f64);
+        for (place, group) in self.grouped_facets_of(BoundaryPart::Contact) {
+            let Some(gap) = self.data.gap.of(group) else { continue };
+            let admissible = self.admissible_in(pair, place.0);
+            let flux = self.flux_on(pair, place);
+            let integral = flux.integral(D);
+            (least, largest) = (least.min(integral), largest.max(integral));
+            let (force, left) = flux.limited(D);
+            let mut sum = 0.0;
+            for (point, weight) in self.facet_rule.iter() {
+                let x = self.facet_point(point, place.0, place.1);
+                let point = facet_to_cell(point, place.1);
+                let (value, _) = admissible.at(&point, &x);
+                sum += weight * force.at(&point) * (value - gap.at(&x)).max(0.0);
+            }
+            terms.contact[place.0] += force.scale * sum;
+            if pair.degree > 1 {
+                let measure = self.facet_measure(place);
+                terms.traces[place.0] += self.constant_of_trace(place) * (left / measure).sqrt();
+            }
+        }
+        match -least > FORCE_ROUNDING * largest {
+            true => Err(NoBound::NegativeForce),
+            false => Ok(terms),
+        }
+    }
+
+    /// The flux of a pair through a facet.
+    fn flux_on(&self, pair: &PrimalDualPair, (cell, local): Place) -> FacetFlux {
+        let place = cell * (D + 1) + local;
+        if pair.degree == 1 {
+            return FacetFlux { scale: pair.flux[place], values: None, local };
+        }
+        let mut values = [0.0; 4];
+        values[..=D].copy_from_slice(&pair.flux[place * (D + 1)..][..D + 1]);
+        values[local] = 0.0;
+        FacetFlux { scale: 1.0, values: Some(values), local }
+    }
+}

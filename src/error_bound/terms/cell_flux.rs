@@ -1,0 +1,115 @@
+//! The flux of a pair in a cell, and what it leaves of the load.
+
+use crate::assemble::space::Space;
+use crate::error_bound::PrimalDualPair;
+use crate::real::{Point, Real, point_f64};
+
+/// The flux in a cell: `q = sum_j lambda_j (s_j x - o_j) / (D |K|)` with one term, without `lambda_j`, where
+/// the density is constant on facets.
+pub(super) struct CellFlux<const D: usize> {
+    /// Number of terms: one, or that of the vertices.
+    pub n: usize,
+    /// `sum_F c_Fj`.
+    pub sums: [f64; 4],
+    /// `sum_F c_Fj a_F`.
+    pub origins: [Point<f64, D>; 4],
+    /// `1 / (D |K|)`.
+    pub per_volume: f64,
+    /// `D |K| div q`: at the vertices; constant for one term.
+    pub divergence: [f64; 4],
+}
+
+impl<const D: usize> CellFlux<D> {
+    /// The factors of the terms at a point.
+    pub fn shares<'p>(&self, point: &'p [f64; 4]) -> &'p [f64] {
+        if self.n == 1 { &[1.0] } else { &point[..=D] }
+    }
+    /// The value at a point, by barycentric coordinates and in space.
+    pub fn at(&self, point: &[f64; 4], x: &Point<f64, D>) -> Point<f64, D> {
+        if self.n == 1 {
+            return (x * self.sums[0] - self.origins[0]) * self.per_volume;
+        }
+        let mut q = Point::zeros();
+        for (k, share) in point.iter().enumerate().take(self.n) {
+            q += (x * self.sums[k] - self.origins[k]) * *share;
+        }
+        q * self.per_volume
+    }
+    /// The mean of the square of the norm of a constant less the flux with one term, by the corners of the cell.
+    pub fn mean_square_of_difference(
+        &self,
+        gradient: Point<f64, D>,
+        corners: impl Iterator<Item = Point<f64, D>> + Clone,
+    ) -> f64 {
+        let d = D as f64;
+        let middle = corners.clone().sum::<Point<f64, D>>() / (d + 1.0);
+        let squares: f64 = corners.map(|x| (x - middle).norm_squared()).sum();
+        let slope = self.sums[0] * self.per_volume;
+        let at_middle = (middle * self.sums[0] - self.origins[0]) * self.per_volume;
+        let of_slope = slope * slope * squares / ((d + 1.0) * (d + 2.0));
+        (gradient - at_middle).norm_squared() + of_slope
+    }
+    /// What the flux leaves of a load, by the means of the load less a constant times each factor of a
+    /// term, and the square of its norm.
+    pub fn balance(&self, volume: f64, means: &[f64; 4], square: f64, constant: f64) -> Balance {
+        if self.n == 1 {
+            let mean = -self.sums[0] / volume - means[0] - constant;
+            let rest = (square - volume * means[0] * means[0]).max(0.0);
+            return Balance { mean, values: [mean; 4], variation: 0.0, rest };
+        }
+        let d = D as f64;
+        let sum: f64 = means.iter().sum();
+        let projection = means.map(|m| (d + 1.0) * ((d + 2.0) * m - sum));
+        let products: f64 = projection.iter().zip(means).take(self.n).map(|(p, m)| p * m).sum();
+        let mut values = [0.0; 4];
+        for k in 0..self.n {
+            values[k] = -self.divergence[k] * self.per_volume - projection[k] - constant;
+        }
+        let mean = values.iter().sum::<f64>() / (d + 1.0);
+        let squares: f64 = values[..self.n].iter().map(|v| (v - mean).powi(2)).sum();
+        let variation = volume * squares / ((d + 1.0) * (d + 2.0));
+        Balance { mean, values, variation, rest: (square - volume * products).max(0.0) }
+    }
+}
+
+/// What the flux of a cell leaves of the load.
+pub(super) struct Balance {
+    /// Its mean.
+    pub mean: f64,
+    /// Its projection on the linear functions, at the vertices; the mean where the flux has one term.
+    pub values: [f64; 4],
+    /// The square of the norm of the projection less the mean.
+    pub variation: f64,
+    /// The square of the norm of the rest.
+    pub rest: f64,
+}
+
+/// How far a linear function with these values at vertices can be taken from its mean, at most all the way,
+/// with the sign of the mean everywhere.
+pub(in crate::error_bound) fn limit(mean: f64, values: &[f64]) -> f64 {
+    let deepest = values.iter().map(|v| mean.signum() * (mean - v)).fold(0.0, f64::max);
+    if deepest > mean.abs() { mean.abs() / deepest } else { 1.0 }
+}
+
+impl<T: Real, const D: usize> Space<'_, T, D> {
+    /// The flux of a pair in a cell.
+    pub(super) fn flux_in(&self, pair: &PrimalDualPair, cell: usize, volume: f64) -> CellFlux<D> {
+        let n = if pair.degree > 1 { D + 1 } else { 1 };
+        let flux = &pair.flux[cell * (D + 1) * n..(cell + 1) * (D + 1) * n];
+        let per_volume = 1.0 / (D as f64 * volume);
+        let (mut sums, mut origins) = ([0.0; 4], [Point::<f64, D>::zeros(); 4]);
+        for (&v, flux) in self.mesh.cell(cell).iter().zip(flux.chunks_exact(n)) {
+            let opposite = point_f64(&self.mesh.vertices()[v as usize]);
+            for (k, flux) in flux.iter().enumerate() {
+                sums[k] += flux;
+                origins[k] += opposite * *flux;
+            }
+        }
+        let inner: f64 = (0..=D).map(|k| flux[k * (D + 2) % flux.len()]).sum();
+        let divergence = match n {
+            1 => [D as f64 * sums[0]; 4],
+            _ => sums.map(|sum| (D + 1) as f64 * sum - inner),
+        };
+        CellFlux { n, sums, origins, per_volume, divergence }
+    }
+}

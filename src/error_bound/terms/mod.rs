@@ -1,0 +1,338 @@
+//! Integrals of a pair over cells and the boundary.
+
+mod boundary;
+mod cell_flux;
+
+use std::f64::consts::PI;
+
+use boundary::BoundaryTerms;
+use cell_flux::CellFlux;
+pub(super) use cell_flux::limit;
+
+use super::PrimalDualPair;
+use crate::assemble::cut_simplices::{CutRule, in_space};
+use crate::assemble::space::Space;
+use crate::assemble::space::tables::{BasisAt, CellTable};
+use crate::element::MAX_BASIS;
+use crate::measure::Admissible;
+use crate::mesh::edge_vertices;
+use crate::problem::{DatumRef, Field};
+use crate::real::{Point, Real, point_f64};
+
+/// What one cell adds to the bound.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct CellTerms {
+    /// The square of the mismatch.
+    pub mismatch: f64,
+    /// The square of the mismatch with the oscillation added: if what the flux leaves is a force of an
+    /// obstacle, and if the solver left it.
+    pub with_oscillation: [f64; 2],
+    /// Twice the complementarity of obstacles, if what the flux leaves is a force.
+    pub obstacle: f64,
+    /// The complementarity divided by the square that the cell adds if the solver left the mean: infinite where
+    /// no obstacle presses in the direction of the mean, zero where no constant of Friedrichs' inequality is known.
+    pub ratio: f64,
+    /// Twice the complementarity of contact.
+    pub contact: f64,
+    /// The mean of what the flux leaves.
+    pub unbalanced: f64,
+    /// The square of the distance of the two functions.
+    pub distance: f64,
+    /// The least value of the coefficient.
+    pub least_coefficient: f64,
+    /// The least value of the reaction.
+    pub least_reaction: f64,
+    /// The volume of the cell.
+    pub volume: f64,
+}
+
+/// What the integrals of a cell read.
+struct CellData<'a, const D: usize> {
+    flux: CellFlux<D>,
+    admissible: Admissible<'a, D>,
+    /// The values of the discrete function at the unknowns of the cell.
+    values: [f64; MAX_BASIS],
+    /// The gradient of the discrete function, where it is linear.
+    slope: Option<Point<f64, D>>,
+    coefficient: Option<DatumRef<'a, D>>,
+    reaction: Option<DatumRef<'a, D>>,
+    source: Option<DatumRef<'a, D>>,
+    volume: f64,
+}
+
+impl<const D: usize> CellData<'_, D> {
+    /// The gradient of the discrete function at a point.
+    fn gradient_of(&self, basis: &BasisAt<f64>) -> Point<f64, D> {
+        let mut gradient = Point::zeros();
+        for k in 0..=D {
+            let derivatives = basis.derivatives.iter();
+            let slope: f64 = self.values.iter().zip(derivatives).map(|(c, d)| c * d[k]).sum();
+            gradient += self.admissible.gradients[k] * slope;
+        }
+        gradient
+    }
+}
+
+/// Integrals over one cell.
+#[derive(Default)]
+struct CellIntegrals {
+    /// The square of the difference of gradient and flux.
+    mismatch: f64,
+    /// The square of the difference of the two functions, times the reaction.
+    from_values: f64,
+    /// The square of the difference of the gradients of the two functions, times the coefficient.
+    distance: f64,
+    /// The load at the first point, less the reaction. The balance is summed from it, so that a constant has no
+    /// oscillation.
+    first_load: Option<f64>,
+    /// The means of the load, less that at the first point, times barycentric coordinates.
+    means: [f64; 4],
+    /// The square of the load, less that at the first point.
+    square: f64,
+    /// The distances from the lower and the upper obstacle, times barycentric coordinates.
+    gaps: [[f64; 4]; 2],
+    least_coefficient: f64,
+    least_reaction: f64,
+}
+
+/// An integral of squares: corrections of rules along curved zeros have weights of both signs, so that the sum of
+/// values at rounding may be negative.
+fn integral_of_square(sum: f64) -> f64 {
+    if sum < 0.0 { 0.0 } else { sum }
+}
+
+impl<T: Real, const D: usize> Space<'_, T, D> {
+    /// The admissible function in a cell.
+    pub(super) fn admissible_in(&self, pair: &PrimalDualPair, cell: usize) -> Admissible<'_, D> {
+        let (geometry, region) = (self.mesh.geometry(cell), self.mesh.region(cell));
+        let (mut values, mut gradients) = ([0.0; 4], [Point::zeros(); 4]);
+        let mut gradient = Point::zeros();
+        for (k, &v) in self.mesh.cell(cell).iter().enumerate() {
+            values[k] = pair.function[v as usize];
+            gradients[k] = point_f64(geometry.gradient(k));
+            gradient += gradients[k] * (values[k] - values[0]);
+        }
+        let diameter = self.mesh.cell_diameter(cell).to_f64();
+        let bounds = [self.data.lower.of(region), self.data.upper.of(region)];
+        let excess = (pair.degree > 1).then(|| {
+            let midpoints = &pair.function[self.mesh.vertices().len()..];
+            let ends = edge_vertices(D);
+            let edges = &pair.edges[cell * ends.len()..];
+            let mut excess = [0.0; 6];
+            for ((excess, &[a, b]), &edge) in excess.iter_mut().zip(ends).zip(edges) {
+                *excess = 4.0 * midpoints[edge as usize] - 2.0 * (values[a] + values[b]);
+            }
+            excess
+        });
+        Admissible { values, gradient, excess, gradients, bounds, diameter }
+    }
+
+    /// Calls a function with the points of a rule on a cell, divided where a level has zeros: with barycentric
+    /// coordinates, coordinates in space, weight and the basis.
+    fn visit_points(
+        &self,
+        cell: usize,
+        table: &CellTable<f64>,
+        cut: Option<(&CutRule, &Field<D>)>,
+        mut visit: impl FnMut(&[f64; 4], &Point<f64, D>, f64, &BasisAt<f64>),
+    ) {
+        let is_cut = cut.is_some_and(|(rule, level)| {
+            rule.visit_if_cut(self.mesh, cell, level, &mut |point, x, weight| {
+                visit(point, x, weight, &self.basis_at(point));
+            })
+        });
+        if !is_cut {
+            for ((point, basis), &weight) in
+                table.points.iter().zip(&table.basis).zip(&table.weights)
+            {
+                visit(point, &self.cell_point(point, cell), weight, basis);
+            }
+        }
+    }
+
+    /// The means of the distances of a linear function from the obstacles at the points of a rule; none if it
+    /// leaves one of them at a point.
+    fn gaps_of_linear(
+        &self,
+        function: &Admissible<'_, D>,
+        cell: usize,
+        table: &CellTable<f64>,
+    ) -> Option<[f64; 2]> {
+        let mut gaps = [0.0; 2];
+        if function.bounds.iter().all(Option::is_none) {
+            return Some(gaps);
+        }
+        let corners = self.mesh.corners(cell);
+        for (point, weight) in table.points.iter().zip(&table.weights) {
+            let x = in_space(point, &corners);
+            let value: f64 = function.values.iter().zip(point).map(|(v, b)| v * b).sum();
+            for (k, sign) in [1.0, -1.0].into_iter().enumerate() {
+                let gap = function.bounds[k].map_or(0.0, |bound| sign * (value - bound.at(&x)));
+                if gap < 0.0 {
+                    return None;
+                }
+                gaps[k] += weight * gap;
+            }
+        }
+        Some(gaps)
+    }
+
+    /// The integrals of a cell where everything but the obstacles is a polynomial: coefficient and load constant, no
+    /// reaction, functions linear. None elsewhere, and where the function leaves an obstacle.
+    fn integrals_of_constants(
+        &self,
+        cell: usize,
+        data: &CellData<'_, D>,
+        table: &CellTable<f64>,
+    ) -> Option<CellIntegrals> {
+        let constant_of =
+            |datum: Option<DatumRef<'_, D>>, absent| datum.map_or(Some(absent), |d| d.constant());
+        let alpha = constant_of(data.coefficient, 1.0)?;
+        let load = constant_of(data.source, 0.0)?;
+        let slope = data.slope.filter(|_| data.reaction.is_none())?;
+        let distances = self.gaps_of_linear(&data.admissible, cell, table)?;
+        let gradient = data.admissible.gradient;
+        let corners =
+            self.mesh.cell(cell).iter().map(|&v| point_f64(&self.mesh.vertices()[v as usize]));
+        let square = data.flux.mean_square_of_difference(gradient * alpha, corners);
+        let [lower, upper] = distances.map(|mean| data.volume * mean);
+        Some(CellIntegrals {
+            mismatch: data.volume / alpha * square,
+            distance: data.volume * alpha * (gradient - slope).norm_squared(),
+            first_load: Some(load),
+            gaps: [[lower, 0.0, 0.0, 0.0], [upper, 0.0, 0.0, 0.0]],
+            least_coefficient: alpha,
+            least_reaction: 0.0,
+            ..CellIntegrals::default()
+        })
+    }
+
+    /// The integrals of a cell by a rule.
+    fn integrals_at_points(
+        &self,
+        cell: usize,
+        data: &CellData<'_, D>,
+        table: &CellTable<f64>,
+        cut: Option<&CutRule>,
+    ) -> CellIntegrals {
+        let mut sums = CellIntegrals {
+            least_coefficient: f64::INFINITY,
+            least_reaction: f64::INFINITY,
+            ..CellIntegrals::default()
+        };
+        let admissible = &data.admissible;
+        let cut = cut.zip(data.source.and_then(|f| f.level()));
+        self.visit_points(cell, table, cut, |point, x, weight, basis| {
+            let weight = weight * data.volume;
+            let alpha = data.coefficient.map_or(1.0, |alpha| alpha.at(x));
+            let reaction = data.reaction.map_or(0.0, |c| c.at(x));
+            let (value, gradient) = admissible.at(point, x);
+            let q = data.flux.at(point, x);
+            sums.mismatch += weight * (gradient * alpha - q).norm_squared() / alpha;
+            let discrete = basis.value(&data.values);
+            sums.from_values += weight * reaction * (discrete - value).powi(2);
+            let slope = data.slope.unwrap_or_else(|| data.gradient_of(basis));
+            sums.distance += weight * alpha * (gradient - slope).norm_squared();
+            let load = data.source.map_or(0.0, |f| f.at(x)) - reaction * discrete;
+            let load = load - *sums.first_load.get_or_insert(load);
+            sums.square += weight * load * load;
+            let differences = [0, 1].map(|k| {
+                let sign = [1.0, -1.0][k];
+                admissible.bounds[k].map_or(0.0, |bound| weight * sign * (value - bound.at(x)))
+            });
+            for (k, share) in data.flux.shares(point).iter().enumerate() {
+                sums.means[k] += weight * load / data.volume * share;
+                sums.gaps[0][k] += differences[0] * share;
+                sums.gaps[1][k] += differences[1] * share;
+            }
+            sums.least_coefficient = sums.least_coefficient.min(alpha);
+            sums.least_reaction = sums.least_reaction.min(reaction);
+        });
+        sums
+    }
+
+    /// The terms of a cell.
+    pub(super) fn cell_terms(
+        &self,
+        pair: &PrimalDualPair,
+        u: &[T],
+        cell: usize,
+        (table, cut): (&CellTable<f64>, Option<&CutRule>),
+        boundary: &BoundaryTerms,
+        friedrichs: Option<f64>,
+    ) -> CellTerms {
+        let data = self.cell_data(pair, u, cell, table);
+        let sums = self
+            .integrals_of_constants(cell, &data, table)
+            .unwrap_or_else(|| self.integrals_at_points(cell, &data, table, cut));
+        let [mismatch, from_values] = [sums.mismatch, sums.from_values].map(integral_of_square);
+        let by_gradient = data.admissible.diameter / (PI * sums.least_coefficient.sqrt());
+        let by_value = sums.least_reaction.max(0.0).sqrt().recip();
+        let load = sums.first_load.unwrap_or(0.0);
+        let balance = data.flux.balance(data.volume, &sums.means, sums.square, load);
+        let bound = usize::from(balance.mean < 0.0);
+        let share = limit(balance.mean, &balance.values[..data.flux.n]);
+        let mut obstacle = 0.0;
+        for (value, gap) in balance.values.iter().zip(sums.gaps[bound]).take(data.flux.n) {
+            let multiplier = balance.mean + share * (value - balance.mean);
+            obstacle += 2.0 * multiplier.abs() * gap;
+        }
+        let square_of_mean = balance.mean * balance.mean * data.volume;
+        let ratio = match (data.admissible.bounds[bound], friedrichs) {
+            (None, _) => f64::INFINITY,
+            (Some(_), Some(c)) if square_of_mean > 0.0 => {
+                obstacle * sums.least_coefficient / (c * c * square_of_mean)
+            }
+            _ => 0.0,
+        };
+        let of_trace = boundary.traces.get(cell).map_or(0.0, |n| n / sums.least_coefficient.sqrt());
+        let with_oscillation = [1.0 - share, 1.0].map(|left| {
+            let of_load = (balance.rest + left * left * balance.variation).sqrt();
+            let [in_gradient, in_value] = match by_value < by_gradient {
+                true => [of_trace, by_value * of_load],
+                false => [by_gradient * of_load + of_trace, 0.0],
+            };
+            (mismatch.sqrt() + in_gradient).powi(2) + (from_values.sqrt() + in_value).powi(2)
+        });
+        CellTerms {
+            mismatch: mismatch + from_values,
+            with_oscillation,
+            obstacle,
+            ratio,
+            contact: boundary.contact.get(cell).map_or(0.0, |c| 2.0 * c),
+            unbalanced: balance.mean,
+            distance: integral_of_square(sums.distance) + from_values,
+            least_coefficient: sums.least_coefficient,
+            least_reaction: sums.least_reaction,
+            volume: data.volume,
+        }
+    }
+
+    /// What the integrals of a cell read.
+    fn cell_data(
+        &self,
+        pair: &PrimalDualPair,
+        u: &[T],
+        cell: usize,
+        table: &CellTable<f64>,
+    ) -> CellData<'_, D> {
+        let volume = self.mesh.geometry(cell).volume.to_f64();
+        let region = self.mesh.region(cell);
+        let [coefficient, reaction, source] =
+            [&self.data.coefficient, &self.data.reaction, &self.data.source]
+                .map(|data| data.of(region));
+        let mut data = CellData {
+            flux: self.flux_in(pair, cell, volume),
+            admissible: self.admissible_in(pair, cell),
+            values: self.local_values(cell, u),
+            slope: None,
+            coefficient,
+            reaction,
+            source,
+            volume,
+        };
+        // the derivatives of linear functions are those at any point
+        data.slope = (pair.degree == 1).then(|| data.gradient_of(&table.basis[0]));
+        data
+    }
+}
