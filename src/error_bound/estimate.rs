@@ -4,23 +4,17 @@ use std::ops::Range;
 
 use super::algebra::CoarserCells;
 use super::choice::Choice;
-use super::function::PairNode;
 use super::terms::CellTerms;
 use super::{NoBound, PrimalDualPair};
 use crate::assemble::Discretisation;
 use crate::assemble::cut_simplices::CutRule;
-use crate::assemble::space::{Place, Space};
+use crate::assemble::space::Space;
 use crate::error::Error;
 use crate::instances::compiled;
 use crate::measure::Errors;
-use crate::mesh::BoundaryPart;
 use crate::parallel::cells;
-use crate::problem::{DataByGroup, DatumRef};
 use crate::quadrature::Rule;
-use crate::real::{Real, point_f64};
-
-/// Dirichlet data that differ by less than this share are equal but for rounding.
-const AGREEMENT: f64 = 1e-12;
+use crate::real::Real;
 
 /// A term of a bound that is not proven for a problem.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -28,18 +22,20 @@ const AGREEMENT: f64 = 1e-12;
 #[cfg_attr(feature = "report", serde(rename_all = "lowercase"))]
 #[non_exhaustive]
 pub enum Unproven {
-    /// Integrals of data that are functions: a rule need not be exact.
+    /// Integrals of data that are functions: a rule need not be exact. Least values of a reaction that is none of degree
+    /// two, or whose Bernstein coefficients are not all positive.
     Quadrature,
     /// Dirichlet data of a higher degree than `v` on facets: `v` takes them at its nodes only.
     Boundary,
-    /// Obstacles and gaps of a higher degree than `v` in cells: `v` satisfies them at points only.
+    /// Obstacles and gaps of a higher degree than `v` in cells, or of degree two where the Bernstein coefficients of `v`
+    /// do not exceed theirs: `v` satisfies them at points only.
     Obstacle,
     /// What the solver left, where no constant of Friedrichs' inequality is known and the reaction vanishes
     /// somewhere.
     Algebra,
 }
 
-/// Shares of the square of a bound; their sum is one.
+/// Shares of the square of a bound; their sum is one, or zero where the bound is.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[non_exhaustive]
 pub struct BoundParts {
@@ -185,20 +181,22 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
             cells.map(terms).collect::<Vec<_>>()
         });
         let (mut mismatch, mut distance, mut contact) = (0.0, 0.0, 0.0);
-        let [mut least_coefficient, mut least_reaction] = [f64::INFINITY; 2];
+        let [mut least_coefficient, mut least_reaction, mut reaction_from_below] =
+            [f64::INFINITY; 3];
         for t in terms.iter().flatten() {
             mismatch += t.mismatch;
             distance += t.distance;
             contact += t.contact;
             least_coefficient = t.least_coefficient.min(least_coefficient);
             least_reaction = t.least_reaction.min(least_reaction);
+            reaction_from_below = t.reaction_from_below.min(reaction_from_below);
         }
         if least_reaction < 0.0 {
             return Err(NoBound::NegativeReaction);
         }
         // |e| <= constant |||e||| by the inequality of Friedrichs or, where the reaction is positive, by that
         let by_gradient = friedrichs.map(|c| c / least_coefficient.max(0.0).sqrt());
-        let by_value = least_reaction.max(0.0).sqrt().recip();
+        let by_value = reaction_from_below.max(0.0).sqrt().recip();
         let constant = by_gradient.map_or(by_value, |c| c.min(by_value));
         let choice = Choice::best(&terms, coarser, constant);
         let Choice { least_ratio, with_oscillation, obstacle, flux_square, is_balanced } = choice;
@@ -224,95 +222,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
                 algebra: share((flux_square - with_oscillation).max(0.0)),
             },
             cells: terms.iter().flatten().map(of_cell).collect(),
-            unproven: self.unproven_terms(pair, is_proven),
-        })
-    }
-
-    /// The terms that are not proven; the argument says whether the term of the solver is.
-    fn unproven_terms(&self, pair: &PrimalDualPair, is_algebra_proven: bool) -> Vec<Unproven> {
-        let (data, stated) = (&self.data, self.problem.data_degree);
-        let is_constant = |data: &DataByGroup<'_, D>| data.all().all(|f| f.constant().is_some());
-        let is_below = |data: &DataByGroup<'_, D>, degree: usize| {
-            is_constant(data) || stated.is_some_and(|stated| stated <= degree)
-        };
-        let integrands = [&data.source, &data.reaction, &data.lower, &data.upper, &data.gap];
-        // a facet of an interval is a point, where data are numbers
-        let has_facets = |part| D > 1 && self.mesh.has_part(part);
-        let is_neumann_exact = stated.is_some()
-            || self.problem.exact.is_none() && data.neumann.all().all(|f| f.constant().is_some());
-        let has_fluxes = has_facets(BoundaryPart::Neumann) && !is_neumann_exact;
-        let has_data = has_facets(BoundaryPart::Dirichlet);
-        let has_jumps = data.source.all().any(|f| f.level().is_some());
-        let is_inexact = has_fluxes
-            || has_jumps
-            || !is_below(&data.coefficient, 0)
-            || integrands.iter().any(|data| !is_below(data, usize::MAX));
-        let obstacles = [&data.lower, &data.upper, &data.gap];
-        let is_curved = obstacles.iter().any(|d| !is_below(d, pair.degree));
-        // a quadratic with the data on two facets of a cell may leave the obstacle inside the cell
-        let may_leave = !is_curved
-            && D > 1
-            && pair.degree > 1
-            && obstacles.iter().any(|d| d.is_given())
-            && !is_below(&data.dirichlet, 1)
-            && !self.dirichlet_data_exceed_obstacles(pair);
-        let found = [
-            (is_inexact, Unproven::Quadrature),
-            (
-                has_data
-                    && !(is_below(&data.dirichlet, pair.degree) && self.takes_dirichlet_data(pair)),
-                Unproven::Boundary,
-            ),
-            (is_curved || may_leave, Unproven::Obstacle),
-            (!is_algebra_proven, Unproven::Algebra),
-        ];
-        found.into_iter().filter(|(is_found, _)| *is_found).map(|(_, term)| term).collect()
-    }
-
-    /// Whether a quadratic with the Dirichlet data exceeds obstacles and gaps by its Bernstein coefficients on the
-    /// edges of Dirichlet facets too, where it is not moved.
-    fn dirichlet_data_exceed_obstacles(&self, pair: &PrimalDualPair) -> bool {
-        let mut is_given = vec![false; pair.function.len()];
-        for place in self.facets_of(BoundaryPart::Dirichlet) {
-            self.pair_nodes_on(pair, place).for_each(|(_, node)| is_given[node] = true);
-        }
-        let exceeds = |bound: Option<DatumRef<'_, D>>, sign, cell, (ends, node): PairNode| {
-            if !is_given[node] {
-                return true;
-            }
-            let Some(bound) = bound else { return true };
-            let ends = ends.map(|k| self.mesh.cell(cell)[k] as usize);
-            let [x, y] = ends.map(|v| point_f64(&self.mesh.vertices()[v]));
-            let [at_x, at_y] = ends.map(|v| pair.function[v]);
-            let own = 4.0 * pair.function[node] - at_x - at_y;
-            let of_bound = 4.0 * bound.at(&((x + y) * 0.5)) - bound.at(&x) - bound.at(&y);
-            sign * (own - of_bound) >= -AGREEMENT * own.abs().max(of_bound.abs())
-        };
-        let exceeds_in = |cell: usize| {
-            let region = self.mesh.region(cell);
-            let (lower, upper) = (self.data.lower.of(region), self.data.upper.of(region));
-            self.pair_nodes(pair, cell)
-                .all(|at| exceeds(lower, 1.0, cell, at) && exceeds(upper, -1.0, cell, at))
-        };
-        let exceeds_on = |(place, group): (Place, usize)| {
-            let gap = self.data.gap.of(group);
-            self.pair_nodes_on(pair, place).all(|at| exceeds(gap, 1.0, place.0, at))
-        };
-        (0..self.mesh.n_cells()).all(exceeds_in)
-            && self.grouped_facets_of(BoundaryPart::Contact).all(exceeds_on)
-    }
-
-    /// Whether the function of a pair has the data of all Dirichlet facets at its nodes on them: where data of
-    /// two facets differ at a common node no function with a square-integrable gradient takes both.
-    fn takes_dirichlet_data(&self, pair: &PrimalDualPair) -> bool {
-        self.grouped_facets_of(BoundaryPart::Dirichlet).all(|(place, group)| {
-            self.pair_nodes_on(pair, place).all(|(ends, node)| {
-                let [x, y] = ends.map(|k| self.mesh.cell(place.0)[k] as usize);
-                let [x, y] = [x, y].map(|v| point_f64(&self.mesh.vertices()[v]));
-                let datum = self.dirichlet_at(group, &((x + y) * 0.5));
-                let value = pair.function[node];
-                (datum - value).abs() <= AGREEMENT * datum.abs().max(value.abs())
-            })
+            unproven: self.unproven_terms(pair, is_proven, reaction_from_below >= 0.0),
         })
     }
 }

@@ -58,8 +58,9 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         self.pair_nodes(pair, cell).filter(move |(ends, _)| !ends.contains(&local))
     }
 
-    /// The admissible function of a discrete function: of the same degree, without a flux. It has the value of an
-    /// obstacle at nodes all of whose cells are in contact with it.
+    /// The admissible function of a discrete function: of the same degree, without a flux. At nodes all of whose cells
+    /// are in contact with an obstacle it has the least value that the constraints allow: at vertices that of the
+    /// obstacle, at midpoints that with its Bernstein coefficient.
     pub(super) fn admissible_function(
         &self,
         u: &[T],

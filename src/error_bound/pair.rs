@@ -50,6 +50,10 @@ impl<T: Real, const D: usize> Discretisation<'_, T, D> {
     /// flux is the contact force of the nodes on the facet. *Quadratics.* Facets have moments of degree zero
     /// and one; inside cells the divergence balances load and multiplier tested with linear functions.
     ///
+    /// Where obstacles bind, multipliers of cells are then exchanged for flux through their facets, and contact forces
+    /// of quadratics between facets, which makes mismatch and complementarity smaller: see the guide,
+    /// [`bound`](crate::guide::bound).
+    ///
     /// # Errors
     /// [`NoBound`].
     ///

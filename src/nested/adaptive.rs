@@ -194,6 +194,11 @@ impl<'a, T: Real, const D: usize> AdaptiveIteration<'a, T, D> {
             let why = format!("the bound {:.2e} is above the goal {goal:?}: {stop}", bound.total);
             solved.warnings.push(why);
         }
+        if stop == Some(Stop::NoBound)
+            && let Err(why) = solved.bound()
+        {
+            solved.warnings.push(format!("no cells are marked without a bound on the error: {why}"));
+        }
         self.next = stop.is_none().then_some(number + 1);
         Ok(AdaptiveStep {
             number,

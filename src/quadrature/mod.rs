@@ -4,6 +4,7 @@
 //! rule serves cells of dimension `d` and facets of cells of dimension `d + 1`.
 
 mod error;
+mod exactness;
 mod families;
 mod gauss;
 mod orthonormal;

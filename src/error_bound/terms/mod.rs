@@ -40,8 +40,10 @@ pub(super) struct CellTerms {
     pub distance: f64,
     /// The least value of the coefficient.
     pub least_coefficient: f64,
-    /// The least value of the reaction.
+    /// The least value of the reaction at points, vertices and midpoints of edges.
     pub least_reaction: f64,
+    /// A bound from below for a reaction of degree two.
+    pub reaction_from_below: f64,
     /// The volume of the cell.
     pub volume: f64,
 }
@@ -92,7 +94,10 @@ struct CellIntegrals {
     /// The distances from the lower and the upper obstacle, times barycentric coordinates.
     gaps: [[f64; 4]; 2],
     least_coefficient: f64,
+    /// The least value of the reaction at points.
     least_reaction: f64,
+    /// A bound from below for a reaction of degree two.
+    reaction_from_below: f64,
 }
 
 /// An integral of squares: corrections of rules along curved zeros have weights of both signs, so that the sum of
@@ -202,7 +207,6 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
             first_load: Some(load),
             gaps: [[lower, 0.0, 0.0, 0.0], [upper, 0.0, 0.0, 0.0]],
             least_coefficient: alpha,
-            least_reaction: 0.0,
             ..CellIntegrals::default()
         })
     }
@@ -215,9 +219,12 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         table: &CellTable<f64>,
         cut: Option<&CutRule>,
     ) -> CellIntegrals {
+        let [least_reaction, reaction_from_below] =
+            data.reaction.map_or([0.0; 2], |c| self.least_values(cell, c));
         let mut sums = CellIntegrals {
             least_coefficient: f64::INFINITY,
-            least_reaction: f64::INFINITY,
+            least_reaction,
+            reaction_from_below,
             ..CellIntegrals::default()
         };
         let admissible = &data.admissible;
@@ -267,7 +274,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
             .unwrap_or_else(|| self.integrals_at_points(cell, &data, table, cut));
         let [mismatch, from_values] = [sums.mismatch, sums.from_values].map(integral_of_square);
         let by_gradient = data.admissible.diameter / (PI * sums.least_coefficient.sqrt());
-        let by_value = sums.least_reaction.max(0.0).sqrt().recip();
+        let by_value = sums.reaction_from_below.max(0.0).sqrt().recip();
         let load = sums.first_load.unwrap_or(0.0);
         let balance = data.flux.balance(data.volume, &sums.means, sums.square, load);
         let bound = usize::from(balance.mean < 0.0);
@@ -304,8 +311,28 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
             distance: integral_of_square(sums.distance) + from_values,
             least_coefficient: sums.least_coefficient,
             least_reaction: sums.least_reaction,
+            reaction_from_below: sums.reaction_from_below.min(sums.least_reaction),
             volume: data.volume,
         }
+    }
+
+    /// The least value of a datum at vertices and midpoints of edges and, for a datum of degree two, its least Bernstein
+    /// coefficient, which is a bound from below.
+    fn least_values(&self, cell: usize, datum: DatumRef<'_, D>) -> [f64; 2] {
+        if let Some(constant) = datum.constant() {
+            return [constant; 2];
+        }
+        let corners = self.mesh.corners(cell);
+        let mut at_corners = [f64::INFINITY; 4];
+        (0..=D).for_each(|k| at_corners[k] = datum.at(&corners[k]));
+        let least = at_corners.into_iter().fold(f64::INFINITY, f64::min);
+        let edges = edge_vertices(D).iter().map(|&[a, b]| {
+            let middle = datum.at(&((corners[a] + corners[b]) * 0.5));
+            [middle, 2.0 * middle - 0.5 * (at_corners[a] + at_corners[b])]
+        });
+        edges.fold([least; 2], |[least, from_below], [middle, coefficient]| {
+            [least.min(middle), from_below.min(coefficient)]
+        })
     }
 
     /// What the integrals of a cell read.

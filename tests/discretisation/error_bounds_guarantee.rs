@@ -1,0 +1,136 @@
+//! What bounds claim to be proven: data for which they once claimed too much, or gave no bound.
+
+use crate::support::checks::Checks;
+use unilateral::assemble::DataQuadrature;
+use unilateral::error_bound::Unproven;
+use unilateral::prelude::*;
+use unilateral::quadrature::VertexRule;
+
+/// The interval (0, 1) with Neumann data at both ends.
+fn free_interval() -> BoxDomain<1> {
+    BoxDomain::dirichlet(Point::zeros(), Point::repeat(1.0)).side(0, 0, BoundaryPart::Neumann).side(
+        0,
+        1,
+        BoundaryPart::Neumann,
+    )
+}
+
+/// On one cell P1 has the constant one as its solution, whose flux vanishes: the bound is oscillation alone. Twice the
+/// energy of a fine solution of the equation of the error bounds the square of the error from below.
+#[test]
+fn a_reaction_that_vanishes_at_a_vertex_gives_no_constant() {
+    let mut checks = Checks::default();
+    let [coarse, fine] =
+        [1, 20_000].map(|n| Mesh::<f64, 1>::kuhn_box(&free_interval(), [n]).unwrap());
+    for (factor, power) in [(1e6, 1), (1e12, 1), (1e6, 2), (1e9, 2), (1e12, 2)] {
+        let reaction = move |x: &Point<f64, 1>| factor * x[0].powi(power);
+        let rest = |x: &Point<f64, 1>| 6.0 * x[0] * x[0] - 6.0 * x[0] + 1.0;
+        let problem = Problem::new()
+            .source(move |x| reaction(x) + rest(x))
+            .reaction(reaction)
+            .polynomial_data(2);
+        let bound = solve(&problem, &coarse, &ConformingP1).unwrap().bound().unwrap();
+        let of_error = Problem::new().source(rest).reaction(reaction);
+        let error = solve(&of_error, &fine, &ConformingP1).unwrap();
+        let square = -2.0 * error.objective().unwrap();
+        let label = format!("{factor:e} x^{power}: {:e}, {:e}", bound.total, square.sqrt());
+        checks.that(bound.total.powi(2) >= square && bound.distance < 1e-9, || label);
+    }
+    checks.finish();
+}
+
+#[test]
+fn a_reaction_that_is_negative_between_points_gives_no_norm() {
+    for n in [1, 2] {
+        let mesh = Mesh::<f64, 1>::kuhn_box(&free_interval(), [n]).unwrap();
+        let problem = Problem::new()
+            .constant_source(1.0)
+            .reaction(|x: &Point<f64, 1>| x[0] - 0.02)
+            .polynomial_data(1);
+        let bound = solve(&problem, &mesh, &ConformingP1).unwrap().bound();
+        assert!(matches!(bound, Err(unilateral::error_bound::NoBound::NegativeReaction)));
+    }
+}
+
+/// The obstacles differ by a quadratic that is small in a cell: no value at its midpoint exceeds one and stays below
+/// the other by Bernstein coefficients.
+#[test]
+fn two_obstacles_of_degree_two_may_leave_no_room() {
+    let interval = BoxDomain::dirichlet(Point::zeros(), Point::repeat(1.0));
+    let width = |x: &Point<f64, 1>| 0.001313 + 15.967666 * (x[0] - 0.286928).powi(2);
+    let problem = Problem::new()
+        .constant_source(3.974717)
+        .obstacle_below(move |x| -width(x))
+        .obstacle_above(width)
+        .polynomial_data(2);
+    for name in ["p2", "sipg-p2"] {
+        let unproven = |n: usize| {
+            let mesh = Mesh::<f64, 1>::kuhn_box(&interval, [n]).unwrap();
+            let scheme: NamedScheme = name.parse().unwrap();
+            solve(&problem, &mesh, &*scheme.make()).unwrap().bound().unwrap().unproven
+        };
+        assert_eq!(unproven(2), [Unproven::Obstacle], "{name}");
+        assert_eq!(unproven(64), [], "{name}");
+    }
+}
+
+/// In a cell with two Dirichlet facets an obstacle of degree two that touches zero on both is exceeded inside.
+#[test]
+fn an_obstacle_of_degree_two_is_exceeded_in_a_corner() {
+    let square = BoxDomain::dirichlet(Point::zeros(), Point::repeat(1.0));
+    let mesh = Mesh::<f64, 2>::kuhn_box(&square, [3, 3]).unwrap();
+    let problem = Problem::new()
+        .constant_source(-0.10764068)
+        .obstacle_below(|x| -6.81321883 * (x[0] + 1.0 - x[1] - 0.290277879).powi(2))
+        .polynomial_data(2);
+    for name in ["p2", "sipg-p2", "wopsip-p2"] {
+        let scheme: NamedScheme = name.parse().unwrap();
+        let bound = solve(&problem, &mesh, &*scheme.make()).unwrap().bound().unwrap();
+        assert_eq!(bound.unproven, [Unproven::Obstacle], "{name}");
+    }
+}
+
+/// Where no facet is in contact, all forces are zero but for rounding.
+#[test]
+fn open_contact_facets_have_a_bound() {
+    let mut checks = Checks::default();
+    let square = BoxDomain::dirichlet(Point::zeros(), Point::repeat(1.0))
+        .side(1, 0, BoundaryPart::Contact)
+        .side(0, 1, BoundaryPart::Neumann);
+    for gap in [-5.0, -0.02] {
+        let problem = Problem::new().constant_source(1.0).signorini(move |_| gap);
+        for (n, name) in
+            [2, 4, 8].into_iter().flat_map(|n| ["p1", "cr", "sipg", "p2"].map(|s| (n, s)))
+        {
+            let mesh = Mesh::<f64, 2>::kuhn_box(&square, [n, n]).unwrap();
+            let scheme: NamedScheme = name.parse().unwrap();
+            let bound = solve(&problem, &mesh, &*scheme.make()).unwrap().bound();
+            checks.that(bound.is_ok(), || format!("{name}, {n}, {gap}: {bound:?}"));
+        }
+    }
+    checks.finish();
+}
+
+/// A rule on facets that does not integrate the stated data leaves the bound unproven.
+#[test]
+fn facet_rules_are_held_against_stated_degrees() {
+    let square = BoxDomain::dirichlet(Point::zeros(), Point::repeat(1.0))
+        .side(1, 0, BoundaryPart::Contact)
+        .side(0, 1, BoundaryPart::Neumann);
+    let mesh = Mesh::<f64, 2>::kuhn_box(&square, [4, 4]).unwrap();
+    let problem = Problem::new()
+        .constant_source(-1.0)
+        .neumann(|x, _| x[1] * x[1])
+        .signorini(|x| 0.1 * x[0] - 0.2)
+        .polynomial_data(2);
+    let unproven = |quadrature: DataQuadrature| {
+        let mut iteration = NestedIteration::new(&problem, &mesh).quadrature(quadrature);
+        iteration.solve(&ConformingP1).unwrap().bound().unwrap().unproven
+    };
+    assert!(!unproven(DataQuadrature::default()).contains(&Unproven::Quadrature));
+    for quadrature in
+        [DataQuadrature::default().facet(1), DataQuadrature::default().family(&VertexRule)]
+    {
+        assert!(unproven(quadrature).contains(&Unproven::Quadrature));
+    }
+}
