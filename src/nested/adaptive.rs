@@ -197,7 +197,9 @@ impl<'a, T: Real, const D: usize> AdaptiveIteration<'a, T, D> {
         if stop == Some(Stop::NoBound)
             && let Err(why) = solved.bound()
         {
-            solved.warnings.push(format!("no cells are marked without a bound on the error: {why}"));
+            solved
+                .warnings
+                .push(format!("no cells are marked without a bound on the error: {why}"));
         }
         self.next = stop.is_none().then_some(number + 1);
         Ok(AdaptiveStep {

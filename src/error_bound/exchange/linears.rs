@@ -1,10 +1,11 @@
 //! Exchange for linears: one flux of each facet, one multiplier of each cell.
 
-use super::{ROUNDING, Step, decrease, visit_steps};
+use super::{FacetOfCell, ROUNDING, Step, decrease, visit_steps};
 use crate::assemble::cut_simplices::in_space;
 use crate::assemble::space::{Place, Space};
 use crate::error_bound::PrimalDualPair;
 use crate::error_bound::contact::NodeForce;
+use crate::memory::in_large_pages;
 use crate::mesh::{BoundaryPart, Neighbours};
 use crate::quadrature::Rule;
 use crate::real::{Point, Real};
@@ -115,13 +116,14 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
     ) {
         let largest = multipliers.iter().fold(0.0, |largest: f64, m| largest.max(m.abs()));
         let presses = |cell: usize| multipliers[cell].abs() > ROUNDING * largest;
-        let (numbers, steps) = self.cells_of_exchange(presses, neighbours);
+        let (numbers, steps) = self.cells_of_exchange(presses, neighbours, false);
         let rule = Rule::new(D, DEGREE);
         let in_contact = |&cell: &usize| {
             let multiplier = if presses(cell) { multipliers[cell] } else { 0.0 };
             self.linear_in_contact(cell, function, multiplier, &rule)
         };
-        let mut cells: Vec<CellInContact<D>> = numbers.iter().map(in_contact).collect();
+        let mut cells = in_large_pages(Vec::<CellInContact<D>>::with_capacity(numbers.len()));
+        cells.extend(numbers.iter().map(in_contact));
         for cell in &mut cells {
             let fluxes = &flux[cell.number * (D + 1)..][..D + 1];
             for (flux, at_centre) in fluxes.iter().zip(&cell.at_centre) {
@@ -131,8 +133,11 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         }
         let square: f64 = cells.iter().map(CellInContact::square).sum();
         visit_steps(&steps, (cells.len(), square), SWEEPS, |step| match step {
-            Step::Between(at) => exchange_between(&mut cells, at, flux),
-            Step::WithDirichlet((k, local)) => exchange_with_dirichlet(&mut cells[k], local, flux),
+            Step::Between(at) => exchange_between(&mut cells, at.map(FacetOfCell::place), flux),
+            Step::WithDirichlet(facet) => {
+                let (k, local) = facet.place();
+                exchange_with_dirichlet(&mut cells[k], local, flux)
+            }
             Step::Inside(_) => 0.0,
         });
     }

@@ -21,6 +21,7 @@ mod linears;
 mod quadratics;
 
 use crate::assemble::space::{Place, Space};
+use crate::memory::in_large_pages;
 use crate::mesh::{BoundaryPart, Neighbour, Neighbours};
 use crate::real::Real;
 
@@ -31,23 +32,38 @@ const ROUNDING: f64 = 1e-10;
 /// other steps.
 const NEGLIGIBLE: f64 = 1e-3;
 
-/// A step of an exchange; cells by their numbers among those of the exchange.
+/// A facet of a cell of an exchange: the number of the cell among these, and that of the facet in it.
+#[derive(Clone, Copy)]
+struct FacetOfCell {
+    cell: u32,
+    local: u8,
+}
+
+impl FacetOfCell {
+    fn place(self) -> Place {
+        (self.cell as usize, self.local.into())
+    }
+}
+
+/// A step of an exchange. Steps are as many as facets: they are small.
 #[derive(Clone, Copy)]
 enum Step {
-    /// Between two cells, through the facet with these numbers in them.
-    Between([Place; 2]),
+    /// Between two cells, through their facet.
+    Between([FacetOfCell; 2]),
     /// Through a Dirichlet facet of a cell.
-    WithDirichlet(Place),
+    WithDirichlet(FacetOfCell),
     /// Inside a cell, after its facets.
-    Inside(usize),
+    Inside(u32),
 }
 
 impl Step {
     /// The cells of the step, twice the same one where it has one.
     fn cells(self) -> [usize; 2] {
         match self {
-            Self::Between([(here, _), (there, _)]) => [here, there],
-            Self::WithDirichlet((cell, _)) | Self::Inside(cell) => [cell; 2],
+            Self::Between(at) => at.map(|facet| facet.cell as usize),
+            Self::WithDirichlet(FacetOfCell { cell, .. }) | Self::Inside(cell) => {
+                [cell as usize; 2]
+            }
         }
     }
 }
@@ -82,11 +98,13 @@ fn decrease([slope, curvature]: [f64; 2], at: f64) -> f64 {
 }
 
 impl<T: Real, const D: usize> Space<'_, T, D> {
-    /// The cells of an exchange, those with a multiplier and their neighbours, and its steps, cell by cell.
+    /// The cells of an exchange, those with a multiplier and their neighbours, and its steps, cell by cell; with those
+    /// inside cells if asked for.
     fn cells_of_exchange(
         &self,
         presses: impl Fn(usize) -> bool,
         neighbours: &Neighbours,
+        has_inner_steps: bool,
     ) -> (Vec<usize>, Vec<Step>) {
         let n_cells = self.mesh.n_cells();
         let mut places = vec![u32::MAX; n_cells];
@@ -98,28 +116,34 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
                 }
             }
         }
-        let mut numbers: Vec<usize> = Vec::new();
+        let n_in_exchange = places.iter().filter(|place| **place == 0).count();
+        let mut numbers: Vec<usize> = Vec::with_capacity(n_in_exchange);
         for (cell, place) in places.iter_mut().enumerate().filter(|(_, place)| **place == 0) {
             *place = numbers.len() as u32;
             numbers.push(cell);
         }
-        let mut steps = Vec::new();
+        // about half a facet for each of a cell, and one step inside
+        let mut steps = in_large_pages(Vec::with_capacity(n_in_exchange * (D + 3) / 2));
         for (here, &cell) in numbers.iter().enumerate() {
+            let here = here as u32;
             for local in 0..=D {
+                let facet = FacetOfCell { cell: here, local: local as u8 };
                 match neighbours.across(cell, local) {
-                    Neighbour::Cell { cell: other, local: across } => {
-                        let (other, there) = (other as usize, places[other as usize] as usize);
-                        if other > cell && there < numbers.len() {
-                            steps.push(Step::Between([(here, local), (there, across.into())]));
+                    Neighbour::Cell { cell: other, local } => {
+                        let there = places[other as usize];
+                        if other as usize > cell && there != u32::MAX {
+                            steps.push(Step::Between([facet, FacetOfCell { cell: there, local }]));
                         }
                     }
                     Neighbour::Boundary(BoundaryPart::Dirichlet) => {
-                        steps.push(Step::WithDirichlet((here, local)));
+                        steps.push(Step::WithDirichlet(facet));
                     }
                     Neighbour::Boundary(_) => {}
                 }
             }
-            steps.push(Step::Inside(here));
+            if has_inner_steps {
+                steps.push(Step::Inside(here));
+            }
         }
         (numbers, steps)
     }

@@ -6,7 +6,7 @@
 //! added to `c_AA` and taken from `c_BB` changes the multiplier of the cell at the vertices `A` and `B` alone.
 
 use super::cells::{CellInContact, Cells};
-use super::{ROUNDING, Step, decrease, visit_steps};
+use super::{FacetOfCell, ROUNDING, Step, decrease, visit_steps};
 use crate::assemble::space::{Place, Space};
 use crate::error_bound::PrimalDualPair;
 use crate::error_bound::quadratics::{CellLoads, vertices_of};
@@ -121,24 +121,26 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         };
         let largest = (0..multipliers.len()).map(strength).fold(0.0, f64::max);
         let presses = |cell: usize| strength(cell) > ROUNDING * largest;
-        let (numbers, steps) = self.cells_of_exchange(presses, neighbours);
+        let (numbers, steps) = self.cells_of_exchange(presses, neighbours, true);
         let multiplier = |cell: usize| if presses(cell) { multipliers[cell] } else { [0.0; 4] };
         let mut cells = self.cells_with_products(&numbers, multiplier, function, flux);
         (0..numbers.len()).for_each(|k| cells.make_sign_definite(k));
         let square: f64 = (0..numbers.len()).map(|k| cells.square(k)).sum();
         visit_steps(&steps, (numbers.len(), square), SWEEPS, |step| match step {
-            Step::Between(at) => {
+            Step::Between(facets) => {
+                let at = facets.map(FacetOfCell::place);
                 let [cell, other] = at.map(|(k, _)| self.mesh.cell(numbers[k]));
                 let across = |v: u32| other.iter().position(|&w| w == v);
                 let common = vertices_of::<D>(at[0].1).filter_map(|j| Some([j, across(cell[j])?]));
                 common.map(|vertex| cells.exchange_between(at, vertex)).sum()
             }
-            Step::WithDirichlet(at) => {
+            Step::WithDirichlet(facet) => {
+                let at = facet.place();
                 vertices_of::<D>(at.1).map(|j| cells.exchange_with_dirichlet(at, j)).sum()
             }
             Step::Inside(k) => {
                 let pairs = (0..=D).flat_map(|a| (a + 1..=D).map(move |b| [a, b]));
-                pairs.map(|pair| cells.exchange_inside(k, pair)).sum()
+                pairs.map(|pair| cells.exchange_inside(k as usize, pair)).sum()
             }
         });
     }
