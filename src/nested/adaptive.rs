@@ -5,7 +5,9 @@ use std::time::Instant;
 
 use super::adaptive_meshes::AdaptiveMeshes;
 use super::adaptivity::{Adaptivity, Stop};
-use super::iteration::{NestedIteration, Phase, unknowns};
+use super::iteration::NestedIteration;
+use super::meshes::unknowns;
+use super::phase::Phase;
 use super::solved::Solved;
 use crate::error::Error;
 use crate::error_bound::{ErrorBound, Unproven};

@@ -6,26 +6,22 @@ use std::time::Instant;
 
 use super::adaptive_meshes::AdaptiveMeshes;
 use super::hierarchy::Hierarchy;
-use super::meshes::Meshes;
+use super::meshes::{Meshes, unknowns};
 use super::p1::{P1Iteration, P1Solution};
+use super::phase::Phase;
 use super::solved::Solved;
+use super::warnings::{active_sets, short_edges};
 use crate::algebra::{Contact, Inequality, Start};
 use crate::assemble::{DataQuadrature, Discretisation};
-use crate::constraint::CellMeans;
-use crate::element::Layout;
 use crate::error::Error;
 use crate::inequality::{
     ActiveSet, InequalitySolver, InitialGuess, Outcome, Solution, StepCounter, check_definite,
-    contact_of,
 };
 use crate::instances::compiled;
 use crate::mesh::Mesh;
 use crate::problem::Problem;
 use crate::real::Real;
 use crate::scheme::AnyScheme;
-
-/// More outer steps than a solve takes on any scene but with bounds at nodes of broken quadratics.
-const MANY_ACTIVE_SETS: usize = 28;
 
 /// One problem on nested meshes: the settings of its solves, and the conforming P1 solutions from which
 /// they start.
@@ -48,40 +44,9 @@ const MANY_ACTIVE_SETS: usize = 28;
 /// # }
 /// ```
 pub struct NestedIteration<'a, T: Real, const D: usize> {
-    p1: P1Iteration<'a, T, D>,
+    pub(super) p1: P1Iteration<'a, T, D>,
     has_cold_start: bool,
     observer: Box<dyn Fn(Phase) + 'a>,
-}
-
-/// A phase of a run.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[non_exhaustive]
-pub enum Phase {
-    /// The meshes are made.
-    Mesh,
-    /// Conforming P1 is solved on this and coarser meshes, from which the scheme starts.
-    Start,
-    /// Matrix, load and bounds are assembled.
-    Assembly,
-    /// The inequality is solved.
-    Solve,
-    /// The error of the solution is bounded, by which the next mesh is refined.
-    Bound,
-    /// Energy and errors of the solution are computed.
-    Measures,
-}
-
-impl fmt::Display for Phase {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            Self::Mesh => "mesh",
-            Self::Start => "start",
-            Self::Assembly => "assembly",
-            Self::Solve => "solve",
-            Self::Bound => "bound",
-            Self::Measures => "measures",
-        })
-    }
 }
 
 impl<T: Real, const D: usize> fmt::Debug for NestedIteration<'_, T, D> {
@@ -245,67 +210,15 @@ impl<'a, T: Real, const D: usize> NestedIteration<'a, T, D> {
         )(self, position, scheme)
     }
 
-    /// The result on a mesh, by its position, for values that another program found: certificate, errors and
-    /// totals. Its outcome is `converged` if the certificate is within its limits, else `not-a-solution`.
-    ///
-    /// # Errors
-    /// [`Error::Parameter`] if there is no such mesh, another number of values than of unknowns, or a value
-    /// that is not finite, and those of assembly.
-    pub fn judge_on(
-        &self,
-        position: usize,
-        scheme: &dyn AnyScheme<T, D>,
-        values: &[f64],
-    ) -> Result<Solved<'a, T, D>, Error> {
-        self.check_position(position)?;
-        compiled!(
-            T, D: for<'n, 'p, 's, 'v> fn(
-                &'n NestedIteration<'p, T, D>,
-                usize,
-                &'s dyn AnyScheme<T, D>,
-                &'v [f64],
-            ) -> Result<Solved<'p, T, D>, Error>
-                = |nested, position, scheme, values| nested.judge_values(position, scheme, values)
-        )(self, position, scheme, values)
-    }
-    fn judge_values(
-        &self,
-        position: usize,
-        scheme: &dyn AnyScheme<T, D>,
-        values: &[f64],
-    ) -> Result<Solved<'a, T, D>, Error> {
-        let mesh = self.p1.meshes.mesh(position);
-        let discretisation =
-            Discretisation::new(scheme, self.p1.problem, mesh, self.p1.quadrature)?;
-        let inequality = discretisation.inequality()?;
-        if values.len() != inequality.size() {
-            let allowed =
-                format!("{} has {} unknowns on this mesh", scheme.name(), inequality.size());
-            let value = values.len().to_string();
-            return Err(Error::Parameter { parameter: "number of values", value, allowed });
-        }
-        if let Some(k) = values.iter().position(|x| !T::lit(*x).to_f64().is_finite()) {
-            let value = format!("{} at position {k}, from zero", values[k]);
-            let allowed = format!("finite numbers in {}", T::NAME);
-            return Err(Error::Parameter { parameter: "values", value, allowed });
-        }
-        let values: Vec<T> = values.iter().map(|&x| T::lit(x)).collect();
-        let contact = contact_of(&inequality, &values);
-        let solution = Solution::new(values, contact, Outcome::Converged).linear_solver("none");
-        let hierarchy = self.hierarchy(position);
-        let solved = Solved::new(discretisation, inequality, solution, hierarchy, None);
-        Ok(solved.found_elsewhere())
-    }
-
     /// The hierarchy that has the mesh, and its position there.
-    fn hierarchy(&self, position: usize) -> Option<(&'a Hierarchy<T, D>, usize)> {
+    pub(super) fn hierarchy(&self, position: usize) -> Option<(&'a Hierarchy<T, D>, usize)> {
         match self.p1.meshes {
             Meshes::Flat(_) | Meshes::Adaptive(_) => None,
             Meshes::Nested(hierarchy) => Some((hierarchy, position)),
         }
     }
 
-    fn check_position(&self, position: usize) -> Result<(), Error> {
+    pub(super) fn check_position(&self, position: usize) -> Result<(), Error> {
         match self.p1.meshes.len() {
             n if position < n => Ok(()),
             n => Err(Error::Parameter {
@@ -314,6 +227,45 @@ impl<'a, T: Real, const D: usize> NestedIteration<'a, T, D> {
                 allowed: format!("there are {n} meshes, of which the coarsest has position 0"),
             }),
         }
+    }
+
+    /// A scheme on a mesh, and its inequality: [`NestedIteration::repeat`] times, with the smallest time.
+    fn assembled(
+        &self,
+        scheme: &dyn AnyScheme<T, D>,
+        mesh: &'a Mesh<T, D>,
+    ) -> Result<(Discretisation<'a, T, D>, Inequality<T>, f64), Error> {
+        let discretise = || Discretisation::new(scheme, self.p1.problem, mesh, self.p1.quadrature);
+        let clock = Instant::now();
+        let discretisation = discretise()?;
+        let inequality = discretisation.inequality()?;
+        let mut seconds = clock.elapsed().as_secs_f64();
+        for _ in 1..self.p1.repeat {
+            let clock = Instant::now();
+            drop(discretise()?.inequality()?);
+            seconds = seconds.min(clock.elapsed().as_secs_f64());
+        }
+        Ok((discretisation, inequality, seconds))
+    }
+
+    /// The initial guess from the start, whose contact the inequality takes.
+    fn guess(
+        &self,
+        start: Option<&P1Solution<T>>,
+        energy_tolerance: Option<f64>,
+        inequality: &mut Inequality<T>,
+    ) -> InitialGuess<T> {
+        let mut guess = InitialGuess::default().steps(self.p1.steps.clone());
+        guess.energy_tolerance = energy_tolerance;
+        if let Some(start) = start {
+            // a start without contact stays cold: the solver must detect a body that only contact holds
+            if start.contact.iter().any(|&c| c != Contact::Inactive) {
+                inequality.start = Start::Contact(start.contact_of(&inequality.supports));
+            }
+            guess.coarse_spaces = start.coarse_spaces.clone();
+            guess.values = start.values_of(&inequality.supports);
+        }
+        guess
     }
 
     /// The solution on a mesh, to a tolerance on the relative error in the energy norm if there is one.
@@ -327,51 +279,21 @@ impl<'a, T: Real, const D: usize> NestedIteration<'a, T, D> {
         let start = self.start(position, scheme)?;
         (self.observer)(Phase::Assembly);
         let mesh = self.p1.meshes.mesh(position);
-        let discretise = || Discretisation::new(scheme, self.p1.problem, mesh, self.p1.quadrature);
-        let clock = Instant::now();
-        let discretisation = discretise()?;
-        let mut inequality = discretisation.inequality()?;
-        let mut assemble_seconds = clock.elapsed().as_secs_f64();
-        for _ in 1..self.p1.repeat {
-            let clock = Instant::now();
-            drop(discretise()?.inequality()?);
-            assemble_seconds = assemble_seconds.min(clock.elapsed().as_secs_f64());
-        }
-        let mut guess = InitialGuess::default().steps(self.p1.steps.clone());
-        guess.energy_tolerance = energy_tolerance;
-        if let Some(start) = &start {
-            // a start without contact stays cold: the solver must detect a body that only contact holds
-            if start.contact.iter().any(|&c| c != Contact::Inactive) {
-                inequality.start = Start::Contact(start.contact_of(&inequality.supports));
-            }
-            guess.coarse_spaces = start.coarse_spaces.clone();
-            guess.values = start.values_of(&inequality.supports);
-        }
+        let (discretisation, mut inequality, assemble_seconds) = self.assembled(scheme, mesh)?;
+        let guess = self.guess(start.as_deref(), energy_tolerance, &mut inequality);
         let mut warnings = Vec::new();
         let penalty_below_bound = discretisation.penalty_below_bound();
         warnings.extend(penalty_below_bound.as_ref().map(ToString::to_string));
-        let limit =
-            discretisation.form().theory().rounding_limit(T::EPSILON, mesh.domain_diameter());
         let is_adaptive = matches!(self.p1.meshes, Meshes::Adaptive(_));
-        let shortest = mesh.shortest_edge();
-        // conditions of matrices on bisected meshes depend on the number of cells, but for a logarithm not on the
-        // smallest one: R. E. Bank, L. R. Scott, SIAM J. Numer. Anal. 26 (1989), 1383-1394
-        if shortest < limit && !is_adaptive {
-            warnings.push(format!(
-                "edges of length {shortest:.1e} are below {limit:.1e}, where rounding in {} may outweigh the discretisation error",
-                T::NAME
-            ));
+        if !is_adaptive {
+            let theory = discretisation.form().theory();
+            let limit = theory.rounding_limit(T::EPSILON, mesh.domain_diameter());
+            warnings.extend(short_edges(mesh, limit));
         }
         inequality.is_definite = penalty_below_bound.is_none() && discretisation.is_coercive();
         (self.observer)(Phase::Solve);
         let (solution, solve_seconds) = self.run(&mut inequality, &guess);
-        let returns = matches!(
-            solution.outcome,
-            Outcome::IterationLimit | Outcome::Cycling | Outcome::Stalled
-        );
-        if solution.outer > MANY_ACTIVE_SETS || returns {
-            warnings.extend(advice_on_bounds(self.p1.problem, scheme));
-        }
+        warnings.extend(active_sets(&solution, self.p1.problem, scheme));
         let hierarchy = self.hierarchy(position);
         let mut solved =
             Solved::new(discretisation, inequality, solution, hierarchy, energy_tolerance);
@@ -496,31 +418,4 @@ pub fn solve<'a, T: Real, const D: usize>(
     scheme: &dyn AnyScheme<T, D>,
 ) -> Result<Solved<'a, T, D>, Error> {
     NestedIteration::new(problem, meshes).solve(scheme)
-}
-
-/// What helps a scheme whose obstacle takes many active sets: bounds on cell means, where its element has
-/// them and nothing else is bound.
-fn advice_on_bounds<T: Real, const D: usize>(
-    problem: &Problem<D>,
-    scheme: &dyn AnyScheme<T, D>,
-) -> Option<String> {
-    let set = problem.constraint_set();
-    let present = scheme.constraint_on(set)?;
-    let means = scheme.constraint_on(&CellMeans)?;
-    (problem.has_obstacle() && !problem.has_gap() && present != means).then(|| {
-        format!("bounds at {present} take many active sets with quadratics: bounds on {means} take fewer")
-    })
-}
-
-/// Number of unknowns of a layout on a mesh.
-pub(super) fn unknowns<T: Real, const D: usize>(mesh: &Mesh<T, D>, layout: Layout) -> usize {
-    let facets = ((D + 1) * mesh.n_cells() + mesh.boundary().len()) / 2;
-    let (vertices, cells) = (mesh.vertices().len(), mesh.n_cells());
-    // in space Euler's formula for a ball, which estimates the number of edges of other domains
-    let edges = match D {
-        1 => cells,
-        2 => facets,
-        _ => (vertices + facets).saturating_sub(cells + 1),
-    };
-    layout.vertex * vertices + layout.edge * edges + layout.facet * facets + layout.cell * cells
 }

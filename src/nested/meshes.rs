@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use super::adaptive_meshes::AdaptiveMeshes;
 use super::hierarchy::Hierarchy;
+use crate::element::Layout;
 use crate::linear::Prolongation;
 use crate::mesh::Mesh;
 use crate::real::Real;
@@ -100,4 +101,17 @@ impl<'a, T: Real, const D: usize> Meshes<'a, T, D> {
             Self::Adaptive(meshes) => meshes.coarser_level(position),
         }
     }
+}
+
+/// Number of unknowns of a layout on a mesh.
+pub(super) fn unknowns<T: Real, const D: usize>(mesh: &Mesh<T, D>, layout: Layout) -> usize {
+    let facets = ((D + 1) * mesh.n_cells() + mesh.boundary().len()) / 2;
+    let (vertices, cells) = (mesh.vertices().len(), mesh.n_cells());
+    // in space Euler's formula for a ball, which estimates the number of edges of other domains
+    let edges = match D {
+        1 => cells,
+        2 => facets,
+        _ => (vertices + facets).saturating_sub(cells + 1),
+    };
+    layout.vertex * vertices + layout.edge * edges + layout.facet * facets + layout.cell * cells
 }

@@ -1,0 +1,64 @@
+//! Values that another program found, with certificate, errors and totals.
+
+use super::iteration::NestedIteration;
+use super::solved::Solved;
+use crate::assemble::Discretisation;
+use crate::error::Error;
+use crate::inequality::{Outcome, Solution, contact_of};
+use crate::instances::compiled;
+use crate::real::Real;
+use crate::scheme::AnyScheme;
+
+impl<'a, T: Real, const D: usize> NestedIteration<'a, T, D> {
+    /// The result on a mesh, by its position, for values that another program found: certificate, errors and
+    /// totals. Its outcome is `converged` if the certificate is within its limits, else `not-a-solution`.
+    ///
+    /// # Errors
+    /// [`Error::Parameter`] if there is no such mesh, another number of values than of unknowns, or a value
+    /// that is not finite, and those of assembly.
+    pub fn judge_on(
+        &self,
+        position: usize,
+        scheme: &dyn AnyScheme<T, D>,
+        values: &[f64],
+    ) -> Result<Solved<'a, T, D>, Error> {
+        self.check_position(position)?;
+        compiled!(
+            T, D: for<'n, 'p, 's, 'v> fn(
+                &'n NestedIteration<'p, T, D>,
+                usize,
+                &'s dyn AnyScheme<T, D>,
+                &'v [f64],
+            ) -> Result<Solved<'p, T, D>, Error>
+                = |nested, position, scheme, values| nested.judge_values(position, scheme, values)
+        )(self, position, scheme, values)
+    }
+    fn judge_values(
+        &self,
+        position: usize,
+        scheme: &dyn AnyScheme<T, D>,
+        values: &[f64],
+    ) -> Result<Solved<'a, T, D>, Error> {
+        let mesh = self.p1.meshes.mesh(position);
+        let discretisation =
+            Discretisation::new(scheme, self.p1.problem, mesh, self.p1.quadrature)?;
+        let inequality = discretisation.inequality()?;
+        if values.len() != inequality.size() {
+            let allowed =
+                format!("{} has {} unknowns on this mesh", scheme.name(), inequality.size());
+            let value = values.len().to_string();
+            return Err(Error::Parameter { parameter: "number of values", value, allowed });
+        }
+        if let Some(k) = values.iter().position(|x| !T::lit(*x).to_f64().is_finite()) {
+            let value = format!("{} at position {k}, from zero", values[k]);
+            let allowed = format!("finite numbers in {}", T::NAME);
+            return Err(Error::Parameter { parameter: "values", value, allowed });
+        }
+        let values: Vec<T> = values.iter().map(|&x| T::lit(x)).collect();
+        let contact = contact_of(&inequality, &values);
+        let solution = Solution::new(values, contact, Outcome::Converged).linear_solver("none");
+        let hierarchy = self.hierarchy(position);
+        let solved = Solved::new(discretisation, inequality, solution, hierarchy, None);
+        Ok(solved.found_elsewhere())
+    }
+}

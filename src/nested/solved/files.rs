@@ -1,0 +1,136 @@
+//! Files of a result for ParaView.
+
+use std::path::Path;
+
+use super::Solved;
+use crate::error::{Error, write_error};
+use crate::instances::compiled;
+use crate::paraview::VtuFile;
+use crate::problem::DataOnMesh;
+use crate::real::{Point, Real};
+
+/// Adds to a file of fields.
+type Complete<'c, const D: usize> = &'c dyn for<'f> Fn(VtuFile<'f, D>) -> VtuFile<'f, D>;
+
+impl<T: Real, const D: usize> Solved<'_, T, D> {
+    /// The value of this solution at a point of a cell of a coarser mesh of the same hierarchy, which is at
+    /// this position; the cell of this mesh is found through the cells between.
+    fn value_within(&self, position: usize, cell: usize, x: &Point<f64, D>) -> f64 {
+        let Some((hierarchy, own)) = self.hierarchy else { return f64::NAN };
+        let child = |parent: usize, position: usize| {
+            let least = |child: usize| {
+                let lambda = hierarchy.mesh(position).barycentric(child, x);
+                lambda[..=D].iter().copied().fold(f64::INFINITY, f64::min)
+            };
+            let children = parent << D..(parent + 1) << D;
+            children.max_by(|&a, &b| least(a).total_cmp(&least(b))).unwrap_or(parent)
+        };
+        let cell = (position + 1..=own).fold(cell, child);
+        self.discretisation.value_in(self.values(), cell, x)
+    }
+    /// Writes a `.vtu` file, and its folder if there is none, with 32-bit numbers: see
+    /// [`Self::write_vtu_with`].
+    ///
+    /// # Errors
+    /// [`Error::Write`], also without an iterate.
+    pub fn write_vtu(&self, path: impl AsRef<Path>) -> Result<(), Error> {
+        self.write_vtu_with(path, |file| file)
+    }
+    /// Writes a `.vtu` file to which `complete` adds fields or sets the scalar, and its folder if there is
+    /// none.
+    ///
+    /// The solution `u` is written in its degree; above two it is interpolated in degree two. Point data:
+    /// `obstacle` (the lower one, or the upper one where there is no lower one), `upper_obstacle` where
+    /// there are both, `error`, which is `u` less the exact solution where that is known (for rows of a study
+    /// with a reference: less the reference). Cell data of
+    /// obstacle problems: `multiplier` and `contact` of [`Fields`]; of all for which there is one, `bound`, the share of
+    /// the cell in the square of the error bound ([`ErrorBound::cells`]). Signorini problems have the facets of
+    /// the contact boundary as further cells with `pressure` and `gap` of [`Fields`] and `contact`, which is
+    /// one on facets in contact as a whole; the integral of `pressure` over the cells of `dimension`
+    /// `D - 1` is the total contact force.
+    ///
+    /// # Errors
+    /// [`Error::Write`], also without an iterate.
+    pub fn write_vtu_with(
+        &self,
+        path: impl AsRef<Path>,
+        complete: impl for<'f> Fn(VtuFile<'f, D>) -> VtuFile<'f, D>,
+    ) -> Result<(), Error> {
+        self.write_vtu_against(path.as_ref(), None, complete)
+    }
+    /// As [`Self::write_vtu_with`]; where there is a solution on a finer mesh of the same hierarchy, `error` is
+    /// the difference from that.
+    pub(crate) fn write_vtu_against(
+        &self,
+        path: &Path,
+        reference: Option<&Solved<'_, T, D>>,
+        complete: impl for<'f> Fn(VtuFile<'f, D>) -> VtuFile<'f, D>,
+    ) -> Result<(), Error> {
+        compiled!(
+            T, D: for<'s, 'x, 'p, 'r, 'y, 'c> fn(
+                &'s Solved<'x, T, D>,
+                &'p Path,
+                Option<&'r Solved<'y, T, D>>,
+                Complete<'c, D>,
+            ) -> Result<(), Error>
+                = |solved, path, reference, complete| {
+                    solved.write_fields(path, reference, complete)
+                }
+        )(self, path, reference, &complete)
+    }
+    fn write_fields(
+        &self,
+        path: &Path,
+        reference: Option<&Solved<'_, T, D>>,
+        complete: Complete<'_, D>,
+    ) -> Result<(), Error> {
+        let Some(fields) = self.fields() else {
+            return Err(write_error(path, format!("no solution: {}", self.outcome())));
+        };
+        let problem = self.discretisation.problem();
+        let u = fields.values_by_cell(D);
+        // facets in contact are listed in the order of the contact boundary
+        let mut touching = fields.discrete_contact.facets.iter().peekable();
+        let state = |place| if touching.next_if_eq(&place).is_some() { 1.0 } else { 0.0 };
+        let in_contact: Vec<f64> = fields.contact_boundary.iter().map(state).collect();
+        let (mesh, data) = (self.mesh(), DataOnMesh::new(problem, self.mesh())?);
+        let regions: Vec<f64> = match mesh.regions().len() {
+            1 => Vec::new(),
+            _ => (0..mesh.n_cells()).map(|cell| mesh.region(cell) as f64).collect(),
+        };
+        let shares = self.bound().map_or_else(|_| Vec::new(), |bound| bound.cells);
+        let mut file = VtuFile::new(mesh, &u);
+        let bounds = [&data.lower, &data.upper].into_iter().filter(|bound| bound.is_given());
+        for (name, bound) in ["obstacle", "upper_obstacle"].into_iter().zip(bounds) {
+            file = file.function_in_cells(name, |cell, x| {
+                bound.of(mesh.region(cell)).map_or(f64::NAN, |bound| bound.at(x))
+            });
+        }
+        if !regions.is_empty() {
+            file = file.on_cells("region", &regions);
+        }
+        if !shares.is_empty() {
+            file = file.on_cells("bound", &shares);
+        }
+        match (reference.filter(|r| r.has_iterate).zip(self.hierarchy), &problem.exact) {
+            (Some((reference, (_, own))), _) => {
+                file =
+                    file.error_from_in_cells(move |cell, x| reference.value_within(own, cell, x));
+            }
+            (None, Some(exact)) => file = file.error_from(&*exact.value),
+            (None, None) => {}
+        }
+        if problem.has_obstacle() {
+            file = file.on_cells("multiplier", &fields.multiplier);
+            file = file.on_cells("contact", &fields.contact);
+        }
+        if problem.has_gap() {
+            file = file.facets(&fields.contact_boundary).on_facets("pressure", &fields.pressure);
+            file = file.on_facets("gap", &fields.gap);
+        }
+        if problem.has_gap() && !problem.has_obstacle() {
+            file = file.on_facets("contact", &in_contact);
+        }
+        complete(file).write(path)
+    }
+}

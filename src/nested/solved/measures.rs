@@ -1,0 +1,149 @@
+//! Errors of a result, its distances from other results, and the bound on its error.
+
+use std::time::Instant;
+
+use super::Solved;
+use crate::error::Error;
+use crate::error_bound::{BoundFigures, ErrorBound, NoBound, PrimalDualPair};
+use crate::measure::{ContactErrors, Errors, contact_difference};
+use crate::problem::Exact;
+use crate::real::{Point, Real};
+
+/// A true error that is smaller than this share of the energy norm of the solution is rounding, and its ratio to a bound
+/// says nothing.
+const ERROR_ROUNDING: f64 = 1e-8;
+
+impl<T: Real, const D: usize> Solved<'_, T, D> {
+    /// The value at a point, in the first cell that contains the point; none outside the mesh. The
+    /// search takes a time proportional to the number of cells.
+    pub fn value_at(&self, point: &Point<f64, D>) -> Option<f64> {
+        self.discretisation.value_at(self.values(), point)
+    }
+    /// Errors against the exact solution of the problem; none if the problem has no exact solution
+    /// or there is no iterate.
+    ///
+    /// # Errors
+    /// [`Error::DataNotFinite`].
+    pub fn errors(&self) -> Result<Errors, Error> {
+        match self.has_iterate {
+            true => self.discretisation.errors(self.values()),
+            false => Ok(Errors::default()),
+        }
+    }
+    /// Errors against a function with its gradient; none without an iterate.
+    ///
+    /// # Errors
+    /// [`Error::DataNotFinite`].
+    pub fn errors_against(&self, exact: &Exact<D>) -> Result<Errors, Error> {
+        match self.has_iterate {
+            true => self.discretisation.errors_against(exact, self.values()),
+            false => Ok(Errors::default()),
+        }
+    }
+    /// Norms of the difference from another solution on the same mesh or on another mesh of the same
+    /// hierarchy, computed on the finer mesh: L2 norm, broken H1 seminorm and the maximum over the
+    /// nodes of the finer space. None without two iterates.
+    ///
+    /// On a mesh whose refinement moves vertices, as on a disc, a coarse function is continued beyond its
+    /// cells as the polynomial that it is.
+    ///
+    /// # Errors
+    /// [`Error::NotNested`] if the two meshes do not belong to one hierarchy.
+    pub fn difference(&self, other: &Self) -> Result<Errors, Error> {
+        let refinements = match (self.hierarchy, other.hierarchy) {
+            _ if std::ptr::eq(self.mesh(), other.mesh()) => 0,
+            (Some((one, a)), Some((two, b))) if std::ptr::eq(one, two) => a as isize - b as isize,
+            _ => return Err(Error::NotNested),
+        };
+        let (fine, coarse) = if refinements < 0 { (other, self) } else { (self, other) };
+        if !(fine.has_iterate && coarse.has_iterate) {
+            return Ok(Errors::default());
+        }
+        let coarse = (&coarse.discretisation, coarse.values(), refinements.unsigned_abs());
+        fine.discretisation.difference(fine.values(), coarse)
+    }
+    /// Distances of multiplier and contact set from those of a solution on a finer mesh of the same
+    /// hierarchy, or on the same mesh; the distance of free boundaries is not computed. None without two
+    /// iterates.
+    ///
+    /// # Errors
+    /// [`Error::NotNested`] if the mesh of `reference` is not a refinement of this one.
+    pub fn contact_difference(&self, reference: &Self) -> Result<ContactErrors, Error> {
+        let refinements: Vec<_> = match (self.hierarchy, reference.hierarchy) {
+            _ if std::ptr::eq(self.mesh(), reference.mesh()) => Vec::new(),
+            (Some((one, a)), Some((two, b))) if std::ptr::eq(one, two) && a <= b => {
+                (a + 1..=b).filter_map(|k| one.refinement(k)).map(|(by, _)| by).collect()
+            }
+            _ => return Err(Error::NotNested),
+        };
+        if !(self.has_iterate && reference.has_iterate) {
+            return Ok(ContactErrors::default());
+        }
+        let own = (&self.discretisation, &self.inequality, &self.solution);
+        let fine = (&reference.discretisation, &reference.inequality, &reference.solution);
+        Ok(contact_difference(own, fine, &refinements))
+    }
+    /// Distances of multiplier and contact set from the exact ones; none without an iterate.
+    ///
+    /// # Errors
+    /// [`Error::DataNotFinite`].
+    pub fn contact_errors(&self) -> Result<ContactErrors, Error> {
+        match self.has_iterate {
+            true => self.discretisation.contact_errors(&self.inequality, &self.solution),
+            false => Ok(ContactErrors::default()),
+        }
+    }
+    /// An admissible function and an equilibrated flux: see [`Discretisation::primal_dual_pair`].
+    ///
+    /// # Errors
+    /// [`NoBound`].
+    pub fn primal_dual_pair(&self) -> Result<PrimalDualPair, NoBound> {
+        match self.has_iterate {
+            true => self.discretisation.primal_dual_pair(&self.inequality, &self.solution),
+            false => Err(NoBound::NoIterate),
+        }
+    }
+    /// A bound on the error from solution and data alone: see [`crate::error_bound`]. It is computed once.
+    ///
+    /// # Errors
+    /// [`NoBound`].
+    pub fn bound(&self) -> Result<ErrorBound, NoBound> {
+        self.pair_and_bound().map(|(_, bound, _)| bound.clone())
+    }
+    pub(super) fn pair_and_bound(&self) -> Result<&(PrimalDualPair, ErrorBound, f64), NoBound> {
+        if let Some(known) = self.bound.get() {
+            return Ok(known);
+        }
+        let clock = Instant::now();
+        let pair = self.primal_dual_pair()?;
+        let coarser = self.adaptive.map_or_else(Vec::new, |(meshes, k)| meshes.coarser_cells(k));
+        let bound = self.discretisation.error_bound_on_levels(&pair, self.values(), &coarser)?;
+        Ok(self.bound.get_or_init(|| (pair, bound, clock.elapsed().as_secs_f64())))
+    }
+    /// Seconds of the bound; none if it is not known, or not yet.
+    pub(crate) fn bound_seconds(&self) -> Option<f64> {
+        self.bound.get().map(|(_, _, seconds)| *seconds)
+    }
+    /// The figures of the bound, with its effectivity if asked for and the exact solution is known.
+    pub(crate) fn bound_figures(&self, with_effectivity: bool) -> BoundFigures {
+        let pair = self.pair_and_bound().ok().filter(|_| with_effectivity);
+        self.figures(pair.and_then(|(pair, ..)| self.discretisation.error_of_pair(pair)))
+    }
+    /// The errors against the exact solution, and the figures of the bound with its effectivity.
+    ///
+    /// # Errors
+    /// [`Error::DataNotFinite`].
+    pub(crate) fn errors_and_bound_figures(&self) -> Result<(Errors, BoundFigures), Error> {
+        let pair = self.pair_and_bound().ok().map(|(pair, ..)| pair);
+        let (errors, error) = match self.has_iterate {
+            true => self.discretisation.errors_and_error_of_pair(Some(self.values()), pair)?,
+            false => (Errors::default(), None),
+        };
+        Ok((errors, self.figures(error)))
+    }
+    /// The figures of the bound; an error of its function below `ERROR_ROUNDING` is left out.
+    fn figures(&self, error: Option<f64>) -> BoundFigures {
+        let error = error.filter(|error| *error > ERROR_ROUNDING * self.energy_norm());
+        BoundFigures::new(self.pair_and_bound().map(|(_, bound, _)| bound), error)
+    }
+}

@@ -1,0 +1,259 @@
+//! The result of a solve.
+
+#[cfg(feature = "report")]
+mod files;
+mod measures;
+
+use std::fmt;
+use std::sync::OnceLock;
+
+use super::adaptive_meshes::AdaptiveMeshes;
+use super::hierarchy::Hierarchy;
+use crate::algebra::{Contact, Inequality, Start};
+use crate::assemble::Discretisation;
+use crate::error::Error;
+use crate::error_bound::{ErrorBound, PrimalDualPair};
+use crate::inequality::{
+    Certificate, Outcome, Solution, certify_with_jump_multipliers, count_active, energy_norm,
+};
+use crate::measure::Fields;
+use crate::mesh::Mesh;
+use crate::real::Real;
+
+/// The largest certificate of a solution to a tolerance, divided by the tolerance: both are relative to the
+/// energy norm.
+const CERTIFICATE_TO_TOLERANCE: f64 = 10.0;
+
+/// A discrete solution with the space, the algebraic inequality and the mesh to which it belongs.
+///
+/// Some outcomes have no iterate ([`Solved::has_iterate`]): then there are no errors, energies and
+/// fields, and the certificate is [`Certificate::INVALID`].
+pub struct Solved<'a, T: Real, const D: usize> {
+    discretisation: Discretisation<'a, T, D>,
+    inequality: Inequality<T>,
+    solution: Solution<T>,
+    certificate: Certificate,
+    has_iterate: bool,
+    /// The hierarchy that has the mesh, and its position there.
+    hierarchy: Option<(&'a Hierarchy<T, D>, usize)>,
+    /// The adaptive meshes that have the mesh, and its position there.
+    pub(super) adaptive: Option<(&'a AdaptiveMeshes<T, D>, usize)>,
+    /// The bound with the pair that gives it and the seconds of both, once computed.
+    bound: OnceLock<(PrimalDualPair, ErrorBound, f64)>,
+    /// Seconds for the mesh and all coarser ones, if it is one of several.
+    pub(crate) mesh_seconds: f64,
+    /// Seconds of assembly.
+    pub(crate) assemble_seconds: f64,
+    /// Seconds of the solve on this mesh.
+    pub(crate) solve_seconds: f64,
+    /// Seconds of the start: the P1 solutions on this and all coarser meshes.
+    pub(crate) start_seconds: f64,
+    pub(crate) coarser_levels: usize,
+    pub(crate) start_cycles: usize,
+    pub(crate) warnings: Vec<String>,
+}
+
+impl<T: Real, const D: usize> fmt::Debug for Solved<'_, T, D> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Solved")
+            .field("unknowns", &self.values().len())
+            .field("outcome", &self.outcome())
+            .field("certificate", &self.certificate)
+            .finish_non_exhaustive()
+    }
+}
+
+impl<'a, T: Real, const D: usize> Solved<'a, T, D> {
+    /// A solution with its certificate. One to a tolerance on the relative error in the energy norm is within
+    /// the limits that follow from the tolerance.
+    pub(super) fn new(
+        discretisation: Discretisation<'a, T, D>,
+        inequality: Inequality<T>,
+        mut solution: Solution<T>,
+        hierarchy: Option<(&'a Hierarchy<T, D>, usize)>,
+        energy_tolerance: Option<f64>,
+    ) -> Self {
+        let u = &solution.values;
+        let is_of_failure = matches!(
+            solution.outcome,
+            Outcome::NotCoercive
+                | Outcome::Singular
+                | Outcome::NotFinite
+                | Outcome::OutOfMemory
+                | Outcome::NoSolution
+                | Outcome::OutOfRange
+                | Outcome::Malformed
+        );
+        let has_iterate = !is_of_failure && u.iter().all(|v| v.to_f64().is_finite());
+        let certificate = match has_iterate {
+            true => certify_with_jump_multipliers(&inequality, u, &solution.jump_multipliers)
+                .with_algebraic_bound(solution.algebraic_bound),
+            false => Certificate::INVALID,
+        };
+        let is_within_tolerance = energy_tolerance
+            .is_some_and(|tolerance| certificate.largest() <= CERTIFICATE_TO_TOLERANCE * tolerance);
+        let is_within_limits = is_within_tolerance || certificate.is_within_limits::<T>();
+        if solution.outcome == Outcome::Converged && !is_within_limits {
+            // whatever a solver says of itself
+            solution.outcome = Outcome::Stalled;
+        }
+        Self {
+            mesh_seconds: hierarchy.map_or(0.0, |(h, position)| h.seconds(position)),
+            discretisation,
+            inequality,
+            solution,
+            certificate,
+            has_iterate,
+            hierarchy,
+            adaptive: None,
+            bound: OnceLock::new(),
+            assemble_seconds: 0.0,
+            solve_seconds: 0.0,
+            start_seconds: 0.0,
+            coarser_levels: 0,
+            start_cycles: 0,
+            warnings: Vec::new(),
+        }
+    }
+
+    /// The solution of another run of a solver that starts from this one, to a tolerance or to the ordinary
+    /// limits. Iterations and seconds are those of all runs.
+    pub(super) fn continued(
+        mut self,
+        energy_tolerance: Option<f64>,
+        run: impl FnOnce(&mut Inequality<T>) -> (Solution<T>, f64),
+    ) -> Self {
+        self.inequality.start = Start::Contact(self.solution.contact.clone());
+        let (mut solution, seconds) = run(&mut self.inequality);
+        solution.outer += self.solution.outer;
+        solution.linear += self.solution.linear;
+        solution.stages.splice(0..0, self.solution.stages);
+        let continued = Self::new(
+            self.discretisation,
+            self.inequality,
+            solution,
+            self.hierarchy,
+            energy_tolerance,
+        );
+        Self {
+            adaptive: self.adaptive,
+            mesh_seconds: self.mesh_seconds,
+            assemble_seconds: self.assemble_seconds,
+            solve_seconds: self.solve_seconds + seconds,
+            start_seconds: self.start_seconds,
+            coarser_levels: self.coarser_levels,
+            start_cycles: self.start_cycles,
+            warnings: self.warnings,
+            ..continued
+        }
+    }
+
+    /// Whether the solution converged to a tolerance and not to the ordinary limits.
+    pub(super) fn is_inexact(&self) -> bool {
+        self.converged() && !self.certificate.is_within_limits::<T>()
+    }
+    /// The energy norm to which tolerances and certificates are relative.
+    pub(super) fn energy_norm(&self) -> f64 {
+        energy_norm(&self.inequality, self.values(), &self.solution.jump_multipliers)
+    }
+    /// How the solve ended.
+    pub fn outcome(&self) -> Outcome {
+        self.solution.outcome
+    }
+    /// Whether the solve converged.
+    pub fn converged(&self) -> bool {
+        self.outcome() == Outcome::Converged
+    }
+    /// Whether there are values to evaluate; a solve without factors, for instance, has none.
+    pub fn has_iterate(&self) -> bool {
+        self.has_iterate
+    }
+    /// The unknowns.
+    pub fn values(&self) -> &[T] {
+        &self.solution.values
+    }
+    /// Which bound, if any, is active at each unknown.
+    pub fn contact(&self) -> &[Contact] {
+        &self.solution.contact
+    }
+    /// The multiplier of each unknown: its entry of `A u - b` where a bound is active, positive at
+    /// lower and negative at upper bounds; zero elsewhere. Its density is in [`Solved::fields`].
+    pub fn multiplier(&self) -> Vec<f64> {
+        let Inequality { matrix, load, .. } = &self.inequality;
+        let at = |(i, &state): (usize, &Contact)| match state {
+            Contact::Inactive => 0.0,
+            _ => matrix.row_dot_f64(i, self.values()) - load[i].to_f64(),
+        };
+        self.contact().iter().enumerate().map(at).collect()
+    }
+    /// Number of outer iterations on this mesh, by [`Solution::outer`]; none without an iterate.
+    pub fn outer(&self) -> Option<usize> {
+        self.has_iterate.then_some(self.solution.outer)
+    }
+    /// Number of constrained unknowns in contact; none without an iterate.
+    pub fn active(&self) -> Option<usize> {
+        self.has_iterate.then(|| count_active(&self.inequality, self.contact()))
+    }
+    /// The objective `a(u,u)/2 - l(u)` with all terms of the scheme; none for schemes that are not
+    /// symmetric and without an iterate.
+    pub fn objective(&self) -> Option<f64> {
+        let is_minimum = self.inequality.symmetric && self.has_iterate;
+        is_minimum.then(|| self.inequality.objective(self.values()))
+    }
+    /// The energy of the solution, by one formula for every scheme: see [`Discretisation::energy`]. None
+    /// without an iterate.
+    ///
+    /// # Errors
+    /// [`Error::DataNotFinite`].
+    pub fn energy(&self) -> Result<Option<f64>, Error> {
+        let energy = || self.discretisation.energy(self.values());
+        self.has_iterate.then(energy).transpose()
+    }
+    /// The measure of the discrete contact set, see [`Discretisation::contact_measure`]; none for a problem
+    /// without inequality and for an outcome without iterate.
+    pub fn contact_measure(&self) -> Option<f64> {
+        let measure = || self.discretisation.contact_measure(&self.inequality, &self.solution);
+        self.has_iterate.then(measure).flatten()
+    }
+    /// The total contact force, positive where a lower bound pushes upward: see
+    /// [`Discretisation::resultant`]; none for a problem without inequality and for an outcome without iterate.
+    pub fn resultant(&self) -> Option<f64> {
+        let resultant = || self.discretisation.resultant(&self.inequality, &self.solution);
+        self.has_iterate.then(resultant).flatten()
+    }
+    /// The certificate: violations of the complementarity conditions.
+    pub fn certificate(&self) -> Certificate {
+        self.certificate
+    }
+    /// What the solver returned: values, contact states, numbers of iterations.
+    pub fn solution(&self) -> &Solution<T> {
+        &self.solution
+    }
+    /// The algebraic inequality.
+    pub fn inequality(&self) -> &Inequality<T> {
+        &self.inequality
+    }
+    /// The discretisation: scheme, problem and mesh joined.
+    pub fn discretisation(&self) -> &Discretisation<'a, T, D> {
+        &self.discretisation
+    }
+    /// The mesh.
+    pub fn mesh(&self) -> &'a Mesh<T, D> {
+        self.discretisation.mesh()
+    }
+    /// Warnings by type, as text: a penalty below its proven bound, say.
+    pub fn warnings(&self) -> &[String] {
+        &self.warnings
+    }
+    /// The solution with the outcome of values that no solver of the library found.
+    pub(super) fn found_elsewhere(mut self) -> Self {
+        if self.solution.outcome == Outcome::Stalled {
+            self.solution.outcome = Outcome::NotASolution;
+        }
+        self
+    }
+    /// Solution, obstacle, multiplier and contact set on cells; none without an iterate.
+    pub fn fields(&self) -> Option<Fields> {
+        self.has_iterate.then(|| self.discretisation.fields(&self.inequality, &self.solution))
+    }
+}

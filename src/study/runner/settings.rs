@@ -1,0 +1,199 @@
+//! The settings of a study.
+
+#[cfg(feature = "report")]
+use std::path::PathBuf;
+use std::sync::Arc;
+
+use super::{Entry, Progress, Study};
+use crate::assemble::DataQuadrature;
+use crate::constraint::ConstraintSet;
+use crate::error::Error;
+use crate::inequality::{InequalitySolver, StepCounter};
+use crate::mesh::Mesh;
+use crate::nested::Solved;
+#[cfg(feature = "report")]
+use crate::paraview::FieldScalar;
+use crate::real::Real;
+use crate::scheme::{AnyScheme, NamedScheme};
+#[cfg(feature = "report")]
+use crate::study::journal::Journal;
+use crate::study::reference::Reference;
+
+impl<'a, T: Real, const D: usize> Study<'a, T, D> {
+    /// Measures all rows against the solution of this scheme on a level, in place of the exact one: errors,
+    /// orders, multiplier and contact set. On a domain the level is a power of two times every other level
+    /// and at least four times the finest; on a mesh it is at least two refinements finer.
+    ///
+    /// ```
+    /// use unilateral::prelude::*;
+    /// # fn main() -> Result<(), Error> {
+    /// let report = Study::<f64, 2>::new(scenes::radial(1.0))
+    ///     .scheme(ConformingP1)
+    ///     .levels([8, 16])
+    ///     .reference(ConformingP2, 64)
+    ///     .run()?;
+    /// assert_eq!(report.rows[1].against.as_deref(), Some("p2 at level 64"));
+    /// assert!(report.rows[1].order.h1 > Some(0.9));
+    /// # Ok(())
+    /// # }
+    /// ```
+    #[must_use]
+    pub fn reference(mut self, scheme: impl AnyScheme<T, D> + 'a, level: usize) -> Self {
+        self.reference = Some(Reference { scheme: Arc::new(scheme), set: None, level });
+        self
+    }
+    /// As [`Study::reference`], with a scheme as users write it.
+    #[must_use]
+    pub fn named_reference(self, scheme: &NamedScheme, level: usize) -> Self {
+        self.shared_reference(scheme.make().into(), scheme.constraint_set(), level)
+    }
+    /// As [`Study::reference`], with a scheme that other studies have too.
+    pub(crate) fn shared_reference(
+        mut self,
+        scheme: Arc<dyn AnyScheme<T, D> + 'a>,
+        set: Option<Arc<dyn ConstraintSet>>,
+        level: usize,
+    ) -> Self {
+        self.reference = Some(Reference { scheme, set, level });
+        self
+    }
+    /// Adds a scheme, with the constraint set of the problem.
+    #[must_use]
+    pub fn scheme(self, scheme: impl AnyScheme<T, D> + 'a) -> Self {
+        self.shared_scheme(Arc::new(scheme), None)
+    }
+    /// Adds a scheme with a constraint set of its own, so that one scheme may stand beside itself with
+    /// other bounds.
+    #[must_use]
+    pub fn scheme_on(
+        self,
+        scheme: impl AnyScheme<T, D> + 'a,
+        set: impl ConstraintSet + 'static,
+    ) -> Self {
+        self.shared_scheme(Arc::new(scheme), Some(Arc::new(set)))
+    }
+    /// Adds a scheme chosen at run time, with the constraint set of the problem.
+    #[must_use]
+    pub fn boxed_scheme(self, scheme: Box<dyn AnyScheme<T, D> + 'a>) -> Self {
+        self.shared_scheme(scheme.into(), None)
+    }
+    /// Adds a scheme chosen at run time, with a constraint set of its own.
+    #[must_use]
+    pub fn boxed_scheme_on(
+        self,
+        scheme: Box<dyn AnyScheme<T, D> + 'a>,
+        set: impl ConstraintSet + 'static,
+    ) -> Self {
+        self.shared_scheme(scheme.into(), Some(Arc::new(set)))
+    }
+    /// Adds a scheme as users write it; without a placement it has the constraint set of the problem.
+    #[must_use]
+    pub fn named_scheme(self, scheme: &NamedScheme) -> Self {
+        self.shared_scheme(scheme.make().into(), scheme.constraint_set())
+    }
+    /// Adds a scheme that other studies have too.
+    pub(crate) fn shared_scheme(
+        mut self,
+        scheme: Arc<dyn AnyScheme<T, D> + 'a>,
+        set: Option<Arc<dyn ConstraintSet>>,
+    ) -> Self {
+        self.entries.push(Entry { scheme, set });
+        self
+    }
+    /// Sets the levels: subdivisions of the shortest side, or refinements of a given mesh.
+    #[must_use]
+    pub fn levels(mut self, levels: impl IntoIterator<Item = usize>) -> Self {
+        self.levels = levels.into_iter().collect();
+        self
+    }
+    /// Runs on this mesh and refinements of it instead of the scene's own domain.
+    #[must_use]
+    pub fn on_mesh(mut self, mesh: Mesh<T, D>) -> Self {
+        self.mesh = Some(mesh);
+        self
+    }
+    /// Adds a solver of the inequality; without one, the active set method runs. Several solvers stand
+    /// side by side: every scheme runs with each of them, also on coarser levels for its start.
+    #[must_use]
+    pub fn solver(self, solver: impl InequalitySolver<T> + 'a) -> Self {
+        self.boxed_solver(Box::new(solver))
+    }
+    /// Adds a solver of the inequality chosen at run time.
+    #[must_use]
+    pub fn boxed_solver(mut self, solver: Box<dyn InequalitySolver<T> + 'a>) -> Self {
+        self.solvers.push(solver.into());
+        self
+    }
+    /// Sets the quadrature of data.
+    #[must_use]
+    pub fn quadrature(mut self, quadrature: DataQuadrature) -> Self {
+        self.quadrature = quadrature;
+        self
+    }
+    /// Makes every time the smallest of this many runs.
+    #[must_use]
+    pub fn repeat(mut self, times: usize) -> Self {
+        self.repeat = times.max(1);
+        self
+    }
+    /// Writes the fields of every scheme on the finest level to this directory, as `SCENE-LABEL.vtu`, of
+    /// several solvers as `SCENE-LABEL-SOLVER.vtu`, with `-` for what is neither a letter, a digit, a dot, `_` nor `-`.
+    #[cfg(feature = "report")]
+    #[must_use]
+    pub fn fields_to(mut self, directory: impl Into<PathBuf>) -> Self {
+        self.fields.directory = Some(directory.into());
+        self
+    }
+    /// Sets the scalar of coordinates and fields in files; 32 bits otherwise.
+    #[cfg(feature = "report")]
+    #[must_use]
+    pub fn field_scalar(mut self, scalar: FieldScalar) -> Self {
+        self.fields.scalar = scalar;
+        self
+    }
+    /// Writes the fields of every level, and `SCENE-LABEL.pvd`, which lists the files.
+    #[cfg(feature = "report")]
+    #[must_use]
+    pub fn fields_of_all_levels(mut self) -> Self {
+        self.fields.all_levels = true;
+        self
+    }
+    /// Sets a function that receives every solution that has values, with its label, of several solvers as
+    /// `LABEL-SOLVER`, and its level, before the row of the solution is complete. An error ends the study.
+    #[must_use]
+    pub fn each_solution(
+        mut self,
+        f: impl Fn(&str, usize, &Solved<'_, T, D>) -> Result<(), Error> + 'a,
+    ) -> Self {
+        self.each_solution = Some(Box::new(f));
+        self
+    }
+    /// Writes the inequality of every scheme on every level to this directory, each to its folder
+    /// `SCENE-LABEL-LEVEL`, by [`write_inequality`](crate::exchange::write_inequality).
+    #[cfg(feature = "report")]
+    #[must_use]
+    pub fn inequalities_to(mut self, directory: impl Into<PathBuf>) -> Self {
+        self.inequalities = Some(directory.into());
+        self
+    }
+    /// Adds each row to a journal as soon as it is finished, and takes those that the journal has from an
+    /// earlier run.
+    #[cfg(feature = "report")]
+    #[must_use]
+    pub fn journal(mut self, journal: &'a Journal) -> Self {
+        self.journal = Some(journal);
+        self
+    }
+    /// Sets what receives the number of each outer step of a solve.
+    #[must_use]
+    pub fn steps(mut self, steps: StepCounter) -> Self {
+        self.steps = steps;
+        self
+    }
+    /// Sets a function that receives the progress of the study.
+    #[must_use]
+    pub fn observer(mut self, observer: impl Fn(Progress<'_>) + 'a) -> Self {
+        self.observer = Box::new(observer);
+        self
+    }
+}
