@@ -42,12 +42,12 @@ impl<T: Real, const D: usize> Solved<'_, T, D> {
     /// The solution `u` is written in its degree; above two it is interpolated in degree two. Point data:
     /// `obstacle` (the lower one, or the upper one where there is no lower one), `upper_obstacle` where
     /// there are both, `error`, which is `u` less the exact solution where that is known (for rows of a study
-    /// with a reference: less the reference). Cell data of
-    /// obstacle problems: `multiplier` and `contact` of [`Fields`]; of all for which there is one, `bound`, the share of
-    /// the cell in the square of the error bound ([`ErrorBound::cells`]). Signorini problems have the facets of
-    /// the contact boundary as further cells with `pressure` and `gap` of [`Fields`] and `contact`, which is
-    /// one on facets in contact as a whole; the integral of `pressure` over the cells of `dimension`
-    /// `D - 1` is the total contact force.
+    /// with a reference: less the reference). Cell data of obstacle problems: `multiplier` and `contact` of
+    /// [`Fields`](crate::measure::Fields); of all for which there is one, `bound`, the share of the cell in the square
+    /// of the error bound ([`ErrorBound::cells`](crate::error_bound::ErrorBound::cells)). Signorini problems have the
+    /// facets of the contact boundary as further cells with `pressure` and `gap` of these fields and `contact`, which
+    /// is one on facets in contact as a whole; the integral of `pressure` over the cells of `dimension` `D - 1` is the
+    /// total contact force.
     ///
     /// # Errors
     /// [`Error::Write`], also without an iterate.

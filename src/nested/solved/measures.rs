@@ -93,7 +93,8 @@ impl<T: Real, const D: usize> Solved<'_, T, D> {
             false => Ok(ContactErrors::default()),
         }
     }
-    /// An admissible function and an equilibrated flux: see [`Discretisation::primal_dual_pair`].
+    /// An admissible function and an equilibrated flux: see
+    /// [`primal_dual_pair`](crate::assemble::Discretisation::primal_dual_pair).
     ///
     /// # Errors
     /// [`NoBound`].
