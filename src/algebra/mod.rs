@@ -4,7 +4,7 @@
 //! `matrix`: compressed sparse rows. `rectangular_matrix`: prolongations in compressed sparse rows, and
 //! `P^T A P`.
 //! `submatrix`: rows and columns of a matrix. `penalised_matrix`: `K + M^T S M`. `dense`: small dense
-//! matrices. `dirichlet_energy`: what weak data change in an energy. `inequality`: bounds, supports of
+//! matrices. `row`: rows in the making. `dirichlet_energy`: what weak data change in an energy. `inequality`: bounds, supports of
 //! unknowns and the inequality. `index`: the missing index.
 
 pub(crate) mod dense;
@@ -14,6 +14,7 @@ mod inequality;
 mod matrix;
 mod penalised_matrix;
 mod rectangular_matrix;
+mod row;
 mod submatrix;
 
 pub use dirichlet_energy::{DirichletEnergy, DirichletTerm};
@@ -23,4 +24,5 @@ pub use inequality::{Bound, Contact, Inequality, Start, Support};
 pub use matrix::SparseMatrix;
 pub use penalised_matrix::{JumpTerm, PenalisedMatrix};
 pub(crate) use rectangular_matrix::{RectangularMatrix, galerkin_product};
+pub(crate) use row::sort_by_column;
 pub(crate) use submatrix::Submatrix;

@@ -2,6 +2,7 @@
 
 use super::index::NO_INDEX;
 use super::matrix::{SparseMatrix, transpose};
+use super::row::sort_by_column;
 use crate::real::Real;
 
 /// A rectangular matrix in compressed sparse rows.
@@ -76,7 +77,7 @@ pub(crate) fn galerkin_product<T: Real>(
             }
         }
         sums.iter().for_each(|&(target, _)| position[target as usize] = NO_INDEX);
-        sums.sort_unstable_by_key(|&(target, _)| target);
+        sort_by_column(&mut sums);
         coarse.columns.extend(sums.iter().map(|s| s.0));
         coarse.values.extend(sums.iter().map(|s| s.1));
         coarse.row_starts.push(coarse.columns.len() as u32);

@@ -1,5 +1,7 @@
 //! Numbers of vertices and cells: in the order of cells, and along a space-filling curve.
 
+use std::cmp::Ordering;
+
 use super::boundary::BoundaryFacet;
 use super::simplicial::Mesh;
 use crate::real::Real;
@@ -26,8 +28,8 @@ impl<T: Real, const D: usize> Mesh<T, D> {
         let mut sorted = self.cells.clone();
         for cell in sorted.chunks_exact_mut(D + 1) {
             // coordinates of a mesh are finite
-            cell.sort_unstable_by(|&v, &w| {
-                corner(v).partial_cmp(corner(w)).unwrap_or(std::cmp::Ordering::Equal)
+            sort_vertices(cell, &|v, w| {
+                corner(v).partial_cmp(corner(w)).unwrap_or(Ordering::Equal)
             });
         }
         let barycentre = |cell: &[u32]| {
@@ -81,6 +83,11 @@ impl<T: Real, const D: usize> Mesh<T, D> {
         let (groups, is_supported) = (self.groups.clone(), self.is_supported);
         (Self { vertices, cells, boundary, is_supported, groups, cell_regions }, numbers)
     }
+}
+
+/// Sorts the vertices of a cell; not generic, so that the sorting code is compiled once.
+fn sort_vertices(vertices: &mut [u32], compare: &dyn Fn(u32, u32) -> Ordering) {
+    vertices.sort_unstable_by(|&v, &w| compare(v, w));
 }
 
 /// The positions of points in their order along a Hilbert curve through the box around them: points that

@@ -1,7 +1,6 @@
 //! Curves of points, taken from rows.
 
-use crate::study::row::Row;
-use crate::study::row::distinct;
+use crate::study::row::{Row, distinct, sort_by_level};
 
 /// A number of a row that an axis shows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -187,7 +186,7 @@ impl Panel {
                 .filter(|r| r.scene == scene)
                 .filter(|r| r.label == of.scheme && r.solver == of.solver)
                 .collect();
-            runs.sort_by_key(|r| r.level);
+            sort_by_level(&mut runs);
             Curve { key, points: runs.iter().filter_map(|r| Point::of(r, x, y)).collect() }
         });
         let of_scene = || rows.iter().filter(|r| r.scene == scene);

@@ -299,6 +299,11 @@ impl Row {
     }
 }
 
+/// Sorts rows by their levels.
+pub(crate) fn sort_by_level(rows: &mut [&Row]) {
+    rows.sort_by_key(|row| row.level);
+}
+
 /// Each item once, in order of first occurrence.
 pub(crate) fn distinct<T: PartialEq>(items: impl Iterator<Item = T>) -> Vec<T> {
     let mut once = Vec::new();

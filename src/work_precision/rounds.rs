@@ -42,7 +42,7 @@ impl<const D: usize> WorkPrecision<'_, D> {
         for round in 0..self.rounds {
             // by level, so that a level that takes too long is known before the next
             let mut order: Vec<usize> = (0..slots.len()).collect();
-            order.sort_by_key(|&k| (slots[k].case.is_adaptive(), slots[k].case.level));
+            sort_by(&mut order, &|k| (slots[k].case.is_adaptive(), slots[k].case.level));
             if round % 2 == 1 {
                 order.reverse();
             }
@@ -153,6 +153,11 @@ impl<const D: usize> WorkPrecision<'_, D> {
             None => Ok(()),
         }
     }
+}
+
+/// Sorts indices by their keys; not generic, so that the sorting code is compiled once.
+fn sort_by(order: &mut [usize], key: &dyn Fn(usize) -> (bool, usize)) {
+    order.sort_by_key(|&k| key(k));
 }
 
 /// Observed orders, variant by variant.

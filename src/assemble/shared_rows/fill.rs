@@ -90,6 +90,8 @@ struct Filling<'f, 's, 'a, T: Real, const D: usize> {
 }
 
 impl<T: Real, const D: usize> Filling<'_, '_, '_, T, D> {
+    /// Not inlined into the parallel loop: all the loops over cells would be optimised twice.
+    #[inline(never)]
     fn piece<E: ReferenceElement<T, D>>(&self, rows: &Rows, mut targets: [Target<'_, T>; KINDS]) {
         for (cells, location, hull) in self.positions.blocks.of(rows) {
             for (target, hull) in targets.iter_mut().zip(hull) {
@@ -160,7 +162,7 @@ impl<T: Real, const D: usize> Filling<'_, '_, '_, T, D> {
                         }
                     } else {
                         let columns = &self.columns[start + target.base..end + target.base];
-                        add_by_search(out, columns, unknowns, |j| matrix.entry(i, j));
+                        add_by_search(out, columns, unknowns, &|j| matrix.entry(i, j));
                     }
                 }
             }
@@ -175,7 +177,7 @@ fn add_by_search<T: Real>(
     out: &mut [T],
     columns: &[u32],
     unknowns: &[u32],
-    entry: impl Fn(usize) -> T,
+    entry: &dyn Fn(usize) -> T,
 ) {
     for (j, unknown) in unknowns.iter().enumerate() {
         if let Ok(at) = columns.binary_search(unknown) {

@@ -112,6 +112,9 @@ struct PatternBuilder<'m> {
 
 impl PatternBuilder<'_> {
     /// The rows of a piece, in parts, so that scratch memory is small and used again.
+    ///
+    /// Not inlined into the parallel loop: all the loops over cells would be optimised twice.
+    #[inline(never)]
     fn rows<T: Real, E: ReferenceElement<T, D>, const D: usize>(
         &self,
         piece: &Rows,

@@ -31,7 +31,7 @@ use super::factors::Factors;
 use super::null_directions::NullDirections;
 use super::repeated_cholesky::RepeatedCholesky;
 use crate::algebra::dense::{extend_basis, invert_in_place};
-use crate::algebra::{JumpTerm, NO_INDEX, PenalisedMatrix, SparseMatrix};
+use crate::algebra::{JumpTerm, NO_INDEX, PenalisedMatrix, SparseMatrix, sort_by_column};
 use crate::real::Real;
 
 /// Largest weight divided by `k / eps`, in a block with dependent means because unknowns are fixed;
@@ -276,7 +276,7 @@ impl<'a, T: Real> StaticCondensation<'a, T> {
             row.clear();
             row.extend(sides.map(|(side, &y)| (side.mean, y)));
             row.retain(|&(mean, _)| mean != NO_INDEX);
-            row.sort_unstable_by_key(|&(mean, _)| mean);
+            sort_by_column(&mut row);
             let products = null_directions.products(k);
             let first = (matrix.size() + 1 - products.len()) as u32;
             row.extend((first..).zip(products.iter().copied()));

@@ -3,7 +3,7 @@
 //! Source: P. Vanek, J. Mandel, M. Brezina, Computing 56 (1996), 179-196.
 
 use super::prolongation::Prolongation;
-use crate::algebra::{NO_INDEX, RectangularMatrix, SparseMatrix, galerkin_product};
+use crate::algebra::{NO_INDEX, RectangularMatrix, SparseMatrix, galerkin_product, sort_by_column};
 use crate::real::Real;
 
 /// Unknowns `i` and `j` are strongly coupled if `a_ij^2 > STRENGTH^2 a_ii a_jj`.
@@ -123,7 +123,7 @@ fn smoothed_prolongation<T: Real>(
                 }
             }
             row.retain(|(_, weight)| weight.abs() > NEGLIGIBLE);
-            row.sort_unstable_by_key(|&(column, _)| column);
+            sort_by_column(&mut row);
         }
         rows.columns.extend(row.iter().map(|&(column, _)| column));
         rows.values.extend(row.iter().map(|&(_, weight)| T::lit(weight)));

@@ -2,7 +2,7 @@
 
 use super::facet_mean_form::{FacetMeanForm, stiffness};
 use super::prolongation::Prolongation;
-use crate::algebra::{NO_INDEX, PenalisedMatrix, SparseMatrix, Support};
+use crate::algebra::{NO_INDEX, PenalisedMatrix, SparseMatrix, Support, sort_by_column};
 use crate::memory::in_large_pages;
 use crate::real::Real;
 
@@ -65,7 +65,7 @@ impl CrouzeixRaviartSpace {
                     }
                 }
             }
-            row[..n].sort_unstable_by_key(|entry| entry.0);
+            sort_by_column(&mut row[..n]);
             matrix.columns.extend(row[..n].iter().map(|entry| entry.0));
             matrix.values.extend(row[..n].iter().map(|entry| entry.1));
             matrix.row_starts.push(matrix.columns.len() as u32);

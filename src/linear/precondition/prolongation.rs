@@ -1,6 +1,6 @@
 //! Prolongations from coarse to fine functions, and their transposes.
 
-use crate::algebra::{RectangularMatrix, Support};
+use crate::algebra::{RectangularMatrix, Support, sort_by_column};
 use crate::memory::in_large_pages;
 use crate::parallel::vectors::{for_each_chunk, zeros};
 use crate::real::Real;
@@ -86,7 +86,7 @@ impl<T: Real> Prolongation<T> {
                     }
                 }
             }
-            row.sort_unstable_by_key(|&(column, _)| column);
+            sort_by_column(&mut row);
             fine.columns.extend(row.iter().map(|entry| entry.0));
             fine.values.extend(row.iter().map(|entry| entry.1));
             fine.starts.push(fine.columns.len() as u32);
@@ -120,7 +120,7 @@ impl<T: Real> Prolongation<T> {
         for old in order {
             row.clear();
             self.for_each_parent(old as usize, |j, weight| row.push((coarse[j as usize], weight)));
-            row.sort_unstable_by_key(|&(column, _)| column);
+            sort_by_column(&mut row);
             rows.columns.extend(row.iter().map(|entry| entry.0));
             rows.values.extend(row.iter().map(|entry| entry.1));
             rows.starts.push(rows.columns.len() as u32);

@@ -77,7 +77,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
     fn within_mesh(&self, set: &ContactSet<D>, entities: &[ContactEntity]) -> Vec<Point<f64, D>> {
         // in the order of their first coordinates, so that few are tried on each entity
         let mut points = set.free_boundary.clone();
-        points.sort_unstable_by(|x, y| x[0].total_cmp(&y[0]));
+        sort_by_first_coordinate(&mut points);
         let on_entity = |entity: &ContactEntity, found: &mut Vec<usize>| {
             let corners = self.corner_points(*entity);
             let corners = &corners[..=entity.dimension::<D>()];
@@ -122,10 +122,15 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
 /// Points this much outside a simplex, in units of its size, still count as on it.
 const SLACK: f64 = 1e-9;
 
+/// Generic over the dimension alone, so that the sorting code is not compiled for every caller.
+fn sort_by_first_coordinate<const D: usize>(points: &mut [Point<f64, D>]) {
+    points.sort_unstable_by(|x, y| x[0].total_cmp(&y[0]));
+}
+
 /// The largest distance of a point of the first set from the second.
 fn one_sided<const D: usize>(from: &[Point<f64, D>], to: &[Point<f64, D>]) -> f64 {
     let mut to = to.to_vec();
-    to.sort_unstable_by(|x, y| x[0].total_cmp(&y[0]));
+    sort_by_first_coordinate(&mut to);
     let nearest = |x: &Point<f64, D>| {
         // on both sides only as far as the first coordinate alone does not exceed the distance known
         let (before, after) = to.split_at(to.partition_point(|y| y[0] < x[0]));

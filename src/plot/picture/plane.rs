@@ -214,7 +214,7 @@ impl<'a, const D: usize> Plane<'a, D> {
                 let width = (0.35 * on_paper).clamp(0.6, 3.0);
                 let mut coloured: Vec<(usize, [PlanePoint; 2])> =
                     jumps.iter().filter(|j| j.0 > floor).map(|j| (scale.band(j.0), j.1)).collect();
-                coloured.sort_by_key(|c| c.0);
+                sort_by_band(&mut coloured);
                 let stroke = |band| Stroke::Coloured(scale.colour(band), width);
                 map.lines.extend(coloured.into_iter().map(|(band, ends)| (stroke(band), ends)));
             }
@@ -292,6 +292,11 @@ impl<'a, const D: usize> Plane<'a, D> {
     }
 }
 
+/// Sorts sections by the numbers of their bands; not generic, so that the sorting code is compiled once.
+fn sort_by_band(sections: &mut [(usize, [PlanePoint; 2])]) {
+    sections.sort_by_key(|section| section.0);
+}
+
 /// Fills a map with the bands of a function that is linear on triangles, perhaps with its contour
 /// lines.
 fn shade(map: &mut Map, name: &str, triangles: &[[(PlanePoint, f64); 3]], with_lines: bool) {
@@ -320,7 +325,7 @@ fn shade(map: &mut Map, name: &str, triangles: &[[(PlanePoint, f64); 3]], with_l
     }
     // those of a colour together, which keeps files short
     fills.sort_by_key(|fill| fill.0);
-    lines.sort_by_key(|line| line.0);
+    sort_by_band(&mut lines);
     map.fills.extend(fills.into_iter().map(|(k, area)| (scale.colour(k), area)));
     let ink = |k: usize| if 2 * k < scale.bands() { PAPER } else { INK };
     map.lines.extend(lines.into_iter().map(|(k, ends)| (Stroke::Coloured(ink(k), 0.6), ends)));

@@ -7,7 +7,7 @@ use crate::measure::{ErrorNorm, FittedOrder, fit_order};
 use crate::readable_debug::debug_by_display;
 use crate::scheme::ExpectedOrders;
 use crate::study::report::Report;
-use crate::study::row::{Row, distinct};
+use crate::study::row::{Row, distinct, sort_by_level};
 
 /// An error of this share of the mesh size, of solutions whose size is one, is rounding.
 const ROUNDING: f64 = 1e-8;
@@ -216,7 +216,7 @@ impl ObservedOrders {
     /// The observed orders of the rows of one scheme on one scene.
     fn of(rows: &[&Row]) -> Option<Self> {
         let mut sorted = rows.to_vec();
-        sorted.sort_by_key(|row| row.level);
+        sort_by_level(&mut sorted);
         let failed = sorted.iter().filter(|row| !row.converged());
         let failures = failed.map(|row| (row.level, row.status)).collect();
         let finest = *sorted.last()?;

@@ -123,11 +123,12 @@ impl MinimumDegree {
         }
         // The reversed postorder: a parent, then the largest subtree.
         let mut order = Vec::with_capacity(n);
-        roots.sort_by_key(|&k| sizes[k]);
+        let sort_by_size = |nodes: &mut [usize]| nodes.sort_by_key(|&k| sizes[k]);
+        sort_by_size(&mut roots);
         let mut stack = roots;
         while let Some(k) = stack.pop() {
             order.push(pivots[k]);
-            children[k].sort_by_key(|&child| sizes[child]);
+            sort_by_size(&mut children[k]);
             stack.append(&mut children[k]);
         }
         order.reverse();
