@@ -331,11 +331,15 @@ impl<T: Real> Inequality<T> {
     pub fn is_feasible(&self) -> bool {
         self.bounds.iter().all(|bound| !matches!(*bound, Bound::Both(l, u) if l > u))
     }
-    /// The energy `u.A u / 2 - b.u`, in `f64`.
+    /// The energy `u.A u / 2 - b.u`, in `f64`; that of a penalised matrix by its jumps, because differences of
+    /// products of its entries would have no digits where the penalty is large.
     ///
     /// # Panics
     /// If `u` is shorter than the number of unknowns.
     pub fn objective(&self, u: &[T]) -> f64 {
+        if let Some(penalised) = &self.penalised {
+            return penalised.objective(|i| u[i].to_f64());
+        }
         (0..self.size())
             .map(|i| {
                 let (columns, values) = self.matrix.row(i);

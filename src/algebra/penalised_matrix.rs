@@ -115,6 +115,19 @@ impl<T: Real> PenalisedMatrix<T> {
         self.blocks[i * self.block_size + i % self.block_size].to_f64()
     }
 
+    /// The largest ratio of a penalty to the stiffness at the first unknown of a jump: `S` times the squares of the
+    /// weights of the row of `M`, over `K_ii`.
+    pub(crate) fn largest_ratio(&self) -> f64 {
+        let of_jump = |k: usize| {
+            let squares: f64 = self.terms_of(k).iter().map(|t| t.weight.to_f64().powi(2)).sum();
+            let first = self.terms_of(k).iter().flat_map(|t| [t.here, t.there]);
+            let first = first.into_iter().find(|&i| i != JumpTerm::<T>::NO_UNKNOWN);
+            let stiffness = first.map_or(f64::INFINITY, |i| self.stiffness_diagonal(i as usize));
+            self.weights[k].to_f64() * squares / stiffness
+        };
+        (0..self.n_jumps()).map(of_jump).fold(0.0, f64::max)
+    }
+
     /// The jump multipliers `S (M u - g)`.
     pub fn jump_multipliers(&self, u: impl Fn(usize) -> f64 + Sync) -> Vec<f64> {
         let multiplier =
@@ -156,6 +169,18 @@ impl<T: Real> PenalisedMatrix<T> {
     pub fn residual(&self, u: impl Fn(usize) -> f64 + Sync, r: &mut [f64]) {
         let multipliers = self.jump_multipliers(&u);
         self.residual_with_jump_multipliers(u, |k| multipliers[k], r);
+    }
+
+    /// The energy `u.A u / 2 - b.u`, which is `u.K u / 2 - c.u + (M u - g).S (M u - g) / 2 - g.S g / 2`.
+    pub fn objective(&self, u: impl Fn(usize) -> f64) -> f64 {
+        let of_unknown = |i: usize| u(i) * (0.5 * self.stiffness(i, &u) - self.load[i].to_f64());
+        let of_jump = |k: usize| {
+            let g = self.jump_data[k].to_f64();
+            let jump = self.jump(k, &u) - g;
+            0.5 * self.weights[k].to_f64() * (jump * jump - g * g)
+        };
+        (0..self.load.len()).map(of_unknown).sum::<f64>()
+            + (0..self.n_jumps()).map(of_jump).sum::<f64>()
     }
 
     /// The scale of energies `u.K u + p.(S^-1 p) + Σ |c_i u_i|` with jump multipliers `p`.

@@ -75,6 +75,8 @@ struct Solve<'s, 'a, T: Real> {
     /// Whether another run of the interior point method may find a better active set: before the first
     /// run, and after one that identified the active set before the limit of rounding.
     interior_point_may_improve: bool,
+    /// Whether there may be slacks that only the second run of the interior point method resolves.
+    has_small_slacks: bool,
 }
 
 /// What the last stage of a solve found, in addition to the iterate.
@@ -118,6 +120,7 @@ pub(crate) fn solve<T: Real>(
         stages: Vec::new(),
         end: None,
         interior_point_may_improve: true,
+        has_small_slacks: false,
     };
     let mut found = None;
     for stage in STRATEGY {
@@ -358,8 +361,8 @@ impl<'a, T: Real> Solve<'_, 'a, T> {
         let contact = method.run();
         let (values, jump_multipliers, steps) =
             (method.values(), method.jump_multipliers(), method.steps);
-        self.interior_point_may_improve =
-            method.is_identified || (identification == Identification::Early && method.is_stuck);
+        self.interior_point_may_improve = method.may_improve();
+        self.has_small_slacks = method.leaves_small_slacks();
         self.iterate.outer += steps;
         self.guess.steps.set(self.iterate.outer);
         if let Some(contact) = contact {
@@ -376,7 +379,8 @@ impl<'a, T: Real> Solve<'_, 'a, T> {
     /// its steps may pass than with factors, unless the stage that follows is cheap too: monotone
     /// multigrid, or static condensation, which halves the number of unknowns. An active set that
     /// stagnated there leads to the interior point method after one step with factors. After an
-    /// interior point method two steps suffice to tell that the active set was identified too early.
+    /// interior point method two steps suffice to tell that the active set was identified too early; where that did
+    /// not resolve small slacks, few states are wrong, and each step corrects some.
     fn patience(&self, stage: Stage) -> Patience {
         let ActiveSet { stagnation_steps, improvement_steps, globalisation, .. } = *self.settings;
         if stage == Stage::PreconditionedActiveSet {
@@ -396,6 +400,7 @@ impl<'a, T: Real> Solve<'_, 'a, T> {
         let halving = match (self.runs_of(Stage::InteriorPoint), self.end) {
             (0, Some(End::Obstruction(Obstruction::Stagnation))) => 0,
             (0, _) => stagnation_steps,
+            _ if self.has_small_slacks => stagnation_steps,
             _ => 1,
         };
         Patience { halving: Some(halving), improvement: improvement_steps }

@@ -109,6 +109,10 @@ impl<'h, 'a, T: Real> NewtonSystem<'h, 'a, T> {
     fn penalised(&self) -> Option<&'a PenalisedMatrix<T>> {
         self.inequality.penalised.as_ref().filter(|_| self.condensation.is_some())
     }
+    /// Whether cells have null directions: unknowns besides those of the condensation.
+    pub fn has_null_directions(&self) -> bool {
+        self.condensation.is_some_and(|c| c.has_null_directions())
+    }
 
     /// The unknowns that are not fixed.
     pub fn free(&self) -> &[u32] {
