@@ -124,7 +124,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
                         let group = self.mesh.boundary_group(cell, local).unwrap_or(0);
                         (None, self.dirichlet_moments(&moments, (cell, local), group)?)
                     }
-                    Neighbour::Boundary(_) => continue,
+                    Neighbour::Boundary(_) | Neighbour::Cut => continue,
                 };
                 let jump = |k: usize| {
                     let there = match &other {

@@ -1,0 +1,6 @@
+//! Schemes on parts of meshes against the same schemes on the whole.
+
+mod compare;
+mod meshes;
+mod problems;
+mod rows;
