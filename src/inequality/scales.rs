@@ -90,8 +90,8 @@ impl Scales {
                 let (x, c, d) = (u[i].to_f64() * scale, load[i].to_f64() * scale, diagonal(i));
                 sums.add_energy(-term.linear * scale * x);
                 sums.load_energy += ((c - term.load * scale).powi(2) - c * c) / d;
+                sums.add_energy(term.constant * scale * scale);
             }
-            sums.add_energy(data.constant * scale * scale);
         }
         let least = VANISHING * T::EPSILON * sums.terms;
         let energy = [(sums.energy, least), (sums.load_energy, 0.0), (sums.diagonal_energy, 0.0)]
