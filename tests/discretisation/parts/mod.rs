@@ -4,3 +4,4 @@ mod compare;
 mod meshes;
 mod problems;
 mod rows;
+mod sums;
