@@ -2,6 +2,7 @@
 
 mod compare;
 mod meshes;
+mod numbers;
 mod problems;
 mod rows;
 mod sums;
