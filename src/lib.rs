@@ -11,6 +11,7 @@ pub use nalgebra;
 pub mod algebra;
 pub mod assemble;
 pub mod constraint;
+pub mod distributed;
 pub mod element;
 pub mod error;
 pub mod error_bound;

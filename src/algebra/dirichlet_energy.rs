@@ -11,11 +11,13 @@
 pub struct DirichletEnergy {
     /// The terms of the unknowns next to Dirichlet facets.
     pub terms: Vec<DirichletTerm>,
-    /// `q`: the form at `(u_D, u_D)`.
-    pub constant: f64,
 }
 
 impl DirichletEnergy {
+    /// `q`: the form at `(u_D, u_D)`.
+    pub fn constant(&self) -> f64 {
+        self.terms.iter().map(|term| term.constant).sum()
+    }
     /// Whether all terms belong to one of `size` unknowns.
     pub fn is_well_formed(&self, size: usize) -> bool {
         self.terms.iter().all(|term| (term.unknown as usize) < size)
@@ -28,6 +30,7 @@ impl DirichletEnergy {
             if is_same {
                 term.load += next.load;
                 term.linear += next.linear;
+                term.constant += next.constant;
             }
             is_same
         });
@@ -43,4 +46,7 @@ pub struct DirichletTerm {
     pub load: f64,
     /// The coefficient `l_i`, twice `load` for a symmetric form.
     pub linear: f64,
+    /// The part of `q`, the form at `(u_D, u_D)`, that counts with the unknown: that of a facet counts with one
+    /// unknown of its cell.
+    pub constant: f64,
 }

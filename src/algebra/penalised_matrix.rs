@@ -92,6 +92,12 @@ impl<T: Real> PenalisedMatrix<T> {
         [block(|t| t.here), block(|t| t.there)]
     }
 
+    /// The first unknown that a jump contains.
+    pub(crate) fn first_unknown(&self, jump: usize) -> Option<usize> {
+        let unknowns = self.terms_of(jump).iter().flat_map(|term| [term.here, term.there]);
+        unknowns.map(|i| i as usize).find(|&i| i != JumpTerm::<T>::NO_UNKNOWN as usize)
+    }
+
     /// The entry `(M u)_jump`, in `f64`.
     #[inline]
     pub fn jump(&self, jump: usize, u: impl Fn(usize) -> f64) -> f64 {
@@ -197,12 +203,17 @@ impl<T: Real> PenalisedMatrix<T> {
     }
 
     /// The sum `p.g` of the jump multipliers `p = S (M u - g)`, or of the given ones if there are as many
-    /// as jumps, times the Dirichlet data.
-    pub fn work_on_data(&self, u: impl Fn(usize) -> f64, jump_multipliers: &[T]) -> f64 {
+    /// as jumps, times the Dirichlet data, over the jumps whose first unknown `counts`.
+    pub fn work_on_data(
+        &self,
+        u: impl Fn(usize) -> f64,
+        jump_multipliers: &[T],
+        counts: impl Fn(usize) -> bool,
+    ) -> f64 {
         let is_given = jump_multipliers.len() == self.n_jumps();
         let of_jump = |(k, g): (usize, &T)| {
             let g = g.to_f64();
-            if g == 0.0 {
+            if g == 0.0 || !self.first_unknown(k).is_some_and(&counts) {
                 return 0.0;
             }
             let multiplier = if is_given {

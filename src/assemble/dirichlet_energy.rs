@@ -28,6 +28,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
             let penalty = form.penalty(&facet);
             let mut load = vec![0.0; n];
             let mut linear = vec![0.0; n];
+            let mut constant = 0.0;
             for (k, (basis, &value)) in table.on(*local).iter().zip(values).enumerate() {
                 let penalty = penalty * T::lit(form.moment_weight(table.degrees[k]));
                 let integrand =
@@ -40,12 +41,13 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
                     load[i] += tested;
                     linear[i] += tested + integrand(datum, v);
                 }
-                energy.constant += integrand(datum, datum);
+                constant += integrand(datum, datum);
             }
             energy.terms.extend((0..n).map(|i| DirichletTerm {
                 unknown: self.dofs.of(*cell, i) as u32,
                 load: load[i],
                 linear: linear[i],
+                constant: if i == 0 { constant } else { 0.0 },
             }));
         }
         if form.is_lifted() {
@@ -73,7 +75,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         let nonzero = load.iter().enumerate().filter(|(_, load)| load.to_f64() != 0.0);
         energy.terms.extend(nonzero.map(|(i, load)| {
             let load = load.to_f64();
-            DirichletTerm { unknown: i as u32, load, linear: 2.0 * load }
+            DirichletTerm { unknown: i as u32, load, linear: 2.0 * load, constant: 0.0 }
         }));
         for of_cell in by_facet(data).chunk_by(|a, b| a.0 == b.0) {
             let neighbours = self.coupled_neighbours();
@@ -81,7 +83,8 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
                 let products = of_cell.iter().map(|(_, second)| {
                     lifting.product_of_data(neighbours, *cell, first, second).to_f64()
                 });
-                energy.constant += products.sum::<f64>();
+                let (unknown, constant) = (self.dofs.of(*cell, 0) as u32, products.sum());
+                energy.terms.push(DirichletTerm { unknown, load: 0.0, linear: 0.0, constant });
             }
         }
     }

@@ -104,7 +104,7 @@ impl<T: Real> FacetCoefficients<T> {
         let mut entries = in_large_pages(vec![T::lit(0.0); per_cell * n_cells]);
         let across = |(cell, local)| match space.coupled_neighbours().across(cell, local) {
             Neighbour::Cell { cell, local } => Some((cell as usize, local as usize)),
-            Neighbour::Boundary(_) => None,
+            Neighbour::Boundary(_) | Neighbour::Cut => None,
         };
         let fill = |cells: Range<usize>, piece: &mut [T]| {
             for (cell, out) in cells.zip(piece.chunks_exact_mut(per_cell)) {
@@ -177,7 +177,7 @@ fn kept_view<'a, T: Real, const D: usize>(
         Neighbour::Cell { cell: other, .. } if (other as usize) < cell => return None,
         Neighbour::Cell { cell: other, local } => Some(side((other as usize, local as usize)).1),
         Neighbour::Boundary(BoundaryPart::Dirichlet) if !space.pins => None,
-        Neighbour::Boundary(_) => return None,
+        Neighbour::Boundary(_) | Neighbour::Cut => return None,
     };
     let (measure, here) = side((cell, local));
     Some(FacetView::new(space.mesh, (cell, local), measure, here, there))

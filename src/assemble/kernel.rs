@@ -9,10 +9,11 @@ use crate::real::Real;
 impl<T: Real, const D: usize> Space<'_, T, D> {
     /// For each connected component of the space without a Dirichlet facet and without reaction, the
     /// unknowns of the function that is one there and zero elsewhere. Cells are connected if they share
-    /// an unknown, or, with a facet form, a facet.
+    /// an unknown, or, with a facet form, a facet. A part of a mesh does not know the components of the whole and
+    /// has none.
     pub fn kernel(&self, couples: bool) -> Vec<Vec<(u32, T)>> {
         let mesh = self.mesh;
-        if mesh.is_supported() {
+        if mesh.is_supported() || mesh.is_part() {
             return Vec::new();
         }
         let n = self.per_cell();

@@ -223,7 +223,9 @@ impl<'a, T: Real, const D: usize> Discretisation<'a, T, D> {
     /// value of the datum or by its mean. An unknown pinned by Dirichlet data is not constrained besides.
     ///
     /// # Errors
-    /// [`Error::EmptyConstraint`], [`Error::DataNotFinite`].
+    /// [`Error::EmptyConstraint`], but on a [part](crate::mesh::Part) of a mesh: bounds contradict each other
+    /// if they do so by more than rounding of the largest datum, which a part need not have.
+    /// [`Error::DataNotFinite`].
     pub fn bounds(&self) -> Result<Vec<Bound<T>>, Error> {
         compiled!(
             T, D: fn(&Discretisation<'_, T, D>) -> Result<Vec<Bound<T>>, Error>
@@ -272,6 +274,37 @@ impl<'a, T: Real, const D: usize> Discretisation<'a, T, D> {
             T, D: fn(&Discretisation<'_, T, D>) -> Result<Vec<T>, Error>
                 = |of| of.space.load(of.form(), &|| &of.prepared().0)
         )(self)
+    }
+}
+
+impl<T: Real, const D: usize> Discretisation<'_, T, D> {
+    /// The unknowns of a cell, in the order of the element's nodes.
+    pub fn unknowns_of(&self, cell: usize) -> impl Iterator<Item = usize> + '_ {
+        (0..self.space.per_cell()).map(move |i| self.space.dofs.of(cell, i))
+    }
+    /// The number of the part that owns each unknown: the lowest of the parts that own its cells, given the
+    /// [owner of each cell](crate::mesh::Part::owners).
+    ///
+    /// Of an unknown of own cells this is the owner on the whole mesh, if the part has as many layers as the
+    /// scheme [needs](crate::scheme::AnyScheme#method.layers). The others are none of the part's own either
+    /// way.
+    ///
+    /// # Panics
+    /// If there are fewer owners than cells.
+    pub fn owners(&self, of_cells: &[u32]) -> Vec<u32> {
+        compiled!(
+            T, D: fn(&Discretisation<'_, T, D>, &[u32]) -> Vec<u32>
+                = |of, of_cells| of.owners_of_unknowns(of_cells)
+        )(self, of_cells)
+    }
+    fn owners_of_unknowns(&self, of_cells: &[u32]) -> Vec<u32> {
+        let mut owners = vec![u32::MAX; self.unknowns()];
+        for (cell, &owner) in of_cells[..self.mesh().n_cells()].iter().enumerate() {
+            for unknown in self.unknowns_of(cell) {
+                owners[unknown] = owners[unknown].min(owner);
+            }
+        }
+        owners
     }
 }
 

@@ -54,7 +54,7 @@ impl<'a, T: Real, const D: usize> Space<'a, T, D> {
             Neighbour::Boundary(BoundaryPart::Dirichlet) if !self.pins => {
                 Some(view(self.mesh, &here, None))
             }
-            Neighbour::Boundary(_) => None,
+            Neighbour::Boundary(_) | Neighbour::Cut => None,
             Neighbour::Cell { cell: other, local: other_local } => {
                 let metric = self.metric(other as usize);
                 let there = self.side(other as usize, other_local as usize, &metric);

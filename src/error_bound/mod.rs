@@ -47,6 +47,9 @@ pub enum NoBound {
         "no flux is known for this element: the bound is for broken and conforming linears and quadratics, and for Crouzeix-Raviart elements"
     )]
     Element,
+    /// The mesh is a part of another one.
+    #[error("the mesh is a part of another one: fluxes balance on the whole mesh only")]
+    Part,
     /// The solve has no values.
     #[error("the solve has no values")]
     NoIterate,

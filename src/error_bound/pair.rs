@@ -74,10 +74,10 @@ impl<T: Real, const D: usize> Discretisation<'_, T, D> {
         )(self, inequality, solution)
     }
     /// Checks that a flux is known for the element: broken and conforming linears and quadratics, and
-    /// that of Crouzeix and Raviart.
+    /// that of Crouzeix and Raviart, and that the mesh is a whole one.
     ///
     /// # Errors
-    /// [`NoBound::Element`].
+    /// [`NoBound::Element`], [`NoBound::Part`].
     pub(crate) fn check_flux(&self) -> Result<(), NoBound> {
         let space = &self.space;
         let is_linear = space.basis_degree == 1 && space.gradient_factor().is_some();
@@ -87,7 +87,11 @@ impl<T: Real, const D: usize> Discretisation<'_, T, D> {
             2 => space.basis_degree == 2 && (self.owns_rows() || space.is_conforming_quadratic()),
             _ => false,
         };
-        if is_known { Ok(()) } else { Err(NoBound::Element) }
+        match is_known {
+            false => Err(NoBound::Element),
+            true if space.mesh.is_part() => Err(NoBound::Part),
+            true => Ok(()),
+        }
     }
     fn pair(
         &self,

@@ -332,7 +332,7 @@ impl<T: Real, const D: usize> Patches<'_, '_, T, D> {
                 Slot { first, sign: -1.0, shift }
             }
             Neighbour::Boundary(BoundaryPart::Dirichlet) => free(),
-            Neighbour::Boundary(_) => {
+            Neighbour::Boundary(_) | Neighbour::Cut => {
                 let given = self.given.binary_search_by_key(&place, |(place, _)| *place);
                 let given = given.map_or([0.0; 3], |k| {
                     let products = &self.given[k].1[usize::from(own)];

@@ -17,7 +17,8 @@
 //! | `active_set/` | [`ActiveSet`]: the primal-dual active set method, with its stages in `active_set/strategy` |
 //! | `interior_point/` | the interior point method, which provides a start where the active set stagnates |
 //! | `monotone_multigrid` | [`MonotoneMultigrid`]: truncated nonsmooth Newton multigrid |
-//! | `certificate` | [`Certificate`], [`certify`] |
+//! | `certificate` | [`Certificate`] |
+//! | `violations` | [`certify`], [`Violations`]: the sums and maxima of a certificate, which parts of a mesh merge |
 //! | `energy_error_bound` | [`energy_error_bound`]: a proven bound for any values |
 //! | `scales` | the energy norm and the largest value to which violations are relative |
 //! | `recession` | whether a solution exists and is unique where only bounds hold the domain |
@@ -44,13 +45,12 @@ mod solution;
 mod stage;
 mod step_counter;
 mod validation;
+mod violations;
 
 pub use active_set::{ActiveSet, Globalisation, Preconditioned};
 pub use by_name::{SOLVERS, SolverOptions, solver_by_name};
 pub(crate) use certificate::energy_norm;
-pub use certificate::{
-    Certificate, certify, certify_with_jump_multipliers, contact_of, count_active,
-};
+pub use certificate::{Certificate, contact_of, count_active};
 pub use energy_error_bound::energy_error_bound;
 pub use initial_guess::InitialGuess;
 pub use monotone_multigrid::MonotoneMultigrid;
@@ -59,6 +59,7 @@ pub use solution::Solution;
 pub use stage::{Stage, StageRun};
 pub use step_counter::StepCounter;
 pub(crate) use validation::check_definite;
+pub use violations::{Violations, certify, certify_with_jump_multipliers};
 
 use crate::algebra::Inequality;
 use crate::real::Real;

@@ -1,11 +1,12 @@
 //! Truncated nonsmooth Newton multigrid: a descent method that does not depend on strict
 //! complementarity.
 
-use super::certificate::{certify, positive_diagonal};
+use super::certificate::positive_diagonal;
 use super::initial_guess::InitialGuess;
 use super::recession::solve_with_kernel;
 use super::scales::Scales;
 use super::validation::check_input;
+use super::violations::certify;
 use super::{ActiveSet, InequalitySolver, Outcome, Solution};
 use crate::algebra::{Contact, Inequality};
 use crate::instances::compiled;

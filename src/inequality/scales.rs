@@ -30,9 +30,10 @@ pub(crate) struct Scales {
     pub energy_norm: f64,
 }
 
-/// Sums over unknowns.
-#[derive(Default)]
-struct Sums {
+/// What sizes are made of: a maximum and sums over unknowns, of numbers divided by a unit.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Sums {
+    /// The largest `|u_i|` or `|v_i|`, not divided by the unit.
     max_norm: f64,
     energy: f64,
     /// The sum of the absolute values of the terms of `energy`.
@@ -54,6 +55,21 @@ impl Scales {
         diagonal: &(dyn Fn(usize) -> f64 + Sync),
         unit: f64,
     ) -> Self {
+        let values = (u, residual, jump_multipliers);
+        Sums::of(inequality, values, diagonal, unit, &|_| true).scales(T::EPSILON, unit)
+    }
+}
+
+impl Sums {
+    /// The sums over the unknowns that a part owns, for values, residual and jump multipliers as
+    /// [`Scales::of`] takes them. A jump belongs to the owner of its first unknown.
+    pub fn of<T: Real>(
+        inequality: &Inequality<T>,
+        (u, residual, jump_multipliers): (&[T], &[f64], &[T]),
+        diagonal: &(dyn Fn(usize) -> f64 + Sync),
+        unit: f64,
+        owns: &(impl Fn(usize) -> bool + Sync),
+    ) -> Self {
         let scale = unit.recip();
         let Inequality { load, bounds, penalised, dirichlet_energy, .. } = inequality;
         // the load in the residual: without Dirichlet data if the matrix is penalised
@@ -61,7 +77,7 @@ impl Scales {
         let mut sums = Sums::default();
         for part in map_chunks(u.len(), |range| {
             let mut part = Sums::default();
-            for i in range {
+            for i in range.filter(|&i| owns(i)) {
                 let (x, c, d) = (u[i].to_f64(), load[i].to_f64() * scale, diagonal(i));
                 let nearest = bounds[i].nearest(u[i]).to_f64();
                 part.max_norm = maximum(part.max_norm, maximum(x.abs(), nearest.abs()));
@@ -82,31 +98,57 @@ impl Scales {
         }
         if let Some(penalised) = penalised {
             // u.K u + p.(S^-1 p) = u.(c - r) - p.g, without the cancellation of penalties
-            let work = penalised.work_on_data(|i| u[i].to_f64(), jump_multipliers);
+            let work = penalised.work_on_data(|i| u[i].to_f64(), jump_multipliers, owns);
             sums.add_energy(-work * scale * scale);
         } else if let Some(data) = dirichlet_energy {
-            for term in &data.terms {
+            for term in data.terms.iter().filter(|term| owns(term.unknown as usize)) {
                 let i = term.unknown as usize;
                 let (x, c, d) = (u[i].to_f64() * scale, load[i].to_f64() * scale, diagonal(i));
                 sums.add_energy(-term.linear * scale * x);
                 sums.load_energy += ((c - term.load * scale).powi(2) - c * c) / d;
+                sums.add_energy(term.constant * scale * scale);
             }
-            sums.add_energy(data.constant * scale * scale);
         }
-        let least = VANISHING * T::EPSILON * sums.terms;
-        let energy = [(sums.energy, least), (sums.load_energy, 0.0), (sums.diagonal_energy, 0.0)]
+        sums
+    }
+    /// The sizes.
+    pub fn scales(&self, epsilon: f64, unit: f64) -> Scales {
+        let least = VANISHING * epsilon * self.terms;
+        let energy = [(self.energy, least), (self.load_energy, 0.0), (self.diagonal_energy, 0.0)]
             .into_iter()
             // true for numbers that are not finite
             .find(|(energy, least)| energy.partial_cmp(least).is_none_or(Ordering::is_gt))
             .map_or(1.0, |(energy, _)| energy);
-        Self {
-            max_norm: if sums.max_norm == 0.0 { 1.0 } else { sums.max_norm },
+        Scales {
+            max_norm: if self.max_norm == 0.0 { 1.0 } else { self.max_norm },
             energy_norm: energy.sqrt() * unit,
         }
     }
-}
-
-impl Sums {
+    /// The sums with another unit, that of before times `ratio`.
+    pub fn in_units_of(self, ratio: f64) -> Self {
+        let factor = ratio.recip().powi(2);
+        Self {
+            max_norm: self.max_norm,
+            energy: self.energy * factor,
+            terms: self.terms * factor,
+            load_energy: self.load_energy * factor,
+            diagonal_energy: self.diagonal_energy * factor,
+        }
+    }
+    /// Whether all values and loads are zero.
+    pub fn is_zero(&self) -> bool {
+        [self.max_norm, self.terms, self.load_energy, self.diagonal_energy] == [0.0; 4]
+    }
+    /// The sums over the unknowns of both.
+    pub fn merge(self, other: Self) -> Self {
+        Self {
+            max_norm: maximum(self.max_norm, other.max_norm),
+            energy: self.energy + other.energy,
+            terms: self.terms + other.terms,
+            load_energy: self.load_energy + other.load_energy,
+            diagonal_energy: self.diagonal_energy + other.diagonal_energy,
+        }
+    }
     fn add_energy(&mut self, energy: f64) {
         self.energy += energy;
         self.terms += energy.abs();
@@ -114,6 +156,6 @@ impl Sums {
 }
 
 /// The larger number; not a number if one of the two is not a number.
-fn maximum(a: f64, b: f64) -> f64 {
+pub(super) fn maximum(a: f64, b: f64) -> f64 {
     if a <= b || b.is_nan() { b } else { a }
 }

@@ -4,8 +4,8 @@ use std::ops::Range;
 use std::sync::Arc;
 
 use super::admissible::InCells;
-use super::errors::Errors;
 use super::evaluation::Reference;
+use super::squared_errors::{SquaredErrors, Squares};
 use crate::assemble::cut_simplices::CutRule;
 use crate::assemble::space::tables::{BasisAt, CellTable};
 use crate::assemble::space::{Space, Terms, data};
@@ -47,38 +47,8 @@ const NEGLIGIBLE: f64 = 1e-10;
 /// Degree of the rule for means over facets.
 const MEAN_DEGREE: usize = 5;
 
-/// Squares of the L2 norm, the broken H1 seminorm and the broken energy norm of an error, and of the energy norm
-/// of the error of a function in cells.
-type Squares = [f64; 4];
-
-/// Squares of the norms of the error.
-#[derive(Clone, Copy, Debug, Default)]
-pub(super) struct SquaredErrors {
-    squares: Squares,
-    /// Maximum over nodes.
-    max: f64,
-}
-
-impl SquaredErrors {
-    fn add(&mut self, squares: &Squares) {
-        self.squares.iter_mut().zip(squares).for_each(|(sum, square)| *sum += square);
-    }
-    /// The norms, with the square of the facet part of the energy norm.
-    pub fn norms(&self, of_facets: f64) -> Errors {
-        let [l2, h1, broken_energy, _] = self.squares;
-        Errors {
-            l2: Some(l2.sqrt()),
-            h1: Some(h1.sqrt()),
-            energy: Some((broken_energy + of_facets).sqrt()),
-            broken_energy: Some(broken_energy.sqrt()),
-            max: Some(self.max),
-        }
-    }
-    /// The energy norm of the error of the function in cells.
-    pub fn of_function(&self) -> f64 {
-        self.squares[3].sqrt()
-    }
-}
+/// Whether a cell counts in a sum over cells.
+pub(super) type Counts<'c> = &'c (dyn Fn(usize) -> bool + Sync);
 
 /// What the errors of all cells read.
 struct Measure<'m, 'r, 'f, T: Real, const D: usize> {
@@ -98,12 +68,13 @@ struct Measure<'m, 'r, 'f, T: Real, const D: usize> {
 }
 
 impl<T: Real, const D: usize> Space<'_, T, D> {
-    /// Squares of the errors of a vector of unknowns and of a function in cells over all cells.
+    /// Squares of the errors of a vector of unknowns and of a function in cells over the cells that count.
     pub(super) fn cell_errors(
         &self,
         exact: &Reference<'_, T, D>,
         u: Option<&[T]>,
         function: Option<InCells<'_, D>>,
+        counts: Counts<'_>,
     ) -> Result<SquaredErrors, Error> {
         let (degree, lower) = match exact {
             Reference::Exact(_) => (
@@ -131,7 +102,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         // partial sums are added in order, so the result does not depend on threads
         let parts = cells::map(n_cells, &|cells: Range<usize>| {
             let (mut sum, mut open) = (SquaredErrors::default(), Vec::new());
-            for cell in cells {
+            for cell in cells.filter(|&cell| counts(cell)) {
                 let [low, high] = self.squares_in(&measure, cell, true)?;
                 match differ(&low, &high, &high.map(|square| AGREEMENT * square)) {
                     true => open.push((cell, low, high)),
@@ -150,7 +121,8 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         }
         let mut estimate = total;
         open.iter().for_each(|(_, _, high)| estimate.add(high));
-        let negligible = estimate.squares.map(|square| NEGLIGIBLE * square / n_cells as f64);
+        let n_counted = (0..n_cells).filter(|&cell| counts(cell)).count();
+        let negligible = estimate.squares.map(|square| NEGLIGIBLE * square / n_counted as f64);
         let parts = cells::map(open.len(), &|range: Range<usize>| {
             let mut sum = SquaredErrors::default();
             for (cell, low, high) in &open[range] {

@@ -10,6 +10,7 @@ mod evaluation;
 mod fields;
 mod norms;
 mod order;
+mod squared_errors;
 
 pub(crate) use admissible::Admissible;
 pub use contact::DiscreteContact;
@@ -18,3 +19,4 @@ pub use error_norm::ErrorNorm;
 pub use errors::{ContactErrors, Errors};
 pub use fields::Fields;
 pub use order::{FittedOrder, fit_order, observed_order};
+pub use squared_errors::SquaredErrors;

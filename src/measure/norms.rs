@@ -3,8 +3,10 @@
 use std::ops::Range;
 
 use super::admissible::InCells;
+use super::cell_errors::Counts;
 use super::errors::Errors;
 use super::evaluation::Reference;
+use super::squared_errors::SquaredErrors;
 use crate::assemble::Discretisation;
 use crate::assemble::load::FacetMoments;
 use crate::assemble::space::Space;
@@ -55,6 +57,34 @@ impl<T: Real, const D: usize> Discretisation<'_, T, D> {
         )(self, exact, u)
     }
 
+    /// Squares of the errors of [`Discretisation::errors_against`] over the cells for which `counts` is true and the
+    /// facets whose cell of lower number is one of them: over the own cells of a
+    /// [part](crate::mesh::Part::owns) of a mesh. Those of all parts merge into that of the whole, up to the rule
+    /// that a cell is given: of the rules whose results differ by less than `1e-10` of the mean over all cells that
+    /// count, the one with fewer points.
+    ///
+    /// # Errors
+    /// [`Error::DataNotFinite`].
+    ///
+    /// # Panics
+    /// If `u` is shorter than the number of unknowns.
+    pub fn squared_errors(
+        &self,
+        exact: &Exact<D>,
+        u: &[T],
+        counts: &(dyn Fn(usize) -> bool + Sync),
+    ) -> Result<SquaredErrors, Error> {
+        compiled!(
+            T, D: fn(
+                &Discretisation<'_, T, D>,
+                &Exact<D>,
+                &[T],
+                &(dyn Fn(usize) -> bool + Sync),
+            ) -> Result<SquaredErrors, Error>
+                = |of, exact, u, counts| of.squares_beside(exact, Some(u), None, counts)
+        )(self, exact, u, counts)
+    }
+
     /// Norms of the difference between `u` and a discrete function on the mesh of which this mesh is the
     /// refinement after some `refinements`: L2, H1 and the maximum over the nodes of this space.
     pub(crate) fn difference(
@@ -71,8 +101,8 @@ impl<T: Real, const D: usize> Discretisation<'_, T, D> {
                 = |of, u, (coarse, values, refinements)| {
                     let space = &coarse.space;
                     let reference = Reference::Coarse { space, values, refinements };
-                    let total = of.space.cell_errors(&reference, Some(u), None)?;
-                    Ok(Errors { energy: None, ..total.norms(0.0) })
+                    let total = of.space.cell_errors(&reference, Some(u), None, &|_| true)?;
+                    Ok(Errors { energy: None, ..total.norms() })
                 }
         )(self, u, (coarse, values, refinements))
     }
@@ -85,24 +115,35 @@ impl<T: Real, const D: usize> Discretisation<'_, T, D> {
         u: Option<&[T]>,
         function: Option<InCells<'_, D>>,
     ) -> Result<(Errors, Option<f64>), Error> {
+        let total = self.squares_beside(exact, u, function, &|_| true)?;
+        Ok((total.norms(), function.map(|_| total.of_function())))
+    }
+
+    fn squares_beside(
+        &self,
+        exact: &Exact<D>,
+        u: Option<&[T]>,
+        function: Option<InCells<'_, D>>,
+        counts: Counts<'_>,
+    ) -> Result<SquaredErrors, Error> {
         let space = &self.space;
-        let total = space.cell_errors(&Reference::Exact(exact), u, function)?;
+        let mut total = space.cell_errors(&Reference::Exact(exact), u, function, counts)?;
         let neighbours = space.neighbours.as_ref().filter(|_| self.form().couples());
-        let of_facets = match neighbours.zip(u) {
-            Some((neighbours, u)) => space.facet_error(self.form(), neighbours, u)?,
-            None => 0.0,
-        };
-        Ok((total.norms(of_facets), function.map(|_| total.of_function())))
+        if let Some((neighbours, u)) = neighbours.zip(u) {
+            total.of_facets = space.facet_error(self.form(), neighbours, u, counts)?;
+        }
+        Ok(total)
     }
 }
 
 impl<T: Real, const D: usize> Space<'_, T, D> {
-    /// The facet form at the jumps of the error.
+    /// The facet form at the jumps of the error, on the facets whose first cell counts.
     fn facet_error(
         &self,
         form: &dyn FacetForm<T, D>,
         neighbours: &Neighbours,
         u: &[T],
+        counts: Counts<'_>,
     ) -> Result<f64, Error> {
         let degree = form.moments(self.basis_degree);
         let table = self.facet_table(degree);
@@ -124,7 +165,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
                         let group = self.mesh.boundary_group(cell, local).unwrap_or(0);
                         (None, self.dirichlet_moments(&moments, (cell, local), group)?)
                     }
-                    Neighbour::Boundary(_) => continue,
+                    Neighbour::Boundary(_) | Neighbour::Cut => continue,
                 };
                 let jump = |k: usize| {
                     let there = match &other {
@@ -144,9 +185,9 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
             }
             Ok(())
         };
-        let parts = cells::map(self.mesh.n_cells(), &|mut cells: Range<usize>| {
-            let mut terms = Vec::new();
-            cells.try_for_each(|cell| terms_of(cell, &mut terms)).map(|()| terms)
+        let parts = cells::map(self.mesh.n_cells(), &|cells: Range<usize>| {
+            let (mut terms, mut counted) = (Vec::new(), cells.filter(|&cell| counts(cell)));
+            counted.try_for_each(|cell| terms_of(cell, &mut terms)).map(|()| terms)
         });
         // added in the order of facets, for every number of threads
         let mut total = 0.0;

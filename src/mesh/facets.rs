@@ -24,6 +24,9 @@ pub enum Neighbour {
     },
     /// The boundary.
     Boundary(BoundaryPart),
+    /// Cells that the mesh does not have, because it is a [part](super::Part) of another one: no data are
+    /// given here, nothing is bound, and no form has a term.
+    Cut,
 }
 
 /// The other side of every facet of every cell.
@@ -36,6 +39,7 @@ pub struct Neighbours {
 
 /// Codes from here on are boundary parts; codes below are half-facets.
 const BOUNDARY: u32 = u32::MAX - 3;
+/// Neither a second cell nor a boundary part: not known yet, or cut.
 const UNKNOWN: u32 = u32::MAX;
 /// Largest number of cells the codes can name.
 pub(super) const CELL_LIMIT: usize = (BOUNDARY as usize) / 4;
@@ -91,6 +95,7 @@ impl Neighbours {
             0 => Neighbour::Boundary(BoundaryPart::Dirichlet),
             1 => Neighbour::Boundary(BoundaryPart::Neumann),
             2 => Neighbour::Boundary(BoundaryPart::Contact),
+            3 => Neighbour::Cut,
             _ => Neighbour::Cell { cell: code >> 2, local: (code & 3) as u8 },
         }
     }
@@ -197,7 +202,7 @@ fn mismatch<const D: usize>(cells: &[u32]) -> Option<MeshError> {
     None
 }
 
-/// All facets, each once, in four ranges: interior, Dirichlet, Neumann, contact.
+/// All facets, each once, in five ranges: interior, Dirichlet, Neumann, contact, and where the mesh is cut.
 ///
 /// Within a range facets are ordered by their first cell, *here*. Of the two cells of an interior
 /// facet the first one has the lower number, and the normal points from it to the second, *there*.
@@ -205,7 +210,7 @@ fn mismatch<const D: usize>(cells: &[u32]) -> Option<MeshError> {
 pub struct Facets {
     /// The two half-facets of each facet; twice the same on the boundary.
     half_facets: Vec<[u32; 2]>,
-    starts: [usize; 5],
+    starts: [usize; 6],
 }
 
 impl Facets {
@@ -225,7 +230,7 @@ impl Facets {
                 }
             }
         }
-        let mut starts = [0, half_facets.len(), 0, 0, 0];
+        let mut starts = [0, half_facets.len(), 0, 0, 0, 0];
         for (k, part) in BoundaryPart::ALL.into_iter().enumerate() {
             let of_part = mesh.boundary().iter().filter(|f| f.part == part);
             half_facets.extend(of_part.map(|f| {
@@ -234,6 +239,13 @@ impl Facets {
             }));
             starts[k + 2] = half_facets.len();
         }
+        if mesh.is_part() {
+            for cell in 0..mesh.n_cells() {
+                let is_cut = |local: &usize| neighbours.across(cell, *local) == Neighbour::Cut;
+                half_facets.extend((0..=D).filter(is_cut).map(|l| [half_facet_code(cell, l); 2]));
+            }
+        }
+        starts[5] = half_facets.len();
         Self { half_facets, starts }
     }
     /// Number of facets.
@@ -252,6 +264,10 @@ impl Facets {
     pub fn part(&self, part: BoundaryPart) -> Range<usize> {
         self.starts[part as usize + 1]..self.starts[part as usize + 2]
     }
+    /// Numbers of the facets beyond which the cells of another part of the mesh lie.
+    pub fn cut(&self) -> Range<usize> {
+        self.starts[4]..self.starts[5]
+    }
     /// The first cell of a facet, and the number of the facet in it.
     #[inline(always)]
     pub fn here(&self, facet: usize) -> (usize, usize) {
@@ -259,7 +275,7 @@ impl Facets {
         ((code >> 2) as usize, (code & 3) as usize)
     }
     /// The second cell of an interior facet, and the number of the facet in it; the first one again on
-    /// the boundary.
+    /// the boundary and where the mesh is cut.
     #[inline(always)]
     pub fn there(&self, facet: usize) -> (usize, usize) {
         let code = self.half_facets[facet][1];

@@ -5,6 +5,7 @@ use crate::parallel::vectors::{for_each_chunk, for_each_chunk_of_groups};
 use super::boundary::BoundaryFacet;
 use super::edges::{Edges, edge_vertices};
 use super::error::MeshError;
+use super::part::extent::Extent;
 use super::simplicial::Mesh;
 use super::validate::check_size;
 use crate::instances::compiled;
@@ -180,6 +181,7 @@ impl<T: Real, const D: usize> Mesh<T, D> {
                 .iter()
                 .flat_map(|&region| std::iter::repeat_n(region, n_children))
                 .collect(),
+            whole: self.whole.map(Extent::refined),
         };
         Ok((fine, Refinement { parents }))
     }

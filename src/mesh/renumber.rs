@@ -80,8 +80,8 @@ impl<T: Real, const D: usize> Mesh<T, D> {
         };
         let mut boundary: Vec<BoundaryFacet> = self.boundary.iter().map(renumbered).collect();
         BoundaryFacet::sort(&mut boundary);
-        let (groups, is_supported) = (self.groups.clone(), self.is_supported);
-        (Self { vertices, cells, boundary, is_supported, groups, cell_regions }, numbers)
+        let (groups, is_supported, whole) = (self.groups.clone(), self.is_supported, self.whole);
+        (Self { vertices, cells, boundary, is_supported, groups, cell_regions, whole }, numbers)
     }
 }
 

@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use super::boundary::{BoundaryFacet, BoundaryPart};
 use super::groups::Groups;
+use super::part::extent::Extent;
 use crate::real::{Point, Real, point_f64};
 
 /// A conforming simplicial mesh of a domain in `D` dimensions (1, 2 or 3).
@@ -18,6 +19,8 @@ pub struct Mesh<T, const D: usize> {
     pub(in crate::mesh) groups: Arc<Groups>,
     /// The number of the region of each cell; empty if all cells are in the first.
     pub(in crate::mesh) cell_regions: Vec<u16>,
+    /// The extent of the mesh of which this one is a part.
+    pub(in crate::mesh) whole: Option<Extent<D>>,
 }
 
 impl<T: Real, const D: usize> Mesh<T, D> {
@@ -41,6 +44,7 @@ impl<T: Real, const D: usize> Mesh<T, D> {
                 is_supported: self.is_supported,
                 groups: self.groups.clone(),
                 cell_regions: self.cell_regions.clone(),
+                whole: self.whole,
             }),
         }
     }
@@ -77,7 +81,8 @@ impl<T: Real, const D: usize> Mesh<T, D> {
     pub fn has_part(&self, part: BoundaryPart) -> bool {
         self.boundary.iter().any(|f| f.part == part)
     }
-    /// Whether every component of the mesh, connected through facets, has a Dirichlet facet.
+    /// Whether every component of the mesh, connected through facets, has a Dirichlet facet; of a part, whether
+    /// every component of the whole mesh has one.
     pub fn is_supported(&self) -> bool {
         self.is_supported
     }
@@ -118,20 +123,44 @@ impl<T: Real, const D: usize> Mesh<T, D> {
         }
         shortest.sqrt()
     }
-    /// The largest cell diameter.
+    /// Whether the mesh is a [part](super::Part) of another one.
+    pub fn is_part(&self) -> bool {
+        self.whole.is_some()
+    }
+    /// The mesh as a part of one with this extent.
+    ///
+    /// The mesh size of a part that was refined is not known, because cells of other parts may be larger: it is
+    /// found by merging the extents of all parts.
+    #[must_use]
+    pub fn with_extent(self, whole: Extent<D>) -> Self {
+        Self { whole: Some(whole), ..self }
+    }
+    /// The largest cell diameter; on a part that of the whole mesh.
     pub fn mesh_size(&self) -> f64 {
+        match &self.whole {
+            Some(whole) => whole.mesh_size,
+            None => self.largest_cell_diameter(),
+        }
+    }
+    /// The diagonal of the smallest box around the mesh, on a part around the whole mesh: the length that makes
+    /// WOPSIP's penalty factor dimensionless.
+    pub fn domain_diameter(&self) -> f64 {
+        match &self.whole {
+            Some(whole) => whole.diameter(),
+            None => {
+                let [lower, upper] = self.own_box();
+                (upper - lower).norm()
+            }
+        }
+    }
+    pub(in crate::mesh) fn largest_cell_diameter(&self) -> f64 {
         (0..self.n_cells()).map(|c| self.cell_diameter(c).to_f64()).fold(0.0, f64::max)
     }
-    /// The diagonal of the smallest box around the mesh: the length that makes WOPSIP's penalty
-    /// factor dimensionless.
-    pub fn domain_diameter(&self) -> f64 {
+    /// The ends of the smallest box around the vertices.
+    pub(in crate::mesh) fn own_box(&self) -> [Point<f64, D>; 2] {
         let first = point_f64(&self.vertices[0]);
-        let (mut low, mut high) = (first, first);
-        for x in &self.vertices {
-            let x = point_f64(x);
-            low = low.zip_map(&x, f64::min);
-            high = high.zip_map(&x, f64::max);
-        }
-        (high - low).norm()
+        self.vertices.iter().map(point_f64).fold([first; 2], |[lower, upper], x| {
+            [lower.zip_map(&x, f64::min), upper.zip_map(&x, f64::max)]
+        })
     }
 }

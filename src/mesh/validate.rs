@@ -99,7 +99,8 @@ impl<T: Real, const D: usize> Mesh<T, D> {
         let is_supported = unsupported_component(&neighbours, &boundary, is_dirichlet).is_none();
         let (vertices, cells) = drop_unused(rounded, cells);
         let groups = Arc::new(Groups { regions: vec![Vec::new()], boundary: groups });
-        Ok(Self { vertices, cells, boundary, is_supported, groups, cell_regions: Vec::new() })
+        let cell_regions = Vec::new();
+        Ok(Self { vertices, cells, boundary, is_supported, groups, cell_regions, whole: None })
     }
 
     /// Checks that every component of the mesh, connected through facets, has a Dirichlet or a contact

@@ -7,7 +7,7 @@ use crate::constraint::{ConstraintSet, Nodes};
 use crate::element::{Layout, Node, ReferenceElement};
 use crate::error::Error;
 use crate::facet::{FacetForm, PenaltyParameters};
-use crate::mesh::Mesh;
+use crate::mesh::{Layers, Mesh};
 use crate::problem::Problem;
 use crate::real::Real;
 
@@ -87,6 +87,30 @@ impl<T: Real, const D: usize> dyn AnyScheme<T, D> + '_ {
             self.expected_orders(setting)
         } else {
             ExpectedOrders::default()
+        }
+    }
+    /// How many layers of other cells a [part](crate::mesh::Part) of a mesh must have, so that the rows of the
+    /// unknowns of its own cells, their load, bounds and residual are those on the whole mesh, bit for bit.
+    ///
+    /// *Broken elements.* A form on facets couples a cell with its neighbours: one layer across facets.
+    /// Products of lifts couple it with the neighbours of these as well: two. *Elements that share
+    /// unknowns.* A row belongs to the cells around a vertex: one layer across vertices, and a second one if
+    /// a form on facets couples these cells with others. Unknowns on facets are numbered after
+    /// the kind of facet, and a row lists its columns, whose products are added up, by number: no
+    /// facet of a cell that a row sees may be cut. This takes a second layer for elements that have
+    /// unknowns at vertices as well, and one more in one dimension, where the facets of a cell
+    /// have no vertex in common.
+    pub fn layers(&self, mesh: &Mesh<T, D>) -> Layers {
+        let (layout, form) = (self.layout(), self.form(mesh));
+        let (couples, on_facets) = (form.couples(), layout.facet > 0);
+        match layout.is_broken() {
+            true if form.is_lifted() => Layers::across_facets(2),
+            true => Layers::across_facets(usize::from(couples)),
+            false if D == 1 => {
+                Layers::across_vertices(1 + usize::from(couples) + usize::from(on_facets))
+            }
+            false if couples || on_facets && layout.vertex > 0 => Layers::across_vertices(2),
+            false => Layers::across_vertices(1),
         }
     }
     /// Penalty factors in force on a mesh.

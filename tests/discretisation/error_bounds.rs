@@ -124,7 +124,7 @@ fn mismatch_of_sides<const D: usize>(mesh: &Mesh<f64, D>, flux: &[f64]) -> f64 {
         Neighbour::Cell { cell, local } => {
             (f + flux[cell as usize * (D + 1) + usize::from(local)]).abs()
         }
-        Neighbour::Boundary(_) => 0.0,
+        Neighbour::Boundary(_) | Neighbour::Cut => 0.0,
     };
     flux.iter().enumerate().map(of).fold(0.0, f64::max) / largest
 }

@@ -9,6 +9,7 @@ mod error_bounds_guarantee;
 mod error_bounds_quadratics;
 mod forms;
 mod named_data;
+mod parts;
 mod runs;
 
 #[path = "../support"]

@@ -132,7 +132,7 @@ fn entries_of_the_kernel_and_of_data_belong_to_unknowns() {
         assert_eq!(outcome(good.clone().with_kernel(vec![kernel])), Outcome::Malformed);
     }
     let mut beyond = good;
-    let terms = vec![DirichletTerm { unknown: 9, load: 1.0, linear: 2.0 }];
-    beyond.dirichlet_energy = Some(DirichletEnergy { terms, constant: 1.0 });
+    let terms = vec![DirichletTerm { unknown: 9, load: 1.0, linear: 2.0, constant: 1.0 }];
+    beyond.dirichlet_energy = Some(DirichletEnergy { terms });
     assert_eq!(outcome(beyond), Outcome::Malformed);
 }

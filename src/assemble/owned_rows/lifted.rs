@@ -197,7 +197,7 @@ impl<T: Real, const D: usize> Lifting<'_, '_, T, D> {
                 let weight = me.coefficient;
                 Some(self.with_products((centre, local), None, weight, T::lit(1.0)))
             }
-            Neighbour::Boundary(_) => None,
+            Neighbour::Boundary(_) | Neighbour::Cut => None,
         }
     }
 

@@ -131,7 +131,7 @@ impl<T: Real, const D: usize> Filling<'_, '_, T, D> {
                     let weight = self.weights.at::<D>((cell, local), true, FacetKind::Dirichlet);
                     self.add_linear::<N, FLUX>(reference, &metric, local, &weight, &mut own);
                 }
-                Neighbour::Boundary(_) => {}
+                Neighbour::Boundary(_) | Neighbour::Cut => {}
             }
         }
         for (i, row) in own.iter().enumerate() {

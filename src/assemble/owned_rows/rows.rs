@@ -99,7 +99,7 @@ impl<T: Real, const D: usize> Filling<'_, '_, T, D> {
     pub(crate) fn positions(&self, cell: usize) -> ([usize; 4], usize) {
         let across = |local| match self.neighbours.across(cell, local) {
             Neighbour::Cell { cell, .. } => cell,
-            Neighbour::Boundary(_) => u32::MAX,
+            Neighbour::Boundary(_) | Neighbour::Cut => u32::MAX,
         };
         let mut cells = [u32::MAX; 4];
         for local in 0..=D {
@@ -141,7 +141,7 @@ impl<T: Real, const D: usize> Filling<'_, '_, T, D> {
                     let weight = self.weights.at::<D>((cell, local), true, FacetKind::Dirichlet);
                     self.add_facet::<N, M>(me, None, weight, &mut own);
                 }
-                Neighbour::Boundary(_) => {}
+                Neighbour::Boundary(_) | Neighbour::Cut => {}
             }
         }
         for (i, row) in own.iter().enumerate() {

@@ -191,7 +191,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         for local in (0..=D).filter(|&local| local != j && local != entered) {
             chain[2 * length - 1] = (k, local * (D + 1) + j, 1.0);
             match neighbours.across(numbers[k], local) {
-                Neighbour::Boundary(_) => {
+                Neighbour::Boundary(_) | Neighbour::Cut => {
                     let last = facets.binary_search_by_key(&(k, local), |facet| facet.at);
                     if let Some(last) = last.ok().filter(|&last| last > here) {
                         let gaps = [here, last].map(|facet| {

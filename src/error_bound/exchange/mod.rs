@@ -138,7 +138,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
                     Neighbour::Boundary(BoundaryPart::Dirichlet) => {
                         steps.push(Step::WithDirichlet(facet));
                     }
-                    Neighbour::Boundary(_) => {}
+                    Neighbour::Boundary(_) | Neighbour::Cut => {}
                 }
             }
             if has_inner_steps {

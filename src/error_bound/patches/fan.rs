@@ -39,7 +39,7 @@ impl<T: Real, const D: usize> Patches<'_, '_, T, D> {
             let local = of.sides[side];
             match self.neighbours.across(of.cell, usize::from(local)) {
                 Neighbour::Boundary(BoundaryPart::Dirichlet) | Neighbour::Cell { .. } => None,
-                Neighbour::Boundary(_) => Some(-0.5 * normal((of.cell, local))),
+                Neighbour::Boundary(_) | Neighbour::Cut => Some(-0.5 * normal((of.cell, local))),
             }
         };
         let (mut first, mut force, mut stiffness) = (0.0, 0.0, 0.0);

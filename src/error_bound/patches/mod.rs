@@ -197,7 +197,7 @@ impl<T: Real, const D: usize> Patches<'_, '_, T, D> {
                 }
             }
             Neighbour::Boundary(BoundaryPart::Dirichlet) => FacetOfPatch::Free,
-            Neighbour::Boundary(_) => FacetOfPatch::Fixed(-normal / D as f64),
+            Neighbour::Boundary(_) | Neighbour::Cut => FacetOfPatch::Fixed(-normal / D as f64),
         }
     }
 

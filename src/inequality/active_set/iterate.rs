@@ -2,7 +2,8 @@
 
 use super::contact_state::{prescribed_value, starting_states};
 use crate::algebra::{Bound, Contact, Inequality};
-use crate::inequality::certificate::{certify_with_rounding, positive_diagonal};
+use crate::inequality::certificate::positive_diagonal;
+use crate::inequality::violations::certify_with_rounding;
 use crate::inequality::{Outcome, Solution};
 use crate::real::Real;
 

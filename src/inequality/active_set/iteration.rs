@@ -6,7 +6,7 @@ use super::local_inequality::solve_locally;
 use super::progress::{Obstruction, Patience, ProgressMonitor};
 use super::settings::ActiveSet;
 use crate::algebra::{Bound, Inequality};
-use crate::inequality::certificate::certify_with_rounding;
+use crate::inequality::violations::certify_with_rounding;
 use crate::inequality::{Outcome, StepCounter};
 use crate::linear::direct::FactorError;
 use crate::real::Real;

@@ -7,6 +7,7 @@ use super::boundary::BoundaryFacet;
 use super::edges::edge_vertices;
 use super::error::MeshError;
 use super::geometry::{CellGeometry, describe_point};
+use super::part::extent::Extent;
 use super::simplicial::Mesh;
 use super::validate::check_size;
 use crate::instances::compiled;
@@ -272,6 +273,7 @@ impl<T: Real, const D: usize> Division<T, D> {
             is_supported: old.is_supported,
             groups: old.groups.clone(),
             cell_regions: ancestors.iter().filter_map(region).collect(),
+            whole: old.whole.map(Extent::refined),
         };
         let cells = self.leaves.iter().map(|leaf| leaf.cell).collect();
         (BisectedMesh { mesh, cells }, Bisection { ancestors, parents: self.midpoints.parents })

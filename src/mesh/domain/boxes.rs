@@ -139,7 +139,8 @@ impl<T: Real, const D: usize> Mesh<T, D> {
         let is_supported = boundary.iter().any(|f| f.part == BoundaryPart::Dirichlet);
         let side = |k: usize| (SIDES[k].to_owned(), domain.sides[k / 2][k % 2]);
         let groups = Arc::new(Groups::of_boundary((0..2 * D).map(side)));
-        Ok(Self { vertices, cells, boundary, is_supported, groups, cell_regions: Vec::new() })
+        let cell_regions = Vec::new();
+        Ok(Self { vertices, cells, boundary, is_supported, groups, cell_regions, whole: None })
     }
 }
 

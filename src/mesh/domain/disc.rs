@@ -5,6 +5,7 @@ use std::f64::consts::FRAC_PI_3;
 use crate::instances::compiled;
 use crate::mesh::boundary::BoundaryPart;
 use crate::mesh::error::MeshError;
+use crate::mesh::part::extent::Extent;
 use crate::mesh::refine::Refinement;
 use crate::mesh::simplicial::Mesh;
 use crate::mesh::validate::TaggedFacet;
@@ -69,6 +70,7 @@ impl<T: Real, const D: usize> Mesh<T, D> {
                 *x = to_disc(&middle).map(T::lit);
             }
         }
+        fine.whole = fine.whole.map(Extent::moved);
         Ok((fine, refinement))
     }
 }

@@ -18,7 +18,7 @@ fn energy(inequality: &Inequality<f64>, u: &[f64]) -> f64 {
     let product: f64 = (0..u.len()).map(|i| u[i] * matrix.row_dot_f64(i, u)).sum();
     let data = inequality.dirichlet_energy.as_ref().expect("weak data");
     let linear: f64 = data.terms.iter().map(|t| t.linear * u[t.unknown as usize]).sum();
-    product - linear + data.constant
+    product - linear + data.constant()
 }
 
 fn check<const D: usize>(mesh: &Mesh<f64, D>, schemes: &[Box<dyn AnyScheme<f64, D>>]) {

@@ -1,0 +1,164 @@
+//! The numbers of the unknowns of all parts together.
+
+use super::exchange::Exchange;
+use crate::assemble::Discretisation;
+use crate::mesh::Part;
+use crate::real::Real;
+
+/// In the place of a number that is not known yet.
+const UNKNOWN: u64 = u64::MAX;
+
+/// The numbers of the unknowns of all parts of a mesh together: those of a part, ascending, follow those of the
+/// part before.
+///
+/// No part has a table of all unknowns. An unknown is named by one of its cells, the number of the cell in the
+/// whole mesh, and its place in the cell, and the owner of a cell knows the unknowns of the cell. So two
+/// questions are enough: what is in own cells and belongs to a lower part is asked of that part; then the
+/// rest of the owner of any cell that has it.
+#[derive(Clone, Debug)]
+pub struct Numbering {
+    own: Vec<u32>,
+    numbers: Vec<u64>,
+    /// The first number of each part, and the number of all unknowns.
+    first: Vec<u64>,
+    /// By part the own unknowns whose values it needs, and the unknowns whose values it has.
+    sent: Vec<Vec<u32>>,
+    received: Vec<Vec<u32>>,
+}
+
+impl Numbering {
+    /// Numbers the unknowns of a discretisation on a part; all parts call it.
+    ///
+    /// # Panics
+    /// If the part has too few [layers](crate::scheme::AnyScheme#method.layers), so that a cell whose unknowns
+    /// are asked for is not among the own cells of the part that is asked.
+    pub fn new<T: Real, const D: usize>(
+        part: &Part<T, D>,
+        discretisation: &Discretisation<'_, T, D>,
+        exchange: &dyn Exchange,
+    ) -> Self {
+        let per_cell = discretisation.unknowns_of(0).count();
+        let mut unknowns = Vec::with_capacity(per_cell * part.owners.len());
+        for cell in 0..part.owners.len() {
+            unknowns.extend(discretisation.unknowns_of(cell).map(|unknown| unknown as u32));
+        }
+        let owners = discretisation.owners(&part.owners);
+        Cells {
+            number: part.number,
+            owners: &part.owners,
+            numbers: &part.cells,
+            unknowns,
+            per_cell,
+        }
+        .number(&owners, exchange)
+    }
+    /// The own unknowns, in the order of their numbers.
+    pub fn own(&self) -> &[u32] {
+        &self.own
+    }
+    /// The number of each unknown of the part among those of all parts.
+    pub fn numbers(&self) -> &[u64] {
+        &self.numbers
+    }
+    /// The first number of each part, and the number of all unknowns.
+    pub fn first(&self) -> &[u64] {
+        &self.first
+    }
+    /// Gives the unknowns that other parts own the values that they have there; all parts call it.
+    ///
+    /// # Panics
+    /// If there are fewer values than unknowns.
+    pub fn update(&self, values: &mut [f64], exchange: &dyn Exchange) {
+        let bits = |&unknown: &u32| values[unknown as usize].to_bits();
+        let lists = self.sent.iter().map(|unknowns| unknowns.iter().map(bits).collect()).collect();
+        for (unknowns, bits) in self.received.iter().zip(exchange.exchange(lists)) {
+            for (&unknown, bits) in unknowns.iter().zip(bits) {
+                values[unknown as usize] = f64::from_bits(bits);
+            }
+        }
+    }
+}
+
+/// The cells of a part and their unknowns.
+struct Cells<'p> {
+    /// The number of the part.
+    number: u32,
+    owners: &'p [u32],
+    /// The numbers of the cells in the whole mesh.
+    numbers: &'p [u64],
+    unknowns: Vec<u32>,
+    per_cell: usize,
+}
+
+impl Cells<'_> {
+    fn number(&self, owners: &[u32], exchange: &dyn Exchange) -> Numbering {
+        let n_parts = exchange.parts();
+        let mut is_inside = vec![false; owners.len()];
+        for (cell, unknowns) in self.unknowns.chunks_exact(self.per_cell).enumerate() {
+            if self.owners[cell] == self.number {
+                unknowns.iter().for_each(|&unknown| is_inside[unknown as usize] = true);
+            }
+        }
+        let is_own = |&i: &u32| owners[i as usize] == self.number;
+        let own: Vec<u32> = (0..owners.len() as u32).filter(is_own).collect();
+        let mut first = vec![0];
+        for count in exchange.exchange(vec![vec![own.len() as u64]; n_parts]) {
+            first.push(first[first.len() - 1] + count[0]);
+        }
+        let mut numbers = vec![UNKNOWN; owners.len()];
+        for (number, &unknown) in (first[self.number as usize]..).zip(&own) {
+            numbers[unknown as usize] = number;
+        }
+        let of_lower_parts = |unknown: usize, of: u32| is_inside[unknown] && owners[unknown] == of;
+        self.ask(&mut numbers, n_parts, exchange, &of_lower_parts);
+        self.ask(&mut numbers, n_parts, exchange, &|_, _| true);
+        let (mut received, mut asked) = (vec![Vec::new(); n_parts], vec![Vec::new(); n_parts]);
+        for (unknown, &number) in (0..).zip(&numbers) {
+            let of = first.partition_point(|&first| first <= number) - 1;
+            if of != self.number as usize {
+                received[of].push(unknown);
+                asked[of].push(number - first[of]);
+            }
+        }
+        let at = |positions: Vec<u64>| positions.iter().map(|&k| own[k as usize]).collect();
+        let sent = exchange.exchange(asked).into_iter().map(at).collect();
+        Numbering { own, numbers, first, sent, received }
+    }
+
+    /// Asks the owners of other cells for the numbers of those of their unknowns that are not known, and
+    /// answers the same questions.
+    fn ask(
+        &self,
+        numbers: &mut [u64],
+        n_parts: usize,
+        exchange: &dyn Exchange,
+        asks: &dyn Fn(usize, u32) -> bool,
+    ) {
+        let mut names = vec![Vec::new(); n_parts];
+        let mut asked: Vec<Vec<u32>> = vec![Vec::new(); n_parts];
+        let mut is_asked = vec![false; numbers.len()];
+        for (k, &unknown) in self.unknowns.iter().enumerate() {
+            let (cell, place, i) = (k / self.per_cell, k % self.per_cell, unknown as usize);
+            let of = self.owners[cell];
+            if of == self.number || numbers[i] != UNKNOWN || is_asked[i] || !asks(i, of) {
+                continue;
+            }
+            is_asked[i] = true;
+            names[of as usize].push(self.numbers[cell] * self.per_cell as u64 + place as u64);
+            asked[of as usize].push(unknown);
+        }
+        let answer = |name: &u64| {
+            let [cell, place] = [name / self.per_cell as u64, name % self.per_cell as u64];
+            let cell = self.numbers.binary_search(&cell);
+            let cell = cell.expect("the owner of a cell has it");
+            numbers[self.unknowns[cell * self.per_cell + place as usize] as usize]
+        };
+        let answers = |names: &Vec<u64>| names.iter().map(answer).collect();
+        let answers = exchange.exchange(names).iter().map(answers).collect();
+        for (unknowns, answers) in asked.iter().zip(exchange.exchange(answers)) {
+            for (&unknown, number) in unknowns.iter().zip(answers) {
+                numbers[unknown as usize] = number;
+            }
+        }
+    }
+}

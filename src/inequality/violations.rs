@@ -1,0 +1,297 @@
+//! How a certificate is computed: by sums and maxima over the unknowns of one part of a mesh, or of all.
+
+use super::certificate::{Certificate, positive_diagonal, residual};
+use super::scales::{Scales, Sums, maximum};
+use crate::algebra::{Bound, Inequality};
+use crate::instances::compiled;
+use crate::real::Real;
+
+/// The certificate of `u` as a solution of the inequality.
+#[must_use]
+pub fn certify<T: Real>(inequality: &Inequality<T>, u: &[T]) -> Certificate {
+    certify_with_jump_multipliers(inequality, u, &[])
+}
+
+/// The certificate of `u` together with the jump multipliers `p` of a
+/// [`PenalisedMatrix`](crate::algebra::PenalisedMatrix): the residual is `c - K u - M^T p`, without the
+/// rounding of differences of values, and the largest `|g - M u + p / s|`, `s` the weight of a jump, is
+/// divided by `U`.
+/// Without jump multipliers, or if their number is not that of the jumps, `p = S (M u - g)`.
+#[must_use]
+pub fn certify_with_jump_multipliers<T: Real>(
+    inequality: &Inequality<T>,
+    u: &[T],
+    jump_multipliers: &[T],
+) -> Certificate {
+    compiled!(
+        T: fn(&Inequality<T>, &[T], &[T]) -> Certificate
+            = certificate_of
+    )(inequality, u, jump_multipliers)
+}
+
+fn certificate_of<T: Real>(
+    inequality: &Inequality<T>,
+    u: &[T],
+    jump_multipliers: &[T],
+) -> Certificate {
+    certify_with_rounding(inequality, u, jump_multipliers).0
+}
+
+/// The certificate, and the dual norm, divided by `E`, of the vector with the entries `d_i U`. This
+/// second number times machine epsilon is the size of rounding errors in `A u`, below which no
+/// solver can reduce the residual.
+pub(crate) fn certify_with_rounding<T: Real>(
+    inequality: &Inequality<T>,
+    u: &[T],
+    jump_multipliers: &[T],
+) -> (Certificate, f64) {
+    Violations::at(inequality, u, jump_multipliers, &|_| true).certificate_with_rounding()
+}
+
+/// The violations of the complementarity conditions at the unknowns that a part of a mesh owns: sums and
+/// maxima that [merge](Violations::merge) into those at all unknowns, of which the [`Certificate`] is made.
+///
+/// ```
+/// use unilateral::inequality::{Violations, certify};
+/// use unilateral::prelude::*;
+///
+/// let problem = Problem::new().source(|_| -8.0).obstacle_below(|x| -0.3 - x[0] * x[0]);
+/// let line = BoxDomain::dirichlet(Point::from([-1.0]), Point::from([1.0]));
+/// let mesh = Mesh::<f64, 1>::kuhn_box(&line, [8])?;
+/// let solved = solve(&problem, &mesh, &ConformingP1)?;
+/// let (inequality, u) = (solved.inequality(), solved.values());
+/// let [left, right] =
+///     [0..5, 5..9].map(|own| Violations::of(inequality, u, &[], &|i| own.contains(&i)));
+/// let (merged, serial) = (left.merge(right).certificate(), certify(inequality, u));
+/// assert!((merged.largest() - serial.largest()).abs() < 1e-15);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Clone, Copy, Debug)]
+pub struct Violations {
+    /// A power of two near the largest value; by its square the sums are divided.
+    unit: f64,
+    scales: Sums,
+    /// The largest violation of a bound.
+    feasibility: f64,
+    /// The largest difference between a jump and the one that its multiplier determines.
+    mismatch: f64,
+    /// Sums of squares, by the names of the certificate.
+    squares: [f64; 3],
+    /// The sum of the diagonal, not divided by the unit.
+    stiffness: f64,
+    /// Machine epsilon.
+    epsilon: f64,
+}
+
+impl Violations {
+    /// The violations at the unknowns for which `owns` is true, of the values `u` of all unknowns of a part and
+    /// of as many jump multipliers as its penalised matrix has jumps, or none; see
+    /// [`certify_with_jump_multipliers`]. A jump belongs to the part that
+    /// owns its first unknown.
+    #[must_use]
+    pub fn of<T: Real>(
+        inequality: &Inequality<T>,
+        u: &[T],
+        jump_multipliers: &[T],
+        owns: &(dyn Fn(usize) -> bool + Sync),
+    ) -> Self {
+        compiled!(
+            T: fn(&Inequality<T>, &[T], &[T], &(dyn Fn(usize) -> bool + Sync)) -> Violations
+                = |inequality, u, multipliers, owns| {
+                    Violations::at(inequality, u, multipliers, &|i| owns(i))
+                }
+        )(inequality, u, jump_multipliers, owns)
+    }
+
+    pub(super) fn at<T: Real>(
+        inequality: &Inequality<T>,
+        u: &[T],
+        jump_multipliers: &[T],
+        owns: &(impl Fn(usize) -> bool + Sync),
+    ) -> Self {
+        let n = inequality.size();
+        let mut sums = Self {
+            unit: 1.0,
+            scales: Sums::default(),
+            feasibility: 0.0,
+            mismatch: 0.0,
+            squares: [0.0; 3],
+            stiffness: 0.0,
+            epsilon: T::EPSILON,
+        };
+        if !inequality.is_well_formed() || u.len() != n {
+            return Self { mismatch: f64::INFINITY, ..sums };
+        }
+        let bounds = &inequality.bounds;
+        let mut r = vec![0.0; n];
+        residual(inequality, u, jump_multipliers, &mut r);
+        let diagonal: Vec<f64> = (0..n).map(|i| positive_diagonal(inequality, i)).collect();
+        let of_unknown = |i: usize| size(&bounds[i], u[i], r[i] / diagonal[i]);
+        sums.unit = unit((0..n).filter(|&i| owns(i)).map(of_unknown).fold(0.0, f64::max));
+        let values = (u, &r[..], jump_multipliers);
+        sums.scales = Sums::of(inequality, values, &|i| diagonal[i], sums.unit, owns);
+        sums.mismatch = largest_mismatch(inequality, u, jump_multipliers, owns);
+        for i in (0..n).filter(|&i| owns(i)) {
+            let d = diagonal[i];
+            sums.stiffness += d;
+            let local = LocalViolation::new(&bounds[i], u[i].to_f64(), -r[i] / d);
+            sums.feasibility = sums.feasibility.max(local.feasibility);
+            let changes = [local.multiplier, local.complementarity, local.residual];
+            for (square, change) in sums.squares.iter_mut().zip(changes) {
+                *square += d * (change / sums.unit).powi(2);
+            }
+        }
+        sums
+    }
+
+    /// The violations at the unknowns of both; no unknown may be one of both.
+    #[must_use]
+    pub fn merge(self, other: Self) -> Self {
+        let unit = match [self.is_zero(), other.is_zero()] {
+            [true, false] => other.unit,
+            [false, true] => self.unit,
+            _ => self.unit.max(other.unit),
+        };
+        let (one, two) = (self.in_unit(unit), other.in_unit(unit));
+        Self {
+            unit,
+            scales: one.scales.merge(two.scales),
+            feasibility: one.feasibility.max(two.feasibility),
+            mismatch: maximum(one.mismatch, two.mismatch),
+            squares: std::array::from_fn(|k| one.squares[k] + two.squares[k]),
+            stiffness: one.stiffness + two.stiffness,
+            epsilon: one.epsilon.max(two.epsilon),
+        }
+    }
+
+    /// The certificate of what was merged.
+    #[must_use]
+    pub fn certificate(&self) -> Certificate {
+        self.certificate_with_rounding().0
+    }
+
+    /// The certificate, and the size of rounding errors relative to machine epsilon: see
+    /// `certify_with_rounding`.
+    pub(super) fn certificate_with_rounding(&self) -> (Certificate, f64) {
+        let Scales { max_norm, energy_norm } = self.scales.scales(self.epsilon, self.unit);
+        let [multiplier, complementarity, residual] = self.squares;
+        let numbers = [max_norm, energy_norm, multiplier, residual, self.mismatch];
+        if !numbers.iter().all(|x| x.is_finite()) {
+            return (Certificate::INVALID, 0.0);
+        }
+        let norm = |sum: f64| sum.sqrt() / (energy_norm / self.unit);
+        let certificate = Certificate::new([
+            self.feasibility / max_norm,
+            norm(multiplier),
+            norm(complementarity),
+            norm(residual).max(self.mismatch / max_norm),
+        ]);
+        (certificate, max_norm / self.unit * norm(self.stiffness))
+    }
+
+    /// Whether all values and corrections are zero, so that the unit has no meaning.
+    fn is_zero(&self) -> bool {
+        self.scales.is_zero() && self.squares == [0.0; 3]
+    }
+
+    fn in_unit(self, unit: f64) -> Self {
+        if self.is_zero() {
+            return Self { unit, ..self };
+        }
+        let ratio = unit / self.unit;
+        let factor = ratio.recip().powi(2);
+        let (scales, squares) = (self.scales.in_units_of(ratio), self.squares.map(|s| s * factor));
+        Self { unit, scales, squares, ..self }
+    }
+}
+
+/// The largest of a value, its nearest admissible value and its Jacobi correction.
+fn size<T: Real>(bound: &Bound<T>, x: T, correction: f64) -> f64 {
+    x.to_f64().abs().max(bound.nearest(x).to_f64().abs()).max(correction.abs())
+}
+
+/// A power of two near the largest size; one if all are zero or one is not finite.
+fn unit(largest: f64) -> f64 {
+    if largest > 0.0 && largest.is_finite() { largest.log2().floor().exp2() } else { 1.0 }
+}
+
+/// The largest `|g - M u + p / s|` of the jumps whose first unknown is owned; zero without jump multipliers.
+fn largest_mismatch<T: Real>(
+    inequality: &Inequality<T>,
+    u: &[T],
+    jump_multipliers: &[T],
+    owns: &impl Fn(usize) -> bool,
+) -> f64 {
+    let Some(penalised) = &inequality.penalised else { return 0.0 };
+    if jump_multipliers.len() != penalised.n_jumps() {
+        return 0.0;
+    }
+    let of_jump = |jump: usize| {
+        let multiplier = jump_multipliers[jump].to_f64();
+        penalised.jump_residual(jump, |i| u[i].to_f64(), multiplier).abs()
+    };
+    let owned = |&jump: &usize| penalised.first_unknown(jump).is_some_and(owns);
+    // unlike f64::max this keeps a number that is not finite
+    (0..jump_multipliers.len()).filter(owned).map(of_jump).fold(0.0, maximum)
+}
+
+/// The violations of one unknown, each as a change of its value.
+#[derive(Default)]
+struct LocalViolation {
+    feasibility: f64,
+    multiplier: f64,
+    complementarity: f64,
+    residual: f64,
+}
+
+impl LocalViolation {
+    /// The violations for the value `x` and `step = r_i / d_i`, which is positive where a Gauss-Seidel
+    /// correction would decrease the value.
+    fn new<T: Real>(bound: &Bound<T>, x: f64, step: f64) -> Self {
+        if let Some(value) = bound.fixed_value() {
+            return Self { feasibility: (x - value.to_f64()).abs(), ..Self::default() };
+        }
+        let to_lower = bound.lower().map_or(f64::INFINITY, |l| x - l.to_f64());
+        let to_upper = bound.upper().map_or(f64::INFINITY, |u| u.to_f64() - x);
+        let (gap, to_opposite, step_to_bound) = if to_lower <= to_upper {
+            (to_lower, to_upper, step)
+        } else {
+            (to_upper, to_lower, -step)
+        };
+        let mut local = Self { feasibility: (-gap).max(0.0), ..Self::default() };
+        if gap > step.abs() {
+            local.residual = step;
+        } else if step_to_bound < 0.0 {
+            local.multiplier = (-step_to_bound).min(to_opposite.max(0.0));
+        }
+        local.complementarity = gap.min(step_to_bound).max(0.0);
+        local
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::algebra::SparseMatrix;
+
+    /// Forces and values in a unit that is smaller or larger by a power of two.
+    #[test]
+    fn certificate_and_rounding_do_not_depend_on_the_unit_of_data() {
+        let of_unit = |unit: f64| {
+            let matrix = SparseMatrix {
+                row_starts: vec![0, 2, 4],
+                columns: vec![0, 1, 0, 1],
+                values: vec![3.0, -1.0, -1.0, 2.0],
+            };
+            let bounds = vec![Bound::Lower(-0.5 * unit), Bound::Upper(0.3 * unit)];
+            let problem = Inequality::new(matrix, true, vec![-2.0 * unit, unit], bounds);
+            certify_with_rounding(&problem, &[-0.4 * unit, 0.31 * unit], &[])
+        };
+        let (certificate, rounding) = of_unit(1.0);
+        assert!(certificate.feasibility > 0.0 && certificate.complementarity > 0.0);
+        assert!(rounding > 0.0);
+        for exponent in [-300, -30, 30, 300] {
+            assert_eq!(of_unit(2.0_f64.powi(exponent)), (certificate, rounding), "{exponent}");
+        }
+    }
+}

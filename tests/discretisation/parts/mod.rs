@@ -1,0 +1,8 @@
+//! Schemes on parts of meshes against the same schemes on the whole.
+
+mod compare;
+mod meshes;
+mod numbers;
+mod problems;
+mod rows;
+mod sums;
