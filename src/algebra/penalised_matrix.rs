@@ -126,9 +126,8 @@ impl<T: Real> PenalisedMatrix<T> {
     pub(crate) fn largest_ratio(&self) -> f64 {
         let of_jump = |k: usize| {
             let squares: f64 = self.terms_of(k).iter().map(|t| t.weight.to_f64().powi(2)).sum();
-            let first = self.terms_of(k).iter().flat_map(|t| [t.here, t.there]);
-            let first = first.into_iter().find(|&i| i != JumpTerm::<T>::NO_UNKNOWN);
-            let stiffness = first.map_or(f64::INFINITY, |i| self.stiffness_diagonal(i as usize));
+            let first = self.first_unknown(k);
+            let stiffness = first.map_or(f64::INFINITY, |i| self.stiffness_diagonal(i));
             self.weights[k].to_f64() * squares / stiffness
         };
         (0..self.n_jumps()).map(of_jump).fold(0.0, f64::max)

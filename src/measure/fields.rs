@@ -36,6 +36,8 @@ pub struct Fields {
     pub pressure: Vec<f64>,
     /// The gap that is left on each of these facets: the mean of `u - g`.
     pub gap: Vec<f64>,
+    /// The share of each cell in the square of the error bound; empty unless the caller sets it.
+    pub bound: Vec<f64>,
 }
 
 impl Fields {
@@ -111,6 +113,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
             discrete_contact: self.discrete_contact(inequality, solution),
             pressure: densities(&facets, true),
             gap: contact_boundary.iter().map(|&place| self.mean_gap(place, u)).collect(),
+            bound: Vec::new(),
             contact_boundary,
         }
     }

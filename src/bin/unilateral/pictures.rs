@@ -1,5 +1,5 @@
 //! A solution as a picture: the function, the contact set found against the exact free boundary, the
-//! jumps across facets and the multiplier, as PNG and SVG.
+//! jumps across facets, the multiplier and the share of each cell in the error bound, as PNG and SVG.
 //!
 //! `cargo run --release -- pictures --help` lists the options. Exit codes: 0 if every solve converged,
 //! 1 if one did not (its last iterate is drawn, and said to be one), 2 if the request was wrong.
@@ -9,13 +9,14 @@ use std::path::PathBuf;
 
 use clap::Args;
 use unilateral::error::Error;
-use unilateral::nested::Solved;
+use unilateral::nested::{Adaptivity, Solved};
 use unilateral::plot::{Picture, Slice};
 use unilateral::problem_file::{self, AnyOwnProblem};
 use unilateral::scenes::AnyScene;
 use unilateral::scheme::NamedScheme;
 use unilateral::study::{Row, Study, file_name};
 
+use crate::adaptive::adaptivity;
 use crate::mesh_file::MeshFile;
 use crate::posed::Posed;
 use crate::shared::{Failure, Request, end_at_interrupt, make_directory, print, print_to, scene};
@@ -38,6 +39,10 @@ pub struct Options {
     /// default none
     #[arg(long, value_name = "N")]
     level: Option<usize>,
+    /// Draw every mesh of a refinement that follows the error bound, as for compare; --level N then sets the first mesh,
+    /// by default 4 subdivisions
+    #[arg(long, value_name = "GOAL|KEY=VALUE[,...]", value_parser = adaptivity, conflicts_with = "series")]
+    adaptive: Option<Adaptivity>,
     /// In space: the coordinate that the slice fixes, x, y or z
     #[arg(long, value_parser = ["x", "y", "z"], requires = "at")]
     across: Option<String>,
@@ -76,6 +81,10 @@ fn draw<const D: usize>(options: &Options, posed: Posed<D>) -> Result<bool, Fail
     let mesh = options.mesh.read(&warn)?;
     let study = |warn: &dyn Fn(String)| -> Request<Study<'_, f64, D>> {
         let study = posed.clone().study(warn)?.named_scheme(&options.scheme);
+        let study = match options.adaptive {
+            Some(adaptivity) => study.adaptive(adaptivity),
+            None => study,
+        };
         Ok(match mesh.clone() {
             Some(mesh) => study.on_mesh(mesh),
             None => study,
@@ -83,6 +92,7 @@ fn draw<const D: usize>(options: &Options, posed: Posed<D>) -> Result<bool, Fail
     };
     let default = match mesh.is_some() || posed.has_mesh() {
         true => 0,
+        false if options.adaptive.is_some() => 4,
         false if D == 3 => 8,
         false => 16,
     };
@@ -133,7 +143,8 @@ fn draw_one<const D: usize>(
     solved: &Solved<'_, f64, D>,
     slice: Option<Slice>,
 ) -> Result<Vec<PathBuf>, Error> {
-    let Some(fields) = solved.fields() else { return Ok(Vec::new()) };
+    let Some(mut fields) = solved.fields() else { return Ok(Vec::new()) };
+    fields.bound = solved.bound().map_or_else(|_| Vec::new(), |bound| bound.cells);
     let mut title = title.to_owned();
     if !solved.converged() {
         title += &format!(", NOT CONVERGED: {}", solved.outcome());

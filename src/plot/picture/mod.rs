@@ -1,6 +1,6 @@
-//! Pictures of a solution: in the plane four panels with the function, the contact set found
-//! against the exact free boundary, the jumps across facets and the multiplier; on the line curves;
-//! in space the panels of a slice.
+//! Pictures of a solution: in the plane panels with the function, the contact set found against the
+//! exact free boundary, the jumps across facets, the multiplier and, if it is given, the share of each
+//! cell in the error bound; on the line curves; in space the panels of a slice.
 //!
 //! A discontinuous function is drawn cell by cell as it is. The bands of a colour are cut exactly
 //! along the levels of the function on each cell, of a quadratic one on the parts between vertices
@@ -255,6 +255,7 @@ fn check_fields<const D: usize>(mesh: &Mesh<f64, D>, fields: &Fields) -> Result<
     let fits = fields.u.len() == n * (D + 1)
         && [0, n * edge_vertices(D).len()].contains(&fields.midpoints.len())
         && [0, mesh.vertices().len()].contains(&found.density.len())
+        && [0, n].contains(&fields.bound.len())
         && found.cells.iter().all(|&cell| cell < n)
         && found.facets.iter().all(|&(cell, local)| cell < n && local <= D);
     match fits {

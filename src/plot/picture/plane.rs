@@ -71,6 +71,9 @@ impl<'a, const D: usize> Plane<'a, D> {
         if self.problem.is_constrained() && !self.view.fields.discrete_contact.density.is_empty() {
             panels.push(self.multiplier());
         }
+        if !self.view.fields.bound.is_empty() {
+            panels.push(Panel::Map(self.bound()));
+        }
         panels
     }
 
@@ -265,6 +268,27 @@ impl<'a, const D: usize> Plane<'a, D> {
         }
         map.lines.extend(self.rim());
         Panel::Map(map)
+    }
+
+    /// The share of each cell in the square of the error bound.
+    fn bound(&self) -> Map {
+        let mut map = self.map("share in the error bound");
+        let share = |section: &Section| self.view.fields.bound[section.cell];
+        let shares = self.sections.iter().map(share);
+        map.scale = Scale::logarithmic("share in the square of the bound", shares, 0.0);
+        if let Some(scale) = &map.scale {
+            let mut bands: Vec<(usize, &Section)> =
+                self.sections.iter().map(|section| (scale.band(share(section)), section)).collect();
+            // those of a colour together, which keeps files short
+            bands.sort_by_key(|(band, _)| *band);
+            let area = |section: &Section| section.corners.iter().map(|c| c.at).collect();
+            map.fills.extend(bands.iter().map(|(band, s)| (scale.colour(*band), area(s))));
+        }
+        if self.sections.len() <= MOST_EDGES {
+            map.lines.extend(self.edges.iter().map(|e| (Stroke::Mesh, e.ends)));
+        }
+        map.lines.extend(self.rim());
+        map
     }
 
     /// The multiplier on a contact boundary that is not straight.
