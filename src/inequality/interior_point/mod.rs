@@ -52,9 +52,9 @@ const STAGNATION_STEPS: usize = 3;
 /// mean makes the steps short after most pairs are decided.
 const LEAST_SHARE: f64 = 1e-3;
 
-/// Ratio of penalty to stiffness above which the first run resolves slacks that the penalty determines: they are
-/// about its reciprocal, and [`IDENTIFICATION_TOL`] is reached before they are told from zero.
-const LARGE_PENALTY: f64 = 1e8;
+/// Ratio of penalty to stiffness above which the first run resolves slacks that the penalty determines. They are about
+/// its reciprocal, so that [`IDENTIFICATION_TOL`] is reached before they are told from zero.
+const LARGE_PENALTY: f64 = 1.0 / IDENTIFICATION_TOL;
 
 /// When the method ends.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
