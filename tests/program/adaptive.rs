@@ -2,7 +2,7 @@
 
 use serde_json::Value;
 
-use super::run::{Scratch, refused, rows, stdout};
+use super::run::{Scratch, command, refused, rows, stderr, stdout};
 
 #[test]
 fn meshes_follow_the_bound_to_a_goal() {
@@ -85,4 +85,20 @@ fn wrong_requests_are_refused() {
     for (options, expected) in cases {
         refused(&scratch, &options.split(' ').collect::<Vec<_>>(), expected);
     }
+}
+
+#[test]
+fn every_mesh_of_the_sequence_is_drawn_with_the_shares_of_cells() {
+    let scratch = Scratch::new("adaptive-pictures");
+    let out = scratch.path("pictures");
+    let options = "--scene hertz-2d --scheme sipg --level 2 --adaptive steps=2";
+    let output =
+        command("pictures").args(options.split(' ')).args(["--out", &out]).output().unwrap();
+    assert_eq!((output.status.code(), &stderr(&output)[..]), (Some(0), ""));
+    for step in 0..=2 {
+        let file = scratch.0.join(format!("pictures/hertz-2d-sipg-{step}.svg"));
+        let svg = std::fs::read_to_string(&file).unwrap();
+        assert!(svg.contains("share in the error bound"), "{}", file.display());
+    }
+    assert!(!scratch.0.join("pictures/hertz-2d-sipg-3.svg").exists());
 }

@@ -19,7 +19,9 @@ use unilateral::study::{Row, Study, file_name};
 use crate::adaptive::adaptivity;
 use crate::mesh_file::MeshFile;
 use crate::posed::Posed;
-use crate::shared::{Failure, Request, end_at_interrupt, make_directory, print, print_to, scene};
+use crate::shared::{
+    Failure, Request, end_at_interrupt, fields_with_bound, make_directory, print, print_to, scene,
+};
 
 /// Draws the solution of a scheme on a scene, or on a problem of your own
 #[derive(Args, Debug)]
@@ -143,8 +145,7 @@ fn draw_one<const D: usize>(
     solved: &Solved<'_, f64, D>,
     slice: Option<Slice>,
 ) -> Result<Vec<PathBuf>, Error> {
-    let Some(mut fields) = solved.fields() else { return Ok(Vec::new()) };
-    fields.bound = solved.bound().map_or_else(|_| Vec::new(), |bound| bound.cells);
+    let Some(fields) = fields_with_bound(solved) else { return Ok(Vec::new()) };
     let mut title = title.to_owned();
     if !solved.converged() {
         title += &format!(", NOT CONVERGED: {}", solved.outcome());

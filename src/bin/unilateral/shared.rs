@@ -7,6 +7,9 @@ use std::time::Duration;
 
 use indicatif::{ProgressBar, ProgressStyle};
 use unilateral::input::{excerpt, read_file};
+use unilateral::measure::Fields;
+use unilateral::nested::Solved;
+use unilateral::real::Real;
 use unilateral::scenes;
 use unilateral::scenes::{AnyScene, Parameters};
 use unilateral::scheme::NamedScheme;
@@ -185,4 +188,11 @@ pub fn fingerprint(bytes: &[u8]) -> String {
     let step = |hash: u64, &byte: &u8| (hash ^ u64::from(byte)).wrapping_mul(0x100_0000_01b3);
     let hash = bytes.iter().fold(0xcbf2_9ce4_8422_2325, step);
     format!("{} bytes {hash:016x}", bytes.len())
+}
+
+/// The fields of a solution, with the share of each cell in the error bound where there is one; none without an iterate.
+pub fn fields_with_bound<T: Real, const D: usize>(solved: &Solved<'_, T, D>) -> Option<Fields> {
+    let mut fields = solved.fields()?;
+    fields.bound = solved.bound().map_or_else(|_| Vec::new(), |bound| bound.cells);
+    Some(fields)
 }

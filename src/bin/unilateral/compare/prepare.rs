@@ -7,7 +7,7 @@ use std::path::Path;
 use super::options::Options;
 use super::watcher::Watcher;
 use crate::posed::Posed;
-use crate::shared::{Request, each_once};
+use crate::shared::{Request, each_once, fields_with_bound};
 
 use unilateral::error::Error;
 use unilateral::inequality::{SolverOptions, solver_by_name};
@@ -133,7 +133,7 @@ fn draw<T: Real, const D: usize>(
     solved: &Solved<'_, T, D>,
     directory: &Path,
 ) -> Result<(), Error> {
-    let Some(fields) = solved.fields() else { return Ok(()) };
+    let Some(fields) = fields_with_bound(solved) else { return Ok(()) };
     let title = format!("{name}, level {level}");
     let problem = solved.discretisation().problem();
     let picture = Picture::of(&title, problem, solved.mesh(), &fields, None)?;
