@@ -108,7 +108,8 @@ fn draw<const D: usize>(options: &Options, posed: Posed<D>) -> Result<bool, Fail
     let level = options.level.unwrap_or(default);
     let picture = study(&warn)?.levels([level]).each_solution(|label, level, solved| {
         let stem = file_name(&format!("{}-{label}-{level}", posed.name()));
-        let title = format!("{}: {label}, level {level}", posed.name());
+        let unit = if options.adaptive.is_some() { "step" } else { "level" };
+        let title = format!("{}: {label}, {unit} {level}", posed.name());
         written.borrow_mut().extend(draw_one(options, &title, &stem, solved, slice)?);
         Ok(())
     });

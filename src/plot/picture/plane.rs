@@ -284,9 +284,6 @@ impl<'a, const D: usize> Plane<'a, D> {
             let area = |section: &Section| section.corners.iter().map(|c| c.at).collect();
             map.fills.extend(bands.iter().map(|(band, s)| (scale.colour(*band), area(s))));
         }
-        if self.sections.len() <= MOST_EDGES {
-            map.lines.extend(self.edges.iter().map(|e| (Stroke::Mesh, e.ends)));
-        }
         map.lines.extend(self.rim());
         map
     }
