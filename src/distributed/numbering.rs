@@ -5,7 +5,7 @@ use crate::assemble::Discretisation;
 use crate::mesh::Part;
 use crate::real::Real;
 
-/// In the place of a number that is not known yet.
+/// The number of an unknown whose owner has not answered yet.
 const UNKNOWN: u64 = u64::MAX;
 
 /// The numbers of the unknowns of all parts of a mesh together: those of a part, ascending, follow those of the

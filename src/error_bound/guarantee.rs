@@ -35,7 +35,9 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         let is_curved = obstacles.iter().any(|d| !is_below(d, pair.degree));
         // linear data and obstacles: Bernstein coefficients are means of values at vertices
         let is_linear = obstacles.iter().all(|d| is_below(d, 1)) && is_below(&data.dirichlet, 1);
-        let may_leave = pair.degree > 1
+        // every edge is visited: only where the answer counts
+        let may_leave = !is_curved
+            && pair.degree > 1
             && !is_linear
             && obstacles.iter().any(|d| d.is_given())
             && !self.exceeds_obstacles(pair);

@@ -138,7 +138,7 @@ impl<T: Real, const D: usize> Discretisation<'_, T, D> {
             } else {
                 space.crouzeix_raviart_fluxes(u)?
             };
-            space.add_boundary_fluxes(&forces, &mut flux)?;
+            space.set_boundary_fluxes(&forces, &mut flux)?;
             if space.problem.has_obstacle() {
                 let multipliers = space.multipliers_by_cell(&residual, &forces);
                 space.exchange_linears(&function, &multipliers, neighbours(), &mut flux);
@@ -198,8 +198,12 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         Ok(sum)
     }
 
-    /// Adds the fluxes of Neumann data and contact.
-    fn add_boundary_fluxes(&self, forces: &[NodeForce], flux: &mut [f64]) -> Result<(), NoBound> {
+    /// Sets the fluxes through the boundary but for its Dirichlet part: Neumann data and contact forces. Residuals there
+    /// are multipliers, and sums of patches are rounding, which may have the wrong sign for a contact force.
+    fn set_boundary_fluxes(&self, forces: &[NodeForce], flux: &mut [f64]) -> Result<(), NoBound> {
+        for f in self.mesh.boundary().iter().filter(|f| f.part != BoundaryPart::Dirichlet) {
+            flux[f.cell as usize * (D + 1) + usize::from(f.local)] = 0.0;
+        }
         if self.problem.has_neumann_data() {
             for ((cell, local), group) in self.grouped_facets_of(BoundaryPart::Neumann) {
                 flux[cell * (D + 1) + local] += self.neumann_flux((cell, local), group)?;
@@ -263,10 +267,6 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
                     flux[facet] = 0.5 * (own[facet] - own[across]);
                 }
             }
-        }
-        // residuals of the rest of the boundary are multipliers, or zero: fluxes there are data
-        for f in self.mesh.boundary().iter().filter(|f| f.part != BoundaryPart::Dirichlet) {
-            flux[f.cell as usize * (D + 1) + usize::from(f.local)] = 0.0;
         }
         Ok(flux)
     }

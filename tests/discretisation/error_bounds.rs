@@ -348,8 +348,9 @@ fn any_admissible_function_and_any_flux_give_a_bound() {
     random_pairs(&scenes::signorini_reaction_1d(), 8, 25, None);
 }
 
-/// The form of `examples/my_scheme.rs`.
-struct Incomplete(f64);
+/// The form of `examples/my_scheme.rs`, with its factor.
+#[derive(Clone, Copy)]
+pub struct Incomplete(pub f64);
 
 impl<T: Real, const D: usize> FacetForm<T, D> for Incomplete {
     fn uses_flux(&self) -> bool {

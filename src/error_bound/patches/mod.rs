@@ -63,10 +63,6 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
             Ok::<(), Infallible>(())
         };
         let Ok(()) = cells::for_each(self.mesh.n_cells(), &|c| c * (D + 1), &mut flux, &fill);
-        // sums that vanish but for rounding, which may have the wrong sign for a contact force
-        for f in self.mesh.boundary().iter().filter(|f| f.part != BoundaryPart::Dirichlet) {
-            flux[f.cell as usize * (D + 1) + usize::from(f.local)] = 0.0;
-        }
         Ok(flux)
     }
 }

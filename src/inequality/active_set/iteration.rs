@@ -20,7 +20,7 @@ const CERTIFICATE_FACTOR: f64 = 8.0;
 /// last changes move along the free boundary from cell to cell, takes three quarters of the steps.
 const MANY_STEPS: usize = 8;
 
-/// Largest number of state changes that are few, divided by the number of unknowns.
+/// Changes of states are few up to this share of the unknowns.
 const FEW_CHANGES: f64 = 1.0 / 4000.0;
 
 /// How an iteration ends.

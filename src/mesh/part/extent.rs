@@ -1,8 +1,8 @@
-//! What is read of a mesh as a whole: the box around it, and its mesh size.
+//! What schemes read of a mesh as a whole: the box around the mesh, and the mesh size.
 
 use crate::real::Point;
 
-/// The box around a mesh, and its mesh size: all that a scheme derives from a mesh as a whole.
+/// The box around a mesh, and the mesh size: all that a scheme derives from a mesh as a whole.
 ///
 /// A part of a mesh has the extent of the whole: the factor of an over-penalty is the same on all parts. The
 /// extents of parts that contain every cell [merge](Extent::merge) into that of the whole, bit for bit.

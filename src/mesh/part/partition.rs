@@ -59,7 +59,7 @@ fn halve<const D: usize>(
         (1..D).fold(0, |best, axis| if length(axis) > length(best) { axis } else { best });
     let middle = parts.start + parts.len() as u32 / 2;
     let at = (cells.len() as u64 * u64::from(middle - parts.start) / parts.len() as u64) as usize;
-    // of equal coordinates the cell of the lower number comes first
+    // cells with equal coordinates are ordered by their numbers
     cells.select_nth_unstable_by(at, |&a, &b| {
         let coordinate = |cell: u32| barycentres[cell as usize][longest];
         coordinate(a).total_cmp(&coordinate(b)).then(a.cmp(&b))

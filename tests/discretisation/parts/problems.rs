@@ -1,30 +1,12 @@
 //! Schemes and problems for parts of meshes.
 
+use crate::error_bounds::Incomplete;
 use crate::support::schemes::Entry;
 use std::sync::Arc;
 use unilateral::constraint::{CONSTRAINT_SETS, constraint_set_by_name};
 use unilateral::prelude::*;
 
-/// Incomplete interior penalty, by a form of its own.
-#[derive(Clone, Copy)]
-pub struct Incomplete;
-
-impl<T: Real, const D: usize> FacetForm<T, D> for Incomplete {
-    fn uses_flux(&self) -> bool {
-        true
-    }
-    fn is_symmetric(&self) -> bool {
-        false
-    }
-    fn penalty(&self, facet: &FacetView<T, D>) -> T {
-        T::lit(10.0) * facet.coefficient() / facet.diameter()
-    }
-    fn integrand(&self, _: &FacetView<T, D>, v: Trace<T>, u: Trace<T>, penalty: T) -> T {
-        penalty * u.jump * v.jump - u.flux * v.jump
-    }
-}
-
-/// That form on any element: on broken ones, and on ones that share unknowns.
+/// Incomplete interior penalty by a form of its own, on any element: broken ones, and ones that share unknowns.
 pub struct OwnScheme<E>(pub E);
 
 impl<T: Real, const D: usize, E: ReferenceElement<T, D>> Scheme<T, D> for OwnScheme<E> {
@@ -35,7 +17,7 @@ impl<T: Real, const D: usize, E: ReferenceElement<T, D>> Scheme<T, D> for OwnSch
         "own"
     }
     fn facet(&self, _: &Mesh<T, D>) -> Incomplete {
-        Incomplete
+        Incomplete(10.0)
     }
 }
 
