@@ -13,7 +13,7 @@ use crate::memory::in_large_pages;
 use crate::real::{Point, Real, point_f64};
 
 /// The parents of the vertices of a refined mesh. The parent of fine cell `c` is coarse cell
-/// `c / 2^D`.
+/// `c / 2^D`; on [parts](super::Part::refine) this holds for the numbers of cells in the whole mesh.
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct Refinement {

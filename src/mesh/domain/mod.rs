@@ -10,6 +10,7 @@ pub(crate) use boxes::SIDES;
 
 use super::boundary::BoundaryPart;
 use super::error::MeshError;
+use super::part::{Layers, Part};
 use super::refine::Refinement;
 use super::simplicial::Mesh;
 use crate::instances::compiled;
@@ -129,5 +130,32 @@ impl<const D: usize> Domain<D> {
             Domain::Disc { .. } => mesh.refine_disc()?,
             _ => mesh.refine()?,
         })
+    }
+    /// The refinement of a part of a mesh of this domain, as [`Part::refine`]; new vertices on the boundary
+    /// lie on the boundary of the domain.
+    ///
+    /// # Errors
+    /// Those of [`Part::refine`].
+    pub fn refine_part<T: Real>(
+        &self,
+        part: &Part<T, D>,
+        layers: Layers,
+    ) -> Result<(Part<T, D>, Refinement), MeshError> {
+        compiled!(
+            T, D: fn(
+                &Domain<D>,
+                &Part<T, D>,
+                Layers,
+            ) -> Result<(Part<T, D>, Refinement), MeshError>
+                = Domain::refine_and_peel
+        )(self, part, layers)
+    }
+    fn refine_and_peel<T: Real>(
+        &self,
+        part: &Part<T, D>,
+        layers: Layers,
+    ) -> Result<(Part<T, D>, Refinement), MeshError> {
+        part.check_refinement(layers)?;
+        Ok(part.peel(self.refine_mesh(&part.mesh)?, layers))
     }
 }

@@ -2,8 +2,11 @@
 
 pub(in crate::mesh) mod extent;
 mod partition;
+mod refine;
 
 pub use extent::Extent;
+
+use std::fmt;
 
 use crate::instances::compiled;
 use crate::mesh::boundary::BoundaryFacet;
@@ -41,6 +44,16 @@ impl Layers {
     }
 }
 
+impl fmt::Display for Layers {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let across = match self.across {
+            Across::Facets => "facets",
+            Across::Vertices => "vertices",
+        };
+        write!(f, "{} across {across}", self.count)
+    }
+}
+
 /// A part of a mesh: its own cells, and layers of the cells of other parts.
 ///
 /// The mesh of a part is a mesh as any other, with two differences. It is cut: beyond some facets lie cells
@@ -74,8 +87,8 @@ pub struct Part<T, const D: usize> {
     pub owners: Vec<u32>,
     /// The number of each cell in the whole mesh, ascending.
     pub cells: Vec<u64>,
-    /// The number of each vertex in the whole mesh, ascending.
-    pub vertices: Vec<u64>,
+    /// The layers of cells of other parts.
+    pub layers: Layers,
 }
 
 impl<T, const D: usize> Part<T, D> {
@@ -133,11 +146,10 @@ impl<T: Real, const D: usize> Mesh<T, D> {
         }
         self.add_layers(&mut is_taken, layers);
         let cells: Vec<u32> = (0..).zip(&is_taken).filter(|(_, t)| **t).map(|(c, _)| c).collect();
-        let (mesh, vertices) = self.submesh(&cells);
+        let (mesh, _) = self.submesh(&cells);
         let owners = cells.iter().map(|&cell| owners[cell as usize]).collect();
         let cells = cells.into_iter().map(u64::from).collect();
-        let vertices = vertices.into_iter().map(u64::from).collect();
-        Ok(Part { number, mesh, owners, cells, vertices })
+        Ok(Part { number, mesh, owners, cells, layers })
     }
 
     /// Adds layers of cells around those taken.

@@ -6,21 +6,21 @@ use unilateral::mesh::{Layers, Part};
 use unilateral::prelude::*;
 
 /// Values of unknowns without any regularity.
-pub fn some_values(n: usize) -> Vec<f64> {
-    (0..n).map(|i| ((i * 7919 % 1013) as f64 / 1013.0 * 6.0).sin()).collect()
+pub fn some_values<T: Real>(n: usize) -> Vec<T> {
+    (0..n).map(|i| T::lit(((i * 7919 % 1013) as f64 / 1013.0 * 6.0).sin())).collect()
 }
 
 /// A discretisation with its inequality.
-pub struct Assembled<'a, const D: usize> {
-    pub discretisation: Discretisation<'a, f64, D>,
-    pub inequality: Inequality<f64>,
+pub struct Assembled<'a, T: Real, const D: usize> {
+    pub discretisation: Discretisation<'a, T, D>,
+    pub inequality: Inequality<T>,
 }
 
-impl<'a, const D: usize> Assembled<'a, D> {
+impl<'a, T: Real, const D: usize> Assembled<'a, T, D> {
     pub fn new(
-        scheme: &dyn AnyScheme<f64, D>,
+        scheme: &dyn AnyScheme<T, D>,
         problem: &'a Problem<D>,
-        mesh: &'a Mesh<f64, D>,
+        mesh: &'a Mesh<T, D>,
     ) -> Self {
         let quadrature = DataQuadrature::default();
         let discretisation = Discretisation::new(scheme, problem, mesh, quadrature).unwrap();
@@ -28,11 +28,7 @@ impl<'a, const D: usize> Assembled<'a, D> {
         Self { discretisation, inequality }
     }
     /// The number that each unknown of a part has here.
-    pub fn numbers_of(
-        &self,
-        part: &Part<f64, D>,
-        on_part: &Discretisation<'_, f64, D>,
-    ) -> Vec<usize> {
+    pub fn numbers_of(&self, part: &Part<T, D>, on_part: &Discretisation<'_, T, D>) -> Vec<usize> {
         let mut numbers = vec![usize::MAX; on_part.unknowns()];
         for (cell, &whole) in part.cells.iter().enumerate() {
             let own = on_part.unknowns_of(cell);
@@ -63,31 +59,49 @@ impl Differences {
     }
 }
 
-fn bits(bound: &Bound<f64>) -> [Option<u64>; 3] {
-    let fixed = if let Bound::Fixed(x) = bound { Some(x.to_bits()) } else { None };
-    [fixed, bound.lower().map(f64::to_bits), bound.upper().map(f64::to_bits)]
+/// The bits of a number, exactly converted to `f64`.
+fn bits<T: Real>(x: T) -> u64 {
+    x.to_f64().to_bits()
+}
+
+fn bits_of_bound<T: Real>(bound: &Bound<T>) -> [Option<u64>; 3] {
+    let fixed = if let Bound::Fixed(x) = bound { Some(bits(*x)) } else { None };
+    [fixed, bound.lower().map(bits), bound.upper().map(bits)]
 }
 
 /// Compares all parts of a mesh with the whole.
-pub fn differences<const D: usize>(
-    scheme: &dyn AnyScheme<f64, D>,
+pub fn differences<T: Real, const D: usize>(
+    scheme: &dyn AnyScheme<T, D>,
     problem: &Problem<D>,
-    mesh: &Mesh<f64, D>,
+    mesh: &Mesh<T, D>,
     (parts, layers): (usize, Layers),
 ) -> Differences {
     let owners = mesh.partition(parts).unwrap();
+    let part = |number| mesh.part(&owners, number, layers).unwrap();
+    let parts: Vec<_> = (0..parts as u32).map(part).collect();
+    differences_of(scheme, problem, mesh, &owners, &parts)
+}
+
+/// Compares parts of a mesh with the whole, given the owners of its cells.
+pub fn differences_of<T: Real, const D: usize>(
+    scheme: &dyn AnyScheme<T, D>,
+    problem: &Problem<D>,
+    mesh: &Mesh<T, D>,
+    owners: &[u32],
+    parts: &[Part<T, D>],
+) -> Differences {
     let whole = Assembled::new(scheme, problem, mesh);
     let all = &whole.inequality;
-    let owner_of = whole.discretisation.owners(&owners);
-    let x = some_values(all.size());
+    let owner_of = whole.discretisation.owners(owners);
+    let x: Vec<T> = some_values(all.size());
     let mut residual = vec![0.0; all.size()];
     all.residual_f64(&x, &mut residual);
     let mut found = Differences::default();
-    for number in 0..parts as u32 {
-        let part = mesh.part(&owners, number, layers).unwrap();
+    for part in parts {
+        let number = part.number;
         let Assembled { discretisation, inequality } = Assembled::new(scheme, problem, &part.mesh);
-        let numbers = whole.numbers_of(&part, &discretisation);
-        let values: Vec<f64> = numbers.iter().map(|&k| x[k]).collect();
+        let numbers = whole.numbers_of(part, &discretisation);
+        let values: Vec<T> = numbers.iter().map(|&k| x[k]).collect();
         let mut on_part = vec![0.0; values.len()];
         inequality.residual_f64(&values, &mut on_part);
         for (i, owner) in discretisation.owners(&part.owners).into_iter().enumerate() {
@@ -103,13 +117,12 @@ pub fn differences<const D: usize>(
                 found.columns += 1;
             } else {
                 let pairs = || entries.iter().zip(whole_entries);
-                found.values += usize::from(pairs().any(|(a, b)| a.to_bits() != b.to_bits()));
+                found.values += usize::from(pairs().any(|(&a, &b)| bits(a) != bits(b)));
             }
-            let other = |a: f64, b: f64| usize::from(a.to_bits() != b.to_bits());
-            found.loads += other(inequality.load[i], all.load[k]);
-            found.residuals += other(on_part[i], residual[k]);
-            let same_bounds = bits(&inequality.bounds[i]) == bits(&all.bounds[k]);
-            found.bounds += usize::from(!same_bounds);
+            found.loads += usize::from(bits(inequality.load[i]) != bits(all.load[k]));
+            found.residuals += usize::from(bits(on_part[i]) != bits(residual[k]));
+            let bounds = [&inequality.bounds[i], &all.bounds[k]].map(bits_of_bound);
+            found.bounds += usize::from(bounds[0] != bounds[1]);
         }
     }
     found
@@ -117,10 +130,10 @@ pub fn differences<const D: usize>(
 
 /// Holds all parts of a mesh to the bits of the whole, with the layers that the scheme asks for.
 #[track_caller]
-pub fn same_bits<const D: usize>(
-    scheme: &dyn AnyScheme<f64, D>,
+pub fn same_bits<T: Real, const D: usize>(
+    scheme: &dyn AnyScheme<T, D>,
     problem: &Problem<D>,
-    mesh: &Mesh<f64, D>,
+    mesh: &Mesh<T, D>,
     parts: usize,
 ) {
     let layers = scheme.layers(mesh);

@@ -4,5 +4,6 @@ mod compare;
 mod meshes;
 mod numbers;
 mod problems;
+mod refined;
 mod rows;
 mod sums;

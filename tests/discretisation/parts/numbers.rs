@@ -15,7 +15,7 @@ fn every_scheme<const D: usize>(mesh: &Mesh<f64, D>, parts: usize) {
         let problem = problem.clone().on(entry.set.clone());
         let whole = Assembled::new(&*entry.scheme, &problem, mesh);
         let n = whole.discretisation.unknowns();
-        let (owner_of, x) = (whole.discretisation.owners(&owners), some_values(n));
+        let (owner_of, x) = (whole.discretisation.owners(&owners), some_values::<f64>(n));
         let found = in_process(parts, |number, exchange| {
             let part = mesh.part(&owners, number, entry.layers(mesh)).unwrap();
             let on_part = Assembled::new(&*entry.scheme, &problem, &part.mesh).discretisation;

@@ -3,6 +3,7 @@
 use super::compare::{differences, same_bits};
 use super::meshes::{bisected, box_mesh, files, moved};
 use super::problems::{obstacle_problem, schemes, signorini_problem};
+use crate::support::meshes::{Random, Raw, mixed_box};
 use unilateral::mesh::Layers;
 use unilateral::prelude::*;
 use unilateral::scenes::Scene;
@@ -120,4 +121,23 @@ fn scenes_have_the_rows_of_the_whole_mesh() {
     plane.iter().for_each(|scene| on(scene, 4));
     on(&scenes::radial::<3>(1.0), 2);
     on(&scenes::signorini_line_3d(), 2);
+}
+
+/// Rows in single precision.
+#[test]
+fn rows_in_single_precision_are_those_of_the_whole_mesh() {
+    fn on<const D: usize>(mesh: &Mesh<f32, D>) {
+        for scheme in NamedScheme::all() {
+            let scheme = scheme.make::<f32, D>();
+            same_bits(&*scheme, &obstacle_problem(), mesh, 3);
+            same_bits(&*scheme, &signorini_problem(), mesh, 2);
+        }
+    }
+    let domain = mixed_box();
+    on(&Mesh::<f32, 1>::kuhn_box(&domain, [7]).unwrap());
+    let mut random = Random(3);
+    let domain = mixed_box();
+    let moved = Raw::jittered(&domain, 4, 0.3, &mut random).shuffled(&mut random);
+    on(&moved.mesh::<f32>() as &Mesh<f32, 2>);
+    on(&Mesh::<f32, 3>::kuhn_box(&mixed_box(), [2; 3]).unwrap());
 }

@@ -73,7 +73,8 @@ fn every_scheme<const D: usize>(mesh: &Mesh<f64, D>, parts: usize) {
             let label = entry.label_on(problem.constraint_set());
             let whole = Assembled::new(&*entry.scheme, problem, mesh);
             let inequality = &whole.inequality;
-            let x: Vec<f64> = some_values(inequality.size()).iter().map(|x| unit * x).collect();
+            let x: Vec<f64> =
+                some_values::<f64>(inequality.size()).iter().map(|x| unit * x).collect();
             let (certificates, errors) = merged(&*entry.scheme, problem, mesh, (parts, &x));
             let jumps = jump_multipliers(inequality, &x);
             let serial =
