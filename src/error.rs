@@ -31,7 +31,7 @@ pub enum Error {
         /// The point, as coordinates in parentheses.
         at: String,
         /// The cell in which the point lies.
-        cell: u32,
+        cell: u64,
     },
     /// A diffusion coefficient is not positive and finite.
     #[error("coefficient is {value} at {at} in cell {cell}: it must be positive and finite")]
@@ -41,15 +41,17 @@ pub enum Error {
         /// The point, as coordinates in parentheses.
         at: String,
         /// The cell.
-        cell: u32,
+        cell: u64,
     },
     /// Two constraints leave no admissible value.
     #[error(
-        "no admissible value at unknown {unknown} near {at}: lower bound {lower} exceeds upper bound {upper}"
+        "no admissible value in cell {cell} near {at}: lower bound {lower} exceeds upper bound {upper}"
     )]
     EmptyConstraint {
-        /// The unknown.
+        /// The unknown; on a [part](crate::mesh::Part) its number there.
         unknown: usize,
+        /// A cell of the unknown.
+        cell: u64,
         /// A point of the support of the unknown, as coordinates in parentheses.
         at: String,
         /// The larger lower bound.
@@ -165,6 +167,22 @@ pub enum Error {
 }
 
 debug_by_display!(Error);
+
+impl Error {
+    /// The error with the number of its cell in the whole mesh, given those of the cells of a
+    /// [part](crate::mesh::Part::cells), on which it was found.
+    #[must_use]
+    pub fn in_whole_mesh(mut self, cells: &[u64]) -> Self {
+        if let Self::DataNotFinite { cell, .. }
+        | Self::CoefficientNotPositive { cell, .. }
+        | Self::EmptyConstraint { cell, .. } = &mut self
+            && let Some(&of_whole) = cells.get(*cell as usize)
+        {
+            *cell = of_whole;
+        }
+        self
+    }
+}
 
 /// The error of a file that could not be written: from an [`std::io::Error`] or from a message.
 #[cfg(feature = "report")]

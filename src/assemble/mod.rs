@@ -40,6 +40,7 @@ pub use data_quadrature::DataQuadrature;
 use facet_coefficients::FacetCoefficients;
 pub use penalty_below_bound::PenaltyBelowBound;
 use shared_rows::SharedRows;
+pub use space::contradictions::Contradictions;
 use space::metric::Metrics;
 use space::{AnyElement, Space};
 
@@ -53,6 +54,8 @@ pub struct Discretisation<'a, T: Real, const D: usize> {
     shared_rows: SharedRows<T, D>,
     /// What facet forms need of cells and facets, computed when first needed.
     prepared: OnceLock<(Metrics<T>, FacetCoefficients<T>)>,
+    /// On a part what its bounds, once found, leave to be judged with the data of all parts.
+    contradictions: OnceLock<Contradictions<D>>,
 }
 
 impl<'a, T: Real, const D: usize> Discretisation<'a, T, D> {
@@ -223,14 +226,41 @@ impl<'a, T: Real, const D: usize> Discretisation<'a, T, D> {
     /// value of the datum or by its mean. An unknown pinned by Dirichlet data is not constrained besides.
     ///
     /// # Errors
-    /// [`Error::EmptyConstraint`], but on a [part](crate::mesh::Part) of a mesh: bounds contradict each other
-    /// if they do so by more than rounding of the largest datum, which a part need not have.
-    /// [`Error::DataNotFinite`].
+    /// [`Error::EmptyConstraint`], but on a [part](crate::mesh::Part) of a mesh: see
+    /// [`Discretisation::contradictions`]. [`Error::DataNotFinite`].
     pub fn bounds(&self) -> Result<Vec<Bound<T>>, Error> {
         compiled!(
             T, D: fn(&Discretisation<'_, T, D>) -> Result<Vec<Bound<T>>, Error>
-                = |of| of.space.bounds()
+                = |of| of.checked_bounds()
         )(self)
+    }
+    fn checked_bounds(&self) -> Result<Vec<Bound<T>>, Error> {
+        let (bounds, found) = self.space.bounds()?;
+        if self.mesh().is_part() {
+            self.contradictions.get_or_init(|| Contradictions::new(&bounds, found));
+        } else if !found.is_empty() {
+            let found = Contradictions::new(&bounds, found);
+            found.check(found.size(), &|_| true)?;
+        }
+        Ok(bounds)
+    }
+    /// Lower bounds above upper ones. They contradict each other if they do so by more than rounding of the
+    /// largest datum, which a [part](crate::mesh::Part) of a mesh need not have.
+    ///
+    /// # Errors
+    /// [`Error::DataNotFinite`].
+    pub fn contradictions(&self) -> Result<&Contradictions<D>, Error> {
+        compiled!(
+            T, D: for<'d> fn(&'d Discretisation<'_, T, D>) -> Result<&'d Contradictions<D>, Error>
+                = |of| of.find_contradictions()
+        )(self)
+    }
+    fn find_contradictions(&self) -> Result<&Contradictions<D>, Error> {
+        if let Some(found) = self.contradictions.get() {
+            return Ok(found);
+        }
+        let (bounds, found) = self.space.bounds()?;
+        Ok(self.contradictions.get_or_init(|| Contradictions::new(&bounds, found)))
     }
     /// The support of each unknown.
     pub fn supports(&self) -> Vec<Support> {
@@ -328,7 +358,13 @@ impl<T: Real, const D: usize> Parts<T, D> {
         let space = Space::new(element, problem, mesh, quadrature, form.couples(), pins, offered)?;
         space.check_penalty_factor(&*form)?;
         let shared_rows = SharedRows::new(loops);
-        Ok(Discretisation { space, form, shared_rows, prepared: OnceLock::new() })
+        Ok(Discretisation {
+            space,
+            form,
+            shared_rows,
+            prepared: OnceLock::new(),
+            contradictions: OnceLock::new(),
+        })
     }
 }
 

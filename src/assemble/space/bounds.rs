@@ -1,49 +1,46 @@
 //! What each unknown may be: Dirichlet values, obstacles, the Signorini condition.
 
+use super::contradictions::{BoundedNode, Contradiction};
 use super::{Space, Terms, data};
 use crate::algebra::Bound;
 use crate::assemble::count;
 use crate::constraint::BoundBy;
 use crate::element::Node;
 use crate::error::Error;
-use crate::mesh::{BoundaryPart, describe_point};
+use crate::mesh::BoundaryPart;
 use crate::problem::DatumRef;
 use crate::real::{Point, Real, point_f64};
-
-/// Two bounds contradict each other if they do so by more than this share of their size: less is
-/// rounding in the data.
-const RELATIVE_SLACK: f64 = 1e-9;
 
 /// Sorts facets by the ranks of their groups; not generic, so that the sorting code is compiled once.
 fn sort_by_rank(facets: &mut [((usize, usize), usize)], ranks: &[usize]) {
     facets.sort_by_key(|&(_, group)| ranks[group]);
 }
 
+/// The bounds of all unknowns, and the lower ones above upper ones.
+type ComparedBounds<T, const D: usize> = (Vec<Bound<T>>, Vec<Contradiction<D>>);
+
 impl<T: Real, const D: usize> Space<'_, T, D> {
-    /// The bounds of all unknowns; see `Discretisation::bounds`.
-    pub fn bounds(&self) -> Result<Vec<Bound<T>>, Error> {
+    /// The bounds of all unknowns, see `Discretisation::bounds`, and those of which a lower one exceeds an upper
+    /// one.
+    pub fn bounds(&self) -> Result<ComparedBounds<T, D>, Error> {
         let mut bounds = vec![Bound::Free; self.dofs.size()];
-        let mut conflicts = Vec::new();
+        let mut found = Vec::new();
         if self.problem.has_obstacle() {
-            self.bound_by_obstacles(&mut bounds, &mut conflicts)?;
+            self.bound_by_obstacles(&mut bounds, &mut found)?;
         }
         if self.problem.has_gap() {
-            self.bound_by_contact(&mut bounds, &mut conflicts)?;
+            self.bound_by_contact(&mut bounds, &mut found)?;
         }
         if self.pins {
-            self.pin(&mut bounds, &mut conflicts)?;
+            self.pin(&mut bounds, &mut found)?;
         }
-        // what is rounding depends on the size of all data, of which a part has some
-        if !self.mesh.is_part() {
-            judge::<T, D>(&bounds, conflicts)?;
-        }
-        Ok(bounds)
+        Ok((bounds, found))
     }
 
     fn bound_by_obstacles(
         &self,
         bounds: &mut [Bound<T>],
-        conflicts: &mut Vec<Conflict<D>>,
+        found: &mut Vec<Contradiction<D>>,
     ) -> Result<(), Error> {
         let bounded: Vec<(usize, BoundBy)> = self.bounded_nodes().collect();
         let terms = self.node_terms(&self.facet_rule, &self.cell_rule);
@@ -71,7 +68,8 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
                 };
                 let lower = both(old.lower(), at(lowers.of(region))?, f64::max);
                 let upper = both(old.upper(), at(uppers.of(region))?, f64::min);
-                bounds[unknown] = between(lower, upper, unknown, x, conflicts);
+                let node = BoundedNode { unknown, cell, x };
+                bounds[unknown] = between(lower, upper, node, found);
             }
         }
         Ok(())
@@ -80,7 +78,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
     fn bound_by_contact(
         &self,
         bounds: &mut [Bound<T>],
-        conflicts: &mut Vec<Conflict<D>>,
+        found: &mut Vec<Contradiction<D>>,
     ) -> Result<(), Error> {
         let terms = self.node_terms(&self.facet_rule, &self.cell_rule);
         let given = self.dirichlet_groups();
@@ -94,7 +92,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
                 // the node at the vertex, where the element has one, else one of the facet
                 let node = self.nodes_on(local).take(k + 1).last();
                 let unknown = node.map_or(0, |i| self.dofs.of(cell, i));
-                note(gap.at(&x), datum, unknown, x, conflicts);
+                BoundedNode { unknown, cell, x }.compare(gap.at(&x), datum, found);
             }
             for (i, by) in self.bounded_nodes_on(local) {
                 count::bounds(1);
@@ -105,7 +103,8 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
                 let lower = old.lower().map_or(value, |l| l.to_f64().max(value));
                 let upper = old.upper().map(Real::to_f64);
                 let x = self.node_point(cell, node);
-                bounds[unknown] = between(Some(lower), upper, unknown, x, conflicts);
+                let node = BoundedNode { unknown, cell, x };
+                bounds[unknown] = between(Some(lower), upper, node, found);
             }
         }
         Ok(())
@@ -129,7 +128,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         }
     }
 
-    fn pin(&self, bounds: &mut [Bound<T>], conflicts: &mut Vec<Conflict<D>>) -> Result<(), Error> {
+    fn pin(&self, bounds: &mut [Bound<T>], found: &mut Vec<Contradiction<D>>) -> Result<(), Error> {
         let terms = self.node_terms(&self.facet_rule, &self.cell_rule);
         let zero = !self.problem.has_dirichlet_data();
         let (lowers, uppers) = (&self.data.lower, &self.data.upper);
@@ -146,15 +145,15 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
                 }
                 let at = |name, datum: Datum<'_, D>| self.at_node(&terms[i], cell, name, datum);
                 let value = if zero { 0.0 } else { at("dirichlet", &datum)? };
-                let x = self.node_point(cell, &self.nodes[i]);
+                let node = BoundedNode { unknown, cell, x: self.node_point(cell, &self.nodes[i]) };
                 // obstacles must leave room for the datum; a mean is compared with a mean: over a
                 // curved obstacle the value at the barycentre may lie above the mean of a datum
                 // that touches it
                 if let Some(psi) = lowers.of(region) {
-                    note(at("obstacle", &|x| psi.at(x))?, value, unknown, x, conflicts);
+                    node.compare(at("obstacle", &|x| psi.at(x))?, value, found);
                 }
                 if let Some(psi) = uppers.of(region) {
-                    note(value, at("obstacle", &|x| psi.at(x))?, unknown, x, conflicts);
+                    node.compare(value, at("obstacle", &|x| psi.at(x))?, found);
                 }
                 bounds[unknown] = Bound::Fixed(T::lit(value));
             }
@@ -184,62 +183,20 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
 /// A function of space.
 type Datum<'f, const D: usize> = &'f dyn Fn(&Point<f64, D>) -> f64;
 
-/// A lower bound above an upper one: the unknown, its node, the two values.
-type Conflict<const D: usize> = (usize, Point<f64, D>, f64, f64);
-
-/// Notes two values of which the first must not exceed the second.
-fn note<const D: usize>(
-    lower: f64,
-    upper: f64,
-    unknown: usize,
-    x: Point<f64, D>,
-    conflicts: &mut Vec<Conflict<D>>,
-) {
-    if lower > upper {
-        conflicts.push((unknown, x, lower, upper));
-    }
-}
-
 /// The bound between two values, of which each may be absent.
 fn between<T: Real, const D: usize>(
     lower: Option<f64>,
     upper: Option<f64>,
-    unknown: usize,
-    x: Point<f64, D>,
-    conflicts: &mut Vec<Conflict<D>>,
+    node: BoundedNode<D>,
+    found: &mut Vec<Contradiction<D>>,
 ) -> Bound<T> {
     match (lower, upper) {
         (None, None) => Bound::Free,
         (Some(l), None) => Bound::Lower(T::lit(l)),
         (None, Some(u)) => Bound::Upper(T::lit(u)),
         (Some(l), Some(u)) => {
-            note(l, u, unknown, x, conflicts);
+            node.compare(l, u, found);
             Bound::Both(T::lit(l), T::lit(l.max(u)))
         }
-    }
-}
-
-/// Tells contradictions from rounding. Two values that are equal but for rounding may be zero but
-/// for rounding, so only the size of all data can tell.
-fn judge<T: Real, const D: usize>(
-    bounds: &[Bound<T>],
-    conflicts: Vec<Conflict<D>>,
-) -> Result<(), Error> {
-    if conflicts.is_empty() {
-        return Ok(());
-    }
-    let values = |b: &Bound<T>| match *b {
-        Bound::Free => [None, None],
-        Bound::Fixed(a) | Bound::Lower(a) | Bound::Upper(a) => [Some(a), None],
-        Bound::Both(a, b) => [Some(a), Some(b)],
-    };
-    let sizes = bounds.iter().flat_map(values).flatten().map(|x| x.to_f64().abs());
-    let size = conflicts.iter().map(|c| c.2.abs().max(c.3.abs())).chain(sizes).fold(0.0, f64::max);
-    let slack = RELATIVE_SLACK.max(16.0 * T::EPSILON) * size;
-    match conflicts.into_iter().find(|(_, _, lower, upper)| lower - upper > slack) {
-        Some((unknown, x, lower, upper)) => {
-            Err(Error::EmptyConstraint { unknown, at: describe_point(&x), lower, upper })
-        }
-        None => Ok(()),
     }
 }

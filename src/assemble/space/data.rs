@@ -16,7 +16,7 @@ pub(crate) fn finite<const D: usize>(
     if value.is_finite() {
         Ok(value)
     } else {
-        Err(Error::DataNotFinite { datum, value, at: describe_point(at), cell: cell as u32 })
+        Err(Error::DataNotFinite { datum, value, at: describe_point(at), cell: cell as u64 })
     }
 }
 
@@ -37,7 +37,7 @@ pub(crate) fn coefficient_at<T: Real, const D: usize>(
         return Err(Error::CoefficientNotPositive {
             value,
             at: describe_point(x),
-            cell: cell as u32,
+            cell: cell as u64,
         });
     }
     let rounded = T::lit(value);

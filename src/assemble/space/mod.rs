@@ -6,6 +6,7 @@
 mod any_element;
 mod bounds;
 mod coefficient;
+pub(crate) mod contradictions;
 pub(crate) mod data;
 pub(crate) mod dofs;
 pub(crate) mod metric;

@@ -1,0 +1,84 @@
+//! Bounds that leave no admissible value.
+
+use crate::algebra::Bound;
+use crate::error::Error;
+use crate::mesh::describe_point;
+use crate::real::{Point, Real};
+
+/// Two bounds contradict each other if they do so by more than this share of the largest datum: less is
+/// rounding in the data.
+const RELATIVE_SLACK: f64 = 1e-9;
+
+/// Lower bounds above upper ones, by rounding or in earnest.
+///
+/// Two values that are equal but for rounding may be zero but for rounding, so that only the size of all data can
+/// tell. [`Discretisation::bounds`](crate::assemble::Discretisation::bounds) does on a whole mesh; a
+/// [part](crate::mesh::Part) need not have the largest datum.
+#[derive(Clone, Debug)]
+pub struct Contradictions<const D: usize> {
+    found: Vec<Contradiction<D>>,
+    size: f64,
+    relative_slack: f64,
+}
+
+/// Two values of which the first exceeds the second.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Contradiction<const D: usize> {
+    pub node: BoundedNode<D>,
+    pub lower: f64,
+    pub upper: f64,
+}
+
+/// A node at which bounds are compared.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct BoundedNode<const D: usize> {
+    pub unknown: usize,
+    /// The cell by which the node is visited.
+    pub cell: usize,
+    pub x: Point<f64, D>,
+}
+
+impl<const D: usize> BoundedNode<D> {
+    /// Notes two values of which the first must not exceed the second.
+    pub fn compare(self, lower: f64, upper: f64, found: &mut Vec<Contradiction<D>>) {
+        if lower > upper {
+            found.push(Contradiction { node: self, lower, upper });
+        }
+    }
+}
+
+impl<const D: usize> Contradictions<D> {
+    pub(in crate::assemble) fn new<T: Real>(
+        bounds: &[Bound<T>],
+        found: Vec<Contradiction<D>>,
+    ) -> Self {
+        let values = |b: &Bound<T>| match *b {
+            Bound::Free => [None, None],
+            Bound::Fixed(a) | Bound::Lower(a) | Bound::Upper(a) => [Some(a), None],
+            Bound::Both(a, b) => [Some(a), Some(b)],
+        };
+        let sizes = bounds.iter().flat_map(values).flatten().map(|x| x.to_f64().abs());
+        let sizes_found = found.iter().map(|c| c.lower.abs().max(c.upper.abs()));
+        let size = sizes_found.chain(sizes).fold(0.0, f64::max);
+        Self { found, size, relative_slack: RELATIVE_SLACK.max(16.0 * T::EPSILON) }
+    }
+    /// The largest absolute value of a bound.
+    pub fn size(&self) -> f64 {
+        self.size
+    }
+    /// Refuses a contradiction in an own cell that exceeds rounding of data of a size.
+    ///
+    /// # Errors
+    /// [`Error::EmptyConstraint`].
+    pub fn check(&self, size: f64, owns: &dyn Fn(usize) -> bool) -> Result<(), Error> {
+        let slack = self.relative_slack * size;
+        let mut own = self.found.iter().filter(|found| owns(found.node.cell));
+        match own.find(|found| found.lower - found.upper > slack) {
+            Some(&Contradiction { node: BoundedNode { unknown, cell, x }, lower, upper }) => {
+                let (cell, at) = (cell as u64, describe_point(&x));
+                Err(Error::EmptyConstraint { unknown, cell, at, lower, upper })
+            }
+            None => Ok(()),
+        }
+    }
+}
