@@ -135,6 +135,16 @@ impl Sums {
             diagonal_energy: self.diagonal_energy * factor,
         }
     }
+    /// All of them as numbers.
+    pub fn to_numbers(self) -> [f64; 5] {
+        let Self { max_norm, energy, terms, load_energy, diagonal_energy } = self;
+        [max_norm, energy, terms, load_energy, diagonal_energy]
+    }
+    /// What [`Sums::to_numbers`] has made numbers of.
+    pub fn from_numbers(numbers: [f64; 5]) -> Self {
+        let [max_norm, energy, terms, load_energy, diagonal_energy] = numbers;
+        Self { max_norm, energy, terms, load_energy, diagonal_energy }
+    }
     /// Whether all values and loads are zero.
     pub fn is_zero(&self) -> bool {
         [self.max_norm, self.terms, self.load_energy, self.diagonal_energy] == [0.0; 4]

@@ -164,6 +164,22 @@ impl Violations {
         }
     }
 
+    /// All sums and maxima as numbers, to be sent to another part.
+    pub fn to_numbers(&self) -> Vec<f64> {
+        let Self { unit, scales, feasibility, mismatch, squares, stiffness, epsilon } = *self;
+        let own = [unit, feasibility, mismatch, stiffness, epsilon];
+        [&own[..], &squares, &scales.to_numbers()].concat()
+    }
+    /// What [`Violations::to_numbers`] has made numbers of; none for another number of them.
+    #[must_use]
+    pub fn from_numbers(numbers: &[f64]) -> Option<Self> {
+        let (&[unit, feasibility, mismatch, stiffness, epsilon], numbers) =
+            numbers.split_first_chunk()?;
+        let (&squares, numbers) = numbers.split_first_chunk()?;
+        let scales = Sums::from_numbers(numbers.try_into().ok()?);
+        Some(Self { unit, scales, feasibility, mismatch, squares, stiffness, epsilon })
+    }
+
     /// The certificate of what was merged.
     #[must_use]
     pub fn certificate(&self) -> Certificate {

@@ -29,6 +29,17 @@ impl SquaredErrors {
         self.max = self.max.max(other.max);
         self
     }
+    /// All of it as numbers, to be sent to another part.
+    pub fn to_numbers(&self) -> Vec<f64> {
+        let Self { squares: [l2, h1, energy, function], of_facets, max } = *self;
+        vec![l2, h1, energy, function, of_facets, max]
+    }
+    /// What [`SquaredErrors::to_numbers`] has made numbers of; none for another number of them.
+    #[must_use]
+    pub fn from_numbers(numbers: &[f64]) -> Option<Self> {
+        let &[l2, h1, energy, function, of_facets, max] = numbers else { return None };
+        Some(Self { squares: [l2, h1, energy, function], of_facets, max })
+    }
     /// The norms.
     #[must_use]
     pub fn norms(&self) -> Errors {
