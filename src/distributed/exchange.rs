@@ -2,13 +2,75 @@
 
 use std::sync::mpsc::{Receiver, Sender, channel};
 
+use super::error::ExchangeError;
+
 /// How the parts of a mesh tell one another numbers: one for each process, or for each thread.
+///
+/// All parts call all methods as often as one another, in the same order.
 pub trait Exchange {
     /// How many parts there are.
     fn parts(&self) -> usize;
     /// Sends a list to every part and returns what every part sends to this one, both by the number of the
-    /// part. All parts call it as often as one another, in the same order.
-    fn exchange(&self, lists: Vec<Vec<u64>>) -> Vec<Vec<u64>>;
+    /// part.
+    ///
+    /// # Errors
+    /// [`ExchangeError::Lists`] unless there is one list for each part; [`ExchangeError::Ended`] or
+    /// [`ExchangeError::Transport`] if a part is out of reach.
+    fn exchange(&self, lists: Vec<Vec<u64>>) -> Result<Vec<Vec<u64>>, ExchangeError>;
+    /// The sums of the numbers of all parts, place by place. They are added up in the order of the parts, so that
+    /// all parts have the same bits; an implementation with another order has this property, too.
+    ///
+    /// # Errors
+    /// Those of [`Exchange::exchange`]; [`ExchangeError::Length`] if a part has another number of values.
+    fn sum(&self, values: &[f64]) -> Result<Vec<f64>, ExchangeError> {
+        fold(self, values, |a, b| a + b)
+    }
+    /// The largest of the numbers of all parts, place by place; not a number if one of them is not a number.
+    ///
+    /// # Errors
+    /// Those of [`Exchange::sum`].
+    fn largest(&self, values: &[f64]) -> Result<Vec<f64>, ExchangeError> {
+        fold(self, values, |a, b| if a >= b || a.is_nan() { a } else { b })
+    }
+}
+
+/// The values of all parts, place by place joined in the order of the parts.
+fn fold<E: Exchange + ?Sized>(
+    exchange: &E,
+    values: &[f64],
+    join: fn(f64, f64) -> f64,
+) -> Result<Vec<f64>, ExchangeError> {
+    let lists = numbers_of_all(exchange, values)?;
+    let join = |mut all: Vec<f64>, of_part: Vec<f64>| {
+        all.iter_mut().zip(of_part).for_each(|(a, b)| *a = join(*a, b));
+        all
+    };
+    Ok(lists.into_iter().reduce(join).unwrap_or_default())
+}
+
+/// The numbers of every part, of which all have equally many.
+pub(super) fn numbers_of_all<E: Exchange + ?Sized>(
+    exchange: &E,
+    numbers: &[f64],
+) -> Result<Vec<Vec<f64>>, ExchangeError> {
+    let bits: Vec<u64> = numbers.iter().map(|x| x.to_bits()).collect();
+    let lists = exchange.exchange(vec![bits; exchange.parts()])?;
+    check_lengths(&lists, |_| numbers.len())?;
+    Ok(lists.iter().map(|list| list.iter().map(|&bits| f64::from_bits(bits)).collect()).collect())
+}
+
+/// Refuses lists of other lengths than those expected of each part.
+pub(super) fn check_lengths(
+    lists: &[Vec<u64>],
+    expected: impl Fn(usize) -> usize,
+) -> Result<(), ExchangeError> {
+    for (part, list) in lists.iter().enumerate() {
+        let (found, expected) = (list.len(), expected(part));
+        if found != expected {
+            return Err(ExchangeError::Length { part: part as u32, found, expected });
+        }
+    }
+    Ok(())
 }
 
 /// The exchange between threads of one process.
@@ -22,20 +84,22 @@ impl Exchange for InProcess {
     fn parts(&self) -> usize {
         self.senders.len()
     }
-    /// # Panics
-    /// If the thread of another part has ended.
-    fn exchange(&self, lists: Vec<Vec<u64>>) -> Vec<Vec<u64>> {
-        for (sender, list) in self.senders.iter().zip(lists) {
-            sender.send(list).expect("every part takes part in every exchange");
+    fn exchange(&self, lists: Vec<Vec<u64>>) -> Result<Vec<Vec<u64>>, ExchangeError> {
+        if lists.len() != self.parts() {
+            return Err(ExchangeError::Lists { lists: lists.len(), parts: self.parts() });
         }
-        let receive = |from: &Receiver<Vec<u64>>| from.recv();
-        let received: Result<Vec<_>, _> = self.receivers.iter().map(receive).collect();
-        received.expect("every part takes part in every exchange")
+        let ended = |part| ExchangeError::Ended { part };
+        for (part, (sender, list)) in (0..).zip(self.senders.iter().zip(lists)) {
+            sender.send(list).map_err(|_| ended(part))?;
+        }
+        let receive = |(part, from): (u32, &Receiver<_>)| from.recv().map_err(|_| ended(part));
+        (0..).zip(&self.receivers).map(receive).collect()
     }
 }
 
 /// Calls a function with the number of each part and its exchange, every part in a thread of its own, and
-/// returns the results by the number of the part.
+/// returns the results by the number of the part. A thread that ends early ends the exchanges of the others
+/// with an error.
 ///
 /// # Panics
 /// If the function does.

@@ -1,12 +1,16 @@
 //! The numbers of the unknowns of all parts together.
 
-use super::exchange::Exchange;
+use super::agree::agree;
+use super::error::ExchangeError;
+use super::exchange::{Exchange, check_lengths};
 use crate::assemble::Discretisation;
 use crate::mesh::Part;
 use crate::real::Real;
 
-/// The number of an unknown whose owner has not answered yet.
+/// The number of an unknown whose owner has not answered yet, or does not know it either.
 const UNKNOWN: u64 = u64::MAX;
+/// The answer of a part that does not own the cell.
+const NOT_OWNED: u64 = u64::MAX - 1;
 
 /// The numbers of the unknowns of all parts of a mesh together: those of a part, ascending, follow those of the
 /// part before.
@@ -29,14 +33,15 @@ pub struct Numbering {
 impl Numbering {
     /// Numbers the unknowns of a discretisation on a part; all parts call it.
     ///
-    /// # Panics
-    /// If the part has too few [layers](crate::scheme::AnyScheme#method.layers), so that a cell whose unknowns
-    /// are asked for is not among the own cells of the part that is asked.
+    /// # Errors
+    /// [`ExchangeError::Failed`] in all parts if cells have other owners in one part than in another, or if a part
+    /// has too few [layers](crate::scheme::AnyScheme#method.layers) to know who numbers an unknown; those of the
+    /// exchange.
     pub fn new<T: Real, const D: usize>(
         part: &Part<T, D>,
         discretisation: &Discretisation<'_, T, D>,
         exchange: &dyn Exchange,
-    ) -> Self {
+    ) -> Result<Self, ExchangeError> {
         let per_cell = discretisation.unknowns_of(0).count();
         let mut unknowns = Vec::with_capacity(per_cell * part.owners.len());
         for cell in 0..part.owners.len() {
@@ -66,16 +71,22 @@ impl Numbering {
     }
     /// Gives the unknowns that other parts own the values that they have there; all parts call it.
     ///
+    /// # Errors
+    /// [`ExchangeError::Length`] if the parts do not have the numbers of one discretisation; those of the exchange.
+    ///
     /// # Panics
     /// If there are fewer values than unknowns.
-    pub fn update(&self, values: &mut [f64], exchange: &dyn Exchange) {
+    pub fn update(&self, values: &mut [f64], exchange: &dyn Exchange) -> Result<(), ExchangeError> {
         let bits = |&unknown: &u32| values[unknown as usize].to_bits();
         let lists = self.sent.iter().map(|unknowns| unknowns.iter().map(bits).collect()).collect();
-        for (unknowns, bits) in self.received.iter().zip(exchange.exchange(lists)) {
+        let lists = exchange.exchange(lists)?;
+        check_lengths(&lists, |part| self.received[part].len())?;
+        for (unknowns, bits) in self.received.iter().zip(lists) {
             for (&unknown, bits) in unknowns.iter().zip(bits) {
                 values[unknown as usize] = f64::from_bits(bits);
             }
         }
+        Ok(())
     }
 }
 
@@ -91,7 +102,7 @@ struct Cells<'p> {
 }
 
 impl Cells<'_> {
-    fn number(&self, owners: &[u32], exchange: &dyn Exchange) -> Numbering {
+    fn number(&self, owners: &[u32], exchange: &dyn Exchange) -> Result<Numbering, ExchangeError> {
         let n_parts = exchange.parts();
         let mut is_inside = vec![false; owners.len()];
         for (cell, unknowns) in self.unknowns.chunks_exact(self.per_cell).enumerate() {
@@ -101,17 +112,20 @@ impl Cells<'_> {
         }
         let is_own = |&i: &u32| owners[i as usize] == self.number;
         let own: Vec<u32> = (0..owners.len() as u32).filter(is_own).collect();
+        let counts = exchange.exchange(vec![vec![own.len() as u64]; n_parts])?;
+        check_lengths(&counts, |_| 1)?;
         let mut first = vec![0];
-        for count in exchange.exchange(vec![vec![own.len() as u64]; n_parts]) {
-            first.push(first[first.len() - 1] + count[0]);
+        for count in counts.iter().flatten() {
+            first.push(first[first.len() - 1] + count);
         }
         let mut numbers = vec![UNKNOWN; owners.len()];
         for (number, &unknown) in (first[self.number as usize]..).zip(&own) {
             numbers[unknown as usize] = number;
         }
         let of_lower_parts = |unknown: usize, of: u32| is_inside[unknown] && owners[unknown] == of;
-        self.ask(&mut numbers, n_parts, exchange, &of_lower_parts);
-        self.ask(&mut numbers, n_parts, exchange, &|_, _| true);
+        self.ask(&mut numbers, n_parts, exchange, &of_lower_parts)?;
+        self.ask(&mut numbers, n_parts, exchange, &|_, _| true)?;
+        agree(self.check(&numbers), exchange)?;
         let (mut received, mut asked) = (vec![Vec::new(); n_parts], vec![Vec::new(); n_parts]);
         for (unknown, &number) in (0..).zip(&numbers) {
             let of = first.partition_point(|&first| first <= number) - 1;
@@ -121,8 +135,8 @@ impl Cells<'_> {
             }
         }
         let at = |positions: Vec<u64>| positions.iter().map(|&k| own[k as usize]).collect();
-        let sent = exchange.exchange(asked).into_iter().map(at).collect();
-        Numbering { own, numbers, first, sent, received }
+        let sent = exchange.exchange(asked)?.into_iter().map(at).collect();
+        Ok(Numbering { own, numbers, first, sent, received })
     }
 
     /// Asks the owners of other cells for the numbers of those of their unknowns that are not known, and
@@ -133,7 +147,7 @@ impl Cells<'_> {
         n_parts: usize,
         exchange: &dyn Exchange,
         asks: &dyn Fn(usize, u32) -> bool,
-    ) {
+    ) -> Result<(), ExchangeError> {
         let mut names = vec![Vec::new(); n_parts];
         let mut asked: Vec<Vec<u32>> = vec![Vec::new(); n_parts];
         let mut is_asked = vec![false; numbers.len()];
@@ -149,16 +163,38 @@ impl Cells<'_> {
         }
         let answer = |name: &u64| {
             let [cell, place] = [name / self.per_cell as u64, name % self.per_cell as u64];
-            let cell = self.numbers.binary_search(&cell);
-            let cell = cell.expect("the owner of a cell has it");
-            numbers[self.unknowns[cell * self.per_cell + place as usize] as usize]
+            match self.numbers.binary_search(&cell) {
+                Ok(cell) if self.owners[cell] == self.number => {
+                    numbers[self.unknowns[cell * self.per_cell + place as usize] as usize]
+                }
+                _ => NOT_OWNED,
+            }
         };
         let answers = |names: &Vec<u64>| names.iter().map(answer).collect();
-        let answers = exchange.exchange(names).iter().map(answers).collect();
-        for (unknowns, answers) in asked.iter().zip(exchange.exchange(answers)) {
+        let answers = exchange.exchange(names)?.iter().map(answers).collect();
+        let answers = exchange.exchange(answers)?;
+        check_lengths(&answers, |part| asked[part].len())?;
+        for (unknowns, answers) in asked.iter().zip(answers) {
             for (&unknown, number) in unknowns.iter().zip(answers) {
                 numbers[unknown as usize] = number;
             }
         }
+        Ok(())
+    }
+
+    /// Whether every unknown has a number.
+    fn check(&self, numbers: &[u64]) -> Result<(), ExchangeError> {
+        for (k, &unknown) in self.unknowns.iter().enumerate() {
+            let cell = k / self.per_cell;
+            let (part, owner, cell) = (self.number, self.owners[cell], self.numbers[cell]);
+            match numbers[unknown as usize] {
+                NOT_OWNED if owner != part => {
+                    return Err(ExchangeError::NotOwned { part, owner, cell });
+                }
+                UNKNOWN => return Err(ExchangeError::NotNumbered { owner, cell }),
+                _ => {}
+            }
+        }
+        Ok(())
     }
 }

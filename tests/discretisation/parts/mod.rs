@@ -1,6 +1,7 @@
 //! Schemes on parts of meshes against the same schemes on the whole.
 
 mod compare;
+mod failures;
 mod meshes;
 mod numbers;
 mod problems;

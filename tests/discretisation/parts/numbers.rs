@@ -20,10 +20,10 @@ fn every_scheme<const D: usize>(mesh: &Mesh<f64, D>, parts: usize) {
             let part = mesh.part(&owners, number, entry.layers(mesh)).unwrap();
             let on_part = Assembled::new(&*entry.scheme, &problem, &part.mesh).discretisation;
             let serial = whole.numbers_of(&part, &on_part);
-            let numbering = Numbering::new(&part, &on_part, exchange);
+            let numbering = Numbering::new(&part, &on_part, exchange).unwrap();
             let mut values = vec![f64::NAN; serial.len()];
             numbering.own().iter().for_each(|&i| values[i as usize] = x[serial[i as usize]]);
-            numbering.update(&mut values, exchange);
+            numbering.update(&mut values, exchange).unwrap();
             assert!(values.iter().zip(&serial).all(|(value, &k)| *value == x[k]));
             (numbering, serial)
         });

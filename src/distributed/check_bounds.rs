@@ -1,0 +1,29 @@
+//! Whether bounds contradict each other anywhere, with the data of all parts.
+
+use super::agree::agree;
+use super::error::ExchangeError;
+use super::exchange::Exchange;
+use crate::assemble::Discretisation;
+use crate::mesh::Part;
+use crate::real::Real;
+
+/// Refuses bounds that contradict each other by more than rounding of the largest datum of all parts, as
+/// [`Discretisation::bounds`] does on a whole mesh; all parts call it.
+///
+/// A gap is compared with Dirichlet data where the two parts of the boundary meet. With
+/// [`Layers`](crate::mesh::Layers) across facets a part need not have the cells of both.
+///
+/// # Errors
+/// [`ExchangeError::Failed`] in all parts, with the message of the lowest part that owns a cell with a contradiction;
+/// cells have their numbers in the whole mesh. Those of the exchange.
+pub fn check_bounds<T: Real, const D: usize>(
+    part: &Part<T, D>,
+    discretisation: &Discretisation<'_, T, D>,
+    exchange: &dyn Exchange,
+) -> Result<(), ExchangeError> {
+    let found = discretisation.contradictions();
+    let found = agree(found.map_err(|error| error.in_whole_mesh(&part.cells)), exchange)?;
+    let size = exchange.largest(&[found.size()])?[0];
+    let checked = found.check(size, &|cell| part.owns(cell));
+    agree(checked.map_err(|error| error.in_whole_mesh(&part.cells)), exchange)
+}

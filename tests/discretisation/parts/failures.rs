@@ -1,0 +1,260 @@
+//! What one part cannot do is an error of all parts, and no part waits for another one for ever.
+
+use super::compare::Assembled;
+use super::meshes::{box_mesh, moved};
+use unilateral::distributed::{
+    Exchange, ExchangeError, InProcess, Merge, Numbering, agree, check_bounds, in_process,
+    merge_all,
+};
+use unilateral::inequality::Violations;
+use unilateral::measure::SquaredErrors;
+use unilateral::mesh::{Extent, Layers};
+use unilateral::prelude::*;
+
+/// The message that all parts have.
+#[track_caller]
+fn message_of_all<T>(results: Vec<Result<T, ExchangeError>>) -> String {
+    let messages: Vec<String> =
+        results.into_iter().map(|result| result.err().unwrap().to_string()).collect();
+    assert!(messages.iter().all(|message| *message == messages[0]), "{messages:?}");
+    messages[0].clone()
+}
+
+#[test]
+fn an_error_of_one_part_is_one_of_all() {
+    let results = in_process(4, |part, exchange| {
+        let own = if part % 2 == 1 { Err(format!("ψ of {part}")) } else { Ok(part) };
+        agree(own, exchange)
+    });
+    assert!(matches!(results[3], Err(ExchangeError::Failed { part: 1, .. })));
+    assert_eq!(message_of_all(results), "part 1: ψ of 1");
+    // after it the parts are at one place
+    let results = in_process(3, |part, exchange| {
+        let empty = agree(if part == 0 { Err("") } else { Ok(()) }, exchange);
+        assert_eq!(empty, Err(ExchangeError::Failed { part: 0, message: String::new() }));
+        agree(Ok::<_, String>(part), exchange)
+    });
+    assert_eq!(results, [Ok(0), Ok(1), Ok(2)]);
+}
+
+/// A thread that ends, by an error or by a panic, ends the exchanges of the others.
+#[test]
+fn a_part_that_ends_leaves_no_other_waiting() {
+    let results = in_process(3, |part, exchange| match part {
+        1 => Ok(Vec::new()),
+        _ => exchange.exchange(vec![vec![7]; 3]),
+    });
+    for part in [0, 2] {
+        assert!(matches!(results[part], Err(ExchangeError::Ended { .. })), "{:?}", results[part]);
+    }
+    let all = std::panic::catch_unwind(|| {
+        in_process(3, |part, exchange| {
+            assert!(part != 2, "what a bug does");
+            let result = agree(Ok::<_, String>(()), exchange);
+            assert!(matches!(result, Err(ExchangeError::Ended { .. })), "{result:?}");
+        })
+    });
+    assert_eq!(all.unwrap_err().downcast_ref::<&str>(), Some(&"what a bug does"));
+}
+
+#[test]
+fn lists_that_do_not_fit_are_errors() {
+    let results = in_process(2, |part, exchange| match part {
+        0 => exchange.exchange(vec![Vec::new()]).map(|_| ()),
+        _ => exchange.sum(&[1.0]).map(|_| ()),
+    });
+    assert_eq!(results[0], Err(ExchangeError::Lists { lists: 1, parts: 2 }));
+    assert_eq!(results[1], Err(ExchangeError::Ended { part: 0 }));
+    let results = in_process(2, |part, exchange| exchange.largest(&vec![1.0; 1 + part as usize]));
+    let length = |part, found, expected| Err(ExchangeError::Length { part, found, expected });
+    assert_eq!(results, [length(1, 2, 1), length(0, 1, 2)]);
+}
+
+/// Sums have the same bits in all parts, those of the order of the parts; what is not a number stays.
+#[test]
+fn sums_and_maxima_over_parts() {
+    let values: Vec<[f64; 2]> = vec![[0.1, -3.0], [0.2, -7.0], [0.3, -0.5], [1e16, -1.0]];
+    let found = in_process(4, |part, exchange| {
+        let own = &values[part as usize];
+        (exchange.sum(own).unwrap(), exchange.largest(own).unwrap())
+    });
+    for (sum, largest) in found {
+        assert_eq!(sum, [((0.1 + 0.2) + 0.3) + 1e16, -11.5]);
+        assert_eq!(largest, [1e16, -0.5]);
+    }
+    for at in 0..3 {
+        let largest = in_process(3, |part, exchange| {
+            exchange.largest(&[if part == at { f64::NAN } else { f64::from(part) }]).unwrap()
+        });
+        assert!(largest.iter().all(|x| x[0].is_nan()));
+    }
+}
+
+/// An exchange may have sums and maxima of its own.
+#[test]
+fn an_exchange_may_have_sums_of_its_own() {
+    struct Counting<'e>(&'e InProcess);
+    impl Exchange for Counting<'_> {
+        fn parts(&self) -> usize {
+            self.0.parts()
+        }
+        fn exchange(&self, _: Vec<Vec<u64>>) -> Result<Vec<Vec<u64>>, ExchangeError> {
+            Err(ExchangeError::Transport { why: "no network".to_owned() })
+        }
+        fn sum(&self, values: &[f64]) -> Result<Vec<f64>, ExchangeError> {
+            Ok(vec![42.0; values.len()])
+        }
+    }
+    in_process(1, |_, exchange| {
+        let exchange: &dyn Exchange = &Counting(exchange);
+        assert_eq!(exchange.sum(&[1.0]), Ok(vec![42.0]));
+        let error = exchange.largest(&[1.0]).unwrap_err();
+        assert_eq!(error.to_string(), "the exchange between parts failed: no network");
+        assert_eq!(merge_all(&SquaredErrors::default(), exchange), Err(error));
+    });
+}
+
+/// What is sent arrives, bit for bit, and lists of another length are refused.
+#[test]
+fn what_parts_merge_survives_the_way() {
+    fn there_and_back<M: Merge>(own: &M) {
+        let numbers = own.to_numbers();
+        let again = M::from_numbers(&numbers).unwrap().to_numbers();
+        assert!(numbers.iter().map(|x| x.to_bits()).eq(again.iter().map(|x| x.to_bits())));
+        assert!(M::from_numbers(&numbers[1..]).is_none());
+        assert!(M::from_numbers(&[&numbers[..], &[0.0]].concat()).is_none());
+    }
+    let (mesh, problem) = (moved::<2>(3), super::problems::obstacle_problem());
+    let Assembled { discretisation, inequality } = Assembled::new(&ConformingP1, &problem, &mesh);
+    let u = super::compare::some_values(inequality.size());
+    there_and_back(&Extent::of(&mesh));
+    let violations = Violations::of(&inequality, &u, &[], &|_| true);
+    there_and_back(&violations);
+    let exact = problem.exact.as_ref().unwrap();
+    let errors = discretisation.squared_errors(exact, &u, &|_| true).unwrap();
+    there_and_back(&errors);
+    assert_eq!(SquaredErrors::from_numbers(&errors.to_numbers()), Some(errors));
+    let again = Violations::from_numbers(&violations.to_numbers()).unwrap();
+    assert_eq!(again.certificate(), violations.certificate());
+    let mixed = in_process(2, |part, exchange| match part {
+        0 => merge_all(&Extent::of(&mesh), exchange).map(|_| ()),
+        _ => merge_all(&violations, exchange).map(|_| ()),
+    });
+    assert!(matches!(mixed[0], Err(ExchangeError::Length { part: 1, found: 13, expected: 5 })));
+}
+
+/// Parts with other owners, and parts without enough layers, are refused in all parts, with part and cell.
+#[test]
+fn parts_that_do_not_belong_together_have_no_numbers() {
+    let mesh = box_mesh::<2>(4);
+    let problem = Problem::new();
+    let number = |part: u32, owners: &[u32], layers, exchange: &InProcess| {
+        let part = mesh.part(owners, part, layers).unwrap();
+        let on_part = Assembled::new(&Sipg::default(), &problem, &part.mesh).discretisation;
+        Numbering::new(&part, &on_part, exchange).map(|numbering| numbering.own().len())
+    };
+    let owners = mesh.partition(3).unwrap();
+    let layers = Layers::across_facets(1);
+    let found = in_process(3, |part, exchange| number(part, &owners, layers, exchange).unwrap());
+    assert_eq!(found.iter().sum::<usize>(), 32 * 3);
+    // part 1 has the cells of part 2
+    let others: Vec<u32> = owners.iter().map(|&owner| [0, 2, 1][owner as usize]).collect();
+    let message = message_of_all(in_process(3, |part, exchange| {
+        number(part, if part == 1 { &others } else { &owners }, layers, exchange)
+    }));
+    assert!(message.starts_with("part 0: part 1 has no cell "), "{message}");
+    let cell = message.split("no cell ").nth(1).and_then(|rest| rest.split(' ').next()).unwrap();
+    assert_eq!(owners[cell.parse::<usize>().unwrap()], 1, "{message}");
+}
+
+/// Of six parts around a vertex the fourth sees none that knows who numbers the vertex.
+#[test]
+fn parts_with_too_few_layers_have_no_numbers() {
+    let mesh = Mesh::<f64, 2>::disc(1.0, 1).unwrap();
+    let (owners, problem) = ([0, 1, 2, 3, 4, 5], Problem::new());
+    let number = |layers| {
+        in_process(6, |part, exchange| {
+            let part = mesh.part(&owners, part, layers).unwrap();
+            let on_part = Assembled::new(&ConformingP1, &problem, &part.mesh).discretisation;
+            Numbering::new(&part, &on_part, exchange).map(|numbering| numbering.own().len())
+        })
+    };
+    let own: usize = number(Layers::across_vertices(1)).into_iter().map(Result::unwrap).sum();
+    assert_eq!(own, 7);
+    let message = message_of_all(number(Layers::across_facets(1)));
+    assert!(message.contains("has no number for an unknown of its cell"), "{message}");
+}
+
+/// Bounds that contradict each other in one part, by more than rounding of the largest datum of all parts, are an
+/// error of all parts, which names the cell by its number in the whole mesh.
+#[test]
+fn contradicting_bounds_of_one_part_are_an_error_of_all() {
+    let mesh = moved::<2>(6);
+    let owners = mesh.partition(4).unwrap();
+    let check = |problem: &Problem<2>, scheme: &dyn AnyScheme<f64, 2>| {
+        in_process(4, |number, exchange| {
+            let part = mesh.part(&owners, number, scheme.layers(&mesh)).unwrap();
+            let on_part = Assembled::new(scheme, problem, &part.mesh).discretisation;
+            check_bounds(&part, &on_part, exchange)
+        })
+    };
+    // in cells of the last part to be found
+    let barycentre = |cell: usize| mesh.barycentre(cell);
+    let last = (0..mesh.n_cells()).filter(|&cell| owners[cell] == 3).next_back().unwrap();
+    let at = barycentre(last);
+    let schemes = NamedScheme::list(["p1", "cr", "sipg", "wopsip", "p2"]).unwrap();
+    for scheme in schemes {
+        let scheme = scheme.make::<f64, 2>();
+        let problem = |height: f64| {
+            Problem::new().obstacle_above(|_| 1.0).obstacle_below(move |x: &Point<f64, 2>| {
+                if (x - at).norm() < 0.25 { 1.0 + height } else { -1e3 }
+            })
+        };
+        let serial = scheme.inequality(&problem(0.5), &mesh, Default::default()).unwrap_err();
+        let Error::EmptyConstraint { cell, .. } = serial else { panic!("{serial}") };
+        let message = message_of_all(check(&problem(0.5), &*scheme));
+        let part = owners[cell as usize];
+        // the lowest part that fails need not be that of the first cell
+        if message.starts_with(&format!("part {part}:")) {
+            assert_eq!(message, format!("part {part}: {serial}"));
+        }
+        let named: usize = message
+            .split("in cell ")
+            .nth(1)
+            .and_then(|rest| rest.split(' ').next())
+            .and_then(|cell| cell.parse().ok())
+            .unwrap();
+        assert!(message.starts_with(&format!("part {}:", owners[named])), "{message}");
+        assert!((barycentre(named) - at).norm() < 0.8, "{message}");
+        // rounding of the data of other parts
+        assert!(scheme.inequality(&problem(5e-7), &mesh, Default::default()).is_ok());
+        assert!(check(&problem(5e-7), &*scheme).iter().all(Result::is_ok));
+        assert!(check(&problem(2e-6), &*scheme).iter().all(Result::is_err));
+    }
+}
+
+/// A datum that is not finite in one cell: the error of all parts has the cell of the whole mesh.
+#[test]
+fn data_that_are_not_finite_in_one_part_are_an_error_of_all() {
+    let mesh = moved::<2>(6);
+    let owners = mesh.partition(3).unwrap();
+    let bad = (0..mesh.n_cells()).filter(|&cell| owners[cell] == 2).next_back().unwrap();
+    let (geometry, corners) = (mesh.geometry(bad), mesh.cell(bad).to_vec());
+    let vertices = mesh.vertices().to_vec();
+    let problem = Problem::new().source(move |x: &Point<f64, 2>| {
+        let inside =
+            |k: usize| geometry.gradient(k).dot(&(x - vertices[corners[k] as usize])) > -1.0;
+        if (0..3).all(inside) { f64::NAN } else { 1.0 }
+    });
+    let (scheme, quadrature): (&dyn AnyScheme<f64, 2>, _) = (&ConformingP1, Default::default());
+    let serial = scheme.inequality(&problem, &mesh, quadrature).unwrap_err();
+    assert!(serial.to_string().contains(&format!("in cell {bad}:")), "{serial}");
+    let part = |number| mesh.part(&owners, number, Layers::across_vertices(1)).unwrap();
+    let results = in_process(3, |number, exchange| {
+        let part = part(number);
+        let result = scheme.inequality(&problem, &part.mesh, quadrature);
+        agree(result.map_err(|error| error.in_whole_mesh(&part.cells)), exchange)
+    });
+    let first = (0..3).find(|&number| part(number).cells.contains(&(bad as u64))).unwrap();
+    assert_eq!(message_of_all(results), format!("part {first}: {serial}"));
+}
