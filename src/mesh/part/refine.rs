@@ -48,8 +48,8 @@ impl<T: Real, const D: usize> Part<T, D> {
     /// let (fine, refinement) = part.refine(layers)?;
     /// assert_eq!(refinement.parents.len(), fine.mesh.vertices().len());
     /// assert_eq!(fine.cells[0], 4 * part.cells[0]);
-    /// // without peeling it would have 4 (64 + 17) cells
-    /// assert_eq!(fine.mesh.n_cells(), 4 * 64 + 33);
+    /// // without peeling it would have 4 (64 + 16) cells
+    /// assert_eq!(fine.mesh.n_cells(), 4 * 64 + 32);
     /// # Ok::<(), unilateral::mesh::MeshError>(())
     /// ```
     ///

@@ -200,7 +200,7 @@ fn contradicting_bounds_of_one_part_are_an_error_of_all() {
     };
     // in cells of the last part to be found
     let barycentre = |cell: usize| mesh.barycentre(cell);
-    let last = (0..mesh.n_cells()).filter(|&cell| owners[cell] == 3).next_back().unwrap();
+    let last = (0..mesh.n_cells()).rfind(|&cell| owners[cell] == 3).unwrap();
     let at = barycentre(last);
     let schemes = NamedScheme::list(["p1", "cr", "sipg", "wopsip", "p2"]).unwrap();
     for scheme in schemes {
@@ -238,7 +238,7 @@ fn contradicting_bounds_of_one_part_are_an_error_of_all() {
 fn data_that_are_not_finite_in_one_part_are_an_error_of_all() {
     let mesh = moved::<2>(6);
     let owners = mesh.partition(3).unwrap();
-    let bad = (0..mesh.n_cells()).filter(|&cell| owners[cell] == 2).next_back().unwrap();
+    let bad = (0..mesh.n_cells()).rfind(|&cell| owners[cell] == 2).unwrap();
     let (geometry, corners) = (mesh.geometry(bad), mesh.cell(bad).to_vec());
     let vertices = mesh.vertices().to_vec();
     let problem = Problem::new().source(move |x: &Point<f64, 2>| {
