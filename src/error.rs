@@ -185,7 +185,6 @@ impl Error {
 }
 
 /// The error of a file that could not be written: from an [`std::io::Error`] or from a message.
-#[cfg(feature = "report")]
 pub(crate) fn write_error(
     path: &std::path::Path,
     why: impl Into<Box<dyn std::error::Error + Send + Sync>>,

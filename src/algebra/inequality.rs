@@ -1,6 +1,9 @@
 //! The algebraic variational inequality.
 
+use std::sync::Arc;
+
 use super::dirichlet_energy::DirichletEnergy;
+use super::distribution::{Distribution, sum_over_parts};
 use super::index::NO_INDEX;
 use super::matrix::SparseMatrix;
 use super::penalised_matrix::PenalisedMatrix;
@@ -188,6 +191,11 @@ pub struct Inequality<T> {
     /// Whether theory or a test says that `A`, or its symmetric part, is positive definite on all
     /// unknowns that are not fixed, but for the kernel.
     pub is_definite: bool,
+    /// The other parts, if this inequality is that of one part of a mesh. Only [`ActiveSet`] with a
+    /// preconditioner for distributed matrices solves such an inequality.
+    ///
+    /// [`ActiveSet`]: crate::inequality::ActiveSet
+    pub distribution: Option<Arc<dyn Distribution>>,
 }
 
 impl<T: Real> Inequality<T> {
@@ -214,7 +222,22 @@ impl<T: Real> Inequality<T> {
             dirichlet_energy: None,
             kernel: Vec::new(),
             is_definite: false,
+            distribution: None,
         }
+    }
+    /// States that the inequality is that of one part of a mesh.
+    #[must_use]
+    pub fn with_distribution(mut self, distribution: Arc<dyn Distribution>) -> Self {
+        self.distribution = Some(distribution);
+        self
+    }
+    /// The other parts, if there are any.
+    pub(crate) fn distribution(&self) -> Option<&dyn Distribution> {
+        self.distribution.as_deref()
+    }
+    /// Whether an unknown belongs to this part; all do where there is one part.
+    pub(crate) fn owns(&self, unknown: usize) -> bool {
+        self.distribution.as_ref().is_none_or(|distribution| distribution.owns(unknown))
     }
     /// Replaces the initial active set.
     #[must_use]
@@ -337,10 +360,13 @@ impl<T: Real> Inequality<T> {
     /// # Panics
     /// If `u` is shorter than the number of unknowns.
     pub fn objective(&self, u: &[T]) -> f64 {
+        let distribution = self.distribution();
         if let Some(penalised) = &self.penalised {
-            return penalised.objective(|i| u[i].to_f64());
+            let own = penalised.objective(|i| u[i].to_f64(), |i| self.owns(i));
+            return sum_over_parts(distribution, own);
         }
-        (0..self.size())
+        let own = (0..self.size())
+            .filter(|&i| self.owns(i))
             .map(|i| {
                 let (columns, values) = self.matrix.row(i);
                 let au: f64 = columns
@@ -350,6 +376,7 @@ impl<T: Real> Inequality<T> {
                     .sum();
                 u[i].to_f64() * (0.5 * au - self.load[i].to_f64())
             })
-            .sum()
+            .sum();
+        sum_over_parts(distribution, own)
     }
 }

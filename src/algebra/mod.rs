@@ -4,11 +4,13 @@
 //! `matrix`: compressed sparse rows. `rectangular_matrix`: prolongations in compressed sparse rows, and
 //! `P^T A P`.
 //! `submatrix`: rows and columns of a matrix. `penalised_matrix`: `K + M^T S M`. `dense`: small dense
-//! matrices. `row`: rows in the making. `dirichlet_energy`: what weak data change in an energy. `inequality`: bounds, supports of
-//! unknowns and the inequality. `index`: the missing index.
+//! matrices. `row`: rows in the making. `dirichlet_energy`: what weak data change in an energy.
+//! `distribution`: unknowns in several processes. `inequality`: bounds, supports of unknowns and the
+//! inequality. `index`: the missing index.
 
 pub(crate) mod dense;
 mod dirichlet_energy;
+mod distribution;
 mod index;
 mod inequality;
 mod matrix;
@@ -18,6 +20,8 @@ mod row;
 mod submatrix;
 
 pub use dirichlet_energy::{DirichletEnergy, DirichletTerm};
+pub use distribution::Distribution;
+pub(crate) use distribution::{any_part, sum_over_parts};
 pub(crate) use index::NO_INDEX;
 pub(crate) use inequality::barycentre;
 pub use inequality::{Bound, Contact, Inequality, Start, Support};

@@ -177,15 +177,20 @@ impl<T: Real> PenalisedMatrix<T> {
     }
 
     /// The energy `u.A u / 2 - b.u`, which is `u.K u / 2 - c.u + (M u - g).S (M u - g) / 2 - g.S g / 2`.
-    pub fn objective(&self, u: impl Fn(usize) -> f64) -> f64 {
+    ///
+    /// Of one part of a mesh it has the terms of unknowns for which `counts` is true, and of jumps whose first
+    /// unknown is one of them.
+    pub fn objective(&self, u: impl Fn(usize) -> f64, counts: impl Fn(usize) -> bool) -> f64 {
         let of_unknown = |i: usize| u(i) * (0.5 * self.stiffness(i, &u) - self.load[i].to_f64());
         let of_jump = |k: usize| {
             let g = self.jump_data[k].to_f64();
             let jump = self.jump(k, &u) - g;
             0.5 * self.weights[k].to_f64() * (jump * jump - g * g)
         };
-        (0..self.load.len()).map(of_unknown).sum::<f64>()
-            + (0..self.n_jumps()).map(of_jump).sum::<f64>()
+        let is_counted = |&k: &usize| self.first_unknown(k).is_some_and(&counts);
+        let unknowns = (0..self.load.len()).filter(|&i| counts(i));
+        unknowns.map(of_unknown).sum::<f64>()
+            + (0..self.n_jumps()).filter(is_counted).map(of_jump).sum::<f64>()
     }
 
     /// The scale of energies `u.K u + p.(S^-1 p) + Σ |c_i u_i|` with jump multipliers `p`.

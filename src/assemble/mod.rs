@@ -206,6 +206,7 @@ impl<'a, T: Real, const D: usize> Discretisation<'a, T, D> {
             dirichlet_energy,
             kernel: self.space.kernel(self.form.couples()),
             is_definite: false,
+            distribution: None,
         })
     }
     /// The load; if the penalised form of the matrix is kept too, the load without Dirichlet data,

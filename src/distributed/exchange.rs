@@ -1,13 +1,15 @@
 //! Messages between parts, and the exchange between threads.
 
+use std::fmt::Debug;
 use std::sync::mpsc::{Receiver, Sender, channel};
+use std::sync::{Arc, Mutex, PoisonError};
 
 use super::error::ExchangeError;
 
 /// How the parts of a mesh tell one another numbers: one for each process, or for each thread.
 ///
 /// All parts call all methods as often as one another, in the same order.
-pub trait Exchange {
+pub trait Exchange: Debug + Send + Sync {
     /// How many parts there are.
     fn parts(&self) -> usize;
     /// Sends a list to every part and returns what every part sends to this one, both by the number of the
@@ -17,6 +19,10 @@ pub trait Exchange {
     /// [`ExchangeError::Lists`] unless there is one list for each part; [`ExchangeError::Ended`] or
     /// [`ExchangeError::Transport`] if a part is out of reach.
     fn exchange(&self, lists: Vec<Vec<u64>>) -> Result<Vec<Vec<u64>>, ExchangeError>;
+    /// The bytes that this part has sent to others so far; zero where nobody counts.
+    fn sent_bytes(&self) -> u64 {
+        0
+    }
     /// The sums of the numbers of all parts, place by place. They are added up in the order of the parts, so that
     /// all parts have the same bits; an implementation with another order has this property, too.
     ///
@@ -73,11 +79,29 @@ pub(super) fn check_lengths(
     Ok(())
 }
 
+impl<E: Exchange + ?Sized> Exchange for Arc<E> {
+    fn parts(&self) -> usize {
+        (**self).parts()
+    }
+    fn exchange(&self, lists: Vec<Vec<u64>>) -> Result<Vec<Vec<u64>>, ExchangeError> {
+        (**self).exchange(lists)
+    }
+    fn sent_bytes(&self) -> u64 {
+        (**self).sent_bytes()
+    }
+    fn sum(&self, values: &[f64]) -> Result<Vec<f64>, ExchangeError> {
+        (**self).sum(values)
+    }
+    fn largest(&self, values: &[f64]) -> Result<Vec<f64>, ExchangeError> {
+        (**self).largest(values)
+    }
+}
+
 /// The exchange between threads of one process.
 #[derive(Debug)]
 pub struct InProcess {
     senders: Vec<Sender<Vec<u64>>>,
-    receivers: Vec<Receiver<Vec<u64>>>,
+    receivers: Vec<Mutex<Receiver<Vec<u64>>>>,
 }
 
 impl Exchange for InProcess {
@@ -92,7 +116,10 @@ impl Exchange for InProcess {
         for (part, (sender, list)) in (0..).zip(self.senders.iter().zip(lists)) {
             sender.send(list).map_err(|_| ended(part))?;
         }
-        let receive = |(part, from): (u32, &Receiver<_>)| from.recv().map_err(|_| ended(part));
+        let receive = |(part, from): (u32, &Mutex<Receiver<_>>)| {
+            let from = from.lock().unwrap_or_else(PoisonError::into_inner);
+            from.recv().map_err(|_| ended(part))
+        };
         (0..).zip(&self.receivers).map(receive).collect()
     }
 }
@@ -103,19 +130,22 @@ impl Exchange for InProcess {
 ///
 /// # Panics
 /// If the function does.
-pub fn in_process<R: Send>(parts: usize, of_part: impl Fn(u32, &InProcess) -> R + Sync) -> Vec<R> {
+pub fn in_process<R: Send>(
+    parts: usize,
+    of_part: impl Fn(u32, &Arc<InProcess>) -> R + Sync,
+) -> Vec<R> {
     let empty = || InProcess { senders: Vec::new(), receivers: Vec::new() };
     let mut exchanges: Vec<InProcess> = (0..parts).map(|_| empty()).collect();
     for from in 0..parts {
         for to in 0..parts {
             let (sender, receiver) = channel();
             exchanges[from].senders.push(sender);
-            exchanges[to].receivers.push(receiver);
+            exchanges[to].receivers.push(Mutex::new(receiver));
         }
     }
     let of_part = &of_part;
     std::thread::scope(|scope| {
-        let start = |(number, exchange)| scope.spawn(move || of_part(number, &exchange));
+        let start = |(number, exchange)| scope.spawn(move || of_part(number, &Arc::new(exchange)));
         let threads: Vec<_> = (0..).zip(exchanges).map(start).collect();
         let result = |thread: std::thread::ScopedJoinHandle<'_, R>| match thread.join() {
             Ok(result) => result,

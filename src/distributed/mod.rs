@@ -13,14 +13,22 @@
 
 mod agree;
 mod check_bounds;
+mod engine;
 mod error;
 mod exchange;
 mod merge;
 mod numbering;
+#[cfg(feature = "petsc")]
+pub mod petsc;
+mod process;
+mod solve;
 
 pub use agree::agree;
 pub use check_bounds::check_bounds;
+pub use engine::{Engine, EngineMethod, EngineSolver, OwnData, OwnRows};
 pub use error::ExchangeError;
 pub use exchange::{Exchange, InProcess, in_process};
 pub use merge::{Merge, merge_all};
 pub use numbering::Numbering;
+pub use process::Process;
+pub use solve::{Differences, DistributedIteration, DistributedSolved, PartHierarchy};

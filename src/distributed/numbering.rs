@@ -69,6 +69,10 @@ impl Numbering {
     pub fn first(&self) -> &[u64] {
         &self.first
     }
+    /// The unknowns that other parts own.
+    pub(in crate::distributed) fn ghosts(&self) -> impl Iterator<Item = usize> + '_ {
+        self.received.iter().flatten().map(|&unknown| unknown as usize)
+    }
     /// Gives the unknowns that other parts own the values that they have there; all parts call it.
     ///
     /// # Errors
@@ -77,13 +81,30 @@ impl Numbering {
     /// # Panics
     /// If there are fewer values than unknowns.
     pub fn update(&self, values: &mut [f64], exchange: &dyn Exchange) -> Result<(), ExchangeError> {
-        let bits = |&unknown: &u32| values[unknown as usize].to_bits();
+        let mut received = Vec::new();
+        let receive = &mut |unknown, value| received.push((unknown, value));
+        self.exchange_values(&|unknown| values[unknown], receive, exchange)?;
+        received.into_iter().for_each(|(unknown, value)| values[unknown] = value);
+        Ok(())
+    }
+    /// Calls `receive` with every unknown that another part owns and the `value` that it has there; all parts
+    /// call it.
+    ///
+    /// # Errors
+    /// Those of [`Numbering::update`].
+    pub fn exchange_values(
+        &self,
+        value: &dyn Fn(usize) -> f64,
+        receive: &mut dyn FnMut(usize, f64),
+        exchange: &dyn Exchange,
+    ) -> Result<(), ExchangeError> {
+        let bits = |&unknown: &u32| value(unknown as usize).to_bits();
         let lists = self.sent.iter().map(|unknowns| unknowns.iter().map(bits).collect()).collect();
         let lists = exchange.exchange(lists)?;
         check_lengths(&lists, |part| self.received[part].len())?;
         for (unknowns, bits) in self.received.iter().zip(lists) {
             for (&unknown, bits) in unknowns.iter().zip(bits) {
-                values[unknown as usize] = f64::from_bits(bits);
+                receive(unknown as usize, f64::from_bits(bits));
             }
         }
         Ok(())

@@ -13,6 +13,7 @@
 //! | [`reproduce`] | published tables beside ours |
 //! | [`solvers`] | which solver runs when, what to do on each status, rounding, time and memory |
 //! | [`assembly`] | what assembly costs |
+//! | [`distributed`] | a mesh in parts over the processes of MPI, with PETSc |
 //! | [`pictures`] | solutions drawn |
 //! | [`house`] | the rooms of the source and their order |
 //!
@@ -74,6 +75,11 @@ pub mod solvers {}
 #[cfg_attr(doc, doc = "", doc = include_str!("links.md"))]
 #[cfg_attr(doc, doc = include_str!("../../docs/assembly.md"))]
 pub mod assembly {}
+
+/// A mesh in parts over the processes of MPI, with PETSc: commands, figures, limits.
+#[cfg_attr(doc, doc = "", doc = include_str!("links.md"))]
+#[cfg_attr(doc, doc = include_str!("../../docs/distributed.md"))]
+pub mod distributed {}
 
 /// Solutions, contact sets, jumps and multipliers drawn.
 #[cfg_attr(doc, doc = "", doc = include_str!("links.md"), doc = include_str!("pictures.md"))]

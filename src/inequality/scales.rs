@@ -3,7 +3,7 @@
 
 use std::cmp::Ordering;
 
-use crate::algebra::Inequality;
+use crate::algebra::{Distribution, Inequality};
 use crate::parallel::vectors::map_chunks;
 use crate::real::Real;
 
@@ -56,7 +56,11 @@ impl Scales {
         unit: f64,
     ) -> Self {
         let values = (u, residual, jump_multipliers);
-        Sums::of(inequality, values, diagonal, unit, &|_| true).scales(T::EPSILON, unit)
+        let mut sums = Sums::of(inequality, values, diagonal, unit, &|i| inequality.owns(i));
+        if let Some(distribution) = inequality.distribution() {
+            sums = sums.over_parts(distribution);
+        }
+        sums.scales(T::EPSILON, unit)
     }
 }
 
@@ -123,6 +127,15 @@ impl Sums {
             max_norm: if self.max_norm == 0.0 { 1.0 } else { self.max_norm },
             energy_norm: energy.sqrt() * unit,
         }
+    }
+    /// The sums over all parts, all in one unit.
+    pub fn over_parts(self, distribution: &dyn Distribution) -> Self {
+        let mut max_norm = [self.max_norm];
+        distribution.largest(&mut max_norm);
+        let mut sums = [self.energy, self.terms, self.load_energy, self.diagonal_energy];
+        distribution.sum(&mut sums);
+        let [energy, terms, load_energy, diagonal_energy] = sums;
+        Self { max_norm: max_norm[0], energy, terms, load_energy, diagonal_energy }
     }
     /// The sums with another unit, that of before times `ratio`.
     pub fn in_units_of(self, ratio: f64) -> Self {

@@ -2,7 +2,7 @@
 
 use super::certificate::{Certificate, positive_diagonal, residual};
 use super::scales::{Scales, Sums, maximum};
-use crate::algebra::{Bound, Inequality};
+use crate::algebra::{Bound, Distribution, Inequality};
 use crate::instances::compiled;
 use crate::real::Real;
 
@@ -45,7 +45,12 @@ pub(crate) fn certify_with_rounding<T: Real>(
     u: &[T],
     jump_multipliers: &[T],
 ) -> (Certificate, f64) {
-    Violations::at(inequality, u, jump_multipliers, &|_| true).certificate_with_rounding()
+    let own = Violations::at(inequality, u, jump_multipliers, &|i| inequality.owns(i));
+    match inequality.distribution() {
+        Some(distribution) => own.over_parts(distribution),
+        None => own,
+    }
+    .certificate_with_rounding()
 }
 
 /// The violations of the complementarity conditions at the unknowns that a part of a mesh owns: sums and
@@ -154,7 +159,7 @@ impl Violations {
         };
         let (one, two) = (self.in_unit(unit), other.in_unit(unit));
         Self {
-            unit,
+            unit: one.unit,
             scales: one.scales.merge(two.scales),
             feasibility: one.feasibility.max(two.feasibility),
             mismatch: maximum(one.mismatch, two.mismatch),
@@ -162,6 +167,24 @@ impl Violations {
             stiffness: one.stiffness + two.stiffness,
             epsilon: one.epsilon.max(two.epsilon),
         }
+    }
+
+    /// The violations at the unknowns of all parts; all parts call it and have the same result.
+    #[must_use]
+    pub fn over_parts(self, distribution: &dyn Distribution) -> Self {
+        let mut unit = [if self.is_zero() { 0.0 } else { self.unit }];
+        distribution.largest(&mut unit);
+        let own = self.in_unit(if unit[0] == 0.0 { 1.0 } else { unit[0] });
+        let mut largest = [own.feasibility, own.mismatch, own.epsilon];
+        distribution.largest(&mut largest);
+        let [multiplier, complementarity, residual] = own.squares;
+        let mut sums = [multiplier, complementarity, residual, own.stiffness];
+        distribution.sum(&mut sums);
+        let [multiplier, complementarity, residual, stiffness] = sums;
+        let [feasibility, mismatch, epsilon] = largest;
+        let squares = [multiplier, complementarity, residual];
+        let scales = own.scales.over_parts(distribution);
+        Self { unit: own.unit, scales, feasibility, mismatch, squares, stiffness, epsilon }
     }
 
     /// All sums and maxima as numbers, to be sent to another part.
@@ -288,26 +311,63 @@ impl LocalViolation {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::algebra::SparseMatrix;
+    use crate::algebra::{DirichletEnergy, DirichletTerm, SparseMatrix};
 
-    /// Forces and values in a unit that is smaller or larger by a power of two.
+    /// Two unknowns with bounds and a third one apart, which rests at zero; data and values in this unit.
+    fn problem(unit: f64) -> (Inequality<f64>, [f64; 3]) {
+        let matrix = SparseMatrix {
+            row_starts: vec![0, 2, 4, 5],
+            columns: vec![0, 1, 0, 1, 2],
+            values: vec![3.0, -1.0, -1.0, 2.0, 1.0],
+        };
+        let bounds = vec![Bound::Lower(-0.5 * unit), Bound::Upper(0.3 * unit), Bound::Free];
+        let problem = Inequality::new(matrix, true, vec![-2.0 * unit, unit, 0.0], bounds);
+        (problem, [-0.4 * unit, 0.31 * unit, 0.0])
+    }
+
+    /// Forces and values in a unit that is smaller or larger by a power of two, without and with weak
+    /// Dirichlet data.
     #[test]
     fn certificate_and_rounding_do_not_depend_on_the_unit_of_data() {
         let of_unit = |unit: f64| {
-            let matrix = SparseMatrix {
-                row_starts: vec![0, 2, 4],
-                columns: vec![0, 1, 0, 1],
-                values: vec![3.0, -1.0, -1.0, 2.0],
-            };
-            let bounds = vec![Bound::Lower(-0.5 * unit), Bound::Upper(0.3 * unit)];
-            let problem = Inequality::new(matrix, true, vec![-2.0 * unit, unit], bounds);
-            certify_with_rounding(&problem, &[-0.4 * unit, 0.31 * unit], &[])
+            let (mut problem, values) = problem(unit);
+            let free = certify_with_rounding(&problem, &values, &[]);
+            let (load, linear) = (0.5 * unit, unit);
+            let term = DirichletTerm { unknown: 1, load, linear, constant: unit * unit };
+            problem.dirichlet_energy = Some(DirichletEnergy { terms: vec![term] });
+            let with_data = certify_with_rounding(&problem, &values, &[]);
+            assert_ne!(with_data.0, free.0);
+            (free, with_data)
         };
-        let (certificate, rounding) = of_unit(1.0);
-        assert!(certificate.feasibility > 0.0 && certificate.complementarity > 0.0);
-        assert!(rounding > 0.0);
+        let (free, with_data) = of_unit(1.0);
+        assert!(free.0.feasibility > 0.0 && free.0.complementarity > 0.0);
+        assert!(free.1 > 0.0);
         for exponent in [-300, -30, 30, 300] {
-            assert_eq!(of_unit(2.0_f64.powi(exponent)), (certificate, rounding), "{exponent}");
+            assert_eq!(of_unit(2.0_f64.powi(exponent)), (free, with_data), "{exponent}");
         }
+    }
+
+    /// Parts of different sizes, and one where all is zero, in units whose squares underflow.
+    #[test]
+    fn certificates_of_merged_parts_do_not_depend_on_the_unit_of_data() {
+        let of_unit = |unit: f64| {
+            let (mut problem, mut values) = problem(unit);
+            // the second unknown is smaller than the first
+            problem.load[1] *= 0.125;
+            problem.bounds[1] = Bound::Upper(0.03 * unit);
+            values[1] *= 0.1;
+            let part = |own: usize| Violations::of(&problem, &values, &[], &|i| i == own);
+            let serial = certify_with_rounding(&problem, &values, &[]);
+            for order in [[0, 1, 2], [2, 1, 0], [0, 2, 1]] {
+                let merged = order.map(part).into_iter().reduce(Violations::merge).unwrap();
+                let (certificate, rounding) = merged.certificate_with_rounding();
+                let difference = (certificate.largest() - serial.0.largest()).abs();
+                assert!(difference < 1e-15, "{order:?} in units of {unit:e}: {difference:e}");
+                assert!((rounding / serial.1 - 1.0).abs() < 1e-14);
+            }
+            serial
+        };
+        let [of_one, of_small] = [1.0, 2.0_f64.powi(-530)].map(of_unit);
+        assert_eq!(of_small, of_one);
     }
 }

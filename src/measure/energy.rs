@@ -29,15 +29,28 @@ impl<T: Real, const D: usize> Discretisation<'_, T, D> {
     /// # Panics
     /// If `u` is shorter than the number of unknowns.
     pub fn energy(&self, u: &[T]) -> Result<f64, Error> {
+        self.energy_of(u, &|_| true)
+    }
+
+    /// The energy of the cells for which `counts` is true, and of their boundary facets.
+    pub(crate) fn energy_of(
+        &self,
+        u: &[T],
+        counts: &(dyn Fn(usize) -> bool + Sync),
+    ) -> Result<f64, Error> {
         compiled!(
-            T, D: fn(&Discretisation<'_, T, D>, &[T]) -> Result<f64, Error>
-                = |of, u| of.space.energy(u)
-        )(self, u)
+            T, D: fn(
+                &Discretisation<'_, T, D>,
+                &[T],
+                &(dyn Fn(usize) -> bool + Sync),
+            ) -> Result<f64, Error>
+                = |of, u, counts| of.space.energy(u, counts)
+        )(self, u, counts)
     }
 }
 
 impl<T: Real, const D: usize> Space<'_, T, D> {
-    fn energy(&self, u: &[T]) -> Result<f64, Error> {
+    fn energy(&self, u: &[T], counts: &(dyn Fn(usize) -> bool + Sync)) -> Result<f64, Error> {
         let load = self.load_by_cell()?;
         let rule = match self.has_varying_coefficient() {
             // the rule at whose points the stiffness has the coefficient
@@ -49,7 +62,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         // partial sums are added in order, so the result does not depend on threads
         let parts = cells::map(self.mesh.n_cells(), &|cells: Range<usize>| {
             let mut sum = 0.0;
-            for cell in cells {
+            for cell in cells.filter(|&cell| counts(cell)) {
                 let geometry = self.mesh.geometry(cell);
                 let local = self.local_values(cell, u);
                 let mut gradients = 0.0;

@@ -122,6 +122,11 @@ impl<T: Real, const D: usize> Coarsest<'_, T, D> {
         levels
     }
 
+    /// The levels of the hierarchy that ends with a level, coarsest first.
+    pub fn levels_to(&self, level: usize) -> Vec<usize> {
+        self.levels(level, COARSEST)
+    }
+
     /// The fewest hierarchies that have all of these levels.
     ///
     /// # Errors
@@ -234,7 +239,7 @@ impl<T: Real, const D: usize> Coarsest<'_, T, D> {
 }
 
 /// Levels from the finest to the coarsest; not generic, so that the sorting code is compiled once.
-fn descending(levels: &[usize]) -> Vec<usize> {
+pub(crate) fn descending(levels: &[usize]) -> Vec<usize> {
     let mut levels = levels.to_vec();
     levels.sort_unstable_by(|a, b| b.cmp(a));
     levels

@@ -8,13 +8,13 @@ use std::borrow::Cow;
 use std::fmt;
 use std::fs::File;
 use std::io::{self, BufWriter, Write};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use super::encode::{Arrays, bytes};
 use super::grid::{Grid, values_per_cell};
 use super::pvd::escape;
 use crate::error::Error;
-use crate::files::replace;
+use crate::files::{replace, replace_text};
 use crate::instances::compiled;
 use crate::mesh::Mesh;
 use crate::real::{Point, Real};
@@ -182,6 +182,50 @@ impl<'a, const D: usize> VtuFile<'a, D> {
         written.map(drop)
     }
 
+    /// Writes a `.pvtu` file that lists the files of the parts of a mesh, each with the fields of this one. Files
+    /// in its own directory are named relative to it.
+    ///
+    /// # Errors
+    /// [`Error::Write`].
+    pub fn write_list(&self, path: &Path, parts: &[PathBuf]) -> Result<(), Error> {
+        let kind = match self.scalar {
+            FieldScalar::Single => "Float32",
+            FieldScalar::Double => "Float64",
+        };
+        let array =
+            |name: &str| format!("<PDataArray type=\"{kind}\" Name=\"{}\"/>\n", escape(name));
+        let functions = self.functions.iter().map(|(name, _)| *name);
+        let of_points = functions.chain(self.exact.as_ref().map(|_| "error")).chain(["u"]);
+        let of_points: String = of_points.map(array).collect();
+        let of_cells: String = self.cell_names().into_iter().map(array).collect();
+        let directory = path.parent().unwrap_or(Path::new(""));
+        let source = |part: &PathBuf| {
+            let name = part.strip_prefix(directory).unwrap_or(part).display().to_string();
+            format!("<Piece Source=\"{}\"/>\n", escape(&name))
+        };
+        let sources: String = parts.iter().map(source).collect();
+        let text = format!(
+            "<?xml version=\"1.0\"?>\n<VTKFile type=\"PUnstructuredGrid\" version=\"1.0\" \
+             byte_order=\"LittleEndian\" header_type=\"UInt64\">\n\
+             <PUnstructuredGrid GhostLevel=\"0\">\n<PPointData Scalars=\"u\">\n{of_points}</PPointData>\n\
+             <PCellData>\n{of_cells}<PDataArray type=\"UInt8\" Name=\"dimension\"/>\n</PCellData>\n\
+             <PPoints>\n<PDataArray type=\"{kind}\" Name=\"Points\" NumberOfComponents=\"3\"/>\n</PPoints>\n\
+             {sources}</PUnstructuredGrid>\n</VTKFile>\n"
+        );
+        replace_text(path, &text).map(drop)
+    }
+
+    /// The names of cell data, each once.
+    fn cell_names(&self) -> Vec<&'a str> {
+        let mut names: Vec<&str> = Vec::new();
+        for (name, _) in self.on_cells.iter().chain(&self.on_facets) {
+            if !names.contains(name) {
+                names.push(name);
+            }
+        }
+        names
+    }
+
     /// Number of values of each cell. Refuses a field whose length does not fit the mesh, and facets that
     /// the mesh does not have.
     fn check(&self) -> io::Result<usize> {
@@ -273,17 +317,11 @@ impl<'a, const D: usize> VtuFile<'a, D> {
 
     fn push_cell_data(&self, to: &mut Arrays) -> io::Result<()> {
         let (cells, facets) = (self.mesh.n_cells(), self.facets.len());
-        let mut names: Vec<&str> = Vec::new();
-        for (name, _) in self.on_cells.iter().chain(&self.on_facets) {
-            if !names.contains(name) {
-                names.push(name);
-            }
-        }
         let of = |fields: &[(&str, &'a [f64])], name: &str, length: usize| {
             let found = fields.iter().find(|(other, _)| *other == name).map(|(_, v)| *v);
             found.map_or_else(|| vec![f64::NAN; length], <[f64]>::to_vec)
         };
-        for name in names {
+        for name in self.cell_names() {
             let values = [of(&self.on_cells, name, cells), of(&self.on_facets, name, facets)];
             self.push_floats(to, name, 1, values.concat().into_iter())?;
         }

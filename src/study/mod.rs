@@ -10,6 +10,7 @@ mod file_name;
 mod journal;
 mod memory;
 mod orders;
+mod part_figures;
 pub(crate) mod rates;
 mod reference;
 pub(crate) mod report;
@@ -30,6 +31,7 @@ pub use orders::{
     ObservedOrders, OrderMissed, OrderVerdict, OrdersMissed, fill_orders, orders_summary,
     orders_table,
 };
+pub use part_figures::{PartFigures, PartSeconds};
 pub use report::{Program, Report};
 pub use row::{Iterations, Orders, Row, RowKey, Seconds};
-pub use runner::{Progress, Study};
+pub use runner::{PartChecks, Progress, Study};

@@ -1,5 +1,6 @@
 //! Rows of a report: the figures of one scene, scheme and level each.
 
+use super::part_figures::PartFigures;
 use crate::error::Error;
 use crate::error_bound::BoundFigures;
 use crate::facet::PenaltyParameters;
@@ -172,6 +173,9 @@ pub struct Row {
     pub peak_memory_bytes: Option<u64>,
     /// Warnings by type, as text: a penalty below its proven bound, say.
     pub warnings: Vec<String>,
+    /// Figures of a run over several processes; rows of a run in one do not have the key.
+    #[cfg_attr(feature = "report", serde(default, skip_serializing_if = "Option::is_none"))]
+    pub ranks: Option<PartFigures>,
 }
 
 impl Row {
@@ -212,6 +216,7 @@ impl Row {
             seconds: Seconds::default(),
             peak_memory_bytes: None,
             warnings: Vec::new(),
+            ranks: None,
         }
     }
 

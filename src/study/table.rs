@@ -3,6 +3,7 @@
 use std::fmt;
 
 use super::extrapolate::{Limit, extrapolate};
+use super::part_figures::PartFigures;
 use super::rates::rates;
 use super::report::Report;
 use super::row::{Row, distinct};
@@ -70,14 +71,13 @@ fn write_scene(f: &mut impl fmt::Write, scene: &str, rows: &[&Row]) -> fmt::Resu
     rates(rows).iter().try_for_each(|line| write_wrapped(f, &format!("  {line}")))?;
     let finest = |of_series| rows.iter().rfind(|r| key(r) == of_series).copied();
     let finest: Vec<&Row> = series.into_iter().filter_map(finest).collect();
-    let columns = totals(rows);
-    if columns.is_empty() {
-        return Ok(());
+    for columns in [totals(rows), of_processes(rows)].into_iter().filter(|c| !c.is_empty()) {
+        let lines = Lines::new(columns, &finest);
+        writeln!(f)?;
+        lines.write(f, |c| c.name.to_owned())?;
+        finest.iter().try_for_each(|row| lines.write(f, |c| (c.cell)(row)))?;
     }
-    let lines = Lines::new(columns, &finest);
-    writeln!(f)?;
-    lines.write(f, |c| c.name.to_owned())?;
-    finest.iter().try_for_each(|row| lines.write(f, |c| (c.cell)(row)))
+    Ok(())
 }
 
 /// Whether the rows are those of meshes that follow the error bound.
@@ -272,6 +272,45 @@ pub(crate) fn totals(rows: &[&Row]) -> Vec<Column> {
         }));
     }
     if columns.len() > names { columns } else { Vec::new() }
+}
+
+/// The columns of what rows say of several processes: shares of ghosts, imbalance, seconds by phase as least and
+/// most. None if the rows are those of one process.
+fn of_processes(rows: &[&Row]) -> Vec<Column> {
+    let text = |name, cell| Column { name, left: true, cell };
+    let number = |name, cell| Column { name, left: false, cell };
+    if rows.iter().all(|r| r.ranks.is_none()) {
+        return Vec::new();
+    }
+    fn figure(row: &Row, get: fn(&PartFigures) -> String) -> String {
+        row.ranks.as_ref().map_or_else(|| NONE.to_owned(), get)
+    }
+    fn range([least, most]: [f64; 2]) -> String {
+        format!("{least:.2}-{most:.2}")
+    }
+    vec![
+        text("scheme", |r| r.label.clone()),
+        number("n", |r| r.level.to_string()),
+        number("ranks", |r| figure(r, |p| p.count.to_string())),
+        number("ghosts", |r| figure(r, |p| format!("{:.1}%", 100.0 * p.ghosts))),
+        number("imbal.", |r| figure(r, |p| format!("{:.3}", p.imbalance))),
+        number("linear", |r| r.iterations.linear.to_string()),
+        number("assem.", |r| figure(r, |p| range(p.seconds.assemble))),
+        number("number", |r| figure(r, |p| range(p.seconds.number))),
+        number("start", |r| figure(r, |p| range(p.seconds.start))),
+        number("solve", |r| figure(r, |p| range(p.seconds.solve))),
+        number("B/it.", |r| {
+            figure(r, |p| {
+                p.bytes_per_iteration.map_or_else(|| NONE.to_owned(), |bytes| format!("{bytes:.0}"))
+            })
+        }),
+        number("MB", |r| {
+            figure(r, |p| {
+                let memory = p.peak_memory_bytes.map(|bytes| bytes.map(|b| b as f64 / 1e6));
+                memory.map_or_else(|| NONE.to_owned(), |[a, b]| format!("{a:.0}-{b:.0}"))
+            })
+        }),
+    ]
 }
 
 /// The lines of a table: its columns, and how wide they are.

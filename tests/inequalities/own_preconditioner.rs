@@ -1,10 +1,14 @@
 //! Preconditioners made outside the library, and contact sets that do not depend on the linear solver.
 
+use std::sync::Arc;
+use std::sync::atomic::{AtomicUsize, Ordering};
+
 use unilateral::algebra::{Contact, Inequality};
 use unilateral::assemble::DataQuadrature;
 use unilateral::inequality::{ActiveSet, InequalitySolver, Solution, Stage};
 use unilateral::linear::{
-    FactorError, LinearMethod, PreconditionedSystem, Preconditioner, PreconditionerFamily,
+    BuiltInPreconditioners, FactorError, LinearMethod, PreconditionedSystem, Preconditioner,
+    PreconditionerFamily,
 };
 use unilateral::prelude::*;
 use unilateral::scenes::Scene;
@@ -72,6 +76,64 @@ fn a_preconditioner_of_ones_own_runs_beside_the_built_in_ones() {
     // the diagonal alone needs more iterations on finer meshes
     let iterations = |rows: &[&unilateral::study::Row]| rows[2].iterations.linear;
     assert!(iterations(&own) > iterations(&built_in));
+}
+
+/// The preconditioners of the library, and how often they are applied.
+#[derive(Clone, Debug, Default)]
+struct Counted(Arc<AtomicUsize>);
+
+struct CountedOf<'a> {
+    preconditioner: Box<dyn Preconditioner<f64> + 'a>,
+    applications: Arc<AtomicUsize>,
+}
+
+impl PreconditionerFamily<f64> for Counted {
+    fn name(&self) -> &'static str {
+        "active-set-counted"
+    }
+    fn preconditioner<'a>(
+        &self,
+        system: PreconditionedSystem<'a, f64>,
+    ) -> Option<Box<dyn Preconditioner<f64> + 'a>> {
+        let preconditioner = BuiltInPreconditioners.preconditioner(system)?;
+        Some(Box::new(CountedOf { preconditioner, applications: Arc::clone(&self.0) }))
+    }
+}
+
+impl Preconditioner<f64> for CountedOf<'_> {
+    fn name(&self) -> &'static str {
+        self.preconditioner.name()
+    }
+    fn set_fixed(&mut self, fixed: &[bool]) -> Result<(), FactorError> {
+        self.preconditioner.set_fixed(fixed)
+    }
+    fn apply(&mut self, r: &[f64], z: &mut [f64]) {
+        self.applications.fetch_add(1, Ordering::Relaxed);
+        self.preconditioner.apply(r, z);
+    }
+    fn reduction(&self) -> f64 {
+        self.preconditioner.reduction()
+    }
+}
+
+/// Every iteration of conjugate gradients applies the preconditioner. Of a huge penalty the last system is
+/// solved once more, for the jump multipliers.
+#[test]
+fn iterations_are_applications_of_the_preconditioner() {
+    for eta in [1.0, 1e10] {
+        let counted = Counted::default();
+        let solver = ActiveSet::default().linear(LinearMethod::Iterative);
+        let report = Study::<f64, 2>::new(scenes::signorini_2d())
+            .scheme(Wopsip { eta: Eta::Absolute(eta), ..Wopsip::default() })
+            .solver(solver.with_preconditioners(counted.clone()))
+            .levels([16])
+            .run()
+            .unwrap();
+        let row = &report.rows[0];
+        assert!(row.converged());
+        let (iterations, applications) = (row.iterations.linear, counted.0.load(Ordering::Relaxed));
+        assert!(iterations > 0 && iterations <= applications, "{iterations} and {applications}");
+    }
 }
 
 /// The inequality of a scheme on a level of a scene.

@@ -8,6 +8,7 @@ mod interrupt;
 mod limits;
 mod meshes;
 mod output;
+mod over_processes;
 mod own_problems;
 mod requests;
 mod rows;

@@ -48,14 +48,21 @@ fn main() -> ExitCode {
     match parse().map_err(Failure::from).and_then(run) {
         Ok(true) => ExitCode::SUCCESS,
         Ok(false) => ExitCode::from(1),
+        // of several processes the first one says why
         Err(Failure::Work(message)) => {
-            complain(&message);
+            complain_unless_empty(&message);
             ExitCode::from(1)
         }
         Err(Failure::Request(message)) => {
-            complain(&message);
+            complain_unless_empty(&message);
             ExitCode::from(2)
         }
+    }
+}
+
+fn complain_unless_empty(message: &str) {
+    if !message.is_empty() {
+        complain(message);
     }
 }
 

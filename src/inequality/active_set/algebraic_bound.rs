@@ -2,6 +2,7 @@
 
 use super::iterate::Iterate;
 use super::preconditioned_solver::PreconditionedSolver;
+use crate::algebra::{any_part, sum_over_parts};
 use crate::parallel::vectors::{dot, zeros};
 use crate::real::Real;
 
@@ -69,9 +70,14 @@ impl<T: Real> PreconditionedSolver<'_, T> {
     /// strongly active unknowns eliminated; see [`PreconditionedSolver::error_bound`]. `None` if the
     /// preconditioner rejects these unknowns.
     fn unbalanced_norm(&mut self, iterate: &Iterate<'_, T>, threshold: f64) -> Option<f64> {
+        let distribution = iterate.inequality.distribution();
         let mut unbalanced = zeros(iterate.values.len());
         let mut eliminated = vec![false; iterate.values.len()];
         for (i, bound) in iterate.inequality.bounds.iter().enumerate() {
+            if !iterate.inequality.owns(i) {
+                eliminated[i] = true;
+                continue;
+            }
             let residual = iterate.residual[i];
             let multiplier = iterate.multiplier(i).unwrap_or(f64::NEG_INFINITY);
             let is_fixed = bound.fixed_value().is_some();
@@ -81,12 +87,12 @@ impl<T: Real> PreconditionedSolver<'_, T> {
             let is_strongly_active = multiplier > threshold * iterate.diagonal[i].sqrt();
             eliminated[i] = is_fixed || is_strongly_active;
         }
-        if eliminated != self.eliminated {
+        if any_part(distribution, eliminated != self.eliminated) {
             self.preconditioner.set_fixed(&eliminated).ok()?;
             self.eliminated = eliminated;
         }
         let mut z = zeros(unbalanced.len());
         self.preconditioner.apply(&unbalanced, &mut z);
-        Some(dot(&unbalanced, &mut z).max(0.0).sqrt())
+        Some(sum_over_parts(distribution, dot(&unbalanced, &mut z)).max(0.0).sqrt())
     }
 }

@@ -3,7 +3,7 @@
 
 use super::iterate::Iterate;
 use super::linear_solver::LinearSolver;
-use crate::algebra::Contact;
+use crate::algebra::{Contact, Distribution};
 use crate::inequality::scales::Scales;
 use crate::parallel::vectors::map_chunks;
 use crate::real::Real;
@@ -13,6 +13,8 @@ use crate::real::Real;
 pub(crate) struct Evaluation {
     /// The unknowns whose contact state changes, and the new states.
     pub state_changes: Vec<(u32, Contact)>,
+    /// The number of state changes, those of other parts included.
+    pub n_changes: usize,
     /// The square of the projected Jacobi step `u - P(u + r / d)`, `r = b - A u`, in the norm
     /// `(sum d_i v_i^2)^(1/2)` of the diagonal `d` of `A`. It is zero at the solution only. It is
     /// not divided by the size of the iterate, which would favour iterates that are far too large.
@@ -29,6 +31,16 @@ pub(crate) struct Evaluation {
 }
 
 impl Evaluation {
+    /// Adds what other parts have, but for the unknowns that change their states there.
+    fn add_other_parts(&mut self, distribution: &dyn Distribution) {
+        let mut sums = [self.merit, self.multiplier_violation, self.n_changes as f64];
+        distribution.sum(&mut sums);
+        let mut largest = [self.bound_violation];
+        distribution.largest(&mut largest);
+        [self.merit, self.multiplier_violation] = [sums[0], sums[1]];
+        (self.n_changes, self.bound_violation) = (sums[2] as usize, largest[0]);
+    }
+
     /// Whether merit and norms are finite.
     pub fn is_finite(&self) -> bool {
         self.merit.is_finite() && self.energy_norm.is_finite() && self.max_norm.is_finite()
@@ -63,7 +75,7 @@ impl<T: Real> Iterate<'_, T> {
         let bound_tolerance = rounding_band * T::EPSILON * max_norm;
         let parts = map_chunks(self.values.len(), |range| {
             let mut part = Evaluation::default();
-            range.for_each(|i| {
+            range.filter(|&i| self.inequality.owns(i)).for_each(|i| {
                 self.evaluate_at(i, bound_tolerance, rounding_band, solver, &mut part)
             });
             part
@@ -73,6 +85,10 @@ impl<T: Real> Iterate<'_, T> {
             evaluation.merit += part.merit;
             evaluation.bound_violation = evaluation.bound_violation.max(part.bound_violation);
             evaluation.multiplier_violation += part.multiplier_violation;
+        }
+        evaluation.n_changes = evaluation.state_changes.len();
+        if let Some(distribution) = self.inequality.distribution() {
+            evaluation.add_other_parts(distribution);
         }
         evaluation.multiplier_violation = evaluation.multiplier_violation.sqrt();
         self.energy_norm = energy_norm;

@@ -1,7 +1,7 @@
 //! The iterate of the active set method: values, contact states, residual, and the best values so far.
 
 use super::contact_state::{prescribed_value, starting_states};
-use crate::algebra::{Bound, Contact, Inequality};
+use crate::algebra::{Bound, Contact, Inequality, any_part};
 use crate::inequality::certificate::positive_diagonal;
 use crate::inequality::violations::certify_with_rounding;
 use crate::inequality::{Outcome, Solution};
@@ -15,7 +15,8 @@ pub(crate) struct Iterate<'a, T> {
     /// ([`PenalisedMatrix`](crate::algebra::PenalisedMatrix)); else empty.
     pub jump_multipliers: Vec<T>,
     pub states: Vec<Contact>,
-    /// Whether an unknown is eliminated from the linear system: fixed or active.
+    /// Whether an unknown is eliminated from the linear system: fixed, active, or one that another part
+    /// owns, whose state is known there alone.
     pub eliminated: Vec<bool>,
     /// `b - A u`.
     pub residual: Vec<f64>,
@@ -50,7 +51,10 @@ impl<'a, T: Real> Iterate<'a, T> {
         let n = bounds.len();
         let value = |i: usize| if guess.len() == n { guess[i] } else { T::lit(0.0) };
         let values: Vec<T> = (0..n).map(|i| bounds[i].nearest(value(i))).collect();
-        let states = starting_states(bounds, &inequality.start);
+        let mut states = starting_states(bounds, &inequality.start);
+        let is_ghost = |&(i, _): &(usize, _)| !inequality.owns(i);
+        let ghosts = states.iter_mut().enumerate().filter(is_ghost);
+        ghosts.for_each(|(_, state)| *state = Contact::Inactive);
         let best = BestIterate {
             merit: f64::INFINITY,
             values: values.clone(),
@@ -84,13 +88,14 @@ impl<'a, T: Real> Iterate<'a, T> {
     /// Makes every unknown with a bound active, at its lower bound if it has two; false if nothing
     /// changed.
     pub fn activate_all(&mut self) -> bool {
-        let active = |bound: &Bound<T>| match (bound.lower(), bound.upper()) {
+        let active = |(i, bound): (usize, &Bound<T>)| match (bound.lower(), bound.upper()) {
+            _ if !self.inequality.owns(i) => Contact::Inactive,
             (Some(_), _) => Contact::Lower,
             (None, Some(_)) => Contact::Upper,
             (None, None) => Contact::Inactive,
         };
-        let states: Vec<Contact> = self.inequality.bounds.iter().map(active).collect();
-        let is_changed = states != self.states;
+        let states: Vec<Contact> = self.inequality.bounds.iter().enumerate().map(active).collect();
+        let is_changed = any_part(self.inequality.distribution(), states != self.states);
         self.states = states;
         self.set_prescribed_values();
         is_changed
@@ -107,18 +112,24 @@ impl<'a, T: Real> Iterate<'a, T> {
     fn set_prescribed_values(&mut self) {
         for (i, bound) in self.inequality.bounds.iter().enumerate() {
             let prescribed = prescribed_value(bound, self.states[i]);
-            self.eliminated[i] = prescribed.is_some();
+            self.eliminated[i] = prescribed.is_some() || !self.inequality.owns(i);
             if let Some(value) = prescribed {
                 self.values[i] = value;
             }
         }
         self.residual_is_current = false;
+        if let Some(distribution) = self.inequality.distribution() {
+            distribution.update(&mut self.values);
+        }
     }
 
     /// Changes contact states and sets the values that they prescribe. The residual of a symmetric
     /// matrix without jump multipliers is updated by the columns of these values.
     pub fn change_states(&mut self, changes: &[(u32, Contact)]) {
-        let is_updated = self.inequality.symmetric && self.jump_multipliers.is_empty();
+        let distribution = self.inequality.distribution();
+        // changes in other parts are not known here
+        let is_updated =
+            self.inequality.symmetric && self.jump_multipliers.is_empty() && distribution.is_none();
         self.residual_is_current &= is_updated;
         for &(i, contact) in changes {
             let i = i as usize;
@@ -136,6 +147,9 @@ impl<'a, T: Real> Iterate<'a, T> {
                 }
             }
         }
+        if let Some(distribution) = distribution {
+            distribution.update(&mut self.values);
+        }
     }
 
     /// Computes the residual from the values.
@@ -152,6 +166,11 @@ impl<'a, T: Real> Iterate<'a, T> {
             is_changed |= nearest != *value;
             *value = nearest;
         }
+        let distribution = self.inequality.distribution();
+        if let Some(distribution) = distribution {
+            distribution.update(&mut self.values);
+        }
+        let is_changed = any_part(distribution, is_changed);
         self.residual_is_current &= !is_changed;
         is_changed
     }
@@ -223,5 +242,25 @@ impl<'a, T: Real> Iterate<'a, T> {
         let BestIterate { values, states, jump_multipliers, .. } = &self.best;
         let (values, jumps) = (values.clone(), jump_multipliers.clone());
         self.replace(values, jumps, states.clone());
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::algebra::SparseMatrix;
+
+    /// The size of rounding in a residual is that of its terms, however much they cancel.
+    #[test]
+    fn terms_of_a_residual_count_by_their_sizes() {
+        let matrix = SparseMatrix {
+            row_starts: vec![0, 2, 5, 7],
+            columns: vec![0, 1, 0, 1, 2, 1, 2],
+            values: vec![2.0, -1.0, -1.0, 2.0, -1.0, -1.0, 2.0],
+        };
+        let bounds = vec![Bound::Free, Bound::Free, Bound::Fixed(7.0)];
+        let string = Inequality::new(matrix, true, vec![0.0, -4.0, 0.0], bounds);
+        let iterate = Iterate::new(&string, &[-3.0, 5.0, 7.0]);
+        assert_eq!(iterate.residual_term_sizes(1), [3.0 + 2.0 * 5.0, 7.0 + 4.0]);
     }
 }

@@ -5,7 +5,7 @@ use super::linear_solver::{Accuracy, LinearFailure, LinearSolver};
 use super::local_inequality::solve_locally;
 use super::progress::{Obstruction, Patience, ProgressMonitor};
 use super::settings::ActiveSet;
-use crate::algebra::{Bound, Inequality};
+use crate::algebra::{Bound, Inequality, any_part};
 use crate::inequality::violations::certify_with_rounding;
 use crate::inequality::{Outcome, StepCounter};
 use crate::linear::direct::FactorError;
@@ -89,15 +89,19 @@ impl<T: Real> Iteration<'_, '_, '_, T> {
             self.iterate.compute_residual();
             self.iterate.evaluate(band, &*self.solver);
         }
-        let is_linear = !self.iterate.inequality.bounds.iter().any(Bound::is_inequality);
-        let mut progress = ProgressMonitor::new(&self.iterate.states, self.patience, is_linear);
+        let inequality = self.iterate.inequality;
+        let distribution = inequality.distribution();
+        let has_bounds = inequality.bounds.iter().any(Bound::is_inequality);
+        let is_linear = !any_part(distribution, has_bounds);
+        let patience = self.patience;
+        let new_progress = || ProgressMonitor::new(patience, is_linear, distribution);
+        let mut progress = new_progress();
         let mut has_new_states = true;
         // the unknowns whose states have changed since the number of changes halved
         let mut recent: Vec<u32> = Vec::new();
         loop {
             if !self.solve_system(has_new_states, progress.accuracy())? {
-                let states = &self.iterate.states;
-                progress = ProgressMonitor::new(states, self.patience, is_linear);
+                progress = new_progress();
                 has_new_states = true;
                 continue;
             }
@@ -108,8 +112,8 @@ impl<T: Real> Iteration<'_, '_, '_, T> {
             let is_best = self.iterate.keep_if_best(evaluation.merit);
             let is_accurate = self.solver.is_accurate(evaluation.energy_norm);
             let changes = &evaluation.state_changes;
-            has_new_states = !changes.is_empty();
-            if is_accurate && (changes.is_empty() || evaluation.holds_to(tolerance)) {
+            has_new_states = evaluation.n_changes > 0;
+            if is_accurate && (!has_new_states || evaluation.holds_to(tolerance)) {
                 if !self.is_certified || self.has_small_certificate() {
                     return Ok(());
                 }
@@ -133,7 +137,7 @@ impl<T: Real> Iteration<'_, '_, '_, T> {
             let is_slow = progress.steps() > MANY_STEPS
                 && changes.len() as f64 <= FEW_CHANGES * self.iterate.values.len() as f64;
             if (noted.is_err() || is_slow) && self.settle(&recent) {
-                progress = ProgressMonitor::new(&self.iterate.states, self.patience, is_linear);
+                progress = new_progress();
                 recent.clear();
                 has_new_states = true;
                 continue;

@@ -108,6 +108,10 @@ impl<'a, T: Real> PreconditionedSolver<'a, T> {
         if self.inequality.is_definite {
             return LinearFailure::Unsuitable;
         }
+        if self.inequality.distribution.is_some() {
+            // there are no factors of a distributed matrix
+            return LinearFailure::Outcome(Outcome::NotCoercive);
+        }
         check_definite(self.inequality)
             .err()
             .map_or(LinearFailure::Unsuitable, LinearFailure::Outcome)
@@ -142,7 +146,8 @@ impl<'a, T: Real> PreconditionedSolver<'a, T> {
             max_iterations: MAX_ITERATIONS,
         };
         let system = (&mut zeros(n)[..], &mut load[..]);
-        let mut method = ConjugateGradients::new(self.symmetric_part);
+        let distribution = self.inequality.distribution();
+        let mut method = ConjugateGradients::new(self.symmetric_part, distribution);
         let run = method.solve(&iterate.eliminated, &mut *self.preconditioner, system, stop);
         iterate.linear += run.iterations;
         self.check(&run)

@@ -2,7 +2,7 @@
 //! solve.
 
 use super::linear_solver::Accuracy;
-use crate::algebra::Contact;
+use crate::algebra::{Contact, Distribution};
 
 /// Fewer state changes than this hardly change the error: the next system is then solved accurately.
 const FEW_CHANGES: usize = 16;
@@ -29,9 +29,11 @@ pub(crate) struct Patience {
 }
 
 /// The progress of an iteration.
-pub(crate) struct ProgressMonitor {
+pub(crate) struct ProgressMonitor<'d> {
     patience: Patience,
-    /// The fingerprint of the present active set; see [`fingerprint`].
+    /// The other parts, if the states are those of one part.
+    distribution: Option<&'d dyn Distribution>,
+    /// The fingerprint of the present active set, less that of the first; see [`ActiveSetKey`].
     fingerprint: u128,
     /// The fingerprints of the preceding active sets, each with whether its system was solved accurately.
     seen: Vec<(u128, bool)>,
@@ -47,13 +49,18 @@ pub(crate) struct ProgressMonitor {
     steps_without_halving: usize,
 }
 
-impl ProgressMonitor {
-    /// The progress before the first system of contact states, which is solved accurately if
-    /// `is_linear`: no unknown has an inequality as bound.
-    pub fn new(states: &[Contact], patience: Patience, is_linear: bool) -> Self {
+impl<'d> ProgressMonitor<'d> {
+    /// The progress before the first system, which is solved accurately if `is_linear`: no unknown has an
+    /// inequality as bound.
+    pub fn new(
+        patience: Patience,
+        is_linear: bool,
+        distribution: Option<&'d dyn Distribution>,
+    ) -> Self {
         Self {
             patience,
-            fingerprint: fingerprint(states),
+            distribution,
+            fingerprint: 0,
             seen: Vec::new(),
             next_is_accurate: is_linear,
             all_are_accurate: false,
@@ -92,16 +99,18 @@ impl ProgressMonitor {
         is_best: bool,
         is_accurate: bool,
     ) -> Result<(), Obstruction> {
-        self.next_is_accurate = changes.len() < FEW_CHANGES;
-        if changes.is_empty() {
+        let own = ActiveSetKey::of_changes(changes, before, self.distribution);
+        let ActiveSetKey { fingerprint, count } = own.over_parts(self.distribution);
+        self.next_is_accurate = count < FEW_CHANGES;
+        if count == 0 {
             return Ok(());
         }
-        match self.record(changes, before, is_accurate) {
+        match self.record(fingerprint, is_accurate) {
             Some(true) => return Err(Obstruction::Cycle),
             Some(false) => self.next_is_accurate = true,
             None => {}
         }
-        if self.has_stagnated(changes.len()) {
+        if self.has_stagnated(count) {
             return Err(Obstruction::Stagnation);
         }
         self.steps_without_improvement =
@@ -136,45 +145,68 @@ impl ProgressMonitor {
         self.patience.halving.is_some_and(|steps| self.steps_without_halving >= steps)
     }
 
-    /// Records the present active set and the one that follows from state changes. If the latter has
-    /// occurred before: whether its system was solved accurately, so that the iteration would repeat
+    /// Records the present active set and the one that follows by a change of the fingerprint. If the latter
+    /// has occurred before: whether its system was solved accurately, so that the iteration would repeat
     /// itself.
-    fn record(
-        &mut self,
-        changes: &[(u32, Contact)],
-        before: &[Contact],
-        is_accurate: bool,
-    ) -> Option<bool> {
+    fn record(&mut self, change: u128, is_accurate: bool) -> Option<bool> {
         self.seen.push((self.fingerprint, is_accurate));
-        for &(i, contact) in changes {
-            let i = i as usize;
-            self.fingerprint = self
-                .fingerprint
-                .wrapping_sub(state_key(i, before[i]))
-                .wrapping_add(state_key(i, contact));
-        }
+        self.fingerprint = self.fingerprint.wrapping_add(change);
         let earlier = self.seen.iter().filter(|(seen, _)| *seen == self.fingerprint);
         earlier.map(|(_, is_accurate)| *is_accurate).reduce(|a, b| a || b)
     }
 }
 
-/// The fingerprint of an active set: the sum of the keys of all unknowns. It has 128 bits: two
-/// different sets among a few hundred share one with a probability below 1e-33, so that equal
-/// fingerprints count as equal sets.
-fn fingerprint(states: &[Contact]) -> u128 {
-    let keys = states.iter().enumerate().map(|(i, &contact)| state_key(i, contact));
-    keys.fold(0, u128::wrapping_add)
+/// The fingerprint of an active set is the sum of the keys of all unknowns; here is the difference of two. It
+/// has 128 bits: two different sets among a few hundred share one with a probability below 1e-33, so that
+/// equal fingerprints count as equal sets.
+struct ActiveSetKey {
+    fingerprint: u128,
+    /// The number of changes.
+    count: usize,
+}
+
+impl ActiveSetKey {
+    /// That of changes in one part.
+    fn of_changes(
+        changes: &[(u32, Contact)],
+        before: &[Contact],
+        distribution: Option<&dyn Distribution>,
+    ) -> Self {
+        let mut fingerprint = 0_u128;
+        for &(i, contact) in changes {
+            let number = number(i as usize, distribution);
+            fingerprint = fingerprint
+                .wrapping_sub(state_key(number, before[i as usize]))
+                .wrapping_add(state_key(number, contact));
+        }
+        Self { fingerprint, count: changes.len() }
+    }
+
+    /// The sum over all parts, of quarters of 32 bits: their sums are exact in `f64`.
+    fn over_parts(self, distribution: Option<&dyn Distribution>) -> Self {
+        let Some(distribution) = distribution else { return self };
+        let quarter = |k: u32| f64::from((self.fingerprint >> (32 * k)) as u32);
+        let mut sums = [quarter(0), quarter(1), quarter(2), quarter(3), self.count as f64];
+        distribution.sum(&mut sums);
+        let quarters = (0..).zip(&sums[..4]).map(|(k, &sum)| (sum as u128) << (32 * k));
+        Self { fingerprint: quarters.fold(0, u128::wrapping_add), count: sums[4] as usize }
+    }
+}
+
+/// The number of an unknown among those of all parts.
+fn number(unknown: usize, distribution: Option<&dyn Distribution>) -> u64 {
+    distribution.map_or(unknown as u64, |distribution| distribution.number(unknown))
 }
 
 /// The key of the contact state of unknown `i`: a pseudo-random number determined by the unknown
 /// and its active bound, zero if the unknown is inactive.
-fn state_key(i: usize, contact: Contact) -> u128 {
+fn state_key(i: u64, contact: Contact) -> u128 {
     let side = match contact {
         Contact::Inactive => return 0,
         Contact::Lower => 0,
         Contact::Upper => 1,
     };
-    let key = 2 * i as u64 + side;
+    let key = 2 * i + side;
     u128::from(scramble(key)) << 64 | u128::from(scramble(!key))
 }
 
@@ -195,7 +227,7 @@ mod tests {
     fn steps(improvement: usize, is_best: bool) -> usize {
         let mut states = vec![Contact::Inactive; 20];
         let mut progress =
-            ProgressMonitor::new(&states, Patience { halving: None, improvement }, false);
+            ProgressMonitor::new(Patience { halving: None, improvement }, false, None);
         let mut goes_on = |i: &usize| {
             let change = [(*i as u32, Contact::Lower)];
             let noted = progress.note(&change, &states, is_best, true);
@@ -203,6 +235,15 @@ mod tests {
             noted != Err(Obstruction::Stagnation)
         };
         (0..20).take_while(|i| goes_on(i)).count()
+    }
+
+    /// The published outputs of SplitMix64 from the seeds 0 and 1234567.
+    #[test]
+    fn keys_are_those_of_the_published_generator() {
+        assert_eq!(scramble(0), 0xe220_a839_7b1d_cdaf);
+        let state = |step: u64| 1_234_567 + step * 0x9e37_79b9_7f4a_7c15;
+        let outputs = [0_u64, 1].map(|step| scramble(state(step)));
+        assert_eq!(outputs, [6_457_827_717_110_365_317, 3_203_168_211_198_807_973]);
     }
 
     #[test]

@@ -10,6 +10,10 @@
 //! The direct active set and the interior point method alternate: the interior point method identifies
 //! the active set early, and a second time at its final accuracy. The active set iteration that follows
 //! the second one has no limit but `max_outer`.
+//!
+//! Of an inequality that is distributed over the parts of a mesh the first stage alone runs.
+
+use std::borrow::Cow;
 
 use super::contact_state::admissible_state;
 use super::direct_solver::DirectSolver;
@@ -18,7 +22,7 @@ use super::iteration::{End, Iteration, outcome_of_best};
 use super::preconditioned_solver::PreconditionedSolver;
 use super::progress::{Obstruction, Patience};
 use super::settings::{ActiveSet, Globalisation};
-use crate::algebra::{Inequality, Start};
+use crate::algebra::{Inequality, Start, any_part};
 use crate::inequality::initial_guess::InitialGuess;
 use crate::inequality::interior_point::{Identification, InteriorPoint, MAX_STEPS};
 use crate::inequality::monotone_multigrid::MonotoneMultigrid;
@@ -134,9 +138,10 @@ pub(crate) fn solve<T: Real>(
             found = solve.run(stage);
         }
     }
-    let mut found = found.unwrap_or(Found::new(Outcome::Cycling));
+    let mut found = found.unwrap_or_else(|| Found::new(solve.outcome_without_solution()));
     if found.outcome != Outcome::Converged
         && inequality.symmetric
+        && inequality.distribution.is_none()
         && !inequality.matrix.is_symmetric()
     {
         found.outcome = Outcome::Malformed;
@@ -151,6 +156,7 @@ fn is_preconditioned<T: Real>(
     guess: &InitialGuess<T>,
 ) -> bool {
     match settings.linear {
+        _ if inequality.distribution.is_some() => true,
         LinearMethod::Direct => false,
         LinearMethod::Iterative => true,
         LinearMethod::BySize => {
@@ -171,7 +177,11 @@ fn check<T: Real>(
     inequality: &Inequality<T>,
     is_preconditioned: bool,
 ) -> Result<(), Outcome> {
-    check_input(inequality)?;
+    agree(inequality, check_input(inequality))?;
+    if inequality.distribution.is_some() {
+        // there are no factors of a distributed matrix; Krylov methods notice directions that are not positive
+        return Ok(());
+    }
     let is_cold = inequality.start == Start::Cold;
     let is_required = match inequality.symmetric {
         true => !is_cold || (settings.check_definite && is_preconditioned),
@@ -180,11 +190,27 @@ fn check<T: Real>(
     if is_required && !inequality.is_definite { check_definite(inequality) } else { Ok(()) }
 }
 
+/// The result of a check in all parts: that of this part, or the outcome of another part if this one has none.
+fn agree<T: Real>(inequality: &Inequality<T>, checked: Result<(), Outcome>) -> Result<(), Outcome> {
+    const OUTCOMES: [Outcome; 4] =
+        [Outcome::OutOfRange, Outcome::Infeasible, Outcome::NotFinite, Outcome::Malformed];
+    let Some(distribution) = inequality.distribution() else { return checked };
+    let code = |outcome: Outcome| OUTCOMES.iter().position(|&other| other == outcome);
+    let mut largest = [checked.err().map_or(0, |outcome| code(outcome).unwrap_or(0) + 1) as f64];
+    distribution.largest(&mut largest);
+    match largest[0] as usize {
+        0 if largest[0] == 0.0 => Ok(()),
+        0 => Err(Outcome::NotFinite),
+        code => Err(OUTCOMES[code - 1]),
+    }
+}
+
 impl<'a, T: Real> Solve<'_, 'a, T> {
     /// Whether monotone multigrid takes over: from a stagnating active set of conforming P1 on nested
     /// meshes.
     fn may_run_monotone_multigrid(&self) -> bool {
         matches!(self.end, Some(End::Obstruction(_)))
+            && self.inequality.distribution.is_none()
             && self.inequality.symmetric
             && matches!(self.guess.coarse_spaces, CoarseSpaces::CoarseLevel(_))
     }
@@ -195,8 +221,18 @@ impl<'a, T: Real> Solve<'_, 'a, T> {
         let interior_point_runs = self.runs_of(Stage::InteriorPoint);
         let direct_runs = self.runs_of(Stage::DirectActiveSet);
         match self.settings.globalisation {
+            _ if self.inequality.distribution.is_some() => false,
             Globalisation::InteriorPointFirst => interior_point_runs > direct_runs,
             _ => interior_point_runs == direct_runs,
+        }
+    }
+
+    /// The outcome where no stage found a solution.
+    fn outcome_without_solution(&self) -> Outcome {
+        match self.end {
+            // there are no factors of a distributed matrix
+            Some(End::Unsuitable) if self.inequality.distribution.is_some() => Outcome::Stalled,
+            _ => Outcome::Cycling,
         }
     }
 
@@ -209,6 +245,7 @@ impl<'a, T: Real> Solve<'_, 'a, T> {
     /// else only if the limit leaves room for all its steps.
     fn may_run_interior_point(&self) -> bool {
         match self.settings.globalisation {
+            _ if self.inequality.distribution.is_some() => false,
             Globalisation::Never => false,
             Globalisation::InteriorPointFirst if self.runs_of(Stage::InteriorPoint) == 0 => true,
             _ => {
@@ -252,7 +289,11 @@ impl<'a, T: Real> Solve<'_, 'a, T> {
     fn run_preconditioned(&mut self) -> Result<Found, End> {
         let (inequality, guess) = (self.inequality, self.guess);
         let matrix = symmetric_part(inequality);
-        let spaces = guess.coarse_spaces.complete(&matrix, inequality).ok_or(End::Unsuitable)?;
+        let spaces = match inequality.distribution {
+            // the preconditioner of a distributed matrix knows its own
+            Some(_) => Cow::Borrowed(&guess.coarse_spaces),
+            None => guess.coarse_spaces.complete(&matrix, inequality).ok_or(End::Unsuitable)?,
+        };
         let system = PreconditionedSystem::new(&matrix, inequality, &spaces);
         let preconditioner = self.family.preconditioner(system).ok_or(End::Unsuitable)?;
         let linear_solver = preconditioner.name();
@@ -262,6 +303,7 @@ impl<'a, T: Real> Solve<'_, 'a, T> {
         let patience = self.patience(Stage::PreconditionedActiveSet);
         // on nested meshes of conforming P1 monotone multigrid follows
         let is_local = self.settings.globalisation == Globalisation::OnStagnation
+            && inequality.distribution.is_none()
             && !matches!(guess.coarse_spaces, CoarseSpaces::CoarseLevel(_));
         let mut iteration = Iteration {
             settings: self.settings,
@@ -295,7 +337,8 @@ impl<'a, T: Real> Solve<'_, 'a, T> {
                 Some(tolerance) if inequality.penalised.is_some() => tolerance,
                 Some(_) => f64::INFINITY,
             };
-            if self.iterate.values != values && self.iterate.certificate() > limit {
+            let is_changed = any_part(inequality.distribution(), self.iterate.values != values);
+            if is_changed && self.iterate.certificate() > limit {
                 let states = self.iterate.states.clone();
                 self.iterate.replace(values, jump_multipliers, states);
                 algebraic_bound = None;
@@ -388,6 +431,7 @@ impl<'a, T: Real> Solve<'_, 'a, T> {
             let is_cheap = is_nested || self.inequality.penalised.is_some();
             let steps = stagnation_steps * if is_cheap { 1 } else { DIRECT_STEP_COST } + 1;
             let is_limited = globalisation == Globalisation::OnStagnation
+                && self.inequality.distribution.is_none()
                 && self.inequality.start != Start::Cold;
             return Patience {
                 halving: is_limited.then_some(steps),

@@ -2,7 +2,7 @@
 
 use super::lanczos::LanczosMatrix;
 use super::stopping::{KrylovRun, StopReason, StoppingRule};
-use crate::algebra::SparseMatrix;
+use crate::algebra::{Distribution, SparseMatrix, sum_over_parts};
 use crate::linear::precondition::Preconditioner;
 use crate::parallel::vectors::{dot, for_each_chunk, sum_chunks, sum_chunks_of_two, zeros};
 use crate::real::Real;
@@ -10,6 +10,8 @@ use crate::real::Real;
 /// Conjugate gradients for a symmetric matrix, with vectors that are allocated once.
 pub(crate) struct ConjugateGradients<'m, T> {
     matrix: &'m SparseMatrix<T>,
+    /// The other parts, if the matrix is that of one part: all unknowns of these are fixed.
+    distribution: Option<&'m dyn Distribution>,
     /// The preconditioned residual.
     z: Vec<T>,
     /// The search direction.
@@ -21,10 +23,11 @@ pub(crate) struct ConjugateGradients<'m, T> {
 }
 
 impl<'m, T: Real> ConjugateGradients<'m, T> {
-    /// The method for a symmetric matrix.
-    pub fn new(matrix: &'m SparseMatrix<T>) -> Self {
+    /// The method for a symmetric matrix, or for one part of it. Unknowns that other parts own must be fixed
+    /// and zero in preconditioned residuals; their values in `x` are then those of the owners.
+    pub fn new(matrix: &'m SparseMatrix<T>, distribution: Option<&'m dyn Distribution>) -> Self {
         let n = matrix.size();
-        Self { matrix, z: zeros(n), p: zeros(n), q: zeros(n), largest_ritz: 1.0 }
+        Self { matrix, distribution, z: zeros(n), p: zeros(n), q: zeros(n), largest_ritz: 1.0 }
     }
 
     /// Corrects the iterate `(x, r)`, `r` the residual of `x` on free unknowns and zero on fixed ones.
@@ -40,7 +43,7 @@ impl<'m, T: Real> ConjugateGradients<'m, T> {
         let mut lanczos = LanczosMatrix::default();
         let mut run = KrylovRun::new();
         preconditioner.apply(r, &mut self.z);
-        let mut rz = dot(r, &mut self.z);
+        let mut rz = sum_over_parts(self.distribution, dot(r, &mut self.z));
         let target = rule.target(rz.max(0.0).sqrt());
         self.p.copy_from_slice(&self.z);
         loop {
@@ -65,7 +68,7 @@ impl<'m, T: Real> ConjugateGradients<'m, T> {
                     self.update_iterate(T::lit(alpha), x, r);
                     preconditioner.apply(r, &mut self.z);
                     let previous = rz;
-                    rz = dot(r, &mut self.z);
+                    rz = sum_over_parts(self.distribution, dot(r, &mut self.z));
                     let beta = rz / previous;
                     lanczos.push(alpha, beta);
                     self.update_direction(T::lit(beta));
@@ -82,20 +85,27 @@ impl<'m, T: Real> ConjugateGradients<'m, T> {
         if run.reason == StopReason::Converged && run.norm > rule.norm {
             self.richardson_step(T::lit(1.0 / self.largest_ritz), x);
         }
+        if let Some(distribution) = self.distribution {
+            distribution.update(x);
+        }
         run
     }
 
     /// `q = A p` on free unknowns, zero on fixed ones; returns `p . q`.
     fn multiply(&mut self, fixed: &[bool]) -> f64 {
+        if let Some(distribution) = self.distribution {
+            distribution.update(&mut self.p);
+        }
         let (matrix, p) = (self.matrix, &self.p);
-        sum_chunks(&mut self.q, |range, q| {
+        let own = sum_chunks(&mut self.q, |range, q| {
             let mut sum = 0.0;
             for (i, q) in range.zip(q) {
                 *q = if fixed[i] { T::lit(0.0) } else { matrix.row_dot(i, p) };
                 sum += p[i].to_f64() * q.to_f64();
             }
             sum
-        })
+        });
+        sum_over_parts(self.distribution, own)
     }
 
     /// `p = z + beta p`.
@@ -168,7 +178,9 @@ mod tests {
         let rule = StoppingRule { norm: 1e-3, reduction: 0.0, max_iterations: 5 };
         let run = |residual: f64| {
             let system = (&mut [0.0][..], &mut [residual][..]);
-            ConjugateGradients::new(&matrix).solve(&[false], &mut Negative, system, rule).reason
+            ConjugateGradients::new(&matrix, None)
+                .solve(&[false], &mut Negative, system, rule)
+                .reason
         };
         assert_eq!(run(1.0), StopReason::NotPositive);
         assert_eq!(run(1e-9), StopReason::Converged);
@@ -186,7 +198,7 @@ mod tests {
         let mut r = vec![1.0, 0.3, -0.2, 0.7, 0.4];
         let b = r.clone();
         let rule = StoppingRule { norm: 1e-13, reduction: 0.0, max_iterations: 20 };
-        let run = ConjugateGradients::new(&matrix).solve(
+        let run = ConjugateGradients::new(&matrix, None).solve(
             &[false; 5],
             &mut Identity,
             (&mut x, &mut r),

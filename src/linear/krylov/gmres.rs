@@ -9,7 +9,7 @@
 use nalgebra::DMatrix;
 
 use super::stopping::{KrylovRun, StopReason, StoppingRule};
-use crate::algebra::SparseMatrix;
+use crate::algebra::{Distribution, SparseMatrix, sum_over_parts};
 use crate::linear::precondition::Preconditioner;
 use crate::parallel::vectors::{dot, for_each_chunk, sum_chunks_of_two, zeros};
 use crate::real::Real;
@@ -28,7 +28,10 @@ const LEAST_SQUARES_FACTOR: f64 = 0.99;
 
 /// Restarted GMRES. It minimises the preconditioned norm `(r . B r)^(1/2)` of [`StoppingRule`]. The
 /// vectors are allocated once.
-pub(crate) struct Gmres<T> {
+pub(crate) struct Gmres<'m, T> {
+    /// The other parts, if matrices are those of one part: all unknowns of these are fixed, and zero in
+    /// preconditioned residuals.
+    distribution: Option<&'m dyn Distribution>,
     /// The Krylov basis `v_k`, orthonormal in the inner product `v . B w`.
     basis: Vec<Vec<T>>,
     /// The directions `B v_k`. Both sequences are stored, so that rounding errors of the preconditioner
@@ -36,10 +39,10 @@ pub(crate) struct Gmres<T> {
     directions: Vec<Vec<T>>,
 }
 
-impl<T: Real> Gmres<T> {
+impl<'m, T: Real> Gmres<'m, T> {
     /// The method for matrices of this size.
-    pub fn new(size: usize) -> Self {
-        Self { basis: vec![zeros(size)], directions: vec![zeros(size)] }
+    pub fn new(size: usize, distribution: Option<&'m dyn Distribution>) -> Self {
+        Self { distribution, basis: vec![zeros(size)], directions: vec![zeros(size)] }
     }
 
     /// Corrects the iterate `(x, r)`, `r` the residual of `x` on free unknowns and zero on fixed ones,
@@ -57,7 +60,7 @@ impl<T: Real> Gmres<T> {
         let mut last_cycle = None;
         loop {
             preconditioner.apply(r, &mut self.directions[0]);
-            let square = dot(r, &mut self.directions[0]);
+            let square = sum_over_parts(self.distribution, dot(r, &mut self.directions[0]));
             run.norm = square.max(0.0).sqrt();
             if run.iterations == 0 {
                 target = rule.target(run.norm);
@@ -126,6 +129,9 @@ impl<T: Real> Gmres<T> {
             let next = &mut next[0];
             scale(&mut basis[k], 1.0 / norm);
             scale(&mut self.directions[k], 1.0 / norm);
+            if let Some(distribution) = self.distribution {
+                distribution.update(&mut self.directions[k]);
+            }
             let last = &self.directions[k];
             for_each_chunk(next, |range, next| {
                 for (i, next) in range.zip(next) {
@@ -134,12 +140,13 @@ impl<T: Real> Gmres<T> {
             });
             let mut column = Vec::with_capacity(k + 2);
             for (vector, direction) in basis.iter().zip(&self.directions) {
-                let coefficient = dot(direction, next);
+                let coefficient = sum_over_parts(self.distribution, dot(direction, next));
                 subtract_multiple(next, coefficient, vector);
                 column.push(coefficient);
             }
             preconditioner.apply(next, &mut self.directions[k + 1]);
-            norm = dot(next, &mut self.directions[k + 1]).max(0.0).sqrt();
+            let square = dot(next, &mut self.directions[k + 1]);
+            norm = sum_over_parts(self.distribution, square).max(0.0).sqrt();
             column.push(norm);
             residual_norm *= hessenberg.push(column);
         }
@@ -309,8 +316,13 @@ mod tests {
         let (mut x, mut r) = (vec![0.0; 4], b.to_vec());
         let rule = StoppingRule { norm: 1e-13, reduction: 0.0, max_iterations };
         let mut preconditioner = Diagonal([1.0, 0.5, 0.3, 0.1]);
-        let run =
-            Gmres::new(4).solve(matrix, &[false; 4], &mut preconditioner, (&mut x, &mut r), rule);
+        let run = Gmres::new(4, None).solve(
+            matrix,
+            &[false; 4],
+            &mut preconditioner,
+            (&mut x, &mut r),
+            rule,
+        );
         assert!(matrix.residual(b, &x).iter().zip(&r).all(|(a, b)| (a - b).abs() < 1e-14));
         (run, x)
     }

@@ -22,16 +22,16 @@ pub(crate) enum KrylovMethod<'m, T> {
     /// For symmetric matrices.
     ConjugateGradients(ConjugateGradients<'m, T>),
     /// For all others.
-    Gmres(&'m SparseMatrix<T>, Gmres<T>),
+    Gmres(&'m SparseMatrix<T>, Gmres<'m, T>),
 }
 
 impl<'m, T: Real> KrylovMethod<'m, T> {
     /// Conjugate gradients for a symmetric matrix, else GMRES.
     pub fn new(inequality: &'m Inequality<T>) -> Self {
-        let matrix = &inequality.matrix;
+        let (matrix, distribution) = (&inequality.matrix, inequality.distribution());
         match inequality.symmetric {
-            true => Self::ConjugateGradients(ConjugateGradients::new(matrix)),
-            false => Self::Gmres(matrix, Gmres::new(matrix.size())),
+            true => Self::ConjugateGradients(ConjugateGradients::new(matrix, distribution)),
+            false => Self::Gmres(matrix, Gmres::new(matrix.size(), distribution)),
         }
     }
 

@@ -3,9 +3,9 @@
 //! Source: J. Xu, Computing 56 (1996), 215-235; for discontinuous functions B. Ayuso de Dios,
 //! L. Zikatanov, J. Sci. Comput. 40 (2009), 4-36.
 
+use std::borrow::Cow;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use super::multigrid::Multigrid;
 use super::preconditioner::Preconditioner;
 use super::prolongation::rows_of_means;
 use crate::algebra::dense::invert_positive_definite;
@@ -19,10 +19,12 @@ use crate::real::Real;
 ///
 /// `D` is the block diagonal part of `A` with one block for the unknowns of each cell. `P` maps the
 /// vertex values of a conforming linear function to unknowns: an unknown is the mean of the values
-/// at the vertices of its support. `C` is a multigrid cycle for the matrix of the form on
-/// conforming linear functions ([`P1Level`](super::coarse_level::P1Level)), not for `A`.
+/// at the vertices of its support. `C` is a preconditioner, a multigrid cycle for example, of the matrix of
+/// the form on conforming linear functions ([`P1Level`](super::coarse_level::P1Level)), not of `A`.
 pub(crate) struct AuxiliarySpace<'a, T: Real> {
     blocks: BlockJacobi<'a, T>,
+    /// The unknowns whose blocks are complete, on a part of a mesh; `None` if all are.
+    own: Option<Vec<bool>>,
     correction: VertexCorrection<'a, T>,
 }
 
@@ -34,7 +36,14 @@ impl<'a, T: Real> AuxiliarySpace<'a, T> {
         supports: &[Support],
         correction: VertexCorrection<'a, T>,
     ) -> Option<Self> {
-        Some(Self { blocks: BlockJacobi::new(matrix, unknowns_per_cell(supports)?)?, correction })
+        let blocks = BlockJacobi::new(matrix, unknowns_per_cell(supports)?)?;
+        Some(Self { blocks, own: None, correction })
+    }
+
+    /// The preconditioner on a part of a mesh, where blocks correct own unknowns alone.
+    #[must_use]
+    pub fn with_own_blocks(self, own: Vec<bool>) -> Self {
+        Self { own: Some(own), ..self }
     }
 }
 
@@ -44,8 +53,15 @@ impl<T: Real> Preconditioner<T> for AuxiliarySpace<'_, T> {
     }
 
     fn set_fixed(&mut self, fixed: &[bool]) -> Result<(), FactorError> {
-        self.blocks.set_fixed(fixed)?;
-        self.correction.set_fixed(fixed)
+        match &self.own {
+            None => self.blocks.set_fixed(fixed),
+            Some(own) => {
+                let is_fixed = |(&fixed, &own): (&bool, &bool)| fixed || !own;
+                self.blocks.set_fixed(&fixed.iter().zip(own).map(is_fixed).collect::<Vec<_>>())
+            }
+        }
+        // parts of a mesh call both or none
+        .and(self.correction.set_fixed(fixed))
     }
 
     fn apply(&mut self, r: &[T], z: &mut [T]) {
@@ -77,9 +93,10 @@ pub(crate) fn unknowns_per_cell(supports: &[Support]) -> Option<usize> {
 /// The correction `P C P^T r` by conforming linear functions that vanish at the vertices in the
 /// supports of fixed unknowns; for `P` and `C` see [`AuxiliarySpace`].
 pub(crate) struct VertexCorrection<'a, T: Real> {
-    multigrid: Multigrid<'a, T>,
+    /// `C`.
+    coarse: Box<dyn Preconditioner<T> + 'a>,
     /// The vertices with Dirichlet data.
-    dirichlet: &'a [bool],
+    dirichlet: Cow<'a, [bool]>,
     /// `P`: an unknown is the mean of the values at the vertices of its support.
     interpolation: RectangularMatrix<T>,
     /// `P^T`.
@@ -95,8 +112,8 @@ impl<'a, T: Real> VertexCorrection<'a, T> {
     /// The correction with functions that vanish at the vertices `dirichlet`; `None` if a support is
     /// empty or contains a vertex beyond that list.
     pub fn new(
-        multigrid: Multigrid<'a, T>,
-        dirichlet: &'a [bool],
+        coarse: Box<dyn Preconditioner<T> + 'a>,
+        dirichlet: Cow<'a, [bool]>,
         supports: &[Support],
     ) -> Option<Self> {
         let n = dirichlet.len();
@@ -104,15 +121,7 @@ impl<'a, T: Real> VertexCorrection<'a, T> {
         let transpose = interpolation.transpose(n);
         let (residual, values) = (zeros(n), zeros(n));
         let fixed_vertices = vec![false; n];
-        Some(Self {
-            multigrid,
-            dirichlet,
-            interpolation,
-            transpose,
-            fixed_vertices,
-            residual,
-            values,
-        })
+        Some(Self { coarse, dirichlet, interpolation, transpose, fixed_vertices, residual, values })
     }
 
     /// Sets the fixed unknowns, and the fixed vertices: those with Dirichlet data, and those in the
@@ -121,14 +130,14 @@ impl<'a, T: Real> VertexCorrection<'a, T> {
     /// # Errors
     /// [`FactorError`] if the matrix of the coarsest level is not positive definite.
     pub fn set_fixed(&mut self, fixed: &[bool]) -> Result<(), FactorError> {
-        let (transpose, dirichlet) = (&self.transpose, self.dirichlet);
+        let (transpose, dirichlet) = (&self.transpose, &self.dirichlet);
         for_each_chunk(&mut self.fixed_vertices, |range, out| {
             for (v, out) in range.zip(out) {
                 let is_fixed = |&i: &u32| fixed[i as usize];
                 *out = dirichlet[v] || transpose.row(v).0.iter().any(is_fixed);
             }
         });
-        self.multigrid.set_fixed(&self.fixed_vertices)
+        self.coarse.set_fixed(&self.fixed_vertices)
     }
 
     /// `z = z + P C P^T r`.
@@ -140,7 +149,7 @@ impl<'a, T: Real> VertexCorrection<'a, T> {
                 *out = if fixed_vertices[v] { T::lit(0.0) } else { row_dot(transpose.row(v), r) };
             }
         });
-        self.multigrid.apply(&self.residual, &mut self.values);
+        self.coarse.apply(&self.residual, &mut self.values);
         let values = &self.values;
         for_each_chunk(z, |range, out| {
             for (i, z) in range.zip(out) {

@@ -48,7 +48,8 @@ impl<T: Real> PreconditionerFamily<T> for BuiltInPreconditioners {
             return Some(Box::new(Multigrid::of_element(matrix, prolongation, level, cell_size)));
         }
         let multigrid = Multigrid::new(&level.matrix, level.coarser.as_ref());
-        let correction = VertexCorrection::new(multigrid, &level.fixed, supports)?;
+        let correction =
+            VertexCorrection::new(Box::new(multigrid), Cow::Borrowed(&level.fixed), supports)?;
         Some(Box::new(AuxiliarySpace::new(matrix, supports, correction)?))
     }
 }

@@ -33,8 +33,8 @@ pub(crate) struct MeanJumpSplitting<'a, T: Real> {
     matrix: &'a SparseMatrix<T>,
     form: FacetMeanForm<T>,
     space: CrouzeixRaviartSpace,
-    /// The cycle on Crouzeix-Raviart functions.
-    multigrid: Multigrid<'a, T>,
+    /// The preconditioner of the stiffness on Crouzeix-Raviart functions.
+    facet_means_solver: Box<dyn FacetMeansSolver<T> + 'a>,
     /// The support of each unknown.
     supports: &'a [Support],
     /// Whether an unknown is fixed.
@@ -52,7 +52,7 @@ pub(crate) struct MeanJumpSplitting<'a, T: Real> {
     facet_means: Vec<T>,
     /// The diagonal correction of each side.
     sides: Vec<SideCorrection<T>>,
-    mixed_block: MixedBlock<T>,
+    mixed_block: MixedBlock<'a, T>,
     /// Workspace: residuals and corrections in the basis of facet mean functions.
     mean_residuals: Vec<T>,
     means: Vec<T>,
@@ -69,14 +69,74 @@ struct SideCorrection<T> {
 }
 
 /// The block of the matrix that is solved exactly.
-struct MixedBlock<T> {
+struct MixedBlock<'a, T> {
     /// The free vertex values of cells with free and fixed unknowns.
     vertex_values: Vec<u32>,
     /// The sides of cells without fixed unknowns that are opposite to such cells.
     sides: Vec<u32>,
-    /// `None` if the block is empty.
-    factors: Option<Factors<T>>,
+    solver: Box<dyn BlockSolver<T> + 'a>,
     vector: Vec<T>,
+}
+
+/// A preconditioner of the stiffness on Crouzeix-Raviart functions.
+pub(crate) trait FacetMeansSolver<T>: Send + Sync {
+    /// Sets the facets without a function; those among the others on which conforming linear functions
+    /// alone may correct; and the vertices at which these vanish.
+    ///
+    /// # Errors
+    /// [`FactorError`] if a coarse matrix is not positive definite.
+    fn set_fixed(
+        &mut self,
+        fixed_facets: &[bool],
+        kept_facets: &[u32],
+        fixed_vertices: &[bool],
+    ) -> Result<(), FactorError>;
+    /// The correction of the means on facets for a residual that is zero on facets without a function.
+    fn apply(&mut self, residual: &[T], means: &mut [T]);
+}
+
+impl<T: Real> FacetMeansSolver<T> for Multigrid<'_, T> {
+    fn set_fixed(
+        &mut self,
+        fixed_facets: &[bool],
+        kept_facets: &[u32],
+        fixed_vertices: &[bool],
+    ) -> Result<(), FactorError> {
+        self.set_fixed_and_kept(fixed_facets, kept_facets, fixed_vertices)
+    }
+    fn apply(&mut self, residual: &[T], means: &mut [T]) {
+        Multigrid::apply(self, residual, means);
+    }
+}
+
+/// The solver of a small block of the matrix.
+pub(crate) trait BlockSolver<T>: Send + Sync {
+    /// Takes the matrix of a block, of which each function has an unknown that no other function has.
+    ///
+    /// # Errors
+    /// See [`FactorError`].
+    fn factor(&mut self, block: &SparseMatrix<T>, unknowns: &[u32]) -> Result<(), FactorError>;
+    /// Replaces a vector by the solution with it as right side.
+    fn solve(&mut self, vector: &mut [T]);
+}
+
+/// Factors of a block; `None` if it is empty.
+struct BlockFactors<T>(Option<Factors<T>>);
+
+impl<T: Real> BlockSolver<T> for BlockFactors<T> {
+    fn factor(&mut self, block: &SparseMatrix<T>, _: &[u32]) -> Result<(), FactorError> {
+        self.0 = None;
+        if block.size() > 0 {
+            let all: Vec<u32> = (0..block.size() as u32).collect();
+            self.0 = Some(Factors::new(block, true, &all)?);
+        }
+        Ok(())
+    }
+    fn solve(&mut self, vector: &mut [T]) {
+        if let Some(factors) = &self.0 {
+            factors.solve_in_place(vector, 1);
+        }
+    }
 }
 
 impl<'a, T: Real> MeanJumpSplitting<'a, T> {
@@ -89,21 +149,42 @@ impl<'a, T: Real> MeanJumpSplitting<'a, T> {
         supports: &'a [Support],
         level: &'a P1Level<T>,
     ) -> Option<Self> {
+        let multigrid = |form: &FacetMeanForm<T>, space: &CrouzeixRaviartSpace| {
+            let prolongation = space.prolongation(form, supports, level.size())?;
+            let stiffness = Cow::Owned(space.matrix(form, penalised));
+            let multigrid = Multigrid::of_element(stiffness, prolongation, level, 1);
+            Some(Box::new(multigrid) as Box<dyn FacetMeansSolver<T> + 'a>)
+        };
+        let factors = Box::new(BlockFactors(None));
+        Self::with_solvers(matrix, penalised, (supports, level.size()), multigrid, factors)
+    }
+
+    /// The preconditioner with other solvers on Crouzeix-Raviart functions and of the mixed block; vertices
+    /// of supports are below `n_vertices`.
+    pub fn with_solvers(
+        matrix: &'a SparseMatrix<T>,
+        penalised: &PenalisedMatrix<T>,
+        (supports, n_vertices): (&'a [Support], usize),
+        facet_means_solver: impl FnOnce(
+            &FacetMeanForm<T>,
+            &CrouzeixRaviartSpace,
+        ) -> Option<Box<dyn FacetMeansSolver<T> + 'a>>,
+        block_solver: Box<dyn BlockSolver<T> + 'a>,
+    ) -> Option<Self> {
         let form = FacetMeanForm::new(penalised, supports)?;
         let zero = T::lit(0.0);
         let n = matrix.size();
         let no_correction = SideCorrection { opposite: NO_INDEX, inverse_jump: zero };
         let space = CrouzeixRaviartSpace::new(&form);
-        let prolongation = space.prolongation(&form, supports, level.size())?;
-        let stiffness = space.matrix(&form, penalised);
+        let facet_means_solver = facet_means_solver(&form, &space)?;
         let n_facets = space.sides.len();
         let are_means = form.are_means;
-        let n_vertices = if are_means { 0 } else { level.size() };
+        let n_vertices = if are_means { 0 } else { n_vertices };
         Some(Self {
             matrix,
             form,
             space,
-            multigrid: Multigrid::of_element(Cow::Owned(stiffness), prolongation, level, 1),
+            facet_means_solver,
             supports,
             fixed: vec![false; n],
             states: vec![SideState::Free; n],
@@ -116,7 +197,7 @@ impl<'a, T: Real> MeanJumpSplitting<'a, T> {
             mixed_block: MixedBlock {
                 vertex_values: vec![],
                 sides: vec![],
-                factors: None,
+                solver: block_solver,
                 vector: vec![],
             },
             mean_residuals: vec![zero; if are_means { 0 } else { n }],
@@ -215,17 +296,18 @@ fn invert<T: Real>(x: T) -> Result<T, FactorError> {
     if x > T::lit(0.0) { Ok(T::lit(1.0) / x) } else { Err(FactorError::NotPositive) }
 }
 
-impl<T: Real> MixedBlock<T> {
+impl<T: Real> MixedBlock<'_, T> {
     /// Factors `P^T A P`, where the columns of `P` are the basis functions of the vertex values and
     /// the facet mean functions of the sides.
     ///
     /// # Errors
     /// See [`FactorError`].
     fn factor(&mut self, matrix: &SparseMatrix<T>, cell_size: usize) -> Result<(), FactorError> {
-        let n = self.vertex_values.len() + self.sides.len();
-        self.factors = None;
+        let unknowns = [&self.vertex_values[..], &self.sides].concat();
+        let n = unknowns.len();
         if n == 0 {
-            return Ok(());
+            let (columns, values) = (Vec::new(), Vec::new());
+            return self.solver.factor(&SparseMatrix { row_starts: vec![0], columns, values }, &[]);
         }
         let mut entries: Vec<(u32, u32, T)> = Vec::new();
         for (k, &i) in self.vertex_values.iter().enumerate() {
@@ -249,20 +331,17 @@ impl<T: Real> MixedBlock<T> {
             rows.starts.push(rows.columns.len() as u32);
         }
         let form = galerkin_product(matrix, &rows, n);
-        let all: Vec<u32> = (0..n as u32).collect();
-        self.factors = Some(Factors::new(&form, true, &all)?);
-        Ok(())
+        self.solver.factor(&form, &unknowns)
     }
 
     /// Solves for the residual with the entries `r` for vertex values and `g` for facet mean
     /// functions; sets the entries of `z` for the vertex values and of `means` for the sides of the
     /// block.
     fn solve(&mut self, r: &[T], g: &[T], means: &mut [T], z: &mut [T]) {
-        let Some(factors) = &self.factors else { return };
         self.vector.clear();
         self.vector.extend(self.vertex_values.iter().map(|&i| r[i as usize]));
         self.vector.extend(self.sides.iter().map(|&s| g[s as usize]));
-        factors.solve_in_place(&mut self.vector, 1);
+        self.solver.solve(&mut self.vector);
         let (values, side_means) = self.vector.split_at(self.vertex_values.len());
         for (&i, &value) in self.vertex_values.iter().zip(values) {
             z[i as usize] = value;
@@ -287,8 +366,9 @@ impl<T: Real> Preconditioner<T> for MeanJumpSplitting<'_, T> {
     fn set_fixed(&mut self, fixed: &[bool]) -> Result<(), FactorError> {
         self.fixed.copy_from_slice(fixed);
         self.set_side_states();
-        self.set_side_corrections()?;
-        self.mixed_block.factor(self.matrix, self.form.cell_size)?;
+        // parts of a mesh call the solvers of both spaces or none
+        let corrected = self.set_side_corrections();
+        let factored = self.mixed_block.factor(self.matrix, self.form.cell_size);
         self.set_facets();
         self.fixed_vertices.fill(false);
         if !self.form.are_means {
@@ -299,7 +379,8 @@ impl<T: Real> Preconditioner<T> for MeanJumpSplitting<'_, T> {
             }
         }
         let Self { fixed_facets, kept_facets, fixed_vertices, .. } = self;
-        self.multigrid.set_fixed_and_kept(fixed_facets, kept_facets, fixed_vertices)
+        let set = self.facet_means_solver.set_fixed(fixed_facets, kept_facets, fixed_vertices);
+        corrected.and(factored).and(set)
     }
 
     fn apply(&mut self, r: &[T], z: &mut [T]) {
@@ -327,7 +408,7 @@ impl<T: Real> Preconditioner<T> for MeanJumpSplitting<'_, T> {
                 };
             }
         });
-        self.multigrid.apply(&self.facet_residuals, &mut self.facet_means);
+        self.facet_means_solver.apply(&self.facet_residuals, &mut self.facet_means);
         let (facets, facet_means) = (&self.space.facet, &self.facet_means);
         let means = if are_means { &mut *z } else { &mut self.means[..] };
         for_each_chunk_of_groups(means, size, |range, chunk| {

@@ -95,10 +95,27 @@ impl<T: Real, const D: usize> Discretisation<'_, T, D> {
         inequality: &Inequality<T>,
         solution: &Solution<T>,
     ) -> Option<f64> {
+        self.contact_measure_of(inequality, solution, &|_| true)
+    }
+
+    /// The measure of the contact set on the cells for which `counts` is true, or on their facets.
+    pub(crate) fn contact_measure_of(
+        &self,
+        inequality: &Inequality<T>,
+        solution: &Solution<T>,
+        counts: &dyn Fn(usize) -> bool,
+    ) -> Option<f64> {
         compiled!(
-            T, D: fn(&Discretisation<'_, T, D>, &Inequality<T>, &Solution<T>) -> Option<f64>
-                = |of, inequality, solution| of.space.contact_measure(inequality, solution)
-        )(self, inequality, solution)
+            T, D: fn(
+                &Discretisation<'_, T, D>,
+                &Inequality<T>,
+                &Solution<T>,
+                &dyn Fn(usize) -> bool,
+            ) -> Option<f64>
+                = |of, inequality, solution, counts| {
+                    of.space.contact_measure(inequality, solution, counts)
+                }
+        )(self, inequality, solution, counts)
     }
 
     /// The total contact force: the multiplier tested with the function one, which is the sum of the
@@ -144,8 +161,14 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         Ok(errors)
     }
 
-    fn contact_measure(&self, inequality: &Inequality<T>, solution: &Solution<T>) -> Option<f64> {
-        let entities = self.problem.is_constrained().then(|| self.entities())?;
+    fn contact_measure(
+        &self,
+        inequality: &Inequality<T>,
+        solution: &Solution<T>,
+        counts: &dyn Fn(usize) -> bool,
+    ) -> Option<f64> {
+        let mut entities = self.problem.is_constrained().then(|| self.entities())?;
+        entities.retain(|entity| counts(entity.cell));
         let touching = self.in_contact(&entities, inequality, solution);
         let in_contact = entities.iter().zip(touching).filter(|(_, touches)| *touches);
         Some(in_contact.fold(0.0, |sum, (entity, _)| sum + self.measure_of(*entity)))

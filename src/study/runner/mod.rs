@@ -3,6 +3,7 @@
 mod adaptive;
 mod judge;
 mod memory;
+mod on_parts;
 mod reference;
 mod rows;
 mod settings;
@@ -32,6 +33,7 @@ use crate::study::orders::fill_orders;
 use crate::study::reference::{Measured, Reference};
 use crate::study::report::{Program, Report};
 use crate::study::row::{Row, RowKey};
+pub use on_parts::PartChecks;
 
 /// Progress of a study.
 #[derive(Debug)]

@@ -138,7 +138,7 @@ impl<T: Real, const D: usize> Study<'_, T, D> {
     }
 
     /// The row with the names of constraint set and label and the promised orders.
-    fn named(
+    pub(super) fn named(
         &self,
         entry: &Entry<'_, T, D>,
         problem: &Problem<D>,

@@ -118,6 +118,20 @@ fn large_penalties_are_proven_coercive() {
     }
 }
 
+/// The form without symmetry is coercive with every penalty, and not proven so with none.
+#[test]
+fn without_a_penalty_nothing_is_proven() {
+    let mesh = Mesh::<f64, 2>::kuhn_box(&BoxDomain::centred(1.0), [2; 2]).unwrap();
+    let is_proven = |penalty| {
+        let scheme = Nipg { penalty, ..Nipg::default() };
+        AnyScheme::<f64, 2>::form(&scheme, &mesh).theory().is_coercive
+    };
+    for rule in [PenaltyRule::Diameter, |factor| PenaltyRule::Proven(factor - 1.0)] {
+        assert!(is_proven(rule(1e-8)));
+        assert!(!is_proven(rule(0.0)));
+    }
+}
+
 #[test]
 fn coefficients_out_of_range_are_refused() {
     let mesh = Mesh::<f64, 2>::kuhn_box(&BoxDomain::centred(1.0), [2; 2]).unwrap();

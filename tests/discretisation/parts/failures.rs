@@ -93,6 +93,7 @@ fn sums_and_maxima_over_parts() {
 /// An exchange may have sums and maxima of its own.
 #[test]
 fn an_exchange_may_have_sums_of_its_own() {
+    #[derive(Debug)]
     struct Counting<'e>(&'e InProcess);
     impl Exchange for Counting<'_> {
         fn parts(&self) -> usize {

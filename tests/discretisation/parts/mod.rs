@@ -2,9 +2,11 @@
 
 mod compare;
 mod failures;
+mod gathered;
 mod meshes;
 mod numbers;
 mod problems;
 mod refined;
 mod rows;
+mod solves;
 mod sums;

@@ -3,6 +3,7 @@
 use super::compare::{Assembled, some_values};
 use super::meshes::{box_mesh, moved};
 use super::problems::{obstacle_problem, schemes, signorini_problem};
+use std::sync::Arc;
 use unilateral::algebra::Inequality;
 use unilateral::distributed::{InProcess, in_process, merge_all};
 use unilateral::inequality::{Certificate, Violations, certify, certify_with_jump_multipliers};
@@ -39,7 +40,7 @@ fn merged<const D: usize>(
 ) -> Merged {
     let owners = mesh.partition(parts).unwrap();
     let whole = Assembled::new(scheme, problem, mesh);
-    let of_part = |number, exchange: &InProcess| -> Merged {
+    let of_part = |number, exchange: &Arc<InProcess>| -> Merged {
         let part = mesh.part(&owners, number, scheme.layers(mesh)).unwrap();
         let on_part = Assembled::new(scheme, problem, &part.mesh);
         let Assembled { discretisation, inequality } = &on_part;

@@ -2,8 +2,8 @@
 
 use super::cold;
 use crate::problems::*;
-use unilateral::algebra::{Bound, Contact};
-use unilateral::inequality::{certify, contact_of};
+use unilateral::algebra::{Bound, Contact, Inequality, SparseMatrix};
+use unilateral::inequality::{Violations, certify, contact_of};
 
 #[test]
 fn values_at_a_bound_but_for_rounding_are_in_contact() {
@@ -76,4 +76,18 @@ fn contact_is_told_from_values_alone() {
         });
         assert!(contact_of(&above, &mirrored).into_iter().eq(expected), "unit {unit}, above");
     }
+}
+
+/// Without energy and load, residuals are relative to the size of the values, of all parts together.
+#[test]
+fn parts_without_energy_have_the_scale_of_the_whole() {
+    let matrix = SparseMatrix {
+        row_starts: vec![0, 2, 4],
+        columns: vec![0, 1, 0, 1],
+        values: vec![0.0, 1.0, -1.0, 0.0],
+    };
+    let problem = Inequality::new(matrix, false, vec![0.0; 2], vec![Bound::Free; 2]);
+    let [one, other] = [0, 1].map(|own| Violations::of(&problem, &[1.0; 2], &[], &|i| i == own));
+    assert_eq!(certify(&problem, &[1.0; 2]).residual, 1.0);
+    assert_eq!(one.merge(other).certificate().residual, 1.0);
 }

@@ -5,6 +5,8 @@
 
 mod interrupt;
 mod options;
+#[cfg(feature = "petsc")]
+mod over_processes;
 mod prepare;
 mod watcher;
 
@@ -38,6 +40,9 @@ pub fn run(options: &Options) -> Request<bool> {
     if options.list {
         return print(&list()).map(|()| true);
     }
+    if processes_of_job() > 1 || options.engine.is_some() || options.verify {
+        return run_over_processes(options);
+    }
     check_numbers(options)?;
     use_threads(options.threads)?;
     let copy = options.clone();
@@ -47,6 +52,23 @@ pub fn run(options: &Options) -> Request<bool> {
         "f32" => chosen.run::<f32>(options, &interrupt),
         _ => chosen.run::<f64>(options, &interrupt),
     }
+}
+
+/// How many processes the launcher of an MPI job has started; one without a launcher.
+fn processes_of_job() -> usize {
+    let variables = ["OMPI_COMM_WORLD_SIZE", "PMI_SIZE", "SLURM_STEP_NUM_TASKS"];
+    let count = |name: &&str| std::env::var(name).ok()?.parse().ok();
+    variables.iter().find_map(count).unwrap_or(1)
+}
+
+#[cfg(feature = "petsc")]
+fn run_over_processes(options: &Options) -> Request<bool> {
+    over_processes::run(options)
+}
+#[cfg(not(feature = "petsc"))]
+fn run_over_processes(_: &Options) -> Request<bool> {
+    Err("several processes, --engine and --verify need a program with PETSc: cargo build --release --features petsc"
+        .to_owned())
 }
 
 /// The program, with all that its rows depend on and do not say.

@@ -100,6 +100,13 @@ pub struct Options {
     /// Write the fields of every level, and for each scheme a .pvd file that lists its .vtu files
     #[arg(long)]
     pub fields_of_all_levels: bool,
+    /// Over the processes of mpirun: preconditioners by PETSc, or the whole inequality by its SNESVI, to
+    /// check one by the other; petsc by default
+    #[arg(long, value_name = "NAME", value_parser = ["petsc", "snesvi"])]
+    pub engine: Option<String>,
+    /// Over the processes of mpirun: compare all rows with those of the whole mesh, bit for bit
+    #[arg(long)]
+    pub verify: bool,
     /// No progress, no tables
     #[arg(long)]
     pub quiet: bool,

@@ -140,7 +140,8 @@ fn draw<T: Real, const D: usize>(
     picture.write_svg(&directory.join(file_name(name) + ".svg"))
 }
 
-fn default_levels(dimension: usize, on_mesh: bool) -> Vec<usize> {
+/// The levels where none are named.
+pub fn default_levels(dimension: usize, on_mesh: bool) -> Vec<usize> {
     match dimension {
         _ if on_mesh => vec![0, 1],
         3 => vec![2, 4, 8],

@@ -1,0 +1,64 @@
+//! The unknowns of one inequality in several processes.
+
+use std::fmt::Debug;
+
+use crate::real::Real;
+
+/// How the unknowns of an inequality are distributed over the parts of a mesh, seen from one part.
+///
+/// A part has rows, load and bounds of its own unknowns, and besides unknowns that other parts own, its
+/// *ghosts*: their values take part in products, their rows are incomplete and count nowhere. Solvers of
+/// an inequality with a distribution run in all parts at once. They take every decision by sums and maxima
+/// over the parts, so that all parts take the same one.
+///
+/// [`exchange`](Self::exchange), [`sum`](Self::sum) and [`largest`](Self::largest) are collective: all parts
+/// call them as often as one another, in the same order. Where messages fail, the numbers that come back are
+/// not numbers, which ends a solve as [`NotFinite`](crate::inequality::Outcome::NotFinite).
+pub trait Distribution: Debug + Send + Sync {
+    /// Whether this part owns one of its unknowns.
+    fn owns(&self, unknown: usize) -> bool;
+    /// The number of one of the unknowns of this part among those of all parts.
+    fn number(&self, unknown: usize) -> u64;
+    /// Calls `receive` with every ghost and the `value` that its owner has.
+    fn exchange(&self, value: &dyn Fn(usize) -> f64, receive: &mut dyn FnMut(usize, f64));
+    /// Replaces each number by the sum of those of all parts, with the same bits in all parts.
+    fn sum(&self, numbers: &mut [f64]);
+    /// Replaces each number by the largest of those of all parts; by one that is not a number if a part has
+    /// one.
+    fn largest(&self, numbers: &mut [f64]);
+}
+
+/// What solvers ask of a distribution, where there is one; without one there is one part.
+impl dyn Distribution + '_ {
+    /// Gives ghosts the values that their owners have.
+    pub(crate) fn update<T: Real>(&self, values: &mut [T]) {
+        let mut received: Vec<(usize, f64)> = Vec::new();
+        self.exchange(&|i| values[i].to_f64(), &mut |i, value| received.push((i, value)));
+        received.into_iter().for_each(|(i, value)| values[i] = T::lit(value));
+    }
+    /// Gives ghosts the flags that their owners have.
+    pub(crate) fn update_flags(&self, flags: &mut [bool]) {
+        let mut received: Vec<(usize, f64)> = Vec::new();
+        let value = |i: usize| f64::from(u8::from(flags[i]));
+        self.exchange(&value, &mut |i, value| received.push((i, value)));
+        received.into_iter().for_each(|(i, value)| flags[i] = value != 0.0);
+    }
+}
+
+/// The sum of a number over all parts.
+pub(crate) fn sum_over_parts(distribution: Option<&dyn Distribution>, number: f64) -> f64 {
+    let mut numbers = [number];
+    if let Some(distribution) = distribution {
+        distribution.sum(&mut numbers);
+    }
+    numbers[0]
+}
+
+/// Whether a statement is true in one part or more.
+pub(crate) fn any_part(distribution: Option<&dyn Distribution>, is_true: bool) -> bool {
+    distribution.map_or(is_true, |distribution| {
+        let mut numbers = [f64::from(u8::from(is_true))];
+        distribution.largest(&mut numbers);
+        numbers[0] != 0.0
+    })
+}

@@ -1,0 +1,174 @@
+//! A comparison over the processes of an MPI job: `mpirun -n R unilateral compare …`.
+//!
+//! Every process runs the same requests on its part of the meshes. The first one prints, and writes the report.
+
+use unilateral::distributed::petsc::Processes;
+use unilateral::distributed::{ExchangeError, Process, agree};
+use unilateral::paraview::FieldScalar;
+use unilateral::scenes::AnyScene;
+use unilateral::scheme::NamedScheme;
+use unilateral::study::{Journal, PartChecks, Report, Row, Study};
+
+use super::options::{Options, check_numbers};
+use super::prepare::default_levels;
+use super::watcher::Watcher;
+use super::{Chosen, check_output, program, write_all};
+use crate::posed::Posed;
+use crate::shared::{Request, complain, each_once, fingerprint, use_threads};
+
+/// Whether every row converged.
+pub fn run(options: &Options) -> Request<bool> {
+    let processes = Processes::start().map_err(|e| e.to_string())?;
+    let process = processes.own();
+    let result = run_process(options, &process);
+    drop(process);
+    let is_first = processes.rank() == 0;
+    processes.end().map_err(|e| e.to_string())?;
+    // all processes end with one code, and the first one says why
+    result.map_err(|why| if is_first { why } else { String::new() })
+}
+
+fn run_process(options: &Options, process: &Process) -> Request<bool> {
+    check_numbers(options)?;
+    check_options(options)?;
+    use_threads(Some(options.threads.unwrap_or_else(threads_of_process)))?;
+    let is_first = process.number == 0;
+    let mut quiet = options.clone();
+    quiet.quiet |= !is_first;
+    let watcher = Watcher::new(&quiet);
+    let Chosen { scenes, schemes, mesh, own, .. } = agreed(Chosen::new(options), process)?;
+    let mut files: Vec<(&str, String)> =
+        mesh.iter().map(|(_, bytes)| ("mesh", fingerprint(bytes))).collect();
+    if let Some((own, text)) = &own {
+        let mesh = own.mesh_bytes().unwrap_or_default();
+        files = vec![("problem", fingerprint(text)), ("mesh", fingerprint(mesh))];
+    }
+    let program = program::<f64>(options, &files)
+        .with_request("processes", process.count())
+        .with_request("engine", process.engine.name());
+    let new_journal = || {
+        check_output(options)?;
+        Journal::create(&options.out, program.clone()).map_err(|e| e.to_string())
+    };
+    let journal = agreed(is_first.then(new_journal).transpose(), process)?;
+    let all = AllRuns { options, schemes: &schemes, process, watcher: &watcher };
+    let (mut rows, mut messages) = (Vec::new(), Vec::new());
+    let (journal, mesh) = (journal.as_ref(), mesh.as_ref());
+    let own = own.map(|(own, _)| own);
+    let mut add = |found: Result<Vec<Row>, String>| match found {
+        Ok(found) => rows.extend(found),
+        Err(why) => messages.push(why),
+    };
+    for scene in scenes {
+        add(match scene {
+            AnyScene::One(of) => all.run(of.into(), mesh, journal),
+            AnyScene::Two(of) => all.run(of.into(), mesh, journal),
+            AnyScene::Three(of) => all.run(of.into(), mesh, journal),
+        });
+    }
+    use unilateral::problem_file::AnyOwnProblem;
+    match own {
+        None => {}
+        Some(AnyOwnProblem::One(of)) => add(all.run(of.into(), None, journal)),
+        Some(AnyOwnProblem::Two(of)) => add(all.run(of.into(), None, journal)),
+        Some(AnyOwnProblem::Three(of)) => add(all.run(of.into(), None, journal)),
+    }
+    watcher.clear();
+    let report = Report::new(program, rows);
+    if is_first {
+        write_all(options, &report)?;
+        messages.iter().for_each(|text| complain(text));
+    }
+    let has_bits = |row: &Row| {
+        let differences = row.ranks.as_ref().and_then(|ranks| ranks.differences);
+        differences.is_none_or(|found| found.are_none())
+    };
+    Ok(messages.is_empty() && report.rows.iter().all(|row| row.converged() && has_bits(row)))
+}
+
+/// The result of this process if no process failed; else in all the message of the first that did.
+fn agreed<T>(result: Request<T>, process: &Process) -> Request<T> {
+    agree(result, &*process.exchange).map_err(|error| match error {
+        ExchangeError::Failed { message, .. } => message,
+        other => other.to_string(),
+    })
+}
+
+/// What all runs have in common.
+struct AllRuns<'r> {
+    options: &'r Options,
+    schemes: &'r [NamedScheme],
+    process: &'r Process,
+    watcher: &'r Watcher,
+}
+
+impl AllRuns<'_> {
+    /// The rows of one scene or problem.
+    fn run<const D: usize>(
+        &self,
+        posed: Posed<D>,
+        mesh: Option<&(usize, Vec<u8>)>,
+        journal: Option<&Journal>,
+    ) -> Request<Vec<Row>> {
+        let Self { options, schemes, process, watcher } = *self;
+        let name = posed.name().to_owned();
+        let has_mesh = mesh.is_some() || posed.has_mesh();
+        let levels = match &options.levels[..] {
+            [] => default_levels(D, has_mesh),
+            some => each_once(some),
+        };
+        let warn = |warning| watcher.warn_once(warning);
+        let mut study =
+            posed.study::<f64>(&warn)?.levels(levels).observer(|progress| watcher.tell(&progress));
+        study = schemes.iter().fold(study, Study::named_scheme);
+        if !options.no_fields {
+            let is_double = options.fields == "f64";
+            let scalar = if is_double { FieldScalar::Double } else { FieldScalar::Single };
+            study = study.fields_to(&options.out).field_scalar(scalar);
+        }
+        let mut place = format!("scene {name}");
+        if let (Some((_, bytes)), Some(path)) = (mesh, &options.mesh.path) {
+            place = format!("{}, {place}", path.display());
+            study = study.on_mesh(options.mesh.parse(bytes, &warn)?);
+        }
+        study.check().map_err(|e| format!("{place}: {e}"))?;
+        watcher.expect(D, has_mesh, study.keys().iter().map(|key| key.level));
+        if let Some(journal) = journal {
+            study = study.journal(journal);
+        }
+        let by_engine = options.engine.as_deref() == Some("snesvi");
+        let checks = PartChecks { verify: options.verify, by_engine };
+        let report = study.run_on_parts(process, checks);
+        report.map(|report| report.rows).map_err(|e| format!("{place}: {e}"))
+    }
+}
+
+/// Refuses options that processes do not support.
+fn check_options(options: &Options) -> Request<()> {
+    let asked = [
+        ("--adaptive", options.adaptive.is_some()),
+        ("--reference", options.reference.is_some()),
+        ("--dump", options.dump.is_some()),
+        ("--resume", options.resume),
+        ("--precision f32", options.precision == "f32"),
+        ("--repeat", options.repeat > 1),
+        ("--fields-of-all-levels", options.fields_of_all_levels),
+        ("--linear direct", options.linear.as_deref() == Some("direct")),
+        ("--solver", options.solvers.iter().any(|name| name != "active-set")),
+    ];
+    match asked.iter().find(|(_, is_asked)| *is_asked) {
+        None => Ok(()),
+        Some((option, _)) => {
+            Err(format!("{option}: not over the processes of mpirun; a run in one process has it"))
+        }
+    }
+}
+
+/// The cores of the machine divided by the processes that share them, at least one.
+fn threads_of_process() -> usize {
+    let variables = ["OMPI_COMM_WORLD_LOCAL_SIZE", "MPI_LOCALNRANKS", "SLURM_NTASKS_PER_NODE"];
+    let share = |name: &&str| std::env::var(name).ok()?.parse::<usize>().ok();
+    let processes = variables.iter().find_map(share).unwrap_or(1).max(1);
+    let cores = std::thread::available_parallelism().map_or(1, |cores| cores.get());
+    (cores / processes).max(1)
+}

@@ -1,0 +1,69 @@
+//! What a library for distributed matrices does for the solver: preconditioners of distributed matrices.
+
+use std::fmt::Debug;
+
+/// A library for matrices whose rows are distributed over processes.
+///
+/// All parts call its functions, and those of its [`EngineSolver`]s, as often as one another and in the same
+/// order. A function that fails keeps the reason for [`failure`](Self::failure); corrections are then not
+/// numbers.
+pub trait Engine: Debug + Send + Sync {
+    /// Name and version, for reports.
+    fn name(&self) -> String;
+    /// A preconditioner of a symmetric positive definite matrix.
+    fn solver(&self, rows: &dyn OwnRows, method: EngineMethod) -> Box<dyn EngineSolver>;
+    /// Solves an inequality by a method of the engine itself, for cross-checks: replaces the values of own
+    /// unknowns, and returns the number of steps. None if the engine has no such method.
+    fn solve_inequality(
+        &self,
+        rows: &dyn OwnRows,
+        data: &OwnData<'_>,
+        values: &mut [f64],
+    ) -> Option<usize> {
+        let (_, _, _) = (rows, data, values);
+        None
+    }
+    /// Why a function failed in this part, if one did.
+    fn failure(&self) -> Option<String>;
+}
+
+/// Load and bounds of own unknowns. Absent bounds are infinite; those of fixed unknowns coincide.
+#[derive(Clone, Copy, Debug)]
+#[non_exhaustive]
+pub struct OwnData<'d> {
+    /// The load.
+    pub load: &'d [f64],
+    /// Lower bounds.
+    pub lower: &'d [f64],
+    /// Upper bounds.
+    pub upper: &'d [f64],
+}
+
+/// How an engine solves systems.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum EngineMethod {
+    /// By a cycle of algebraic multigrid, symmetric and positive definite.
+    Multigrid,
+    /// By factors.
+    Factors,
+}
+
+/// The rows of a distributed matrix that one part owns: consecutive ones.
+pub trait OwnRows {
+    /// The number of the first row among the rows of all parts.
+    fn first(&self) -> u64;
+    /// How many there are.
+    fn count(&self) -> usize;
+    /// Replaces the list by the entries of an own row: numbers of columns, in any order, and values.
+    fn row(&self, own: usize, entries: &mut Vec<(u64, f64)>);
+}
+
+/// A preconditioner of a distributed matrix.
+pub trait EngineSolver: Send + Sync {
+    /// Sets which own unknowns are fixed: their rows and columns become those of a multiple of
+    /// the identity, near the diagonal of the others.
+    fn set_fixed(&mut self, fixed: &[bool]);
+    /// Sets `correction` to the preconditioner times `residual`, both at own unknowns.
+    fn apply(&mut self, residual: &[f64], correction: &mut [f64]);
+}

@@ -1,0 +1,296 @@
+/* All that the library asks of MPI and PETSc. Numbers of rows and columns have 64 bits here, whatever PetscInt
+ * has. A function returns 0, or an error of PETSc or MPI, whose text ul_error_text gives. */
+#include <petscksp.h>
+#include <petscsnes.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define TRY(call)                                                                                                  \
+  do {                                                                                                             \
+    PetscErrorCode code_ = (call);                                                                                 \
+    if (code_) return (int)code_;                                                                                  \
+  } while (0)
+
+/* ---- processes ---- */
+
+int ul_start(void) {
+  int provided, flag;
+  if (MPI_Initialized(&flag)) return 1; /* the call failed */
+  /* threads of the library never call MPI */
+  if (!flag && MPI_Init_thread(NULL, NULL, MPI_THREAD_FUNNELED, &provided)) return 1;
+  TRY(PetscInitialize(NULL, NULL, NULL, NULL));
+  TRY(PetscPushErrorHandler(PetscReturnErrorHandler, NULL));
+  return 0;
+}
+
+int ul_end(void) {
+  TRY(PetscPopErrorHandler());
+  TRY(PetscFinalize());
+  return MPI_Finalize();
+}
+
+void ul_abort(int code) { MPI_Abort(MPI_COMM_WORLD, code); }
+
+int ul_rank(void) {
+  int rank = 0;
+  MPI_Comm_rank(PETSC_COMM_WORLD, &rank);
+  return rank;
+}
+
+int ul_size(void) {
+  int size = 1;
+  MPI_Comm_size(PETSC_COMM_WORLD, &size);
+  return size;
+}
+
+void ul_version(int *numbers) {
+  numbers[0] = PETSC_VERSION_MAJOR;
+  numbers[1] = PETSC_VERSION_MINOR;
+  numbers[2] = PETSC_VERSION_SUBMINOR;
+}
+
+const char *ul_error_text(int code) {
+  const char *text = NULL;
+  if (PetscErrorMessage((PetscErrorCode)code, &text, NULL) || !text) return "unknown error";
+  return text;
+}
+
+/* ---- messages ---- */
+
+int ul_sum(double *numbers, int count) {
+  return MPI_Allreduce(MPI_IN_PLACE, numbers, count, MPI_DOUBLE, MPI_SUM, PETSC_COMM_WORLD);
+}
+
+int ul_largest(double *numbers, int count) {
+  return MPI_Allreduce(MPI_IN_PLACE, numbers, count, MPI_DOUBLE, MPI_MAX, PETSC_COMM_WORLD);
+}
+
+int ul_counts(const int *sent, int *received) {
+  return MPI_Alltoall(sent, 1, MPI_INT, received, 1, MPI_INT, PETSC_COMM_WORLD);
+}
+
+/* Words from and to every process, one after the other in the order of processes; only those that have words
+ * for one another send messages. */
+int ul_exchange(const int64_t *sent, const int *to, int64_t *received, const int *from) {
+  int size = ul_size(), requests = 0, error = 0, tag = 7;
+  MPI_Request *request = malloc(2 * (size_t)size * sizeof *request);
+  if (!request) return PETSC_ERR_MEM;
+  for (int k = 0; k < size && !error; received += from[k++])
+    if (from[k]) error = MPI_Irecv(received, from[k], MPI_INT64_T, k, tag, PETSC_COMM_WORLD, &request[requests++]);
+  for (int k = 0; k < size && !error; sent += to[k++])
+    if (to[k]) error = MPI_Isend(sent, to[k], MPI_INT64_T, k, tag, PETSC_COMM_WORLD, &request[requests++]);
+  if (!error) error = MPI_Waitall(requests, request, MPI_STATUSES_IGNORE);
+  free(request);
+  return error;
+}
+
+/* ---- matrices: own rows, columns by their numbers over all processes ---- */
+
+int ul_matrix_new(int64_t rows, const int *in_own_columns, const int *in_other_columns, Mat *out) {
+  PetscInt n = (PetscInt)rows, *own, *other;
+  TRY(PetscMalloc2(n + 1, &own, n + 1, &other));
+  for (PetscInt i = 0; i < n; i++) own[i] = in_own_columns[i], other[i] = in_other_columns[i];
+  TRY(MatCreate(PETSC_COMM_WORLD, out));
+  TRY(MatSetSizes(*out, n, n, PETSC_DETERMINE, PETSC_DETERMINE));
+  TRY(MatSetType(*out, MATAIJ));
+  TRY(MatSeqAIJSetPreallocation(*out, 0, own));
+  TRY(MatMPIAIJSetPreallocation(*out, 0, own, 0, other));
+  TRY(MatSetOption(*out, MAT_NO_OFF_PROC_ENTRIES, PETSC_TRUE));
+  TRY(MatSetOption(*out, MAT_KEEP_NONZERO_PATTERN, PETSC_TRUE));
+  TRY(PetscFree2(own, other));
+  return 0;
+}
+
+int ul_matrix_row(Mat matrix, int64_t row, int count, const int64_t *columns, const double *values) {
+  PetscInt i = (PetscInt)row, buffer[256];
+  for (int done = 0; done < count;) {
+    int n = count - done < 256 ? count - done : 256;
+    for (int k = 0; k < n; k++) buffer[k] = (PetscInt)columns[done + k];
+    TRY(MatSetValues(matrix, 1, &i, n, buffer, values + done, INSERT_VALUES));
+    done += n;
+  }
+  return 0;
+}
+
+int ul_matrix_assemble(Mat matrix) {
+  TRY(MatAssemblyBegin(matrix, MAT_FINAL_ASSEMBLY));
+  TRY(MatAssemblyEnd(matrix, MAT_FINAL_ASSEMBLY));
+  TRY(MatSetOption(matrix, MAT_SPD, PETSC_TRUE));
+  return 0;
+}
+
+int ul_matrix_destroy(Mat *matrix) {
+  TRY(MatDestroy(matrix));
+  return 0;
+}
+
+/* ---- preconditioners ---- */
+
+typedef struct {
+  Mat matrix; /* as given; owned by the solver */
+  Mat fixed;  /* with rows and columns of the identity; NULL before the first fixed unknowns */
+  PC pc;
+  Vec r, z; /* without memory of their own */
+  double mean; /* of the diagonal */
+  int method; /* 0: a cycle of algebraic multigrid, 1: factors */
+} Solver;
+
+int ul_solver_new(Mat matrix, int method, Solver **out) {
+  Solver *solver = calloc(1, sizeof *solver);
+  if (!solver) return PETSC_ERR_MEM;
+  solver->matrix = matrix;
+  solver->method = method;
+  *out = solver;
+  PetscInt n, all;
+  Vec diagonal;
+  PetscScalar sum;
+  TRY(MatCreateVecs(matrix, &diagonal, NULL));
+  TRY(MatGetDiagonal(matrix, diagonal));
+  TRY(VecSum(diagonal, &sum));
+  TRY(VecGetSize(diagonal, &all));
+  TRY(VecDestroy(&diagonal));
+  solver->mean = all > 0 && sum > 0 ? sum / all : 1;
+  TRY(MatGetLocalSize(matrix, &n, NULL));
+  TRY(VecCreateMPIWithArray(PETSC_COMM_WORLD, 1, n, PETSC_DETERMINE, NULL, &solver->r));
+  TRY(VecCreateMPIWithArray(PETSC_COMM_WORLD, 1, n, PETSC_DETERMINE, NULL, &solver->z));
+  return 0;
+}
+
+static int new_preconditioner(Solver *solver) {
+  TRY(PCDestroy(&solver->pc));
+  TRY(PCCreate(PETSC_COMM_WORLD, &solver->pc));
+  if (solver->method == 0) {
+    TRY(PCSetOptionsPrefix(solver->pc, "ul_multigrid_"));
+    TRY(PCSetType(solver->pc, PCHYPRE));
+    TRY(PCHYPRESetType(solver->pc, "boomeramg"));
+  } else {
+    TRY(PCSetOptionsPrefix(solver->pc, "ul_factors_"));
+    TRY(PCSetType(solver->pc, PCCHOLESKY));
+    TRY(PCFactorSetMatSolverType(solver->pc, MATSOLVERMUMPS));
+  }
+  TRY(PCSetFromOptions(solver->pc));
+  return 0;
+}
+
+/* Rows and columns of the own rows listed become those of the identity times the mean of the diagonal. */
+int ul_solver_fix(Solver *solver, const int64_t *rows, int64_t count) {
+  PetscInt n = (PetscInt)count, *list;
+  TRY(PetscMalloc1(n + 1, &list));
+  for (PetscInt k = 0; k < n; k++) list[k] = (PetscInt)rows[k];
+  if (solver->fixed)
+    TRY(MatCopy(solver->matrix, solver->fixed, SAME_NONZERO_PATTERN));
+  else {
+    TRY(MatDuplicate(solver->matrix, MAT_COPY_VALUES, &solver->fixed));
+    TRY(MatSetOption(solver->fixed, MAT_KEEP_NONZERO_PATTERN, PETSC_TRUE));
+    TRY(MatSetOption(solver->fixed, MAT_SPD, PETSC_TRUE));
+  }
+  TRY(MatZeroRowsColumns(solver->fixed, n, list, solver->mean, NULL, NULL));
+  TRY(PetscFree(list));
+  TRY(new_preconditioner(solver));
+  TRY(PCSetOperators(solver->pc, solver->fixed, solver->fixed));
+  if (solver->method == 1) {
+    Mat factors;
+    TRY(PCFactorSetUpMatSolverType(solver->pc));
+    TRY(PCFactorGetMatrix(solver->pc, &factors));
+    /* work space in per cent beyond the estimate, which is too small for some blocks over several processes */
+    TRY(MatMumpsSetIcntl(factors, 14, 200));
+  }
+  TRY(PCSetUp(solver->pc));
+  PCFailedReason reason;
+  TRY(PCGetFailedReason(solver->pc, &reason));
+  return !reason ? 0 : reason == PC_FACTOR_OUTMEMORY ? PETSC_ERR_MEM : PETSC_ERR_MAT_CH_ZRPVT;
+}
+
+int ul_solver_apply(Solver *solver, const double *residual, double *correction) {
+  TRY(VecPlaceArray(solver->r, residual));
+  TRY(VecPlaceArray(solver->z, correction));
+  TRY(PCApply(solver->pc, solver->r, solver->z));
+  TRY(VecResetArray(solver->r));
+  TRY(VecResetArray(solver->z));
+  return 0;
+}
+
+int ul_solver_destroy(Solver *solver) {
+  TRY(PCDestroy(&solver->pc));
+  TRY(VecDestroy(&solver->r));
+  TRY(VecDestroy(&solver->z));
+  TRY(MatDestroy(&solver->fixed));
+  TRY(MatDestroy(&solver->matrix));
+  free(solver);
+  return 0;
+}
+
+/* ---- PETSc's own solver of inequalities, for cross-checks ---- */
+
+typedef struct {
+  Mat matrix;
+  Vec load;
+} Inequality;
+
+static PetscErrorCode negative_residual(SNES snes, Vec x, Vec f, void *context) {
+  Inequality *of = context;
+  (void)snes;
+  PetscFunctionBegin;
+  PetscCall(MatMult(of->matrix, x, f));
+  PetscCall(VecAXPY(f, -1, of->load));
+  PetscFunctionReturn(0);
+}
+
+static PetscErrorCode constant_jacobian(SNES snes, Vec x, Mat a, Mat b, void *context) {
+  (void)snes, (void)x, (void)a, (void)b, (void)context;
+  PetscFunctionBegin;
+  PetscFunctionReturn(0);
+}
+
+/* The semismooth Newton method with active sets in reduced space, its linear systems by factors of MUMPS. Absent
+ * bounds are infinite. Returns the numbers of steps, and whether it converged by its own tests. */
+int ul_newton(Mat matrix, const double *load, double *lower, double *upper, double *values, int *steps,
+              int *converged) {
+  PetscInt n, count;
+  Inequality of;
+  Vec x, low, up, f;
+  SNES snes;
+  KSP ksp;
+  PC pc;
+  SNESConvergedReason reason;
+  TRY(MatGetLocalSize(matrix, &n, NULL));
+  for (PetscInt i = 0; i < n; i++) {
+    if (lower[i] == -1.0 / 0.0) lower[i] = PETSC_NINFINITY;
+    if (upper[i] == 1.0 / 0.0) upper[i] = PETSC_INFINITY;
+  }
+  of.matrix = matrix;
+  TRY(VecCreateMPIWithArray(PETSC_COMM_WORLD, 1, n, PETSC_DETERMINE, load, &of.load));
+  TRY(VecCreateMPIWithArray(PETSC_COMM_WORLD, 1, n, PETSC_DETERMINE, lower, &low));
+  TRY(VecCreateMPIWithArray(PETSC_COMM_WORLD, 1, n, PETSC_DETERMINE, upper, &up));
+  TRY(VecCreateMPIWithArray(PETSC_COMM_WORLD, 1, n, PETSC_DETERMINE, values, &x));
+  TRY(VecDuplicate(x, &f));
+  TRY(SNESCreate(PETSC_COMM_WORLD, &snes));
+  TRY(SNESSetOptionsPrefix(snes, "ul_newton_"));
+  TRY(SNESSetType(snes, SNESVINEWTONRSLS));
+  TRY(SNESSetFunction(snes, f, negative_residual, &of));
+  TRY(SNESSetJacobian(snes, matrix, matrix, constant_jacobian, NULL));
+  TRY(SNESVISetVariableBounds(snes, low, up));
+  TRY(SNESSetTolerances(snes, 1e-14, 1e-13, 0, 200, 10000));
+  SNESLineSearch search;
+  TRY(SNESGetLineSearch(snes, &search));
+  TRY(SNESLineSearchSetType(search, SNESLINESEARCHBASIC));
+  TRY(SNESGetKSP(snes, &ksp));
+  TRY(KSPSetType(ksp, KSPPREONLY));
+  TRY(KSPGetPC(ksp, &pc));
+  TRY(PCSetType(pc, PCLU));
+  TRY(PCFactorSetMatSolverType(pc, MATSOLVERMUMPS));
+  TRY(SNESSetFromOptions(snes));
+  TRY(SNESSolve(snes, NULL, x));
+  TRY(SNESGetIterationNumber(snes, &count));
+  TRY(SNESGetConvergedReason(snes, &reason));
+  *steps = (int)count;
+  *converged = reason > 0;
+  TRY(SNESDestroy(&snes));
+  TRY(VecDestroy(&of.load));
+  TRY(VecDestroy(&low));
+  TRY(VecDestroy(&up));
+  TRY(VecDestroy(&x));
+  TRY(VecDestroy(&f));
+  return 0;
+}

@@ -1,0 +1,57 @@
+//! The unknowns of a discretisation over all parts, as solvers of an inequality see them.
+
+use std::sync::Arc;
+
+use crate::algebra::Distribution;
+use crate::distributed::exchange::Exchange;
+use crate::distributed::numbering::Numbering;
+
+/// The numbers of the unknowns with the exchange between the parts.
+#[derive(Debug)]
+pub(super) struct OverParts {
+    pub numbering: Numbering,
+    pub exchange: Arc<dyn Exchange>,
+    /// The number of this part.
+    pub number: u32,
+    is_own: Vec<bool>,
+}
+
+impl OverParts {
+    pub fn new(number: u32, numbering: Numbering, exchange: Arc<dyn Exchange>) -> Self {
+        let mut is_own = vec![false; numbering.numbers().len()];
+        numbering.own().iter().for_each(|&unknown| is_own[unknown as usize] = true);
+        Self { numbering, exchange, number, is_own }
+    }
+
+    /// The numbers `joined` over all parts; not numbers where messages fail.
+    fn join(&self, numbers: &mut [f64], joined: Joined) {
+        match joined(&*self.exchange, numbers) {
+            Ok(all) => numbers.copy_from_slice(&all),
+            Err(_) => numbers.fill(f64::NAN),
+        }
+    }
+}
+
+/// A sum or maximum over parts.
+type Joined =
+    fn(&dyn Exchange, &[f64]) -> Result<Vec<f64>, crate::distributed::error::ExchangeError>;
+
+impl Distribution for OverParts {
+    fn owns(&self, unknown: usize) -> bool {
+        self.is_own[unknown]
+    }
+    fn number(&self, unknown: usize) -> u64 {
+        self.numbering.numbers()[unknown]
+    }
+    fn exchange(&self, value: &dyn Fn(usize) -> f64, receive: &mut dyn FnMut(usize, f64)) {
+        if self.numbering.exchange_values(value, receive, &*self.exchange).is_err() {
+            self.numbering.ghosts().for_each(|unknown| receive(unknown, f64::NAN));
+        }
+    }
+    fn sum(&self, numbers: &mut [f64]) {
+        self.join(numbers, |exchange, numbers| exchange.sum(numbers));
+    }
+    fn largest(&self, numbers: &mut [f64]) {
+        self.join(numbers, |exchange, numbers| exchange.largest(numbers));
+    }
+}

@@ -1,0 +1,223 @@
+//! The result of a solve over the parts of a mesh.
+
+use std::fmt;
+
+use super::over_parts::OverParts;
+use super::system::System;
+use crate::algebra::{Contact, Distribution, Inequality};
+use crate::assemble::Discretisation;
+use crate::distributed::agree::agree;
+use crate::distributed::error::ExchangeError;
+use crate::distributed::exchange::Exchange;
+use crate::distributed::merge::merge_all;
+use crate::inequality::{Certificate, Outcome, Solution, certify_with_jump_multipliers};
+use crate::measure::{Errors, SquaredErrors};
+use crate::mesh::Part;
+
+/// A discrete solution on one part of a mesh. Errors, totals and certificate are those of all parts; the
+/// functions that compute them all parts call.
+#[non_exhaustive]
+pub struct DistributedSolved<'a, const D: usize> {
+    system: System<'a, D>,
+    part: &'a Part<f64, D>,
+    solution: Solution<f64>,
+    certificate: Certificate,
+    /// Seconds of this part for its meshes up to this one.
+    pub mesh_seconds: f64,
+    /// Seconds of assembly.
+    pub assemble_seconds: f64,
+    /// Seconds for the numbers of unknowns over all parts.
+    pub numbering_seconds: f64,
+    /// Seconds of the start: the P1 solutions on this and all coarser meshes.
+    pub start_seconds: f64,
+    /// Seconds of the solve with its auxiliary matrices.
+    pub solve_seconds: f64,
+    /// Bytes that this part sent in the solve.
+    pub(super) sent_bytes: u64,
+}
+
+impl<const D: usize> fmt::Debug for DistributedSolved<'_, D> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("DistributedSolved")
+            .field("own_unknowns", &self.own_unknowns())
+            .field("outcome", &self.outcome())
+            .field("certificate", &self.certificate)
+            .finish_non_exhaustive()
+    }
+}
+
+impl<'a, const D: usize> DistributedSolved<'a, D> {
+    /// A solution with its certificate.
+    pub(super) fn new(
+        system: System<'a, D>,
+        part: &'a Part<f64, D>,
+        mut solution: Solution<f64>,
+    ) -> Self {
+        solution.contact = contact_of_owners(&solution.contact, &system.over_parts);
+        let Solution { values, jump_multipliers, algebraic_bound, .. } = &solution;
+        // values of any outcome are certified: all parts take part
+        let certificate =
+            certify_with_jump_multipliers(&system.inequality, values, jump_multipliers)
+                .with_algebraic_bound(*algebraic_bound);
+        if solution.outcome == Outcome::Converged && !certificate.is_within_limits::<f64>() {
+            // whatever a solver says of itself
+            solution.outcome = Outcome::Stalled;
+        }
+        let [assemble_seconds, numbering_seconds] = system.seconds;
+        Self {
+            system,
+            part,
+            solution,
+            certificate,
+            mesh_seconds: 0.0,
+            assemble_seconds,
+            numbering_seconds,
+            start_seconds: 0.0,
+            solve_seconds: 0.0,
+            sent_bytes: 0,
+        }
+    }
+
+    /// How the solve ended.
+    pub fn outcome(&self) -> Outcome {
+        self.solution.outcome
+    }
+    /// Whether the solve converged.
+    pub fn converged(&self) -> bool {
+        self.outcome() == Outcome::Converged
+    }
+    /// The certificate, over all parts.
+    pub fn certificate(&self) -> Certificate {
+        self.certificate
+    }
+    /// The solution on this part: values and contact states of own unknowns and of ghosts.
+    pub fn solution(&self) -> &Solution<f64> {
+        &self.solution
+    }
+    /// The inequality of this part.
+    pub fn inequality(&self) -> &Inequality<f64> {
+        &self.system.inequality
+    }
+    /// The scheme on this part.
+    pub fn discretisation(&self) -> &Discretisation<'a, f64, D> {
+        &self.system.discretisation
+    }
+    /// The part.
+    pub fn part(&self) -> &'a Part<f64, D> {
+        self.part
+    }
+    /// The numbers of the unknowns of this part among those of all parts.
+    pub fn numbers(&self) -> &[u64] {
+        self.system.over_parts.numbering.numbers()
+    }
+    /// The own unknowns, in the order of their numbers.
+    pub(super) fn own(&self) -> &[u32] {
+        self.system.over_parts.numbering.own()
+    }
+    pub(super) fn exchange(&self) -> &dyn Exchange {
+        &*self.system.over_parts.exchange
+    }
+    /// The bytes that this part sent to others in the solve; messages inside the engine do not count.
+    pub fn sent_bytes(&self) -> u64 {
+        self.sent_bytes
+    }
+    /// The number of unknowns of this part, and that of its ghosts.
+    pub fn own_unknowns(&self) -> [usize; 2] {
+        let own = self.system.over_parts.numbering.own().len();
+        [own, self.system.inequality.size() - own]
+    }
+
+    /// Numbers of this part summed over all parts.
+    fn sums<const N: usize>(&self, mut own: [f64; N]) -> [f64; N] {
+        self.system.over_parts.sum(&mut own);
+        own
+    }
+    /// The numbers of cells, unknowns and stored entries of the matrix of all parts.
+    pub fn sizes(&self) -> [u64; 3] {
+        let numbering = &self.system.over_parts.numbering;
+        let cells = self.part.owners.iter().filter(|&&owner| owner == self.part.number).count();
+        let in_row = |&i: &u32| self.system.inequality.matrix.row(i as usize).0.len();
+        let entries: usize = numbering.own().iter().map(in_row).sum();
+        self.sums([cells as f64, numbering.own().len() as f64, entries as f64]).map(|x| x as u64)
+    }
+    /// The number of constrained unknowns in contact in all parts.
+    pub fn active(&self) -> u64 {
+        let bounds = &self.system.inequality.bounds;
+        let is_active = |&&i: &&u32| {
+            let i = i as usize;
+            bounds[i].is_inequality() && self.solution.contact[i] != Contact::Inactive
+        };
+        let own = self.own().iter().filter(is_active).count();
+        self.sums([own as f64])[0] as u64
+    }
+    /// The objective of all parts; none for schemes that are not symmetric.
+    pub fn objective(&self) -> Option<f64> {
+        let Inequality { symmetric, .. } = self.system.inequality;
+        symmetric.then(|| self.system.inequality.objective(&self.solution.values))
+    }
+    /// The total contact force on all parts; none without an inequality.
+    pub fn resultant(&self) -> Option<f64> {
+        let System { discretisation, inequality, .. } = &self.system;
+        if !discretisation.problem().is_constrained() {
+            return None;
+        }
+        let mut residual = vec![0.0; inequality.size()];
+        inequality.residual_f64(&self.solution.values, &mut residual);
+        let multiplier = |&i: &u32| match self.solution.contact[i as usize] {
+            Contact::Inactive => 0.0,
+            _ if !inequality.bounds[i as usize].is_inequality() => 0.0,
+            _ => -residual[i as usize],
+        };
+        Some(self.sums([self.own().iter().map(multiplier).sum::<f64>()])[0])
+    }
+    /// The measure of the discrete contact set of all parts; none without an inequality.
+    pub fn contact_measure(&self) -> Option<f64> {
+        let System { discretisation, inequality, .. } = &self.system;
+        let counts = |cell: usize| self.part.owns(cell);
+        let own = discretisation.contact_measure_of(inequality, &self.solution, &counts)?;
+        Some(self.sums([own])[0])
+    }
+    /// The energy of the solution on all parts, by one formula for every scheme: see
+    /// [`Discretisation::energy`].
+    ///
+    /// # Errors
+    /// [`ExchangeError::Failed`] in all parts for data that are not finite.
+    pub fn energy(&self) -> Result<f64, ExchangeError> {
+        let part = self.part;
+        let own =
+            self.system.discretisation.energy_of(&self.solution.values, &|cell| part.owns(cell));
+        let own = agree(own.map_err(|error| error.in_whole_mesh(&part.cells)), self.exchange())?;
+        Ok(self.exchange().sum(&[own])?[0])
+    }
+    /// The errors against the exact solution; none without one.
+    ///
+    /// # Errors
+    /// [`ExchangeError::Failed`] in all parts for data that are not finite.
+    pub fn errors(&self) -> Result<Errors, ExchangeError> {
+        let System { discretisation, over_parts, .. } = &self.system;
+        let exchange = &*over_parts.exchange;
+        let Some(exact) = &discretisation.problem().exact else { return Ok(Errors::default()) };
+        let (part, u) = (self.part, &self.solution.values);
+        let own = discretisation.squared_errors(exact, u, &|cell| part.owns(cell));
+        let own: SquaredErrors =
+            agree(own.map_err(|error| error.in_whole_mesh(&part.cells)), exchange)?;
+        Ok(merge_all(&own, exchange)?.norms())
+    }
+}
+
+/// Contact states, those of ghosts by their owners.
+pub(super) fn contact_of_owners(contact: &[Contact], over_parts: &OverParts) -> Vec<Contact> {
+    let number = |&state: &Contact| match state {
+        Contact::Inactive => 0.0,
+        Contact::Lower => 1.0,
+        Contact::Upper => 2.0,
+    };
+    let mut states: Vec<f64> = contact.iter().map(number).collect();
+    (over_parts as &dyn Distribution).update(&mut states);
+    let state = |&number: &f64| match number {
+        1.0 => Contact::Lower,
+        2.0 => Contact::Upper,
+        _ => Contact::Inactive,
+    };
+    states.iter().map(state).collect()
+}

@@ -1,0 +1,101 @@
+//! Whether a part has the bits of the whole.
+
+use super::solved::DistributedSolved;
+use crate::algebra::{Bound, Inequality};
+use crate::assemble::{DataQuadrature, Discretisation};
+use crate::distributed::agree::agree;
+use crate::distributed::error::ExchangeError;
+use crate::error::Error;
+use crate::mesh::Mesh;
+use crate::scheme::AnyScheme;
+
+/// How many own rows of all parts were compared with those of the whole mesh, and in how many of them bits differ.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "report", derive(serde::Serialize, serde::Deserialize))]
+#[non_exhaustive]
+pub struct Differences {
+    /// Rows that were compared: the unknowns of all parts.
+    pub compared: u64,
+    /// Rows of the matrix with other columns or values.
+    pub rows: u64,
+    /// Entries of the load.
+    pub loads: u64,
+    /// Bounds.
+    pub bounds: u64,
+    /// Entries of the residual of the solution.
+    pub residuals: u64,
+}
+
+impl Differences {
+    /// Whether no bit differs.
+    pub fn are_none(&self) -> bool {
+        [self.rows, self.loads, self.bounds, self.residuals] == [0; 4]
+    }
+}
+
+impl<const D: usize> DistributedSolved<'_, D> {
+    /// Compares the own rows of all parts with those of the whole mesh, which every process assembles for this
+    /// purpose; all parts call it.
+    ///
+    /// # Errors
+    /// [`ExchangeError::Failed`] with the error of assembly, and those of the exchange.
+    pub fn verify(
+        &self,
+        scheme: &dyn AnyScheme<f64, D>,
+        whole: &Mesh<f64, D>,
+        quadrature: DataQuadrature,
+    ) -> Result<Differences, ExchangeError> {
+        let problem = self.discretisation().problem();
+        let assembled = scheme.discretise(problem, whole, quadrature).and_then(|of| {
+            let inequality = of.inequality()?;
+            Ok((of, inequality))
+        });
+        let (of, all) = agree::<_, Error>(assembled, self.exchange())?;
+        let own = self.differences(&of, &all);
+        let numbers = [own.compared, own.rows, own.loads, own.bounds, own.residuals];
+        let sums = self.exchange().sum(&numbers.map(|x| x as f64))?;
+        let [compared, rows, loads, bounds, residuals] = [0, 1, 2, 3, 4].map(|k| sums[k] as u64);
+        Ok(Differences { compared, rows, loads, bounds, residuals })
+    }
+
+    /// The differences of this part.
+    fn differences(&self, of: &Discretisation<'_, f64, D>, all: &Inequality<f64>) -> Differences {
+        let mut numbers = vec![0; self.inequality().size()];
+        for (cell, &whole) in self.part().cells.iter().enumerate() {
+            let own = self.discretisation().unknowns_of(cell);
+            own.zip(of.unknowns_of(whole as usize)).for_each(|(own, whole)| numbers[own] = whole);
+        }
+        let values = &self.solution().values;
+        let mut residual = vec![0.0; values.len()];
+        self.inequality().residual_f64(values, &mut residual);
+        // the values of unknowns that this part does not have enter no row of its own
+        let mut all_values = vec![0.0; all.size()];
+        numbers.iter().zip(values).for_each(|(&number, &value)| all_values[number] = value);
+        let mut all_residuals = vec![0.0; all.size()];
+        all.residual_f64(&all_values, &mut all_residuals);
+        let mut found = Differences::default();
+        for &i in self.own() {
+            let i = i as usize;
+            let number = numbers[i];
+            let (columns, entries) = self.inequality().matrix.row(i);
+            let (all_columns, all_entries) = all.matrix.row(number);
+            let is_same =
+                columns.iter().map(|&j| numbers[j as usize] as u32).eq(all_columns.iter().copied())
+                    && entries.iter().zip(all_entries).all(|(a, b)| a.to_bits() == b.to_bits());
+            found.compared += 1;
+            found.rows += u64::from(!is_same);
+            let differ = |one: f64, other: f64| u64::from(one.to_bits() != other.to_bits());
+            found.loads += differ(self.inequality().load[i], all.load[number]);
+            found.residuals += differ(residual[i], all_residuals[number]);
+            let bounds = [&self.inequality().bounds[i], &all.bounds[number]].map(bits);
+            found.bounds += u64::from(bounds[0] != bounds[1]);
+        }
+        found
+    }
+}
+
+/// The bits of a bound.
+fn bits(bound: &Bound<f64>) -> [Option<u64>; 3] {
+    let fixed = if let Bound::Fixed(value) = bound { Some(*value) } else { None };
+    [fixed, bound.lower(), bound.upper()].map(|value| value.map(f64::to_bits))
+}

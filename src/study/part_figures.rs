@@ -1,0 +1,45 @@
+//! What a row says of a run over several parts of a mesh.
+
+use crate::distributed::Differences;
+
+/// Figures of a run over several parts of a mesh, one in each process.
+#[derive(Clone, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "report", derive(serde::Serialize, serde::Deserialize))]
+#[non_exhaustive]
+pub struct PartFigures {
+    /// Number of processes.
+    pub count: usize,
+    /// The engine of linear solvers.
+    pub engine: String,
+    /// Unknowns that parts have of others, divided by all unknowns.
+    pub ghosts: f64,
+    /// The largest number of own unknowns of a part divided by the mean.
+    pub imbalance: f64,
+    /// Seconds by phase, the least and the most of all parts.
+    pub seconds: PartSeconds,
+    /// Bytes that a part sends in an iteration of the linear solver, the most of all parts; messages inside the
+    /// engine do not count. None without an iteration.
+    pub bytes_per_iteration: Option<f64>,
+    /// Peak memory of a process so far, the least and the most; none where the system does not tell.
+    pub peak_memory_bytes: Option<[u64; 2]>,
+    /// Rows that differ from those of the whole mesh, where that was asked for.
+    #[cfg_attr(feature = "report", serde(default))]
+    pub differences: Option<Differences>,
+}
+
+/// Seconds by phase, each the least and the most of all parts.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "report", derive(serde::Serialize, serde::Deserialize))]
+#[non_exhaustive]
+pub struct PartSeconds {
+    /// The part of the mesh and of all coarser ones.
+    pub mesh: [f64; 2],
+    /// Assembly.
+    pub assemble: [f64; 2],
+    /// The numbers of unknowns over all parts.
+    pub number: [f64; 2],
+    /// The start: conforming P1 on this and all coarser meshes.
+    pub start: [f64; 2],
+    /// The solve, with auxiliary matrices and their preconditioners.
+    pub solve: [f64; 2],
+}

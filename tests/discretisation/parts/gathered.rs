@@ -1,0 +1,104 @@
+//! An engine without a library: every part has all rows, and factors them.
+
+use std::sync::{Arc, Mutex};
+use unilateral::algebra::SparseMatrix;
+use unilateral::distributed::{
+    Engine, EngineMethod, EngineSolver, Exchange, InProcess, OwnRows, Process,
+};
+use unilateral::linear::Factors;
+
+#[derive(Debug)]
+pub struct Gathered {
+    exchange: Arc<InProcess>,
+    failure: Arc<Mutex<Option<String>>>,
+}
+
+/// A process of the exchange between threads with this engine.
+pub fn process(number: u32, exchange: &Arc<InProcess>) -> Process {
+    let engine = Gathered { exchange: exchange.clone(), failure: Arc::default() };
+    Process::new(number, exchange.clone(), engine)
+}
+
+/// The lists of all parts, one after the other.
+fn gather(exchange: &InProcess, own: Vec<u64>) -> Vec<u64> {
+    exchange.exchange(vec![own; exchange.parts()]).unwrap().concat()
+}
+
+impl Engine for Gathered {
+    fn name(&self) -> String {
+        "gathered".to_owned()
+    }
+    fn solver(&self, rows: &dyn OwnRows, _: EngineMethod) -> Box<dyn EngineSolver> {
+        let (first, count) = (rows.first() as usize, rows.count());
+        let mut own = Vec::new();
+        let mut entries = Vec::new();
+        for k in 0..count {
+            rows.row(k, &mut entries);
+            entries.sort_unstable_by_key(|entry| entry.0);
+            own.push(entries.len() as u64);
+            own.extend(entries.iter().flat_map(|(column, value)| [*column, value.to_bits()]));
+        }
+        let mut all = gather(&self.exchange, own).into_iter();
+        let mut matrix =
+            SparseMatrix { row_starts: vec![0], columns: Vec::new(), values: Vec::new() };
+        while let Some(length) = all.next() {
+            for _ in 0..length {
+                matrix.columns.push(all.next().unwrap() as u32);
+                matrix.values.push(f64::from_bits(all.next().unwrap()));
+            }
+            matrix.row_starts.push(matrix.columns.len() as u32);
+        }
+        Box::new(GatheredSolver {
+            matrix,
+            own: first..first + count,
+            free: Vec::new(),
+            factors: None,
+            exchange: self.exchange.clone(),
+            failure: self.failure.clone(),
+        })
+    }
+    fn failure(&self) -> Option<String> {
+        self.failure.lock().unwrap().clone()
+    }
+}
+
+struct GatheredSolver {
+    matrix: SparseMatrix<f64>,
+    own: std::ops::Range<usize>,
+    free: Vec<u32>,
+    factors: Option<Factors<f64>>,
+    exchange: Arc<InProcess>,
+    failure: Arc<Mutex<Option<String>>>,
+}
+
+impl EngineSolver for GatheredSolver {
+    fn set_fixed(&mut self, fixed: &[bool]) {
+        let own = fixed.iter().map(|&fixed| u64::from(fixed)).collect();
+        let fixed = gather(&self.exchange, own);
+        self.free = (0..).zip(fixed).filter(|(_, fixed)| *fixed == 0).map(|(i, _)| i).collect();
+        self.factors = match Factors::new(&self.matrix, true, &self.free) {
+            Ok(factors) => Some(factors),
+            Err(why) => {
+                self.failure.lock().unwrap().get_or_insert(why.to_string());
+                None
+            }
+        };
+    }
+    fn apply(&mut self, residual: &[f64], correction: &mut [f64]) {
+        let own = residual.iter().map(|r| r.to_bits()).collect();
+        let all = gather(&self.exchange, own);
+        let Some(factors) = &self.factors else { return correction.fill(f64::NAN) };
+        let at = |&i: &u32| f64::from_bits(all[i as usize]);
+        let mut x: Vec<f64> = self.free.iter().map(at).collect();
+        factors.solve_in_place(&mut x, 1);
+        // rows of fixed unknowns are those of a multiple of the identity
+        let n = self.matrix.size();
+        let mean = (0..n).map(|i| self.matrix.get(i, i)).sum::<f64>() / n as f64;
+        correction.iter_mut().zip(residual).for_each(|(z, r)| *z = r / mean);
+        for (&i, x) in self.free.iter().zip(x) {
+            if self.own.contains(&(i as usize)) {
+                correction[i as usize - self.own.start] = x;
+            }
+        }
+    }
+}
