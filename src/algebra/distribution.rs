@@ -8,8 +8,8 @@ use crate::real::Real;
 ///
 /// A part has rows, load and bounds of its own unknowns, and besides unknowns that other parts own, its
 /// *ghosts*: their values take part in products, their rows are incomplete and count nowhere. Solvers of
-/// an inequality with a distribution run in all parts at once. They take every decision by sums and maxima
-/// over the parts, so that all parts take the same one.
+/// an inequality with a distribution run in all parts at once. Sums and maxima over the parts decide, so that
+/// all parts take the same decision.
 ///
 /// [`exchange`](Self::exchange), [`sum`](Self::sum) and [`largest`](Self::largest) are collective: all parts
 /// call them as often as one another, in the same order. Where messages fail, the numbers that come back are

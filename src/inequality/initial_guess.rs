@@ -1,7 +1,13 @@
 //! The data, in addition to an inequality, from which an iterative solver starts.
 
 use super::step_counter::StepCounter;
+use crate::algebra::{Contact, Support};
 use crate::linear::CoarseSpaces;
+use crate::real::Real;
+
+/// Relative tolerance in the energy norm for iterative solvers of P1, whose solution serves as an
+/// initial guess only: below the discretisation error of all meshes that fit into memory.
+pub(crate) const P1_ENERGY_TOLERANCE: f64 = 1e-4;
 
 /// Coarse spaces, starting values and accuracy of a solve. The starting active set is part of the
 /// inequality: [`Start`](crate::algebra::Start).
@@ -57,4 +63,28 @@ impl<T> InitialGuess<T> {
         self.steps = steps;
         self
     }
+}
+
+/// The contact of unknowns by that of vertices: an unknown is in contact if more than half of the vertices of its
+/// support are.
+pub(crate) fn contact_of_supports(supports: &[Support], contact: &[Contact]) -> Vec<Contact> {
+    let state = |support: &Support| {
+        let vertices = support.vertices();
+        let has_most = |side: &Contact| {
+            let on = vertices.iter().filter(|&&v| contact[v as usize] == *side).count();
+            2 * on > vertices.len()
+        };
+        [Contact::Lower, Contact::Upper].into_iter().find(has_most).unwrap_or_default()
+    };
+    supports.iter().map(state).collect()
+}
+
+/// The means of vertex values over the vertices of each support.
+pub(crate) fn means_over_supports<T: Real>(supports: &[Support], values: &[T]) -> Vec<T> {
+    let mean = |support: &Support| {
+        let vertices = support.vertices();
+        let sum = vertices.iter().fold(T::lit(0.0), |s, &v| s + values[v as usize]);
+        sum / T::lit(vertices.len().max(1) as f64)
+    };
+    supports.iter().map(mean).collect()
 }

@@ -35,7 +35,7 @@ mod active_set;
 mod by_name;
 mod certificate;
 mod energy_error_bound;
-mod initial_guess;
+pub(crate) mod initial_guess;
 mod interior_point;
 mod monotone_multigrid;
 mod outcome;

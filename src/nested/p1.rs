@@ -10,15 +10,14 @@ use crate::algebra::{Bound, Contact, Inequality, SparseMatrix, Start, Support};
 use crate::assemble::{DataQuadrature, Discretisation};
 use crate::constraint::Nodes;
 use crate::error::Error;
+use crate::inequality::initial_guess::{
+    P1_ENERGY_TOLERANCE, contact_of_supports, means_over_supports,
+};
 use crate::inequality::{InequalitySolver, InitialGuess, Outcome, StepCounter};
 use crate::linear::{CoarseLevel, CoarseSpaces, P1Level};
 use crate::problem::Problem;
 use crate::real::Real;
 use crate::scheme::ConformingP1;
-
-/// Relative tolerance in the energy norm for iterative solvers of P1, whose solution serves as an
-/// initial guess only: below the discretisation error of all meshes that fit into memory.
-const P1_ENERGY_TOLERANCE: f64 = 1e-4;
 
 /// A conforming P1 function from which a solve starts: the solution on the same mesh, or the
 /// prolongation of the solution on the next coarser one.
@@ -71,28 +70,13 @@ impl<T: Real> P1Solution<T> {
     /// The starting contact of unknowns: an unknown starts in contact if more than half of the vertices
     /// of its support are in contact.
     pub(super) fn contact_of(&self, supports: &[Support]) -> Vec<Contact> {
-        let state = |support: &Support| {
-            let vertices = support.vertices();
-            [Contact::Lower, Contact::Upper]
-                .into_iter()
-                .find(|&side| {
-                    let on = vertices.iter().filter(|&&v| self.contact[v as usize] == side).count();
-                    2 * on > vertices.len()
-                })
-                .unwrap_or(Contact::Inactive)
-        };
-        supports.iter().map(state).collect()
+        contact_of_supports(supports, &self.contact)
     }
 
     /// The starting values of unknowns: the means of values over the vertices of each support; none
     /// without values.
     pub(super) fn values_of(&self, supports: &[Support]) -> Option<Vec<T>> {
-        let mean = |support: &Support| {
-            let vertices = support.vertices();
-            let sum = vertices.iter().fold(T::lit(0.0), |s, &v| s + self.values[v as usize]);
-            sum / T::lit(vertices.len().max(1) as f64)
-        };
-        (!self.values.is_empty()).then(|| supports.iter().map(mean).collect())
+        (!self.values.is_empty()).then(|| means_over_supports(supports, &self.values))
     }
 }
 

@@ -13,7 +13,8 @@ use crate::problem::DataOnMesh;
 impl<const D: usize> DistributedSolved<'_, D> {
     /// Writes the fields on own cells as `STEM.N.vtu`, `N` the number of the part, and, the first process, the
     /// list of all parts as `STEM.pvtu`; all parts call it. The fields are those of one process
-    /// ([`Solved::write_vtu_with`](crate::nested::Solved::write_vtu_with)), but for the error bound.
+    /// ([`Solved::write_vtu_with`](crate::nested::Solved::write_vtu_with)), without error bound, regions and the contact
+    /// state of facets.
     ///
     /// # Errors
     /// [`ExchangeError::Failed`] in all parts if one cannot write its file.

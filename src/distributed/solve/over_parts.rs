@@ -23,7 +23,7 @@ impl OverParts {
         Self { numbering, exchange, number, is_own }
     }
 
-    /// The numbers `joined` over all parts; not numbers where messages fail.
+    /// Replaces numbers of this part by their sums or maxima over all parts; by NaN where messages fail.
     fn join(&self, numbers: &mut [f64], joined: Joined) {
         match joined(&*self.exchange, numbers) {
             Ok(all) => numbers.copy_from_slice(&all),

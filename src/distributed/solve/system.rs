@@ -4,7 +4,7 @@ use std::sync::Arc;
 use std::time::Instant;
 
 use super::over_parts::OverParts;
-use crate::algebra::Inequality;
+use crate::algebra::{Inequality, any_part};
 use crate::assemble::{DataQuadrature, Discretisation};
 use crate::distributed::agree::agree;
 use crate::distributed::check_bounds::check_bounds;
@@ -44,20 +44,15 @@ impl<'a, const D: usize> System<'a, D> {
         let assembled = assembled.map_err(|error| error.in_whole_mesh(&part.cells));
         let (discretisation, mut inequality) = agree(assembled, &**exchange)?;
         check_bounds(part, &discretisation, &**exchange)?;
-        let is_proven =
-            discretisation.penalty_below_bound().is_none() && discretisation.is_coercive();
-        inequality.is_definite = agree_that(is_proven, &**exchange)?;
         let in_assembly = clock.elapsed().as_secs_f64();
         let clock = Instant::now();
         let numbering = Numbering::new(part, &discretisation, &**exchange)?;
         let over_parts = Arc::new(OverParts::new(part.number, numbering, exchange.clone()));
+        let is_proven =
+            discretisation.penalty_below_bound().is_none() && discretisation.is_coercive();
+        inequality.is_definite = !any_part(Some(&*over_parts), !is_proven);
         inequality.distribution = Some(over_parts.clone());
         let seconds = [in_assembly, clock.elapsed().as_secs_f64()];
         Ok(Self { discretisation, inequality, over_parts, seconds })
     }
-}
-
-/// Whether a statement is true in all parts.
-fn agree_that(is_true: bool, exchange: &dyn Exchange) -> Result<bool, ExchangeError> {
-    Ok(exchange.largest(&[f64::from(u8::from(!is_true))])?[0] == 0.0)
 }

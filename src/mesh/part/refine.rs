@@ -15,7 +15,7 @@ impl Layers {
     /// How many layers across `across` a part with these layers has after uniform refinement.
     ///
     /// The children of a cell are no further apart than their parents, so that none is lost. In two dimensions
-    /// every midpoint that a child at a corner has lies on an edge with this corner, so that the children
+    /// a child at a corner of its parent has midpoints of edges with this corner alone, so that the children
     /// of one layer across vertices make two; so do intervals. In space a midpoint of an inner child may lie on
     /// an edge opposite the corner. Two facets of a cell have a vertex in common in two and three
     /// dimensions, so that two steps across facets stay within one across vertices.
