@@ -9,6 +9,7 @@ use crate::real::Real;
 const NEGLIGIBLE: f64 = 0.01;
 
 /// The parts of the square of a bound that depend on which cells count for the solver.
+#[derive(Clone, Copy, Debug)]
 pub(super) struct Choice {
     /// Those with this ratio or more.
     pub least_ratio: f64,
@@ -16,8 +17,8 @@ pub(super) struct Choice {
     pub with_oscillation: f64,
     /// Twice the complementarity of obstacles.
     pub obstacle: f64,
-    /// The square of mismatch, oscillation and the part of the solver.
-    pub flux_square: f64,
+    /// The part of the solver.
+    pub algebra: f64,
     /// Whether the solver left nothing.
     pub is_balanced: bool,
 }
@@ -42,8 +43,13 @@ impl Choice {
         let unbalanced: Vec<Unbalanced> = terms.iter().flatten().map(of_solver).collect();
         let is_balanced = unbalanced.iter().all(|cell| cell.integral == 0.0);
         let algebra = dual_norm(unbalanced, coarser, constant);
-        let flux_square = (with_oscillation.sqrt() + algebra).powi(2);
-        Self { least_ratio, with_oscillation, obstacle, flux_square, is_balanced }
+        Self { least_ratio, with_oscillation, obstacle, algebra, is_balanced }
+    }
+
+    /// That of all cells in which no obstacle presses, which needs no coarser meshes; the part of the solver is that
+    /// for the constant one.
+    pub fn without_obstacles(terms: &[Vec<CellTerms>]) -> Self {
+        Self::new::<f64, 1>(f64::INFINITY, terms, &[], 1.0)
     }
 
     /// The choice with the least bound: any choice gives one. Without coarser meshes only cells count for the
@@ -66,8 +72,21 @@ impl Choice {
         best
     }
 
+    /// The square of mismatch, oscillation and the part of the solver.
+    pub fn flux_square(&self) -> f64 {
+        (self.with_oscillation.sqrt() + self.algebra).powi(2)
+    }
+
     /// The square of the bound without contact.
-    fn square(&self) -> f64 {
-        self.flux_square + self.obstacle
+    pub fn square(&self) -> f64 {
+        self.flux_square() + self.obstacle
+    }
+
+    /// What a cell adds to the square of the bound, without the part of the solver.
+    pub fn square_of(&self, terms: &CellTerms) -> f64 {
+        match terms.ratio >= self.least_ratio {
+            true => terms.with_oscillation[1] + terms.contact,
+            false => terms.with_oscillation[0] + terms.obstacle + terms.contact,
+        }
     }
 }

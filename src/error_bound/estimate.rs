@@ -4,14 +4,17 @@ use std::ops::Range;
 
 use super::algebra::CoarserCells;
 use super::choice::Choice;
+use super::friedrichs::FriedrichsData;
 use super::terms::CellTerms;
+use super::totals::Totals;
 use super::{NoBound, PrimalDualPair};
+use crate::algebra::Distribution;
 use crate::assemble::Discretisation;
 use crate::assemble::cut_simplices::CutRule;
 use crate::assemble::space::Space;
 use crate::error::Error;
 use crate::instances::compiled;
-use crate::measure::Errors;
+use crate::measure::{Counts, Errors, SquaredErrors};
 use crate::parallel::cells;
 use crate::quadrature::Rule;
 use crate::real::Real;
@@ -123,6 +126,28 @@ impl<T: Real, const D: usize> Discretisation<'_, T, D> {
         self.errors_and_error_of_pair(None, Some(pair)).ok()?.1
     }
 
+    /// What the cells that count, those of a part of a mesh, add to the bound that a pair gives. Pair and discrete
+    /// function `u` belong to linear functions.
+    ///
+    /// # Errors
+    /// [`NoBound`].
+    pub(crate) fn part_of_bound(
+        &self,
+        pair: &PrimalDualPair,
+        u: &[T],
+        counts: Counts<'_>,
+    ) -> Result<PartOfBound<D>, NoBound> {
+        compiled!(
+            T, D: fn(
+                &Discretisation<'_, T, D>,
+                &PrimalDualPair,
+                &[T],
+                Counts<'_>,
+            ) -> Result<PartOfBound<D>, NoBound>
+                = |of, pair, u, counts| of.space.part_of_bound(pair, u, counts)
+        )(self, pair, u, counts)
+    }
+
     /// The errors of a vector of unknowns against the exact solution, and the energy norm of the difference of
     /// the exact solution and the admissible function of a pair: both at the same points.
     ///
@@ -133,24 +158,110 @@ impl<T: Real, const D: usize> Discretisation<'_, T, D> {
         u: Option<&[T]>,
         pair: Option<&PrimalDualPair>,
     ) -> Result<(Errors, Option<f64>), Error> {
+        if self.problem().exact.is_none() {
+            return Ok(Default::default());
+        }
+        let squares = self.squared_errors_beside(u, pair, &|_| true)?;
+        let errors = if u.is_some() { squares.norms() } else { Errors::default() };
+        Ok((errors, pair.map(|_| squares.of_function())))
+    }
+
+    /// As [`Self::squared_errors`], with the square of the error of the admissible function of a pair; zero without
+    /// an exact solution.
+    ///
+    /// # Errors
+    /// [`Error::DataNotFinite`].
+    pub(crate) fn squared_errors_beside(
+        &self,
+        u: Option<&[T]>,
+        pair: Option<&PrimalDualPair>,
+        counts: Counts<'_>,
+    ) -> Result<SquaredErrors, Error> {
         compiled!(
             T, D: fn(
                 &Discretisation<'_, T, D>,
                 Option<&[T]>,
                 Option<&PrimalDualPair>,
-            ) -> Result<(Errors, Option<f64>), Error>
-                = |of, u, pair| {
+                Counts<'_>,
+            ) -> Result<SquaredErrors, Error>
+                = |of, u, pair, counts| {
                     let Some(exact) = &of.problem().exact else { return Ok(Default::default()) };
                     match pair {
-                        Some(pair) => of.errors_beside(
+                        Some(pair) => of.squares_beside(
                             exact,
                             u,
                             Some(&|cell| of.space.admissible_in(pair, cell)),
+                            counts,
                         ),
-                        None => of.errors_beside(exact, u, None),
+                        None => of.squares_beside(exact, u, None, counts),
                     }
                 }
-        )(self, u, pair)
+        )(self, u, pair, counts)
+    }
+}
+
+impl ErrorBound {
+    /// The bound of these sums, and the square that each cell adds.
+    fn new(
+        totals: &Totals,
+        choice: &Choice,
+        squares: Vec<f64>,
+        unproven: Vec<Unproven>,
+    ) -> Result<Self, NoBound> {
+        let &Totals { mismatch, distance, contact, least_coefficient, .. } = totals;
+        let &Choice { with_oscillation, obstacle, .. } = choice;
+        let square = choice.square() + contact;
+        if !square.is_finite() || least_coefficient <= 0.0 {
+            return Err(NoBound::NotFinite);
+        }
+        let share = |part: f64| if square > 0.0 { part / square } else { 0.0 };
+        Ok(Self {
+            total: square.sqrt(),
+            distance: distance.sqrt(),
+            parts: BoundParts {
+                mismatch: share(mismatch),
+                obstacle: share(obstacle),
+                contact: share(contact),
+                // differences of equal numbers but for rounding
+                oscillation: share((with_oscillation - mismatch).max(0.0)),
+                algebra: share((choice.flux_square() - with_oscillation).max(0.0)),
+            },
+            cells: squares.into_iter().map(share).collect(),
+            unproven,
+        })
+    }
+}
+
+/// What one part of a mesh adds to a bound.
+#[derive(Debug)]
+pub(crate) struct PartOfBound<const D: usize> {
+    totals: Totals,
+    choice: Choice,
+    friedrichs: FriedrichsData<D>,
+    /// What each cell adds; zero for cells that do not count.
+    squares: Vec<f64>,
+    unproven: Vec<Unproven>,
+}
+
+impl<const D: usize> PartOfBound<D> {
+    /// The bound of all parts, with the shares of the cells of this one; all parts call it.
+    pub fn over_parts(self, distribution: &dyn Distribution) -> Result<ErrorBound, NoBound> {
+        let Self { mut totals, mut choice, friedrichs, squares, unproven } = self;
+        totals.add_over_parts(distribution);
+        let mut sums = [choice.with_oscillation, choice.obstacle, choice.algebra.powi(2)];
+        distribution.sum(&mut sums);
+        let of_all = [Unproven::Quadrature, Unproven::Boundary, Unproven::Obstacle];
+        let mut is_found = of_all.map(|term| f64::from(u8::from(unproven.contains(&term))));
+        distribution.largest(&mut is_found);
+        let constant = totals.constant(friedrichs.over_parts(distribution).constant())?;
+        [choice.with_oscillation, choice.obstacle] = [sums[0], sums[1]];
+        choice.algebra = if constant.is_finite() { constant * sums[2].sqrt() } else { 0.0 };
+        let found = of_all.into_iter().zip(is_found).filter(|(_, is_found)| *is_found != 0.0);
+        let mut unproven: Vec<Unproven> = found.map(|(term, _)| term).collect();
+        if constant.is_infinite() && sums[2] > 0.0 {
+            unproven.push(Unproven::Algebra);
+        }
+        ErrorBound::new(&totals, &choice, squares, unproven)
     }
 }
 
@@ -161,6 +272,45 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         u: &[T],
         coarser: &[CoarserCells<'_, T, D>],
     ) -> Result<ErrorBound, NoBound> {
+        let friedrichs = FriedrichsData::of(self.mesh).constant();
+        let terms = self.terms_of_bound((pair, u), friedrichs, &|_| true)?;
+        let totals = Totals::of(&terms);
+        let constant = totals.constant(friedrichs)?;
+        let choice = Choice::best(&terms, coarser, constant);
+        let is_proven =
+            [constant.is_finite() || choice.is_balanced, totals.reaction_from_below >= 0.0];
+        let unproven = self.unproven_terms(pair, is_proven, &|_| true);
+        let squares = terms.iter().flatten().map(|t| choice.square_of(t)).collect();
+        ErrorBound::new(&totals, &choice, squares, unproven)
+    }
+
+    /// What the cells that count add to a bound.
+    fn part_of_bound(
+        &self,
+        pair: &PrimalDualPair,
+        u: &[T],
+        counts: Counts<'_>,
+    ) -> Result<PartOfBound<D>, NoBound> {
+        let terms = self.terms_of_bound((pair, u), None, counts)?;
+        let (totals, choice) = (Totals::of(&terms), Choice::without_obstacles(&terms));
+        let is_proven = [true, totals.reaction_from_below >= 0.0];
+        let unproven = self.unproven_terms(pair, is_proven, counts);
+        let n_cells = self.mesh.n_cells();
+        let mut squares = vec![0.0; n_cells];
+        for (cell, terms) in (0..n_cells).filter(|&cell| counts(cell)).zip(terms.iter().flatten()) {
+            squares[cell] = choice.square_of(terms);
+        }
+        let friedrichs = FriedrichsData::of(self.mesh);
+        Ok(PartOfBound { totals, choice, friedrichs, squares, unproven })
+    }
+
+    /// The terms of the cells that count, by chunk, as they come: copies of them would cost more than their sums.
+    fn terms_of_bound(
+        &self,
+        (pair, u): (&PrimalDualPair, &[T]),
+        friedrichs: Option<f64>,
+        counts: Counts<'_>,
+    ) -> Result<Vec<Vec<CellTerms>>, NoBound> {
         let stated = self.problem.data_degree.unwrap_or(0);
         let degree = 2 * (stated + pair.degree);
         let data = [&self.data.source, &self.data.reaction, &self.data.coefficient];
@@ -173,56 +323,10 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         let has_level = self.data.source.all().any(|f| f.level().is_some());
         let cut = has_level.then(|| CutRule::new(D, self.cell_degree));
         let boundary = self.boundary_terms(pair)?;
-        let friedrichs = self.mesh.friedrichs_constant();
         let rules = (&table, cut.as_ref());
-        // by chunk, as they come: copies of them would cost more than their sums
-        let terms = cells::map(self.mesh.n_cells(), &|cells: Range<usize>| {
+        Ok(cells::map(self.mesh.n_cells(), &|cells: Range<usize>| {
             let terms = |cell| self.cell_terms(pair, u, cell, rules, &boundary, friedrichs);
-            cells.map(terms).collect::<Vec<_>>()
-        });
-        let (mut mismatch, mut distance, mut contact) = (0.0, 0.0, 0.0);
-        let [mut least_coefficient, mut least_reaction, mut reaction_from_below] =
-            [f64::INFINITY; 3];
-        for t in terms.iter().flatten() {
-            mismatch += t.mismatch;
-            distance += t.distance;
-            contact += t.contact;
-            least_coefficient = t.least_coefficient.min(least_coefficient);
-            least_reaction = t.least_reaction.min(least_reaction);
-            reaction_from_below = t.reaction_from_below.min(reaction_from_below);
-        }
-        if least_reaction < 0.0 {
-            return Err(NoBound::NegativeReaction);
-        }
-        // |e| <= constant |||e||| by the inequality of Friedrichs or, where the reaction is positive, by that
-        let by_gradient = friedrichs.map(|c| c / least_coefficient.max(0.0).sqrt());
-        let by_value = reaction_from_below.max(0.0).sqrt().recip();
-        let constant = by_gradient.map_or(by_value, |c| c.min(by_value));
-        let choice = Choice::best(&terms, coarser, constant);
-        let Choice { least_ratio, with_oscillation, obstacle, flux_square, is_balanced } = choice;
-        let is_proven = constant.is_finite() || is_balanced;
-        let square = flux_square + obstacle + contact;
-        if !square.is_finite() || least_coefficient <= 0.0 {
-            return Err(NoBound::NotFinite);
-        }
-        let share = |part: f64| if square > 0.0 { part / square } else { 0.0 };
-        let of_cell = |t: &CellTerms| match t.ratio >= least_ratio {
-            true => share(t.with_oscillation[1] + t.contact),
-            false => share(t.with_oscillation[0] + t.obstacle + t.contact),
-        };
-        Ok(ErrorBound {
-            total: square.sqrt(),
-            distance: distance.sqrt(),
-            parts: BoundParts {
-                mismatch: share(mismatch),
-                obstacle: share(obstacle),
-                contact: share(contact),
-                // differences of equal numbers but for rounding
-                oscillation: share((with_oscillation - mismatch).max(0.0)),
-                algebra: share((flux_square - with_oscillation).max(0.0)),
-            },
-            cells: terms.iter().flatten().map(of_cell).collect(),
-            unproven: self.unproven_terms(pair, is_proven, reaction_from_below >= 0.0),
-        })
+            cells.filter(|&cell| counts(cell)).map(terms).collect::<Vec<_>>()
+        }))
     }
 }

@@ -1,10 +1,16 @@
 //! The figures of an error bound in a row of a report.
 
+use std::fmt::Display;
+
 use super::estimate::Unproven;
-use super::{BoundParts, ErrorBound, NoBound};
+use super::{BoundParts, ErrorBound};
 
 /// Effectivities that differ from one by less are one but for rounding.
 const ROUNDING: f64 = 1e-8;
+
+/// A true error that is smaller than this share of the energy norm of the solution is rounding, and its ratio to a bound
+/// says nothing.
+const ERROR_ROUNDING: f64 = 1e-8;
 
 /// Effectivities of which a row says nothing, but for rounding: others have a warning.
 const USUAL: std::ops::RangeInclusive<f64> = 1.0 - ROUNDING..=3.0;
@@ -60,7 +66,7 @@ pub struct BoundFigures {
 impl BoundFigures {
     /// The figures of a bound, and the true error where it is known and more than rounding.
     #[must_use]
-    pub fn new(bound: Result<&ErrorBound, NoBound>, error: Option<f64>) -> Self {
+    pub fn new<E: Display>(bound: Result<&ErrorBound, E>, error: Option<f64>) -> Self {
         let bound = match bound {
             Ok(bound) => bound,
             Err(reason) => return Self { reason: Some(reason.to_string()), ..Self::default() },
@@ -78,6 +84,15 @@ impl BoundFigures {
             effectivity: error.map(|error| bound.total / error),
             reason: None,
         }
+    }
+
+    /// The figures of a bound and, unless it is rounding, of the true error of a solution with this energy norm.
+    pub(crate) fn of_solution<E: Display>(
+        bound: Result<&ErrorBound, E>,
+        error: Option<f64>,
+        energy_norm: f64,
+    ) -> Self {
+        Self::new(bound, error.filter(|error| *error > ERROR_ROUNDING * energy_norm))
     }
 
     /// Why the bound is below the true error or above three times that, where it is.

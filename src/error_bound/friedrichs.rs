@@ -1,36 +1,66 @@
 //! The constant of Friedrichs' inequality of a mesh.
 
+use crate::algebra::Distribution;
 use crate::mesh::{BoundaryPart, Mesh};
-use crate::real::{Real, point_f64};
+use crate::real::{Point, Real, point_f64};
 
 /// A normal whose component is smaller than this is orthogonal to the axis.
 const PARALLEL: f64 = 1e-9;
 
-impl<T: Real, const D: usize> Mesh<T, D> {
+/// What the constant of Friedrichs' inequality of a mesh, or of the parts of a mesh together, depends on.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct FriedrichsData<const D: usize> {
+    /// The least box around the mesh.
+    low: Point<f64, D>,
+    high: Point<f64, D>,
+    /// For each axis whether all lines in its direction end, and whether all begin, on the Dirichlet part.
+    is_held: [[bool; 2]; D],
+}
+
+impl<const D: usize> FriedrichsData<D> {
+    pub fn of<T: Real>(mesh: &Mesh<T, D>) -> Self {
+        let first = point_f64(&mesh.vertices()[0]);
+        let (mut low, mut high) = (first, first);
+        for x in mesh.vertices() {
+            let x = point_f64(x);
+            low = low.zip_map(&x, f64::min);
+            high = high.zip_map(&x, f64::max);
+        }
+        let free = mesh.boundary().iter().filter(|f| f.part != BoundaryPart::Dirichlet);
+        let normal = |cell: u32, local: u8| {
+            point_f64(&mesh.geometry(cell as usize).normal(usize::from(local)))
+        };
+        let normals: Vec<_> = free.map(|f| normal(f.cell, f.local)).collect();
+        let is_held = std::array::from_fn(|axis| {
+            [1.0, -1.0].map(|sign| normals.iter().all(|n| sign * n[axis] <= PARALLEL))
+        });
+        Self { low, high, is_held }
+    }
+
+    /// That of all parts of a mesh; all parts call it.
+    pub fn over_parts(mut self, distribution: &dyn Distribution) -> Self {
+        let mut numbers: Vec<f64> =
+            self.high.iter().copied().chain((-self.low).iter().copied()).collect();
+        numbers.extend(self.is_held.iter().flatten().map(|is_held| f64::from(u8::from(!is_held))));
+        distribution.largest(&mut numbers);
+        for axis in 0..D {
+            (self.high[axis], self.low[axis]) = (numbers[axis], -numbers[D + axis]);
+            self.is_held[axis] = [0, 1].map(|end| numbers[2 * (D + axis) + end] == 0.0);
+        }
+        self
+    }
+
     /// A number `C` with `|w| <= C |grad w|` in L2 for every function `w` that vanishes on the Dirichlet
     /// part, if the part is such that a proof is short: along some axis every line through the mesh begins,
     /// or ends, on the Dirichlet part.
     ///
     /// On a segment of length `l` a function that vanishes at both ends, or at one, has `|w| <= l/pi |w'|`, or
     /// `2 l/pi |w'|`. The squares of `1/C` of the axes are added.
-    pub(crate) fn friedrichs_constant(&self) -> Option<f64> {
-        let first = point_f64(&self.vertices()[0]);
-        let (mut low, mut high) = (first, first);
-        for x in self.vertices() {
-            let x = point_f64(x);
-            low = low.zip_map(&x, f64::min);
-            high = high.zip_map(&x, f64::max);
-        }
-        let free = self.boundary().iter().filter(|f| f.part != BoundaryPart::Dirichlet);
-        let normal = |cell: u32, local: u8| {
-            point_f64(&self.geometry(cell as usize).normal(usize::from(local)))
-        };
-        let normals: Vec<_> = free.map(|f| normal(f.cell, f.local)).collect();
+    pub fn constant(&self) -> Option<f64> {
         let mut sum = 0.0;
         for axis in 0..D {
-            let is_held = |sign: f64| normals.iter().all(|n| sign * n[axis] <= PARALLEL);
-            let ends = u8::from(is_held(1.0)) + u8::from(is_held(-1.0));
-            let length = (high[axis] - low[axis]) / std::f64::consts::PI;
+            let ends: u8 = self.is_held[axis].iter().map(|&is_held| u8::from(is_held)).sum();
+            let length = (self.high[axis] - self.low[axis]) / std::f64::consts::PI;
             sum += match ends {
                 0 => 0.0,
                 1 => (2.0 * length).powi(-2),
@@ -43,15 +73,15 @@ impl<T: Real, const D: usize> Mesh<T, D> {
 
 #[cfg(test)]
 mod tests {
-    use crate::mesh::{BoundaryPart, BoxDomain, Mesh};
-    use crate::real::Point;
+    use super::*;
+    use crate::mesh::BoxDomain;
 
     #[test]
     fn constants_of_the_unit_square() {
         let square = || BoxDomain::<2>::dirichlet(Point::zeros(), Point::repeat(1.0));
         let constant = |domain: &BoxDomain<2>| {
             let mesh = Mesh::<f64, 2>::kuhn_box(domain, [3, 3]).expect("a mesh");
-            mesh.friedrichs_constant().map(|c| c * std::f64::consts::PI)
+            FriedrichsData::of(&mesh).constant().map(|c| c * std::f64::consts::PI)
         };
         let near = |a: Option<f64>, b: f64| a.is_some_and(|a| (a - b).abs() < 1e-12);
         assert!(near(constant(&square()), 0.5_f64.sqrt()));

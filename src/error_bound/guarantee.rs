@@ -4,6 +4,7 @@ use super::PrimalDualPair;
 use super::estimate::Unproven;
 use super::function::PairNode;
 use crate::assemble::space::{Place, Space};
+use crate::measure::Counts;
 use crate::mesh::BoundaryPart;
 use crate::problem::{DataByGroup, DatumRef};
 use crate::real::{Real, point_f64};
@@ -13,12 +14,12 @@ const AGREEMENT: f64 = 1e-12;
 
 impl<T: Real, const D: usize> Space<'_, T, D> {
     /// The terms that are not proven; the arguments say whether the term of the solver is, and whether the bound from
-    /// below for the reaction is positive or zero.
+    /// below for the reaction is positive or zero. Facets count with their cells.
     pub(super) fn unproven_terms(
         &self,
         pair: &PrimalDualPair,
-        is_algebra_proven: bool,
-        has_reaction_bound: bool,
+        [is_algebra_proven, has_reaction_bound]: [bool; 2],
+        counts: Counts<'_>,
     ) -> Vec<Unproven> {
         let (data, stated) = (&self.data, self.problem.data_degree);
         let is_below = |data: &DataByGroup<'_, D>, degree: usize| {
@@ -46,7 +47,8 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
             (is_inexact, Unproven::Quadrature),
             (
                 has_data
-                    && !(is_below(&data.dirichlet, pair.degree) && self.takes_dirichlet_data(pair)),
+                    && !(is_below(&data.dirichlet, pair.degree)
+                        && self.takes_dirichlet_data(pair, counts)),
                 Unproven::Boundary,
             ),
             (is_curved || may_leave, Unproven::Obstacle),
@@ -107,15 +109,18 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
 
     /// Whether the function of a pair has the data of all Dirichlet facets at its nodes on them: where data of
     /// two facets differ at a common node no function with a square-integrable gradient takes both.
-    fn takes_dirichlet_data(&self, pair: &PrimalDualPair) -> bool {
-        self.grouped_facets_of(BoundaryPart::Dirichlet).all(|(place, group)| {
-            self.pair_nodes_on(pair, place).all(|(ends, node)| {
-                let [x, y] = ends.map(|k| self.mesh.cell(place.0)[k] as usize);
-                let [x, y] = [x, y].map(|v| point_f64(&self.mesh.vertices()[v]));
-                let datum = self.dirichlet_at(group, &((x + y) * 0.5));
-                let value = pair.function[node];
-                (datum - value).abs() <= AGREEMENT * datum.abs().max(value.abs())
-            })
+    fn takes_dirichlet_data(&self, pair: &PrimalDualPair, counts: Counts<'_>) -> bool {
+        let mut facets = self.grouped_facets_of(BoundaryPart::Dirichlet);
+        facets.all(|(place, group)| {
+            let mut nodes = self.pair_nodes_on(pair, place);
+            !counts(place.0)
+                || nodes.all(|(ends, node)| {
+                    let [x, y] = ends.map(|k| self.mesh.cell(place.0)[k] as usize);
+                    let [x, y] = [x, y].map(|v| point_f64(&self.mesh.vertices()[v]));
+                    let datum = self.dirichlet_at(group, &((x + y) * 0.5));
+                    let value = pair.function[node];
+                    (datum - value).abs() <= AGREEMENT * datum.abs().max(value.abs())
+                })
         })
     }
 }

@@ -29,6 +29,7 @@ mod quadratics;
 mod shared_multipliers;
 mod smooth_forces;
 mod terms;
+mod totals;
 
 pub(crate) use algebra::CoarserCells;
 pub use estimate::{BoundParts, ErrorBound, Unproven};
@@ -47,8 +48,8 @@ pub enum NoBound {
         "no flux is known for this element: the bound is for broken and conforming linears and quadratics, and for Crouzeix-Raviart elements"
     )]
     Element,
-    /// The mesh is a part of another one.
-    #[error("the mesh is a part of another one: fluxes balance on the whole mesh only")]
+    /// The mesh is a part of another one, and the pair one of quadratics or without the other parts.
+    #[error("on parts of a mesh the bound is for linear functions, with all parts together")]
     Part,
     /// The solve has no values.
     #[error("the solve has no values")]

@@ -12,6 +12,7 @@ use crate::assemble::space::metric::CellMetric;
 use crate::element::Entity;
 use crate::inequality::Solution;
 use crate::instances::compiled;
+use crate::measure::Counts;
 use crate::mesh::{BoundaryPart, Neighbour, Neighbours};
 use crate::real::Real;
 
@@ -64,14 +65,41 @@ impl<T: Real, const D: usize> Discretisation<'_, T, D> {
         inequality: &Inequality<T>,
         solution: &Solution<T>,
     ) -> Result<PrimalDualPair, NoBound> {
+        self.check_flux()?;
+        self.compiled_pair(inequality, solution, &|_| true)
+    }
+    /// The pair of a solution on a part of a mesh with linear functions, for the cells that count, those of the part.
+    /// Multipliers are exchanged between these alone. All parts call it.
+    ///
+    /// # Errors
+    /// [`NoBound`].
+    pub(crate) fn pair_on_part(
+        &self,
+        inequality: &Inequality<T>,
+        solution: &Solution<T>,
+        counts: Counts<'_>,
+    ) -> Result<PrimalDualPair, NoBound> {
+        self.check_element()?;
+        match self.space.degree == 1 {
+            true => self.compiled_pair(inequality, solution, counts),
+            false => Err(NoBound::Part),
+        }
+    }
+    fn compiled_pair(
+        &self,
+        inequality: &Inequality<T>,
+        solution: &Solution<T>,
+        counts: Counts<'_>,
+    ) -> Result<PrimalDualPair, NoBound> {
         compiled!(
             T, D: fn(
                 &Discretisation<'_, T, D>,
                 &Inequality<T>,
                 &Solution<T>,
+                Counts<'_>,
             ) -> Result<PrimalDualPair, NoBound>
-                = |of, inequality, solution| of.pair(inequality, solution)
-        )(self, inequality, solution)
+                = |of, inequality, solution, counts| of.pair(inequality, solution, counts)
+        )(self, inequality, solution, counts)
     }
     /// Checks that a flux is known for the element: broken and conforming linears and quadratics, and
     /// that of Crouzeix and Raviart, and that the mesh is a whole one.
@@ -79,6 +107,10 @@ impl<T: Real, const D: usize> Discretisation<'_, T, D> {
     /// # Errors
     /// [`NoBound::Element`], [`NoBound::Part`].
     pub(crate) fn check_flux(&self) -> Result<(), NoBound> {
+        self.check_element()?;
+        if self.space.mesh.is_part() { Err(NoBound::Part) } else { Ok(()) }
+    }
+    fn check_element(&self) -> Result<(), NoBound> {
         let space = &self.space;
         let is_linear = space.basis_degree == 1 && space.gradient_factor().is_some();
         let has_means = || !space.broken && space.nodes.iter().all(|node| node.is_facet_mean());
@@ -87,18 +119,14 @@ impl<T: Real, const D: usize> Discretisation<'_, T, D> {
             2 => space.basis_degree == 2 && (self.owns_rows() || space.is_conforming_quadratic()),
             _ => false,
         };
-        match is_known {
-            false => Err(NoBound::Element),
-            true if space.mesh.is_part() => Err(NoBound::Part),
-            true => Ok(()),
-        }
+        if is_known { Ok(()) } else { Err(NoBound::Element) }
     }
     fn pair(
         &self,
         inequality: &Inequality<T>,
         solution: &Solution<T>,
+        counts: Counts<'_>,
     ) -> Result<PrimalDualPair, NoBound> {
-        self.check_flux()?;
         let (space, u) = (&self.space, &solution.values[..]);
         let penalised = inequality.penalised.as_ref();
         let multipliers = penalised.map(|p| match solution.jump_multipliers.len() == p.n_jumps() {
@@ -112,6 +140,9 @@ impl<T: Real, const D: usize> Discretisation<'_, T, D> {
                 penalised.residual_with_jump_multipliers(value, |k| multipliers[k], &mut residual);
             }
             _ => inequality.residual_f64(u, &mut residual),
+        }
+        if let Some(distribution) = &inequality.distribution {
+            distribution.update(&mut residual);
         }
         let forces = space.contact_forces(inequality, &solution.contact, &residual, u);
         let multipliers = multipliers.as_deref();
@@ -141,7 +172,8 @@ impl<T: Real, const D: usize> Discretisation<'_, T, D> {
             space.set_boundary_fluxes(&forces, &mut flux)?;
             if space.problem.has_obstacle() {
                 let multipliers = space.multipliers_by_cell(&residual, &forces);
-                space.exchange_linears(&function, &multipliers, neighbours(), &mut flux);
+                let cells = (neighbours(), counts);
+                space.exchange_linears(&function, &multipliers, cells, &mut flux);
             }
             flux
         };

@@ -48,7 +48,7 @@ const NEGLIGIBLE: f64 = 1e-10;
 const MEAN_DEGREE: usize = 5;
 
 /// Whether a cell counts in a sum over cells.
-pub(super) type Counts<'c> = &'c (dyn Fn(usize) -> bool + Sync);
+pub(crate) type Counts<'c> = &'c (dyn Fn(usize) -> bool + Sync);
 
 /// What the errors of all cells read.
 struct Measure<'m, 'r, 'f, T: Real, const D: usize> {

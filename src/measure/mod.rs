@@ -13,6 +13,7 @@ mod order;
 mod squared_errors;
 
 pub(crate) use admissible::Admissible;
+pub(crate) use cell_errors::Counts;
 pub use contact::DiscreteContact;
 pub(crate) use contact::contact_difference;
 pub use error_norm::ErrorNorm;

@@ -53,7 +53,7 @@ impl SquaredErrors {
         }
     }
     /// The energy norm of the error of the function in cells.
-    pub(super) fn of_function(&self) -> f64 {
+    pub(crate) fn of_function(&self) -> f64 {
         self.squares[3].sqrt()
     }
 }

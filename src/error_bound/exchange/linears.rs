@@ -5,6 +5,7 @@ use crate::assemble::cut_simplices::in_space;
 use crate::assemble::space::{Place, Space};
 use crate::error_bound::PrimalDualPair;
 use crate::error_bound::contact::NodeForce;
+use crate::measure::Counts;
 use crate::memory::in_large_pages;
 use crate::mesh::{BoundaryPart, Neighbours};
 use crate::quadrature::Rule;
@@ -106,17 +107,17 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         of_cells
     }
 
-    /// Exchanges multipliers for flux of linears.
+    /// Exchanges multipliers for flux of linears, in and between the cells that count.
     pub(in crate::error_bound) fn exchange_linears(
         &self,
         function: &PrimalDualPair,
         multipliers: &[f64],
-        neighbours: &Neighbours,
+        (neighbours, counts): (&Neighbours, Counts<'_>),
         flux: &mut [f64],
     ) {
         let largest = multipliers.iter().fold(0.0, |largest: f64, m| largest.max(m.abs()));
-        let presses = |cell: usize| multipliers[cell].abs() > ROUNDING * largest;
-        let (numbers, steps) = self.cells_of_exchange(presses, neighbours, false);
+        let presses = |cell: usize| counts(cell) && multipliers[cell].abs() > ROUNDING * largest;
+        let (numbers, steps) = self.cells_of_exchange(presses, (neighbours, counts), false);
         let rule = Rule::new(D, DEGREE);
         let in_contact = |&cell: &usize| {
             let multiplier = if presses(cell) { multipliers[cell] } else { 0.0 };

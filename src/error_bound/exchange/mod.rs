@@ -21,6 +21,7 @@ mod linears;
 mod quadratics;
 
 use crate::assemble::space::{Place, Space};
+use crate::measure::Counts;
 use crate::memory::in_large_pages;
 use crate::mesh::{BoundaryPart, Neighbour, Neighbours};
 use crate::real::Real;
@@ -98,12 +99,12 @@ fn decrease([slope, curvature]: [f64; 2], at: f64) -> f64 {
 }
 
 impl<T: Real, const D: usize> Space<'_, T, D> {
-    /// The cells of an exchange, those with a multiplier and their neighbours, and its steps, cell by cell; with those
-    /// inside cells if asked for.
+    /// The cells of an exchange, those with a multiplier and their neighbours, as far as these count, and its steps, cell
+    /// by cell; with those inside cells if asked for.
     fn cells_of_exchange(
         &self,
         presses: impl Fn(usize) -> bool,
-        neighbours: &Neighbours,
+        (neighbours, counts): (&Neighbours, Counts<'_>),
         has_inner_steps: bool,
     ) -> (Vec<usize>, Vec<Step>) {
         let n_cells = self.mesh.n_cells();
@@ -111,7 +112,9 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         for cell in (0..n_cells).filter(|&cell| presses(cell)) {
             places[cell] = 0;
             for local in 0..=D {
-                if let Neighbour::Cell { cell: other, .. } = neighbours.across(cell, local) {
+                if let Neighbour::Cell { cell: other, .. } = neighbours.across(cell, local)
+                    && counts(other as usize)
+                {
                     places[other as usize] = 0;
                 }
             }

@@ -121,7 +121,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         };
         let largest = (0..multipliers.len()).map(strength).fold(0.0, f64::max);
         let presses = |cell: usize| strength(cell) > ROUNDING * largest;
-        let (numbers, steps) = self.cells_of_exchange(presses, neighbours, true);
+        let (numbers, steps) = self.cells_of_exchange(presses, (neighbours, &|_| true), true);
         let multiplier = |cell: usize| if presses(cell) { multipliers[cell] } else { [0.0; 4] };
         let mut cells = self.cells_with_products(&numbers, multiplier, function, flux);
         (0..numbers.len()).for_each(|k| cells.make_sign_definite(k));

@@ -9,10 +9,6 @@ use crate::measure::{ContactErrors, Errors, contact_difference};
 use crate::problem::Exact;
 use crate::real::{Point, Real};
 
-/// A true error that is smaller than this share of the energy norm of the solution is rounding, and its ratio to a bound
-/// says nothing.
-const ERROR_ROUNDING: f64 = 1e-8;
-
 impl<T: Real, const D: usize> Solved<'_, T, D> {
     /// The value at a point, in the first cell that contains the point; none outside the mesh. The
     /// search takes a time proportional to the number of cells.
@@ -142,9 +138,9 @@ impl<T: Real, const D: usize> Solved<'_, T, D> {
         };
         Ok((errors, self.figures(error)))
     }
-    /// The figures of the bound; an error of its function below `ERROR_ROUNDING` is left out.
+    /// The figures of the bound.
     fn figures(&self, error: Option<f64>) -> BoundFigures {
-        let error = error.filter(|error| *error > ERROR_ROUNDING * self.energy_norm());
-        BoundFigures::new(self.pair_and_bound().map(|(_, bound, _)| bound), error)
+        let bound = self.pair_and_bound().map(|(_, bound, _)| bound);
+        BoundFigures::of_solution(bound, error, self.energy_norm())
     }
 }
