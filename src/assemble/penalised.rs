@@ -39,19 +39,21 @@ pub(crate) fn penalised_matrix<T: Real, const D: usize>(
 ) -> PenalisedMatrix<T> {
     load.resize(space.dofs.size(), T::lit(0.0));
     let mut dirichlet = by_facet(&dirichlet).into_iter().peekable();
-    let mut out = PenalisedMatrix {
-        block_size: space.per_cell(),
-        blocks: blocks(space, metrics),
-        load,
-        term_starts: vec![0],
-        terms: Vec::new(),
-        weights: Vec::new(),
-        jump_data: Vec::new(),
-    };
     let table = space.facet_table(form.moments(space.basis_degree));
     let templates = Templates::<T>::new::<D>(space, &table);
     let of_degree: Vec<T> = table.degrees.iter().map(|&k| T::lit(form.moment_weight(k))).collect();
     let neighbours = space.coupled_neighbours();
+    let n_jumps = n_facets_with_jumps(space) * of_degree.len();
+    let mut out = PenalisedMatrix {
+        block_size: space.per_cell(),
+        blocks: blocks(space, metrics),
+        load,
+        term_starts: Vec::with_capacity(n_jumps + 1),
+        terms: Vec::with_capacity(n_jumps * templates.most_terms()),
+        weights: Vec::with_capacity(n_jumps),
+        jump_data: Vec::with_capacity(n_jumps),
+    };
+    out.term_starts.push(0);
     for cell in 0..space.mesh.n_cells() {
         let metric = metrics.at::<D>(cell);
         for local in 0..=D {
@@ -81,6 +83,18 @@ pub(crate) fn penalised_matrix<T: Real, const D: usize>(
         }
     }
     out
+}
+
+/// The number of facets on which jumps count.
+fn n_facets_with_jumps<T: Real, const D: usize>(space: &Space<'_, T, D>) -> usize {
+    let neighbours = space.coupled_neighbours();
+    let facets = (0..space.mesh.n_cells()).flat_map(|cell| (0..=D).map(move |local| (cell, local)));
+    let has_jump = |&(cell, local): &(usize, usize)| match neighbours.across(cell, local) {
+        Neighbour::Cell { cell: other, .. } => cell < other as usize,
+        Neighbour::Boundary(part) => part == BoundaryPart::Dirichlet && !space.pins,
+        Neighbour::Cut => false,
+    };
+    facets.filter(has_jump).count()
 }
 
 /// Stiffness and reaction of all cells.
@@ -158,6 +172,10 @@ impl<T: Real> Templates<T> {
     }
     fn between(&self, here: usize, there: usize) -> &[Vec<LocalTerm<T>>] {
         &self.pairs[here * self.facets + there]
+    }
+    /// The largest number of terms of a moment.
+    fn most_terms(&self) -> usize {
+        self.pairs.iter().flatten().map(Vec::len).max().unwrap_or(0)
     }
     fn on_boundary(&self, here: usize) -> &[Vec<LocalTerm<T>>] {
         &self.pairs[self.facets * self.facets + here]

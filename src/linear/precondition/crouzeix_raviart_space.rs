@@ -22,9 +22,13 @@ impl CrouzeixRaviartSpace {
     pub fn new<T>(form: &FacetMeanForm<T>) -> Self {
         let n = form.opposite.len();
         let mut facet = in_large_pages(vec![0; n]);
-        let mut sides = in_large_pages(Vec::with_capacity(n / 2));
+        let is_first =
+            |side: usize, opposite: u32| opposite == NO_INDEX || side < opposite as usize;
+        let sides = form.opposite.iter().enumerate();
+        let n_facets = sides.filter(|&(side, &opposite)| is_first(side, opposite)).count();
+        let mut sides = in_large_pages(Vec::with_capacity(n_facets));
         for (side, &opposite) in form.opposite.iter().enumerate() {
-            if opposite == NO_INDEX || side < opposite as usize {
+            if is_first(side, opposite) {
                 facet[side] = sides.len() as u32;
                 sides.push([side as u32, opposite]);
             } else {
