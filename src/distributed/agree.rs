@@ -4,6 +4,8 @@ use std::fmt::Display;
 
 use super::error::ExchangeError;
 use super::exchange::Exchange;
+use crate::error::Error;
+use crate::inequality::Outcome;
 
 /// The result of this part if no part failed, else in every part the same error: that of the lowest part that
 /// failed, with its message. All parts call it, after a step that may fail in one of them and before the next
@@ -25,12 +27,32 @@ pub fn agree<T, E: Display>(
     result: Result<T, E>,
     exchange: &dyn Exchange,
 ) -> Result<T, ExchangeError> {
-    let own = result.as_ref().err().map(ToString::to_string);
-    let words = own.as_deref().map_or(Vec::new(), words_of);
+    agree_on(result, |_| None, exchange)
+}
+
+/// As [`agree`], with the outcome that the error of the data stands for, and cells by their numbers in the whole mesh.
+pub(super) fn agree_on_data<T>(
+    result: Result<T, Error>,
+    cells: &[u64],
+    exchange: &dyn Exchange,
+) -> Result<T, ExchangeError> {
+    agree_on(result.map_err(|error| error.in_whole_mesh(cells)), Outcome::of_error, exchange)
+}
+
+fn agree_on<T, E: Display>(
+    result: Result<T, E>,
+    outcome_of: impl Fn(&E) -> Option<Outcome>,
+    exchange: &dyn Exchange,
+) -> Result<T, ExchangeError> {
+    let own = result.as_ref().err().map(|error| (error.to_string(), outcome_of(error)));
+    let words = own.as_ref().map_or(Vec::new(), |(text, outcome)| words_of(text, *outcome));
     let received = exchange.exchange(vec![words; exchange.parts()])?;
     let failed = (0..).zip(&received).find(|(_, words)| !words.is_empty());
     match (failed, result) {
-        (Some((part, words)), _) => Err(ExchangeError::Failed { part, message: text_of(words) }),
+        (Some((part, words)), _) => {
+            let (message, outcome) = text_of(words);
+            Err(ExchangeError::Failed { part, message, outcome })
+        }
         (None, Ok(value)) => Ok(value),
         (None, Err(own)) => Err(ExchangeError::Transport {
             why: format!("this error did not reach the parts: {own}"),
@@ -38,20 +60,26 @@ pub fn agree<T, E: Display>(
     }
 }
 
-/// The length of a text and its bytes.
-fn words_of(text: &str) -> Vec<u64> {
+/// The outcomes that errors of data stand for; numbers of outcomes are one more than places here.
+const OUTCOMES: [Outcome; 4] =
+    [Outcome::NotCoercive, Outcome::NotFinite, Outcome::Infeasible, Outcome::OutOfRange];
+
+/// The number of an outcome, the length of a text and its bytes.
+fn words_of(text: &str, outcome: Option<Outcome>) -> Vec<u64> {
     let bytes = text.as_bytes();
     let word =
         |bytes: &[u8]| (0..).zip(bytes).fold(0, |word, (k, &b)| word | u64::from(b) << (8 * k));
-    std::iter::once(bytes.len() as u64).chain(bytes.chunks(8).map(word)).collect()
+    let number = OUTCOMES.iter().position(|&known| Some(known) == outcome).map_or(0, |k| k + 1);
+    [number as u64, bytes.len() as u64].into_iter().chain(bytes.chunks(8).map(word)).collect()
 }
 
-/// The text of these words.
-fn text_of(words: &[u64]) -> String {
-    let [length, words @ ..] = words else { return String::new() };
+/// The text of these words, and the outcome.
+fn text_of(words: &[u64]) -> (String, Option<Outcome>) {
+    let [number, length, words @ ..] = words else { return (String::new(), None) };
     let mut bytes: Vec<u8> = words.iter().flat_map(|word| word.to_le_bytes()).collect();
     bytes.truncate(usize::try_from(*length).unwrap_or(usize::MAX));
-    String::from_utf8_lossy(&bytes).into_owned()
+    let outcome = usize::try_from(*number).ok().and_then(|k| OUTCOMES.get(k.checked_sub(1)?));
+    (String::from_utf8_lossy(&bytes).into_owned(), outcome.copied())
 }
 
 #[cfg(test)]
@@ -61,12 +89,16 @@ mod tests {
     #[test]
     fn texts_of_any_length_are_words() {
         let long = "λ₁ ≥ 0 in cell 18446744073709551615".repeat(9);
-        for text in ["", "a", "of eight", "of nine b", &long] {
-            assert!(!words_of(text).is_empty());
-            assert_eq!(text_of(&words_of(text)), text);
+        let outcomes = [None, Some(Outcome::NotCoercive), Some(Outcome::OutOfRange)];
+        for (text, outcome) in
+            ["", "a", "of eight", "of nine b", &long].iter().zip(outcomes.iter().cycle())
+        {
+            let words = words_of(text, *outcome);
+            assert!(!words.is_empty());
+            assert_eq!(text_of(&words), ((*text).to_owned(), *outcome));
         }
         // what no part sends
-        assert_eq!(text_of(&[]), "");
-        assert_eq!(text_of(&[u64::MAX, 0x61]), "a\0\0\0\0\0\0\0");
+        assert_eq!(text_of(&[]), (String::new(), None));
+        assert_eq!(text_of(&[9, u64::MAX, 0x61]), ("a\0\0\0\0\0\0\0".to_owned(), None));
     }
 }

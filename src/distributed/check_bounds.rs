@@ -1,6 +1,6 @@
 //! Whether bounds contradict each other anywhere, with the data of all parts.
 
-use super::agree::agree;
+use super::agree::agree_on_data;
 use super::error::ExchangeError;
 use super::exchange::Exchange;
 use crate::assemble::Discretisation;
@@ -21,9 +21,7 @@ pub fn check_bounds<T: Real, const D: usize>(
     discretisation: &Discretisation<'_, T, D>,
     exchange: &dyn Exchange,
 ) -> Result<(), ExchangeError> {
-    let found = discretisation.contradictions();
-    let found = agree(found.map_err(|error| error.in_whole_mesh(&part.cells)), exchange)?;
+    let found = agree_on_data(discretisation.contradictions(), &part.cells, exchange)?;
     let size = exchange.largest(&[found.size()])?[0];
-    let checked = found.check(size, &|cell| part.owns(cell));
-    agree(checked.map_err(|error| error.in_whole_mesh(&part.cells)), exchange)
+    agree_on_data(found.check(size, &|cell| part.owns(cell)), &part.cells, exchange)
 }

@@ -2,11 +2,13 @@
 
 use std::fmt::Debug;
 
+use crate::linear::FactorError;
+
 /// A library for matrices whose rows are distributed over processes.
 ///
 /// All parts call its functions, and those of its [`EngineSolver`]s, as often as one another and in the same
-/// order. A function that fails keeps the reason for [`failure`](Self::failure); corrections are then not
-/// numbers.
+/// order. What fails in one part fails in all; the engine keeps the reason for
+/// [`take_failure`](Self::take_failure), and corrections are then not numbers.
 pub trait Engine: Debug + Send + Sync {
     /// Name and version, for reports.
     fn name(&self) -> String;
@@ -23,8 +25,8 @@ pub trait Engine: Debug + Send + Sync {
         let (_, _, _) = (rows, data, values);
         None
     }
-    /// Why a function failed in this part, if one did.
-    fn failure(&self) -> Option<String>;
+    /// Why a function has failed in this part since the last call, if one has. A matrix without factors is no failure.
+    fn take_failure(&self) -> Option<String>;
 }
 
 /// Load and bounds of own unknowns. Absent bounds are infinite; those of fixed unknowns coincide.
@@ -63,7 +65,11 @@ pub trait OwnRows {
 pub trait EngineSolver: Send + Sync {
     /// Sets which own unknowns are fixed: their rows and columns become those of a multiple of
     /// the identity, near the diagonal of the others.
-    fn set_fixed(&mut self, fixed: &[bool]);
+    ///
+    /// # Errors
+    /// In all parts: [`FactorError::NotPositive`] if the matrix is not positive definite then, or the engine has
+    /// failed; [`FactorError::OutOfMemory`].
+    fn set_fixed(&mut self, fixed: &[bool]) -> Result<(), FactorError>;
     /// Sets `correction` to the preconditioner times `residual`, both at own unknowns.
     fn apply(&mut self, residual: &[f64], correction: &mut [f64]);
 }

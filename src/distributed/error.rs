@@ -1,5 +1,6 @@
 //! What can go wrong between parts.
 
+use crate::inequality::Outcome;
 use crate::readable_debug::debug_by_display;
 
 /// Why parts of a mesh did not tell one another what they need. `Debug` prints the message.
@@ -16,6 +17,8 @@ pub enum ExchangeError {
         part: u32,
         /// The message of its error.
         message: String,
+        /// The outcome that an error of the data stands for; none for other errors.
+        outcome: Option<Outcome>,
     },
     /// The process or thread of a part has ended.
     #[error("part {part} has ended without this exchange: look for its error")]

@@ -1,5 +1,6 @@
 //! The outcome of a solve.
 
+use crate::error::Error;
 use crate::linear::direct::FactorError;
 
 /// The outcome of a solve. Only [`Outcome::Converged`] is a success; for the values that come with
@@ -61,6 +62,33 @@ impl Outcome {
             Outcome::Infeasible => "infeasible",
             Outcome::Malformed => "malformed",
             Outcome::OutOfMemory => "out-of-memory",
+        }
+    }
+    /// Whether values that come with the outcome are an iterate: other ones mean nothing.
+    pub(crate) fn has_iterate(self) -> bool {
+        !matches!(
+            self,
+            Outcome::NotCoercive
+                | Outcome::Singular
+                | Outcome::NotFinite
+                | Outcome::OutOfMemory
+                | Outcome::NoSolution
+                | Outcome::OutOfRange
+                | Outcome::Malformed
+        )
+    }
+    /// The outcome that an error of the data stands for; none for errors of another kind.
+    pub(crate) fn of_error(error: &Error) -> Option<Self> {
+        match error {
+            Error::CoefficientNotPositive { value, .. } if value.is_finite() => {
+                Some(Outcome::NotCoercive)
+            }
+            Error::DataNotFinite { .. } | Error::CoefficientNotPositive { .. } => {
+                Some(Outcome::NotFinite)
+            }
+            Error::EmptyConstraint { .. } => Some(Outcome::Infeasible),
+            Error::Parameter { .. } => Some(Outcome::OutOfRange),
+            _ => None,
         }
     }
     /// What the outcome says, in one sentence.

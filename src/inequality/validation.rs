@@ -18,28 +18,36 @@ const DATA_RANGE: [f64; 2] = [1e-120, 1e120];
 /// The outcome that a solver returns: [`Outcome::Malformed`], [`Outcome::NotFinite`],
 /// [`Outcome::Infeasible`] or [`Outcome::OutOfRange`].
 pub(crate) fn check_input<T: Real>(inequality: &Inequality<T>) -> Result<(), Outcome> {
-    if !inequality.is_well_formed() {
+    let is_well_formed = inequality.is_well_formed();
+    // all parts of a mesh compare their data, whatever is wrong in one of them
+    let is_in_range = data_are_in_range(inequality, is_well_formed);
+    if !is_well_formed {
         Err(Outcome::Malformed)
     } else if !inequality.is_finite() {
         Err(Outcome::NotFinite)
     } else if !inequality.is_feasible() {
         Err(Outcome::Infeasible)
-    } else if !data_are_in_range(inequality) {
+    } else if !is_in_range {
         Err(Outcome::OutOfRange)
     } else {
         Ok(())
     }
 }
 
-/// Whether the largest of the loads and of the admissible values nearest to zero is zero or within
-/// [`DATA_RANGE`], as a value and as the square root of an energy.
-fn data_are_in_range<T: Real>(inequality: &Inequality<T>) -> bool {
+/// Whether the largest of the loads and of the admissible values nearest to zero, over all parts of a mesh, is zero or
+/// within [`DATA_RANGE`], as a value and as the square root of an energy.
+fn data_are_in_range<T: Real>(inequality: &Inequality<T>, is_well_formed: bool) -> bool {
     let mut largest = [0.0_f64; 2];
-    for (i, (bound, load)) in inequality.bounds.iter().zip(&inequality.load).enumerate() {
+    let n = if is_well_formed { inequality.size() } else { 0 };
+    for i in (0..n).filter(|&i| inequality.owns(i)) {
+        let (bound, load) = (&inequality.bounds[i], inequality.load[i]);
         let root = positive_diagonal(inequality, i).sqrt();
         let value =
             bound.nearest(T::lit(0.0)).to_f64().abs().max(load.to_f64().abs() / root / root);
         largest = [largest[0].max(value), largest[1].max(value * root)];
+    }
+    if let Some(distribution) = inequality.distribution() {
+        distribution.largest(&mut largest);
     }
     let [least, most] = DATA_RANGE;
     largest.iter().all(|&size| size == 0.0 || (size >= least && size <= most))

@@ -259,17 +259,8 @@ impl Row {
     /// # Errors
     /// The error itself if another run, with the same data on another mesh, would have it too.
     pub(super) fn with_error(mut self, error: Error) -> Result<Self, Error> {
-        self.status = match &error {
-            Error::CoefficientNotPositive { value, .. } if value.is_finite() => {
-                Outcome::NotCoercive
-            }
-            Error::DataNotFinite { .. } | Error::CoefficientNotPositive { .. } => {
-                Outcome::NotFinite
-            }
-            Error::EmptyConstraint { .. } => Outcome::Infeasible,
-            Error::Parameter { .. } => Outcome::OutOfRange,
-            _ => return Err(error),
-        };
+        let Some(outcome) = Outcome::of_error(&error) else { return Err(error) };
+        self.status = outcome;
         self.message = Some(error.to_string());
         Ok(self)
     }

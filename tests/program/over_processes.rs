@@ -34,14 +34,23 @@ mod needs_petsc {
     /// Within so many seconds every process of a job with a failure ends.
     const PATIENCE: Duration = Duration::from_secs(60);
 
+    /// How often a fault is provoked.
+    const REPETITIONS: usize = 10;
+
+    fn mpirun() -> Command {
+        let mut mpirun = Command::new("mpirun");
+        mpirun.arg("--oversubscribe");
+        mpirun.env("OMPI_ALLOW_RUN_AS_ROOT", "1").env("OMPI_ALLOW_RUN_AS_ROOT_CONFIRM", "1");
+        mpirun
+    }
+
     /// The command of a job.
     fn job(processes: usize, scratch: &Scratch, options: &str) -> Command {
         job_by("petsc", processes, scratch, options)
     }
     fn job_by(engine: &str, processes: usize, scratch: &Scratch, options: &str) -> Command {
-        let mut mpirun = Command::new("mpirun");
-        mpirun.args(["--oversubscribe", "-n", &processes.to_string()]);
-        mpirun.env("OMPI_ALLOW_RUN_AS_ROOT", "1").env("OMPI_ALLOW_RUN_AS_ROOT_CONFIRM", "1");
+        let mut mpirun = mpirun();
+        mpirun.args(["-n", &processes.to_string()]);
         mpirun.arg(env!("CARGO_BIN_EXE_unilateral")).args(["compare", "--engine", engine]);
         mpirun.args(["--threads", "1", "--out", &scratch.path(&format!("out-{processes}"))]);
         mpirun.args(options.split_whitespace());
@@ -143,20 +152,28 @@ mod needs_petsc {
         let text = "name = \"corner\"\nbox = [[0, 0], [1, 1]]\n[source]\ndefault = \"sqrt(1.8 - x - y)\"\n[obstacle]\nlower.default = -1.0\n[boundary.left]\nkind = \"dirichlet\"\nvalue = 0\n[boundary.right]\nkind = \"dirichlet\"\nvalue = 0\n[boundary.bottom]\nkind = \"dirichlet\"\nvalue = 0\n[boundary.top]\nkind = \"dirichlet\"\nvalue = 0\n";
         let problem = scratch.file("corner.toml", text);
         let options = format!("{problem} --levels 8 --scheme p1,sipg --quiet");
-        let child = job(3, &scratch, &options).stderr(Stdio::piped()).spawn().unwrap();
-        let output = end(child);
-        let message = stderr(&output);
-        assert_eq!(output.status.code(), Some(2), "{message}");
+        for _ in 0..REPETITIONS {
+            let child = job(3, &scratch, &options).stderr(Stdio::piped()).spawn().unwrap();
+            let output = end(child);
+            assert_eq!(output.status.code(), Some(2), "{}", stderr(&output));
+            assert!(one_sentence(&output).contains("corner.toml:4:11: source.default is NaN at"));
+        }
+    }
+
+    /// The one sentence of a job that was refused or has failed.
+    #[track_caller]
+    fn one_sentence(output: &Output) -> String {
+        let message = stderr(output);
         let lines: Vec<&str> = message.lines().filter(|line| line.starts_with("error: ")).collect();
         assert_eq!(lines.len(), 1, "{message}");
-        assert!(lines[0].contains("corner.toml:4:11: source.default is NaN at"), "{message}");
+        lines[0].to_owned()
     }
 
     /// A process that is killed, the first one too, ends the job; rows that are finished are on disk.
     #[test]
     #[ignore = "needs PETSc and mpirun"]
     fn a_killed_process_ends_all() {
-        for victim in [0, 1] {
+        for victim in [0, 1].repeat(REPETITIONS) {
             let scratch = Scratch::new(&format!("killed-{victim}"));
             let options =
                 "--scene radial-2d --levels 16,32,64,128,256,512 --scheme p1,sipg,wopsip --quiet";
@@ -198,14 +215,67 @@ mod needs_petsc {
     #[test]
     #[ignore = "needs PETSc and mpirun"]
     fn a_panic_of_one_process_ends_all() {
-        let mut mpirun = Command::new("mpirun");
-        mpirun.args(["--oversubscribe", "-n", "2"]).arg(std::env::current_exe().unwrap());
-        let name = "over_processes::in_a_job::the_second_process_panics";
-        mpirun.args(["--ignored", "--exact", name, "--nocapture"]);
-        mpirun.env("OMPI_ALLOW_RUN_AS_ROOT", "1").env("OMPI_ALLOW_RUN_AS_ROOT_CONFIRM", "1");
-        let output = end(mpirun.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap());
+        for _ in 0..REPETITIONS {
+            let mut mpirun = mpirun();
+            mpirun.args(["-n", "2"]).arg(std::env::current_exe().unwrap());
+            let name = "over_processes::in_a_job::the_second_process_panics";
+            mpirun.args(["--ignored", "--exact", name, "--nocapture"]);
+            let output = end(mpirun.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap());
+            assert!(!output.status.success());
+            let message = stderr(&output);
+            assert!(message.contains("the second process has a fault"), "{message}");
+        }
+    }
+
+    /// A matrix without factors ends its row, with the status of one process, and no other row.
+    #[test]
+    #[ignore = "needs PETSc and mpirun"]
+    fn a_failure_ends_one_row() {
+        let scratch = Scratch::new("one-row");
+        for scene in ["radial-1d", "radial-2d"] {
+            let options = format!("--scene {scene} --scheme sipg@sigma=1,p1 --levels 16 --quiet");
+            let output = job(2, &scratch, &options).output().unwrap();
+            assert_eq!(output.status.code(), Some(1), "{}", stderr(&output));
+            let report = report(2, &scratch);
+            let statuses: Vec<&Value> = rows(&report).iter().map(|row| &row["status"]).collect();
+            assert_eq!(statuses, ["not-coercive", "converged"], "{scene}");
+        }
+    }
+
+    /// A file of fields that cannot be written is an error of the run; its row is kept.
+    #[test]
+    #[ignore = "needs PETSc and mpirun"]
+    fn a_row_whose_fields_are_not_written_is_kept() {
+        let scratch = Scratch::new("no-fields");
+        std::fs::create_dir_all(scratch.0.join("out-2/radial-2d-p1.1.vtu")).unwrap();
+        let options = "--scene radial-2d --scheme p1 --levels 8 --quiet";
+        let child = job(2, &scratch, options).stderr(Stdio::piped()).spawn().unwrap();
+        let output = end(child);
         assert!(!output.status.success());
-        assert!(stderr(&output).contains("the second process has a fault"), "{}", stderr(&output));
+        assert!(one_sentence(&output).contains("radial-2d-p1"), "{}", stderr(&output));
+        let journal = std::fs::read_to_string(scratch.0.join("out-2/report.jsonl")).unwrap();
+        assert!(journal.contains("\"converged\""), "{journal}");
+    }
+
+    /// Processes with other options than the first one are refused; none waits for another.
+    #[test]
+    #[ignore = "needs PETSc and mpirun"]
+    fn processes_with_different_requests_are_refused() {
+        let scratch = Scratch::new("different");
+        let of_second = ["--levels 16", "--levels 8 --repeat 2", "--levels 8 --scheme sipg,p1"];
+        for (k, options) in of_second.into_iter().enumerate() {
+            let mut mpirun = mpirun();
+            for (process, options) in ["--levels 8", options].into_iter().enumerate() {
+                mpirun.args(if process > 0 { &[":", "-n", "1"][..] } else { &["-n", "1"] });
+                mpirun.arg(env!("CARGO_BIN_EXE_unilateral")).args(["compare", "--engine", "petsc"]);
+                mpirun.args(["--scene", "radial-2d", "--quiet", "--out", &scratch.path("out")]);
+                mpirun.args(options.split_whitespace());
+            }
+            let output = end(mpirun.stderr(Stdio::piped()).spawn().unwrap());
+            assert_eq!(output.status.code(), Some(2), "{k}: {}", stderr(&output));
+            let expected = if k == 1 { "--repeat" } else { "process 1 has other options" };
+            assert!(one_sentence(&output).contains(expected), "{}", stderr(&output));
+        }
     }
 
     /// Options that processes do not support are refused with one sentence.
@@ -217,12 +287,8 @@ mod needs_petsc {
             ["--precision f32", "--adaptive 0.1", "--solver monotone-multigrid", "--resume"]
         {
             let output = job(2, &scratch, option).output().unwrap();
-            let message = stderr(&output);
-            assert_eq!(output.status.code(), Some(2), "{message}");
-            let name = option.split(' ').next().unwrap();
-            let lines = message.lines().filter(|line| line.starts_with("error: "));
-            let lines: Vec<&str> = lines.collect();
-            assert!(lines.len() == 1 && lines[0].contains(name), "{message}");
+            assert_eq!(output.status.code(), Some(2), "{}", stderr(&output));
+            assert!(one_sentence(&output).contains(option.split(' ').next().unwrap()));
         }
     }
 }

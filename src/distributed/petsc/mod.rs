@@ -5,7 +5,7 @@
 
 #![allow(unsafe_code)]
 
-use std::ffi::{CStr, c_char, c_int, c_void};
+use std::ffi::{CStr, CString, c_char, c_int, c_void};
 use std::ptr::null_mut;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
@@ -14,6 +14,7 @@ use super::engine::{Engine, EngineMethod, EngineSolver, OwnData, OwnRows};
 use super::error::ExchangeError;
 use super::exchange::Exchange;
 use super::process::Process;
+use crate::linear::FactorError;
 
 unsafe extern "C" {
     fn ul_start() -> c_int;
@@ -32,7 +33,10 @@ unsafe extern "C" {
         received: *mut u64,
         from: *const c_int,
     ) -> c_int;
+    fn ul_any(failed: c_int, why: *const c_char) -> c_int;
+    fn ul_abort_with(why: *const c_char);
     fn ul_matrix_new(
+        first: i64,
         rows: i64,
         in_own_columns: *const c_int,
         in_other_columns: *const c_int,
@@ -71,7 +75,8 @@ pub struct Processes(());
 
 impl Processes {
     /// Joins the job in which `mpirun` has started this process, or begins one of a single process. A panic of
-    /// one process ends all.
+    /// one process ends all, and so does an error inside a function of PETSc that one process alone meets: it is the
+    /// one thing that this library prints. Options in the variable `PETSC_OPTIONS` count, files of options do not.
     ///
     /// # Errors
     /// [`ExchangeError::Transport`] if MPI or PETSc does not start, or was started before.
@@ -200,7 +205,11 @@ impl Exchange for MpiExchange {
     }
 }
 
-/// The first failure of this process.
+/// What the C functions return for a matrix that is not positive definite, and PETSc for lack of memory.
+const NOT_POSITIVE: c_int = 10001;
+const OUT_OF_MEMORY: c_int = 55;
+
+/// The first failure of this process that nobody has taken.
 type Failure = Arc<Mutex<Option<String>>>;
 
 /// PETSc, with multigrid of hypre and factors of MUMPS.
@@ -210,10 +219,24 @@ struct Petsc {
 }
 
 /// Keeps the reason of a failure, if it is the first.
-fn keep(failure: &Failure, result: Result<(), String>) -> bool {
-    let Err(why) = result else { return true };
-    failure.lock().unwrap_or_else(PoisonError::into_inner).get_or_insert(why);
-    false
+fn keep<T>(failure: &Failure, result: Result<T, String>) -> Option<T> {
+    let keep_first = |why| {
+        failure.lock().unwrap_or_else(PoisonError::into_inner).get_or_insert(why);
+    };
+    result.map_err(keep_first).ok()
+}
+
+/// The result of a step that all processes have done: an error if it failed in any of them. A process whose step
+/// failed alone, inside a function in which the others wait for it, ends the job after some seconds.
+fn agreed(code: c_int, what: &str) -> Result<(), String> {
+    let own = check(code, what);
+    let why = own.as_ref().err().map_or("", String::as_str);
+    let text = CString::new(why).unwrap_or_default();
+    // SAFETY: the text ends with a zero
+    match unsafe { ul_any(c_int::from(own.is_err()), text.as_ptr()) } {
+        0 => Ok(()),
+        _ => own.and(Err(format!("{what} failed in another process"))),
+    }
 }
 
 impl Engine for Petsc {
@@ -236,9 +259,12 @@ impl Engine for Petsc {
         };
         let made = matrix(rows).and_then(|matrix| {
             // SAFETY: the solver takes the matrix, and writes its own address
-            check(unsafe { ul_solver_new(matrix, method, &mut solver.raw) }, "a solver of PETSc")
+            let code = unsafe { ul_solver_new(matrix, method, &mut solver.raw) };
+            agreed(code, "a solver of PETSc")
         });
-        keep(&self.failure, made);
+        if keep(&self.failure, made).is_none() {
+            solver.destroy();
+        }
         Box::new(solver)
     }
     fn solve_inequality(
@@ -262,15 +288,20 @@ impl Engine for Petsc {
                     &mut converged,
                 )
             };
+            let what = "the solver of inequalities of PETSc";
+            let solved = agreed(code, what);
             // SAFETY: the matrix is not used any more
             unsafe { ul_matrix_destroy(&mut matrix) };
-            check(code, "the solver of inequalities of PETSc")
+            match solved {
+                Ok(()) if converged == 0 => Err(format!("{what} stopped after {steps} steps")),
+                solved => solved,
+            }
         });
         keep(&self.failure, solved);
         Some(steps as usize)
     }
-    fn failure(&self) -> Option<String> {
-        self.failure.lock().unwrap_or_else(PoisonError::into_inner).clone()
+    fn take_failure(&self) -> Option<String> {
+        self.failure.lock().unwrap_or_else(PoisonError::into_inner).take()
     }
 }
 
@@ -289,28 +320,34 @@ fn matrix(rows: &dyn OwnRows) -> Result<*mut c_void, String> {
     let [in_own, in_other] = lengths;
     let what = "a matrix of PETSc";
     // SAFETY: both lists have a number for each row
-    check(
-        unsafe { ul_matrix_new(count as i64, in_own.as_ptr(), in_other.as_ptr(), &mut raw) },
-        what,
-    )?;
-    let (mut columns, mut values) = (Vec::new(), Vec::new());
-    for (k, row) in (0..count).zip(first as i64..) {
-        rows.row(k, &mut entries);
-        columns.clear();
-        columns.extend(entries.iter().map(|entry| entry.0 as i64));
-        values.clear();
-        values.extend(entries.iter().map(|entry| entry.1));
-        let n = columns.len() as c_int;
-        // SAFETY: both lists have as many numbers as stated
-        let set = unsafe { ul_matrix_row(raw, row, n, columns.as_ptr(), values.as_ptr()) };
-        if let Err(why) = check(set, what) {
-            // SAFETY: the matrix is not used any more
-            unsafe { ul_matrix_destroy(&mut raw) };
-            return Err(why);
+    let made = unsafe {
+        ul_matrix_new(first as i64, count as i64, in_own.as_ptr(), in_other.as_ptr(), &mut raw)
+    };
+    let filled = agreed(made, what).and_then(|()| {
+        let mut code = 0;
+        let (mut columns, mut values) = (Vec::new(), Vec::new());
+        for (k, row) in (0..count).zip(first as i64..) {
+            rows.row(k, &mut entries);
+            columns.clear();
+            columns.extend(entries.iter().map(|entry| entry.0 as i64));
+            values.clear();
+            values.extend(entries.iter().map(|entry| entry.1));
+            let n = columns.len() as c_int;
+            // SAFETY: both lists have as many numbers as stated
+            code = unsafe { ul_matrix_row(raw, row, n, columns.as_ptr(), values.as_ptr()) };
+            if code != 0 {
+                break;
+            }
         }
+        agreed(code, what)
+    });
+    // SAFETY: the matrix exists in all processes
+    let assembled = filled.and_then(|()| agreed(unsafe { ul_matrix_assemble(raw) }, what));
+    if let Err(why) = assembled {
+        // SAFETY: the matrix is not used any more; nothing is destroyed where there is none
+        unsafe { ul_matrix_destroy(&mut raw) };
+        return Err(why);
     }
-    // SAFETY: the matrix exists
-    check(unsafe { ul_matrix_assemble(raw) }, what)?;
     Ok(raw)
 }
 
@@ -327,36 +364,54 @@ unsafe impl Send for PetscSolver {}
 // SAFETY: there is no function that takes `&self`
 unsafe impl Sync for PetscSolver {}
 
+impl PetscSolver {
+    fn destroy(&mut self) {
+        if !self.raw.is_null() {
+            // SAFETY: the last use
+            unsafe { ul_solver_destroy(self.raw) };
+            self.raw = null_mut();
+        }
+    }
+}
+
 impl EngineSolver for PetscSolver {
-    fn set_fixed(&mut self, fixed: &[bool]) {
+    fn set_fixed(&mut self, fixed: &[bool]) -> Result<(), FactorError> {
         if self.raw.is_null() {
-            return;
+            return Err(FactorError::NotPositive);
         }
         let number = |(k, _): (usize, &bool)| self.first + k as i64;
         let rows: Vec<i64> =
             fixed.iter().enumerate().filter(|(_, fixed)| **fixed).map(number).collect();
         // SAFETY: the list has as many numbers as stated
-        let set = unsafe { ul_solver_fix(self.raw, rows.as_ptr(), rows.len() as i64) };
-        keep(&self.failure, check(set, "a preconditioner of PETSc"));
+        let code = unsafe { ul_solver_fix(self.raw, rows.as_ptr(), rows.len() as i64) };
+        let set = agreed(code, "a preconditioner of PETSc");
+        match (set, code) {
+            (Ok(()), _) => Ok(()),
+            (Err(_), NOT_POSITIVE) => Err(FactorError::NotPositive),
+            (Err(_), OUT_OF_MEMORY) => Err(FactorError::OutOfMemory),
+            (failed, _) => {
+                keep(&self.failure, failed);
+                Err(FactorError::NotPositive)
+            }
+        }
     }
     fn apply(&mut self, residual: &[f64], correction: &mut [f64]) {
-        let is_applied = !self.raw.is_null() && {
-            // SAFETY: both lists have a number for each own row
-            let applied =
-                unsafe { ul_solver_apply(self.raw, residual.as_ptr(), correction.as_mut_ptr()) };
-            keep(&self.failure, check(applied, "a preconditioner of PETSc"))
-        };
-        if !is_applied {
+        if self.raw.is_null() {
             correction.fill(f64::NAN);
+            return;
+        }
+        // SAFETY: both lists have a number for each own row
+        let code = unsafe { ul_solver_apply(self.raw, residual.as_ptr(), correction.as_mut_ptr()) };
+        if let Err(why) = check(code, "a preconditioner of PETSc") {
+            let why = CString::new(why).unwrap_or_default();
+            // SAFETY: the text ends with a zero. The other processes may wait inside the function
+            unsafe { ul_abort_with(why.as_ptr()) };
         }
     }
 }
 
 impl Drop for PetscSolver {
     fn drop(&mut self) {
-        if !self.raw.is_null() {
-            // SAFETY: the last use
-            unsafe { ul_solver_destroy(self.raw) };
-        }
+        self.destroy();
     }
 }

@@ -1,10 +1,22 @@
 /* All that the library asks of MPI and PETSc. Numbers of rows and columns have 64 bits here, whatever PetscInt
- * has. A function returns 0, or an error of PETSc or MPI, whose text ul_error_text gives. */
+ * has. A function returns 0, or an error of PETSc, whose text ul_error_text gives; MPI ends the job itself. */
 #include <petscksp.h>
 #include <petscsnes.h>
 #include <stdint.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+
+#if !defined(PETSC_USE_REAL_DOUBLE) || defined(PETSC_USE_COMPLEX)
+#error "the library needs a PETSc with real numbers of double precision"
+#endif
+
+/* Besides the errors of PETSc: factors have found that a matrix is not positive definite. */
+#define NOT_POSITIVE 10001
+/* Besides the errors of PETSc: PetscInt has 32 bits, and a number does not fit. */
+#define TOO_LARGE 10002
+/* Seconds that a process whose step failed waits for the others. */
+#define PATIENCE 10.0
 
 #define TRY(call)                                                                                                  \
   do {                                                                                                             \
@@ -14,23 +26,53 @@
 
 /* ---- processes ---- */
 
+/* For agreements on failures: processes may be inside functions of PETSc that use the communicator of PETSc. */
+static MPI_Comm agreement;
+
 int ul_start(void) {
   int provided, flag;
-  if (MPI_Initialized(&flag)) return 1; /* the call failed */
+  if (MPI_Initialized(&flag) || flag) return 1; /* somebody else ends it */
   /* threads of the library never call MPI */
-  if (!flag && MPI_Init_thread(NULL, NULL, MPI_THREAD_FUNNELED, &provided)) return 1;
+  if (MPI_Init_thread(NULL, NULL, MPI_THREAD_FUNNELED, &provided) || provided < MPI_THREAD_FUNNELED) return 1;
+  if (MPI_Comm_dup(MPI_COMM_WORLD, &agreement)) return 1;
+  /* files of options in a home directory would change results unseen; the variable PETSC_OPTIONS is looked at */
+  TRY(PetscOptionsSetValue(NULL, "-skip_petscrc", "1"));
   TRY(PetscInitialize(NULL, NULL, NULL, NULL));
   TRY(PetscPushErrorHandler(PetscReturnErrorHandler, NULL));
   return 0;
 }
 
 int ul_end(void) {
+  MPI_Comm_free(&agreement);
   TRY(PetscPopErrorHandler());
   TRY(PetscFinalize());
   return MPI_Finalize();
 }
 
 void ul_abort(int code) { MPI_Abort(MPI_COMM_WORLD, code); }
+
+/* Ends the job with a sentence: the last thing that it says. */
+void ul_abort_with(const char *why) {
+  int rank = 0;
+  MPI_Comm_rank(MPI_COMM_WORLD, &rank);
+  fprintf(stderr, "error: process %d: %s; the job ends here, finished rows are in the journal\n", rank, why);
+  fflush(stderr);
+  MPI_Abort(MPI_COMM_WORLD, 1);
+}
+
+/* Whether a step failed in any process; all call it after the step. The others may wait for a process inside the step
+ * in which it failed alone: after a while without an answer it ends the job. */
+int ul_any(int failed, const char *why) {
+  int any = 0, done = 0;
+  MPI_Request request;
+  MPI_Iallreduce(&failed, &any, 1, MPI_INT, MPI_MAX, agreement, &request);
+  double start = MPI_Wtime();
+  while (!done) {
+    if (failed && MPI_Wtime() - start > PATIENCE) ul_abort_with(why);
+    MPI_Test(&request, &done, MPI_STATUS_IGNORE);
+  }
+  return any;
+}
 
 int ul_rank(void) {
   int rank = 0;
@@ -52,6 +94,8 @@ void ul_version(int *numbers) {
 
 const char *ul_error_text(int code) {
   const char *text = NULL;
+  if (code == NOT_POSITIVE) return "the matrix is not positive definite";
+  if (code == TOO_LARGE) return "a number exceeds 32 bits: this needs a PETSc with 64-bit integers";
   if (PetscErrorMessage((PetscErrorCode)code, &text, NULL) || !text) return "unknown error";
   return text;
 }
@@ -87,10 +131,9 @@ int ul_exchange(const int64_t *sent, const int *to, int64_t *received, const int
 
 /* ---- matrices: own rows, columns by their numbers over all processes ---- */
 
-int ul_matrix_new(int64_t rows, const int *in_own_columns, const int *in_other_columns, Mat *out) {
-  PetscInt n = (PetscInt)rows, *own, *other;
-  TRY(PetscMalloc2(n + 1, &own, n + 1, &other));
-  for (PetscInt i = 0; i < n; i++) own[i] = in_own_columns[i], other[i] = in_other_columns[i];
+static int fits(int64_t number) { return number <= PETSC_MAX_INT; }
+
+static int new_matrix(PetscInt n, const PetscInt *own, const PetscInt *other, Mat *out) {
   TRY(MatCreate(PETSC_COMM_WORLD, out));
   TRY(MatSetSizes(*out, n, n, PETSC_DETERMINE, PETSC_DETERMINE));
   TRY(MatSetType(*out, MATAIJ));
@@ -98,15 +141,28 @@ int ul_matrix_new(int64_t rows, const int *in_own_columns, const int *in_other_c
   TRY(MatMPIAIJSetPreallocation(*out, 0, own, 0, other));
   TRY(MatSetOption(*out, MAT_NO_OFF_PROC_ENTRIES, PETSC_TRUE));
   TRY(MatSetOption(*out, MAT_KEEP_NONZERO_PATTERN, PETSC_TRUE));
-  TRY(PetscFree2(own, other));
   return 0;
+}
+
+/* `first` is the number of the first of so many own rows. */
+int ul_matrix_new(int64_t first, int64_t rows, const int *in_own_columns, const int *in_other_columns, Mat *out) {
+  PetscInt n = (PetscInt)rows, *own, *other;
+  if (!fits(first + rows)) return TOO_LARGE;
+  TRY(PetscMalloc2(n + 1, &own, n + 1, &other));
+  for (PetscInt i = 0; i < n; i++) own[i] = in_own_columns[i], other[i] = in_other_columns[i];
+  int code = new_matrix(n, own, other, out);
+  TRY(PetscFree2(own, other));
+  return code;
 }
 
 int ul_matrix_row(Mat matrix, int64_t row, int count, const int64_t *columns, const double *values) {
   PetscInt i = (PetscInt)row, buffer[256];
   for (int done = 0; done < count;) {
     int n = count - done < 256 ? count - done : 256;
-    for (int k = 0; k < n; k++) buffer[k] = (PetscInt)columns[done + k];
+    for (int k = 0; k < n; k++) {
+      if (!fits(columns[done + k])) return TOO_LARGE;
+      buffer[k] = (PetscInt)columns[done + k];
+    }
     TRY(MatSetValues(matrix, 1, &i, n, buffer, values + done, INSERT_VALUES));
     done += n;
   }
@@ -116,7 +172,6 @@ int ul_matrix_row(Mat matrix, int64_t row, int count, const int64_t *columns, co
 int ul_matrix_assemble(Mat matrix) {
   TRY(MatAssemblyBegin(matrix, MAT_FINAL_ASSEMBLY));
   TRY(MatAssemblyEnd(matrix, MAT_FINAL_ASSEMBLY));
-  TRY(MatSetOption(matrix, MAT_SPD, PETSC_TRUE));
   return 0;
 }
 
@@ -126,6 +181,8 @@ int ul_matrix_destroy(Mat *matrix) {
 }
 
 /* ---- preconditioners ---- */
+
+#define COARSENING "-ul_multigrid_pc_hypre_boomeramg_coarsen_type"
 
 typedef struct {
   Mat matrix; /* as given; owned by the solver */
@@ -151,6 +208,7 @@ int ul_solver_new(Mat matrix, int method, Solver **out) {
   TRY(VecGetSize(diagonal, &all));
   TRY(VecDestroy(&diagonal));
   solver->mean = all > 0 && sum > 0 ? sum / all : 1;
+  TRY(MatSetOption(matrix, MAT_SPD, PETSC_TRUE));
   TRY(MatGetLocalSize(matrix, &n, NULL));
   TRY(VecCreateMPIWithArray(PETSC_COMM_WORLD, 1, n, PETSC_DETERMINE, NULL, &solver->r));
   TRY(VecCreateMPIWithArray(PETSC_COMM_WORLD, 1, n, PETSC_DETERMINE, NULL, &solver->z));
@@ -164,6 +222,10 @@ static int new_preconditioner(Solver *solver) {
     TRY(PCSetOptionsPrefix(solver->pc, "ul_multigrid_"));
     TRY(PCSetType(solver->pc, PCHYPRE));
     TRY(PCHYPRESetType(solver->pc, "boomeramg"));
+    /* in space the set-up takes half of the time of that with the default coarsening, in the plane as long */
+    PetscBool is_chosen;
+    TRY(PetscOptionsHasName(NULL, NULL, COARSENING, &is_chosen));
+    if (!is_chosen) TRY(PetscOptionsSetValue(NULL, COARSENING, "HMIS"));
   } else {
     TRY(PCSetOptionsPrefix(solver->pc, "ul_factors_"));
     TRY(PCSetType(solver->pc, PCCHOLESKY));
@@ -176,6 +238,7 @@ static int new_preconditioner(Solver *solver) {
 /* Rows and columns of the own rows listed become those of the identity times the mean of the diagonal. */
 int ul_solver_fix(Solver *solver, const int64_t *rows, int64_t count) {
   PetscInt n = (PetscInt)count, *list;
+  if (n > 0 && !fits(rows[n - 1])) return TOO_LARGE;
   TRY(PetscMalloc1(n + 1, &list));
   for (PetscInt k = 0; k < n; k++) list[k] = (PetscInt)rows[k];
   if (solver->fixed)
@@ -199,7 +262,15 @@ int ul_solver_fix(Solver *solver, const int64_t *rows, int64_t count) {
   TRY(PCSetUp(solver->pc));
   PCFailedReason reason;
   TRY(PCGetFailedReason(solver->pc, &reason));
-  return !reason ? 0 : reason == PC_FACTOR_OUTMEMORY ? PETSC_ERR_MEM : PETSC_ERR_MAT_CH_ZRPVT;
+  if (solver->method == 0) return !reason ? 0 : NOT_POSITIVE;
+  Mat factors;
+  PetscInt error, n_negative;
+  TRY(PCFactorGetMatrix(solver->pc, &factors));
+  TRY(MatMumpsGetInfog(factors, 1, &error));
+  TRY(MatMumpsGetInfog(factors, 12, &n_negative));
+  /* -10: singular; -40: a pivot of the last block is not positive; others are lack of memory */
+  if (error == -10 || error == -40 || (error >= 0 && (reason || n_negative > 0))) return NOT_POSITIVE;
+  return error < 0 ? PETSC_ERR_MEM : 0;
 }
 
 int ul_solver_apply(Solver *solver, const double *residual, double *correction) {
@@ -243,54 +314,63 @@ static PetscErrorCode constant_jacobian(SNES snes, Vec x, Mat a, Mat b, void *co
   PetscFunctionReturn(0);
 }
 
-/* The semismooth Newton method with active sets in reduced space, its linear systems by factors of MUMPS. Absent
- * bounds are infinite. Returns the numbers of steps, and whether it converged by its own tests. */
-int ul_newton(Mat matrix, const double *load, double *lower, double *upper, double *values, int *steps,
-              int *converged) {
-  PetscInt n, count;
-  Inequality of;
+typedef struct {
   Vec x, low, up, f;
   SNES snes;
+} Newton;
+
+static int solve_inequality(Inequality *of, Newton *by, int *steps, int *converged) {
+  PetscInt count;
   KSP ksp;
   PC pc;
+  SNESLineSearch search;
   SNESConvergedReason reason;
+  TRY(VecDuplicate(by->x, &by->f));
+  TRY(SNESCreate(PETSC_COMM_WORLD, &by->snes));
+  TRY(SNESSetOptionsPrefix(by->snes, "ul_newton_"));
+  TRY(SNESSetType(by->snes, SNESVINEWTONRSLS));
+  TRY(SNESSetFunction(by->snes, by->f, negative_residual, of));
+  TRY(SNESSetJacobian(by->snes, of->matrix, of->matrix, constant_jacobian, NULL));
+  TRY(SNESVISetVariableBounds(by->snes, by->low, by->up));
+  TRY(SNESSetTolerances(by->snes, 1e-14, 1e-13, 0, 200, 10000));
+  TRY(SNESGetLineSearch(by->snes, &search));
+  TRY(SNESLineSearchSetType(search, SNESLINESEARCHBASIC));
+  TRY(SNESGetKSP(by->snes, &ksp));
+  TRY(KSPSetType(ksp, KSPPREONLY));
+  TRY(KSPGetPC(ksp, &pc));
+  TRY(PCSetType(pc, PCLU));
+  TRY(PCFactorSetMatSolverType(pc, MATSOLVERMUMPS));
+  TRY(SNESSetFromOptions(by->snes));
+  TRY(SNESSolve(by->snes, NULL, by->x));
+  TRY(SNESGetIterationNumber(by->snes, &count));
+  TRY(SNESGetConvergedReason(by->snes, &reason));
+  *steps = (int)count;
+  *converged = reason > 0;
+  return 0;
+}
+
+/* The semismooth Newton method with active sets in reduced space, its linear systems by factors of MUMPS. Absent
+ * bounds are infinite. Returns the number of steps, and whether the method converged by its own tests. */
+int ul_newton(Mat matrix, const double *load, double *lower, double *upper, double *values, int *steps,
+              int *converged) {
+  PetscInt n;
+  Inequality of = {matrix, NULL};
+  Newton by = {NULL, NULL, NULL, NULL, NULL};
   TRY(MatGetLocalSize(matrix, &n, NULL));
   for (PetscInt i = 0; i < n; i++) {
     if (lower[i] == -1.0 / 0.0) lower[i] = PETSC_NINFINITY;
     if (upper[i] == 1.0 / 0.0) upper[i] = PETSC_INFINITY;
   }
-  of.matrix = matrix;
   TRY(VecCreateMPIWithArray(PETSC_COMM_WORLD, 1, n, PETSC_DETERMINE, load, &of.load));
-  TRY(VecCreateMPIWithArray(PETSC_COMM_WORLD, 1, n, PETSC_DETERMINE, lower, &low));
-  TRY(VecCreateMPIWithArray(PETSC_COMM_WORLD, 1, n, PETSC_DETERMINE, upper, &up));
-  TRY(VecCreateMPIWithArray(PETSC_COMM_WORLD, 1, n, PETSC_DETERMINE, values, &x));
-  TRY(VecDuplicate(x, &f));
-  TRY(SNESCreate(PETSC_COMM_WORLD, &snes));
-  TRY(SNESSetOptionsPrefix(snes, "ul_newton_"));
-  TRY(SNESSetType(snes, SNESVINEWTONRSLS));
-  TRY(SNESSetFunction(snes, f, negative_residual, &of));
-  TRY(SNESSetJacobian(snes, matrix, matrix, constant_jacobian, NULL));
-  TRY(SNESVISetVariableBounds(snes, low, up));
-  TRY(SNESSetTolerances(snes, 1e-14, 1e-13, 0, 200, 10000));
-  SNESLineSearch search;
-  TRY(SNESGetLineSearch(snes, &search));
-  TRY(SNESLineSearchSetType(search, SNESLINESEARCHBASIC));
-  TRY(SNESGetKSP(snes, &ksp));
-  TRY(KSPSetType(ksp, KSPPREONLY));
-  TRY(KSPGetPC(ksp, &pc));
-  TRY(PCSetType(pc, PCLU));
-  TRY(PCFactorSetMatSolverType(pc, MATSOLVERMUMPS));
-  TRY(SNESSetFromOptions(snes));
-  TRY(SNESSolve(snes, NULL, x));
-  TRY(SNESGetIterationNumber(snes, &count));
-  TRY(SNESGetConvergedReason(snes, &reason));
-  *steps = (int)count;
-  *converged = reason > 0;
-  TRY(SNESDestroy(&snes));
+  TRY(VecCreateMPIWithArray(PETSC_COMM_WORLD, 1, n, PETSC_DETERMINE, lower, &by.low));
+  TRY(VecCreateMPIWithArray(PETSC_COMM_WORLD, 1, n, PETSC_DETERMINE, upper, &by.up));
+  TRY(VecCreateMPIWithArray(PETSC_COMM_WORLD, 1, n, PETSC_DETERMINE, values, &by.x));
+  int code = solve_inequality(&of, &by, steps, converged);
+  TRY(SNESDestroy(&by.snes));
   TRY(VecDestroy(&of.load));
-  TRY(VecDestroy(&low));
-  TRY(VecDestroy(&up));
-  TRY(VecDestroy(&x));
-  TRY(VecDestroy(&f));
-  return 0;
+  TRY(VecDestroy(&by.low));
+  TRY(VecDestroy(&by.up));
+  TRY(VecDestroy(&by.x));
+  TRY(VecDestroy(&by.f));
+  return code;
 }

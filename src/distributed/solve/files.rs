@@ -6,6 +6,7 @@ use super::solved::DistributedSolved;
 use crate::distributed::agree::agree;
 use crate::distributed::error::ExchangeError;
 use crate::error::Error;
+use crate::measure::Fields;
 use crate::mesh::Layers;
 use crate::paraview::{FieldScalar, VtuFile};
 use crate::problem::DataOnMesh;
@@ -28,18 +29,20 @@ impl<const D: usize> DistributedSolved<'_, D> {
         let piece = |number: usize| directory.join(format!("{stem}.{number}.vtu"));
         let pieces: Vec<PathBuf> = (0..parts).map(piece).collect();
         let list = directory.join(format!("{stem}.pvtu"));
-        agree(self.write_part(&pieces, &list, scalar), self.exchange())
+        // all parts exchange multipliers
+        let fields = self.discretisation().fields(self.inequality(), self.solution());
+        agree(self.write_part(&fields, &pieces, &list, scalar), self.exchange())
     }
 
     fn write_part(
         &self,
+        fields: &Fields,
         pieces: &[PathBuf],
         list: &Path,
         scalar: FieldScalar,
     ) -> Result<(), Error> {
         let (part, problem) = (self.part(), self.discretisation().problem());
         let own = part.mesh.part(&part.owners, part.number, Layers::across_facets(0))?;
-        let fields = self.discretisation().fields(self.inequality(), self.solution());
         let data = DataOnMesh::new(problem, &own.mesh)?;
         let is_own = |cell: &usize| part.owns(*cell);
         let values = fields.values_by_cell(D);

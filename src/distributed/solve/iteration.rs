@@ -11,7 +11,7 @@ use super::system::System;
 use crate::algebra::{Bound, Contact, Distribution, Start};
 use crate::assemble::DataQuadrature;
 use crate::constraint::Nodes;
-use crate::distributed::agree::agree;
+use crate::distributed::agree::{agree, agree_on_data};
 use crate::distributed::engine::{EngineMethod, OwnData};
 use crate::distributed::error::ExchangeError;
 use crate::distributed::process::Process;
@@ -21,15 +21,20 @@ use crate::inequality::initial_guess::{
     P1_ENERGY_TOLERANCE, contact_of_supports, means_over_supports,
 };
 use crate::inequality::{ActiveSet, InequalitySolver, InitialGuess, Outcome, Solution, contact_of};
+use crate::linear::Preconditioner;
+use crate::linear::krylov::symmetric_part;
 use crate::mesh::Part;
 use crate::problem::Problem;
 use crate::scheme::{AnyScheme, ConformingP1, NonconformingP1};
 
-/// The share of unknowns up to which changes of fixed unknowns do not set up multigrid again where it is a part
-/// of a preconditioner. SIPG on radial-2d at 256 takes 22 iterations with any share, 0.64 s with this one and 1.08 s
-/// with none; WOPSIP with bounds at vertices 35 for 48 iterations, 1.65 for 3.25 s. Multigrid alone takes 19 for
-/// 5 iterations, and no less time.
-const FEW_CHANGES: f64 = 0.05;
+/// Multigrid is not set up again where it is a part of a preconditioner until as many unknowns become free or fixed as
+/// so many layers of cells along a free boundary of the size of the domain have. On radial-2d at 1024 SIPG takes 31
+/// iterations with this number and 43 with four, and 39 to 46 seconds of a processor; at 256 WOPSIP with bounds at
+/// vertices takes 34 and 35, and 48 and more time if every change counts. Multigrid alone is set up for each change.
+const FEW_LAYERS: f64 = 1.0;
+
+/// Most unknowns of all parts for which the engine factors the matrix of a scheme.
+const MOST_FACTORED: u64 = 400_000;
 
 /// One problem on the parts of nested meshes.
 ///
@@ -45,6 +50,11 @@ pub struct DistributedIteration<'a, const D: usize> {
     quadrature: DataQuadrature,
     is_by_engine: bool,
     p1_solutions: Vec<Option<Arc<P1OnPart>>>,
+}
+
+/// How many unknowns [`FEW_LAYERS`] have.
+fn few_changes<const D: usize>(of: &System<'_, D>) -> f64 {
+    FEW_LAYERS * (of.over_parts.n_unknowns() as f64).powf((D as f64 - 1.0) / D as f64)
 }
 
 /// Conforming P1 on the part of a mesh, ghosts included.
@@ -93,15 +103,15 @@ impl<'a, const D: usize> DistributedIteration<'a, D> {
     /// The solution of a scheme on a mesh, by its position: zero for the coarsest. All parts call it.
     ///
     /// # Errors
-    /// [`ExchangeError::Failed`] in all parts: bad data, a mesh that neither Dirichlet data nor a reaction hold,
-    /// a scheme without a preconditioner on parts, a failure of the engine.
+    /// [`ExchangeError::Failed`] in all parts: bad data, a mesh with a component without Dirichlet data, a scheme
+    /// without a preconditioner on parts, a failure of the engine.
     pub fn solve_on(
         &mut self,
         position: usize,
         scheme: &dyn AnyScheme<f64, D>,
     ) -> Result<DistributedSolved<'a, D>, ExchangeError> {
         let part = self.hierarchy.part(position);
-        agree(self.check(scheme, part), &*self.process.exchange)?;
+        agree_on_data(self.check(scheme, part), &part.cells, &*self.process.exchange)?;
         let is_p1 = scheme.is_conforming_linear(&part.mesh);
         let start = match self.problem.is_constrained() {
             true if is_p1 => self.p1_start(position)?,
@@ -156,6 +166,10 @@ impl<'a, const D: usize> DistributedIteration<'a, D> {
     }
 
     /// Solves a system; returns the seconds of the solve with its auxiliary matrices, too.
+    ///
+    /// Where nothing proves that the matrix is positive definite, its factors tell. Where the Krylov method finds no
+    /// solution of a symmetric inequality, the active set method runs again with factors as the preconditioner. Both
+    /// up to [`MOST_FACTORED`] unknowns.
     fn run(
         &self,
         system: &System<'_, D>,
@@ -164,6 +178,67 @@ impl<'a, const D: usize> DistributedIteration<'a, D> {
         guess: &InitialGuess<f64>,
     ) -> Result<(Solution<f64>, f64), ExchangeError> {
         let clock = Instant::now();
+        let inequality = &system.inequality;
+        let may_factor = system.over_parts.n_unknowns() <= MOST_FACTORED;
+        let is_start = guess.energy_tolerance.is_some();
+        if may_factor && !is_start && !inequality.is_definite && !self.has_factors(system)? {
+            let n = inequality.size();
+            let (values, contact) = (vec![0.0; n], vec![Contact::Inactive; n]);
+            let solution = Solution::new(values, contact, Outcome::NotCoercive);
+            return Ok((solution, clock.elapsed().as_secs_f64()));
+        }
+        let solve = |auxiliary| {
+            let family = EnginePreconditioners {
+                engine: self.process.engine.clone(),
+                over_parts: system.over_parts.clone(),
+                auxiliary,
+                n_vertices: part.mesh.vertices().len(),
+            };
+            ActiveSet::default().with_preconditioners(family).solve_from(inequality, guess)
+        };
+        let mut solution = solve(self.auxiliary(system, layout, part, guess)?);
+        self.check_engine()?;
+        let found_none =
+            matches!(solution.outcome, Outcome::Stalled | Outcome::Cycling | Outcome::NotCoercive);
+        if found_none && may_factor && !is_start && inequality.symmetric && D > 1 {
+            let mut by_factors = solve(Auxiliary::None(EngineMethod::Factors, 0.0));
+            self.check_engine()?;
+            if by_factors.outcome == Outcome::Converged {
+                by_factors.outer += solution.outer;
+                by_factors.linear += solution.linear;
+                by_factors.stages.splice(0..0, solution.stages);
+                solution = by_factors;
+            }
+        }
+        Ok((solution, clock.elapsed().as_secs_f64()))
+    }
+
+    /// An error of all parts if the engine of one has failed.
+    fn check_engine(&self) -> Result<(), ExchangeError> {
+        agree(self.process.engine.take_failure().map_or(Ok(()), Err), &*self.process.exchange)
+    }
+
+    /// Whether the matrix, or its symmetric part, has factors with positive pivots on all unknowns that are not fixed.
+    fn has_factors(&self, system: &System<'_, D>) -> Result<bool, ExchangeError> {
+        let matrix = symmetric_part(&system.inequality);
+        let by = (EngineMethod::Factors, 0.0);
+        let over_parts = system.over_parts.clone();
+        let mut solver = OnOwnUnknowns::new(&*self.process.engine, &matrix, over_parts, by);
+        let bounds = system.inequality.bounds.iter();
+        let fixed: Vec<bool> = bounds.map(|bound| bound.fixed_value().is_some()).collect();
+        let factored = solver.set_fixed(&fixed);
+        self.check_engine()?;
+        Ok(factored.is_ok())
+    }
+
+    /// What corrects besides the blocks of cells, with the auxiliary matrix.
+    fn auxiliary(
+        &self,
+        system: &System<'_, D>,
+        layout: Layout,
+        part: &'a Part<f64, D>,
+        guess: &InitialGuess<f64>,
+    ) -> Result<Auxiliary, ExchangeError> {
         // the constraint set of the problem is for the scheme
         let problem = self.problem.clone().on(Nodes);
         let new = |scheme: &dyn AnyScheme<f64, D>| {
@@ -176,38 +251,33 @@ impl<'a, const D: usize> DistributedIteration<'a, D> {
             // facet means carry the whole energy of unknowns that are means
             let are_means = system.inequality.penalised.is_some()
                 && supports.first().is_some_and(|support| support.vertices().len() > 1);
-            let by = (EngineMethod::Multigrid, if are_means { 0.0 } else { FEW_CHANGES });
+            let by = (EngineMethod::Multigrid, if are_means { 0.0 } else { few_changes(of) });
             let solver = OnOwnUnknowns::new(&*self.process.engine, matrix, over_parts, by);
             Mutex::new(Some(solver))
         };
-        let auxiliary = if D == 1 {
+        Ok(if D == 1 {
             Auxiliary::None(EngineMethod::Factors, 0.0)
         } else if system.inequality.conforming_linear || is_of_facets {
             // a start need not be accurate
             let is_start = guess.energy_tolerance.is_some();
-            Auxiliary::None(EngineMethod::Multigrid, if is_start { FEW_CHANGES } else { 0.0 })
+            Auxiliary::None(
+                EngineMethod::Multigrid,
+                if is_start { few_changes(system) } else { 0.0 },
+            )
         } else if system.inequality.penalised.is_some() {
             let facet_means = new(&NonconformingP1)?;
             let of = &facet_means.discretisation;
-            let cells = 0..part.mesh.n_cells();
-            let unknowns = cells.flat_map(|cell| of.unknowns_of(cell)).map(|i| i as u32).collect();
+            let mut unknowns = Vec::with_capacity(part.mesh.n_cells() * (D + 1));
+            for cell in 0..part.mesh.n_cells() {
+                unknowns.extend(of.unknowns_of(cell).map(|i| i as u32));
+            }
             Auxiliary::FacetMeans(multigrid(&facet_means), unknowns)
         } else {
             let conforming = new(&ConformingP1)?;
             let is_fixed = |bound: &Bound<f64>| matches!(bound, Bound::Fixed(_));
             let dirichlet = conforming.inequality.bounds.iter().map(is_fixed).collect();
             Auxiliary::Conforming(multigrid(&conforming), dirichlet)
-        };
-        let family = EnginePreconditioners {
-            engine: self.process.engine.clone(),
-            over_parts: system.over_parts.clone(),
-            auxiliary,
-            n_vertices: part.mesh.vertices().len(),
-        };
-        let solver = ActiveSet::default().with_preconditioners(family);
-        let solution = solver.solve_from(&system.inequality, guess);
-        agree(self.process.engine.failure().map_or(Ok(()), Err), &*self.process.exchange)?;
-        Ok((solution, clock.elapsed().as_secs_f64()))
+        })
     }
 
     /// Solves a system by the engine's own method.
@@ -235,11 +305,9 @@ impl<'a, const D: usize> DistributedIteration<'a, D> {
         let rows = RowsOfPart { matrix: &inequality.matrix, over_parts };
         let data = OwnData { load: &load, lower: &lower, upper: &upper };
         let steps = self.process.engine.solve_inequality(&rows, &data, &mut own_values);
-        let failure = match steps {
-            None => Err("the engine has no solver of inequalities".to_owned()),
-            Some(_) => self.process.engine.failure().map_or(Ok(()), Err),
-        };
-        agree(failure, &*self.process.exchange)?;
+        let has_method = steps.ok_or("the engine has no solver of inequalities");
+        agree(has_method, &*self.process.exchange)?;
+        self.check_engine()?;
         let mut values = vec![0.0; inequality.size()];
         own.iter().zip(&own_values).for_each(|(&i, &value)| values[i as usize] = value);
         (over_parts as &dyn Distribution).update(&mut values);

@@ -23,6 +23,11 @@ impl OverParts {
         Self { numbering, exchange, number, is_own }
     }
 
+    /// The number of unknowns of all parts.
+    pub fn n_unknowns(&self) -> u64 {
+        self.numbering.first().last().copied().unwrap_or(0)
+    }
+
     /// Replaces numbers of this part by their sums or maxima over all parts; by NaN where messages fail.
     fn join(&self, numbers: &mut [f64], joined: Joined) {
         match joined(&*self.exchange, numbers) {

@@ -33,8 +33,8 @@ impl OwnRows for RowsOfPart<'_> {
 /// ghosts, too.
 pub(super) struct OnOwnUnknowns {
     name: &'static str,
-    /// The share of unknowns up to which changes of fixed unknowns do not set up the engine again: its multigrid
-    /// for the fixed unknowns of before, with corrections zero at those of now, is a preconditioner, too.
+    /// The number of unknowns of all parts up to which changes of fixed unknowns do not set up the engine again: its
+    /// multigrid for the fixed unknowns of before, with corrections zero at those of now, is a preconditioner, too.
     few_changes: f64,
     solver: Box<dyn EngineSolver>,
     over_parts: Arc<OverParts>,
@@ -77,9 +77,9 @@ impl OnOwnUnknowns {
             true => pairs.filter(|(one, other)| one != other).count() as f64,
             false => f64::INFINITY,
         };
-        let mut sums = [changes, self.fixed.len() as f64];
-        self.over_parts.sum(&mut sums);
-        sums[0] <= self.few_changes * sums[1]
+        let mut sum = [changes];
+        self.over_parts.sum(&mut sum);
+        sum[0] <= self.few_changes
     }
 }
 
@@ -92,7 +92,8 @@ impl Preconditioner<f64> for OnOwnUnknowns {
         let own = self.over_parts.numbering.own();
         self.fixed.iter_mut().zip(own).for_each(|(own, &i)| *own = fixed[i as usize]);
         if !self.is_nearly_set_up() {
-            self.solver.set_fixed(&self.fixed);
+            self.set_up.clear();
+            self.solver.set_fixed(&self.fixed)?;
             self.set_up.clone_from(&self.fixed);
         }
         Ok(())

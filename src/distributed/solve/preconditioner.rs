@@ -20,7 +20,7 @@ use crate::linear::{FactorError, PreconditionedSystem, Preconditioner, Precondit
 /// What corrects where. The preconditioners of engines are made before, so that their matrices are gone while
 /// the inequality is solved; the first preconditioner of a scheme takes them.
 pub(super) enum Auxiliary {
-    /// The engine, all unknowns by this method, set up again for changes of more than this share of them.
+    /// The engine, all unknowns by this method, set up again for more changes than this number.
     None(EngineMethod, f64),
     /// The engine, conforming linear functions that vanish at vertices with Dirichlet data; blocks of cells
     /// correct all unknowns.
@@ -118,9 +118,10 @@ impl Preconditioner<f64> for WithGhosts<'_> {
         let mut fixed = fixed.to_vec();
         distribution.update_flags(&mut fixed);
         let set = self.inner.set_fixed(&fixed);
+        // one error in all parts, so that all take the same way on
         match any_part(Some(distribution), set.is_err()) {
-            true => set.and(Err(FactorError::NotPositive)),
-            false => set,
+            true => Err(FactorError::NotPositive),
+            false => Ok(()),
         }
     }
 
@@ -244,7 +245,7 @@ impl BlockSolver<f64> for BlockOverParts {
         let numbers = unknowns.iter().map(|&i| numbers[i as usize] as u64).collect();
         let rows = RowsOfBlock { block, own: &self.own, numbers, first };
         let mut solver = self.engine.solver(&rows, EngineMethod::Factors);
-        solver.set_fixed(&vec![false; self.own.len()]);
+        solver.set_fixed(&vec![false; self.own.len()])?;
         self.solver = Some(solver);
         Ok(())
     }

@@ -1,16 +1,20 @@
 //! The result of a solve over the parts of a mesh.
 
 use std::fmt;
+use std::time::Instant;
 
 use super::over_parts::OverParts;
 use super::system::System;
-use crate::algebra::{Contact, Distribution, Inequality};
+use crate::algebra::{Contact, Distribution, Inequality, any_part};
 use crate::assemble::Discretisation;
-use crate::distributed::agree::agree;
+use crate::distributed::agree::{agree, agree_on_data};
 use crate::distributed::error::ExchangeError;
 use crate::distributed::exchange::Exchange;
 use crate::distributed::merge::merge_all;
-use crate::inequality::{Certificate, Outcome, Solution, certify_with_jump_multipliers};
+use crate::error_bound::{BoundFigures, ErrorBound, PrimalDualPair};
+use crate::inequality::{
+    Certificate, Outcome, Solution, certify_with_jump_multipliers, energy_norm,
+};
 use crate::measure::{Errors, SquaredErrors};
 use crate::mesh::Part;
 
@@ -22,6 +26,7 @@ pub struct DistributedSolved<'a, const D: usize> {
     part: &'a Part<f64, D>,
     solution: Solution<f64>,
     certificate: Certificate,
+    has_iterate: bool,
     /// Seconds of this part for its meshes up to this one.
     pub mesh_seconds: f64,
     /// Seconds of assembly.
@@ -54,11 +59,15 @@ impl<'a, const D: usize> DistributedSolved<'a, D> {
         mut solution: Solution<f64>,
     ) -> Self {
         solution.contact = contact_of_owners(&solution.contact, &system.over_parts);
-        let Solution { values, jump_multipliers, algebraic_bound, .. } = &solution;
-        // values of any outcome are certified: all parts take part
-        let certificate =
-            certify_with_jump_multipliers(&system.inequality, values, jump_multipliers)
-                .with_algebraic_bound(*algebraic_bound);
+        let Solution { values, jump_multipliers, algebraic_bound, outcome, .. } = &solution;
+        let over_parts: &dyn Distribution = &*system.over_parts;
+        let is_finite = values.iter().all(|v| v.is_finite());
+        let has_iterate = outcome.has_iterate() && !any_part(Some(over_parts), !is_finite);
+        let certificate = match has_iterate {
+            true => certify_with_jump_multipliers(&system.inequality, values, jump_multipliers)
+                .with_algebraic_bound(*algebraic_bound),
+            false => Certificate::INVALID,
+        };
         if solution.outcome == Outcome::Converged && !certificate.is_within_limits::<f64>() {
             // whatever a solver says of itself
             solution.outcome = Outcome::Stalled;
@@ -69,6 +78,7 @@ impl<'a, const D: usize> DistributedSolved<'a, D> {
             part,
             solution,
             certificate,
+            has_iterate,
             mesh_seconds: 0.0,
             assemble_seconds,
             numbering_seconds,
@@ -85,6 +95,10 @@ impl<'a, const D: usize> DistributedSolved<'a, D> {
     /// Whether the solve converged.
     pub fn converged(&self) -> bool {
         self.outcome() == Outcome::Converged
+    }
+    /// Whether there are values to evaluate: as [`Solved::has_iterate`](crate::nested::Solved::has_iterate).
+    pub fn has_iterate(&self) -> bool {
+        self.has_iterate
     }
     /// The certificate, over all parts.
     pub fn certificate(&self) -> Certificate {
@@ -186,8 +200,63 @@ impl<'a, const D: usize> DistributedSolved<'a, D> {
         let part = self.part;
         let own =
             self.system.discretisation.energy_of(&self.solution.values, &|cell| part.owns(cell));
-        let own = agree(own.map_err(|error| error.in_whole_mesh(&part.cells)), self.exchange())?;
+        let own = agree_on_data(own, &part.cells, self.exchange())?;
         Ok(self.exchange().sum(&[own])?[0])
+    }
+    /// A guaranteed bound on the error of linear functions, over all parts, with the shares of own cells in it: see
+    /// [`error_bound`](crate::error_bound). Multipliers are exchanged for flux inside parts alone, so that the bound
+    /// depends on these a little.
+    ///
+    /// # Errors
+    /// [`ExchangeError::Failed`] in all parts where there is no bound.
+    pub fn bound(&self) -> Result<ErrorBound, ExchangeError> {
+        self.pair_and_bound().map(|(_, bound)| bound)
+    }
+    /// The pair of linear functions of which the bound is made, right on own cells alone: see
+    /// [`primal_dual_pair`](Discretisation::primal_dual_pair).
+    ///
+    /// # Errors
+    /// [`ExchangeError::Failed`] in all parts where there is no pair.
+    pub fn primal_dual_pair(&self) -> Result<PrimalDualPair, ExchangeError> {
+        let System { discretisation, inequality, .. } = &self.system;
+        let counts = |cell| self.part.owns(cell);
+        let pair = discretisation.pair_on_part(inequality, &self.solution, &counts);
+        agree(pair, self.exchange())
+    }
+    fn pair_and_bound(&self) -> Result<(PrimalDualPair, ErrorBound), ExchangeError> {
+        let System { discretisation, over_parts, .. } = &self.system;
+        let (part, exchange) = (self.part, self.exchange());
+        let counts = |cell| part.owns(cell);
+        let pair = self.primal_dual_pair()?;
+        let own = discretisation.part_of_bound(&pair, &self.solution.values, &counts);
+        let bound = agree(own, exchange)?.over_parts(&**over_parts);
+        Ok((pair, agree(bound, exchange)?))
+    }
+    /// The errors against the exact solution, none without one, and the figures of the bound with the seconds that it
+    /// takes this part.
+    ///
+    /// # Errors
+    /// [`ExchangeError::Failed`] in all parts for data that are not finite.
+    pub(crate) fn errors_and_bound(&self) -> Result<(Errors, BoundFigures, f64), ExchangeError> {
+        let discretisation = &self.system.discretisation;
+        let (part, u) = (self.part, &self.solution.values);
+        let clock = Instant::now();
+        let bound = self.pair_and_bound();
+        let seconds = clock.elapsed().as_secs_f64();
+        let pair = bound.as_ref().ok().map(|(pair, _)| pair);
+        let own = discretisation.squared_errors_beside(Some(u), pair, &|cell| part.owns(cell));
+        let own = agree_on_data(own, &part.cells, self.exchange())?;
+        let squares = merge_all(&own, self.exchange())?;
+        let bound = bound.as_ref().map(|(_, bound)| bound).map_err(|error| match error {
+            ExchangeError::Failed { message, .. } => message.clone(),
+            other => other.to_string(),
+        });
+        let has_exact = discretisation.problem().exact.is_some();
+        let errors = if has_exact { squares.norms() } else { Errors::default() };
+        let error = (has_exact && bound.is_ok()).then(|| squares.of_function());
+        let System { inequality, .. } = &self.system;
+        let energy_norm = energy_norm(inequality, u, &self.solution.jump_multipliers);
+        Ok((errors, BoundFigures::of_solution(bound, error, energy_norm), seconds))
     }
     /// The errors against the exact solution; none without one.
     ///
@@ -199,8 +268,7 @@ impl<'a, const D: usize> DistributedSolved<'a, D> {
         let Some(exact) = &discretisation.problem().exact else { return Ok(Errors::default()) };
         let (part, u) = (self.part, &self.solution.values);
         let own = discretisation.squared_errors(exact, u, &|cell| part.owns(cell));
-        let own: SquaredErrors =
-            agree(own.map_err(|error| error.in_whole_mesh(&part.cells)), exchange)?;
+        let own: SquaredErrors = agree_on_data(own, &part.cells, exchange)?;
         Ok(merge_all(&own, exchange)?.norms())
     }
 }

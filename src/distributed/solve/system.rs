@@ -6,7 +6,7 @@ use std::time::Instant;
 use super::over_parts::OverParts;
 use crate::algebra::{Inequality, any_part};
 use crate::assemble::{DataQuadrature, Discretisation};
-use crate::distributed::agree::agree;
+use crate::distributed::agree::agree_on_data;
 use crate::distributed::check_bounds::check_bounds;
 use crate::distributed::error::ExchangeError;
 use crate::distributed::exchange::Exchange;
@@ -37,12 +37,12 @@ impl<'a, const D: usize> System<'a, D> {
         exchange: &Arc<dyn Exchange>,
     ) -> Result<Self, ExchangeError> {
         let clock = Instant::now();
-        let assembled = scheme.discretise(problem, &part.mesh, quadrature).and_then(|of| {
+        let assembled = scheme.discretise(problem, &part.mesh, quadrature).and_then(|mut of| {
             let inequality = of.inequality()?;
+            of.forget_prepared();
             Ok((of, inequality))
         });
-        let assembled = assembled.map_err(|error| error.in_whole_mesh(&part.cells));
-        let (discretisation, mut inequality) = agree(assembled, &**exchange)?;
+        let (discretisation, mut inequality) = agree_on_data(assembled, &part.cells, &**exchange)?;
         check_bounds(part, &discretisation, &**exchange)?;
         let in_assembly = clock.elapsed().as_secs_f64();
         let clock = Instant::now();

@@ -240,8 +240,11 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         supports.sort_unstable();
         supports.dedup();
         let given = self.dirichlet_groups();
-        let largest = solution.values.iter().map(|u| u.to_f64().abs()).fold(0.0, f64::max);
-        let slack = largest * TOUCHING.max(64.0 * T::EPSILON);
+        let mut largest = [solution.values.iter().map(|u| u.to_f64().abs()).fold(0.0, f64::max)];
+        if let Some(distribution) = inequality.distribution() {
+            distribution.largest(&mut largest);
+        }
+        let slack = largest[0] * TOUCHING.max(64.0 * T::EPSILON);
         let support_touches = |entity: ContactEntity, unknown: usize| {
             let support = inequality.supports[unknown].vertices();
             let groups = support.iter().map(|&v| given[v as usize]);

@@ -15,13 +15,17 @@ use crate::real::Real;
 /// Degree of the rule on a simplex, or on the parts into which the free boundary cuts it.
 const DEGREE: usize = 5;
 
-/// The constrained unknowns in contact with their multipliers, the entries of `A u - b`.
+/// The constrained unknowns in contact with their multipliers, the entries of `A u - b`; on a part of a mesh those of
+/// ghosts are of their owners, and all parts call it.
 pub(super) fn nodal_multipliers<T: Real>(
     inequality: &Inequality<T>,
     solution: &Solution<T>,
 ) -> impl Iterator<Item = (usize, f64)> {
     let mut residual = vec![0.0; inequality.size()];
     inequality.residual_f64(&solution.values, &mut residual);
+    if let Some(distribution) = inequality.distribution() {
+        distribution.update(&mut residual);
+    }
     let touches = |unknown: &usize| {
         solution.contact[*unknown] != Contact::Inactive
             && inequality.bounds[*unknown].is_inequality()
@@ -97,7 +101,8 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         solution: &Solution<T>,
         counts: impl Fn(usize) -> bool,
     ) -> Vec<f64> {
-        if places.is_empty() {
+        // other parts of a mesh may have places
+        if places.is_empty() && inequality.distribution().is_none() {
             return Vec::new();
         }
         let entities = || places.iter().map(|&(cell, facet)| ContactEntity { cell, facet });

@@ -74,17 +74,8 @@ impl<'a, T: Real, const D: usize> Solved<'a, T, D> {
         energy_tolerance: Option<f64>,
     ) -> Self {
         let u = &solution.values;
-        let is_of_failure = matches!(
-            solution.outcome,
-            Outcome::NotCoercive
-                | Outcome::Singular
-                | Outcome::NotFinite
-                | Outcome::OutOfMemory
-                | Outcome::NoSolution
-                | Outcome::OutOfRange
-                | Outcome::Malformed
-        );
-        let has_iterate = !is_of_failure && u.iter().all(|v| v.to_f64().is_finite());
+        let has_iterate =
+            solution.outcome.has_iterate() && u.iter().all(|v| v.to_f64().is_finite());
         let certificate = match has_iterate {
             true => certify_with_jump_multipliers(&inequality, u, &solution.jump_multipliers)
                 .with_algebraic_bound(solution.algebraic_bound),

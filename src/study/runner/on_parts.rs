@@ -7,6 +7,7 @@ use crate::distributed::{
     Differences, DistributedIteration, DistributedSolved, ExchangeError, PartHierarchy, Process,
 };
 use crate::error::{Error, write_error};
+use crate::error_bound::BoundFigures;
 use crate::inequality::Outcome;
 use crate::measure::Errors;
 use crate::mesh::{Layers, Part};
@@ -70,25 +71,28 @@ impl<const D: usize> Study<'_, f64, D> {
                 };
                 nested.replace_constraint_set(problem);
                 let solved = nested.solve_on(position, &*entry.scheme);
-                let row = solved.and_then(|solved| {
+                let measured = solved.as_ref().map_err(Clone::clone).and_then(|solved| {
                     let verify = checks.verify;
-                    self.row_on_parts((entry, problem), level, &solved, (process, verify))
+                    self.row_on_parts((entry, problem), level, solved, (process, verify))
                 });
-                let mut row = row.unwrap_or_else(|error| {
-                    let part = nested.part(position);
-                    let is_refused = nested.check(&*entry.scheme, part).is_err();
-                    let place = (level, part, is_refused);
-                    self.row_of_failure((entry, problem), place, &error, (process, checks))
+                let part = nested.part(position);
+                let mut row = measured.unwrap_or_else(|error| {
+                    self.row_of_failure((entry, problem), (level, part), &error, (process, checks))
                 });
                 row.solver = if checks.by_engine { "engine" } else { "active-set" }.to_owned();
                 if let Some(at) = &failure {
                     (row.error, row.against) = (Errors::default(), None);
+                    row.bound.effectivity = None;
                     row.expected_order = ExpectedOrders::default();
                     row.warnings.push(format!(
                         "the scene's solution breaks the contact condition of this mesh at {at}: no errors"
                     ));
                 }
                 self.finish_on_parts(row, &mut rows, process)?;
+                #[cfg(feature = "report")]
+                if let Ok(solved) = &solved {
+                    self.write_on_parts(entry, problem, level, solved)?;
+                }
             }
         }
         Ok(self.report(rows))
@@ -109,11 +113,15 @@ impl<const D: usize> Study<'_, f64, D> {
     fn row_of_failure(
         &self,
         (entry, problem): (&Entry<'_, f64, D>, &Problem<D>),
-        (level, part, is_refused): (usize, &Part<f64, D>, bool),
+        (level, part): (usize, &Part<f64, D>),
         error: &ExchangeError,
         (process, checks): (&Process, PartChecks),
     ) -> Row {
-        let outcome = self.outcome_on_parts((entry, problem), (part, is_refused), process);
+        // without a fault of the data the engine has failed
+        let outcome = match error {
+            ExchangeError::Failed { outcome: Some(outcome), .. } => *outcome,
+            _ => Outcome::Singular,
+        };
         let ranks = PartFigures {
             count: process.count(),
             engine: process.engine.name(),
@@ -203,18 +211,25 @@ impl<const D: usize> Study<'_, f64, D> {
     ) -> Result<Row, ExchangeError> {
         let solution = solved.solution();
         let [cells, unknowns, nonzeros] = solved.sizes();
-        let error = solved.errors()?;
+        let has_iterate = solved.has_iterate();
+        let (error, bound, in_bound) = match has_iterate {
+            true => solved.errors_and_bound()?,
+            false => (Errors::default(), BoundFigures::default(), 0.0),
+        };
+        let energy = if has_iterate { Some(solved.energy()?) } else { None };
         let mut parts = self.part_figures(solved, unknowns, process)?;
         if verify {
             let whole = self.coarsest().build(level).map_err(|error| ExchangeError::Failed {
                 part: process.number,
                 message: error.to_string(),
+                outcome: None,
             })?;
             let scheme = &*entry.scheme;
             parts.differences = Some(solved.verify(scheme, whole.finest(), self.quadrature)?);
         }
-        #[cfg(feature = "report")]
-        self.write_on_parts(entry, problem, level, solved)?;
+        let in_bound = process.exchange.largest(&[in_bound])?[0];
+        let mut warnings = warnings(solved);
+        warnings.extend(bound.remark().filter(|_| solved.converged()));
         let PartSeconds { mesh, assemble, number, start, solve } = parts.seconds;
         let row = Row {
             parameters: solved.discretisation().form().theory().parameters,
@@ -223,31 +238,35 @@ impl<const D: usize> Study<'_, f64, D> {
             unknowns: Some(unknowns as usize),
             nonzeros: Some(nonzeros as usize),
             mesh_size: solved.part().mesh.mesh_size(),
-            against: problem.exact.is_some().then(|| "exact".to_owned()),
+            against: (has_iterate && problem.exact.is_some()).then(|| "exact".to_owned()),
             error,
-            objective: solved.objective(),
-            energy: Some(solved.energy()?),
-            active: Some(solved.active() as usize),
-            contact_measure: solved.contact_measure(),
-            resultant: solved.resultant(),
+            objective: if has_iterate { solved.objective() } else { None },
+            energy,
+            active: if has_iterate { Some(solved.active() as usize) } else { None },
+            contact_measure: if has_iterate { solved.contact_measure() } else { None },
+            resultant: if has_iterate { solved.resultant() } else { None },
             iterations: Iterations {
-                outer: Some(solution.outer),
+                outer: has_iterate.then_some(solution.outer),
                 linear: solution.linear,
                 levels: 0,
                 start_cycles: 0,
                 stages: solution.stages.clone(),
             },
             certificate: solved.certificate(),
-            seconds: Seconds::new(mesh[1], assemble[1] + number[1], start[1] + solve[1]),
+            seconds: Seconds {
+                bound: has_iterate.then_some(in_bound),
+                ..Seconds::new(mesh[1], assemble[1] + number[1], start[1] + solve[1])
+            },
+            bound,
             peak_memory_bytes: parts.peak_memory_bytes.map(|[_, most]| most),
-            warnings: warnings(solved),
+            warnings,
             ranks: Some(parts),
             ..Row::new(&self.scene.name, D, entry.scheme.name(), level, solved.outcome())
         };
         Ok(self.named(entry, problem, row, None))
     }
 
-    /// Writes the fields of the finest level, if fields are wanted.
+    /// Writes the fields of the finest level, if fields are wanted and there is an iterate.
     #[cfg(feature = "report")]
     fn write_on_parts(
         &self,
@@ -255,12 +274,15 @@ impl<const D: usize> Study<'_, f64, D> {
         problem: &Problem<D>,
         level: usize,
         solved: &DistributedSolved<'_, D>,
-    ) -> Result<(), ExchangeError> {
+    ) -> Result<(), Error> {
         match &self.fields.directory {
-            Some(directory) if self.levels.iter().max() == Some(&level) => {
+            Some(directory) if self.levels.iter().max() == Some(&level) && solved.has_iterate() => {
                 let label = entry.scheme.label_on(problem.constraint_set());
                 let stem = file_name(&format!("{}-{label}", self.scene.name));
-                solved.write_vtu(directory, &stem, self.fields.scalar)
+                let list = directory.join(format!("{stem}.pvtu"));
+                solved
+                    .write_vtu(directory, &stem, self.fields.scalar)
+                    .map_err(|why| write_error(&list, why.to_string()))
             }
             _ => Ok(()),
         }
@@ -307,33 +329,6 @@ impl<const D: usize> Study<'_, f64, D> {
             peak_memory_bytes: (!most[5].is_nan()).then(|| range(5).map(|x| x as u64)),
             differences: None,
         })
-    }
-
-    /// The outcome that the error of a run stands for: that of the assembly in all parts.
-    fn outcome_on_parts(
-        &self,
-        (entry, problem): (&Entry<'_, f64, D>, &Problem<D>),
-        (part, is_refused): (&Part<f64, D>, bool),
-        process: &Process,
-    ) -> Outcome {
-        // without a fault of the data the engine has failed
-        const OUTCOMES: [Outcome; 5] = [
-            Outcome::Singular,
-            Outcome::OutOfRange,
-            Outcome::Infeasible,
-            Outcome::NotCoercive,
-            Outcome::NotFinite,
-        ];
-        let assembled = entry.scheme.inequality(problem, &part.mesh, self.quadrature);
-        let own = match assembled {
-            Err(Error::DataNotFinite { .. }) => 5.0,
-            Err(Error::CoefficientNotPositive { .. }) => 4.0,
-            Err(Error::EmptyConstraint { .. }) => 3.0,
-            _ if is_refused => 2.0,
-            _ => 1.0,
-        };
-        let largest = process.exchange.largest(&[own]).map_or(1.0, |largest| largest[0]);
-        OUTCOMES[(largest as usize).clamp(1, OUTCOMES.len()) - 1]
     }
 }
 

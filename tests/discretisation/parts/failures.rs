@@ -31,7 +31,10 @@ fn an_error_of_one_part_is_one_of_all() {
     // after it the parts are at one place
     let results = in_process(3, |part, exchange| {
         let empty = agree(if part == 0 { Err("") } else { Ok(()) }, exchange);
-        assert_eq!(empty, Err(ExchangeError::Failed { part: 0, message: String::new() }));
+        assert_eq!(
+            empty,
+            Err(ExchangeError::Failed { part: 0, message: String::new(), outcome: None })
+        );
         agree(Ok::<_, String>(part), exchange)
     });
     assert_eq!(results, [Ok(0), Ok(1), Ok(2)]);

@@ -1,21 +1,20 @@
 //! An engine without a library: every part has all rows, and factors them.
 
-use std::sync::{Arc, Mutex};
+use std::sync::Arc;
 use unilateral::algebra::SparseMatrix;
 use unilateral::distributed::{
     Engine, EngineMethod, EngineSolver, Exchange, InProcess, OwnRows, Process,
 };
-use unilateral::linear::Factors;
+use unilateral::linear::{FactorError, Factors};
 
 #[derive(Debug)]
 pub struct Gathered {
     exchange: Arc<InProcess>,
-    failure: Arc<Mutex<Option<String>>>,
 }
 
 /// A process of the exchange between threads with this engine.
 pub fn process(number: u32, exchange: &Arc<InProcess>) -> Process {
-    let engine = Gathered { exchange: exchange.clone(), failure: Arc::default() };
+    let engine = Gathered { exchange: exchange.clone() };
     Process::new(number, exchange.clone(), engine)
 }
 
@@ -54,11 +53,10 @@ impl Engine for Gathered {
             free: Vec::new(),
             factors: None,
             exchange: self.exchange.clone(),
-            failure: self.failure.clone(),
         })
     }
-    fn failure(&self) -> Option<String> {
-        self.failure.lock().unwrap().clone()
+    fn take_failure(&self) -> Option<String> {
+        None
     }
 }
 
@@ -68,21 +66,15 @@ struct GatheredSolver {
     free: Vec<u32>,
     factors: Option<Factors<f64>>,
     exchange: Arc<InProcess>,
-    failure: Arc<Mutex<Option<String>>>,
 }
 
 impl EngineSolver for GatheredSolver {
-    fn set_fixed(&mut self, fixed: &[bool]) {
+    fn set_fixed(&mut self, fixed: &[bool]) -> Result<(), FactorError> {
         let own = fixed.iter().map(|&fixed| u64::from(fixed)).collect();
         let fixed = gather(&self.exchange, own);
         self.free = (0..).zip(fixed).filter(|(_, fixed)| *fixed == 0).map(|(i, _)| i).collect();
-        self.factors = match Factors::new(&self.matrix, true, &self.free) {
-            Ok(factors) => Some(factors),
-            Err(why) => {
-                self.failure.lock().unwrap().get_or_insert(why.to_string());
-                None
-            }
-        };
+        self.factors = Some(Factors::new(&self.matrix, true, &self.free)?);
+        Ok(())
     }
     fn apply(&mut self, residual: &[f64], correction: &mut [f64]) {
         let own = residual.iter().map(|r| r.to_bits()).collect();

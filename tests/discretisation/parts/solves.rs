@@ -70,6 +70,7 @@ fn holds<const D: usize>(scene: &Scene<D>, schemes: &[&str], levels: &[usize], p
                     "{label}, number {k}: {found} {expected}"
                 );
             }
+            compare_bounds(row, one, &label);
             let ranks = row.ranks.as_ref().unwrap();
             let differences = ranks.differences.unwrap();
             assert!(differences.are_none(), "{label}: {differences:?}");
@@ -87,6 +88,26 @@ fn holds<const D: usize>(scene: &Scene<D>, schemes: &[&str], levels: &[usize], p
             }
         }
     }
+}
+
+/// Bounds differ by multipliers that parts do not exchange with one another.
+#[track_caller]
+fn compare_bounds(row: &Row, one: &Row, label: &str) {
+    if one.scheme.ends_with("p2") {
+        let reason = row.bound.reason.as_deref().unwrap();
+        assert!(reason.contains("linear functions"), "{label}: {reason}");
+        return;
+    }
+    let numbers = |row: &Row| [row.bound.total, row.bound.distance].map(Option::unwrap);
+    let [total, _] = numbers(one);
+    // multipliers of obstacles are not exchanged between parts
+    let most = if row.scene == "signorini-2d" { ALGEBRA } else { 0.1 };
+    for (found, expected) in numbers(row).into_iter().zip(numbers(one)) {
+        assert!((found - expected).abs() <= most * total, "{label}: {found} {expected}");
+    }
+    assert_eq!(row.bound.guaranteed, one.bound.guaranteed, "{label}");
+    assert_eq!(row.bound.effectivity.is_some(), one.bound.effectivity.is_some(), "{label}");
+    assert!(row.bound.effectivity.is_none_or(|e| e >= 1.0 - 1e-8), "{label}: {:?}", row.bound);
 }
 
 #[test]
@@ -124,6 +145,70 @@ fn problems_on_a_line_and_in_space_have_the_solution_of_one_process() {
     holds(&scenes::radial::<1>(1.0), &["p1", "sipg", "wopsip"], &[128, 256], &[2, 3]);
     let schemes = ["p1", "cr", "sipg", "wopsip", "wopsip:facet-means"];
     holds(&scenes::radial::<3>(1.0), &schemes, &[4], &[2]);
+}
+
+/// Where the preconditioner does not suffice, factors of the matrix do.
+#[test]
+fn contrasts_are_solved_with_factors() {
+    let scene =
+        scenes::catalogue().into_iter().find(|scene| scene.name == "contrast-disc-2d").unwrap();
+    let scenes::AnyScene::Two(scene) = scene.make(&scenes::Parameters::new()).unwrap() else {
+        panic!("two dimensions")
+    };
+    let serial = study(&scene, &["sipg", "wopsip"], &[8]).run().unwrap().rows;
+    for (row, one) in on_parts(&scene, (&["sipg", "wopsip"], &[8]), 3).remove(0).iter().zip(&serial)
+    {
+        assert_eq!(row.status, Outcome::Converged, "{}", row.label);
+        assert_eq!(row.active, one.active);
+        let [found, expected] = [row, one].map(|row| row.error.l2.unwrap());
+        assert!(
+            (found - expected).abs() <= ALGEBRA * expected,
+            "{}: {found} {expected}",
+            row.label
+        );
+    }
+}
+
+/// A penalty that is too small is found by factors, as in one process, whatever a Krylov method sees of it.
+#[test]
+fn a_matrix_that_is_not_positive_definite_is_no_solution() {
+    let scene = scenes::radial::<2>(1.0);
+    let schemes = ["sipg@sigma=3", "sipg@sigma=1", "nipg@sigma=1"];
+    let serial = study(&scene, &schemes, &[8]).run().unwrap().rows;
+    let found = on_parts(&scene, (&schemes, &[8]), 2).remove(0);
+    for (row, one) in found.iter().zip(&serial) {
+        assert_eq!(row.status, one.status, "{}", row.label);
+        assert_eq!(row.error.l2.is_some(), one.error.l2.is_some(), "{}", row.label);
+        assert_eq!(row.energy.is_some(), one.energy.is_some(), "{}", row.label);
+    }
+    assert_eq!(found[0].status, Outcome::NotCoercive);
+}
+
+/// The sizes of data are those of all parts: a part may have small ones alone.
+#[test]
+fn data_that_vanish_in_one_part_are_in_range() {
+    let mut scene = scenes::radial::<2>(1.0);
+    scene.problem = scene
+        .problem
+        .source(|x| -100.0 * (-2000.0 * (x - Point::from([-1.4, -1.4])).norm_squared()).exp());
+    scene.problem.lower = None;
+    scene.problem.exact = None;
+    scene.problem = scene.problem.dirichlet(|_| 0.0);
+    for row in on_parts(&scene, (&["p1", "sipg"], &[8]), 4).remove(0) {
+        assert_eq!(row.status, Outcome::Converged, "{}", row.label);
+    }
+}
+
+/// Bounds that contradict each other, in one part, have the status that they have in one process.
+#[test]
+fn contradicting_bounds_are_infeasible() {
+    let mut scene = scenes::radial::<2>(1.0);
+    scene.problem.exact = None;
+    scene.problem =
+        scene.problem.obstacle_above(|x: &Point<f64, 2>| if x[0] > 1.2 { -5.0 } else { 5.0 });
+    let serial = study(&scene, &["p1"], &[8]).run().unwrap().rows;
+    let rows = on_parts(&scene, (&["p1"], &[8]), 2).remove(0);
+    assert_eq!([serial[0].status, rows[0].status], [Outcome::Infeasible; 2]);
 }
 
 /// Data that are no numbers in one part, and a scheme that parts do not have: a row of every part says so.

@@ -12,26 +12,28 @@ use unilateral::study::{Journal, PartChecks, Report, Row, Study};
 use super::options::{Options, check_numbers};
 use super::prepare::default_levels;
 use super::watcher::Watcher;
-use super::{Chosen, check_output, program, write_all};
+use super::{Chosen, check_output, processes_of_job, program, write_all};
 use crate::posed::Posed;
 use crate::shared::{Request, complain, each_once, fingerprint, use_threads};
 
-/// Whether every row converged.
+/// Whether every row converged: the same in all processes. The first one has said what went wrong.
 pub fn run(options: &Options) -> Request<bool> {
     let processes = Processes::start().map_err(|e| e.to_string())?;
     let process = processes.own();
     let result = run_process(options, &process);
+    // before the end: a launcher kills the others once a process has ended with a code
+    if let (0, Err(why)) = (process.number, &result) {
+        complain(why);
+    }
+    let own = result.map_or(2.0, |is_good| if is_good { 0.0 } else { 1.0 });
+    let code = process.exchange.largest(&[own]).map_or(2.0, |largest| largest[0]);
     drop(process);
-    let is_first = processes.rank() == 0;
     processes.end().map_err(|e| e.to_string())?;
-    // all processes end with one code, and the first one says why
-    result.map_err(|why| if is_first { why } else { String::new() })
+    if code == 2.0 { Err(String::new()) } else { Ok(code == 0.0) }
 }
 
 fn run_process(options: &Options, process: &Process) -> Request<bool> {
-    check_numbers(options)?;
-    check_options(options)?;
-    use_threads(Some(options.threads.unwrap_or_else(threads_of_process)))?;
+    agreed(check_request(options, process), process)?;
     let is_first = process.number == 0;
     let mut quiet = options.clone();
     quiet.quiet |= !is_first;
@@ -43,6 +45,7 @@ fn run_process(options: &Options, process: &Process) -> Request<bool> {
         let mesh = own.mesh_bytes().unwrap_or_default();
         files = vec![("problem", fingerprint(text)), ("mesh", fingerprint(mesh))];
     }
+    check_equal(&format!("{options:?} {files:?}"), process)?;
     let program = program::<f64>(options, &files)
         .with_request("processes", process.count())
         .with_request("engine", process.engine.name());
@@ -76,14 +79,40 @@ fn run_process(options: &Options, process: &Process) -> Request<bool> {
     watcher.clear();
     let report = Report::new(program, rows);
     if is_first {
-        write_all(options, &report)?;
         messages.iter().for_each(|text| complain(text));
     }
+    agreed(if is_first { write_all(options, &report) } else { Ok(()) }, process)?;
     let has_bits = |row: &Row| {
         let differences = row.ranks.as_ref().and_then(|ranks| ranks.differences);
         differences.is_none_or(|found| found.are_none())
     };
     Ok(messages.is_empty() && report.rows.iter().all(|row| row.converged() && has_bits(row)))
+}
+
+/// Checks what needs no file: numbers, options, the launcher, threads.
+fn check_request(options: &Options, process: &Process) -> Request<()> {
+    check_numbers(options)?;
+    check_options(options)?;
+    let (started, found) = (processes_of_job(), process.count());
+    if started != found {
+        return Err(format!(
+            "the launcher has started {started} processes, and MPI knows of {found}: start the program by the mpirun of the MPI that it is linked with"
+        ));
+    }
+    use_threads(Some(options.threads.unwrap_or_else(threads_of_process)))
+}
+
+/// Refuses processes with other options or files than the first one.
+fn check_equal(request: &str, process: &Process) -> Request<()> {
+    let own: Vec<u64> = request.bytes().map(u64::from).collect();
+    let received = process.exchange.exchange(vec![own; process.count()]);
+    let received = received.map_err(|error| error.to_string())?;
+    match received.iter().position(|other| *other != received[0]) {
+        None => Ok(()),
+        Some(other) => Err(format!(
+            "process {other} has other options, or files with other bytes, than the first one: all need the same"
+        )),
+    }
 }
 
 /// The result of this process if no process failed; else in all the message of the first that did.

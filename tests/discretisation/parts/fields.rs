@@ -1,0 +1,67 @@
+//! Fields of solutions over parts against those of one process.
+
+use super::gathered::process;
+use std::collections::HashMap;
+use unilateral::distributed::{DistributedIteration, PartHierarchy, in_process};
+use unilateral::mesh::Layers;
+use unilateral::prelude::*;
+use unilateral::scenes::Scene;
+
+/// By cell of the whole mesh the multiplier, and by cell and facet the pressure, of own cells.
+type OwnFields = (Vec<(u64, f64)>, Vec<((u64, usize), f64)>);
+
+/// Multipliers and pressures beside a cut are those of one part: the residuals of ghosts are those of their owners.
+fn holds(scene: &Scene<2>) {
+    let mesh: Mesh<f64, 2> = scene.domain.mesh(4).unwrap();
+    for name in ["p1", "sipg", "nipg", "br2", "wopsip"] {
+        let scheme = name.parse::<NamedScheme>().unwrap().make::<f64, 2>();
+        let of_parts = |parts: usize| {
+            in_process(parts, |number, exchange| -> OwnFields {
+                let process = process(number, exchange);
+                let by = (1, Layers::across_vertices(1));
+                let meshes = PartHierarchy::new(&mesh, None, by, &process).unwrap();
+                let mut nested = DistributedIteration::new(&scene.problem, &meshes, process);
+                let solved = nested.solve_on(1, &*scheme).unwrap();
+                assert!(solved.converged(), "{name}");
+                let fields = solved.discretisation().fields(solved.inequality(), solved.solution());
+                let part = solved.part();
+                let multipliers = fields.multiplier.iter().enumerate();
+                let multipliers = multipliers.filter(|(cell, _)| part.owns(*cell));
+                let places = fields.contact_boundary.iter().zip(&fields.pressure);
+                let places = places.filter(|((cell, _), _)| part.owns(*cell));
+                (
+                    multipliers.map(|(cell, &m)| (part.cells[cell], m)).collect(),
+                    places.map(|(&(cell, k), &p)| ((part.cells[cell], k), p)).collect(),
+                )
+            })
+        };
+        let alone = of_parts(1).remove(0);
+        let multipliers: HashMap<u64, f64> = alone.0.into_iter().collect();
+        let pressures: HashMap<(u64, usize), f64> = alone.1.into_iter().collect();
+        let largest =
+            multipliers.values().chain(pressures.values()).fold(0.0_f64, |a, x| a.max(x.abs()));
+        let mut n = 0;
+        for (own, on_facets) in of_parts(3) {
+            let of_cells = own.iter().map(|(cell, m)| (m, multipliers[cell]));
+            let of_facets = on_facets.iter().map(|(place, p)| (p, pressures[place]));
+            for (found, expected) in of_cells.chain(of_facets) {
+                assert!((found - expected).abs() <= 1e-6 * largest, "{name}: {found} {expected}");
+                n += 1;
+            }
+        }
+        assert_eq!(n, multipliers.len() + pressures.len());
+        assert!(largest > 0.0);
+    }
+}
+
+#[test]
+fn multipliers_beside_a_cut_are_those_of_the_whole() {
+    holds(&scenes::radial::<2>(1.0));
+    let signorini =
+        scenes::catalogue().into_iter().find(|scene| scene.name == "signorini-2d").unwrap();
+    let scenes::AnyScene::Two(signorini) = signorini.make(&scenes::Parameters::new()).unwrap()
+    else {
+        panic!("two dimensions")
+    };
+    holds(&signorini);
+}
