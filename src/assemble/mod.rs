@@ -142,9 +142,11 @@ impl<'a, T: Real, const D: usize> Discretisation<'a, T, D> {
             self.shared_rows.fill(&self.space, self.form(), matrix);
         }
     }
-    /// Drops what facet forms need of cells and facets, a tenth of the memory of a solve; computed again when needed.
+    /// Drops what facet forms need of cells and facets, and the load by cells: a tenth of the memory of a solve. It is
+    /// computed again when needed.
     pub(crate) fn forget_prepared(&mut self) {
         self.prepared.take();
+        self.space.load_by_cell.take();
     }
     fn prepared(&self) -> &(Metrics<T>, FacetCoefficients<T>) {
         self.prepared.get_or_init(|| {

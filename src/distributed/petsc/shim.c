@@ -6,6 +6,9 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#ifdef __GLIBC__
+#include <malloc.h>
+#endif
 
 #if !defined(PETSC_USE_REAL_DOUBLE) || defined(PETSC_USE_COMPLEX)
 #error "the library needs a PETSc with real numbers of double precision"
@@ -29,8 +32,19 @@
 /* For agreements on failures: processes may be inside functions of PETSc that use the communicator of PETSc. */
 static MPI_Comm agreement;
 
+/* A library that PETSc loads (SuperLU_DIST) tells the allocator never to give memory back, so that freed vectors stay
+ * with a process; a fifth of its peak is of this kind. Large vectors get mappings of their own again. */
+static void give_memory_back(void) {
+#ifdef __GLIBC__
+  mallopt(M_MMAP_MAX, 65536);
+  mallopt(M_MMAP_THRESHOLD, 8 << 20);
+  mallopt(M_TRIM_THRESHOLD, 64 << 20);
+#endif
+}
+
 int ul_start(void) {
   int provided, flag;
+  give_memory_back();
   if (MPI_Initialized(&flag) || flag) return 1; /* somebody else ends it */
   /* threads of the library never call MPI */
   if (MPI_Init_thread(NULL, NULL, MPI_THREAD_FUNNELED, &provided) || provided < MPI_THREAD_FUNNELED) return 1;
@@ -186,7 +200,6 @@ int ul_matrix_destroy(Mat *matrix) {
 
 typedef struct {
   Mat matrix; /* as given; owned by the solver */
-  Mat fixed;  /* with rows and columns of the identity; NULL before the first fixed unknowns */
   PC pc;
   Vec r, z; /* without memory of their own */
   double mean; /* of the diagonal */
@@ -208,7 +221,6 @@ int ul_solver_new(Mat matrix, int method, Solver **out) {
   TRY(VecGetSize(diagonal, &all));
   TRY(VecDestroy(&diagonal));
   solver->mean = all > 0 && sum > 0 ? sum / all : 1;
-  TRY(MatSetOption(matrix, MAT_SPD, PETSC_TRUE));
   TRY(MatGetLocalSize(matrix, &n, NULL));
   TRY(VecCreateMPIWithArray(PETSC_COMM_WORLD, 1, n, PETSC_DETERMINE, NULL, &solver->r));
   TRY(VecCreateMPIWithArray(PETSC_COMM_WORLD, 1, n, PETSC_DETERMINE, NULL, &solver->z));
@@ -216,13 +228,12 @@ int ul_solver_new(Mat matrix, int method, Solver **out) {
 }
 
 static int new_preconditioner(Solver *solver) {
-  TRY(PCDestroy(&solver->pc));
   TRY(PCCreate(PETSC_COMM_WORLD, &solver->pc));
   if (solver->method == 0) {
     TRY(PCSetOptionsPrefix(solver->pc, "ul_multigrid_"));
     TRY(PCSetType(solver->pc, PCHYPRE));
     TRY(PCHYPRESetType(solver->pc, "boomeramg"));
-    /* in space the set-up takes half of the time of that with the default coarsening, in the plane as long */
+    /* in space it takes less time than the default coarsening, in the plane as much */
     PetscBool is_chosen;
     TRY(PetscOptionsHasName(NULL, NULL, COARSENING, &is_chosen));
     if (!is_chosen) TRY(PetscOptionsSetValue(NULL, COARSENING, "HMIS"));
@@ -241,17 +252,23 @@ int ul_solver_fix(Solver *solver, const int64_t *rows, int64_t count) {
   if (n > 0 && !fits(rows[n - 1])) return TOO_LARGE;
   TRY(PetscMalloc1(n + 1, &list));
   for (PetscInt k = 0; k < n; k++) list[k] = (PetscInt)rows[k];
-  if (solver->fixed)
-    TRY(MatCopy(solver->matrix, solver->fixed, SAME_NONZERO_PATTERN));
-  else {
-    TRY(MatDuplicate(solver->matrix, MAT_COPY_VALUES, &solver->fixed));
-    TRY(MatSetOption(solver->fixed, MAT_KEEP_NONZERO_PATTERN, PETSC_TRUE));
-    TRY(MatSetOption(solver->fixed, MAT_SPD, PETSC_TRUE));
-  }
-  TRY(MatZeroRowsColumns(solver->fixed, n, list, solver->mean, NULL, NULL));
+  Mat fixed;
+  TRY(PCDestroy(&solver->pc));
+  TRY(MatDuplicate(solver->matrix, MAT_COPY_VALUES, &fixed));
+  TRY(MatSetOption(fixed, MAT_KEEP_NONZERO_PATTERN, PETSC_TRUE));
+  TRY(MatZeroRowsColumns(fixed, n, list, solver->mean, NULL, NULL));
   TRY(PetscFree(list));
+  if (solver->method == 0) {
+    /* multigrid has a copy of its own: this one is gone before the coarse matrices come */
+    Mat copy;
+    TRY(MatConvert(fixed, MATHYPRE, MAT_INITIAL_MATRIX, &copy));
+    TRY(MatDestroy(&fixed));
+    fixed = copy;
+  } else
+    TRY(MatSetOption(fixed, MAT_SPD, PETSC_TRUE));
   TRY(new_preconditioner(solver));
-  TRY(PCSetOperators(solver->pc, solver->fixed, solver->fixed));
+  TRY(PCSetOperators(solver->pc, fixed, fixed));
+  TRY(MatDestroy(&fixed));
   if (solver->method == 1) {
     Mat factors;
     TRY(PCFactorSetUpMatSolverType(solver->pc));
@@ -286,7 +303,6 @@ int ul_solver_destroy(Solver *solver) {
   TRY(PCDestroy(&solver->pc));
   TRY(VecDestroy(&solver->r));
   TRY(VecDestroy(&solver->z));
-  TRY(MatDestroy(&solver->fixed));
   TRY(MatDestroy(&solver->matrix));
   free(solver);
   return 0;

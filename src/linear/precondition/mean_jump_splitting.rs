@@ -50,22 +50,20 @@ pub(crate) struct MeanJumpSplitting<'a, T: Real> {
     /// Workspace: residuals and values of Crouzeix-Raviart functions.
     facet_residuals: Vec<T>,
     facet_means: Vec<T>,
-    /// The diagonal correction of each side.
-    sides: Vec<SideCorrection<T>>,
+    sides: SideCorrections<T>,
     mixed_block: MixedBlock<'a, T>,
     /// Workspace: residuals and corrections in the basis of facet mean functions.
     mean_residuals: Vec<T>,
     means: Vec<T>,
 }
 
-/// The diagonal correction of the mean over one side of a facet.
-#[derive(Clone, Copy)]
-struct SideCorrection<T> {
-    /// The opposite side, if the two are corrected together; else [`NO_INDEX`].
-    opposite: u32,
-    /// The reciprocal of the form of the difference of the two functions; of the function of this
-    /// side if there is no opposite side; zero without a correction.
-    inverse_jump: T,
+/// The diagonal corrections of the means over the sides of facets.
+struct SideCorrections<T> {
+    /// Whether a side is corrected together with the opposite one.
+    is_pair: Vec<bool>,
+    /// The reciprocal of the form of the difference of the two functions of a pair; of the function of the
+    /// side if it is none; zero without a correction.
+    inverse_jump: Vec<T>,
 }
 
 /// The block of the matrix that is solved exactly.
@@ -174,7 +172,6 @@ impl<'a, T: Real> MeanJumpSplitting<'a, T> {
         let form = FacetMeanForm::new(penalised, supports)?;
         let zero = T::lit(0.0);
         let n = matrix.size();
-        let no_correction = SideCorrection { opposite: NO_INDEX, inverse_jump: zero };
         let space = CrouzeixRaviartSpace::new(&form);
         let facet_means_solver = facet_means_solver(&form, &space)?;
         let n_facets = space.sides.len();
@@ -193,7 +190,7 @@ impl<'a, T: Real> MeanJumpSplitting<'a, T> {
             fixed_vertices: vec![false; n_vertices],
             facet_residuals: vec![zero; n_facets],
             facet_means: vec![zero; n_facets],
-            sides: vec![no_correction; n],
+            sides: SideCorrections { is_pair: vec![false; n], inverse_jump: vec![zero; n] },
             mixed_block: MixedBlock {
                 vertex_values: vec![],
                 sides: vec![],
@@ -244,8 +241,9 @@ impl<T: Real> MeanJumpSplitting<'_, T> {
         let Self { form, states, sides, mixed_block, fixed, .. } = self;
         mixed_block.vertex_values.clear();
         mixed_block.sides.clear();
-        for (s, side) in sides.iter_mut().enumerate() {
-            *side = SideCorrection { opposite: NO_INDEX, inverse_jump: T::lit(0.0) };
+        let corrections = sides.is_pair.iter_mut().zip(&mut sides.inverse_jump);
+        for (s, (is_pair, inverse_jump)) in corrections.enumerate() {
+            (*is_pair, *inverse_jump) = (false, T::lit(0.0));
             if states[s] != SideState::Free {
                 if !fixed[s] {
                     mixed_block.vertex_values.push(s as u32);
@@ -256,12 +254,12 @@ impl<T: Real> MeanJumpSplitting<'_, T> {
             match states.get(opposite as usize) {
                 Some(SideState::Free) => {
                     let (other, coupling) = (form.diagonal[opposite as usize], form.coupling[s]);
-                    let inverse_jump = invert(own + other - (coupling + coupling))?;
-                    *side = SideCorrection { opposite, inverse_jump };
+                    *is_pair = true;
+                    *inverse_jump = invert(own + other - (coupling + coupling))?;
                 }
                 Some(SideState::Mixed) => mixed_block.sides.push(s as u32),
-                Some(SideState::Fixed) => side.inverse_jump = invert(own)?,
-                None if form.has_jump[s] => side.inverse_jump = invert(own)?,
+                Some(SideState::Fixed) => *inverse_jump = invert(own)?,
+                None if form.has_jump[s] => *inverse_jump = invert(own)?,
                 None => {}
             }
         }
@@ -410,15 +408,15 @@ impl<T: Real> Preconditioner<T> for MeanJumpSplitting<'_, T> {
         });
         self.facet_means_solver.apply(&self.facet_residuals, &mut self.facet_means);
         let (facets, facet_means) = (&self.space.facet, &self.facet_means);
+        let opposite = &self.form.opposite;
         let means = if are_means { &mut *z } else { &mut self.means[..] };
         for_each_chunk_of_groups(means, size, |range, chunk| {
             for (s, mean) in range.zip(chunk) {
-                let side = &sides[s];
-                let jump = match side.opposite {
-                    NO_INDEX => g[s],
-                    opposite => g[s] - g[opposite as usize],
+                let jump = match sides.is_pair[s] {
+                    true => g[s] - g[opposite[s] as usize],
+                    false => g[s],
                 };
-                *mean = facet_means[facets[s] as usize] + side.inverse_jump * jump;
+                *mean = facet_means[facets[s] as usize] + sides.inverse_jump[s] * jump;
             }
         });
         if !are_means {
