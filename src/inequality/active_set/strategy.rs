@@ -24,7 +24,7 @@ use super::progress::{Obstruction, Patience};
 use super::settings::{ActiveSet, Globalisation};
 use crate::algebra::{Inequality, Start, any_part};
 use crate::inequality::initial_guess::InitialGuess;
-use crate::inequality::interior_point::{Identification, InteriorPoint, MAX_STEPS};
+use crate::inequality::interior_point::{CentralPoint, Identification, InteriorPoint, MAX_STEPS};
 use crate::inequality::monotone_multigrid::MonotoneMultigrid;
 use crate::inequality::validation::{check_definite, check_input};
 use crate::inequality::{InequalitySolver, Outcome, Solution, Stage, StageRun};
@@ -81,6 +81,8 @@ struct Solve<'s, 'a, T: Real> {
     interior_point_may_improve: bool,
     /// Whether there may be slacks that only the second run of the interior point method resolves.
     has_small_slacks: bool,
+    /// Where the first run of the interior point method ended, if the second one may go on from there.
+    central_point: Option<CentralPoint>,
 }
 
 /// What the last stage of a solve found, in addition to the iterate.
@@ -125,6 +127,7 @@ pub(crate) fn solve<T: Real>(
         end: None,
         interior_point_may_improve: true,
         has_small_slacks: false,
+        central_point: None,
     };
     let mut found = None;
     for stage in STRATEGY {
@@ -390,7 +393,7 @@ impl<'a, T: Real> Solve<'_, 'a, T> {
     }
 
     /// Replaces the iterate by the result of the interior point method, which starts from the best
-    /// iterate. If it finds no active set, only the number of linear systems changes.
+    /// iterate, or goes on where its first run left small slacks. If it finds no active set, only the number of linear systems changes.
     fn run_interior_point(&mut self) {
         let identification = match self.runs_of(Stage::InteriorPoint) {
             0 => Identification::Early,
@@ -400,7 +403,10 @@ impl<'a, T: Real> Solve<'_, 'a, T> {
         let new = || DirectSolver::new(self.inequality, refinements);
         let condensation = self.direct.get_or_insert_with(new).condensation();
         let start = self.iterate.best_values();
-        let mut method = InteriorPoint::new(self.inequality, condensation, start, identification);
+        let mut method = match self.central_point.take() {
+            Some(point) => InteriorPoint::resumed(self.inequality, condensation, point),
+            None => InteriorPoint::new(self.inequality, condensation, start, identification),
+        };
         let contact = method.run();
         let (values, jump_multipliers, steps) =
             (method.values(), method.jump_multipliers(), method.steps);
@@ -413,6 +419,7 @@ impl<'a, T: Real> Solve<'_, 'a, T> {
             let states = states.map(|(&contact, bound)| admissible_state(bound, contact)).collect();
             self.iterate.replace(values, jump_multipliers, states);
         }
+        self.central_point = method.into_central_point();
     }
 
     /// The numbers of steps within which a stage must progress.

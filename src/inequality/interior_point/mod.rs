@@ -65,6 +65,13 @@ pub(crate) enum Identification {
     Final,
 }
 
+/// A point near the central path, at which a run ended.
+pub(crate) struct CentralPoint {
+    values: Vec<f64>,
+    jump_multipliers: Vec<f64>,
+    pairs: Vec<ComplementarityPair>,
+}
+
 /// The predictor-corrector method of Mehrotra (SIAM J. Optim. 2 (1992) 575-601) for
 /// `A u - b = z_lower - z_upper` with the dual variables `z` of the bounds. It follows the central
 /// path: the points at which all slacks and dual variables are positive and all complementarity
@@ -97,6 +104,8 @@ pub(crate) struct InteriorPoint<'h, 'a, T> {
     identification: Identification,
     /// Whether the method ended because it had identified the active set.
     is_identified: bool,
+    /// Whether the method ended because the active set was identified, or at its final complementarity.
+    has_small_complementarity: bool,
     /// Whether points are relative to bounds, steps keep near the central path and go on until every bound
     /// is decided, which takes two to three times as many steps. Where cells have null directions
     /// ([`StaticCondensation::has_null_directions`]), copies of one node within the contact set leave their bound by
@@ -142,11 +151,72 @@ impl<'h, 'a, T: Real> InteriorPoint<'h, 'a, T> {
             steps: 0,
             identification,
             is_identified: false,
+            has_small_complementarity: false,
             resolves_slacks,
             is_stuck: false,
         };
+        method.leave_out_large_jump_multipliers();
         method.move_to_central_path(INITIAL_COMPLEMENTARITY);
         method
+    }
+
+    /// Starts without jump multipliers where the residual is smaller without them: those of an arbitrary active set
+    /// exceed all loads by the penalty, and the Jacobi values of such residuals are far off. With cells of linears,
+    /// which have no null directions, penalties do not add up to that.
+    fn leave_out_large_jump_multipliers(&mut self) {
+        if !self.system.has_null_directions() {
+            return;
+        }
+        let mut residual = self.point.clone();
+        let with = self.size_of_residual(&mut residual);
+        let none = vec![0.0; self.point.jump_multipliers.len()];
+        let given = std::mem::replace(&mut self.point.jump_multipliers, none);
+        if with <= self.size_of_residual(&mut residual) {
+            self.point.jump_multipliers = given;
+        }
+    }
+
+    /// The square of the residual of values in the dual norm of the diagonal scales, and the residual.
+    fn size_of_residual(&self, residual: &mut MixedVector) -> f64 {
+        self.residual(residual);
+        let square = |&i: &u32| residual.values[i as usize].powi(2) / self.diagonal[i as usize];
+        self.system.free().iter().map(square).sum()
+    }
+
+    /// A method to the limit of rounding that starts from the point at which another one ended, and resolves the
+    /// slacks that this left small.
+    pub fn resumed(
+        inequality: &'a Inequality<T>,
+        condensation: Option<&'h StaticCondensation<'a, T>>,
+        CentralPoint { values, jump_multipliers, pairs }: CentralPoint,
+    ) -> Self {
+        let rounded: Vec<T> = values.iter().map(|&x| T::lit(x)).collect();
+        let mut method =
+            Self::new(inequality, condensation, (&rounded, &[]), Identification::Final);
+        method.point.jump_multipliers = jump_multipliers;
+        for (i, x) in method.point.values.iter_mut().enumerate() {
+            *x = values[i] - method.system.reference(i);
+        }
+        for pair in &pairs {
+            let bound = &inequality.bounds[pair.unknown];
+            let bound = if pair.side > 0.0 { bound.lower() } else { bound.upper() };
+            // the difference from this bound has the digits of the slack
+            if bound.is_some_and(|b| b.to_f64() == method.system.reference(pair.unknown)) {
+                method.point.values[pair.unknown] = pair.side * pair.slack;
+            }
+        }
+        method.pairs = pairs;
+        method
+    }
+
+    /// The point at which the method ended, from which another one may resolve small slacks; `None` if there are none,
+    /// or if the method ended because its steps were short.
+    pub fn into_central_point(self) -> Option<CentralPoint> {
+        let is_start = self.has_small_complementarity && self.leaves_small_slacks();
+        let Self { system, point, pairs, .. } = self;
+        let MixedVector { mut values, jump_multipliers } = point;
+        values.iter_mut().enumerate().for_each(|(i, x)| *x += system.reference(i));
+        is_start.then_some(CentralPoint { values, jump_multipliers, pairs })
     }
 
     /// Iterates until the active set is identified, no step improves the point, or [`MAX_STEPS`]
@@ -189,7 +259,8 @@ impl<'h, 'a, T: Real> InteriorPoint<'h, 'a, T> {
                 || self.indicators_are_separated()
                 || relative <= LEAST_COMPLEMENTARITY;
             let is_final = relative <= FINAL_COMPLEMENTARITY && is_decided;
-            if self.is_identified || is_final || stagnates {
+            self.has_small_complementarity = self.is_identified || is_final;
+            if self.has_small_complementarity || stagnates {
                 break;
             }
             if !self.step(&residual, mean)? {
@@ -251,7 +322,11 @@ impl<'h, 'a, T: Real> InteriorPoint<'h, 'a, T> {
         let (lower, upper) = (bound.lower().map(relative), bound.upper().map(relative));
         let jacobi = self.point.values[i] + residual[i] / self.diagonal[i];
         let square = product / self.diagonal[i];
-        let slack = |y: f64| 0.5 * y.hypot(2.0 * square.sqrt()) + 0.5 * y;
+        // of a Jacobi value far beyond the bound a difference of equal numbers would leave no slack
+        let slack = |y: f64| {
+            let root = 0.5 * y.hypot(2.0 * square.sqrt()) + 0.5 * y.abs();
+            if y < 0.0 { square / root } else { root }
+        };
         self.point.values[i] = match (lower, upper) {
             (Some(l), Some(u)) => {
                 let margin = slack(0.0).min(0.25 * (u - l));

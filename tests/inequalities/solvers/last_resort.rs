@@ -241,6 +241,20 @@ fn bounds_at_nodes_of_quadratics_are_solved_for_every_penalty() {
     }
 }
 
+/// Krylov methods with the assembled matrix of a huge penalty leave an active set whose jump multipliers exceed all loads
+/// by it; the interior point method does not start from them.
+#[test]
+fn jump_multipliers_of_an_arbitrary_active_set_are_no_start() {
+    let scheme: NamedScheme = "wopsip-p2@eta=1e10".parse().unwrap();
+    let made = scenes::by_name("contrast-2d").unwrap().make(&scenes::Parameters::default());
+    let scenes::AnyScene::Two(scene) = made.unwrap() else { panic!() };
+    let study = Study::<f64, 2>::new(scene).named_scheme(&scheme).levels([32]);
+    let row = study.run().unwrap().rows.remove(0);
+    assert!(row.converged(), "{}", row.status);
+    assert!(row.certificate.largest() < 1e-14, "{:?}", row.certificate);
+    assert!(row.iterations.outer < Some(80), "{:?}", row.iterations);
+}
+
 /// Rounding of a huge penalty makes a direction of a Krylov method look indefinite. The matrix is known to be
 /// definite, so that factors with jump multipliers go on.
 #[test]
