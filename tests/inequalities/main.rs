@@ -1,6 +1,8 @@
 //! Solvers of the algebraic inequality against slow solvers, their iteration counts and failures.
 
 mod contact_sets;
+mod double_precision;
+mod exact_reference;
 mod iterations;
 mod iterative;
 mod monotone_multigrid;

@@ -235,6 +235,11 @@ impl<T: Real> LinearSolver<T> for DirectSolver<'_, T> {
             None => iterate.residual_term_sizes(i),
         }
     }
+
+    fn size_of_values_near(&self, i: usize, iterate: &Iterate<'_, T>) -> f64 {
+        let value = |j: usize| iterate.values[j].to_f64();
+        self.condensation.as_ref().map_or(f64::INFINITY, |c| c.largest_value_near(i, value))
+    }
 }
 
 /// The system `K u + M^T p = c`, `M u - S^-1 p = g` of a [`PenalisedMatrix`], for values `u` of the

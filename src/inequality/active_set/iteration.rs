@@ -23,6 +23,9 @@ const MANY_STEPS: usize = 8;
 /// Changes of states are few up to this share of the unknowns.
 const FEW_CHANGES: f64 = 1.0 / 4000.0;
 
+/// How often an iteration continues with violations below its tolerance.
+const CONTINUATIONS: usize = 8;
+
 /// How an iteration ends.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum End {
@@ -81,7 +84,35 @@ impl<T: Real> Iteration<'_, '_, '_, T> {
     }
 
     /// The iteration. `Ok` if it converged.
+    ///
+    /// Unknowns that then violate bounds by less than the tolerance, but by what large penalties make count in energy,
+    /// become active ([`Iterate::small_violations`]), and the iteration continues. Where it does not converge again,
+    /// the first solution remains.
     fn iterate_to_end(&mut self) -> Result<(), End> {
+        self.iterate_to_tolerance()?;
+        let band = self.settings.rounding_band;
+        for _ in 0..CONTINUATIONS {
+            let violations = self.iterate.small_violations(band, &*self.solver);
+            if violations.is_empty() {
+                break;
+            }
+            let Iterate { values, jump_multipliers, states, .. } = &*self.iterate;
+            let (values, jumps, states) =
+                (values.clone(), jump_multipliers.clone(), states.clone());
+            self.iterate.change_states(&violations);
+            self.patience.halving = self.patience.halving.or(Some(self.settings.stagnation_steps));
+            if self.iterate_to_tolerance().is_err() {
+                self.iterate.replace(values, jumps, states);
+                self.solver.set_eliminated(&self.iterate.eliminated)?;
+                break;
+            }
+        }
+        Ok(())
+    }
+
+    /// The iteration from the present states until all violations are within the tolerances of the solver and of
+    /// [`Iterate::evaluate`].
+    fn iterate_to_tolerance(&mut self) -> Result<(), End> {
         let tolerance = self.solver.tolerance();
         let band = self.settings.rounding_band;
         if tolerance > 0.0 {

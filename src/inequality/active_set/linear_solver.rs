@@ -71,4 +71,10 @@ pub(crate) trait LinearSolver<T>: Sync {
     /// Sums of the absolute values of the terms of which the residual of unknown `i` is computed: terms
     /// of inactive unknowns, then terms of eliminated unknowns and of the load.
     fn residual_term_sizes(&self, i: usize, iterate: &Iterate<'_, T>) -> [f64; 2];
+    /// The largest of the values whose rounding an inactive unknown `i` has, if the solver resolves differences of
+    /// values to rounding; else infinite.
+    fn size_of_values_near(&self, i: usize, iterate: &Iterate<'_, T>) -> f64 {
+        let _ = (i, iterate);
+        f64::INFINITY
+    }
 }

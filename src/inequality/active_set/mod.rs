@@ -8,6 +8,7 @@
 //! | `iteration` | the active set iteration, for every linear solver |
 //! | `iterate` | values, contact states and residual of a step, and the best values |
 //! | `evaluation` | violations, merit and prediction of the active set |
+//! | `small_violations` | violations below the tolerance that large penalties make count |
 //! | `progress` | active sets that return, stagnation, accuracy of linear solutions |
 //! | `linear_solver` | the trait of solvers of the linear systems |
 //! | `direct_solver` | factors of the assembled matrix, static condensation of a penalised one |
@@ -26,6 +27,7 @@ mod local_inequality;
 mod preconditioned_solver;
 mod progress;
 mod settings;
+mod small_violations;
 mod solver;
 mod strategy;
 

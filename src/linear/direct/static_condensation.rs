@@ -518,6 +518,17 @@ impl<'a, T: Real> StaticCondensation<'a, T> {
         }
         [free, fixed]
     }
+
+    /// The largest absolute value of the unknowns in the block of unknown `i` and in the jumps over its sides.
+    pub fn largest_value_near(&self, i: usize, u: impl Fn(usize) -> f64) -> f64 {
+        let n = self.penalised.block_size;
+        let block = i / n;
+        let of_block = (block * n..(block + 1) * n).map(&u).fold(0.0, |m: f64, x| m.max(x.abs()));
+        let sides = self.sides(block).iter();
+        let terms = sides.flat_map(|side| self.penalised.terms_of(side.jump as usize));
+        let unknowns = terms.flat_map(|term| [term.here, term.there]).filter(|&j| j != NO_INDEX);
+        unknowns.map(|j| u(j as usize)).fold(of_block, |m, x| m.max(x.abs()))
+    }
 }
 
 impl<T> CondensedFactors<T> {

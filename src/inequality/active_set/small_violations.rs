@@ -1,0 +1,47 @@
+//! Violations of bounds below the tolerance of the active set, which beside large penalties are not small in
+//! energy.
+
+use super::iterate::Iterate;
+use super::linear_solver::LinearSolver;
+use crate::algebra::Contact;
+use crate::real::Real;
+
+/// The share of the energy norm that small violations may have together.
+const SHARE: f64 = 1e-11;
+
+impl<T: Real> Iterate<'_, T> {
+    /// The inactive unknowns that violate a bound by more than the rounding of the values nearby, whatever the
+    /// largest of all values, with the states that they should have; none if the energy norm of all these violations
+    /// is below [`SHARE`] of that of the iterate.
+    ///
+    /// An unknown that is wrongly left inactive changes the values by its violation at most, and their energy norm by
+    /// as much times the root of its diagonal entry, which contains the penalties.
+    pub fn small_violations(
+        &self,
+        rounding_band: f64,
+        solver: &dyn LinearSolver<T>,
+    ) -> Vec<(u32, Contact)> {
+        let mut violations = Vec::new();
+        let mut square = 0.0;
+        for (i, bound) in self.inequality.bounds.iter().enumerate() {
+            if self.eliminated[i] {
+                continue;
+            }
+            let x = self.values[i];
+            let below = bound.lower().map_or(0.0, |lower| (lower - x).to_f64());
+            let above = bound.upper().map_or(0.0, |upper| (x - upper).to_f64());
+            let violation = below.max(above);
+            if violation > 0.0
+                && violation > rounding_band * T::EPSILON * solver.size_of_values_near(i, self)
+            {
+                let state = if below > above { Contact::Lower } else { Contact::Upper };
+                violations.push((i as u32, state));
+                square += self.diagonal[i] * violation * violation;
+            }
+        }
+        if square.sqrt() <= SHARE * self.energy_norm {
+            violations.clear();
+        }
+        violations
+    }
+}
