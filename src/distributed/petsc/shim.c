@@ -196,8 +196,6 @@ int ul_matrix_destroy(Mat *matrix) {
 
 /* ---- preconditioners ---- */
 
-#define COARSENING "-ul_multigrid_pc_hypre_boomeramg_coarsen_type"
-
 typedef struct {
   Mat matrix; /* as given; owned by the solver */
   PC pc;
@@ -233,10 +231,6 @@ static int new_preconditioner(Solver *solver) {
     TRY(PCSetOptionsPrefix(solver->pc, "ul_multigrid_"));
     TRY(PCSetType(solver->pc, PCHYPRE));
     TRY(PCHYPRESetType(solver->pc, "boomeramg"));
-    /* in space it takes less time than the default coarsening, in the plane as much */
-    PetscBool is_chosen;
-    TRY(PetscOptionsHasName(NULL, NULL, COARSENING, &is_chosen));
-    if (!is_chosen) TRY(PetscOptionsSetValue(NULL, COARSENING, "HMIS"));
   } else {
     TRY(PCSetOptionsPrefix(solver->pc, "ul_factors_"));
     TRY(PCSetType(solver->pc, PCCHOLESKY));

@@ -393,7 +393,8 @@ impl<'a, T: Real> Solve<'_, 'a, T> {
     }
 
     /// Replaces the iterate by the result of the interior point method, which starts from the best
-    /// iterate, or goes on where its first run left small slacks. If it finds no active set, only the number of linear systems changes.
+    /// iterate, or goes on where its first run left small slacks. If it finds no active set, only the number of
+    /// linear systems changes.
     fn run_interior_point(&mut self) {
         let identification = match self.runs_of(Stage::InteriorPoint) {
             0 => Identification::Early,
