@@ -29,7 +29,6 @@ mod quadratics;
 mod shared_multipliers;
 mod smooth_forces;
 mod terms;
-mod totals;
 
 pub(crate) use algebra::CoarserCells;
 pub use estimate::{BoundParts, ErrorBound, Unproven};

@@ -2,12 +2,14 @@
 
 mod boundary;
 mod cell_flux;
+mod totals;
 
 use std::f64::consts::PI;
 
 use boundary::BoundaryTerms;
 use cell_flux::CellFlux;
 pub(super) use cell_flux::limit;
+pub(super) use totals::Totals;
 
 use super::PrimalDualPair;
 use crate::assemble::cut_simplices::{CutRule, in_space};

@@ -1,12 +1,12 @@
 //! Sums and least values of the terms of cells.
 
-use super::NoBound;
-use super::terms::CellTerms;
+use super::CellTerms;
 use crate::algebra::Distribution;
+use crate::error_bound::NoBound;
 
 /// Sums over cells, and least values.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Totals {
+pub(in crate::error_bound) struct Totals {
     /// The square of the mismatch.
     pub mismatch: f64,
     /// The square of the distance of the two functions.
