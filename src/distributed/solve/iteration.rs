@@ -21,8 +21,8 @@ use crate::inequality::initial_guess::{
     P1_ENERGY_TOLERANCE, contact_of_supports, means_over_supports,
 };
 use crate::inequality::{ActiveSet, InequalitySolver, InitialGuess, Outcome, Solution, contact_of};
-use crate::linear::Preconditioner;
 use crate::linear::krylov::symmetric_part;
+use crate::linear::{FactorError, Preconditioner};
 use crate::mesh::Part;
 use crate::problem::Problem;
 use crate::scheme::{AnyScheme, ConformingP1, NonconformingP1};
@@ -218,7 +218,8 @@ impl<'a, const D: usize> DistributedIteration<'a, D> {
         agree(self.process.engine.take_failure().map_or(Ok(()), Err), &*self.process.exchange)
     }
 
-    /// Whether the matrix, or its symmetric part, has factors with positive pivots on all unknowns that are not fixed.
+    /// Whether the matrix, or its symmetric part, has factors with positive pivots on all unknowns that are not fixed,
+    /// as far as memory suffices to tell.
     fn has_factors(&self, system: &System<'_, D>) -> Result<bool, ExchangeError> {
         let matrix = symmetric_part(&system.inequality);
         let by = (EngineMethod::Factors, 0.0);
@@ -228,7 +229,8 @@ impl<'a, const D: usize> DistributedIteration<'a, D> {
         let fixed: Vec<bool> = bounds.map(|bound| bound.fixed_value().is_some()).collect();
         let factored = solver.set_fixed(&fixed);
         self.check_engine()?;
-        Ok(factored.is_ok())
+        // without memory for factors nothing is known
+        Ok(!matches!(factored, Err(FactorError::NotPositive | FactorError::Singular)))
     }
 
     /// What corrects besides the blocks of cells, with the auxiliary matrix.
