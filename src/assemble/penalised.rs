@@ -5,9 +5,9 @@ use std::convert::Infallible;
 use super::facet_coefficients::FacetCoefficients;
 use super::load::{FacetDatum, by_facet};
 use super::local::zero_local;
-use super::space::Space;
 use super::space::metric::Metrics;
 use super::space::tables::FacetTable;
+use super::space::{Place, Space};
 use crate::algebra::{JumpTerm, PenalisedMatrix};
 use crate::element::{MAX_BASIS, Node};
 use crate::facet::{FacetForm, FacetKind};
@@ -42,7 +42,6 @@ pub(crate) fn penalised_matrix<T: Real, const D: usize>(
     let table = space.facet_table(form.moments(space.basis_degree));
     let templates = Templates::<T>::new::<D>(space, &table);
     let of_degree: Vec<T> = table.degrees.iter().map(|&k| T::lit(form.moment_weight(k))).collect();
-    let neighbours = space.coupled_neighbours();
     let n_jumps = n_facets_with_jumps(space) * of_degree.len();
     let mut out = PenalisedMatrix {
         block_size: space.per_cell(),
@@ -57,14 +56,12 @@ pub(crate) fn penalised_matrix<T: Real, const D: usize>(
     for cell in 0..space.mesh.n_cells() {
         let metric = metrics.at::<D>(cell);
         for local in 0..=D {
-            let (kind, other, template) = match neighbours.across(cell, local) {
-                Neighbour::Cell { cell: other, local: there } if cell < other as usize => {
-                    (FacetKind::Interior, other as usize, templates.between(local, there as usize))
+            let (kind, other, template) = match jump_across(space, (cell, local)) {
+                Some(Some((other, there))) => {
+                    (FacetKind::Interior, other, templates.between(local, there))
                 }
-                Neighbour::Boundary(BoundaryPart::Dirichlet) if !space.pins => {
-                    (FacetKind::Dirichlet, cell, templates.on_boundary(local))
-                }
-                _ => continue,
+                Some(None) => (FacetKind::Dirichlet, cell, templates.on_boundary(local)),
+                None => continue,
             };
             let datum = dirichlet.next_if(|(c, (l, _))| (*c, *l) == (cell, local));
             let zeros = of_degree.iter().map(|_| T::lit(0.0));
@@ -85,16 +82,25 @@ pub(crate) fn penalised_matrix<T: Real, const D: usize>(
     out
 }
 
+/// The place on the other side of a facet, none on the Dirichlet part, if the jump on the facet counts in this cell: in
+/// the first of two cells, and where Dirichlet data are weak.
+fn jump_across<T: Real, const D: usize>(
+    space: &Space<'_, T, D>,
+    (cell, local): Place,
+) -> Option<Option<Place>> {
+    match space.coupled_neighbours().across(cell, local) {
+        Neighbour::Cell { cell: other, local: there } if cell < other as usize => {
+            Some(Some((other as usize, there.into())))
+        }
+        Neighbour::Boundary(BoundaryPart::Dirichlet) if !space.pins => Some(None),
+        _ => None,
+    }
+}
+
 /// The number of facets on which jumps count.
 fn n_facets_with_jumps<T: Real, const D: usize>(space: &Space<'_, T, D>) -> usize {
-    let neighbours = space.coupled_neighbours();
     let facets = (0..space.mesh.n_cells()).flat_map(|cell| (0..=D).map(move |local| (cell, local)));
-    let has_jump = |&(cell, local): &(usize, usize)| match neighbours.across(cell, local) {
-        Neighbour::Cell { cell: other, .. } => cell < other as usize,
-        Neighbour::Boundary(part) => part == BoundaryPart::Dirichlet && !space.pins,
-        Neighbour::Cut => false,
-    };
-    facets.filter(has_jump).count()
+    facets.filter(|&place| jump_across(space, place).is_some()).count()
 }
 
 /// Stiffness and reaction of all cells.

@@ -63,8 +63,8 @@ pub trait OwnRows {
 
 /// A preconditioner of a distributed matrix.
 pub trait EngineSolver: Send + Sync {
-    /// Sets which own unknowns are fixed: their rows and columns become those of a multiple of
-    /// the identity, near the diagonal of the others.
+    /// Sets which own unknowns are fixed: the rows and columns of fixed unknowns become those of a multiple of the
+    /// identity, whose factor is of the size of the other diagonal entries.
     ///
     /// # Errors
     /// In all parts: [`FactorError::NotPositive`] if the matrix is not positive definite then, or the engine has

@@ -27,8 +27,8 @@ use crate::mesh::Part;
 use crate::problem::Problem;
 use crate::scheme::{AnyScheme, ConformingP1, NonconformingP1};
 
-/// Multigrid is not set up again where it is a part of a preconditioner until as many unknowns become free or fixed as
-/// so many layers of cells along a free boundary of the size of the domain have. On radial-2d at 1024 SIPG takes 31
+/// Multigrid that is a part of a preconditioner is set up again once more unknowns have become free or fixed than this
+/// number of layers of cells along a free boundary of the size of the domain has. On radial-2d at 1024 SIPG takes 31
 /// iterations with this number and 43 with four, and 39 to 46 seconds of a processor; at 256 WOPSIP with bounds at
 /// vertices takes 34 and 35, and 48 and more time if every change counts. Multigrid alone is set up for each change.
 const FEW_LAYERS: f64 = 1.0;

@@ -33,8 +33,9 @@ impl OwnRows for RowsOfPart<'_> {
 /// ghosts, too.
 pub(super) struct OnOwnUnknowns {
     name: &'static str,
-    /// The number of unknowns of all parts up to which changes of fixed unknowns do not set up the engine again: its
-    /// multigrid for the fixed unknowns of before, with corrections zero at those of now, is a preconditioner, too.
+    /// The number of unknowns of all parts up to which changes of fixed unknowns do not set up the engine again: the
+    /// multigrid of an earlier set of fixed unknowns, with corrections that vanish at the present ones, is a
+    /// preconditioner, too.
     few_changes: f64,
     solver: Box<dyn EngineSolver>,
     over_parts: Arc<OverParts>,

@@ -239,14 +239,12 @@ impl<'a, const D: usize> DistributedSolved<'a, D> {
     /// [`ExchangeError::Failed`] in all parts for data that are not finite.
     pub(crate) fn errors_and_bound(&self) -> Result<(Errors, BoundFigures, f64), ExchangeError> {
         let discretisation = &self.system.discretisation;
-        let (part, u) = (self.part, &self.solution.values);
+        let u = &self.solution.values;
         let clock = Instant::now();
         let bound = self.pair_and_bound();
         let seconds = clock.elapsed().as_secs_f64();
         let pair = bound.as_ref().ok().map(|(pair, _)| pair);
-        let own = discretisation.squared_errors_beside(Some(u), pair, &|cell| part.owns(cell));
-        let own = agree_on_data(own, &part.cells, self.exchange())?;
-        let squares = merge_all(&own, self.exchange())?;
+        let squares = self.squared_errors(pair)?;
         let bound = bound.as_ref().map(|(_, bound)| bound).map_err(|error| match error {
             ExchangeError::Failed { message, .. } => message.clone(),
             other => other.to_string(),
@@ -263,13 +261,20 @@ impl<'a, const D: usize> DistributedSolved<'a, D> {
     /// # Errors
     /// [`ExchangeError::Failed`] in all parts for data that are not finite.
     pub fn errors(&self) -> Result<Errors, ExchangeError> {
-        let System { discretisation, over_parts, .. } = &self.system;
-        let exchange = &*over_parts.exchange;
-        let Some(exact) = &discretisation.problem().exact else { return Ok(Errors::default()) };
+        match self.system.discretisation.problem().exact {
+            Some(_) => Ok(self.squared_errors(None)?.norms()),
+            None => Ok(Errors::default()),
+        }
+    }
+    /// The squared errors of the solution and of the function of a pair over all parts; zero without an exact solution.
+    fn squared_errors(
+        &self,
+        pair: Option<&PrimalDualPair>,
+    ) -> Result<SquaredErrors, ExchangeError> {
         let (part, u) = (self.part, &self.solution.values);
-        let own = discretisation.squared_errors(exact, u, &|cell| part.owns(cell));
-        let own: SquaredErrors = agree_on_data(own, &part.cells, exchange)?;
-        Ok(merge_all(&own, exchange)?.norms())
+        let discretisation = &self.system.discretisation;
+        let own = discretisation.squared_errors_beside(Some(u), pair, &|cell| part.owns(cell));
+        merge_all(&agree_on_data(own, &part.cells, self.exchange())?, self.exchange())
     }
 }
 

@@ -1,5 +1,5 @@
-//! Violations of bounds below the tolerance of the active set, which beside large penalties are not small in
-//! energy.
+//! Violations of bounds that are below the tolerance of the active set: with large penalties such violations are not
+//! small in energy.
 
 use super::iterate::Iterate;
 use super::linear_solver::LinearSolver;

@@ -104,7 +104,7 @@ pub(crate) struct InteriorPoint<'h, 'a, T> {
     identification: Identification,
     /// Whether the method ended because it had identified the active set.
     is_identified: bool,
-    /// Whether the method ended because the active set was identified, or at its final complementarity.
+    /// Whether the method ended with an identified active set, or with complementarity products at their final size.
     has_small_complementarity: bool,
     /// Whether points are relative to bounds, steps keep near the central path and go on until every bound
     /// is decided, which takes two to three times as many steps. Where cells have null directions

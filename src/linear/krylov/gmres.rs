@@ -29,8 +29,8 @@ const LEAST_SQUARES_FACTOR: f64 = 0.99;
 /// Restarted GMRES. It minimises the preconditioned norm `(r . B r)^(1/2)` of [`StoppingRule`]. The
 /// vectors are allocated once.
 pub(crate) struct Gmres<'m, T> {
-    /// The other parts, if matrices are those of one part: all unknowns of these are fixed, and zero in
-    /// preconditioned residuals.
+    /// The other parts of the mesh, if the matrices are those of one part: unknowns that other parts own are fixed,
+    /// and zero in preconditioned residuals.
     distribution: Option<&'m dyn Distribution>,
     /// The Krylov basis `v_k`, orthonormal in the inner product `v . B w`.
     basis: Vec<Vec<T>>,
