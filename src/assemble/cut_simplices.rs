@@ -8,7 +8,7 @@
 
 use crate::mesh::Mesh;
 use crate::problem::Field;
-use crate::quadrature::{Rule, facet_to_cell};
+use crate::quadrature::{FullySymmetric, Quadrature, Rule, facet_to_cell};
 use crate::real::{Point, Real};
 
 /// What is called with a point of a rule on a cut cell: in barycentric coordinates, in space, and with
@@ -50,8 +50,8 @@ impl CutRule {
     /// A rule of this degree; on the parts of a cut simplex of degree five if that is less.
     pub fn new(dimension: usize, degree: usize) -> Self {
         let in_parts = degree.min(MOST_IN_PARTS);
-        let [whole, part] = [degree, in_parts].map(|degree| Rule::new(dimension, degree));
-        Self { dimension, whole, part, facet: Rule::new(dimension.saturating_sub(1), in_parts) }
+        let [whole, part] = [degree, in_parts].map(|degree| rule(dimension, degree));
+        Self { dimension, whole, part, facet: rule(dimension.saturating_sub(1), in_parts) }
     }
 
     /// Visits the points of the rule on a cell if it is cut, and tells whether it is: in barycentric
@@ -244,33 +244,47 @@ fn between(p: &[f64; 4], q: &[f64; 4], r: f64) -> [f64; 4] {
     std::array::from_fn(|k| (1.0 - r) * p[k] + r * q[k])
 }
 
-/// A point of `(0, 1)` where a function changes its sign, to rounding; none if its sign is the same
-/// at both ends. By the Illinois variant of false position, M. Dowell, P. Jarratt, BIT 11 (1971),
-/// 168-174, which also ends at a jump.
+/// The rule with fewest points of this degree.
+fn rule(dimension: usize, degree: usize) -> Rule {
+    FullySymmetric.rule(dimension, degree).unwrap_or_else(|_| Rule::new(dimension, degree))
+}
+
+/// A point of `(0, 1)` where a function changes its sign, to rounding, from whichever side; none if its sign is
+/// the same at both ends. By inverse quadratic interpolation where the last three points admit it, else by
+/// bisection, so that it ends at a jump too: T. R. Chandrupatla, Adv. Eng. Softw. 28 (1997), 145-149.
 fn zero_between(function: impl Fn(f64) -> f64) -> Option<f64> {
-    let ([mut a, mut b], [mut at_a, mut at_b]) = ([0.0, 1.0], [function(0.0), function(1.0)]);
+    // the last point, the one beyond the zero, and the one before
+    let ([mut a, mut b], [mut at_a, mut at_b]) = ([1.0, 0.0], [function(1.0), function(0.0)]);
     if (at_a > 0.0) == (at_b > 0.0) {
         return None;
     }
-    let mut replaced_last = None;
-    for step in 0..MOST_STEPS {
-        if b - a <= 2.0 * f64::EPSILON {
-            break;
-        }
-        // every third step halves: a zero of high order would be approached slowly
-        let secant = (a * at_b - b * at_a) / (at_b - at_a);
-        let x = if step % 3 < 2 && a < secant && secant < b { secant } else { 0.5 * (a + b) };
+    let mut share = 0.5;
+    for _ in 0..MOST_STEPS {
+        let x = a + share * (b - a);
         let at_x = function(x);
-        let replaces_b = (at_x > 0.0) == (at_b > 0.0);
-        let is_repeated = replaced_last.replace(replaces_b) == Some(replaces_b);
-        let kept = if is_repeated { 0.5 } else { 1.0 };
-        if replaces_b {
-            (b, at_b, at_a) = (x, at_x, kept * at_a);
-        } else {
-            (a, at_a, at_b) = (x, at_x, kept * at_b);
+        let (c, at_c) = if (at_x > 0.0) == (at_a > 0.0) { (a, at_a) } else { (b, at_b) };
+        if (at_x > 0.0) != (at_a > 0.0) {
+            (b, at_b) = (a, at_a);
         }
+        (a, at_a) = (x, at_x);
+        let (nearest, at_nearest) = if at_a.abs() < at_b.abs() { (a, at_a) } else { (b, at_b) };
+        let least = f64::EPSILON * (1.0 + 2.0 * nearest) / (b - a).abs();
+        if at_nearest == 0.0 || least > 0.5 {
+            return Some(nearest);
+        }
+        let (position, height) = ((a - b) / (c - b), (at_a - at_b) / (at_c - at_b));
+        let is_monotone =
+            height * height < position && (1.0 - height) * (1.0 - height) < 1.0 - position;
+        share = if is_monotone {
+            let of_b = at_a / (at_b - at_a) * at_c / (at_b - at_c);
+            let of_c = at_a / (at_c - at_a) * at_b / (at_c - at_b);
+            of_b + (c - a) / (b - a) * of_c
+        } else {
+            0.5
+        };
+        share = share.clamp(least, 1.0 - least);
     }
-    Some(0.5 * (a + b))
+    Some(a)
 }
 
 /// The point with these barycentric coordinates in a simplex with these corners; corners beyond its
