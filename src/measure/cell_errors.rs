@@ -39,10 +39,10 @@ const fn lower_degrees(dimension: usize, basis_degree: usize) -> Option<[usize; 
 
 /// Two rules agree in a cell if their integrals differ by this share: where the solution is smooth the rule of higher
 /// degree, which counts, is nearer by powers of the diameter.
-const AGREEMENT: f64 = 1e-8;
+const AGREEMENT: f64 = 1e-6;
 
 /// Two rules agree in a cell if their integrals differ by this share of the mean over all cells.
-const NEGLIGIBLE: f64 = 1e-10;
+const NEGLIGIBLE: f64 = 1e-8;
 
 /// Degree of the rule for means over facets.
 const MEAN_DEGREE: usize = 5;
