@@ -44,7 +44,7 @@ macro_rules! solvers_by_name {
 solvers_by_name! { options:
     "active-set", "primal-dual active set, started from coarser levels in conforming P1"
         => ActiveSet::default().linear(options.linear);
-    "monotone-multigrid", "truncated nonsmooth Newton multigrid, meant for conforming P1"
+    "monotone-multigrid", "truncated nonsmooth Newton multigrid, not for over-penalty with bounds at vertices"
         => MonotoneMultigrid::default();
 }
 

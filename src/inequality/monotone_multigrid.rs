@@ -10,10 +10,12 @@ use super::violations::certify;
 use super::{ActiveSet, InequalitySolver, Outcome, Solution};
 use crate::algebra::{Contact, Inequality};
 use crate::instances::compiled;
-use crate::linear::CoarseSpaces;
 use crate::linear::direct::FactorError;
 use crate::linear::precondition::CoarseLevel;
-use crate::linear::precondition::Multigrid;
+use crate::linear::{
+    BuiltInPreconditioners, CoarseSpaces, PreconditionedSystem, Preconditioner,
+    PreconditionerFamily,
+};
 use crate::real::Real;
 
 /// The truncated nonsmooth Newton multigrid method (Graeser, Kornhuber, J. Comput. Math. 27 (2009)
@@ -26,8 +28,10 @@ use crate::real::Real;
 /// functions are truncated at the active unknowns. Neither sweeps nor corrections depend on
 /// strict complementarity, and from a close start the number of cycles hardly depends on the mesh.
 ///
-/// The coarse spaces are those of the [`InitialGuess`] for nested meshes, or follow from the matrix
-/// by aggregation, which suits conforming P1. For other matrices the method converges slowly.
+/// The V-cycle is the preconditioner of [`BuiltInPreconditioners`] for the coarse spaces of the
+/// [`InitialGuess`], or follows from the matrix by aggregation, which suits conforming P1. For other matrices
+/// without coarse spaces the method converges slowly, and so it does where a large penalty couples means of
+/// several unknowns, because a sweep then changes hardly any single one: over-penalty with bounds at vertices.
 /// Matrices that are not symmetric are solved by [`ActiveSet`].
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
@@ -106,6 +110,29 @@ impl MonotoneMultigrid {
     }
 }
 
+/// The preconditioner for the coarse spaces `known` if one fits, else for spaces by aggregation, which are stored
+/// in `aggregated`.
+fn preconditioner<'a, T: Real>(
+    inequality: &'a Inequality<T>,
+    known: &'a CoarseSpaces<T>,
+    aggregated: &'a mut CoarseSpaces<T>,
+) -> Option<Box<dyn Preconditioner<T> + 'a>> {
+    let Inequality { matrix, bounds, .. } = inequality;
+    let of = |spaces| {
+        BuiltInPreconditioners.preconditioner(PreconditionedSystem::new(matrix, inequality, spaces))
+    };
+    if !matches!(known, CoarseSpaces::Unknown)
+        && let Some(preconditioner) = of(known)
+    {
+        return Some(preconditioner);
+    }
+    let fixed: Vec<bool> = bounds.iter().map(|bound| bound.fixed_value().is_some()).collect();
+    if let Some(level) = CoarseLevel::aggregated(matrix, &fixed) {
+        *aggregated = CoarseSpaces::CoarseLevel(level);
+    }
+    of(aggregated)
+}
+
 /// Admissible values, and the vectors of a cycle.
 struct MultigridIterate<'a, T> {
     inequality: &'a Inequality<T>,
@@ -116,6 +143,10 @@ struct MultigridIterate<'a, T> {
     correction: Vec<T>,
     /// Whether an unknown is fixed or active and takes no part in the linear correction.
     eliminated: Vec<bool>,
+    /// The eliminated unknowns for which the preconditioner is set up; empty before it is.
+    fixed: Vec<bool>,
+    /// The name of the preconditioner, in reports.
+    linear_solver: &'static str,
     /// The diagonal of the matrix.
     diagonal: Vec<T>,
     /// `b - A u` on all unknowns.
@@ -140,6 +171,8 @@ impl<'a, T: Real> MultigridIterate<'a, T> {
             residual: zeros.clone(),
             correction: zeros,
             eliminated: vec![false; n],
+            fixed: Vec::new(),
+            linear_solver: "multigrid",
             diagonal: Vec::new(),
             whole_residual: vec![0.0; n],
             energy_norm: 0.0,
@@ -157,20 +190,12 @@ impl<'a, T: Real> MultigridIterate<'a, T> {
         settings: &MonotoneMultigrid,
         guess: &InitialGuess<T>,
     ) -> Result<Outcome, Outcome> {
-        let Inequality { matrix, bounds, .. } = self.inequality;
-        let aggregated = match guess.coarse_spaces {
-            CoarseSpaces::CoarseLevel(_) => None,
-            _ => {
-                let fixed: Vec<bool> = bounds.iter().map(|b| b.fixed_value().is_some()).collect();
-                CoarseLevel::aggregated(matrix, &fixed)
-            }
-        };
-        let coarse_level = match &guess.coarse_spaces {
-            CoarseSpaces::CoarseLevel(coarse_level) => Some(coarse_level),
-            _ => aggregated.as_ref(),
-        };
-        let mut multigrid = Multigrid::new(matrix, coarse_level);
-        self.diagonal = matrix.diagonal();
+        let mut aggregated = CoarseSpaces::Unknown;
+        let mut preconditioner =
+            preconditioner(self.inequality, &guess.coarse_spaces, &mut aggregated)
+                .ok_or(Outcome::Malformed)?;
+        self.linear_solver = preconditioner.name();
+        self.diagonal = self.inequality.matrix.diagonal();
         let least = guess.energy_tolerance.unwrap_or(0.0).max(4.0 * T::EPSILON);
         let tolerance = settings.tolerance.max(least);
         let limit =
@@ -182,7 +207,7 @@ impl<'a, T: Real> MultigridIterate<'a, T> {
             for _ in 0..settings.sweeps {
                 by_sweeps += self.gauss_seidel_sweep()?;
             }
-            let by_correction = self.correct(&mut multigrid)?;
+            let by_correction = self.correct(&mut *preconditioner)?;
             let energy_norm = self.energy_norm;
             if !(energy_norm.is_finite() && by_sweeps.is_finite()) {
                 return Err(Outcome::NotFinite);
@@ -226,18 +251,23 @@ impl<'a, T: Real> MultigridIterate<'a, T> {
     ///
     /// # Errors
     /// The outcome if the matrix is not positive definite or has no factors for another reason.
-    fn correct(&mut self, multigrid: &mut Multigrid<'_, T>) -> Result<f64, Outcome> {
+    fn correct(&mut self, preconditioner: &mut dyn Preconditioner<T>) -> Result<f64, Outcome> {
         let Inequality { matrix, bounds, .. } = self.inequality;
         self.eliminate_active();
-        match multigrid.set_fixed(&self.eliminated) {
-            Ok(()) => {}
+        let set = match self.eliminated == self.fixed {
+            true => Ok(()),
+            false => preconditioner.set_fixed(&self.eliminated),
+        };
+        self.fixed.clear();
+        match set {
+            Ok(()) => self.fixed.extend_from_slice(&self.eliminated),
             // only the bounds prevent a rigid motion; the sweeps converge without the correction
             Err(FactorError::Singular) if bounds.iter().any(|bound| bound.is_inequality()) => {
                 return Ok(0.0);
             }
             Err(error) => return Err(error.into()),
         }
-        multigrid.apply(&self.residual, &mut self.correction);
+        preconditioner.apply(&self.residual, &mut self.correction);
         for (i, correction) in self.correction.iter_mut().enumerate() {
             *correction = if self.eliminated[i] {
                 T::lit(0.0)
@@ -305,6 +335,7 @@ impl<'a, T: Real> MultigridIterate<'a, T> {
     /// The solution, with the contact states of its values.
     fn into_solution(self, outcome: Outcome) -> Solution<T> {
         let bounds = self.inequality.bounds.iter().zip(&self.values);
+        let linear_solver = self.linear_solver;
         let contact = bounds
             .map(|(bound, x)| match (bound.lower(), bound.upper()) {
                 (Some(l), _) if *x <= l => Contact::Lower,
@@ -314,6 +345,6 @@ impl<'a, T: Real> MultigridIterate<'a, T> {
             .collect();
         Solution::new(self.values, contact, outcome)
             .iterations(self.cycles, self.cycles)
-            .linear_solver("multigrid")
+            .linear_solver(linear_solver)
     }
 }

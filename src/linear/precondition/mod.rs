@@ -28,6 +28,5 @@ pub use built_in::BuiltInPreconditioners;
 pub use coarse_level::{CoarseLevel, P1Level};
 pub use coarse_spaces::CoarseSpaces;
 pub(crate) use mean_jump_splitting::{BlockSolver, FacetMeansSolver, MeanJumpSplitting};
-pub(crate) use multigrid::Multigrid;
 pub use preconditioner::{PreconditionedSystem, Preconditioner, PreconditionerFamily};
 pub use prolongation::Prolongation;
