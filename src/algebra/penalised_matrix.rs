@@ -64,6 +64,11 @@ impl<T: Real> PenalisedMatrix<T> {
         &self.terms[self.term_starts[jump] as usize..self.term_starts[jump + 1] as usize]
     }
 
+    /// Whether each jump is that of one unknown, or the difference of two: in a basis of facet means.
+    pub(crate) fn has_jumps_of_single_unknowns(&self) -> bool {
+        self.term_starts.windows(2).all(|w| w[1] - w[0] <= 1)
+    }
+
     /// Whether all parts have consistent sizes for `size` unknowns, and weights are positive.
     pub fn is_well_formed(&self, size: usize) -> bool {
         let n = self.n_jumps();

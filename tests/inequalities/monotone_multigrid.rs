@@ -1,7 +1,8 @@
 //! The monotone multigrid method: counts that do not depend on strict complementarity nor on the
 //! mesh, and the solutions of the active set.
 
-use unilateral::inequality::{ActiveSet, InequalitySolver, MonotoneMultigrid};
+use unilateral::inequality::{ActiveSet, InequalitySolver, MonotoneMultigrid, Stage};
+use unilateral::linear::LinearMethod;
 use unilateral::prelude::*;
 use unilateral::scenes::Scene;
 use unilateral::study::Row;
@@ -62,5 +63,51 @@ fn cycles_do_not_grow_on_fine_meshes() {
     for scene in scenes_without_strictness() {
         let cycles = compare(scene, &[32, 64, 128, 256]);
         assert!(cycles.iter().all(|&cycles| cycles <= 25), "{cycles:?}");
+    }
+}
+
+/// Schemes of which a sweep by unknowns sees all that a penalty couples, on the re-entrant corner with a ring in contact
+/// without force.
+fn stagnating(levels: &[usize], solver: ActiveSet) -> Vec<Row> {
+    let study = Study::<f64, 2>::new(scenes::lshape_2d())
+        .scheme(Sipg::default())
+        .scheme(NonconformingP1)
+        .scheme_on(Wopsip::default(), FacetMeans)
+        .scheme(ConformingP2)
+        .solver(solver);
+    study.levels(levels.iter().copied()).run().unwrap().rows
+}
+
+/// The cycles of the last stage, which is monotone multigrid.
+fn cycles(row: &Row) -> usize {
+    let last = row.iterations.stages.last().unwrap();
+    let what = format!("{} {}", row.label, row.level);
+    assert_eq!(last.stage, Stage::MonotoneMultigrid, "{what}: {:?}", row.iterations.stages);
+    last.outer
+}
+
+#[test]
+fn a_stagnating_active_set_of_any_such_scheme_leads_to_cycles_with_the_solution_of_factors() {
+    // with the preconditioner from the coarser level on, which has fewer unknowns than it is chosen for
+    let iterative = ActiveSet::default().linear(LinearMethod::Iterative);
+    let found = stagnating(&[16, 32], iterative);
+    let exact = stagnating(&[16, 32], ActiveSet::default().linear(LinearMethod::Direct));
+    for (row, exact) in found.iter().zip(&exact) {
+        let what = format!("{} {}", row.label, row.level);
+        assert!(row.converged() && exact.converged(), "{what}");
+        let (a, b) = (row.objective.unwrap(), exact.objective.unwrap());
+        assert!((a - b).abs() <= 1e-9 * b.abs(), "{what}: objective {a} and {b}");
+    }
+    for row in found.iter().filter(|row| row.level == 32) {
+        assert!(cycles(row) <= 30, "{}: {:?}", row.label, row.iterations.stages);
+    }
+}
+
+#[test]
+#[ignore = "takes a minute: prints the table of docs/solvers.md"]
+fn cycles_of_other_schemes_hardly_grow() {
+    for row in stagnating(&[32, 64, 128], ActiveSet::default()) {
+        println!("| {} | {} | {} |", row.label, row.level, cycles(&row));
+        assert!(cycles(&row) <= 40, "{} {}", row.label, row.level);
     }
 }

@@ -3,7 +3,7 @@
 //! | stage | runs if | ends without a solution if |
 //! |---|---|---|
 //! | active set, preconditioned | coarse spaces are known and the problem has at least [`CROSSOVER`] unknowns, or the settings ask for it | the active set stagnates or cycles, or the preconditioner does not fit |
-//! | monotone multigrid | the preceding stage stagnated on conforming P1 with nested meshes and a symmetric matrix | its limit of cycles is reached |
+//! | monotone multigrid | the preceding stage stagnated, the matrix is symmetric and coarse spaces are known; not for penalties on jumps of means of several unknowns | its limit of cycles is reached |
 //! | active set, direct | no solution is known | the active set stagnates or cycles |
 //! | interior point | the preceding stage ended so, and the limit of linear systems leaves room | never: it provides the next starting active set |
 //!
@@ -22,7 +22,7 @@ use super::iteration::{End, Iteration, outcome_of_best};
 use super::preconditioned_solver::PreconditionedSolver;
 use super::progress::{Obstruction, Patience};
 use super::settings::{ActiveSet, Globalisation};
-use crate::algebra::{Inequality, Start, any_part};
+use crate::algebra::{Inequality, PenalisedMatrix, Start, any_part};
 use crate::inequality::initial_guess::InitialGuess;
 use crate::inequality::interior_point::{CentralPoint, Identification, InteriorPoint, MAX_STEPS};
 use crate::inequality::monotone_multigrid::MonotoneMultigrid;
@@ -209,13 +209,20 @@ fn agree<T: Real>(inequality: &Inequality<T>, checked: Result<(), Outcome>) -> R
 }
 
 impl<'a, T: Real> Solve<'_, 'a, T> {
-    /// Whether monotone multigrid takes over: from a stagnating active set of conforming P1 on nested
-    /// meshes.
+    /// Whether monotone multigrid takes over: from a stagnating active set, if it suits the inequality.
     fn may_run_monotone_multigrid(&self) -> bool {
-        matches!(self.end, Some(End::Obstruction(_)))
-            && self.inequality.distribution.is_none()
-            && self.inequality.symmetric
-            && matches!(self.guess.coarse_spaces, CoarseSpaces::CoarseLevel(_))
+        matches!(self.end, Some(End::Obstruction(_))) && self.suits_monotone_multigrid()
+    }
+
+    /// Whether monotone multigrid suits the inequality: its matrix is symmetric, coarse spaces are known, and
+    /// sweeps by unknowns see what a penalty couples, because each of its jumps is that of one unknown. Where a
+    /// jump is that of a mean of vertex values, sweeps change no single one of these.
+    fn suits_monotone_multigrid(&self) -> bool {
+        let Inequality { distribution, symmetric, penalised, .. } = self.inequality;
+        distribution.is_none()
+            && *symmetric
+            && !matches!(self.guess.coarse_spaces, CoarseSpaces::Unknown)
+            && penalised.as_ref().is_none_or(PenalisedMatrix::has_jumps_of_single_unknowns)
     }
 
     /// Whether an active set iteration with factors comes next: not where the interior point method
@@ -304,10 +311,9 @@ impl<'a, T: Real> Solve<'_, 'a, T> {
         let tolerance = guess.energy_tolerance.unwrap_or(0.0).max(least);
         let mut solver = PreconditionedSolver::new(inequality, &matrix, preconditioner, tolerance);
         let patience = self.patience(Stage::PreconditionedActiveSet);
-        // on nested meshes of conforming P1 monotone multigrid follows
         let is_local = self.settings.globalisation == Globalisation::OnStagnation
             && inequality.distribution.is_none()
-            && !matches!(guess.coarse_spaces, CoarseSpaces::CoarseLevel(_));
+            && !self.suits_monotone_multigrid();
         let mut iteration = Iteration {
             settings: self.settings,
             iterate: &mut self.iterate,
@@ -435,8 +441,7 @@ impl<'a, T: Real> Solve<'_, 'a, T> {
     fn patience(&self, stage: Stage) -> Patience {
         let ActiveSet { stagnation_steps, improvement_steps, globalisation, .. } = *self.settings;
         if stage == Stage::PreconditionedActiveSet {
-            let is_nested = matches!(self.guess.coarse_spaces, CoarseSpaces::CoarseLevel(_));
-            let is_cheap = is_nested || self.inequality.penalised.is_some();
+            let is_cheap = self.suits_monotone_multigrid() || self.inequality.penalised.is_some();
             let steps = stagnation_steps * if is_cheap { 1 } else { DIRECT_STEP_COST } + 1;
             let is_limited = globalisation == Globalisation::OnStagnation
                 && self.inequality.distribution.is_none()
