@@ -1,5 +1,6 @@
 //! Solvers of the algebraic inequality against slow solvers, their iteration counts and failures.
 
+mod algebraic_error;
 mod contact_sets;
 mod double_precision;
 mod exact_reference;
