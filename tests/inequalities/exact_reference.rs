@@ -6,7 +6,7 @@ use unilateral::algebra::{Contact, Inequality, JumpTerm, PenalisedMatrix};
 use unilateral::assemble::DataQuadrature;
 use unilateral::inequality::{ActiveSet, InequalitySolver, Outcome, Solution};
 use unilateral::prelude::*;
-use unilateral::scenes::{self, Scene};
+use unilateral::scenes::{self, AnyScene, Scene};
 
 /// Violations of bounds below this multiple of the largest value, and multipliers of wrong sign below this multiple
 /// of the largest load, are rounding in twice the digits beside penalties of up to 1e16 times the stiffness.
@@ -204,10 +204,14 @@ const SCENES: [&str; 6] =
 
 const ETAS: [&str; 6] = ["default", "1e-2", "1e2", "1e4", "1e7", "1e10"];
 
+/// A scene of the catalogue.
+fn made(name: &str) -> AnyScene {
+    scenes::by_name(name).unwrap().make(&scenes::Parameters::default()).unwrap()
+}
+
 /// The distance of a solve with factors from the reference, with the number of its systems.
 fn solve(name: &str, eta: &str, level: usize) -> (f64, usize) {
-    let made = scenes::by_name(name).unwrap().make(&scenes::Parameters::default()).unwrap();
-    let scenes::AnyScene::Two(scene) = made else { panic!("{name}") };
+    let AnyScene::Two(scene) = made(name) else { panic!("{name}") };
     let inequality = of(&scene, eta, level);
     let solution = ActiveSet::default().solve(&inequality);
     assert_eq!(solution.outcome, Outcome::Converged, "{name} {eta} {level}");
@@ -225,6 +229,16 @@ fn quadratics_have_the_digits_of_an_exact_reference_for_every_penalty() {
     // violations below the rounding of the largest value: 2e-9 where they remain
     let (distance, _) = solve("contrast-2d", "1e4", 8);
     assert!(distance < 1e-10, "contrast-2d: {distance:e}");
+}
+
+/// Beside such a penalty the pivots of multipliers that do no work are rounding: without reduced weights the solve ends
+/// as `singular`.
+#[test]
+fn multipliers_without_work_do_not_make_systems_singular() {
+    let AnyScene::Two(scene) = made("torsion-2d") else { unreachable!() };
+    let solution = ActiveSet::default().solve(&of(&scene, "1e14", 8));
+    assert_eq!(solution.outcome, Outcome::Converged);
+    assert!(solution.outer <= 60, "{} systems", solution.outer);
 }
 
 /// Twice the digits hold: the pivots of this matrix of Hilbert are lost in `f64`.

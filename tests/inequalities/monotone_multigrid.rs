@@ -66,48 +66,55 @@ fn cycles_do_not_grow_on_fine_meshes() {
     }
 }
 
-/// Schemes of which a sweep by unknowns sees all that a penalty couples, on the re-entrant corner with a ring in contact
-/// without force.
-fn stagnating(levels: &[usize], solver: ActiveSet) -> Vec<Row> {
-    let study = Study::<f64, 2>::new(scenes::lshape_2d())
+/// The L-shaped membrane with a ring in contact without force, by schemes of which a sweep by unknowns sees all that a
+/// penalty couples.
+fn lshape() -> Study<f64, 2> {
+    Study::new(scenes::lshape_2d())
         .scheme(Sipg::default())
-        .scheme(NonconformingP1)
         .scheme_on(Wopsip::default(), FacetMeans)
+        .scheme(NonconformingP1)
         .scheme(ConformingP2)
-        .solver(solver);
-    study.levels(levels.iter().copied()).run().unwrap().rows
-}
-
-/// The cycles of the last stage, which is monotone multigrid.
-fn cycles(row: &Row) -> usize {
-    let last = row.iterations.stages.last().unwrap();
-    let what = format!("{} {}", row.label, row.level);
-    assert_eq!(last.stage, Stage::MonotoneMultigrid, "{what}: {:?}", row.iterations.stages);
-    last.outer
 }
 
 #[test]
-fn a_stagnating_active_set_of_any_such_scheme_leads_to_cycles_with_the_solution_of_factors() {
-    // with the preconditioner from the coarser level on, which has fewer unknowns than it is chosen for
-    let iterative = ActiveSet::default().linear(LinearMethod::Iterative);
-    let found = stagnating(&[16, 32], iterative);
-    let exact = stagnating(&[16, 32], ActiveSet::default().linear(LinearMethod::Direct));
+fn cycles_with_the_preconditioner_of_a_scheme_find_the_solution_of_factors() {
+    let run = |study: Study<f64, 2>| study.levels([16, 32]).run().unwrap().rows;
+    let found = run(lshape().solver(MonotoneMultigrid::default()));
+    let exact = run(lshape().solver(ActiveSet::default().linear(LinearMethod::Direct)));
     for (row, exact) in found.iter().zip(&exact) {
         let what = format!("{} {}", row.label, row.level);
         assert!(row.converged() && exact.converged(), "{what}");
         let (a, b) = (row.objective.unwrap(), exact.objective.unwrap());
         assert!((a - b).abs() <= 1e-9 * b.abs(), "{what}: objective {a} and {b}");
+        let cycles = row.iterations.outer.unwrap();
+        assert!(cycles <= 40, "{what}: {cycles}");
     }
-    for row in found.iter().filter(|row| row.level == 32) {
-        assert!(cycles(row) <= 30, "{}: {:?}", row.label, row.iterations.stages);
+}
+
+/// The cycles of the last stage, which is monotone multigrid.
+fn cycles(row: &Row) -> usize {
+    let (stages, what) = (&row.iterations.stages, format!("{} {}", row.label, row.level));
+    let last = stages.last().unwrap();
+    assert_eq!(last.stage, Stage::MonotoneMultigrid, "{what}: {stages:?}");
+    assert!(row.converged() && row.certificate.largest() < 1e-9, "{what}: {:?}", row.certificate);
+    last.outer
+}
+
+#[test]
+fn stagnating_active_sets_lead_to_cycles() {
+    let study = Study::<f64, 2>::new(scenes::lshape_2d())
+        .scheme(Sipg::default())
+        .scheme_on(Wopsip::default(), FacetMeans);
+    for row in study.levels([64]).run().unwrap().rows {
+        assert!(cycles(&row) <= 30, "{}: {:?}", row.label, row.iterations.stages);
     }
 }
 
 #[test]
 #[ignore = "takes a minute: prints the table of docs/solvers.md"]
 fn cycles_of_other_schemes_hardly_grow() {
-    for row in stagnating(&[32, 64, 128], ActiveSet::default()) {
+    for row in lshape().levels([64, 128, 256]).run().unwrap().rows {
         println!("| {} | {} | {} |", row.label, row.level, cycles(&row));
-        assert!(cycles(&row) <= 40, "{} {}", row.label, row.level);
+        assert!(cycles(&row) <= 50, "{} {}", row.label, row.level);
     }
 }

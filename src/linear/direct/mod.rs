@@ -2,7 +2,8 @@
 //!
 //! `factors`: Cholesky and LU factors of a submatrix; `symbolic_factor`: the symbolic part of Cholesky;
 //! `repeated_cholesky`: matrices with the same pattern. `elimination_order` and `nested_dissection`:
-//! orders of elimination. `static_condensation`, `null_directions`: factors of `K + M^T S M`.
+//! orders of elimination. `static_condensation`, `null_directions`, `weight_correction`: factors of
+//! `K + M^T S M`.
 //! `kernels`: the numeric kernels of faer.
 
 mod elimination_order;
@@ -14,6 +15,7 @@ mod null_directions;
 mod repeated_cholesky;
 mod static_condensation;
 mod symbolic_factor;
+mod weight_correction;
 
 pub use elimination_order::EliminationOrder;
 pub use error::FactorError;

@@ -23,6 +23,11 @@
 //! weights of these blocks are cut off; iterative refinement by the caller restores the solution for the
 //! true weights.
 //!
+//! Multipliers may do no work on the free unknowns of any block: of several null directions that are coupled through
+//! their facet means one combination then has a pivot of the size of `1/w`. Weights so large that this is rounding are
+//! all reduced by the same factor, and conjugate gradients restore the solution for the true ones
+//! (`weight_correction`).
+//!
 //! Source: static condensation of hybridised methods, B. Cockburn, J. Gopalakrishnan, R. Lazarov, SIAM
 //! J. Numer. Anal. 47 (2009), 1319-1365.
 
@@ -41,6 +46,15 @@ const MAX_WEIGHT: f64 = 1e-3;
 /// Largest shift divided by `k / sqrt(eps)`, `k` and `eps` as for [`MAX_WEIGHT`], of an unknown that is
 /// not as good as fixed.
 const MAX_SHIFT_BY_ROOT: f64 = 4.0;
+
+/// Largest ratio of a penalty to the stiffness that is factored where there are null directions. Multipliers that do
+/// no work on any free unknown of any block have pivots of the reciprocal size, left by differences of numbers of
+/// size one: four digits of these pivots remain in `f64`.
+const MAX_RATIO: f64 = 1e12;
+
+/// The factor by which weights are reduced once more where a matrix with shifts has no factors. Shifts spread the
+/// eigenvalues of `weight_correction` over the range of the reduction, which is therefore kept small.
+const REDUCTION_STEP: f64 = 16.0;
 
 /// One side of a jump, in the list of its block.
 struct JumpSide {
@@ -61,7 +75,7 @@ impl JumpSide {
 
 /// The adjacency of blocks and jumps, for all sets of free unknowns.
 pub(crate) struct StaticCondensation<'a, T> {
-    penalised: &'a PenalisedMatrix<T>,
+    pub(super) penalised: &'a PenalisedMatrix<T>,
     /// Start of each block's list in `sides`, and its length at the end.
     starts: Vec<usize>,
     sides: Vec<JumpSide>,
@@ -70,6 +84,8 @@ pub(crate) struct StaticCondensation<'a, T> {
     cholesky: RepeatedCholesky,
     /// Whether the means over the sides of a block are dependent functions of all its unknowns.
     has_null_directions: bool,
+    /// The largest factor by which weights are reduced; at least one.
+    max_reduction: f64,
 }
 
 /// The inverses of all blocks with their jump multipliers, and the factors of the Schur complement.
@@ -80,6 +96,8 @@ pub(crate) struct CondensedFactors<T> {
     starts: Vec<usize>,
     null_directions: NullDirections,
     schur_complement: Factors<T>,
+    /// The true weights divided by those that are factored; at least one.
+    pub(super) reduction: f64,
 }
 
 /// Workspace for the inverse of a block with its jump multipliers.
@@ -89,6 +107,8 @@ struct BlockInverse {
     entries: Vec<f64>,
     /// The factors by which the free unknowns are scaled.
     scales: Vec<f64>,
+    /// The factor by which weights are reduced.
+    reduction: f64,
 }
 
 impl<'a, T: Real> StaticCondensation<'a, T> {
@@ -122,14 +142,24 @@ impl<'a, T: Real> StaticCondensation<'a, T> {
         }
         let cholesky = RepeatedCholesky::default();
         let pattern = empty();
-        let mut condensation =
-            Self { penalised, starts, sides, pattern, cholesky, has_null_directions: false };
+        let mut condensation = Self {
+            penalised,
+            starts,
+            sides,
+            pattern,
+            cholesky,
+            has_null_directions: false,
+            max_reduction: 1.0,
+        };
         condensation.pattern = condensation.lower_pattern(n_means as usize);
         let mut basis = Vec::new();
         condensation.has_null_directions = (0..n_blocks).any(|block| {
             let n_sides = condensation.sides(block).len();
             condensation.rank_of_means(block, |_| true, &mut basis) < n_sides
         });
+        if condensation.has_null_directions {
+            condensation.max_reduction = (penalised.largest_ratio() / MAX_RATIO).max(1.0);
+        }
         condensation
     }
 
@@ -223,7 +253,7 @@ impl<'a, T: Real> StaticCondensation<'a, T> {
     /// # Errors
     /// See [`FactorError`].
     pub fn factor(&self, is_free: &[bool]) -> Result<CondensedFactors<T>, FactorError> {
-        self.factor_shifted(is_free, &[])
+        self.factor_reduced(is_free, &[], self.max_reduction)
     }
 
     /// [`StaticCondensation::factor`] for `K + D` in place of `K`; `shift` is the nonnegative
@@ -236,9 +266,30 @@ impl<'a, T: Real> StaticCondensation<'a, T> {
         is_free: &[bool],
         shift: &[f64],
     ) -> Result<CondensedFactors<T>, FactorError> {
+        let mut reduction = 1.0;
+        loop {
+            match self.factor_reduced(is_free, shift, reduction) {
+                Err(FactorError::Singular) if reduction < self.max_reduction => {
+                    reduction = (reduction * REDUCTION_STEP).min(self.max_reduction);
+                }
+                result => return result,
+            }
+        }
+    }
+
+    /// [`StaticCondensation::factor_shifted`] with weights reduced by a factor.
+    ///
+    /// # Errors
+    /// See [`FactorError`].
+    fn factor_reduced(
+        &self,
+        is_free: &[bool],
+        shift: &[f64],
+        reduction: f64,
+    ) -> Result<CondensedFactors<T>, FactorError> {
         let mut matrix = self.pattern.clone();
         let (mut inverses, mut starts) = (Vec::new(), vec![0]);
-        let mut inverse = BlockInverse::default();
+        let mut inverse = BlockInverse { reduction, ..BlockInverse::default() };
         let mut null_directions = NullDirections::new();
         for block in 0..self.starts.len() - 1 {
             let n_free =
@@ -264,7 +315,7 @@ impl<'a, T: Real> StaticCondensation<'a, T> {
         } else {
             self.cholesky.factor(matrix)?
         };
-        Ok(CondensedFactors { inverses, starts, null_directions, schur_complement })
+        Ok(CondensedFactors { inverses, starts, null_directions, schur_complement, reduction })
     }
 
     /// Appends the rows of the multipliers of null directions to the lower triangle of the condensed
@@ -314,7 +365,7 @@ impl<'a, T: Real> StaticCondensation<'a, T> {
             |i: usize| is_free[i] && shift.get(i).is_none_or(|&shift| shift <= max_shift);
         let has_null_directions = self.has_null_directions && n_free > 0;
         self.fill_block((block, n_free), is_free, shift, unit, inverse);
-        let BlockInverse { entries: out, scales } = inverse;
+        let BlockInverse { entries: out, scales, reduction } = inverse;
         // The rank decides, and is computed only if some weight exceeds the limit.
         let limit = least * MAX_WEIGHT / T::EPSILON;
         let is_heavy = !has_null_directions
@@ -326,7 +377,7 @@ impl<'a, T: Real> StaticCondensation<'a, T> {
             is_heavy && self.rank_of_means(block, may_move, &mut basis) < sides.len();
         let max_weight = if has_dependent_means { limit } else { f64::INFINITY };
         for (l, side) in (n_free..).zip(sides) {
-            out[l * n + l] = -unit / self.side_weight(side).min(max_weight);
+            out[l * n + l] = -unit / (self.side_weight(side) / *reduction).min(max_weight);
         }
         if has_null_directions {
             let tolerance = T::EPSILON.sqrt();
@@ -367,7 +418,7 @@ impl<'a, T: Real> StaticCondensation<'a, T> {
     ) {
         let (size, sides) = (self.penalised.block_size, self.sides(block));
         let stiffness = |i: usize, j: usize| self.penalised.blocks[i * size + j % size].to_f64();
-        let BlockInverse { entries: out, scales } = inverse;
+        let BlockInverse { entries: out, scales, .. } = inverse;
         scales.clear();
         scales.extend(self.free(block, is_free).map(|i| match shift.get(i) {
             Some(&shift) if self.has_null_directions => {
@@ -393,10 +444,8 @@ impl<'a, T: Real> StaticCondensation<'a, T> {
         }
     }
 
-    /// Solves `K u + M^T p = r` on the free unknowns and `M u - S^-1 p = t`. Replaces `r` by `u`, which
-    /// is zero on fixed unknowns, and `t` by the jump multipliers `p`. Returns the energy
-    /// `u.K u + p.(S^-1 p) = u.r - p.t`.
-    pub fn solve(
+    /// [`StaticCondensation::solve`] with the reduced weights in place of `S`.
+    pub(super) fn solve_reduced(
         &self,
         factors: &CondensedFactors<T>,
         is_free: &[bool],

@@ -1,0 +1,95 @@
+//! Solutions with the true weights by factors with reduced ones.
+//!
+//! With the inverse `N` of the stiffness on the free unknowns the jump multipliers of
+//! `K u + M^T p = r`, `M u - S^-1 p = t` satisfy `F p = M N r - t`, `F = S^-1 + M N M^T`. Weights that are reduced by
+//! a factor `c` give `F' = c S^-1 + M N M^T`. Multipliers do work on free unknowns, so that `M N M^T` exceeds `c S^-1`
+//! by far, or none: without shifts all eigenvalues of `F'^-1 F` are close to one or equal to `1/c`. Conjugate gradients
+//! for `F`, preconditioned by `F'`, end after a few steps. Every iterate satisfies the first equation.
+
+use super::static_condensation::{CondensedFactors, StaticCondensation};
+use crate::real::Real;
+
+/// Largest number of steps.
+const MAX_STEPS: usize = 12;
+
+/// Relative tolerance of jump multipliers in the norm of `F`; machine epsilon in scalars with fewer digits.
+const TOLERANCE: f64 = 1e-12;
+
+fn dot(x: &[f64], y: &[f64]) -> f64 {
+    x.iter().zip(y).fold(0.0, |s, (x, y)| s + x * y)
+}
+
+/// Adds a multiple of `y` to `x`.
+fn add(x: &mut [f64], factor: f64, y: &[f64]) {
+    x.iter_mut().zip(y).for_each(|(x, y)| *x += factor * y);
+}
+
+/// Replaces `x` by `y + factor * x`.
+fn add_to_multiple(x: &mut [f64], factor: f64, y: &[f64]) {
+    x.iter_mut().zip(y).for_each(|(x, y)| *x = y + factor * *x);
+}
+
+impl<T: Real> StaticCondensation<'_, T> {
+    /// Solves `K u + M^T p = r` on the free unknowns and `M u - S^-1 p = t`. Replaces `r` by `u`, which
+    /// is zero on fixed unknowns, and `t` by the jump multipliers `p`. Returns the energy
+    /// `u.K u + p.(S^-1 p) = u.r - p.t`.
+    pub fn solve(
+        &self,
+        factors: &CondensedFactors<T>,
+        is_free: &[bool],
+        r: &mut [f64],
+        t: &mut [f64],
+    ) -> f64 {
+        if factors.reduction == 1.0 {
+            return self.solve_reduced(factors, is_free, r, t);
+        }
+        let (load, data) = (r.to_vec(), t.to_vec());
+        self.solve_reduced(factors, is_free, r, t);
+        self.correct_weights(factors, is_free, r, t);
+        dot(r, &load) - dot(t, &data)
+    }
+
+    /// Replaces the solution `u`, `p` with reduced weights by that with the true ones.
+    fn correct_weights(
+        &self,
+        factors: &CondensedFactors<T>,
+        is_free: &[bool],
+        u: &mut [f64],
+        p: &mut [f64],
+    ) {
+        let weight = |k: usize| self.penalised.weights[k].to_f64();
+        // `M u - S^-1 p - t`, and `M u - c S^-1 p - t` is zero
+        let excess = |(k, p): (usize, &f64)| (factors.reduction - 1.0) * p / weight(k);
+        let mut residual: Vec<f64> = p.iter().enumerate().map(excess).collect();
+        let mut image = vec![0.0; p.len()];
+        let (mut of_values, mut of_multipliers) = (vec![0.0; u.len()], vec![0.0; p.len()]);
+        let (mut direction, mut multipliers) = (of_values.clone(), of_multipliers.clone());
+        let mut last = f64::INFINITY;
+        let tolerance = TOLERANCE.max(T::EPSILON).powi(2) / factors.reduction;
+        for _ in 0..MAX_STEPS {
+            of_values.fill(0.0);
+            of_multipliers.iter_mut().zip(&residual).for_each(|(y, r)| *y = -r);
+            self.solve_reduced(factors, is_free, &mut of_values, &mut of_multipliers);
+            let product = dot(&residual, &of_multipliers);
+            let energy: f64 = p.iter().enumerate().map(|(k, p)| p * p / weight(k)).sum();
+            // false for numbers that are not finite
+            let is_large = product > tolerance * energy;
+            if !is_large {
+                break;
+            }
+            add_to_multiple(&mut direction, product / last, &of_values);
+            add_to_multiple(&mut multipliers, product / last, &of_multipliers);
+            for (k, out) in image.iter_mut().enumerate() {
+                *out = multipliers[k] / weight(k) - self.penalised.jump(k, |i| direction[i]);
+            }
+            let length = product / dot(&multipliers, &image);
+            if !(length > 0.0 && length.is_finite()) {
+                break;
+            }
+            add(u, length, &direction);
+            add(p, length, &multipliers);
+            add(&mut residual, -length, &image);
+            last = product;
+        }
+    }
+}
