@@ -68,7 +68,7 @@ fn cycles_do_not_grow_on_fine_meshes() {
 
 /// The L-shaped membrane with a ring in contact without force, by schemes of which a sweep by unknowns sees all that a
 /// penalty couples.
-fn lshape() -> Study<f64, 2> {
+fn lshape() -> Study<'static, f64, 2> {
     Study::new(scenes::lshape_2d())
         .scheme(Sipg::default())
         .scheme_on(Wopsip::default(), FacetMeans)
@@ -78,7 +78,7 @@ fn lshape() -> Study<f64, 2> {
 
 #[test]
 fn cycles_with_the_preconditioner_of_a_scheme_find_the_solution_of_factors() {
-    let run = |study: Study<f64, 2>| study.levels([16, 32]).run().unwrap().rows;
+    let run = |study: Study<'_, f64, 2>| study.levels([16, 32]).run().unwrap().rows;
     let found = run(lshape().solver(MonotoneMultigrid::default()));
     let exact = run(lshape().solver(ActiveSet::default().linear(LinearMethod::Direct)));
     for (row, exact) in found.iter().zip(&exact) {
