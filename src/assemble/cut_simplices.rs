@@ -253,7 +253,7 @@ fn rule(dimension: usize, degree: usize) -> Rule {
 /// the same at both ends. By inverse quadratic interpolation where the last three points admit it, else by
 /// bisection, so that it ends at a jump too: T. R. Chandrupatla, Adv. Eng. Softw. 28 (1997), 145-149.
 fn zero_between(function: impl Fn(f64) -> f64) -> Option<f64> {
-    // the last point, the one beyond the zero, and the one before
+    // `a` is the last point, `b` the last one on the other side of the zero
     let ([mut a, mut b], [mut at_a, mut at_b]) = ([1.0, 0.0], [function(1.0), function(0.0)]);
     if (at_a > 0.0) == (at_b > 0.0) {
         return None;
@@ -262,9 +262,11 @@ fn zero_between(function: impl Fn(f64) -> f64) -> Option<f64> {
     for _ in 0..MOST_STEPS {
         let x = a + share * (b - a);
         let at_x = function(x);
-        let (c, at_c) = if (at_x > 0.0) == (at_a > 0.0) { (a, at_a) } else { (b, at_b) };
+        // `c` is the point that `x` makes idle
+        let (mut c, mut at_c) = (a, at_a);
         if (at_x > 0.0) != (at_a > 0.0) {
-            (b, at_b) = (a, at_a);
+            std::mem::swap(&mut b, &mut c);
+            std::mem::swap(&mut at_b, &mut at_c);
         }
         (a, at_a) = (x, at_x);
         let (nearest, at_nearest) = if at_a.abs() < at_b.abs() { (a, at_a) } else { (b, at_b) };

@@ -82,8 +82,8 @@ pub(crate) fn penalised_matrix<T: Real, const D: usize>(
     out
 }
 
-/// The place on the other side of a facet, none on the Dirichlet part, if the jump on the facet counts in this cell: in
-/// the first of two cells, and where Dirichlet data are weak.
+/// `None` if the jump on a facet does not count in this cell; else the place on the other side of the facet, or
+/// `Some(None)` on the Dirichlet part. A jump counts in the first of two cells, and where Dirichlet data are weak.
 fn jump_across<T: Real, const D: usize>(
     space: &Space<'_, T, D>,
     (cell, local): Place,

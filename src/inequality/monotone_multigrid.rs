@@ -29,9 +29,9 @@ use crate::real::Real;
 /// strict complementarity, and from a close start the number of cycles hardly depends on the mesh.
 ///
 /// The V-cycle is the preconditioner of [`BuiltInPreconditioners`] for the coarse spaces of the
-/// [`InitialGuess`], or follows from the matrix by aggregation, which suits conforming P1. For other matrices
-/// without coarse spaces the method converges slowly, and so it does where a large penalty couples means of
-/// several unknowns, because a sweep then changes hardly any single one: over-penalty with bounds at vertices.
+/// [`InitialGuess`], or follows from the matrix by aggregation, which suits conforming P1. The method converges
+/// slowly for other matrices without coarse spaces, and for over-penalty with bounds at vertices: where a large
+/// penalty couples means of several unknowns, a sweep changes hardly any single unknown.
 /// Matrices that are not symmetric are solved by [`ActiveSet`].
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
@@ -254,18 +254,16 @@ impl<'a, T: Real> MultigridIterate<'a, T> {
     fn correct(&mut self, preconditioner: &mut dyn Preconditioner<T>) -> Result<f64, Outcome> {
         let Inequality { matrix, bounds, .. } = self.inequality;
         self.eliminate_active();
-        let set = match self.eliminated == self.fixed {
-            true => Ok(()),
-            false => preconditioner.set_fixed(&self.eliminated),
-        };
-        self.fixed.clear();
-        match set {
-            Ok(()) => self.fixed.extend_from_slice(&self.eliminated),
-            // only the bounds prevent a rigid motion; the sweeps converge without the correction
-            Err(FactorError::Singular) if bounds.iter().any(|bound| bound.is_inequality()) => {
-                return Ok(0.0);
+        if self.eliminated != self.fixed {
+            self.fixed.clear();
+            match preconditioner.set_fixed(&self.eliminated) {
+                Ok(()) => self.fixed.extend_from_slice(&self.eliminated),
+                // only the bounds prevent a rigid motion; the sweeps converge without the correction
+                Err(FactorError::Singular) if bounds.iter().any(|bound| bound.is_inequality()) => {
+                    return Ok(0.0);
+                }
+                Err(error) => return Err(error.into()),
             }
-            Err(error) => return Err(error.into()),
         }
         preconditioner.apply(&self.residual, &mut self.correction);
         for (i, correction) in self.correction.iter_mut().enumerate() {
@@ -335,7 +333,6 @@ impl<'a, T: Real> MultigridIterate<'a, T> {
     /// The solution, with the contact states of its values.
     fn into_solution(self, outcome: Outcome) -> Solution<T> {
         let bounds = self.inequality.bounds.iter().zip(&self.values);
-        let linear_solver = self.linear_solver;
         let contact = bounds
             .map(|(bound, x)| match (bound.lower(), bound.upper()) {
                 (Some(l), _) if *x <= l => Contact::Lower,
@@ -345,6 +342,6 @@ impl<'a, T: Real> MultigridIterate<'a, T> {
             .collect();
         Solution::new(self.values, contact, outcome)
             .iterations(self.cycles, self.cycles)
-            .linear_solver(linear_solver)
+            .linear_solver(self.linear_solver)
     }
 }

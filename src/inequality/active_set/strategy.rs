@@ -215,8 +215,8 @@ impl<'a, T: Real> Solve<'_, 'a, T> {
     }
 
     /// Whether monotone multigrid suits the inequality: its matrix is symmetric, coarse spaces are known, and
-    /// sweeps by unknowns see what a penalty couples, because each of its jumps is that of one unknown. Where a
-    /// jump is that of a mean of vertex values, sweeps change no single one of these.
+    /// sweeps by unknowns see what a penalty couples, because each jump of the penalty is that of one unknown. Where a
+    /// jump is that of a mean of vertex values, sweeps change hardly any single vertex value.
     fn suits_monotone_multigrid(&self) -> bool {
         let Inequality { distribution, symmetric, penalised, .. } = self.inequality;
         distribution.is_none()

@@ -2,8 +2,8 @@
 //!
 //! With the inverse `N` of the stiffness on the free unknowns the jump multipliers of
 //! `K u + M^T p = r`, `M u - S^-1 p = t` satisfy `F p = M N r - t`, `F = S^-1 + M N M^T`. Weights that are reduced by
-//! a factor `c` give `F' = c S^-1 + M N M^T`. Multipliers do work on free unknowns, so that `M N M^T` exceeds `c S^-1`
-//! by far, or none: without shifts all eigenvalues of `F'^-1 F` are close to one or equal to `1/c`. Conjugate gradients
+//! a factor `c` give `F' = c S^-1 + M N M^T`. On multipliers that do work on free unknowns `M N M^T` exceeds `c S^-1`
+//! by far, on all others `M N M^T` is zero: without shifts all eigenvalues of `F'^-1 F` are close to one or equal to `1/c`. Conjugate gradients
 //! for `F`, preconditioned by `F'`, end after a few steps. Every iterate satisfies the first equation.
 
 use super::static_condensation::{CondensedFactors, StaticCondensation};
@@ -58,7 +58,7 @@ impl<T: Real> StaticCondensation<'_, T> {
         p: &mut [f64],
     ) {
         let weight = |k: usize| self.penalised.weights[k].to_f64();
-        // `M u - S^-1 p - t`, and `M u - c S^-1 p - t` is zero
+        // the residual `M u - S^-1 p - t`: with the reduced weights `M u - c S^-1 p - t` is zero
         let excess = |(k, p): (usize, &f64)| (factors.reduction - 1.0) * p / weight(k);
         let mut residual: Vec<f64> = p.iter().enumerate().map(excess).collect();
         let mut image = vec![0.0; p.len()];
