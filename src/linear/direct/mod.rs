@@ -2,10 +2,11 @@
 //!
 //! `factors`: Cholesky and LU factors of a submatrix; `symbolic_factor`: the symbolic part of Cholesky;
 //! `repeated_cholesky`: matrices with the same pattern. `elimination_order` and `nested_dissection`:
-//! orders of elimination. `static_condensation`, `null_directions`, `weight_correction`: factors of
-//! `K + M^T S M`.
-//! `kernels`: the numeric kernels of faer.
+//! orders of elimination. `static_condensation`, `block_inverse`, `null_directions`: factors of `K + M^T S M`;
+//! `condensed_solution`, `weight_correction`: solutions by them. `kernels`: the numeric kernels of faer.
 
+mod block_inverse;
+mod condensed_solution;
 mod elimination_order;
 mod error;
 mod factors;

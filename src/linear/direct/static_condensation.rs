@@ -31,21 +31,13 @@
 //! Source: static condensation of hybridised methods, B. Cockburn, J. Gopalakrishnan, R. Lazarov, SIAM
 //! J. Numer. Anal. 47 (2009), 1319-1365.
 
+use super::block_inverse::BlockInverse;
 use super::error::FactorError;
 use super::factors::Factors;
 use super::null_directions::NullDirections;
 use super::repeated_cholesky::RepeatedCholesky;
-use crate::algebra::dense::{extend_basis, invert_in_place};
 use crate::algebra::{JumpTerm, NO_INDEX, PenalisedMatrix, SparseMatrix, sort_by_column};
 use crate::real::Real;
-
-/// Largest weight divided by `k / eps`, in a block with dependent means because unknowns are fixed;
-/// `k` is the least positive diagonal entry of the stiffness of the block, `eps` machine epsilon.
-const MAX_WEIGHT: f64 = 1e-3;
-
-/// Largest shift divided by `k / sqrt(eps)`, `k` and `eps` as for [`MAX_WEIGHT`], of an unknown that is
-/// not as good as fixed.
-const MAX_SHIFT_BY_ROOT: f64 = 4.0;
 
 /// Largest ratio of a penalty to the stiffness that is factored where there are null directions. Multipliers that do
 /// no work on any free unknown of any block have pivots of the reciprocal size, left by differences of numbers of
@@ -57,18 +49,18 @@ const MAX_RATIO: f64 = 1e12;
 const REDUCTION_STEP: f64 = 16.0;
 
 /// One side of a jump, in the list of its block.
-struct JumpSide {
-    jump: u32,
+pub(super) struct JumpSide {
+    pub jump: u32,
     /// The facet mean of the jump; [`NO_INDEX`] if the jump has one side only.
-    mean: u32,
+    pub mean: u32,
     /// The sign of this side in the jump: one for [`JumpTerm::here`], minus one for
     /// [`JumpTerm::there`].
-    sign: f64,
+    pub sign: f64,
 }
 
 impl JumpSide {
     /// The factor of the right-hand side of the jump on this side.
-    fn share(&self) -> f64 {
+    pub fn share(&self) -> f64 {
         if self.mean == NO_INDEX { self.sign } else { 0.5 * self.sign }
     }
 }
@@ -77,13 +69,13 @@ impl JumpSide {
 pub(crate) struct StaticCondensation<'a, T> {
     pub(super) penalised: &'a PenalisedMatrix<T>,
     /// Start of each block's list in `sides`, and its length at the end.
-    starts: Vec<usize>,
+    pub(super) starts: Vec<usize>,
     sides: Vec<JumpSide>,
     /// The lower triangle of the Schur complement on facet means, all values zero.
-    pattern: SparseMatrix<T>,
+    pub(super) pattern: SparseMatrix<T>,
     cholesky: RepeatedCholesky,
     /// Whether the means over the sides of a block are dependent functions of all its unknowns.
-    has_null_directions: bool,
+    pub(super) has_null_directions: bool,
     /// The largest factor by which weights are reduced; at least one.
     max_reduction: f64,
 }
@@ -91,24 +83,13 @@ pub(crate) struct StaticCondensation<'a, T> {
 /// The inverses of all blocks with their jump multipliers, and the factors of the Schur complement.
 pub(crate) struct CondensedFactors<T> {
     /// The inverses by rows: free unknowns of the block, then jump multipliers.
-    inverses: Vec<f64>,
+    pub(super) inverses: Vec<f64>,
     /// Start of each block's inverse in `inverses`, and its length at the end.
-    starts: Vec<usize>,
-    null_directions: NullDirections,
-    schur_complement: Factors<T>,
+    pub(super) starts: Vec<usize>,
+    pub(super) null_directions: NullDirections,
+    pub(super) schur_complement: Factors<T>,
     /// The true weights divided by those that are factored; at least one.
     pub(super) reduction: f64,
-}
-
-/// Workspace for the inverse of a block with its jump multipliers.
-#[derive(Default)]
-struct BlockInverse {
-    /// By rows: free unknowns of the block, then jump multipliers.
-    entries: Vec<f64>,
-    /// The factors by which the free unknowns are scaled.
-    scales: Vec<f64>,
-    /// The factor by which weights are reduced.
-    reduction: f64,
 }
 
 impl<'a, T: Real> StaticCondensation<'a, T> {
@@ -197,12 +178,12 @@ impl<'a, T: Real> StaticCondensation<'a, T> {
         pattern
     }
 
-    fn sides(&self, block: usize) -> &[JumpSide] {
+    pub(super) fn sides(&self, block: usize) -> &[JumpSide] {
         &self.sides[self.starts[block]..self.starts[block + 1]]
     }
 
     /// The free unknowns of a block.
-    fn free<'f>(
+    pub(super) fn free<'f>(
         &self,
         block: usize,
         is_free: &'f [bool],
@@ -213,7 +194,7 @@ impl<'a, T: Real> StaticCondensation<'a, T> {
 
     /// The coefficient of an unknown in the mean over a side of a facet; zero if the mean does not
     /// contain it.
-    fn mean_coefficient(&self, side: &JumpSide, unknown: usize) -> f64 {
+    pub(super) fn mean_coefficient(&self, side: &JumpSide, unknown: usize) -> f64 {
         let is_own = |t: &&JumpTerm<T>| {
             let i = if side.sign > 0.0 { t.here } else { t.there };
             i as usize == unknown
@@ -227,25 +208,9 @@ impl<'a, T: Real> StaticCondensation<'a, T> {
 
     /// The weight of the difference between the mean over a side and the facet mean: twice the
     /// weight of the jump; if the jump has one side only, the weight of the jump.
-    fn side_weight(&self, side: &JumpSide) -> f64 {
+    pub(super) fn side_weight(&self, side: &JumpSide) -> f64 {
         let weight = self.penalised.weights[side.jump as usize].to_f64();
         if side.mean == NO_INDEX { weight } else { 2.0 * weight }
-    }
-
-    /// The rank of the means over the sides of a block, as functions of the unknowns `may_move`.
-    fn rank_of_means(
-        &self,
-        block: usize,
-        may_move: impl Fn(usize) -> bool,
-        basis: &mut Vec<f64>,
-    ) -> usize {
-        let (n, sides) = (self.penalised.block_size, self.sides(block));
-        basis.clear();
-        for i in (block * n..(block + 1) * n).filter(|&i| may_move(i)) {
-            let means = sides.iter().map(|side| self.mean_coefficient(side, i));
-            extend_basis(basis, means, T::EPSILON.sqrt());
-        }
-        basis.len() / sides.len().max(1)
     }
 
     /// Inverts the blocks on the free unknowns and factors the Schur complement.
@@ -337,214 +302,6 @@ impl<'a, T: Real> StaticCondensation<'a, T> {
         }
     }
 
-    /// Sets `inverse` to the inverse of a block with its jump multipliers; returns the number of free
-    /// unknowns of the block.
-    ///
-    /// # Errors
-    /// [`FactorError::Singular`] or [`FactorError::NotPositive`].
-    fn invert_block(
-        &self,
-        block: usize,
-        is_free: &[bool],
-        shift: &[f64],
-        inverse: &mut BlockInverse,
-        null_directions: &mut NullDirections,
-    ) -> Result<usize, FactorError> {
-        let (size, sides) = (self.penalised.block_size, self.sides(block));
-        let stiffness = |i: usize, j: usize| self.penalised.blocks[i * size + j % size].to_f64();
-        let n_free = self.free(block, is_free).count();
-        let n = n_free + sides.len();
-        // Jump multipliers are scaled by the largest stiffness.
-        let diagonal = || self.free(block, is_free).map(|i| stiffness(i, i));
-        let largest = diagonal().fold(0.0, f64::max);
-        let least = diagonal().filter(|&d| d > 0.0).fold(largest, f64::min);
-        let unit = if largest > 0.0 { largest } else { 1.0 };
-        // A shift above this limit acts like a fixed unknown.
-        let max_shift = least * MAX_SHIFT_BY_ROOT / T::EPSILON.sqrt();
-        let may_move =
-            |i: usize| is_free[i] && shift.get(i).is_none_or(|&shift| shift <= max_shift);
-        let has_null_directions = self.has_null_directions && n_free > 0;
-        self.fill_block((block, n_free), is_free, shift, unit, inverse);
-        let BlockInverse { entries: out, scales, reduction } = inverse;
-        // The rank decides, and is computed only if some weight exceeds the limit.
-        let limit = least * MAX_WEIGHT / T::EPSILON;
-        let is_heavy = !has_null_directions
-            && n_free > 0
-            && (block * size..(block + 1) * size).any(|i| !may_move(i))
-            && sides.iter().any(|side| self.side_weight(side) > limit);
-        let mut basis = Vec::new();
-        let has_dependent_means =
-            is_heavy && self.rank_of_means(block, may_move, &mut basis) < sides.len();
-        let max_weight = if has_dependent_means { limit } else { f64::INFINITY };
-        for (l, side) in (n_free..).zip(sides) {
-            out[l * n + l] = -unit / (self.side_weight(side) / *reduction).min(max_weight);
-        }
-        if has_null_directions {
-            let tolerance = T::EPSILON.sqrt();
-            null_directions.append(block as u32, out, (n_free, n), unit, tolerance);
-        }
-        let is_positive = invert_in_place(out, n).ok_or(FactorError::Singular)?;
-        // With a positive definite stiffness there are as many negative eigenvalues as jumps.
-        if is_positive != (sides.len() % 2 == 0) {
-            return Err(FactorError::NotPositive);
-        }
-        if has_null_directions {
-            null_directions.couple(out, (n_free, n), unit, scales);
-        }
-        for k in 0..n {
-            for l in 0..n {
-                let entry = &mut out[k * n + l];
-                match (k < n_free, l < n_free) {
-                    (true, true) => *entry = *entry * scales[k] * scales[l] / unit,
-                    (false, false) => *entry *= unit,
-                    (true, false) => *entry *= scales[k],
-                    (false, true) => *entry *= scales[l],
-                }
-            }
-        }
-        Ok(n_free)
-    }
-
-    /// Sets `inverse` to the matrix `[[K + D, B^T], [B, 0]]` of a block with `n_free` free unknowns, `D` the
-    /// shift, `K + D` divided by `unit`. Where there are null directions, unknowns with a large shift are
-    /// scaled to the size of the others.
-    fn fill_block(
-        &self,
-        (block, n_free): (usize, usize),
-        is_free: &[bool],
-        shift: &[f64],
-        unit: f64,
-        inverse: &mut BlockInverse,
-    ) {
-        let (size, sides) = (self.penalised.block_size, self.sides(block));
-        let stiffness = |i: usize, j: usize| self.penalised.blocks[i * size + j % size].to_f64();
-        let BlockInverse { entries: out, scales, .. } = inverse;
-        scales.clear();
-        scales.extend(self.free(block, is_free).map(|i| match shift.get(i) {
-            Some(&shift) if self.has_null_directions => {
-                (unit / (stiffness(i, i) + shift)).min(1.0).sqrt()
-            }
-            _ => 1.0,
-        }));
-        let n = n_free + sides.len();
-        out.clear();
-        out.resize(n * n, 0.0);
-        for (k, i) in self.free(block, is_free).enumerate() {
-            for (l, j) in self.free(block, is_free).enumerate() {
-                out[k * n + l] = scales[k] * scales[l] * stiffness(i, j) / unit;
-            }
-            if let Some(&shift) = shift.get(i) {
-                out[k * n + k] += scales[k] * scales[k] * shift / unit;
-            }
-            for (l, side) in (n_free..).zip(sides) {
-                let coefficient = scales[k] * self.mean_coefficient(side, i);
-                out[k * n + l] = coefficient;
-                out[l * n + k] = coefficient;
-            }
-        }
-    }
-
-    /// [`StaticCondensation::solve`] with the reduced weights in place of `S`.
-    pub(super) fn solve_reduced(
-        &self,
-        factors: &CondensedFactors<T>,
-        is_free: &[bool],
-        r: &mut [f64],
-        t: &mut [f64],
-    ) -> f64 {
-        let n_means = self.pattern.size();
-        let CondensedFactors { null_directions, .. } = factors;
-        let mut load = vec![0.0; n_means];
-        let mut local = Vec::new();
-        for block in 0..self.starts.len() - 1 {
-            self.block_right_side(block, is_free, r, t, &|_| 0.0, &mut local);
-            let n_free = local.len() - self.sides(block).len();
-            for (k, side) in (n_free..).zip(self.sides(block)) {
-                if side.mean != NO_INDEX {
-                    load[side.mean as usize] += factors.row_dot(block, k, &local);
-                }
-            }
-        }
-        self.append_null_loads(null_directions, is_free, r, t, &mut load);
-        let mut means: Vec<T> = load.into_iter().map(T::lit).collect();
-        factors.schur_complement.solve_in_place(&mut means, 1);
-        let mean = |k: u32| if k == NO_INDEX { 0.0 } else { means[k as usize].to_f64() };
-        let jump_right_side = t.to_vec();
-        let mut energy = 0.0;
-        let mut directions = 0..0;
-        for block in 0..self.starts.len() - 1 {
-            directions = null_directions.of_block(block, directions.end);
-            self.block_right_side(block, is_free, r, &jump_right_side, &mean, &mut local);
-            let n = self.penalised.block_size;
-            let mut k = 0;
-            for i in block * n..(block + 1) * n {
-                let response =
-                    |q: usize| null_directions.responses(q)[k] * means[n_means + q].to_f64();
-                let value = match is_free[i] {
-                    true => directions
-                        .clone()
-                        .map(response)
-                        .fold(factors.row_dot(block, k, &local), |s, x| s + x),
-                    false => 0.0,
-                };
-                energy += value * r[i];
-                r[i] = value;
-                k += usize::from(is_free[i]);
-            }
-            for (k, side) in (k..).zip(self.sides(block)) {
-                // The multipliers of the two sides of a facet are equal.
-                if side.sign > 0.0 || side.mean == NO_INDEX {
-                    let multiplier = side.sign * factors.row_dot(block, k, &local);
-                    energy -= multiplier * jump_right_side[side.jump as usize];
-                    t[side.jump as usize] = multiplier;
-                }
-            }
-        }
-        for (k, (&block, q)) in null_directions.blocks().iter().zip(&means[n_means..]).enumerate() {
-            let sides = self.sides(block as usize).iter().zip(null_directions.entries(k));
-            for (side, y) in sides.filter(|(s, _)| s.sign > 0.0 || s.mean == NO_INDEX) {
-                let multiplier = -side.sign * y * q.to_f64();
-                energy -= multiplier * jump_right_side[side.jump as usize];
-                t[side.jump as usize] += multiplier;
-            }
-        }
-        energy
-    }
-
-    /// Appends the right-hand sides of the equations of the multipliers of null directions.
-    fn append_null_loads(
-        &self,
-        null_directions: &NullDirections,
-        is_free: &[bool],
-        r: &[f64],
-        t: &[f64],
-        load: &mut Vec<f64>,
-    ) {
-        load.extend(null_directions.blocks().iter().enumerate().map(|(k, &block)| {
-            let sides = self.sides(block as usize).iter().zip(null_directions.entries(k));
-            let unknowns = self.free(block as usize, is_free).zip(null_directions.responses(k));
-            let of_unknowns = unknowns.fold(0.0, |s, (i, g)| s + g * r[i]);
-            sides.fold(of_unknowns, |s, (side, y)| s - y * side.share() * t[side.jump as usize])
-        }));
-    }
-
-    /// The right-hand side of the equations of a block: `r` on its free unknowns, then for each side
-    /// the facet mean plus its part of `t`.
-    fn block_right_side(
-        &self,
-        block: usize,
-        is_free: &[bool],
-        r: &[f64],
-        t: &[f64],
-        mean: &dyn Fn(u32) -> f64,
-        out: &mut Vec<f64>,
-    ) {
-        out.clear();
-        out.extend(self.free(block, is_free).map(|i| r[i]));
-        let sides = self.sides(block).iter();
-        out.extend(sides.map(|side| mean(side.mean) + side.share() * t[side.jump as usize]));
-    }
-
     /// Sums of the absolute values of terms of the residual `(c - K u - M^T p)_i`: first of the
     /// terms with free unknowns and jump multipliers `p`, then of the terms with fixed unknowns and
     /// of the load.
@@ -577,14 +334,6 @@ impl<'a, T: Real> StaticCondensation<'a, T> {
         let terms = sides.flat_map(|side| self.penalised.terms_of(side.jump as usize));
         let unknowns = terms.flat_map(|term| [term.here, term.there]).filter(|&j| j != NO_INDEX);
         unknowns.map(|j| u(j as usize)).fold(of_block, |m, x| m.max(x.abs()))
-    }
-}
-
-impl<T> CondensedFactors<T> {
-    /// Row `k` of a block's inverse times a vector.
-    fn row_dot(&self, block: usize, k: usize, x: &[f64]) -> f64 {
-        let row = &self.inverses[self.starts[block] + k * x.len()..][..x.len()];
-        row.iter().zip(x).fold(0.0, |s, (a, x)| s + a * x)
     }
 }
 

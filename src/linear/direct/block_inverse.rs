@@ -1,0 +1,151 @@
+//! The inverse of one block of a [`StaticCondensation`] with its jump multipliers.
+
+use super::error::FactorError;
+use super::null_directions::NullDirections;
+use super::static_condensation::StaticCondensation;
+use crate::algebra::dense::{extend_basis, invert_in_place};
+use crate::real::Real;
+
+/// Largest weight divided by `k / eps`, in a block with dependent means because unknowns are fixed;
+/// `k` is the least positive diagonal entry of the stiffness of the block, `eps` machine epsilon.
+const MAX_WEIGHT: f64 = 1e-3;
+
+/// Largest shift divided by `k / sqrt(eps)`, `k` and `eps` as for [`MAX_WEIGHT`], of an unknown that is
+/// not as good as fixed.
+const MAX_SHIFT_BY_ROOT: f64 = 4.0;
+
+/// Workspace for the inverse of a block with its jump multipliers.
+#[derive(Default)]
+pub(super) struct BlockInverse {
+    /// By rows: free unknowns of the block, then jump multipliers.
+    pub entries: Vec<f64>,
+    /// The factors by which the free unknowns are scaled.
+    pub scales: Vec<f64>,
+    /// The factor by which weights are reduced.
+    pub reduction: f64,
+}
+
+impl<T: Real> StaticCondensation<'_, T> {
+    /// The rank of the means over the sides of a block, as functions of the unknowns `may_move`.
+    pub(super) fn rank_of_means(
+        &self,
+        block: usize,
+        may_move: impl Fn(usize) -> bool,
+        basis: &mut Vec<f64>,
+    ) -> usize {
+        let (n, sides) = (self.penalised.block_size, self.sides(block));
+        basis.clear();
+        for i in (block * n..(block + 1) * n).filter(|&i| may_move(i)) {
+            let means = sides.iter().map(|side| self.mean_coefficient(side, i));
+            extend_basis(basis, means, T::EPSILON.sqrt());
+        }
+        basis.len() / sides.len().max(1)
+    }
+
+    /// Sets `inverse` to the inverse of a block with its jump multipliers; returns the number of free
+    /// unknowns of the block.
+    ///
+    /// # Errors
+    /// [`FactorError::Singular`] or [`FactorError::NotPositive`].
+    pub(super) fn invert_block(
+        &self,
+        block: usize,
+        is_free: &[bool],
+        shift: &[f64],
+        inverse: &mut BlockInverse,
+        null_directions: &mut NullDirections,
+    ) -> Result<usize, FactorError> {
+        let (size, sides) = (self.penalised.block_size, self.sides(block));
+        let stiffness = |i: usize, j: usize| self.penalised.blocks[i * size + j % size].to_f64();
+        let n_free = self.free(block, is_free).count();
+        let n = n_free + sides.len();
+        // Jump multipliers are scaled by the largest stiffness.
+        let diagonal = || self.free(block, is_free).map(|i| stiffness(i, i));
+        let largest = diagonal().fold(0.0, f64::max);
+        let least = diagonal().filter(|&d| d > 0.0).fold(largest, f64::min);
+        let unit = if largest > 0.0 { largest } else { 1.0 };
+        // A shift above this limit acts like a fixed unknown.
+        let max_shift = least * MAX_SHIFT_BY_ROOT / T::EPSILON.sqrt();
+        let may_move =
+            |i: usize| is_free[i] && shift.get(i).is_none_or(|&shift| shift <= max_shift);
+        let has_null_directions = self.has_null_directions && n_free > 0;
+        self.fill_block((block, n_free), is_free, shift, unit, inverse);
+        let BlockInverse { entries: out, scales, reduction } = inverse;
+        // The rank decides, and is computed only if some weight exceeds the limit.
+        let limit = least * MAX_WEIGHT / T::EPSILON;
+        let is_heavy = !has_null_directions
+            && n_free > 0
+            && (block * size..(block + 1) * size).any(|i| !may_move(i))
+            && sides.iter().any(|side| self.side_weight(side) > limit);
+        let mut basis = Vec::new();
+        let has_dependent_means =
+            is_heavy && self.rank_of_means(block, may_move, &mut basis) < sides.len();
+        let max_weight = if has_dependent_means { limit } else { f64::INFINITY };
+        for (l, side) in (n_free..).zip(sides) {
+            out[l * n + l] = -unit / (self.side_weight(side) / *reduction).min(max_weight);
+        }
+        if has_null_directions {
+            let tolerance = T::EPSILON.sqrt();
+            null_directions.append(block as u32, out, (n_free, n), unit, tolerance);
+        }
+        let is_positive = invert_in_place(out, n).ok_or(FactorError::Singular)?;
+        // With a positive definite stiffness there are as many negative eigenvalues as jumps.
+        if is_positive != (sides.len() % 2 == 0) {
+            return Err(FactorError::NotPositive);
+        }
+        if has_null_directions {
+            null_directions.couple(out, (n_free, n), unit, scales);
+        }
+        for k in 0..n {
+            for l in 0..n {
+                let entry = &mut out[k * n + l];
+                match (k < n_free, l < n_free) {
+                    (true, true) => *entry = *entry * scales[k] * scales[l] / unit,
+                    (false, false) => *entry *= unit,
+                    (true, false) => *entry *= scales[k],
+                    (false, true) => *entry *= scales[l],
+                }
+            }
+        }
+        Ok(n_free)
+    }
+
+    /// Sets `inverse` to the matrix `[[K + D, B^T], [B, 0]]` of a block with `n_free` free unknowns, `D` the
+    /// shift, `K + D` divided by `unit`. Where there are null directions, unknowns with a large shift are
+    /// scaled to the size of the others.
+    fn fill_block(
+        &self,
+        (block, n_free): (usize, usize),
+        is_free: &[bool],
+        shift: &[f64],
+        unit: f64,
+        inverse: &mut BlockInverse,
+    ) {
+        let (size, sides) = (self.penalised.block_size, self.sides(block));
+        let stiffness = |i: usize, j: usize| self.penalised.blocks[i * size + j % size].to_f64();
+        let BlockInverse { entries: out, scales, .. } = inverse;
+        scales.clear();
+        scales.extend(self.free(block, is_free).map(|i| match shift.get(i) {
+            Some(&shift) if self.has_null_directions => {
+                (unit / (stiffness(i, i) + shift)).min(1.0).sqrt()
+            }
+            _ => 1.0,
+        }));
+        let n = n_free + sides.len();
+        out.clear();
+        out.resize(n * n, 0.0);
+        for (k, i) in self.free(block, is_free).enumerate() {
+            for (l, j) in self.free(block, is_free).enumerate() {
+                out[k * n + l] = scales[k] * scales[l] * stiffness(i, j) / unit;
+            }
+            if let Some(&shift) = shift.get(i) {
+                out[k * n + k] += scales[k] * scales[k] * shift / unit;
+            }
+            for (l, side) in (n_free..).zip(sides) {
+                let coefficient = scales[k] * self.mean_coefficient(side, i);
+                out[k * n + l] = coefficient;
+                out[l * n + k] = coefficient;
+            }
+        }
+    }
+}
