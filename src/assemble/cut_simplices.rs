@@ -54,6 +54,16 @@ impl CutRule {
         Self { dimension, whole, part, facet: rule(dimension.saturating_sub(1), in_parts) }
     }
 
+    /// Whether the zero set of a function cuts a cell, as far as [`CutRule::visit_if_cut`] sees.
+    pub fn cuts<T: Real, const D: usize>(
+        &self,
+        mesh: &Mesh<T, D>,
+        cell: usize,
+        level: &Field<D>,
+    ) -> bool {
+        self.is_cut(&self.whole(), &mesh.corners(cell), level)
+    }
+
     /// Visits the points of the rule on a cell if it is cut, and tells whether it is: in barycentric
     /// coordinates, in space, and with their weights.
     pub fn visit_if_cut<T: Real, const D: usize>(

@@ -56,11 +56,7 @@ fn bound_of<T: Real>(inequality: &Inequality<T>, u: &[T]) -> Result<f64, Outcome
     let free = inequality.free_unknowns();
     let unbalanced = |&i: &u32| {
         let i = i as usize;
-        T::lit(if has_right_sign(&bounds[i], admissible[i], residual[i]) {
-            0.0
-        } else {
-            residual[i]
-        })
+        T::lit(unbalanced(&bounds[i], admissible[i], residual[i]))
     };
     let right_side: Vec<T> = free.iter().map(unbalanced).collect();
     let mut correction = right_side.clone();
@@ -72,8 +68,11 @@ fn bound_of<T: Real>(inequality: &Inequality<T>, u: &[T]) -> Result<f64, Outcome
     Ok((squared.max(0.0).sqrt() + projection.max(0.0).sqrt()) / scales.energy_norm)
 }
 
-/// Whether the value is at a bound that the residual `b - A u` presses it against.
-fn has_right_sign<T: Real>(bound: &Bound<T>, value: T, residual: f64) -> bool {
-    bound.lower().is_some_and(|l| value <= l && residual <= 0.0)
-        || bound.upper().is_some_and(|u| value >= u && residual >= 0.0)
+/// The residual of an unknown that no multiplier balances: `residual`, or zero if the unknown is fixed, or at a bound
+/// that `residual` presses it against.
+pub(super) fn unbalanced<T: Real>(bound: &Bound<T>, value: T, residual: f64) -> f64 {
+    let is_balanced = bound.fixed_value().is_some()
+        || bound.lower().is_some_and(|l| value <= l && residual <= 0.0)
+        || bound.upper().is_some_and(|u| value >= u && residual >= 0.0);
+    if is_balanced { 0.0 } else { residual }
 }

@@ -20,6 +20,7 @@
 //! | `certificate` | [`Certificate`] |
 //! | `violations` | [`certify`], [`Violations`]: the sums and maxima of a certificate, which parts of a mesh merge |
 //! | `energy_error_bound` | [`energy_error_bound`]: a proven bound for any values |
+//! | `preconditioned_error_bound` | the same bound by a preconditioner in place of factors |
 //! | `scales` | the energy norm and the largest value to which violations are relative |
 //! | `recession` | whether a solution exists and is unique where only bounds hold the domain |
 //! | `initial_guess` | [`InitialGuess`]: coarse spaces, starting values and tolerance of a solve |
@@ -39,6 +40,7 @@ pub(crate) mod initial_guess;
 mod interior_point;
 mod monotone_multigrid;
 mod outcome;
+mod preconditioned_error_bound;
 mod recession;
 mod scales;
 mod solution;

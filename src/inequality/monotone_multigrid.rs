@@ -1,8 +1,9 @@
 //! Truncated nonsmooth Newton multigrid: a descent method that does not depend on strict
 //! complementarity.
 
-use super::certificate::positive_diagonal;
+use super::certificate::{contact_of, positive_diagonal};
 use super::initial_guess::InitialGuess;
+use super::preconditioned_error_bound::preconditioned_error_bound;
 use super::recession::solve_with_kernel;
 use super::scales::Scales;
 use super::validation::check_input;
@@ -17,6 +18,13 @@ use crate::linear::{
     PreconditionerFamily,
 };
 use crate::real::Real;
+
+/// The factor of the tolerance after a solution whose bound on the algebraic error is too large.
+const REDUCTION: f64 = 0.1;
+
+/// Cycles that may pass without halving the change of a cycle before the method stagnates. Changes that fall
+/// more slowly need more than three hundred cycles to the tolerance; below rounding they do not fall at all.
+const STAGNATION_CYCLES: usize = 10;
 
 /// The truncated nonsmooth Newton multigrid method (Graeser, Kornhuber, J. Comput. Math. 27 (2009)
 /// 1-44; Graeser, Sack, Sander, Domain Decomposition Methods XVIII (2009) 129-136) for matrices
@@ -154,6 +162,8 @@ struct MultigridIterate<'a, T> {
     /// The energy norm of the values before the last correction; see [`Scales::energy_norm`].
     energy_norm: f64,
     cycles: usize,
+    /// See [`Solution::algebraic_bound`].
+    algebraic_bound: Option<f64>,
 }
 
 impl<'a, T: Real> MultigridIterate<'a, T> {
@@ -177,11 +187,12 @@ impl<'a, T: Real> MultigridIterate<'a, T> {
             whole_residual: vec![0.0; n],
             energy_norm: 0.0,
             cycles: 0,
+            algebraic_bound: None,
         }
     }
 
-    /// Cycles until the changes are within the tolerance and the certificate is within its limit; the
-    /// certificate is not required if the guess sets a tolerance.
+    /// Cycles until the changes are within the tolerance, and the certificate and the bound on the algebraic error are
+    /// within their limits; neither limit applies if the guess sets a tolerance.
     ///
     /// # Errors
     /// The outcome if the method does not converge.
@@ -197,9 +208,10 @@ impl<'a, T: Real> MultigridIterate<'a, T> {
         self.linear_solver = preconditioner.name();
         self.diagonal = self.inequality.matrix.diagonal();
         let least = guess.energy_tolerance.unwrap_or(0.0).max(4.0 * T::EPSILON);
-        let tolerance = settings.tolerance.max(least);
+        let mut tolerance = settings.tolerance.max(least);
         let limit =
             if guess.energy_tolerance.is_some() { f64::INFINITY } else { T::CERTIFICATE_LIMIT };
+        let (mut least_change, mut stagnant_cycles) = (f64::INFINITY, 0);
         while self.cycles < settings.max_cycles {
             self.cycles += 1;
             guess.steps.set(self.cycles);
@@ -212,13 +224,34 @@ impl<'a, T: Real> MultigridIterate<'a, T> {
             if !(energy_norm.is_finite() && by_sweeps.is_finite()) {
                 return Err(Outcome::NotFinite);
             }
-            if (by_sweeps + by_correction).sqrt() <= tolerance * energy_norm
+            let change = (by_sweeps + by_correction).sqrt();
+            stagnant_cycles = if change <= 0.5 * least_change { 0 } else { stagnant_cycles + 1 };
+            least_change = if stagnant_cycles == 0 { change } else { least_change };
+            // a start for another solve need not be accurate, and takes its cycles
+            let stagnates =
+                guess.energy_tolerance.is_none() && stagnant_cycles >= STAGNATION_CYCLES;
+            if (change <= tolerance * energy_norm || stagnates)
                 && certify(self.inequality, &self.values).largest() <= limit
             {
-                return Ok(Outcome::Converged);
+                if guess.energy_tolerance.is_some() || self.has_small_bound(&mut *preconditioner) {
+                    return Ok(Outcome::Converged);
+                }
+                // of cycles that converge slowly the error is much larger than a change
+                tolerance *= REDUCTION;
+            }
+            if stagnates || tolerance < least {
+                return Err(Outcome::Stalled);
             }
         }
         Err(Outcome::IterationLimit)
+    }
+
+    /// Computes the bound on the algebraic error; returns whether it is within the limit, or there is none.
+    fn has_small_bound(&mut self, preconditioner: &mut dyn Preconditioner<T>) -> bool {
+        self.fixed.clear();
+        self.algebraic_bound =
+            preconditioned_error_bound(self.inequality, &self.values, preconditioner);
+        self.algebraic_bound.is_none_or(|bound| bound <= T::ALGEBRAIC_BOUND_LIMIT)
     }
 
     /// One sweep of projected Gauss-Seidel. Returns the sum of `d_i (change of u_i)^2`, an estimate
@@ -262,6 +295,10 @@ impl<'a, T: Real> MultigridIterate<'a, T> {
                 Err(FactorError::Singular) if bounds.iter().any(|bound| bound.is_inequality()) => {
                     return Ok(0.0);
                 }
+                // pivots of a definite matrix are not positive by rounding only
+                Err(FactorError::NotPositive) if self.inequality.is_definite => {
+                    return Err(Outcome::Stalled);
+                }
                 Err(error) => return Err(error.into()),
             }
         }
@@ -279,7 +316,8 @@ impl<'a, T: Real> MultigridIterate<'a, T> {
             slope += self.residual[i].to_f64() * correction.to_f64();
             curvature += correction.to_f64() * matrix.row_dot_f64(i, &self.correction);
         }
-        if slope <= 0.0 {
+        let is_rounding = curvature <= 0.0 && self.inequality.is_definite;
+        if slope <= 0.0 || is_rounding {
             return Ok(0.0);
         }
         if curvature <= 0.0 {
@@ -332,16 +370,13 @@ impl<'a, T: Real> MultigridIterate<'a, T> {
 
     /// The solution, with the contact states of its values.
     fn into_solution(self, outcome: Outcome) -> Solution<T> {
-        let bounds = self.inequality.bounds.iter().zip(&self.values);
-        let contact = bounds
-            .map(|(bound, x)| match (bound.lower(), bound.upper()) {
-                (Some(l), _) if *x <= l => Contact::Lower,
-                (_, Some(u)) if *x >= u => Contact::Upper,
-                _ => Contact::Inactive,
-            })
-            .collect();
+        let contact = match self.values.iter().all(|x| x.to_f64().is_finite()) {
+            true => contact_of(self.inequality, &self.values),
+            false => vec![Contact::Inactive; self.values.len()],
+        };
         Solution::new(self.values, contact, outcome)
             .iterations(self.cycles, self.cycles)
             .linear_solver(self.linear_solver)
+            .algebraic_bound(self.algebraic_bound)
     }
 }

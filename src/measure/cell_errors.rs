@@ -11,6 +11,7 @@ use crate::assemble::space::tables::{BasisAt, CellTable};
 use crate::assemble::space::{Space, Terms, data};
 use crate::element::MAX_BASIS;
 use crate::error::Error;
+use crate::mesh::Mesh;
 use crate::parallel::cells;
 use crate::problem::{Exact, Field};
 use crate::quadrature::{FullySymmetric, Quadrature, Rule};
@@ -50,6 +51,43 @@ const MEAN_DEGREE: usize = 5;
 /// Whether a cell counts in a sum over cells.
 pub(crate) type Counts<'c> = &'c (dyn Fn(usize) -> bool + Sync);
 
+/// The functions of a region whose zeros are kinks of the exact solution.
+enum Kinks<const D: usize> {
+    None,
+    OneLevel(Field<D>),
+    TwoLevels {
+        levels: [Field<D>; 2],
+        /// Changes its sign at the zeros of both, but not where these coincide.
+        product: Field<D>,
+    },
+}
+
+impl<const D: usize> Kinks<D> {
+    /// The function along whose zeros a cell is divided. Of two functions that cut the cell along the same zeros,
+    /// as the free boundary and the jump of the load of some scenes, the first one.
+    fn level_in<T: Real>(
+        &self,
+        rule: &CutRule,
+        mesh: &Mesh<T, D>,
+        cell: usize,
+    ) -> Option<&Field<D>> {
+        match self {
+            Self::None => None,
+            Self::OneLevel(level) => Some(level),
+            Self::TwoLevels { levels, product } => {
+                let cuts = |level| rule.cuts(mesh, cell, level);
+                match levels.each_ref().map(cuts) {
+                    [false, false] => None,
+                    [true, false] => Some(&levels[0]),
+                    [false, true] => Some(&levels[1]),
+                    [true, true] if cuts(product) => Some(product),
+                    [true, true] => Some(&levels[0]),
+                }
+            }
+        }
+    }
+}
+
 /// What the errors of all cells read.
 struct Measure<'m, 'r, 'f, T: Real, const D: usize> {
     exact: &'m Reference<'r, T, D>,
@@ -59,8 +97,8 @@ struct Measure<'m, 'r, 'f, T: Real, const D: usize> {
     lower: Option<[CellTable<f64>; 2]>,
     /// The rule on cells that kinks cut.
     cut_rule: Option<CutRule>,
-    /// By region the function whose zeros are kinks.
-    kinks: Vec<Option<Field<D>>>,
+    /// By region the functions whose zeros are kinks.
+    kinks: Vec<Kinks<D>>,
     /// The functional of each node.
     nodes: Vec<Terms>,
     u: Option<&'m [T]>,
@@ -93,9 +131,10 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         };
         let cell_rule = Rule::new(D, degree);
         let nodes = self.node_terms(&Rule::new(D - 1, MEAN_DEGREE), &cell_rule);
-        let kinks: Vec<Option<Field<D>>> =
+        let kinks: Vec<Kinks<D>> =
             (0..self.mesh.regions().len()).map(|region| self.kinks(exact, region)).collect();
-        let cut_rule = kinks.iter().any(Option::is_some).then(|| CutRule::new(D, degree));
+        let has_kinks = kinks.iter().any(|kinks| !matches!(kinks, Kinks::None));
+        let cut_rule = has_kinks.then(|| CutRule::new(D, degree));
         let table = self.cell_table(cell_rule);
         let measure = Measure { exact, table, lower, cut_rule, kinks, nodes, u, function };
         let n_cells = self.mesh.n_cells();
@@ -139,15 +178,21 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         Ok(total)
     }
 
-    /// The function whose zeros are those of the level of the load of a region and, with an obstacle, the exact free
+    /// The functions whose zeros are those of the level of the load of a region and, with an obstacle, the exact free
     /// boundary: second derivatives of the exact solution jump there.
-    fn kinks(&self, exact: &Reference<'_, T, D>, region: usize) -> Option<Field<D>> {
-        let Reference::Exact(Exact { contact, .. }) = exact else { return None };
+    fn kinks(&self, exact: &Reference<'_, T, D>, region: usize) -> Kinks<D> {
+        let Reference::Exact(Exact { contact, .. }) = exact else { return Kinks::None };
         let contact = contact.as_ref().filter(|_| self.problem.has_obstacle());
         let indicator = contact.map(|set| set.indicator.clone());
         let levels = self.data.source.of(region).and_then(|f| f.level()).cloned();
-        let product = |a: Field<D>, b: Field<D>| -> Field<D> { Arc::new(move |x| a(x) * b(x)) };
-        indicator.into_iter().chain(levels).reduce(product)
+        match (indicator, levels) {
+            (None, None) => Kinks::None,
+            (Some(level), None) | (None, Some(level)) => Kinks::OneLevel(level),
+            (Some(a), Some(b)) => {
+                let [one, other] = [a.clone(), b.clone()];
+                Kinks::TwoLevels { product: Arc::new(move |x| one(x) * other(x)), levels: [a, b] }
+            }
+        }
     }
 
     /// The squares of a cell by two rules; by the same one if it is the one of highest degree.
@@ -221,14 +266,16 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
             return by_rule(&of.table).map(|squares| [squares; 2]);
         }
         let (mut sum, mut outcome) = (Squares::default(), Ok(()));
-        let is_cut =
-            of.cut_rule.as_ref().zip(of.kinks[region].as_ref()).is_some_and(|(rule, level)| {
-                rule.visit_if_cut(self.mesh, cell, level, &mut |point, x, weight| {
-                    if outcome.is_ok() {
-                        outcome = add(&mut sum, (point, x), weight, &self.basis_at(point));
-                    }
-                })
-            });
+        let is_cut = of.cut_rule.as_ref().is_some_and(|rule| {
+            let Some(level) = of.kinks[region].level_in(rule, self.mesh, cell) else {
+                return false;
+            };
+            rule.visit_if_cut(self.mesh, cell, level, &mut |point, x, weight| {
+                if outcome.is_ok() {
+                    outcome = add(&mut sum, (point, x), weight, &self.basis_at(point));
+                }
+            })
+        });
         let corner = |k: usize| point_f64(&self.mesh.vertices()[self.mesh.cell(cell)[k] as usize]);
         match &of.lower {
             _ if is_cut => outcome.map(|()| [sum; 2]),

@@ -91,12 +91,30 @@ fn cycles_with_the_preconditioner_of_a_scheme_find_the_solution_of_factors() {
     }
 }
 
+/// Changes of a cycle below rounding do not fall: the certificate and the bound on the error decide.
+#[test]
+fn cycles_in_single_precision_end_at_rounding() {
+    let study = Study::<f32, 2>::new(scenes::lshape_2d())
+        .scheme(Sipg::default())
+        .scheme_on(Wopsip::default(), FacetMeans)
+        .scheme(ConformingP2);
+    let solver = MonotoneMultigrid::default();
+    for row in study.levels([8, 32]).solver(solver).run().unwrap().rows {
+        let what = format!("{} {}", row.label, row.level);
+        assert!(row.converged(), "{what}: {:?}", row.status);
+        assert!(row.certificate.algebraic_bound.unwrap() < 1e-3, "{what}: {:?}", row.certificate);
+        assert!(row.iterations.outer.unwrap() <= 60, "{what}: {:?}", row.iterations);
+    }
+}
+
 /// The cycles of the last stage, which is monotone multigrid.
 fn cycles(row: &Row) -> usize {
     let (stages, what) = (&row.iterations.stages, format!("{} {}", row.label, row.level));
     let last = stages.last().unwrap();
     assert_eq!(last.stage, Stage::MonotoneMultigrid, "{what}: {stages:?}");
     assert!(row.converged() && row.certificate.largest() < 1e-9, "{what}: {:?}", row.certificate);
+    let bound = row.certificate.algebraic_bound.unwrap();
+    assert!(bound > 0.0 && bound < 1e-8, "{what}: {bound}");
     last.outer
 }
 

@@ -3,12 +3,9 @@
 use super::iterate::Iterate;
 use super::preconditioned_solver::PreconditionedSolver;
 use crate::algebra::{any_part, sum_over_parts};
+use crate::linear::krylov::EIGENVALUE_TO_RITZ_VALUE;
 use crate::parallel::vectors::{dot, zeros};
 use crate::real::Real;
-
-/// Assumed lower bound of the ratio of the smallest eigenvalue to the smallest Ritz value. The Ritz
-/// value is above the eigenvalue and close to it after a few iterations.
-const EIGENVALUE_TO_RITZ_VALUE: f64 = 0.9;
 
 /// The threshold of strong activity divided by the estimate of the error.
 const THRESHOLD_FACTOR: f64 = 4.0;

@@ -7,10 +7,8 @@ use crate::inequality::Outcome;
 use crate::inequality::validation::check_definite;
 use crate::linear::Preconditioner;
 use crate::linear::direct::FactorError;
-use crate::linear::krylov::{
-    ConjugateGradients, KrylovMethod, KrylovRun, StopReason, StoppingRule,
-};
-use crate::parallel::vectors::{for_each_chunk, pseudorandom_signs, zeros};
+use crate::linear::krylov::{KrylovMethod, KrylovRun, StopReason, StoppingRule, eigenvalue_run};
+use crate::parallel::vectors::{for_each_chunk, zeros};
 use crate::real::Real;
 
 /// Estimated condition number of the preconditioned matrix (largest Ritz value divided by the
@@ -20,9 +18,6 @@ const MAX_CONDITION: f64 = 1e4;
 
 /// Largest number of iterations for one linear system.
 const MAX_ITERATIONS: usize = 500;
-
-/// Relative tolerance of the linear system that is solved for its Ritz values alone.
-const EIGENVALUE_RUN_TOL: f64 = 1e-6;
 
 /// Relative tolerance of the system that determines jump multipliers.
 const MULTIPLIER_REDUCTION: f64 = 1e-6;
@@ -132,23 +127,14 @@ impl<'a, T: Real> PreconditionedSolver<'a, T> {
         &mut self,
         iterate: &mut Iterate<'_, T>,
     ) -> Result<(), LinearFailure> {
-        let n = iterate.values.len();
-        let mut load = zeros(n);
-        // pseudo-random signs, so that every eigenvector has a component
-        let inactive = (0..n).filter(|&i| !iterate.eliminated[i]);
-        for (i, is_positive) in inactive.zip(pseudorandom_signs()) {
-            let d = T::lit(iterate.diagonal[i]);
-            load[i] = if is_positive { d } else { -d };
-        }
-        let stop = StoppingRule {
-            norm: 0.0,
-            reduction: EIGENVALUE_RUN_TOL,
-            max_iterations: MAX_ITERATIONS,
-        };
-        let system = (&mut zeros(n)[..], &mut load[..]);
-        let distribution = self.inequality.distribution();
-        let mut method = ConjugateGradients::new(self.symmetric_part, distribution);
-        let run = method.solve(&iterate.eliminated, &mut *self.preconditioner, system, stop);
+        let run = eigenvalue_run(
+            self.symmetric_part,
+            self.inequality.distribution(),
+            &mut *self.preconditioner,
+            &iterate.eliminated,
+            |i| iterate.diagonal[i],
+            MAX_ITERATIONS,
+        );
         iterate.linear += run.iterations;
         self.check(&run)
     }

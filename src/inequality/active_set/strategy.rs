@@ -29,6 +29,7 @@ use crate::inequality::monotone_multigrid::MonotoneMultigrid;
 use crate::inequality::validation::{check_definite, check_input};
 use crate::inequality::{InequalitySolver, Outcome, Solution, Stage, StageRun};
 use crate::linear::krylov::symmetric_part;
+use crate::linear::precondition::unknowns_per_cell;
 use crate::linear::{CoarseSpaces, LinearMethod, PreconditionedSystem, PreconditionerFamily};
 use crate::real::Real;
 
@@ -52,6 +53,9 @@ const TOLERANCE_TO_LIMIT: f64 = 0.1;
 /// later stage. One suffices for WOPSIP with bounds at vertices in space.
 const LOCAL_SOLVES: usize = 3;
 
+/// Number of basis functions of linear functions on a tetrahedron.
+const MAX_LINEAR_BASIS: usize = 4;
+
 /// The stages in their order.
 const STRATEGY: [Stage; 7] = [
     Stage::PreconditionedActiveSet,
@@ -70,6 +74,8 @@ struct Solve<'s, 'a, T: Real> {
     guess: &'s InitialGuess<T>,
     family: &'s dyn PreconditionerFamily<T>,
     iterate: Iterate<'a, T>,
+    /// Cycles of monotone multigrid so far. They are no linear systems, whose number is limited.
+    cycles: usize,
     /// The solver with factors; `None` before the first stage that needs it.
     direct: Option<DirectSolver<'a, T>>,
     /// The stages that ran.
@@ -122,6 +128,7 @@ pub(crate) fn solve<T: Real>(
         guess,
         family,
         iterate: Iterate::new(inequality, values),
+        cycles: 0,
         direct: None,
         stages: Vec::new(),
         end: None,
@@ -209,9 +216,12 @@ fn agree<T: Real>(inequality: &Inequality<T>, checked: Result<(), Outcome>) -> R
 }
 
 impl<'a, T: Real> Solve<'_, 'a, T> {
-    /// Whether monotone multigrid takes over: from a stagnating active set, if it suits the inequality.
+    /// Whether monotone multigrid takes over: from a stagnating active set, if it suits the inequality and the
+    /// settings leave the choice.
     fn may_run_monotone_multigrid(&self) -> bool {
-        matches!(self.end, Some(End::Obstruction(_))) && self.suits_monotone_multigrid()
+        matches!(self.end, Some(End::Obstruction(_)))
+            && self.settings.globalisation == Globalisation::OnStagnation
+            && self.suits_monotone_multigrid()
     }
 
     /// Whether monotone multigrid suits the inequality: its matrix is symmetric, coarse spaces are known, and
@@ -223,6 +233,11 @@ impl<'a, T: Real> Solve<'_, 'a, T> {
             && *symmetric
             && !matches!(self.guess.coarse_spaces, CoarseSpaces::Unknown)
             && penalised.as_ref().is_none_or(PenalisedMatrix::has_jumps_of_single_unknowns)
+    }
+
+    /// Whether cells own more unknowns than linear functions have.
+    fn has_broken_quadratics(&self) -> bool {
+        unknowns_per_cell(&self.inequality.supports).is_some_and(|n| n > MAX_LINEAR_BASIS)
     }
 
     /// Whether an active set iteration with factors comes next: not where the interior point method
@@ -267,7 +282,7 @@ impl<'a, T: Real> Solve<'_, 'a, T> {
 
     /// Runs a stage. Returns what it found if the solve ends with it; else stores how it ended.
     fn run(&mut self, stage: Stage) -> Option<Found> {
-        let (outer, linear) = (self.iterate.outer, self.iterate.linear);
+        let (outer, linear) = (self.iterate.outer + self.cycles, self.iterate.linear);
         let mut found = None;
         match stage {
             Stage::PreconditionedActiveSet => match self.run_preconditioned() {
@@ -287,7 +302,8 @@ impl<'a, T: Real> Solve<'_, 'a, T> {
             },
             Stage::InteriorPoint => self.run_interior_point(),
         }
-        let (outer, linear) = (self.iterate.outer - outer, self.iterate.linear - linear);
+        let outer = self.iterate.outer + self.cycles - outer;
+        let linear = self.iterate.linear - linear;
         self.stages.push(StageRun { stage, outer, linear });
         found
     }
@@ -361,15 +377,32 @@ impl<'a, T: Real> Solve<'_, 'a, T> {
         Ok(Found { outcome, linear_solver, algebraic_bound })
     }
 
-    /// Monotone multigrid from the guess. The iterate is replaced if it converges.
+    /// Monotone multigrid from the best iterate. The iterate is replaced if it converges.
     fn run_monotone_multigrid(&mut self) -> Option<Found> {
-        let solution = MonotoneMultigrid::default().solve_from(self.inequality, self.guess);
-        let Solution { values, contact, outcome, linear_solver, outer, linear, .. } = solution;
-        self.iterate.outer += outer;
+        let values = Some(self.iterate.best_values().0.to_vec());
+        let InitialGuess { coarse_spaces, energy_tolerance, steps, .. } = self.guess;
+        let guess = InitialGuess {
+            coarse_spaces: coarse_spaces.clone(),
+            values,
+            energy_tolerance: *energy_tolerance,
+            steps: steps.clone(),
+        };
+        let solution = MonotoneMultigrid::default().solve_from(self.inequality, &guess);
+        let Solution {
+            values,
+            contact,
+            outcome,
+            linear_solver,
+            outer,
+            linear,
+            algebraic_bound,
+            ..
+        } = solution;
+        self.cycles += outer;
         self.iterate.linear += linear;
         (outcome == Outcome::Converged).then(|| {
             self.iterate.replace(values, Vec::new(), contact);
-            Found { linear_solver, ..Found::new(outcome) }
+            Found { outcome, linear_solver, algebraic_bound }
         })
     }
 
@@ -434,14 +467,17 @@ impl<'a, T: Real> Solve<'_, 'a, T> {
     /// From a cold start the number of state changes of a preconditioned stage need not halve: the
     /// active set then grows layer by layer, in many steps that are cheap. From another start more of
     /// its steps may pass than with factors, unless the stage that follows is cheap too: monotone
-    /// multigrid, or static condensation, which halves the number of unknowns. An active set that
-    /// stagnated there leads to the interior point method after one step with factors. After an
+    /// multigrid, or static condensation, which halves the number of unknowns. Active sets of broken quadratics
+    /// settle late, and take less time than cycles all the same. An active set that
+    /// stagnated there leads to the interior point method after one step with factors, unless monotone multigrid, which
+    /// follows a short stagnation, ran in between. After an
     /// interior point method two steps suffice to tell that the active set was identified too early; where that did
     /// not resolve small slacks, few states are wrong, and each step corrects some.
     fn patience(&self, stage: Stage) -> Patience {
         let ActiveSet { stagnation_steps, improvement_steps, globalisation, .. } = *self.settings;
         if stage == Stage::PreconditionedActiveSet {
-            let is_cheap = self.suits_monotone_multigrid() || self.inequality.penalised.is_some();
+            let is_cheap = self.inequality.penalised.is_some()
+                || (self.suits_monotone_multigrid() && !self.has_broken_quadratics());
             let steps = stagnation_steps * if is_cheap { 1 } else { DIRECT_STEP_COST } + 1;
             let is_limited = globalisation == Globalisation::OnStagnation
                 && self.inequality.distribution.is_none()
@@ -455,7 +491,7 @@ impl<'a, T: Real> Solve<'_, 'a, T> {
             return Patience { halving: None, improvement: usize::MAX };
         }
         let halving = match (self.runs_of(Stage::InteriorPoint), self.end) {
-            (0, Some(End::Obstruction(Obstruction::Stagnation))) => 0,
+            (0, Some(End::Obstruction(Obstruction::Stagnation))) if self.cycles == 0 => 0,
             (0, _) => stagnation_steps,
             _ if self.has_small_slacks => stagnation_steps,
             _ => 1,
@@ -467,8 +503,10 @@ impl<'a, T: Real> Solve<'_, 'a, T> {
     fn into_solution(mut self, found: Found) -> Solution<T> {
         let Found { outcome, linear_solver, algebraic_bound } = found;
         let outcome = outcome_of_best(&mut self.iterate, self.settings.rounding_band, outcome);
+        let (outer, linear) = (self.iterate.outer + self.cycles, self.iterate.linear);
         self.iterate
             .into_solution(outcome)
+            .iterations(outer, linear)
             .linear_solver(linear_solver)
             .algebraic_bound(algebraic_bound)
             .stages(self.stages)

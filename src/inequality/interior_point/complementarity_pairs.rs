@@ -108,9 +108,11 @@ impl ComplementarityPair {
 ///
 /// All slack and dual variables must be positive at zero; otherwise the search does not end.
 pub(crate) fn ratio_test(pairs: &[ComplementarityPair], order: usize, least_share: f64) -> f64 {
+    let bernstein = BernsteinBasis::new(order);
     let longest = pairs.iter().fold(1.0, |longest, pair| {
-        let longest = first_root(pair.slack, &pair.slack_coefficients[..order], longest);
-        first_root(pair.dual, &pair.dual_coefficients[..order], longest)
+        let longest =
+            first_root(pair.slack, &pair.slack_coefficients[..order], longest, &bernstein);
+        first_root(pair.dual, &pair.dual_coefficients[..order], longest, &bernstein)
     });
     let mut length = if longest < 1.0 { STEP_FRACTION * longest } else { 1.0 };
     // a polynomial may be negative between two points of evaluation and positive at both
@@ -150,9 +152,9 @@ fn increment(coefficients: &[f64], t: f64) -> f64 {
 /// A lower estimate of the smallest root in `(0, end)` of the polynomial with the positive constant
 /// term `constant`, or `end` if none is found. Two roots within one of the [`SUBINTERVALS`] are not
 /// found.
-fn first_root(constant: f64, coefficients: &[f64], end: f64) -> f64 {
+fn first_root(constant: f64, coefficients: &[f64], end: f64, bernstein: &BernsteinBasis) -> f64 {
     let largest_change = coefficients.iter().rev().fold(0.0, |sum, c| end * (sum + c.abs()));
-    if largest_change < constant {
+    if largest_change < constant || bernstein.is_positive(constant, coefficients, end) {
         return end;
     }
     let is_past_root = |t: f64| constant + increment(coefficients, t) <= 0.0;
@@ -166,6 +168,42 @@ fn first_root(constant: f64, coefficients: &[f64], end: f64) -> f64 {
         *(if is_past_root(middle) { &mut high } else { &mut low }) = middle;
     }
     low
+}
+
+/// The Bernstein basis of polynomials of one degree.
+struct BernsteinBasis {
+    /// The quotients of the binomial coefficients `(j, k)` and `(degree, k)`.
+    quotients: [[f64; MAX_ORDER + 1]; MAX_ORDER + 1],
+}
+
+impl BernsteinBasis {
+    /// The basis of a degree of at most [`MAX_ORDER`].
+    fn new(degree: usize) -> Self {
+        let mut quotients = [[0.0; MAX_ORDER + 1]; MAX_ORDER + 1];
+        for (j, row) in quotients.iter_mut().enumerate().take(degree + 1) {
+            row[0] = 1.0;
+            for k in 0..j {
+                row[k + 1] = row[k] * (j - k) as f64 / (degree - k) as f64;
+            }
+        }
+        Self { quotients }
+    }
+
+    /// Whether all Bernstein coefficients on `[0, end]` are positive, and therefore the polynomial, which is a convex
+    /// combination of them at every point (G. Farin, Curves and Surfaces for CAGD, 2002, section 6.2). The polynomial
+    /// may be positive without that.
+    fn is_positive(&self, constant: f64, coefficients: &[f64], end: f64) -> bool {
+        let mut scaled = [0.0; MAX_ORDER];
+        let mut power = 1.0;
+        for (scaled, coefficient) in scaled.iter_mut().zip(coefficients) {
+            power *= end;
+            *scaled = coefficient * power;
+        }
+        (1..=coefficients.len()).all(|j| {
+            let terms = self.quotients[j][1..=j].iter().zip(&scaled);
+            constant + terms.map(|(quotient, c)| quotient * c).sum::<f64>() > 0.0
+        })
+    }
 }
 
 #[cfg(test)]
@@ -194,6 +232,21 @@ mod tests {
         assert_eq!(ratio_test(&pairs, 2, 0.0), 1.0);
         let mean = mean_complementarity(&pairs, 0.5, 3);
         assert!((mean - 0.5 * (2.0 * (3.0 - 1.0) + (2.0 - 1.0) * 3.0)).abs() < 1e-14);
+    }
+
+    /// Bernstein coefficients of `(1 - t)^2 + 1/100` are positive on the unit interval; those of
+    /// `(1 - 2 t)^2 + 1/100` are on its first half only, though the polynomial has no root.
+    #[test]
+    fn positive_bernstein_coefficients_exclude_roots() {
+        let bernstein = BernsteinBasis::new(2);
+        assert!(bernstein.is_positive(1.01, &[-2.0, 1.0], 1.0));
+        assert!(bernstein.is_positive(1.01, &[-4.0, 4.0], 0.5));
+        assert!(!bernstein.is_positive(1.01, &[-4.0, 4.0], 1.0));
+        assert!(!bernstein.is_positive(1.0, &[-2.0, 1.0], 1.0));
+        // t (1 - t) (2 - t) (3 - t) / 24 + 1/50 (1 - t), by its powers
+        let cubic = BernsteinBasis::new(4);
+        let of = |end: f64| cubic.is_positive(0.02, &[0.23, -11.0 / 24.0, 0.25, -1.0 / 24.0], end);
+        assert!(of(0.99) && !of(1.01));
     }
 
     /// The complementarity product has the given coefficients for any coefficients of the slack.

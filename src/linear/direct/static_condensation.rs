@@ -41,7 +41,7 @@ use crate::real::Real;
 
 /// Largest ratio of a penalty to the stiffness that is factored where there are null directions. Multipliers that do
 /// no work on any free unknown of any block have pivots of the reciprocal size, left by differences of numbers of
-/// size one: four digits of these pivots remain in `f64`.
+/// size one: four digits of these pivots remain in `f64`. In another scalar the ratio is that for as many digits.
 const MAX_RATIO: f64 = 1e12;
 
 /// The factor by which weights are reduced once more where a matrix with shifts has no factors. Shifts spread the
@@ -139,7 +139,8 @@ impl<'a, T: Real> StaticCondensation<'a, T> {
             condensation.rank_of_means(block, |_| true, &mut basis) < n_sides
         });
         if condensation.has_null_directions {
-            condensation.max_reduction = (penalised.largest_ratio() / MAX_RATIO).max(1.0);
+            let max_ratio = MAX_RATIO * (f64::EPSILON / T::EPSILON);
+            condensation.max_reduction = (penalised.largest_ratio() / max_ratio).max(1.0);
         }
         condensation
     }

@@ -23,7 +23,7 @@ mod preconditioner;
 mod prolongation;
 mod smoother;
 
-pub(crate) use auxiliary_space::{AuxiliarySpace, VertexCorrection};
+pub(crate) use auxiliary_space::{AuxiliarySpace, VertexCorrection, unknowns_per_cell};
 pub use built_in::BuiltInPreconditioners;
 pub use coarse_level::{CoarseLevel, P1Level};
 pub use coarse_spaces::CoarseSpaces;
