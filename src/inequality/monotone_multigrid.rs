@@ -9,7 +9,7 @@ use super::scales::Scales;
 use super::validation::check_input;
 use super::violations::certify;
 use super::{ActiveSet, InequalitySolver, Outcome, Solution};
-use crate::algebra::{Contact, Inequality};
+use crate::algebra::Inequality;
 use crate::instances::compiled;
 use crate::linear::direct::FactorError;
 use crate::linear::precondition::CoarseLevel;
@@ -22,16 +22,16 @@ use crate::real::Real;
 /// The factor of the tolerance after a solution whose bound on the algebraic error is too large.
 const REDUCTION: f64 = 0.1;
 
-/// Cycles that may pass without halving the change of a cycle before the method stagnates. Changes that fall
-/// more slowly need more than three hundred cycles to the tolerance; below rounding they do not fall at all.
-const STAGNATION_CYCLES: usize = 10;
+/// Cycles that may pass without halving the change of a cycle before the certificate and the bound on the error decide
+/// in place of the tolerance: changes below rounding do not fall.
+pub(super) const STAGNATION_CYCLES: usize = 10;
 
 /// The truncated nonsmooth Newton multigrid method (Graeser, Kornhuber, J. Comput. Math. 27 (2009)
 /// 1-44; Graeser, Sack, Sander, Domain Decomposition Methods XVIII (2009) 129-136) for matrices
 /// that are symmetric and positive definite.
 ///
 /// One cycle consists of sweeps of projected Gauss-Seidel, a V-cycle for a correction of the inactive
-/// unknowns, and an exact line search along the correction projected onto the bounds. The energy never
+/// unknowns, and an exact line search along the correction projected onto the bounds. In exact arithmetic the energy never
 /// rises, and the method converges from any start because the sweeps alone do (Glowinski 1984). Coarse
 /// functions are truncated at the active unknowns. Neither sweeps nor corrections depend on
 /// strict complementarity, and from a close start the number of cycles hardly depends on the mesh.
@@ -46,6 +46,9 @@ const STAGNATION_CYCLES: usize = 10;
 pub struct MonotoneMultigrid {
     /// Largest number of cycles.
     pub max_cycles: usize,
+    /// Cycles that may pass without halving the change of a cycle before the method gives up. Changes that ten cycles
+    /// do not halve need more than three hundred cycles to the default tolerance.
+    pub stagnation_cycles: usize,
     /// Sweeps of projected Gauss-Seidel before each linear correction.
     pub sweeps: usize,
     /// Tolerance on the energy norm of the changes of a cycle divided by the energy norm of the
@@ -55,7 +58,7 @@ pub struct MonotoneMultigrid {
 
 impl Default for MonotoneMultigrid {
     fn default() -> Self {
-        Self { max_cycles: 200, sweeps: 2, tolerance: 1e-10 }
+        Self { max_cycles: 200, stagnation_cycles: 200, sweeps: 2, tolerance: 1e-10 }
     }
 }
 
@@ -65,6 +68,12 @@ impl MonotoneMultigrid {
     #[must_use]
     pub fn max_cycles(mut self, max_cycles: usize) -> Self {
         self.max_cycles = max_cycles;
+        self
+    }
+    /// Sets the number of cycles that may pass without halving the change of a cycle.
+    #[must_use]
+    pub fn stagnation_cycles(mut self, stagnation_cycles: usize) -> Self {
+        self.stagnation_cycles = stagnation_cycles;
         self
     }
     /// Sets the number of sweeps before each linear correction.
@@ -109,11 +118,11 @@ impl MonotoneMultigrid {
         if !inequality.symmetric {
             return ActiveSet::default().solve_from(inequality, guess);
         }
+        if let Err(outcome) = check_input(inequality) {
+            return Solution::without_iterate(inequality, outcome);
+        }
         let mut iterate = MultigridIterate::new(inequality, guess);
-        let outcome = match check_input(inequality) {
-            Ok(()) => iterate.run(self, guess).unwrap_or_else(|outcome| outcome),
-            Err(outcome) => outcome,
-        };
+        let outcome = iterate.run(self, guess).unwrap_or_else(|outcome| outcome);
         iterate.into_solution(outcome)
     }
 }
@@ -227,7 +236,7 @@ impl<'a, T: Real> MultigridIterate<'a, T> {
             let change = (by_sweeps + by_correction).sqrt();
             stagnant_cycles = if change <= 0.5 * least_change { 0 } else { stagnant_cycles + 1 };
             least_change = if stagnant_cycles == 0 { change } else { least_change };
-            // a start for another solve need not be accurate, and takes its cycles
+            // the certificate of a start for another solve is not examined
             let stagnates =
                 guess.energy_tolerance.is_none() && stagnant_cycles >= STAGNATION_CYCLES;
             if (change <= tolerance * energy_norm || stagnates)
@@ -239,7 +248,7 @@ impl<'a, T: Real> MultigridIterate<'a, T> {
                 // of cycles that converge slowly the error is much larger than a change
                 tolerance *= REDUCTION;
             }
-            if stagnates || tolerance < least {
+            if stagnant_cycles >= settings.stagnation_cycles || tolerance < least {
                 return Err(Outcome::Stalled);
             }
         }
@@ -295,7 +304,7 @@ impl<'a, T: Real> MultigridIterate<'a, T> {
                 Err(FactorError::Singular) if bounds.iter().any(|bound| bound.is_inequality()) => {
                     return Ok(0.0);
                 }
-                // pivots of a definite matrix are not positive by rounding only
+                // a definite matrix has a negative pivot by rounding only
                 Err(FactorError::NotPositive) if self.inequality.is_definite => {
                     return Err(Outcome::Stalled);
                 }
@@ -370,10 +379,7 @@ impl<'a, T: Real> MultigridIterate<'a, T> {
 
     /// The solution, with the contact states of its values.
     fn into_solution(self, outcome: Outcome) -> Solution<T> {
-        let contact = match self.values.iter().all(|x| x.to_f64().is_finite()) {
-            true => contact_of(self.inequality, &self.values),
-            false => vec![Contact::Inactive; self.values.len()],
-        };
+        let contact = contact_of(self.inequality, &self.values);
         Solution::new(self.values, contact, outcome)
             .iterations(self.cycles, self.cycles)
             .linear_solver(self.linear_solver)

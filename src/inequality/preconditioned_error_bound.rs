@@ -61,16 +61,9 @@ mod tests {
     /// Second differences on `n` points, fixed at both ends, under the load -1/n^2 above -1/30: the contact set is in
     /// the middle.
     fn string(n: usize) -> Inequality<f64> {
-        let mut matrix = SparseMatrix { row_starts: vec![0], columns: vec![], values: vec![] };
-        for i in 0..n {
-            for j in i.saturating_sub(1)..=(i + 1).min(n - 1) {
-                matrix.columns.push(j as u32);
-                matrix.values.push(if i == j { 2.0 } else { -1.0 });
-            }
-            matrix.row_starts.push(matrix.columns.len() as u32);
-        }
         let mut bounds = vec![Bound::Lower(-1.0 / 30.0); n];
         (bounds[0], bounds[n - 1]) = (Bound::Fixed(0.0), Bound::Fixed(0.0));
+        let matrix = SparseMatrix::second_differences(n);
         Inequality::new(matrix, true, vec![-1.0 / (n * n) as f64; n], bounds)
     }
 

@@ -63,8 +63,8 @@ enum Kinks<const D: usize> {
 }
 
 impl<const D: usize> Kinks<D> {
-    /// The function along whose zeros a cell is divided. Of two functions that cut the cell along the same zeros,
-    /// as the free boundary and the jump of the load of some scenes, the first one.
+    /// The function along whose zeros a cell is divided; `None` if no function is known. If two functions have the same
+    /// zeros in the cell, it is the first one: in some scenes the free boundary and a jump of the load coincide.
     fn level_in<T: Real>(
         &self,
         rule: &CutRule,

@@ -99,14 +99,7 @@ mod tests {
 
     /// Second differences at `n` points under the load -0.01, above `obstacle`.
     fn string(n: usize, obstacle: f64) -> Inequality<f64> {
-        let mut matrix = SparseMatrix { row_starts: vec![0], columns: vec![], values: vec![] };
-        for i in 0..n {
-            for j in i.saturating_sub(1)..=(i + 1).min(n - 1) {
-                matrix.columns.push(j as u32);
-                matrix.values.push(if i == j { 2.0 } else { -1.0 });
-            }
-            matrix.row_starts.push(matrix.columns.len() as u32);
-        }
+        let matrix = SparseMatrix::second_differences(n);
         Inequality::new(matrix, true, vec![-0.01; n], vec![Bound::Lower(obstacle); n])
     }
 

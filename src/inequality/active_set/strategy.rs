@@ -3,7 +3,7 @@
 //! | stage | runs if | ends without a solution if |
 //! |---|---|---|
 //! | active set, preconditioned | coarse spaces are known and the problem has at least [`CROSSOVER`] unknowns, or the settings ask for it | the active set stagnates or cycles, or the preconditioner does not fit |
-//! | monotone multigrid | the preceding stage stagnated, the matrix is symmetric and coarse spaces are known; not for penalties on jumps of means of several unknowns | its limit of cycles is reached |
+//! | monotone multigrid | the preceding stage stagnated, the matrix is symmetric and coarse spaces are known; not for penalties on jumps of means of several unknowns | its cycles stagnate, or reach their limit |
 //! | active set, direct | no solution is known | the active set stagnates or cycles |
 //! | interior point | the preceding stage ended so, and the limit of linear systems leaves room | never: it provides the next starting active set |
 //!
@@ -25,7 +25,7 @@ use super::settings::{ActiveSet, Globalisation};
 use crate::algebra::{Inequality, PenalisedMatrix, Start, any_part};
 use crate::inequality::initial_guess::InitialGuess;
 use crate::inequality::interior_point::{CentralPoint, Identification, InteriorPoint, MAX_STEPS};
-use crate::inequality::monotone_multigrid::MonotoneMultigrid;
+use crate::inequality::monotone_multigrid::{MonotoneMultigrid, STAGNATION_CYCLES};
 use crate::inequality::validation::{check_definite, check_input};
 use crate::inequality::{InequalitySolver, Outcome, Solution, Stage, StageRun};
 use crate::linear::krylov::symmetric_part;
@@ -387,7 +387,9 @@ impl<'a, T: Real> Solve<'_, 'a, T> {
             energy_tolerance: *energy_tolerance,
             steps: steps.clone(),
         };
-        let solution = MonotoneMultigrid::default().solve_from(self.inequality, &guess);
+        let solution = MonotoneMultigrid::default()
+            .stagnation_cycles(STAGNATION_CYCLES)
+            .solve_from(self.inequality, &guess);
         let Solution {
             values,
             contact,
@@ -468,7 +470,7 @@ impl<'a, T: Real> Solve<'_, 'a, T> {
     /// active set then grows layer by layer, in many steps that are cheap. From another start more of
     /// its steps may pass than with factors, unless the stage that follows is cheap too: monotone
     /// multigrid, or static condensation, which halves the number of unknowns. Active sets of broken quadratics
-    /// settle late, and take less time than cycles all the same. An active set that
+    /// settle late, and take less time than cycles of monotone multigrid all the same. An active set that
     /// stagnated there leads to the interior point method after one step with factors, unless monotone multigrid, which
     /// follows a short stagnation, ran in between. After an
     /// interior point method two steps suffice to tell that the active set was identified too early; where that did

@@ -2,7 +2,7 @@
 
 use super::error::FactorError;
 use super::null_directions::NullDirections;
-use super::static_condensation::StaticCondensation;
+use super::static_condensation::{BlockInverse, StaticCondensation};
 use crate::algebra::dense::{extend_basis, invert_in_place};
 use crate::real::Real;
 
@@ -13,17 +13,6 @@ const MAX_WEIGHT: f64 = 1e-3;
 /// Largest shift divided by `k / sqrt(eps)`, `k` and `eps` as for [`MAX_WEIGHT`], of an unknown that is
 /// not as good as fixed.
 const MAX_SHIFT_BY_ROOT: f64 = 4.0;
-
-/// Workspace for the inverse of a block with its jump multipliers.
-#[derive(Default)]
-pub(super) struct BlockInverse {
-    /// By rows: free unknowns of the block, then jump multipliers.
-    pub entries: Vec<f64>,
-    /// The factors by which the free unknowns are scaled.
-    pub scales: Vec<f64>,
-    /// The factor by which weights are reduced.
-    pub reduction: f64,
-}
 
 impl<T: Real> StaticCondensation<'_, T> {
     /// The rank of the means over the sides of a block, as functions of the unknowns `may_move`.
@@ -71,7 +60,7 @@ impl<T: Real> StaticCondensation<'_, T> {
         let has_null_directions = self.has_null_directions && n_free > 0;
         self.fill_block((block, n_free), is_free, shift, unit, inverse);
         let BlockInverse { entries: out, scales, reduction } = inverse;
-        // The rank decides, and is computed only if some weight exceeds the limit.
+        // The rank of the means decides on the limit, and is computed only if some weight exceeds this.
         let limit = least * MAX_WEIGHT / T::EPSILON;
         let is_heavy = !has_null_directions
             && n_free > 0

@@ -31,7 +31,6 @@
 //! Source: static condensation of hybridised methods, B. Cockburn, J. Gopalakrishnan, R. Lazarov, SIAM
 //! J. Numer. Anal. 47 (2009), 1319-1365.
 
-use super::block_inverse::BlockInverse;
 use super::error::FactorError;
 use super::factors::Factors;
 use super::null_directions::NullDirections;
@@ -90,6 +89,17 @@ pub(crate) struct CondensedFactors<T> {
     pub(super) schur_complement: Factors<T>,
     /// The true weights divided by those that are factored; at least one.
     pub(super) reduction: f64,
+}
+
+/// Workspace for the inverse of a block with its jump multipliers.
+#[derive(Default)]
+pub(super) struct BlockInverse {
+    /// By rows: free unknowns of the block, then jump multipliers.
+    pub entries: Vec<f64>,
+    /// The factors by which the free unknowns are scaled.
+    pub scales: Vec<f64>,
+    /// The factor by which weights are reduced.
+    pub reduction: f64,
 }
 
 impl<'a, T: Real> StaticCondensation<'a, T> {

@@ -35,7 +35,8 @@ fn conforming_linears_on_a_load_with_jumps_have_the_errors_of_the_exact_load() {
 }
 
 /// On polynomial-1d with two intervals `u_h = c |x|`, `c = 0.51^2` the Dirichlet value, and the exact solution is
-/// `max(x^2 - 0.49, 0)^2`: its kinks are the free boundary and the jump of the derivative of the load at once.
+/// `max(x^2 - 0.49, 0)^2`: its kinks are the free boundary and the jump of the derivative of the load at once. Three
+/// Gauss points on `(3/4, 1)`, a part of a divided cell, leave 6.7e-7 of the sixth power of `x`.
 #[test]
 fn errors_see_kinks_at_which_free_boundary_and_load_coincide() {
     let study = Study::<f64, 1>::new(scenes::polynomial()).scheme(ConformingP1).levels([2]);
@@ -45,7 +46,7 @@ fn errors_see_kinks_at_which_free_boundary_and_load_coincide() {
     let squared = |x: f64| 16.0 * (x.powi(7) / 7.0 - 0.196 * x.powi(5) + 0.2401 / 3.0 * x.powi(3));
     let exact = (2.0 * (squared(1.0) - squared(0.7) - c * c)).sqrt();
     let (_, _, h1) = errors(&report).next().unwrap();
-    assert!((h1 - exact).abs() <= 1e-7 * exact, "{h1} and {exact}");
+    assert!((h1 - exact).abs() <= 1e-6 * exact, "{h1} and {exact}");
 }
 
 /// The order swings with the place of jumps and free boundary in their cells: over four levels it is
