@@ -3,7 +3,8 @@
 //!
 //! `matrix`: compressed sparse rows. `rectangular_matrix`: prolongations in compressed sparse rows, and
 //! `P^T A P`.
-//! `submatrix`: rows and columns of a matrix. `penalised_matrix`: `K + M^T S M`. `dense`: small dense
+//! `submatrix`: rows and columns of a matrix. `penalised_matrix`: `K + M^T S M`. `side_penalties`: `M^T S M` of
+//! discontinuous linear functions. `dense`: small dense
 //! matrices. `row`: rows in the making. `dirichlet_energy`: what weak data change in an energy.
 //! `distribution`: unknowns in several processes. `inequality`: bounds, supports of unknowns and the
 //! inequality. `index`: the missing index.
@@ -17,6 +18,7 @@ mod matrix;
 mod penalised_matrix;
 mod rectangular_matrix;
 mod row;
+mod side_penalties;
 mod submatrix;
 
 pub use dirichlet_energy::{DirichletEnergy, DirichletTerm};
@@ -29,4 +31,5 @@ pub use matrix::SparseMatrix;
 pub use penalised_matrix::{JumpTerm, PenalisedMatrix};
 pub(crate) use rectangular_matrix::{RectangularMatrix, galerkin_product};
 pub(crate) use row::sort_by_column;
+pub(crate) use side_penalties::SidePenalties;
 pub(crate) use submatrix::Submatrix;

@@ -138,9 +138,12 @@ fn preconditioner<'a, T: Real>(
     let of = |spaces| {
         BuiltInPreconditioners.preconditioner(PreconditionedSystem::new(matrix, inequality, spaces))
     };
-    if !matches!(known, CoarseSpaces::Unknown)
-        && let Some(preconditioner) = of(known)
-    {
+    let fits = match known {
+        CoarseSpaces::Unknown => false,
+        CoarseSpaces::CoarseLevel(coarser) => coarser.prolongation.n_fine() == matrix.size(),
+        CoarseSpaces::SameMesh(_) => true,
+    };
+    if fits && let Some(preconditioner) = of(known) {
         return Some(preconditioner);
     }
     let fixed: Vec<bool> = bounds.iter().map(|bound| bound.fixed_value().is_some()).collect();
@@ -237,16 +240,22 @@ impl<'a, T: Real> MultigridIterate<'a, T> {
             stagnant_cycles = if change <= 0.5 * least_change { 0 } else { stagnant_cycles + 1 };
             least_change = if stagnant_cycles == 0 { change } else { least_change };
             // the certificate of a start for another solve is not examined
-            let stagnates =
-                guess.energy_tolerance.is_none() && stagnant_cycles >= STAGNATION_CYCLES;
+            let stagnates = guess.energy_tolerance.is_none()
+                && stagnant_cycles > 0
+                && stagnant_cycles % STAGNATION_CYCLES == 0;
             if (change <= tolerance * energy_norm || stagnates)
                 && certify(self.inequality, &self.values).largest() <= limit
             {
-                if guess.energy_tolerance.is_some() || self.has_small_bound(&mut *preconditioner) {
+                let is_small = change <= tolerance * energy_norm;
+                if guess.energy_tolerance.is_some()
+                    || self.has_small_bound(&mut *preconditioner).unwrap_or(is_small)
+                {
                     return Ok(Outcome::Converged);
                 }
                 // of cycles that converge slowly the error is much larger than a change
-                tolerance *= REDUCTION;
+                if is_small {
+                    tolerance *= REDUCTION;
+                }
             }
             if stagnant_cycles >= settings.stagnation_cycles || tolerance < least {
                 return Err(Outcome::Stalled);
@@ -255,12 +264,12 @@ impl<'a, T: Real> MultigridIterate<'a, T> {
         Err(Outcome::IterationLimit)
     }
 
-    /// Computes the bound on the algebraic error; returns whether it is within the limit, or there is none.
-    fn has_small_bound(&mut self, preconditioner: &mut dyn Preconditioner<T>) -> bool {
+    /// Computes the bound on the algebraic error; returns whether it is within the limit, `None` without a bound.
+    fn has_small_bound(&mut self, preconditioner: &mut dyn Preconditioner<T>) -> Option<bool> {
         self.fixed.clear();
         self.algebraic_bound =
             preconditioned_error_bound(self.inequality, &self.values, preconditioner);
-        self.algebraic_bound.is_none_or(|bound| bound <= T::ALGEBRAIC_BOUND_LIMIT)
+        self.algebraic_bound.map(|bound| bound <= T::ALGEBRAIC_BOUND_LIMIT)
     }
 
     /// One sweep of projected Gauss-Seidel. Returns the sum of `d_i (change of u_i)^2`, an estimate

@@ -5,12 +5,12 @@ use super::energy_error_bound::unbalanced;
 use super::scales::Scales;
 use crate::algebra::Inequality;
 use crate::linear::Preconditioner;
-use crate::linear::krylov::{EIGENVALUE_TO_RITZ_VALUE, StopReason, eigenvalue_run};
+use crate::linear::krylov::{EIGENVALUE_TO_RITZ_VALUE, Product, StopReason, eigenvalue_run};
 use crate::parallel::vectors::{dot, zeros};
 use crate::real::Real;
 
 /// Largest number of iterations of conjugate gradients for the smallest eigenvalue.
-const MAX_ITERATIONS: usize = 100;
+const MAX_ITERATIONS: usize = 500;
 
 /// A bound on the energy norm of the difference of values and the solution of an inequality with a symmetric
 /// positive definite matrix, divided by the energy norm of the values, which must be within their bounds.
@@ -27,10 +27,11 @@ pub(super) fn preconditioned_error_bound<T: Real>(
     values: &[T],
     preconditioner: &mut dyn Preconditioner<T>,
 ) -> Option<f64> {
-    let Inequality { matrix, bounds, .. } = inequality;
+    let bounds = &inequality.bounds;
     let fixed: Vec<bool> = bounds.iter().map(|bound| bound.fixed_value().is_some()).collect();
     preconditioner.set_fixed(&fixed).ok()?;
     let diagonal = |i: usize| positive_diagonal(inequality, i);
+    let matrix = Product::of(inequality);
     let run = eigenvalue_run(matrix, None, preconditioner, &fixed, diagonal, MAX_ITERATIONS);
     let (smallest, _) = run.ritz?;
     if run.reason != StopReason::Converged || smallest <= 0.0 {

@@ -37,11 +37,6 @@ pub(crate) fn dot<T: Real>(x: &[T], y: &mut [T]) -> f64 {
     })
 }
 
-/// The indices of a chunk of a vector of length `n`.
-fn chunk_range(chunk: usize, n: usize) -> Range<usize> {
-    chunk * CHUNK..((chunk + 1) * CHUNK).min(n)
-}
-
 /// Whether a loop over `n` entries runs on the calling thread: one chunk, or one thread.
 fn is_sequential(n: usize) -> bool {
     n <= CHUNK || rayon::current_num_threads() == 1
@@ -69,28 +64,29 @@ pub(crate) fn map_chunks_of_groups<R: Send>(
     if is_sequential(n) { (0..n_ranges).map(one).collect() } else { map_indices(n_ranges, &one) }
 }
 
-/// The values of `work` on the index range and the entries of each chunk of `x`, in the order of
-/// chunks; `work` may change the entries.
-pub(crate) fn map_chunks_mut<A: Send, R: Send>(
-    x: &mut [A],
-    work: impl Fn(Range<usize>, &mut [A]) -> R + Sync,
-) -> Vec<R> {
-    let n = x.len();
-    let one = |(k, x): (usize, &mut [A])| work(chunk_range(k, n), x);
-    if is_sequential(n) {
-        x.chunks_mut(CHUNK).enumerate().map(one).collect()
-    } else {
-        let chunks: Vec<Mutex<&mut [A]>> = x.chunks_mut(CHUNK).map(Mutex::new).collect();
-        map_indices(chunks.len(), &|k| one((k, &mut *lock(&chunks[k]))))
-    }
-}
-
 /// The sum of the values of `work` on the index range and the entries of each chunk of `x`.
 pub(crate) fn sum_chunks<A: Send>(
     x: &mut [A],
     work: impl Fn(Range<usize>, &mut [A]) -> f64 + Sync,
 ) -> f64 {
-    map_chunks_mut(x, work).iter().sum()
+    sum_chunks_of_groups(x, 1, work)
+}
+
+/// As [`sum_chunks`]; no chunk divides a group of `group` consecutive entries.
+pub(crate) fn sum_chunks_of_groups<A: Send>(
+    x: &mut [A],
+    group: usize,
+    work: impl Fn(Range<usize>, &mut [A]) -> f64 + Sync,
+) -> f64 {
+    let (n, length) = (x.len(), chunk_of_groups(group));
+    let one = |(k, x): (usize, &mut [A])| work(k * length..k * length + x.len(), x);
+    if is_sequential(n) {
+        x.chunks_mut(length).enumerate().map(one).sum()
+    } else {
+        let chunks: Vec<Mutex<&mut [A]>> = x.chunks_mut(length).map(Mutex::new).collect();
+        let sums = map_indices(chunks.len(), &|k| one((k, &mut *lock(&chunks[k]))));
+        sums.iter().sum()
+    }
 }
 
 /// The sum of the values of `work` on the index range and the entries of each chunk of two vectors

@@ -7,7 +7,9 @@ use crate::inequality::Outcome;
 use crate::inequality::validation::check_definite;
 use crate::linear::Preconditioner;
 use crate::linear::direct::FactorError;
-use crate::linear::krylov::{KrylovMethod, KrylovRun, StopReason, StoppingRule, eigenvalue_run};
+use crate::linear::krylov::{
+    KrylovMethod, KrylovRun, Product, StopReason, StoppingRule, eigenvalue_run,
+};
 use crate::parallel::vectors::{for_each_chunk, zeros};
 use crate::real::Real;
 
@@ -128,7 +130,7 @@ impl<'a, T: Real> PreconditionedSolver<'a, T> {
         iterate: &mut Iterate<'_, T>,
     ) -> Result<(), LinearFailure> {
         let run = eigenvalue_run(
-            self.symmetric_part,
+            Product::Assembled(self.symmetric_part),
             self.inequality.distribution(),
             &mut *self.preconditioner,
             &iterate.eliminated,

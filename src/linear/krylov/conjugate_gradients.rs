@@ -1,15 +1,18 @@
 //! Preconditioned conjugate gradients on the free unknowns.
 
 use super::lanczos::LanczosMatrix;
+use super::product::Product;
 use super::stopping::{KrylovRun, StopReason, StoppingRule};
-use crate::algebra::{Distribution, SparseMatrix, sum_over_parts};
+use crate::algebra::{Distribution, sum_over_parts};
 use crate::linear::precondition::Preconditioner;
-use crate::parallel::vectors::{dot, for_each_chunk, sum_chunks, sum_chunks_of_two, zeros};
+use crate::parallel::vectors::{
+    dot, for_each_chunk, sum_chunks_of_groups, sum_chunks_of_two, zeros,
+};
 use crate::real::Real;
 
 /// Conjugate gradients for a symmetric matrix, with vectors that are allocated once.
 pub(crate) struct ConjugateGradients<'m, T> {
-    matrix: &'m SparseMatrix<T>,
+    matrix: Product<'m, T>,
     /// The other parts, if the matrix is that of one part: all unknowns of these are fixed.
     distribution: Option<&'m dyn Distribution>,
     /// The preconditioned residual.
@@ -25,7 +28,7 @@ pub(crate) struct ConjugateGradients<'m, T> {
 impl<'m, T: Real> ConjugateGradients<'m, T> {
     /// The method for a symmetric matrix, or for one part of it. Unknowns that other parts own must be fixed
     /// and zero in preconditioned residuals; their values in `x` are then those of the owners.
-    pub fn new(matrix: &'m SparseMatrix<T>, distribution: Option<&'m dyn Distribution>) -> Self {
+    pub fn new(matrix: Product<'m, T>, distribution: Option<&'m dyn Distribution>) -> Self {
         let n = matrix.size();
         Self { matrix, distribution, z: zeros(n), p: zeros(n), q: zeros(n), largest_ritz: 1.0 }
     }
@@ -96,14 +99,9 @@ impl<'m, T: Real> ConjugateGradients<'m, T> {
         if let Some(distribution) = self.distribution {
             distribution.update(&mut self.p);
         }
-        let (matrix, p) = (self.matrix, &self.p);
-        let own = sum_chunks(&mut self.q, |range, q| {
-            let mut sum = 0.0;
-            for (i, q) in range.zip(q) {
-                *q = if fixed[i] { T::lit(0.0) } else { matrix.row_dot(i, p) };
-                sum += p[i].to_f64() * q.to_f64();
-            }
-            sum
+        let (matrix, p) = (&self.matrix, &self.p);
+        let own = sum_chunks_of_groups(&mut self.q, matrix.group(), |range, q| {
+            matrix.rows(range, fixed, p, q)
         });
         sum_over_parts(self.distribution, own)
     }
@@ -144,6 +142,7 @@ impl<'m, T: Real> ConjugateGradients<'m, T> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::algebra::SparseMatrix;
     use crate::linear::direct::FactorError;
 
     struct Identity;
@@ -178,7 +177,7 @@ mod tests {
         let rule = StoppingRule { norm: 1e-3, reduction: 0.0, max_iterations: 5 };
         let run = |residual: f64| {
             let system = (&mut [0.0][..], &mut [residual][..]);
-            ConjugateGradients::new(&matrix, None)
+            ConjugateGradients::new(Product::Assembled(&matrix), None)
                 .solve(&[false], &mut Negative, system, rule)
                 .reason
         };
@@ -198,7 +197,7 @@ mod tests {
         let mut r = vec![1.0, 0.3, -0.2, 0.7, 0.4];
         let b = r.clone();
         let rule = StoppingRule { norm: 1e-13, reduction: 0.0, max_iterations: 20 };
-        let run = ConjugateGradients::new(&matrix, None).solve(
+        let run = ConjugateGradients::new(Product::Assembled(&matrix), None).solve(
             &[false; 5],
             &mut Identity,
             (&mut x, &mut r),

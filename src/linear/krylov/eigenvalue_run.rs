@@ -1,7 +1,7 @@
 //! The smallest eigenvalue of a preconditioned matrix.
 
-use super::{ConjugateGradients, KrylovRun, StoppingRule};
-use crate::algebra::{Distribution, SparseMatrix};
+use super::{ConjugateGradients, KrylovRun, Product, StoppingRule};
+use crate::algebra::Distribution;
 use crate::linear::Preconditioner;
 use crate::parallel::vectors::{pseudorandom_signs, zeros};
 use crate::real::Real;
@@ -18,7 +18,7 @@ const TOLERANCE: f64 = 1e-6;
 /// pseudo-random signs, so that every eigenvector has a component. The preconditioner must be set up for
 /// the fixed unknowns.
 pub(crate) fn eigenvalue_run<T: Real>(
-    matrix: &SparseMatrix<T>,
+    matrix: Product<'_, T>,
     distribution: Option<&dyn Distribution>,
     preconditioner: &mut dyn Preconditioner<T>,
     fixed: &[bool],

@@ -4,6 +4,7 @@ use std::borrow::Cow;
 
 use super::conjugate_gradients::ConjugateGradients;
 use super::gmres::Gmres;
+use super::product::Product;
 use super::stopping::{KrylovRun, StoppingRule};
 use crate::algebra::{Inequality, SparseMatrix};
 use crate::linear::precondition::Preconditioner;
@@ -30,7 +31,10 @@ impl<'m, T: Real> KrylovMethod<'m, T> {
     pub fn new(inequality: &'m Inequality<T>) -> Self {
         let (matrix, distribution) = (&inequality.matrix, inequality.distribution());
         match inequality.symmetric {
-            true => Self::ConjugateGradients(ConjugateGradients::new(matrix, distribution)),
+            true => {
+                let product = Product::of(inequality);
+                Self::ConjugateGradients(ConjugateGradients::new(product, distribution))
+            }
             false => Self::Gmres(matrix, Gmres::new(matrix.size(), distribution)),
         }
     }

@@ -1,12 +1,14 @@
 //! The Crouzeix-Raviart functions on the mesh of a discontinuous linear element.
 
-use super::facet_mean_form::{FacetMeanForm, stiffness};
+use super::facet_mean_form::stiffness;
 use super::prolongation::Prolongation;
-use crate::algebra::{NO_INDEX, PenalisedMatrix, SparseMatrix, Support, sort_by_column};
+use crate::algebra::{
+    NO_INDEX, PenalisedMatrix, SidePenalties, SparseMatrix, Support, sort_by_column,
+};
 use crate::memory::in_large_pages;
 use crate::real::Real;
 
-/// The facets of a mesh, by the sides of an element of which [`FacetMeanForm`] has the entries.
+/// The facets of a mesh, by the sides of an element of which [`SidePenalties`] has the penalties.
 ///
 /// A Crouzeix-Raviart function has one mean on each facet, which is the mean over both sides: such
 /// functions have no jumps of means, and their form is the stiffness alone.
@@ -19,15 +21,15 @@ pub(crate) struct CrouzeixRaviartSpace {
 
 impl CrouzeixRaviartSpace {
     /// The facets in the order of their first sides.
-    pub fn new<T>(form: &FacetMeanForm<T>) -> Self {
-        let n = form.opposite.len();
+    pub fn new<T>(penalties: &SidePenalties<T>) -> Self {
+        let n = penalties.opposite.len();
         let mut facet = in_large_pages(vec![0; n]);
         let is_first =
             |side: usize, opposite: u32| opposite == NO_INDEX || side < opposite as usize;
-        let sides = form.opposite.iter().enumerate();
+        let sides = penalties.opposite.iter().enumerate();
         let n_facets = sides.filter(|&(side, &opposite)| is_first(side, opposite)).count();
         let mut sides = in_large_pages(Vec::with_capacity(n_facets));
-        for (side, &opposite) in form.opposite.iter().enumerate() {
+        for (side, &opposite) in penalties.opposite.iter().enumerate() {
             if is_first(side, opposite) {
                 facet[side] = sides.len() as u32;
                 sides.push([side as u32, opposite]);
@@ -41,10 +43,10 @@ impl CrouzeixRaviartSpace {
     /// The matrix of the stiffness on all facets.
     pub fn matrix<T: Real>(
         &self,
-        form: &FacetMeanForm<T>,
+        penalties: &SidePenalties<T>,
         penalised: &PenalisedMatrix<T>,
     ) -> SparseMatrix<T> {
-        let size = form.cell_size;
+        let size = penalties.cell_size;
         let capacity = self.sides.len() * (2 * size - 1);
         let mut matrix = SparseMatrix {
             row_starts: in_large_pages(Vec::with_capacity(self.sides.len() + 1)),
@@ -60,7 +62,7 @@ impl CrouzeixRaviartSpace {
                 let side = side as usize;
                 let first = side / size * size;
                 for other in first..first + size {
-                    let value = stiffness(penalised, [side, other], form.are_means);
+                    let value = stiffness(penalised, [side, other], penalties.are_means);
                     if other == side {
                         row[0].1 += value;
                     } else {
@@ -81,16 +83,16 @@ impl CrouzeixRaviartSpace {
     /// `None` if a vertex of a support is not less than `n_vertices`.
     pub fn prolongation<T: Real>(
         &self,
-        form: &FacetMeanForm<T>,
+        penalties: &SidePenalties<T>,
         supports: &[Support],
         n_vertices: usize,
     ) -> Option<Prolongation<T>> {
-        let size = form.cell_size;
+        let size = penalties.cell_size;
         let length = size - 1;
         let mut vertices: Vec<u32> = in_large_pages(Vec::with_capacity(self.sides.len() * length));
         for &[side, _] in &self.sides {
             let side = side as usize;
-            if form.are_means {
+            if penalties.are_means {
                 vertices.extend(supports[side].vertices());
             } else {
                 let first = side / size * size;

@@ -10,11 +10,12 @@ use std::borrow::Cow;
 
 use super::coarse_level::P1Level;
 use super::crouzeix_raviart_space::CrouzeixRaviartSpace;
-use super::facet_mean_form::{FacetMeanForm, cr_basis};
+use super::facet_mean_form::{cr_basis, diagonal};
 use super::multigrid::Multigrid;
 use super::preconditioner::Preconditioner;
 use crate::algebra::{
-    NO_INDEX, PenalisedMatrix, RectangularMatrix, SparseMatrix, Support, galerkin_product,
+    NO_INDEX, PenalisedMatrix, RectangularMatrix, SidePenalties, SparseMatrix, Support,
+    galerkin_product,
 };
 use crate::linear::direct::{FactorError, Factors};
 use crate::parallel::vectors::{for_each_chunk, for_each_chunk_of_groups};
@@ -31,7 +32,9 @@ use crate::real::Real;
 /// at all vertices with fixed values correct them as well.
 pub(crate) struct MeanJumpSplitting<'a, T: Real> {
     matrix: &'a SparseMatrix<T>,
-    form: FacetMeanForm<T>,
+    penalties: SidePenalties<T>,
+    /// The form of the facet mean function of each side with itself.
+    diagonal: Vec<T>,
     space: CrouzeixRaviartSpace,
     /// The preconditioner of the stiffness on Crouzeix-Raviart functions.
     facet_means_solver: Box<dyn FacetMeansSolver<T> + 'a>,
@@ -147,9 +150,9 @@ impl<'a, T: Real> MeanJumpSplitting<'a, T> {
         supports: &'a [Support],
         level: &'a P1Level<T>,
     ) -> Option<Self> {
-        let multigrid = |form: &FacetMeanForm<T>, space: &CrouzeixRaviartSpace| {
-            let prolongation = space.prolongation(form, supports, level.size())?;
-            let stiffness = Cow::Owned(space.matrix(form, penalised));
+        let multigrid = |penalties: &SidePenalties<T>, space: &CrouzeixRaviartSpace| {
+            let prolongation = space.prolongation(penalties, supports, level.size())?;
+            let stiffness = Cow::Owned(space.matrix(penalties, penalised));
             let multigrid = Multigrid::of_element(stiffness, prolongation, level, 1);
             Some(Box::new(multigrid) as Box<dyn FacetMeansSolver<T> + 'a>)
         };
@@ -164,22 +167,24 @@ impl<'a, T: Real> MeanJumpSplitting<'a, T> {
         penalised: &PenalisedMatrix<T>,
         (supports, n_vertices): (&'a [Support], usize),
         facet_means_solver: impl FnOnce(
-            &FacetMeanForm<T>,
+            &SidePenalties<T>,
             &CrouzeixRaviartSpace,
         ) -> Option<Box<dyn FacetMeansSolver<T> + 'a>>,
         block_solver: Box<dyn BlockSolver<T> + 'a>,
     ) -> Option<Self> {
-        let form = FacetMeanForm::new(penalised, supports)?;
+        let penalties = SidePenalties::new(penalised, supports)?;
+        let diagonal = diagonal(penalised, &penalties);
         let zero = T::lit(0.0);
         let n = matrix.size();
-        let space = CrouzeixRaviartSpace::new(&form);
-        let facet_means_solver = facet_means_solver(&form, &space)?;
+        let space = CrouzeixRaviartSpace::new(&penalties);
+        let facet_means_solver = facet_means_solver(&penalties, &space)?;
         let n_facets = space.sides.len();
-        let are_means = form.are_means;
+        let are_means = penalties.are_means;
         let n_vertices = if are_means { 0 } else { n_vertices };
         Some(Self {
             matrix,
-            form,
+            penalties,
+            diagonal,
             space,
             facet_means_solver,
             supports,
@@ -217,8 +222,8 @@ enum SideState {
 impl<T: Real> MeanJumpSplitting<'_, T> {
     /// Sets the states of all sides by the fixed unknowns.
     fn set_side_states(&mut self) {
-        let (fixed, size) = (&self.fixed, self.form.cell_size);
-        if self.form.are_means {
+        let (fixed, size) = (&self.fixed, self.penalties.cell_size);
+        if self.penalties.are_means {
             for (state, &fixed) in self.states.iter_mut().zip(fixed) {
                 *state = if fixed { SideState::Fixed } else { SideState::Free };
             }
@@ -238,7 +243,7 @@ impl<T: Real> MeanJumpSplitting<'_, T> {
     /// # Errors
     /// [`FactorError::NotPositive`] if the form of a function is not positive.
     fn set_side_corrections(&mut self) -> Result<(), FactorError> {
-        let Self { form, states, sides, mixed_block, fixed, .. } = self;
+        let Self { penalties, diagonal, states, sides, mixed_block, fixed, .. } = self;
         mixed_block.vertex_values.clear();
         mixed_block.sides.clear();
         let corrections = sides.is_pair.iter_mut().zip(&mut sides.inverse_jump);
@@ -250,16 +255,16 @@ impl<T: Real> MeanJumpSplitting<'_, T> {
                 }
                 continue;
             }
-            let (own, opposite) = (form.diagonal[s], form.opposite[s]);
+            let (own, opposite) = (diagonal[s], penalties.opposite[s]);
             match states.get(opposite as usize) {
                 Some(SideState::Free) => {
-                    let (other, coupling) = (form.diagonal[opposite as usize], form.coupling[s]);
+                    let (other, penalty) = (diagonal[opposite as usize], penalties.penalty[s]);
                     *is_pair = true;
-                    *inverse_jump = invert(own + other - (coupling + coupling))?;
+                    *inverse_jump = invert(own + other + (penalty + penalty))?;
                 }
                 Some(SideState::Mixed) => mixed_block.sides.push(s as u32),
                 Some(SideState::Fixed) => *inverse_jump = invert(own)?,
-                None if form.has_jump[s] => *inverse_jump = invert(own)?,
+                None if penalties.has_jump(s) => *inverse_jump = invert(own)?,
                 None => {}
             }
         }
@@ -269,7 +274,7 @@ impl<T: Real> MeanJumpSplitting<'_, T> {
     /// Sets the facets without Crouzeix-Raviart functions, and those on which conforming functions alone
     /// correct: a cell with free and fixed vertex values has no facet mean functions.
     fn set_facets(&mut self) {
-        let Self { form, space, states, fixed_facets, kept_facets, .. } = self;
+        let Self { penalties, space, states, fixed_facets, kept_facets, .. } = self;
         kept_facets.clear();
         let facets = fixed_facets.iter_mut().zip(&space.sides);
         for (facet, (is_fixed, &[one, other])) in (0..).zip(facets) {
@@ -277,7 +282,7 @@ impl<T: Real> MeanJumpSplitting<'_, T> {
             // Dirichlet data are a jump without an opposite side
             let beyond = match states.get(other as usize) {
                 Some(&state) => state,
-                None if form.has_jump[one] => SideState::Fixed,
+                None if penalties.has_jump(one) => SideState::Fixed,
                 None => states[one],
             };
             let pair = [states[one], beyond];
@@ -366,10 +371,10 @@ impl<T: Real> Preconditioner<T> for MeanJumpSplitting<'_, T> {
         self.set_side_states();
         // parts of a mesh call the solvers of both spaces or none
         let corrected = self.set_side_corrections();
-        let factored = self.mixed_block.factor(self.matrix, self.form.cell_size);
+        let factored = self.mixed_block.factor(self.matrix, self.penalties.cell_size);
         self.set_facets();
         self.fixed_vertices.fill(false);
-        if !self.form.are_means {
+        if !self.penalties.are_means {
             for i in (0..fixed.len()).filter(|&i| fixed[i]) {
                 for &v in self.supports[i].vertices() {
                     self.fixed_vertices[v as usize] = true;
@@ -382,7 +387,8 @@ impl<T: Real> Preconditioner<T> for MeanJumpSplitting<'_, T> {
     }
 
     fn apply(&mut self, r: &[T], z: &mut [T]) {
-        let (size, are_means, sides) = (self.form.cell_size, self.form.are_means, &self.sides);
+        let (size, are_means, sides) =
+            (self.penalties.cell_size, self.penalties.are_means, &self.sides);
         let zero = T::lit(0.0);
         // The values of a facet mean function are 1 - d at the opposite vertex and 1 at the others,
         // where d is the number of dimensions.
@@ -408,7 +414,7 @@ impl<T: Real> Preconditioner<T> for MeanJumpSplitting<'_, T> {
         });
         self.facet_means_solver.apply(&self.facet_residuals, &mut self.facet_means);
         let (facets, facet_means) = (&self.space.facet, &self.facet_means);
-        let opposite = &self.form.opposite;
+        let opposite = &self.penalties.opposite;
         let means = if are_means { &mut *z } else { &mut self.means[..] };
         for_each_chunk_of_groups(means, size, |range, chunk| {
             for (s, mean) in range.zip(chunk) {

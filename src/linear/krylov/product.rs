@@ -1,0 +1,57 @@
+//! Products of the matrix of an inequality with vectors.
+
+use std::ops::Range;
+
+use super::penalised_product::PenalisedProduct;
+use crate::algebra::{Inequality, SparseMatrix};
+use crate::real::Real;
+
+/// A symmetric matrix in the form in which a product reads the least memory.
+pub(crate) enum Product<'m, T> {
+    /// The stored entries.
+    Assembled(&'m SparseMatrix<T>),
+    /// The sum `K + M^T S M`: discontinuous linear functions with a penalty on jumps of means.
+    Penalised(PenalisedProduct<'m, T>),
+}
+
+impl<'m, T: Real> Product<'m, T> {
+    /// The matrix of an inequality.
+    pub fn of(inequality: &'m Inequality<T>) -> Self {
+        let Inequality { matrix, penalised, supports, .. } = inequality;
+        let penalised = penalised.as_ref();
+        let product = penalised.and_then(|sum| PenalisedProduct::new(sum, supports));
+        product.map_or(Self::Assembled(matrix), Self::Penalised)
+    }
+
+    /// Number of rows.
+    pub fn size(&self) -> usize {
+        match self {
+            Self::Assembled(matrix) => matrix.size(),
+            Self::Penalised(product) => product.size(),
+        }
+    }
+
+    /// The number of consecutive rows that [`Product::rows`] computes together.
+    pub fn group(&self) -> usize {
+        match self {
+            Self::Assembled(_) => 1,
+            Self::Penalised(product) => product.cell_size(),
+        }
+    }
+
+    /// The rows `range` of `q = A p`, zero on fixed unknowns, on which `p` is zero too; returns their part of
+    /// `p . q`. The range divides no group.
+    pub fn rows(&self, range: Range<usize>, fixed: &[bool], p: &[T], q: &mut [T]) -> f64 {
+        match self {
+            Self::Assembled(matrix) => {
+                let mut sum = 0.0;
+                for (i, q) in range.zip(q) {
+                    *q = if fixed[i] { T::lit(0.0) } else { matrix.row_dot(i, p) };
+                    sum += p[i].to_f64() * q.to_f64();
+                }
+                sum
+            }
+            Self::Penalised(product) => product.rows(range, fixed, p, q),
+        }
+    }
+}
