@@ -6,27 +6,27 @@ use super::penalised_matrix::{JumpTerm, PenalisedMatrix};
 use crate::memory::in_large_pages;
 use crate::real::Real;
 
-/// The penalty `M^T S M` of a [`PenalisedMatrix`] of discontinuous linear functions with one jump, that of the
-/// means, on a facet.
+/// The penalty `M^T S M` of a [`PenalisedMatrix`] of discontinuous linear functions that penalises on each facet
+/// the jump of the mean, and no other moment of the jump.
 ///
-/// A facet has a side in each of its cells. Sides have the indices of unknowns: side `i` of a cell belongs to
-/// facet `i` of the cell, which is opposite to vertex `i`. The penalty of functions `u` and `v` is the sum over
-/// facets of `penalty * [u] * [v]`, where the jump `[u]` is the mean over the one side minus that over the other, and
-/// the mean itself on a facet with Dirichlet data.
+/// A facet has one side in each of its cells. Sides have the indices of unknowns: side `i` of a cell belongs to
+/// facet `i` of the cell, which is opposite to vertex `i`. The bilinear form `v . M^T S M u` is the sum over facets of
+/// `penalty * [u] * [v]`. The jump `[u]` is the mean of `u` over one side minus the mean over the opposite side; on
+/// a facet with Dirichlet data it is the mean over the only side.
 pub(crate) struct SidePenalties<T> {
     /// Number of unknowns of a cell.
     pub cell_size: usize,
-    /// Whether the unknowns are the means over sides; else they are vertex values.
+    /// True if the unknowns are means over sides, false if the unknowns are vertex values.
     pub are_means: bool,
-    /// The other side of the same facet, [`NO_INDEX`] if there is none with a jump.
+    /// By side, the opposite side of the same facet; [`NO_INDEX`] on the boundary.
     pub opposite: Vec<u32>,
-    /// The penalty of the jump over the facet, or from Dirichlet data; zero without a jump.
+    /// By side, the penalty of the jump over its facet, or of the mean on a facet with Dirichlet data; else zero.
     pub penalty: Vec<T>,
 }
 
 impl<T: Real> SidePenalties<T> {
-    /// The penalties of a matrix; `None` if its unknowns are not those of discontinuous linear functions in
-    /// two or three dimensions, or a facet has jumps besides that of its mean.
+    /// The penalties of a matrix; `None` if the unknowns of the matrix are not those of discontinuous linear
+    /// functions in two or three dimensions, or if the matrix penalises another moment of a jump than the mean.
     pub fn new(penalised: &PenalisedMatrix<T>, supports: &[Support]) -> Option<Self> {
         let (n, cell_size) = (penalised.load.len(), penalised.block_size);
         if !(3..=4).contains(&cell_size) || supports.len() != n || n == 0 {
@@ -51,7 +51,7 @@ impl<T: Real> SidePenalties<T> {
             let penalty = penalised.weights[jump] * mean * mean;
             for side in [Some(here), there].into_iter().flatten() {
                 // a second jump is a moment of higher degree
-                if sides.penalty[side] != T::lit(0.0) {
+                if sides.has_jump(side) {
                     return None;
                 }
                 sides.penalty[side] = penalty;
@@ -63,13 +63,13 @@ impl<T: Real> SidePenalties<T> {
         Some(sides)
     }
 
-    /// Whether a side has a jump: over the facet, or from Dirichlet data.
+    /// Whether the jump over the facet of a side, or the mean on a facet with Dirichlet data, is penalised.
     pub fn has_jump(&self, side: usize) -> bool {
         self.penalty[side] != T::lit(0.0)
     }
 
-    /// The side whose mean is the part of a jump with the unknowns `unknown` of its terms; `None` if the
-    /// part is not the mean over a side.
+    /// The side over which one part of a jump, with the unknowns `unknown` of the terms, is the mean; `None` if
+    /// this part is not the mean over a side.
     fn side(&self, terms: &[JumpTerm<T>], unknown: impl Fn(&JumpTerm<T>) -> u32) -> Option<usize> {
         let size = self.cell_size;
         if terms.iter().any(|t| unknown(t) == JumpTerm::<T>::NO_UNKNOWN) {

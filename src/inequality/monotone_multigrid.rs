@@ -138,12 +138,9 @@ fn preconditioner<'a, T: Real>(
     let of = |spaces| {
         BuiltInPreconditioners.preconditioner(PreconditionedSystem::new(matrix, inequality, spaces))
     };
-    let fits = match known {
-        CoarseSpaces::Unknown => false,
-        CoarseSpaces::CoarseLevel(coarser) => coarser.prolongation.n_fine() == matrix.size(),
-        CoarseSpaces::SameMesh(_) => true,
-    };
-    if fits && let Some(preconditioner) = of(known) {
+    if known.fits(matrix.size())
+        && let Some(preconditioner) = of(known)
+    {
         return Some(preconditioner);
     }
     let fixed: Vec<bool> = bounds.iter().map(|bound| bound.fixed_value().is_some()).collect();
@@ -204,7 +201,8 @@ impl<'a, T: Real> MultigridIterate<'a, T> {
     }
 
     /// Cycles until the changes are within the tolerance, and the certificate and the bound on the algebraic error are
-    /// within their limits; neither limit applies if the guess sets a tolerance.
+    /// within their limits. A missing bound does not prevent convergence. Cycles that stagnate converge too, if the
+    /// bound is known and both limits hold. Neither limit applies if the guess sets a tolerance.
     ///
     /// # Errors
     /// The outcome if the method does not converge.
@@ -243,10 +241,9 @@ impl<'a, T: Real> MultigridIterate<'a, T> {
             let stagnates = guess.energy_tolerance.is_none()
                 && stagnant_cycles > 0
                 && stagnant_cycles % STAGNATION_CYCLES == 0;
-            if (change <= tolerance * energy_norm || stagnates)
-                && certify(self.inequality, &self.values).largest() <= limit
+            let is_small = change <= tolerance * energy_norm;
+            if (is_small || stagnates) && certify(self.inequality, &self.values).largest() <= limit
             {
-                let is_small = change <= tolerance * energy_norm;
                 if guess.energy_tolerance.is_some()
                     || self.has_small_bound(&mut *preconditioner).unwrap_or(is_small)
                 {
@@ -264,7 +261,8 @@ impl<'a, T: Real> MultigridIterate<'a, T> {
         Err(Outcome::IterationLimit)
     }
 
-    /// Computes the bound on the algebraic error; returns whether it is within the limit, `None` without a bound.
+    /// Computes the bound on the algebraic error. Returns whether the bound is within its limit; `None` if there is no
+    /// bound.
     fn has_small_bound(&mut self, preconditioner: &mut dyn Preconditioner<T>) -> Option<bool> {
         self.fixed.clear();
         self.algebraic_bound =
@@ -393,5 +391,26 @@ impl<'a, T: Real> MultigridIterate<'a, T> {
             .iterations(self.cycles, self.cycles)
             .linear_solver(self.linear_solver)
             .algebraic_bound(self.algebraic_bound)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::preconditioned_error_bound::tests::string;
+    use super::*;
+    use crate::algebra::SparseMatrix;
+
+    #[test]
+    fn a_coarser_level_of_another_size_is_not_used() {
+        let string = string(2000);
+        let expected = MonotoneMultigrid::default().solve(&string);
+        for other in [1500, 2500] {
+            let matrix = SparseMatrix::second_differences(other);
+            let level = CoarseLevel::aggregated(&matrix, &vec![false; other]).unwrap();
+            let coarse_spaces = CoarseSpaces::CoarseLevel(level);
+            let guess = InitialGuess { coarse_spaces, ..InitialGuess::default() };
+            let found = MonotoneMultigrid::default().solve_from(&string, &guess);
+            assert_eq!((found.outcome, found.values), (expected.outcome, expected.values.clone()));
+        }
     }
 }

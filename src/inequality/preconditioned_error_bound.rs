@@ -50,7 +50,7 @@ pub(super) fn preconditioned_error_bound<T: Real>(
 }
 
 #[cfg(test)]
-mod tests {
+pub(super) mod tests {
     use super::*;
     use crate::algebra::{Bound, SparseMatrix};
     use crate::inequality::{ActiveSet, InequalitySolver, energy_error_bound};
@@ -61,7 +61,7 @@ mod tests {
 
     /// Second differences on `n` points, fixed at both ends, under the load -1/n^2 above -1/30: the contact set is in
     /// the middle.
-    fn string(n: usize) -> Inequality<f64> {
+    pub fn string(n: usize) -> Inequality<f64> {
         let mut bounds = vec![Bound::Lower(-1.0 / 30.0); n];
         (bounds[0], bounds[n - 1]) = (Bound::Fixed(0.0), Bound::Fixed(0.0));
         let matrix = SparseMatrix::second_differences(n);

@@ -64,7 +64,7 @@ pub(crate) fn map_chunks_of_groups<R: Send>(
     if is_sequential(n) { (0..n_ranges).map(one).collect() } else { map_indices(n_ranges, &one) }
 }
 
-/// The sum of the values of `work` on the index range and the entries of each chunk of `x`.
+/// The sum over the chunks of `x` of the values of `work` for the index range and the entries of a chunk.
 pub(crate) fn sum_chunks<A: Send>(
     x: &mut [A],
     work: impl Fn(Range<usize>, &mut [A]) -> f64 + Sync,

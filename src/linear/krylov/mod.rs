@@ -3,7 +3,7 @@
 //! `conjugate_gradients`: symmetric matrices. `gmres`: all others. `lanczos`: eigenvalues from the
 //! coefficients of conjugate gradients. `eigenvalue_run`: the smallest eigenvalue of a preconditioned matrix.
 //! `stopping`: stopping rule and result. `method`: the method that fits an inequality. `product`: products with the
-//! matrix, by its stored entries or by a sum (`penalised_product`).
+//! matrix of an inequality, by stored entries or by the sum `K + M^T S M` (`penalised_product`).
 
 mod conjugate_gradients;
 mod eigenvalue_run;

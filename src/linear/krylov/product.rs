@@ -31,7 +31,8 @@ impl<'m, T: Real> Product<'m, T> {
         }
     }
 
-    /// The number of consecutive rows that [`Product::rows`] computes together.
+    /// The number of consecutive rows, those of one cell, that a range of [`Product::rows`] must not divide; one for
+    /// stored entries.
     pub fn group(&self) -> usize {
         match self {
             Self::Assembled(_) => 1,
@@ -39,8 +40,8 @@ impl<'m, T: Real> Product<'m, T> {
         }
     }
 
-    /// The rows `range` of `q = A p`, zero on fixed unknowns, on which `p` is zero too; returns their part of
-    /// `p . q`. The range divides no group.
+    /// Computes the rows `range` of `q = A p` and returns their part of `p . q`. On fixed unknowns `p` must be zero,
+    /// and `q` is set to zero. The range must not divide a group.
     pub fn rows(&self, range: Range<usize>, fixed: &[bool], p: &[T], q: &mut [T]) -> f64 {
         match self {
             Self::Assembled(matrix) => {

@@ -25,6 +25,15 @@ pub enum CoarseSpaces<T> {
 }
 
 impl<T: Real> CoarseSpaces<T> {
+    /// Whether spaces are known, and a coarser level has been made for this number of unknowns.
+    pub(crate) fn fits(&self, unknowns: usize) -> bool {
+        match self {
+            Self::Unknown => false,
+            Self::CoarseLevel(coarser) => coarser.prolongation.n_fine() == unknowns,
+            Self::SameMesh(_) => true,
+        }
+    }
+
     /// These spaces if they fit an inequality, else spaces constructed from the symmetric part `matrix`
     /// of its matrix and the supports of its unknowns; `None` if the inequality does not have a support
     /// for each unknown.
@@ -37,18 +46,15 @@ impl<T: Real> CoarseSpaces<T> {
         if supports.len() != inequality.size() || supports.is_empty() {
             return None;
         }
+        if self.fits(matrix.size()) {
+            return Some(Cow::Borrowed(self));
+        }
         let fixed: Vec<bool> = bounds.iter().map(|b| matches!(b, Bound::Fixed(_))).collect();
-        Some(match self {
-            Self::CoarseLevel(coarser) if coarser.prolongation.n_fine() == matrix.size() => {
-                Cow::Borrowed(self)
-            }
-            Self::SameMesh(_) => Cow::Borrowed(self),
-            _ if *conforming_linear => {
-                let coarser = CoarseLevel::aggregated(matrix, &fixed);
-                Cow::Owned(coarser.map_or(Self::Unknown, Self::CoarseLevel))
-            }
-            _ => Cow::Owned(Self::SameMesh(Arc::new(p1_level(matrix, supports, &fixed)?))),
-        })
+        Some(Cow::Owned(if *conforming_linear {
+            CoarseLevel::aggregated(matrix, &fixed).map_or(Self::Unknown, Self::CoarseLevel)
+        } else {
+            Self::SameMesh(Arc::new(p1_level(matrix, supports, &fixed)?))
+        }))
     }
 }
 
