@@ -46,7 +46,7 @@ pub(super) const STAGNATION_CYCLES: usize = 10;
 pub struct MonotoneMultigrid {
     /// Largest number of cycles.
     pub max_cycles: usize,
-    /// Cycles that may pass without halving the change of a cycle before the method gives up. Changes that ten cycles
+    /// Cycles that may pass without halving the change of a cycle; one more ends the method. Changes that ten cycles
     /// do not halve need more than three hundred cycles to the default tolerance.
     pub stagnation_cycles: usize,
     /// Sweeps of projected Gauss-Seidel before each linear correction.
@@ -103,7 +103,7 @@ impl<T: Real> InequalitySolver<T> for MonotoneMultigrid {
         compiled!(
             T: fn(&MonotoneMultigrid, &Inequality<T>, &InitialGuess<T>) -> Solution<T>
                 = |method, inequality, guess| solve_with_kernel(inequality, |inequality| {
-                    method.descend(inequality, guess)
+                    method.solve_after(inequality, guess, 0)
                 })
         )(self, inequality, guess)
     }
@@ -114,14 +114,21 @@ impl<T: Real> InequalitySolver<T> for MonotoneMultigrid {
 }
 
 impl MonotoneMultigrid {
-    fn descend<T: Real>(&self, inequality: &Inequality<T>, guess: &InitialGuess<T>) -> Solution<T> {
+    /// The solution by cycles that follow `steps` outer steps of other methods, which the counter of the guess
+    /// includes.
+    pub(super) fn solve_after<T: Real>(
+        &self,
+        inequality: &Inequality<T>,
+        guess: &InitialGuess<T>,
+        steps: usize,
+    ) -> Solution<T> {
         if !inequality.symmetric {
             return ActiveSet::default().solve_from(inequality, guess);
         }
         if let Err(outcome) = check_input(inequality) {
             return Solution::without_iterate(inequality, outcome);
         }
-        let mut iterate = MultigridIterate::new(inequality, guess);
+        let mut iterate = MultigridIterate::new(inequality, guess, steps);
         let outcome = iterate.run(self, guess).unwrap_or_else(|outcome| outcome);
         iterate.into_solution(outcome)
     }
@@ -171,13 +178,15 @@ struct MultigridIterate<'a, T> {
     /// The energy norm of the values before the last correction; see [`Scales::energy_norm`].
     energy_norm: f64,
     cycles: usize,
+    /// The number of outer steps of the solve before the first cycle.
+    steps_before: usize,
     /// See [`Solution::algebraic_bound`].
     algebraic_bound: Option<f64>,
 }
 
 impl<'a, T: Real> MultigridIterate<'a, T> {
     /// The values of the guess, or zero, projected onto the bounds.
-    fn new(inequality: &'a Inequality<T>, guess: &InitialGuess<T>) -> Self {
+    fn new(inequality: &'a Inequality<T>, guess: &InitialGuess<T>, steps_before: usize) -> Self {
         let n = inequality.bounds.len();
         let guess = guess.values.as_deref().filter(|values| values.len() == n);
         let start = |i: usize| guess.map_or(T::lit(0.0), |values| values[i]);
@@ -196,6 +205,7 @@ impl<'a, T: Real> MultigridIterate<'a, T> {
             whole_residual: vec![0.0; n],
             energy_norm: 0.0,
             cycles: 0,
+            steps_before,
             algebraic_bound: None,
         }
     }
@@ -218,13 +228,14 @@ impl<'a, T: Real> MultigridIterate<'a, T> {
         self.linear_solver = preconditioner.name();
         self.diagonal = self.inequality.matrix.diagonal();
         let least = guess.energy_tolerance.unwrap_or(0.0).max(4.0 * T::EPSILON);
-        let mut tolerance = settings.tolerance.max(least);
+        // `None` once rounding limits the tolerance: stagnating cycles alone are examined then
+        let mut tolerance = Some(settings.tolerance.max(least));
         let limit =
             if guess.energy_tolerance.is_some() { f64::INFINITY } else { T::CERTIFICATE_LIMIT };
         let (mut least_change, mut stagnant_cycles) = (f64::INFINITY, 0);
         while self.cycles < settings.max_cycles {
             self.cycles += 1;
-            guess.steps.set(self.cycles);
+            guess.steps.set(self.steps_before + self.cycles);
             let mut by_sweeps = 0.0;
             for _ in 0..settings.sweeps {
                 by_sweeps += self.gauss_seidel_sweep()?;
@@ -241,20 +252,21 @@ impl<'a, T: Real> MultigridIterate<'a, T> {
             let stagnates = guess.energy_tolerance.is_none()
                 && stagnant_cycles > 0
                 && stagnant_cycles % STAGNATION_CYCLES == 0;
-            let is_small = change <= tolerance * energy_norm;
+            let is_small = tolerance.is_some_and(|tolerance| change <= tolerance * energy_norm);
             if (is_small || stagnates) && certify(self.inequality, &self.values).largest() <= limit
             {
                 if guess.energy_tolerance.is_some()
-                    || self.has_small_bound(&mut *preconditioner).unwrap_or(is_small)
+                    || self.has_small_bound(&mut *preconditioner)?.unwrap_or(is_small)
                 {
                     return Ok(Outcome::Converged);
                 }
                 // of cycles that converge slowly the error is much larger than a change
                 if is_small {
-                    tolerance *= REDUCTION;
+                    tolerance =
+                        tolerance.map(|t| REDUCTION * t).filter(|&reduced| reduced >= least);
                 }
             }
-            if stagnant_cycles >= settings.stagnation_cycles || tolerance < least {
+            if stagnant_cycles > settings.stagnation_cycles {
                 return Err(Outcome::Stalled);
             }
         }
@@ -263,11 +275,17 @@ impl<'a, T: Real> MultigridIterate<'a, T> {
 
     /// Computes the bound on the algebraic error. Returns whether the bound is within its limit; `None` if there is no
     /// bound.
-    fn has_small_bound(&mut self, preconditioner: &mut dyn Preconditioner<T>) -> Option<bool> {
+    ///
+    /// # Errors
+    /// [`Outcome::NotCoercive`]: unknowns in contact may hide that the matrix is indefinite.
+    fn has_small_bound(
+        &mut self,
+        preconditioner: &mut dyn Preconditioner<T>,
+    ) -> Result<Option<bool>, Outcome> {
         self.fixed.clear();
         self.algebraic_bound =
-            preconditioned_error_bound(self.inequality, &self.values, preconditioner);
-        self.algebraic_bound.map(|bound| bound <= T::ALGEBRAIC_BOUND_LIMIT)
+            preconditioned_error_bound(self.inequality, &self.values, preconditioner)?;
+        Ok(self.algebraic_bound.map(|bound| bound <= T::ALGEBRAIC_BOUND_LIMIT))
     }
 
     /// One sweep of projected Gauss-Seidel. Returns the sum of `d_i (change of u_i)^2`, an estimate
@@ -398,7 +416,7 @@ impl<'a, T: Real> MultigridIterate<'a, T> {
 mod tests {
     use super::super::preconditioned_error_bound::tests::string;
     use super::*;
-    use crate::algebra::SparseMatrix;
+    use crate::algebra::{Bound, SparseMatrix};
 
     #[test]
     fn a_coarser_level_of_another_size_is_not_used() {
@@ -412,5 +430,39 @@ mod tests {
             let found = MonotoneMultigrid::default().solve_from(&string, &guess);
             assert_eq!((found.outcome, found.values), (expected.outcome, expected.values.clone()));
         }
+    }
+
+    /// Both unknowns are in contact: no correction sees that (1, 1) is a direction of descent.
+    #[test]
+    fn contact_does_not_hide_an_indefinite_matrix() {
+        let matrix = SparseMatrix {
+            row_starts: vec![0, 2, 4],
+            columns: vec![0, 1, 0, 1],
+            values: vec![1.0, -2.0, -2.0, 1.0],
+        };
+        let bounds = vec![Bound::Lower(0.0); 2];
+        let inequality = Inequality::new(matrix, true, vec![-1.0; 2], bounds);
+        let solution = MonotoneMultigrid::default().solve(&inequality);
+        assert_eq!(solution.outcome, Outcome::NotCoercive);
+    }
+
+    /// Cycles that never halve their change end the method; a limit of zero is no limit of zero cycles.
+    #[test]
+    fn the_limit_of_stagnating_cycles_counts_cycles_that_stagnate() {
+        let string = string(2000);
+        let of = |limit| MonotoneMultigrid::default().stagnation_cycles(limit).solve(&string);
+        let whole = of(200);
+        assert_eq!(whole.outcome, Outcome::Converged);
+        let short = of(0);
+        assert!(short.outer > 1 && short.outer < whole.outer, "{} {}", short.outer, whole.outer);
+        assert_eq!(short.outcome, Outcome::Stalled);
+    }
+
+    #[test]
+    fn the_counter_includes_the_steps_before_the_first_cycle() {
+        let guess = InitialGuess::default();
+        let solution = MonotoneMultigrid::default().solve_after(&string(200), &guess, 7);
+        assert!(solution.outer > 0);
+        assert_eq!(guess.steps.get(), 7 + solution.outer);
     }
 }

@@ -1,10 +1,13 @@
 //! A bound on the energy norm of the algebraic error by a preconditioner, without factors.
 
+use super::Outcome;
 use super::certificate::positive_diagonal;
 use super::energy_error_bound::unbalanced;
 use super::scales::Scales;
+use super::validation::check_definite;
 use crate::algebra::Inequality;
 use crate::linear::Preconditioner;
+use crate::linear::direct::FactorError;
 use crate::linear::krylov::{EIGENVALUE_TO_RITZ_VALUE, Product, StopReason, eigenvalue_run};
 use crate::parallel::vectors::{dot, zeros};
 use crate::real::Real;
@@ -20,23 +23,36 @@ const MAX_ITERATIONS: usize = 500;
 /// active set; the eigenvalue is estimated on the same unknowns, by [`EIGENVALUE_TO_RITZ_VALUE`] times the
 /// smallest Ritz value.
 ///
-/// `None` if the preconditioner rejects these unknowns (bounds alone may hold the domain), or if conjugate gradients
+/// `None` if the matrix is singular on these unknowns (bounds alone may hold the domain), or if conjugate gradients
 /// do not converge. The preconditioner is set up for other unknowns afterwards.
+///
+/// # Errors
+/// [`Outcome::NotCoercive`] if the matrix is found to be indefinite, which the unknowns of an active set need not show.
 pub(super) fn preconditioned_error_bound<T: Real>(
     inequality: &Inequality<T>,
     values: &[T],
     preconditioner: &mut dyn Preconditioner<T>,
-) -> Option<f64> {
+) -> Result<Option<f64>, Outcome> {
     let bounds = &inequality.bounds;
     let fixed: Vec<bool> = bounds.iter().map(|bound| bound.fixed_value().is_some()).collect();
-    preconditioner.set_fixed(&fixed).ok()?;
+    // factors decide, since rounding of large penalties may be the reason
+    let of_indefinite = || match check_definite(inequality) {
+        Err(outcome) if !inequality.is_definite => Err(outcome),
+        _ => Ok(None),
+    };
+    match preconditioner.set_fixed(&fixed) {
+        Ok(()) => {}
+        Err(FactorError::NotPositive) => return of_indefinite(),
+        Err(_) => return Ok(None),
+    }
     let diagonal = |i: usize| positive_diagonal(inequality, i);
     let matrix = Product::of(inequality);
     let run = eigenvalue_run(matrix, None, preconditioner, &fixed, diagonal, MAX_ITERATIONS);
-    let (smallest, _) = run.ritz?;
-    if run.reason != StopReason::Converged || smallest <= 0.0 {
-        return None;
-    }
+    let smallest = match run.ritz {
+        Some((smallest, _)) if run.reason == StopReason::Converged && smallest > 0.0 => smallest,
+        _ if run.reason == StopReason::NotPositive => return of_indefinite(),
+        _ => return Ok(None),
+    };
     let mut residual = vec![0.0; values.len()];
     inequality.residual_f64(values, &mut residual);
     let energy_norm = Scales::of(inequality, values, &residual, &[], &diagonal, 1.0).energy_norm;
@@ -46,7 +62,7 @@ pub(super) fn preconditioned_error_bound<T: Real>(
     let mut z = zeros(right.len());
     preconditioner.apply(&right, &mut z);
     let squared = dot(&right, &mut z).max(0.0);
-    Some((squared / (EIGENVALUE_TO_RITZ_VALUE * smallest)).sqrt() / energy_norm)
+    Ok(Some((squared / (EIGENVALUE_TO_RITZ_VALUE * smallest)).sqrt() / energy_norm))
 }
 
 #[cfg(test)]
@@ -84,7 +100,8 @@ pub(super) mod tests {
             let values: Vec<f64> =
                 moved.map(|(i, (x, bound))| bound.nearest(x + change(i))).collect();
             let by_factors = energy_error_bound(&string, &values).unwrap();
-            let bound = preconditioned_error_bound(&string, &values, &mut *preconditioner).unwrap();
+            let bound = preconditioned_error_bound(&string, &values, &mut *preconditioner);
+            let bound = bound.unwrap().unwrap();
             assert!(by_factors <= bound && bound <= 3.0 * by_factors, "{by_factors} {bound}");
         }
     }

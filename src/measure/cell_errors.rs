@@ -57,12 +57,27 @@ enum Kinks<const D: usize> {
     OneLevel(Field<D>),
     TwoLevels {
         levels: [Field<D>; 2],
-        /// Changes its sign at the zeros of both, but not where these coincide.
-        product: Field<D>,
+        /// The product of both and its negative: they change their sign at the zeros of both, but not where these
+        /// coincide. Where corners of a cell lie on such a zero, one of the two may be zero there and positive elsewhere.
+        products: [Field<D>; 2],
     },
 }
 
 impl<const D: usize> Kinks<D> {
+    fn new(one: Option<Field<D>>, other: Option<Field<D>>) -> Self {
+        match (one, other) {
+            (None, None) => Self::None,
+            (Some(level), None) | (None, Some(level)) => Self::OneLevel(level),
+            (Some(a), Some(b)) => {
+                let product = |sign: f64| -> Field<D> {
+                    let [one, other] = [a.clone(), b.clone()];
+                    Arc::new(move |x| sign * one(x) * other(x))
+                };
+                Self::TwoLevels { products: [product(1.0), product(-1.0)], levels: [a, b] }
+            }
+        }
+    }
+
     /// The function along whose zeros a cell is divided; `None` if no function is known. If two functions have the same
     /// zeros in the cell, it is the first one: in some scenes the free boundary and a jump of the load coincide.
     fn level_in<T: Real>(
@@ -74,13 +89,13 @@ impl<const D: usize> Kinks<D> {
         match self {
             Self::None => None,
             Self::OneLevel(level) => Some(level),
-            Self::TwoLevels { levels, product } => {
+            Self::TwoLevels { levels, products } => {
                 let cuts = |level| rule.cuts(mesh, cell, level);
                 match levels.each_ref().map(cuts) {
                     [false, false] => None,
                     [true, false] => Some(&levels[0]),
                     [false, true] => Some(&levels[1]),
-                    [true, true] if cuts(product) => Some(product),
+                    [true, true] if products.iter().all(cuts) => Some(&products[0]),
                     [true, true] => Some(&levels[0]),
                 }
             }
@@ -184,15 +199,8 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         let Reference::Exact(Exact { contact, .. }) = exact else { return Kinks::None };
         let contact = contact.as_ref().filter(|_| self.problem.has_obstacle());
         let indicator = contact.map(|set| set.indicator.clone());
-        let levels = self.data.source.of(region).and_then(|f| f.level()).cloned();
-        match (indicator, levels) {
-            (None, None) => Kinks::None,
-            (Some(level), None) | (None, Some(level)) => Kinks::OneLevel(level),
-            (Some(a), Some(b)) => {
-                let [one, other] = [a.clone(), b.clone()];
-                Kinks::TwoLevels { product: Arc::new(move |x| one(x) * other(x)), levels: [a, b] }
-            }
-        }
+        let level = self.data.source.of(region).and_then(|f| f.level()).cloned();
+        Kinks::new(indicator, level)
     }
 
     /// The squares of a cell by two rules; by the same one if it is the one of highest degree.
@@ -308,4 +316,43 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
 /// Whether two lists of squares differ by more than is allowed.
 fn differ(a: &Squares, b: &Squares, allowed: &Squares) -> bool {
     a.iter().zip(b).zip(allowed).any(|((a, b), allowed)| (a - b).abs() > *allowed)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::mesh::BoxDomain;
+
+    /// The corners (0, 0), (1, 0), (1, 1): the middle of an edge lies on the zeros of `x - 1/2`.
+    fn level_in<const D: usize>(one: Field<D>, other: Field<D>) -> Option<Field<D>> {
+        let square = BoxDomain::dirichlet(Point::zeros(), Point::repeat(1.0));
+        let mesh = Mesh::<f64, D>::kuhn_box(&square, [1; D]).unwrap();
+        Kinks::new(Some(one), Some(other)).level_in(&CutRule::new(D, 4), &mesh, 0).cloned()
+    }
+
+    fn kinks_of_two_levels<const D: usize>() {
+        let half: Field<D> = Arc::new(|x| x[0] - 0.5);
+        let opposite: Field<D> = Arc::new(|x| 0.5 - x[0]);
+        let double: Field<D> = Arc::new(|x| 2.0 * x[0] - 1.0);
+        let far: Field<D> = Arc::new(|x| x[0] + 1.0);
+        let same = |a: &Option<Field<D>>, b: &Field<D>| Arc::ptr_eq(a.as_ref().unwrap(), b);
+        // zeros that coincide, with the same and with opposite signs
+        for other in [double, opposite] {
+            assert!(same(&level_in(half.clone(), other), &half));
+        }
+        assert!(same(&level_in(far.clone(), half.clone()), &half));
+        assert!(same(&level_in(half.clone(), far.clone()), &half));
+        assert!(level_in(far.clone(), far).is_none());
+        let [low, high]: [Field<D>; 2] = [Arc::new(|x| x[0] - 0.4), Arc::new(|x| x[0] - 0.6)];
+        let both = level_in(low, high).unwrap();
+        let signs = [0.1, 0.5, 0.9].map(|x| both(&Point::repeat(x)) > 0.0);
+        assert_eq!(signs, [true, false, true]);
+    }
+
+    #[test]
+    fn two_levels_divide_a_cell_along_both_and_once_where_they_coincide() {
+        kinks_of_two_levels::<1>();
+        kinks_of_two_levels::<2>();
+        kinks_of_two_levels::<3>();
+    }
 }

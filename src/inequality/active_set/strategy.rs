@@ -15,19 +15,19 @@
 
 use std::borrow::Cow;
 
-use super::contact_state::admissible_state;
+use super::contact_state::{admissible_state, prescribed_value};
 use super::direct_solver::DirectSolver;
 use super::iterate::Iterate;
 use super::iteration::{End, Iteration, outcome_of_best};
 use super::preconditioned_solver::PreconditionedSolver;
 use super::progress::{Obstruction, Patience};
 use super::settings::{ActiveSet, Globalisation};
-use crate::algebra::{Inequality, PenalisedMatrix, Start, any_part};
+use crate::algebra::{Contact, Inequality, PenalisedMatrix, Start, any_part};
 use crate::inequality::initial_guess::InitialGuess;
 use crate::inequality::interior_point::{CentralPoint, Identification, InteriorPoint, MAX_STEPS};
 use crate::inequality::monotone_multigrid::{MonotoneMultigrid, STAGNATION_CYCLES};
 use crate::inequality::validation::{check_definite, check_input};
-use crate::inequality::{InequalitySolver, Outcome, Solution, Stage, StageRun};
+use crate::inequality::{Outcome, Solution, Stage, StageRun};
 use crate::linear::krylov::symmetric_part;
 use crate::linear::precondition::unknowns_per_cell;
 use crate::linear::{CoarseSpaces, LinearMethod, PreconditionedSystem, PreconditionerFamily};
@@ -235,8 +235,9 @@ impl<'a, T: Real> Solve<'_, 'a, T> {
             && penalised.as_ref().is_none_or(PenalisedMatrix::has_jumps_of_single_unknowns)
     }
 
-    /// Whether cells own more unknowns than linear functions have.
-    fn has_broken_quadratics(&self) -> bool {
+    /// Whether cells own more unknowns than linear functions on a tetrahedron have: broken quadratics in the plane and
+    /// in space.
+    fn has_more_unknowns_than_linears(&self) -> bool {
         unknowns_per_cell(&self.inequality.supports).is_some_and(|n| n > MAX_LINEAR_BASIS)
     }
 
@@ -338,6 +339,7 @@ impl<'a, T: Real> Solve<'_, 'a, T> {
             local_solves: if is_local { LOCAL_SOLVES } else { 0 },
             is_certified: guess.energy_tolerance.is_none(),
             steps: &guess.steps,
+            steps_before: 0,
         };
         let mut outcome = match iteration.run() {
             End::Outcome(outcome) => outcome,
@@ -389,10 +391,10 @@ impl<'a, T: Real> Solve<'_, 'a, T> {
         };
         let solution = MonotoneMultigrid::default()
             .stagnation_cycles(STAGNATION_CYCLES)
-            .solve_from(self.inequality, &guess);
+            .solve_after(self.inequality, &guess, self.iterate.outer);
         let Solution {
             values,
-            contact,
+            mut contact,
             outcome,
             linear_solver,
             outer,
@@ -403,6 +405,12 @@ impl<'a, T: Real> Solve<'_, 'a, T> {
         self.cycles += outer;
         self.iterate.linear += linear;
         (outcome == Outcome::Converged).then(|| {
+            // certificate and bound are those of the values, so that no active unknown may move to its bound
+            for (i, state) in contact.iter_mut().enumerate() {
+                if prescribed_value(&self.inequality.bounds[i], *state) != Some(values[i]) {
+                    *state = Contact::Inactive;
+                }
+            }
             self.iterate.replace(values, Vec::new(), contact);
             Found { outcome, linear_solver, algebraic_bound }
         })
@@ -429,6 +437,7 @@ impl<'a, T: Real> Solve<'_, 'a, T> {
             local_solves: 0,
             is_certified,
             steps,
+            steps_before: self.cycles,
         };
         iteration.run()
     }
@@ -455,7 +464,7 @@ impl<'a, T: Real> Solve<'_, 'a, T> {
         self.interior_point_may_improve = method.may_improve();
         self.has_small_slacks = method.leaves_small_slacks();
         self.iterate.outer += steps;
-        self.guess.steps.set(self.iterate.outer);
+        self.guess.steps.set(self.cycles + self.iterate.outer);
         if let Some(contact) = contact {
             let states = contact.iter().zip(&self.inequality.bounds);
             let states = states.map(|(&contact, bound)| admissible_state(bound, contact)).collect();
@@ -479,7 +488,7 @@ impl<'a, T: Real> Solve<'_, 'a, T> {
         let ActiveSet { stagnation_steps, improvement_steps, globalisation, .. } = *self.settings;
         if stage == Stage::PreconditionedActiveSet {
             let is_cheap = self.inequality.penalised.is_some()
-                || (self.suits_monotone_multigrid() && !self.has_broken_quadratics());
+                || (self.suits_monotone_multigrid() && !self.has_more_unknowns_than_linears());
             let steps = stagnation_steps * if is_cheap { 1 } else { DIRECT_STEP_COST } + 1;
             let is_limited = globalisation == Globalisation::OnStagnation
                 && self.inequality.distribution.is_none()

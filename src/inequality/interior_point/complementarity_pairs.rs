@@ -244,8 +244,9 @@ mod tests {
         assert!(!bernstein.is_positive(1.01, &[-4.0, 4.0], 1.0));
         assert!(!bernstein.is_positive(1.0, &[-2.0, 1.0], 1.0));
         // t (1 - t) (2 - t) (3 - t) / 24 + 1/50 (1 - t), by its powers
-        let cubic = BernsteinBasis::new(4);
-        let of = |end: f64| cubic.is_positive(0.02, &[0.23, -11.0 / 24.0, 0.25, -1.0 / 24.0], end);
+        let quartic = BernsteinBasis::new(4);
+        let of =
+            |end: f64| quartic.is_positive(0.02, &[0.23, -11.0 / 24.0, 0.25, -1.0 / 24.0], end);
         assert!(of(0.99) && !of(1.01));
     }
 
