@@ -4,7 +4,8 @@
 //! `matrix`: compressed sparse rows. `rectangular_matrix`: prolongations in compressed sparse rows, and
 //! `P^T A P`.
 //! `submatrix`: rows and columns of a matrix. `penalised_matrix`: `K + M^T S M`. `side_penalties`: `M^T S M` of
-//! discontinuous linear functions. `dense`: small dense matrices. `row`: rows in the making. `dirichlet_energy`: what weak data change in an energy.
+//! discontinuous linear functions. `dense`: small dense matrices. `row`: rows in the making.
+//! `dirichlet_energy`: the part of an energy that weak Dirichlet data determine.
 //! `distribution`: unknowns in several processes. `inequality`: bounds, supports of unknowns and the
 //! inequality. `index`: the missing index.
 

@@ -46,8 +46,8 @@ pub(super) const STAGNATION_CYCLES: usize = 10;
 pub struct MonotoneMultigrid {
     /// Largest number of cycles.
     pub max_cycles: usize,
-    /// Cycles that may pass without halving the change of a cycle; one more ends the method. Changes that ten cycles
-    /// do not halve need more than three hundred cycles to the default tolerance.
+    /// Number of consecutive cycles that may leave the change of a cycle above half of its least value; the method gives
+    /// up at the next such cycle. Changes that ten cycles do not halve need more than three hundred cycles to the default tolerance.
     pub stagnation_cycles: usize,
     /// Sweeps of projected Gauss-Seidel before each linear correction.
     pub sweeps: usize,
@@ -103,7 +103,8 @@ impl<T: Real> InequalitySolver<T> for MonotoneMultigrid {
         compiled!(
             T: fn(&MonotoneMultigrid, &Inequality<T>, &InitialGuess<T>) -> Solution<T>
                 = |method, inequality, guess| solve_with_kernel(inequality, |inequality| {
-                    method.solve_after(inequality, guess, 0)
+                    guess.steps.set(0);
+                    method.descend(inequality, guess)
                 })
         )(self, inequality, guess)
     }
@@ -114,13 +115,11 @@ impl<T: Real> InequalitySolver<T> for MonotoneMultigrid {
 }
 
 impl MonotoneMultigrid {
-    /// The solution by cycles that follow `steps` outer steps of other methods, which the counter of the guess
-    /// includes.
-    pub(super) fn solve_after<T: Real>(
+    /// The solution by cycles, which the counter of the guess adds to the steps of preceding stages.
+    pub(super) fn descend<T: Real>(
         &self,
         inequality: &Inequality<T>,
         guess: &InitialGuess<T>,
-        steps: usize,
     ) -> Solution<T> {
         if !inequality.symmetric {
             return ActiveSet::default().solve_from(inequality, guess);
@@ -128,7 +127,7 @@ impl MonotoneMultigrid {
         if let Err(outcome) = check_input(inequality) {
             return Solution::without_iterate(inequality, outcome);
         }
-        let mut iterate = MultigridIterate::new(inequality, guess, steps);
+        let mut iterate = MultigridIterate::new(inequality, guess);
         let outcome = iterate.run(self, guess).unwrap_or_else(|outcome| outcome);
         iterate.into_solution(outcome)
     }
@@ -178,15 +177,13 @@ struct MultigridIterate<'a, T> {
     /// The energy norm of the values before the last correction; see [`Scales::energy_norm`].
     energy_norm: f64,
     cycles: usize,
-    /// The number of outer steps of the solve before the first cycle.
-    steps_before: usize,
     /// See [`Solution::algebraic_bound`].
     algebraic_bound: Option<f64>,
 }
 
 impl<'a, T: Real> MultigridIterate<'a, T> {
     /// The values of the guess, or zero, projected onto the bounds.
-    fn new(inequality: &'a Inequality<T>, guess: &InitialGuess<T>, steps_before: usize) -> Self {
+    fn new(inequality: &'a Inequality<T>, guess: &InitialGuess<T>) -> Self {
         let n = inequality.bounds.len();
         let guess = guess.values.as_deref().filter(|values| values.len() == n);
         let start = |i: usize| guess.map_or(T::lit(0.0), |values| values[i]);
@@ -205,7 +202,6 @@ impl<'a, T: Real> MultigridIterate<'a, T> {
             whole_residual: vec![0.0; n],
             energy_norm: 0.0,
             cycles: 0,
-            steps_before,
             algebraic_bound: None,
         }
     }
@@ -228,14 +224,14 @@ impl<'a, T: Real> MultigridIterate<'a, T> {
         self.linear_solver = preconditioner.name();
         self.diagonal = self.inequality.matrix.diagonal();
         let least = guess.energy_tolerance.unwrap_or(0.0).max(4.0 * T::EPSILON);
-        // `None` once rounding limits the tolerance: stagnating cycles alone are examined then
+        // `None` where a reduced tolerance would lie below rounding: only stagnating cycles are examined then
         let mut tolerance = Some(settings.tolerance.max(least));
         let limit =
             if guess.energy_tolerance.is_some() { f64::INFINITY } else { T::CERTIFICATE_LIMIT };
         let (mut least_change, mut stagnant_cycles) = (f64::INFINITY, 0);
         while self.cycles < settings.max_cycles {
             self.cycles += 1;
-            guess.steps.set(self.steps_before + self.cycles);
+            guess.steps.advance(1);
             let mut by_sweeps = 0.0;
             for _ in 0..settings.sweeps {
                 by_sweeps += self.gauss_seidel_sweep()?;
@@ -277,7 +273,7 @@ impl<'a, T: Real> MultigridIterate<'a, T> {
     /// bound.
     ///
     /// # Errors
-    /// [`Outcome::NotCoercive`]: unknowns in contact may hide that the matrix is indefinite.
+    /// [`Outcome::NotCoercive`], which unknowns in contact hide from the cycles, or the reason why there are no factors.
     fn has_small_bound(
         &mut self,
         preconditioner: &mut dyn Preconditioner<T>,
@@ -446,7 +442,7 @@ mod tests {
         assert_eq!(solution.outcome, Outcome::NotCoercive);
     }
 
-    /// Cycles that never halve their change end the method; a limit of zero is no limit of zero cycles.
+    /// A limit of zero admits cycles until the first one that does not halve the change.
     #[test]
     fn the_limit_of_stagnating_cycles_counts_cycles_that_stagnate() {
         let string = string(2000);
@@ -461,7 +457,8 @@ mod tests {
     #[test]
     fn the_counter_includes_the_steps_before_the_first_cycle() {
         let guess = InitialGuess::default();
-        let solution = MonotoneMultigrid::default().solve_after(&string(200), &guess, 7);
+        guess.steps.set(7);
+        let solution = MonotoneMultigrid::default().descend(&string(200), &guess);
         assert!(solution.outer > 0);
         assert_eq!(guess.steps.get(), 7 + solution.outer);
     }

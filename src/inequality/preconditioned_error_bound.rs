@@ -4,7 +4,7 @@ use super::Outcome;
 use super::certificate::positive_diagonal;
 use super::energy_error_bound::unbalanced;
 use super::scales::Scales;
-use super::validation::check_definite;
+use super::validation::outcome_of_not_positive;
 use crate::algebra::Inequality;
 use crate::linear::Preconditioner;
 use crate::linear::direct::FactorError;
@@ -27,7 +27,7 @@ const MAX_ITERATIONS: usize = 500;
 /// do not converge. The preconditioner is set up for other unknowns afterwards.
 ///
 /// # Errors
-/// [`Outcome::NotCoercive`] if the matrix is found to be indefinite, which the unknowns of an active set need not show.
+/// [`Outcome::NotCoercive`] if the matrix is indefinite, or the reason why there are no factors that decide this.
 pub(super) fn preconditioned_error_bound<T: Real>(
     inequality: &Inequality<T>,
     values: &[T],
@@ -35,14 +35,10 @@ pub(super) fn preconditioned_error_bound<T: Real>(
 ) -> Result<Option<f64>, Outcome> {
     let bounds = &inequality.bounds;
     let fixed: Vec<bool> = bounds.iter().map(|bound| bound.fixed_value().is_some()).collect();
-    // factors decide, since rounding of large penalties may be the reason
-    let of_indefinite = || match check_definite(inequality) {
-        Err(outcome) if !inequality.is_definite => Err(outcome),
-        _ => Ok(None),
-    };
+    let of_not_positive = || outcome_of_not_positive(inequality).map_or(Ok(None), Err);
     match preconditioner.set_fixed(&fixed) {
         Ok(()) => {}
-        Err(FactorError::NotPositive) => return of_indefinite(),
+        Err(FactorError::NotPositive) => return of_not_positive(),
         Err(_) => return Ok(None),
     }
     let diagonal = |i: usize| positive_diagonal(inequality, i);
@@ -50,7 +46,7 @@ pub(super) fn preconditioned_error_bound<T: Real>(
     let run = eigenvalue_run(matrix, None, preconditioner, &fixed, diagonal, MAX_ITERATIONS);
     let smallest = match run.ritz {
         Some((smallest, _)) if run.reason == StopReason::Converged && smallest > 0.0 => smallest,
-        _ if run.reason == StopReason::NotPositive => return of_indefinite(),
+        _ if run.reason == StopReason::NotPositive => return of_not_positive(),
         _ => return Ok(None),
     };
     let mut residual = vec![0.0; values.len()];

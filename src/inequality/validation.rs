@@ -77,3 +77,16 @@ pub(crate) fn check_definite<T: Real>(inequality: &Inequality<T>) -> Result<(), 
         Err(Outcome::NotCoercive)
     }
 }
+
+/// The outcome where a Krylov method or a preconditioner found the symmetric part of the matrix not to be positive
+/// definite. `None` if rounding of large penalties is the reason: the matrix is known to be definite, or has Cholesky
+/// factors. A distributed matrix has no factors.
+pub(crate) fn outcome_of_not_positive<T: Real>(inequality: &Inequality<T>) -> Option<Outcome> {
+    if inequality.is_definite {
+        None
+    } else if inequality.distribution.is_some() {
+        Some(Outcome::NotCoercive)
+    } else {
+        check_definite(inequality).err()
+    }
+}

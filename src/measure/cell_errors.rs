@@ -57,8 +57,9 @@ enum Kinks<const D: usize> {
     OneLevel(Field<D>),
     TwoLevels {
         levels: [Field<D>; 2],
-        /// The product of both and its negative: they change their sign at the zeros of both, but not where these
-        /// coincide. Where corners of a cell lie on such a zero, one of the two may be zero there and positive elsewhere.
+        /// The product of both levels, and the negative product. The sign changes at the zeros of each level, but not
+        /// where the zeros coincide. At common zeros a product without a change of sign may still seem to cut a cell,
+        /// since [`CutRule::cuts`] asks for values above zero beside others; the negative product does not then.
         products: [Field<D>; 2],
     },
 }
@@ -323,7 +324,8 @@ mod tests {
     use super::*;
     use crate::mesh::BoxDomain;
 
-    /// The corners (0, 0), (1, 0), (1, 1): the middle of an edge lies on the zeros of `x - 1/2`.
+    /// The level along which the first cell of a unit cube is divided. The middle of an edge of this cell has the first
+    /// coordinate 1/2.
     fn level_in<const D: usize>(one: Field<D>, other: Field<D>) -> Option<Field<D>> {
         let square = BoxDomain::dirichlet(Point::zeros(), Point::repeat(1.0));
         let mesh = Mesh::<f64, D>::kuhn_box(&square, [1; D]).unwrap();

@@ -70,10 +70,8 @@ pub(crate) struct Iteration<'s, 'i, 'a, T> {
     /// Whether the certificate must be within its limit. A solution that only provides a start for
     /// another solve needs no small residual.
     pub is_certified: bool,
-    /// Receives the number of each step.
+    /// Counts the steps.
     pub steps: &'s StepCounter,
-    /// The number of outer steps before those of the iterate: cycles of monotone multigrid.
-    pub steps_before: usize,
 }
 
 impl<T: Real> Iteration<'_, '_, '_, T> {
@@ -198,7 +196,7 @@ impl<T: Real> Iteration<'_, '_, '_, T> {
                 return Err(Outcome::IterationLimit.into());
             }
             self.iterate.outer += 1;
-            self.steps.set(self.steps_before + self.iterate.outer);
+            self.steps.advance(1);
         }
         let is_prepared = match has_new_states {
             true => self.solver.set_eliminated(&self.iterate.eliminated),

@@ -4,7 +4,7 @@ use super::iterate::Iterate;
 use super::linear_solver::{Accuracy, LinearFailure, LinearSolver};
 use crate::algebra::{Inequality, SparseMatrix};
 use crate::inequality::Outcome;
-use crate::inequality::validation::check_definite;
+use crate::inequality::validation::outcome_of_not_positive;
 use crate::linear::Preconditioner;
 use crate::linear::direct::FactorError;
 use crate::linear::krylov::{
@@ -98,19 +98,10 @@ impl<'a, T: Real> PreconditionedSolver<'a, T> {
         }
     }
 
-    /// The failure if the symmetric part of the matrix seems not to be positive definite. Rounding of large
-    /// penalties may be the reason, so that a Cholesky factorisation decides unless the matrix is known to be
-    /// definite: LU factors of the matrix would not detect an indefinite symmetric part.
+    /// The failure where the symmetric part of the matrix was found not to be positive definite. LU factors of the matrix
+    /// would not detect an indefinite symmetric part.
     fn not_coercive(&self) -> LinearFailure {
-        if self.inequality.is_definite {
-            return LinearFailure::Unsuitable;
-        }
-        if self.inequality.distribution.is_some() {
-            // there are no factors of a distributed matrix
-            return LinearFailure::Outcome(Outcome::NotCoercive);
-        }
-        check_definite(self.inequality)
-            .err()
+        outcome_of_not_positive(self.inequality)
             .map_or(LinearFailure::Unsuitable, LinearFailure::Outcome)
     }
 

@@ -114,6 +114,7 @@ pub(crate) fn solve<T: Real>(
     guess: &InitialGuess<T>,
     family: &dyn PreconditionerFamily<T>,
 ) -> Solution<T> {
+    guess.steps.set(0);
     let is_preconditioned = is_preconditioned(settings, inequality, guess);
     let values = match &guess.values {
         Some(values) if is_preconditioned => values.as_slice(),
@@ -339,7 +340,6 @@ impl<'a, T: Real> Solve<'_, 'a, T> {
             local_solves: if is_local { LOCAL_SOLVES } else { 0 },
             is_certified: guess.energy_tolerance.is_none(),
             steps: &guess.steps,
-            steps_before: 0,
         };
         let mut outcome = match iteration.run() {
             End::Outcome(outcome) => outcome,
@@ -391,7 +391,7 @@ impl<'a, T: Real> Solve<'_, 'a, T> {
         };
         let solution = MonotoneMultigrid::default()
             .stagnation_cycles(STAGNATION_CYCLES)
-            .solve_after(self.inequality, &guess, self.iterate.outer);
+            .descend(self.inequality, &guess);
         let Solution {
             values,
             mut contact,
@@ -437,7 +437,6 @@ impl<'a, T: Real> Solve<'_, 'a, T> {
             local_solves: 0,
             is_certified,
             steps,
-            steps_before: self.cycles,
         };
         iteration.run()
     }
@@ -464,7 +463,7 @@ impl<'a, T: Real> Solve<'_, 'a, T> {
         self.interior_point_may_improve = method.may_improve();
         self.has_small_slacks = method.leaves_small_slacks();
         self.iterate.outer += steps;
-        self.guess.steps.set(self.cycles + self.iterate.outer);
+        self.guess.steps.advance(steps);
         if let Some(contact) = contact {
             let states = contact.iter().zip(&self.inequality.bounds);
             let states = states.map(|(&contact, bound)| admissible_state(bound, contact)).collect();

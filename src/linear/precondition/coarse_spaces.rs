@@ -25,7 +25,7 @@ pub enum CoarseSpaces<T> {
 }
 
 impl<T: Real> CoarseSpaces<T> {
-    /// Whether spaces are known, and a coarser level has been made for this number of unknowns.
+    /// Whether spaces are known. A coarser level must have a prolongation to this number of unknowns.
     pub(crate) fn fits(&self, unknowns: usize) -> bool {
         match self {
             Self::Unknown => false,
