@@ -119,7 +119,7 @@ impl<'a, T: Real, const D: usize> Discretisation<'a, T, D> {
     }
     fn make_pattern(&self) -> SparseMatrix<T> {
         if self.owns_rows() {
-            owned_rows::pattern(&self.space, self.form.is_lifted())
+            owned_rows::pattern(&self.space, self.form())
         } else {
             self.shared_rows.pattern(&self.space, self.form())
         }

@@ -5,8 +5,9 @@
 //! numbers and a few constants of the reference cell. What [`rows`](crate::assemble::owned_rows::rows) does in loops over
 //! moments is then one expression for each entry, which stays in registers.
 
+use super::Filling;
 use super::rows::Rows;
-use super::{Filling, for_each_cell};
+use super::rows_by_cell::for_each_cell;
 use crate::assemble::count;
 use crate::assemble::facet_coefficients::FacetWeight;
 use crate::assemble::space::metric::CellMetric;

@@ -3,15 +3,16 @@
 //! The rows of a cell consist of dense blocks, one for the cell and one for each cell coupled to
 //! it, in ascending order of cells. A facet's form is evaluated from each of its two sides for the
 //! rows of that side, so no local matrix is ever stored and no two cells write to the same place.
+//! Facet means coupled by means of jumps have fewer entries: [`facet_means`].
 //!
 //! A form is bilinear in moments, so on each facet it comes down to a few numbers: the products of
 //! jumps are those of the reference cell, and fluxes of one moment make a matrix of rank one.
 
+mod facet_means;
 pub(crate) mod lifted;
 mod linear;
 mod rows;
-
-use std::convert::Infallible;
+mod rows_by_cell;
 
 use super::facet_coefficients::FacetCoefficients;
 use super::jump_products::JumpProducts;
@@ -24,9 +25,9 @@ use crate::element::MAX_BASIS;
 use crate::facet::FacetForm;
 use crate::memory::in_large_pages;
 use crate::mesh::{Neighbour, Neighbours};
-use crate::parallel::cells;
 use crate::real::Real;
 use lifted::{LiftTable, Lifting};
+use rows_by_cell::for_each_cell;
 
 /// The cells coupled to a cell, itself included, ascending.
 pub(crate) struct Coupled {
@@ -94,8 +95,12 @@ impl Coupled {
 /// The pattern, with values zero.
 pub(crate) fn pattern<T: Real, const D: usize>(
     space: &Space<'_, T, D>,
-    lifted: bool,
+    form: &dyn FacetForm<T, D>,
 ) -> SparseMatrix<T> {
+    if facet_means::apply(space, form) {
+        return facet_means::pattern(space);
+    }
+    let lifted = form.is_lifted();
     let neighbours = space.coupled_neighbours();
     let n = space.per_cell();
     let n_cells = space.mesh.n_cells();
@@ -126,25 +131,6 @@ pub(crate) fn pattern<T: Real, const D: usize>(
     SparseMatrix { row_starts, columns, values }
 }
 
-/// Calls a function with each cell and the entries of its rows, in parallel.
-fn for_each_cell<V: Send>(
-    row_starts: &[u32],
-    n: usize,
-    entries: &mut [V],
-    work: impl Fn(usize, &mut [V]) + Sync,
-) {
-    let end = |cell: usize| row_starts[cell * n] as usize;
-    let piece = |cells: std::ops::Range<usize>, mut piece: &mut [V]| {
-        for cell in cells {
-            let (rows, tail) = piece.split_at_mut(end(cell + 1) - end(cell));
-            work(cell, rows);
-            piece = tail;
-        }
-        Ok::<(), Infallible>(())
-    };
-    let Ok(()) = cells::for_each((row_starts.len() - 1) / n, &end, entries, &piece);
-}
-
 /// All that the loop over cells reads.
 struct Filling<'s, 'a, T: Real, const D: usize> {
     space: &'s Space<'a, T, D>,
@@ -169,6 +155,9 @@ pub(crate) fn fill<T: Real, const D: usize>(
     weights: &FacetCoefficients<T>,
     matrix: &mut SparseMatrix<T>,
 ) {
+    if facet_means::apply(space, form) {
+        return facet_means::fill(space, form, metrics, weights, matrix);
+    }
     let facets = space.facet_table(form.moments(space.basis_degree));
     let of_degree = |k| T::lit(form.moment_weight(k));
     let has_flux = |k: &&usize| form.uses_flux() && **k < space.basis_degree;

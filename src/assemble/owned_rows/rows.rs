@@ -2,7 +2,8 @@
 //!
 //! Sums are made a row of a block at a time, in registers, and each entry is written once.
 
-use super::{Coupled, Filling, for_each_cell};
+use super::rows_by_cell::for_each_cell;
+use super::{Coupled, Filling};
 use crate::assemble::count;
 use crate::assemble::facet_coefficients::FacetWeight;
 use crate::assemble::space::Place;

@@ -73,6 +73,41 @@ fn the_penalised_form_is_the_matrix() {
     checks.finish();
 }
 
+/// Facet means that are coupled by means of jumps: the row of a facet has the entries of its cell and one of the
+/// cell across.
+#[test]
+fn rows_of_facet_means_have_one_entry_of_another_cell() {
+    fn check<const D: usize>(checks: &mut Checks) {
+        let mesh = cube::<f64, D>(2);
+        let inequality = assemble(&wopsip(3.0), &Problem::new().on(FacetMeans), &mesh);
+        let means = |i: usize| inequality.supports[i].vertices().to_vec();
+        let mut across = 0;
+        for i in 0..inequality.size() {
+            let (columns, _) = inequality.matrix.row(i);
+            checks
+                .that(columns.is_sorted_by(|a, b| a < b), || format!("{D}D: row {i} is unordered"));
+            let is_own = |&&j: &&u32| j as usize / (D + 1) == i / (D + 1);
+            checks
+                .that(columns.iter().filter(is_own).count() == D + 1, || format!("{D}D: row {i}"));
+            for &j in columns.iter().filter(|j| !is_own(j)) {
+                across += 1;
+                let (mut mine, mut theirs) = (means(i), means(j as usize));
+                mine.sort_unstable();
+                theirs.sort_unstable();
+                checks.that(mine == theirs, || format!("{D}D: {i} and {j} are on two facets"));
+            }
+        }
+        let boundary = 2 * D * (1 << (D - 1)) * (1..D).product::<usize>();
+        let interior_sides = mesh.n_cells() * (D + 1) - boundary;
+        checks.that(across == interior_sides, || format!("{D}D: {across} of {interior_sides}"));
+    }
+    let mut checks = Checks::default();
+    check::<1>(&mut checks);
+    check::<2>(&mut checks);
+    check::<3>(&mut checks);
+    checks.finish();
+}
+
 /// Direct solution with the matrix multiplied out (`is_old`), or as the sum it is.
 fn solution<T: Real>(inequality: &Inequality<T>, is_old: bool) -> Solution<T> {
     let mut inequality = inequality.clone();
