@@ -1,9 +1,10 @@
 //! Rows of discontinuous linear functions with facet means as unknowns, where a form acts on means of jumps only.
 //!
-//! The mean over a facet is one unknown of each of its two cells, so that the row of an unknown has the entries of
-//! its own cell and one entry of the cell across: in space 20 entries a cell, where dense blocks have 80.
+//! The mean over a facet is one unknown of each of the two cells of the facet. The row of an unknown therefore has the
+//! entries of the cell that owns the unknown and one entry of the cell across: the four rows of a tetrahedron have 20
+//! entries, where dense blocks have 80.
 
-use super::rows_by_cell::for_each_cell;
+use super::rows_by_cell::{self, for_each_cell};
 use crate::algebra::SparseMatrix;
 use crate::assemble::count;
 use crate::assemble::facet_coefficients::FacetCoefficients;
@@ -11,17 +12,17 @@ use crate::assemble::local::zero_local;
 use crate::assemble::space::Space;
 use crate::assemble::space::metric::Metrics;
 use crate::facet::{FacetForm, FacetKind};
-use crate::memory::in_large_pages;
 use crate::mesh::{BoundaryPart, Neighbour};
 use crate::real::Real;
 
-/// Whether the unknowns are facet means of linear functions and the form sees no other moment of jumps, and no
-/// fluxes.
-pub(super) fn apply<T: Real, const D: usize>(
+/// Whether the unknowns are facet means of linear functions and the form acts on means of jumps only, without higher
+/// moments, fluxes and lifts.
+pub(super) fn is_applicable<T: Real, const D: usize>(
     space: &Space<'_, T, D>,
     form: &dyn FacetForm<T, D>,
 ) -> bool {
-    // the basis function of a facet is one minus D times the barycentric coordinate opposite to the facet
+    // the basis function that has mean one on a facet, and mean zero on the others, is `1 - D lambda` with the
+    // barycentric coordinate `lambda` of the vertex opposite to the facet
     !form.is_lifted()
         && !form.uses_flux()
         && space.gradient_factor() == Some(T::lit(-(D as f64)))
@@ -31,20 +32,12 @@ pub(super) fn apply<T: Real, const D: usize>(
 /// The pattern, with values zero.
 pub(super) fn pattern<T: Real, const D: usize>(space: &Space<'_, T, D>) -> SparseMatrix<T> {
     let neighbours = space.coupled_neighbours();
-    let n_cells = space.mesh.n_cells();
-    let mut row_starts = in_large_pages(Vec::with_capacity((D + 1) * n_cells + 1));
-    row_starts.push(0_u32);
-    let mut end = 0;
-    for cell in 0..n_cells {
-        for local in 0..=D {
-            let is_interior = matches!(neighbours.across(cell, local), Neighbour::Cell { .. });
-            end += D as u32 + 1 + u32::from(is_interior);
-            row_starts.push(end);
-        }
-    }
-    let mut columns = in_large_pages(vec![0_u32; end as usize]);
-    for_each_cell(&row_starts, D + 1, &mut columns, |cell, mut rows| {
-        let first = (cell * (D + 1)) as u32;
+    let is_interior =
+        move |cell, local| matches!(neighbours.across(cell, local), Neighbour::Cell { .. });
+    let lengths =
+        move |cell| (0..=D).map(move |local| D + 1 + usize::from(is_interior(cell, local)));
+    rows_by_cell::pattern(space.mesh.n_cells(), D + 1, lengths, |cell, mut rows| {
+        let own = std::array::from_fn(|j| (cell * (D + 1) + j) as u32);
         for local in 0..=D {
             let across = match neighbours.across(cell, local) {
                 Neighbour::Cell { cell: other, local } => {
@@ -52,15 +45,12 @@ pub(super) fn pattern<T: Real, const D: usize>(space: &Space<'_, T, D>) -> Spars
                 }
                 Neighbour::Boundary(_) | Neighbour::Cut => None,
             };
-            let own = std::array::from_fn(|j| first + j as u32);
             rows = write_row::<_, D>(rows, &own, across);
         }
-    });
-    let values = in_large_pages(vec![T::lit(0.0); end as usize]);
-    SparseMatrix { row_starts, columns, values }
+    })
 }
 
-/// The values, on that pattern.
+/// The values of a matrix with the pattern of [`pattern`].
 pub(super) fn fill<T: Real, const D: usize>(
     space: &Space<'_, T, D>,
     form: &dyn FacetForm<T, D>,
@@ -107,8 +97,8 @@ pub(super) fn fill<T: Real, const D: usize>(
     });
 }
 
-/// Writes the first row of a cell's rows: what belongs to the cell itself, and what belongs to the cell across
-/// with whether it comes first. Returns the remaining rows.
+/// Writes the first of the rows: the entries in the columns of the cell itself, and the entry in a column of the cell
+/// across, which precedes them if the flag is set. Returns the remaining rows.
 #[inline(always)]
 fn write_row<'r, V: Copy, const D: usize>(
     rows: &'r mut [V],

@@ -3,7 +3,8 @@
 //! The rows of a cell consist of dense blocks, one for the cell and one for each cell coupled to
 //! it, in ascending order of cells. A facet's form is evaluated from each of its two sides for the
 //! rows of that side, so no local matrix is ever stored and no two cells write to the same place.
-//! Facet means coupled by means of jumps have fewer entries: [`facet_means`].
+//! Where the unknowns are facet means and a form acts on means of jumps only, a block between two cells has one entry
+//! that is not zero, and only this one is stored: [`facet_means`].
 //!
 //! A form is bilinear in moments, so on each facet it comes down to a few numbers: the products of
 //! jumps are those of the reference cell, and fluxes of one moment make a matrix of rank one.
@@ -14,6 +15,8 @@ mod linear;
 mod rows;
 mod rows_by_cell;
 
+use std::iter::repeat_n;
+
 use super::facet_coefficients::FacetCoefficients;
 use super::jump_products::JumpProducts;
 use super::local::{MAX_FLUX_MOMENTS, StiffnessTable, zero_local};
@@ -23,7 +26,6 @@ use super::space::tables::FacetTable;
 use crate::algebra::SparseMatrix;
 use crate::element::MAX_BASIS;
 use crate::facet::FacetForm;
-use crate::memory::in_large_pages;
 use crate::mesh::{Neighbour, Neighbours};
 use crate::real::Real;
 use lifted::{LiftTable, Lifting};
@@ -97,25 +99,14 @@ pub(crate) fn pattern<T: Real, const D: usize>(
     space: &Space<'_, T, D>,
     form: &dyn FacetForm<T, D>,
 ) -> SparseMatrix<T> {
-    if facet_means::apply(space, form) {
+    if facet_means::is_applicable(space, form) {
         return facet_means::pattern(space);
     }
     let lifted = form.is_lifted();
     let neighbours = space.coupled_neighbours();
     let n = space.per_cell();
-    let n_cells = space.mesh.n_cells();
-    let mut row_starts = in_large_pages(Vec::with_capacity(n * n_cells + 1));
-    row_starts.push(0_u32);
-    let mut end = 0;
-    for cell in 0..n_cells {
-        let length = Coupled::count::<D>(neighbours, cell, lifted) * n;
-        for _ in 0..n {
-            end += length as u32;
-            row_starts.push(end);
-        }
-    }
-    let mut columns = in_large_pages(vec![0_u32; end as usize]);
-    for_each_cell(&row_starts, n, &mut columns, |cell, rows| {
+    let lengths = |cell| repeat_n(Coupled::count::<D>(neighbours, cell, lifted) * n, n);
+    rows_by_cell::pattern(space.mesh.n_cells(), n, lengths, |cell, rows| {
         let coupled = Coupled::of::<D>(neighbours, cell, lifted);
         let (first, others) = rows.split_at_mut(coupled.n * n);
         for (block, &other) in first.chunks_exact_mut(n).zip(&coupled.cells) {
@@ -126,9 +117,7 @@ pub(crate) fn pattern<T: Real, const D: usize>(
         for row in others.chunks_exact_mut(first.len()) {
             row.copy_from_slice(first);
         }
-    });
-    let values = in_large_pages(vec![T::lit(0.0); end as usize]);
-    SparseMatrix { row_starts, columns, values }
+    })
 }
 
 /// All that the loop over cells reads.
@@ -155,7 +144,7 @@ pub(crate) fn fill<T: Real, const D: usize>(
     weights: &FacetCoefficients<T>,
     matrix: &mut SparseMatrix<T>,
 ) {
-    if facet_means::apply(space, form) {
+    if facet_means::is_applicable(space, form) {
         return facet_means::fill(space, form, metrics, weights, matrix);
     }
     let facets = space.facet_table(form.moments(space.basis_degree));
