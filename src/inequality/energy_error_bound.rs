@@ -65,6 +65,10 @@ fn bound_of<T: Real>(inequality: &Inequality<T>, u: &[T]) -> Result<f64, Outcome
     let squared: f64 = terms.map(|(r, e)| r.to_f64() * e.to_f64()).sum();
     let diagonal = |i: usize| positive_diagonal(inequality, i);
     let scales = Scales::of(inequality, &admissible, &residual, &[], &diagonal, 1.0);
+    // the larger of zero and a number that is not one would be zero
+    if squared.is_nan() || projection.is_nan() {
+        return Err(Outcome::NotFinite);
+    }
     Ok((squared.max(0.0).sqrt() + projection.max(0.0).sqrt()) / scales.energy_norm)
 }
 

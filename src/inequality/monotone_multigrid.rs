@@ -6,7 +6,7 @@ use super::initial_guess::InitialGuess;
 use super::preconditioned_error_bound::preconditioned_error_bound;
 use super::recession::solve_with_kernel;
 use super::scales::Scales;
-use super::validation::check_input;
+use super::validation::{check_input, outcome_of_not_positive};
 use super::violations::certify;
 use super::{ActiveSet, InequalitySolver, Outcome, Solution};
 use crate::algebra::Inequality;
@@ -40,7 +40,7 @@ pub(super) const STAGNATION_CYCLES: usize = 10;
 /// [`InitialGuess`], or follows from the matrix by aggregation, which suits conforming P1. The method converges
 /// slowly for other matrices without coarse spaces, and for over-penalty with bounds at vertices: where a large
 /// penalty couples means of several unknowns, a sweep changes hardly any single unknown.
-/// Matrices that are not symmetric are solved by [`ActiveSet`].
+/// Matrices that are not symmetric, and those of one part of a mesh, are solved by [`ActiveSet`].
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct MonotoneMultigrid {
@@ -121,7 +121,7 @@ impl MonotoneMultigrid {
         inequality: &Inequality<T>,
         guess: &InitialGuess<T>,
     ) -> Solution<T> {
-        if !inequality.symmetric {
+        if !inequality.symmetric || inequality.distribution.is_some() {
             return ActiveSet::default().solve_from(inequality, guess);
         }
         if let Err(outcome) = check_input(inequality) {
@@ -144,7 +144,7 @@ fn preconditioner<'a, T: Real>(
     let of = |spaces| {
         BuiltInPreconditioners.preconditioner(PreconditionedSystem::new(matrix, inequality, spaces))
     };
-    if known.fits(matrix.size())
+    if known.fits(inequality)
         && let Some(preconditioner) = of(known)
     {
         return Some(preconditioner);
@@ -177,6 +177,8 @@ struct MultigridIterate<'a, T> {
     /// The energy norm of the values before the last correction; see [`Scales::energy_norm`].
     energy_norm: f64,
     cycles: usize,
+    /// Whether the matrix is known to be positive definite, also by factors after a direction that is not positive.
+    is_definite: bool,
     /// See [`Solution::algebraic_bound`].
     algebraic_bound: Option<f64>,
 }
@@ -202,6 +204,7 @@ impl<'a, T: Real> MultigridIterate<'a, T> {
             whole_residual: vec![0.0; n],
             energy_norm: 0.0,
             cycles: 0,
+            is_definite: inequality.is_definite,
             algebraic_bound: None,
         }
     }
@@ -232,6 +235,8 @@ impl<'a, T: Real> MultigridIterate<'a, T> {
         while self.cycles < settings.max_cycles {
             self.cycles += 1;
             guess.steps.advance(1);
+            // a bound is that of the values for which it was computed
+            self.algebraic_bound = None;
             let mut by_sweeps = 0.0;
             for _ in 0..settings.sweeps {
                 by_sweeps += self.gauss_seidel_sweep()?;
@@ -242,7 +247,8 @@ impl<'a, T: Real> MultigridIterate<'a, T> {
                 return Err(Outcome::NotFinite);
             }
             let change = (by_sweeps + by_correction).sqrt();
-            stagnant_cycles = if change <= 0.5 * least_change { 0 } else { stagnant_cycles + 1 };
+            let has_halved = change > 0.0 && change <= 0.5 * least_change;
+            stagnant_cycles = if has_halved { 0 } else { stagnant_cycles + 1 };
             least_change = if stagnant_cycles == 0 { change } else { least_change };
             // the certificate of a start for another solve is not examined
             let stagnates = guess.energy_tolerance.is_none()
@@ -326,8 +332,8 @@ impl<'a, T: Real> MultigridIterate<'a, T> {
                     return Ok(0.0);
                 }
                 // a definite matrix has a negative pivot by rounding only
-                Err(FactorError::NotPositive) if self.inequality.is_definite => {
-                    return Err(Outcome::Stalled);
+                Err(FactorError::NotPositive) => {
+                    return self.check_definite().and(Err(Outcome::Stalled));
                 }
                 Err(error) => return Err(error.into()),
             }
@@ -346,12 +352,11 @@ impl<'a, T: Real> MultigridIterate<'a, T> {
             slope += self.residual[i].to_f64() * correction.to_f64();
             curvature += correction.to_f64() * matrix.row_dot_f64(i, &self.correction);
         }
-        let is_rounding = curvature <= 0.0 && self.inequality.is_definite;
-        if slope <= 0.0 || is_rounding {
+        if slope <= 0.0 {
             return Ok(0.0);
         }
         if curvature <= 0.0 {
-            return Err(Outcome::NotCoercive);
+            return self.check_definite().and(Ok(0.0));
         }
         let length = T::lit((slope / curvature).min(self.ratio_test()));
         let corrections = self.correction.iter().zip(bounds);
@@ -359,6 +364,18 @@ impl<'a, T: Real> MultigridIterate<'a, T> {
             *value = bound.nearest(*value + length * *correction);
         }
         Ok(curvature * length.to_f64().powi(2))
+    }
+
+    /// Decides by factors whether a direction that is not positive is one by rounding.
+    ///
+    /// # Errors
+    /// The outcome if it is not, or if there are no factors.
+    fn check_definite(&mut self) -> Result<(), Outcome> {
+        if !self.is_definite {
+            outcome_of_not_positive(self.inequality).map_or(Ok(()), Err)?;
+            self.is_definite = true;
+        }
+        Ok(())
     }
 
     /// Marks fixed and active unknowns as eliminated and computes the energy norm of the values and the
@@ -440,6 +457,30 @@ mod tests {
         let inequality = Inequality::new(matrix, true, vec![-1.0; 2], bounds);
         let solution = MonotoneMultigrid::default().solve(&inequality);
         assert_eq!(solution.outcome, Outcome::NotCoercive);
+    }
+
+    /// Second differences on `n` points without fixed ends, beside the rows `others` of two further unknowns.
+    fn beside_free_string(n: usize, others: [[f64; 2]; 2]) -> Inequality<f64> {
+        let mut matrix = SparseMatrix::second_differences(n);
+        for end in [0, n - 1] {
+            let k = (matrix.row_starts[end] as usize..matrix.row_starts[end + 1] as usize)
+                .find(|&k| matrix.columns[k] as usize == end);
+            matrix.values[k.unwrap()] = 1.0;
+        }
+        for row in others {
+            matrix.columns.extend([n as u32, n as u32 + 1]);
+            matrix.values.extend(row);
+            matrix.row_starts.push(matrix.columns.len() as u32);
+        }
+        Inequality::new(matrix, true, vec![-1.0; n + 2], vec![Bound::Lower(0.0); n + 2])
+    }
+
+    /// The matrix is singular on the string, which has no bound on the error, and contact hides the others.
+    #[test]
+    fn a_string_that_bounds_alone_hold_does_not_hide_an_indefinite_matrix() {
+        let solve = |others| MonotoneMultigrid::default().solve(&beside_free_string(1000, others));
+        assert_eq!(solve([[1.0, 2.0], [2.0, 1.0]]).outcome, Outcome::NotCoercive);
+        assert_eq!(solve([[2.0, 1.0], [1.0, 2.0]]).outcome, Outcome::Converged);
     }
 
     /// A limit of zero admits cycles until the first one that does not halve the change.

@@ -4,7 +4,7 @@ use super::Outcome;
 use super::certificate::positive_diagonal;
 use super::energy_error_bound::unbalanced;
 use super::scales::Scales;
-use super::validation::outcome_of_not_positive;
+use super::validation::{is_indefinite, outcome_of_not_positive};
 use crate::algebra::Inequality;
 use crate::linear::Preconditioner;
 use crate::linear::direct::FactorError;
@@ -23,11 +23,12 @@ const MAX_ITERATIONS: usize = 500;
 /// active set; the eigenvalue is estimated on the same unknowns, by [`EIGENVALUE_TO_RITZ_VALUE`] times the
 /// smallest Ritz value.
 ///
-/// `None` if the matrix is singular on these unknowns (bounds alone may hold the domain), or if conjugate gradients
-/// do not converge. The preconditioner is set up for other unknowns afterwards.
+/// `None` if the matrix is singular on these unknowns (bounds alone may hold the domain), if conjugate gradients
+/// do not converge, or if rounding makes a square negative. The preconditioner is set up for other unknowns afterwards.
 ///
 /// # Errors
-/// [`Outcome::NotCoercive`] if the matrix is indefinite, or the reason why there are no factors that decide this.
+/// [`Outcome::NotCoercive`] if the matrix is indefinite: factors decide where the eigenvalue does not, unless the matrix
+/// is known to be definite. If a direction is not positive, the reason why there are no such factors.
 pub(super) fn preconditioned_error_bound<T: Real>(
     inequality: &Inequality<T>,
     values: &[T],
@@ -36,10 +37,14 @@ pub(super) fn preconditioned_error_bound<T: Real>(
     let bounds = &inequality.bounds;
     let fixed: Vec<bool> = bounds.iter().map(|bound| bound.fixed_value().is_some()).collect();
     let of_not_positive = || outcome_of_not_positive(inequality).map_or(Ok(None), Err);
+    let undecided = || match is_indefinite(inequality) {
+        true => Err(Outcome::NotCoercive),
+        false => Ok(None),
+    };
     match preconditioner.set_fixed(&fixed) {
         Ok(()) => {}
         Err(FactorError::NotPositive) => return of_not_positive(),
-        Err(_) => return Ok(None),
+        Err(_) => return undecided(),
     }
     let diagonal = |i: usize| positive_diagonal(inequality, i);
     let matrix = Product::of(inequality);
@@ -47,7 +52,7 @@ pub(super) fn preconditioned_error_bound<T: Real>(
     let smallest = match run.ritz {
         Some((smallest, _)) if run.reason == StopReason::Converged && smallest > 0.0 => smallest,
         _ if run.reason == StopReason::NotPositive => return of_not_positive(),
-        _ => return Ok(None),
+        _ => return undecided(),
     };
     let mut residual = vec![0.0; values.len()];
     inequality.residual_f64(values, &mut residual);
@@ -57,8 +62,8 @@ pub(super) fn preconditioned_error_bound<T: Real>(
         states.map(|((bound, &value), &r)| T::lit(unbalanced(bound, value, r))).collect();
     let mut z = zeros(right.len());
     preconditioner.apply(&right, &mut z);
-    let squared = dot(&right, &mut z).max(0.0);
-    Ok(Some((squared / (EIGENVALUE_TO_RITZ_VALUE * smallest)).sqrt() / energy_norm))
+    let squared = dot(&right, &mut z) / (EIGENVALUE_TO_RITZ_VALUE * smallest);
+    Ok((squared >= 0.0).then(|| squared.sqrt() / energy_norm))
 }
 
 #[cfg(test)]

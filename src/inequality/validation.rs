@@ -3,8 +3,8 @@
 use super::Outcome;
 use super::certificate::positive_diagonal;
 use crate::algebra::Inequality;
-use crate::linear::direct::StaticCondensation;
-use crate::linear::direct::is_positive_definite;
+use crate::linear::direct::{FactorError, Factors, StaticCondensation};
+use crate::linear::krylov::symmetric_part;
 use crate::real::Real;
 
 /// The largest and the smallest size of data, as values or energies, whose squares neither overflow nor
@@ -60,6 +60,22 @@ fn data_are_in_range<T: Real>(inequality: &Inequality<T>, is_well_formed: bool) 
 /// # Errors
 /// The outcome that a solver returns: [`Outcome::NotCoercive`], or the reason why there are no factors.
 pub(crate) fn check_definite<T: Real>(inequality: &Inequality<T>) -> Result<(), Outcome> {
+    factor_free_unknowns(inequality).map_err(|error| match error {
+        FactorError::Singular if inequality.penalised.is_none() => Outcome::NotCoercive,
+        _ => error.into(),
+    })
+}
+
+/// Whether the matrix, or its symmetric part, is indefinite: as [`check_definite`], but false for a singular matrix,
+/// which may have a solution all the same, and where it is known to be definite or cannot be factored.
+pub(super) fn is_indefinite<T: Real>(inequality: &Inequality<T>) -> bool {
+    !inequality.is_definite
+        && inequality.distribution.is_none()
+        && factor_free_unknowns(inequality) == Err(FactorError::NotPositive)
+}
+
+/// Factors the matrix, or its symmetric part, on all unknowns that are not fixed; see [`check_definite`].
+fn factor_free_unknowns<T: Real>(inequality: &Inequality<T>) -> Result<(), FactorError> {
     let mut free = inequality.free_unknowns();
     // with one unknown of a kernel vector fixed the matrix is positive definite on the others
     let of_kernel: Vec<u32> = inequality.kernel.iter().filter_map(|w| Some(w.first()?.0)).collect();
@@ -67,15 +83,9 @@ pub(crate) fn check_definite<T: Real>(inequality: &Inequality<T>) -> Result<(), 
     if let Some(penalised) = &inequality.penalised {
         let mut is_free = vec![false; inequality.size()];
         free.iter().for_each(|&i| is_free[i as usize] = true);
-        StaticCondensation::new(penalised).factor(&is_free)?;
-        return Ok(());
+        return StaticCondensation::new(penalised).factor(&is_free).map(|_| ());
     }
-    let Inequality { matrix, symmetric, .. } = inequality;
-    if is_positive_definite(matrix, *symmetric, &free)? {
-        Ok(())
-    } else {
-        Err(Outcome::NotCoercive)
-    }
+    Factors::new(&symmetric_part(inequality), true, &free).map(|_| ())
 }
 
 /// The outcome where a Krylov method or a preconditioner found the symmetric part of the matrix not to be positive

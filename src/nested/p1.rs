@@ -59,7 +59,8 @@ impl<T: Real> P1Solution<T> {
                 CoarseSpaces::CoarseLevel(coarser) => Some(coarser.clone()),
                 _ => None,
             });
-            CoarseSpaces::SameMesh(Arc::new(P1Level::new(matrix, fixed, coarser)))
+            let level = P1Level::new(matrix, fixed, coarser);
+            level.map_or(CoarseSpaces::Unknown, |level| CoarseSpaces::SameMesh(Arc::new(level)))
         };
         let (seconds, levels_solved, start_cycles) =
             start.map_or((0.0, 0, 0), |s| (s.seconds, s.levels_solved, s.start_cycles));

@@ -3,9 +3,10 @@
 use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-use unilateral::algebra::{Contact, Inequality};
+use crate::problems::{Random, sparse};
+use unilateral::algebra::{Bound, Contact, Distribution, Inequality};
 use unilateral::assemble::DataQuadrature;
-use unilateral::inequality::{ActiveSet, InequalitySolver, Solution, Stage};
+use unilateral::inequality::{ActiveSet, InequalitySolver, Outcome, Solution, Stage, certify};
 use unilateral::linear::{
     BuiltInPreconditioners, FactorError, LinearMethod, PreconditionedSystem, Preconditioner,
     PreconditionerFamily,
@@ -76,6 +77,49 @@ fn a_preconditioner_of_ones_own_runs_beside_the_built_in_ones() {
     // the diagonal alone needs more iterations on finer meshes
     let iterations = |rows: &[&unilateral::study::Row]| rows[2].iterations.linear;
     assert!(iterations(&own) > iterations(&built_in));
+}
+
+/// The whole mesh as the only part: there are no factors, as on several parts.
+#[derive(Debug)]
+struct OnePart;
+
+impl Distribution for OnePart {
+    fn owns(&self, _unknown: usize) -> bool {
+        true
+    }
+    fn number(&self, unknown: usize) -> u64 {
+        unknown as u64
+    }
+    fn exchange(&self, _value: &dyn Fn(usize) -> f64, _receive: &mut dyn FnMut(usize, f64)) {}
+    fn sum(&self, _numbers: &mut [f64]) {}
+    fn largest(&self, _numbers: &mut [f64]) {}
+}
+
+/// Forty blocks with the symmetric part `[1, s; s, 1]` and the skew-symmetric part `[0, 1; -1, 0]`: GMRES converges in
+/// two steps whatever the smallest eigenvalue `1 - s` of the symmetric part is.
+fn blocks(s: f64) -> Inequality<f64> {
+    let n = 80;
+    let mut dense = vec![vec![0.0; n]; n];
+    for i in (0..n).step_by(2) {
+        (dense[i][i], dense[i][i + 1]) = (1.0, s + 1.0);
+        (dense[i + 1][i], dense[i + 1][i + 1]) = (s - 1.0, 1.0);
+    }
+    let mut random = Random::new(1);
+    let load = (0..n).map(|_| random.signed()).collect();
+    Inequality::new(sparse(&dense), false, load, vec![Bound::Lower(-2.0); n])
+}
+
+/// Values with a small certificate have not converged where the estimate of the smallest eigenvalue fails, and there
+/// are no factors.
+#[test]
+fn on_parts_values_without_a_bound_on_their_error_have_not_converged() {
+    for (s, outcome) in [(0.5, Outcome::Converged), (0.99999, Outcome::Stalled)] {
+        let given = blocks(s).with_distribution(Arc::new(OnePart));
+        let solution = ActiveSet::default().with_preconditioners(Jacobi).solve(&given);
+        assert!(certify(&given, &solution.values).largest() <= 1e-9);
+        assert_eq!(solution.outcome, outcome);
+        assert_eq!(solution.algebraic_bound.is_some(), outcome == Outcome::Converged);
+    }
 }
 
 /// The preconditioners of the library, and how often they are applied.

@@ -3,6 +3,9 @@
 use super::iterate::Iterate;
 use super::preconditioned_solver::PreconditionedSolver;
 use crate::algebra::{any_part, sum_over_parts};
+use crate::inequality::Outcome;
+use crate::inequality::validation::outcome_of_not_positive;
+use crate::linear::direct::FactorError;
 use crate::linear::krylov::EIGENVALUE_TO_RITZ_VALUE;
 use crate::parallel::vectors::{dot, zeros};
 use crate::real::Real;
@@ -16,7 +19,12 @@ const MAX_THRESHOLDS: usize = 3;
 impl<T: Real> PreconditionedSolver<'_, T> {
     /// Projects the values onto their bounds and returns a bound on the energy norm of their error
     /// divided by the energy norm of the iterate, which stands for the energy norm of the solution.
-    /// `None` if the preconditioner cannot be set up for an enlarged set of unknowns.
+    /// `None` if the preconditioner cannot be set up for an enlarged set of unknowns, or rounding makes a square
+    /// negative.
+    ///
+    /// # Errors
+    /// The outcome if the preconditioner finds the symmetric part of the matrix indefinite on that set, and factors do
+    /// not disprove it.
     ///
     /// Overwrites the fixed unknowns of the preconditioner: no linear system can be solved afterwards
     /// without setting them again.
@@ -46,27 +54,38 @@ impl<T: Real> PreconditionedSolver<'_, T> {
     ///    The Ritz values come from systems on the inactive unknowns, while the bound uses all unknowns
     ///    that are neither fixed nor strongly active, a larger set with a smaller eigenvalue at most:
     ///    that the factor covers this difference too is assumed.
-    pub(crate) fn error_bound(&mut self, iterate: &mut Iterate<'_, T>) -> Option<f64> {
+    pub(crate) fn error_bound(
+        &mut self,
+        iterate: &mut Iterate<'_, T>,
+    ) -> Result<Option<f64>, Outcome> {
         if iterate.project_onto_bounds() {
             iterate.compute_residual();
         }
         let sqrt_eigenvalue = (EIGENVALUE_TO_RITZ_VALUE * self.smallest_ritz_value).sqrt();
         let mut threshold = THRESHOLD_FACTOR * self.residual_norm / sqrt_eigenvalue;
         for _ in 0..MAX_THRESHOLDS {
-            let error = self.unbalanced_norm(iterate, threshold)? / sqrt_eigenvalue;
+            let Some(norm) = self.unbalanced_norm(iterate, threshold)? else { return Ok(None) };
+            let error = norm / sqrt_eigenvalue;
             if error <= threshold {
-                return Some(error / iterate.energy_norm);
+                return Ok(Some(error / iterate.energy_norm));
             }
             threshold = THRESHOLD_FACTOR * error;
         }
         let norm = self.unbalanced_norm(iterate, f64::INFINITY)?;
-        Some(norm / sqrt_eigenvalue / iterate.energy_norm)
+        Ok(norm.map(|norm| norm / sqrt_eigenvalue / iterate.energy_norm))
     }
 
     /// The preconditioned norm `(r . B r)^(1/2)` of the unbalanced residual `r`, with all fixed and
     /// strongly active unknowns eliminated; see [`PreconditionedSolver::error_bound`]. `None` if the
-    /// preconditioner rejects these unknowns.
-    fn unbalanced_norm(&mut self, iterate: &Iterate<'_, T>, threshold: f64) -> Option<f64> {
+    /// preconditioner rejects these unknowns, or the square is negative.
+    ///
+    /// # Errors
+    /// See [`PreconditionedSolver::error_bound`].
+    fn unbalanced_norm(
+        &mut self,
+        iterate: &Iterate<'_, T>,
+        threshold: f64,
+    ) -> Result<Option<f64>, Outcome> {
         let distribution = iterate.inequality.distribution();
         let mut unbalanced = zeros(iterate.values.len());
         let mut eliminated = vec![false; iterate.values.len()];
@@ -85,11 +104,17 @@ impl<T: Real> PreconditionedSolver<'_, T> {
             eliminated[i] = is_fixed || is_strongly_active;
         }
         if any_part(distribution, eliminated != self.eliminated) {
-            self.preconditioner.set_fixed(&eliminated).ok()?;
-            self.eliminated = eliminated;
+            match self.preconditioner.set_fixed(&eliminated) {
+                Ok(()) => self.eliminated = eliminated,
+                Err(FactorError::NotPositive) => {
+                    return outcome_of_not_positive(iterate.inequality).map_or(Ok(None), Err);
+                }
+                Err(_) => return Ok(None),
+            }
         }
         let mut z = zeros(unbalanced.len());
         self.preconditioner.apply(&unbalanced, &mut z);
-        Some(sum_over_parts(distribution, dot(&unbalanced, &mut z)).max(0.0).sqrt())
+        let squared = sum_over_parts(distribution, dot(&unbalanced, &mut z));
+        Ok((squared >= 0.0).then(|| squared.sqrt()))
     }
 }

@@ -129,8 +129,8 @@ impl<'a, T: Real> DirectSolver<'a, T> {
 
 impl<T: Real> DirectSolver<'_, T> {
     /// Projects the values onto their bounds and returns a bound on the energy norm of their error
-    /// divided by the energy norm of the iterate; `None` for a matrix that is not symmetric, or if an
-    /// active unknown is not strongly active.
+    /// divided by the energy norm of the iterate; `None` for a matrix that is not symmetric, if an
+    /// active unknown is not strongly active, or if rounding makes the square negative.
     ///
     /// With the active unknowns held, the error `e` of admissible values satisfies
     /// `||e||_A^2 <= r . inv(A_II) r`, `r` the residual on the inactive unknowns `I`: the energy of one more
@@ -142,7 +142,7 @@ impl<T: Real> DirectSolver<'_, T> {
             return None;
         }
         iterate.project_onto_bounds();
-        let error = self.correction_energy(iterate)?.max(0.0).sqrt();
+        let error = self.correction_energy(iterate).filter(|&squared| squared >= 0.0)?.sqrt();
         let is_strongly_active = |i: usize| {
             let least = iterate.diagonal[i].sqrt() * error;
             self.inequality.bounds[i].fixed_value().is_some()

@@ -197,9 +197,14 @@ impl<'a, T: Real> Iterate<'a, T> {
         is_best
     }
 
-    /// Forgets the best iterate: the next one is the best.
+    /// Forgets the merit of the best iterate: the next one is the best.
     pub fn forget_best(&mut self) {
         self.best.merit = f64::INFINITY;
+    }
+
+    /// Whether an iterate was evaluated since the start, or since the best one was forgotten.
+    pub fn has_best(&self) -> bool {
+        self.best.merit < f64::INFINITY
     }
 
     /// The values and jump multipliers of the best iterate.

@@ -274,7 +274,9 @@ pub(crate) fn outcome_of_best<T: Real>(
     rounding_band: f64,
     outcome: Outcome,
 ) -> Outcome {
-    if !matches!(outcome, Outcome::IterationLimit | Outcome::Cycling | Outcome::Stalled) {
+    let is_without_solution =
+        matches!(outcome, Outcome::IterationLimit | Outcome::Cycling | Outcome::Stalled);
+    if !is_without_solution || !iterate.has_best() {
         return outcome;
     }
     let (best, jump_multipliers) = iterate.best_values();

@@ -9,7 +9,8 @@
 //!
 //! The direct active set and the interior point method alternate: the interior point method identifies
 //! the active set early, and a second time at its final accuracy. The active set iteration that follows
-//! the second one has no limit but `max_outer`.
+//! the second one has no limit but `max_outer`; nor has one that follows a stagnation where `max_outer` leaves no room
+//! for the interior point method.
 //!
 //! Of an inequality that is distributed over the parts of a mesh the first stage alone runs.
 
@@ -149,6 +150,9 @@ pub(crate) fn solve<T: Real>(
             found = solve.run(stage);
         }
     }
+    if found.is_none() && solve.may_continue_direct() {
+        found = solve.run(Stage::DirectActiveSet);
+    }
     let mut found = found.unwrap_or_else(|| Found::new(solve.outcome_without_solution()));
     if found.outcome != Outcome::Converged
         && inequality.symmetric
@@ -178,8 +182,8 @@ fn is_preconditioned<T: Real>(
 
 /// Checks the input, and definiteness unless it is known: where a setting requires it, and for a symmetric
 /// matrix from a start in contact, where indefinite directions of active unknowns would remain unseen.
-/// From a cold start a symmetric matrix is factored on all free unknowns first, which is such a check
-/// itself.
+/// From a cold start the active set iteration with factors factors a symmetric matrix on all free unknowns
+/// first, which is such a check itself; a Krylov method and the interior point method, where it comes first, do not.
 ///
 /// # Errors
 /// The outcome that the solver returns.
@@ -195,7 +199,11 @@ fn check<T: Real>(
     }
     let is_cold = inequality.start == Start::Cold;
     let is_required = match inequality.symmetric {
-        true => !is_cold || (settings.check_definite && is_preconditioned),
+        true => {
+            let is_factored =
+                !is_preconditioned && settings.globalisation != Globalisation::InteriorPointFirst;
+            !is_cold || (settings.check_definite && !is_factored)
+        }
         false => settings.check_definite,
     };
     if is_required && !inequality.is_definite { check_definite(inequality) } else { Ok(()) }
@@ -252,6 +260,17 @@ impl<'a, T: Real> Solve<'_, 'a, T> {
             Globalisation::InteriorPointFirst => interior_point_runs > direct_runs,
             _ => interior_point_runs == direct_runs,
         }
+    }
+
+    /// Whether an active set iteration with factors goes on from its stagnation: its number of steps was limited in
+    /// favour of an interior point method for which the limit of linear systems leaves no room.
+    fn may_continue_direct(&self) -> bool {
+        self.end == Some(End::Obstruction(Obstruction::Stagnation))
+            && self.settings.globalisation != Globalisation::Never
+            && self.inequality.distribution.is_none()
+            && self.runs_of(Stage::DirectActiveSet) > 0
+            && !self.may_run_interior_point()
+            && self.iterate.outer < self.settings.max_outer
     }
 
     /// The outcome where no stage found a solution.
@@ -357,7 +376,10 @@ impl<'a, T: Real> Solve<'_, 'a, T> {
         if outcome == Outcome::Converged {
             let values = self.iterate.values.clone();
             let jump_multipliers = self.iterate.jump_multipliers.clone();
-            algebraic_bound = solver.error_bound(&mut self.iterate);
+            match solver.error_bound(&mut self.iterate) {
+                Ok(bound) => algebraic_bound = bound,
+                Err(failure) => outcome = failure,
+            }
             // the bound is that of values on their bounds, and large penalties see each step there
             let limit = match guess.energy_tolerance {
                 None => T::CERTIFICATE_LIMIT,
@@ -371,7 +393,7 @@ impl<'a, T: Real> Solve<'_, 'a, T> {
                 algebraic_bound = None;
             }
             if guess.energy_tolerance.is_none()
-                && algebraic_bound.is_some_and(|bound| bound > T::ALGEBRAIC_BOUND_LIMIT)
+                && algebraic_bound.is_some_and(|b| b.is_nan() || b > T::ALGEBRAIC_BOUND_LIMIT)
             {
                 return Err(End::Unsuitable);
             }
@@ -379,7 +401,8 @@ impl<'a, T: Real> Solve<'_, 'a, T> {
         Ok(Found { outcome, linear_solver, algebraic_bound })
     }
 
-    /// Monotone multigrid from the best iterate. The iterate is replaced if it converges.
+    /// Monotone multigrid from the best iterate. The iterate is replaced if it converges. An indefinite matrix ends
+    /// the solve: with factors for inactive unknowns alone, contact may hide it.
     fn run_monotone_multigrid(&mut self) -> Option<Found> {
         let values = Some(self.iterate.best_values().0.to_vec());
         let InitialGuess { coarse_spaces, energy_tolerance, steps, .. } = self.guess;
@@ -404,6 +427,9 @@ impl<'a, T: Real> Solve<'_, 'a, T> {
         } = solution;
         self.cycles += outer;
         self.iterate.linear += linear;
+        if outcome == Outcome::NotCoercive {
+            return Some(Found { outcome, linear_solver, algebraic_bound: None });
+        }
         (outcome == Outcome::Converged).then(|| {
             // certificate and bound are those of the values, so that no active unknown may move to its bound
             for (i, state) in contact.iter_mut().enumerate() {
@@ -511,8 +537,11 @@ impl<'a, T: Real> Solve<'_, 'a, T> {
 
     /// The solution: the iterate if it converged, else the best one.
     fn into_solution(mut self, found: Found) -> Solution<T> {
-        let Found { outcome, linear_solver, algebraic_bound } = found;
-        let outcome = outcome_of_best(&mut self.iterate, self.settings.rounding_band, outcome);
+        let Found { mut outcome, linear_solver, algebraic_bound } = found;
+        // a bound that is too large says more of distributed values than their certificate
+        if self.inequality.distribution.is_none() || self.end != Some(End::Unsuitable) {
+            outcome = outcome_of_best(&mut self.iterate, self.settings.rounding_band, outcome);
+        }
         let (outer, linear) = (self.iterate.outer + self.cycles, self.iterate.linear);
         self.iterate
             .into_solution(outcome)

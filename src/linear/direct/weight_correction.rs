@@ -49,7 +49,8 @@ impl<T: Real> StaticCondensation<'_, T> {
         dot(r, &load) - dot(t, &data)
     }
 
-    /// Replaces the solution `u`, `p` with reduced weights by that with the true ones.
+    /// Replaces the solution `u`, `p` with reduced weights by that with the true ones. What [`MAX_STEPS`] steps leave is
+    /// part of the residual that the caller corrects, and of the correction by whose energy it judges.
     fn correct_weights(
         &self,
         factors: &CondensedFactors<T>,

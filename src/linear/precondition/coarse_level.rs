@@ -25,11 +25,21 @@ pub struct P1Level<T> {
 impl<T: Real> P1Level<T> {
     /// The level with the symmetric `matrix` on all vertices, of which `fixed` are those with Dirichlet
     /// data. Without a coarser level, one is constructed by aggregation if the matrix is large and can
-    /// be coarsened.
+    /// be coarsened. `None` if the matrix violates an invariant of its type, or if `fixed` or the prolongation from
+    /// the coarser level has another number of vertices.
     #[must_use]
-    pub fn new(matrix: SparseMatrix<T>, fixed: Vec<bool>, coarser: Option<CoarseLevel<T>>) -> Self {
+    pub fn new(
+        matrix: SparseMatrix<T>,
+        fixed: Vec<bool>,
+        coarser: Option<CoarseLevel<T>>,
+    ) -> Option<Self> {
+        let n = fixed.len();
+        let fits = coarser.as_ref().is_none_or(|coarser| coarser.prolongation.n_fine() == n);
+        if !fits || matrix.size() != n || !matrix.is_well_formed() {
+            return None;
+        }
         let coarser = coarser.or_else(|| CoarseLevel::aggregated(&matrix, &fixed));
-        Self { matrix, fixed, coarser }
+        Some(Self { matrix, fixed, coarser })
     }
 
     /// Number of vertices.
@@ -86,7 +96,35 @@ impl<T: Real> CoarseLevel<T> {
         }
         let (prolongation, coarse) = aggregate(matrix, fixed)?;
         let size = coarse.size();
-        let level = P1Level::new(coarse, vec![false; size], None);
+        let level = P1Level::new(coarse, vec![false; size], None)?;
         Some(Self { level: Arc::new(level), prolongation: Arc::new(prolongation) })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn levels_of_different_sizes_do_not_fit() {
+        let matrix = || SparseMatrix::<f64>::second_differences(9);
+        let prolongation = |n: u32| {
+            let parents = (0..n).map(|i| [i / 2, i.div_ceil(2)]).collect();
+            Arc::new(Prolongation::midpoints(parents, n as usize / 2 + 1))
+        };
+        let coarse = SparseMatrix::second_differences(5);
+        let coarse = Arc::new(P1Level::new(coarse, vec![false; 5], None).unwrap());
+        let level = |coarser| P1Level::new(matrix(), vec![false; 9], coarser);
+        let coarser = CoarseLevel::new(coarse.clone(), prolongation(9));
+        assert_eq!(level(coarser).map(|level| level.size()), Some(9));
+        // ten values by prolongation, for nine vertices; then sizes of other vectors
+        assert!(CoarseLevel::new(coarse.clone(), prolongation(11)).is_none());
+        let of_too_many = vec![[0, 1]; 10];
+        let prolongation = Arc::new(Prolongation::midpoints(of_too_many, 5));
+        assert!(level(CoarseLevel::new(coarse, prolongation)).is_none());
+        assert!(P1Level::new(matrix(), vec![false; 8], None).is_none());
+        let mut malformed = matrix();
+        malformed.columns[0] = 9;
+        assert!(P1Level::new(malformed, vec![false; 9], None).is_none());
     }
 }

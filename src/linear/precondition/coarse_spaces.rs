@@ -25,12 +25,17 @@ pub enum CoarseSpaces<T> {
 }
 
 impl<T: Real> CoarseSpaces<T> {
-    /// Whether spaces are known. A coarser level must have a prolongation to this number of unknowns.
-    pub(crate) fn fits(&self, unknowns: usize) -> bool {
+    /// Whether spaces are known for an inequality: a coarser level with a prolongation to its unknowns, or a level with
+    /// all vertices of the supports of its unknowns.
+    pub(crate) fn fits(&self, inequality: &Inequality<T>) -> bool {
         match self {
             Self::Unknown => false,
-            Self::CoarseLevel(coarser) => coarser.prolongation.n_fine() == unknowns,
-            Self::SameMesh(_) => true,
+            Self::CoarseLevel(coarser) => coarser.prolongation.n_fine() == inequality.size(),
+            Self::SameMesh(level) => {
+                let mut vertices =
+                    inequality.supports.iter().flat_map(|support| support.vertices());
+                vertices.all(|&v| (v as usize) < level.size())
+            }
         }
     }
 
@@ -46,7 +51,7 @@ impl<T: Real> CoarseSpaces<T> {
         if supports.len() != inequality.size() || supports.is_empty() {
             return None;
         }
-        if self.fits(matrix.size()) {
+        if self.fits(inequality) {
             return Some(Cow::Borrowed(self));
         }
         let fixed: Vec<bool> = bounds.iter().map(|b| matches!(b, Bound::Fixed(_))).collect();
@@ -85,5 +90,5 @@ fn p1_level<T: Real>(
     for (v, fixed) in fixed_vertices.iter_mut().enumerate() {
         *fixed |= form.get(v, v) <= T::lit(0.0);
     }
-    Some(P1Level::new(form, fixed_vertices, None))
+    P1Level::new(form, fixed_vertices, None)
 }

@@ -495,7 +495,7 @@ mod tests {
             let prolongation = Prolongation::midpoints(parents, n / 2 + 1);
             CoarseLevel::new(Arc::new(level(n / 2)), Arc::new(prolongation))
         });
-        P1Level::new(matrix, vec![false; n + 1], coarser.flatten())
+        P1Level::new(matrix, vec![false; n + 1], coarser.flatten()).unwrap()
     }
 
     /// The result of a cycle is independent of earlier sets of fixed unknowns.

@@ -3,7 +3,7 @@
 use super::cold;
 use crate::problems::*;
 use unilateral::algebra::{Bound, Contact, Start};
-use unilateral::inequality::{ActiveSet, InequalitySolver, Outcome, certify};
+use unilateral::inequality::{ActiveSet, Globalisation, InequalitySolver, Outcome, certify};
 use unilateral::linear::is_positive_definite;
 
 #[test]
@@ -27,6 +27,21 @@ fn indefinite_matrix_is_not_coercive() {
         let careful = ActiveSet::default().check_definite(true);
         assert_eq!(careful.solve(&unsymmetric).outcome, Outcome::NotCoercive);
     }
+}
+
+/// The interior point method factors no matrix of free unknowns: contact hides two of them.
+#[test]
+fn definiteness_is_checked_before_the_interior_point_method_too() {
+    let dense = vec![
+        vec![1.0, -2.0, 0.0, 0.0],
+        vec![-2.0, 1.0, 0.0, 0.0],
+        vec![0.0, 0.0, 2.0, -1.0],
+        vec![0.0, 0.0, -1.0, 2.0],
+    ];
+    let bounds = vec![Bound::Lower(0.0), Bound::Lower(0.0), Bound::Free, Bound::Free];
+    let problem = inequality::<f64>(sparse(&dense), &[-1e3, -1e3, 1.0, 1.0], bounds);
+    let interior = ActiveSet::default().globalisation(Globalisation::InteriorPointFirst);
+    assert_eq!(interior.check_definite(true).solve(&problem).outcome, Outcome::NotCoercive);
 }
 
 #[test]

@@ -345,3 +345,22 @@ fn what_has_no_solution_is_named() {
         assert!(fails.contains(&found), "{what}: {found}");
     }
 }
+
+/// With 60 systems there is no room for the interior point method: an active set that stagnates goes
+/// on to the limit of systems, unless it returns to an earlier one.
+#[test]
+fn an_active_set_ends_where_it_cycles_or_at_its_limit() {
+    let mut n_stagnating = 0;
+    for scene in scenes_of_all_kinds() {
+        for eta in [1.0, 10.0, 100.0] {
+            let problem = of(&scene, &wopsip(eta), 8);
+            let direct = ActiveSet::default().linear(LinearMethod::Direct);
+            let whole = direct.solve(&problem);
+            n_stagnating += usize::from(whole.stages.len() > 1);
+            let limited = direct.clone().max_outer(60).solve(&problem);
+            let alone = direct.max_outer(60).globalisation(Globalisation::Never).solve(&problem);
+            assert_eq!(limited.outcome, alone.outcome, "{} {eta}", scene.name);
+        }
+    }
+    assert!(n_stagnating > 0);
+}
