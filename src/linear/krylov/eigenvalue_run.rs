@@ -14,9 +14,9 @@ pub(crate) const EIGENVALUE_TO_RITZ_VALUE: f64 = 0.9;
 const TOLERANCE: f64 = 1e-6;
 
 /// Conjugate gradients for a symmetric matrix on the unknowns that are not fixed, whose smallest Ritz value
-/// estimates the smallest eigenvalue of `B A`. The right-hand side has the size of the positive `diagonal` and
-/// pseudo-random signs, so that every eigenvector has a component. The preconditioner must be set up for
-/// the fixed unknowns.
+/// estimates the smallest eigenvalue of `B A`. The right-hand side has pseudo-random signs and the sizes of the square
+/// roots of the positive `diagonal`: its components in all eigenvectors have similar norms, those of regions with small
+/// coefficients too. The preconditioner must be set up for the fixed unknowns.
 pub(crate) fn eigenvalue_run<T: Real>(
     matrix: Product<'_, T>,
     distribution: Option<&dyn Distribution>,
@@ -28,10 +28,60 @@ pub(crate) fn eigenvalue_run<T: Real>(
     let mut load = zeros(fixed.len());
     let free = (0..fixed.len()).filter(|&i| !fixed[i]);
     for (i, is_positive) in free.zip(pseudorandom_signs()) {
-        let d = T::lit(diagonal(i));
-        load[i] = if is_positive { d } else { -d };
+        let root = T::lit(diagonal(i).sqrt());
+        load[i] = if is_positive { root } else { -root };
     }
     let rule = StoppingRule { norm: 0.0, reduction: TOLERANCE, max_iterations };
     let system = (&mut zeros(fixed.len())[..], &mut load[..]);
     ConjugateGradients::new(matrix, distribution).solve(fixed, preconditioner, system, rule)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::algebra::SparseMatrix;
+    use crate::linear::direct::FactorError;
+
+    /// Division by the diagonal.
+    struct Jacobi(Vec<f64>);
+
+    impl Preconditioner<f64> for Jacobi {
+        fn name(&self) -> &'static str {
+            "test"
+        }
+        fn set_fixed(&mut self, _fixed: &[bool]) -> Result<(), FactorError> {
+            Ok(())
+        }
+        fn apply(&mut self, r: &[f64], z: &mut [f64]) {
+            z.iter_mut().zip(r).zip(&self.0).for_each(|((z, r), d)| *z = r / d);
+        }
+    }
+
+    /// The smallest eigenvalue belongs to a block whose coefficient is smaller than all others by `contrast`.
+    #[test]
+    fn a_region_with_a_small_coefficient_has_its_share() {
+        let n = 40;
+        for contrast in [1.0, 1e8, 1e16] {
+            let mut matrix = SparseMatrix { row_starts: vec![0], columns: vec![], values: vec![] };
+            for i in 0..n {
+                let block = i / 2 * 2;
+                let (alpha, s) = if i < 2 { (1.0 / contrast, 0.9) } else { (1.0, 0.1) };
+                matrix.columns.extend([block, block + 1]);
+                let entry = |j| alpha * if i == j { 1.0 } else { s };
+                matrix.values.extend([block, block + 1].map(entry));
+                matrix.row_starts.push(matrix.columns.len() as u32);
+            }
+            let diagonal: Vec<f64> = matrix.diagonal();
+            let run = eigenvalue_run(
+                Product::Assembled(&matrix),
+                None,
+                &mut Jacobi(diagonal.clone()),
+                &vec![false; n as usize],
+                |i| diagonal[i],
+                100,
+            );
+            let (smallest, _) = run.ritz.unwrap();
+            assert!((0.1 - 1e-6..0.1 / EIGENVALUE_TO_RITZ_VALUE).contains(&smallest), "{smallest}");
+        }
+    }
 }
