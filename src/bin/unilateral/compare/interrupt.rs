@@ -1,14 +1,19 @@
-//! What an interrupt leaves: the rows that are finished, as a report.
+//! What an interrupt or a panic leaves: the rows that are finished, as a report.
 
+use std::panic::{set_hook, take_hook};
 use std::process::exit;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
+use std::time::Duration;
 
 use unilateral::study::{Journal, Report};
 
 use crate::shared::{INTERRUPTED, Request, complain};
 
-/// Ends the process at an interrupt. The one that writes files, the run at its end or the interrupt, has
+/// The time that a panic leaves for the report. A panic while files are written holds their lock.
+const TIME_AFTER_PANIC: Duration = Duration::from_secs(10);
+
+/// Ends the process at an interrupt or a panic. The one that writes files, the run at its end or the interrupt, has
 /// the lock.
 #[derive(Clone, Default)]
 pub struct Interrupt(Arc<Mutex<State>>);
@@ -23,12 +28,14 @@ struct State {
 
 impl Interrupt {
     /// Lets SIGINT and SIGTERM, and Ctrl-C elsewhere, write the report with this function and end the
-    /// process, also while a solve runs. A second signal ends the process at once.
+    /// process, also while a solve runs. A second signal ends the process at once. A panic of any thread does so
+    /// too, after its message, with exit code 1: the release build does not unwind.
     pub fn install(
         write: impl Fn(&Report) -> Request<()> + Send + Sync + 'static,
     ) -> Request<Self> {
         let interrupt = Self::default();
         let (shared, write) = (interrupt.clone(), Arc::new(write));
+        interrupt.install_panic_hook(write.clone());
         let is_second = AtomicBool::new(false);
         ctrlc::set_handler(move || {
             if is_second.swap(true, Ordering::SeqCst) {
@@ -36,10 +43,28 @@ impl Interrupt {
             }
             let (shared, write) = (shared.clone(), write.clone());
             // in a thread of its own, so that the next signal is heard
-            std::thread::spawn(move || shared.end(&*write));
+            std::thread::spawn(move || shared.end(&*write, "interrupted", INTERRUPTED));
         })
         .map_err(|e| format!("cannot handle interrupts: {e}"))?;
         Ok(interrupt)
+    }
+
+    fn install_panic_hook(
+        &self,
+        write: Arc<impl Fn(&Report) -> Request<()> + Send + Sync + 'static>,
+    ) {
+        let (shared, print_message) = (self.clone(), take_hook());
+        let is_second = AtomicBool::new(false);
+        set_hook(Box::new(move |panic| {
+            print_message(panic);
+            if !is_second.swap(true, Ordering::SeqCst) {
+                let (shared, write) = (shared.clone(), write.clone());
+                // in a thread of its own, because the one that panics may hold a lock
+                std::thread::spawn(move || shared.end(&*write, "stopped by a panic", 1));
+            }
+            std::thread::sleep(TIME_AFTER_PANIC);
+            exit(1)
+        }));
     }
 
     /// The journal from which an interrupt takes the rows.
@@ -55,7 +80,7 @@ impl Interrupt {
         outcome
     }
 
-    fn end(&self, write: &dyn Fn(&Report) -> Request<()>) -> ! {
+    fn end(&self, write: &dyn Fn(&Report) -> Request<()>, why: &str, code: i32) -> ! {
         let state = self.0.lock().unwrap_or_else(PoisonError::into_inner);
         if let (Some(journal), false) = (state.journal, state.is_written) {
             // the run ends at its next row and waits for the lock
@@ -65,10 +90,10 @@ impl Interrupt {
             }
             journal.remove_drafts();
             complain(&format!(
-                "interrupted; {} finished rows are in the report, --resume goes on from them",
+                "{why}; {} finished rows are in the report, --resume goes on from them",
                 report.rows.len()
             ));
         }
-        exit(INTERRUPTED)
+        exit(code)
     }
 }

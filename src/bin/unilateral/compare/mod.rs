@@ -10,8 +10,6 @@ mod over_processes;
 mod prepare;
 mod watcher;
 
-use std::panic::{AssertUnwindSafe, catch_unwind};
-
 use interrupt::Interrupt;
 pub use options::{Options, list};
 use options::{check_numbers, choose, choose_schemes};
@@ -235,38 +233,43 @@ impl Chosen {
         let contents: Vec<String> = files.into_iter().map(|(_, fingerprint)| fingerprint).collect();
         let journal = start(options, program.clone(), &runs)?;
         interrupt.watch(journal);
-        let all = || -> (Vec<Row>, Vec<String>) {
-            let (mut rows, mut messages) = (Vec::new(), Vec::new());
-            let write = |run: &Run<'_>| write_requests(options, &contents, &run.keys);
-            if let Err(why) = runs.iter().try_for_each(write) {
-                return (rows, vec![why]);
-            }
-            for Run { place, run, .. } in runs {
-                match run(journal) {
-                    Ok(found) => rows.extend(found),
-                    Err(error) => {
-                        messages.push(format!("{place}: {error}"));
-                        // the next scene could not be written either
-                        if matches!(error, Error::Write { .. }) {
-                            break;
-                        }
-                    }
-                }
-            }
-            (rows, messages)
-        };
-        // a panic has printed its message
-        let (rows, mut messages) = catch_unwind(AssertUnwindSafe(all))
-            .unwrap_or_else(|_| (Vec::new(), vec![String::new()]));
+        let (rows, mut messages) = run_all(runs, options, &contents, journal);
         watcher.clear();
         let report = match messages.is_empty() {
             true => Report::new(program, rows),
             false => journal.report(),
         };
         messages.extend(interrupt.at_end(|| write_all(options, &report)).err());
-        messages.iter().filter(|text| !text.is_empty()).for_each(|text| complain(text));
+        messages.iter().for_each(|text| complain(text));
         Ok(messages.is_empty() && report.rows.iter().all(Row::converged))
     }
+}
+
+/// The rows of all runs, and why there are not more.
+fn run_all(
+    runs: Vec<Run<'_>>,
+    options: &Options,
+    contents: &[String],
+    journal: &'static Journal,
+) -> (Vec<Row>, Vec<String>) {
+    let (mut rows, mut messages) = (Vec::new(), Vec::new());
+    let write = |run: &Run<'_>| write_requests(options, contents, &run.keys);
+    if let Err(why) = runs.iter().try_for_each(write) {
+        return (rows, vec![why]);
+    }
+    for Run { place, run, .. } in runs {
+        match run(journal) {
+            Ok(found) => rows.extend(found),
+            Err(error) => {
+                messages.push(format!("{place}: {error}"));
+                // the next scene could not be written either
+                if matches!(error, Error::Write { .. }) {
+                    break;
+                }
+            }
+        }
+    }
+    (rows, messages)
 }
 
 /// Makes sure that the files can be written and starts the journal. With `--resume` it has the rows that
