@@ -16,7 +16,7 @@
 //! | `validation` | checks of the input, and of definiteness where a setting requires it |
 //! | `active_set/` | [`ActiveSet`]: the primal-dual active set method, with its stages in `active_set/strategy` |
 //! | `interior_point/` | the interior point method, which provides a start where the active set stagnates |
-//! | `monotone_multigrid` | [`MonotoneMultigrid`]: truncated nonsmooth Newton multigrid |
+//! | `monotone_multigrid/` | [`MonotoneMultigrid`]: truncated nonsmooth Newton multigrid |
 //! | `certificate` | [`Certificate`] |
 //! | `violations` | [`certify`], [`Violations`]: the sums and maxima of a certificate, which parts of a mesh merge |
 //! | `energy_error_bound` | [`energy_error_bound`]: a proven bound for any values |

@@ -2,21 +2,16 @@
 
 use std::fmt;
 use std::sync::Arc;
-use std::time::Instant;
 
 use super::adaptive_meshes::AdaptiveMeshes;
 use super::hierarchy::Hierarchy;
-use super::meshes::{Meshes, unknowns};
+use super::meshes::Meshes;
 use super::p1::{P1Iteration, P1Solution};
 use super::phase::Phase;
 use super::solved::Solved;
-use super::warnings::{active_sets, short_edges};
-use crate::algebra::{Contact, Inequality, Start};
-use crate::assemble::{DataQuadrature, Discretisation};
+use crate::assemble::DataQuadrature;
 use crate::error::Error;
-use crate::inequality::{
-    ActiveSet, InequalitySolver, InitialGuess, Outcome, Solution, StepCounter, check_definite,
-};
+use crate::inequality::{ActiveSet, InequalitySolver, StepCounter};
 use crate::instances::compiled;
 use crate::mesh::Mesh;
 use crate::problem::Problem;
@@ -45,7 +40,7 @@ use crate::scheme::AnyScheme;
 /// ```
 pub struct NestedIteration<'a, T: Real, const D: usize> {
     pub(super) p1: P1Iteration<'a, T, D>,
-    has_cold_start: bool,
+    pub(super) has_cold_start: bool,
     observer: Box<dyn Fn(Phase) + 'a>,
 }
 
@@ -151,7 +146,7 @@ impl<'a, T: Real, const D: usize> NestedIteration<'a, T, D> {
     /// Checks that solutions of a scheme have an error bound.
     ///
     /// # Errors
-    /// [`Error::NotAdaptive`] and those of [`Discretisation::new`].
+    /// [`Error::NotAdaptive`] and those of [`Discretisation::new`](crate::assemble::Discretisation::new).
     pub(crate) fn check_bound(&self, scheme: &dyn AnyScheme<T, D>) -> Result<(), Error> {
         let mesh = self.p1.meshes.mesh(self.p1.meshes.len() - 1);
         let of = scheme.discretise(self.p1.problem, mesh, self.p1.quadrature)?;
@@ -226,168 +221,6 @@ impl<'a, T: Real, const D: usize> NestedIteration<'a, T, D> {
                 value: position.to_string(),
                 allowed: format!("there are {n} meshes, of which the coarsest has position 0"),
             }),
-        }
-    }
-
-    /// A scheme on a mesh, and its inequality: [`NestedIteration::repeat`] times, with the smallest time.
-    fn assembled(
-        &self,
-        scheme: &dyn AnyScheme<T, D>,
-        mesh: &'a Mesh<T, D>,
-    ) -> Result<(Discretisation<'a, T, D>, Inequality<T>, f64), Error> {
-        let discretise = || Discretisation::new(scheme, self.p1.problem, mesh, self.p1.quadrature);
-        let clock = Instant::now();
-        let discretisation = discretise()?;
-        let inequality = discretisation.inequality()?;
-        let mut seconds = clock.elapsed().as_secs_f64();
-        for _ in 1..self.p1.repeat {
-            let clock = Instant::now();
-            drop(discretise()?.inequality()?);
-            seconds = seconds.min(clock.elapsed().as_secs_f64());
-        }
-        Ok((discretisation, inequality, seconds))
-    }
-
-    /// The initial guess from the start, whose contact the inequality takes.
-    fn guess(
-        &self,
-        start: Option<&P1Solution<T>>,
-        energy_tolerance: Option<f64>,
-        inequality: &mut Inequality<T>,
-    ) -> InitialGuess<T> {
-        let mut guess = InitialGuess::default().steps(self.p1.steps.clone());
-        guess.energy_tolerance = energy_tolerance;
-        if let Some(start) = start {
-            // a start without contact stays cold: the solver must detect a body that only contact holds
-            if start.contact.iter().any(|&c| c != Contact::Inactive) {
-                inequality.start = Start::Contact(start.contact_of(&inequality.supports));
-            }
-            guess.coarse_spaces = start.coarse_spaces.clone();
-            guess.values = start.values_of(&inequality.supports);
-        }
-        guess
-    }
-
-    /// The solution on a mesh, to a tolerance on the relative error in the energy norm if there is one.
-    pub(super) fn solve_scheme(
-        &mut self,
-        position: usize,
-        scheme: &dyn AnyScheme<T, D>,
-        energy_tolerance: Option<f64>,
-    ) -> Result<Solved<'a, T, D>, Error> {
-        (self.observer)(Phase::Start);
-        let start = self.start(position, scheme)?;
-        (self.observer)(Phase::Assembly);
-        let mesh = self.p1.meshes.mesh(position);
-        let (discretisation, mut inequality, assemble_seconds) = self.assembled(scheme, mesh)?;
-        let guess = self.guess(start.as_deref(), energy_tolerance, &mut inequality);
-        let mut warnings = Vec::new();
-        let penalty_below_bound = discretisation.penalty_below_bound();
-        warnings.extend(penalty_below_bound.as_ref().map(ToString::to_string));
-        let is_adaptive = matches!(self.p1.meshes, Meshes::Adaptive(_));
-        if !is_adaptive {
-            let theory = discretisation.form().theory();
-            let limit = theory.rounding_limit(T::EPSILON, mesh.domain_diameter());
-            warnings.extend(short_edges(mesh, limit));
-        }
-        inequality.is_definite = penalty_below_bound.is_none() && discretisation.is_coercive();
-        (self.observer)(Phase::Solve);
-        let (solution, solve_seconds) = self.run(&mut inequality, &guess);
-        warnings.extend(active_sets(&solution, self.p1.problem, scheme));
-        let hierarchy = self.hierarchy(position);
-        let mut solved =
-            Solved::new(discretisation, inequality, solution, hierarchy, energy_tolerance);
-        solved.adaptive = self.adaptive_meshes().map(|meshes| (meshes, position));
-        solved.warnings = warnings;
-        solved.mesh_seconds = self.p1.meshes.seconds(position);
-        (solved.assemble_seconds, solved.solve_seconds) = (assemble_seconds, solve_seconds);
-        let is_p1 = scheme.is_conforming_linear(mesh);
-        if is_p1 && is_adaptive {
-            // every step of an adaptive sequence is solved: the next one starts from here
-            self.p1.keep_solved(position, start.as_deref(), &solved);
-        }
-        if let Some(start) = start {
-            // conforming P1 on the same mesh is no coarser level
-            let same_mesh = usize::from(!is_p1);
-            solved.coarser_levels = start.levels_solved.saturating_sub(same_mesh);
-            solved.start_cycles = start.start_cycles;
-            solved.start_seconds = start.seconds;
-        }
-        Ok(solved)
-    }
-
-    /// The solution of a scheme on a mesh continued from a less accurate one, to a smaller tolerance or to
-    /// the ordinary limits. Iterations and seconds are those of both.
-    pub(super) fn continued(
-        &mut self,
-        solved: Solved<'a, T, D>,
-        position: usize,
-        scheme: &dyn AnyScheme<T, D>,
-        energy_tolerance: Option<f64>,
-    ) -> Result<Solved<'a, T, D>, Error> {
-        if !solved.has_iterate() {
-            return self.solve_scheme(position, scheme, energy_tolerance);
-        }
-        let start = self.start(position, scheme)?;
-        let mut guess = InitialGuess::default().steps(self.p1.steps.clone());
-        guess.energy_tolerance = energy_tolerance;
-        guess.values = Some(solved.values().to_vec());
-        if let Some(start) = &start {
-            guess.coarse_spaces = start.coarse_spaces.clone();
-        }
-        let solved = solved.continued(energy_tolerance, |inequality| self.run(inequality, &guess));
-        if scheme.is_conforming_linear(solved.mesh()) {
-            self.p1.keep_solved(position, start.as_deref(), &solved);
-        }
-        Ok(solved)
-    }
-
-    /// The start: that of P1 for schemes with its unknowns, P1 on the same mesh for all other schemes.
-    fn start(
-        &mut self,
-        position: usize,
-        scheme: &dyn AnyScheme<T, D>,
-    ) -> Result<Option<Arc<P1Solution<T>>>, Error> {
-        let mesh = self.p1.meshes.mesh(position);
-        let unknowns = unknowns(mesh, scheme.layout());
-        let needs_none =
-            !self.p1.problem.is_constrained() && !self.p1.solver.uses_coarse_spaces(unknowns);
-        if self.has_cold_start || needs_none {
-            Ok(None)
-        } else if scheme.is_conforming_linear(mesh) {
-            self.p1.start(position)
-        } else {
-            self.p1.solve(position).map(Some)
-        }
-    }
-
-    /// Solves [`NestedIteration::repeat`] times and returns the last solution with the smallest time. A
-    /// matrix that is not known to be definite, for instance with a penalty below its proven bound, is
-    /// first tested: a solution does not show whether it is. The time includes this test.
-    fn run(&self, inequality: &mut Inequality<T>, guess: &InitialGuess<T>) -> (Solution<T>, f64) {
-        let clock = Instant::now();
-        if !inequality.is_definite {
-            match check_definite(inequality) {
-                Ok(()) => inequality.is_definite = true,
-                // the solver says so itself, where it gets that far
-                Err(Outcome::OutOfMemory) => {}
-                Err(outcome) => {
-                    let solution = Solution::without_iterate(inequality, outcome);
-                    return (solution, clock.elapsed().as_secs_f64());
-                }
-            }
-        }
-        let in_test = clock.elapsed().as_secs_f64();
-        let mut seconds = f64::INFINITY;
-        let mut last = None;
-        for _ in 0..self.p1.repeat {
-            let clock = Instant::now();
-            last = Some(self.p1.solver.solve_from(inequality, guess));
-            seconds = seconds.min(clock.elapsed().as_secs_f64());
-        }
-        match last {
-            Some(solution) => (solution, in_test + seconds),
-            None => unreachable!("at least one run"),
         }
     }
 }

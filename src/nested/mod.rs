@@ -14,6 +14,7 @@ mod judge;
 mod meshes;
 mod p1;
 mod phase;
+mod scheme_solve;
 mod solved;
 mod warnings;
 

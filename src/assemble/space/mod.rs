@@ -2,26 +2,41 @@
 //!
 //! Nothing here is generic in scheme or element, so that all is compiled once for each scalar and
 //! dimension: the element enters as an [`AnyElement`].
+//!
+//! | file | content |
+//! |---|---|
+//! | `mod` | the space: rules, unknowns, nodes, points of cells and facets |
+//! | `any_element` | an element without its type |
+//! | `tables` | basis functions and their derivatives at the points of a rule, moments on facets |
+//! | `metric` | the geometry of cells as forms need it |
+//! | `dofs` | the numbers of the unknowns of a cell |
+//! | `data` | data at the points of a rule |
+//! | `coefficient` | a coefficient that varies in cells |
+//! | `diffusion` | the coefficient in a cell, on a facet and in a flux |
+//! | `reaction_term` | the reaction term of the matrix |
+//! | `bounds`, `contradictions` | the bounds of the unknowns; lower bounds above upper ones |
+//! | `supports`, `node_vertices` | the supports of basis functions, by the vertices that stand for a node |
 
 mod any_element;
 mod bounds;
 mod coefficient;
 pub(crate) mod contradictions;
 pub(crate) mod data;
+mod diffusion;
 pub(crate) mod dofs;
 pub(crate) mod metric;
+mod node_vertices;
 pub(crate) mod reaction_term;
+mod supports;
 pub(crate) mod tables;
 
 use std::sync::OnceLock;
 
 use super::local::{CellSide, StiffnessTable};
 use super::{DataQuadrature, count};
-use crate::algebra::Support;
 use crate::constraint::BoundBy;
 use crate::element::{Entity, MAX_BASIS, Node};
 use crate::error::Error;
-use crate::memory::in_large_pages;
 use crate::mesh::{BoundaryFacet, BoundaryPart, Mesh, Neighbours};
 use crate::problem::{DataOnMesh, Problem};
 use crate::quadrature::{Quadrature, QuadratureError, Rule, facet_to_cell};
@@ -31,8 +46,9 @@ use coefficient::VaryingCoefficient;
 pub(crate) use coefficient::{INWARD, Place};
 use dofs::Dofs;
 use metric::CellMetric;
+use node_vertices::NodeVertices;
 use reaction_term::ReactionTerm;
-use tables::{BasisAt, CellTable, Derivatives, FacetTable};
+use tables::{BasisAt, CellTable, FacetTable};
 
 /// A functional as barycentric points with weights.
 pub(crate) type Terms = Vec<([f64; 4], f64)>;
@@ -58,8 +74,8 @@ pub(crate) struct Space<'a, T: Real, const D: usize> {
     varying: Option<VaryingCoefficient<T>>,
     /// What each of a cell's unknowns is the value of.
     pub nodes: Vec<Node>,
-    /// By node, the vertices of the cell whose barycentre it is.
-    around: Vec<Around>,
+    /// The vertices that stand for each of a cell's nodes.
+    node_vertices: Vec<NodeVertices>,
     /// Largest degree of which the element contains all polynomials.
     pub degree: usize,
     /// Largest degree of a basis function.
@@ -132,7 +148,7 @@ impl<'a, T: Real, const D: usize> Space<'a, T, D> {
             varying,
             in_domain: nodes.iter().map(|node| set.in_domain(node, D)).collect(),
             on_contact: nodes.iter().map(|node| set.on_contact(node, D)).collect(),
-            around: nodes.iter().map(|node| Around::new(&node.centre(D))).collect(),
+            node_vertices: nodes.iter().map(|node| NodeVertices::new(&node.centre(D))).collect(),
             nodes,
             degree,
             basis_degree,
@@ -172,88 +188,6 @@ impl<'a, T: Real, const D: usize> Space<'a, T, D> {
     /// Unknowns of a cell.
     pub fn per_cell(&self) -> usize {
         self.nodes.len()
-    }
-    /// The diffusion coefficient at the barycentre of a cell.
-    #[inline(always)]
-    pub fn alpha(&self, cell: usize) -> T {
-        self.coefficients.as_ref().map_or_else(|| T::lit(1.0), |a| a[cell])
-    }
-    /// The coefficient and its values in a cell, if it varies there and the element sees it.
-    #[inline(always)]
-    pub fn varying_in(&self, cell: usize) -> Option<(&VaryingCoefficient<T>, &[T])> {
-        let varying = self.varying.as_ref()?;
-        varying.in_cell(cell).map(|values| (varying, values))
-    }
-    /// Whether the element sees the coefficient vary in some cell.
-    pub fn has_varying_coefficient(&self) -> bool {
-        self.varying.is_some()
-    }
-    /// The coefficient at a point of a cell.
-    pub fn alpha_at(&self, cell: usize, x: &Point<f64, D>) -> f64 {
-        match self.data.coefficient.of(self.mesh.region(cell)) {
-            Some(alpha) if self.varying_in(cell).is_some() => alpha.at(x),
-            _ => self.alpha(cell).to_f64(),
-        }
-    }
-    /// The largest value of the coefficient on a facet from its cell, and the least in the cell, at the
-    /// points that the element sees.
-    #[inline(always)]
-    pub fn extreme_coefficients(&self, (cell, local): Place) -> [T; 2] {
-        let extremes = self.varying.as_ref().and_then(|varying| varying.extremes((cell, local)));
-        extremes.unwrap_or([self.alpha(cell); 2])
-    }
-    /// Whether the coefficient varies in one of the cells of a facet.
-    pub fn varies_at(&self, own: Place, other: Option<Place>) -> bool {
-        let varies = |cell| self.varying_in(cell).is_some();
-        varies(own.0) || other.is_some_and(|(cell, _)| varies(cell))
-    }
-    /// What multiplies the normal derivative of a cell in the flux at each point of a facet, where the
-    /// coefficient varies in one of its cells: the harmonic mean with the average weights, times the
-    /// weight of the cell; on the boundary the coefficient.
-    #[inline(always)]
-    fn flux_weights(
-        &self,
-        own: Place,
-        other: Option<Place>,
-        own_weight: T,
-    ) -> Option<(&VaryingCoefficient<T>, impl Fn(usize) -> T)> {
-        let varying = self.varying.as_ref().filter(|_| self.varies_at(own, other))?;
-        let at = move |place: Place, q: usize| match varying.on_facet(place) {
-            Some(values) => values[q],
-            None => self.alpha(place.0),
-        };
-        let weight = move |q: usize| {
-            let a = at(own, q);
-            let Some(other) = other else { return a };
-            let b = at(other, q);
-            own_weight * a * b / (own_weight * b + (T::lit(1.0) - own_weight) * a)
-        };
-        Some((varying, weight))
-    }
-    /// Moment `k` on a facet of the derivatives of its cell's basis with their weight in the flux, where
-    /// the coefficient varies in one of the two cells.
-    #[inline(always)]
-    pub fn flux_derivatives(
-        &self,
-        own: Place,
-        other: Option<Place>,
-        own_weight: T,
-        k: usize,
-    ) -> Option<Derivatives<T>> {
-        let (varying, weight) = self.flux_weights(own, other, own_weight)?;
-        Some(varying.weighted_derivatives(own.1, k, weight))
-    }
-    /// The products of two moments on a facet with the weight of a cell in the flux, where the
-    /// coefficient varies in one of the two cells.
-    pub fn flux_product(
-        &self,
-        own: Place,
-        other: Option<Place>,
-        own_weight: T,
-        (k, l): (usize, usize),
-    ) -> Option<T> {
-        let (varying, weight) = self.flux_weights(own, other, own_weight)?;
-        Some(varying.weighted_product(k, l, weight))
     }
     /// A cell seen from one of its facets.
     #[inline(always)]
@@ -363,37 +297,6 @@ impl<'a, T: Real, const D: usize> Space<'a, T, D> {
     pub fn node_terms(&self, facet_rule: &Rule, cell_rule: &Rule) -> Vec<Terms> {
         self.nodes.iter().map(|node| node.terms(facet_rule, cell_rule)).collect()
     }
-    /// The support of each unknown.
-    pub fn supports(&self) -> Vec<Support> {
-        let n = self.dofs.size();
-        if self.broken {
-            let mut supports = in_large_pages(Vec::with_capacity(n));
-            for cell in 0..self.mesh.n_cells() {
-                let owner = Some(cell as u32);
-                supports.extend(self.around.iter().map(|around| self.support(owner, cell, around)));
-            }
-            return supports;
-        }
-        if self.nodes.iter().all(|node| matches!(node.entity(), Entity::Vertex(_))) {
-            // unknowns are numbered like the vertices that own them
-            let mut supports = in_large_pages(Vec::with_capacity(n));
-            supports.extend((0..n as u32).map(|vertex| Support::new(None, &[vertex])));
-            return supports;
-        }
-        let mut supports = in_large_pages(vec![Support::new(None, &[]); n]);
-        for cell in 0..self.mesh.n_cells() {
-            for (i, around) in self.around.iter().enumerate() {
-                supports[self.dofs.of(cell, i)] = self.support(None, cell, around);
-            }
-        }
-        supports
-    }
-    #[inline(always)]
-    fn support(&self, owner: Option<u32>, cell: usize, around: &Around) -> Support {
-        let vertices = self.mesh.cell(cell);
-        let own = around.vertices.map(|k| vertices[usize::from(k)]);
-        Support::new(owner, &own[..around.n])
-    }
     /// Where each vertex is, to single precision, missing coordinates zero.
     pub fn vertex_points(&self) -> Vec<[f32; 3]> {
         let coordinate = |x: Option<&T>| x.map_or(0.0, |x| x.to_f64() as f32);
@@ -422,37 +325,4 @@ impl<'a, T: Real, const D: usize> Space<'a, T, D> {
 fn rule(family: &dyn Quadrature, dimension: usize, degree: usize) -> Result<Rule, QuadratureError> {
     let Rule { points, weights } = family.rule(dimension, degree)?;
     Rule::from_points(dimension, points, weights)
-}
-
-/// One to four vertices of a cell, ascending, each as often as it counts in their barycentre.
-#[derive(Clone, Copy, Debug, PartialEq)]
-struct Around {
-    vertices: [u8; 4],
-    n: usize,
-}
-
-impl Around {
-    /// The fewest vertices whose barycentre is a point; if no four are, four with a barycentre near
-    /// to it.
-    fn new(point: &[f64; 4]) -> Self {
-        let mut found = Self { vertices: [0; 4], n: 4 };
-        for n in 1..=4 {
-            // each vertex in turn is the one whose share lies furthest below its coordinate
-            let mut missing = point.map(|x| x * n as f64);
-            let mut counts = [0; 4];
-            for _ in 0..n {
-                let most = (1..4).fold(0, |k, l| if missing[l] > missing[k] { l } else { k });
-                missing[most] -= 1.0;
-                counts[most] += 1;
-            }
-            let mut vertices = [0; 4];
-            let listed = (0..4).flat_map(|k| std::iter::repeat_n(k as u8, counts[k]));
-            vertices.iter_mut().zip(listed).for_each(|(v, k)| *v = k);
-            found = Self { vertices, n };
-            if missing.iter().all(|x| x.abs() < 1e-9) {
-                break;
-            }
-        }
-        found
-    }
 }

@@ -5,6 +5,7 @@
 //! | `settings` | [`ActiveSet`], the settings |
 //! | `solver` | the method as a solver, [`Preconditioned`] |
 //! | `strategy` | the stages of a solve in their order, with all thresholds |
+//! | `solve/` | the solve by these stages, the run of each stage |
 //! | `iteration` | the active set iteration, for every linear solver |
 //! | `iterate` | values, contact states and residual of a step, and the best values |
 //! | `evaluation` | violations, merit and prediction of the active set |
@@ -28,6 +29,7 @@ mod preconditioned_solver;
 mod progress;
 mod settings;
 mod small_violations;
+mod solve;
 mod solver;
 mod strategy;
 

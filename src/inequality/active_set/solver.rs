@@ -2,7 +2,8 @@
 //! others.
 
 use super::settings::ActiveSet;
-use super::strategy::{self, CROSSOVER};
+use super::solve::solve;
+use super::strategy::CROSSOVER;
 use crate::algebra::Inequality;
 use crate::inequality::recession::solve_with_kernel;
 use crate::inequality::{InequalitySolver, InitialGuess, Solution};
@@ -79,7 +80,7 @@ fn solve_by_stages<T: Real>(
             &dyn PreconditionerFamily<T>,
         ) -> Solution<T>
             = |settings, inequality, guess, family| solve_with_kernel(inequality, |inequality| {
-                strategy::solve(settings, inequality, guess, family)
+                solve(settings, inequality, guess, family)
             })
     )(settings, inequality, guess, family)
 }

@@ -3,6 +3,9 @@
 //!
 //! | file | content |
 //! |---|---|
+//! | `mod` | [`InteriorPoint`]: the steps and the end of a run |
+//! | `starting_point` | the point from which a run starts |
+//! | `tapia_indicators` | which bounds are active |
 //! | `complementarity_pairs` | slack and dual variable of every bound, the ratio test |
 //! | `newton_system` | the linear systems |
 //! | `path_expansion` | the Taylor polynomials along which a step goes |
@@ -10,17 +13,15 @@
 mod complementarity_pairs;
 mod newton_system;
 mod path_expansion;
+mod starting_point;
+mod tapia_indicators;
 
-use crate::algebra::{Bound, Contact, Inequality};
-use crate::linear::direct::StaticCondensation;
+use crate::algebra::{Contact, Inequality};
 use crate::real::Real;
 use complementarity_pairs::{ComplementarityPair, MAX_ORDER, mean_complementarity};
 use newton_system::{MixedVector, NewtonSystem};
 use path_expansion::{PREDICTOR_ORDER, PathExpansion};
-
-/// Relative complementarity (the sum of all complementarity products divided by the energy scale of
-/// [`NewtonSystem::residual`]) of the starting point.
-const INITIAL_COMPLEMENTARITY: f64 = 0.1;
+use tapia_indicators::{DecidedContact, are_separated, contact_states, undecided};
 
 /// Relative complementarity at which the method ends: the smaller one of slack and dual variable is
 /// then within rounding.
@@ -38,9 +39,6 @@ const IDENTIFICATION_TOL: f64 = 1e-10;
 /// rounding.
 const STAGNATION_TOL: f64 = 1e-8;
 
-/// Least distance of the two Tapia indicators of a bound at which they count as separated.
-const INDICATOR_SEPARATION: f64 = 0.5;
-
 /// Largest number of steps.
 pub(crate) const MAX_STEPS: usize = 60;
 
@@ -51,10 +49,6 @@ const STAGNATION_STEPS: usize = 3;
 /// that a penalty determines are resolved: their sizes differ by the penalty, and a product far below the
 /// mean makes the steps short after most pairs are decided.
 const LEAST_SHARE: f64 = 1e-3;
-
-/// Ratio of penalty to stiffness above which the first run resolves slacks that the penalty determines. They are about
-/// its reciprocal, so that [`IDENTIFICATION_TOL`] is reached before they are told from zero.
-const LARGE_PENALTY: f64 = 1.0 / IDENTIFICATION_TOL;
 
 /// When the method ends.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -106,109 +100,17 @@ pub(crate) struct InteriorPoint<'h, 'a, T> {
     is_identified: bool,
     /// Whether the method ended with an identified active set, or with complementarity products at their final size.
     has_small_complementarity: bool,
-    /// Whether points are relative to bounds, steps keep near the central path and go on until every bound
-    /// is decided, which takes two to three times as many steps. Where cells have null directions
-    /// ([`StaticCondensation::has_null_directions`]), copies of one node within the contact set leave their bound by
-    /// as little as the penalty admits: by less than other methods tell from zero where it is large, else at the limit
-    /// of rounding only.
+    /// Whether points are relative to bounds, steps keep near the central path and go on until every bound is decided,
+    /// which takes two to three times as many steps. Where cells have null directions
+    /// ([`has_null_directions`](crate::linear::direct::StaticCondensation::has_null_directions)), copies of one node
+    /// within the contact set leave their bound by as little as the penalty admits: by less than other methods tell
+    /// from zero where it is large, else at the limit of rounding only.
     resolves_slacks: bool,
     /// Whether steps became short before every bound was decided.
     is_stuck: bool,
 }
 
-impl<'h, 'a, T: Real> InteriorPoint<'h, 'a, T> {
-    /// A method that starts near the central path, close to the given values and jump multipliers;
-    /// jump multipliers that are not given are zero.
-    pub fn new(
-        inequality: &'a Inequality<T>,
-        condensation: Option<&'h StaticCondensation<'a, T>>,
-        (values, jump_multipliers): (&[T], &[T]),
-        identification: Identification,
-    ) -> Self {
-        let bounds = inequality.bounds.iter().zip(values);
-        let mut values: Vec<f64> =
-            bounds.map(|(bound, &x)| bound.fixed_value().unwrap_or(x).to_f64()).collect();
-        let penalised = inequality.penalised.as_ref().filter(|_| condensation.is_some());
-        let n_jumps = penalised.map_or(0, |penalised| penalised.n_jumps());
-        let mut jump_multipliers: Vec<f64> = jump_multipliers.iter().map(|p| p.to_f64()).collect();
-        jump_multipliers.resize(n_jumps, 0.0);
-        let mut system = NewtonSystem::new(inequality, condensation);
-        let is_large = || penalised.is_some_and(|p| p.largest_ratio() > LARGE_PENALTY);
-        let resolves_slacks =
-            system.has_null_directions() && (identification == Identification::Final || is_large());
-        if resolves_slacks {
-            let bounds = inequality.bounds.iter().zip(&values);
-            system = system.with_reference(bounds.map(|(b, &x)| nearer_bound(b, x)).collect());
-            values.iter_mut().enumerate().for_each(|(i, x)| *x -= system.reference(i));
-        }
-        let diagonal = (0..inequality.size()).map(|i| system.diagonal_scale(i)).collect();
-        let mut method = Self {
-            inequality,
-            system,
-            point: MixedVector { values, jump_multipliers },
-            diagonal,
-            pairs: Vec::new(),
-            steps: 0,
-            identification,
-            is_identified: false,
-            has_small_complementarity: false,
-            resolves_slacks,
-            is_stuck: false,
-        };
-        method.leave_out_large_jump_multipliers();
-        method.move_to_central_path(INITIAL_COMPLEMENTARITY);
-        method
-    }
-
-    /// Starts without jump multipliers where the residual is smaller without them: those of an arbitrary active set
-    /// exceed all loads by the penalty, and the Jacobi values of such residuals are far off. With cells of linears,
-    /// which have no null directions, penalties do not add up to that.
-    fn leave_out_large_jump_multipliers(&mut self) {
-        if !self.system.has_null_directions() {
-            return;
-        }
-        let mut residual = self.point.clone();
-        let with = self.size_of_residual(&mut residual);
-        let none = vec![0.0; self.point.jump_multipliers.len()];
-        let given = std::mem::replace(&mut self.point.jump_multipliers, none);
-        if with <= self.size_of_residual(&mut residual) {
-            self.point.jump_multipliers = given;
-        }
-    }
-
-    /// The square of the residual of values in the dual norm of the diagonal scales, and the residual.
-    fn size_of_residual(&self, residual: &mut MixedVector) -> f64 {
-        self.residual(residual);
-        let square = |&i: &u32| residual.values[i as usize].powi(2) / self.diagonal[i as usize];
-        self.system.free().iter().map(square).sum()
-    }
-
-    /// A method to the limit of rounding that starts from the point at which another one ended, and resolves the
-    /// slacks that this left small.
-    pub fn resumed(
-        inequality: &'a Inequality<T>,
-        condensation: Option<&'h StaticCondensation<'a, T>>,
-        CentralPoint { values, jump_multipliers, pairs }: CentralPoint,
-    ) -> Self {
-        let rounded: Vec<T> = values.iter().map(|&x| T::lit(x)).collect();
-        let mut method =
-            Self::new(inequality, condensation, (&rounded, &[]), Identification::Final);
-        method.point.jump_multipliers = jump_multipliers;
-        for (i, x) in method.point.values.iter_mut().enumerate() {
-            *x = values[i] - method.system.reference(i);
-        }
-        for pair in &pairs {
-            let bound = &inequality.bounds[pair.unknown];
-            let bound = if pair.side > 0.0 { bound.lower() } else { bound.upper() };
-            // the difference from this bound has the digits of the slack
-            if bound.is_some_and(|b| b.to_f64() == method.system.reference(pair.unknown)) {
-                method.point.values[pair.unknown] = pair.side * pair.slack;
-            }
-        }
-        method.pairs = pairs;
-        method
-    }
-
+impl<T: Real> InteriorPoint<'_, '_, T> {
     /// The point at which the method ended, from which another one may resolve small slacks; `None` if there are none,
     /// or if the method ended because its steps were short.
     pub fn into_central_point(self) -> Option<CentralPoint> {
@@ -223,6 +125,7 @@ impl<'h, 'a, T: Real> InteriorPoint<'h, 'a, T> {
     /// are done. Returns the contact states, or `None` if a matrix has no factors, a number is not
     /// finite, or the first step has length zero.
     pub fn run(&mut self) -> Option<Vec<Contact>> {
+        let n = self.point.values.len();
         let mut residual = self.point.clone();
         let (mut least, mut stagnant_steps) = (f64::INFINITY, 0);
         let mut previous_contact = Vec::new();
@@ -238,13 +141,13 @@ impl<'h, 'a, T: Real> InteriorPoint<'h, 'a, T> {
             let relative = mean * self.pairs.len() as f64 / energy;
             stagnant_steps = if relative < 0.5 * least { 0 } else { stagnant_steps + 1 };
             least = if stagnant_steps == 0 { relative } else { least };
-            let contact = self.contact();
+            let contact = contact_states(&self.pairs, n);
             self.is_identified = self.identification == Identification::Early
                 && relative <= IDENTIFICATION_TOL
-                && self.indicators_are_separated()
+                && are_separated(&self.pairs)
                 && contact == previous_contact;
             if self.resolves_slacks && relative <= FINAL_COMPLEMENTARITY {
-                decided.keep_if_better(self.undecided(), &contact);
+                decided.keep_if_better(undecided(&self.pairs), &contact);
             }
             previous_contact = contact;
             let stagnates = stagnant_steps > STAGNATION_STEPS;
@@ -256,7 +159,7 @@ impl<'h, 'a, T: Real> InteriorPoint<'h, 'a, T> {
             }
             self.is_stuck = self.resolves_slacks && stagnates && relative > FINAL_COMPLEMENTARITY;
             let is_decided = !self.resolves_slacks
-                || self.indicators_are_separated()
+                || are_separated(&self.pairs)
                 || relative <= LEAST_COMPLEMENTARITY;
             let is_final = relative <= FINAL_COMPLEMENTARITY && is_decided;
             self.has_small_complementarity = self.is_identified || is_final;
@@ -266,9 +169,9 @@ impl<'h, 'a, T: Real> InteriorPoint<'h, 'a, T> {
             if !self.step(&residual, mean)? {
                 return decided.contact.or(last_contact);
             }
-            last_contact = Some(self.contact());
+            last_contact = Some(contact_states(&self.pairs, n));
         }
-        Some(decided.contact.unwrap_or_else(|| self.contact()))
+        Some(decided.contact.unwrap_or_else(|| contact_states(&self.pairs, n)))
     }
 
     /// Whether another run, to the limit of rounding, may find a better active set.
@@ -278,7 +181,8 @@ impl<'h, 'a, T: Real> InteriorPoint<'h, 'a, T> {
                 && (self.is_stuck || self.leaves_small_slacks())
     }
 
-    /// Whether there may be slacks that are small because a penalty determines them, and that this run does not resolve.
+    /// Whether there may be slacks that are small because a penalty determines them, and that this run does not
+    /// resolve.
     pub fn leaves_small_slacks(&self) -> bool {
         self.system.has_null_directions() && !self.resolves_slacks
     }
@@ -293,55 +197,6 @@ impl<'h, 'a, T: Real> InteriorPoint<'h, 'a, T> {
         let value = |i: usize| T::lit(self.system.reference(i) + self.point.values[i]);
         let bounds = self.inequality.bounds.iter().enumerate();
         bounds.map(|(i, bound)| bound.nearest(value(i))).collect()
-    }
-
-    /// Moves every free unknown off its bounds, close to its Jacobi value, and sets its pairs anew
-    /// so that all complementarity products are equal and their sum, relative to the energy scale,
-    /// is about `relative_complementarity`.
-    fn move_to_central_path(&mut self, relative_complementarity: f64) {
-        self.pairs.clear();
-        let mut residual = self.point.clone();
-        let energy = self.residual(&mut residual);
-        let bounds = &self.inequality.bounds;
-        let free = self.system.free();
-        let bounded = free.iter().filter(|&&i| bounds[i as usize].is_inequality()).count();
-        let product = relative_complementarity * energy / bounded.max(1) as f64;
-        for k in 0..free.len() {
-            self.centre_unknown(self.system.free()[k] as usize, &residual.values, product);
-        }
-    }
-
-    /// Moves unknown `i` to a given complementarity product and adds its complementarity pairs.
-    ///
-    /// Without its neighbours the unknown would move to the Jacobi value `u_i + r_i / d_i`. With the
-    /// signed distance `y` of that value from the bound, the slack `x` is the positive root of
-    /// `x - product / (d_i x) = y`. Between two bounds the Jacobi value is clamped instead.
-    fn centre_unknown(&mut self, i: usize, residual: &[f64], product: f64) {
-        let bound = &self.inequality.bounds[i];
-        let relative = |bound: T| bound.to_f64() - self.system.reference(i);
-        let (lower, upper) = (bound.lower().map(relative), bound.upper().map(relative));
-        let jacobi = self.point.values[i] + residual[i] / self.diagonal[i];
-        let square = product / self.diagonal[i];
-        // of a Jacobi value far beyond the bound a difference of equal numbers would leave no slack
-        let slack = |y: f64| {
-            let root = 0.5 * y.hypot(2.0 * square.sqrt()) + 0.5 * y.abs();
-            if y < 0.0 { square / root } else { root }
-        };
-        self.point.values[i] = match (lower, upper) {
-            (Some(l), Some(u)) => {
-                let margin = slack(0.0).min(0.25 * (u - l));
-                jacobi.clamp(l + margin, u - margin)
-            }
-            (Some(l), None) => l + slack(jacobi - l),
-            (None, Some(u)) => u - slack(u - jacobi),
-            (None, None) => return,
-        };
-        for (bound, side) in [(lower, 1.0), (upper, -1.0)] {
-            if let Some(bound) = bound {
-                let slack = side * (self.point.values[i] - bound);
-                self.pairs.push(ComplementarityPair::new(i, side, slack, product / slack));
-            }
-        }
     }
 
     /// One predictor-corrector step, which moves the point and the pairs. `Some(false)` if its
@@ -381,57 +236,12 @@ impl<'h, 'a, T: Real> InteriorPoint<'h, 'a, T> {
         }
         energy
     }
-
-    /// Whether the two Tapia indicators are separated at every bound: in the limit one of them is
-    /// one, the other zero (El-Bakry, Tapia, Zhang, SIAM Rev. 36 (1994) 45-72).
-    fn indicators_are_separated(&self) -> bool {
-        self.undecided() == 0
-    }
-
-    /// The number of bounds whose two Tapia indicators are not separated.
-    fn undecided(&self) -> usize {
-        let distance = |pair: &ComplementarityPair| (pair.indicators[0] - pair.indicators[1]).abs();
-        self.pairs.iter().filter(|pair| distance(pair) <= INDICATOR_SEPARATION).count()
-    }
-
-    /// The contact states: a bound is active if the indicator of its dual variable is larger than the
-    /// indicator of its slack.
-    fn contact(&self) -> Vec<Contact> {
-        let mut contact = vec![Contact::Inactive; self.point.values.len()];
-        for pair in self.pairs.iter().filter(|pair| pair.indicators[1] > pair.indicators[0]) {
-            contact[pair.unknown] = if pair.side > 0.0 { Contact::Lower } else { Contact::Upper };
-        }
-        contact
-    }
-}
-
-/// The contact states of the step with the fewest undecided bounds: the indicators of a short step tell
-/// nothing.
-#[derive(Default)]
-struct DecidedContact {
-    undecided: usize,
-    contact: Option<Vec<Contact>>,
-}
-
-impl DecidedContact {
-    /// Keeps contact states with as many undecided bounds as those so far, or fewer.
-    fn keep_if_better(&mut self, undecided: usize, contact: &[Contact]) {
-        if self.contact.is_none() || undecided <= self.undecided {
-            (self.undecided, self.contact) = (undecided, Some(contact.to_vec()));
-        }
-    }
-}
-
-/// The bound nearer to the value, zero without bounds.
-fn nearer_bound<T: Real>(bound: &Bound<T>, x: f64) -> f64 {
-    let bounds = [bound.lower(), bound.upper()].into_iter().flatten().map(T::to_f64);
-    bounds.min_by(|a, b| f64::total_cmp(&(x - a).abs(), &(x - b).abs())).unwrap_or(0.0)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::algebra::SparseMatrix;
+    use crate::algebra::{Bound, SparseMatrix};
 
     /// Two coupled unknowns with lower bounds zero, and a load twice which overflows the scalar: the
     /// direction of the first step is not finite.

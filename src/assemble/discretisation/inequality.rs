@@ -1,0 +1,130 @@
+//! Load, bounds and the whole inequality.
+
+use super::Discretisation;
+use crate::algebra::{Bound, Inequality, Start};
+use crate::assemble::penalised;
+use crate::assemble::space::contradictions::Contradictions;
+use crate::error::Error;
+use crate::instances::compiled;
+use crate::real::Real;
+
+impl<T: Real, const D: usize> Discretisation<'_, T, D> {
+    /// The inequality: matrix, load, bounds, supports, points.
+    ///
+    /// # Errors
+    /// [`Error::DataNotFinite`], [`Error::EmptyConstraint`].
+    pub fn inequality(&self) -> Result<Inequality<T>, Error> {
+        compiled!(
+            T, D: fn(&Discretisation<'_, T, D>) -> Result<Inequality<T>, Error>
+                = |of| of.assemble()
+        )(self)
+    }
+    fn assemble(&self) -> Result<Inequality<T>, Error> {
+        let (load, own_load, data) = self.loads()?;
+        let bounds = self.bounds()?;
+        let matrix = self.matrix();
+        let dirichlet_energy = (own_load.is_none() && !data.is_empty())
+            .then(|| self.space.dirichlet_energy(self.form(), &|| &self.prepared().0, &data));
+        let penalised = own_load.map(|own_load| {
+            let (metrics, weights) = self.prepared();
+            penalised::penalised_matrix(
+                &self.space,
+                self.form(),
+                (metrics, weights),
+                own_load,
+                data,
+            )
+        });
+        // the loops that fill the matrix return no error: a reaction term that is not finite is
+        // detected here
+        if let Some(reaction) = &self.space.reaction
+            && !matrix.values.iter().all(|v| v.to_f64().is_finite())
+        {
+            reaction.check(self.mesh())?;
+        }
+        Ok(Inequality {
+            matrix,
+            symmetric: self.form.is_symmetric(),
+            load,
+            bounds,
+            supports: self.supports(),
+            // in the plane an order found in space is no better for unknowns that cells share
+            points: if D == 3 || self.owns_rows() {
+                self.space.vertex_points()
+            } else {
+                Vec::new()
+            },
+            conforming_linear: self.space.is_conforming_linear(),
+            start: Start::Cold,
+            penalised,
+            dirichlet_energy,
+            kernel: self.space.kernel(self.form.couples()),
+            is_definite: false,
+            distribution: None,
+        })
+    }
+    /// The load; if the penalised form of the matrix is kept too, the load without Dirichlet data,
+    /// and the Dirichlet data.
+    fn loads(&self) -> Result<penalised::Loads<T>, Error> {
+        let is_penalised = self.owns_rows() && penalised::applies(self.form());
+        let mut own = None;
+        let (load, data) =
+            self.space.load_and_data(self.form(), &|| &self.prepared().0, &mut |by_cell| {
+                own = is_penalised.then(|| by_cell.to_vec());
+            })?;
+        Ok((load, own, data))
+    }
+    /// The bounds of all unknowns.
+    ///
+    /// Obstacles bind the unknowns of the problem's constraint set, the Signorini condition those of
+    /// contact facets on the cell that has the facet; the set says whether a node is bound by the
+    /// value of the datum or by its mean. An unknown pinned by Dirichlet data is not constrained besides.
+    ///
+    /// # Errors
+    /// [`Error::EmptyConstraint`], but on a [part](crate::mesh::Part) of a mesh: see
+    /// [`Discretisation::contradictions`]. [`Error::DataNotFinite`].
+    pub fn bounds(&self) -> Result<Vec<Bound<T>>, Error> {
+        compiled!(
+            T, D: fn(&Discretisation<'_, T, D>) -> Result<Vec<Bound<T>>, Error>
+                = |of| of.checked_bounds()
+        )(self)
+    }
+    fn checked_bounds(&self) -> Result<Vec<Bound<T>>, Error> {
+        let (bounds, found) = self.space.bounds()?;
+        if self.mesh().is_part() {
+            self.contradictions.get_or_init(|| Contradictions::new(&bounds, found));
+        } else if !found.is_empty() {
+            let found = Contradictions::new(&bounds, found);
+            found.check(found.size(), &|_| true)?;
+        }
+        Ok(bounds)
+    }
+    /// Lower bounds above upper ones. They contradict each other if they do so by more than rounding of the
+    /// largest datum, which a [part](crate::mesh::Part) of a mesh need not have.
+    ///
+    /// # Errors
+    /// [`Error::DataNotFinite`].
+    pub fn contradictions(&self) -> Result<&Contradictions<D>, Error> {
+        compiled!(
+            T, D: for<'d> fn(&'d Discretisation<'_, T, D>) -> Result<&'d Contradictions<D>, Error>
+                = |of| of.find_contradictions()
+        )(self)
+    }
+    fn find_contradictions(&self) -> Result<&Contradictions<D>, Error> {
+        if let Some(found) = self.contradictions.get() {
+            return Ok(found);
+        }
+        let (bounds, found) = self.space.bounds()?;
+        Ok(self.contradictions.get_or_init(|| Contradictions::new(&bounds, found)))
+    }
+    /// The load of all unknowns.
+    ///
+    /// # Errors
+    /// [`Error::DataNotFinite`].
+    pub fn load(&self) -> Result<Vec<T>, Error> {
+        compiled!(
+            T, D: fn(&Discretisation<'_, T, D>) -> Result<Vec<T>, Error>
+                = |of| of.space.load(of.form(), &|| &of.prepared().0)
+        )(self)
+    }
+}

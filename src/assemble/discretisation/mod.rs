@@ -1,0 +1,189 @@
+//! A scheme applied to a problem on a mesh: unknowns, matrix and what is known of them.
+//!
+//! | file | content |
+//! |---|---|
+//! | `mod` | [`Discretisation`]: unknowns, form, matrix |
+//! | `join` | element, facet form, problem and mesh made into one, if they fit |
+//! | `inequality` | load, bounds and the whole inequality |
+
+mod inequality;
+mod join;
+
+use std::sync::OnceLock;
+
+use super::facet_coefficients::FacetCoefficients;
+use super::owned_rows;
+use super::penalty_below_bound::PenaltyBelowBound;
+use super::shared_rows::SharedRows;
+use super::space::Space;
+use super::space::contradictions::Contradictions;
+use super::space::metric::Metrics;
+use crate::algebra::{SparseMatrix, Support};
+use crate::facet::FacetForm;
+use crate::instances::compiled;
+use crate::mesh::Mesh;
+use crate::problem::Problem;
+use crate::real::Real;
+
+/// A scheme applied to a problem on a mesh.
+///
+/// The type names no scheme: element and facet form are held without their types, so that what it
+/// does is compiled once for each scalar and dimension.
+pub struct Discretisation<'a, T: Real, const D: usize> {
+    pub(crate) space: Space<'a, T, D>,
+    form: Box<dyn FacetForm<T, D>>,
+    shared_rows: SharedRows<T, D>,
+    /// What facet forms need of cells and facets, computed when first needed.
+    prepared: OnceLock<(Metrics<T>, FacetCoefficients<T>)>,
+    /// On a part what its bounds, once found, leave to be judged with the data of all parts.
+    contradictions: OnceLock<Contradictions<D>>,
+}
+
+impl<'a, T: Real, const D: usize> Discretisation<'a, T, D> {
+    /// Number of unknowns, Dirichlet ones included.
+    pub fn unknowns(&self) -> usize {
+        self.space.dofs.size()
+    }
+    /// Largest degree of which the element contains all polynomials.
+    pub fn degree(&self) -> usize {
+        self.space.degree
+    }
+    /// The facet form in force.
+    pub fn form(&self) -> &dyn FacetForm<T, D> {
+        &*self.form
+    }
+    /// The mesh.
+    pub fn mesh(&self) -> &'a Mesh<T, D> {
+        self.space.mesh
+    }
+    /// The problem.
+    pub fn problem(&self) -> &'a Problem<D> {
+        self.space.problem
+    }
+    /// Whether each row belongs to one cell, which then writes it in place.
+    pub(crate) fn owns_rows(&self) -> bool {
+        self.form.couples() && self.space.broken
+    }
+    /// The pattern of the matrix, with values zero.
+    pub fn pattern(&self) -> SparseMatrix<T> {
+        compiled!(
+            T, D: fn(&Discretisation<'_, T, D>) -> SparseMatrix<T>
+                = |of| of.make_pattern()
+        )(self)
+    }
+    fn make_pattern(&self) -> SparseMatrix<T> {
+        if self.owns_rows() {
+            owned_rows::pattern(&self.space, self.form())
+        } else {
+            self.shared_rows.pattern(&self.space, self.form())
+        }
+    }
+    /// Overwrites the values of a matrix that has this discretisation's pattern.
+    ///
+    /// # Panics
+    /// If it has another.
+    pub fn fill(&self, matrix: &mut SparseMatrix<T>) {
+        compiled!(
+            T, D: fn(&Discretisation<'_, T, D>, &mut SparseMatrix<T>)
+                = |of, matrix| of.fill_values(matrix)
+        )(self, matrix)
+    }
+    fn fill_values(&self, matrix: &mut SparseMatrix<T>) {
+        if self.owns_rows() {
+            let (metrics, weights) = self.prepared();
+            owned_rows::fill(&self.space, self.form(), metrics, weights, matrix);
+        } else {
+            self.shared_rows.fill(&self.space, self.form(), matrix);
+        }
+    }
+    /// Drops what facet forms need of cells and facets, and the load by cells: a tenth of the memory of a solve. It is
+    /// computed again when needed.
+    pub(crate) fn forget_prepared(&mut self) {
+        self.prepared.take();
+        self.space.load_by_cell.take();
+    }
+    /// What facet forms need of cells and facets.
+    pub(super) fn prepared(&self) -> &(Metrics<T>, FacetCoefficients<T>) {
+        self.prepared.get_or_init(|| {
+            let metrics = Metrics::of(self.space.mesh);
+            let weights = FacetCoefficients::of(&self.space, self.form(), &metrics);
+            (metrics, weights)
+        })
+    }
+    /// The matrix from nothing.
+    pub fn matrix(&self) -> SparseMatrix<T> {
+        let mut matrix = self.pattern();
+        self.fill(&mut matrix);
+        matrix
+    }
+    /// The support of each unknown.
+    pub fn supports(&self) -> Vec<Support> {
+        compiled!(
+            T, D: fn(&Discretisation<'_, T, D>) -> Vec<Support>
+                = |of| of.space.supports()
+        )(self)
+    }
+    /// The discrete function at the vertices of each cell, `D + 1` values for each.
+    ///
+    /// # Panics
+    /// If `u` is shorter than the number of unknowns.
+    pub fn vertex_values(&self, u: &[T]) -> Vec<f64> {
+        compiled!(
+            T, D: fn(&Discretisation<'_, T, D>, &[T]) -> Vec<f64>
+                = |of, u| of.space.vertex_values(u)
+        )(self, u)
+    }
+    /// The facets whose penalty lies below the bound that proves coercivity: their number and the
+    /// one with the smallest quotient of penalty and bound; none if no penalty lies below its bound
+    /// or the form has no such bound.
+    pub fn penalty_below_bound(&self) -> Option<PenaltyBelowBound> {
+        compiled!(
+            T, D: fn(&Discretisation<'_, T, D>) -> Option<PenaltyBelowBound>
+                = |of| of.space.penalty_below_bound(of.form())
+        )(self)
+    }
+    /// Whether theory proves the form coercive for penalties above their bound
+    /// ([`Discretisation::penalty_below_bound`]), and the reaction is not negative at the points of its
+    /// quadrature rule.
+    pub fn is_coercive(&self) -> bool {
+        let reaction = self.space.reaction.as_ref();
+        self.form.theory().is_coercive && reaction.is_none_or(|r| r.is_nonnegative(self.mesh()))
+    }
+    /// The unknowns of a cell, in the order of the element's nodes.
+    pub fn unknowns_of(&self, cell: usize) -> impl Iterator<Item = usize> + '_ {
+        (0..self.space.per_cell()).map(move |i| self.space.dofs.of(cell, i))
+    }
+    /// The number of the part that owns each unknown: the lowest of the parts that own its cells, given the
+    /// [owner of each cell](crate::mesh::Part::owners).
+    ///
+    /// Of an unknown of own cells this is the owner on the whole mesh, if the part has as many layers as the
+    /// scheme [needs](crate::scheme::AnyScheme#method.layers). The others are none of the part's own either
+    /// way.
+    ///
+    /// # Panics
+    /// If there are fewer owners than cells.
+    pub fn owners(&self, of_cells: &[u32]) -> Vec<u32> {
+        compiled!(
+            T, D: fn(&Discretisation<'_, T, D>, &[u32]) -> Vec<u32>
+                = |of, of_cells| of.owners_of_unknowns(of_cells)
+        )(self, of_cells)
+    }
+    fn owners_of_unknowns(&self, of_cells: &[u32]) -> Vec<u32> {
+        let mut owners = vec![u32::MAX; self.unknowns()];
+        for (cell, &owner) in of_cells[..self.mesh().n_cells()].iter().enumerate() {
+            for unknown in self.unknowns_of(cell) {
+                owners[unknown] = owners[unknown].min(owner);
+            }
+        }
+        owners
+    }
+}
+
+impl<T: Real, const D: usize> std::fmt::Debug for Discretisation<'_, T, D> {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Discretisation")
+            .field("unknowns", &self.unknowns())
+            .field("degree", &self.degree())
+            .finish_non_exhaustive()
+    }
+}

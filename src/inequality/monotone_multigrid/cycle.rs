@@ -1,0 +1,213 @@
+//! The cycle: sweeps of projected Gauss-Seidel and a truncated linear correction.
+
+use crate::algebra::Inequality;
+use crate::inequality::Outcome;
+use crate::inequality::certificate::positive_diagonal;
+use crate::inequality::initial_guess::InitialGuess;
+use crate::inequality::scales::Scales;
+use crate::inequality::validation::outcome_of_not_positive;
+use crate::linear::Preconditioner;
+use crate::linear::direct::FactorError;
+use crate::real::Real;
+
+/// Admissible values, and the vectors of a cycle.
+pub(super) struct MultigridIterate<'a, T> {
+    pub inequality: &'a Inequality<T>,
+    pub values: Vec<T>,
+    /// `b - A u`; zero on eliminated unknowns.
+    residual: Vec<T>,
+    /// The linear correction of the values.
+    correction: Vec<T>,
+    /// Whether an unknown is fixed or active and takes no part in the linear correction.
+    eliminated: Vec<bool>,
+    /// The eliminated unknowns for which the preconditioner is set up; empty before it is.
+    pub fixed: Vec<bool>,
+    /// The name of the preconditioner, in reports.
+    pub linear_solver: &'static str,
+    /// The diagonal of the matrix.
+    pub diagonal: Vec<T>,
+    /// `b - A u` on all unknowns.
+    whole_residual: Vec<f64>,
+    /// The energy norm of the values before the last correction; see [`Scales::energy_norm`].
+    pub energy_norm: f64,
+    pub cycles: usize,
+    /// Whether the matrix is known to be positive definite, also by factors after a direction that is not positive.
+    is_definite: bool,
+    /// See [`Solution::algebraic_bound`](crate::inequality::Solution::algebraic_bound).
+    pub algebraic_bound: Option<f64>,
+}
+
+impl<'a, T: Real> MultigridIterate<'a, T> {
+    /// The values of the guess, or zero, projected onto the bounds.
+    pub fn new(inequality: &'a Inequality<T>, guess: &InitialGuess<T>) -> Self {
+        let n = inequality.bounds.len();
+        let guess = guess.values.as_deref().filter(|values| values.len() == n);
+        let start = |i: usize| guess.map_or(T::lit(0.0), |values| values[i]);
+        let bounds = inequality.bounds.iter().enumerate();
+        let values = bounds.map(|(i, bound)| bound.nearest(start(i))).collect();
+        let zeros = vec![T::lit(0.0); n];
+        Self {
+            inequality,
+            values,
+            residual: zeros.clone(),
+            correction: zeros,
+            eliminated: vec![false; n],
+            fixed: Vec::new(),
+            linear_solver: "multigrid",
+            diagonal: Vec::new(),
+            whole_residual: vec![0.0; n],
+            energy_norm: 0.0,
+            cycles: 0,
+            is_definite: inequality.is_definite,
+            algebraic_bound: None,
+        }
+    }
+
+    /// One cycle: sweeps and a linear correction. Returns an estimate of the energy norm of its change.
+    ///
+    /// # Errors
+    /// [`Outcome::NotFinite`], and those of sweeps and correction.
+    pub fn cycle(
+        &mut self,
+        sweeps: usize,
+        preconditioner: &mut dyn Preconditioner<T>,
+    ) -> Result<f64, Outcome> {
+        self.cycles += 1;
+        // a bound is that of the values for which it was computed
+        self.algebraic_bound = None;
+        let mut by_sweeps = 0.0;
+        for _ in 0..sweeps {
+            by_sweeps += self.gauss_seidel_sweep()?;
+        }
+        let by_correction = self.correct(preconditioner)?;
+        if !(self.energy_norm.is_finite() && by_sweeps.is_finite()) {
+            return Err(Outcome::NotFinite);
+        }
+        Ok((by_sweeps + by_correction).sqrt())
+    }
+
+    /// One sweep of projected Gauss-Seidel. Returns the sum of `d_i (change of u_i)^2`, an estimate
+    /// of the square of the energy norm of the change.
+    ///
+    /// # Errors
+    /// [`Outcome::NotCoercive`] for a diagonal entry that is not positive.
+    fn gauss_seidel_sweep(&mut self) -> Result<f64, Outcome> {
+        let Inequality { matrix, load, bounds, .. } = self.inequality;
+        let mut sum = 0.0;
+        for (i, (bound, &d)) in bounds.iter().zip(&self.diagonal).enumerate() {
+            if bound.fixed_value().is_some() {
+                continue;
+            }
+            if d <= T::lit(0.0) {
+                return Err(Outcome::NotCoercive);
+            }
+            let residual = load[i] - matrix.row_dot(i, &self.values);
+            let next = bound.nearest(self.values[i] + residual / d);
+            let change = (next - self.values[i]).to_f64();
+            sum += d.to_f64() * change * change;
+            self.values[i] = next;
+        }
+        Ok(sum)
+    }
+
+    /// One linear correction of the inactive unknowns with exact line search. Returns the square of
+    /// the energy norm of the change; zero if nothing changes, because the coarsest matrix is
+    /// singular or the projected correction is no direction of descent.
+    ///
+    /// # Errors
+    /// The outcome if the matrix is not positive definite or has no factors for another reason.
+    fn correct(&mut self, preconditioner: &mut dyn Preconditioner<T>) -> Result<f64, Outcome> {
+        let Inequality { matrix, bounds, .. } = self.inequality;
+        self.eliminate_active();
+        if self.eliminated != self.fixed {
+            self.fixed.clear();
+            match preconditioner.set_fixed(&self.eliminated) {
+                Ok(()) => self.fixed.extend_from_slice(&self.eliminated),
+                // only the bounds prevent a rigid motion; the sweeps converge without the correction
+                Err(FactorError::Singular) if bounds.iter().any(|bound| bound.is_inequality()) => {
+                    return Ok(0.0);
+                }
+                // a definite matrix has a negative pivot by rounding only
+                Err(FactorError::NotPositive) => {
+                    return self.check_definite().and(Err(Outcome::Stalled));
+                }
+                Err(error) => return Err(error.into()),
+            }
+        }
+        preconditioner.apply(&self.residual, &mut self.correction);
+        for (i, correction) in self.correction.iter_mut().enumerate() {
+            *correction = if self.eliminated[i] {
+                T::lit(0.0)
+            } else {
+                bounds[i].nearest(self.values[i] + *correction) - self.values[i]
+            };
+        }
+        let (mut slope, mut curvature) = (0.0, 0.0);
+        let inactive = |(i, _): &(usize, &T)| !self.eliminated[*i];
+        for (i, correction) in self.correction.iter().enumerate().filter(inactive) {
+            slope += self.residual[i].to_f64() * correction.to_f64();
+            curvature += correction.to_f64() * matrix.row_dot_f64(i, &self.correction);
+        }
+        if slope <= 0.0 {
+            return Ok(0.0);
+        }
+        if curvature <= 0.0 {
+            return self.check_definite().and(Ok(0.0));
+        }
+        let length = T::lit((slope / curvature).min(self.ratio_test()));
+        let corrections = self.correction.iter().zip(bounds);
+        for (value, (correction, bound)) in self.values.iter_mut().zip(corrections) {
+            *value = bound.nearest(*value + length * *correction);
+        }
+        Ok(curvature * length.to_f64().powi(2))
+    }
+
+    /// Decides by factors whether a direction that is not positive is one by rounding.
+    ///
+    /// # Errors
+    /// The outcome if it is not, or if there are no factors.
+    fn check_definite(&mut self) -> Result<(), Outcome> {
+        if !self.is_definite {
+            outcome_of_not_positive(self.inequality).map_or(Ok(()), Err)?;
+            self.is_definite = true;
+        }
+        Ok(())
+    }
+
+    /// Marks fixed and active unknowns as eliminated and computes the energy norm of the values and the
+    /// residual: zero on eliminated unknowns, `b - A u` on inactive ones.
+    fn eliminate_active(&mut self) {
+        let inequality = self.inequality;
+        inequality.residual_f64(&self.values, &mut self.whole_residual);
+        let diagonal = |i: usize| match self.diagonal[i].to_f64() {
+            d if d > 0.0 => d,
+            _ => positive_diagonal(inequality, i),
+        };
+        let residual = &self.whole_residual;
+        self.energy_norm =
+            Scales::of(inequality, &self.values, residual, &[], &diagonal, 1.0).energy_norm;
+        for (i, bound) in inequality.bounds.iter().enumerate() {
+            let x = self.values[i];
+            self.eliminated[i] = bound.fixed_value().is_some()
+                || bound.lower().is_some_and(|l| x <= l)
+                || bound.upper().is_some_and(|u| x >= u);
+            let residual = if self.eliminated[i] { 0.0 } else { self.whole_residual[i] };
+            self.residual[i] = T::lit(residual);
+        }
+    }
+
+    /// The ratio test: the largest multiple of the projected correction that the bounds admit, at
+    /// least one; infinite if no bound limits it.
+    fn ratio_test(&self) -> f64 {
+        let mut longest = f64::INFINITY;
+        for (i, bound) in self.inequality.bounds.iter().enumerate() {
+            let (x, step) = (self.values[i].to_f64(), self.correction[i].to_f64());
+            match (bound.lower(), bound.upper()) {
+                (Some(l), _) if step < 0.0 => longest = longest.min((l.to_f64() - x) / step),
+                (_, Some(u)) if step > 0.0 => longest = longest.min((u.to_f64() - x) / step),
+                _ => {}
+            }
+        }
+        longest.max(1.0)
+    }
+}

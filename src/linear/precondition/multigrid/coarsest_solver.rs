@@ -1,0 +1,101 @@
+//! The coarsest level of a multigrid method, solved with factors on its free unknowns.
+
+use super::level::Level;
+use crate::algebra::SparseMatrix;
+use crate::linear::direct::{FactorError, Factors};
+use crate::linear::precondition::coarse_level::MAX_COARSEST_FACTORED;
+use crate::real::Real;
+
+/// The factors of the coarsest level on its free unknowns; without factors the level is smoothed.
+pub(super) struct CoarsestSolver<T> {
+    free: Vec<u32>,
+    factors: Option<Factors<T>>,
+    /// Whether the matrix of the factors has recomputed rows.
+    has_recomputed_rows: bool,
+    values: Vec<T>,
+    /// The divisor of the matrices of all levels.
+    scale: f64,
+}
+
+impl<T: Real> CoarsestSolver<T> {
+    /// The solver without factors.
+    pub fn new(scale: f64) -> Self {
+        let (free, values) = (Vec::new(), Vec::new());
+        Self { free, factors: None, has_recomputed_rows: false, values, scale }
+    }
+
+    /// Whether there are factors.
+    pub fn has_factors(&self) -> bool {
+        self.factors.is_some()
+    }
+
+    /// Factors the coarsest level, or updates its smoother if it is too large for factors.
+    ///
+    /// # Errors
+    /// [`FactorError`] if the matrix is not positive definite.
+    pub fn update(&mut self, level: &mut Level<'_, T>) -> Result<(), FactorError> {
+        let free = (0..level.fixed.len() as u32).filter(|&i| !level.fixed[i as usize]);
+        let free: Vec<u32> = free.collect();
+        if free.len() > MAX_COARSEST_FACTORED {
+            self.factors = None;
+            level.update_smoother(self.scale)?;
+            return Ok(());
+        }
+        // Discarded, because its rows are not updated while factors are used.
+        level.smoother = None;
+        let has_recomputed_rows = !level.recomputed_rows.is_empty();
+        let is_same_set = self.factors.is_some() && free == self.free;
+        if !is_same_set || has_recomputed_rows || self.has_recomputed_rows {
+            self.factors = None;
+            self.factors = Some(factor(level, &free)?);
+            (self.free, self.has_recomputed_rows) = (free, has_recomputed_rows);
+        }
+        Ok(())
+    }
+
+    /// Sets `x` to the solution with the factors on free unknowns, and to zero on fixed ones.
+    pub fn solve(&mut self, right_side: &[f32], x: &mut [f32]) {
+        let Some(factors) = &self.factors else { return };
+        self.values.clear();
+        self.values.extend(self.free.iter().map(|&i| T::lit(f64::from(right_side[i as usize]))));
+        factors.solve_in_place(&mut self.values, 1);
+        x.fill(0.0);
+        for (&i, value) in self.free.iter().zip(&self.values) {
+            x[i as usize] = (value.to_f64() * self.scale) as f32;
+        }
+    }
+}
+
+/// The Cholesky factor of a level on the unknowns `free`. Truncated functions can be linearly dependent; the matrix is
+/// then made positive definite by multiplication of its diagonal by `1 + sqrt(eps)`, `eps` machine epsilon.
+///
+/// # Errors
+/// See [`FactorError`].
+fn factor<T: Real>(level: &Level<'_, T>, free: &[u32]) -> Result<Factors<T>, FactorError> {
+    if level.recomputed_rows.is_empty() {
+        return Factors::new(&level.matrix, true, free);
+    }
+    let mut matrix = SparseMatrix::clone(&level.matrix);
+    for &j in &level.recomputed_rows {
+        let range = row_range(&matrix, j);
+        matrix.values[range].copy_from_slice(level.row(j as usize).1);
+    }
+    match Factors::new(&matrix, true, free) {
+        Err(FactorError::NotPositive | FactorError::Singular) => {
+            for j in 0..matrix.size() as u32 {
+                let range = row_range(&matrix, j);
+                if let Ok(k) = matrix.columns[range.clone()].binary_search(&j) {
+                    matrix.values[range.start + k] *= T::lit(1.0 + T::EPSILON.sqrt());
+                }
+            }
+            Factors::new(&matrix, true, free)
+        }
+        other => other,
+    }
+}
+
+/// The positions of row `j` in the columns and values of a matrix.
+fn row_range<T>(matrix: &SparseMatrix<T>, j: u32) -> std::ops::Range<usize> {
+    let j = j as usize;
+    matrix.row_starts[j] as usize..matrix.row_starts[j + 1] as usize
+}

@@ -1,0 +1,112 @@
+//! The grammar: precedence of operators, numbers, names and calls.
+
+use winnow::ascii::multispace0;
+use winnow::combinator::{
+    Infix, Prefix, alt, cut_err, delimited, expression, opt, preceded, separated,
+};
+use winnow::error::{ModalError, ParserError};
+use winnow::prelude::*;
+use winnow::token::{literal, one_of, take_while};
+
+use super::functions::{power, truth};
+use super::node::Node;
+
+/// An error of the parser.
+#[derive(Debug)]
+pub(super) struct Left {
+    /// The number of bytes that were left.
+    pub bytes: usize,
+    /// Whether no other branch can read them.
+    is_final: bool,
+}
+
+impl<'i> ParserError<&'i str> for Left {
+    type Inner = Self;
+    fn from_input(input: &&'i str) -> Self {
+        Left { bytes: input.len(), is_final: false }
+    }
+    fn is_backtrack(&self) -> bool {
+        !self.is_final
+    }
+    fn into_inner(self) -> Result<Self, Self> {
+        Ok(self)
+    }
+}
+
+impl ModalError for Left {
+    fn cut(self) -> Self {
+        Left { is_final: true, ..self }
+    }
+    fn backtrack(self) -> Self {
+        Left { is_final: false, ..self }
+    }
+}
+
+type Parsed<O> = Result<O, Left>;
+
+/// An operation on two numbers, as an infix operator applies it to nodes.
+macro_rules! of_two {
+    ($operation:expr) => {
+        |_: &mut _, a, b| Ok(Node::two($operation, a, b))
+    };
+}
+
+/// An expression of any precedence, and the white space after it.
+pub(super) fn sum(input: &mut &str) -> Parsed<Node> {
+    let sign = alt((
+        ('-', multispace0).value(Prefix(9, |_: &mut _, a| Ok(Node::One(|a| -a, Box::new(a))))),
+        ('+', multispace0).value(Prefix(9, |_: &mut _, a| Ok(a))),
+        ('!', multispace0)
+            .value(Prefix(9, |_: &mut _, a| Ok(Node::One(|a| truth(a == 0.0), Box::new(a))))),
+    ));
+    let operator = |text: &'static str| (literal(text), multispace0);
+    let logic = alt((
+        operator("||").value(Infix::Left(2, of_two!(|a, b| truth(a != 0.0 || b != 0.0)))),
+        operator("&&").value(Infix::Left(3, of_two!(|a, b| truth(a != 0.0 && b != 0.0)))),
+        operator("<=").value(Infix::Neither(4, of_two!(|a, b| truth(a <= b)))),
+        operator(">=").value(Infix::Neither(4, of_two!(|a, b| truth(a >= b)))),
+        operator("==").value(Infix::Neither(4, of_two!(|a, b| truth(a == b)))),
+        operator("!=").value(Infix::Neither(4, of_two!(|a, b| truth(a != b)))),
+        operator("<").value(Infix::Neither(4, of_two!(|a, b| truth(a < b)))),
+        operator(">").value(Infix::Neither(4, of_two!(|a, b| truth(a > b)))),
+    ));
+    let arithmetic = alt((
+        operator("+").value(Infix::Left(6, of_two!(|a, b| a + b))),
+        operator("-").value(Infix::Left(6, of_two!(|a, b| a - b))),
+        operator("**").value(Infix::Right(11, of_two!(power))),
+        operator("*").value(Infix::Left(8, of_two!(|a, b| a * b))),
+        operator("/").value(Infix::Left(8, of_two!(|a, b| a / b))),
+        operator("^").value(Infix::Right(11, of_two!(power))),
+    ));
+    expression(operand).prefix(sign).infix(alt((logic, arithmetic))).parse_next(input)
+}
+
+fn operand(input: &mut &str) -> Parsed<Node> {
+    let parentheses = delimited(('(', multispace0), cut_err(sum), cut_err(')'));
+    (alt((number, call_or_name, parentheses)), multispace0).map(|(node, _)| node).parse_next(input)
+}
+
+fn number(input: &mut &str) -> Parsed<Node> {
+    let digits = |c: char| c.is_ascii_digit();
+    let mantissa = alt((
+        (take_while(1.., digits), opt(('.', take_while(0.., digits)))).take(),
+        ('.', take_while(1.., digits)).take(),
+    ));
+    let exponent = (one_of(['e', 'E']), opt(one_of(['+', '-'])), take_while(1.., digits));
+    (mantissa, opt(exponent)).take().parse_to().map(Node::Number).parse_next(input)
+}
+
+/// A name, with the arguments of a function where a parenthesis follows.
+fn call_or_name(input: &mut &str) -> Parsed<Node> {
+    let is_first = |c: char| c.is_ascii_alphabetic() || c == '_';
+    let is_other = |c: char| c.is_ascii_alphanumeric() || c == '_';
+    let start = input.len();
+    let name = (one_of(is_first), take_while(0.., is_other)).take().parse_next(input)?.to_owned();
+    if preceded(multispace0::<&str, Left>, '(').parse_next(&mut &**input).is_err() {
+        return Ok(Node::Name(name, start));
+    }
+    let comma = (',', multispace0);
+    let list = separated(0.., sum, comma);
+    let arguments = delimited((multispace0, '(', multispace0), list, cut_err(')'));
+    arguments.map(|arguments| Node::Call(name.clone(), start, arguments)).parse_next(input)
+}

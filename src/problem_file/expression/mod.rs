@@ -1,0 +1,185 @@
+//! Expressions in x, y, z, as one writes them on paper: `-x^2` is `-(x^2)`, `2^3^2` is `2^(3^2)`.
+//!
+//! | file | content |
+//! |---|---|
+//! | `mod` | [`Expression`]: reading and values |
+//! | `grammar` | the parser |
+//! | `names` | the meaning of names |
+//! | `functions` | functions and constants |
+//! | `node` | the tree of an expression |
+
+mod functions;
+mod grammar;
+mod names;
+mod node;
+
+use winnow::ascii::multispace0;
+use winnow::combinator::preceded;
+use winnow::prelude::*;
+
+use grammar::{Left, sum};
+use names::{SyntaxError, resolve};
+use node::Node;
+
+/// Longest expression, in characters, and deepest nesting of parentheses, powers and signs: the parser
+/// descends into them.
+const LONGEST: usize = 1000;
+const DEEPEST: usize = 100;
+
+/// An expression that has been read.
+#[derive(Clone, Debug)]
+pub(super) struct Expression(Node);
+
+impl Expression {
+    /// Reads an expression in these variables.
+    pub fn parse(text: &str, variables: &[&str]) -> Result<Self, SyntaxError> {
+        let at = |offset: usize, message: String| SyntaxError { offset, message };
+        if text.chars().count() > LONGEST {
+            return Err(at(0, format!("an expression has at most {LONGEST} characters")));
+        }
+        if nesting(text) > DEEPEST {
+            return Err(at(0, format!("parentheses and powers are nested {DEEPEST} deep at most")));
+        }
+        let mut rest = text;
+        let node = preceded(multispace0, sum).parse_next(&mut rest);
+        let offset = match &node {
+            Ok(_) if rest.is_empty() => text.len(),
+            // where the last complete part ends
+            Ok(_) => text.len() - rest.len(),
+            Err(Left { bytes, .. }) => text.len() - bytes,
+        };
+        match node {
+            Ok(node) if rest.is_empty() => Ok(Self(resolve(node, text.len(), variables)?)),
+            _ if offset == text.len() => Err(at(
+                offset,
+                "the expression ends where a number, a name or a parenthesis is expected"
+                    .to_owned(),
+            )),
+            _ => {
+                let found: String = text[offset..].chars().take(12).collect();
+                Err(at(offset, format!("`{found}` is not expected here")))
+            }
+        }
+    }
+
+    /// The value for values of the variables.
+    pub fn value(&self, variables: &[f64]) -> f64 {
+        self.0.value(variables)
+    }
+    /// The value of an expression without variables.
+    pub fn constant(&self) -> Option<f64> {
+        (!self.0.has_variables()).then(|| self.0.value(&[]))
+    }
+}
+
+/// A bound of the depth to which the parser descends.
+fn nesting(text: &str) -> usize {
+    let (mut depth, mut deepest, mut powers, mut signs, mut most_signs) =
+        (0_usize, 0, 0, 0_usize, 0);
+    for c in text.chars().filter(|c| !c.is_whitespace()) {
+        match c {
+            '(' => depth += 1,
+            ')' => depth = depth.saturating_sub(1),
+            '^' => powers += 1,
+            _ => {}
+        }
+        signs = if matches!(c, '+' | '-' | '!') { signs + 1 } else { 0 };
+        most_signs = most_signs.max(signs);
+        deepest = deepest.max(depth);
+    }
+    deepest + powers + text.matches("**").count() + most_signs
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Expression;
+    use std::f64::consts::{E, PI};
+
+    const VARIABLES: [&str; 3] = ["x", "y", "z"];
+
+    fn at(text: &str, x: [f64; 3]) -> f64 {
+        match Expression::parse(text, &VARIABLES) {
+            Ok(expression) => expression.value(&x),
+            Err(error) => panic!("{text}: {error:?}"),
+        }
+    }
+
+    #[test]
+    fn expressions_mean_what_they_mean_on_paper() {
+        let x = [2.0, 3.0, 5.0];
+        for (text, expected) in [
+            ("-x^2", -4.0),
+            ("2^3^2", 512.0),
+            ("2**3", 8.0),
+            ("x^-1", 0.5),
+            ("2^-x*3", 0.75),
+            ("-x*y", -6.0),
+            ("x - y - z", -6.0),
+            ("x / y / z", 2.0 / 15.0),
+            ("1 - -x", 3.0),
+            ("- (x + y) * z", -25.0),
+            ("1e-3 * x", 2e-3),
+            ("1.5E+2", 150.0),
+            (".5 + 2. + 1e2", 102.5),
+            ("2 * e", 2.0 * E),
+            ("sin(pi / x)", (PI / 2.0).sin()),
+            ("-sin(x)^2", -(2.0_f64.sin().powi(2))),
+            ("min(x, y, z) + max(x,y)", 5.0),
+            ("atan2(y, x)", 3.0_f64.atan2(2.0)),
+            ("pow(x, 3) + hypot(3, 4)", 13.0),
+            ("if(x < y, 1, 2)", 1.0),
+            ("if(x >= y || z == 5, 1, 2)", 1.0),
+            ("if(x <= y && z != 5, 1, 2)", 2.0),
+            ("!(x > y) + (x > 1)", 2.0),
+            ("x + 1 > y - 1", 1.0),
+            ("sign(-x) + sign(0) + sign(z)", 0.0),
+            ("abs(-x) + sqrt(4) + exp(0) + ln(e) + log10(100)", 8.0),
+            ("  ( ( x ) )\n + 1 ", 3.0),
+            ("-10 * sin(pi * x) * y", -30.0 * (2.0 * PI).sin()),
+        ] {
+            let found = at(text, x);
+            assert!((found - expected).abs() <= 1e-14 * expected.abs(), "{text}: {found}");
+        }
+    }
+
+    #[test]
+    fn errors_have_their_place() {
+        for (text, offset, words) in [
+            ("", 0, "ends"),
+            ("x +", 3, "ends"),
+            ("2x", 1, "`x` is not expected"),
+            ("x + * y", 4, "`* y` is not expected"),
+            ("(x + y", 6, "ends"),
+            ("x)", 1, "`)` is not expected"),
+            ("1 + foo(x)", 4, "there is no function `foo`"),
+            ("1 + w", 4, "there is no `w`; there are x, y, z, e, pi"),
+            ("x + sin(x, y)", 4, "sin takes one argument, not 2"),
+            ("if(x, 1)", 0, "a condition and two values"),
+            ("max(x)", 0, "two or more"),
+            ("x < y < z", 6, "`< z` is not expected"),
+            ("x = 1", 2, "`= 1` is not expected"),
+            ("x $ 1", 2, "`$ 1` is not expected"),
+            ("inf", 0, "there is no `inf`"),
+        ] {
+            let error = Expression::parse(text, &VARIABLES).unwrap_err();
+            assert_eq!(error.offset, offset, "{text}: {error:?}");
+            assert!(error.message.contains(words), "{text}: {error:?}");
+        }
+    }
+
+    #[test]
+    fn long_and_deep_expressions_are_refused() {
+        let deep = "(".repeat(500) + "x" + &")".repeat(500);
+        for text in [
+            deep,
+            "x^".repeat(300) + "x",
+            "x**".repeat(300) + "x",
+            "-".repeat(300) + "x",
+            "x+".repeat(2000) + "x",
+        ] {
+            assert!(Expression::parse(&text, &VARIABLES).is_err());
+        }
+        let sum = "x+".repeat(450) + "x";
+        assert_eq!(at(&sum, [1.0; 3]), 451.0);
+    }
+}

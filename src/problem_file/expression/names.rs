@@ -1,0 +1,82 @@
+//! The meaning of names: variables, constants and functions.
+
+use super::functions::{CONSTANTS, FUNCTIONS, FUNCTIONS_OF_MANY, FUNCTIONS_OF_TWO};
+use super::node::Node;
+
+/// Why an expression cannot be read, and where: an offset in bytes.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct SyntaxError {
+    pub offset: usize,
+    pub message: String,
+}
+
+/// Gives names their meaning.
+pub(super) fn resolve(node: Node, length: usize, variables: &[&str]) -> Result<Node, SyntaxError> {
+    let of = |node| resolve(node, length, variables);
+    Ok(match node {
+        Node::One(f, a) => Node::One(f, Box::new(of(*a)?)),
+        Node::Two(f, ab) => {
+            let (a, b) = *ab;
+            Node::two(f, of(a)?, of(b)?)
+        }
+        Node::Name(name, left) => {
+            if let Some(k) = variables.iter().position(|variable| *variable == name) {
+                return Ok(Node::Variable(k));
+            }
+            match CONSTANTS.iter().find(|(constant, _)| *constant == name) {
+                Some((_, value)) => Node::Number(*value),
+                None => {
+                    let known = variables.iter().chain(CONSTANTS.iter().map(|(name, _)| name));
+                    let known: Vec<&str> = known.copied().collect();
+                    let message = format!("there is no `{name}`; there are {}", known.join(", "));
+                    return Err(SyntaxError { offset: length - left, message });
+                }
+            }
+        }
+        Node::Call(name, left, arguments) => {
+            let arguments = arguments.into_iter().map(of).collect::<Result<Vec<_>, _>>()?;
+            call(&name, arguments)
+                .map_err(|message| SyntaxError { offset: length - left, message })?
+        }
+        other => other,
+    })
+}
+
+/// A function with its arguments.
+fn call(name: &str, arguments: Vec<Node>) -> Result<Node, String> {
+    let n = arguments.len();
+    let wrong_number = |expected: &str| Err(format!("{name} takes {expected}, not {n}"));
+    let mut arguments = arguments.into_iter();
+    let mut next = || arguments.next().unwrap_or(Node::Number(f64::NAN));
+    if let Some((_, f)) = FUNCTIONS.iter().find(|(known, _)| *known == name) {
+        return if n == 1 {
+            Ok(Node::One(*f, Box::new(next())))
+        } else {
+            wrong_number("one argument")
+        };
+    }
+    if let Some((_, f)) = FUNCTIONS_OF_TWO.iter().find(|(known, _)| *known == name) {
+        return if n == 2 {
+            Ok(Node::two(*f, next(), next()))
+        } else {
+            wrong_number("two arguments")
+        };
+    }
+    if let Some((_, f)) = FUNCTIONS_OF_MANY.iter().find(|(known, _)| *known == name) {
+        if n < 2 {
+            return wrong_number("two or more arguments");
+        }
+        let first = next();
+        return Ok(arguments.fold(first, |a, b| Node::two(*f, a, b)));
+    }
+    if name == "if" {
+        return match n {
+            3 => Ok(Node::If(Box::new((next(), next(), next())))),
+            _ => wrong_number("a condition and two values"),
+        };
+    }
+    let of_many = FUNCTIONS_OF_TWO.iter().chain(&FUNCTIONS_OF_MANY).map(|(name, _)| *name);
+    let known: Vec<&str> =
+        FUNCTIONS.iter().map(|(name, _)| *name).chain(of_many).chain(["if"]).collect();
+    Err(format!("there is no function `{name}`; there are {}", known.join(", ")))
+}
