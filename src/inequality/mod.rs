@@ -51,8 +51,9 @@ mod violations;
 
 pub use active_set::{ActiveSet, Globalisation, Preconditioned};
 pub use by_name::{SOLVERS, SolverOptions, solver_by_name};
+pub(crate) use certificate::count_active;
 pub(crate) use certificate::energy_norm;
-pub use certificate::{Certificate, contact_of, count_active};
+pub use certificate::{Certificate, contact_of};
 pub use energy_error_bound::energy_error_bound;
 pub use initial_guess::InitialGuess;
 pub use monotone_multigrid::MonotoneMultigrid;

@@ -21,7 +21,7 @@ pub(crate) mod table;
 
 pub use crate::nested::Phase;
 pub use compatibility::check_fit;
-pub use extrapolate::{Extrapolated, Limit, extrapolate, limit};
+pub use extrapolate::{Extrapolated, Limit};
 #[cfg(feature = "report")]
 pub use file_name::file_name;
 #[cfg(feature = "report")]
