@@ -22,8 +22,12 @@ pub mod facet;
 mod files;
 pub mod guide;
 pub mod inequality;
+#[cfg(not(feature = "cli"))]
+mod input;
+#[cfg(feature = "cli")]
 pub mod input;
 mod instances;
+#[cfg(feature = "kit")]
 pub mod kit;
 pub mod linear;
 pub mod measure;
