@@ -40,7 +40,7 @@ pub use data_quadrature::DataQuadrature;
 use facet_coefficients::FacetCoefficients;
 pub use penalty_below_bound::PenaltyBelowBound;
 use shared_rows::SharedRows;
-pub use space::contradictions::Contradictions;
+pub(crate) use space::contradictions::Contradictions;
 use space::metric::Metrics;
 use space::{AnyElement, Space};
 
@@ -234,7 +234,7 @@ impl<'a, T: Real, const D: usize> Discretisation<'a, T, D> {
     ///
     /// # Errors
     /// [`Error::EmptyConstraint`], but on a [part](crate::mesh::Part) of a mesh: see
-    /// [`Discretisation::contradictions`]. [`Error::DataNotFinite`].
+    /// [`check_bounds`](crate::distributed::check_bounds). [`Error::DataNotFinite`].
     pub fn bounds(&self) -> Result<Vec<Bound<T>>, Error> {
         compiled!(
             T, D: fn(&Discretisation<'_, T, D>) -> Result<Vec<Bound<T>>, Error>
@@ -256,7 +256,7 @@ impl<'a, T: Real, const D: usize> Discretisation<'a, T, D> {
     ///
     /// # Errors
     /// [`Error::DataNotFinite`].
-    pub fn contradictions(&self) -> Result<&Contradictions<D>, Error> {
+    pub(crate) fn contradictions(&self) -> Result<&Contradictions<D>, Error> {
         compiled!(
             T, D: for<'d> fn(&'d Discretisation<'_, T, D>) -> Result<&'d Contradictions<D>, Error>
                 = |of| of.find_contradictions()

@@ -62,7 +62,8 @@ pub use solution::Solution;
 pub use stage::{Stage, StageRun};
 pub use step_counter::StepCounter;
 pub(crate) use validation::check_definite;
-pub use violations::{Violations, certify, certify_with_jump_multipliers};
+pub(crate) use violations::certify_with_jump_multipliers;
+pub use violations::{Violations, certify};
 
 use crate::algebra::Inequality;
 use crate::real::Real;
