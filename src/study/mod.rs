@@ -10,6 +10,7 @@ mod file_name;
 mod journal;
 mod memory;
 mod orders;
+#[cfg(feature = "parts")]
 mod part_figures;
 pub(crate) mod rates;
 mod reference;
@@ -31,7 +32,10 @@ pub use orders::{
     ObservedOrders, OrderMissed, OrderVerdict, OrdersMissed, fill_orders, orders_summary,
     orders_table,
 };
+#[cfg(feature = "parts")]
 pub use part_figures::{PartFigures, PartSeconds};
 pub use report::{Program, Report};
 pub use row::{Iterations, Orders, Row, RowKey, Seconds};
-pub use runner::{PartChecks, Progress, Study};
+#[cfg(feature = "parts")]
+pub use runner::PartChecks;
+pub use runner::{Progress, Study};
