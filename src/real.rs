@@ -67,6 +67,6 @@ pub type Point<T, const D: usize> = nalgebra::SVector<T, D>;
 
 /// The point in `f64`, in which all data are evaluated.
 #[inline(always)]
-pub fn point_f64<T: Real, const D: usize>(x: &Point<T, D>) -> Point<f64, D> {
+pub(crate) fn point_f64<T: Real, const D: usize>(x: &Point<T, D>) -> Point<f64, D> {
     Point::from_fn(|k, _| x[k].to_f64())
 }

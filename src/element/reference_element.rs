@@ -54,7 +54,7 @@ impl Layout {
     note = "elements exist on simplices of dimension 1, 2 and 3"
 )]
 pub trait ReferenceElement<T: Real, const D: usize>: Copy + Send + Sync + 'static {
-    /// Number of basis functions, at most [`MAX_BASIS`].
+    /// Number of basis functions, at most 20: as many as cubics on a tetrahedron have.
     const N: usize;
     /// Largest degree of which the span of the basis contains all polynomials: what the element
     /// reproduces and what determines the orders of convergence.

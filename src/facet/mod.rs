@@ -33,7 +33,7 @@ pub use none::NoFacets;
 pub use over_penalty::{OverPenalty, WeightRule};
 pub use parameters::PenaltyParameters;
 pub use proven::proven_bound;
-pub use theory::{FormTheory, LeastPenalty};
+pub use theory::FormTheory;
 pub use view::{FacetKind, FacetView, Side};
 
 use std::any::Any;

@@ -50,7 +50,7 @@ pub struct Certificate {
     pub complementarity: f64,
     /// Dual norm of the residual on inactive unknowns divided by `E`; or, if larger, the largest
     /// difference between a jump and the jump that its multiplier determines, divided by `U`
-    /// ([`certify_with_jump_multipliers`](super::certify_with_jump_multipliers)).
+    /// ([`Violations::of`](super::Violations::of)).
     #[cfg_attr(feature = "report", serde(deserialize_with = "crate::input::number_or_infinity"))]
     pub residual: f64,
     /// Bound on the relative algebraic error in the energy norm, if the solver computes one; else

@@ -51,8 +51,9 @@ mod violations;
 
 pub use active_set::{ActiveSet, Globalisation, Preconditioned};
 pub use by_name::{SOLVERS, SolverOptions, solver_by_name};
+pub(crate) use certificate::count_active;
 pub(crate) use certificate::energy_norm;
-pub use certificate::{Certificate, contact_of, count_active};
+pub use certificate::{Certificate, contact_of};
 pub use energy_error_bound::energy_error_bound;
 pub use initial_guess::InitialGuess;
 pub use monotone_multigrid::MonotoneMultigrid;
@@ -61,7 +62,8 @@ pub use solution::Solution;
 pub use stage::{Stage, StageRun};
 pub use step_counter::StepCounter;
 pub(crate) use validation::check_definite;
-pub use violations::{Violations, certify, certify_with_jump_multipliers};
+pub(crate) use violations::certify_with_jump_multipliers;
+pub use violations::{Violations, certify};
 
 use crate::algebra::Inequality;
 use crate::real::Real;

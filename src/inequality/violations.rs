@@ -12,11 +12,7 @@ pub fn certify<T: Real>(inequality: &Inequality<T>, u: &[T]) -> Certificate {
     certify_with_jump_multipliers(inequality, u, &[])
 }
 
-/// The certificate of `u` together with the jump multipliers `p` of a
-/// [`PenalisedMatrix`](crate::algebra::PenalisedMatrix): the residual is `c - K u - M^T p`, without the
-/// rounding of differences of values, and the largest `|g - M u + p / s|`, `s` the weight of a jump, is
-/// divided by `U`.
-/// Without jump multipliers, or if their number is not that of the jumps, `p = S (M u - g)`.
+/// The certificate of `u` together with jump multipliers: see [`Violations::of`].
 #[must_use]
 pub fn certify_with_jump_multipliers<T: Real>(
     inequality: &Inequality<T>,
@@ -90,9 +86,13 @@ pub struct Violations {
 
 impl Violations {
     /// The violations at the unknowns for which `owns` is true, of the values `u` of all unknowns of a part and
-    /// of as many jump multipliers as its penalised matrix has jumps, or none; see
-    /// [`certify_with_jump_multipliers`]. A jump belongs to the part that
+    /// of as many jump multipliers as its penalised matrix has jumps, or none. A jump belongs to the part that
     /// owns its first unknown.
+    ///
+    /// With the jump multipliers `p` of a [`PenalisedMatrix`](crate::algebra::PenalisedMatrix) the residual is
+    /// `c - K u - M^T p`, without the rounding of differences of values, and the largest `|g - M u + p / s|`, `s`
+    /// the weight of a jump, is divided by `U`. Without jump multipliers, or if their number is not that of the
+    /// jumps, `p = S (M u - g)`.
     #[must_use]
     pub fn of<T: Real>(
         inequality: &Inequality<T>,

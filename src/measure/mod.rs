@@ -19,5 +19,6 @@ pub(crate) use contact::contact_difference;
 pub use error_norm::ErrorNorm;
 pub use errors::{ContactErrors, Errors};
 pub use fields::Fields;
-pub use order::{FittedOrder, fit_order, observed_order};
+pub use order::FittedOrder;
+pub(crate) use order::{fit_order, observed_order};
 pub use squared_errors::SquaredErrors;

@@ -4,12 +4,7 @@ use crate::study::row::Row;
 use serde::Serialize;
 use serde_json::Value;
 
-/// Rows as comma-separated values after a header of keys, nested keys joined by dots (`error.l2`,
-/// `iterations.outer`). A value that does not apply is an empty cell; several warnings are
-/// separated by `"; "`.
-///
-/// Lines are made from the same serialisation as the JSON report, so that the two agree in keys,
-/// order and digits. Without rows there are no keys, and the text is empty.
+/// Rows as comma-separated values: see `Report::to_csv`.
 pub fn to_csv(rows: &[Row]) -> String {
     lines(rows)
 }

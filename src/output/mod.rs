@@ -8,7 +8,6 @@ mod provenance;
 mod report;
 pub(crate) mod table;
 
-pub use csv::to_csv;
 pub use latex::LATEX_PACKAGES;
 pub use provenance::Provenance;
 pub use table::Table;

@@ -15,7 +15,12 @@ use crate::plot::{convergence, work_precision};
 use crate::study::{Report, Row, file_name};
 
 impl Report {
-    /// The rows as comma-separated values: see [`to_csv`](super::to_csv).
+    /// Rows as comma-separated values after a header of keys, nested keys joined by dots (`error.l2`,
+    /// `iterations.outer`). A value that does not apply is an empty cell; several warnings are
+    /// separated by `"; "`.
+    ///
+    /// Lines are made from the same serialisation as the JSON report, so that the two agree in keys,
+    /// order and digits. Without rows there are no keys, and the text is empty.
     pub fn to_csv(&self) -> String {
         csv::to_csv(&self.rows)
     }

@@ -20,9 +20,10 @@ mod exact;
 mod named;
 mod on_mesh;
 
-pub use datum::{BoundaryField, BoundaryFlux, Datum, Field, VectorField};
+pub(crate) use datum::Field;
+pub use datum::{BoundaryFlux, Datum};
 pub use exact::{ContactSet, Exact, ReferenceEnergy};
-pub use named::NamedData;
+pub(crate) use named::NamedData;
 pub(crate) use on_mesh::{DataByGroup, DataOnMesh, DatumRef};
 
 use std::fmt;
@@ -55,7 +56,7 @@ pub struct Problem<const D: usize> {
     /// Signorini gap `g` on the contact part.
     pub gap: Option<Datum<D>>,
     /// Data for named regions and boundary groups, which take precedence over those without a name.
-    pub named: NamedData<D>,
+    pub(crate) named: NamedData<D>,
     /// Where obstacles and gap bind; at the [`Nodes`] of the element where absent.
     pub constraint_set: Option<Arc<dyn ConstraintSet>>,
     /// The degree of the polynomials that all data given as functions are in each cell, where it is

@@ -7,6 +7,7 @@ const TOLERANCE: f64 = 1e-12;
 
 /// A monomial in barycentric coordinates, and its mean over the simplex.
 pub(crate) struct Moment {
+    #[cfg_attr(not(feature = "kit"), allow(dead_code))]
     pub powers: Vec<usize>,
     /// The mean by the rule.
     pub found: f64,

@@ -24,13 +24,6 @@ const ORDERS: [f64; 2] = [0.5, 12.0];
 /// the order that the figures themselves show (for halved mesh sizes the formula of Aitken). None where the
 /// figures do not tend to a limit like a power of the mesh size: where the differences change their sign or
 /// do not fall.
-///
-/// ```
-/// use unilateral::study::limit;
-/// let [h, figures] = [[0.5, 0.25, 0.125], [2.25, 2.0625, 2.015625]];
-/// let found = limit(figures, h).unwrap();
-/// assert!((found.value - 2.0).abs() < 1e-12 && (found.order.unwrap() - 2.0).abs() < 1e-12);
-/// ```
 #[must_use]
 pub fn limit(figures: [f64; 3], mesh_sizes: [f64; 3]) -> Option<Limit> {
     let ([a, b, c], [h, k, l]) = (figures, mesh_sizes);
@@ -106,4 +99,27 @@ pub fn extrapolate(rows: &[Row]) -> Vec<Extrapolated> {
         })
     };
     distinct(rows.iter().map(key)).into_iter().filter_map(of_series).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{extrapolate, limit};
+    use crate::prelude::*;
+    use crate::scenes::torsion_2d;
+
+    #[test]
+    fn a_power_of_the_mesh_size_has_its_limit_and_order() {
+        let [h, figures] = [[0.5, 0.25, 0.125], [2.25, 2.0625, 2.015625]];
+        let found = limit(figures, h).unwrap();
+        assert!((found.value - 2.0).abs() < 1e-12 && (found.order.unwrap() - 2.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn reports_extrapolate_their_rows() {
+        let study = Study::<f64, 2>::new(torsion_2d(5.0)).scheme(ConformingP1);
+        let study = study.scheme(Sipg::default());
+        let report = study.levels([4, 8, 16]).run().unwrap();
+        assert_eq!(report.extrapolated().len(), 2);
+        assert_eq!(report.extrapolated(), extrapolate(&report.rows));
+    }
 }

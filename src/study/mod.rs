@@ -10,6 +10,7 @@ mod file_name;
 mod journal;
 mod memory;
 mod orders;
+#[cfg(feature = "parts")]
 mod part_figures;
 pub(crate) mod rates;
 mod reference;
@@ -21,7 +22,7 @@ pub(crate) mod table;
 
 pub use crate::nested::Phase;
 pub use compatibility::check_fit;
-pub use extrapolate::{Extrapolated, Limit, extrapolate, limit};
+pub use extrapolate::{Extrapolated, Limit};
 #[cfg(feature = "report")]
 pub use file_name::file_name;
 #[cfg(feature = "report")]
@@ -31,7 +32,10 @@ pub use orders::{
     ObservedOrders, OrderMissed, OrderVerdict, OrdersMissed, fill_orders, orders_summary,
     orders_table,
 };
+#[cfg(feature = "parts")]
 pub use part_figures::{PartFigures, PartSeconds};
 pub use report::{Program, Report};
 pub use row::{Iterations, Orders, Row, RowKey, Seconds};
-pub use runner::{PartChecks, Progress, Study};
+#[cfg(feature = "parts")]
+pub use runner::PartChecks;
+pub use runner::{Progress, Study};

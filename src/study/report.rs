@@ -100,7 +100,13 @@ impl Report {
         text.push('\n');
         text
     }
-    /// The limits of energy, contact measure and resultant: see [`extrapolate`].
+    /// The limits of energy, contact measure and resultant of every series with three levels that converged,
+    /// from the three finest of them. Rows of one scene, label, constraint set and solver are a series.
+    /// Adaptive meshes have no limits: their sizes are not those of one family.
+    ///
+    /// A limit is that of three figures, coarsest mesh first, whose error is `C h^p`: Richardson extrapolation
+    /// with the order that the figures themselves show. None where they do not tend to a limit like a power of
+    /// the mesh size: where the differences change their sign or do not fall.
     #[must_use]
     pub fn extrapolated(&self) -> Vec<Extrapolated> {
         extrapolate(&self.rows)

@@ -16,7 +16,7 @@ pub use baseline::{Changes, changes};
 pub use case::Precision;
 pub use measured::{Case, Failure, Measured, Phases, Variant};
 pub use report::WorkReport;
-pub use work_at_error::{Standing, WorkAtError, WorkPoint, work_at};
+pub use work_at_error::{Standing, WorkAtError};
 
 use std::fmt;
 use std::path::PathBuf;

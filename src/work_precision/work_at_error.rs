@@ -31,13 +31,6 @@ pub struct WorkPoint {
 /// logarithmic scales. Points are ordered from coarse to fine. None where no two neighbours that
 /// both converged have the error between them: nothing is extrapolated, and no level that failed is
 /// bridged.
-///
-/// ```
-/// use unilateral::work_precision::{work_at, WorkPoint};
-/// let points = [1e-1, 1e-3].map(|error| WorkPoint { error: Some(error), work: 1.0 / error });
-/// assert!((work_at(&points, 1e-2).unwrap() - 100.0).abs() < 1e-10);
-/// assert_eq!(work_at(&points, 1e-4), None);
-/// ```
 pub fn work_at(points: &[WorkPoint], error: f64) -> Option<f64> {
     points.windows(2).find_map(|pair| {
         let (coarse, fine) = (pair[0].error?, pair[1].error?);
@@ -229,4 +222,45 @@ fn targets(curves: &Curves<'_>, norm: ErrorNorm) -> Vec<f64> {
     // read from text, so that the numbers are the nearest to what is written
     let numbers = (first..=last).rev().flat_map(digits).filter_map(|t| t.parse::<f64>().ok());
     numbers.filter(reached).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{WorkPoint, work_at};
+
+    fn close(a: f64, b: f64) -> bool {
+        (a - b).abs() <= 1e-12 * b.abs()
+    }
+
+    #[test]
+    fn work_is_found_between_levels_and_not_beyond_them() {
+        let points = [1e-1, 1e-3].map(|error| WorkPoint { error: Some(error), work: 1.0 / error });
+        assert!((work_at(&points, 1e-2).unwrap() - 100.0).abs() < 1e-10);
+        assert_eq!(work_at(&points, 1e-4), None);
+    }
+
+    #[test]
+    fn interpolation_is_exact_for_power_laws_and_ends_with_the_data() {
+        for (order, cost) in [(2.0, 3.0), (1.0, 2.0), (0.5, 1.1)] {
+            let point =
+                |n: f64| WorkPoint { error: Some(3.0 * n.powf(-order)), work: 7.0 * n.powf(cost) };
+            let points = [4.0, 9.0, 32.0].map(point);
+            for n in [4.0, 5.0, 9.0, 20.0, 32.0] {
+                let found = work_at(&points, point(n).error.unwrap()).unwrap();
+                assert!(close(found, point(n).work), "{order} {cost} {n}: {found}");
+            }
+            assert_eq!(work_at(&points, point(3.9).error.unwrap()), None);
+            assert_eq!(work_at(&points, point(32.1).error.unwrap()), None);
+        }
+    }
+
+    #[test]
+    fn a_level_that_failed_is_not_bridged_and_a_plateau_is_not_crossed_backwards() {
+        let point = |error: Option<f64>, work: f64| WorkPoint { error, work };
+        let gap = [point(Some(1e-1), 1.0), point(None, 2.0), point(Some(1e-3), 4.0)];
+        assert_eq!(work_at(&gap, 1e-2), None);
+        let up = [point(Some(1e-3), 1.0), point(Some(1e-1), 2.0)];
+        assert_eq!(work_at(&up, 1e-2), None);
+        assert_eq!(work_at(&[], 1e-2), None);
+    }
 }

@@ -82,7 +82,7 @@ impl<T: Real, const D: usize> Discretisation<'_, T, D> {
     ///
     /// # Errors
     /// [`Error::EmptyConstraint`], but on a [part](crate::mesh::Part) of a mesh: see
-    /// [`Discretisation::contradictions`]. [`Error::DataNotFinite`].
+    /// [`check_bounds`](crate::distributed::check_bounds). [`Error::DataNotFinite`].
     pub fn bounds(&self) -> Result<Vec<Bound<T>>, Error> {
         compiled!(
             T, D: fn(&Discretisation<'_, T, D>) -> Result<Vec<Bound<T>>, Error>
@@ -104,7 +104,7 @@ impl<T: Real, const D: usize> Discretisation<'_, T, D> {
     ///
     /// # Errors
     /// [`Error::DataNotFinite`].
-    pub fn contradictions(&self) -> Result<&Contradictions<D>, Error> {
+    pub(crate) fn contradictions(&self) -> Result<&Contradictions<D>, Error> {
         compiled!(
             T, D: for<'d> fn(&'d Discretisation<'_, T, D>) -> Result<&'d Contradictions<D>, Error>
                 = |of| of.find_contradictions()

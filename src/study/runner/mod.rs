@@ -3,6 +3,7 @@
 mod adaptive;
 mod judge;
 mod memory;
+#[cfg(feature = "parts")]
 mod on_parts;
 mod reference;
 mod rows;
@@ -33,6 +34,7 @@ use crate::study::orders::fill_orders;
 use crate::study::reference::{Measured, Reference};
 use crate::study::report::{Program, Report};
 use crate::study::row::{Row, RowKey};
+#[cfg(feature = "parts")]
 pub use on_parts::PartChecks;
 
 /// Progress of a study.

@@ -12,13 +12,19 @@ use crate::problems::*;
 use unilateral::algebra::{Bound, Contact, Inequality, Start};
 use unilateral::assemble::Discretisation;
 use unilateral::inequality::{
-    ActiveSet, Globalisation, InequalitySolver, Outcome, Solution, certify, count_active,
+    ActiveSet, Globalisation, InequalitySolver, Outcome, Solution, certify,
 };
 use unilateral::linear::Factors;
 use unilateral::mesh::{BoxDomain, Mesh};
 use unilateral::problem::Problem;
 use unilateral::real::{Point, Real};
 use unilateral::scheme::Wopsip;
+
+/// The number of active unknowns; fixed ones do not count.
+fn count_active<T: Real>(inequality: &Inequality<T>, contact: &[Contact]) -> usize {
+    let states = inequality.bounds.iter().zip(contact);
+    states.filter(|(b, state)| b.is_inequality() && **state != Contact::Inactive).count()
+}
 
 fn cold<T: Real>(inequality: &Inequality<T>) -> Solution<T> {
     ActiveSet::default().solve(inequality)
