@@ -51,12 +51,6 @@ impl FittedOrder {
 ///
 /// Nothing for fewer than two meshes, and nothing where a mesh size or error is not positive and
 /// finite or two meshes that follow each other have the same size.
-///
-/// ```
-/// use unilateral::measure::fit_order;
-/// let fitted = fit_order(&[(0.4, 4.0), (0.2, 1.0), (0.1, 0.25), (0.05, 0.0625)]).unwrap();
-/// assert!((fitted.order - 2.0).abs() < 1e-12 && fitted.spread < 1e-12);
-/// ```
 pub fn fit_order(meshes: &[(f64, f64)]) -> Option<FittedOrder> {
     let of = |pair: &[(f64, f64)]| observed_order(pair[0].1, pair[1].1, pair[0].0, pair[1].0);
     let local: Vec<f64> = meshes.windows(2).map(of).collect::<Option<_>>()?;
@@ -120,5 +114,11 @@ mod tests {
         ] {
             assert_eq!(fit_order(wrong), None);
         }
+    }
+
+    #[test]
+    fn a_power_law_has_its_order_and_no_spread() {
+        let fitted = fit_order(&[(0.4, 4.0), (0.2, 1.0), (0.1, 0.25), (0.05, 0.0625)]).unwrap();
+        assert!((fitted.order - 2.0).abs() < 1e-12 && fitted.spread < 1e-12);
     }
 }
