@@ -1,8 +1,6 @@
 // labels of links and pictures: see `guide`
 #![cfg_attr(doc, doc = include_str!("guide/links.md"), doc = include_str!("guide/pictures.md"))]
 #![doc = include_str!("../README.md")]
-// what only parts call is compiled without them, too; with the feature, on by default, idle code is found
-#![cfg_attr(not(feature = "parts"), allow(dead_code, unused_imports))]
 #![deny(unsafe_code)]
 #![deny(missing_docs)]
 
@@ -13,7 +11,6 @@ pub use nalgebra;
 pub mod algebra;
 pub mod assemble;
 pub mod constraint;
-#[cfg(feature = "parts")]
 pub mod distributed;
 pub mod element;
 pub mod error;

@@ -10,7 +10,6 @@ mod file_name;
 mod journal;
 mod memory;
 mod orders;
-#[cfg(feature = "parts")]
 mod part_figures;
 pub(crate) mod rates;
 mod reference;
@@ -32,10 +31,7 @@ pub use orders::{
     ObservedOrders, OrderMissed, OrderVerdict, OrdersMissed, fill_orders, orders_summary,
     orders_table,
 };
-#[cfg(feature = "parts")]
 pub use part_figures::{PartFigures, PartSeconds};
 pub use report::{Program, Report};
 pub use row::{Iterations, Orders, Row, RowKey, Seconds};
-#[cfg(feature = "parts")]
-pub use runner::PartChecks;
-pub use runner::{Progress, Study};
+pub use runner::{PartChecks, Progress, Study};

@@ -1,6 +1,5 @@
 //! Rows of a report: the figures of one scene, scheme and level each.
 
-#[cfg(feature = "parts")]
 use super::part_figures::PartFigures;
 use crate::error::Error;
 use crate::error_bound::BoundFigures;
@@ -176,7 +175,6 @@ pub struct Row {
     pub warnings: Vec<String>,
     /// Figures of a run over several processes; rows of a run in one do not have the key.
     #[cfg_attr(feature = "report", serde(default, skip_serializing_if = "Option::is_none"))]
-    #[cfg(feature = "parts")]
     pub ranks: Option<PartFigures>,
 }
 
@@ -218,7 +216,6 @@ impl Row {
             seconds: Seconds::default(),
             peak_memory_bytes: None,
             warnings: Vec::new(),
-            #[cfg(feature = "parts")]
             ranks: None,
         }
     }

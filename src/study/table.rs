@@ -3,7 +3,6 @@
 use std::fmt;
 
 use super::extrapolate::{Limit, extrapolate};
-#[cfg(feature = "parts")]
 use super::part_figures::PartFigures;
 use super::rates::rates;
 use super::report::Report;
@@ -275,14 +274,8 @@ pub(crate) fn totals(rows: &[&Row]) -> Vec<Column> {
     if columns.len() > names { columns } else { Vec::new() }
 }
 
-#[cfg(not(feature = "parts"))]
-fn of_processes(_: &[&Row]) -> Vec<Column> {
-    Vec::new()
-}
-
 /// The columns of what rows say of several processes: shares of ghosts, imbalance, seconds by phase as least and
 /// most. None if the rows are those of one process.
-#[cfg(feature = "parts")]
 fn of_processes(rows: &[&Row]) -> Vec<Column> {
     let text = |name, cell| Column { name, left: true, cell };
     let number = |name, cell| Column { name, left: false, cell };

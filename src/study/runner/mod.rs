@@ -3,7 +3,6 @@
 mod adaptive;
 mod judge;
 mod memory;
-#[cfg(feature = "parts")]
 mod on_parts;
 mod reference;
 mod rows;
@@ -34,7 +33,6 @@ use crate::study::orders::fill_orders;
 use crate::study::reference::{Measured, Reference};
 use crate::study::report::{Program, Report};
 use crate::study::row::{Row, RowKey};
-#[cfg(feature = "parts")]
 pub use on_parts::PartChecks;
 
 /// Progress of a study.
