@@ -30,4 +30,3 @@ pub(crate) use chosen_element::ChosenElement;
 pub use data_quadrature::DataQuadrature;
 pub use discretisation::Discretisation;
 pub use penalty_below_bound::PenaltyBelowBound;
-pub(crate) use space::contradictions::Contradictions;
