@@ -18,6 +18,7 @@ use super::kernels::{self, PAR};
 use super::symbolic_factor::{SymbolicFactor, transpose_view};
 use crate::algebra::{SparseMatrix, Submatrix};
 use crate::instances::compiled;
+use crate::memory::in_large_pages;
 use crate::parallel::vectors::pseudorandom_signs;
 use crate::real::Real;
 
@@ -274,6 +275,7 @@ impl<T: Real> Factors<T> {
 fn zero_values<T: Real>(symbolic: &SymbolicCholesky<u32>) -> Result<Vec<T>, FactorError> {
     let mut values = Vec::new();
     values.try_reserve_exact(symbolic.len_val()).map_err(|_| FactorError::OutOfMemory)?;
+    let mut values = in_large_pages(values);
     values.resize(symbolic.len_val(), T::lit(0.0));
     Ok(values)
 }

@@ -10,14 +10,12 @@ use std::borrow::Cow;
 
 use super::coarse_level::P1Level;
 use super::crouzeix_raviart_space::CrouzeixRaviartSpace;
-use super::facet_mean_form::{cr_basis, diagonal};
+use super::facet_mean_form::diagonal;
+use super::mixed_block::{BlockFactors, BlockSolver, MixedBlock};
 use super::multigrid::Multigrid;
 use super::preconditioner::Preconditioner;
-use crate::algebra::{
-    NO_INDEX, PenalisedMatrix, RectangularMatrix, SidePenalties, SparseMatrix, Support,
-    galerkin_product,
-};
-use crate::linear::direct::{FactorError, Factors};
+use crate::algebra::{NO_INDEX, PenalisedMatrix, SidePenalties, SparseMatrix, Support};
+use crate::linear::direct::FactorError;
 use crate::parallel::vectors::{for_each_chunk, for_each_chunk_of_groups};
 use crate::real::Real;
 
@@ -69,16 +67,6 @@ struct SideCorrections<T> {
     inverse_jump: Vec<T>,
 }
 
-/// The block of the matrix that is solved exactly.
-struct MixedBlock<'a, T> {
-    /// The free vertex values of cells with free and fixed unknowns.
-    vertex_values: Vec<u32>,
-    /// The sides of cells without fixed unknowns that are opposite to such cells.
-    sides: Vec<u32>,
-    solver: Box<dyn BlockSolver<T> + 'a>,
-    vector: Vec<T>,
-}
-
 /// A preconditioner of the stiffness on Crouzeix-Raviart functions.
 pub(crate) trait FacetMeansSolver<T>: Send + Sync {
     /// Sets the facets without a function; those among the others on which conforming linear functions
@@ -110,36 +98,6 @@ impl<T: Real> FacetMeansSolver<T> for Multigrid<'_, T> {
     }
 }
 
-/// The solver of a small block of the matrix.
-pub(crate) trait BlockSolver<T>: Send + Sync {
-    /// Takes the matrix of a block, of which each function has an unknown that no other function has.
-    ///
-    /// # Errors
-    /// See [`FactorError`].
-    fn factor(&mut self, block: &SparseMatrix<T>, unknowns: &[u32]) -> Result<(), FactorError>;
-    /// Replaces a vector by the solution with it as right side.
-    fn solve(&mut self, vector: &mut [T]);
-}
-
-/// Factors of a block; `None` if it is empty.
-struct BlockFactors<T>(Option<Factors<T>>);
-
-impl<T: Real> BlockSolver<T> for BlockFactors<T> {
-    fn factor(&mut self, block: &SparseMatrix<T>, _: &[u32]) -> Result<(), FactorError> {
-        self.0 = None;
-        if block.size() > 0 {
-            let all: Vec<u32> = (0..block.size() as u32).collect();
-            self.0 = Some(Factors::new(block, true, &all)?);
-        }
-        Ok(())
-    }
-    fn solve(&mut self, vector: &mut [T]) {
-        if let Some(factors) = &self.0 {
-            factors.solve_in_place(vector, 1);
-        }
-    }
-}
-
 impl<'a, T: Real> MeanJumpSplitting<'a, T> {
     /// The preconditioner of `matrix`, which is `penalised` multiplied out; `None` if its unknowns are
     /// not those of discontinuous linear functions, or cells are coupled by more than facet means, or
@@ -156,7 +114,7 @@ impl<'a, T: Real> MeanJumpSplitting<'a, T> {
             let multigrid = Multigrid::of_element(stiffness, prolongation, level, 1);
             Some(Box::new(multigrid) as Box<dyn FacetMeansSolver<T> + 'a>)
         };
-        let factors = Box::new(BlockFactors(None));
+        let factors = Box::new(BlockFactors::new());
         Self::with_solvers(matrix, penalised, (supports, level.size()), multigrid, factors)
     }
 
@@ -196,12 +154,7 @@ impl<'a, T: Real> MeanJumpSplitting<'a, T> {
             facet_residuals: vec![zero; n_facets],
             facet_means: vec![zero; n_facets],
             sides: SideCorrections { is_pair: vec![false; n], inverse_jump: vec![zero; n] },
-            mixed_block: MixedBlock {
-                vertex_values: vec![],
-                sides: vec![],
-                solver: block_solver,
-                vector: vec![],
-            },
+            mixed_block: MixedBlock::new(block_solver),
             mean_residuals: vec![zero; if are_means { 0 } else { n }],
             means: vec![zero; if are_means { 0 } else { n }],
         })
@@ -297,62 +250,6 @@ impl<T: Real> MeanJumpSplitting<'_, T> {
 /// The reciprocal of a positive number; [`FactorError::NotPositive`] for any other.
 fn invert<T: Real>(x: T) -> Result<T, FactorError> {
     if x > T::lit(0.0) { Ok(T::lit(1.0) / x) } else { Err(FactorError::NotPositive) }
-}
-
-impl<T: Real> MixedBlock<'_, T> {
-    /// Factors `P^T A P`, where the columns of `P` are the basis functions of the vertex values and
-    /// the facet mean functions of the sides.
-    ///
-    /// # Errors
-    /// See [`FactorError`].
-    fn factor(&mut self, matrix: &SparseMatrix<T>, cell_size: usize) -> Result<(), FactorError> {
-        let unknowns = [&self.vertex_values[..], &self.sides].concat();
-        let n = unknowns.len();
-        if n == 0 {
-            let (columns, values) = (Vec::new(), Vec::new());
-            return self.solver.factor(&SparseMatrix { row_starts: vec![0], columns, values }, &[]);
-        }
-        let mut entries: Vec<(u32, u32, T)> = Vec::new();
-        for (k, &i) in self.vertex_values.iter().enumerate() {
-            entries.push((i, k as u32, T::lit(1.0)));
-        }
-        for (k, &s) in (self.vertex_values.len()..).zip(&self.sides) {
-            let (cell, facet) = (s as usize / cell_size, s as usize % cell_size);
-            let at_vertex =
-                |i: usize| ((cell * cell_size + i) as u32, k as u32, cr_basis(cell_size, i, facet));
-            entries.extend((0..cell_size).map(at_vertex));
-        }
-        entries.sort_unstable_by_key(|&(i, k, _)| (i, k));
-        let mut rows =
-            RectangularMatrix { starts: vec![0], columns: Vec::new(), values: Vec::new() };
-        let mut rest = entries.iter().peekable();
-        for i in 0..matrix.size() as u32 {
-            while let Some(&(_, k, value)) = rest.next_if(|entry| entry.0 == i) {
-                rows.columns.push(k);
-                rows.values.push(value);
-            }
-            rows.starts.push(rows.columns.len() as u32);
-        }
-        let form = galerkin_product(matrix, &rows, n);
-        self.solver.factor(&form, &unknowns)
-    }
-
-    /// Solves for the residual with the entries `r` for vertex values and `g` for facet mean
-    /// functions; sets the entries of `z` for the vertex values and of `means` for the sides of the
-    /// block.
-    fn solve(&mut self, r: &[T], g: &[T], means: &mut [T], z: &mut [T]) {
-        self.vector.clear();
-        self.vector.extend(self.vertex_values.iter().map(|&i| r[i as usize]));
-        self.vector.extend(self.sides.iter().map(|&s| g[s as usize]));
-        self.solver.solve(&mut self.vector);
-        let (values, side_means) = self.vector.split_at(self.vertex_values.len());
-        for (&i, &value) in self.vertex_values.iter().zip(values) {
-            z[i as usize] = value;
-        }
-        for (&s, &mean) in self.sides.iter().zip(side_means) {
-            means[s as usize] += mean;
-        }
-    }
 }
 
 impl<T: Real> Preconditioner<T> for MeanJumpSplitting<'_, T> {

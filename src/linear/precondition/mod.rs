@@ -3,7 +3,7 @@
 //! `preconditioner`: the trait. `multigrid`: conforming linear functions, and other linear elements with
 //! them as auxiliary space, with `smoother`, `gauss_seidel`, `cell_gauss_seidel`, `prolongation`,
 //! `aggregation` and `coarse_level`. `auxiliary_space`: discontinuous elements of higher degree.
-//! `mean_jump_splitting`, `facet_mean_form` and `crouzeix_raviart_space`: over-penalised discontinuous
+//! `mean_jump_splitting`, `mixed_block`, `facet_mean_form` and `crouzeix_raviart_space`: over-penalised discontinuous
 //! elements.
 //! `coarse_spaces`: the spaces that are known for an inequality. `built_in`: the preconditioner that
 //! fits an inequality.
@@ -18,6 +18,7 @@ mod crouzeix_raviart_space;
 mod facet_mean_form;
 mod gauss_seidel;
 mod mean_jump_splitting;
+mod mixed_block;
 mod multigrid;
 mod preconditioner;
 mod prolongation;
@@ -27,6 +28,7 @@ pub(crate) use auxiliary_space::{AuxiliarySpace, VertexCorrection, unknowns_per_
 pub use built_in::BuiltInPreconditioners;
 pub use coarse_level::{CoarseLevel, P1Level};
 pub use coarse_spaces::CoarseSpaces;
-pub(crate) use mean_jump_splitting::{BlockSolver, FacetMeansSolver, MeanJumpSplitting};
+pub(crate) use mean_jump_splitting::{FacetMeansSolver, MeanJumpSplitting};
+pub(crate) use mixed_block::BlockSolver;
 pub use preconditioner::{PreconditionedSystem, Preconditioner, PreconditionerFamily};
 pub use prolongation::Prolongation;
