@@ -2,6 +2,7 @@
 
 use super::error::KitError;
 use super::report::ElementReport;
+use crate::arrays::IntoList;
 use crate::element::{Entity, Layout, MAX_BASIS, Node, ReferenceElement};
 use crate::mesh::edge_vertices;
 use crate::quadrature::Rule;
@@ -79,7 +80,7 @@ fn polynomial(degree: usize, point: &[f64; 4]) -> f64 {
 
 impl ErasedElement {
     fn new<T: Real, const D: usize, E: ReferenceElement<T, D>>(points: Vec<[f64; 4]>) -> Self {
-        let nodes: Vec<Node> = (0..E::N).map(E::node).collect();
+        let nodes: Vec<Node> = (0..E::N).map(E::node).into_list();
         let [facet_rule, cell_rule] = [D - 1, D].map(|d| Rule::new(d, E::BASIS_DEGREE));
         Self {
             dimension: D,
@@ -87,7 +88,7 @@ impl ErasedElement {
             degree: E::DEGREE,
             basis_degree: E::BASIS_DEGREE,
             layout: E::LAYOUT,
-            terms: nodes.iter().map(|node| node.terms(&facet_rule, &cell_rule)).collect(),
+            terms: nodes.iter().map(|node| node.terms(&facet_rule, &cell_rule)).into_list(),
             nodes,
             values: values::<T, D, E>,
             derivatives: derivatives::<T, D, E>,
@@ -244,7 +245,7 @@ impl ErasedElement {
 
     fn describe(&self, point: &[f64; 4]) -> String {
         let coordinates: Vec<String> =
-            point[..=self.dimension].iter().map(|b| format!("{b:.3}")).collect();
+            point[..=self.dimension].iter().map(|b| format!("{b:.3}")).into_list();
         format!("({})", coordinates.join(", "))
     }
 }
@@ -263,7 +264,7 @@ mod tests {
     /// to one.
     fn points(dimension: usize) -> Vec<[f64; 4]> {
         let mut points = Rule::new(dimension, 7).points;
-        points.extend((0..=dimension).map(|k| std::array::from_fn(|i| f64::from(i == k))));
+        points.extend((0..dimension + 1).map(|k| std::array::from_fn(|i| f64::from(i == k))));
         let mut outside = [1.75, -0.5, 0.25, -0.75];
         outside[dimension] = 1.0 - outside[..dimension].iter().sum::<f64>();
         points.push(outside);
