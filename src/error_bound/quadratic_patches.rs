@@ -26,6 +26,7 @@ use super::quadratics::{
     CellLoads, Products, add, densities, products_on_facet, triple, vertices_of,
 };
 use super::shared_multipliers::SharedNodes;
+use crate::arrays::tabulate;
 use crate::assemble::local::StiffnessTable;
 use crate::assemble::space::tables::BasisAt;
 use crate::assemble::space::{INWARD, Place, Space};
@@ -58,6 +59,12 @@ impl CellData {
     }
 }
 
+/// Sorts products by the places of their facets. Not in the function that calls it, so that this is
+/// compiled once.
+fn sort(given: &mut [&(Place, Products)]) {
+    given.sort_unstable_by_key(|(place, _)| *place);
+}
+
 /// What the patches read.
 struct Patches<'s, 'a, T: Real, const D: usize> {
     space: &'s Space<'a, T, D>,
@@ -80,7 +87,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         let (corners, starts) = self.corners();
         let cells = self.patch_data((u, function), neighbours, loads);
         let mut given: Vec<_> = loads.neumann.iter().chain(&loads.contact).collect();
-        given.sort_unstable_by_key(|(place, _)| *place);
+        sort(&mut given);
         let patches = Patches { space: self, neighbours, cells, given, corners, starts };
         let square = (D + 1) * (D + 1);
         let mut flux = Vec::with_capacity(self.mesh.n_cells() * square);
@@ -114,7 +121,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         loads: &mut CellLoads,
     ) -> Vec<CellData> {
         let corners: Vec<BasisAt<f64>> =
-            (0..=D).map(|k| self.basis_at(&Node::vertex(k).centre(D))).collect();
+            (0..D + 1).map(|k| self.basis_at(&Node::vertex(k).centre(D))).collect();
         let (table, n_cells) = (self.stiffness_table(), self.mesh.n_cells());
         let data = cells::map(n_cells, &|cells: Range<usize>| {
             let in_cell = |cell| self.patch_data_in(cell, (u, function), (&corners, &table));
@@ -209,7 +216,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
             let slope = |m: usize| -> f64 {
                 local.iter().zip(&basis.derivatives).take(n).map(|(u, d)| u * d[m]).sum()
             };
-            let slopes: [f64; 4] = std::array::from_fn(|m| if m <= D { slope(m) } else { 0.0 });
+            let slopes: [f64; 4] = tabulate(|m| if m <= D { slope(m) } else { 0.0 });
             let vertex = Node::vertex(k).centre(D);
             let (_, mut difference) = admissible.at(&vertex, &Point::zeros());
             for (gradient, slope) in admissible.gradients.iter().zip(&slopes) {
@@ -292,8 +299,7 @@ impl<T: Real, const D: usize> Patches<'_, '_, T, D> {
                 0.0 => slot.shift[p],
                 sign => sign * unknowns[slot.first + p] + slot.shift[p],
             };
-            let of_facet =
-                |slot: &Slot| std::array::from_fn(|p| if p < D { density(slot, p) } else { 0.0 });
+            let of_facet = |slot: &Slot| tabulate(|p| if p < D { density(slot, p) } else { 0.0 });
             parts.push(slots.each_ref().map(of_facet));
         }
     }
@@ -328,7 +334,7 @@ impl<T: Real, const D: usize> Patches<'_, '_, T, D> {
                 let across = on_facet(&across, there);
                 let slot = around::<D>(own).position(|local| local == there).unwrap_or(0);
                 let first = slots[known][slot].first;
-                let shift = std::array::from_fn(|p| -normal[p] - across[p]);
+                let shift = tabulate(|p| -normal[p] - across[p]);
                 Slot { first, sign: -1.0, shift }
             }
             Neighbour::Boundary(BoundaryPart::Dirichlet) => free(),
@@ -338,7 +344,7 @@ impl<T: Real, const D: usize> Patches<'_, '_, T, D> {
                     let products = &self.given[k].1[usize::from(own)];
                     on_facet(&densities::<D>(products, local), local)
                 });
-                let shift = std::array::from_fn(|p| given[p] - normal[p]);
+                let shift = tabulate(|p| given[p] - normal[p]);
                 Slot { first: 0, sign: 0.0, shift }
             }
         }
@@ -361,7 +367,7 @@ impl<T: Real, const D: usize> Patches<'_, '_, T, D> {
         let tested = &self.cells[cell as usize].divergence[usize::from(own)];
         let total: f64 = tested[..=D].iter().sum();
         // the products of sum_j r_j lambda_j phi_j with lambda_k times a vector
-        let products: [Point<f64, D>; 4] = std::array::from_fn(|k| {
+        let products: [Point<f64, D>; 4] = tabulate(|k| {
             let mut product = Point::zeros();
             for j in 0..=D {
                 let inner = d * ((d + 2.0) * tested[j] - total);
@@ -372,7 +378,7 @@ impl<T: Real, const D: usize> Patches<'_, '_, T, D> {
         });
         // the products of what the part aims at, phi times the difference of gradients, with the same functions
         let differences = &self.cells[cell as usize].difference;
-        let targets: [Point<f64, D>; 4] = std::array::from_fn(|j| {
+        let targets: [Point<f64, D>; 4] = tabulate(|j| {
             let mut target = Point::zeros();
             for (k, difference) in differences.iter().enumerate().take(D + 1) {
                 let product = triple(D, [j, usize::from(own), k]) / d;
