@@ -7,9 +7,23 @@ use crate::error::{Error, write_error};
 
 /// Writes a file under a temporary name in its directory, then renames it, so that readers never
 /// see a part of it. A draft that could not be written is removed.
-pub(crate) fn replace<E: Into<Box<dyn std::error::Error + Send + Sync>>>(
+pub(crate) fn replace<E: Into<Reason>>(
     path: &Path,
     write: impl FnOnce(&Path) -> Result<(), E>,
+) -> Result<PathBuf, Error> {
+    let mut write = Some(write);
+    let mut once =
+        |draft: &Path| write.take().map_or(Ok(()), |write| write(draft)).map_err(E::into);
+    replace_by(path, &mut once)
+}
+
+/// Why a file could not be written.
+type Reason = Box<dyn std::error::Error + Send + Sync>;
+
+/// As [`replace`], compiled once for all functions that write.
+fn replace_by(
+    path: &Path,
+    write: &mut dyn FnMut(&Path) -> Result<(), Reason>,
 ) -> Result<PathBuf, Error> {
     let directory = path.parent().unwrap_or(Path::new("."));
     fs::create_dir_all(directory).map_err(|e| write_error(directory, e))?;

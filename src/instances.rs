@@ -15,7 +15,7 @@
 //! The function after the equals sign is written with the same names of scalar and dimension as the
 //! signature. A method of a type with a lifetime parameter is written as a closure.
 
-use std::any::Any;
+use std::any::{Any, TypeId};
 
 /// The instance of a function for the scalar `T`, the dimension `D`, or both.
 macro_rules! compiled {
@@ -63,11 +63,7 @@ pub(crate) use compiled;
 
 /// The entry of a table that has this type, if there is one.
 pub(crate) fn look_up<F: Copy + 'static>(table: &[&(dyn Any + Sync)]) -> Option<F> {
-    let entry = |entry: &&(dyn Any + Sync)| {
-        let entry: &dyn Any = *entry;
-        entry.downcast_ref::<F>().copied()
-    };
-    table.iter().find_map(entry)
+    entry_of(table, TypeId::of::<F>())?.downcast_ref::<F>().copied()
 }
 
 /// The entry of a table of scalars and dimensions that has this type.
@@ -75,8 +71,22 @@ pub(crate) fn look_up<F: Copy + 'static>(table: &[&(dyn Any + Sync)]) -> Option<
 /// # Panics
 /// If there is none: for a dimension other than one, two and three.
 pub(crate) fn find<F: Copy + 'static>(table: &[&(dyn Any + Sync)]) -> F {
-    match look_up(table) {
-        Some(found) => found,
+    match required_entry(table, TypeId::of::<F>()).downcast_ref() {
+        Some(found) => *found,
+        None => unreachable!(),
+    }
+}
+
+/// The entry of a type, found by a function that does not depend on the type.
+fn entry_of<'t>(table: &[&'t (dyn Any + Sync)], id: TypeId) -> Option<&'t dyn Any> {
+    let entry = table.iter().copied().find(|entry| (**entry).type_id() == id)?;
+    Some(entry)
+}
+
+/// As [`entry_of`], where there has to be one.
+fn required_entry<'t>(table: &[&'t (dyn Any + Sync)], id: TypeId) -> &'t dyn Any {
+    match entry_of(table, id) {
+        Some(entry) => entry,
         None => panic!("functions are compiled for f64 and f32 in one, two and three dimensions"),
     }
 }

@@ -9,6 +9,7 @@
 pub use nalgebra;
 
 pub mod algebra;
+mod arrays;
 pub mod assemble;
 pub mod constraint;
 pub mod distributed;

@@ -3,7 +3,7 @@
 use super::shared_rows::CellLoops;
 use super::space::AnyElement;
 use crate::constraint::{CONSTRAINT_SETS, ConstraintSet, constraint_set_by_name};
-use crate::element::{ElementVisitor, ReferenceElement};
+use crate::element::{ElementVisitor, Node, ReferenceElement};
 use crate::real::Real;
 
 /// An element without its type, with the loops over its shared rows.
@@ -20,13 +20,18 @@ impl<T: Real, const D: usize> ChosenElement<T, D> {
     /// binds no node of `E`.
     pub fn of<E: ReferenceElement<T, D>>(set: &dyn ConstraintSet) -> Self {
         let own = Erase.visit::<E>();
-        let is_bound = own.element.nodes.iter().any(|node| set.in_domain(node, D).is_some());
+        let is_bound = binds_any(set, &own.element.nodes, D);
         let other = match set.basis() {
             Some(basis) if !is_bound && E::LAYOUT.is_broken() => E::broken_in_basis(basis, Erase),
             _ => None,
         };
         Self { offered: offered::<T, E, D>, ..other.unwrap_or(own) }
     }
+}
+
+/// Whether the set binds one of these nodes.
+fn binds_any(set: &dyn ConstraintSet, nodes: &[Node], dimension: usize) -> bool {
+    nodes.iter().any(|node| set.in_domain(node, dimension).is_some())
 }
 
 /// The visitor that removes the type.
@@ -45,13 +50,24 @@ impl<T: Real, const D: usize> ElementVisitor<T, D> for Erase {
 }
 
 fn offered<T: Real, E: ReferenceElement<T, D>, const D: usize>(contact: bool) -> Vec<String> {
+    offered_in(D, contact, |set| ChosenElement::<T, D>::of::<E>(set).element)
+}
+
+/// As [`offered`], compiled once for all elements.
+fn offered_in(
+    dimension: usize,
+    contact: bool,
+    element_for: fn(&dyn ConstraintSet) -> AnyElement,
+) -> Vec<String> {
     let mut names: Vec<String> = Vec::new();
     for set in CONSTRAINT_SETS.iter().filter_map(|(name, _)| constraint_set_by_name(name)) {
-        let AnyElement { nodes, .. } = ChosenElement::<T, D>::of::<E>(&set).element;
-        let is_bound = nodes.iter().any(|node| set.in_domain(node, D).is_some());
-        let is_bound_on_facets = nodes.iter().any(|node| {
-            set.on_contact(node, D).is_some() && (0..=D).any(|k| !node.entity().contains(D, k))
-        });
+        let AnyElement { nodes, .. } = element_for(&set);
+        let is_bound = binds_any(&set, &nodes, dimension);
+        let is_off_a_facet =
+            |node: &Node| (0..dimension + 1).any(|k| !node.entity().contains(dimension, k));
+        let is_bound_on_facets = nodes
+            .iter()
+            .any(|node| set.on_contact(node, dimension).is_some() && is_off_a_facet(node));
         let name = set.name_on(&nodes);
         if is_bound && (is_bound_on_facets || !contact) && !names.iter().any(|known| known == name)
         {

@@ -6,6 +6,7 @@
 //! rule: along a direction across the facet, the distance to the zero set times the difference of the
 //! integrand there. On a sphere that leaves a wrong volume whose mean thickness is 1e-5 to 1e-3 of `h^2`.
 
+use crate::arrays::{map_entries, tabulate};
 use crate::mesh::Mesh;
 use crate::problem::Field;
 use crate::quadrature::{FullySymmetric, Quadrature, Rule, facet_to_cell};
@@ -100,7 +101,7 @@ impl CutRule {
     }
 
     fn whole(&self) -> Part {
-        let corners = std::array::from_fn(|i| std::array::from_fn(|k| f64::from(u8::from(i == k))));
+        let corners = tabulate(|i| tabulate(|k| f64::from(u8::from(i == k))));
         Part { corners, share: 1.0, bisections: 0 }
     }
 
@@ -163,7 +164,7 @@ impl CutRule {
         }
         let (i, j, _) = longest;
         let middle = between(&part.corners[i], &part.corners[j], 0.5);
-        [i, j].map(|replaced| {
+        map_entries([i, j], |replaced| {
             let mut half = Part { share: 0.5 * part.share, ..*part };
             half.bisections += 1;
             half.corners[replaced] = middle;
@@ -245,13 +246,13 @@ impl CutRule {
 impl Part {
     /// A point of the part, or of one of its faces, in barycentric coordinates of the whole.
     fn point(&self, barycentric: &[f64; 4]) -> [f64; 4] {
-        std::array::from_fn(|k| (0..4).map(|i| barycentric[i] * self.corners[i][k]).sum())
+        tabulate(|k| (0..4).map(|i| barycentric[i] * self.corners[i][k]).sum())
     }
 }
 
 /// The point `(1 - r) p + r q`.
 fn between(p: &[f64; 4], q: &[f64; 4], r: f64) -> [f64; 4] {
-    std::array::from_fn(|k| (1.0 - r) * p[k] + r * q[k])
+    tabulate(|k| (1.0 - r) * p[k] + r * q[k])
 }
 
 /// The rule with fewest points of this degree.

@@ -6,6 +6,7 @@ use std::ops::Range;
 use super::local::flux_weight;
 use super::space::Space;
 use super::space::metric::Metrics;
+use crate::arrays::map_entries;
 use crate::facet::{FacetForm, FacetKind, FacetView, Trace};
 use crate::memory::in_large_pages;
 use crate::mesh::{BoundaryPart, Neighbour};
@@ -127,14 +128,14 @@ impl<T: Real> FacetCoefficients<T> {
         };
         let Ok(()) = cells::for_each(n_cells, &|c| c * per_cell, &mut entries, &fill);
         let is_uniform = form.is_uniform();
-        let facets = || (0..n_cells).flat_map(|cell| (0..=D).map(move |local| (cell, local)));
+        let facets = || (0..n_cells * (D + 1)).map(|k| (k / (D + 1), k % (D + 1)));
         let view = |(cell, local)| kept_view(space, metrics, cell, local);
         let of = |facet: FacetView<'_, T, D>| Coefficients::of(form, &facet);
         let or_zero = |of: Option<Coefficients<T>>| of.unwrap_or_else(Coefficients::zero);
         let coefficients = if is_uniform {
             let interior = facets().filter_map(view).find(|f| f.kind() == FacetKind::Interior);
             let dirichlet = space.facets_of(BoundaryPart::Dirichlet).find_map(view);
-            [interior, dirichlet].map(|facet| or_zero(facet.map(of))).into()
+            map_entries([interior, dirichlet], |facet| or_zero(facet.map(of))).into()
         } else {
             facets().map(|facet| or_zero(view(facet).map(of))).collect()
         };

@@ -97,7 +97,7 @@ impl<T: Real, const D: usize> Discretisation<'_, T, D> {
 
     /// By cell, how many facets that carry the form the cells before it tell.
     fn facet_starts(&self) -> Vec<u32> {
-        let count = |cell| (0..=D).filter(|&local| self.sides((cell, local)).is_some()).count();
+        let count = |cell| (0..D + 1).filter(|&local| self.sides((cell, local)).is_some()).count();
         let mut end = 0;
         let start = |cell| {
             end += count(cell) as u32;

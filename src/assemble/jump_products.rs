@@ -40,16 +40,18 @@ impl<T: Real> JumpProducts<T> {
             }
             sum
         };
-        let classes = || weights.iter().copied();
-        let own = (0..=D).flat_map(|l| classes().map(move |c| (l, l, c)));
-        let across =
-            (0..=D).flat_map(|l| (0..=D).flat_map(move |m| classes().map(move |c| (l, m, c))));
-        Self {
-            own: own.map(|(l, m, c)| sum(l, m, c)).collect(),
-            across: across.map(|(l, m, c)| sum(l, m, c)).collect(),
-            weights,
-            facets: D + 1,
+        let (mut own, mut across) = (Vec::new(), Vec::new());
+        for local in 0..=D {
+            for &class in &weights {
+                own.push(sum(local, local, class));
+            }
+            for other in 0..=D {
+                for &class in &weights {
+                    across.push(sum(local, other, class));
+                }
+            }
         }
+        Self { own, across, weights, facets: D + 1 }
     }
     /// This cell with itself, by class.
     #[inline(always)]

@@ -44,7 +44,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
     /// weak Dirichlet data are there. Integrals of a source that varies are kept for cells that share unknowns:
     /// load, energy and bound ask for them.
     pub fn load_by_cell(&self) -> Result<Cow<'_, [T]>, Error> {
-        let varies = self.data.source.all().any(|f| f.constant().is_none());
+        let varies = self.data.source.any(&|f| f.constant().is_none());
         if self.broken || !varies {
             return self.integrate_load().map(Cow::Owned);
         }
@@ -109,7 +109,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
 
     fn add_source(&self, load: &mut [T]) -> Result<(), Error> {
         let table = self.cell_table(self.cell_rule.clone());
-        let has_level = self.data.source.all().any(|f| f.level().is_some());
+        let has_level = self.data.source.any(&|f| f.level().is_some());
         let cut_rule = has_level.then(|| CutRule::new(D, self.cell_degree));
         self.for_each_cell(load, &|cell, out| {
             let Some(f) = self.data.source.of(self.mesh.region(cell)) else { return Ok(()) };

@@ -40,7 +40,7 @@ pub(crate) fn penalised_matrix<T: Real, const D: usize>(
     load.resize(space.dofs.size(), T::lit(0.0));
     let mut dirichlet = by_facet(&dirichlet).into_iter().peekable();
     let table = space.facet_table(form.moments(space.basis_degree));
-    let templates = Templates::<T>::new::<D>(space, &table);
+    let templates = Templates::new(D, &space.nodes, &table);
     let of_degree: Vec<T> = table.degrees.iter().map(|&k| T::lit(form.moment_weight(k))).collect();
     let n_jumps = n_facets_with_jumps(space) * of_degree.len();
     let mut out = PenalisedMatrix {
@@ -99,8 +99,9 @@ fn jump_across<T: Real, const D: usize>(
 
 /// The number of facets on which jumps count.
 fn n_facets_with_jumps<T: Real, const D: usize>(space: &Space<'_, T, D>) -> usize {
-    let facets = (0..space.mesh.n_cells()).flat_map(|cell| (0..=D).map(move |local| (cell, local)));
-    facets.filter(|&place| jump_across(space, place).is_some()).count()
+    let place = |k: usize| (k / (D + 1), k % (D + 1));
+    let n = space.mesh.n_cells() * (D + 1);
+    (0..n).filter(|&k| jump_across(space, place(k)).is_some()).count()
 }
 
 /// Stiffness and reaction of all cells.
@@ -161,20 +162,19 @@ struct Templates<T> {
 }
 
 impl<T: Real> Templates<T> {
-    fn new<const D: usize>(space: &Space<'_, T, D>, table: &FacetTable<T>) -> Self {
+    fn new(dimension: usize, nodes: &[Node], table: &FacetTable<T>) -> Self {
+        let facets = dimension + 1;
         let terms = |here: usize, there: Option<usize>| {
             let moments = 0..table.degrees.len();
             let there = |k: usize| there.map(|l| (l, &table.on(l)[k].values));
             moments
-                .map(|k| moment::<T, D>(&space.nodes, (here, &table.on(here)[k].values), there(k)))
+                .map(|k| moment(dimension, nodes, (here, &table.on(here)[k].values), there(k)))
                 .collect()
         };
-        let pair = |k: usize| terms(k / (D + 1), Some(k % (D + 1)));
+        let pair = |k: usize| terms(k / facets, Some(k % facets));
         let alone = |k: usize| terms(k, None);
-        Self {
-            facets: D + 1,
-            pairs: (0..(D + 1) * (D + 1)).map(pair).chain((0..=D).map(alone)).collect(),
-        }
+        let pairs = (0..facets * facets).map(pair).chain((0..facets).map(alone)).collect();
+        Self { facets, pairs }
     }
     fn between(&self, here: usize, there: usize) -> &[Vec<LocalTerm<T>>] {
         &self.pairs[here * self.facets + there]
@@ -192,7 +192,8 @@ impl<T: Real> Templates<T> {
 type SideValues<'t, T> = (usize, &'t [T; MAX_BASIS]);
 
 /// The terms of one moment: unknowns at the same node make one, if they weigh the same.
-fn moment<T: Real, const D: usize>(
+fn moment<T: Real>(
+    dimension: usize,
     nodes: &[Node],
     (facet, here): SideValues<'_, T>,
     there: Option<SideValues<'_, T>>,
@@ -203,7 +204,7 @@ fn moment<T: Real, const D: usize>(
     let mut is_paired = [false; MAX_BASIS];
     for (i, node) in nodes.iter().enumerate().filter(|(i, _)| !is_zero(here[*i])) {
         let partner = there.and_then(|(other, values)| {
-            let node = node.across(D, facet, other)?;
+            let node = node.across(dimension, facet, other)?;
             let j = nodes.iter().position(|n| *n == node)?;
             is_zero(values[j] - here[i]).then_some(j)
         });

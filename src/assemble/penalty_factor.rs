@@ -21,8 +21,8 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
             ));
         }
         let Some(neighbours) = &self.neighbours else { return Ok(()) };
-        let facets = (0..self.mesh.n_cells()).flat_map(|c| (0..=D).map(move |local| (c, local)));
-        let mut views = facets.filter_map(|(c, local)| self.facet_view(neighbours, c, local));
+        let view = |k: usize| self.facet_view(neighbours, k / (D + 1), k % (D + 1));
+        let mut views = (0..self.mesh.n_cells() * (D + 1)).filter_map(view);
         let Some(facet) = views.next() else { return Ok(()) };
         let stiffness = facet.largest(|side| side.coefficient * side.surface / side.volume);
         let ratio = (form.penalty(&facet) / stiffness).to_f64();

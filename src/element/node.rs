@@ -1,5 +1,6 @@
 //! Degrees of freedom: functionals on the functions of a cell.
 
+use crate::arrays::tabulate;
 use crate::mesh::edge_vertices;
 use crate::quadrature::{Rule, facet_to_cell};
 
@@ -145,8 +146,8 @@ impl Node {
             Functional::Value(point) => *point,
             Functional::Sum(terms) => mean(&mut terms.iter().map(|(point, w)| (*point, w.abs()))),
             Functional::Mean => {
-                let vertices = (0..=dimension).filter(|&k| self.entity.contains(dimension, k));
-                let vertex = |k: usize| std::array::from_fn(|i| f64::from(u8::from(i == k)));
+                let vertices = (0..dimension + 1).filter(|&k| self.entity.contains(dimension, k));
+                let vertex = |k: usize| tabulate(|i| f64::from(u8::from(i == k)));
                 mean(&mut vertices.map(|k| (vertex(k), 1.0)))
             }
         }
@@ -162,7 +163,7 @@ impl Node {
         let vertex = |k: usize| place(k) + usize::from(place(k) >= other);
         let point = |p: &[f64; 4]| {
             let mut moved = [0.0; 4];
-            for k in (0..=dimension).filter(|&k| k != facet) {
+            for k in (0..dimension + 1).filter(|&k| k != facet) {
                 moved[vertex(k)] = p[k];
             }
             moved

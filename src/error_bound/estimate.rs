@@ -314,12 +314,13 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         let degree = 2 * (stated + pair.degree);
         let data = [&self.data.source, &self.data.reaction, &self.data.coefficient];
         let obstacles = [&self.data.lower, &self.data.upper];
-        let mut all = data.iter().chain(&obstacles).flat_map(|data| data.all());
+        let mut all = data.iter().chain(&obstacles);
         // exact for constants, also for the products with functions of the pair
-        let is_constant = stated == 0 && all.all(|datum| datum.constant().is_some());
+        let is_constant =
+            stated == 0 && all.all(|data| data.every(&|datum| datum.constant().is_some()));
         let least = if is_constant { 0 } else { self.cell_degree };
         let table = self.cell_table(Rule::new(D, degree.max(least)));
-        let has_level = self.data.source.all().any(|f| f.level().is_some());
+        let has_level = self.data.source.any(&|f| f.level().is_some());
         let cut = has_level.then(|| CutRule::new(D, self.cell_degree));
         let boundary = self.boundary_terms(pair)?;
         let rules = (&table, cut.as_ref());

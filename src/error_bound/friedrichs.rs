@@ -1,6 +1,7 @@
 //! The constant of Friedrichs' inequality of a mesh.
 
 use crate::algebra::Distribution;
+use crate::arrays::{map_entries, tabulate};
 use crate::mesh::{BoundaryPart, Mesh};
 use crate::real::{Point, Real, point_f64};
 
@@ -31,8 +32,8 @@ impl<const D: usize> FriedrichsData<D> {
             point_f64(&mesh.geometry(cell as usize).normal(usize::from(local)))
         };
         let normals: Vec<_> = free.map(|f| normal(f.cell, f.local)).collect();
-        let is_held = std::array::from_fn(|axis| {
-            [1.0, -1.0].map(|sign| normals.iter().all(|n| sign * n[axis] <= PARALLEL))
+        let is_held = tabulate(|axis| {
+            map_entries([1.0, -1.0], |sign| normals.iter().all(|n| sign * n[axis] <= PARALLEL))
         });
         Self { low, high, is_held }
     }
@@ -45,7 +46,7 @@ impl<const D: usize> FriedrichsData<D> {
         distribution.largest(&mut numbers);
         for axis in 0..D {
             (self.high[axis], self.low[axis]) = (numbers[axis], -numbers[D + axis]);
-            self.is_held[axis] = [0, 1].map(|end| numbers[2 * (D + axis) + end] == 0.0);
+            self.is_held[axis] = map_entries([0, 1], |end| numbers[2 * (D + axis) + end] == 0.0);
         }
         self
     }

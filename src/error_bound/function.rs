@@ -2,6 +2,7 @@
 
 use super::PrimalDualPair;
 use crate::algebra::{Bound, Contact};
+use crate::arrays::map_entries;
 use crate::assemble::space::tables::BasisAt;
 use crate::assemble::space::{Place, Space};
 use crate::element::Node;
@@ -136,7 +137,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
             return u.iter().map(|u| u.to_f64()).collect();
         }
         let midpoints = if nodes.n_edges > 0 { edge_vertices(D).len() } else { 0 };
-        let basis: Vec<BasisAt<f64>> = (0..=D)
+        let basis: Vec<BasisAt<f64>> = (0..D + 1)
             .map(Node::vertex)
             .chain((0..midpoints).map(Node::midpoint))
             .map(|node| self.basis_at(&node.centre(D)))
@@ -201,10 +202,10 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         let mut bounds = vec![(f64::NEG_INFINITY, f64::INFINITY); at_midpoints.len()];
         // what a datum asks of the value at the midpoint of an edge
         let least = |datum: DatumRef<'_, D>, cell: usize, &[a, b]: &[usize; 2]| {
-            let ends = [a, b].map(|k| self.mesh.cell(cell)[k] as usize);
-            let [x, y] = ends.map(|v| point_f64(&self.mesh.vertices()[v]));
+            let ends = map_entries([a, b], |k| self.mesh.cell(cell)[k] as usize);
+            let [x, y] = map_entries(ends, |v| point_f64(&self.mesh.vertices()[v]));
             let middle = datum.at(&midpoint(&x, &y));
-            let [of_x, of_y] = ends.map(|v| at_vertices[v]);
+            let [of_x, of_y] = map_entries(ends, |v| at_vertices[v]);
             middle + (of_x + of_y - datum.at(&x) - datum.at(&y)) / 4.0
         };
         for cell in 0..self.mesh.n_cells() {
@@ -237,8 +238,8 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
                 let rank = self.data.dirichlet_rank[group];
                 if rank < ranks[edge] {
                     ranks[edge] = rank;
-                    let [x, y] = [a, b].map(|k| self.mesh.cell(cell)[k] as usize);
-                    let [x, y] = [x, y].map(|v| point_f64(&self.mesh.vertices()[v]));
+                    let [x, y] = map_entries([a, b], |k| self.mesh.cell(cell)[k] as usize);
+                    let [x, y] = map_entries([x, y], |v| point_f64(&self.mesh.vertices()[v]));
                     at_midpoints[edge] = self.dirichlet_at(group, &midpoint(&x, &y));
                 }
             }

@@ -3,6 +3,7 @@
 use super::PrimalDualPair;
 use super::estimate::Unproven;
 use super::function::PairNode;
+use crate::arrays::map_entries;
 use crate::assemble::space::{Place, Space};
 use crate::measure::Counts;
 use crate::mesh::BoundaryPart;
@@ -26,7 +27,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
             is_constant(data) || stated.is_some_and(|stated| stated <= degree)
         };
         let integrands = [&data.source, &data.lower, &data.upper, &data.gap];
-        let has_jumps = data.source.all().any(|f| f.level().is_some());
+        let has_jumps = data.source.any(&|f| f.level().is_some());
         let is_inexact = self.has_inexact_facets(pair)
             || has_jumps
             || !is_below(&data.coefficient, 0)
@@ -62,9 +63,10 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         let (neumann, gap) = (&self.data.neumann, &self.data.gap);
         let stated = self.problem.data_degree;
         let has = |part| D > 1 && self.mesh.has_part(part);
-        let [has_neumann, has_contact] = [BoundaryPart::Neumann, BoundaryPart::Contact].map(has);
+        let [has_neumann, has_contact] =
+            map_entries([BoundaryPart::Neumann, BoundaryPart::Contact], has);
         let has_neumann = has_neumann && self.problem.has_neumann_data();
-        let is_constant = neumann.all().all(|f| f.constant().is_some());
+        let is_constant = neumann.every(&|f| f.constant().is_some());
         if has_neumann && stated.is_none() && !(is_constant && self.problem.exact.is_none()) {
             return true;
         }
@@ -82,12 +84,12 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
     fn exceeds_obstacles(&self, pair: &PrimalDualPair) -> bool {
         let exceeds = |bound: Option<DatumRef<'_, D>>, sign, cell, (ends, node): PairNode| {
             let Some(bound) = bound else { return true };
-            let ends = ends.map(|k| self.mesh.cell(cell)[k] as usize);
-            let [x, y] = ends.map(|v| point_f64(&self.mesh.vertices()[v]));
+            let ends = map_entries(ends, |k| self.mesh.cell(cell)[k] as usize);
+            let [x, y] = map_entries(ends, |v| point_f64(&self.mesh.vertices()[v]));
             let coefficient = |middle: f64, [a, b]: [f64; 2]| {
                 [4.0 * middle - a - b, 4.0 * middle.abs() + a.abs() + b.abs()]
             };
-            let of_ends = ends.map(|v| pair.function[v]);
+            let of_ends = map_entries(ends, |v| pair.function[v]);
             let [own, size] = coefficient(pair.function[node], of_ends);
             let [of_bound, size_of_bound] =
                 coefficient(bound.at(&((x + y) * 0.5)), [bound.at(&x), bound.at(&y)]);
@@ -115,8 +117,8 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
             let mut nodes = self.pair_nodes_on(pair, place);
             !counts(place.0)
                 || nodes.all(|(ends, node)| {
-                    let [x, y] = ends.map(|k| self.mesh.cell(place.0)[k] as usize);
-                    let [x, y] = [x, y].map(|v| point_f64(&self.mesh.vertices()[v]));
+                    let [x, y] = map_entries(ends, |k| self.mesh.cell(place.0)[k] as usize);
+                    let [x, y] = map_entries([x, y], |v| point_f64(&self.mesh.vertices()[v]));
                     let datum = self.dirichlet_at(group, &((x + y) * 0.5));
                     let value = pair.function[node];
                     (datum - value).abs() <= AGREEMENT * datum.abs().max(value.abs())
@@ -127,5 +129,5 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
 
 /// Whether a datum is a number wherever it is given.
 fn is_constant<const D: usize>(data: &DataByGroup<'_, D>) -> bool {
-    data.all().all(|f| f.constant().is_some())
+    data.every(&|f| f.constant().is_some())
 }

@@ -19,6 +19,7 @@ use super::NoBound;
 use super::contact::NodeForce;
 use super::shared_multipliers::SharedNodes;
 use crate::algebra::{Bound, Contact};
+use crate::arrays::{map_entries, tabulate};
 use crate::assemble::local::zero_local;
 use crate::assemble::space::{Place, Space};
 use crate::mesh::{BoundaryPart, edge_vertices};
@@ -54,7 +55,7 @@ pub(super) struct CellLoads {
 pub(super) fn densities<const D: usize>(products: &[f64; 4], facet: usize) -> [f64; 4] {
     let sum: f64 = products[..=D].iter().sum();
     let d = D as f64;
-    std::array::from_fn(|j| match j <= D && j != facet {
+    tabulate(|j| match j <= D && j != facet {
         true => d * ((d + 1.0) * products[j] - sum),
         false => 0.0,
     })
@@ -71,7 +72,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         let is_vertex = |i: usize| self.nodes[i].point().is_some_and(|p| p[i] == 1.0);
         self.basis_degree == 2
             && self.per_cell() == D + 1 + edge_vertices(D).len()
-            && (0..=D).all(is_vertex)
+            && (0..D + 1).all(is_vertex)
             && self.nodes[D + 1..].iter().all(|node| node.is_midpoint())
     }
 
@@ -104,9 +105,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         };
         let terms = self.node_terms(&self.facet_rule, &self.cell_rule);
         let functional = |terms: &Vec<([f64; 4], f64)>| -> Products {
-            std::array::from_fn(|a| {
-                std::array::from_fn(|j| terms.iter().map(|(p, w)| w * p[a] * p[j]).sum())
-            })
+            tabulate(|a| tabulate(|j| terms.iter().map(|(p, w)| w * p[a] * p[j]).sum()))
         };
         let functionals: Vec<Products> = terms.iter().map(functional).collect();
         let neumann = self.neumann_products()?;
@@ -197,12 +196,12 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
             given[*cell].iter_mut().zip(moments).for_each(|(to, moment)| *to += moment);
         }
         for ((cell, local), products) in loads.neumann.iter().chain(&loads.contact) {
-            let of_facet = densities::<D>(&products.map(|row| row.iter().sum()), *local);
+            let of_facet = densities::<D>(&map_entries(*products, |row| row.iter().sum()), *local);
             let start = cell * square + local * (D + 1);
             flux[start..start + D + 1].iter_mut().zip(of_facet).for_each(|(to, c)| *to += c);
         }
         let linear: Vec<[f64; 4]> =
-            loads.functionals.iter().map(|f| f.map(|row| row.iter().sum())).collect();
+            loads.functionals.iter().map(|f| map_entries(*f, |row| row.iter().sum())).collect();
         let fill = |cells: Range<usize>, out: &mut [f64]| {
             for (cell, flux) in cells.zip(out.chunks_exact_mut(square)) {
                 let mut tested = [0.0; 4];
@@ -217,10 +216,10 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
                 tested[..=D].iter_mut().for_each(|t| *t -= left);
                 let sum: f64 = tested[..=D].iter().sum();
                 for j in 0..=D {
-                    let others: f64 = (0..=D).map(|facet| flux[facet * (D + 1) + j]).sum();
+                    let others: f64 = (0..D + 1).map(|facet| flux[facet * (D + 1) + j]).sum();
                     tested[j] = d * (sum - (d + 2.0) * tested[j]) - others;
                 }
-                (0..=D).for_each(|j| flux[j * (D + 2)] = tested[j]);
+                (0..D + 1).for_each(|j| flux[j * (D + 2)] = tested[j]);
             }
             Ok::<(), Infallible>(())
         };
@@ -251,7 +250,7 @@ pub(super) fn triple(dimension: usize, [a, j, k]: [usize; 3]) -> f64 {
 
 /// The vertices of a facet by their numbers in the cell.
 pub(super) fn vertices_of<const D: usize>(facet: usize) -> impl Iterator<Item = usize> {
-    (0..=D).filter(move |&j| j != facet)
+    (0..D + 1).filter(move |&j| j != facet)
 }
 
 /// The products of a flux with these densities on a facet.

@@ -2,6 +2,7 @@
 
 use super::contact::NodeForce;
 use super::quadratics::{Products, densities, products_on_facet, vertices_of};
+use crate::arrays::map_entries;
 use crate::assemble::space::{Place, Space};
 use crate::real::Real;
 
@@ -50,7 +51,8 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
                 let sum = around[vertex(*place, k)].sum;
                 values[k] = D as f64 * sum * part(*place, is_closed, k);
             }
-            *moments = products_on_facet::<D>(&values, place.1).map(|row| row.iter().sum());
+            let products = products_on_facet::<D>(&values, place.1);
+            *moments = map_entries(products, |row| row.iter().sum());
             vertices_of::<D>(place.1).for_each(|k| left[vertex(*place, k)] -= moments[k]);
         }
         // the share of the smooth products at each vertex: any share keeps the sum of the products

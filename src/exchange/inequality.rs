@@ -47,8 +47,17 @@ fn write_files<T: Real, const D: usize>(
     inequality: &Inequality<T>,
     mesh: &Mesh<T, D>,
 ) -> Result<(), Error> {
+    write_files_with(directory, inequality, &|file| write_places(file, &inequality.supports, mesh))
+}
+
+/// As [`write_files`], compiled for scalars, not for dimensions.
+fn write_files_with<T: Real>(
+    directory: &Path,
+    inequality: &Inequality<T>,
+    write_places: &dyn Fn(&mut dyn Write) -> std::io::Result<()>,
+) -> Result<(), Error> {
     fs::create_dir_all(directory).map_err(|e| write_error(directory, e))?;
-    let Inequality { matrix, load, bounds, supports, .. } = inequality;
+    let Inequality { matrix, load, bounds, .. } = inequality;
     let text = |name: &str, write: &dyn Fn(&mut dyn Write) -> std::io::Result<()>| {
         replace(&directory.join(name), |draft| {
             let mut file = BufWriter::new(File::create(draft)?);
@@ -56,10 +65,7 @@ fn write_files<T: Real, const D: usize>(
         })
     };
     text("matrix.mtx", &|file| write_matrix(file, matrix))?;
-    text("places.csv", &|file| write_places(file, supports, mesh))?;
-    let numbers = |values: &mut dyn ExactSizeIterator<Item = f64>| {
-        array("<f8", values.len(), values.flat_map(f64::to_le_bytes))
-    };
+    text("places.csv", write_places)?;
     let lower = |bound: &Bound<T>| bound.lower().or(bound.fixed_value());
     let upper = |bound: &Bound<T>| bound.upper().or(bound.fixed_value());
     let vectors = [
@@ -76,9 +82,6 @@ fn write_files<T: Real, const D: usize>(
     for (name, bytes) in &vectors {
         replace(&directory.join(name), |draft| fs::write(draft, bytes))?;
     }
-    let indices = |values: &[u32]| {
-        array("<i8", values.len(), values.iter().flat_map(|&i| i64::from(i).to_le_bytes()))
-    };
     let n = matrix.size() as i64;
     let mut files = vec![
         ("format.npy", scalar("|S3", b"csr".iter().copied())),
@@ -95,6 +98,14 @@ fn write_files<T: Real, const D: usize>(
         None if path.exists() => fs::remove_file(&path).map_err(|e| write_error(&path, e)),
         None => Ok(()),
     }
+}
+
+fn numbers(values: &mut dyn ExactSizeIterator<Item = f64>) -> Vec<u8> {
+    array("<f8", values.len(), values.flat_map(f64::to_le_bytes))
+}
+
+fn indices(values: &[u32]) -> Vec<u8> {
+    array("<i8", values.len(), values.iter().flat_map(|&i| i64::from(i).to_le_bytes()))
 }
 
 fn write_matrix<T: Real>(file: &mut dyn Write, matrix: &SparseMatrix<T>) -> std::io::Result<()> {

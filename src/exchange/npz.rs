@@ -21,6 +21,20 @@ fn checksum(bytes: &[u8]) -> u32 {
     !bytes.iter().fold(!0, step)
 }
 
+/// Appends numbers of 16 bits.
+fn push_16(bytes: &mut Vec<u8>, numbers: &[u16]) {
+    for number in numbers {
+        bytes.extend(number.to_le_bytes());
+    }
+}
+
+/// Appends numbers of 32 bits.
+fn push_32(bytes: &mut Vec<u8>, numbers: &[u32]) {
+    for number in numbers {
+        bytes.extend(number.to_le_bytes());
+    }
+}
+
 /// The archive of files with these names. None if it would have more than 4 GiB, for which the format needs
 /// its extension.
 pub(super) fn archive(files: &[(&str, Vec<u8>)]) -> Option<Vec<u8>> {
@@ -29,9 +43,9 @@ pub(super) fn archive(files: &[(&str, Vec<u8>)]) -> Option<Vec<u8>> {
         let (length, start) = (u32::try_from(data.len()).ok()?, u32::try_from(bytes.len()).ok()?);
         let mut entry = Vec::new();
         // version, flags, method (stored); time and date: 1 January 1980
-        entry.extend([20_u16, 0, 0, 0, 0x21].iter().flat_map(|x| x.to_le_bytes()));
-        entry.extend([checksum(data), length, length].iter().flat_map(|x| x.to_le_bytes()));
-        entry.extend([name.len() as u16, 0].iter().flat_map(|x| x.to_le_bytes()));
+        push_16(&mut entry, &[20, 0, 0, 0, 0x21]);
+        push_32(&mut entry, &[checksum(data), length, length]);
+        push_16(&mut entry, &[name.len() as u16, 0]);
         bytes.extend(*b"PK\x03\x04");
         bytes.extend(&entry);
         bytes.extend(name.bytes());
@@ -47,8 +61,8 @@ pub(super) fn archive(files: &[(&str, Vec<u8>)]) -> Option<Vec<u8>> {
     bytes.extend(directory);
     bytes.extend(*b"PK\x05\x06\x00\x00\x00\x00");
     let n = files.len() as u16;
-    bytes.extend([n, n].iter().flat_map(|x| x.to_le_bytes()));
-    bytes.extend([length, start].iter().flat_map(|x| x.to_le_bytes()));
+    push_16(&mut bytes, &[n, n]);
+    push_32(&mut bytes, &[length, start]);
     bytes.extend([0; 2]);
     Some(bytes)
 }

@@ -1,6 +1,7 @@
 //! Forms made of lifts of jumps.
 
 use super::{FacetForm, FacetView, FormTheory, PenaltyParameters, Trace};
+use crate::arrays::map_entries;
 use crate::real::Real;
 
 /// The degree of the polynomials that jumps are lifted to.
@@ -80,7 +81,7 @@ impl<T: Real, const D: usize> FacetForm<T, D> for FacetLifts {
     /// the sum over `j < p - m` of `(2 j + 2 m + D) / D`, the squares on the facet of the orthonormal
     /// polynomials that are `e` times a Jacobi polynomial of degree `j` in the height.
     fn moment_weight(&self, moment: usize) -> f64 {
-        let [d, p, m] = [D, self.lift_degree + 1, moment].map(|k| k as f64);
+        let [d, p, m] = map_entries([D, self.lift_degree + 1, moment], |k| k as f64);
         (p - m) * (p + m + d - 1.0) / d
     }
     fn theory(&self) -> FormTheory<'_, T, D> {

@@ -3,6 +3,7 @@
 use super::certificate::{Certificate, positive_diagonal, residual};
 use super::scales::{Scales, Sums, maximum};
 use crate::algebra::{Bound, Distribution, Inequality};
+use crate::arrays::tabulate;
 use crate::instances::compiled;
 use crate::real::Real;
 
@@ -163,7 +164,7 @@ impl Violations {
             scales: one.scales.merge(two.scales),
             feasibility: one.feasibility.max(two.feasibility),
             mismatch: maximum(one.mismatch, two.mismatch),
-            squares: std::array::from_fn(|k| one.squares[k] + two.squares[k]),
+            squares: tabulate(|k| one.squares[k] + two.squares[k]),
             stiffness: one.stiffness + two.stiffness,
             epsilon: one.epsilon.max(two.epsilon),
         }

@@ -5,6 +5,7 @@ use super::error::{KitError, Law};
 use super::meshes::Sample;
 use super::report::ConsistencyReport;
 use super::{meshes, problems};
+use crate::arrays::map_entries;
 use crate::instances::compiled;
 use crate::mesh::describe_point;
 use crate::problem::Problem;
@@ -59,7 +60,8 @@ fn relative_error<T: Real, const D: usize>(
     problem: &Problem<D>,
     sample: &Sample<T, D>,
 ) -> f64 {
-    let [value, gradient] = [judged.errors.max, judged.errors.h1].map(|e| e.unwrap_or(f64::NAN));
+    let [value, gradient] =
+        map_entries([judged.errors.max, judged.errors.h1], |e| e.unwrap_or(f64::NAN));
     let vertices = sample.mesh.vertices();
     let size = vertices.iter().fold(1.0, |m, x| {
         let value: f64 = problem.dirichlet_at(&point_f64(x));

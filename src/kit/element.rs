@@ -263,7 +263,7 @@ mod tests {
     /// to one.
     fn points(dimension: usize) -> Vec<[f64; 4]> {
         let mut points = Rule::new(dimension, 7).points;
-        points.extend((0..=dimension).map(|k| std::array::from_fn(|i| f64::from(i == k))));
+        points.extend((0..dimension + 1).map(|k| std::array::from_fn(|i| f64::from(i == k))));
         let mut outside = [1.75, -0.5, 0.25, -0.75];
         outside[dimension] = 1.0 - outside[..dimension].iter().sum::<f64>();
         points.push(outside);

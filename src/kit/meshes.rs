@@ -103,8 +103,10 @@ pub(super) fn renumbered<T: Real, const D: usize>(
         new[old as usize] = k as u32;
     }
     let points = vertices.iter().map(|&old| point_f64(&mesh.vertices()[old as usize])).collect();
-    let corners = cells.iter().flat_map(|&old| mesh.cell(old as usize));
-    let corners = corners.map(|&v| new[v as usize]).collect();
+    let mut corners = Vec::with_capacity(mesh.cells().len());
+    for &old in &cells {
+        corners.extend(mesh.cell(old as usize).iter().map(|&v| new[v as usize]));
+    }
     let mesh = Mesh::new(points, corners, &tagged(mesh, |v| new[v as usize]))
         .map_err(|why| KitError::NotAssembled { law, why: why.into() })?;
     Ok(Renumbered { mesh, vertices, cells })

@@ -58,7 +58,7 @@ impl<const D: usize> Admissible<'_, D> {
     pub fn touches_in_part(&self, corner: impl Fn(usize) -> Point<f64, D>) -> bool {
         self.bounds.iter().flatten().any(|bound| {
             let touches = |k: &usize| bound.at(&corner(*k)) == self.values[*k];
-            (1..=D).contains(&(0..=D).filter(touches).count())
+            (1..=D).contains(&(0..D + 1).filter(touches).count())
         })
     }
 }

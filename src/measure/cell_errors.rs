@@ -6,6 +6,7 @@ use std::sync::Arc;
 use super::admissible::InCells;
 use super::evaluation::Reference;
 use super::squared_errors::{SquaredErrors, Squares};
+use crate::arrays::{map_entries, tabulate};
 use crate::assemble::cut_simplices::CutRule;
 use crate::assemble::space::tables::{BasisAt, CellTable};
 use crate::assemble::space::{Space, Terms, data};
@@ -159,7 +160,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
             let (mut sum, mut open) = (SquaredErrors::default(), Vec::new());
             for cell in cells.filter(|&cell| counts(cell)) {
                 let [low, high] = self.squares_in(&measure, cell, true)?;
-                match differ(&low, &high, &high.map(|square| AGREEMENT * square)) {
+                match differ(&low, &high, &map_entries(high, |square| AGREEMENT * square)) {
                     true => open.push((cell, low, high)),
                     false => sum.add(&high),
                 }
@@ -177,7 +178,8 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         let mut estimate = total;
         open.iter().for_each(|(_, _, high)| estimate.add(high));
         let n_counted = (0..n_cells).filter(|&cell| counts(cell)).count();
-        let negligible = estimate.squares.map(|square| NEGLIGIBLE * square / n_counted as f64);
+        let negligible =
+            map_entries(estimate.squares, |square| NEGLIGIBLE * square / n_counted as f64);
         let parts = cells::map(open.len(), &|range: Range<usize>| {
             let mut sum = SquaredErrors::default();
             for (cell, low, high) in &open[range] {
@@ -216,7 +218,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         let local = of.u.map(|u| self.local_values(cell, u));
         let function = of.function.map(|f| f(cell));
         let n = self.per_cell();
-        let gradients: [Point<f64, D>; 4] = std::array::from_fn(|k| match k <= D {
+        let gradients: [Point<f64, D>; 4] = tabulate(|k| match k <= D {
             true => point_f64(geometry.gradient(k)),
             false => Point::zeros(),
         });
@@ -233,7 +235,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         let of_linear = local.as_ref().filter(|_| is_linear);
         let of_linear = of_linear.map(|local| gradient_of(&of.table.basis[0], local));
         let [coefficient, reaction] =
-            [&self.data.coefficient, &self.data.reaction].map(|data| data.of(region));
+            map_entries([&self.data.coefficient, &self.data.reaction], |data| data.of(region));
         let alpha = self.alpha(cell).to_f64();
         let varying = coefficient.filter(|_| self.varying_in(cell).is_some());
         let add = |sum: &mut Squares,

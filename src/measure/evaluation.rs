@@ -38,7 +38,7 @@ impl<T: Real, const D: usize> Reference<'_, T, D> {
                 let cell = cell >> (D * refinements);
                 let (basis, local) = space.evaluate(cell, x, values);
                 let geometry = space.mesh.geometry(cell);
-                (0..=D).fold(Point::zeros(), |sum: Point<f64, D>, k| {
+                (0..D + 1).fold(Point::zeros(), |sum: Point<f64, D>, k| {
                     let slope: f64 =
                         local.iter().zip(&basis.derivatives).map(|(c, d)| c * d[k]).sum();
                     sum + point_f64(geometry.gradient(k)) * slope

@@ -67,12 +67,14 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
     pub fn fields(&self, inequality: &Inequality<T>, solution: &Solution<T>) -> Fields {
         let u = &solution.values;
         let corner = |&v: &u32| point_f64(&self.mesh.vertices()[v as usize]);
-        let obstacle = |cell: usize| {
+        let mut obstacle = Vec::new();
+        for cell in (0..self.mesh.n_cells()).filter(|_| self.problem.has_obstacle()) {
             let region = self.mesh.region(cell);
             let psi = self.data.lower.of(region).or(self.data.upper.of(region));
-            let at = move |v| psi.map_or(f64::NAN, |psi| psi.at(&corner(v)));
-            self.mesh.cell(cell).iter().map(at)
-        };
+            for v in self.mesh.cell(cell) {
+                obstacle.push(psi.map_or(f64::NAN, |psi| psi.at(&corner(v))));
+            }
+        }
         let share = |cell| {
             let unknowns = (0..self.per_cell()).map(|i| self.dofs.of(cell, i));
             let constrained = unknowns.filter(|&k| inequality.bounds[k].is_inequality());
@@ -99,14 +101,11 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
             false => Vec::new(),
         };
         let densities = |places: &[Place], of_boundary: bool| {
-            self.mean_densities(places, inequality, solution, |k| on_boundary[k] == of_boundary)
+            self.mean_densities(places, inequality, solution, &|k| on_boundary[k] == of_boundary)
         };
         Fields {
             u: self.vertex_values(u),
-            obstacle: self
-                .problem
-                .has_obstacle()
-                .then(|| (0..n_cells).flat_map(obstacle).collect()),
+            obstacle: self.problem.has_obstacle().then_some(obstacle),
             multiplier: densities(&cells, false),
             contact: (0..n_cells).map(share).collect(),
             midpoints: self.midpoint_values(u),
@@ -142,10 +141,11 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
             self.basis_at(&point)
         };
         let midpoints: Vec<_> = edge_vertices(D).iter().map(middle).collect();
-        let of_cell = |cell| {
+        let mut values = Vec::with_capacity(self.mesh.n_cells() * midpoints.len());
+        for cell in 0..self.mesh.n_cells() {
             let local = self.local_values(cell, u);
-            midpoints.iter().map(move |basis| basis.value(&local))
-        };
-        (0..self.mesh.n_cells()).flat_map(of_cell).collect()
+            values.extend(midpoints.iter().map(|basis| basis.value(&local)));
+        }
+        values
     }
 }

@@ -77,7 +77,7 @@ impl Edges {
         }
         let upper = match &mut found[..] {
             [(only, _)] => std::mem::take(only),
-            _ => found.iter().flat_map(|(upper, _)| upper).copied().collect(),
+            _ => joined(&found),
         };
         Self { starts, upper }
     }
@@ -107,9 +107,17 @@ impl Edges {
             // every pair of a cell's vertices is an edge
             self.number(cell[i], cell[j]).unwrap_or_default()
         };
-        let cells = mesh.cells().chunks_exact(D + 1);
-        cells.flat_map(|cell| edge_vertices(D).iter().map(move |&e| of_cell(cell, e))).collect()
+        let mut numbers = Vec::with_capacity(mesh.n_cells() * edge_vertices(D).len());
+        for cell in mesh.cells().chunks_exact(D + 1) {
+            numbers.extend(edge_vertices(D).iter().map(|&edge| of_cell(cell, edge)));
+        }
+        numbers
     }
+}
+
+/// The upper ends in all ranges, one after the other.
+fn joined(found: &[(Vec<u32>, Vec<u32>)]) -> Vec<u32> {
+    found.iter().flat_map(|(upper, _)| upper).copied().collect()
 }
 
 /// The upper ends of the edges with a lower vertex in a range, and the number of edges of each of

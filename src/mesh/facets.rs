@@ -3,6 +3,7 @@
 use std::ops::Range;
 use std::sync::atomic::{AtomicU32, Ordering};
 
+use crate::arrays::tabulate;
 use crate::parallel::map_indices;
 
 use super::boundary::BoundaryPart;
@@ -181,7 +182,7 @@ fn match_facets_of<const D: usize>(
 fn mismatch<const D: usize>(cells: &[u32]) -> Option<MeshError> {
     let cell = |c: usize| &cells[c * (D + 1)..(c + 1) * (D + 1)];
     let vertices = |(c, local): (usize, usize)| -> [u32; D] {
-        std::array::from_fn(|k| cell(c)[k + usize::from(k >= local)])
+        tabulate(|k| cell(c)[k + usize::from(k >= local)])
     };
     let mut half_facets: Vec<_> = (0..cells.len()).map(|k| (k / (D + 1), k % (D + 1))).collect();
     half_facets.sort_unstable_by_key(|&half_facet| (vertices(half_facet), half_facet));
@@ -242,7 +243,8 @@ impl Facets {
         if mesh.is_part() {
             for cell in 0..mesh.n_cells() {
                 let is_cut = |local: &usize| neighbours.across(cell, *local) == Neighbour::Cut;
-                half_facets.extend((0..=D).filter(is_cut).map(|l| [half_facet_code(cell, l); 2]));
+                half_facets
+                    .extend((0..D + 1).filter(is_cut).map(|l| [half_facet_code(cell, l); 2]));
             }
         }
         starts[5] = half_facets.len();

@@ -84,7 +84,7 @@ impl<T: Real, const D: usize> CellGeometry<T, D> {
     /// The measure of the whole boundary of the cell.
     #[inline(always)]
     pub fn surface(&self) -> T {
-        (0..=D).fold(T::lit(0.0), |s, i| s + self.facet_measure(i))
+        (0..D + 1).fold(T::lit(0.0), |s, i| s + self.facet_measure(i))
     }
 }
 

@@ -104,6 +104,11 @@ fn children<T: Real, const D: usize>(mesh: &Mesh<T, D>, cell: usize) -> Children
     best.1
 }
 
+/// The regions of the children of all cells.
+fn regions_of_children(cell_regions: &[u16], n_children: usize) -> Vec<u16> {
+    cell_regions.iter().flat_map(|&region| std::iter::repeat_n(region, n_children)).collect()
+}
+
 /// The parents of the fine vertices, in lexicographic order.
 ///
 /// In this order of the fine vertices the lists of [`CHILDREN`] are ascending, and stand in the order
@@ -176,11 +181,7 @@ impl<T: Real, const D: usize> Mesh<T, D> {
             boundary: self.refined_boundary(),
             is_supported: self.is_supported,
             groups: self.groups.clone(),
-            cell_regions: self
-                .cell_regions
-                .iter()
-                .flat_map(|&region| std::iter::repeat_n(region, n_children))
-                .collect(),
+            cell_regions: regions_of_children(&self.cell_regions, n_children),
             whole: self.whole.map(Extent::refined),
         };
         Ok((fine, Refinement { parents }))

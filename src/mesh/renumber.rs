@@ -4,6 +4,7 @@ use std::cmp::Ordering;
 
 use super::boundary::BoundaryFacet;
 use super::simplicial::Mesh;
+use crate::arrays::tabulate;
 use crate::real::Real;
 
 /// Bits of each coordinate on the lattice of the curve.
@@ -33,9 +34,7 @@ impl<T: Real, const D: usize> Mesh<T, D> {
             });
         }
         let barycentre = |cell: &[u32]| {
-            std::array::from_fn(|k| {
-                cell.iter().map(|&v| corner(v)[k].to_f64() / (D + 1) as f64).sum()
-            })
+            tabulate(|k| cell.iter().map(|&v| corner(v)[k].to_f64() / (D + 1) as f64).sum())
         };
         let points: Vec<[f64; D]> = sorted.chunks_exact(D + 1).map(barycentre).collect();
         let order = order_along_curve(&points);
@@ -96,12 +95,11 @@ fn order_along_curve<const D: usize>(points: &[[f64; D]]) -> Vec<u32> {
     let fold = |k: usize, start: f64, f: fn(f64, f64) -> f64| {
         points.iter().fold(start, |found, x| f(found, x[k]))
     };
-    let low: [f64; D] = std::array::from_fn(|k| fold(k, f64::INFINITY, f64::min));
-    let high: [f64; D] = std::array::from_fn(|k| fold(k, f64::NEG_INFINITY, f64::max));
+    let low: [f64; D] = tabulate(|k| fold(k, f64::INFINITY, f64::min));
+    let high: [f64; D] = tabulate(|k| fold(k, f64::NEG_INFINITY, f64::max));
     let side = (0..D).map(|k| high[k] - low[k]).fold(f64::MIN_POSITIVE, f64::max);
     let steps = f64::from((1_u32 << BITS) - 1) / side;
-    let key =
-        |x: &[f64; D]| hilbert::<D>(std::array::from_fn(|k| ((x[k] - low[k]) * steps) as u32));
+    let key = |x: &[f64; D]| hilbert::<D>(tabulate(|k| ((x[k] - low[k]) * steps) as u32));
     let mut order: Vec<(u64, u32)> = points.iter().map(key).zip(0..).collect();
     order.sort_unstable();
     order.into_iter().map(|(_, k)| k).collect()
@@ -141,7 +139,7 @@ mod tests {
     /// All points of a lattice of the size of the curve: each step goes to a neighbour.
     fn steps<const D: usize>(side: usize) {
         let n = side.pow(D as u32);
-        let place = |k: usize| std::array::from_fn(|d| (k / side.pow(d as u32) % side) as f64);
+        let place = |k: usize| tabulate(|d| (k / side.pow(d as u32) % side) as f64);
         let points: Vec<[f64; D]> = (0..n).map(place).collect();
         let order = order_along_curve(&points);
         for pair in order.windows(2) {

@@ -10,6 +10,7 @@ use super::geometry::{CellGeometry, describe_point};
 use super::groups::{BoundaryGroup, Groups, NameSets};
 use super::overlap::{check_folds, check_overlaps};
 use super::simplicial::Mesh;
+use crate::arrays::tabulate;
 use crate::input::excerpt;
 use crate::instances::compiled;
 use crate::real::{Point, Real, point_f64};
@@ -222,7 +223,7 @@ fn match_boundary<const D: usize>(
 ) -> Result<(Vec<BoundaryFacet>, Vec<BoundaryGroup>), MeshError> {
     let facet = |c: usize, local: usize| -> [u32; D] {
         let cell = &cells[c * (D + 1)..(c + 1) * (D + 1)];
-        std::array::from_fn(|k| cell[k + usize::from(k >= local)])
+        tabulate(|k| cell[k + usize::from(k >= local)])
     };
     let half_facets = || (0..cells.len()).map(|k| (k / (D + 1), k % (D + 1)));
     let mut open: Vec<OpenFacet<D>> = half_facets()

@@ -212,8 +212,10 @@ impl<T: Real, const D: usize> AdaptiveMeshes<T, D> {
         let coarser = self.steps().take(position).take_while(|step| is_coarser(step)).count();
         let coarser = coarser.checked_sub(1)?;
         let prolongation = step.prolongation.get_or_init(|| {
-            let finer = self.steps().take(position + 1).skip(coarser + 1);
-            let parents = finer.flat_map(|step| step.parents.iter().copied());
+            let mut parents = Vec::new();
+            for finer in coarser + 1..=position {
+                parents.extend_from_slice(&self.step(finer).parents);
+            }
             let coarse = &self.step(coarser).numbers;
             let by_age = Prolongation::bisections(parents, coarse.len());
             Arc::new(by_age.renumbered(&step.numbers, coarse))

@@ -27,8 +27,11 @@ pub(crate) fn map_indices<R: Send>(n: usize, work: &(dyn Fn(usize) -> R + Sync))
         let value = work(k);
         *lock(&slots[k]) = Some(value);
     });
-    let value = |slot: Mutex<Option<R>>| slot.into_inner().unwrap_or_else(PoisonError::into_inner);
-    slots.into_iter().filter_map(value).collect()
+    let mut values = Vec::with_capacity(n);
+    for slot in slots {
+        values.extend(slot.into_inner().unwrap_or_else(PoisonError::into_inner));
+    }
+    values
 }
 
 /// The values of `work` on consecutive groups of `length` of the indices below `n`, the last one

@@ -10,9 +10,19 @@ use crate::parallel::map_groups;
 /// Bytes of a block before compression; the blocks of an array are compressed in parallel.
 const BLOCK: usize = 1 << 18;
 
-/// The bytes of numbers.
-pub(super) fn bytes<const B: usize>(items: impl Iterator<Item = [u8; B]>) -> Vec<u8> {
-    items.flatten().collect()
+/// The bytes of integers.
+pub(super) fn integers(list: &mut dyn Iterator<Item = i64>) -> Vec<u8> {
+    list.flat_map(i64::to_le_bytes).collect()
+}
+
+/// The bytes of numbers with 32 bits.
+pub(super) fn singles(list: &mut dyn Iterator<Item = f64>) -> Vec<u8> {
+    list.flat_map(|x| (x as f32).to_le_bytes()).collect()
+}
+
+/// The bytes of numbers with 64 bits.
+pub(super) fn doubles(list: &mut dyn Iterator<Item = f64>) -> Vec<u8> {
+    list.flat_map(f64::to_le_bytes).collect()
 }
 
 /// A file under construction: its text, and the arrays that follow it.

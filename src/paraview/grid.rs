@@ -1,5 +1,6 @@
 //! Points and cells of a VTK grid, linear or quadratic.
 
+use crate::arrays::tabulate;
 use crate::mesh::{Edges, Mesh, edge_vertices};
 use crate::real::Point;
 
@@ -58,7 +59,7 @@ impl<const D: usize> Grid<D> {
             types: Vec::new(),
         };
         for cell in 0..mesh.n_cells() {
-            let mut corners: Vec<usize> = (0..=D).collect();
+            let mut corners: Vec<usize> = (0..D + 1).collect();
             // Cells of a mesh list their vertices by number, those of the format counterclockwise, or
             // seen from the fourth: otherwise volumes come out negative.
             if D > 1 && orientation(mesh, cell, &corners) < 0.0 {
@@ -67,7 +68,7 @@ impl<const D: usize> Grid<D> {
             grid.push(&numbers[cell * n..(cell + 1) * n], &corners, is_quadratic);
         }
         for &(cell, local) in facets {
-            let mut corners: Vec<usize> = (0..=D).filter(|&k| k != local).collect();
+            let mut corners: Vec<usize> = (0..D + 1).filter(|&k| k != local).collect();
             // in space the normal points outwards
             let with_opposite = [&corners[..], &[local]].concat();
             if D == 3 && orientation(mesh, cell, &with_opposite) > 0.0 {
@@ -133,7 +134,7 @@ fn orientation<const D: usize>(mesh: &Mesh<f64, D>, cell: usize, order: &[usize]
     let vertex = |i: usize| mesh.vertices()[mesh.cell(cell)[order[i]] as usize];
     let edge = |i: usize| -> [f64; 3] {
         let step = vertex(i) - vertex(0);
-        std::array::from_fn(|k| if k < D { step[k] } else { 0.0 })
+        tabulate(|k| if k < D { step[k] } else { 0.0 })
     };
     let (a, b) = (edge(1), edge(2));
     let c = if D == 3 { edge(3) } else { [0.0, 0.0, 1.0] };

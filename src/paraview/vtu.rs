@@ -10,9 +10,10 @@ use std::fs::File;
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 
-use super::encode::{Arrays, bytes};
+use super::encode::{Arrays, doubles, integers, singles};
 use super::grid::{Grid, values_per_cell};
 use super::pvd::escape;
+use crate::arrays::map_entries;
 use crate::error::Error;
 use crate::files::{replace, replace_text};
 use crate::instances::compiled;
@@ -234,7 +235,7 @@ impl<'a, const D: usize> VtuFile<'a, D> {
             refuse(format!("field {name} has {length} values, the mesh needs {needed}"))
         };
         let cells = self.mesh.n_cells();
-        let [linear, quadratic] = [1, 2].map(|degree| values_per_cell(D, degree));
+        let [linear, quadratic] = map_entries([1, 2], |degree| values_per_cell(D, degree));
         let n = if self.u.len() == cells * quadratic { quadratic } else { linear };
         if self.u.len() != cells * n {
             return wrong("u", self.u.len(), cells * n);
@@ -268,21 +269,24 @@ impl<'a, const D: usize> VtuFile<'a, D> {
         let per_cell = self.u.len() / self.mesh.n_cells();
         for (name, f) in &self.functions {
             let places = grid.sources.iter().map(|k| k / per_cell).zip(&grid.points);
-            self.push_floats(to, name, 1, places.map(|(cell, x)| f(cell, x)))?;
+            self.push_floats(to, name, 1, &mut places.map(|(cell, x)| f(cell, x)))?;
         }
         if let Some(exact) = &self.exact {
             let places = grid.sources.iter().map(|k| k / per_cell).zip(&grid.points);
             let error = u.iter().zip(places).map(|(u, (cell, x))| u - exact(cell, x));
-            self.push_floats(to, "error", 1, error.map(|e| self.shortened(e)))?;
+            self.push_floats(to, "error", 1, &mut error.map(|e| self.shortened(e)))?;
         }
-        self.push_floats(to, "u", 1, u.iter().copied())?;
+        self.push_floats(to, "u", 1, &mut u.iter().copied())?;
         writeln!(to.text, "</PointData>\n<CellData>")?;
         self.push_cell_data(to)?;
         writeln!(to.text, "</CellData>\n<Points>")?;
-        let coordinates = |x: &Point<f64, D>| [0, 1, 2].map(|k| if k < D { x[k] } else { 0.0 });
-        self.push_floats(to, "Points", 3, grid.points.iter().flat_map(coordinates))?;
+        let mut coordinates = Vec::with_capacity(3 * n_points);
+        for x in &grid.points {
+            coordinates.extend_from_slice(x.as_slice());
+            coordinates.resize(coordinates.len() + 3 - D, 0.0);
+        }
+        self.push_floats(to, "Points", 3, &mut coordinates.into_iter())?;
         writeln!(to.text, "</Points>\n<Cells>")?;
-        let integers = |list: &mut dyn Iterator<Item = i64>| bytes(list.map(i64::to_le_bytes));
         let corners = integers(&mut grid.connectivity.iter().map(|&k| i64::from(k)));
         to.push("Int64", "connectivity", 1, &corners)?;
         let ends = integers(&mut grid.ends.iter().map(|&k| k as i64));
@@ -323,7 +327,7 @@ impl<'a, const D: usize> VtuFile<'a, D> {
         };
         for name in self.cell_names() {
             let values = [of(&self.on_cells, name, cells), of(&self.on_facets, name, facets)];
-            self.push_floats(to, name, 1, values.concat().into_iter())?;
+            self.push_floats(to, name, 1, &mut values.concat().into_iter())?;
         }
         let dimensions = [vec![D as u8; cells], vec![D as u8 - 1; facets]].concat();
         to.push("UInt8", "dimension", 1, &dimensions)
@@ -344,11 +348,11 @@ impl<'a, const D: usize> VtuFile<'a, D> {
         to: &mut Arrays,
         name: &str,
         components: usize,
-        values: impl Iterator<Item = f64>,
+        values: &mut dyn Iterator<Item = f64>,
     ) -> io::Result<()> {
         let (kind, bytes) = match self.scalar {
-            FieldScalar::Single => ("Float32", bytes(values.map(|x| (x as f32).to_le_bytes()))),
-            FieldScalar::Double => ("Float64", bytes(values.map(f64::to_le_bytes))),
+            FieldScalar::Single => ("Float32", singles(values)),
+            FieldScalar::Double => ("Float64", doubles(values)),
         };
         to.push(kind, &escape(name), components, &bytes)
     }

@@ -4,7 +4,7 @@ use super::Problem;
 use super::datum::{BoundaryFlux, Datum, Field};
 use crate::error::Error;
 use crate::input::excerpt;
-use crate::mesh::{BoundaryPart, Mesh, MeshError};
+use crate::mesh::{BoundaryGroup, BoundaryPart, Mesh, MeshError};
 use crate::real::{Point, Real};
 
 /// A datum, whether it was given as such or as a function.
@@ -50,16 +50,13 @@ pub(crate) struct ByGroup<F> {
 
 impl<F: Copy> ByGroup<F> {
     /// For each group the first datum with one of its names, or the datum without a name.
-    fn new<'n>(
-        everywhere: Option<F>,
-        named: &[(&'n str, F)],
-        groups: impl Iterator<Item = &'n [String]>,
-    ) -> Self {
+    fn new<'n>(everywhere: Option<F>, named: &[(&'n str, F)], groups: &[&'n [String]]) -> Self {
         let of = |names: &[String]| {
             let first = named.iter().find(|(name, _)| names.iter().any(|n| n == name));
             first.map(|(_, datum)| *datum).or(everywhere)
         };
-        let by_group = if named.is_empty() { Vec::new() } else { groups.map(of).collect() };
+        let groups = if named.is_empty() { &[] } else { groups };
+        let by_group = groups.iter().map(|names| of(names)).collect();
         Self { everywhere, by_group }
     }
     /// The datum of a group.
@@ -77,7 +74,15 @@ impl<F: Copy> ByGroup<F> {
     }
     /// Whether there is a datum anywhere.
     pub fn is_given(&self) -> bool {
-        self.all().next().is_some()
+        self.any(&|_| true)
+    }
+    /// Whether some datum has a property.
+    pub fn any(&self, has: &dyn Fn(F) -> bool) -> bool {
+        self.all().any(has)
+    }
+    /// Whether all data have a property.
+    pub fn every(&self, has: &dyn Fn(F) -> bool) -> bool {
+        self.all().all(has)
     }
     /// Whether some data have names.
     pub fn has_names(&self) -> bool {
@@ -111,19 +116,26 @@ impl<'a, const D: usize> DataOnMesh<'a, D> {
     /// [`Error::UnknownGroup`] for a name that the mesh does not have, [`Error::Mesh`] for a boundary
     /// group of undecided part, [`Error::UnboundBoundary`] for one of another part than that of its data.
     pub fn new<T: Real>(problem: &'a Problem<D>, mesh: &'a Mesh<T, D>) -> Result<Self, Error> {
-        let named = &problem.named;
         mesh.check_boundary_parts()?;
-        let regions = || mesh.regions().iter().map(|names| &names[..]);
-        let groups = || mesh.boundary_groups().iter().map(|group| &group.names[..]);
+        Self::of_groups(problem, mesh.regions(), mesh.boundary_groups())
+    }
+
+    /// The data of a problem in regions and boundary groups, whatever the scalar of the mesh.
+    fn of_groups(
+        problem: &'a Problem<D>,
+        regions: &[Vec<String>],
+        boundary: &[BoundaryGroup],
+    ) -> Result<Self, Error> {
+        let named = &problem.named;
+        let regions: Vec<&[String]> = regions.iter().map(|names| &names[..]).collect();
+        let groups: Vec<&[String]> = boundary.iter().map(|group| &group.names[..]).collect();
         for (name, is_boundary) in named.names() {
-            let all = || -> Vec<&[String]> {
-                if is_boundary { groups().collect() } else { regions().collect() }
-            };
-            if !all().iter().any(|names| names.iter().any(|n| n == name)) {
-                return Err(unknown_group(name, is_boundary, &all()));
+            let all = if is_boundary { &groups } else { &regions };
+            if !all.iter().any(|names| names.iter().any(|n| n == name)) {
+                return Err(unknown_group(name, is_boundary, all));
             }
         }
-        for group in mesh.boundary_groups() {
+        for group in boundary {
             let given = group.names.iter().find_map(|n| Some((n, named.part_of(n)?)));
             match (given, group.part) {
                 (Some((name, given)), Some(part)) if given != part => {
@@ -143,8 +155,8 @@ impl<'a, const D: usize> DataOnMesh<'a, D> {
         let list = |data: &'a [(String, Datum<D>)]| -> Vec<(&'a str, DatumRef<'a, D>)> {
             data.iter().map(|(name, datum)| (&name[..], DatumRef::Datum(datum))).collect()
         };
-        let in_regions = |everywhere, data| ByGroup::new(everywhere, &list(data), regions());
-        let on_groups = |everywhere, data| ByGroup::new(everywhere, &list(data), groups());
+        let in_regions = |everywhere, data| ByGroup::new(everywhere, &list(data), &regions);
+        let on_groups = |everywhere, data| ByGroup::new(everywhere, &list(data), &groups);
         let fluxes: Vec<_> = named.neumann.iter().map(|(name, flux)| (&name[..], flux)).collect();
         let rank = |names: &[String]| {
             let given = named.dirichlet.iter().position(|(name, _)| names.contains(name));
@@ -158,8 +170,8 @@ impl<'a, const D: usize> DataOnMesh<'a, D> {
             upper: in_regions(datum(&problem.upper), &named.upper),
             dirichlet: on_groups(datum(&problem.dirichlet).or(exact), &named.dirichlet),
             gap: on_groups(datum(&problem.gap), &named.gap),
-            neumann: ByGroup::new(problem.neumann.as_ref(), &fluxes, groups()),
-            dirichlet_rank: groups().map(rank).collect(),
+            neumann: ByGroup::new(problem.neumann.as_ref(), &fluxes, &groups),
+            dirichlet_rank: groups.iter().map(|names| rank(names)).collect(),
         })
     }
 }

@@ -156,6 +156,9 @@ pub struct AcceptedParameters {
     pub load: bool,
 }
 
+/// What makes a scene from its parameters.
+type Builder = Box<dyn Fn(&Parameters) -> AnyScene + Send + Sync>;
+
 /// A registered scene: what lists show of it, and a function that builds it.
 #[non_exhaustive]
 pub struct Entry {
@@ -167,7 +170,7 @@ pub struct Entry {
     pub dimension: usize,
     /// Parameters the scene accepts.
     pub accepts: AcceptedParameters,
-    build: Box<dyn Fn(&Parameters) -> AnyScene + Send + Sync>,
+    build: Builder,
 }
 
 impl std::fmt::Debug for Entry {
@@ -218,12 +221,15 @@ impl Entry {
         accepts: AcceptedParameters,
         build: impl Fn(&Parameters) -> AnyScene + Send + Sync + 'static,
     ) -> Self {
+        Self::from_builder(accepts, Box::new(build))
+    }
+    fn from_builder(accepts: AcceptedParameters, build: Builder) -> Self {
         let (name, summary, dimension) = match build(&Parameters::default()) {
             AnyScene::One(scene) => (scene.name, scene.summary, 1),
             AnyScene::Two(scene) => (scene.name, scene.summary, 2),
             AnyScene::Three(scene) => (scene.name, scene.summary, 3),
         };
-        Self { name, summary, dimension, accepts, build: Box::new(build) }
+        Self { name, summary, dimension, accepts, build }
     }
 
     /// The scene with these parameters.

@@ -23,6 +23,9 @@ pub(crate) type Sink<'s> = &'s mut dyn FnMut(StabilityRow);
 /// A function that computes rows.
 type Run<'p> = Box<dyn Fn(Sink<'_>) -> Result<(), Error> + 'p>;
 
+/// The work on one scheme, which is yet to be chosen.
+type RunChoice<'p> = Box<dyn Fn(&Choice, Sink<'_>) -> Result<(), Error> + 'p>;
+
 /// A unit of work whose rows do not depend on other jobs.
 pub(super) struct Job<'p> {
     pub(super) case: &'static str,
@@ -73,6 +76,9 @@ impl<'p> Plan<'p> {
         what: &str,
         run: impl Fn(&Choice, Sink<'_>) -> Result<(), Error> + 'p,
     ) {
+        self.add_boxed(case, choice, what, Box::new(run));
+    }
+    fn add_boxed(&mut self, case: &'static str, choice: Choice, what: &str, run: RunChoice<'p>) {
         let all = self.schemes.is_empty() && self.further.is_empty();
         if all || self.schemes.contains(&choice.scheme) || self.further.contains(&choice) {
             let label = format!("{} {} {what}", choice.scheme, choice.words());

@@ -35,7 +35,7 @@ pub(super) fn pattern<T: Real, const D: usize>(space: &Space<'_, T, D>) -> Spars
     let is_interior =
         move |cell, local| matches!(neighbours.across(cell, local), Neighbour::Cell { .. });
     let lengths =
-        move |cell| (0..=D).map(move |local| D + 1 + usize::from(is_interior(cell, local)));
+        move |cell| (0..D + 1).map(move |local| D + 1 + usize::from(is_interior(cell, local)));
     rows_by_cell::pattern(space.mesh.n_cells(), D + 1, lengths, |cell, mut rows| {
         let own = std::array::from_fn(|j| (cell * (D + 1) + j) as u32);
         for local in 0..=D {

@@ -45,7 +45,7 @@ impl<T: Real> LiftTable<T> {
     /// The lifts of this degree of a space of degree one or two.
     pub fn new<const D: usize>(space: &Space<'_, T, D>, degree: usize) -> Self {
         let mut products = [[[[T::lit(0.0); MAX_MOMENTS]; MAX_MOMENTS]; 4]; 4];
-        let tests: Vec<Vec<Vec<f64>>> = (0..=D).map(|l| tests(D, degree, l)).collect();
+        let tests: Vec<Vec<Vec<f64>>> = (0..D + 1).map(|l| tests(D, degree, l)).collect();
         for l in 0..=D {
             for k in 0..=D {
                 for (m, a) in tests[l].iter().enumerate() {

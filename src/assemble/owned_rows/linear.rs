@@ -8,6 +8,7 @@
 use super::Filling;
 use super::rows::Rows;
 use super::rows_by_cell::for_each_cell;
+use crate::arrays::tabulate;
 use crate::assemble::count;
 use crate::assemble::facet_coefficients::FacetWeight;
 use crate::assemble::space::metric::CellMetric;
@@ -67,17 +68,13 @@ impl<T: Real, const D: usize> Filling<'_, '_, T, D> {
     }
 
     fn reference<const N: usize>(&self) -> Reference<T, N> {
-        let of = |m: &[[T; _]; _]| std::array::from_fn(|i| std::array::from_fn(|j| m[i][j]));
+        let of = |m: &[[T; _]; _]| tabulate(|i| tabulate(|j| m[i][j]));
         let facet = |local: usize| local.min(D);
         Reference {
             gradient: self.gradient.unwrap_or_else(|| T::lit(1.0)),
-            own: std::array::from_fn(|l| of(&self.jumps.own(facet(l))[0])),
-            across: std::array::from_fn(|l| {
-                std::array::from_fn(|m| of(&self.jumps.across(facet(l), facet(m))[0]))
-            }),
-            means: std::array::from_fn(|l| {
-                std::array::from_fn(|i| self.facets.on(facet(l))[0].values[i])
-            }),
+            own: tabulate(|l| of(&self.jumps.own(facet(l))[0])),
+            across: tabulate(|l| tabulate(|m| of(&self.jumps.across(facet(l), facet(m))[0]))),
+            means: tabulate(|l| tabulate(|i| self.facets.on(facet(l))[0].values[i])),
         }
     }
 

@@ -69,7 +69,7 @@ impl Coupled {
         if lifted {
             Self::of::<D>(neighbours, cell, true).n
         } else {
-            1 + (0..=D).filter(is_cell).count()
+            1 + (0..D + 1).filter(is_cell).count()
         }
     }
     #[inline(always)]

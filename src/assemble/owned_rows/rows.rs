@@ -113,7 +113,7 @@ impl<T: Real, const D: usize> Filling<'_, '_, T, D> {
         // ranks by comparison of all pairs, without branches
         let me = cell as u32;
         let below = |than: u32| {
-            (0..=D).fold(usize::from(me < than), |n, k| n + usize::from(cells[k] < than))
+            (0..D + 1).fold(usize::from(me < than), |n, k| n + usize::from(cells[k] < than))
         };
         (cells.map(below), below(me))
     }

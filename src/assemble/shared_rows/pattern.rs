@@ -7,6 +7,7 @@ use crate::parallel::{for_each_item, map_indices};
 
 use super::partition::{Blocks, Rows, partition};
 use crate::algebra::SparseMatrix;
+use crate::arrays::map_entries;
 use crate::assemble::space::dofs::{Dofs, KINDS, kind_of};
 use crate::element::ReferenceElement;
 use crate::memory::in_large_pages;
@@ -50,19 +51,24 @@ pub(crate) fn pattern<T: Real, const D: usize, E: ReferenceElement<T, D>>(
     let build = |k: usize| builder.rows::<T, E, D>(&pieces[k]);
     let mut made: Vec<PatternOfPiece> = map_indices(pieces.len(), &build);
     let row_starts = row_starts(dofs.size(), &made);
-    let columns = match &mut made[..] {
+    let columns = columns_of(&row_starts, &mut made);
+    let nonzeros = columns.len();
+    let values = in_large_pages(vec![T::lit(0.0); nonzeros]);
+    let matrix = SparseMatrix { row_starts, columns, values };
+    (matrix, EntryPositions { in_rows, blocks, nonzeros })
+}
+
+/// The columns of all pieces, which are left without them.
+fn columns_of(row_starts: &[u32], made: &mut [PatternOfPiece]) -> Vec<u32> {
+    match made {
         [only] => {
             let mut columns = std::mem::take(only).map(|rows| rows.columns).into_iter();
             let mut all = columns.find(|columns| !columns.is_empty()).unwrap_or_default();
             columns.for_each(|more| all.extend(more));
             all
         }
-        _ => join(&row_starts, &made),
-    };
-    let nonzeros = columns.len();
-    let values = in_large_pages(vec![T::lit(0.0); nonzeros]);
-    let matrix = SparseMatrix { row_starts, columns, values };
-    (matrix, EntryPositions { in_rows, blocks, nonzeros })
+        _ => join(row_starts, made),
+    }
 }
 
 fn zeros(n: usize) -> Vec<AtomicU8> {
@@ -121,12 +127,7 @@ impl PatternBuilder<'_> {
     ) -> PatternOfPiece {
         let mut stars = Stars::default();
         let mut row = Row { seen: in_large_pages(vec![0; self.dofs.size()]), ..Row::default() };
-        // about as many entries as the cells' matrices have: what is not used is never touched
-        let entries = |rows: &Range<u32>| self.in_rows.len() / self.dofs.size() * rows.len();
-        let mut made = piece.each_ref().map(|rows| PatternOfRows {
-            columns: in_large_pages(Vec::with_capacity(entries(rows))),
-            lengths: in_large_pages(Vec::with_capacity(rows.len())),
-        });
+        let mut made = self.room_for(piece);
         for part in self.blocks.parts_of(piece) {
             self.find_stars::<T, E, D>(&part, &mut stars);
             let mut k = 0;
@@ -141,6 +142,16 @@ impl PatternBuilder<'_> {
         made
     }
 
+    /// Room for the pattern of a piece: about as many entries as the cells' matrices have, of which those that
+    /// are not used are never touched.
+    fn room_for(&self, piece: &Rows) -> PatternOfPiece {
+        let entries = |rows: &Range<u32>| self.in_rows.len() / self.dofs.size() * rows.len();
+        piece.each_ref().map(|rows| PatternOfRows {
+            columns: in_large_pages(Vec::with_capacity(entries(rows))),
+            lengths: in_large_pages(Vec::with_capacity(rows.len())),
+        })
+    }
+
     /// Finds the star of each row of a part: a counting sort.
     #[inline(always)]
     fn find_stars<T: Real, E: ReferenceElement<T, D>, const D: usize>(
@@ -149,7 +160,7 @@ impl PatternBuilder<'_> {
         stars: &mut Stars,
     ) {
         let mut n_rows = 0;
-        let offsets = part.each_ref().map(|rows| {
+        let offsets = map_entries(part.each_ref(), |rows| {
             n_rows += rows.len();
             n_rows - rows.len()
         });

@@ -12,6 +12,7 @@
 use super::data::coefficient_at;
 use super::metric::CellMetric;
 use super::tables::{BasisAt, CellTable, Derivatives};
+use crate::arrays::map_entries;
 use crate::assemble::local::StiffnessTable;
 use crate::element::MAX_BASIS;
 use crate::error::Error;
@@ -75,15 +76,7 @@ impl<T: Real> VaryingCoefficient<T> {
         // the same whatever the order of vertices
         let rule = |dimension| FullySymmetric.rule(dimension, 2 * basis_degree);
         let (cell_rule, facet_rule) = (rule(D)?, rule(D - 1)?);
-        let on_facets = (0..=D).flat_map(|local| {
-            let middle = 1.0 / (D + 1) as f64;
-            let inward = move |k: usize, b: f64| if k <= D { b + (middle - b) * INWARD } else { b };
-            facet_rule.points.iter().map(move |point| {
-                let point = facet_to_cell(point, local);
-                std::array::from_fn(|k| inward(k, point[k]))
-            })
-        });
-        let points: Vec<[f64; 4]> = cell_rule.points.iter().copied().chain(on_facets).collect();
+        let points = sampled_points(D, &cell_rule, &facet_rule);
         let mut starts = vec![CONSTANT; mesh.n_cells()];
         let mut values: Vec<T> = Vec::new();
         for (cell, start) in starts.iter_mut().enumerate() {
@@ -113,27 +106,32 @@ impl<T: Real> VaryingCoefficient<T> {
             StiffnessTable::new(D, &CellTable::new(rule, basis))
         };
         let polynomials = OrthonormalPolynomials::new(D - 1, basis_degree);
-        let moments = || 0..polynomials.len();
-        let flux_moments = moments().filter(|&k| polynomials.degree(k) < basis_degree).count();
+        let moments = 0..polynomials.len();
+        let flux_moments = moments.filter(|&k| polynomials.degree(k) < basis_degree).count();
         let mut derivatives = Vec::new();
         for local in 0..=D {
             for k in 0..flux_moments {
                 for (point, weight) in facet_rule.iter() {
                     let scale = weight * polynomials.value(k, point);
                     let basis = basis(&facet_to_cell(point, local));
-                    derivatives.push(basis.derivatives.map(|row| row.map(|d| T::lit(scale * d))));
+                    derivatives.push(map_entries(basis.derivatives, |row| {
+                        map_entries(row, |d| T::lit(scale * d))
+                    }));
                 }
             }
         }
-        let values_of = |k: usize| facet_rule.points.iter().map(move |p| (k, p));
-        let polynomials =
-            moments().flat_map(values_of).map(|(k, p)| T::lit(polynomials.value(k, p))).collect();
+        let mut at_points = Vec::with_capacity(polynomials.len() * facet_rule.points.len());
+        for k in 0..polynomials.len() {
+            for point in &facet_rule.points {
+                at_points.push(T::lit(polynomials.value(k, point)));
+            }
+        }
         Ok(Some(Self {
             starts,
             values,
             stiffness: cell_rule.points.iter().zip(&cell_rule.weights).map(at_point).collect(),
             facet_weights: facet_rule.weights.iter().map(|&w| T::lit(w)).collect(),
-            polynomials,
+            polynomials: at_points,
             flux_moments,
             derivatives,
         }))
@@ -217,6 +215,22 @@ impl<T: Real> VaryingCoefficient<T> {
         };
         (0..n).fold(T::lit(0.0), |sum, q| sum + term(q))
     }
+}
+
+/// The points of the rule in the cell, then by facet those of the rule on facets, moved inward.
+fn sampled_points(dimension: usize, cell_rule: &Rule, facet_rule: &Rule) -> Vec<[f64; 4]> {
+    let middle = 1.0 / (dimension + 1) as f64;
+    let mut points = cell_rule.points.clone();
+    for local in 0..=dimension {
+        for point in &facet_rule.points {
+            let mut point = facet_to_cell(point, local);
+            for b in &mut point[..=dimension] {
+                *b += (middle - *b) * INWARD;
+            }
+            points.push(point);
+        }
+    }
+    points
 }
 
 /// The points, with zeros after them.

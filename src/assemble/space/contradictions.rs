@@ -52,14 +52,10 @@ impl<const D: usize> Contradictions<D> {
         bounds: &[Bound<T>],
         found: Vec<Contradiction<D>>,
     ) -> Self {
-        let values = |b: &Bound<T>| match *b {
-            Bound::Free => [None, None],
-            Bound::Fixed(a) | Bound::Lower(a) | Bound::Upper(a) => [Some(a), None],
-            Bound::Both(a, b) => [Some(a), Some(b)],
-        };
-        let sizes = bounds.iter().flat_map(values).flatten().map(|x| x.to_f64().abs());
-        let sizes_found = found.iter().map(|c| c.lower.abs().max(c.upper.abs()));
-        let size = sizes_found.chain(sizes).fold(0.0, f64::max);
+        let mut size = size_of(bounds);
+        for contradiction in &found {
+            size = size.max(contradiction.lower.abs()).max(contradiction.upper.abs());
+        }
         Self { found, size, relative_slack: RELATIVE_SLACK.max(16.0 * T::EPSILON) }
     }
     /// The largest absolute value of a bound.
@@ -81,4 +77,18 @@ impl<const D: usize> Contradictions<D> {
             None => Ok(()),
         }
     }
+}
+
+/// The largest absolute value of bounds.
+fn size_of<T: Real>(bounds: &[Bound<T>]) -> f64 {
+    let mut size = 0.0_f64;
+    for bound in bounds {
+        let [one, other] = match *bound {
+            Bound::Free => continue,
+            Bound::Fixed(a) | Bound::Lower(a) | Bound::Upper(a) => [a, a],
+            Bound::Both(a, b) => [a, b],
+        };
+        size = size.max(one.to_f64().abs()).max(other.to_f64().abs());
+    }
+    size
 }

@@ -2,6 +2,7 @@
 
 use std::convert::Infallible;
 
+use crate::arrays::map_entries;
 use crate::facet::Side;
 use crate::memory::in_large_pages;
 use crate::mesh::Mesh;
@@ -56,7 +57,7 @@ impl<T: Real, const D: usize> CellMetric<T, D> {
     /// The measure of the whole boundary.
     #[inline(always)]
     pub fn surface(&self) -> T {
-        (0..=D).fold(T::lit(0.0), |s, i| s + self.measures[i])
+        (0..D + 1).fold(T::lit(0.0), |s, i| s + self.measures[i])
     }
     #[inline(always)]
     fn write(&self, out: &mut [T]) {
@@ -165,7 +166,7 @@ fn first_facet<T: Real, const D: usize>(mesh: &Mesh<T, D>, cell: usize) -> T {
     let corners = mesh.cell(cell);
     let edge = |k: usize| {
         let mut edge = [T::lit(0.0); 3];
-        let ends = [corners[1], corners[k.min(D)]].map(|v| &mesh.vertices()[v as usize]);
+        let ends = map_entries([corners[1], corners[k.min(D)]], |v| &mesh.vertices()[v as usize]);
         for axis in 0..D {
             edge[axis] = ends[1][axis] - ends[0][axis];
         }

@@ -32,7 +32,7 @@ impl<'a, T: Real, const D: usize> ReactionTerm<'a, T, D> {
         n: usize,
     ) -> Self {
         let is_lumped = rule.points.iter().all(|point| point.contains(&1.0));
-        let has_level = data.all().any(|datum| datum.level().is_some());
+        let has_level = data.any(&|datum| datum.level().is_some());
         let cut = (has_level && !is_lumped).then(|| CutRule::new(D, degree));
         Self { data, table: CellTable::new(rule, basis).rounded(), cut, basis, n }
     }
@@ -61,7 +61,7 @@ impl<'a, T: Real, const D: usize> ReactionTerm<'a, T, D> {
     }
     /// Whether the data are not negative at the points of the rule.
     pub fn is_nonnegative(&self, mesh: &Mesh<T, D>) -> bool {
-        if self.data.all().all(|datum| datum.constant().is_some_and(|c| c >= 0.0)) {
+        if self.data.every(&|datum| datum.constant().is_some_and(|c| c >= 0.0)) {
             return true;
         }
         let mut is_nonnegative = true;

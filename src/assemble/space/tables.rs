@@ -1,5 +1,6 @@
 //! Basis functions tabulated once per assembly: the small arrays that hot loops read.
 
+use crate::arrays::map_entries;
 use crate::element::{MAX_BASIS, ReferenceElement};
 use crate::quadrature::{OrthonormalPolynomials, Rule, facet_to_cell};
 use crate::real::Real;
@@ -16,7 +17,7 @@ pub(crate) struct BasisAt<T> {
 
 impl<T: Real> BasisAt<T> {
     pub fn new<E: ReferenceElement<T, D>, const D: usize>(point: &[f64; 4]) -> Self {
-        let lambda = point.map(T::lit);
+        let lambda = map_entries(*point, T::lit);
         let mut basis = Self::zero();
         E::values(&lambda[..=D], &mut basis.values);
         E::derivatives(&lambda[..=D], &mut basis.derivatives);
@@ -51,7 +52,7 @@ impl CellTable<f64> {
     /// The table, its numbers rounded to another scalar.
     pub fn rounded<T: Real>(&self) -> CellTable<T> {
         CellTable {
-            points: self.points.iter().map(|p| p.map(T::lit)).collect(),
+            points: self.points.iter().map(|p| map_entries(*p, T::lit)).collect(),
             weights: self.weights.iter().map(|&w| T::lit(w)).collect(),
             basis: self.basis.iter().map(BasisAt::rounded).collect(),
         }
@@ -105,8 +106,8 @@ impl BasisAt<f64> {
     /// The values and derivatives, rounded to another scalar.
     pub fn rounded<T: Real>(&self) -> BasisAt<T> {
         BasisAt {
-            values: self.values.map(T::lit),
-            derivatives: self.derivatives.map(|row| row.map(T::lit)),
+            values: map_entries(self.values, T::lit),
+            derivatives: map_entries(self.derivatives, |row| map_entries(row, T::lit)),
         }
     }
     /// The function with these coefficients.
@@ -120,8 +121,8 @@ impl BasisAt<f64> {
     ) -> Self {
         let basis = BasisAt::<T>::new::<E, D>(point);
         Self {
-            values: basis.values.map(T::to_f64),
-            derivatives: basis.derivatives.map(|row| row.map(T::to_f64)),
+            values: map_entries(basis.values, T::to_f64),
+            derivatives: map_entries(basis.derivatives, |row| map_entries(row, T::to_f64)),
         }
     }
 }

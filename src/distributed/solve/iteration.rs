@@ -9,6 +9,7 @@ use super::preconditioner::{Auxiliary, EnginePreconditioners};
 use super::solved::{DistributedSolved, contact_of_owners};
 use super::system::System;
 use crate::algebra::{Bound, Contact, Distribution, Start};
+use crate::arrays::map_entries;
 use crate::assemble::DataQuadrature;
 use crate::constraint::Nodes;
 use crate::distributed::agree::{agree, agree_on_data};
@@ -332,7 +333,7 @@ impl<'a, const D: usize> DistributedIteration<'a, D> {
             false => refinement.parents.iter().map(mean).collect(),
         };
         let contact = |&[one, other]: &[u32; 2]| {
-            let states = [one, other].map(|v| coarse.contact[v as usize]);
+            let states = map_entries([one, other], |v| coarse.contact[v as usize]);
             if states[0] == states[1] { states[0] } else { Contact::Inactive }
         };
         let contact = refinement.parents.iter().map(contact).collect();

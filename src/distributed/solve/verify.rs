@@ -2,6 +2,7 @@
 
 use super::solved::DistributedSolved;
 use crate::algebra::{Bound, Inequality};
+use crate::arrays::map_entries;
 use crate::assemble::{DataQuadrature, Discretisation};
 use crate::distributed::agree::agree;
 use crate::distributed::error::ExchangeError;
@@ -54,7 +55,8 @@ impl<const D: usize> DistributedSolved<'_, D> {
         let own = self.differences(&of, &all);
         let numbers = [own.compared, own.rows, own.loads, own.bounds, own.residuals];
         let sums = self.exchange().sum(&numbers.map(|x| x as f64))?;
-        let [compared, rows, loads, bounds, residuals] = [0, 1, 2, 3, 4].map(|k| sums[k] as u64);
+        let [compared, rows, loads, bounds, residuals] =
+            map_entries([0, 1, 2, 3, 4], |k| sums[k] as u64);
         Ok(Differences { compared, rows, loads, bounds, residuals })
     }
 
@@ -87,7 +89,7 @@ impl<const D: usize> DistributedSolved<'_, D> {
             let differ = |one: f64, other: f64| u64::from(one.to_bits() != other.to_bits());
             found.loads += differ(self.inequality().load[i], all.load[number]);
             found.residuals += differ(residual[i], all_residuals[number]);
-            let bounds = [&self.inequality().bounds[i], &all.bounds[number]].map(bits);
+            let bounds = map_entries([&self.inequality().bounds[i], &all.bounds[number]], bits);
             found.bounds += u64::from(bounds[0] != bounds[1]);
         }
         found
@@ -97,5 +99,5 @@ impl<const D: usize> DistributedSolved<'_, D> {
 /// The bits of a bound.
 fn bits(bound: &Bound<f64>) -> [Option<u64>; 3] {
     let fixed = if let Bound::Fixed(value) = bound { Some(*value) } else { None };
-    [fixed, bound.lower(), bound.upper()].map(|value| value.map(f64::to_bits))
+    map_entries([fixed, bound.lower(), bound.upper()], |value| value.map(f64::to_bits))
 }

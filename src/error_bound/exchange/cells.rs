@@ -154,12 +154,12 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
             energy += weight * alpha * gradient.norm_squared();
             for (k, sign) in [1.0, -1.0].into_iter().enumerate() {
                 let distance = admissible.bounds[k].map_or(0.0, |psi| sign * (value - psi.at(&x)));
-                (0..=D).for_each(|j| gaps[k][j] += weight * point[j] * distance);
+                (0..D + 1).for_each(|j| gaps[k][j] += weight * point[j] * distance);
             }
             let mut fluxes = [Point::<f64, D>::zeros(); 16];
             for (facet, corner) in corners.iter().enumerate().take(D + 1) {
                 let along = (x - corner) * per_volume;
-                (0..=D).for_each(|j| fluxes[facet * (D + 1) + j] = along * point[j]);
+                (0..D + 1).for_each(|j| fluxes[facet * (D + 1) + j] = along * point[j]);
             }
             for a in 0..n {
                 of_gradient[a] += weight * gradient.dot(&fluxes[a]);

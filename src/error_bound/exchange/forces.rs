@@ -8,6 +8,7 @@
 //! sum of its densities. What changes is the mismatch, and the complementarity of the contact force.
 
 use super::cells::Cells;
+use crate::arrays::map_entries;
 use crate::assemble::space::{Place, Space};
 use crate::error_bound::PrimalDualPair;
 use crate::error_bound::quadratics::vertices_of;
@@ -33,6 +34,11 @@ struct ContactFacet {
     variation: f64,
     /// Whether the force is nowhere negative.
     has_one_sign: bool,
+}
+
+/// Sorts facets by their places. Not in the function that calls it, so that this is compiled once.
+fn sort(facets: &mut [ContactFacet]) {
+    facets.sort_unstable_by_key(|facet| facet.at);
 }
 
 /// The facets and cells around a vertex.
@@ -106,7 +112,7 @@ impl<const D: usize> Cells<'_, D> {
     fn exchange_along(&mut self, chain: &[(usize, usize, f64)], [gap, gap_of_last]: [f64; 2]) {
         let number = |(k, number, _): (usize, usize, f64)| self.cells[k].number * Self::N + number;
         let Some((first, last)) = chain.first().zip(chain.last()) else { return };
-        let [first, last] = [*first, *last].map(|end| self.flux[number(end)].max(0.0));
+        let [first, last] = map_entries([*first, *last], |end| self.flux[number(end)].max(0.0));
         let [slope, curvature] = self.slopes(chain, gap_of_last - gap);
         let change = (-slope / curvature).min(first).max(-last);
         if change.is_finite() {
@@ -154,7 +160,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
             })
         };
         let mut facets: Vec<ContactFacet> = facets.iter().filter_map(in_contact).collect();
-        facets.sort_unstable_by_key(|facet| facet.at);
+        sort(&mut facets);
         facets.iter_mut().for_each(|facet| cells.make_force_positive(facet));
         facets.retain(|facet| facet.has_one_sign);
         for _ in 0..SWEEPS {
@@ -188,13 +194,13 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         let Around { facets, here, numbers, neighbours, vertex } = *around;
         let corner = |cell: usize| self.mesh.cell(cell).iter().position(|&v| v == vertex);
         let Some(j) = corner(numbers[k]) else { return };
-        for local in (0..=D).filter(|&local| local != j && local != entered) {
+        for local in (0..D + 1).filter(|&local| local != j && local != entered) {
             chain[2 * length - 1] = (k, local * (D + 1) + j, 1.0);
             match neighbours.across(numbers[k], local) {
                 Neighbour::Boundary(_) | Neighbour::Cut => {
                     let last = facets.binary_search_by_key(&(k, local), |facet| facet.at);
                     if let Some(last) = last.ok().filter(|&last| last > here) {
-                        let gaps = [here, last].map(|facet| {
+                        let gaps = map_entries([here, last], |facet| {
                             let facet = &facets[facet];
                             corner(numbers[facet.at.0]).map_or(0.0, |j| facet.gaps[j])
                         });

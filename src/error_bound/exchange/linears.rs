@@ -117,7 +117,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
     ) {
         let largest = multipliers.iter().fold(0.0, |largest: f64, m| largest.max(m.abs()));
         let presses = |cell: usize| counts(cell) && multipliers[cell].abs() > ROUNDING * largest;
-        let (numbers, steps) = self.cells_of_exchange(presses, (neighbours, counts), false);
+        let (numbers, steps) = self.cells_of_exchange(&presses, (neighbours, counts), false);
         let rule = Rule::new(D, DEGREE);
         let in_contact = |&cell: &usize| {
             let multiplier = if presses(cell) { multipliers[cell] } else { 0.0 };
@@ -158,13 +158,13 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         let squares: f64 = corners[..=D].iter().map(|x| (centre - x).norm_squared()).sum();
         let per_volume = 1.0 / (D as f64 * volume);
         let mut at_centre = [Point::zeros(); 4];
-        (0..=D).for_each(|k| at_centre[k] = (centre - corners[k]) * per_volume);
+        (0..D + 1).for_each(|k| at_centre[k] = (centre - corners[k]) * per_volume);
         let gap = |k: usize| {
             let bound = admissible.bounds[k]?;
             let distance =
                 |value: f64, x: &Point<f64, D>| ([1.0, -1.0][k] * (value - bound.at(x))).max(0.0);
             if bound.constant().is_some() {
-                let at_corners = (0..=D).map(|k| distance(admissible.values[k], &corners[k]));
+                let at_corners = (0..D + 1).map(|k| distance(admissible.values[k], &corners[k]));
                 return Some(at_corners.sum::<f64>() / (D + 1) as f64);
             }
             let at_point = |point: &[f64; 4]| {

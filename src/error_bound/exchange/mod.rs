@@ -103,7 +103,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
     /// by cell; with those inside cells if asked for.
     fn cells_of_exchange(
         &self,
-        presses: impl Fn(usize) -> bool,
+        presses: &dyn Fn(usize) -> bool,
         (neighbours, counts): (&Neighbours, Counts<'_>),
         has_inner_steps: bool,
     ) -> (Vec<usize>, Vec<Step>) {

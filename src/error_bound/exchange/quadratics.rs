@@ -7,6 +7,7 @@
 
 use super::cells::{CellInContact, Cells};
 use super::{FacetOfCell, ROUNDING, Step, decrease, visit_steps};
+use crate::arrays::{map_entries, tabulate};
 use crate::assemble::space::{Place, Space};
 use crate::error_bound::PrimalDualPair;
 use crate::error_bound::quadratics::{CellLoads, vertices_of};
@@ -33,9 +34,9 @@ impl<const D: usize> Cells<'_, D> {
         let of_variation = (1.0 - share) * cell.variation * squares.sqrt();
         let limit = (self.mismatch(k).sqrt() + of_variation).powi(2);
         let changes = cell.multiplier.map(|m| (1.0 - share) * (m - mean) / cell.divergence);
-        (0..=D).for_each(|j| self.add(k, j * (D + 2), j, changes[j]));
+        (0..D + 1).for_each(|j| self.add(k, j * (D + 2), j, changes[j]));
         if self.mismatch(k) > limit {
-            (0..=D).for_each(|j| self.add(k, j * (D + 2), j, -changes[j]));
+            (0..D + 1).for_each(|j| self.add(k, j * (D + 2), j, -changes[j]));
         } else {
             self.cells[k].has_one_sign = true;
         }
@@ -51,7 +52,7 @@ impl<const D: usize> Cells<'_, D> {
         if here.sum() * there.sum() < 0.0 || !takes_part(here) || !takes_part(there) {
             return 0.0;
         }
-        let number = [0, 1].map(|s| at[s].1 * (D + 1) + vertex[s]);
+        let number = map_entries([0, 1], |s| at[s].1 * (D + 1) + vertex[s]);
         let terms = [(at[0].0, number[0], 1.0), (at[1].0, number[1], -1.0)];
         let of_gaps = sign * (there.gap(sign, vertex[1]) - here.gap(sign, vertex[0]));
         let [slope, curvature] = self.slopes(&terms, of_gaps);
@@ -91,7 +92,7 @@ impl<const D: usize> Cells<'_, D> {
             return 0.0;
         }
         let sign = cell.sum().signum();
-        let number = [a, b].map(|v| v * (D + 2));
+        let number = map_entries([a, b], |v| v * (D + 2));
         let terms = [(k, number[0], 1.0), (k, number[1], -1.0)];
         let of_gaps = sign * (cell.gap(sign, b) - cell.gap(sign, a));
         let [slope, curvature] = self.slopes(&terms, of_gaps);
@@ -121,7 +122,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         };
         let largest = (0..multipliers.len()).map(strength).fold(0.0, f64::max);
         let presses = |cell: usize| strength(cell) > ROUNDING * largest;
-        let (numbers, steps) = self.cells_of_exchange(presses, (neighbours, &|_| true), true);
+        let (numbers, steps) = self.cells_of_exchange(&presses, (neighbours, &|_| true), true);
         let multiplier = |cell: usize| if presses(cell) { multipliers[cell] } else { [0.0; 4] };
         let mut cells = self.cells_with_products(&numbers, multiplier, function, flux);
         (0..numbers.len()).for_each(|k| cells.make_sign_definite(k));
@@ -139,7 +140,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
                 vertices_of::<D>(at.1).map(|j| cells.exchange_with_dirichlet(at, j)).sum()
             }
             Step::Inside(k) => {
-                let pairs = (0..=D).flat_map(|a| (a + 1..=D).map(move |b| [a, b]));
+                let pairs = (0..D + 1).flat_map(|a| (a + 1..=D).map(move |b| [a, b]));
                 pairs.map(|pair| cells.exchange_inside(k as usize, pair)).sum()
             }
         });
@@ -160,7 +161,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
             }
             let sum: f64 = means.iter().sum();
             let value = |k: usize| (d + 1.0) * ((d + 2.0) * means[k] - sum);
-            std::array::from_fn(|k| if k <= D { value(k) } else { 0.0 })
+            tabulate(|k| if k <= D { value(k) } else { 0.0 })
         };
         (0..self.mesh.n_cells()).map(of_cell).collect()
     }

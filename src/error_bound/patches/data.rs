@@ -141,5 +141,5 @@ pub(super) fn part_of<const D: usize>((cell, own): (usize, u8), k: usize) -> usi
 
 /// The facets of a cell at one of its vertices.
 pub(in crate::error_bound) fn around<const D: usize>(vertex: u8) -> impl Iterator<Item = usize> {
-    (0..=D).filter(move |&local| local != usize::from(vertex))
+    (0..D + 1).filter(move |&local| local != usize::from(vertex))
 }

@@ -24,6 +24,7 @@ use nalgebra::{SMatrix, SVector};
 
 use super::NoBound;
 use super::contact::NodeForce;
+use crate::arrays::tabulate;
 use crate::assemble::space::Space;
 use crate::memory::in_large_pages;
 use crate::mesh::{BoundaryPart, Neighbour, Neighbours};
@@ -258,9 +259,7 @@ fn facet_products<const D: usize>(
     let squares: f64 = from_middle.iter().take(D + 1).map(|p| p.norm_squared()).sum();
     let variance = squares / ((D + 1) * (D + 2)) as f64;
     let scale = 1.0 / ((D * D) as f64 * volume_by_coefficient);
-    std::array::from_fn(|a| {
-        std::array::from_fn(|b| scale * (from_middle[a].dot(&from_middle[b]) + variance))
-    })
+    tabulate(|a| tabulate(|b| scale * (from_middle[a].dot(&from_middle[b]) + variance)))
 }
 
 /// Solves with a symmetric matrix, given by the upper triangle of its rows, by elimination in place. It is

@@ -3,6 +3,7 @@
 use std::convert::Infallible;
 use std::ops::Range;
 
+use crate::arrays::tabulate;
 use crate::assemble::local::StiffnessTable;
 use crate::assemble::space::tables::BasisAt;
 use crate::assemble::space::{INWARD, Space};
@@ -46,7 +47,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         loads: &mut CellLoads,
     ) -> Vec<CellData> {
         let corners: Vec<BasisAt<f64>> =
-            (0..=D).map(|k| self.basis_at(&Node::vertex(k).centre(D))).collect();
+            (0..D + 1).map(|k| self.basis_at(&Node::vertex(k).centre(D))).collect();
         let (table, n_cells) = (self.stiffness_table(), self.mesh.n_cells());
         let data = cells::map(n_cells, &|cells: Range<usize>| {
             let in_cell = |cell| self.patch_data_in(cell, (u, function), (&corners, &table));
@@ -141,7 +142,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
             let slope = |m: usize| -> f64 {
                 local.iter().zip(&basis.derivatives).take(n).map(|(u, d)| u * d[m]).sum()
             };
-            let slopes: [f64; 4] = std::array::from_fn(|m| if m <= D { slope(m) } else { 0.0 });
+            let slopes: [f64; 4] = tabulate(|m| if m <= D { slope(m) } else { 0.0 });
             let vertex = Node::vertex(k).centre(D);
             let (_, mut difference) = admissible.at(&vertex, &Point::zeros());
             for (gradient, slope) in admissible.gradients.iter().zip(&slopes) {

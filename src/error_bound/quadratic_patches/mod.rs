@@ -30,12 +30,18 @@ use std::ops::Range;
 
 use super::PrimalDualPair;
 use super::patches::around;
-use super::quadratics::{CellLoads, vertices_of};
-use crate::assemble::space::Space;
+use super::quadratics::{CellLoads, Products, vertices_of};
+use crate::assemble::space::{Place, Space};
 use crate::mesh::{BoundaryPart, Neighbours};
 use crate::parallel::cells;
 use crate::real::Real;
 use patch::{OfFacets, Patch, Patches};
+
+/// Sorts products by the places of their facets. Not in the function that calls it, so that this is
+/// compiled once.
+fn sort(given: &mut [&(Place, Products)]) {
+    given.sort_unstable_by_key(|(place, _)| *place);
+}
 
 impl<T: Real, const D: usize> Space<'_, T, D> {
     /// The densities `c_Fj` of a conforming quadratic function, without those of Neumann data and contact.
@@ -48,7 +54,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         let (corners, starts) = self.corners();
         let cells = self.patch_data((u, function), neighbours, loads);
         let mut given: Vec<_> = loads.neumann.iter().chain(&loads.contact).collect();
-        given.sort_unstable_by_key(|(place, _)| *place);
+        sort(&mut given);
         let patches = Patches { space: self, neighbours, cells, given, corners, starts };
         let square = (D + 1) * (D + 1);
         let mut flux = Vec::with_capacity(self.mesh.n_cells() * square);

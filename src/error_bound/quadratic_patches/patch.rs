@@ -1,6 +1,7 @@
 //! The patch of a vertex: its facet densities are unknowns of a least squares problem with a balance for each cell.
 
 use super::cell_data::CellData;
+use crate::arrays::tabulate;
 use crate::assemble::space::{Place, Space};
 use crate::error_bound::patches::{around, solve};
 use crate::error_bound::quadratics::{Products, densities, triple, vertices_of};
@@ -69,8 +70,7 @@ impl<T: Real, const D: usize> Patches<'_, '_, T, D> {
                 0.0 => slot.shift[p],
                 sign => sign * unknowns[slot.first + p] + slot.shift[p],
             };
-            let of_facet =
-                |slot: &Slot| std::array::from_fn(|p| if p < D { density(slot, p) } else { 0.0 });
+            let of_facet = |slot: &Slot| tabulate(|p| if p < D { density(slot, p) } else { 0.0 });
             parts.push(slots.each_ref().map(of_facet));
         }
     }
@@ -105,7 +105,7 @@ impl<T: Real, const D: usize> Patches<'_, '_, T, D> {
                 let across = on_facet(&across, there);
                 let slot = around::<D>(own).position(|local| local == there).unwrap_or(0);
                 let first = slots[known][slot].first;
-                let shift = std::array::from_fn(|p| -normal[p] - across[p]);
+                let shift = tabulate(|p| -normal[p] - across[p]);
                 Slot { first, sign: -1.0, shift }
             }
             Neighbour::Boundary(BoundaryPart::Dirichlet) => free(),
@@ -115,7 +115,7 @@ impl<T: Real, const D: usize> Patches<'_, '_, T, D> {
                     let products = &self.given[k].1[usize::from(own)];
                     on_facet(&densities::<D>(products, local), local)
                 });
-                let shift = std::array::from_fn(|p| given[p] - normal[p]);
+                let shift = tabulate(|p| given[p] - normal[p]);
                 Slot { first: 0, sign: 0.0, shift }
             }
         }
@@ -176,7 +176,7 @@ fn divergence_products<const D: usize>(
     let d = D as f64;
     let sum: Point<f64, D> = points[..=D].iter().sum();
     let total: f64 = tested[..=D].iter().sum();
-    std::array::from_fn(|k| {
+    tabulate(|k| {
         let mut product = Point::zeros();
         for j in 0..=D {
             let inner = d * ((d + 2.0) * tested[j] - total);
@@ -191,7 +191,7 @@ fn divergence_products<const D: usize>(
 /// `lambda_j` times a vector, for each vertex `j` of a cell.
 fn target_products<const D: usize>(own: usize, differences: &[[f64; 3]; 4]) -> [Point<f64, D>; 4] {
     let d = D as f64;
-    std::array::from_fn(|j| {
+    tabulate(|j| {
         let mut target = Point::zeros();
         for (k, difference) in differences.iter().enumerate().take(D + 1) {
             let product = triple(D, [j, own, k]) / d;

@@ -42,7 +42,7 @@ impl FacetFlux {
         };
         let d = dimension as f64;
         let mean = (values.iter().sum::<f64>() / d).max(0.0);
-        let vertices = || (0..=dimension).filter(|&k| k != self.local);
+        let vertices = || (0..dimension + 1).filter(|&k| k != self.local);
         // the value at the vertex opposite the facet does not count
         values[self.local] = mean;
         let share = limit(mean, &values[..=dimension]);

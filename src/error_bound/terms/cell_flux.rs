@@ -105,7 +105,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
                 origins[k] += opposite * *flux;
             }
         }
-        let inner: f64 = (0..=D).map(|k| flux[k * (D + 2) % flux.len()]).sum();
+        let inner: f64 = (0..D + 1).map(|k| flux[k * (D + 2) % flux.len()]).sum();
         let divergence = match n {
             1 => [D as f64 * sums[0]; 4],
             _ => sums.map(|sum| (D + 1) as f64 * sum - inner),

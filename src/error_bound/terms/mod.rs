@@ -12,6 +12,7 @@ pub(super) use cell_flux::limit;
 pub(super) use totals::Totals;
 
 use super::PrimalDualPair;
+use crate::arrays::map_entries;
 use crate::assemble::cut_simplices::{CutRule, in_space};
 use crate::assemble::space::Space;
 use crate::assemble::space::tables::{BasisAt, CellTable};
@@ -245,7 +246,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
             let load = data.source.map_or(0.0, |f| f.at(x)) - reaction * discrete;
             let load = load - *sums.first_load.get_or_insert(load);
             sums.square += weight * load * load;
-            let differences = [0, 1].map(|k| {
+            let differences = map_entries([0, 1], |k| {
                 let sign = [1.0, -1.0][k];
                 admissible.bounds[k].map_or(0.0, |bound| weight * sign * (value - bound.at(x)))
             });
@@ -274,7 +275,8 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         let sums = self
             .integrals_of_constants(cell, &data, table)
             .unwrap_or_else(|| self.integrals_at_points(cell, &data, table, cut));
-        let [mismatch, from_values] = [sums.mismatch, sums.from_values].map(integral_of_square);
+        let [mismatch, from_values] =
+            map_entries([sums.mismatch, sums.from_values], integral_of_square);
         let by_gradient = data.admissible.diameter / (PI * sums.least_coefficient.sqrt());
         let by_value = sums.reaction_from_below.max(0.0).sqrt().recip();
         let load = sums.first_load.unwrap_or(0.0);
@@ -295,7 +297,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
             _ => 0.0,
         };
         let of_trace = boundary.traces.get(cell).map_or(0.0, |n| n / sums.least_coefficient.sqrt());
-        let with_oscillation = [1.0 - share, 1.0].map(|left| {
+        let with_oscillation = map_entries([1.0 - share, 1.0], |left| {
             let of_load = (balance.rest + left * left * balance.variation).sqrt();
             let [in_gradient, in_value] = match by_value < by_gradient {
                 true => [of_trace, by_value * of_load],
@@ -326,7 +328,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         }
         let corners = self.mesh.corners(cell);
         let mut at_corners = [f64::INFINITY; 4];
-        (0..=D).for_each(|k| at_corners[k] = datum.at(&corners[k]));
+        (0..D + 1).for_each(|k| at_corners[k] = datum.at(&corners[k]));
         let least = at_corners.into_iter().fold(f64::INFINITY, f64::min);
         let edges = edge_vertices(D).iter().map(|&[a, b]| {
             let middle = datum.at(&((corners[a] + corners[b]) * 0.5));
@@ -348,8 +350,9 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         let volume = self.mesh.geometry(cell).volume.to_f64();
         let region = self.mesh.region(cell);
         let [coefficient, reaction, source] =
-            [&self.data.coefficient, &self.data.reaction, &self.data.source]
-                .map(|data| data.of(region));
+            map_entries([&self.data.coefficient, &self.data.reaction, &self.data.source], |data| {
+                data.of(region)
+            });
         let mut data = CellData {
             flux: self.flux_in(pair, cell, volume),
             admissible: self.admissible_in(pair, cell),

@@ -47,7 +47,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         };
         DecidingNodes {
             in_cell: positive(in_cell, self.bounded_nodes().map(|(i, _)| i).collect()),
-            on_facet: (0..=D).map(on_facet).collect(),
+            on_facet: (0..D + 1).map(on_facet).collect(),
         }
     }
 }

@@ -15,7 +15,7 @@ pub(super) struct ContactEntity {
 impl ContactEntity {
     /// The vertices of the entity, as numbers in the cell.
     pub fn corners<const D: usize>(self) -> impl Iterator<Item = usize> + Clone {
-        (0..=D).filter(move |&k| Some(k) != self.facet)
+        (0..D + 1).filter(move |&k| Some(k) != self.facet)
     }
     /// The dimension of the entity.
     pub fn dimension<const D: usize>(self) -> usize {

@@ -109,7 +109,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
     fn covers(&self, entity: ContactEntity, x: &Point<f64, D>) -> bool {
         let geometry = self.mesh.geometry(entity.cell);
         let cell = self.mesh.cell(entity.cell);
-        (0..=D).all(|k| {
+        (0..D + 1).all(|k| {
             // coordinate k vanishes at any other corner of the cell
             let zero = point_f64(&self.mesh.vertices()[cell[usize::from(k == 0)] as usize]);
             let coordinate = point_f64(geometry.gradient(k)).dot(&(x - zero));

@@ -19,6 +19,7 @@ use std::ops::Range;
 
 use super::errors::ContactErrors;
 use crate::algebra::{Bound, Contact, Inequality};
+use crate::arrays::map_entries;
 use crate::assemble::Discretisation;
 use crate::assemble::cut_simplices::{CutRule, in_space};
 use crate::assemble::space::Space;
@@ -151,7 +152,8 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         if let Some(multiplier) = &exact.multiplier {
             let set = exact.contact.as_ref();
             let found = self.multiplier_errors(multiplier, set, &entities, inequality, solution)?;
-            [errors.multiplier_l1, errors.multiplier_l2] = [0, 1].map(|k| found.map(|e| e[k]));
+            [errors.multiplier_l1, errors.multiplier_l2] =
+                map_entries([0, 1], |k| found.map(|e| e[k]));
         }
         if let Some(set) = &exact.contact {
             let touching = self.in_contact(&entities, inequality, solution);

@@ -44,7 +44,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         solution: &Solution<T>,
     ) -> Result<Option<[f64; 2]>, Error> {
         let mut weights = vec![0.0; self.mesh.vertices().len()];
-        let mut multipliers = self.vertex_multipliers(inequality, solution, |_| true);
+        let mut multipliers = self.vertex_multipliers(inequality, solution, &|_| true);
         // for facets and for cells
         let rules = [D - 1, D].map(|dimension| CutRule::new(dimension, DEGREE));
         let tested = cells::map(entities.len(), &|range: Range<usize>| {
@@ -79,7 +79,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         &self,
         inequality: &Inequality<T>,
         solution: &Solution<T>,
-        counts: impl Fn(usize) -> bool,
+        counts: &dyn Fn(usize) -> bool,
     ) -> Vec<f64> {
         let mut multipliers = vec![0.0; self.mesh.vertices().len()];
         let counted =
@@ -99,7 +99,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         places: &[Place],
         inequality: &Inequality<T>,
         solution: &Solution<T>,
-        counts: impl Fn(usize) -> bool,
+        counts: &dyn Fn(usize) -> bool,
     ) -> Vec<f64> {
         // other parts of a mesh may have places
         if places.is_empty() && inequality.distribution().is_none() {

@@ -10,6 +10,7 @@ use super::geometry::{CellGeometry, describe_point};
 use super::part::extent::Extent;
 use super::simplicial::Mesh;
 use super::validate::check_size;
+use crate::arrays::map_entries;
 use crate::instances::compiled;
 use crate::real::{Point, Real, point_f64};
 use midpoints::Midpoints;
@@ -68,7 +69,7 @@ impl<T: Real, const D: usize> BisectedMesh<T, D> {
     }
     fn initial(mesh: Mesh<T, D>) -> Self {
         let length = |[a, b]: [u32; 2]| {
-            let [x, y] = [a, b].map(|v| point_f64(&mesh.vertices[v as usize]));
+            let [x, y] = map_entries([a, b], |v| point_f64(&mesh.vertices[v as usize]));
             (x - y).norm_squared()
         };
         let is_longer = |one: [u32; 2], other: [u32; 2]| {

@@ -52,7 +52,7 @@ impl OrderedCell {
         let edges = edge_vertices(D);
         let [i, j] = edges[longest(edges)];
         let mut order = [i, j, 0, 0];
-        let others = (0..=D).filter(|k| ![i, j].contains(k));
+        let others = (0..D + 1).filter(|k| ![i, j].contains(k));
         order[2..].iter_mut().zip(others).for_each(|(position, k)| *position = k);
         let [_, _, p, q] = order;
         let face_edge = |k: usize| {

@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use crate::arrays::tabulate;
 use crate::instances::compiled;
 use crate::mesh::boundary::{BoundaryFacet, BoundaryPart};
 use crate::mesh::error::MeshError;
@@ -72,7 +73,7 @@ fn paths<const D: usize>() -> Vec<[usize; D]> {
             })
             .collect();
     }
-    paths.into_iter().map(|p| std::array::from_fn(|k| p[k])).collect()
+    paths.into_iter().map(|p| tabulate(|k| p[k])).collect()
 }
 
 impl<const D: usize> BoxDomain<D> {
@@ -81,7 +82,7 @@ impl<const D: usize> BoxDomain<D> {
     pub fn counts(&self, level: usize) -> [usize; D] {
         let side = |k: usize| self.upper[k] - self.lower[k];
         let shortest = (0..D).map(side).fold(f64::INFINITY, f64::min);
-        std::array::from_fn(|k| (side(k) / shortest * level as f64).round() as usize)
+        tabulate(|k| (side(k) / shortest * level as f64).round() as usize)
     }
 }
 

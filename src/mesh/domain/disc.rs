@@ -2,6 +2,7 @@
 
 use std::f64::consts::FRAC_PI_3;
 
+use crate::arrays::tabulate;
 use crate::instances::compiled;
 use crate::mesh::boundary::BoundaryPart;
 use crate::mesh::error::MeshError;
@@ -49,7 +50,7 @@ impl<T: Real, const D: usize> Mesh<T, D> {
         }
         let boundary: Vec<_> = (0..6 * n)
             .map(|j| TaggedFacet {
-                vertices: std::array::from_fn(|end| number(n, j + end)),
+                vertices: tabulate(|end| number(n, j + end)),
                 part: BoundaryPart::Dirichlet,
             })
             .collect();

@@ -1,6 +1,7 @@
 //! The L-shaped domain.
 
 use super::disc::check_shape;
+use crate::arrays::tabulate;
 use crate::instances::compiled;
 use crate::mesh::boundary::BoundaryPart;
 use crate::mesh::error::MeshError;
@@ -39,7 +40,7 @@ impl<T: Real, const D: usize> Mesh<T, D> {
         }
         let mut boundary = Vec::with_capacity(8 * n);
         let mut side = |a: u32, b: u32| {
-            let vertices = std::array::from_fn(|k| if k == 0 { a } else { b });
+            let vertices = tabulate(|k| if k == 0 { a } else { b });
             boundary.push(TaggedFacet { vertices, part: BoundaryPart::Dirichlet });
         };
         for k in 0..2 * n {

@@ -13,6 +13,7 @@ use super::error::MeshError;
 use super::part::{Layers, Part};
 use super::refine::Refinement;
 use super::simplicial::Mesh;
+use crate::arrays::tabulate;
 use crate::instances::compiled;
 use crate::real::{Point, Real};
 
@@ -90,7 +91,7 @@ impl<const D: usize> Domain<D> {
         match self {
             Domain::Box(domain) => {
                 let counts = domain.counts(level);
-                std::array::from_fn(|k| (domain.upper[k] - domain.lower[k]) / counts[k] as f64)
+                tabulate(|k| (domain.upper[k] - domain.lower[k]) / counts[k] as f64)
             }
             _ => [self.length() / level as f64; D],
         }

@@ -4,6 +4,7 @@ use super::contents::{Contents, Membership};
 use super::element_types::Shape;
 use super::error::{GmshError, GmshWarning};
 use super::node_index::NodeIndex;
+use crate::arrays::map_entries;
 use crate::mesh::error::MeshError;
 use crate::mesh::simplicial::Mesh;
 use crate::mesh::validate::GroupedFacet;
@@ -38,18 +39,9 @@ pub(super) fn assemble<T: Real, const D: usize>(
     let mut is_used = vec![false; contents.nodes.tags.len()];
     corners.iter().for_each(|&v| is_used[v as usize] = true);
     let mesh = Mesh::with_groups(vertices, corners, &boundary.facets, &boundary.names);
-    let mesh = mesh.and_then(|mesh| mesh.with_regions(regions, of_cells)).map_err(|source| {
-        let cells =
-            source.cells().into_iter().filter_map(|cell| contents.element(D, *elements.get(cell)?));
-        let facet = source
-            .tagged_facet()
-            .and_then(|tag| contents.element(D - 1, *boundary.elements.get(tag)?));
-        let nodes = vertices_of(&source)
-            .iter()
-            .filter_map(|&v| contents.nodes.tags.get(v).copied())
-            .collect();
-        GmshError::Mesh { elements: cells.chain(facet).collect(), nodes, source }
-    })?;
+    let mesh = mesh
+        .and_then(|mesh| mesh.with_regions(regions, of_cells))
+        .map_err(|source| in_file(source, contents, D, (&elements, &boundary.elements)))?;
     let (mesh, order, numbers) = mesh.along_curve();
     // vertices are the nodes that a cell uses
     let used = contents.nodes.tags.iter().zip(is_used).filter(|(_, is_used)| *is_used);
@@ -58,6 +50,24 @@ pub(super) fn assemble<T: Real, const D: usize>(
     let tags = &contents.simplices[D].tags;
     let element_tags = order.iter().map(|&cell| tags[elements[cell as usize]]).collect();
     Ok(GmshMesh { mesh, node_tags, element_tags, warnings: warnings(contents, D) })
+}
+
+/// The error of a mesh by the elements and nodes of the file, given the elements of cells and of facets.
+fn in_file(
+    source: MeshError,
+    contents: &Contents,
+    dimension: usize,
+    (cells, facets): (&[usize], &[usize]),
+) -> GmshError {
+    let cells = source
+        .cells()
+        .into_iter()
+        .filter_map(|cell| contents.element(dimension, *cells.get(cell)?));
+    let facet =
+        source.tagged_facet().and_then(|tag| contents.element(dimension - 1, *facets.get(tag)?));
+    let nodes =
+        vertices_of(&source).iter().filter_map(|&v| contents.nodes.tags.get(v).copied()).collect();
+    GmshError::Mesh { elements: cells.chain(facet).collect(), nodes, source }
 }
 
 fn check_dimension(contents: &Contents, asked: usize) -> Result<(), GmshError> {
@@ -253,7 +263,8 @@ fn vertices_of(error: &MeshError) -> Vec<usize> {
 }
 
 fn warnings(contents: &Contents, dimension: usize) -> Vec<GmshWarning> {
-    let name = [Shape::Point, Shape::Line, Shape::Triangle, Shape::Tetrahedron].map(Shape::name);
+    let name =
+        map_entries([Shape::Point, Shape::Line, Shape::Triangle, Shape::Tetrahedron], Shape::name);
     let straightened = |d: usize| {
         let curved = contents.simplices[d].curved.iter();
         curved.map(move |(&order, &count)| GmshWarning::Straightened {

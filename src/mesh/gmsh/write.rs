@@ -66,8 +66,9 @@ fn text_of<T: Real, const D: usize>(mesh: &Mesh<T, D>) -> String {
     let blocks = [(D - 1, boundary), (D, regions)];
     let mut text = String::from("$MeshFormat\n4.1 0 8\n$EndMeshFormat\n");
     let names = write_names(&mut text, &blocks);
-    write_entities(&mut text, mesh, &blocks, &names);
-    write_nodes(&mut text, mesh);
+    let coordinates = |vertex: u32| coordinates(mesh, vertex);
+    write_entities(&mut text, &blocks, &names, &coordinates);
+    write_nodes(&mut text, D, mesh.vertices().len(), &coordinates);
     write_elements(&mut text, &blocks);
     text
 }
@@ -96,11 +97,11 @@ fn write_names<'m>(text: &mut String, blocks: &[(usize, Vec<Entity<'m>>)]) -> [V
     all
 }
 
-fn write_entities<T: Real, const D: usize>(
+fn write_entities(
     text: &mut String,
-    mesh: &Mesh<T, D>,
     blocks: &[(usize, Vec<Entity<'_>>)],
     names: &[Vec<&str>; 2],
+    coordinates: &dyn Fn(u32) -> [f64; 3],
 ) {
     let count = |dimension: usize| {
         blocks.iter().find(|(d, _)| *d == dimension).map_or(0, |(_, entities)| entities.len())
@@ -108,7 +109,7 @@ fn write_entities<T: Real, const D: usize>(
     let _ = writeln!(text, "$Entities\n{} {} {} {}", count(0), count(1), count(2), count(3));
     for ((dimension, entities), names) in blocks.iter().zip(names) {
         for (k, entity) in entities.iter().enumerate() {
-            let points = entity.elements.iter().flatten().map(|&v| coordinates(mesh, v));
+            let points = entity.elements.iter().flatten().map(|&v| coordinates(v));
             let mut bounds = [[f64::INFINITY; 3], [f64::NEG_INFINITY; 3]];
             for x in points {
                 for axis in 0..3 {
@@ -139,14 +140,18 @@ fn coordinates<T: Real, const D: usize>(mesh: &Mesh<T, D>, vertex: u32) -> [f64;
     [0, 1, 2].map(|k| if k < D { x[k] } else { 0.0 })
 }
 
-fn write_nodes<T: Real, const D: usize>(text: &mut String, mesh: &Mesh<T, D>) {
-    let n = mesh.vertices().len();
-    let _ = writeln!(text, "$Nodes\n1 {n} 1 {n}\n{D} 1 0 {n}");
+fn write_nodes(
+    text: &mut String,
+    dimension: usize,
+    n: usize,
+    coordinates: &dyn Fn(u32) -> [f64; 3],
+) {
+    let _ = writeln!(text, "$Nodes\n1 {n} 1 {n}\n{dimension} 1 0 {n}");
     for tag in 1..=n {
         let _ = writeln!(text, "{tag}");
     }
     for vertex in 0..n as u32 {
-        let [x, y, z] = coordinates(mesh, vertex);
+        let [x, y, z] = coordinates(vertex);
         let _ = writeln!(text, "{x:?} {y:?} {z:?}");
     }
     text.push_str("$EndNodes\n");

@@ -106,6 +106,11 @@ impl<const D: usize> Extent<D> {
     }
 }
 
+/// The numbers of the cells that are taken.
+fn numbers_of_taken(is_taken: &[bool]) -> Vec<u32> {
+    (0..).zip(is_taken).filter(|(_, taken)| **taken).map(|(cell, _)| cell).collect()
+}
+
 impl<T: Real, const D: usize> Mesh<T, D> {
     /// A part of the mesh, given the number of the part that owns each cell: the cells of one part, and layers
     /// of others.
@@ -145,7 +150,7 @@ impl<T: Real, const D: usize> Mesh<T, D> {
             });
         }
         self.add_layers(&mut is_taken, layers);
-        let cells: Vec<u32> = (0..).zip(&is_taken).filter(|(_, t)| **t).map(|(c, _)| c).collect();
+        let cells = numbers_of_taken(&is_taken);
         let (mesh, _) = self.submesh(&cells);
         let owners = cells.iter().map(|&cell| owners[cell as usize]).collect();
         let cells = cells.into_iter().map(u64::from).collect();
@@ -177,9 +182,14 @@ impl<T: Real, const D: usize> Mesh<T, D> {
     /// which only one is taken are in no list and so count as cut.
     fn submesh(&self, cells: &[u32]) -> (Self, Vec<u32>) {
         const UNUSED: u32 = u32::MAX;
-        let corners = || cells.iter().flat_map(|&cell| self.cell(cell as usize));
+        let mut corners = Vec::with_capacity(cells.len() * (D + 1));
+        for &cell in cells {
+            corners.extend_from_slice(self.cell(cell as usize));
+        }
         let mut numbers = vec![UNUSED; self.vertices.len()];
-        corners().for_each(|&v| numbers[v as usize] = 0);
+        for &v in &corners {
+            numbers[v as usize] = 0;
+        }
         let mut vertices = Vec::new();
         for (v, number) in (0..).zip(&mut numbers) {
             if *number != UNUSED {
@@ -187,15 +197,20 @@ impl<T: Real, const D: usize> Mesh<T, D> {
                 vertices.push(v);
             }
         }
+        for v in &mut corners {
+            *v = numbers[*v as usize];
+        }
         let mut positions = vec![UNUSED; self.n_cells()];
-        (0..).zip(cells).for_each(|(position, &cell)| positions[cell as usize] = position);
+        for (position, &cell) in cells.iter().enumerate() {
+            positions[cell as usize] = position as u32;
+        }
         let facets = self.boundary.iter().filter(|f| positions[f.cell as usize] != UNUSED);
         let moved = |f: &BoundaryFacet| BoundaryFacet { cell: positions[f.cell as usize], ..*f };
         // a mesh with one region has no list of them
         let region = |&cell: &u32| self.cell_regions.get(cell as usize).copied();
         let mesh = Self {
             vertices: vertices.iter().map(|&v| self.vertices[v as usize]).collect(),
-            cells: corners().map(|&v| numbers[v as usize]).collect(),
+            cells: corners,
             boundary: facets.map(moved).collect(),
             is_supported: self.is_supported,
             groups: self.groups.clone(),

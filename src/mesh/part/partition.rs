@@ -2,6 +2,7 @@
 
 use std::ops::Range;
 
+use crate::arrays::tabulate;
 use crate::instances::compiled;
 use crate::mesh::error::MeshError;
 use crate::mesh::simplicial::Mesh;
@@ -30,7 +31,7 @@ impl<T: Real, const D: usize> Mesh<T, D> {
         }
         let barycentre = |cell: usize| {
             let x = point_f64(&self.barycentre(cell));
-            std::array::from_fn(|k| x[k])
+            tabulate(|k| x[k])
         };
         let barycentres: Vec<[f64; D]> = (0..n_cells).map(barycentre).collect();
         let mut cells: Vec<u32> = (0..n_cells as u32).collect();

@@ -1,6 +1,6 @@
 //! Uniform refinement of a part, by itself: what the refined whole has there.
 
-use super::{Across, Layers, Part};
+use super::{Across, Layers, Part, numbers_of_taken};
 use crate::instances::compiled;
 use crate::mesh::error::MeshError;
 use crate::mesh::part::extent::Extent;
@@ -104,7 +104,7 @@ impl<T: Real, const D: usize> Part<T, D> {
         let is_own = |cell: usize| self.owns(cell >> D);
         let mut is_taken: Vec<bool> = (0..mesh.n_cells()).map(is_own).collect();
         mesh.add_layers(&mut is_taken, layers);
-        let cells: Vec<u32> = (0..).zip(&is_taken).filter(|(_, t)| **t).map(|(c, _)| c).collect();
+        let cells = numbers_of_taken(&is_taken);
         let (mesh, vertices) = mesh.submesh(&cells);
         let parents = || cells.iter().map(|&cell| cell as usize >> D);
         let child = |(&cell, parent): (&u32, usize)| {

@@ -1,6 +1,7 @@
 //! A triangle cut along the levels of a linear function on it.
 
 use super::section::PlanePoint;
+use crate::arrays::tabulate;
 
 /// A point with the value of the function there.
 type Valued = (PlanePoint, f64);
@@ -46,7 +47,7 @@ fn keep(polygon: &[Valued], measure: impl Fn(f64) -> f64) -> Vec<Valued> {
 
 fn crossing(a: Valued, b: Valued, level: f64) -> PlanePoint {
     let share = (level - a.1) / (b.1 - a.1);
-    std::array::from_fn(|k| a.0[k] + share * (b.0[k] - a.0[k]))
+    tabulate(|k| a.0[k] + share * (b.0[k] - a.0[k]))
 }
 
 #[cfg(test)]

@@ -2,6 +2,7 @@
 
 use super::axes::{CONTACT, Stroke, Symbol};
 use super::graph::Graph;
+use crate::arrays::map_entries;
 use crate::measure::Fields;
 use crate::mesh::Mesh;
 use crate::problem::{DataOnMesh, DatumRef, Problem};
@@ -39,7 +40,7 @@ impl<'a, const D: usize> Line<'a, D> {
     /// The ends of a cell.
     fn ends(&self, cell: usize) -> [f64; 2] {
         let cell = self.mesh.cell(cell);
-        [0, 1].map(|k| self.mesh.vertices()[cell[k] as usize][0])
+        map_entries([0, 1], |k| self.mesh.vertices()[cell[k] as usize][0])
     }
 
     /// Cells in contact, and points.
@@ -105,7 +106,7 @@ impl<'a, const D: usize> Line<'a, D> {
         }
         for cell in 0..self.mesh.n_cells() {
             let [a, b] = self.ends(cell);
-            let u = [0, 1].map(|k| self.fields.u[2 * cell + k]);
+            let u = map_entries([0, 1], |k| self.fields.u[2 * cell + k]);
             match self.fields.midpoints.get(cell) {
                 None => graph.lines.push((Stroke::Solution, [[a, u[0]], [b, u[1]]])),
                 Some(&middle) => {
@@ -151,7 +152,7 @@ impl<'a, const D: usize> Line<'a, D> {
             let x = self.ends(cell);
             let vertices = self.mesh.cell(cell);
             let density =
-                [0, 1].map(|k| self.fields.discrete_contact.density[vertices[k] as usize]);
+                map_entries([0, 1], |k| self.fields.discrete_contact.density[vertices[k] as usize]);
             if let [Some(a), Some(b)] = density {
                 graph.lines.push((Stroke::Solution, [[x[0], a], [x[1], b]]));
             }

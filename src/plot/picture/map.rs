@@ -8,6 +8,7 @@ use super::axes::{
 };
 use super::colour::{Scale, labels};
 use super::section::PlanePoint;
+use crate::arrays::map_entries;
 use crate::plot::pen::{Align, Drawn, Pen, ScreenPoint};
 use crate::plot::style::INK;
 
@@ -100,7 +101,7 @@ fn draw_bar<DB: DrawingBackend>(
     let bottom = top + BAR;
     let at = |share: f64| left + share * width;
     for band in 0..scale.bands() {
-        let ends = [band, band + 1].map(|k| at(scale.position(scale.levels[k])));
+        let ends = map_entries([band, band + 1], |k| at(scale.position(scale.levels[k])));
         let [a, b] = ends;
         pen.fill(&[(a, top), (b, top), (b, bottom), (a, bottom)], scale.colour(band))?;
     }

@@ -280,7 +280,7 @@ impl<'a, const D: usize> Plane<'a, D> {
             let mut bands: Vec<(usize, &Section)> =
                 self.sections.iter().map(|section| (scale.band(share(section)), section)).collect();
             // those of a colour together, which keeps files short
-            bands.sort_by_key(|(band, _)| *band);
+            sort_cells_by_band(&mut bands);
             let area = |section: &Section| section.corners.iter().map(|c| c.at).collect();
             map.fills.extend(bands.iter().map(|(band, s)| (scale.colour(*band), area(s))));
         }
@@ -315,6 +315,11 @@ impl<'a, const D: usize> Plane<'a, D> {
 
 /// Sorts sections by the numbers of their bands; not generic, so that the sorting code is compiled once.
 fn sort_by_band(sections: &mut [(usize, [PlanePoint; 2])]) {
+    sections.sort_by_key(|section| section.0);
+}
+
+/// Sorts sections of cells in this way.
+fn sort_cells_by_band(sections: &mut [(usize, &Section)]) {
     sections.sort_by_key(|section| section.0);
 }
 

@@ -1,6 +1,7 @@
 //! The part of the plane that a picture shows: cells of a mesh in the plane, or the sections of
 //! cells in space by a coordinate plane.
 
+use crate::arrays::tabulate;
 use crate::measure::Fields;
 use crate::mesh::{Mesh, edge_vertices};
 use crate::real::Point;
@@ -69,7 +70,7 @@ impl<'a, const D: usize> View<'a, D> {
 
     /// A point of a cell in space.
     pub fn point(&self, cell: usize, barycentric: &[f64; 4]) -> Point<f64, D> {
-        (0..=D).fold(Point::zeros(), |x, k| x + self.vertex(cell, k) * barycentric[k])
+        (0..D + 1).fold(Point::zeros(), |x, k| x + self.vertex(cell, k) * barycentric[k])
     }
 
     fn plane_point(&self, x: &Point<f64, D>) -> PlanePoint {
@@ -152,7 +153,7 @@ impl<'a, const D: usize> View<'a, D> {
 
     /// Whether a facet lies in the plane of the slice.
     pub fn lies_in_slice(&self, cell: usize, local: usize) -> bool {
-        let corners = || (0..=D).filter(|k| *k != local);
+        let corners = || (0..D + 1).filter(|k| *k != local);
         self.slice.is_some_and(|s| corners().all(|k| self.vertex(cell, k)[s.axis] == s.at))
     }
 
@@ -176,9 +177,9 @@ impl<'a, const D: usize> View<'a, D> {
     pub fn density(&self, cell: usize, touches: bool, barycentric: &[f64; 4]) -> Option<f64> {
         let known = &self.fields.discrete_contact.density;
         let at = |k: usize| known.get(self.mesh.cell(cell)[k] as usize).copied().flatten();
-        let free = !touches && (0..=D).all(|k| at(k).is_none_or(|density| density == 0.0));
+        let free = !touches && (0..D + 1).all(|k| at(k).is_none_or(|density| density == 0.0));
         let mut sum = 0.0;
-        for k in (0..=D).filter(|k| barycentric[*k] != 0.0) {
+        for k in (0..D + 1).filter(|k| barycentric[*k] != 0.0) {
             match at(k) {
                 Some(density) => sum += density * barycentric[k],
                 None if free => {}
@@ -219,7 +220,7 @@ fn triangles(section: Section) -> impl Iterator<Item = Section> {
 }
 
 fn unit_corners<const D: usize>() -> Vec<[f64; 4]> {
-    (0..=D).map(|k| std::array::from_fn(|i| f64::from(u8::from(i == k)))).collect()
+    (0..D + 1).map(|k| tabulate(|i| f64::from(u8::from(i == k)))).collect()
 }
 
 /// The simplex, or the parts between its vertices and the midpoints of its edges.
@@ -228,9 +229,9 @@ fn parts<const D: usize>(quadratic: bool) -> Vec<Vec<[f64; 4]>> {
     if !quadratic {
         return vec![v];
     }
-    let middle = |i: usize, j: usize| std::array::from_fn(|k| 0.5 * (v[i][k] + v[j][k]));
-    let mut parts: Vec<Vec<[f64; 4]>> = (0..=D)
-        .map(|i| (0..=D).map(|j| if i == j { v[i] } else { middle(i, j) }).collect())
+    let middle = |i: usize, j: usize| tabulate(|k| 0.5 * (v[i][k] + v[j][k]));
+    let mut parts: Vec<Vec<[f64; 4]>> = (0..D + 1)
+        .map(|i| (0..D + 1).map(|j| if i == j { v[i] } else { middle(i, j) }).collect())
         .collect();
     if D == 2 {
         parts.push(vec![middle(0, 1), middle(0, 2), middle(1, 2)]);

@@ -2,6 +2,7 @@
 
 use super::axes::{CONTACT, Stroke, Symbol};
 use super::graph::Graph;
+use crate::arrays::map_entries;
 use crate::measure::Fields;
 use crate::mesh::{BoundaryPart, Mesh};
 use crate::problem::Problem;
@@ -32,7 +33,7 @@ fn facets<const D: usize>(mesh: &Mesh<f64, D>) -> Vec<(usize, usize, Vec<u32>)> 
 pub(crate) fn samples<const D: usize>(mesh: &Mesh<f64, D>) -> Vec<Sample<D>> {
     let mut samples = Vec::new();
     for (_, _, vertices) in facets(mesh) {
-        let [a, b] = [0, 1].map(|k| mesh.vertices()[vertices[k] as usize]);
+        let [a, b] = map_entries([0, 1], |k| mesh.vertices()[vertices[k] as usize]);
         let at = |k: usize| a + (b - a) * (k as f64 / PARTS as f64);
         samples.extend((0..PARTS).map(|k| Sample { ends: [at(k), at(k + 1)] }));
     }
@@ -68,7 +69,7 @@ pub(crate) fn graph<const D: usize>(
     };
     let density = &fields.discrete_contact.density;
     for (_, _, vertices) in &facets {
-        if let [Some(a), Some(b)] = [0, 1].map(|k| density[vertices[k] as usize]) {
+        if let [Some(a), Some(b)] = map_entries([0, 1], |k| density[vertices[k] as usize]) {
             let ends = [[along(vertices[0]), a], [along(vertices[1]), b]];
             graph.lines.push((Stroke::Solution, ends));
         }
