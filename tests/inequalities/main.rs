@@ -4,6 +4,7 @@ mod algebraic_error;
 mod contact_sets;
 mod double_precision;
 mod exact_reference;
+mod factors_or_krylov;
 mod iterations;
 mod iterative;
 mod monotone_multigrid;

@@ -1,19 +1,16 @@
-//! Preconditioners made outside the library, and contact sets that do not depend on the linear solver.
+//! Preconditioners made outside the library.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use crate::problems::{Random, sparse};
-use unilateral::algebra::{Bound, Contact, Distribution, Inequality};
-use unilateral::assemble::DataQuadrature;
-use unilateral::inequality::{ActiveSet, InequalitySolver, Outcome, Solution, Stage, certify};
+use unilateral::algebra::{Bound, Distribution, Inequality};
+use unilateral::inequality::{ActiveSet, InequalitySolver, Outcome, Stage, certify};
 use unilateral::linear::{
     BuiltInPreconditioners, FactorError, LinearMethod, PreconditionedSystem, Preconditioner,
     PreconditionerFamily,
 };
 use unilateral::prelude::*;
-use unilateral::scenes::Scene;
-use unilateral::scheme::{SchemeOptions, scheme_by_name};
 
 /// Division by the diagonal.
 #[derive(Clone, Debug)]
@@ -177,60 +174,5 @@ fn iterations_are_applications_of_the_preconditioner() {
         assert!(row.converged());
         let (iterations, applications) = (row.iterations.linear, counted.0.load(Ordering::Relaxed));
         assert!(iterations > 0 && iterations <= applications, "{iterations} and {applications}");
-    }
-}
-
-/// The inequality of a scheme on a level of a scene.
-fn inequality(scene: &Scene<2>, scheme: &str, level: usize) -> Inequality<f64> {
-    let mesh = scene.domain.mesh::<f64>(level).unwrap();
-    let scheme = scheme_by_name::<f64, 2>(scheme, &SchemeOptions::default()).unwrap();
-    scheme.inequality(&scene.problem, &mesh, DataQuadrature::default()).unwrap()
-}
-
-/// The distance of an unknown from a change of its contact state, relative to the energy norm of the
-/// solution: its gap times the square root of its diagonal entry, or its multiplier divided by it.
-fn margin(q: &Inequality<f64>, u: &Solution<f64>, i: usize, energy_norm: f64) -> f64 {
-    let d = q.matrix.get(i, i);
-    let value = u.values[i];
-    let margin = match u.contact[i] {
-        Contact::Inactive => {
-            let gap = |bound: Option<f64>| bound.map_or(f64::INFINITY, |b| (value - b).abs());
-            gap(q.bounds[i].lower()).min(gap(q.bounds[i].upper())) * d.sqrt()
-        }
-        _ => (q.matrix.row_dot_f64(i, &u.values) - q.load[i]).abs() / d.sqrt(),
-    };
-    margin / energy_norm
-}
-
-/// The band in which states may differ: the tolerance of the linear systems of a Krylov method.
-const BAND: f64 = 1e-10;
-
-#[test]
-fn contact_sets_do_not_depend_on_the_linear_solver() {
-    let strictly_complementary = [
-        scenes::radial::<2>(1.0),
-        scenes::lshape_2d(),
-        scenes::signorini_shifted_2d(),
-        scenes::signorini_irrational_2d(),
-        scenes::hertz_2d(),
-    ];
-    for scene in &strictly_complementary {
-        for scheme in ["p1", "cr", "sipg", "nipg", "br2", "wopsip", "p2"] {
-            let q = inequality(scene, scheme, 16);
-            let [a, b] = [LinearMethod::Direct, LinearMethod::Iterative]
-                .map(|linear| ActiveSet::default().linear(linear).solve(&q));
-            let what = format!("{} {scheme}", scene.name);
-            assert_eq!(a.outcome, b.outcome, "{what}");
-            let energy: f64 =
-                (0..q.size()).map(|i| a.values[i] * q.matrix.row_dot_f64(i, &a.values)).sum();
-            for i in 0..q.size() {
-                let largest = [&a, &b].map(|u| margin(&q, u, i, energy.sqrt()));
-                let largest = largest[0].max(largest[1]);
-                assert!(
-                    a.contact[i] == b.contact[i] || largest <= 10.0 * BAND,
-                    "{what}: unknown {i}: {largest:e}"
-                );
-            }
-        }
     }
 }
