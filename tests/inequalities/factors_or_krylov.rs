@@ -84,7 +84,7 @@ fn contact_sets_do_not_depend_on_the_linear_solver() {
 }
 
 #[test]
-#[ignore = "takes a minute"]
+#[ignore = "takes three minutes"]
 fn contact_sets_of_all_schemes_do_not_depend_on_the_linear_solver() {
     let schemes: Vec<&str> = unilateral::scheme::SCHEMES.iter().map(|scheme| scheme.0).collect();
     check_catalogue(&schemes, [64, 16, 4]);
