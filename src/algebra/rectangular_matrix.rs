@@ -43,44 +43,117 @@ impl<T: Real> RectangularMatrix<T> {
     }
 }
 
-/// The Galerkin product `P^T A P` with a prolongation `P` of `n_coarse` columns.
+/// The Galerkin product `P^T A P` with a prolongation `P` of `n_coarse` columns, as `P^T (A P)`: each row of `A P` is
+/// computed once, however many coarse functions do not vanish there.
 pub(crate) fn galerkin_product<T: Real>(
     matrix: &SparseMatrix<T>,
     prolongation: &RectangularMatrix<T>,
     n_coarse: usize,
 ) -> SparseMatrix<T> {
-    let transpose = prolongation.transpose(n_coarse);
-    let zero = T::lit(0.0);
-    let mut position = vec![NO_INDEX; n_coarse];
-    let mut sums: Vec<(u32, T)> = Vec::new();
-    let mut coarse =
-        SparseMatrix { row_starts: vec![0_u32], columns: Vec::new(), values: Vec::new() };
-    for row in 0..n_coarse {
-        sums.clear();
-        let (fine, weights) = transpose.row(row);
-        for (&i, &weight) in fine.iter().zip(weights) {
-            let (columns, values) = matrix.row(i as usize);
-            for (&j, &a) in columns.iter().zip(values) {
-                let a = weight * a;
-                if a == zero {
-                    continue;
-                }
-                let (targets, others) = prolongation.row(j as usize);
-                for (&target, &other) in targets.iter().zip(others) {
-                    let at = &mut position[target as usize];
-                    if *at == NO_INDEX {
-                        *at = sums.len() as u32;
-                        sums.push((target, zero));
-                    }
-                    sums[*at as usize].1 += a * other;
-                }
+    let mut sum = SparseSum::new(n_coarse);
+    let mut image = RectangularMatrix { starts: vec![0], columns: Vec::new(), values: Vec::new() };
+    for i in 0..matrix.size() {
+        let (columns, values) = matrix.row(i);
+        for (&j, &a) in columns.iter().zip(values) {
+            if a != T::lit(0.0) {
+                sum.add(a, prolongation.row(j as usize));
             }
         }
-        sums.iter().for_each(|&(target, _)| position[target as usize] = NO_INDEX);
-        sort_by_column(&mut sums);
-        coarse.columns.extend(sums.iter().map(|s| s.0));
-        coarse.values.extend(sums.iter().map(|s| s.1));
+        sum.move_to(&mut image.columns, &mut image.values);
+        image.starts.push(image.columns.len() as u32);
+    }
+    let transpose = prolongation.transpose(n_coarse);
+    let mut coarse = SparseMatrix { row_starts: vec![0], columns: Vec::new(), values: Vec::new() };
+    for row in 0..n_coarse {
+        let (fine, weights) = transpose.row(row);
+        for (&i, &weight) in fine.iter().zip(weights) {
+            sum.add(weight, image.row(i as usize));
+        }
+        sort_by_column(&mut sum.terms);
+        sum.move_to(&mut coarse.columns, &mut coarse.values);
         coarse.row_starts.push(coarse.columns.len() as u32);
     }
     coarse
+}
+
+/// A sum of multiples of sparse rows.
+struct SparseSum<T> {
+    /// Columns with their entries, in the order in which they were added.
+    terms: Vec<(u32, T)>,
+    /// The place of each column in `terms`; [`NO_INDEX`] for none.
+    places: Vec<u32>,
+}
+
+impl<T: Real> SparseSum<T> {
+    /// The empty sum of rows with this number of columns.
+    fn new(n_columns: usize) -> Self {
+        Self { terms: Vec::new(), places: vec![NO_INDEX; n_columns] }
+    }
+
+    /// Adds a multiple of a row.
+    #[inline(always)]
+    fn add(&mut self, factor: T, (columns, values): (&[u32], &[T])) {
+        for (&column, &value) in columns.iter().zip(values) {
+            let place = &mut self.places[column as usize];
+            if *place == NO_INDEX {
+                *place = self.terms.len() as u32;
+                self.terms.push((column, T::lit(0.0)));
+            }
+            self.terms[*place as usize].1 += factor * value;
+        }
+    }
+
+    /// Appends the terms to a list of columns and one of values, and leaves the empty sum.
+    fn move_to(&mut self, columns: &mut Vec<u32>, values: &mut Vec<T>) {
+        for &(column, value) in &self.terms {
+            self.places[column as usize] = NO_INDEX;
+            columns.push(column);
+            values.push(value);
+        }
+        self.terms.clear();
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Second differences with linear interpolation and a function that two others contain, against sums over all
+    /// indices.
+    #[test]
+    fn galerkin_products_agree_with_dense_ones() {
+        let n = 7;
+        let matrix = SparseMatrix::<f64>::second_differences(n);
+        let dense = [
+            [0.5, 0.0, 0.0],
+            [1.0, 0.0, 0.25],
+            [0.5, 0.5, 0.0],
+            [0.0, 1.0, 0.0],
+            [0.0, 0.5, -2.0],
+            [0.0, 0.0, 1.0],
+            [0.0, 0.0, 0.0],
+        ];
+        let mut rows =
+            RectangularMatrix { starts: vec![0], columns: Vec::new(), values: Vec::new() };
+        for row in dense {
+            for (j, &value) in row.iter().enumerate().filter(|(_, value)| **value != 0.0) {
+                rows.columns.push(j as u32);
+                rows.values.push(value);
+            }
+            rows.starts.push(rows.columns.len() as u32);
+        }
+        let coarse = galerkin_product(&matrix, &rows, 3);
+        assert!(coarse.is_well_formed());
+        for k in 0..3 {
+            for l in 0..3 {
+                let mut expected = 0.0;
+                for i in 0..n {
+                    for j in 0..n {
+                        expected += dense[i][k] * matrix.get(i, j) * dense[j][l];
+                    }
+                }
+                assert!((coarse.get(k, l) - expected).abs() < 1e-14, "{k} {l}");
+            }
+        }
+    }
 }
