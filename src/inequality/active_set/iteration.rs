@@ -211,10 +211,15 @@ impl<T: Real> Iteration<'_, '_, '_, T> {
             self.iterate.forget_values();
             corrected = self.solver.correct(self.iterate, accuracy);
         }
+        let is_definite = self.iterate.inequality.is_definite;
+        if is_definite && corrected == Err(LinearFailure::Factors(FactorError::NotPositive)) {
+            // a definite matrix has a negative pivot by rounding only
+            corrected = Err(LinearFailure::Factors(FactorError::Singular));
+        }
         match corrected {
             Ok(()) => Ok(true),
             Err(LinearFailure::Factors(FactorError::Singular)) if self.iterate.outer == 1 => {
-                if self.settings.check_definite {
+                if self.settings.check_definite && !is_definite {
                     Err(Outcome::NotCoercive.into())
                 } else if self.iterate.activate_all() {
                     Ok(false)
