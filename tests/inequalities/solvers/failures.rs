@@ -5,6 +5,7 @@ use crate::problems::*;
 use unilateral::algebra::{Bound, Contact, Start};
 use unilateral::inequality::{ActiveSet, Globalisation, InequalitySolver, Outcome, certify};
 use unilateral::linear::is_positive_definite;
+use unilateral::prelude::*;
 
 #[test]
 fn indefinite_matrix_is_not_coercive() {
@@ -192,4 +193,16 @@ fn data_whose_squares_underflow_are_refused_and_not_certified() {
     for factor in [1e-100, 1e100] {
         assert_eq!(cold(&scaled(factor)).outcome, Outcome::Converged);
     }
+}
+
+/// The form is coercive for every penalty: a negative pivot is one of rounding, and no penalty is too small.
+#[test]
+fn a_huge_penalty_is_not_called_too_small() {
+    let report = Study::<f64, 3>::new(scenes::radial(1.0))
+        .scheme(Wopsip { eta: Eta::Absolute(1e11), ..Wopsip::default() })
+        .levels([4])
+        .run()
+        .unwrap();
+    let status = report.rows[0].status;
+    assert!(matches!(status, Outcome::Singular | Outcome::Converged), "{status}");
 }
