@@ -58,7 +58,7 @@ pub(crate) fn pattern<T: Real, const D: usize, E: ReferenceElement<T, D>>(
     (matrix, EntryPositions { in_rows, blocks, nonzeros })
 }
 
-/// The columns of all pieces, which are left without them.
+/// The columns of all pieces of the pattern. A single piece gives its columns away, without a copy.
 fn columns_of(row_starts: &[u32], made: &mut [PatternOfPiece]) -> Vec<u32> {
     match made {
         [only] => {

@@ -40,9 +40,9 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         let varies = |cell| self.varying_in(cell).is_some();
         varies(own.0) || other.is_some_and(|(cell, _)| varies(cell))
     }
-    /// What multiplies the normal derivative of a cell in the flux at each point of a facet, where the
-    /// coefficient varies in one of its cells: the harmonic mean with the average weights, times the
-    /// weight of the cell; on the boundary the coefficient.
+    /// The factor of a cell's normal derivative in the flux, at each point of a facet where the coefficient varies in
+    /// one of the two cells: the harmonic mean with the average weights, times the weight of the cell; on the boundary
+    /// the coefficient.
     #[inline(always)]
     fn flux_weights(
         &self,

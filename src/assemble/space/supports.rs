@@ -1,4 +1,4 @@
-//! The supports of basis functions, by the vertices of a cell whose barycentre their node is.
+//! The supports of basis functions: for each node, the vertices of a cell whose barycentre is the node.
 
 use super::Space;
 use crate::algebra::Support;

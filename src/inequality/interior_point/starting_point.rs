@@ -135,7 +135,7 @@ impl<'h, 'a, T: Real> InteriorPoint<'h, 'a, T> {
         let (lower, upper) = (bound.lower().map(relative), bound.upper().map(relative));
         let jacobi = self.point.values[i] + residual[i] / self.diagonal[i];
         let square = product / self.diagonal[i];
-        // of a Jacobi value far beyond the bound a difference of equal numbers would leave no slack
+        // the difference of root and `|y|` has no digit for a Jacobi value `y` far beyond the bound
         let slack = |y: f64| {
             let root = 0.5 * y.hypot(2.0 * square.sqrt()) + 0.5 * y.abs();
             if y < 0.0 { square / root } else { root }

@@ -26,11 +26,12 @@ pub(crate) trait BlockSolver<T>: Send + Sync {
     fn solve(&mut self, vector: &mut [T]);
 }
 
-/// Factors of a block in single precision; in the scalar `T` from the first block on that has none there.
+/// Factors of a block: in single precision, and in the scalar `T` from the first block on whose pivots have no digit
+/// in single precision.
 ///
-/// A preconditioner need not be exact, and numbers with half the bytes take half the time. The smallest
-/// eigenvalues of a block are of the size of the stiffness, the largest ones of that of the penalty: beside a
-/// penalty that exceeds the stiffness by the reciprocal of single rounding, pivots have no digit.
+/// A preconditioner need not be exact, and numeric factors with half the bytes take little more than half the time. The
+/// smallest eigenvalues of a block are of the size of the stiffness, the largest ones of the size of the penalty: where
+/// the penalty over the stiffness exceeds the reciprocal of machine epsilon of `f32`, pivots have no digit.
 pub(super) struct BlockFactors<T> {
     factors: PreparedFactors<T>,
     /// Whether each block so far has factors in single precision.
@@ -39,16 +40,16 @@ pub(super) struct BlockFactors<T> {
 
 /// The factors of the present block.
 enum PreparedFactors<T> {
-    /// Of the block without functions.
+    /// No factors: the block has no functions.
     Empty,
-    /// Of the block divided by `scale`, with workspace for a right side.
+    /// Factors of the block divided by `scale`, and workspace for a right side.
     Single { factors: Factors<f32>, scale: f64, vector: Vec<f32> },
-    /// Of the block itself.
+    /// Factors of the block itself.
     Own(Factors<T>),
 }
 
 impl<T: Real> BlockFactors<T> {
-    /// The factors of the block without functions.
+    /// No factors, before the first block.
     pub fn new() -> Self {
         Self { factors: PreparedFactors::Empty, is_single: true }
     }

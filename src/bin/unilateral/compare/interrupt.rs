@@ -10,7 +10,7 @@ use unilateral::study::{Journal, Report};
 
 use crate::shared::{INTERRUPTED, Request, complain};
 
-/// The time that a panic leaves for the report. A panic while files are written holds their lock.
+/// The time for the report after a panic. The report is never written if the thread that panics holds its lock.
 const TIME_AFTER_PANIC: Duration = Duration::from_secs(10);
 
 /// Ends the process at an interrupt or a panic. The one that writes files, the run at its end or the interrupt, has
