@@ -14,10 +14,23 @@
 //!
 //! The function after the equals sign is written with the same names of scalar and dimension as the
 //! signature. A method of a type with a lifetime parameter is written as a closure.
+//!
+//! Unit tests of this library are a crate of their own, whose static tables would compile everything a second
+//! time: there [`compiled!`] is the function itself.
 
+#[cfg(not(test))]
 use std::any::{Any, TypeId};
 
 /// The instance of a function for the scalar `T`, the dimension `D`, or both.
+#[cfg(test)]
+macro_rules! compiled {
+    ($($name:ident $(,)?)+: $signature:ty = $function:expr) => {{
+        let instance: $signature = $function;
+        instance
+    }};
+}
+/// The instance of a function for the scalar `T`, the dimension `D`, or both.
+#[cfg(not(test))]
 macro_rules! compiled {
     ($T:ident, $D:ident: $signature:ty = $function:expr) => {{
         static INSTANCES: [&(dyn ::std::any::Any + Sync); 6] = [
@@ -62,6 +75,7 @@ macro_rules! compiled {
 pub(crate) use compiled;
 
 /// The entry of a table that has this type, if there is one.
+#[cfg(not(test))]
 pub(crate) fn look_up<F: Copy + 'static>(table: &[&(dyn Any + Sync)]) -> Option<F> {
     entry_of(table, TypeId::of::<F>())?.downcast_ref::<F>().copied()
 }
@@ -70,6 +84,7 @@ pub(crate) fn look_up<F: Copy + 'static>(table: &[&(dyn Any + Sync)]) -> Option<
 ///
 /// # Panics
 /// If there is none: for a dimension other than one, two and three.
+#[cfg(not(test))]
 pub(crate) fn find<F: Copy + 'static>(table: &[&(dyn Any + Sync)]) -> F {
     match required_entry(table, TypeId::of::<F>()).downcast_ref() {
         Some(found) => *found,
@@ -78,12 +93,14 @@ pub(crate) fn find<F: Copy + 'static>(table: &[&(dyn Any + Sync)]) -> F {
 }
 
 /// The entry of a type, found by a function that does not depend on the type.
+#[cfg(not(test))]
 fn entry_of<'t>(table: &[&'t (dyn Any + Sync)], id: TypeId) -> Option<&'t dyn Any> {
     let entry = table.iter().copied().find(|entry| (**entry).type_id() == id)?;
     Some(entry)
 }
 
 /// As [`entry_of`], where there has to be one.
+#[cfg(not(test))]
 fn required_entry<'t>(table: &[&'t (dyn Any + Sync)], id: TypeId) -> &'t dyn Any {
     match entry_of(table, id) {
         Some(entry) => entry,

@@ -1,6 +1,6 @@
 //! The element of a scheme in the basis that a constraint set needs.
 
-use super::shared_rows::CellLoops;
+use super::shared_rows::{CellLoops, loops_of};
 use super::space::AnyElement;
 use crate::constraint::{CONSTRAINT_SETS, ConstraintSet, constraint_set_by_name};
 use crate::element::{ElementVisitor, Node, ReferenceElement};
@@ -43,7 +43,7 @@ impl<T: Real, const D: usize> ElementVisitor<T, D> for Erase {
     fn visit<E: ReferenceElement<T, D>>(self) -> ChosenElement<T, D> {
         ChosenElement {
             element: AnyElement::of::<T, E, D>(),
-            loops: CellLoops::of::<E>(),
+            loops: loops_of::<T, D, E>(),
             offered: offered::<T, E, D>,
         }
     }

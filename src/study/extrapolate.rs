@@ -103,23 +103,12 @@ pub fn extrapolate(rows: &[Row]) -> Vec<Extrapolated> {
 
 #[cfg(test)]
 mod tests {
-    use super::{extrapolate, limit};
-    use crate::prelude::*;
-    use crate::scenes::torsion_2d;
+    use super::limit;
 
     #[test]
     fn a_power_of_the_mesh_size_has_its_limit_and_order() {
         let [h, figures] = [[0.5, 0.25, 0.125], [2.25, 2.0625, 2.015625]];
         let found = limit(figures, h).unwrap();
         assert!((found.value - 2.0).abs() < 1e-12 && (found.order.unwrap() - 2.0).abs() < 1e-12);
-    }
-
-    #[test]
-    fn reports_extrapolate_their_rows() {
-        let study = Study::<f64, 2>::new(torsion_2d(5.0)).scheme(ConformingP1);
-        let study = study.scheme(Sipg::default());
-        let report = study.levels([4, 8, 16]).run().unwrap();
-        assert_eq!(report.extrapolated().len(), 2);
-        assert_eq!(report.extrapolated(), extrapolate(&report.rows));
     }
 }

@@ -205,6 +205,7 @@ fn the_extrapolated_energy_is_the_reference() {
     let reference = scene.problem.reference_energy.unwrap();
     let study = Study::<f64, 2>::new(scene).scheme(ConformingP1).scheme(Sipg::default());
     let report = study.levels([16, 32, 64]).run().unwrap();
+    assert_eq!(report.extrapolated().len(), 2);
     for (series, rows) in report.extrapolated().iter().zip(report.rows.chunks(3)) {
         let limit = series.energy.unwrap();
         let gap = |x: f64| (x - reference.value).abs();
