@@ -24,10 +24,9 @@ use std::any::{Any, TypeId};
 /// The instance of a function for the scalar `T`, the dimension `D`, or both.
 #[cfg(test)]
 macro_rules! compiled {
-    ($($name:ident $(,)?)+: $signature:ty = $function:expr) => {{
-        let instance: $signature = $function;
-        instance
-    }};
+    ($($name:ident $(,)?)+: $signature:ty = $function:expr) => {
+        ($function as $signature)
+    };
 }
 /// The instance of a function for the scalar `T`, the dimension `D`, or both.
 #[cfg(not(test))]
