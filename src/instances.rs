@@ -15,19 +15,20 @@
 //! The function after the equals sign is written with the same names of scalar and dimension as the
 //! signature. A method of a type with a lifetime parameter is written as a closure.
 //!
-//! Unit tests of this library are a crate of their own, whose static tables would compile everything a second
-//! time: there [`compiled!`] is the function itself.
+//! The unit tests of this library are a second crate, in which static tables would compile every instance again.
+//! In that crate [`compiled!`] gives the function itself, and the tests compile only the instances that they call.
 
 #[cfg(not(test))]
 use std::any::{Any, TypeId};
 
-/// The instance of a function for the scalar `T`, the dimension `D`, or both.
+/// The function itself: unit tests have no table of instances.
 #[cfg(test)]
 macro_rules! compiled {
     ($($name:ident $(,)?)+: $signature:ty = $function:expr) => {
         ($function as $signature)
     };
 }
+
 /// The instance of a function for the scalar `T`, the dimension `D`, or both.
 #[cfg(not(test))]
 macro_rules! compiled {

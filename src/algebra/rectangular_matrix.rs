@@ -80,7 +80,7 @@ pub(crate) fn galerkin_product<T: Real>(
 struct SparseSum<T> {
     /// Columns with their entries, in the order in which they were added.
     terms: Vec<(u32, T)>,
-    /// The place of each column in `terms`; [`NO_INDEX`] for none.
+    /// The index in `terms` of each column; [`NO_INDEX`] for a column without a term.
     places: Vec<u32>,
 }
 

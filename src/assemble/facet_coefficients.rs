@@ -107,8 +107,8 @@ impl<T: Real> FacetCoefficients<T> {
             Neighbour::Cell { cell, local } => Some((cell as usize, local as usize)),
             Neighbour::Boundary(_) | Neighbour::Cut => None,
         };
-        let fill = |cells: Range<usize>, piece: &mut [T]| {
-            for (cell, out) in cells.zip(piece.chunks_exact_mut(per_cell)) {
+        let fill = |cells: Range<usize>, chunk: &mut [T]| {
+            for (cell, out) in cells.zip(chunk.chunks_exact_mut(per_cell)) {
                 for (local, out) in out.chunks_exact_mut(stride).enumerate() {
                     let Some(facet) = kept_view(space, metrics, cell, local) else { continue };
                     out[0] = form.penalty(&facet);

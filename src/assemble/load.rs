@@ -143,13 +143,13 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
     /// Calls a function with each cell and its part of the load, in parallel.
     fn for_each_cell(&self, load: &mut [T], work: OfCell<'_, T>) -> Result<(), Error> {
         let n = self.per_cell();
-        let piece = |mut cells: Range<usize>, entries: &mut [T]| {
+        let add_cells = |mut cells: Range<usize>, entries: &mut [T]| {
             entries.chunks_exact_mut(n).try_for_each(|out| match cells.next() {
                 Some(cell) => work(cell, out),
                 None => Ok(()),
             })
         };
-        cells::for_each(self.mesh.n_cells(), &|c| c * n, load, &piece)
+        cells::for_each(self.mesh.n_cells(), &|c| c * n, load, &add_cells)
     }
 
     fn add_neumann(&self, load: &mut [T]) -> Result<(), Error> {

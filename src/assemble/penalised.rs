@@ -109,8 +109,8 @@ fn blocks<T: Real, const D: usize>(space: &Space<'_, T, D>, metrics: &Metrics<T>
     let n = space.per_cell();
     let stiffness = space.stiffness_table();
     let mut blocks = vec![T::lit(0.0); n * n * space.mesh.n_cells()];
-    let fill = |cells: std::ops::Range<usize>, piece: &mut [T]| {
-        for (cell, out) in cells.zip(piece.chunks_exact_mut(n * n)) {
+    let fill = |cells: std::ops::Range<usize>, chunk: &mut [T]| {
+        for (cell, out) in cells.zip(chunk.chunks_exact_mut(n * n)) {
             let metric = metrics.at::<D>(cell);
             let coefficient = space.alpha(cell);
             for (k, out) in out.iter_mut().enumerate() {

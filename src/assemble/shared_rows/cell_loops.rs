@@ -1,4 +1,4 @@
-//! The loops over shared rows, instantiated for an element, of which only they are generic.
+//! The functions of shared rows that are generic over the element, as function pointers.
 
 use super::fill::fill;
 use super::pattern::{EntryPositions, pattern};
@@ -8,7 +8,7 @@ use crate::assemble::space::dofs::Dofs;
 use crate::element::ReferenceElement;
 use crate::real::Real;
 
-/// The loops over shared rows, instantiated for an element, of which only they are generic.
+/// The loops over cells that compute the pattern of shared rows and fill their entries, instantiated for an element.
 #[derive(Clone, Copy)]
 pub(crate) struct CellLoops<T: Real, const D: usize> {
     pub pattern: fn(&Dofs<'_>) -> (SparseMatrix<T>, EntryPositions),
@@ -16,7 +16,7 @@ pub(crate) struct CellLoops<T: Real, const D: usize> {
 }
 
 impl<T: Real, const D: usize> CellLoops<T, D> {
-    /// The loops of `E`, compiled by the crate that calls this function.
+    /// The loops of `E`, compiled in the crate that calls this function.
     pub const fn instance<E: ReferenceElement<T, D>>() -> Self {
         Self { pattern: pattern::<T, D, E>, fill: fill::<T, D, E> }
     }

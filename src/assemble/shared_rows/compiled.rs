@@ -1,4 +1,4 @@
-//! The loops of the elements of this library that share unknowns, compiled here: see
+//! A table of the loops of P1, P2 and Crouzeix-Raviart elements, which compiles these loops in this crate: see
 //! [`instances`](crate::instances).
 
 use std::any::Any;

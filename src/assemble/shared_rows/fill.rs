@@ -14,7 +14,7 @@ use crate::assemble::space::dofs::{Dofs, KINDS, kind_of};
 use crate::element::ReferenceElement;
 use crate::real::Real;
 
-/// The rows of one kind that a piece fills.
+/// The rows of one kind in a subset, and their values.
 struct Target<'v, T> {
     rows: Range<u32>,
     /// Where the first of them starts.
@@ -36,21 +36,21 @@ pub(crate) fn fill<T: Real, const D: usize, E: ReferenceElement<T, D>>(
     assert!(same, "the matrix has the pattern of another discretisation");
     let cells = CellMatrices::new::<E>(space);
     let filling = Filling { dofs, row_starts, columns, positions, cells };
-    let pieces = partition(dofs);
-    let targets = targets(&pieces, row_starts, values);
-    for_each_item(targets, &|k, targets| filling.piece::<E>(&pieces[k], targets));
+    let subsets = partition(dofs);
+    let targets = targets(&subsets, row_starts, values);
+    for_each_item(targets, &|k, targets| filling.fill_subset::<E>(&subsets[k], targets));
 }
 
-/// Cuts the values so that each piece has those of its rows.
+/// Cuts the values so that each subset has those of its rows.
 fn targets<'v, T>(
-    pieces: &[Rows],
+    subsets: &[Rows],
     row_starts: &[u32],
     values: &'v mut [T],
 ) -> Vec<[Target<'v, T>; KINDS]> {
     let mut rest = values;
     let mut by_kind = [const { Vec::new() }; KINDS];
     for (kind, targets) in by_kind.iter_mut().enumerate() {
-        for rows in pieces {
+        for rows in subsets {
             let rows = rows[kind].clone();
             let base = row_starts[rows.start as usize] as usize;
             let (values, tail) = rest.split_at_mut(row_starts[rows.end as usize] as usize - base);
@@ -60,8 +60,10 @@ fn targets<'v, T>(
     }
     let mut by_kind = by_kind.map(Vec::into_iter);
     let next = |_| by_kind.each_mut().map(|targets| targets.next());
-    let of_pieces = (0..pieces.len()).map(next);
-    of_pieces.map(|piece| piece.map(|target| target.expect("a target for every piece"))).collect()
+    let of_subsets = (0..subsets.len()).map(next);
+    of_subsets
+        .map(|subset| subset.map(|target| target.expect("a target for every subset")))
+        .collect()
 }
 
 impl<T: Real> Target<'_, T> {
@@ -92,7 +94,11 @@ struct Filling<'f, 's, 'a, T: Real, const D: usize> {
 impl<T: Real, const D: usize> Filling<'_, '_, '_, T, D> {
     /// Not inlined into the parallel loop: all the loops over cells would be optimised twice.
     #[inline(never)]
-    fn piece<E: ReferenceElement<T, D>>(&self, rows: &Rows, mut targets: [Target<'_, T>; KINDS]) {
+    fn fill_subset<E: ReferenceElement<T, D>>(
+        &self,
+        rows: &Rows,
+        mut targets: [Target<'_, T>; KINDS],
+    ) {
         for (cells, location, hull) in self.positions.blocks.of(rows) {
             for (target, hull) in targets.iter_mut().zip(hull) {
                 target.clear_before(hull.end, self.row_starts);

@@ -1,9 +1,9 @@
 //! How rows are shared out among threads.
 //!
-//! Rows are partitioned into pieces. The work on a piece visits every cell that has one of its rows,
+//! Rows are partitioned into subsets. The work on a subset visits every cell that has one of its rows,
 //! in ascending order, and adds to these rows only. So no two threads write to one entry, and every
 //! row sums its cells in the same order whatever the partition: the bits do not depend on the number
-//! of threads. Cells with rows in two pieces are visited twice; they are few where neighbours have
+//! of threads. Cells with rows in two subsets are visited twice; they are few where neighbours have
 //! near numbers.
 
 use std::ops::Range;
@@ -17,31 +17,31 @@ const BLOCK: usize = 256;
 /// Number of blocks in a parallel task.
 const BLOCKS_PER_TASK: usize = 16;
 
-/// Fewest rows worth a piece of their own.
+/// Fewest rows worth a subset of their own.
 const LEAST_ROWS: usize = 256;
 
 /// Rows by kind of owner: a range for each kind.
 pub(crate) type Rows = [Range<u32>; KINDS];
 
-/// The pieces into which the threads share out the rows.
+/// The subsets into which the threads share out the rows.
 pub(crate) fn partition(dofs: &Dofs<'_>) -> Vec<Rows> {
     let threads = rayon::current_num_threads();
     let most = if threads == 1 { 1 } else { 2 * threads };
     parts(dofs.kinds(), most.min(dofs.size() / LEAST_ROWS))
 }
 
-/// Cuts rows into this many pieces of the same share of each kind, so that rows of vertices come
+/// Cuts rows into this many subsets of the same share of each kind, so that rows of vertices come
 /// with those of the edges beside them.
 fn parts(rows: &Rows, n: usize) -> Vec<Rows> {
     let n = n.max(1);
-    let share = |rows: &Range<u32>, piece: usize| {
-        rows.start + (rows.len() as u64 * piece as u64 / n as u64) as u32
+    let share = |rows: &Range<u32>, subset: usize| {
+        rows.start + (rows.len() as u64 * subset as u64 / n as u64) as u32
     };
-    let piece = |p| rows.each_ref().map(|rows| share(rows, p)..share(rows, p + 1));
-    (0..n).map(piece).collect()
+    let subset = |p| rows.each_ref().map(|rows| share(rows, p)..share(rows, p + 1));
+    (0..n).map(subset).collect()
 }
 
-/// Rows after which scratch memory is used again, and the most parts that this makes of a piece.
+/// Rows after which scratch memory is used again, and the most parts that this makes of a subset.
 const PART_ROWS: usize = 1 << 14;
 const MOST_PARTS: usize = 16;
 
@@ -52,7 +52,7 @@ pub(crate) struct Blocks {
     n_cells: usize,
 }
 
-/// Where the rows of a block are: none, some or all of them in a piece.
+/// Where the rows of a block are: none, some or all of them in a subset.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Location {
     Outside,
@@ -84,27 +84,27 @@ impl Blocks {
     fn cells(block: usize, n_cells: usize) -> Range<usize> {
         block * BLOCK..((block + 1) * BLOCK).min(n_cells)
     }
-    /// Cuts a piece into parts that one thread takes one after the other: as many as help, unless
+    /// Cuts a subset into parts that one thread takes one after the other: as many as help, unless
     /// cells have so distant numbers that many belong to several parts.
-    pub fn parts_of(&self, piece: &Rows) -> Vec<Rows> {
-        let rows: usize = piece.iter().map(|rows| rows.len()).sum();
+    pub fn parts_of(&self, subset: &Rows) -> Vec<Rows> {
+        let rows: usize = subset.iter().map(|rows| rows.len()).sum();
         let mut n = (rows / PART_ROWS).clamp(1, MOST_PARTS);
-        let most = self.of(piece).count() * 5 / 4;
+        let most = self.of(subset).count() * 5 / 4;
         loop {
-            let parts = parts(piece, n);
+            let parts = parts(subset, n);
             if n == 1 || parts.iter().map(|part| self.of(part).count()).sum::<usize>() <= most {
                 return parts;
             }
             n /= 2;
         }
     }
-    /// The blocks that may have rows of a piece: their cells, their location, their hulls.
+    /// The blocks that may have rows of a subset: their cells, their location, their hulls.
     pub fn of<'b>(
         &'b self,
-        piece: &'b Rows,
+        subset: &'b Rows,
     ) -> impl Iterator<Item = (Range<usize>, Location, &'b Rows)> {
         let location = move |hull: &Rows| {
-            let pairs = || hull.iter().zip(piece).filter(|(hull, _)| !hull.is_empty());
+            let pairs = || hull.iter().zip(subset).filter(|(hull, _)| !hull.is_empty());
             if pairs().all(|(hull, rows)| rows.start <= hull.start && hull.end <= rows.end) {
                 Location::Inside
             } else if pairs().any(|(hull, rows)| hull.start < rows.end && rows.start < hull.end) {

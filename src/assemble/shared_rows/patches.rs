@@ -123,13 +123,13 @@ pub(crate) fn pattern<T: Real, const D: usize>(
         }
         (columns, lengths)
     };
-    let pieces = cells::map(size, &rows_of);
+    let chunks = cells::map(size, &rows_of);
     let mut row_starts = Vec::with_capacity(size + 1);
     row_starts.push(0);
-    let mut columns = Vec::with_capacity(pieces.iter().map(|p| p.0.len()).sum());
+    let mut columns = Vec::with_capacity(chunks.iter().map(|p| p.0.len()).sum());
     let mut end = 0;
-    for (piece, lengths) in pieces {
-        columns.extend_from_slice(&piece);
+    for (chunk, lengths) in chunks {
+        columns.extend_from_slice(&chunk);
         row_starts.extend(lengths.into_iter().map(|length| {
             end += length;
             end
@@ -149,13 +149,13 @@ pub(crate) fn fill<T: Real, const D: usize>(
     let locals = local_matrices(&patches);
     let (starts, places) = patches.incidence();
     let SparseMatrix { row_starts, columns, values } = matrix;
-    let gather = |rows: Range<usize>, piece: &mut [T]| {
-        piece.fill(T::lit(0.0));
+    let gather = |rows: Range<usize>, chunk: &mut [T]| {
+        chunk.fill(T::lit(0.0));
         let offset = row_starts[rows.start] as usize;
         for i in rows {
             let range = row_starts[i] as usize..row_starts[i + 1] as usize;
             let row_columns = &columns[range.clone()];
-            let row = &mut piece[range.start - offset..range.end - offset];
+            let row = &mut chunk[range.start - offset..range.end - offset];
             for &(patch, k) in &places[starts[i] as usize..starts[i + 1] as usize] {
                 let patch = patch as usize;
                 let n = patches.size(patch);

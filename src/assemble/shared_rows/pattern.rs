@@ -30,8 +30,8 @@ pub(crate) struct EntryPositions {
 /// Longest row whose positions a byte holds.
 pub(crate) const LONGEST: usize = 256;
 
-/// The pattern of the rows of a piece, by kind.
-type PatternOfPiece = [PatternOfRows; KINDS];
+/// The pattern of the rows of a subset, by kind.
+type PatternOfSubset = [PatternOfRows; KINDS];
 
 /// Columns and lengths of rows.
 #[derive(Default)]
@@ -47,9 +47,9 @@ pub(crate) fn pattern<T: Real, const D: usize, E: ReferenceElement<T, D>>(
     let blocks = Blocks::new(dofs, |i| kind_of(E::LAYOUT, D, i));
     let in_rows = zeros(dofs.n_cells() * E::N * E::N);
     let builder = PatternBuilder { dofs, blocks: &blocks, in_rows: &in_rows };
-    let pieces = partition(dofs);
-    let build = |k: usize| builder.rows::<T, E, D>(&pieces[k]);
-    let mut made: Vec<PatternOfPiece> = map_indices(pieces.len(), &build);
+    let subsets = partition(dofs);
+    let build = |k: usize| builder.rows::<T, E, D>(&subsets[k]);
+    let mut made: Vec<PatternOfSubset> = map_indices(subsets.len(), &build);
     let row_starts = row_starts(dofs.size(), &made);
     let columns = columns_of(&row_starts, &mut made);
     let nonzeros = columns.len();
@@ -58,8 +58,9 @@ pub(crate) fn pattern<T: Real, const D: usize, E: ReferenceElement<T, D>>(
     (matrix, EntryPositions { in_rows, blocks, nonzeros })
 }
 
-/// The columns of all pieces of the pattern. A single piece gives its columns away, without a copy.
-fn columns_of(row_starts: &[u32], made: &mut [PatternOfPiece]) -> Vec<u32> {
+/// The columns of all rows, taken from the patterns of the subsets: of a single subset they are moved, of several
+/// copied.
+fn columns_of(row_starts: &[u32], made: &mut [PatternOfSubset]) -> Vec<u32> {
     match made {
         [only] => {
             let mut columns = std::mem::take(only).map(|rows| rows.columns).into_iter();
@@ -77,13 +78,13 @@ fn zeros(n: usize) -> Vec<AtomicU8> {
 }
 
 /// Where rows start, from their lengths.
-fn row_starts(size: usize, made: &[PatternOfPiece]) -> Vec<u32> {
+fn row_starts(size: usize, made: &[PatternOfSubset]) -> Vec<u32> {
     let mut starts = in_large_pages(Vec::with_capacity(size + 1));
     starts.push(0);
     let mut end = 0;
     for kind in 0..KINDS {
-        for piece in made {
-            starts.extend(piece[kind].lengths.iter().map(|length| {
+        for subset in made {
+            starts.extend(subset[kind].lengths.iter().map(|length| {
                 end += length;
                 end
             }));
@@ -92,14 +93,14 @@ fn row_starts(size: usize, made: &[PatternOfPiece]) -> Vec<u32> {
     starts
 }
 
-/// The columns of all pieces in the order of rows.
-fn join(row_starts: &[u32], made: &[PatternOfPiece]) -> Vec<u32> {
+/// The columns of all subsets in the order of rows.
+fn join(row_starts: &[u32], made: &[PatternOfSubset]) -> Vec<u32> {
     let mut columns = in_large_pages(vec![0; row_starts[row_starts.len() - 1] as usize]);
     let mut copies = Vec::new();
     let mut rest = &mut columns[..];
     for kind in 0..KINDS {
-        for piece in made {
-            let from = &piece[kind].columns;
+        for subset in made {
+            let from = &subset[kind].columns;
             let (out, tail) = rest.split_at_mut(from.len());
             copies.push((out, from));
             rest = tail;
@@ -109,7 +110,7 @@ fn join(row_starts: &[u32], made: &[PatternOfPiece]) -> Vec<u32> {
     columns
 }
 
-/// Builds the pattern of the rows of a piece.
+/// Builds the pattern of the rows of a subset.
 struct PatternBuilder<'m> {
     dofs: &'m Dofs<'m>,
     blocks: &'m Blocks,
@@ -117,18 +118,18 @@ struct PatternBuilder<'m> {
 }
 
 impl PatternBuilder<'_> {
-    /// The rows of a piece, in parts, so that scratch memory is small and used again.
+    /// The rows of a subset, in parts, so that scratch memory is small and used again.
     ///
     /// Not inlined into the parallel loop: all the loops over cells would be optimised twice.
     #[inline(never)]
     fn rows<T: Real, E: ReferenceElement<T, D>, const D: usize>(
         &self,
-        piece: &Rows,
-    ) -> PatternOfPiece {
+        subset: &Rows,
+    ) -> PatternOfSubset {
         let mut stars = Stars::default();
         let mut row = Row { seen: in_large_pages(vec![0; self.dofs.size()]), ..Row::default() };
-        let mut made = self.room_for(piece);
-        for part in self.blocks.parts_of(piece) {
+        let mut made = self.room_for(subset);
+        for part in self.blocks.parts_of(subset) {
             self.find_stars::<T, E, D>(&part, &mut stars);
             let mut k = 0;
             for (rows, made) in part.iter().zip(&mut made) {
@@ -142,11 +143,11 @@ impl PatternBuilder<'_> {
         made
     }
 
-    /// Room for the pattern of a piece: about as many entries as the cells' matrices have, of which those that
+    /// Room for the pattern of a subset: about as many entries as the cells' matrices have, of which those that
     /// are not used are never touched.
-    fn room_for(&self, piece: &Rows) -> PatternOfPiece {
+    fn room_for(&self, subset: &Rows) -> PatternOfSubset {
         let entries = |rows: &Range<u32>| self.in_rows.len() / self.dofs.size() * rows.len();
-        piece.each_ref().map(|rows| PatternOfRows {
+        subset.each_ref().map(|rows| PatternOfRows {
             columns: in_large_pages(Vec::with_capacity(entries(rows))),
             lengths: in_large_pages(Vec::with_capacity(rows.len())),
         })

@@ -202,8 +202,8 @@ impl<T: Real> Metrics<T> {
     pub fn of<const D: usize>(mesh: &Mesh<T, D>) -> Self {
         let n = CellMetric::<T, D>::KEPT;
         let mut kept = in_large_pages(vec![T::lit(0.0); n * mesh.n_cells()]);
-        let fill = |cells: std::ops::Range<usize>, piece: &mut [T]| {
-            for (cell, out) in cells.zip(piece.chunks_exact_mut(n)) {
+        let fill = |cells: std::ops::Range<usize>, chunk: &mut [T]| {
+            for (cell, out) in cells.zip(chunk.chunks_exact_mut(n)) {
                 CellMetric::of(mesh, cell).write(out);
             }
             Ok::<(), Infallible>(())

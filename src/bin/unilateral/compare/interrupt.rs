@@ -10,7 +10,8 @@ use unilateral::study::{Journal, Report};
 
 use crate::shared::{INTERRUPTED, Request, complain};
 
-/// The time for the report after a panic. The report is never written if the thread that panics holds its lock.
+/// The time for the report after a panic. A thread that panics while it holds the lock of the report
+/// leaves no report.
 const TIME_AFTER_PANIC: Duration = Duration::from_secs(10);
 
 /// Ends the process at an interrupt or a panic. The one that writes files, the run at its end or the interrupt, has
