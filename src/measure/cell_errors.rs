@@ -4,13 +4,13 @@ use std::ops::Range;
 use std::sync::Arc;
 
 use super::admissible::InCells;
+use super::cell_integrand::{CellIntegrand, LocalFunction};
 use super::evaluation::Reference;
 use super::squared_errors::{SquaredErrors, Squares};
 use crate::arrays::{map_entries, tabulate};
 use crate::assemble::cut_simplices::CutRule;
-use crate::assemble::space::tables::{BasisAt, CellTable};
+use crate::assemble::space::tables::CellTable;
 use crate::assemble::space::{Space, Terms, data};
-use crate::element::MAX_BASIS;
 use crate::error::Error;
 use crate::mesh::Mesh;
 use crate::parallel::cells;
@@ -214,83 +214,67 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         try_lower: bool,
     ) -> Result<[Squares; 2], Error> {
         let geometry = self.mesh.geometry(cell);
-        let (volume, region) = (geometry.volume.to_f64(), self.mesh.region(cell));
-        let local = of.u.map(|u| self.local_values(cell, u));
-        let function = of.function.map(|f| f(cell));
-        let n = self.per_cell();
+        let region = self.mesh.region(cell);
         let gradients: [Point<f64, D>; 4] = tabulate(|k| match k <= D {
             true => point_f64(geometry.gradient(k)),
             false => Point::zeros(),
         });
-        let gradient_of = |basis: &BasisAt<f64>, local: &[f64; MAX_BASIS]| {
-            let mut gradient = Point::<f64, D>::zeros();
-            for k in 0..=D {
-                let slope: f64 = (0..n).map(|i| local[i] * basis.derivatives[i][k]).sum();
-                gradient += gradients[k] * slope;
+        let discrete = of.u.map(|u| {
+            let (n, values) = (self.per_cell(), self.local_values(cell, u));
+            let mut discrete = LocalFunction { n, values, slope: None };
+            // the derivatives of linear functions are those at any point
+            if self.basis_degree <= 1 {
+                discrete.slope = Some(discrete.gradient(&of.table.basis[0], &gradients));
             }
-            gradient
-        };
-        // the derivatives of linear functions are those at any point
-        let is_linear = self.basis_degree <= 1;
-        let of_linear = local.as_ref().filter(|_| is_linear);
-        let of_linear = of_linear.map(|local| gradient_of(&of.table.basis[0], local));
+            discrete
+        });
         let [coefficient, reaction] =
             map_entries([&self.data.coefficient, &self.data.reaction], |data| data.of(region));
-        let alpha = self.alpha(cell).to_f64();
-        let varying = coefficient.filter(|_| self.varying_in(cell).is_some());
-        let add = |sum: &mut Squares,
-                   (point, x): (&[f64; 4], &Point<f64, D>),
-                   weight: f64,
-                   basis: &BasisAt<f64>| {
-            let weight = weight * volume;
-            let value = data::finite(of.exact.value(cell, x), "exact solution", x, cell)?;
-            let gradient = of.exact.gradient(cell, x);
-            let reaction = reaction.map_or(0.0, |c| c.at(x));
-            if let Some(local) = &local {
-                let own: f64 = (0..n).map(|i| local[i] * basis.values[i]).sum();
-                let slope = of_linear.unwrap_or_else(|| gradient_of(basis, local));
-                let (square, difference) = ((slope - gradient).norm_squared(), own - value);
-                let square = data::finite(square, "exact gradient", x, cell)?;
-                let alpha = varying.map_or(alpha, |alpha| alpha.at(x));
-                let of_value = difference * difference;
-                sum[0] += weight * of_value;
-                sum[1] += weight * square;
-                sum[2] += weight * (alpha * square + reaction * of_value);
-            }
-            if let Some(function) = &function {
-                let (own, slope) = function.at(point, x);
-                let alpha = coefficient.map_or(1.0, |alpha| alpha.at(x));
-                let (square, difference) = ((slope - gradient).norm_squared(), own - value);
-                sum[3] += weight * (alpha * square + reaction * difference * difference);
-            }
-            Ok::<_, Error>(())
+        let integrand = CellIntegrand {
+            exact: of.exact,
+            cell,
+            volume: geometry.volume.to_f64(),
+            gradients,
+            discrete,
+            admissible: of.function.map(|f| f(cell)),
+            alpha: self.alpha(cell).to_f64(),
+            varying: coefficient.filter(|_| self.varying_in(cell).is_some()),
+            coefficient,
+            reaction,
         };
         let by_rule = |table: &CellTable<f64>| {
-            let mut sum = Squares::default();
             let CellTable { points, basis, weights } = table;
+            let in_space = |point: &[f64; 4]| self.cell_point(point, cell);
+            let mut sums = Squares::default();
             for ((point, basis), &weight) in points.iter().zip(basis).zip(weights) {
-                add(&mut sum, (point, &self.cell_point(point, cell)), weight, basis)?;
+                integrand.add(&mut sums, (point, &in_space(point)), weight, basis);
             }
-            Ok(sum)
+            integrand.checked(sums, || points.iter().map(in_space).collect())
         };
         if !try_lower {
             return by_rule(&of.table).map(|squares| [squares; 2]);
         }
-        let (mut sum, mut outcome) = (Squares::default(), Ok(()));
-        let is_cut = of.cut_rule.as_ref().is_some_and(|rule| {
-            let Some(level) = of.kinks[region].level_in(rule, self.mesh, cell) else {
-                return false;
+        let on_parts = of.cut_rule.as_ref().and_then(|rule| {
+            let level = of.kinks[region].level_in(rule, self.mesh, cell)?;
+            let mut sums = Squares::default();
+            let is_cut = rule.visit_if_cut(self.mesh, cell, level, &mut |point, x, weight| {
+                integrand.add(&mut sums, (point, x), weight, &self.basis_at(point));
+            });
+            let points = || {
+                let mut points = Vec::new();
+                rule.visit_if_cut(self.mesh, cell, level, &mut |_, x, _| points.push(*x));
+                points
             };
-            rule.visit_if_cut(self.mesh, cell, level, &mut |point, x, weight| {
-                if outcome.is_ok() {
-                    outcome = add(&mut sum, (point, x), weight, &self.basis_at(point));
-                }
-            })
+            is_cut.then(|| integrand.checked(sums, points))
         });
+        if let Some(squares) = on_parts {
+            return squares.map(|squares| [squares; 2]);
+        }
         let corner = |k: usize| point_f64(&self.mesh.vertices()[self.mesh.cell(cell)[k] as usize]);
         match &of.lower {
-            _ if is_cut => outcome.map(|()| [sum; 2]),
-            Some([low, high]) if function.as_ref().is_none_or(|f| !f.touches_in_part(corner)) => {
+            Some([low, high])
+                if integrand.admissible.as_ref().is_none_or(|f| !f.touches_in_part(corner)) =>
+            {
                 Ok([by_rule(low)?, by_rule(high)?])
             }
             _ => by_rule(&of.table).map(|squares| [squares; 2]),

@@ -2,6 +2,7 @@
 
 mod admissible;
 mod cell_errors;
+mod cell_integrand;
 mod contact;
 mod energy;
 mod error_norm;

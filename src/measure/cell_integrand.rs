@@ -1,0 +1,105 @@
+//! Squares of the pointwise error in a cell.
+
+use super::admissible::Admissible;
+use super::evaluation::Reference;
+use super::squared_errors::Squares;
+use crate::assemble::space::data;
+use crate::assemble::space::tables::BasisAt;
+use crate::element::MAX_BASIS;
+use crate::error::Error;
+use crate::problem::DatumRef;
+use crate::real::{Point, Real};
+
+/// A discrete function in a cell.
+pub(super) struct LocalFunction<const D: usize> {
+    /// Number of basis functions.
+    pub n: usize,
+    /// The unknowns of the cell.
+    pub values: [f64; MAX_BASIS],
+    /// The gradient of a linear function; none for functions of a higher degree.
+    pub slope: Option<Point<f64, D>>,
+}
+
+/// What the error is integrated with in a cell.
+pub(super) struct CellIntegrand<'a, T: Real, const D: usize> {
+    pub exact: &'a Reference<'a, T, D>,
+    pub cell: usize,
+    pub volume: f64,
+    /// The gradients of the barycentric coordinates.
+    pub gradients: [Point<f64, D>; 4],
+    /// The discrete function, if its error is measured.
+    pub discrete: Option<LocalFunction<D>>,
+    /// The admissible function, if its error is measured.
+    pub admissible: Option<Admissible<'a, D>>,
+    /// The diffusion coefficient in the energy norm of the discrete function, where it is constant in the cell.
+    pub alpha: f64,
+    /// The diffusion coefficient where the scheme evaluates it at the points of a rule.
+    pub varying: Option<DatumRef<'a, D>>,
+    pub coefficient: Option<DatumRef<'a, D>>,
+    pub reaction: Option<DatumRef<'a, D>>,
+}
+
+impl<T: Real, const D: usize> CellIntegrand<'_, T, D> {
+    /// Adds the squares of the error at a point, with the weight of the point, to sums over points.
+    pub fn add(
+        &self,
+        sums: &mut Squares,
+        (point, x): (&[f64; 4], &Point<f64, D>),
+        weight: f64,
+        basis: &BasisAt<f64>,
+    ) {
+        let weight = weight * self.volume;
+        let value = self.exact.value(self.cell, x);
+        let gradient = self.exact.gradient(self.cell, x);
+        let reaction = self.reaction.map_or(0.0, |c| c.at(x));
+        if let Some(discrete) = &self.discrete {
+            let own: f64 = (0..discrete.n).map(|i| discrete.values[i] * basis.values[i]).sum();
+            let slope = discrete.slope.unwrap_or_else(|| discrete.gradient(basis, &self.gradients));
+            let square = (slope - gradient).norm_squared();
+            let of_value = (own - value) * (own - value);
+            let alpha = self.varying.map_or(self.alpha, |alpha| alpha.at(x));
+            sums[0] += weight * of_value;
+            sums[1] += weight * square;
+            sums[2] += weight * (alpha * square + reaction * of_value);
+        }
+        if let Some(admissible) = &self.admissible {
+            let (own, slope) = admissible.at(point, x);
+            let alpha = self.coefficient.map_or(1.0, |alpha| alpha.at(x));
+            let (square, difference) = ((slope - gradient).norm_squared(), own - value);
+            sums[3] += weight * (alpha * square + reaction * difference * difference);
+        }
+    }
+
+    /// Sums over points, if the exact solution is finite at these points. Finite sums prove that, so that the points of
+    /// a cell are visited a second time only if a sum is not finite.
+    ///
+    /// # Errors
+    /// [`Error::DataNotFinite`] with the first point at which the exact solution is not finite.
+    pub fn checked(
+        &self,
+        sums: Squares,
+        points: impl FnOnce() -> Vec<Point<f64, D>>,
+    ) -> Result<Squares, Error> {
+        if sums.iter().all(|square| square.is_finite()) {
+            return Ok(sums);
+        }
+        points().into_iter().try_for_each(|x| {
+            data::finite(self.exact.value(self.cell, &x), "exact solution", &x, self.cell)?;
+            let square = self.exact.gradient(self.cell, &x).norm_squared();
+            data::finite(square, "exact gradient", &x, self.cell).map(|_| ())
+        })?;
+        Ok(sums)
+    }
+}
+
+impl<const D: usize> LocalFunction<D> {
+    /// The gradient at a point.
+    pub fn gradient(&self, basis: &BasisAt<f64>, gradients: &[Point<f64, D>; 4]) -> Point<f64, D> {
+        let mut gradient = Point::<f64, D>::zeros();
+        for (k, of_coordinate) in gradients.iter().enumerate().take(D + 1) {
+            let slope: f64 = (0..self.n).map(|i| self.values[i] * basis.derivatives[i][k]).sum();
+            gradient += of_coordinate * slope;
+        }
+        gradient
+    }
+}
