@@ -4,6 +4,7 @@ use crate::parallel::cells;
 use std::ops::Range;
 
 use super::entity::ContactEntity;
+use super::point_grid::PointGrid;
 use crate::assemble::cut_simplices::in_space;
 use crate::assemble::space::Space;
 use crate::problem::ContactSet;
@@ -75,9 +76,8 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
     /// The points of the exact free boundary that lie on some entity: a mesh from a file need not
     /// cover the domain of the scene.
     fn within_mesh(&self, set: &ContactSet<D>, entities: &[ContactEntity]) -> Vec<Point<f64, D>> {
-        // in the order of their first coordinates, so that few are tried on each entity
-        let mut points = set.free_boundary.clone();
-        sort_by_first_coordinate(&mut points);
+        let points = &set.free_boundary;
+        let grid = PointGrid::new(points);
         let on_entity = |entity: &ContactEntity, found: &mut Vec<usize>| {
             let corners = self.corner_points(*entity);
             let corners = &corners[..=entity.dimension::<D>()];
@@ -85,14 +85,12 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
                 corners[1..].iter().fold(corners[0], |x, y| x.zip_map(y, f))
             };
             let (low, high) = (fold(f64::min), fold(f64::max));
-            let slack = SLACK * (high - low).norm().max(f64::MIN_POSITIVE);
-            let first = points.partition_point(|x| x[0] < low[0] - slack);
-            let near = points[first..].iter().take_while(|x| x[0] <= high[0] + slack);
-            let in_box = |x: &Point<f64, D>| {
-                (1..D).all(|k| x[k] >= low[k] - slack && x[k] <= high[k] + slack)
-            };
-            let covered = |(_, x): &(usize, &Point<f64, D>)| in_box(x) && self.covers(*entity, x);
-            found.extend((first..).zip(near).filter(covered).map(|(k, _)| k));
+            let slack = Point::repeat(SLACK * (high - low).norm().max(f64::MIN_POSITIVE));
+            grid.visit_within(&(low - slack), &(high + slack), &mut |k, x| {
+                if self.covers(*entity, x) {
+                    found.push(k);
+                }
+            });
         };
         let mut found = cells::map(entities.len(), &|range: Range<usize>| {
             let mut found = Vec::new();

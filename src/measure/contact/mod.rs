@@ -8,8 +8,10 @@ mod deciding_nodes;
 mod difference;
 mod discrete_contact;
 mod entity;
+mod exact_contact;
 mod free_boundary;
 mod multiplier_density;
+mod point_grid;
 
 pub(crate) use difference::contact_difference;
 pub use discrete_contact::DiscreteContact;
@@ -21,16 +23,15 @@ use super::errors::ContactErrors;
 use crate::algebra::{Bound, Contact, Inequality};
 use crate::arrays::map_entries;
 use crate::assemble::Discretisation;
-use crate::assemble::cut_simplices::{CutRule, in_space};
 use crate::assemble::space::Space;
 use crate::error::Error;
 use crate::inequality::Solution;
 use crate::instances::compiled;
 use crate::mesh::BoundaryPart;
 use crate::parallel::cells;
-use crate::problem::ContactSet;
 use crate::real::{Point, Real, point_f64};
 use entity::ContactEntity;
+use exact_contact::ExactContact;
 use multiplier_density::nodal_multipliers;
 
 /// A Dirichlet datum this close to a bound, in units of the largest unknown, touches it.
@@ -149,15 +150,22 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         }
         let entities = self.entities();
         let mut errors = ContactErrors::default();
-        if let Some(multiplier) = &exact.multiplier {
-            let set = exact.contact.as_ref();
-            let found = self.multiplier_errors(multiplier, set, &entities, inequality, solution)?;
+        if exact.multiplier.is_none() && exact.contact.is_none() {
+            return Ok(errors);
+        }
+        let on_entities = self.exact_contact(exact, &entities)?;
+        if exact.multiplier.is_some() {
+            let found = self.multiplier_errors(&entities, &on_entities, inequality, solution);
             [errors.multiplier_l1, errors.multiplier_l2] =
                 map_entries([0, 1], |k| found.map(|e| e[k]));
         }
         if let Some(set) = &exact.contact {
             let touching = self.in_contact(&entities, inequality, solution);
-            errors.contact_area_error = Some(self.area_error(set, &entities, &touching));
+            let wrong = |((entity, exact), touches): ((&ContactEntity, &ExactContact), &bool)| {
+                exact.shares[usize::from(!touches)] * self.measure_of(*entity)
+            };
+            let area = entities.iter().zip(&on_entities).zip(&touching).map(wrong).sum();
+            errors.contact_area_error = Some(area);
             errors.free_boundary_distance = self.free_boundary_distance(set, &entities, &touching);
         }
         Ok(errors)
@@ -289,30 +297,5 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         let bounds = [self.data.lower.of(region), self.data.upper.of(region), gap];
         let value = self.dirichlet_at(group, &x);
         bounds.into_iter().flatten().any(|bound| (value - bound.at(&x)).abs() <= slack)
-    }
-
-    /// The measure of the symmetric difference of entities in contact and the exact contact set.
-    fn area_error(
-        &self,
-        set: &ContactSet<D>,
-        entities: &[ContactEntity],
-        touching: &[bool],
-    ) -> f64 {
-        let rules = [D - 1, D].map(|dimension| CutRule::new(dimension, 2));
-        let wrong = |k: usize| {
-            let (entity, touches) = (entities[k], touching[k]);
-            let corners = self.corner_points(entity);
-            let rule = &rules[usize::from(entity.facet.is_none())];
-            let mut wrong = 0.0;
-            rule.visit(&corners, &set.indicator, &mut |point, weight| {
-                if ((set.indicator)(&in_space(point, &corners)) > 0.0) != touches {
-                    wrong += weight;
-                }
-            });
-            wrong * self.measure_of(entity)
-        };
-        let of_chunk = |range: Range<usize>| range.map(wrong).collect::<Vec<_>>();
-        // added in the order of entities, for every number of threads
-        cells::map(entities.len(), &of_chunk).into_iter().flatten().sum()
     }
 }

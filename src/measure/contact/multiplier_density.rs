@@ -1,19 +1,11 @@
 //! The multiplier as a density at vertices.
 
-use std::ops::Range;
-
 use super::entity::{ContactEntity, Place};
+use super::exact_contact::ExactContact;
 use crate::algebra::{Contact, Inequality};
-use crate::assemble::cut_simplices::{CutRule, in_space};
-use crate::assemble::space::{Space, data};
-use crate::error::Error;
+use crate::assemble::space::Space;
 use crate::inequality::Solution;
-use crate::parallel::cells;
-use crate::problem::{ContactSet, Field};
 use crate::real::Real;
-
-/// Degree of the rule on a simplex, or on the parts into which the free boundary cuts it.
-const DEGREE: usize = 5;
 
 /// The constrained unknowns in contact with their multipliers, the entries of `A u - b`; on a part of a mesh those of
 /// ghosts are of their owners, and all parts call it.
@@ -34,35 +26,23 @@ pub(super) fn nodal_multipliers<T: Real>(
 }
 
 impl<T: Real, const D: usize> Space<'_, T, D> {
-    /// The errors of the density in L1 and lumped L2; none if no vertex counts.
+    /// The errors of the density in L1 and lumped L2, by what [`Space::exact_contact`] gives for these entities; none if
+    /// no vertex counts.
     pub(super) fn multiplier_errors(
         &self,
-        multiplier: &Field<D>,
-        set: Option<&ContactSet<D>>,
         entities: &[ContactEntity],
+        exact: &[ExactContact],
         inequality: &Inequality<T>,
         solution: &Solution<T>,
-    ) -> Result<Option<[f64; 2]>, Error> {
+    ) -> Option<[f64; 2]> {
         let mut weights = vec![0.0; self.mesh.vertices().len()];
         let mut multipliers = self.vertex_multipliers(inequality, solution, &|_| true);
-        // for facets and for cells
-        let rules = [D - 1, D].map(|dimension| CutRule::new(dimension, DEGREE));
-        let tested = cells::map(entities.len(), &|range: Range<usize>| {
-            let tested = |entity: &ContactEntity| {
-                let rule = &rules[usize::from(entity.facet.is_none())];
-                self.tested((multiplier, set), *entity, rule)
-            };
-            entities[range].iter().map(tested).collect::<Result<Vec<_>, _>>()
-        });
-        let mut rest = entities.iter();
-        for chunk in tested {
-            for (tested, entity) in chunk?.into_iter().zip(rest.by_ref()) {
-                let (measure, cell) = (self.measure_of(*entity), self.mesh.cell(entity.cell));
-                for (k, local) in entity.corners::<D>().enumerate() {
-                    let vertex = cell[local] as usize;
-                    weights[vertex] += measure / (entity.dimension::<D>() + 1) as f64;
-                    multipliers[vertex] -= measure * tested[k];
-                }
+        for (entity, exact) in entities.iter().zip(exact) {
+            let (measure, cell) = (self.measure_of(*entity), self.mesh.cell(entity.cell));
+            for (k, local) in entity.corners::<D>().enumerate() {
+                let vertex = cell[local] as usize;
+                weights[vertex] += measure / (entity.dimension::<D>() + 1) as f64;
+                multipliers[vertex] -= measure * exact.tested[k];
             }
         }
         let given = self.dirichlet_groups();
@@ -70,7 +50,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         let vertices = || (0..weights.len()).filter(counted);
         let squares: f64 = vertices().map(|v| multipliers[v] * multipliers[v] / weights[v]).sum();
         let sum: f64 = vertices().map(|v| multipliers[v].abs()).sum();
-        Ok(vertices().next().map(|_| [sum, squares.sqrt()]))
+        vertices().next().map(|_| [sum, squares.sqrt()])
     }
 
     /// Nodal multipliers at vertices: the residual of every constrained unknown in contact that counts,
@@ -119,33 +99,5 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
             sum / (entity.dimension::<D>() + 1) as f64
         };
         entities().map(mean).collect()
-    }
-
-    /// For each corner of an entity the mean over the entity of the exact multiplier times the hat function of the
-    /// corner.
-    fn tested(
-        &self,
-        (multiplier, set): (&Field<D>, Option<&ContactSet<D>>),
-        entity: ContactEntity,
-        rule: &CutRule,
-    ) -> Result<[f64; 4], Error> {
-        let corners = self.corner_points(entity);
-        let mut tested = Ok([0.0; 4]);
-        let mut add = |hats: &[f64; 4], weight: f64| {
-            let x = in_space(hats, &corners);
-            match data::finite(multiplier(&x), "exact multiplier", &x, entity.cell) {
-                Ok(density) => {
-                    for (sum, hat) in tested.iter_mut().flatten().zip(hats) {
-                        *sum += weight * density * hat;
-                    }
-                }
-                Err(why) => tested = Err(why),
-            }
-        };
-        match set {
-            Some(set) => rule.visit(&corners, &set.indicator, &mut add),
-            None => rule.visit_whole(&mut add),
-        }
-        tested
     }
 }

@@ -1,0 +1,79 @@
+//! Exact multiplier and contact set on the entities of a mesh.
+
+use std::ops::Range;
+
+use super::entity::ContactEntity;
+use crate::assemble::cut_simplices::{CutRule, in_space};
+use crate::assemble::space::{Space, data};
+use crate::error::Error;
+use crate::parallel::cells;
+use crate::problem::Exact;
+use crate::real::Real;
+
+/// Degree of the rule on a simplex, or on the parts into which the free boundary cuts it.
+const DEGREE: usize = 5;
+
+/// The exact solution of an inequality on an entity.
+#[derive(Clone, Copy, Default)]
+pub(super) struct ExactContact {
+    /// For each corner of the entity the mean over the entity of the multiplier times the hat function of the corner;
+    /// zero without a multiplier.
+    pub tested: [f64; 4],
+    /// The shares of the entity that are not in contact, and in contact; all of it is not where no set is known.
+    pub shares: [f64; 2],
+}
+
+impl<T: Real, const D: usize> Space<'_, T, D> {
+    /// The exact multiplier and contact set on some entities, at the same points.
+    ///
+    /// # Errors
+    /// [`Error::DataNotFinite`].
+    pub(super) fn exact_contact(
+        &self,
+        exact: &Exact<D>,
+        entities: &[ContactEntity],
+    ) -> Result<Vec<ExactContact>, Error> {
+        // for facets and for cells
+        let rules = [D - 1, D].map(|dimension| CutRule::new(dimension, DEGREE));
+        let chunks = cells::map(entities.len(), &|range: Range<usize>| {
+            let on_entity = |entity: &ContactEntity| {
+                self.exact_contact_on(exact, *entity, &rules[usize::from(entity.facet.is_none())])
+            };
+            entities[range].iter().map(on_entity).collect::<Result<Vec<_>, _>>()
+        });
+        let mut all = Vec::with_capacity(entities.len());
+        for chunk in chunks {
+            all.append(&mut chunk?);
+        }
+        Ok(all)
+    }
+
+    fn exact_contact_on(
+        &self,
+        exact: &Exact<D>,
+        entity: ContactEntity,
+        rule: &CutRule,
+    ) -> Result<ExactContact, Error> {
+        let corners = self.corner_points(entity);
+        let mut found = ExactContact::default();
+        let mut not_finite = None;
+        let mut add = |hats: &[f64; 4], weight: f64, is_in_contact: bool| {
+            found.shares[usize::from(is_in_contact)] += weight;
+            let Some(multiplier) = &exact.multiplier else { return };
+            let x = in_space(hats, &corners);
+            let density = multiplier(&x);
+            if !density.is_finite() {
+                not_finite = not_finite.or(Some((density, x)));
+            }
+            found.tested.iter_mut().zip(hats).for_each(|(sum, hat)| *sum += weight * density * hat);
+        };
+        match &exact.contact {
+            Some(set) => rule.visit(&corners, &set.indicator, &mut add),
+            None => rule.visit_whole(&mut |hats, weight| add(hats, weight, false)),
+        }
+        if let Some((density, x)) = not_finite {
+            data::finite(density, "exact multiplier", &x, entity.cell)?;
+        }
+        Ok(found)
+    }
+}

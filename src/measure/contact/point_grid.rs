@@ -1,0 +1,119 @@
+//! Points sorted into the boxes of a grid.
+
+use crate::real::Point;
+
+/// Points of a grid of about as many boxes as points, for the search of those within a box.
+pub(super) struct PointGrid<const D: usize> {
+    low: Point<f64, D>,
+    /// Boxes over length, along each axis.
+    density: Point<f64, D>,
+    counts: [usize; D],
+    /// The points of box `k` are those from `starts[k]` to `starts[k + 1]`.
+    starts: Vec<usize>,
+    /// The points by box, with their numbers.
+    points: Vec<(usize, Point<f64, D>)>,
+}
+
+impl<const D: usize> PointGrid<D> {
+    pub fn new(points: &[Point<f64, D>]) -> Self {
+        let first = points.first().copied().unwrap_or_else(Point::zeros);
+        let fold = |f: fn(f64, f64) -> f64| points.iter().fold(first, |x, y| x.zip_map(y, f));
+        let (low, high) = (fold(f64::min), fold(f64::max));
+        let longest = (high - low).max();
+        let along = (points.len() as f64).powf(1.0 / D as f64);
+        let count = |axis: usize| {
+            let share = (high[axis] - low[axis]) / longest;
+            // not a number where all points are one
+            if share > 0.0 { (along * share).ceil() as usize } else { 1 }
+        };
+        let counts: [usize; D] = std::array::from_fn(count);
+        let density = Point::from_fn(|axis, _| {
+            let length = high[axis] - low[axis];
+            if length > 0.0 { counts[axis] as f64 / length } else { 0.0 }
+        });
+        let mut grid = Self { low, density, counts, starts: Vec::new(), points: Vec::new() };
+        let box_of = |x: &Point<f64, D>| grid.number(&grid.position(x));
+        let mut sorted: Vec<_> = points.iter().copied().enumerate().collect();
+        sorted.sort_by_key(|(_, x)| box_of(x));
+        let n_boxes: usize = counts.iter().product();
+        let starts =
+            (0..=n_boxes).map(|k| sorted.partition_point(|(_, x)| box_of(x) < k)).collect();
+        (grid.starts, grid.points) = (starts, sorted);
+        grid
+    }
+
+    /// Calls `visit` with the points within a box and with their numbers.
+    pub fn visit_within(
+        &self,
+        low: &Point<f64, D>,
+        high: &Point<f64, D>,
+        visit: &mut dyn FnMut(usize, &Point<f64, D>),
+    ) {
+        let (first, last) = (self.position(low), self.position(high));
+        let mut position = first;
+        loop {
+            let k = self.number(&position);
+            for (number, x) in &self.points[self.starts[k]..self.starts[k + 1]] {
+                if (0..D).all(|axis| low[axis] <= x[axis] && x[axis] <= high[axis]) {
+                    visit(*number, x);
+                }
+            }
+            let Some(axis) = (0..D).find(|&axis| position[axis] < last[axis]) else { return };
+            position[axis] += 1;
+            position[..axis].copy_from_slice(&first[..axis]);
+        }
+    }
+
+    /// The position of the box of a point, or of the box next to a point outside the grid.
+    fn position(&self, x: &Point<f64, D>) -> [usize; D] {
+        // a negative number is cast to zero
+        let along = |axis: usize| ((x[axis] - self.low[axis]) * self.density[axis]) as usize;
+        std::array::from_fn(|axis| along(axis).min(self.counts[axis] - 1))
+    }
+
+    fn number(&self, position: &[usize; D]) -> usize {
+        (0..D).rev().fold(0, |number, axis| number * self.counts[axis] + position[axis])
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    fn check<const D: usize>(points: &[[f64; 3]], low: [f64; 3], length: f64) {
+        let points: Vec<Point<f64, D>> =
+            points.iter().map(|x| Point::from_fn(|k, _| x[k])).collect();
+        let low = Point::<f64, D>::from_fn(|k, _| low[k]);
+        let high = low + Point::repeat(length);
+        let within = |x: &Point<f64, D>| (0..D).all(|k| low[k] <= x[k] && x[k] <= high[k]);
+        let expected: Vec<usize> = (0..points.len()).filter(|&k| within(&points[k])).collect();
+        let mut found = Vec::new();
+        PointGrid::new(&points).visit_within(&low, &high, &mut |k, x| {
+            assert_eq!(*x, points[k]);
+            found.push(k);
+        });
+        found.sort_unstable();
+        assert_eq!(found, expected);
+    }
+
+    proptest! {
+        #[test]
+        fn a_search_finds_the_points_within_a_box(
+            points in prop::collection::vec([-1.0..1.0, -1.0..1.0, -1.0..1.0], 0..60),
+            low in [-1.5..1.0, -1.5..1.0, -1.5..1.0],
+            length in 0.0..2.0,
+        ) {
+            check::<1>(&points, low, length);
+            check::<2>(&points, low, length);
+            check::<3>(&points, low, length);
+        }
+    }
+
+    #[test]
+    fn points_may_coincide_or_lie_on_an_axis() {
+        check::<2>(&[[0.5; 3]; 4], [0.5; 3], 0.0);
+        check::<3>(&[[0.0, 0.5, 0.0], [0.0, -0.5, 0.0]], [-1.0; 3], 1.0);
+        check::<1>(&[], [0.0; 3], 1.0);
+    }
+}
