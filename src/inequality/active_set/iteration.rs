@@ -174,6 +174,13 @@ impl<T: Real> Iteration<'_, '_, '_, T> {
                 continue;
             }
             noted.map_err(End::Obstruction)?;
+            // states that keep changing at the limit of rounding, in a stage that no other one follows
+            if !patience.is_limited()
+                && progress.steps_without_improvement() > self.settings.improvement_steps
+                && QualityOfBest::of(self.iterate, band).is_solution()
+            {
+                return Err(Outcome::Stalled.into());
+            }
             self.iterate.change_states(changes);
         }
     }
@@ -284,19 +291,37 @@ pub(crate) fn outcome_of_best<T: Real>(
     if !is_without_solution || !iterate.has_best() {
         return outcome;
     }
-    let (best, jump_multipliers) = iterate.best_values();
-    let (certificate, amplification) =
-        certify_with_rounding(iterate.inequality, best, jump_multipliers);
-    let rounding = CERTIFICATE_FACTOR * rounding_band * T::EPSILON * amplification.max(1.0);
-    let (is_within_rounding, is_within_limit) =
-        (certificate.largest() <= rounding, certificate.largest() <= T::CERTIFICATE_LIMIT);
+    let quality = QualityOfBest::of(iterate, rounding_band);
     // factors aim at rounding; a settled active set that misses this aim only is a solution all the same
-    if is_within_limit && (is_within_rounding || outcome == Outcome::Stalled) {
+    if quality.is_solution() || (quality.is_within_limit && outcome == Outcome::Stalled) {
         iterate.restore_best();
         Outcome::Converged
-    } else if is_within_rounding {
+    } else if quality.is_within_rounding {
         Outcome::Stalled
     } else {
         outcome
+    }
+}
+
+/// How well the best iterate satisfies the complementarity conditions.
+struct QualityOfBest {
+    is_within_rounding: bool,
+    /// Whether the certificate is within its limit.
+    is_within_limit: bool,
+}
+
+impl QualityOfBest {
+    fn of<T: Real>(iterate: &Iterate<'_, T>, rounding_band: f64) -> Self {
+        let (best, jump_multipliers) = iterate.best_values();
+        let (certificate, amplification) =
+            certify_with_rounding(iterate.inequality, best, jump_multipliers);
+        let rounding = CERTIFICATE_FACTOR * rounding_band * T::EPSILON * amplification.max(1.0);
+        Self {
+            is_within_rounding: certificate.largest() <= rounding,
+            is_within_limit: certificate.largest() <= T::CERTIFICATE_LIMIT,
+        }
+    }
+    fn is_solution(&self) -> bool {
+        self.is_within_rounding && self.is_within_limit
     }
 }

@@ -28,6 +28,16 @@ pub(crate) struct Patience {
     pub improvement: usize,
 }
 
+impl Patience {
+    /// Of a stage that no other one follows.
+    pub const UNLIMITED: Self = Self { halving: None, improvement: usize::MAX };
+
+    /// Whether an iteration ends where it does not progress.
+    pub fn is_limited(self) -> bool {
+        self.improvement < usize::MAX
+    }
+}
+
 /// The progress of an iteration.
 pub(crate) struct ProgressMonitor<'d> {
     patience: Patience,
@@ -128,6 +138,11 @@ impl<'d> ProgressMonitor<'d> {
     /// The number of active sets so far.
     pub fn steps(&self) -> usize {
         self.seen.len()
+    }
+
+    /// The number of systems since the smallest merit.
+    pub fn steps_without_improvement(&self) -> usize {
+        self.steps_without_improvement
     }
 
     /// Whether the number of state changes has halved at the last note.

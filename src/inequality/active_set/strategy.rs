@@ -10,7 +10,8 @@
 //! The direct active set and the interior point method alternate: the interior point method identifies the active set
 //! early, and a second time at its final accuracy. The active set iteration that follows the second one has no limit
 //! but `max_outer`; nor has one that follows a stagnation where `max_outer` leaves no room for the interior point
-//! method.
+//! method. Such an iteration also ends where `improvement_steps` systems have found no better iterate than one that
+//! satisfies the complementarity conditions to rounding; the values of the interior point method may be that one.
 //!
 //! Of an inequality that is distributed over the parts of a mesh the first stage alone runs.
 //!
@@ -143,7 +144,7 @@ impl<T: Real> Solve<'_, '_, T> {
 
     /// Whether the interior point method comes next: where it comes first whatever the limit of systems,
     /// else only if the limit leaves room for all its steps.
-    fn may_run_interior_point(&self) -> bool {
+    pub(super) fn may_run_interior_point(&self) -> bool {
         match self.settings.globalisation {
             _ if self.inequality.distribution.is_some() => false,
             Globalisation::Never => false,
@@ -195,7 +196,7 @@ impl<T: Real> Solve<'_, '_, T> {
             };
         }
         if !self.may_run_interior_point() {
-            return Patience { halving: None, improvement: usize::MAX };
+            return Patience::UNLIMITED;
         }
         let halving = match (self.runs_of(Stage::InteriorPoint), self.end) {
             (0, Some(End::Obstruction(Obstruction::Stagnation))) if self.cycles == 0 => 0,

@@ -6,6 +6,7 @@ use super::state::{Found, Solve};
 use crate::algebra::{Contact, any_part};
 use crate::inequality::active_set::contact_state::{admissible_state, prescribed_value};
 use crate::inequality::active_set::direct_solver::DirectSolver;
+use crate::inequality::active_set::iterate::Iterate;
 use crate::inequality::active_set::iteration::{End, Iteration};
 use crate::inequality::active_set::preconditioned_solver::PreconditionedSolver;
 use crate::inequality::initial_guess::InitialGuess;
@@ -215,13 +216,34 @@ impl<T: Real> Solve<'_, '_, T> {
             (method.values(), method.jump_multipliers(), method.steps);
         self.interior_point_may_improve = method.may_improve();
         self.has_small_slacks = method.leaves_small_slacks();
+        self.central_point = method.into_central_point();
         self.iterate.outer += steps;
         self.guess.steps.advance(steps);
         if let Some(contact) = contact {
             let states = contact.iter().zip(&self.inequality.bounds);
             let states = states.map(|(&contact, bound)| admissible_state(bound, contact)).collect();
             self.iterate.replace(values, jump_multipliers, states);
+            // another run would start too close to the bounds
+            if !self.may_run_interior_point() {
+                self.keep_if_best();
+            }
         }
-        self.central_point = method.into_central_point();
+    }
+
+    /// Keeps the iterate if it is the best one. Under a huge penalty the values of the interior point method may be
+    /// more accurate than all that follow from active sets: a slack of the size of rounding decides a state.
+    fn keep_if_best(&mut self) {
+        let Some(solver) = &self.direct else { return };
+        match &self.inequality.penalised {
+            Some(penalised) => {
+                let Iterate { values, jump_multipliers, residual, .. } = &mut self.iterate;
+                let value = |i: usize| values[i].to_f64();
+                let multiplier = |jump: usize| jump_multipliers[jump].to_f64();
+                penalised.residual_with_jump_multipliers(value, multiplier, residual);
+            }
+            None => self.iterate.compute_residual(),
+        }
+        let evaluation = self.iterate.evaluate(self.settings.rounding_band, solver);
+        self.iterate.keep_if_best(evaluation.merit);
     }
 }
