@@ -242,6 +242,12 @@ impl<'a, T: Real> Iterate<'a, T> {
         certify_with_rounding(self.inequality, &self.values, &self.jump_multipliers).0.largest()
     }
 
+    /// The largest part of the certificate of the best iterate.
+    pub fn best_certificate(&self) -> f64 {
+        let (best, jump_multipliers) = self.best_values();
+        certify_with_rounding(self.inequality, best, jump_multipliers).0.largest()
+    }
+
     /// Replaces the iterate by the best one. The residual is then not current.
     pub fn restore_best(&mut self) {
         let BestIterate { values, states, jump_multipliers, .. } = &self.best;

@@ -175,9 +175,9 @@ impl<T: Real> Iteration<'_, '_, '_, T> {
             }
             noted.map_err(End::Obstruction)?;
             // states that keep changing at the limit of rounding, in a stage that no other one follows
-            if !patience.is_limited()
+            if !patience.limits_improvement()
                 && progress.steps_without_improvement() > self.settings.improvement_steps
-                && QualityOfBest::of(self.iterate, band).is_solution()
+                && QualityOfBest::of(self.iterate, band).is_admissible_solution()
             {
                 return Err(Outcome::Stalled.into());
             }
@@ -305,6 +305,9 @@ pub(crate) fn outcome_of_best<T: Real>(
 
 /// How well the best iterate satisfies the complementarity conditions.
 struct QualityOfBest {
+    /// Whether bounds hold to the rounding of values.
+    is_admissible: bool,
+    /// Whether the certificate is within rounding, which large penalties amplify.
     is_within_rounding: bool,
     /// Whether the certificate is within its limit.
     is_within_limit: bool,
@@ -315,13 +318,17 @@ impl QualityOfBest {
         let (best, jump_multipliers) = iterate.best_values();
         let (certificate, amplification) =
             certify_with_rounding(iterate.inequality, best, jump_multipliers);
-        let rounding = CERTIFICATE_FACTOR * rounding_band * T::EPSILON * amplification.max(1.0);
+        let rounding = CERTIFICATE_FACTOR * rounding_band * T::EPSILON;
         Self {
-            is_within_rounding: certificate.largest() <= rounding,
+            is_admissible: certificate.feasibility <= rounding,
+            is_within_rounding: certificate.largest() <= rounding * amplification.max(1.0),
             is_within_limit: certificate.largest() <= T::CERTIFICATE_LIMIT,
         }
     }
     fn is_solution(&self) -> bool {
         self.is_within_rounding && self.is_within_limit
+    }
+    fn is_admissible_solution(&self) -> bool {
+        self.is_admissible && self.is_solution()
     }
 }

@@ -29,11 +29,11 @@ pub(crate) struct Patience {
 }
 
 impl Patience {
-    /// Of a stage that no other one follows.
+    /// The patience with a stage that no other one follows.
     pub const UNLIMITED: Self = Self { halving: None, improvement: usize::MAX };
 
-    /// Whether an iteration ends where it does not progress.
-    pub fn is_limited(self) -> bool {
+    /// Whether the number of systems without a better iterate is limited.
+    pub fn limits_improvement(self) -> bool {
         self.improvement < usize::MAX
     }
 }
@@ -140,7 +140,7 @@ impl<'d> ProgressMonitor<'d> {
         self.seen.len()
     }
 
-    /// The number of systems since the smallest merit.
+    /// The number of systems of this iteration since the smallest merit, or since all are solved accurately.
     pub fn steps_without_improvement(&self) -> usize {
         self.steps_without_improvement
     }

@@ -49,7 +49,7 @@ pub struct ActiveSet {
     /// active set stagnates and the interior point method provides a new start.
     pub stagnation_steps: usize,
     /// Number of linear systems within which the best iterate must improve; otherwise the next stage
-    /// follows.
+    /// follows. A stage that no other one follows ends then if the best iterate is a solution.
     pub improvement_steps: usize,
     /// The method that takes over from an active set that stagnates or cycles.
     pub globalisation: Globalisation,

@@ -11,7 +11,8 @@
 //! early, and a second time at its final accuracy. The active set iteration that follows the second one has no limit
 //! but `max_outer`; nor has one that follows a stagnation where `max_outer` leaves no room for the interior point
 //! method. Such an iteration also ends where `improvement_steps` systems have found no better iterate than one that
-//! satisfies the complementarity conditions to rounding; the values of the interior point method may be that one.
+//! satisfies its bounds to rounding, and the other conditions to the rounding that a large penalty amplifies and within
+//! the limit of the certificate; the values of the interior point method may be that one.
 //!
 //! Of an inequality that is distributed over the parts of a mesh the first stage alone runs.
 //!

@@ -21,7 +21,7 @@ impl<T: Real> Solve<'_, '_, T> {
     /// Runs a stage. Returns what it found if the solve ends with it; else stores how it ended.
     pub(super) fn run(&mut self, stage: Stage) -> Option<Found> {
         let (outer, linear) = (self.iterate.outer + self.cycles, self.iterate.linear);
-        let mut found = None;
+        let (mut found, mut has_interior_values) = (None, false);
         match stage {
             Stage::PreconditionedActiveSet => match self.run_preconditioned() {
                 Ok(result) => found = Some(result),
@@ -38,11 +38,15 @@ impl<T: Real> Solve<'_, '_, T> {
                 }
                 end => self.end = Some(end),
             },
-            Stage::InteriorPoint => self.run_interior_point(),
+            Stage::InteriorPoint => has_interior_values = self.run_interior_point(),
         }
         let outer = self.iterate.outer + self.cycles - outer;
         let linear = self.iterate.linear - linear;
         self.stages.push(StageRun { stage, outer, linear });
+        // another run would start from the best iterate, which must then not lie close to its bounds
+        if has_interior_values && !self.may_run_interior_point() {
+            self.keep_if_best();
+        }
         found
     }
 
@@ -197,8 +201,9 @@ impl<T: Real> Solve<'_, '_, T> {
     }
 
     /// Replaces the iterate by the result of the interior point method, which starts from the best iterate, or goes on
-    /// where its first run left small slacks. If it finds no active set, only the number of linear systems changes.
-    fn run_interior_point(&mut self) {
+    /// where its first run left small slacks. Returns whether it found an active set; if not, only the number of linear
+    /// systems changes.
+    fn run_interior_point(&mut self) -> bool {
         let identification = match self.runs_of(Stage::InteriorPoint) {
             0 => Identification::Early,
             _ => Identification::Final,
@@ -219,21 +224,21 @@ impl<T: Real> Solve<'_, '_, T> {
         self.central_point = method.into_central_point();
         self.iterate.outer += steps;
         self.guess.steps.advance(steps);
-        if let Some(contact) = contact {
-            let states = contact.iter().zip(&self.inequality.bounds);
-            let states = states.map(|(&contact, bound)| admissible_state(bound, contact)).collect();
-            self.iterate.replace(values, jump_multipliers, states);
-            // another run would start too close to the bounds
-            if !self.may_run_interior_point() {
-                self.keep_if_best();
-            }
-        }
+        let Some(contact) = contact else { return false };
+        let states = contact.iter().zip(&self.inequality.bounds);
+        let states = states.map(|(&contact, bound)| admissible_state(bound, contact)).collect();
+        self.iterate.replace(values, jump_multipliers, states);
+        true
     }
 
     /// Keeps the iterate if it is the best one. Under a huge penalty the values of the interior point method may be
-    /// more accurate than all that follow from active sets: a slack of the size of rounding decides a state.
+    /// more accurate than all that follow from active sets: a slack of the size of rounding decides a state. The merit
+    /// does not see whether jumps and their multipliers agree, but the certificate does.
     fn keep_if_best(&mut self) {
         let Some(solver) = &self.direct else { return };
+        if self.iterate.certificate() > self.iterate.best_certificate() {
+            return;
+        }
         match &self.inequality.penalised {
             Some(penalised) => {
                 let Iterate { values, jump_multipliers, residual, .. } = &mut self.iterate;
