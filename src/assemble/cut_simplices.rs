@@ -16,10 +16,6 @@ use crate::real::{Point, Real};
 /// its weight.
 pub(crate) type Visit<'v, const D: usize> = &'v mut dyn FnMut(&[f64; 4], &Point<f64, D>, f64);
 
-/// What is called with a point of a rule in barycentric coordinates, with its weight, and with whether the point is on
-/// the side of the zero set where the function is positive.
-type VisitSides<'v> = &'v mut dyn FnMut(&[f64; 4], f64, bool);
-
 /// A part of a simplex, by barycentric coordinates in it.
 #[derive(Clone, Copy, Debug)]
 struct Part {
@@ -66,7 +62,7 @@ impl CutRule {
         cell: usize,
         level: &Field<D>,
     ) -> bool {
-        self.side_of(&self.whole(), &mesh.corners(cell), level).is_none()
+        self.is_cut(&self.whole(), &mesh.corners(cell), level)
     }
 
     /// Visits the points of the rule on a cell if it is cut, and tells whether it is: in barycentric
@@ -79,27 +75,27 @@ impl CutRule {
         visit: Visit<'_, D>,
     ) -> bool {
         let corners = mesh.corners(cell);
-        let is_cut = self.side_of(&self.whole(), &corners, level).is_none();
+        let is_cut = self.is_cut(&self.whole(), &corners, level);
         if is_cut {
-            self.visit(&corners, level, &mut |point, weight, _| {
+            self.visit(&corners, level, &mut |point, weight| {
                 visit(point, &in_space(point, &corners), weight);
             });
         }
         is_cut
     }
 
-    /// Calls `visit` with the points of the rule on a simplex, in barycentric coordinates, with their
-    /// weights, whose sum is one, and with their sides. No point lies on the zero set but for rounding.
+    /// Calls `visit` with the points of the rule on a simplex, in barycentric coordinates, and with their
+    /// weights, whose sum is one. No point lies on the zero set but for rounding.
     pub fn visit<const D: usize>(
         &self,
         corners: &[Point<f64, D>; 4],
         level: &Field<D>,
-        visit: VisitSides<'_>,
+        visit: &mut dyn FnMut(&[f64; 4], f64),
     ) {
         self.visit_part(&self.whole(), corners, level, visit);
     }
 
-    /// Calls `visit` with the points of the rule on a simplex that is not cut, and with their weights.
+    /// The same on a simplex that is not cut.
     pub fn visit_whole(&self, visit: &mut dyn FnMut(&[f64; 4], f64)) {
         self.whole.iter().for_each(|(point, weight)| visit(point, weight));
     }
@@ -119,10 +115,10 @@ impl CutRule {
         part: &Part,
         corners: &[Point<f64, D>; 4],
         level: &Field<D>,
-        visit: VisitSides<'_>,
+        visit: &mut dyn FnMut(&[f64; 4], f64),
     ) {
-        if let Some(is_positive) = self.side_of(part, corners, level) {
-            self.visit_uncut(part, &mut |point, weight| visit(point, weight, is_positive));
+        if !self.is_cut(part, corners, level) {
+            self.visit_uncut(part, visit);
         } else if part.bisections < BISECTIONS[self.dimension] {
             for half in self.halves(part, corners) {
                 self.visit_part(&half, corners, level, visit);
@@ -133,26 +129,25 @@ impl CutRule {
         }
     }
 
-    /// Whether the function is positive, for a part with the same sign at corners, middles of edges and
-    /// barycentre; none for others. A change of sign between these points is not detected.
-    fn side_of<const D: usize>(
+    /// Whether the sign of the function differs between corners, middles of edges and barycentre of a
+    /// part: a change of sign between these points is not detected.
+    fn is_cut<const D: usize>(
         &self,
         part: &Part,
         corners: &[Point<f64, D>; 4],
         level: &Field<D>,
-    ) -> Option<bool> {
+    ) -> bool {
         let is_positive = |b: &[f64; 4]| level(&in_space(b, corners)) > 0.0;
         let mut middle = [0.0; 4];
         middle[..=self.dimension].fill(1.0 / (self.dimension + 1) as f64);
         let at_middle = is_positive(&part.point(&middle));
         let differs = |b: &[f64; 4]| is_positive(b) != at_middle;
         let own = &part.corners[..=self.dimension];
-        let is_cut = own.iter().any(differs)
+        own.iter().any(differs)
             || own
                 .iter()
                 .enumerate()
-                .any(|(i, p)| own[..i].iter().any(|q| differs(&between(p, q, 0.5))));
-        (!is_cut).then_some(at_middle)
+                .any(|(i, p)| own[..i].iter().any(|q| differs(&between(p, q, 0.5))))
     }
 
     /// The two halves on both sides of the middle of the longest edge.
@@ -185,7 +180,7 @@ impl CutRule {
         signs: [i8; 4],
         corners: &[Point<f64, D>; 4],
         level: &Field<D>,
-        visit: VisitSides<'_>,
+        visit: &mut dyn FnMut(&[f64; 4], f64),
     ) {
         let own = &signs[..=self.dimension];
         let of_sign = |sign| own.iter().position(|s| *s == sign);
@@ -199,7 +194,7 @@ impl CutRule {
                 let at = |r: f64| level(&in_space(&to(r), corners));
                 let is_beyond = (at(0.0) > 0.0) != positive.is_some();
                 let zero = if is_beyond { zero_between(at) } else { None };
-                visit(&zero.map_or(*point, |r| to(r + BESIDE)), weight, positive.is_some());
+                visit(&zero.map_or(*point, |r| to(r + BESIDE)), weight);
             });
             let zeros = own.iter().filter(|s| **s == 0).count();
             if positive.is_some() && zeros == self.dimension {
@@ -221,15 +216,14 @@ impl CutRule {
 
     /// Assigns the region between the facet opposite the corner `apex` and the zero set to the side of the
     /// zero set on which the region lies: by pairs of points on both sides, with the distance from the
-    /// facet to the zero set as the weight of one point and its negative as that of the other. The function is positive
-    /// at the corner.
+    /// facet to the zero set as the weight of one point and its negative as that of the other.
     fn correct<const D: usize>(
         &self,
         part: &Part,
         apex: usize,
         corners: &[Point<f64, D>; 4],
         level: &Field<D>,
-        visit: VisitSides<'_>,
+        visit: &mut dyn FnMut(&[f64; 4], f64),
     ) {
         if self.dimension < 2 {
             return;
@@ -243,8 +237,8 @@ impl CutRule {
             let distance = 2.0 * zero - 1.0;
             // a facet moved by the whole way to the corner sweeps D times the part
             let weight = weight * distance * self.dimension as f64 * part.share;
-            visit(&end(distance - BESIDE), weight, false);
-            visit(&end(distance + BESIDE), -weight, true);
+            visit(&end(distance - BESIDE), weight);
+            visit(&end(distance + BESIDE), -weight);
         }
     }
 }
@@ -335,11 +329,10 @@ mod tests {
         value: impl Fn(&Point<f64, D>) -> f64,
     ) -> f64 {
         let [mut all, mut within] = [0.0; 2];
-        CutRule::new(D, degree).visit(&corners(), level, &mut |point, weight, is_positive| {
+        CutRule::new(D, degree).visit(&corners(), level, &mut |point, weight| {
             let x = in_space(point, &corners());
-            assert_eq!(is_positive, level(&x) > 0.0, "the side of {x}");
             all += weight;
-            within += if is_positive { weight * value(&x) } else { 0.0 };
+            within += if level(&x) > 0.0 { weight * value(&x) } else { 0.0 };
         });
         assert!((all - 1.0_f64).abs() < 1e-13, "the weights sum to one");
         within

@@ -1,5 +1,6 @@
 //! Squares of errors, integrated over cells.
 
+use std::borrow::Cow;
 use std::ops::Range;
 use std::sync::Arc;
 
@@ -14,12 +15,13 @@ use crate::assemble::space::{Space, Terms, data};
 use crate::error::Error;
 use crate::mesh::Mesh;
 use crate::parallel::cells;
-use crate::problem::{Exact, Field};
+use crate::problem::{DatumRef, Exact, Field};
 use crate::quadrature::{FullySymmetric, Quadrature, Rule};
 use crate::real::{Point, Real, point_f64};
 
 /// Degree of the rule for error norms: the exact solution is not polynomial, and the rule must not
-/// limit what it measures. Cells that the exact free boundary or a jump of the load cuts are divided. For
+/// limit what it measures. Cells that the exact free boundary or a jump of load, coefficient
+/// or reaction cuts are divided. For
 /// basis functions of degree `b` the degree of the rule is at least `2 b + 2`, that of the square of the
 /// largest part of the error.
 const fn error_degree(dimension: usize) -> usize {
@@ -33,18 +35,24 @@ const fn error_degree(dimension: usize) -> usize {
 /// the largest part of the error.
 const fn lower_degrees(dimension: usize, basis_degree: usize) -> Option<[usize; 2]> {
     match (dimension, basis_degree) {
-        (2 | 3, 1) => Some([6, 8]),
-        (2, 2) => Some([8, 10]),
+        (2 | 3, 1) => Some([5, 6]),
+        (2, 2) => Some([7, 8]),
         _ => None,
     }
 }
 
-/// Two rules agree in a cell if their integrals differ by this share: where the solution is smooth the rule of higher
-/// degree, which counts, is nearer by powers of the diameter.
-const AGREEMENT: f64 = 1e-6;
+/// Two rules agree in a cell if their integrals differ by this share. Let `s` be the diameter divided by the length over
+/// which derivatives of the solution change. The square of the error in L2 of functions of degree `b` has a leading part
+/// of degree `2 b + 2`, so that rules of degrees `2 b + 3` and `2 b + 4` leave shares of the sizes `s^2` and `s^3`, and
+/// smaller ones of the squares of gradients: where both agree, the rule of higher degree, which counts, leaves about 1e-6.
+const AGREEMENT: f64 = 1e-4;
 
 /// Two rules agree in a cell if their integrals differ by this share of the mean over all cells.
 const NEGLIGIBLE: f64 = 1e-8;
+
+/// A coefficient without a level whose values at the corners of a cell have a larger ratio may jump within the cell, and
+/// so may the exact gradient.
+const SMOOTH_RATIO: f64 = 2.0;
 
 /// Degree of the rule for means over facets.
 const MEAN_DEGREE: usize = 5;
@@ -53,53 +61,48 @@ const MEAN_DEGREE: usize = 5;
 pub(crate) type Counts<'c> = &'c (dyn Fn(usize) -> bool + Sync);
 
 /// The functions of a region whose zeros are kinks of the exact solution.
-enum Kinks<const D: usize> {
-    None,
-    OneLevel(Field<D>),
-    TwoLevels {
-        levels: [Field<D>; 2],
-        /// The product of both levels, and the negative product. The sign changes at the zeros of each level, but not
-        /// where the zeros coincide. At common zeros a product without a change of sign may still seem to cut a cell,
-        /// since [`CutRule::cuts`] asks for values above zero beside others; the negative product does not then.
-        products: [Field<D>; 2],
-    },
+struct Kinks<const D: usize> {
+    levels: Vec<Field<D>>,
 }
 
 impl<const D: usize> Kinks<D> {
-    fn new(one: Option<Field<D>>, other: Option<Field<D>>) -> Self {
-        match (one, other) {
-            (None, None) => Self::None,
-            (Some(level), None) | (None, Some(level)) => Self::OneLevel(level),
-            (Some(a), Some(b)) => {
-                let product = |sign: f64| -> Field<D> {
-                    let [one, other] = [a.clone(), b.clone()];
-                    Arc::new(move |x| sign * one(x) * other(x))
-                };
-                Self::TwoLevels { products: [product(1.0), product(-1.0)], levels: [a, b] }
-            }
-        }
-    }
-
-    /// The function along whose zeros a cell is divided; `None` if no function is known. If two functions have the same
-    /// zeros in the cell, it is the first one: in some scenes the free boundary and a jump of the load coincide.
+    /// The function along whose zeros a cell is divided; `None` if no function is known. Of functions that have the same
+    /// zeros in the cell it is the first one: in some scenes the free boundary and jumps of load and coefficient
+    /// coincide. Of functions with different zeros it is the product.
     fn level_in<T: Real>(
         &self,
         rule: &CutRule,
         mesh: &Mesh<T, D>,
         cell: usize,
-    ) -> Option<&Field<D>> {
-        match self {
-            Self::None => None,
-            Self::OneLevel(level) => Some(level),
-            Self::TwoLevels { levels, products } => {
-                let cuts = |level| rule.cuts(mesh, cell, level);
-                match levels.each_ref().map(cuts) {
-                    [false, false] => None,
-                    [true, false] => Some(&levels[0]),
-                    [false, true] => Some(&levels[1]),
-                    [true, true] if products.iter().all(cuts) => Some(&products[0]),
-                    [true, true] => Some(&levels[0]),
-                }
+    ) -> Option<Cow<'_, Field<D>>> {
+        if let [level] = &self.levels[..] {
+            return Some(Cow::Borrowed(level));
+        }
+        let cuts = |level: &Field<D>| rule.cuts(mesh, cell, level);
+        // The sign of a product changes at the zeros of each function, but not where zeros coincide. At common zeros a
+        // product without a change of sign may still seem to cut a cell, since `CutRule::cuts` asks for values above
+        // zero beside others; the negative product does not then.
+        let have_other_zeros = |one: &Field<D>, other: &Field<D>| {
+            [1.0, -1.0].into_iter().all(|sign| {
+                let [one, other] = [one.clone(), other.clone()];
+                let product: Field<D> = Arc::new(move |x| sign * one(x) * other(x));
+                cuts(&product)
+            })
+        };
+        let mut found: Vec<&Field<D>> = Vec::new();
+        for level in self.levels.iter().filter(|level| cuts(level)) {
+            if found.iter().all(|other| have_other_zeros(other, level)) {
+                found.push(level);
+            }
+        }
+        match found[..] {
+            [] => None,
+            [level] => Some(Cow::Borrowed(level)),
+            _ => {
+                let found: Vec<Field<D>> = found.into_iter().cloned().collect();
+                let product: Field<D> =
+                    Arc::new(move |x| found.iter().map(|level| level(x)).product());
+                Some(Cow::Owned(product))
             }
         }
     }
@@ -150,7 +153,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         let nodes = self.node_terms(&Rule::new(D - 1, MEAN_DEGREE), &cell_rule);
         let kinks: Vec<Kinks<D>> =
             (0..self.mesh.regions().len()).map(|region| self.kinks(exact, region)).collect();
-        let has_kinks = kinks.iter().any(|kinks| !matches!(kinks, Kinks::None));
+        let has_kinks = kinks.iter().any(|kinks| !kinks.levels.is_empty());
         let cut_rule = has_kinks.then(|| CutRule::new(D, degree));
         let table = self.cell_table(cell_rule);
         let measure = Measure { exact, table, lower, cut_rule, kinks, nodes, u, function };
@@ -196,14 +199,17 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         Ok(total)
     }
 
-    /// The functions whose zeros are those of the level of the load of a region and, with an obstacle, the exact free
-    /// boundary: second derivatives of the exact solution jump there.
+    /// The functions whose zeros are the exact free boundary, where there is an obstacle, and the levels of load,
+    /// coefficient and reaction of a region: first or second derivatives of the exact solution jump there.
     fn kinks(&self, exact: &Reference<'_, T, D>, region: usize) -> Kinks<D> {
-        let Reference::Exact(Exact { contact, .. }) = exact else { return Kinks::None };
+        let Reference::Exact(Exact { contact, .. }) = exact else {
+            return Kinks { levels: Vec::new() };
+        };
         let contact = contact.as_ref().filter(|_| self.problem.has_obstacle());
         let indicator = contact.map(|set| set.indicator.clone());
-        let level = self.data.source.of(region).and_then(|f| f.level()).cloned();
-        Kinks::new(indicator, level)
+        let data = [&self.data.source, &self.data.coefficient, &self.data.reaction];
+        let of_data = data.map(|data| data.of(region).and_then(|f| f.level()).cloned());
+        Kinks { levels: indicator.into_iter().chain(of_data.into_iter().flatten()).collect() }
     }
 
     /// The squares of a cell by two rules; by the same one if it is the one of highest degree.
@@ -257,12 +263,12 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         let on_parts = of.cut_rule.as_ref().and_then(|rule| {
             let level = of.kinks[region].level_in(rule, self.mesh, cell)?;
             let mut sums = Squares::default();
-            let is_cut = rule.visit_if_cut(self.mesh, cell, level, &mut |point, x, weight| {
+            let is_cut = rule.visit_if_cut(self.mesh, cell, &level, &mut |point, x, weight| {
                 integrand.add(&mut sums, (point, x), weight, &self.basis_at(point));
             });
             let points = || {
                 let mut points = Vec::new();
-                rule.visit_if_cut(self.mesh, cell, level, &mut |_, x, _| points.push(*x));
+                rule.visit_if_cut(self.mesh, cell, &level, &mut |_, x, _| points.push(*x));
                 points
             };
             is_cut.then(|| integrand.checked(sums, points))
@@ -271,7 +277,16 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
             return squares.map(|squares| [squares; 2]);
         }
         let corner = |k: usize| point_f64(&self.mesh.vertices()[self.mesh.cell(cell)[k] as usize]);
+        let may_jump = || {
+            let is_named =
+                |alpha: &DatumRef<'_, D>| alpha.constant().is_some() || alpha.level().is_some();
+            let Some(alpha) = coefficient.filter(|alpha| !is_named(alpha)) else { return false };
+            let at_corners: [f64; 4] = tabulate(|k| alpha.at(&corner(k.min(D))));
+            let most = at_corners.into_iter().fold(0.0, f64::max);
+            most > SMOOTH_RATIO * at_corners.into_iter().fold(most, f64::min)
+        };
         match &of.lower {
+            _ if may_jump() => by_rule(&of.table).map(|squares| [squares; 2]),
             Some([low, high])
                 if integrand.admissible.as_ref().is_none_or(|f| !f.touches_in_part(corner)) =>
             {
@@ -294,7 +309,8 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
                 true => value,
                 false => data::finite(value, "exact solution", &self.node_point(cell, node), cell)?,
             };
-            largest = largest.max((u[self.dofs.of(cell, i)].to_f64() - value).abs());
+            let error = (u[self.dofs.of(cell, i)].to_f64() - value).abs();
+            largest = if error.is_nan() { error } else { largest.max(error) };
         }
         Ok(largest)
     }
@@ -312,35 +328,39 @@ mod tests {
 
     /// The level along which the first cell of a unit cube is divided. The middle of an edge of this cell has the first
     /// coordinate 1/2.
-    fn level_in<const D: usize>(one: Field<D>, other: Field<D>) -> Option<Field<D>> {
+    fn level_in<const D: usize>(levels: &[&Field<D>]) -> Option<Field<D>> {
         let square = BoxDomain::dirichlet(Point::zeros(), Point::repeat(1.0));
         let mesh = Mesh::<f64, D>::kuhn_box(&square, [1; D]).unwrap();
-        Kinks::new(Some(one), Some(other)).level_in(&CutRule::new(D, 4), &mesh, 0).cloned()
+        let kinks = Kinks { levels: levels.iter().copied().cloned().collect() };
+        kinks.level_in(&CutRule::new(D, 4), &mesh, 0).map(Cow::into_owned)
     }
 
-    fn kinks_of_two_levels<const D: usize>() {
+    fn kinks_of_several_levels<const D: usize>() {
         let half: Field<D> = Arc::new(|x| x[0] - 0.5);
         let opposite: Field<D> = Arc::new(|x| 0.5 - x[0]);
         let double: Field<D> = Arc::new(|x| 2.0 * x[0] - 1.0);
         let far: Field<D> = Arc::new(|x| x[0] + 1.0);
         let same = |a: &Option<Field<D>>, b: &Field<D>| Arc::ptr_eq(a.as_ref().unwrap(), b);
         // zeros that coincide, with the same and with opposite signs
-        for other in [double, opposite] {
-            assert!(same(&level_in(half.clone(), other), &half));
+        for other in [&double, &opposite] {
+            assert!(same(&level_in(&[&half, other]), &half));
+            assert!(same(&level_in(&[&half, other, &double]), &half));
         }
-        assert!(same(&level_in(far.clone(), half.clone()), &half));
-        assert!(same(&level_in(half.clone(), far.clone()), &half));
-        assert!(level_in(far.clone(), far).is_none());
+        assert!(same(&level_in(&[&far, &half]), &half));
+        assert!(same(&level_in(&[&half, &far]), &half));
+        assert!(level_in(&[&far, &far]).is_none());
         let [low, high]: [Field<D>; 2] = [Arc::new(|x| x[0] - 0.4), Arc::new(|x| x[0] - 0.6)];
-        let both = level_in(low, high).unwrap();
-        let signs = [0.1, 0.5, 0.9].map(|x| both(&Point::repeat(x)) > 0.0);
-        assert_eq!(signs, [true, false, true]);
+        for levels in [&[&low, &high][..], &[&low, &high, &high], &[&low, &low, &high]] {
+            let both = level_in(levels).unwrap();
+            let signs = [0.1, 0.5, 0.9].map(|x| both(&Point::repeat(x)) > 0.0);
+            assert_eq!(signs, [true, false, true]);
+        }
     }
 
     #[test]
-    fn two_levels_divide_a_cell_along_both_and_once_where_they_coincide() {
-        kinks_of_two_levels::<1>();
-        kinks_of_two_levels::<2>();
-        kinks_of_two_levels::<3>();
+    fn several_levels_divide_a_cell_along_all_and_once_where_they_coincide() {
+        kinks_of_several_levels::<1>();
+        kinks_of_several_levels::<2>();
+        kinks_of_several_levels::<3>();
     }
 }

@@ -198,6 +198,18 @@ impl<const D: usize> Problem<D> {
         self.coefficient = Some(alpha.into());
         self
     }
+    /// Sets a diffusion coefficient that jumps where `level` changes its sign. The scheme evaluates it as any other one
+    /// ([`Problem::coefficient`]); errors against an exact solution, whose gradient jumps there too, are integrated over
+    /// cells divided along the zero set of `level`, as loads are ([`Problem::piecewise_source`]).
+    #[must_use]
+    pub fn piecewise_coefficient(
+        mut self,
+        alpha: impl Fn(&Point<f64, D>) -> f64 + Send + Sync + 'static,
+        level: impl Fn(&Point<f64, D>) -> f64 + Send + Sync + 'static,
+    ) -> Self {
+        self.coefficient = Some(Datum::piecewise(alpha, level));
+        self
+    }
     /// Sets the reaction coefficient: a number, a closure whose argument is written with its
     /// type, `|x: &Point<f64, 2>| ..`, or [`Datum::piecewise`].
     #[must_use]

@@ -77,7 +77,7 @@ pub fn contrast_disc_2d(contrast: f64) -> Scene<2> {
         summary: "two materials, circular interface; contrast is the ratio of coefficients",
         domain: BoxDomain::centred(1.5).into(),
         problem: Problem::new()
-            .coefficient(alpha)
+            .piecewise_coefficient(alpha, |x| 1.0 - x.norm())
             .constant_source(-2.0)
             .obstacle_below(|_| 0.0)
             .solved_by(

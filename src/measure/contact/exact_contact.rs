@@ -19,7 +19,7 @@ pub(super) struct ExactContact {
     /// For each corner of the entity the mean over the entity of the multiplier times the hat function of the corner;
     /// zero without a multiplier.
     pub tested: [f64; 4],
-    /// The shares of the entity that are not in contact, and in contact; all of it is not where no set is known.
+    /// The share of the entity out of contact, and the share in contact. Without a contact set the first is one.
     pub shares: [f64; 2],
 }
 
@@ -57,10 +57,11 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         let corners = self.corner_points(entity);
         let mut found = ExactContact::default();
         let mut not_finite = None;
-        let mut add = |hats: &[f64; 4], weight: f64, is_in_contact: bool| {
+        let mut add = |hats: &[f64; 4], weight: f64| {
+            let x = in_space(hats, &corners);
+            let is_in_contact = exact.contact.as_ref().is_some_and(|set| (set.indicator)(&x) > 0.0);
             found.shares[usize::from(is_in_contact)] += weight;
             let Some(multiplier) = &exact.multiplier else { return };
-            let x = in_space(hats, &corners);
             let density = multiplier(&x);
             if !density.is_finite() {
                 not_finite = not_finite.or(Some((density, x)));
@@ -69,7 +70,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         };
         match &exact.contact {
             Some(set) => rule.visit(&corners, &set.indicator, &mut add),
-            None => rule.visit_whole(&mut |hats, weight| add(hats, weight, false)),
+            None => rule.visit_whole(&mut add),
         }
         if let Some((density, x)) = not_finite {
             data::finite(density, "exact multiplier", &x, entity.cell)?;

@@ -2,10 +2,10 @@
 
 use crate::real::Point;
 
-/// Points of a grid of about as many boxes as points, for the search of those within a box.
+/// Points in the boxes of a grid, at most about as many boxes as points, for the search of points within a box.
 pub(super) struct PointGrid<const D: usize> {
     low: Point<f64, D>,
-    /// Boxes over length, along each axis.
+    /// Number of boxes per unit of length along each axis; zero where all points have one coordinate.
     density: Point<f64, D>,
     counts: [usize; D],
     /// The points of box `k` are those from `starts[k]` to `starts[k + 1]`.
@@ -23,7 +23,7 @@ impl<const D: usize> PointGrid<D> {
         let along = (points.len() as f64).powf(1.0 / D as f64);
         let count = |axis: usize| {
             let share = (high[axis] - low[axis]) / longest;
-            // not a number where all points are one
+            // the share is not a number where all points coincide
             if share > 0.0 { (along * share).ceil() as usize } else { 1 }
         };
         let counts: [usize; D] = std::array::from_fn(count);
@@ -115,5 +115,12 @@ mod tests {
         check::<2>(&[[0.5; 3]; 4], [0.5; 3], 0.0);
         check::<3>(&[[0.0, 0.5, 0.0], [0.0, -0.5, 0.0]], [-1.0; 3], 1.0);
         check::<1>(&[], [0.0; 3], 1.0);
+    }
+
+    #[test]
+    fn infinite_points_do_not_hide_others() {
+        let far = f64::INFINITY;
+        check::<2>(&[[0.5; 3], [far; 3], [-far, 0.5, 0.0]], [0.0; 3], 1.0);
+        check::<2>(&[[far; 3], [0.5; 3], [0.7; 3]], [0.0; 3], 1.0);
     }
 }

@@ -20,7 +20,7 @@ const VARIABLES: [[&str; 3]; 2] = [["x", "y", "z"], ["nx", "ny", "nz"]];
 /// The group of cells in no group with data.
 const DEFAULT: &str = "default";
 /// The data that may be given with a level, where they jump.
-const PIECEWISE: [&str; 2] = ["source", "reaction"];
+const PIECEWISE: [&str; 3] = ["coefficient", "source", "reaction"];
 
 /// A number or expression as a datum that may jump where the level vanishes.
 fn piecewise<const D: usize>(formula: &Formula, level: Option<&Formula>) -> Datum<D> {

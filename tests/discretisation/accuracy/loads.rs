@@ -176,3 +176,44 @@ fn a_reaction_that_jumps_is_integrated_exactly() {
     assert!((total(&ConformingP1) - (0.3 + 0.7 * 5.0)).abs() < 1e-13);
     assert!((total(&ConformingP2) - (0.3 + 0.7 * 5.0)).abs() < 1e-13);
 }
+
+/// The energy norm of the exact solution of contrast-disc-2d, whose gradient jumps by a factor of 1000 across a circle
+/// within cells: by the sum over 40 000 parts of each cell, with the level of the coefficient named and not.
+#[test]
+fn errors_see_jumps_of_a_coefficient_within_cells() {
+    const PARTS: usize = 200;
+    let scene = || scenes::contrast_disc_2d(1000.0);
+    let problem = scene().problem;
+    let mesh: Mesh<f64, 2> = scene().domain.mesh(4).unwrap();
+    let exact = problem.exact.clone().unwrap();
+    let alpha = |x: &Point<f64, 2>| if x.norm() < 1.0 { 1000.0 } else { 1.0 };
+    let mut expected = 0.0;
+    for cell in 0..mesh.n_cells() {
+        let corners = [0, 1, 2].map(|k| mesh.vertices()[mesh.cell(cell)[k] as usize]);
+        let at = |a: f64, b: f64| {
+            corners[0] + (corners[1] - corners[0]) * a + (corners[2] - corners[0]) * b
+        };
+        let area = 0.5 * (corners[1] - corners[0]).perp(&(corners[2] - corners[0])).abs();
+        let (mut sum, n) = (0.0, PARTS as f64);
+        for i in 0..PARTS {
+            for j in 0..PARTS - i {
+                // the barycentres of the two parts of a small parallelogram
+                let shifts =
+                    if i + j + 1 < PARTS { &[1.0 / 3.0, 2.0 / 3.0][..] } else { &[1.0 / 3.0] };
+                for shift in shifts {
+                    let x = at((i as f64 + shift) / n, (j as f64 + shift) / n);
+                    sum += (exact.gradient)(&x).norm_squared();
+                }
+            }
+        }
+        expected += alpha(&at(1.0 / 3.0, 1.0 / 3.0)) * area * sum / (n * n);
+    }
+    let unnamed = scene().problem.coefficient(alpha);
+    for (problem, tolerance) in [(problem, 2e-3), (unnamed, 0.2)] {
+        let quadrature = DataQuadrature::default();
+        let space = Discretisation::new(&ConformingP1, &problem, &mesh, quadrature).unwrap();
+        let error = space.errors(&vec![0.0; space.unknowns()]).unwrap();
+        let relative = error.broken_energy.unwrap() / expected.sqrt() - 1.0;
+        assert!(relative.abs() < tolerance, "{relative:.1e}");
+    }
+}
