@@ -95,7 +95,7 @@ impl CutRule {
         self.visit_part(&self.whole(), corners, level, visit);
     }
 
-    /// The same on a simplex that is not cut.
+    /// Calls `visit` with the points of the rule on a simplex that is not cut, and with their weights.
     pub fn visit_whole(&self, visit: &mut dyn FnMut(&[f64; 4], f64)) {
         self.whole.iter().for_each(|(point, weight)| visit(point, weight));
     }

@@ -20,10 +20,9 @@ use crate::quadrature::{FullySymmetric, Quadrature, Rule};
 use crate::real::{Point, Real, point_f64};
 
 /// Degree of the rule for error norms: the exact solution is not polynomial, and the rule must not
-/// limit what it measures. Cells that the exact free boundary or a jump of load, coefficient
-/// or reaction cuts are divided. For
-/// basis functions of degree `b` the degree of the rule is at least `2 b + 2`, that of the square of the
-/// largest part of the error.
+/// limit what it measures. Cells that the exact free boundary or a jump of load, coefficient or reaction
+/// cuts are divided. For basis functions of degree `b` the degree of the rule is at least `2 b + 2`, that
+/// of the square of the largest part of the error.
 const fn error_degree(dimension: usize) -> usize {
     match dimension {
         1 | 2 => 19,
@@ -50,8 +49,8 @@ const AGREEMENT: f64 = 1e-4;
 /// Two rules agree in a cell if their integrals differ by this share of the mean over all cells.
 const NEGLIGIBLE: f64 = 1e-8;
 
-/// A coefficient without a level whose values at the corners of a cell have a larger ratio may jump within the cell, and
-/// so may the exact gradient.
+/// The largest ratio of two values at the corners of a cell of a coefficient that counts as smooth there. With a larger
+/// one a coefficient without a level, and with it the exact gradient, may jump within the cell.
 const SMOOTH_RATIO: f64 = 2.0;
 
 /// Degree of the rule for means over facets.
@@ -212,15 +211,13 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         Kinks { levels: indicator.into_iter().chain(of_data.into_iter().flatten()).collect() }
     }
 
-    /// The squares of a cell by two rules; by the same one if it is the one of highest degree.
-    fn squares_in(
-        &self,
-        of: &Measure<'_, '_, '_, T, D>,
+    /// What the error is integrated with in a cell.
+    fn integrand_in<'c, 'f: 'c>(
+        &'c self,
+        of: &'c Measure<'_, '_, 'f, T, D>,
         cell: usize,
-        try_lower: bool,
-    ) -> Result<[Squares; 2], Error> {
+    ) -> CellIntegrand<'c, T, D> {
         let geometry = self.mesh.geometry(cell);
-        let region = self.mesh.region(cell);
         let gradients: [Point<f64, D>; 4] = tabulate(|k| match k <= D {
             true => point_f64(geometry.gradient(k)),
             false => Point::zeros(),
@@ -234,9 +231,9 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
             }
             discrete
         });
-        let [coefficient, reaction] =
-            map_entries([&self.data.coefficient, &self.data.reaction], |data| data.of(region));
-        let integrand = CellIntegrand {
+        let region = self.mesh.region(cell);
+        let coefficient = self.data.coefficient.of(region);
+        CellIntegrand {
             exact: of.exact,
             cell,
             volume: geometry.volume.to_f64(),
@@ -246,8 +243,18 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
             alpha: self.alpha(cell).to_f64(),
             varying: coefficient.filter(|_| self.varying_in(cell).is_some()),
             coefficient,
-            reaction,
-        };
+            reaction: self.data.reaction.of(region),
+        }
+    }
+
+    /// The squares of a cell by two rules; by the same one if it is the one of highest degree.
+    fn squares_in(
+        &self,
+        of: &Measure<'_, '_, '_, T, D>,
+        cell: usize,
+        try_lower: bool,
+    ) -> Result<[Squares; 2], Error> {
+        let integrand = self.integrand_in(of, cell);
         let by_rule = |table: &CellTable<f64>| {
             let CellTable { points, basis, weights } = table;
             let in_space = |point: &[f64; 4]| self.cell_point(point, cell);
@@ -261,7 +268,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
             return by_rule(&of.table).map(|squares| [squares; 2]);
         }
         let on_parts = of.cut_rule.as_ref().and_then(|rule| {
-            let level = of.kinks[region].level_in(rule, self.mesh, cell)?;
+            let level = of.kinks[self.mesh.region(cell)].level_in(rule, self.mesh, cell)?;
             let mut sums = Squares::default();
             let is_cut = rule.visit_if_cut(self.mesh, cell, &level, &mut |point, x, weight| {
                 integrand.add(&mut sums, (point, x), weight, &self.basis_at(point));
@@ -277,19 +284,12 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
             return squares.map(|squares| [squares; 2]);
         }
         let corner = |k: usize| point_f64(&self.mesh.vertices()[self.mesh.cell(cell)[k] as usize]);
-        let may_jump = || {
-            let is_named =
-                |alpha: &DatumRef<'_, D>| alpha.constant().is_some() || alpha.level().is_some();
-            let Some(alpha) = coefficient.filter(|alpha| !is_named(alpha)) else { return false };
-            let at_corners: [f64; 4] = tabulate(|k| alpha.at(&corner(k.min(D))));
-            let most = at_corners.into_iter().fold(0.0, f64::max);
-            most > SMOOTH_RATIO * at_corners.into_iter().fold(most, f64::min)
+        let touches_in_part = || {
+            let admissible = integrand.admissible.as_ref();
+            admissible.is_some_and(|function| function.touches_in_part(corner))
         };
         match &of.lower {
-            _ if may_jump() => by_rule(&of.table).map(|squares| [squares; 2]),
-            Some([low, high])
-                if integrand.admissible.as_ref().is_none_or(|f| !f.touches_in_part(corner)) =>
-            {
+            Some([low, high]) if !may_jump(integrand.coefficient, corner) && !touches_in_part() => {
                 Ok([by_rule(low)?, by_rule(high)?])
             }
             _ => by_rule(&of.table).map(|squares| [squares; 2]),
@@ -314,6 +314,20 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         }
         Ok(largest)
     }
+}
+
+/// Whether a coefficient may jump within a cell with these corners, though no level says so.
+fn may_jump<const D: usize>(
+    coefficient: Option<DatumRef<'_, D>>,
+    corner: impl Fn(usize) -> Point<f64, D>,
+) -> bool {
+    let Some(alpha) = coefficient else { return false };
+    if alpha.constant().is_some() || alpha.level().is_some() {
+        return false;
+    }
+    let values = (0..=D).map(|k| alpha.at(&corner(k)));
+    let (least, most) = values.fold((f64::INFINITY, 0.0_f64), |(a, b), v| (a.min(v), b.max(v)));
+    most > SMOOTH_RATIO * least
 }
 
 /// Whether two lists of squares differ by more than is allowed.

@@ -198,8 +198,8 @@ impl<const D: usize> Problem<D> {
         self.coefficient = Some(alpha.into());
         self
     }
-    /// Sets a diffusion coefficient that jumps where `level` changes its sign. The scheme evaluates it as any other one
-    /// ([`Problem::coefficient`]); errors against an exact solution, whose gradient jumps there too, are integrated over
+    /// Sets a diffusion coefficient that jumps where `level` changes its sign. Schemes evaluate such a coefficient like
+    /// any other ([`Problem::coefficient`]); errors against an exact solution, whose gradient jumps there too, are integrated over
     /// cells divided along the zero set of `level`, as loads are ([`Problem::piecewise_source`]).
     #[must_use]
     pub fn piecewise_coefficient(

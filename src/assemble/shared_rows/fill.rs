@@ -41,7 +41,7 @@ pub(crate) fn fill<T: Real, const D: usize, E: ReferenceElement<T, D>>(
     for_each_item(targets, &|k, targets| filling.fill_subset::<E>(&subsets[k], targets));
 }
 
-/// Cuts the values so that each subset has those of its rows.
+/// Divides the values among the subsets: each subset has the values of its rows.
 fn targets<'v, T>(
     subsets: &[Rows],
     row_starts: &[u32],

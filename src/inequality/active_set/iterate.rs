@@ -4,7 +4,7 @@ use super::contact_state::{prescribed_value, starting_states};
 use crate::algebra::{Bound, Contact, Inequality, any_part};
 use crate::inequality::certificate::positive_diagonal;
 use crate::inequality::violations::certify_with_rounding;
-use crate::inequality::{Outcome, Solution};
+use crate::inequality::{Certificate, Outcome, Solution};
 use crate::real::Real;
 
 /// The values and contact states of a step, and the best values of all steps.
@@ -242,10 +242,10 @@ impl<'a, T: Real> Iterate<'a, T> {
         certify_with_rounding(self.inequality, &self.values, &self.jump_multipliers).0.largest()
     }
 
-    /// The largest part of the certificate of the best iterate.
-    pub fn best_certificate(&self) -> f64 {
+    /// The certificate of the best iterate, and the factor by which large penalties amplify rounding in it.
+    pub fn best_certificate(&self) -> (Certificate, f64) {
         let (best, jump_multipliers) = self.best_values();
-        certify_with_rounding(self.inequality, best, jump_multipliers).0.largest()
+        certify_with_rounding(self.inequality, best, jump_multipliers)
     }
 
     /// Replaces the iterate by the best one. The residual is then not current.

@@ -315,9 +315,7 @@ struct QualityOfBest {
 
 impl QualityOfBest {
     fn of<T: Real>(iterate: &Iterate<'_, T>, rounding_band: f64) -> Self {
-        let (best, jump_multipliers) = iterate.best_values();
-        let (certificate, amplification) =
-            certify_with_rounding(iterate.inequality, best, jump_multipliers);
+        let (certificate, amplification) = iterate.best_certificate();
         let rounding = CERTIFICATE_FACTOR * rounding_band * T::EPSILON;
         Self {
             is_admissible: certificate.feasibility <= rounding,

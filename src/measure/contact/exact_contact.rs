@@ -41,11 +41,7 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
             };
             entities[range].iter().map(on_entity).collect::<Result<Vec<_>, _>>()
         });
-        let mut all = Vec::with_capacity(entities.len());
-        for chunk in chunks {
-            all.append(&mut chunk?);
-        }
-        Ok(all)
+        Ok(chunks.into_iter().collect::<Result<Vec<_>, _>>()?.concat())
     }
 
     fn exact_contact_on(

@@ -26,8 +26,8 @@ pub(super) fn nodal_multipliers<T: Real>(
 }
 
 impl<T: Real, const D: usize> Space<'_, T, D> {
-    /// The errors of the density in L1 and lumped L2, by what [`Space::exact_contact`] gives for these entities; none if
-    /// no vertex counts.
+    /// The errors of the density in L1 and lumped L2 against the exact multiplier on these entities, which
+    /// [`Space::exact_contact`] has tested with hat functions; none if all vertices lie on the Dirichlet part.
     pub(super) fn multiplier_errors(
         &self,
         entities: &[ContactEntity],
@@ -35,14 +35,12 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         inequality: &Inequality<T>,
         solution: &Solution<T>,
     ) -> Option<[f64; 2]> {
-        let mut weights = vec![0.0; self.mesh.vertices().len()];
+        let weights = self.hat_integrals(entities);
         let mut multipliers = self.vertex_multipliers(inequality, solution, &|_| true);
         for (entity, exact) in entities.iter().zip(exact) {
             let (measure, cell) = (self.measure_of(*entity), self.mesh.cell(entity.cell));
             for (k, local) in entity.corners::<D>().enumerate() {
-                let vertex = cell[local] as usize;
-                weights[vertex] += measure / (entity.dimension::<D>() + 1) as f64;
-                multipliers[vertex] -= measure * exact.tested[k];
+                multipliers[cell[local] as usize] -= measure * exact.tested[k];
             }
         }
         let given = self.dirichlet_groups();
@@ -85,19 +83,16 @@ impl<T: Real, const D: usize> Space<'_, T, D> {
         if places.is_empty() && inequality.distribution().is_none() {
             return Vec::new();
         }
-        let entities = || places.iter().map(|&(cell, facet)| ContactEntity { cell, facet });
+        let entities: Vec<ContactEntity> =
+            places.iter().map(|&(cell, facet)| ContactEntity { cell, facet }).collect();
         let vertex = |entity: ContactEntity, k: usize| self.mesh.cell(entity.cell)[k] as usize;
         let mut densities = self.vertex_multipliers(inequality, solution, counts);
-        let mut hats = vec![0.0; densities.len()];
-        for entity in entities() {
-            let share = self.measure_of(entity) / (entity.dimension::<D>() + 1) as f64;
-            entity.corners::<D>().for_each(|k| hats[vertex(entity, k)] += share);
-        }
+        let hats = self.hat_integrals(&entities);
         densities.iter_mut().zip(hats).for_each(|(density, hat)| *density /= hat);
         let mean = |entity: ContactEntity| {
             let sum: f64 = entity.corners::<D>().map(|k| densities[vertex(entity, k)]).sum();
             sum / (entity.dimension::<D>() + 1) as f64
         };
-        entities().map(mean).collect()
+        entities.into_iter().map(mean).collect()
     }
 }

@@ -23,7 +23,7 @@ impl<const D: usize> PointGrid<D> {
         let along = (points.len() as f64).powf(1.0 / D as f64);
         let count = |axis: usize| {
             let share = (high[axis] - low[axis]) / longest;
-            // the share is not a number where all points coincide
+            // the share is not a number if all points coincide
             if share > 0.0 { (along * share).ceil() as usize } else { 1 }
         };
         let counts: [usize; D] = std::array::from_fn(count);

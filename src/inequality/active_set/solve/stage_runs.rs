@@ -9,6 +9,7 @@ use crate::inequality::active_set::direct_solver::DirectSolver;
 use crate::inequality::active_set::iterate::Iterate;
 use crate::inequality::active_set::iteration::{End, Iteration};
 use crate::inequality::active_set::preconditioned_solver::PreconditionedSolver;
+use crate::inequality::certificate;
 use crate::inequality::initial_guess::InitialGuess;
 use crate::inequality::interior_point::{Identification, InteriorPoint};
 use crate::inequality::monotone_multigrid::{MonotoneMultigrid, STAGNATION_CYCLES};
@@ -201,8 +202,8 @@ impl<T: Real> Solve<'_, '_, T> {
     }
 
     /// Replaces the iterate by the result of the interior point method, which starts from the best iterate, or goes on
-    /// where its first run left small slacks. Returns whether it found an active set; if not, only the number of linear
-    /// systems changes.
+    /// where its first run left small slacks. Returns whether the method found an active set; if not, only the number of
+    /// linear systems changes.
     fn run_interior_point(&mut self) -> bool {
         let identification = match self.runs_of(Stage::InteriorPoint) {
             0 => Identification::Early,
@@ -236,18 +237,11 @@ impl<T: Real> Solve<'_, '_, T> {
     /// does not see whether jumps and their multipliers agree, but the certificate does.
     fn keep_if_best(&mut self) {
         let Some(solver) = &self.direct else { return };
-        if self.iterate.certificate() > self.iterate.best_certificate() {
+        if self.iterate.certificate() > self.iterate.best_certificate().0.largest() {
             return;
         }
-        match &self.inequality.penalised {
-            Some(penalised) => {
-                let Iterate { values, jump_multipliers, residual, .. } = &mut self.iterate;
-                let value = |i: usize| values[i].to_f64();
-                let multiplier = |jump: usize| jump_multipliers[jump].to_f64();
-                penalised.residual_with_jump_multipliers(value, multiplier, residual);
-            }
-            None => self.iterate.compute_residual(),
-        }
+        let Iterate { values, jump_multipliers, residual, .. } = &mut self.iterate;
+        certificate::residual(self.inequality, values, jump_multipliers, residual);
         let evaluation = self.iterate.evaluate(self.settings.rounding_band, solver);
         self.iterate.keep_if_best(evaluation.merit);
     }
