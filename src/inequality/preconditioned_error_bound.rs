@@ -4,7 +4,7 @@ use super::Outcome;
 use super::certificate::positive_diagonal;
 use super::energy_error_bound::unbalanced;
 use super::scales::Scales;
-use super::validation::{is_indefinite, outcome_of_not_positive};
+use super::validation::{diagnose_loss_of_positivity, has_negative_direction};
 use crate::algebra::Inequality;
 use crate::linear::Preconditioner;
 use crate::linear::direct::FactorError;
@@ -36,14 +36,14 @@ pub(super) fn preconditioned_error_bound<T: Real>(
 ) -> Result<Option<f64>, Outcome> {
     let bounds = &inequality.bounds;
     let fixed: Vec<bool> = bounds.iter().map(|bound| bound.fixed_value().is_some()).collect();
-    let of_not_positive = || outcome_of_not_positive(inequality).map_or(Ok(None), Err);
-    let undecided = || match is_indefinite(inequality) {
+    let diagnosis = || diagnose_loss_of_positivity(inequality).map_or(Ok(None), Err);
+    let undecided = || match has_negative_direction(inequality) {
         true => Err(Outcome::NotCoercive),
         false => Ok(None),
     };
     match preconditioner.set_fixed(&fixed) {
         Ok(()) => {}
-        Err(FactorError::NotPositive) => return of_not_positive(),
+        Err(FactorError::NotPositive) => return diagnosis(),
         Err(_) => return undecided(),
     }
     let diagonal = |i: usize| positive_diagonal(inequality, i);
@@ -51,7 +51,7 @@ pub(super) fn preconditioned_error_bound<T: Real>(
     let run = eigenvalue_run(matrix, None, preconditioner, &fixed, diagonal, MAX_ITERATIONS);
     let smallest = match run.ritz {
         Some((smallest, _)) if run.reason == StopReason::Converged && smallest > 0.0 => smallest,
-        _ if run.reason == StopReason::NotPositive => return of_not_positive(),
+        _ if run.reason == StopReason::NotPositive => return diagnosis(),
         _ => return undecided(),
     };
     let mut residual = vec![0.0; values.len()];

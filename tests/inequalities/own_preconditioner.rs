@@ -152,8 +152,8 @@ impl Preconditioner<f64> for CountedOf<'_> {
         self.applications.fetch_add(1, Ordering::Relaxed);
         self.preconditioner.apply(r, z);
     }
-    fn reduction(&self) -> f64 {
-        self.preconditioner.reduction()
+    fn forcing_term(&self) -> f64 {
+        self.preconditioner.forcing_term()
     }
 }
 

@@ -137,8 +137,8 @@ impl Preconditioner<f64> for WithGhosts<'_> {
         }
     }
 
-    fn reduction(&self) -> f64 {
-        self.inner.reduction()
+    fn forcing_term(&self) -> f64 {
+        self.inner.forcing_term()
     }
 }
 

@@ -4,7 +4,7 @@ use super::iterate::Iterate;
 use super::preconditioned_solver::PreconditionedSolver;
 use crate::algebra::{any_part, sum_over_parts};
 use crate::inequality::Outcome;
-use crate::inequality::validation::outcome_of_not_positive;
+use crate::inequality::validation::diagnose_loss_of_positivity;
 use crate::linear::direct::FactorError;
 use crate::linear::krylov::EIGENVALUE_TO_RITZ_VALUE;
 use crate::parallel::vectors::{dot, zeros};
@@ -107,7 +107,7 @@ impl<T: Real> PreconditionedSolver<'_, T> {
             match self.preconditioner.set_fixed(&eliminated) {
                 Ok(()) => self.eliminated = eliminated,
                 Err(FactorError::NotPositive) => {
-                    return outcome_of_not_positive(iterate.inequality).map_or(Ok(None), Err);
+                    return diagnose_loss_of_positivity(iterate.inequality).map_or(Ok(None), Err);
                 }
                 Err(_) => return Ok(None),
             }

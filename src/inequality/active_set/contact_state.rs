@@ -1,10 +1,10 @@
-//! Contact states: which one a bound admits, and which value it prescribes.
+//! Contact states: which of them a bound allows, and which value each one prescribes.
 
 use crate::algebra::{Bound, Contact, Start};
 use crate::real::Real;
 
-/// The given contact state if the bound admits it; inactive if the lower or upper bound that the state
-/// names does not exist; always lower if two bounds coincide.
+/// The given contact state if the bound has the side that the state names, else inactive. Always lower if lower and
+/// upper bound coincide: such an unknown is active from the start. Inactive for a fixed unknown.
 pub(crate) fn admissible_state<T: Real>(bound: &Bound<T>, contact: Contact) -> Contact {
     match contact {
         _ if bound.is_inequality() && bound.fixed_value().is_some() => Contact::Lower,
@@ -14,7 +14,7 @@ pub(crate) fn admissible_state<T: Real>(bound: &Bound<T>, contact: Contact) -> C
     }
 }
 
-/// The value of a fixed or an active unknown; `None` if it is inactive.
+/// The value of a fixed unknown, in every state, or of an active one; `None` if it is inactive.
 pub(crate) fn prescribed_value<T: Real>(bound: &Bound<T>, state: Contact) -> Option<T> {
     bound.fixed_value().or(match state {
         Contact::Inactive => None,
@@ -23,7 +23,8 @@ pub(crate) fn prescribed_value<T: Real>(bound: &Bound<T>, state: Contact) -> Opt
     })
 }
 
-/// The admissible contact states of a start; inactive where the start names no state.
+/// The contact states of a start, made admissible by [`admissible_state`]. An unknown that the start does not name,
+/// because its list is shorter, starts as inactive.
 pub(crate) fn starting_states<T: Real>(bounds: &[Bound<T>], start: &Start) -> Vec<Contact> {
     let guess = match start {
         Start::Cold => &[],

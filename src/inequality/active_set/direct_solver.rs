@@ -224,15 +224,15 @@ impl<T: Real> LinearSolver<T> for DirectSolver<'_, T> {
         true
     }
 
-    fn residual_term_sizes(&self, i: usize, iterate: &Iterate<'_, T>) -> [f64; 2] {
+    fn residual_term_magnitudes(&self, i: usize, iterate: &Iterate<'_, T>) -> [f64; 2] {
         match &self.condensation {
-            Some(condensation) => condensation.residual_term_sizes(
+            Some(condensation) => condensation.residual_term_magnitudes(
                 i,
                 &|j| iterate.values[j].to_f64(),
                 &iterate.jump_multipliers,
                 &|j| iterate.eliminated[j],
             ),
-            None => iterate.residual_term_sizes(i),
+            None => iterate.residual_term_magnitudes(i),
         }
     }
 

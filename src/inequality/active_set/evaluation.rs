@@ -132,7 +132,7 @@ impl<T: Real> Iterate<'_, T> {
         if wrong_multiplier > 0.0 {
             evaluation.multiplier_violation += wrong_multiplier * wrong_multiplier / d;
             // values of eliminated unknowns are exact
-            let [inactive, eliminated] = solver.residual_term_sizes(i, self);
+            let [inactive, eliminated] = solver.residual_term_magnitudes(i, self);
             let terms = T::EPSILON * inactive + f64::EPSILON * eliminated;
             if wrong_multiplier > rounding_band * terms {
                 evaluation.state_changes.push((i as u32, Contact::Inactive));

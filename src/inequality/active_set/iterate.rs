@@ -15,7 +15,7 @@ pub(crate) struct Iterate<'a, T> {
     /// ([`PenalisedMatrix`](crate::algebra::PenalisedMatrix)); else empty.
     pub jump_multipliers: Vec<T>,
     pub states: Vec<Contact>,
-    /// Whether an unknown is eliminated from the linear system: fixed, active, or one that another part
+    /// Whether an unknown is eliminated from the linear system: fixed, active, or one that another part of the mesh
     /// owns, whose state is known there alone.
     pub eliminated: Vec<bool>,
     /// `b - A u`.
@@ -24,7 +24,7 @@ pub(crate) struct Iterate<'a, T> {
     pub residual_is_current: bool,
     /// The diagonal of the matrix, positive; see [`positive_diagonal`].
     pub diagonal: Vec<f64>,
-    /// The energy norm at the last evaluation; see
+    /// The energy norm of the values at the last evaluation, one before the first; see
     /// [`Evaluation::energy_norm`](super::evaluation::Evaluation::energy_norm).
     pub energy_norm: f64,
     /// Number of linear systems with a new active set, and of steps of the interior point method.
@@ -44,8 +44,8 @@ struct BestIterate<T> {
 }
 
 impl<'a, T: Real> Iterate<'a, T> {
-    /// The admissible values nearest to `guess`, zeros if it has another length, with the contact
-    /// states of the inequality's start.
+    /// The admissible values nearest to `guess`, or to zero if `guess` has another length, with the contact states of
+    /// the inequality's start. Unknowns that another part of the mesh owns are inactive.
     pub fn new(inequality: &'a Inequality<T>, guess: &[T]) -> Self {
         let bounds = &inequality.bounds;
         let n = bounds.len();
@@ -101,8 +101,9 @@ impl<'a, T: Real> Iterate<'a, T> {
         is_changed
     }
 
-    /// Sets all values that are not prescribed to zero.
-    pub fn forget_values(&mut self) {
+    /// Sets all values that are not prescribed to zero, whether or not their bounds admit zero, and forgets the jump
+    /// multipliers.
+    pub fn reset_values(&mut self) {
         self.values.fill(T::lit(0.0));
         self.jump_multipliers.clear();
         self.set_prescribed_values();
@@ -123,8 +124,8 @@ impl<'a, T: Real> Iterate<'a, T> {
         }
     }
 
-    /// Changes contact states and sets the values that they prescribe. The residual of a symmetric
-    /// matrix without jump multipliers is updated by the columns of these values.
+    /// Changes contact states to admissible ones and sets the values that they prescribe. The residual of a symmetric
+    /// matrix without jump multipliers is updated by the columns of the matrix that belong to these unknowns.
     pub fn change_states(&mut self, changes: &[(u32, Contact)]) {
         let distribution = self.inequality.distribution();
         // changes in other parts are not known here
@@ -202,7 +203,7 @@ impl<'a, T: Real> Iterate<'a, T> {
         self.best.merit = f64::INFINITY;
     }
 
-    /// Whether an iterate was evaluated since the start, or since the best one was forgotten.
+    /// Whether an iterate with a finite merit was kept since the start, or since the best one was forgotten.
     pub fn has_best(&self) -> bool {
         self.best.merit < f64::INFINITY
     }
@@ -212,17 +213,17 @@ impl<'a, T: Real> Iterate<'a, T> {
         (&self.best.values, &self.best.jump_multipliers)
     }
 
-    /// Sums of the absolute values of the terms of row `i` of `b - A u`: terms of inactive unknowns,
-    /// then terms of eliminated unknowns and of the load.
-    pub fn residual_term_sizes(&self, i: usize) -> [f64; 2] {
+    /// Sums of the absolute values of the terms of row `i` of `b - A u`: terms of unknowns that are not eliminated, then
+    /// terms of eliminated ones and of the load.
+    pub fn residual_term_magnitudes(&self, i: usize) -> [f64; 2] {
         let (columns, entries) = self.inequality.matrix.row(i);
-        let (mut inactive, mut eliminated) = (0.0, self.inequality.load[i].to_f64().abs());
+        let (mut free, mut eliminated) = (0.0, self.inequality.load[i].to_f64().abs());
         for (&j, a) in columns.iter().zip(entries) {
             let j = j as usize;
             let term = (a.to_f64() * self.values[j].to_f64()).abs();
-            *(if self.eliminated[j] { &mut eliminated } else { &mut inactive }) += term;
+            *(if self.eliminated[j] { &mut eliminated } else { &mut free }) += term;
         }
-        [inactive, eliminated]
+        [free, eliminated]
     }
 
     /// The solution: the present iterate if it converged, else the best one.
@@ -237,12 +238,13 @@ impl<'a, T: Real> Iterate<'a, T> {
             .jump_multipliers(jump_multipliers)
     }
 
-    /// The largest number of the certificate of the values.
+    /// The largest of the numbers of the values' certificate ([`Certificate`]).
     pub fn certificate(&self) -> f64 {
         certify_with_rounding(self.inequality, &self.values, &self.jump_multipliers).0.largest()
     }
 
-    /// The certificate of the best iterate, and the factor by which large penalties amplify rounding in it.
+    /// The certificate of the best iterate, and the factor by which large penalties amplify rounding in its residual: a
+    /// certificate below rounding times this factor cannot be asked for.
     pub fn best_certificate(&self) -> (Certificate, f64) {
         let (best, jump_multipliers) = self.best_values();
         certify_with_rounding(self.inequality, best, jump_multipliers)
@@ -272,6 +274,6 @@ mod tests {
         let bounds = vec![Bound::Free, Bound::Free, Bound::Fixed(7.0)];
         let string = Inequality::new(matrix, true, vec![0.0, -4.0, 0.0], bounds);
         let iterate = Iterate::new(&string, &[-3.0, 5.0, 7.0]);
-        assert_eq!(iterate.residual_term_sizes(1), [3.0 + 2.0 * 5.0, 7.0 + 4.0]);
+        assert_eq!(iterate.residual_term_magnitudes(1), [3.0 + 2.0 * 5.0, 7.0 + 4.0]);
     }
 }

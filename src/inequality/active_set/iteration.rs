@@ -215,7 +215,7 @@ impl<T: Real> Iteration<'_, '_, '_, T> {
         {
             // an earlier matrix, singular but for rounding, may have left values so large that
             // corrections by this one have no correct digit
-            self.iterate.forget_values();
+            self.iterate.reset_values();
             corrected = self.solver.correct(self.iterate, accuracy);
         }
         let is_definite = self.iterate.inequality.is_definite;

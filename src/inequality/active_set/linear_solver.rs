@@ -70,7 +70,7 @@ pub(crate) trait LinearSolver<T>: Sync {
     fn is_accurate(&self, energy_norm: f64) -> bool;
     /// Sums of the absolute values of the terms of which the residual of unknown `i` is computed: terms
     /// of inactive unknowns, then terms of eliminated unknowns and of the load.
-    fn residual_term_sizes(&self, i: usize, iterate: &Iterate<'_, T>) -> [f64; 2];
+    fn residual_term_magnitudes(&self, i: usize, iterate: &Iterate<'_, T>) -> [f64; 2];
     /// The largest of the values whose rounding an inactive unknown `i` has, if the solver resolves differences of
     /// values to rounding; else infinite.
     fn size_of_values_near(&self, i: usize, iterate: &Iterate<'_, T>) -> f64 {

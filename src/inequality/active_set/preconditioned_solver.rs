@@ -4,7 +4,7 @@ use super::iterate::Iterate;
 use super::linear_solver::{Accuracy, LinearFailure, LinearSolver};
 use crate::algebra::{Inequality, SparseMatrix};
 use crate::inequality::Outcome;
-use crate::inequality::validation::outcome_of_not_positive;
+use crate::inequality::validation::diagnose_loss_of_positivity;
 use crate::linear::Preconditioner;
 use crate::linear::direct::FactorError;
 use crate::linear::krylov::{
@@ -22,7 +22,7 @@ const MAX_CONDITION: f64 = 1e4;
 const MAX_ITERATIONS: usize = 500;
 
 /// Relative tolerance of the system that determines jump multipliers.
-const MULTIPLIER_REDUCTION: f64 = 1e-6;
+const MULTIPLIER_TOLERANCE: f64 = 1e-6;
 
 /// The factor by which the target of an accurate solution may exceed the tolerance after the energy
 /// norm has changed.
@@ -101,7 +101,7 @@ impl<'a, T: Real> PreconditionedSolver<'a, T> {
     /// The failure where the symmetric part of the matrix was found not to be positive definite. LU factors of the matrix
     /// would not detect an indefinite symmetric part.
     fn not_coercive(&self) -> LinearFailure {
-        outcome_of_not_positive(self.inequality)
+        diagnose_loss_of_positivity(self.inequality)
             .map_or(LinearFailure::Unsuitable, LinearFailure::Outcome)
     }
 
@@ -158,10 +158,10 @@ impl<T: Real> LinearSolver<T> for PreconditionedSolver<'_, T> {
             iterate.compute_residual();
         }
         let stop = StoppingRule {
-            norm: self.tolerance * iterate.energy_norm,
-            reduction: match accuracy {
+            absolute_tolerance: self.tolerance * iterate.energy_norm,
+            relative_tolerance: match accuracy {
                 Accuracy::Full => 0.0,
-                Accuracy::Reduced => self.preconditioner.reduction(),
+                Accuracy::Reduced => self.preconditioner.forcing_term(),
             },
             max_iterations: MAX_ITERATIONS,
         };
@@ -170,7 +170,7 @@ impl<T: Real> LinearSolver<T> for PreconditionedSolver<'_, T> {
         let system = (&mut values[..], &mut self.residual[..]);
         let run = self.krylov.solve(eliminated, &mut *self.preconditioner, system, stop);
         iterate.linear += run.iterations;
-        (self.residual_norm, self.target) = (run.norm, stop.norm);
+        (self.residual_norm, self.target) = (run.residual_norm, stop.absolute_tolerance);
         self.check(&run)?;
         iterate.compute_residual();
         Ok(())
@@ -186,8 +186,8 @@ impl<T: Real> LinearSolver<T> for PreconditionedSolver<'_, T> {
         iterate.compute_residual();
         self.restrict_residual(iterate);
         let stop = StoppingRule {
-            norm: 0.0,
-            reduction: MULTIPLIER_REDUCTION,
+            absolute_tolerance: 0.0,
+            relative_tolerance: MULTIPLIER_TOLERANCE,
             max_iterations: MAX_ITERATIONS,
         };
         let mut correction = zeros(iterate.values.len());
@@ -214,7 +214,7 @@ impl<T: Real> LinearSolver<T> for PreconditionedSolver<'_, T> {
         self.residual_norm <= self.target.min(TARGET_MARGIN * self.tolerance * energy_norm)
     }
 
-    fn residual_term_sizes(&self, i: usize, iterate: &Iterate<'_, T>) -> [f64; 2] {
-        iterate.residual_term_sizes(i)
+    fn residual_term_magnitudes(&self, i: usize, iterate: &Iterate<'_, T>) -> [f64; 2] {
+        iterate.residual_term_magnitudes(i)
     }
 }

@@ -23,13 +23,14 @@ use newton_system::{MixedVector, NewtonSystem};
 use path_expansion::{PREDICTOR_ORDER, PathExpansion};
 use tapia_indicators::{DecidedContact, are_separated, contact_states, undecided};
 
-/// Relative complementarity at which the method ends: the smaller one of slack and dual variable is
-/// then within rounding.
+/// Relative complementarity at which the method ends: where the solution is strictly complementary the smaller one of
+/// slack and dual variable is then within rounding, else both are of the size of its square root.
 const FINAL_COMPLEMENTARITY: f64 = 1e-18;
 
 /// Relative complementarity at which the method ends although the Tapia indicators of some bound are not
-/// separated: slacks that a large penalty determines, and multipliers beside them, are that small.
-const LEAST_COMPLEMENTARITY: f64 = 1e-36;
+/// separated: slacks that are as small as the reciprocal of a large penalty, times the multipliers of the same bounds,
+/// are of this size.
+const COMPLEMENTARITY_FLOOR: f64 = 1e-36;
 
 /// Relative complementarity at or below which the active set is identified, if the Tapia indicators are
 /// separated and gave the same active set one step before.
@@ -45,9 +46,9 @@ pub(crate) const MAX_STEPS: usize = 60;
 /// Steps that may pass without halving the relative complementarity before the method stagnates.
 const STAGNATION_STEPS: usize = 3;
 
-/// Least share of the mean that a step leaves to every complementarity product, where slacks and multipliers
-/// that a penalty determines are resolved: their sizes differ by the penalty, and a product far below the
-/// mean makes the steps short after most pairs are decided.
+/// Least ratio of a complementarity product to the mean of all that a step may leave, in a run that resolves small
+/// slacks ([`InteriorPoint`], `resolves_slacks`): slacks and multipliers differ in size by the penalty, and a product
+/// far below the mean makes the steps short once the Tapia indicators of most pairs are separated.
 const LEAST_SHARE: f64 = 1e-3;
 
 /// When the method ends.
@@ -59,8 +60,8 @@ pub(crate) enum Identification {
     Final,
 }
 
-/// A point near the central path, at which a run ended.
-pub(crate) struct CentralPoint {
+/// The point at which a run ended, from which another run may start.
+pub(crate) struct RestartPoint {
     values: Vec<f64>,
     jump_multipliers: Vec<f64>,
     pairs: Vec<ComplementarityPair>,
@@ -76,9 +77,9 @@ pub(crate) struct CentralPoint {
 ///
 /// The matrix of a step is `A` plus a positive diagonal, so that the method applies to every matrix
 /// whose symmetric part is positive semidefinite. The number of steps is one or two dozen in practice,
-/// and at most of the order of the square root of the number of unknowns in theory (Wright,
-/// Primal-Dual Interior-Point Methods, SIAM 1997). Values are accurate up to rounding in the energy
-/// norm only. The active set consists of the bounds whose last step kept a larger fraction of the dual
+/// while theory bounds those of related methods with short steps by the order of the square root of the number of
+/// bounds, for each digit (Wright, Primal-Dual Interior-Point Methods, SIAM 1997). The energy norm of the error of the
+/// values reaches rounding; single values need not. The active set consists of the bounds whose last step kept a larger fraction of the dual
 /// variable than of the slack (Tapia indicators).
 ///
 /// Where the matrix is a [`PenalisedMatrix`](crate::algebra::PenalisedMatrix) `K + M^T S M` and a
@@ -93,32 +94,34 @@ pub(crate) struct InteriorPoint<'h, 'a, T> {
     /// The positive diagonal scales of all unknowns; see [`NewtonSystem::diagonal_scale`].
     diagonal: Vec<f64>,
     pairs: Vec<ComplementarityPair>,
-    /// Number of linear systems solved.
+    /// Number of steps, each with one factorisation.
     pub steps: usize,
     identification: Identification,
     /// Whether the method ended because it had identified the active set.
     is_identified: bool,
     /// Whether the method ended with an identified active set, or with complementarity products at their final size.
     has_small_complementarity: bool,
-    /// Whether points are relative to bounds, steps keep near the central path and go on until every bound is decided,
-    /// which takes two to three times as many steps. Where cells have null directions
-    /// ([`has_null_directions`](crate::linear::direct::StaticCondensation::has_null_directions)), copies of one node
-    /// within the contact set leave their bound by as little as the penalty admits: by less than other methods tell
-    /// from zero where it is large, else at the limit of rounding only.
+    /// Whether values are differences from bounds, steps keep near the central path ([`LEAST_SHARE`]), and the run goes on
+    /// until the Tapia indicators of every bound are separated, which takes two to three times as many steps. That is
+    /// needed where cells have null directions
+    /// ([`has_null_directions`](crate::linear::direct::StaticCondensation::has_null_directions)): the values of different
+    /// cells at one node of the contact set differ, and some of them leave the bound, by a slack that is inversely
+    /// proportional to the penalty. A run without differences from bounds cannot tell such slacks from zero if the
+    /// penalty is large, and can at its limit of rounding if it is not.
     resolves_slacks: bool,
-    /// Whether steps became short before every bound was decided.
+    /// Whether the relative complementarity stagnated above [`FINAL_COMPLEMENTARITY`] in a run that resolves small slacks.
     is_stuck: bool,
 }
 
 impl<T: Real> InteriorPoint<'_, '_, T> {
-    /// The point at which the method ended, from which another one may resolve small slacks; `None` if there are none,
-    /// or if the method ended because its steps were short.
-    pub fn into_central_point(self) -> Option<CentralPoint> {
-        let is_start = self.has_small_complementarity && self.leaves_small_slacks();
+    /// The point at which the method ended, from which another run may resolve small slacks; `None` if the inequality has
+    /// no slacks that a penalty makes small, or if the method ended by stagnation.
+    pub fn into_restart_point(self) -> Option<RestartPoint> {
+        let is_restartable = self.has_small_complementarity && self.leaves_small_slacks();
         let Self { system, point, pairs, .. } = self;
         let MixedVector { mut values, jump_multipliers } = point;
         values.iter_mut().enumerate().for_each(|(i, x)| *x += system.reference(i));
-        is_start.then_some(CentralPoint { values, jump_multipliers, pairs })
+        is_restartable.then_some(RestartPoint { values, jump_multipliers, pairs })
     }
 
     /// Iterates until the active set is identified, no step improves the point, or [`MAX_STEPS`]
@@ -127,7 +130,8 @@ impl<T: Real> InteriorPoint<'_, '_, T> {
     pub fn run(&mut self) -> Option<Vec<Contact>> {
         let n = self.point.values.len();
         let mut residual = self.point.clone();
-        let (mut least, mut stagnant_steps) = (f64::INFINITY, 0);
+        // the relative complementarity when it was halved last, and the number of steps since
+        let (mut last_halved, mut stagnant_steps) = (f64::INFINITY, 0);
         let mut previous_contact = Vec::new();
         let mut is_recentred = false;
         let mut last_contact = None;
@@ -139,8 +143,8 @@ impl<T: Real> InteriorPoint<'_, '_, T> {
                 return None;
             }
             let relative = mean * self.pairs.len() as f64 / energy;
-            stagnant_steps = if relative < 0.5 * least { 0 } else { stagnant_steps + 1 };
-            least = if stagnant_steps == 0 { relative } else { least };
+            stagnant_steps = if relative < 0.5 * last_halved { 0 } else { stagnant_steps + 1 };
+            last_halved = if stagnant_steps == 0 { relative } else { last_halved };
             let contact = contact_states(&self.pairs, n);
             self.is_identified = self.identification == Identification::Early
                 && relative <= IDENTIFICATION_TOL
@@ -153,14 +157,14 @@ impl<T: Real> InteriorPoint<'_, '_, T> {
             let stagnates = stagnant_steps > STAGNATION_STEPS;
             if relative > STAGNATION_TOL && stagnates && !is_recentred {
                 // steps stay short from a starting point too close to the bounds
-                (is_recentred, stagnant_steps, least) = (true, 0, f64::INFINITY);
+                (is_recentred, stagnant_steps, last_halved) = (true, 0, f64::INFINITY);
                 self.move_to_central_path(1.0);
                 continue;
             }
             self.is_stuck = self.resolves_slacks && stagnates && relative > FINAL_COMPLEMENTARITY;
             let is_decided = !self.resolves_slacks
                 || are_separated(&self.pairs)
-                || relative <= LEAST_COMPLEMENTARITY;
+                || relative <= COMPLEMENTARITY_FLOOR;
             let is_final = relative <= FINAL_COMPLEMENTARITY && is_decided;
             self.has_small_complementarity = self.is_identified || is_final;
             if self.has_small_complementarity || stagnates {
@@ -181,8 +185,7 @@ impl<T: Real> InteriorPoint<'_, '_, T> {
                 && (self.is_stuck || self.leaves_small_slacks())
     }
 
-    /// Whether there may be slacks that are small because a penalty determines them, and that this run does not
-    /// resolve.
+    /// Whether there may be slacks that are inversely proportional to a penalty and that this run does not resolve.
     pub fn leaves_small_slacks(&self) -> bool {
         self.system.has_null_directions() && !self.resolves_slacks
     }

@@ -2,7 +2,7 @@
 
 use super::complementarity_pairs::ComplementarityPair;
 use super::newton_system::{MixedVector, NewtonSystem};
-use super::{CentralPoint, IDENTIFICATION_TOL, Identification, InteriorPoint};
+use super::{IDENTIFICATION_TOL, Identification, InteriorPoint, RestartPoint};
 use crate::algebra::{Bound, Inequality};
 use crate::linear::direct::StaticCondensation;
 use crate::real::Real;
@@ -87,7 +87,7 @@ impl<'h, 'a, T: Real> InteriorPoint<'h, 'a, T> {
     pub fn resumed(
         inequality: &'a Inequality<T>,
         condensation: Option<&'h StaticCondensation<'a, T>>,
-        CentralPoint { values, jump_multipliers, pairs }: CentralPoint,
+        RestartPoint { values, jump_multipliers, pairs }: RestartPoint,
     ) -> Self {
         let rounded: Vec<T> = values.iter().map(|&x| T::lit(x)).collect();
         let mut method =

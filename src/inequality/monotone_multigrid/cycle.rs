@@ -5,7 +5,7 @@ use crate::inequality::Outcome;
 use crate::inequality::certificate::positive_diagonal;
 use crate::inequality::initial_guess::InitialGuess;
 use crate::inequality::scales::Scales;
-use crate::inequality::validation::outcome_of_not_positive;
+use crate::inequality::validation::diagnose_loss_of_positivity;
 use crate::linear::Preconditioner;
 use crate::linear::direct::FactorError;
 use crate::real::Real;
@@ -168,7 +168,7 @@ impl<'a, T: Real> MultigridIterate<'a, T> {
     /// The outcome if it is not, or if there are no factors.
     fn check_definite(&mut self) -> Result<(), Outcome> {
         if !self.is_definite {
-            outcome_of_not_positive(self.inequality).map_or(Ok(()), Err)?;
+            diagnose_loss_of_positivity(self.inequality).map_or(Ok(()), Err)?;
             self.is_definite = true;
         }
         Ok(())

@@ -37,7 +37,7 @@ impl<T: Real> InequalitySolver<T> for MonotoneMultigrid {
             T: fn(&MonotoneMultigrid, &Inequality<T>, &InitialGuess<T>) -> Solution<T>
                 = |method, inequality, guess| solve_with_kernel(inequality, |inequality| {
                     guess.steps.set(0);
-                    method.descend(inequality, guess)
+                    method.run_cycles(inequality, guess)
                 })
         )(self, inequality, guess)
     }
@@ -48,8 +48,10 @@ impl<T: Real> InequalitySolver<T> for MonotoneMultigrid {
 }
 
 impl MonotoneMultigrid {
-    /// The solution by cycles, which the counter of the guess adds to the steps of preceding stages.
-    pub(super) fn descend<T: Real>(
+    /// The solution by cycles. The counter of the guess, which contains the steps of all stages before this one, grows
+    /// by one for each cycle. A matrix that is not symmetric or is distributed has no energy, or no coarse spaces in one
+    /// process: the active set method with its default settings solves such an inequality.
+    pub(super) fn run_cycles<T: Real>(
         &self,
         inequality: &Inequality<T>,
         guess: &InitialGuess<T>,
@@ -89,7 +91,8 @@ mod tests {
         }
     }
 
-    /// Both unknowns are in contact: no correction sees that (1, 1) is a direction of descent.
+    /// Both unknowns are in contact, so that no correction meets the direction (1, 1), in which the energy has negative
+    /// curvature and no lower bound.
     #[test]
     fn contact_does_not_hide_an_indefinite_matrix() {
         let matrix = SparseMatrix {
@@ -119,7 +122,9 @@ mod tests {
         Inequality::new(matrix, true, vec![-1.0; n + 2], vec![Bound::Lower(0.0); n + 2])
     }
 
-    /// The matrix is singular on the string, which has no bound on the error, and contact hides the others.
+    /// The smallest eigenvalue of the string is zero, so that no eigenvalue bounds the error of the iterate, and both
+    /// further unknowns are in contact. The matrix must be positive semidefinite on all unknowns, not on admissible
+    /// directions alone.
     #[test]
     fn a_string_that_bounds_alone_hold_does_not_hide_an_indefinite_matrix() {
         let solve = |others| MonotoneMultigrid::default().solve(&beside_free_string(1000, others));
@@ -127,7 +132,7 @@ mod tests {
         assert_eq!(solve([[2.0, 1.0], [1.0, 2.0]]).outcome, Outcome::Converged);
     }
 
-    /// A limit of zero admits cycles until the first one that does not halve the change.
+    /// A limit of zero admits cycles until the first one that does not halve the change of the values.
     #[test]
     fn the_limit_of_stagnating_cycles_counts_cycles_that_stagnate() {
         let string = string(2000);
@@ -143,7 +148,7 @@ mod tests {
     fn the_counter_includes_the_steps_before_the_first_cycle() {
         let guess = InitialGuess::default();
         guess.steps.set(7);
-        let solution = MonotoneMultigrid::default().descend(&string(200), &guess);
+        let solution = MonotoneMultigrid::default().run_cycles(&string(200), &guess);
         assert!(solution.outer > 0);
         assert_eq!(guess.steps.get(), 7 + solution.outer);
     }

@@ -59,7 +59,7 @@ impl<T: Real> StaticCondensation<'_, T> {
             |i: usize| is_free[i] && shift.get(i).is_none_or(|&shift| shift <= max_shift);
         let has_null_directions = self.has_null_directions && n_free > 0;
         self.fill_block((block, n_free), is_free, shift, unit, inverse);
-        let BlockInverse { entries: out, scales, reduction } = inverse;
+        let BlockInverse { entries: out, scales, weight_divisor } = inverse;
         // The rank of the means decides on the limit, and is computed only if some weight exceeds this.
         let limit = least * MAX_WEIGHT / T::EPSILON;
         let is_heavy = !has_null_directions
@@ -71,7 +71,7 @@ impl<T: Real> StaticCondensation<'_, T> {
             is_heavy && self.rank_of_means(block, may_move, &mut basis) < sides.len();
         let max_weight = if has_dependent_means { limit } else { f64::INFINITY };
         for (l, side) in (n_free..).zip(sides) {
-            out[l * n + l] = -unit / (self.side_weight(side) / *reduction).min(max_weight);
+            out[l * n + l] = -unit / (self.side_weight(side) / *weight_divisor).min(max_weight);
         }
         if has_null_directions {
             let tolerance = T::EPSILON.sqrt();

@@ -43,9 +43,9 @@ use crate::real::Real;
 /// size one: four digits of these pivots remain in `f64`. In another scalar the ratio is that for as many digits.
 const MAX_RATIO: f64 = 1e12;
 
-/// The factor by which weights are reduced once more where a matrix with shifts has no factors. Shifts spread the
-/// eigenvalues of `weight_correction` over the range of the reduction, which is therefore kept small.
-const REDUCTION_STEP: f64 = 16.0;
+/// The factor by which the divisor of the weights grows where a matrix with shifts has no factors. Shifts spread the
+/// eigenvalues of `weight_correction` between one and `1/c` with the divisor `c`, which is therefore kept small.
+const WEIGHT_DIVISOR_STEP: f64 = 16.0;
 
 /// One side of a jump, in the list of its block.
 pub(super) struct JumpSide {
@@ -75,8 +75,8 @@ pub(crate) struct StaticCondensation<'a, T> {
     cholesky: RepeatedCholesky,
     /// Whether the means over the sides of a block are dependent functions of all its unknowns.
     pub(super) has_null_directions: bool,
-    /// The largest factor by which weights are reduced; at least one.
-    max_reduction: f64,
+    /// The largest divisor of the weights; at least one.
+    max_weight_divisor: f64,
 }
 
 /// The inverses of all blocks with their jump multipliers, and the factors of the Schur complement.
@@ -88,7 +88,7 @@ pub(crate) struct CondensedFactors<T> {
     pub(super) null_directions: NullDirections,
     pub(super) schur_complement: Factors<T>,
     /// The true weights divided by those that are factored; at least one.
-    pub(super) reduction: f64,
+    pub(super) weight_divisor: f64,
 }
 
 /// Workspace for the inverse of a block with its jump multipliers.
@@ -98,8 +98,8 @@ pub(super) struct BlockInverse {
     pub entries: Vec<f64>,
     /// The factors by which the free unknowns are scaled.
     pub scales: Vec<f64>,
-    /// The factor by which weights are reduced.
-    pub reduction: f64,
+    /// The divisor of the weights.
+    pub weight_divisor: f64,
 }
 
 impl<'a, T: Real> StaticCondensation<'a, T> {
@@ -140,7 +140,7 @@ impl<'a, T: Real> StaticCondensation<'a, T> {
             pattern,
             cholesky,
             has_null_directions: false,
-            max_reduction: 1.0,
+            max_weight_divisor: 1.0,
         };
         condensation.pattern = condensation.lower_pattern(n_means as usize);
         let mut basis = Vec::new();
@@ -150,7 +150,7 @@ impl<'a, T: Real> StaticCondensation<'a, T> {
         });
         if condensation.has_null_directions {
             let max_ratio = MAX_RATIO * (f64::EPSILON / T::EPSILON);
-            condensation.max_reduction = (penalised.largest_ratio() / max_ratio).max(1.0);
+            condensation.max_weight_divisor = (penalised.largest_ratio() / max_ratio).max(1.0);
         }
         condensation
     }
@@ -229,7 +229,7 @@ impl<'a, T: Real> StaticCondensation<'a, T> {
     /// # Errors
     /// See [`FactorError`].
     pub fn factor(&self, is_free: &[bool]) -> Result<CondensedFactors<T>, FactorError> {
-        self.factor_reduced(is_free, &[], self.max_reduction)
+        self.factor_reduced(is_free, &[], self.max_weight_divisor)
     }
 
     /// [`StaticCondensation::factor`] for `K + D` in place of `K`; `shift` is the nonnegative
@@ -242,18 +242,19 @@ impl<'a, T: Real> StaticCondensation<'a, T> {
         is_free: &[bool],
         shift: &[f64],
     ) -> Result<CondensedFactors<T>, FactorError> {
-        let mut reduction = 1.0;
+        let mut weight_divisor = 1.0;
         loop {
-            match self.factor_reduced(is_free, shift, reduction) {
-                Err(FactorError::Singular) if reduction < self.max_reduction => {
-                    reduction = (reduction * REDUCTION_STEP).min(self.max_reduction);
+            match self.factor_reduced(is_free, shift, weight_divisor) {
+                Err(FactorError::Singular) if weight_divisor < self.max_weight_divisor => {
+                    weight_divisor =
+                        (weight_divisor * WEIGHT_DIVISOR_STEP).min(self.max_weight_divisor);
                 }
                 result => return result,
             }
         }
     }
 
-    /// [`StaticCondensation::factor_shifted`] with weights reduced by a factor.
+    /// [`StaticCondensation::factor_shifted`] with weights divided by a number.
     ///
     /// # Errors
     /// See [`FactorError`].
@@ -261,11 +262,11 @@ impl<'a, T: Real> StaticCondensation<'a, T> {
         &self,
         is_free: &[bool],
         shift: &[f64],
-        reduction: f64,
+        weight_divisor: f64,
     ) -> Result<CondensedFactors<T>, FactorError> {
         let mut matrix = self.pattern.clone();
         let (mut inverses, mut starts) = (Vec::new(), vec![0]);
-        let mut inverse = BlockInverse { reduction, ..BlockInverse::default() };
+        let mut inverse = BlockInverse { weight_divisor, ..BlockInverse::default() };
         let mut null_directions = NullDirections::new();
         for block in 0..self.starts.len() - 1 {
             let n_free =
@@ -291,7 +292,7 @@ impl<'a, T: Real> StaticCondensation<'a, T> {
         } else {
             self.cholesky.factor(matrix)?
         };
-        Ok(CondensedFactors { inverses, starts, null_directions, schur_complement, reduction })
+        Ok(CondensedFactors { inverses, starts, null_directions, schur_complement, weight_divisor })
     }
 
     /// Appends the rows of the multipliers of null directions to the lower triangle of the condensed
@@ -316,7 +317,7 @@ impl<'a, T: Real> StaticCondensation<'a, T> {
     /// Sums of the absolute values of terms of the residual `(c - K u - M^T p)_i`: first of the
     /// terms with free unknowns and jump multipliers `p`, then of the terms with fixed unknowns and
     /// of the load.
-    pub fn residual_term_sizes(
+    pub fn residual_term_magnitudes(
         &self,
         i: usize,
         u: &dyn Fn(usize) -> f64,

@@ -3,8 +3,10 @@
 //! With the inverse `N` of the stiffness on the free unknowns the jump multipliers of
 //! `K u + M^T p = r`, `M u - S^-1 p = t` satisfy `F p = M N r - t`, `F = S^-1 + M N M^T`. Weights that are reduced by
 //! a factor `c` give `F' = c S^-1 + M N M^T`. On multipliers that do work on free unknowns `M N M^T` exceeds `c S^-1`
-//! by far, on all others `M N M^T` is zero: without shifts all eigenvalues of `F'^-1 F` are close to one or equal to `1/c`. Conjugate gradients
-//! for `F`, preconditioned by `F'`, end after a few steps. Every iterate satisfies the first equation.
+//! by far, on all others, those with `M^T p = 0` on the free unknowns, `M N M^T` is zero. All eigenvalues of `F'^-1 F`
+//! are therefore close to one or equal to `1/c`, unless a positive diagonal is added to `K`, which spreads them
+//! between these values. Conjugate gradients for `F`, preconditioned by `F'`, end after a few steps. Every iterate
+//! satisfies the first equation, with that diagonal where the factors have it.
 
 use super::static_condensation::{CondensedFactors, StaticCondensation};
 use crate::real::Real;
@@ -19,13 +21,13 @@ fn dot(x: &[f64], y: &[f64]) -> f64 {
     x.iter().zip(y).fold(0.0, |s, (x, y)| s + x * y)
 }
 
-/// Adds a multiple of `y` to `x`.
-fn add(x: &mut [f64], factor: f64, y: &[f64]) {
+/// Adds `factor * y` to `x`.
+fn axpy(x: &mut [f64], factor: f64, y: &[f64]) {
     x.iter_mut().zip(y).for_each(|(x, y)| *x += factor * y);
 }
 
 /// Replaces `x` by `y + factor * x`.
-fn add_to_multiple(x: &mut [f64], factor: f64, y: &[f64]) {
+fn xpby(x: &mut [f64], factor: f64, y: &[f64]) {
     x.iter_mut().zip(y).for_each(|(x, y)| *x = y + factor * *x);
 }
 
@@ -40,7 +42,7 @@ impl<T: Real> StaticCondensation<'_, T> {
         r: &mut [f64],
         t: &mut [f64],
     ) -> f64 {
-        if factors.reduction == 1.0 {
+        if factors.weight_divisor == 1.0 {
             return self.solve_reduced(factors, is_free, r, t);
         }
         let (load, data) = (r.to_vec(), t.to_vec());
@@ -49,8 +51,9 @@ impl<T: Real> StaticCondensation<'_, T> {
         dot(r, &load) - dot(t, &data)
     }
 
-    /// Replaces the solution `u`, `p` with reduced weights by that with the true ones. What [`MAX_STEPS`] steps leave is
-    /// part of the residual that the caller corrects, and of the correction by whose energy it judges.
+    /// Replaces the solution `u`, `p` with reduced weights by that with the true ones. The error that is left after
+    /// [`MAX_STEPS`] steps, or where a step is not finite, is part of the residual from which the caller computes its
+    /// next correction; the caller stops by the energy of its corrections.
     fn correct_weights(
         &self,
         factors: &CondensedFactors<T>,
@@ -60,36 +63,37 @@ impl<T: Real> StaticCondensation<'_, T> {
     ) {
         let weight = |k: usize| self.penalised.weights[k].to_f64();
         // the residual `M u - S^-1 p - t`: with the reduced weights `M u - c S^-1 p - t` is zero
-        let excess = |(k, p): (usize, &f64)| (factors.reduction - 1.0) * p / weight(k);
+        let excess = |(k, p): (usize, &f64)| (factors.weight_divisor - 1.0) * p / weight(k);
         let mut residual: Vec<f64> = p.iter().enumerate().map(excess).collect();
         let mut image = vec![0.0; p.len()];
-        let (mut of_values, mut of_multipliers) = (vec![0.0; u.len()], vec![0.0; p.len()]);
-        let (mut direction, mut multipliers) = (of_values.clone(), of_multipliers.clone());
+        // the preconditioned residual, as values and as jump multipliers
+        let (mut z_u, mut z_p) = (vec![0.0; u.len()], vec![0.0; p.len()]);
+        let (mut direction_u, mut direction_p) = (z_u.clone(), z_p.clone());
         let mut last = f64::INFINITY;
-        let tolerance = TOLERANCE.max(T::EPSILON).powi(2) / factors.reduction;
+        let tolerance = TOLERANCE.max(T::EPSILON).powi(2) / factors.weight_divisor;
         for _ in 0..MAX_STEPS {
-            of_values.fill(0.0);
-            of_multipliers.iter_mut().zip(&residual).for_each(|(y, r)| *y = -r);
-            self.solve_reduced(factors, is_free, &mut of_values, &mut of_multipliers);
-            let product = dot(&residual, &of_multipliers);
-            let energy: f64 = p.iter().enumerate().map(|(k, p)| p * p / weight(k)).sum();
-            // false for numbers that are not finite
-            let is_large = product > tolerance * energy;
+            z_u.fill(0.0);
+            z_p.iter_mut().zip(&residual).for_each(|(y, r)| *y = -r);
+            self.solve_reduced(factors, is_free, &mut z_u, &mut z_p);
+            let product = dot(&residual, &z_p);
+            let jump_energy: f64 = p.iter().enumerate().map(|(k, p)| p * p / weight(k)).sum();
+            // false for NaN
+            let is_large = product > tolerance * jump_energy;
             if !is_large {
                 break;
             }
-            add_to_multiple(&mut direction, product / last, &of_values);
-            add_to_multiple(&mut multipliers, product / last, &of_multipliers);
+            xpby(&mut direction_u, product / last, &z_u);
+            xpby(&mut direction_p, product / last, &z_p);
             for (k, out) in image.iter_mut().enumerate() {
-                *out = multipliers[k] / weight(k) - self.penalised.jump(k, |i| direction[i]);
+                *out = direction_p[k] / weight(k) - self.penalised.jump(k, |i| direction_u[i]);
             }
-            let length = product / dot(&multipliers, &image);
+            let length = product / dot(&direction_p, &image);
             if !(length > 0.0 && length.is_finite()) {
                 break;
             }
-            add(u, length, &direction);
-            add(p, length, &multipliers);
-            add(&mut residual, -length, &image);
+            axpy(u, length, &direction_u);
+            axpy(p, length, &direction_p);
+            axpy(&mut residual, -length, &image);
             last = product;
         }
     }

@@ -34,7 +34,7 @@ impl<'m, T: Real> ConjugateGradients<'m, T> {
     }
 
     /// Corrects the iterate `(x, r)`, `r` the residual of `x` on free unknowns and zero on fixed ones.
-    /// On return `r` is the residual of the new `x` if its norm reached `rule.norm`; else `x` may
+    /// On return `r` is the residual of the new `x` if its norm reached `rule.absolute_tolerance`; else `x` may
     /// contain a last correction that `r` lacks.
     pub fn solve(
         &mut self,
@@ -50,12 +50,12 @@ impl<'m, T: Real> ConjugateGradients<'m, T> {
         let target = rule.target(rz.max(0.0).sqrt());
         self.p.copy_from_slice(&self.z);
         loop {
-            run.norm = rz.max(0.0).sqrt();
+            run.residual_norm = rz.max(0.0).sqrt();
             run.reason = match () {
                 () if !rz.is_finite() => StopReason::NotFinite,
                 // a negative square within the target is rounding
                 () if rz < -target * target => StopReason::NotPositive,
-                () if run.norm <= target => StopReason::Converged,
+                () if run.residual_norm <= target => StopReason::Converged,
                 () if run.iterations >= rule.max_iterations => StopReason::IterationLimit,
                 () => {
                     let pq = self.multiply(fixed);
@@ -85,7 +85,7 @@ impl<'m, T: Real> ConjugateGradients<'m, T> {
         if let Some((_, largest)) = run.ritz {
             self.largest_ritz = self.largest_ritz.max(largest);
         }
-        if run.reason == StopReason::Converged && run.norm > rule.norm {
+        if run.reason == StopReason::Converged && run.residual_norm > rule.absolute_tolerance {
             self.richardson_step(T::lit(1.0 / self.largest_ritz), x);
         }
         if let Some(distribution) = self.distribution {
@@ -174,7 +174,8 @@ mod tests {
     #[test]
     fn a_negative_square_is_no_small_norm() {
         let matrix = SparseMatrix { row_starts: vec![0, 1], columns: vec![0], values: vec![2.0] };
-        let rule = StoppingRule { norm: 1e-3, reduction: 0.0, max_iterations: 5 };
+        let rule =
+            StoppingRule { absolute_tolerance: 1e-3, relative_tolerance: 0.0, max_iterations: 5 };
         let run = |residual: f64| {
             let system = (&mut [0.0][..], &mut [residual][..]);
             ConjugateGradients::new(Product::Assembled(&matrix), None)
@@ -196,7 +197,8 @@ mod tests {
         let mut x = vec![0.0; 5];
         let mut r = vec![1.0, 0.3, -0.2, 0.7, 0.4];
         let b = r.clone();
-        let rule = StoppingRule { norm: 1e-13, reduction: 0.0, max_iterations: 20 };
+        let rule =
+            StoppingRule { absolute_tolerance: 1e-13, relative_tolerance: 0.0, max_iterations: 20 };
         let run = ConjugateGradients::new(Product::Assembled(&matrix), None).solve(
             &[false; 5],
             &mut Identity,

@@ -31,7 +31,8 @@ pub(crate) fn eigenvalue_run<T: Real>(
         let root = T::lit(diagonal(i).sqrt());
         load[i] = if is_positive { root } else { -root };
     }
-    let rule = StoppingRule { norm: 0.0, reduction: TOLERANCE, max_iterations };
+    let rule =
+        StoppingRule { absolute_tolerance: 0.0, relative_tolerance: TOLERANCE, max_iterations };
     let system = (&mut zeros(fixed.len())[..], &mut load[..]);
     ConjugateGradients::new(matrix, distribution).solve(fixed, preconditioner, system, rule)
 }

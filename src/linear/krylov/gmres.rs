@@ -56,30 +56,36 @@ impl<'m, T: Real> Gmres<'m, T> {
         rule: StoppingRule,
     ) -> KrylovRun {
         let mut run = KrylovRun::new();
-        let mut target = rule.norm;
+        let mut target = rule.absolute_tolerance;
         let mut last_cycle = None;
         loop {
             preconditioner.apply(r, &mut self.directions[0]);
             let square = sum_over_parts(self.distribution, dot(r, &mut self.directions[0]));
-            run.norm = square.max(0.0).sqrt();
+            run.residual_norm = square.max(0.0).sqrt();
             if run.iterations == 0 {
-                target = rule.target(run.norm);
+                target = rule.target(run.residual_norm);
             }
             let left = rule.max_iterations - run.iterations;
             run.reason = match last_cycle {
                 _ if !square.is_finite() => StopReason::NotFinite,
                 // a negative square within the target is rounding
                 _ if square < -target * target => StopReason::NotPositive,
-                _ if run.norm <= target => StopReason::Converged,
-                Some(cycle) if !converges_within(cycle, run.norm, target, left) => {
+                _ if run.residual_norm <= target => StopReason::Converged,
+                Some(cycle) if !converges_within(cycle, run.residual_norm, target, left) => {
                     StopReason::IterationLimit
                 }
                 _ if left == 0 => StopReason::IterationLimit,
                 _ => {
-                    let goal = target.max(MAX_REDUCTION * run.norm);
+                    let goal = target.max(MAX_REDUCTION * run.residual_norm);
                     let most = left.min(RESTART);
-                    let hessenberg =
-                        self.arnoldi(matrix, fixed, preconditioner, r, (run.norm, goal), most);
+                    let hessenberg = self.arnoldi(
+                        matrix,
+                        fixed,
+                        preconditioner,
+                        r,
+                        (run.residual_norm, goal),
+                        most,
+                    );
                     run.iterations += hessenberg.size();
                     if !hessenberg.is_finite() {
                         run.reason = StopReason::NotFinite;
@@ -90,8 +96,13 @@ impl<'m, T: Real> Gmres<'m, T> {
                         run.reason = StopReason::NotPositive;
                         return run;
                     }
-                    last_cycle = Some((run.norm, hessenberg.size()));
-                    self.correct(matrix, fixed, &hessenberg.least_squares(run.norm), (x, r));
+                    last_cycle = Some((run.residual_norm, hessenberg.size()));
+                    self.correct(
+                        matrix,
+                        fixed,
+                        &hessenberg.least_squares(run.residual_norm),
+                        (x, r),
+                    );
                     continue;
                 }
             };
@@ -314,7 +325,8 @@ mod tests {
         max_iterations: usize,
     ) -> (KrylovRun, Vec<f64>) {
         let (mut x, mut r) = (vec![0.0; 4], b.to_vec());
-        let rule = StoppingRule { norm: 1e-13, reduction: 0.0, max_iterations };
+        let rule =
+            StoppingRule { absolute_tolerance: 1e-13, relative_tolerance: 0.0, max_iterations };
         let mut preconditioner = Diagonal([1.0, 0.5, 0.3, 0.1]);
         let run = Gmres::new(4, None).solve(
             matrix,
@@ -337,7 +349,11 @@ mod tests {
             let r = matrix(3.0).residual(&b, &x);
             let weights = [1.0, 0.5, 0.3, 0.1];
             let norm = r.iter().zip(weights).map(|(r, w)| w * r * r).sum::<f64>().sqrt();
-            assert!((run.norm - norm).abs() < 1e-14 && norm < before, "{} {norm}", run.norm);
+            assert!(
+                (run.residual_norm - norm).abs() < 1e-14 && norm < before,
+                "{} {norm}",
+                run.residual_norm
+            );
             before = norm;
         }
         let (run, _) = solve(&matrix(3.0), &b, 20);

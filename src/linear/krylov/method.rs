@@ -40,7 +40,7 @@ impl<'m, T: Real> KrylovMethod<'m, T> {
     }
 
     /// Corrects the iterate `(x, r)`, `r` the residual of `x` on free unknowns and zero on fixed ones.
-    /// On return `r` is the residual of the new `x` if its norm reached `rule.norm`; else `r` may lack
+    /// On return `r` is the residual of the new `x` if its norm reached `rule.absolute_tolerance`; else `r` may lack
     /// the last correction of `x`.
     pub fn solve(
         &mut self,

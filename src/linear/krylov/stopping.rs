@@ -2,13 +2,14 @@
 //!
 //! The norm of a residual `r` is the preconditioned one, `(r . B r)^(1/2)` with the preconditioner `B`.
 
-/// When a Krylov method stops: as soon as one of the three conditions holds.
+/// When a Krylov method stops, unless it fails: as soon as one of the three conditions holds. GMRES stops earlier
+/// where the observed rate of convergence does not reach the target within the limit of iterations.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct StoppingRule {
     /// The norm of the residual is at most this.
-    pub norm: f64,
+    pub absolute_tolerance: f64,
     /// The norm of the residual is at most this times its initial value.
-    pub reduction: f64,
+    pub relative_tolerance: f64,
     /// The number of iterations is this.
     pub max_iterations: usize,
 }
@@ -16,7 +17,7 @@ pub(crate) struct StoppingRule {
 impl StoppingRule {
     /// The norm of the residual at which a run with this initial norm stops.
     pub fn target(&self, initial_norm: f64) -> f64 {
-        self.norm.max(self.reduction * initial_norm)
+        self.absolute_tolerance.max(self.relative_tolerance * initial_norm)
     }
 }
 
@@ -40,17 +41,17 @@ pub(crate) struct KrylovRun {
     pub reason: StopReason,
     /// The norm of the residual at the end. Divided by the square root of the smallest eigenvalue
     /// of `B A` (of `B` times the symmetric part of `A`), it bounds the energy norm of the error.
-    pub norm: f64,
-    /// The smallest and the largest Ritz value: of `B A` for conjugate gradients, of the symmetric
-    /// part of the Hessenberg matrix for GMRES; `None` without an iteration. The smallest one is
-    /// above the smallest eigenvalue of `B` times the symmetric part of `A`; for conjugate
-    /// gradients it converges to this eigenvalue.
+    pub residual_norm: f64,
+    /// The smallest and the largest Ritz value of `B A` for conjugate gradients; the smallest and the largest
+    /// eigenvalue of the symmetric part of the Hessenberg matrix for GMRES; `None` without an iteration. The
+    /// smallest one is at least the smallest eigenvalue of `B` times the symmetric part of `A`; for conjugate
+    /// gradients it converges to the smallest eigenvalue to whose eigenvector the initial residual has a component.
     pub ritz: Option<(f64, f64)>,
 }
 
 impl KrylovRun {
-    /// The run before the first iteration.
+    /// The run before the first iteration, with a residual of zero until the method computes it.
     pub fn new() -> Self {
-        Self { iterations: 0, reason: StopReason::Converged, norm: 0.0, ritz: None }
+        Self { iterations: 0, reason: StopReason::Converged, residual_norm: 0.0, ritz: None }
     }
 }

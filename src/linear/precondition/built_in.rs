@@ -10,10 +10,16 @@ use super::preconditioner::{PreconditionedSystem, Preconditioner, Preconditioner
 use super::prolongation::Prolongation;
 use crate::real::Real;
 
-/// Multigrid for conforming linear functions, mean-jump splitting for linear functions that are coupled
-/// by a penalty on jumps of facet means alone, multigrid with conforming linear functions as auxiliary space
-/// for other linear functions and for all elements whose cells share unknowns, the sum of blocks of cells
-/// and auxiliary space for other discontinuous elements.
+/// The preconditioner that fits the coarse spaces and the element. The first case that applies counts:
+///
+/// 1. Multigrid, whose hierarchy comes from the coarser level or from aggregation, where the coarse spaces do not
+///    contain conforming linear functions on the mesh of the inequality.
+/// 2. The splitting into facet means and jumps, for discontinuous linear functions coupled by a penalty on jumps of
+///    facet means alone.
+/// 3. Multigrid with conforming linear functions as its second level, for elements whose cells share unknowns (conforming
+///    quadratics, Crouzeix-Raviart) and for discontinuous linear functions on triangles and tetrahedra.
+/// 4. The sum of the inverses of cell blocks (additive Schwarz) and of the auxiliary space of conforming linear
+///    functions, for other discontinuous elements.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct BuiltInPreconditioners;
 
@@ -40,12 +46,13 @@ impl<T: Real> PreconditionerFamily<T> for BuiltInPreconditioners {
         {
             return Some(Box::new(splitting));
         }
-        if let Some(cell_size @ (1 | 3 | 4)) = unknowns_per_cell(supports)
-            && matrix.size().is_multiple_of(cell_size)
+        // 1: cells share unknowns; 3, 4: linear functions on a triangle, a tetrahedron
+        if let Some(block_size @ (1 | 3 | 4)) = unknowns_per_cell(supports)
+            && matrix.size().is_multiple_of(block_size)
         {
             let prolongation = Prolongation::to_element(supports, level.size())?;
             let matrix = Cow::Borrowed(matrix);
-            return Some(Box::new(Multigrid::of_element(matrix, prolongation, level, cell_size)));
+            return Some(Box::new(Multigrid::of_element(matrix, prolongation, level, block_size)));
         }
         let multigrid = Multigrid::new(&level.matrix, level.coarser.as_ref());
         let correction =

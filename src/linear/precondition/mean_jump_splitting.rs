@@ -259,7 +259,7 @@ impl<T: Real> Preconditioner<T> for MeanJumpSplitting<'_, T> {
 
     /// An error that is small in the energy norm can be large in single unknowns of an over-penalised
     /// element, and change their contact states.
-    fn reduction(&self) -> f64 {
+    fn forcing_term(&self) -> f64 {
         0.03
     }
 

@@ -10,21 +10,23 @@ use crate::real::Real;
 pub trait Preconditioner<T>: Send + Sync {
     /// The name in reports.
     fn name(&self) -> &'static str;
-    /// Sets the fixed unknowns; is called before the first use, and whenever the active set changes.
+    /// Sets the fixed unknowns: those which the linear system does not contain, because Dirichlet data or the active
+    /// set prescribe their values. Is called before the first use, and whenever the active set changes.
     ///
     /// # Errors
     /// [`FactorError`] if a diagonal block or a coarse matrix is not positive definite.
     fn set_fixed(&mut self, fixed: &[bool]) -> Result<(), FactorError>;
     /// `z = B r` for a residual `r` that is zero on the fixed unknowns.
     fn apply(&mut self, r: &[T], z: &mut [T]);
-    /// The factor by which the norm of the residual is reduced by the solution of a system while the
-    /// active set changes.
-    fn reduction(&self) -> f64 {
+    /// The forcing term: while the active set changes, a linear system is solved until the norm of its residual is
+    /// this times the initial one. An exact solution of such a system is lost work; a preconditioner whose
+    /// iterations are expensive beside a change of the active set chooses a larger number.
+    fn forcing_term(&self) -> f64 {
         0.1
     }
 }
 
-/// A symmetric matrix that needs a preconditioner.
+/// A symmetric matrix for which a preconditioner is asked, with the inequality and the spaces from which it can be made.
 #[derive(Clone, Copy, Debug)]
 #[non_exhaustive]
 pub struct PreconditionedSystem<'a, T> {
@@ -32,12 +34,12 @@ pub struct PreconditionedSystem<'a, T> {
     pub matrix: &'a SparseMatrix<T>,
     /// The inequality.
     pub inequality: &'a Inequality<T>,
-    /// The conforming linear functions on the mesh and on coarser meshes.
+    /// The conforming linear functions on the mesh and on coarser meshes, as far as they are known.
     pub spaces: &'a CoarseSpaces<T>,
 }
 
 impl<'a, T> PreconditionedSystem<'a, T> {
-    /// The symmetric part of the matrix of an inequality, with coarse spaces.
+    /// The symmetric matrix `matrix`, which belongs to `inequality`, with coarse spaces.
     #[must_use]
     pub fn new(
         matrix: &'a SparseMatrix<T>,
@@ -48,9 +50,9 @@ impl<'a, T> PreconditionedSystem<'a, T> {
     }
 }
 
-/// A family of preconditioners: one for each system.
+/// A family of preconditioners: at most one for each system.
 pub trait PreconditionerFamily<T: Real>: Send + Sync {
-    /// The name of a solver with these preconditioners, in reports.
+    /// The name of the family. Reports show it as part of the name of a solver that uses the family.
     fn name(&self) -> &'static str;
     /// The preconditioner of a system; `None` if none fits.
     fn preconditioner<'a>(

@@ -148,7 +148,7 @@ impl<T: Real> Solve<'_, '_, T> {
         };
         let solution = MonotoneMultigrid::default()
             .stagnation_cycles(STAGNATION_CYCLES)
-            .descend(self.inequality, &guess);
+            .run_cycles(self.inequality, &guess);
         let Solution {
             values,
             mut contact,
@@ -213,7 +213,7 @@ impl<T: Real> Solve<'_, '_, T> {
         let new = || DirectSolver::new(self.inequality, refinements);
         let condensation = self.direct.get_or_insert_with(new).condensation();
         let start = self.iterate.best_values();
-        let mut method = match self.central_point.take() {
+        let mut method = match self.restart_point.take() {
             Some(point) => InteriorPoint::resumed(self.inequality, condensation, point),
             None => InteriorPoint::new(self.inequality, condensation, start, identification),
         };
@@ -222,7 +222,7 @@ impl<T: Real> Solve<'_, '_, T> {
             (method.values(), method.jump_multipliers(), method.steps);
         self.interior_point_may_improve = method.may_improve();
         self.has_small_slacks = method.leaves_small_slacks();
-        self.central_point = method.into_central_point();
+        self.restart_point = method.into_restart_point();
         self.iterate.outer += steps;
         self.guess.steps.advance(steps);
         let Some(contact) = contact else { return false };

@@ -6,7 +6,7 @@ use crate::inequality::active_set::iterate::Iterate;
 use crate::inequality::active_set::iteration::{End, outcome_of_best};
 use crate::inequality::active_set::settings::ActiveSet;
 use crate::inequality::initial_guess::InitialGuess;
-use crate::inequality::interior_point::CentralPoint;
+use crate::inequality::interior_point::RestartPoint;
 use crate::inequality::{Outcome, Solution, Stage, StageRun};
 use crate::linear::PreconditionerFamily;
 use crate::real::Real;
@@ -32,7 +32,7 @@ pub(in crate::inequality::active_set) struct Solve<'s, 'a, T: Real> {
     /// Whether there may be slacks that only the second run of the interior point method resolves.
     pub has_small_slacks: bool,
     /// Where the first run of the interior point method ended, if the second one may go on from there.
-    pub central_point: Option<CentralPoint>,
+    pub restart_point: Option<RestartPoint>,
 }
 
 /// What the last stage of a solve found, in addition to the iterate.
@@ -72,7 +72,7 @@ impl<'s, 'a, T: Real> Solve<'s, 'a, T> {
             end: None,
             interior_point_may_improve: true,
             has_small_slacks: false,
-            central_point: None,
+            restart_point: None,
         }
     }
 
