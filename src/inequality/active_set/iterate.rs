@@ -57,7 +57,7 @@ impl<'a, T: Real> Iterate<'a, T> {
         ghosts.for_each(|(_, state)| *state = Contact::Inactive);
         let best = BestIterate {
             merit: f64::INFINITY,
-            values: values.clone(),
+            values: Vec::new(),
             states: states.clone(),
             jump_multipliers: Vec::new(),
         };
@@ -76,6 +76,8 @@ impl<'a, T: Real> Iterate<'a, T> {
             best,
         };
         iterate.set_prescribed_values();
+        // a solution without any evaluation has the values that its states prescribe
+        iterate.best.values.clone_from(&iterate.values);
         iterate
     }
 
@@ -136,7 +138,7 @@ impl<'a, T: Real> Iterate<'a, T> {
             let i = i as usize;
             self.states[i] = contact;
             let prescribed = prescribed_value(&self.inequality.bounds[i], contact);
-            self.eliminated[i] = prescribed.is_some();
+            self.eliminated[i] = prescribed.is_some() || !self.inequality.owns(i);
             let Some(value) = prescribed else { continue };
             let change = (value - self.values[i]).to_f64();
             self.values[i] = value;
@@ -261,7 +263,20 @@ impl<'a, T: Real> Iterate<'a, T> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::algebra::SparseMatrix;
+    use crate::algebra::{SparseMatrix, Start};
+
+    /// A solve that ends before its first evaluation returns values that fit its contact states.
+    #[test]
+    fn an_iterate_without_evaluation_has_the_values_of_its_states() {
+        let matrix = SparseMatrix::second_differences(3);
+        let bounds = vec![Bound::Fixed(7.0), Bound::Lower(1.0), Bound::Lower(1.0)];
+        let states = vec![Contact::Inactive, Contact::Lower];
+        let mut string = Inequality::new(matrix, true, vec![0.0; 3], bounds);
+        string.start = Start::Contact(states);
+        let solution = Iterate::new(&string, &[3.0; 3]).into_solution(Outcome::Stalled);
+        assert_eq!(solution.values, [7.0, 1.0, 3.0]);
+        assert_eq!(solution.contact, [Contact::Inactive, Contact::Lower, Contact::Inactive]);
+    }
 
     /// The size of rounding in a residual is that of its terms, however much they cancel.
     #[test]

@@ -220,8 +220,9 @@ impl<T: Real> InteriorPoint<'_, '_, T> {
         let predicted = expand(0.0, PREDICTOR_ORDER).complementarity;
         let target = mean * (predicted / mean).clamp(0.0, 1.0).powi(3);
         let expansion = expand(target, MAX_ORDER);
-        // no degree is kept if the coefficients are not finite
-        if expansion.order() == 0 || expansion.length <= 0.0 {
+        // no degree is kept if the coefficients are not finite; false for a length that is NaN
+        let is_step = expansion.order() > 0 && expansion.length > 0.0;
+        if !is_step {
             return Some(false);
         }
         expansion.advance(&mut self.point);
